@@ -1,0 +1,34 @@
+find_package(GTest REQUIRED)
+include(GoogleTest)
+
+set(OFFNOMINAL_TEST_SUPPORT_DIR "${PROJECT_SOURCE_DIR}/tests")
+
+# offnominal_add_test(NAME <target> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>])
+#
+# Builds one GoogleTest executable and registers each of its cases with CTest. Cases see
+# "support/<header>.hpp" (tests/support) and OFFNOMINAL_SOURCE_DIR, the checkout's folder as a string.
+function(offnominal_add_test)
+  cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME;LABELS" "SOURCES;LIBRARIES")
+  if(NOT arg_NAME OR NOT arg_SOURCES)
+    message(FATAL_ERROR "offnominal_add_test: NAME and SOURCES are required")
+  endif()
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "offnominal_add_test(${arg_NAME}): not understood: ${arg_UNPARSED_ARGUMENTS}"
+                        " (gtest_discover_tests passes on one label only)")
+  endif()
+
+  add_executable(${arg_NAME} ${arg_SOURCES})
+  target_include_directories(${arg_NAME} PRIVATE "${OFFNOMINAL_TEST_SUPPORT_DIR}")
+  target_compile_definitions(${arg_NAME}
+                             PRIVATE OFFNOMINAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_link_libraries(${arg_NAME} PRIVATE offnominal_warnings ${arg_LIBRARIES} GTest::gmock
+                                            GTest::gtest GTest::gtest_main)
+
+  set(properties)
+  if(arg_LABELS)
+    set(properties PROPERTIES LABELS ${arg_LABELS})
+  endif()
+  # Asked at test time: a test executable that cannot start is then a failed test, not a failed build.
+  gtest_discover_tests(${arg_NAME} TEST_PREFIX "${arg_NAME}." DISCOVERY_MODE PRE_TEST
+                       DISCOVERY_TIMEOUT 60 ${properties})
+endfunction()

@@ -1,0 +1,35 @@
+# shellcheck shell=bash
+# Shared by dev and its scripts; sourced, never run.
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+
+note() { printf '\n== %s\n' "$*" >&2; }
+die() {
+  printf 'dev: %s\n' "$*" >&2
+  exit 2
+}
+
+# Compilers of Eigen code take about 1.5 GB each; a small machine must not swap.
+jobs_allowed() {
+  local cores memory_kb by_memory
+  cores="$(nproc)"
+  memory_kb="$(awk '/^MemAvailable:/ {print $2}' /proc/meminfo)"
+  by_memory=$((memory_kb / 1500000))
+  if ((by_memory < 1)); then by_memory=1; fi
+  echo $((by_memory < cores ? by_memory : cores))
+}
+
+# build PRESET [TARGET...]: configures and builds; silent when nothing is to do. All output on stderr.
+# Extra ninja options may come in NINJA_OPTIONS.
+build() {
+  local preset="$1" dir
+  shift
+  dir="$root/build/$preset"
+  if [[ -f "$dir/build.ninja" ]] &&
+    ninja -C "$dir" -n "$@" 2>/dev/null | grep -q 'no work to do'; then
+    return 0
+  fi
+  note "build ($preset)"
+  (cd "$root" && cmake --preset "$preset" --log-level=WARNING) >&2 || return 1
+  # shellcheck disable=SC2086  # a list of options, split on purpose
+  ninja -C "$dir" -j "$(jobs_allowed)" ${NINJA_OPTIONS:-} "$@" >&2
+}
