@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <offnominal/model/quantity.hpp>
+
+// An effect is a named physical contribution to the torque (N m; N on a prismatic joint) of one
+// joint. Sign: an effect's torque is what the drive has to supply for it, so that
+//   M(q) ddq + V(q, dq) dq + G(q) + sum of effects = tau.
+// A positive friction coefficient therefore takes energy out of the joint.
+
+namespace offnominal {
+
+inline constexpr int kMaxEffectParameters = 4;
+
+// Which physics an effect is. The numbers are stable, names are name_of(kind).
+enum class EffectKind : std::uint8_t {
+  kViscousFriction = 0,
+  kCoulombFriction = 1,
+  kFrictionAsymmetry = 2,
+  kTorqueOffset = 3,
+  kStribeckFriction = 4,
+  kQuadraticFriction = 5,
+  kRotorInertia = 6,
+  kTipPayload = 7,
+  kLinkMass = 8,
+  kJointStiffness = 9,
+  kCoggingTorque = 10,
+  kPeriodicDisturbance = 11,
+};
+
+// How a parameter enters the effect's torque.
+enum class ParameterRole : std::uint8_t {
+  kLinear,  // the torque is proportional to it: least squares can find it
+  kShape,   // it sits inside a nonlinearity: it is searched for, or left as given
+};
+
+struct ParameterInfo {
+  const char* name;  // key in a robot file
+  Quantity quantity;
+  ParameterRole role;
+  double min;  // allowed range, both ends included
+  double max;
+  bool required;
+  double default_value;  // where it is not required
+  const char* meaning;
+};
+
+// One effect with its values. `joint` counts from 0; `parameters` in the order of the effect's
+// kParameters, the rest 0.
+template <typename Scalar>
+struct Effect {
+  EffectKind kind = EffectKind::kViscousFriction;
+  std::uint8_t joint = 0;
+  std::array<Scalar, kMaxEffectParameters> parameters{};
+};
+
+// What an effect may depend on at one joint at one instant.
+template <typename Scalar>
+struct JointInstant {
+  Scalar q{};       // position, rad or m
+  Scalar dq{};      // velocity, rad/s or m/s
+  Scalar time_s{};  // time since the run's origin, s
+};
+
+}  // namespace offnominal

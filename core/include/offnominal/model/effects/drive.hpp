@@ -1,0 +1,89 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <numbers>
+#include <offnominal/model/effects/friction.hpp>
+
+// Effects of the drive, of springs and of the surroundings that act at the joint.
+
+namespace offnominal::effects {
+
+struct TorqueOffset {
+  static constexpr EffectKind kKind = EffectKind::kTorqueOffset;
+  static constexpr const char* kName = "torque_offset";
+  static constexpr const char* kFormula = "level";
+  static constexpr std::array<ParameterInfo, 1> kParameters{{
+      {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "constant torque, such as a bias of the torque measurement"},
+  }};
+  template <typename Scalar>
+  static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
+                       const JointInstant<Scalar>& /*at*/) {
+    return p[0];
+  }
+};
+
+struct JointStiffness {
+  static constexpr EffectKind kKind = EffectKind::kJointStiffness;
+  static constexpr const char* kName = "joint_stiffness";
+  static constexpr const char* kFormula = "stiffness * (q - rest_position)";
+  static constexpr std::array<ParameterInfo, 2> kParameters{{
+      {"stiffness", Quantity::kEffortPerPosition, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "torque per displacement from the rest position"},
+      {"rest_position", Quantity::kPosition, ParameterRole::kShape, -kAny, kAny, false, 0,
+       "position without spring torque"},
+  }};
+  template <typename Scalar>
+  static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
+                       const JointInstant<Scalar>& at) {
+    return p[0] * (at.q - p[1]);
+  }
+};
+
+// Torque that repeats with position: `order` periods per turn (per m on a prismatic joint).
+struct CoggingTorque {
+  static constexpr EffectKind kKind = EffectKind::kCoggingTorque;
+  static constexpr const char* kName = "cogging_torque";
+  static constexpr const char* kFormula =
+      "sine * sin(k q) + cosine * cos(k q), k = order (revolute) or 2 pi order (prismatic)";
+  static constexpr std::array<ParameterInfo, 3> kParameters{{
+      {"sine", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0, "sine amplitude"},
+      {"cosine", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "cosine amplitude"},
+      {"order", Quantity::kCyclesPerPosition, ParameterRole::kShape, 1e-9, kAny, true, 0,
+       "periods per turn, or per metre"},
+  }};
+  // parameters[3] holds k, set by the model from `order` and the joint's type.
+  template <typename Scalar>
+  static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
+                       const JointInstant<Scalar>& at) {
+    const Scalar phase = p[3] * at.q;
+    return p[0] * Eigen::numext::sin(phase) + p[1] * Eigen::numext::cos(phase);
+  }
+  template <typename Scalar>
+  static void prepare(std::array<Scalar, kMaxEffectParameters>& p, JointType type) {
+    p[3] = type == JointType::kRevolute ? p[2] : p[2] * 2 * std::numbers::pi_v<Scalar>;
+  }
+};
+
+struct PeriodicDisturbance {
+  static constexpr EffectKind kKind = EffectKind::kPeriodicDisturbance;
+  static constexpr const char* kName = "periodic_disturbance";
+  static constexpr const char* kFormula = "sine * sin(frequency t) + cosine * cos(frequency t)";
+  static constexpr std::array<ParameterInfo, 3> kParameters{{
+      {"sine", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0, "sine amplitude"},
+      {"cosine", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "cosine amplitude"},
+      {"frequency", Quantity::kAngularFrequency, ParameterRole::kShape, 1e-9, kAny, true, 0,
+       "angular frequency in time"},
+  }};
+  template <typename Scalar>
+  static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
+                       const JointInstant<Scalar>& at) {
+    const Scalar phase = p[2] * at.time_s;
+    return p[0] * Eigen::numext::sin(phase) + p[1] * Eigen::numext::cos(phase);
+  }
+};
+
+}  // namespace offnominal::effects

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <offnominal/model/effect.hpp>
+#include <offnominal/model/smooth_sign.hpp>
+
+namespace offnominal::effects {
+
+inline constexpr double kAny = std::numeric_limits<double>::max();
+
+// The velocity at which the smoothed sign has reached 0.76 of its final value.
+inline constexpr ParameterInfo kSmoothing{"smoothing",
+                                          Quantity::kVelocity,
+                                          ParameterRole::kShape,
+                                          1e-9,
+                                          kAny,
+                                          false,
+                                          0.01,
+                                          "velocity over which the sign is smoothed"};
+
+struct ViscousFriction {
+  static constexpr EffectKind kKind = EffectKind::kViscousFriction;
+  static constexpr const char* kName = "viscous_friction";
+  static constexpr const char* kFormula = "coefficient * dq";
+  static constexpr std::array<ParameterInfo, 1> kParameters{{
+      {"coefficient", Quantity::kEffortPerVelocity, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "torque per velocity"},
+  }};
+  template <typename Scalar>
+  static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
+                       const JointInstant<Scalar>& at) {
+    return p[0] * at.dq;
+  }
+};
+
+struct CoulombFriction {
+  static constexpr EffectKind kKind = EffectKind::kCoulombFriction;
+  static constexpr const char* kName = "coulomb_friction";
+  static constexpr const char* kFormula = "level * tanh(dq / smoothing)";
+  static constexpr std::array<ParameterInfo, 2> kParameters{{
+      {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "torque against the motion, whatever its speed"},
+      kSmoothing,
+  }};
+  template <typename Scalar>
+  static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
+                       const JointInstant<Scalar>& at) {
+    return p[0] * smooth_sign(at.dq, p[1]);
+  }
+};
+
+// Half the difference between the friction of forward and of backward motion. With Coulomb and
+// viscous friction beside it the two directions have independent levels and slopes:
+// level+ = level + asymmetry.level, level- = level - asymmetry.level, and likewise the slopes.
+struct FrictionAsymmetry {
+  static constexpr EffectKind kKind = EffectKind::kFrictionAsymmetry;
+  static constexpr const char* kName = "friction_asymmetry";
+  static constexpr const char* kFormula =
+      "level * s^2 + coefficient * dq * s, s = tanh(dq / smoothing)";
+  static constexpr std::array<ParameterInfo, 3> kParameters{{
+      {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "half the difference of the Coulomb levels of the two directions"},
+      {"coefficient", Quantity::kEffortPerVelocity, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "half the difference of the viscous slopes of the two directions"},
+      kSmoothing,
+  }};
+  template <typename Scalar>
+  static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
+                       const JointInstant<Scalar>& at) {
+    const Scalar sign = smooth_sign(at.dq, p[2]);
+    return sign * (p[0] * sign + p[1] * at.dq);
+  }
+};
+
+// What friction at very low speed has above the Coulomb level, Gaussian form.
+// Source: B. Armstrong-Helouvry et al., Automatica 30(7), 1994, with exponent 2.
+struct StribeckFriction {
+  static constexpr EffectKind kKind = EffectKind::kStribeckFriction;
+  static constexpr const char* kName = "stribeck_friction";
+  static constexpr const char* kFormula =
+      "level * exp(-(dq / stribeck_velocity)^2) * tanh(dq / smoothing)";
+  static constexpr std::array<ParameterInfo, 3> kParameters{{
+      {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "static friction minus Coulomb friction"},
+      {"stribeck_velocity", Quantity::kVelocity, ParameterRole::kShape, 1e-9, kAny, true, 0,
+       "velocity at which the excess has fallen to 1/e"},
+      kSmoothing,
+  }};
+  template <typename Scalar>
+  static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
+                       const JointInstant<Scalar>& at) {
+    const Scalar ratio = at.dq / p[1];
+    return p[0] * Eigen::numext::exp(-ratio * ratio) * smooth_sign(at.dq, p[2]);
+  }
+};
+
+struct QuadraticFriction {
+  static constexpr EffectKind kKind = EffectKind::kQuadraticFriction;
+  static constexpr const char* kName = "quadratic_friction";
+  static constexpr const char* kFormula = "coefficient * dq * |dq|";
+  static constexpr std::array<ParameterInfo, 1> kParameters{{
+      {"coefficient", Quantity::kEffortPerVelocitySquared, ParameterRole::kLinear, -kAny, kAny,
+       true, 0, "torque per squared velocity, against the motion"},
+  }};
+  template <typename Scalar>
+  static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
+                       const JointInstant<Scalar>& at) {
+    return p[0] * at.dq * Eigen::numext::abs(at.dq);
+  }
+};
+
+}  // namespace offnominal::effects

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <offnominal/model/inverse_dynamics.hpp>
+#include <offnominal/model/mass_matrix.hpp>
+#include <offnominal/status.hpp>
+
+namespace offnominal {
+
+// What the model says at one instant.
+template <int N, typename Scalar>
+struct ForwardDynamics {
+  Vector<N, Scalar> ddq = Vector<N, Scalar>::Zero();            // rad/s^2 or m/s^2
+  Matrix<N, N, Scalar> inertia = Matrix<N, N, Scalar>::Zero();  // M(q)
+};
+
+// ddq = M(q)^-1 (tau - V(q, dq) dq - G(q) - effects): the paper's f with the known effects. Solves
+// for the vector, the inverse is never formed. kSingularMassMatrix where M(q) is not positive
+// definite to rounding, or not finite; `result` is then unchanged.
+template <int N, typename Scalar>
+[[nodiscard]] Status forward_dynamics(const RigidBodyModel<N, Scalar>& model,
+                                      const Vector<N, Scalar>& q, const Vector<N, Scalar>& dq,
+                                      const Vector<N, Scalar>& tau, Scalar time_s,
+                                      ForwardDynamics<N, Scalar>& result) {
+  const JointTransforms<N, Scalar> at = joint_transforms(model, q);
+  const Matrix<N, N, Scalar> inertia = mass_matrix(model, at);
+  const Eigen::LLT<Matrix<N, N, Scalar>> factor(inertia);
+  if (factor.info() != Eigen::Success) return Status::kSingularMassMatrix;
+  Vector<N, Scalar> ddq =
+      tau - rigid_body_bias(model, at, dq) - effect_torque(model, q, dq, time_s);
+  factor.solveInPlace(ddq);
+  // A NaN on the diagonal passes the factor's own test.
+  if (!ddq.allFinite()) return Status::kSingularMassMatrix;
+  result.ddq = ddq;
+  result.inertia = inertia;
+  return Status::kOk;
+}
+
+}  // namespace offnominal

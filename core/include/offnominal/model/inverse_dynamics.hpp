@@ -1,0 +1,167 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <offnominal/model/joint_transforms.hpp>
+#include <offnominal/model/rigid_body_model.hpp>
+
+// Recursive Newton-Euler in the links' own frames (J. Y. S. Luh, M. W. Walker, R. P. Paul, ASME
+// JDSMC 102, 1980; in this form R. Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 5).
+// Gravity enters as an acceleration of the base. Non-finite input gives non-finite output.
+
+namespace offnominal {
+
+namespace detail {
+
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> rotated(const Matrix<3, 3, Scalar>& rotation,
+                                                            const Vector<3, Scalar>& v) {
+  return rotation.lazyProduct(v);
+}
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> rotated_back(
+    const Matrix<3, 3, Scalar>& rotation, const Vector<3, Scalar>& v) {
+  return rotation.transpose().lazyProduct(v);
+}
+// omega x (omega x r)
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> centripetal(const Vector<3, Scalar>& omega,
+                                                                Scalar omega_squared,
+                                                                const Vector<3, Scalar>& r) {
+  return omega.dot(r) * omega - omega_squared * r;
+}
+
+// With Accelerating = false ddq counts as zero and is not read.
+template <bool Accelerating, int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> rigid_body_torque(const RigidBodyModel<N, Scalar>& model,
+                                                  const JointTransforms<N, Scalar>& at,
+                                                  const Vector<N, Scalar>& dq,
+                                                  const Vector<N, Scalar>& ddq) {
+  using Vec3 = Vector<3, Scalar>;
+  constexpr auto kCount = static_cast<std::size_t>(N);
+  std::array<Vec3, kCount> force;   // on link i from the link before it, link's frame
+  std::array<Vec3, kCount> moment;  // about the origin of the link's frame
+
+  Vec3 omega = Vec3::Zero();
+  Vec3 omega_dot = Vec3::Zero();
+  Vec3 acceleration = rotated_back<Scalar>(at.rotation[0], -model.gravity);
+  // The first joint's frame does not turn, so that the link can only turn about the joint's axis:
+  // its own spin has no moment about that axis, and the force on it is nobody's concern.
+  const auto& first = model.bodies[0];
+  if (first.type == JointType::kRevolute) {
+    omega = first.axis * dq[0];
+    moment[0] = first.link.first_moment.cross(acceleration);
+    if constexpr (Accelerating) {
+      omega_dot = first.axis * ddq[0];
+      moment[0] += first.link.inertia.lazyProduct(omega_dot);
+    }
+    force[0].setZero();
+  } else {
+    if constexpr (Accelerating) acceleration += first.axis * ddq[0];
+    force[0] = first.link.mass * acceleration;
+    moment[0].setZero();
+  }
+  for (std::size_t i = 1; i < kCount; ++i) {
+    const auto& body = model.bodies[i];
+    const auto index = static_cast<Eigen::Index>(i);
+    acceleration += centripetal<Scalar>(omega, omega.squaredNorm(), at.origin[i]);
+    omega = rotated_back<Scalar>(at.rotation[i], omega);
+    if (Accelerating || i > 1) {
+      acceleration += omega_dot.cross(at.origin[i]);
+      omega_dot = rotated_back<Scalar>(at.rotation[i], omega_dot);
+    }
+    acceleration = rotated_back<Scalar>(at.rotation[i], acceleration);
+    const Vec3 relative = body.axis * dq[index];
+    const Vec3 coriolis = omega.cross(relative);
+    if (body.type == JointType::kRevolute) {
+      omega_dot += coriolis;
+      omega += relative;
+      if constexpr (Accelerating) omega_dot += body.axis * ddq[index];
+    } else {
+      acceleration += Scalar(2) * coriolis;
+      if constexpr (Accelerating) acceleration += body.axis * ddq[index];
+    }
+    const Vec3& h = body.link.first_moment;
+    const Vec3 spin = body.link.inertia.lazyProduct(omega);
+    force[i] = body.link.mass * acceleration + omega_dot.cross(h) +
+               centripetal<Scalar>(omega, omega.squaredNorm(), h);
+    moment[i] =
+        body.link.inertia.lazyProduct(omega_dot) + omega.cross(spin) + h.cross(acceleration);
+  }
+
+  Vector<N, Scalar> torque;
+  for (std::size_t i = kCount; i-- > 0;) {
+    const auto& body = model.bodies[i];
+    const auto index = static_cast<Eigen::Index>(i);
+    const Vec3& along = body.type == JointType::kRevolute ? moment[i] : force[i];
+    torque[index] = body.axis.dot(along);
+    if constexpr (Accelerating) torque[index] += body.reflected_inertia * ddq[index];
+    if (i > 0) {
+      const Vec3 passed = rotated<Scalar>(at.rotation[i], force[i]);
+      force[i - 1] += passed;
+      moment[i - 1] += rotated<Scalar>(at.rotation[i], moment[i]) + at.origin[i].cross(passed);
+    }
+  }
+  return torque;
+}
+
+}  // namespace detail
+
+// M(q) ddq + V(q, dq) dq + G(q), N m or N per joint, reflected inertias and payloads included,
+// torque effects not.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> rigid_body_torque(const RigidBodyModel<N, Scalar>& model,
+                                                  const JointTransforms<N, Scalar>& at,
+                                                  const Vector<N, Scalar>& dq,
+                                                  const Vector<N, Scalar>& ddq) {
+  return detail::rigid_body_torque<true, N, Scalar>(model, at, dq, ddq);
+}
+
+// V(q, dq) dq + G(q) alone: the same without acceleration.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> rigid_body_bias(const RigidBodyModel<N, Scalar>& model,
+                                                const JointTransforms<N, Scalar>& at,
+                                                const Vector<N, Scalar>& dq) {
+  return detail::rigid_body_torque<false, N, Scalar>(model, at, dq, dq);
+}
+
+// Sum of the model's torque effects per joint, N m or N. time_s: since the run's origin.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> effect_torque(const RigidBodyModel<N, Scalar>& model,
+                                              const Vector<N, Scalar>& q,
+                                              const Vector<N, Scalar>& dq, Scalar time_s) {
+  Vector<N, Scalar> torque = Vector<N, Scalar>::Zero();
+  for (const Effect<Scalar>& effect : model.torque_effects.view()) {
+    const auto joint = static_cast<Eigen::Index>(effect.joint);
+    const JointInstant<Scalar> instant{q[joint], dq[joint], time_s};
+    visit_effect(effect.kind, [&]<typename E>() {
+      if constexpr (requires { E::torque(effect.parameters, instant); }) {
+        torque[joint] += E::torque(effect.parameters, instant);
+      }
+    });
+  }
+  return torque;
+}
+
+// The torque that the model needs for the motion (q, dq, ddq) at time_s, effects included.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> inverse_dynamics(const RigidBodyModel<N, Scalar>& model,
+                                                 const Vector<N, Scalar>& q,
+                                                 const Vector<N, Scalar>& dq,
+                                                 const Vector<N, Scalar>& ddq, Scalar time_s) {
+  return rigid_body_torque(model, joint_transforms(model, q), dq, ddq) +
+         effect_torque(model, q, dq, time_s);
+}
+
+// V(q, dq) dq + G(q) + effects: the torque without acceleration.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> bias_torque(const RigidBodyModel<N, Scalar>& model,
+                                            const Vector<N, Scalar>& q, const Vector<N, Scalar>& dq,
+                                            Scalar time_s) {
+  return rigid_body_bias(model, joint_transforms(model, q), dq) +
+         effect_torque(model, q, dq, time_s);
+}
+
+}  // namespace offnominal

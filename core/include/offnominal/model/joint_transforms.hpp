@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <offnominal/model/rigid_body_model.hpp>
+
+namespace offnominal {
+
+// Placement of every link's frame in the frame before it at one position of the joints.
+template <int N, typename Scalar>
+struct JointTransforms {
+  std::array<Matrix<3, 3, Scalar>, static_cast<std::size_t>(N)> rotation;  // child to parent
+  std::array<Vector<3, Scalar>, static_cast<std::size_t>(N)> origin;       // m, parent's frame
+};
+
+// q: rad or m. A non-finite q gives non-finite transforms.
+template <int N, typename Scalar>
+[[nodiscard]] JointTransforms<N, Scalar> joint_transforms(const RigidBodyModel<N, Scalar>& model,
+                                                          const Vector<N, Scalar>& q) {
+  JointTransforms<N, Scalar> at;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+    const auto& body = model.bodies[i];
+    const Scalar qi = q[static_cast<Eigen::Index>(i)];
+    if (body.type == JointType::kRevolute) {
+      const Scalar sine = Eigen::numext::sin(qi);
+      const Scalar cosine = Eigen::numext::cos(qi);
+      at.rotation[i] = body.fixed + sine * body.sine + cosine * body.cosine;
+      at.origin[i] = body.origin;
+    } else {
+      at.rotation[i] = body.fixed;
+      at.origin[i] = body.origin + qi * body.slide;
+    }
+  }
+  return at;
+}
+
+}  // namespace offnominal
