@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <offnominal/model/rigid_body_model.hpp>
+
+namespace offnominal {
+
+template <int N, typename Scalar>
+struct CompensatingTorque {
+  Vector<N, Scalar> torque = Vector<N, Scalar>::Zero();  // to be added to the command, N m or N
+  bool saturated = false;                                // a joint's limit was reached
+};
+
+// Accommodation, paper eq. (31): tau_r = tau + torque with torque = -M(q) psi_hat, every joint
+// clamped to +-limit (N m or N, >= 0). psi_hat in rad/s^2 or m/s^2. NaN in, NaN out.
+template <int N, typename Scalar>
+[[nodiscard]] CompensatingTorque<N, Scalar> compensating_torque(const Matrix<N, N, Scalar>& inertia,
+                                                                const Vector<N, Scalar>& psi_hat,
+                                                                const Vector<N, Scalar>& limit) {
+  CompensatingTorque<N, Scalar> result;
+  const Vector<N, Scalar> wanted = -inertia.lazyProduct(psi_hat);
+  for (Eigen::Index i = 0; i < N; ++i) {
+    const Scalar w = wanted[i];
+    const bool over = w > limit[i];
+    const bool under = w < -limit[i];
+    result.torque[i] = over ? limit[i] : under ? -limit[i] : w;
+    result.saturated = result.saturated || over || under;
+  }
+  return result;
+}
+
+}  // namespace offnominal

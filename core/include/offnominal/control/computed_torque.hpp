@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <offnominal/model/inverse_dynamics.hpp>
+#include <offnominal/model/rigid_body_model.hpp>
+#include <offnominal/status.hpp>
+
+namespace offnominal {
+
+// Diagonals of K_p (1/s^2) and K_d (1/s) of eq. (29), >= 0.
+template <int N, typename Scalar>
+struct ComputedTorqueGains {
+  std::array<Scalar, static_cast<std::size_t>(N)> kp{};
+  std::array<Scalar, static_cast<std::size_t>(N)> kd{};
+};
+
+// Where the joints should be: rad, rad/s, rad/s^2 (m, m/s, m/s^2).
+template <int N, typename Scalar>
+struct Reference {
+  Vector<N, Scalar> q = Vector<N, Scalar>::Zero();
+  Vector<N, Scalar> dq = Vector<N, Scalar>::Zero();
+  Vector<N, Scalar> ddq = Vector<N, Scalar>::Zero();
+};
+
+template <int N, typename Scalar>
+[[nodiscard]] Status validate(const ComputedTorqueGains<N, Scalar>& gains) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+    const bool good = std::isfinite(gains.kp[i]) && gains.kp[i] >= 0 &&
+                      std::isfinite(gains.kd[i]) && gains.kd[i] >= 0;
+    if (!good) return Status::kInvalidGain;
+  }
+  return Status::kOk;
+}
+
+// Computed torque, paper eq. (29): M(q)(ddq_d + K_d (dq_d - dq) + K_p (q_d - q)) + V dq + G, plus
+// the effects that the model knows. N m or N, not limited. One inverse-dynamics recursion.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> computed_torque(const RigidBodyModel<N, Scalar>& model,
+                                                const ComputedTorqueGains<N, Scalar>& gains,
+                                                const Reference<N, Scalar>& reference,
+                                                const Vector<N, Scalar>& q,
+                                                const Vector<N, Scalar>& dq, Scalar time_s) {
+  using Diagonal = Eigen::Map<const Vector<N, Scalar>>;
+  const Diagonal kp(gains.kp.data());
+  const Diagonal kd(gains.kd.data());
+  const Vector<N, Scalar> ddq =
+      reference.ddq + kd.cwiseProduct(reference.dq - dq) + kp.cwiseProduct(reference.q - q);
+  return inverse_dynamics(model, q, dq, ddq, time_s);
+}
+
+}  // namespace offnominal

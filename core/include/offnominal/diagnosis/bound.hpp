@@ -1,0 +1,121 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <offnominal/model/rigid_body_model.hpp>
+#include <offnominal/status.hpp>
+
+namespace offnominal {
+
+enum class BoundKind : std::uint8_t {
+  kConstant = 0,    // offset
+  kScaledNorm = 1,  // scale * (|A dq| + offset)
+  kTable = 2,       // linear between points over one variable
+};
+
+enum class BoundVariable : std::uint8_t {
+  kPosition = 0,  // q, rad or m
+  kSpeed = 1,     // |dq|, rad/s or m/s
+  kTorque = 2,    // |tau|, N m or N
+};
+
+inline constexpr int kMaxTablePoints = 16;
+
+// mu_bar(q, dq, tau) of assumption 3.1: what |M^-1 (unmodelled torque)| does not exceed, rad/s^2
+// (m/s^2). Only its low-pass filtered value is compared with the filtered uncertainty, so a bound
+// may be exceeded for an instant (docs/theory.md, erratum 6). Plain data; one kind is in use.
+template <int N, typename Scalar>
+struct UncertaintyBound {
+  BoundKind kind = BoundKind::kConstant;
+  // Largest error of the measured velocity, Euclidean norm over the joints, rad/s or m/s, >= 0. It
+  // raises the threshold by twice its size (docs/theory.md); evaluate() leaves it out.
+  Scalar velocity_error{};
+  Scalar offset = 1;  // > 0 for kConstant, >= 0 for kScaledNorm
+  Scalar scale = 1;   // > 0
+  // A, row by row; rows that are not needed stay zero. |.| is the Euclidean norm.
+  std::array<Scalar, static_cast<std::size_t>(N* N)> matrix{};
+  // kTable: abscissae strictly rising, values > 0, the end values hold beyond both ends.
+  BoundVariable variable = BoundVariable::kSpeed;
+  std::uint8_t joint = 0;
+  std::uint8_t points = 0;
+  std::array<Scalar, kMaxTablePoints> at{};
+  std::array<Scalar, kMaxTablePoints> value{};
+};
+
+namespace detail {
+
+template <int N, typename Scalar>
+[[nodiscard]] bool table_valid(const UncertaintyBound<N, Scalar>& bound) {
+  if (bound.points < 1 || bound.points > kMaxTablePoints || bound.joint >= N) return false;
+  for (std::size_t i = 0; i < bound.points; ++i) {
+    if (!std::isfinite(bound.at[i]) || !std::isfinite(bound.value[i]) || bound.value[i] <= 0) {
+      return false;
+    }
+    if (i > 0 && bound.at[i] <= bound.at[i - 1]) return false;
+  }
+  return true;
+}
+
+template <int N, typename Scalar>
+[[nodiscard]] Scalar table_value(const UncertaintyBound<N, Scalar>& bound, Scalar x) {
+  Scalar result = bound.value[0];
+  for (std::size_t i = 1; i < bound.points; ++i) {
+    const Scalar part = (x - bound.at[i - 1]) / (bound.at[i] - bound.at[i - 1]);
+    const Scalar inside = std::clamp(part, Scalar(0), Scalar(1));
+    result += inside * (bound.value[i] - bound.value[i - 1]);
+  }
+  return result;
+}
+
+}  // namespace detail
+
+template <int N, typename Scalar>
+[[nodiscard]] Status validate(const UncertaintyBound<N, Scalar>& bound) {
+  const auto require = [](bool good) { return good ? Status::kOk : Status::kInvalidBound; };
+  if (!std::isfinite(bound.velocity_error) || bound.velocity_error < 0) {
+    return Status::kInvalidBound;
+  }
+  switch (bound.kind) {
+    case BoundKind::kConstant:
+      return require(std::isfinite(bound.offset) && bound.offset > 0);
+    case BoundKind::kScaledNorm: {
+      bool good = std::isfinite(bound.scale) && bound.scale > 0 && std::isfinite(bound.offset) &&
+                  bound.offset >= 0;
+      for (const Scalar element : bound.matrix) good = good && std::isfinite(element);
+      return require(good);
+    }
+    case BoundKind::kTable:
+      return require(detail::table_valid(bound));
+  }
+  return Status::kInvalidBound;
+}
+
+// mu_bar at one instant, rad/s^2 (m/s^2), >= 0 for a valid bound; NaN in, NaN out.
+template <int N, typename Scalar>
+[[nodiscard]] Scalar evaluate(const UncertaintyBound<N, Scalar>& bound, const Vector<N, Scalar>& q,
+                              const Vector<N, Scalar>& dq, const Vector<N, Scalar>& tau) {
+  switch (bound.kind) {
+    case BoundKind::kConstant:
+      return bound.offset;
+    case BoundKind::kScaledNorm: {
+      using RowMajor = Eigen::Matrix<Scalar, N, N, N == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+      const Eigen::Map<const RowMajor> a(bound.matrix.data());
+      const Vector<N, Scalar> product = a.lazyProduct(dq);
+      return bound.scale * (product.norm() + bound.offset);
+    }
+    case BoundKind::kTable: {
+      const auto joint = static_cast<Eigen::Index>(bound.joint);
+      const Scalar x = bound.variable == BoundVariable::kPosition ? q[joint]
+                       : bound.variable == BoundVariable::kSpeed  ? Eigen::numext::abs(dq[joint])
+                                                                  : Eigen::numext::abs(tau[joint]);
+      return detail::table_value(bound, x);
+    }
+  }
+  return Scalar(0);
+}
+
+}  // namespace offnominal

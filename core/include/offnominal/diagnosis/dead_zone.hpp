@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <offnominal/model/rigid_body_model.hpp>
+
+namespace offnominal {
+
+enum class DeadZone : std::uint8_t {
+  kContinuous = 0,     // e (1 - mu / |e|) outside, the paper's remark 3.4
+  kDiscontinuous = 1,  // e outside, the paper's own
+};
+
+// D[e] of the learning law (7): 0 while |e| <= mu (Euclidean norm), otherwise the error, shrunk by
+// mu where continuous. At e = mu = 0 it is 0. mu >= 0; e and mu in rad/s or m/s. |D[e]| does not
+// exceed `largest`, and an error whose norm the scalar cannot hold gives 0.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> dead_zone(
+    const Vector<N, Scalar>& e, Scalar mu, DeadZone kind,
+    Scalar largest = std::numeric_limits<Scalar>::infinity()) {
+  const Scalar norm = e.norm();
+  const Scalar inverse = Scalar(1) / Eigen::numext::maxi(norm, std::numeric_limits<Scalar>::min());
+  const Scalar shrunk = kind == DeadZone::kContinuous ? Scalar(1) - mu * inverse : Scalar(1);
+  const Scalar limited = Eigen::numext::mini(shrunk, largest * inverse);
+  const Scalar factor = norm > mu ? Eigen::numext::maxi(limited, Scalar(0)) : Scalar(0);
+  return factor * e;
+}
+
+}  // namespace offnominal

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <limits>
+#include <offnominal/diagnosis/estimator_config.hpp>
+#include <offnominal/diagnosis/estimator_state.hpp>
+#include <offnominal/diagnosis/network.hpp>
+#include <offnominal/diagnosis/tick_integrator.hpp>
+#include <offnominal/status.hpp>
+
+// The nonlinear estimator and its learning law, paper eqs. (2), (7), (8), (9):
+//   omega' = -alpha omega + alpha dq + f(q, dq, tau) + psi_hat,   e = dq - omega
+//   mu'    = -alpha mu + mu_bar(q, dq, tau)
+//   theta' = P{ Gamma Z^T D[e] }, projected to |theta| <= M
+// One classical Runge-Kutta step of the whole state per tick. Inside the tick the measured signals
+// q, dq, tau and what follows from them at a sample, f and mu_bar, are linear between its two ends.
+// (Evaluating f at interpolated measurements instead would differ in the order of the
+// interpolation's own error, and would double the cost of the dynamics.)
+
+namespace offnominal {
+
+// Starts at a sample: omega(0) = dq(0), mu(0) = 0, W2(0) = 0 and seeded W1(0). `nominal_ddq` and
+// `mu_bar` belong to that sample. kInvalidInitialWeights where |theta(0)| would not lie inside the
+// ball of radius M, `state` is then unchanged.
+template <int N, int L, typename Scalar>
+[[nodiscard]] Status reset(const EstimatorConfig<Scalar>& config, const NetworkInput<N, Scalar>& z,
+                           const Vector<N, Scalar>& nominal_ddq, Scalar mu_bar,
+                           EstimatorState<N, L, Scalar>& state) {
+  EstimatorState<N, L, Scalar> fresh;
+  fresh.weights =
+      initial_weights<N, L, Scalar>(config.seed, config.hidden_units, config.initial_weight_range);
+  fresh.theta_squared_norm = squared_norm(fresh.weights);
+  if (!(std::sqrt(fresh.theta_squared_norm) < config.weight_radius)) {
+    return Status::kInvalidInitialWeights;
+  }
+  fresh.omega = z.template segment<N>(1 + N);
+  fresh.z = z;
+  fresh.z_squared_norm = z.squaredNorm();
+  fresh.nominal_ddq = nominal_ddq;
+  fresh.mu_bar = mu_bar;
+  fresh.w1_z = fresh.weights.w1.lazyProduct(z).array();
+  fresh.sigma = sigmoid(fresh.w1_z);
+  state = fresh;
+  return Status::kOk;
+}
+
+// Advances the estimator by one tick. kNumericOverflow where the input is so large that the result
+// would not be finite; `state` is then unchanged. |theta| <= M holds afterwards, always.
+template <int N, int L, typename Scalar>
+[[nodiscard]] Status step(const EstimatorConfig<Scalar>& config,
+                          const EstimatorInput<N, Scalar>& input,
+                          EstimatorState<N, L, Scalar>& state) {
+  detail::TickIntegrator<N, L, Scalar> tick(config, input, state);
+  const detail::TickEnd<N, Scalar> end = tick.integrate();
+  const Scalar limit = std::numeric_limits<Scalar>::max() / 64;
+  const bool bounded = tick.squared_reach(end.theta) <= limit &&
+                       tick.input_products().z11 <= limit && end.omega.squaredNorm() <= limit &&
+                       input.nominal_ddq.squaredNorm() <= limit && end.mu <= limit;
+  if (!bounded) return Status::kNumericOverflow;
+  tick.finish(end.theta, state);
+  state.omega = end.omega;
+  state.mu = end.mu;
+  state.z = input.z;
+  state.nominal_ddq = input.nominal_ddq;
+  state.mu_bar = input.mu_bar;
+  state.error = input.z.template segment<N>(1 + N) - state.omega;
+  return Status::kOk;
+}
+
+}  // namespace offnominal

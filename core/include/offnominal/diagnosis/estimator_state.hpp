@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <offnominal/diagnosis/network.hpp>
+
+namespace offnominal {
+
+template <int N, int L, typename Scalar>
+struct EstimatorState {
+  Vector<N, Scalar> omega = Vector<N, Scalar>::Zero();    // velocity estimate, rad/s or m/s
+  Scalar mu{};                                            // threshold of |e|, rad/s or m/s
+  Vector<N, Scalar> error = Vector<N, Scalar>::Zero();    // e, rad/s or m/s
+  Vector<N, Scalar> psi_hat = Vector<N, Scalar>::Zero();  // fault estimate, rad/s^2 or m/s^2
+  NetworkWeights<N, L, Scalar> weights;                   // theta
+
+  // The tick's end, which is the next tick's beginning.
+  NetworkInput<N, Scalar> z = NetworkInput<N, Scalar>::Zero();
+  Vector<N, Scalar> nominal_ddq = Vector<N, Scalar>::Zero();  // f, rad/s^2 or m/s^2
+  Scalar mu_bar{};
+  HiddenVector<L, Scalar> w1_z = HiddenVector<L, Scalar>::Zero();   // W1 z
+  HiddenVector<L, Scalar> sigma = HiddenVector<L, Scalar>::Zero();  // sigma(W1 z)
+  Scalar theta_squared_norm{};                                      // |theta|^2
+  Scalar z_squared_norm{};                                          // |z|^2
+};
+
+// The signals at the end of one tick.
+template <int N, typename Scalar>
+struct EstimatorInput {
+  NetworkInput<N, Scalar> z;
+  Vector<N, Scalar> nominal_ddq;  // f, rad/s^2 or m/s^2
+  Scalar mu_bar{};                // bound, >= 0
+};
+
+}  // namespace offnominal

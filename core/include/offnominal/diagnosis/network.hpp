@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <offnominal/diagnosis/sigmoid.hpp>
+#include <offnominal/model/rigid_body_model.hpp>
+#include <offnominal/status.hpp>
+
+// The paper's three-layer sigmoidal network, eq. (4): psi_hat = W2 sigma(W1 z), z = [1 q dq tau].
+
+namespace offnominal {
+
+// Network inputs of n joints: 1, q, dq, tau.
+template <int N>
+inline constexpr int kNetworkInputs = 3 * N + 1;
+
+// Hidden units are worked on in blocks of the processor's vector length; the capacity is rounded up
+// to whole blocks (to nothing where there are no vector instructions).
+template <typename Scalar>
+inline constexpr int kLanes =
+    Eigen::internal::packet_traits<Scalar>::size < 8 ? Eigen::internal::packet_traits<Scalar>::size
+                                                     : 8;
+template <int L, typename Scalar>
+inline constexpr int kHiddenRows = (L + kLanes<Scalar> - 1) / kLanes<Scalar>* kLanes<Scalar>;
+
+template <int L, typename Scalar>
+using HiddenVector = Eigen::Array<Scalar, kHiddenRows<L, Scalar>, 1>;
+
+template <int N, typename Scalar>
+using NetworkInput = Vector<kNetworkInputs<N>, Scalar>;
+
+// theta of the paper. L is the capacity: a hidden unit whose weights are all zero stays so under
+// the learning law (sigma(0) = 0, so its output weights have no gradient, and without output
+// weights its input weights have none), so that fewer units than L are exactly a smaller network.
+template <int N, int L, typename Scalar>
+struct NetworkWeights {
+  static constexpr int kRows = kHiddenRows<L, Scalar>;
+  Matrix<kRows, kNetworkInputs<N>, Scalar> w1 = Matrix<kRows, kNetworkInputs<N>, Scalar>::Zero();
+  Matrix<kRows, N, Scalar> w2_transposed = Matrix<kRows, N, Scalar>::Zero();
+};
+
+template <int N, typename Scalar>
+[[nodiscard]] NetworkInput<N, Scalar> network_input(const Vector<N, Scalar>& q,
+                                                    const Vector<N, Scalar>& dq,
+                                                    const Vector<N, Scalar>& tau) {
+  NetworkInput<N, Scalar> z;
+  z[0] = Scalar(1);
+  z.template segment<N>(1) = q;
+  z.template segment<N>(1 + N) = dq;
+  z.template segment<N>(1 + 2 * N) = tau;
+  return z;
+}
+
+// W2(0) = 0, so that psi_hat = 0 (eq. 6); W1(0) uniform in [-range, range] for the first
+// `hidden_units` rows, row by row, from SplitMix32 (G. L. Steele et al., OOPSLA 2014; 32-bit
+// constants of C. Wellons): the same seed gives the same weights for every scalar and machine, to
+// the scalar's rounding.
+template <int N, int L, typename Scalar>
+[[nodiscard]] NetworkWeights<N, L, Scalar> initial_weights(std::uint32_t seed, int hidden_units,
+                                                           Scalar range) {
+  NetworkWeights<N, L, Scalar> weights;
+  std::uint32_t state = seed;
+  for (Eigen::Index unit = 0; unit < hidden_units && unit < L; ++unit) {
+    for (Eigen::Index input = 0; input < kNetworkInputs<N>; ++input) {
+      state += 0x9E3779B9U;
+      std::uint32_t bits = state;
+      bits = (bits ^ (bits >> 16U)) * 0x21F0AAADU;
+      bits = (bits ^ (bits >> 15U)) * 0x735A2D97U;
+      bits ^= bits >> 15U;
+      // 24 bits are exact in float: [-1, 1) in steps of 2^-23.
+      const auto whole = static_cast<std::int32_t>(bits >> 8U) - (1 << 23);
+      weights.w1(unit, input) = range * (static_cast<Scalar>(whole) / Scalar(1 << 23));
+    }
+  }
+  return weights;
+}
+
+// psi_hat at input z, rad/s^2 or m/s^2.
+template <int N, int L, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> network_output(const NetworkWeights<N, L, Scalar>& weights,
+                                               const NetworkInput<N, Scalar>& z) {
+  const HiddenVector<L, Scalar> pre = weights.w1.lazyProduct(z).array();
+  const HiddenVector<L, Scalar> sigma = sigmoid(pre);
+  return weights.w2_transposed.transpose().lazyProduct(sigma.matrix());
+}
+
+template <int N, int L, typename Scalar>
+[[nodiscard]] Scalar squared_norm(const NetworkWeights<N, L, Scalar>& weights) {
+  return weights.w1.squaredNorm() + weights.w2_transposed.squaredNorm();
+}
+
+}  // namespace offnominal

@@ -1,0 +1,220 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <offnominal/diagnosis/dead_zone.hpp>
+#include <offnominal/diagnosis/estimator_config.hpp>
+#include <offnominal/diagnosis/estimator_state.hpp>
+#include <offnominal/diagnosis/gradient_span.hpp>
+#include <offnominal/diagnosis/hidden_pass.hpp>
+
+namespace offnominal::detail {
+
+// Signals at one place inside the tick.
+template <int N, typename Scalar>
+struct StageSignals {
+  Vector<N, Scalar> dq;
+  Vector<N, Scalar> nominal_ddq;
+  Scalar mu_bar{};
+};
+
+// Inner products z_i . z_j of the tick's beginning (0), middle (m) and end (1).
+template <typename Scalar>
+struct InputProducts {
+  Scalar z00{}, z0m{}, z01{}, zmm{}, zm1{}, z11{};
+};
+
+// What one Runge-Kutta stage starts from.
+template <int N, typename Scalar>
+struct StagePoint {
+  Vector<N, Scalar> omega;
+  Scalar mu{};
+  Vector<N, Scalar> e;
+  Vector<N, Scalar> d;
+  SpanPoint<Scalar> theta;
+  SpanNorms<Scalar> norms;
+};
+
+// Where the tick ends: omega, mu and the coordinates of theta before it is shrunk into the ball.
+template <int N, typename Scalar>
+struct TickEnd {
+  Vector<N, Scalar> omega;
+  Scalar mu{};
+  SpanPoint<Scalar> theta;
+};
+
+// Learning is meant for steps that are small against theta. A step beyond this many times |W2| (and
+// of the unit square's size for W2) says nothing, and its fourth power must not overflow.
+template <typename Scalar>
+inline constexpr Scalar kLargestStep = 1000;
+
+// One tick in progress: takes omega, mu and the coordinates of theta through the four stages.
+template <int N, int L, typename Scalar>
+class TickIntegrator {
+ public:
+  EIGEN_ALWAYS_INLINE TickIntegrator(const EstimatorConfig<Scalar>& config,
+                                     const EstimatorInput<N, Scalar>& input,
+                                     const EstimatorState<N, L, Scalar>& begin)
+      : config_(config), input_(input), begin_(begin) {
+    const Scalar half(0.5);
+    z_.z00 = begin.z_squared_norm;
+    z_.z01 = begin.z.dot(input.z);
+    z_.z11 = input.z.squaredNorm();
+    z_.z0m = half * (z_.z00 + z_.z01);
+    z_.zm1 = half * (z_.z01 + z_.z11);
+    z_.zmm = half * (z_.z0m + z_.zm1);
+    largest_d_ = kLargestStep<Scalar> /
+                 (config.period_s * config.learning_rate * std::sqrt(z_.z00 + z_.z11));
+    radius_squared_ = config.weight_radius * config.weight_radius;
+    first_layer<N, L, Scalar>(begin.weights, begin.w1_z, input.z, w1_middle_, w1_z1_);
+    factors_.sigma[0] = begin.sigma;
+  }
+
+  [[nodiscard]] EIGEN_ALWAYS_INLINE TickEnd<N, Scalar> integrate() {
+    const Scalar h = config_.period_s;
+    const Scalar half = Scalar(0.5);
+    const StageSignals<N, Scalar> begin{begin_.z.template segment<N>(1 + N), begin_.nominal_ddq,
+                                        begin_.mu_bar};
+    const StageSignals<N, Scalar> end{input_.z.template segment<N>(1 + N), input_.nominal_ddq,
+                                      input_.mu_bar};
+    const StageSignals<N, Scalar> middle{half * (begin.dq + end.dq),
+                                         half * (begin.nominal_ddq + end.nominal_ddq),
+                                         half * (begin.mu_bar + end.mu_bar)};
+    StagePoint<N, Scalar> at{
+        begin_.omega,
+        begin_.mu,
+        begin.dq - begin_.omega,
+        dead_zone<N, Scalar>(begin.dq - begin_.omega, begin_.mu, config_.dead_zone, largest_d_),
+        {Scalar(1), {}},
+        {begin_.theta_squared_norm, begin_.theta_squared_norm}};
+    TickEnd<N, Scalar> sum{begin_.omega, begin_.mu, {Scalar(1), {}}};
+    at = stage<0>(begin, middle.dq, begin_.w1_z, {}, z_.z00, at, h * half, h / 6, sum);
+    at = stage<1>(middle, middle.dq, w1_middle_, {z_.z0m}, z_.zmm, at, h * half, h / 3, sum);
+    at = stage<2>(middle, end.dq, w1_middle_, {z_.z0m, z_.zmm}, z_.zmm, at, h, h / 3, sum);
+    stage<3>(end, end.dq, w1_z1_, {z_.z01, z_.zm1, z_.zm1}, z_.z11, at, h, h / 6, sum);
+    return sum;
+  }
+
+  // Squared size that no part of theta_end or of W1 z1 exceeds by more than the factor 8, so that
+  // nothing overflows where this is far from the scalar's largest number.
+  [[nodiscard]] EIGEN_ALWAYS_INLINE Scalar squared_reach(const SpanPoint<Scalar>& theta) const {
+    Scalar sum = theta.keep * theta.keep * begin_.theta_squared_norm;
+    for (std::size_t j = 0; j < kStages; ++j) {
+      sum += theta.gain[j] * theta.gain[j] * gradient_reach_[j];
+    }
+    return sum;
+  }
+  [[nodiscard]] EIGEN_ALWAYS_INLINE const InputProducts<Scalar>& input_products() const {
+    return z_;
+  }
+
+  // Moves the weights and leaves them and what depends on them ready for the next tick. `state` is
+  // the state that the tick began with.
+  EIGEN_ALWAYS_INLINE void finish(const SpanPoint<Scalar>& theta,
+                                  EstimatorState<N, L, Scalar>& state) const {
+    Matrix<N, kStages, Scalar> share;
+    for (Eigen::Index j = 0; j < kStages; ++j) {
+      const auto stage = static_cast<std::size_t>(j);
+      for (Eigen::Index k = 0; k < N; ++k) share(k, j) = theta.gain[stage] * d_[stage][k];
+    }
+    const Scalar squared =
+        update_weights<N, L, Scalar>(theta, share, factors_, w1_z1_, state.z, input_.z, z_.z01,
+                                     z_.z11, state.weights, state.w1_z);
+    const Scalar margin = rounding_allowance<L, Scalar>(Scalar(1));
+    const Scalar to_ball = std::sqrt(radius_squared_ * (Scalar(1) - Scalar(2) * margin) / squared);
+    const Scalar shrink = squared > radius_squared_ * (Scalar(1) - margin) ? to_ball : Scalar(1);
+    state.theta_squared_norm = shrink * shrink * squared;
+    state.psi_hat = shrink_and_look<N, L, Scalar>(shrink, state.weights, state.w1_z, state.sigma);
+    state.z_squared_norm = z_.z11;
+  }
+
+ private:
+  // z_z[j] = z_j . z_s for the stages j before, zz = |z_s|^2.
+  template <int S>
+  EIGEN_ALWAYS_INLINE StagePoint<N, Scalar> stage(const StageSignals<N, Scalar>& signals,
+                                                  const Vector<N, Scalar>& next_dq,
+                                                  const HiddenVector<L, Scalar>& w1_z,
+                                                  std::array<Scalar, kStages> z_z, Scalar zz,
+                                                  const StagePoint<N, Scalar>& at, Scalar advance,
+                                                  Scalar weight, TickEnd<N, Scalar>& sum) {
+    constexpr auto s = static_cast<std::size_t>(S);
+    d_[s] = at.d;
+    Vector<N, Scalar> psi_hat = begin_.psi_hat;
+    Vector<N, Scalar> psi_hat_begin;
+    psi_hat_begin = psi_hat;
+    if constexpr (S > 0) {
+      std::array<Scalar, kStages> kappa{};
+      for (std::size_t j = 0; j < s; ++j) kappa[j] = at.theta.gain[j] * z_z[j];
+      const SigmaSums<N, Scalar> sums =
+          sigma_pass<S, N, L, Scalar>(w1_z, begin_.weights, at.theta.keep, kappa, factors_, pre_);
+      psi_hat_begin = sums.w2_sigma;
+      psi_hat = at.theta.keep * sums.w2_sigma;
+      for (std::size_t j = 0; j < s; ++j) {
+        psi_hat += (at.theta.gain[j] * sums.before[j]) * d_[j];
+      }
+    }
+    StagePoint<N, Scalar> next;
+    const Vector<N, Scalar> omega_dot = config_.alpha * at.e + signals.nominal_ddq + psi_hat;
+    const Scalar mu_dot = signals.mu_bar - config_.alpha * at.mu;
+    sum.omega += weight * omega_dot;
+    sum.mu += weight * mu_dot;
+    if constexpr (S + 1 < kStages) {
+      next.omega = begin_.omega + advance * omega_dot;
+      next.mu = begin_.mu + advance * mu_dot;
+      next.e = next_dq - next.omega;
+      next.d = dead_zone<N, Scalar>(next.e, next.mu, config_.dead_zone, largest_d_);
+    }
+
+    std::array<Scalar, kStages> nu{};
+    for (std::size_t j = 0; j < s; ++j) nu[j] = Scalar(0.5) * at.theta.gain[j] * d_[j].dot(at.d);
+    const GradientSums<Scalar> sums =
+        gradient_pass<S, N, L, Scalar>(w1_z, S == 0 ? w1_z : pre_, begin_.weights,
+                                       (Scalar(0.5) * at.theta.keep) * at.d, nu, factors_);
+    const Scalar w2_squared = sums.sigma_squared * at.d.squaredNorm();
+    const GradientProducts<Scalar> g{sums.with_begin + at.d.dot(psi_hat_begin),
+                                     sums.with_theta + at.d.dot(psi_hat),
+                                     sums.b_squared * zz + w2_squared};
+    gradient_reach_[s] = sums.b_squared * (z_.z00 + z_.z11) + w2_squared;
+    const Scalar pull =
+        projection_rate(at.norms.squared) * Eigen::numext::maxi(g.with_theta, Scalar(0));
+
+    const Scalar step = weight * config_.learning_rate;
+    const Scalar step_pull = step * pull;
+    sum.theta.keep -= step_pull * at.theta.keep;
+    for (std::size_t j = 0; j < s; ++j) sum.theta.gain[j] -= step_pull * at.theta.gain[j];
+    sum.theta.gain[s] = step;
+    if constexpr (S + 1 < kStages) {
+      const Scalar move = advance * config_.learning_rate;
+      next.theta = moved<S>(at.theta, move, pull);
+      next.norms = moved(at.norms, g, begin_.theta_squared_norm, move, pull);
+    }
+    return next;
+  }
+
+  // The pull of projection, eq. (9) with scalar Gamma, is <theta, g> / |theta|^2 where |theta| has
+  // reached M and the gradient points outwards: this rate times the outward part of <theta, g>.
+  [[nodiscard]] EIGEN_ALWAYS_INLINE Scalar projection_rate(Scalar norm) const {
+    // Shrinking leaves |theta| below M by the rounding allowance; that still counts as on the ball.
+    const bool on_ball = norm + Scalar(4) * rounding_allowance<L, Scalar>(norm) >= radius_squared_;
+    const Scalar inverse = Scalar(1) / norm;
+    return on_ball ? inverse : Scalar(0);
+  }
+
+  const EstimatorConfig<Scalar>& config_;
+  const EstimatorInput<N, Scalar>& input_;
+  const EstimatorState<N, L, Scalar>& begin_;
+  Scalar largest_d_{};
+  Scalar radius_squared_{};
+  InputProducts<Scalar> z_;
+  HiddenVector<L, Scalar> w1_middle_;
+  HiddenVector<L, Scalar> w1_z1_;
+  HiddenVector<L, Scalar> pre_;
+  StageFactors<N, L, Scalar> factors_;
+  std::array<Vector<N, Scalar>, kStages> d_;
+  std::array<Scalar, kStages> gradient_reach_{};
+};
+
+}  // namespace offnominal::detail

@@ -1,0 +1,158 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <offnominal/control/accommodation.hpp>
+#include <offnominal/diagnosis/bound.hpp>
+#include <offnominal/diagnosis/detector.hpp>
+#include <offnominal/diagnosis/estimator.hpp>
+#include <offnominal/model/chain.hpp>
+#include <offnominal/model/forward_dynamics.hpp>
+#include <offnominal/sample.hpp>
+#include <offnominal/status.hpp>
+
+namespace offnominal {
+
+template <int N, typename Scalar>
+struct MonitorConfig {
+  Chain<N, Scalar> chain;
+  EstimatorConfig<Scalar> estimator;
+  UncertaintyBound<N, Scalar> bound;
+  // Largest compensating torque per joint, N m or N, >= 0. Zero: report, do not act.
+  std::array<Scalar, static_cast<std::size_t>(N)> max_compensation{};
+};
+
+// kOk where every part is usable, otherwise the first fault.
+template <int L, int N, typename Scalar>
+[[nodiscard]] Status validate(const MonitorConfig<N, Scalar>& config) {
+  if (const Status status = validate(config.chain); status != Status::kOk) return status;
+  if (const Status status = validate<L>(config.estimator); status != Status::kOk) return status;
+  if (const Status status = validate(config.bound); status != Status::kOk) return status;
+  for (const Scalar limit : config.max_compensation) {
+    if (!(limit >= 0)) return Status::kInvalidLimit;
+  }
+  return Status::kOk;
+}
+
+// Everything that changes from tick to tick; plain data, ready to be logged or copied.
+template <int N, int L, typename Scalar>
+struct MonitorState {
+  bool initialised = false;
+  std::uint32_t tick = 0;  // since reset()
+  JointSample<N, Scalar> sample;
+  EstimatorState<N, L, Scalar> estimator;
+  DetectorState<Scalar> detector;
+};
+
+// What a controller reads after a tick.
+template <int N, typename Scalar>
+struct MonitorOutput {
+  Scalar time_s{};                                        // since reset()
+  Vector<N, Scalar> error = Vector<N, Scalar>::Zero();    // e = dq - omega, rad/s or m/s
+  Scalar error_norm{};                                    // |e|
+  Scalar threshold{};                                     // mu, rad/s or m/s
+  Vector<N, Scalar> psi_hat = Vector<N, Scalar>::Zero();  // fault estimate, rad/s^2 or m/s^2
+  DetectorState<Scalar> detector;
+  CompensatingTorque<N, Scalar> compensation;
+};
+
+// The whole on-board diagnosis of an N-joint chain with at most L hidden units. The object is the
+// immutable part; all that changes is in MonitorState, so that one monitor serves many states.
+template <int N, int L, typename Scalar>
+class Monitor {
+ public:
+  using Config = MonitorConfig<N, Scalar>;
+  using State = MonitorState<N, L, Scalar>;
+  using Sample = JointSample<N, Scalar>;
+  using Output = MonitorOutput<N, Scalar>;
+
+  // Takes the configuration that validate() accepts; otherwise its status, and `monitor` is
+  // unchanged.
+  [[nodiscard]] static Status create(const Config& config, Monitor& monitor) {
+    const Status status = validate<L>(config);
+    if (status != Status::kOk) return status;
+    monitor.config_ = config;
+    monitor.model_ = make_model(config.chain);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+      monitor.max_compensation_[static_cast<Eigen::Index>(i)] = config.max_compensation[i];
+    }
+    monitor.ready_ = true;
+    return Status::kOk;
+  }
+
+  // Starts a run at a sample, time 0. Any refusal leaves `state` unchanged.
+  [[nodiscard]] Status reset(const Sample& sample, State& state) const {
+    if (!ready_) return Status::kNotInitialised;
+    if (const Status status = validate<N>(sample, config_.chain.joints); status != Status::kOk) {
+      return status;
+    }
+    ForwardDynamics<N, Scalar> nominal;
+    const Status solved =
+        forward_dynamics(model_, sample.q, sample.dq, sample.tau, Scalar(0), nominal);
+    if (solved != Status::kOk) return solved;
+    State fresh;
+    const Status started = offnominal::reset(
+        config_.estimator, network_input<N, Scalar>(sample.q, sample.dq, sample.tau), nominal.ddq,
+        bound_at(sample), fresh.estimator);
+    if (started != Status::kOk) return started;
+    fresh.estimator.mu = velocity_allowance();
+    fresh.sample = sample;
+    fresh.initialised = true;
+    state = fresh;
+    return Status::kOk;
+  }
+
+  // One control tick: the sample at its end. Any refusal leaves `state` and `output` unchanged; the
+  // next good sample is then taken as if it followed the last good one by one tick.
+  [[nodiscard]] Status step(const Sample& sample, State& state, Output& output) const {
+    if (!ready_ || !state.initialised) return Status::kNotInitialised;
+    if (const Status status = validate<N>(sample, config_.chain.joints); status != Status::kOk) {
+      return status;
+    }
+    const Scalar end_s = static_cast<Scalar>(state.tick + 1) * config_.estimator.period_s;
+    ForwardDynamics<N, Scalar> nominal;
+    Status status = forward_dynamics(model_, sample.q, sample.dq, sample.tau, end_s, nominal);
+    if (status != Status::kOk) return status;
+    const EstimatorInput<N, Scalar> input{network_input<N, Scalar>(sample.q, sample.dq, sample.tau),
+                                          nominal.ddq, bound_at(sample)};
+    status = offnominal::step(config_.estimator, input, state.estimator);
+    if (status != Status::kOk) return status;
+
+    ++state.tick;
+    state.sample = sample;
+    output.time_s = end_s;
+    output.error = state.estimator.error;
+    output.error_norm = state.estimator.error.norm();
+    output.threshold = state.estimator.mu;
+    output.psi_hat = state.estimator.psi_hat;
+    update(state.detector, output.error_norm, output.threshold, state.tick, end_s);
+    output.detector = state.detector;
+    output.compensation =
+        compensating_torque<N, Scalar>(nominal.inertia, output.psi_hat, max_compensation_);
+    return Status::kOk;
+  }
+
+  [[nodiscard]] const Config& config() const { return config_; }
+  [[nodiscard]] const RigidBodyModel<N, Scalar>& model() const { return model_; }
+
+ private:
+  // The velocity's own error e_v enters e directly, through omega(0) and through the filter's
+  // input: together at most 2 |e_v|. With mu starting there and alpha times it in the filter's
+  // input, mu stays exactly that much above the filtered bound.
+  [[nodiscard]] Scalar velocity_allowance() const { return 2 * config_.bound.velocity_error; }
+  [[nodiscard]] Scalar bound_at(const Sample& sample) const {
+    return evaluate(config_.bound, sample.q, sample.dq, sample.tau) +
+           config_.estimator.alpha * velocity_allowance();
+  }
+
+  Config config_{};
+  RigidBodyModel<N, Scalar> model_{};
+  Vector<N, Scalar> max_compensation_ = Vector<N, Scalar>::Zero();
+  bool ready_ = false;
+};
+
+}  // namespace offnominal

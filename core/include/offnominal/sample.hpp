@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <offnominal/model/chain.hpp>
+#include <offnominal/model/rigid_body_model.hpp>
+#include <offnominal/status.hpp>
+
+namespace offnominal {
+
+// What was measured at one tick. Positions are continuous: an encoder that wraps is unwrapped
+// before it comes here.
+template <int N, typename Scalar>
+struct JointSample {
+  Vector<N, Scalar> q = Vector<N, Scalar>::Zero();    // rad or m
+  Vector<N, Scalar> dq = Vector<N, Scalar>::Zero();   // rad/s or m/s
+  Vector<N, Scalar> tau = Vector<N, Scalar>::Zero();  // really applied, N m or N, not commanded
+};
+
+// kOk where every number is finite and inside the joint's limits; otherwise the first fault, with
+// non-finite numbers before ranges.
+template <int N, typename Scalar>
+[[nodiscard]] Status validate(
+    const JointSample<N, Scalar>& sample,
+    const std::array<Joint<Scalar>, static_cast<std::size_t>(N)>& joints) {
+  if (!sample.q.allFinite()) return Status::kNonFinitePosition;
+  if (!sample.dq.allFinite()) return Status::kNonFiniteVelocity;
+  if (!sample.tau.allFinite()) return Status::kNonFiniteTorque;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+    const auto index = static_cast<Eigen::Index>(i);
+    const Joint<Scalar>& joint = joints[i];
+    if (sample.q[index] < joint.min_position || sample.q[index] > joint.max_position) {
+      return Status::kPositionOutOfRange;
+    }
+    if (std::fabs(sample.dq[index]) > joint.max_velocity) return Status::kVelocityOutOfRange;
+    if (std::fabs(sample.tau[index]) > joint.max_torque) return Status::kTorqueOutOfRange;
+  }
+  return Status::kOk;
+}
+
+}  // namespace offnominal
