@@ -1,0 +1,165 @@
+#include "common/file.hpp"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "common/error.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+[[noreturn]] void refuse_existing(const std::filesystem::path& path) {
+  throw InputError({.file = path.string(),
+                    .place = "",
+                    .found = "a file that is already there",
+                    .allowed = "a new file",
+                    .mend = "choose another name, or remove the file first"});
+}
+
+class Descriptor {
+ public:
+  explicit Descriptor(int value) : value_(value) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (value_ >= 0) ::close(value_);
+  }
+  [[nodiscard]] int get() const { return value_; }
+
+ private:
+  int value_;
+};
+
+/// A file being written; it is removed again unless it was moved to its final name.
+class Temporary {
+ public:
+  explicit Temporary(std::filesystem::path target)
+      : target_(std::move(target)),
+        name_(target_.string() + ".part-" + std::to_string(::getpid())),
+        file_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666)) {
+    if (file_.get() < 0) fail();
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+  ~Temporary() {
+    if (file_.get() >= 0 && !moved_) ::unlink(name_.c_str());
+  }
+
+  void keep_mode_of_target() {
+    struct stat status {};
+    if (::stat(target_.c_str(), &status) == 0) ::fchmod(file_.get(), status.st_mode & 07777);
+  }
+
+  void write(std::string_view content) {
+    while (!content.empty()) {
+      const ssize_t written = ::write(file_.get(), content.data(), content.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail();
+      content.remove_prefix(static_cast<std::size_t>(written));
+    }
+    if (::fsync(file_.get()) != 0) fail();
+  }
+
+  void move_to_target(Existing existing) {
+    if (existing == Existing::kReplace) {
+      if (::rename(name_.c_str(), target_.c_str()) != 0) fail();
+      moved_ = true;
+    } else if (::renameat2(AT_FDCWD, name_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) ==
+               0) {
+      moved_ = true;
+    } else if (errno == EINVAL || errno == ENOSYS) {
+      // A file system without RENAME_NOREPLACE: a hard link refuses an existing name too.
+      if (::link(name_.c_str(), target_.c_str()) != 0) fail();
+    } else {
+      fail();
+    }
+    flush_folder();
+  }
+
+ private:
+  [[noreturn]] void fail() const {
+    const int error = errno;
+    if (error == EEXIST) refuse_existing(target_);
+    throw InputError({.file = target_.string(),
+                      .place = "",
+                      .found = "that it cannot be written (" + reason(error) + ")",
+                      .allowed = "",
+                      .mend = "name a file in a folder that exists, is writable and has room"});
+  }
+
+  // The new name is only as lasting as the folder's own entry. Some file systems cannot flush a
+  // folder; the content is safe by then, so that is no failure.
+  void flush_folder() const {
+    const std::filesystem::path folder =
+        target_.has_parent_path() ? target_.parent_path() : std::filesystem::path(".");
+    const Descriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (descriptor.get() >= 0) static_cast<void>(::fsync(descriptor.get()));
+  }
+
+  std::filesystem::path target_;
+  std::filesystem::path name_;
+  Descriptor file_;
+  bool moved_ = false;
+};
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& path) {
+  const auto refuse = [&path](const std::string& found) {
+    throw InputError({.file = path.string(),
+                      .place = "",
+                      .found = found,
+                      .allowed = "a readable file",
+                      .mend = "check the name and its permissions"});
+  };
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) {
+    refuse(errno == ENOENT ? "nothing: there is no such file"
+                           : "a file that cannot be read (" + reason(errno) + ")");
+  }
+  struct stat status {};
+  if (::fstat(file.get(), &status) == 0 && S_ISDIR(status.st_mode)) refuse("a folder");
+  std::string content;
+  char block[65536];
+  for (;;) {
+    const ssize_t count = ::read(file.get(), block, sizeof block);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) refuse("a file that cannot be read (" + reason(errno) + ")");
+    if (count <= 0) return content;
+    content.append(block, static_cast<std::size_t>(count));
+  }
+}
+
+void write_file_atomically(const std::filesystem::path& path, std::string_view content,
+                           Existing existing) {
+  std::filesystem::path target = path;
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) {
+    if (!std::filesystem::is_regular_file(path, ignored)) {
+      throw InputError({.file = path.string(),
+                        .place = "",
+                        .found = std::filesystem::is_directory(path, ignored)
+                                     ? "a folder"
+                                     : "something that is not a regular file",
+                        .allowed = "a new or a regular file",
+                        .mend = "choose another name"});
+    }
+    if (existing == Existing::kRefuse) refuse_existing(path);
+    target = std::filesystem::canonical(path);
+  }
+  Temporary temporary(target);
+  temporary.keep_mode_of_target();
+  temporary.write(content);
+  temporary.move_to_target(existing);
+}
+
+}  // namespace offnominal::tools

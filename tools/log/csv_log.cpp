@@ -1,0 +1,202 @@
+#include "log/csv_log.hpp"
+
+#include <csv.h>
+
+#include <charconv>
+#include <fstream>
+#include <new>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/error.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+// Splits one line at a time.
+class LineSplitter {
+ public:
+  explicit LineSplitter(char separator) {
+    if (csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI) != 0) throw std::bad_alloc();
+    csv_set_delim(&parser_, static_cast<unsigned char>(separator));
+  }
+  LineSplitter(const LineSplitter&) = delete;
+  LineSplitter& operator=(const LineSplitter&) = delete;
+  ~LineSplitter() { csv_free(&parser_); }
+
+  // The cells of a line, valid until the next call; null for a malformed line.
+  const std::vector<std::string>* split(const std::string& line) {
+    count_ = 0;
+    // Called from C: must not throw, so a failed allocation is carried out by hand.
+    const auto on_cell = [](void* text, std::size_t size, void* self) {
+      auto& to = *static_cast<LineSplitter*>(self);
+      try {
+        if (to.count_ == to.cells_.size()) to.cells_.emplace_back();
+        to.cells_[to.count_].assign(static_cast<const char*>(text), size);
+        ++to.count_;
+      } catch (const std::bad_alloc&) {
+        to.out_of_memory_ = true;
+      }
+    };
+    const bool parsed =
+        csv_parse(&parser_, line.data(), line.size(), on_cell, nullptr, this) == line.size() &&
+        csv_fini(&parser_, on_cell, nullptr, this) == 0;
+    if (out_of_memory_) throw std::bad_alloc();
+    if (!parsed) return nullptr;
+    cells_.resize(count_);
+    return &cells_;
+  }
+
+ private:
+  csv_parser parser_{};
+  std::vector<std::string> cells_;
+  std::size_t count_ = 0;
+  bool out_of_memory_ = false;
+};
+
+std::optional<double> number_in(std::string_view text) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+char separator_of(const std::string& header) {
+  for (const char separator : {',', ';', '\t'}) {
+    if (header.find(separator) != std::string::npos) return separator;
+  }
+  return ',';
+}
+
+bool blank(const std::string& line) { return line.find_first_not_of(" \t") == std::string::npos; }
+
+class CsvReader {
+ public:
+  CsvReader(const std::filesystem::path& path, const NeedOf& need_of)
+      : path_(path), need_of_(need_of), input_(path, std::ios::binary) {
+    if (!input_) fail("", "a file that cannot be opened", "a readable CSV file");
+  }
+
+  NamedColumns read() {
+    std::string line;
+    if (!next(line)) fail("", "an empty file", "a header line and one line per sample");
+    if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+    separator_ = separator_of(line);
+    read_header(line);
+    LineSplitter splitter(separator_);
+    while (next(line)) read_row(splitter, line);
+    if (rows_ == 0) fail("line 1", "a header without samples", "one line of numbers per sample");
+    return result();
+  }
+
+ private:
+  struct Column {
+    Need need = Need::kNone;
+    std::vector<double> values;
+  };
+
+  [[noreturn]] void fail(const std::string& place, const std::string& found,
+                         const std::string& allowed, const std::string& mend = {}) const {
+    throw InputError({path_.string(), place, found, allowed, mend});
+  }
+
+  std::string line_place() const { return "line " + std::to_string(line_number_); }
+
+  bool next(std::string& line) {
+    if (!std::getline(input_, line)) {
+      if (input_.bad()) fail(line_place(), "a read error", "a readable CSV file");
+      return false;
+    }
+    ++line_number_;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    return true;
+  }
+
+  void read_header(const std::string& line) {
+    LineSplitter splitter(separator_);
+    std::set<std::string> seen;
+    const auto* cells = splitter.split(line);
+    if (cells == nullptr) fail("line 1", "an unfinished quote", "names, with both quotes or none");
+    for (const std::string& name : *cells) {
+      const std::string place = "line 1, column " + std::to_string(names_.size() + 1);
+      if (name.empty()) fail(place, "no name", "a name per column");
+      if (number_in(name)) {
+        fail(place, "the number " + name, "a header line that names the columns",
+             "put the columns' names in the first line");
+      }
+      if (!seen.insert(name).second) fail("line 1", "column \"" + name + "\" twice", "one of each");
+      names_.push_back(name);
+      columns_.push_back({need_of_(name), {}});
+    }
+    if (names_.empty()) fail("line 1", "a blank line", "a header line that names the columns");
+  }
+
+  void read_row(LineSplitter& splitter, const std::string& line) {
+    if (blank(line)) {
+      blank_line_ = blank_line_ == 0 ? line_number_ : blank_line_;
+      return;
+    }
+    if (blank_line_ != 0) {
+      fail("line " + std::to_string(blank_line_), "a blank line", "samples without gaps");
+    }
+    const auto* cells = splitter.split(line);
+    if (cells == nullptr) fail(line_place(), "an unfinished quote", "numbers");
+    if (cells->size() != columns_.size()) {
+      fail(line_place(),
+           std::to_string(cells->size()) + (cells->size() == 1 ? " value" : " values"),
+           std::to_string(columns_.size()) + ", as many as the header has names");
+    }
+    for (std::size_t i = 0; i < columns_.size(); ++i) read_cell(columns_[i], i, (*cells)[i]);
+    ++rows_;
+  }
+
+  void read_cell(Column& column, std::size_t index, std::string_view text) {
+    if (column.need == Need::kNone) return;
+    const std::optional<double> value = number_in(text);
+    if (value) {
+      column.values.push_back(*value);
+    } else if (column.need == Need::kWelcome) {
+      column.need = Need::kNone;
+      column.values = {};
+    } else {
+      const std::string found =
+          text.empty() ? "nothing" : "\"" + std::string(text.substr(0, 40)) + "\"";
+      fail(line_place() + ", column " + names_[index], found, "a number with a decimal point");
+    }
+  }
+
+  NamedColumns result() const {
+    NamedColumns result;
+    result.file = path_.string();
+    result.names = names_;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      if (columns_[i].need == Need::kNone) continue;
+      result.columns[names_[i]] = Eigen::Map<const Eigen::VectorXd>(
+          columns_[i].values.data(), static_cast<Eigen::Index>(columns_[i].values.size()));
+    }
+    result.place_of = [](Eigen::Index row) { return "line " + std::to_string(row + 2); };
+    return result;
+  }
+
+  std::filesystem::path path_;
+  const NeedOf& need_of_;
+  std::ifstream input_;
+  char separator_ = ',';
+  std::size_t line_number_ = 0;
+  std::size_t blank_line_ = 0;
+  std::size_t rows_ = 0;
+  std::vector<std::string> names_;
+  std::vector<Column> columns_;
+};
+
+}  // namespace
+
+NamedColumns read_csv(const std::filesystem::path& path, const NeedOf& need_of) {
+  return CsvReader(path, need_of).read();
+}
+
+}  // namespace offnominal::tools

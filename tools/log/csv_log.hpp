@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+
+#include "log/named_columns.hpp"
+
+namespace offnominal::tools {
+
+// A text file with one header line and then one line of numbers per sample, separated by commas
+// (or by semicolons or tabs, where the header has no comma). Quotes, spaces around values, a byte
+// order mark and either kind of line end are understood. Throws InputError with the line and the
+// column for text in a number, a line with too few or too many values, a blank line between
+// samples, an unnamed or repeated column, a file that is empty or holds a header only.
+NamedColumns read_csv(const std::filesystem::path& path, const NeedOf& need_of);
+
+}  // namespace offnominal::tools

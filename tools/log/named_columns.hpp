@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace offnominal::tools {
+
+// What a reader shall do with a column of a given name.
+enum class Need {
+  kRequired,  // a cell that is no number is an error
+  kWelcome,   // left out where it is not numeric
+  kNone,      // not read
+};
+using NeedOf = std::function<Need(const std::string& name)>;
+
+// The numbers of a recording as its file names them, before anything is known of joints.
+struct NamedColumns {
+  std::string file;
+  std::vector<std::string> names;  // everything that the file has, in its order
+  std::map<std::string, Eigen::VectorXd> columns;
+  std::map<std::string, double> scalars;
+  // Where row `row` (from 0) stands in the file: "line 12" or "sample 11".
+  std::function<std::string(Eigen::Index row)> place_of;
+};
+
+}  // namespace offnominal::tools

@@ -1,0 +1,269 @@
+#include "log/read_log.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/error.hpp"
+#include "common/nearest.hpp"
+#include "log/channels.hpp"
+#include "log/csv_log.hpp"
+#include "log/mat_log.hpp"
+#include "log/sampling.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr const char* kMendNames =
+    "map the names with [channels] in the robot's file, or with --channels FILE.toml";
+
+// The joint's number when `name` is `prefix` and a number from 1, else 0.
+int joint_of(const std::string& name, const std::string& prefix) {
+  if (!name.starts_with(prefix) || name.size() == prefix.size() ||
+      name.size() > prefix.size() + 3) {
+    return 0;
+  }
+  int joint = 0;
+  for (const char digit : name.substr(prefix.size())) {
+    if (digit < '0' || digit > '9') return 0;
+    joint = 10 * joint + (digit - '0');
+  }
+  return joint;
+}
+
+bool is_common_name(const std::string& name) {
+  return name == "t" || joint_of(name, "q") > 0 || joint_of(name, "dq") > 0 ||
+         joint_of(name, "tau") > 0;
+}
+
+Channel named(std::string source) {
+  Channel channel;
+  channel.source = std::move(source);
+  return channel;
+}
+
+class Assembler {
+ public:
+  Assembler(NamedColumns columns, int joint_count)
+      : columns_(std::move(columns)), joints_(joint_count) {
+    log_.file = columns_.file;
+  }
+
+  Log with_common_header() {
+    for (const char* prefix : {"q", "tau"}) check_joint_count(prefix);
+    ChannelMap map;
+    map.time = named("t");
+    for (int joint = 1; joint <= joints_; ++joint) {
+      const std::string number = std::to_string(joint);
+      const std::string velocity = "dq" + number;
+      map.position.push_back(named("q" + number));
+      map.torque.push_back(named("tau" + number));
+      map.velocity.emplace_back();
+      if (columns_.columns.contains(velocity)) map.velocity.back() = named(velocity);
+    }
+    const auto time = columns_.columns.find("t");
+    const Index samples = time == columns_.columns.end() ? 0 : time->second.size();
+    for (const auto& [name, values] : columns_.columns) {
+      if (is_common_name(name) || values.size() != samples) continue;
+      if (values.allFinite()) {
+        map.extra[name] = named(name);
+      } else {
+        log_.remarks.push_back("column " + name + " has values that are not finite: left out");
+      }
+    }
+    return with(map);
+  }
+
+  Log with(const ChannelMap& map) {
+    if (map.position.size() != static_cast<std::size_t>(joints_)) {
+      fail("channels", fmt::format("positions of {} joints", map.position.size()),
+           fmt::format("{}, as many as the robot has", joints_));
+    }
+    log_.t_s = values_of(map.time, "time");
+    check_time();
+    const Index samples = log_.t_s.size();
+    log_.q.resize(samples, joints_);
+    log_.dq = Eigen::MatrixXd::Zero(samples, joints_);
+    log_.tau.resize(samples, joints_);
+    for (Index i = 0; i < joints_; ++i) {
+      const auto joint = static_cast<std::size_t>(i);
+      log_.q.col(i) = sampled(map.position[joint], fmt::format("position of joint {}", i + 1));
+      log_.tau.col(i) = sampled(map.torque[joint], fmt::format("torque of joint {}", i + 1));
+      const bool measured = joint < map.velocity.size() && map.velocity[joint].has_value();
+      log_.dq_derived.push_back(!measured);
+      if (!measured) continue;
+      log_.dq.col(i) = sampled(*map.velocity[joint], fmt::format("velocity of joint {}", i + 1));
+    }
+    for (const auto& [name, channel] : map.extra) log_.extra[name] = sampled(channel, name);
+    make_even(log_);
+    derive_velocities(log_);
+    remark_constants();
+    return std::move(log_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& place, const std::string& found,
+                         const std::string& allowed, const std::string& mend = {}) const {
+    throw InputError({columns_.file, place, found, allowed, mend});
+  }
+
+  std::string names_found() const {
+    constexpr std::size_t kMost = 40;
+    std::vector<std::string> names = columns_.names;
+    if (names.size() > kMost) {
+      names.resize(kMost);
+      names.push_back("...");
+    }
+    return list_of(names);
+  }
+
+  void check_joint_count(const std::string& prefix) const {
+    std::set<int> joints;
+    for (const std::string& name : columns_.names) {
+      if (const int joint = joint_of(name, prefix); joint > 0) joints.insert(joint);
+    }
+    if (joints.empty()) {
+      fail("columns", names_found(), fmt::format("t, q1..q{0}, dq1..dq{0}, tau1..tau{0}", joints_),
+           kMendNames);
+    }
+    if (static_cast<int>(joints.size()) != joints_ || *joints.rbegin() != joints_) {
+      const std::string found =
+          fmt::format("{0}1 to {0}{1}, {2} in all", prefix, *joints.rbegin(), joints.size());
+      fail("columns", joints.size() == 1 && *joints.begin() == 1 ? prefix + "1 only" : found,
+           fmt::format("one {} for each of the robot's {} joint{}", prefix, joints_,
+                       joints_ == 1 ? "" : "s"),
+           "take the robot file of the robot that was recorded");
+    }
+  }
+
+  // Values in SI units; a scalar variable serves where every sample has the same value.
+  VectorXd values_of(const Channel& channel, const std::string& what) const {
+    const auto column = columns_.columns.find(channel.source);
+    if (column == columns_.columns.end()) {
+      if (columns_.scalars.contains(channel.source)) {
+        fail("variable " + channel.source, "a single number",
+             "one value per sample, for the " + what);
+      }
+      fail("columns", names_found(), "a column \"" + channel.source + "\" for the " + what,
+           kMendNames);
+    }
+    double scale = channel.scale;
+    if (!channel.scale_source.empty()) scale *= scalar(channel.scale_source, what);
+    VectorXd values = (scale * column->second).array() + channel.offset;
+    for (Index row = 0; row < values.size(); ++row) {
+      if (std::isfinite(values[row])) continue;
+      fail(columns_.place_of(row) + ", " + channel.source,
+           std::isnan(values[row]) ? "NaN" : "an infinite number", "a finite number",
+           "cut the recording, or fill the gap where it is made");
+    }
+    return values;
+  }
+
+  double scalar(const std::string& name, const std::string& what) const {
+    if (const auto found = columns_.scalars.find(name); found != columns_.scalars.end()) {
+      if (std::isfinite(found->second) && found->second != 0) return found->second;
+      fail("variable " + name, fmt::format("{}", found->second), "a finite number other than 0");
+    }
+    const auto column = columns_.columns.find(name);
+    if (column == columns_.columns.end()) {
+      fail("columns", names_found(), "a number \"" + name + "\" that scales the " + what);
+    }
+    const VectorXd& values = column->second;
+    if (values.size() == 0 || (values.array() != values[0]).any() || !std::isfinite(values[0])) {
+      fail("variable " + name, "values that change", "one finite number that scales the " + what);
+    }
+    return values[0];
+  }
+
+  VectorXd sampled(const Channel& channel, const std::string& what) const {
+    VectorXd values = values_of(channel, what);
+    if (values.size() != log_.t_s.size()) {
+      fail("variable " + channel.source, fmt::format("{} values", values.size()),
+           fmt::format("{}, as many as the time has", log_.t_s.size()));
+    }
+    return values;
+  }
+
+  void check_time() const {
+    const VectorXd& t = log_.t_s;
+    if (t.size() < kMinSamples) {
+      fail("", fmt::format("{} samples", t.size()), fmt::format("{} samples or more", kMinSamples));
+    }
+    for (Index row = 1; row < t.size(); ++row) {
+      if (t[row] > t[row - 1]) continue;
+      fail(columns_.place_of(row) + ", time",
+           fmt::format("{:.9g} s after {:.9g} s", t[row], t[row - 1]),
+           "time that ascends from sample to sample");
+    }
+  }
+
+  void remark_constants() {
+    const auto remark = [&](const Eigen::MatrixXd& columns, const char* what) {
+      for (Index i = 0; i < columns.cols(); ++i) {
+        if (columns.col(i).maxCoeff() > columns.col(i).minCoeff()) continue;
+        log_.remarks.push_back(fmt::format("{} of joint {} never changes: it is {:.6g} throughout",
+                                           what, i + 1, columns(0, i)));
+      }
+    };
+    remark(log_.q, "the position");
+    remark(log_.tau, "the torque");
+  }
+
+  NamedColumns columns_;
+  Index joints_;
+  Log log_;
+};
+
+NeedOf needs_of(const std::optional<ChannelMap>& channels) {
+  if (!channels) {
+    return [](const std::string& name) {
+      return is_common_name(name) ? Need::kRequired : Need::kWelcome;
+    };
+  }
+  std::set<std::string> wanted;
+  const auto want = [&wanted](const Channel& channel) {
+    wanted.insert(channel.source);
+    if (!channel.scale_source.empty()) wanted.insert(channel.scale_source);
+  };
+  want(channels->time);
+  for (const Channel& channel : channels->position) want(channel);
+  for (const auto& channel : channels->velocity) {
+    if (channel) want(*channel);
+  }
+  for (const Channel& channel : channels->torque) want(channel);
+  for (const auto& [name, channel] : channels->extra) want(channel);
+  return [wanted = std::move(wanted)](const std::string& name) {
+    return wanted.contains(name) ? Need::kRequired : Need::kNone;
+  };
+}
+
+}  // namespace
+
+Log read_log(const std::filesystem::path& path, int joint_count,
+             const std::optional<ChannelMap>& channels) {
+  if (!std::filesystem::exists(path)) {
+    throw InputError({path.string(), "", "no such file", "a recording, CSV or MATLAB .mat", ""});
+  }
+  if (std::filesystem::is_directory(path)) {
+    throw InputError({path.string(), "", "a folder", "a recording, CSV or MATLAB .mat", ""});
+  }
+  const NeedOf need_of = needs_of(channels);
+  Assembler assembler(is_mat_file(path) ? read_mat(path, need_of) : read_csv(path, need_of),
+                      joint_count);
+  return channels ? assembler.with(*channels) : assembler.with_common_header();
+}
+
+Log read_log(const std::filesystem::path& path, const RobotDescription& robot,
+             const std::optional<std::filesystem::path>& channels_file) {
+  if (!channels_file) return read_log(path, robot.joint_count(), robot.channels);
+  return read_log(path, robot.joint_count(),
+                  read_channels_file(*channels_file, robot.joint_count()));
+}
+
+}  // namespace offnominal::tools

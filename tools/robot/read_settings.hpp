@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "robot/robot.hpp"
+#include "robot/toml_table.hpp"
+
+namespace offnominal::tools {
+
+/// The keys of [estimator] and of [uncertainty_bound].
+[[nodiscard]] const std::vector<std::string>& estimator_keys();
+[[nodiscard]] const std::vector<std::string>& bound_keys();
+
+/// [estimator]; keys that are left out keep their defaults. Checked so that the core's validate()
+/// accepts it.
+[[nodiscard]] EstimatorSettings read_estimator(const TomlTable& table);
+
+/// [uncertainty_bound] of a robot with `joint_count` joints.
+[[nodiscard]] BoundSettings read_bound(const TomlTable& table, int joint_count);
+
+}  // namespace offnominal::tools

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <offnominal/model/chain.hpp>
+#include <offnominal/model/effect_list.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+// One robot as the host tools hold it: any number of joints, everything in SI units. It is what a
+// robot file says and nothing else; chain_of() turns it into the fixed-size chain of the core.
+
+namespace offnominal::tools {
+
+inline constexpr int kMaxJoints = 8;
+inline constexpr int kMaxHiddenUnits = 256;
+
+struct Encoder {
+  double counts_per_unit = 0;  // counts per rad or m; 0: no quantisation is known
+};
+
+struct RobotJoint {
+  std::string name;
+  Joint<double> joint;
+  Encoder encoder;
+  double kp = 0;            // 1/s^2, computed torque (paper eq. 29)
+  double kd = 0;            // 1/s
+  std::string source = {};  // where the numbers come from, free text; empty: not said
+};
+
+enum class DeadZoneChoice : std::uint8_t { kContinuous, kDiscontinuous };
+
+// Settings of the on-board estimator (paper section 3).
+struct EstimatorSettings {
+  double period_s = 0.001;
+  double alpha_per_s = 10;
+  int hidden_units = 35;
+  double learning_rate = 2.5;
+  double weight_radius = 10;
+  double initial_weight_range = 0.1;  // W1(0) is uniform in [-range, range]
+  std::uint32_t seed = 1;
+  DeadZoneChoice dead_zone = DeadZoneChoice::kContinuous;
+  std::string source = {};  // where the numbers come from, free text; empty: not said
+};
+
+// Bound mu_bar on |M^-1 (unmodelled torque)| (paper assumption 3.1), rad/s^2 or m/s^2.
+struct ConstantBoundSettings {
+  double value = 1;
+};
+// scale * (|matrix dq| + offset); every row of `matrix` has one number per joint.
+struct ScaledNormBoundSettings {
+  double scale = 1;
+  double offset = 1;
+  std::vector<std::vector<double>> matrix;
+};
+enum class BoundVariable : std::uint8_t { kPosition, kSpeed, kTorque };
+// Linear between points over q, |dq| or |tau| of one joint, constant beyond both ends.
+struct TableBoundSettings {
+  BoundVariable variable = BoundVariable::kSpeed;
+  int joint = 0;  // from 0
+  std::vector<double> at;
+  std::vector<double> value;
+};
+struct BoundSettings {
+  enum class Kind : std::uint8_t { kConstant, kScaledNorm, kTable } kind = Kind::kConstant;
+  ConstantBoundSettings constant;
+  ScaledNormBoundSettings scaled_norm;
+  TableBoundSettings table;
+  double velocity_error = 0;  // largest error of the measured velocity, rad/s or m/s
+  std::string source = {};    // where the numbers come from, free text; empty: not said
+};
+
+// Where one quantity of a log comes from: SI value = scale * source + offset. `scale_source` names
+// a scalar variable of the log (a drive gain in a .mat file, say) that multiplies scale.
+struct Channel {
+  std::string source;
+  double scale = 1;
+  double offset = 0;
+  std::string scale_source;  // empty: none
+  std::string unit;          // unit of the source, for messages; empty: SI
+};
+
+struct ChannelMap {
+  Channel time;                                  // t, s
+  std::vector<Channel> position;                 // per joint
+  std::vector<std::optional<Channel>> velocity;  // none: derived from the position
+  std::vector<Channel> torque;                   // per joint
+  std::map<std::string, Channel> extra;          // name -> channel
+};
+
+// An effect that the robot's file knows. `fitted`: its numbers come from a recording, `add` may fit
+// them again together with a new effect; otherwise they are given and stay.
+struct RobotEffect : Effect<double> {
+  bool fitted = false;
+  std::string source = {};  // where the numbers come from, free text; empty: not said
+};
+
+struct RobotDescription {
+  std::string name;
+  std::string source;  // where the numbers come from, free text
+  std::array<double, 3> gravity_m_s2{0, 0, -9.81};
+  std::vector<RobotJoint> joints;
+  std::vector<RobotEffect> effects;  // joint counts from 0
+  EstimatorSettings estimator;
+  std::optional<BoundSettings> bound;
+  std::optional<ChannelMap> channels;
+  // The text it was read from, so that writing keeps comments and order; empty: none.
+  std::string file_text = {};
+
+  [[nodiscard]] int joint_count() const { return static_cast<int>(joints.size()); }
+};
+
+}  // namespace offnominal::tools

@@ -1,0 +1,129 @@
+#include "robot/robot_file.hpp"
+
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <offnominal/diagnosis/network.hpp>
+#include <set>
+#include <vector>
+
+#include "common/error.hpp"
+#include "common/number.hpp"
+#include "log/channels.hpp"
+#include "robot/chain_of.hpp"
+#include "robot/read_effect.hpp"
+#include "robot/read_joint.hpp"
+#include "robot/read_settings.hpp"
+#include "robot/text_with_effects.hpp"
+#include "robot/toml_table.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+const std::vector<std::string> kRootKeys{"format",  "name",   "source",    "gravity_m_s2",
+                                         "joint",   "effect", "estimator", "uncertainty_bound",
+                                         "channels"};
+
+toml::table parse_toml(std::string_view text, const std::string& file) {
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    throw InputError({file, "line " + std::to_string(error.source().begin.line),
+                      "text that is not TOML: " + std::string(error.description()),
+                      "TOML 1.0, every key once", "correct the line"});
+  }
+}
+
+std::vector<RobotJoint> read_joints(const TomlTable& root) {
+  const std::vector<TomlTable> tables = root.tables("joint", joint_keys());
+  if (tables.empty() || tables.size() > static_cast<std::size_t>(kMaxJoints)) {
+    root.refuse("joint", std::to_string(tables.size()) + " joints",
+                "1 to " + std::to_string(kMaxJoints) + " joints",
+                "write one [[joint]] for each joint, from the base outwards");
+  }
+  std::vector<RobotJoint> joints;
+  std::set<std::string> names;
+  for (const TomlTable& table : tables) {
+    joints.push_back(read_joint(table));
+    const std::string& name = joints.back().name;
+    if (names.insert(name).second) continue;
+    table.refuse("name", "the name \"" + name + "\" a second time", "names that differ",
+                 "give this joint another name");
+  }
+  return joints;
+}
+
+std::vector<RobotEffect> read_effects(const TomlTable& root,
+                                      const std::vector<RobotJoint>& joints) {
+  const std::vector<TomlTable> tables = root.tables("effect", effect_keys());
+  const std::size_t most = kEffectsPerJoint * joints.size();
+  if (tables.size() > most) {
+    tables[most].refuse(
+        "", std::to_string(tables.size()) + " effects",
+        "at most " + std::to_string(most) + " (" + std::to_string(kEffectsPerJoint) + " per joint)",
+        "remove those that matter least");
+  }
+  std::vector<RobotEffect> effects;
+  for (const TomlTable& table : tables) effects.push_back(read_effect(table, joints));
+  return effects;
+}
+
+// The radius has to hold the weights that the estimator starts with, which depend on the number of
+// joints.
+void check_initial_weights(const TomlTable& root, const RobotDescription& robot) {
+  const EstimatorSettings& settings = robot.estimator;
+  const double norm = with_joint_count(robot.joint_count(), [&settings]<int N>() {
+    return std::sqrt(squared_norm(initial_weights<N, kMaxHiddenUnits, double>(
+        settings.seed, settings.hidden_units, settings.initial_weight_range)));
+  });
+  if (norm < settings.weight_radius) return;
+  root.refuse("estimator",
+              "initial weights of norm " + shortest(static_cast<float>(norm)) +
+                  " with a weight_radius of " + shortest(settings.weight_radius),
+              "initial weights inside the radius",
+              "lower estimator.initial_weight_range, or raise estimator.weight_radius");
+}
+
+}  // namespace
+
+RobotDescription parse_robot(std::string_view text, const std::string& file) {
+  const toml::table document = parse_toml(text, file);
+  const TomlTable root(file, "", document, kRootKeys);
+  if (root.integer("format", 1, 1'000'000) != kRobotFileFormat) {
+    root.refuse("format", "a format that this version does not know",
+                std::to_string(kRobotFileFormat), "use the version of offnominal that wrote it");
+  }
+  RobotDescription robot;
+  robot.name = root.text("name");
+  robot.source = root.text_or_empty("source");
+  const std::vector<double> gravity = root.numbers("gravity_m_s2", any_number("m/s^2"), 3, 3);
+  robot.gravity_m_s2 = {gravity[0], gravity[1], gravity[2]};
+  robot.joints = read_joints(root);
+  robot.effects = read_effects(root, robot.joints);
+  if (const auto table = root.optional_table("estimator", estimator_keys())) {
+    robot.estimator = read_estimator(*table);
+  }
+  check_initial_weights(root, robot);
+  if (const auto table = root.optional_table("uncertainty_bound", bound_keys())) {
+    robot.bound = read_bound(*table, robot.joint_count());
+  }
+  if (const toml::table* table = root.raw_table("channels")) {
+    robot.channels = parse_channels(*table, file, robot.joint_count());
+  }
+  robot.file_text = text;
+  return robot;
+}
+
+RobotDescription read_robot_file(const std::filesystem::path& path) {
+  return parse_robot(read_text_file(path), path.string());
+}
+
+void write_robot_file(const RobotDescription& robot, const std::filesystem::path& path,
+                      Existing existing) {
+  const std::string plain = robot_text(robot);
+  static_cast<void>(parse_robot(plain, path.string() + " (to be written)"));
+  const auto as_it_was = text_with_effects(robot.file_text, robot);
+  write_file_atomically(path, as_it_was.value_or(plain), existing);
+}
+
+}  // namespace offnominal::tools

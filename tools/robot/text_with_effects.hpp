@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "robot/robot.hpp"
+
+namespace offnominal::tools {
+
+/// `old_text`, a robot file, with the effects of `robot` in place of its own: effects that did not
+/// change stay as they are written, changed ones are written anew where they stood, new ones follow
+/// the last, and every other line stays, comments and order included. None where the text is no
+/// robot file, where `robot` differs from it in more than its effects, or where it is written in a
+/// way that cannot be cut by lines (effects as inline tables).
+[[nodiscard]] std::optional<std::string> text_with_effects(const std::string& old_text,
+                                                           const RobotDescription& robot);
+
+}  // namespace offnominal::tools
