@@ -1,0 +1,57 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/compare.hpp"
+#include "analysis/fit.hpp"
+#include "analysis/measurement.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::tools {
+
+struct AddRequest {
+  std::vector<EffectKind> effects;    // to add, one or more
+  std::size_t joint = 0;              // from 0, for all of them
+  std::map<std::string, double> set;  // "smoothing" or "coulomb_friction.smoothing": given values
+  // Standard deviation of the prior on every link's mass and inertia, 0.05 for 5 %; none: the
+  // rigid-body numbers stay.
+  std::optional<double> inertia_deviation;
+  bool keep = false;   // leave effects that were fitted before as they are
+  std::string source;  // what the written effects say of where their numbers come from
+};
+
+// Error of one joint with the old model and with the new one, on the same samples.
+struct BeforeAfter {
+  std::size_t joint = 0;
+  std::string unit;
+  double before_percent = 0;  // 100 |tau - tau_m| / |tau|
+  double after_percent = 0;
+  double before_rms = 0;  // N m or N
+  double after_rms = 0;
+};
+
+struct AddResult {
+  RobotDescription robot;          // with the effects, fitted
+  std::vector<std::size_t> added;  // indices into robot.effects
+  Fit fit;
+  std::vector<BeforeAfter> fitted_log;  // per joint of the robot
+  std::vector<BeforeAfter> held_out;    // per joint that the fit touched
+  bool cross_validated = false;         // held_out is from parts of the fitted log
+  Comparison before;  // on the hold-out log, or on the fitted log where there is none
+  Comparison after;
+  std::vector<std::string> notes;       // what a reader of the numbers has to know
+  std::vector<std::string> objections;  // why the result must not be used; empty: it may
+};
+
+// Fits new effects together with the effects of `robot` that are marked fitted and act on the same
+// joints, and judges the fit on data that it has not seen: `holdout`, or where that is null parts
+// of the recording itself (every part predicted by a fit of the others). Throws InputError when a
+// joint or parameter does not exist, a given value is out of range, an effect is there already, or
+// the robot has no room for it.
+AddResult add(const RobotDescription& robot, const AddRequest& request, const Measurement& log,
+              const Measurement* holdout, const OnStep& on_step = {});
+
+}  // namespace offnominal::tools

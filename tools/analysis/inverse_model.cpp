@@ -1,0 +1,77 @@
+#include "analysis/inverse_model.hpp"
+
+#include <offnominal/model/inverse_dynamics.hpp>
+#include <stdexcept>
+
+#include "robot/chain_of.hpp"
+
+namespace offnominal::tools {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+MatrixXd model_torque(const RobotDescription& robot, const Motion& motion) {
+  if (motion.q.cols() != robot.joint_count()) {
+    throw std::invalid_argument("the motion has another number of joints than the robot");
+  }
+  return with_joint_count(robot.joint_count(), [&]<int N>() {
+    const auto model = make_model(chain_of<N, double>(robot));
+    MatrixXd torque(motion.sample_count(), N);
+    for (Index i = 0; i < motion.sample_count(); ++i) {
+      const Vector<N, double> q = motion.q.row(i);
+      const Vector<N, double> dq = motion.dq.row(i);
+      const Vector<N, double> ddq = motion.ddq.row(i);
+      torque.row(i) = inverse_dynamics(model, q, dq, ddq, motion.t_s[i]);
+    }
+    return torque;
+  });
+}
+
+MatrixXd link_torque(const RobotDescription& robot, std::size_t link, const Motion& motion) {
+  RobotDescription only = robot;
+  only.effects.clear();
+  for (std::size_t i = 0; i < only.joints.size(); ++i) {
+    if (i == link) continue;
+    only.joints[i].joint.mass_kg = 0;
+    only.joints[i].joint.inertia_kg_m2 = {};
+  }
+  return model_torque(only, motion);
+}
+
+bool is_torque_effect(EffectKind kind) {
+  bool torque = false;
+  visit_effect(kind, [&]<typename E>() {
+    torque = requires(std::array<double, kMaxEffectParameters> p, JointInstant<double> at) {
+      E::torque(p, at);
+    };
+  });
+  return torque;
+}
+
+VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Motion& motion) {
+  const auto joint = static_cast<Index>(effect.joint);
+  VectorXd torque = VectorXd::Zero(motion.sample_count());
+  visit_effect(effect.kind, [&]<typename E>() {
+    auto parameters = effect.parameters;
+    if constexpr (requires { E::prepare(parameters, type); }) E::prepare(parameters, type);
+    if constexpr (requires(JointInstant<double> at) { E::torque(parameters, at); }) {
+      for (Index i = 0; i < motion.sample_count(); ++i) {
+        torque[i] = E::torque(parameters, JointInstant<double>{motion.q(i, joint),
+                                                               motion.dq(i, joint), motion.t_s[i]});
+      }
+    }
+  });
+  return torque;
+}
+
+MatrixXd torque_of_inertial_effect(const RobotDescription& robot, const Effect<double>& effect,
+                                   const Motion& motion) {
+  RobotDescription without = robot;
+  without.effects.clear();
+  RobotDescription with = without;
+  with.effects.push_back({effect});
+  return model_torque(with, motion) - model_torque(without, motion);
+}
+
+}  // namespace offnominal::tools

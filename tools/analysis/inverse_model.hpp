@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <offnominal/model/effect.hpp>
+
+#include "analysis/motion.hpp"
+#include "robot/robot.hpp"
+
+// A robot description's torques over a recorded motion: core's inverse dynamics, sample by sample.
+// Results have the motion's rows and one column per joint, N m or N. A motion has as many joints as
+// the robot, otherwise std::invalid_argument.
+
+namespace offnominal::tools {
+
+// What the model needs for the motion, effects included.
+Eigen::MatrixXd model_torque(const RobotDescription& robot, const Motion& motion);
+
+// The share of one link's mass and inertia in it; linear in them.
+Eigen::MatrixXd link_torque(const RobotDescription& robot, std::size_t link, const Motion& motion);
+
+// True where an effect acts as a torque of its own joint, false where it changes the inertia.
+bool is_torque_effect(EffectKind kind);
+
+// The torque of one torque effect on its own joint, of the given type.
+Eigen::VectorXd torque_of_effect(const Effect<double>& effect, JointType type,
+                                 const Motion& motion);
+
+// What an inertial effect adds to the torque of every joint.
+Eigen::MatrixXd torque_of_inertial_effect(const RobotDescription& robot,
+                                          const Effect<double>& effect, const Motion& motion);
+
+}  // namespace offnominal::tools

@@ -1,0 +1,117 @@
+#include "analysis/unknown.hpp"
+
+#include <fmt/format.h>
+
+#include "analysis/inverse_model.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+const ParameterInfo& info_of_parameter(const RobotDescription& robot, const Unknown& unknown) {
+  return info_of(robot.effects[unknown.effect].kind)->parameters[unknown.parameter];
+}
+
+// The effect with this linear parameter 1 and the others 0.
+Effect<double> unit_effect(const RobotDescription& robot, const Unknown& unknown) {
+  Effect<double> effect = robot.effects[unknown.effect];
+  const auto parameters = info_of(effect.kind)->parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].role == ParameterRole::kLinear) effect.parameters[i] = 0;
+  }
+  effect.parameters[unknown.parameter] = 1;
+  return effect;
+}
+
+}  // namespace
+
+std::vector<Unknown> unknowns_of_effect(const RobotDescription& robot, std::size_t effect,
+                                        bool is_new) {
+  std::vector<Unknown> unknowns;
+  const RobotEffect& of = robot.effects[effect];
+  const auto parameters = info_of(of.kind)->parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].role != ParameterRole::kLinear) continue;
+    Unknown unknown;
+    unknown.effect = effect;
+    unknown.parameter = i;
+    unknown.joint = of.joint;
+    unknown.start = of.parameters[i];
+    unknown.is_new = is_new;
+    unknowns.push_back(unknown);
+  }
+  return unknowns;
+}
+
+std::vector<Unknown> link_scales(const RobotDescription& robot, double deviation) {
+  std::vector<Unknown> unknowns;
+  for (std::size_t link = 0; link < robot.joints.size(); ++link) {
+    Unknown unknown;
+    unknown.kind = Unknown::Kind::kLinkScale;
+    unknown.joint = link;
+    unknown.prior_deviation = deviation;
+    unknowns.push_back(unknown);
+  }
+  return unknowns;
+}
+
+std::string name_of(const RobotDescription& robot, const Unknown& unknown) {
+  if (unknown.kind == Unknown::Kind::kLinkScale) {
+    return fmt::format("mass and inertia of link {}", unknown.joint + 1);
+  }
+  return fmt::format("{}.{} of joint {}", info_of(robot.effects[unknown.effect].kind)->name,
+                     info_of_parameter(robot, unknown).name, unknown.joint + 1);
+}
+
+std::string unit_of(const RobotDescription& robot, const Unknown& unknown) {
+  if (unknown.kind == Unknown::Kind::kLinkScale) return "1";
+  return offnominal::unit_of(info_of_parameter(robot, unknown).quantity,
+                             robot.joints[unknown.joint].joint.type);
+}
+
+std::vector<JointColumn> regressor(const RobotDescription& robot, const Unknown& unknown,
+                                   const Motion& motion) {
+  Eigen::MatrixXd torque;
+  if (unknown.kind == Unknown::Kind::kLinkScale) {
+    torque = link_torque(robot, unknown.joint, motion);
+  } else {
+    const Effect<double> effect = unit_effect(robot, unknown);
+    if (is_torque_effect(effect.kind)) {
+      const JointType type = robot.joints[unknown.joint].joint.type;
+      return {{unknown.joint, torque_of_effect(effect, type, motion)}};
+    }
+    torque = torque_of_inertial_effect(robot, effect, motion);
+  }
+  std::vector<JointColumn> columns;
+  for (const std::size_t joint : joints_of(robot, unknown)) {
+    columns.push_back({joint, torque.col(static_cast<Eigen::Index>(joint))});
+  }
+  return columns;
+}
+
+std::vector<std::size_t> joints_of(const RobotDescription& robot, const Unknown& unknown) {
+  const bool own_joint_only = unknown.kind == Unknown::Kind::kEffectParameter &&
+                              (is_torque_effect(robot.effects[unknown.effect].kind) ||
+                               robot.effects[unknown.effect].kind == EffectKind::kRotorInertia);
+  if (own_joint_only) return {unknown.joint};
+  std::vector<std::size_t> joints;
+  for (std::size_t joint = 0; joint <= unknown.joint; ++joint) joints.push_back(joint);
+  return joints;
+}
+
+RobotDescription with_values(RobotDescription robot, const std::vector<Unknown>& unknowns,
+                             const Eigen::VectorXd& values) {
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const Unknown& unknown = unknowns[i];
+    const double value = values[static_cast<Eigen::Index>(i)];
+    if (unknown.kind == Unknown::Kind::kEffectParameter) {
+      robot.effects[unknown.effect].parameters[unknown.parameter] = value;
+      continue;
+    }
+    Joint<double>& joint = robot.joints[unknown.joint].joint;
+    joint.mass_kg *= 1 + value;
+    for (double& inertia : joint.inertia_kg_m2) inertia *= 1 + value;
+  }
+  return robot;
+}
+
+}  // namespace offnominal::tools
