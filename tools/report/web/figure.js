@@ -1,0 +1,287 @@
+/** Every drawn figure of the page: {block, kind, host, place, chart, extent, legend, hidden}. */
+const figures = [];
+
+const kKinds = {
+  chart: {
+    option: chartOption,
+    height: chartHeight,
+    csv: chartCsv,
+    words: chartWords,
+    zooms: true,
+  },
+  heatmap: {
+    option: heatmapOption,
+    height: heatmapHeight,
+    csv: heatmapCsv,
+    words: heatmapWords,
+    zooms: true,
+  },
+  waterfall: {
+    option: waterfallOption,
+    height: waterfallHeight,
+    csv: waterfallCsv,
+    words: waterfallWords,
+    zooms: false,
+  },
+};
+
+function element(tag, attributes = {}, ...children) {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  node.append(...children);
+  return node;
+}
+
+/** A figure with its title, tools, legend and note; drawn later by drawFigure(). */
+function figureElement(block, place) {
+  const kind = kKinds[block.type];
+  const host = element("div", {
+    class: "drawing",
+    role: "img",
+    "aria-label": kind.words(block),
+    style: `height:${kind.height(block)}px`,
+  });
+  const figure = { block, kind, host, place, chart: null, extent: null, legend: null };
+  figure.hidden = new Set();
+  const title = element("h3", {}, block.title);
+  const root = element("figure", {
+    class: `card ${block.width === "half" ? "half" : ""}`.trim(),
+    "data-block": place,
+  });
+  root.append(element("div", { class: "figure-head" }, title, toolButtons(figure)));
+  if (block.type === "heatmap") {
+    root.append(element("p", { class: "scale" }, scaleWords(block)));
+  }
+  if (block.type === "chart") {
+    figure.legend = element("ul", { class: "legend", "aria-label": "Series" });
+    root.append(figure.legend);
+  }
+  root.append(host);
+  if (block.note !== "") root.append(element("p", { class: "remark" }, block.note));
+  figures.push(figure);
+  return root;
+}
+
+function toolButtons(figure) {
+  const tools = element("div", { class: "tools" });
+  const add = (label, title, action) => {
+    const button = element("button", { type: "button", title }, label);
+    button.addEventListener("click", action);
+    tools.append(button);
+  };
+  if (figure.kind.zooms) add("Reset", "Show the whole range (double click)", () => resetZoom(figure));
+  add("PNG", "Save the picture", () => savePicture(figure));
+  add("CSV", "Save the numbers drawn", () => {
+    const blob = new Blob([figure.kind.csv(figure.block)], { type: "text/csv" });
+    saveAs(URL.createObjectURL(blob), fileName(figure, "csv"));
+  });
+  return tools;
+}
+
+function fileName(figure, extension) {
+  const words = figure.block.title.toLowerCase().replace(/[^a-z0-9]+/g, "-");
+  return `${words.replace(/^-|-$/g, "") || "figure"}.${extension}`;
+}
+
+function saveAs(address, name) {
+  const link = element("a", { href: address, download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+}
+
+/** The picture with its title and legend, which the page shows outside the canvas. */
+function savePicture(figure) {
+  const look = currentLook();
+  const ratio = 2;
+  const drawing = figure.chart.renderToCanvas({ pixelRatio: ratio, backgroundColor: look.surface });
+  const head = 62 * ratio;
+  const canvas = element("canvas", { width: drawing.width, height: drawing.height + head });
+  const context = canvas.getContext("2d");
+  context.fillStyle = look.surface;
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  context.drawImage(drawing, 0, head);
+  context.scale(ratio, ratio);
+  context.fillStyle = look.ink;
+  context.font = `600 15px ${kFontFamily}`;
+  context.fillText(figure.block.title, 8, 24);
+  context.font = `13px ${kFontFamily}`;
+  if (figure.block.type === "heatmap") {
+    context.fillStyle = look.soft;
+    context.fillText(scaleWords(figure.block), 8, 46);
+  }
+  if (figure.block.type === "chart") {
+    const colors = seriesColors(figure.block.series, look);
+    let x = 8;
+    figure.block.series.forEach((series, index) => {
+      if (figure.hidden.has(series.name)) return;
+      context.fillStyle = colors[index];
+      context.fillRect(x, 40, 18, series.kind === "line" || series.kind === "steps" ? 2.5 : 7);
+      context.fillStyle = look.ink;
+      context.fillText(series.name, x + 24, 46);
+      x += 44 + context.measureText(series.name).width;
+    });
+  }
+  saveAs(canvas.toDataURL("image/png"), fileName(figure, "png"));
+}
+
+function resetZoom(figure) {
+  const count = figure.chart.getOption().dataZoom.length;
+  const batch = Array.from({ length: count }, (_, dataZoomIndex) => ({
+    dataZoomIndex,
+    start: 0,
+    end: 100,
+  }));
+  figure.chart.dispatchAction({ type: "dataZoom", batch });
+}
+
+function fillLegend(figure, look) {
+  const { block, chart, hidden } = figure;
+  const colors = seriesColors(block.series, look);
+  const items = block.series.map((series, index) => {
+    const button = element("button", {
+      type: "button",
+      title: "Show or hide",
+      "aria-pressed": String(!hidden.has(series.name)),
+    });
+    button.innerHTML = swatch(series, colors[index]);
+    button.append(element("span", {}, series.name));
+    button.addEventListener("click", () =>
+      chart.dispatchAction({ type: "legendToggleSelect", name: series.name }),
+    );
+    return element("li", {}, button);
+  });
+  figure.legend.replaceChildren(...items);
+}
+
+function watchLegend(figure) {
+  figure.chart.on("legendselectchanged", ({ selected }) => {
+    for (const button of figure.legend.querySelectorAll("button")) {
+      const shown = selected[button.textContent] !== false;
+      button.setAttribute("aria-pressed", String(shown));
+      if (shown) figure.hidden.delete(button.textContent);
+      else figure.hidden.add(button.textContent);
+    }
+  });
+}
+
+/** After a zoom the x axis begins and ends anywhere: see edgeLabels(). */
+function watchZoom(figure) {
+  const { block, chart } = figure;
+  const axes = block.type === "heatmap" ? ["x", "y"] : ["x"];
+  const refresh = () => {
+    const { dataZoom } = chart.getOption();
+    const option = {};
+    axes.forEach((name, index) => {
+      const { startValue, endValue } = dataZoom[index];
+      if (block[name].log || !(startValue < endValue)) return;
+      const count = name === "x" && block.type === "chart" ? xLabelCount(block) : 5;
+      option[`${name}Axis`] = { axisLabel: edgeLabels(startValue, endValue, count) };
+    });
+    const text = JSON.stringify(option);
+    if (text !== figure.edges) chart.setOption(option);
+    figure.edges = text;
+  };
+  chart.on("datazoom", refresh);
+}
+
+/** ECharts takes every turn of the wheel; the page needs those without ctrl to scroll. */
+function leaveWheelToPage(host) {
+  for (const name of ["wheel", "mousewheel"]) {
+    const pass = (event) => event.ctrlKey || event.stopPropagation();
+    host.addEventListener(name, pass, { capture: true, passive: true });
+  }
+}
+
+/** While shift is held a drag moves the zoomed range, else it chooses one. */
+function setZoomBrush(figure, active) {
+  figure.chart.dispatchAction({
+    type: "takeGlobalCursor",
+    key: "dataZoomSelect",
+    dataZoomSelectActive: active,
+  });
+}
+
+function watchShift() {
+  const zoomed = figures.filter((figure) => figure.kind.zooms);
+  const set = (active) => zoomed.forEach((figure) => setZoomBrush(figure, active));
+  window.addEventListener("keydown", ({ key, repeat }) => {
+    if (key === "Shift" && !repeat) set(false);
+  });
+  window.addEventListener("keyup", ({ key }) => {
+    if (key === "Shift") set(true);
+  });
+  window.addEventListener("blur", () => set(true));
+}
+
+/** (Re)draws the figure in the present look and size; zoom and hidden series stay. */
+function drawFigure(figure) {
+  const look = currentLook();
+  const { block, kind, host } = figure;
+  if (figure.chart === null) {
+    figure.chart = echarts.init(host, null, { renderer: "canvas" });
+    if (block.zoom_group) {
+      figure.chart.group = block.zoom_group;
+      echarts.connect(block.zoom_group);
+    }
+    if (kind.zooms) {
+      figure.chart.getZr().on("dblclick", () => resetZoom(figure));
+      watchZoom(figure);
+      leaveWheelToPage(host);
+    }
+    if (figure.legend !== null) watchLegend(figure);
+  }
+  const isShown = (name) => !figure.hidden.has(name);
+  const option = kind.option(block, look, host.clientWidth, figure.extent, isShown);
+  figure.chart.setOption(option, { replaceMerge: ["series"] });
+  if (figure.legend !== null) fillLegend(figure, look);
+  if (kind.zooms) setZoomBrush(figure, true);
+}
+
+/** Charts of one zoom group share the x range that covers them all. */
+function shareExtents() {
+  const charts = figures.filter((figure) => figure.block.type === "chart");
+  for (const figure of charts) {
+    const group = figure.block.zoom_group;
+    const members = group ? charts.filter((other) => other.block.zoom_group === group) : [figure];
+    figure.extent = xExtent(members.map((member) => member.block));
+  }
+}
+
+function redrawAll() {
+  for (const figure of figures) {
+    figure.chart?.resize();
+    drawFigure(figure);
+  }
+}
+
+function drawAll() {
+  shareExtents();
+  figures.forEach(drawFigure);
+  darkPreference.addEventListener("change", redrawAll);
+  let width = window.innerWidth;
+  window.addEventListener("resize", () => {
+    if (window.innerWidth === width) return;
+    width = window.innerWidth;
+    redrawAll();
+  });
+  watchShift();
+  watchPrinting();
+}
+
+/** Paper is white and narrower than the window. */
+function watchPrinting() {
+  const kPaperWidth = 640;
+  window.addEventListener("beforeprint", () => {
+    document.documentElement.setAttribute("data-print", "");
+    for (const figure of figures) {
+      figure.chart.resize({ width: kPaperWidth });
+      drawFigure(figure);
+    }
+  });
+  window.addEventListener("afterprint", () => {
+    document.documentElement.removeAttribute("data-print");
+    for (const figure of figures) figure.chart.resize({ width: "auto" });
+    redrawAll();
+  });
+}

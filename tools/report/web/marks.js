@@ -1,0 +1,138 @@
+const kEventRow = 17;
+
+function textWidth(text, fontSize) {
+  const context = (textWidth.canvas ??= document.createElement("canvas")).getContext("2d");
+  context.font = `${fontSize}px ${kFontFamily}`;
+  return context.measureText(text).width;
+}
+
+/**
+ * Row of each event's label above the plot, and which side of its line it takes. From right to
+ * left, each label lies higher than the labels and lines that it would touch.
+ */
+function placeEventLabels(positions, widths, right) {
+  const placed = [];
+  const places = new Array(positions.length);
+  const order = positions.map((_, index) => index).sort((a, b) => positions[b] - positions[a]);
+  for (const index of order) {
+    const x = positions[index];
+    const flipped = x + widths[index] > right;
+    const [start, end] = flipped ? [x - widths[index], x] : [x, x + widths[index]];
+    const touched = placed.filter((other) => other.end + 4 > start && other.start - 4 < end);
+    const row = touched.reduce((highest, other) => Math.max(highest, other.row + 1), 0);
+    placed.push({ start, end, row });
+    places[index] = { row, flipped };
+  }
+  return { places, rows: Math.max(0, ...placed.map((each) => each.row + 1)) };
+}
+
+function eventWidths(events) {
+  return events.map((event) => textWidth(event.label, 12) + 10);
+}
+
+/** Rows that the event labels need over the whole x range on a plot of this width. */
+function eventRows(chart, extent, plotWidth) {
+  if (chart.events.length === 0) return 0;
+  if (extent === null) return 1;
+  const scale = chart.x.log ? Math.log10 : (x) => x;
+  const start = scale(extent.low);
+  const perUnit = plotWidth / (scale(extent.high) - start);
+  const positions = chart.events.map((event) => (scale(event.x) - start) * perUnit);
+  return placeEventLabels(positions, eventWidths(chart.events), plotWidth).rows;
+}
+
+/** Vertical lines with their labels above the plot; the labels are placed anew at each zoom. */
+function eventSeries(chart, look, rows) {
+  const widths = eventWidths(chart.events);
+  return {
+    id: "events",
+    type: "custom",
+    data: chart.events.map((event) => [event.x]),
+    dimensions: ["x"],
+    encode: { x: 0, y: [] },
+    tooltip: { show: false },
+    silent: true,
+    clip: false,
+    z: 1,
+    renderItem: (params, api) => {
+      const plot = params.coordSys;
+      const event = chart.events[params.dataIndex];
+      const positions = chart.events.map((each) => api.coord([each.x, 1])[0]);
+      const x = positions[params.dataIndex];
+      if (!(x >= plot.x - 0.5 && x <= plot.x + plot.width + 0.5)) return null;
+      const { places } = placeEventLabels(positions, widths, plot.x + plot.width + 16);
+      const place = places[params.dataIndex];
+      const color = look.levels[event.level];
+      const top = plot.y - (Math.min(place.row, rows - 1) + 1) * kEventRow;
+      return {
+        type: "group",
+        children: [
+          {
+            type: "line",
+            shape: { x1: x, y1: top + 2, x2: x, y2: plot.y + plot.height },
+            style: { stroke: color, lineWidth: 1.2 },
+          },
+          {
+            type: "text",
+            style: {
+              text: event.label,
+              x: place.flipped ? x - 5 : x + 5,
+              y: top + kEventRow / 2,
+              align: place.flipped ? "right" : "left",
+              verticalAlign: "middle",
+              fill: color,
+              stroke: look.surface,
+              lineWidth: 3,
+              font: `12px ${kFontFamily}`,
+            },
+          },
+        ],
+      };
+    },
+  };
+}
+
+/** Horizontal lines (vertical where the value axis lies) with their label at the far end. */
+function levelSeries(levels, look, alongX) {
+  return {
+    id: "levels",
+    type: "custom",
+    data: levels.map((level) => [level.y]),
+    dimensions: ["level"],
+    encode: alongX ? { x: 0, y: [] } : { x: [], y: 0 },
+    tooltip: { show: false },
+    silent: true,
+    clip: false,
+    z: 4,
+    renderItem: (params, api) => {
+      const plot = params.coordSys;
+      const { y, label } = levels[params.dataIndex];
+      const at = alongX ? api.coord([y, 0])[0] : api.coord([plot.x, y])[1];
+      const start = alongX ? plot.x : plot.y;
+      if (!(at >= start && at <= start + (alongX ? plot.width : plot.height))) return null;
+      const right = plot.x + plot.width;
+      const shape = alongX
+        ? { x1: at, y1: plot.y, x2: at, y2: plot.y + plot.height }
+        : { x1: plot.x, y1: at, x2: right, y2: at };
+      const place = alongX
+        ? { x: at, y: plot.y - 5, align: at > right - 60 ? "right" : "center" }
+        : { x: right - 4, y: at - plot.y < 18 ? at + 17 : at - 4, align: "right" };
+      const style = {
+        text: label,
+        ...place,
+        verticalAlign: "bottom",
+        fill: look.soft,
+        stroke: look.surface,
+        lineWidth: 3,
+        font: `12px ${kFontFamily}`,
+      };
+      return {
+        type: "group",
+        children: [
+          { type: "line", shape, style: { stroke: look.soft, lineWidth: 1.2, lineDash: [2, 3] } },
+          { type: "text", style },
+        ],
+      };
+    },
+  };
+}

@@ -1,0 +1,117 @@
+/** Gaps, and values that a logarithmic axis cannot show, are null. */
+function drawable(value, axis) {
+  return value !== null && axis.log && value <= 0 ? null : value;
+}
+
+function bandSeries(common, series, color, x, y) {
+  const data = series.x.map((value, index) => [
+    drawable(value, x),
+    drawable(series.y[index], y),
+    drawable(series.y_upper[index], y),
+  ]);
+  return {
+    ...common,
+    type: "custom",
+    data,
+    dimensions: ["x", "lower", "upper"],
+    encode: { x: 0, y: [1, 2] },
+    clip: true,
+    itemStyle: { color },
+    // The whole band is one shape, drawn with the first point, so that no seams show.
+    renderItem: (params, api) => {
+      if (params.dataIndexInside !== 0) return null;
+      const pieces = [];
+      let piece = [];
+      for (let index = 0; index < params.dataInsideLength; ++index) {
+        const at = [0, 1, 2].map((dimension) => api.value(dimension, index));
+        if (at.every(Number.isFinite)) {
+          piece.push({ low: api.coord([at[0], at[1]]), high: api.coord([at[0], at[2]]) });
+        } else if (piece.length > 0) {
+          pieces.push(piece);
+          piece = [];
+        }
+      }
+      if (piece.length > 0) pieces.push(piece);
+      const outline = (points) => [
+        ...points.map((point) => point.low),
+        ...points.map((point) => point.high).reverse(),
+      ];
+      return {
+        type: "group",
+        children: pieces.map((points) => ({
+          type: "polygon",
+          shape: { points: outline(points) },
+          style: { fill: withOpacity(color, 0.24), stroke: withOpacity(color, 0.5), lineWidth: 0.6 },
+        })),
+      };
+    },
+  };
+}
+
+function barSeries(common, series, color, y) {
+  const data = series.y.map((value, bar) => [series.x[bar], series.x[bar + 1], drawable(value, y)]);
+  return {
+    ...common,
+    type: "custom",
+    data,
+    dimensions: ["from", "to", "value"],
+    encode: { x: [0, 1], y: 2 },
+    clip: true,
+    itemStyle: { color },
+    renderItem: (params, api) => {
+      const value = api.value(2);
+      if (!Number.isFinite(value)) return null;
+      const plot = params.coordSys;
+      const [left, top] = api.coord([api.value(0), value]);
+      const base = y.log ? plot.y + plot.height : api.coord([api.value(0), 0])[1];
+      const right = api.coord([api.value(1), value])[0];
+      return {
+        type: "rect",
+        shape: {
+          x: left,
+          y: Math.min(top, base),
+          width: Math.max(right - left, 0.5),
+          height: Math.abs(base - top),
+        },
+        style: { fill: withOpacity(color, 0.75), stroke: color, lineWidth: 0.6 },
+        emphasis: { style: { fill: color } },
+      };
+    },
+  };
+}
+
+function drawnSeries(series, index, color, chart) {
+  const y = chart.y[series.y_axis];
+  const common = { id: `s${index}`, name: series.name, yAxisIndex: series.y_axis, z: 2 };
+  if (series.kind === "band") return { ...bandSeries(common, series, color, chart.x, y), z: 1 };
+  if (series.kind === "bars") return barSeries(common, series, color, y);
+  const data = series.x.map((x, i) => [drawable(x, chart.x), drawable(series.y[i], y)]);
+  if (series.kind === "points") {
+    return {
+      ...common,
+      type: "scatter",
+      data,
+      progressive: false,
+      progressiveThreshold: Infinity,
+      symbolSize: data.length > 600 ? 3.5 : data.length > 100 ? 5 : 7,
+      itemStyle: { color, opacity: data.length > 600 ? 0.45 : 0.8, borderWidth: 0 },
+    };
+  }
+  return {
+    ...common,
+    type: "line",
+    data,
+    step: series.kind === "steps" ? "end" : false,
+    showSymbol: series.kind === "line" && data.length <= 30,
+    symbol: "circle",
+    symbolSize: 5,
+    itemStyle: { color },
+    lineStyle: {
+      color,
+      width: series.tone === "faint" ? 1.1 : 1.6,
+      type: isDashed(series) ? [6, 4] : "solid",
+      join: "round",
+    },
+    emphasis: { disabled: true },
+  };
+}
