@@ -1,0 +1,100 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <offnominal/version.hpp>
+#include <string>
+#include <vector>
+
+#include "command/verbs.hpp"
+#include "common/error.hpp"
+#include "common/nearest.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+std::string version_text() {
+  return "offnominal " + std::to_string(kVersionMajor) + "." + std::to_string(kVersionMinor) + "." +
+         std::to_string(kVersionPatch);
+}
+
+std::vector<std::string> verb_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(verb->get_name());
+  }
+  return names;
+}
+
+// CLI11 would call a wrong first word an argument that was not expected, and say of a wrong option
+// in its place that a subcommand is required.
+void check_verb(const CLI::App& app, int argc, char** argv) {
+  const std::vector<std::string> names = verb_names(app);
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (word.starts_with("-") && app.get_option_no_throw(word) != nullptr) return;
+  for (const std::string& name : names) {
+    if (word == name) return;
+  }
+  const std::string what = word.starts_with("-") ? "unknown option `" : "unknown verb `";
+  const std::string meant = nearest(word, names);
+  const std::string mend = "run `offnominal --help`";
+  throw InputError({.file = "offnominal",
+                    .place = "",
+                    .found = argc > 1 ? what + word + "`" : "no verb",
+                    .allowed = list_of(names),
+                    .mend = meant.empty() ? mend : "write `" + meant + "`, or " + mend});
+}
+
+// Parse errors of the options; --help and --version come this way too.
+ExitCode answer(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* verb = &app;
+  while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().front();
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+    return static_cast<ExitCode>(app.exit(error, std::cout, std::cerr));
+  }
+  const std::string name = verb == &app ? "offnominal" : "offnominal " + verb->get_name();
+  throw InputError({.file = name,
+                    .place = error.what(),
+                    .found = "",
+                    .allowed = "",
+                    .mend = "run `" + name + " --help`"});
+}
+
+ExitCode run(int argc, char** argv) {
+  CLI::App app{"Model-based fault diagnosis of robot joints", "offnominal"};
+  app.set_version_flag("--version", version_text());
+  app.set_help_flag("-h,--help", "Print this help and exit");
+  app.require_subcommand(1);
+  ExitCode exit_code = ExitCode::kDone;
+  for (const RegisterVerb register_verb : all_verbs()) register_verb(app, exit_code);
+  check_verb(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    exit_code = answer(app, error);
+  }
+  std::cout.flush();
+  if (!std::cout || std::fflush(stdout) != 0) {
+    throw InputError({.file = "standard output",
+                      .place = "",
+                      .found = "that it cannot be written",
+                      .allowed = "",
+                      .mend = "check where it is directed and whether there is room"});
+  }
+  return exit_code;
+}
+
+}  // namespace
+}  // namespace offnominal::tools
+
+int main(int argc, char** argv) {
+  using offnominal::tools::ExitCode;
+  try {
+    return static_cast<int>(offnominal::tools::run(argc, argv));
+  } catch (const offnominal::tools::InputError& error) {
+    std::cerr << error.what() << '\n';
+  } catch (const std::exception& error) {
+    std::cerr << "offnominal: " << offnominal::tools::on_one_line(error.what()) << '\n';
+  }
+  return static_cast<int>(ExitCode::kBadInput);
+}

@@ -1,0 +1,199 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/add_report.hpp"
+#include "command/command_line.hpp"
+#include "command/filter_options.hpp"
+#include "command/progress.hpp"
+#include "command/verbs.hpp"
+#include "common/error.hpp"
+#include "common/nearest.hpp"
+#include "log/read_log.hpp"
+#include "report/page.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+struct Options {
+  std::vector<std::string> effects;
+  int joint = 0;
+  std::string robot;
+  std::string log;
+  std::optional<std::string> holdout;
+  std::optional<std::filesystem::path> channels;
+  std::string output;
+  std::vector<std::string> set;
+  std::optional<double> refit_inertia_percent;
+  bool keep = false;
+  bool force = false;
+  FilterRequest filter;
+  std::optional<std::string> report;
+  bool json = false;
+};
+
+[[noreturn]] void refuse(const std::string& option, const std::string& found,
+                         const std::string& allowed, const std::string& mend = {}) {
+  throw InputError({"offnominal add", option, found, allowed, mend});
+}
+
+EffectKind kind_of(const std::string& name) {
+  std::vector<std::string> names;
+  for (const EffectInfo& info : kAllEffectInfos) {
+    if (name == info.name) return info.kind;
+    names.emplace_back(info.name);
+  }
+  const std::string meant = nearest(name, names);
+  refuse("EFFECT", "\"" + name + "\"", list_of(names), meant.empty() ? "" : "write " + meant);
+}
+
+// "name=value"
+void read_setting(const std::string& text, AddRequest& request) {
+  const auto equals = text.find('=');
+  double value = 0;
+  const bool good = equals != std::string::npos && equals > 0 &&
+                    CLI::detail::lexical_cast(text.substr(equals + 1), value) &&
+                    std::isfinite(value);
+  if (!good) refuse("--set", "\"" + text + "\"", "NAME=NUMBER, such as smoothing=0.001");
+  if (!request.set.emplace(text.substr(0, equals), value).second) {
+    refuse("--set", "\"" + text.substr(0, equals) + "\" twice", "one value per name");
+  }
+}
+
+AddRequest request_of(const Options& options) {
+  AddRequest request;
+  for (const std::string& name : options.effects) request.effects.push_back(kind_of(name));
+  if (options.joint < 1) refuse("--joint", std::to_string(options.joint), "a number from 1");
+  request.joint = static_cast<std::size_t>(options.joint - 1);
+  for (const std::string& setting : options.set) read_setting(setting, request);
+  if (options.refit_inertia_percent) {
+    const double percent = *options.refit_inertia_percent;
+    if (!(percent > 0 && percent <= 100)) {
+      refuse("--refit-inertia", fmt::format("{:g}", percent), "above 0, up to 100 %");
+    }
+    request.inertia_deviation = percent / 100;
+  }
+  request.keep = options.keep;
+  request.source =
+      "Fitted to " + std::filesystem::path(options.log).filename().string() + " by offnominal add.";
+  return request;
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code not_there;
+  return std::filesystem::equivalent(a, b, not_there) && !not_there;
+}
+
+void check_files(const Options& options) {
+  if (same_file(options.output, options.robot) && !options.force) {
+    refuse("-o", "the robot file that is read", "another file",
+           "choose another name, or add --force to replace it");
+  }
+  for (const std::string& recording : {options.log, options.holdout.value_or(options.log)}) {
+    if (same_file(options.output, recording)) refuse("-o", "a recording", "a robot file");
+  }
+  if (options.holdout && same_file(options.log, *options.holdout)) {
+    refuse("--holdout", "the recording that is fitted", "another recording",
+           "leave --holdout out: parts of the recording are then held out");
+  }
+}
+
+void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {
+  const AddRequest request = request_of(options);
+  check_files(options);
+  Progress progress;
+  progress.begin("reading " + options.log);
+  const RobotDescription robot = read_robot_file(options.robot);
+  const Measurement log = measure(read_log(options.log, robot, options.channels), options.filter);
+  std::optional<Measurement> holdout;
+  if (options.holdout) {
+    holdout = measure(read_log(*options.holdout, robot, options.channels), options.filter);
+  }
+  progress.begin("fitting");
+  const AddResult result =
+      add(robot, request, log, holdout ? &*holdout : nullptr, [&progress] { progress.step(); });
+  progress.end();
+  const AddNames names{options.log, options.holdout, options.robot, options.output, command_line};
+  if (result.objections.empty()) {
+    write_robot_file(result.robot, options.output, Existing::kReplace);
+  } else {
+    exit_code = ExitCode::kCheckFailed;
+  }
+  if (options.report) report::write_page(*options.report, page_of(result, request, names));
+  if (options.json) {
+    std::cout << to_json(result, request, names).dump(2) << '\n';
+    return;
+  }
+  std::cout << text_of(result, request, names);
+  if (result.objections.empty()) std::cout << "written: " << options.output << '\n';
+  if (options.report) std::cout << "written: " << *options.report << '\n';
+}
+
+std::string effects_text() {
+  std::string text = "Effects, their formulas and parameters:\n";
+  for (const EffectInfo& info : kAllEffectInfos) {
+    text += fmt::format("  {:<22} {}\n", info.name, info.formula);
+    for (const ParameterInfo& parameter : info.parameters) {
+      text +=
+          fmt::format("  {:<22}   {}{}: {}\n", "", parameter.name,
+                      parameter.role == ParameterRole::kShape ? " (shape)" : "", parameter.meaning);
+    }
+  }
+  return text;
+}
+
+constexpr const char* kHowItFits =
+    "The new effects are fitted together with those effects of the robot file that are marked "
+    "`fitted = true` and act on the same joints, because what was missing had biased them; --keep "
+    "leaves them alone. Masses and inertias stay as they are unless --refit-inertia gives their "
+    "uncertainty. Shape parameters that --set does not give are searched for; the widths of the "
+    "smoothed sign of one joint have one common value.\n"
+    "The error is judged on data that the fit has not seen: --holdout, or else every fifth of the "
+    "recording predicted by a fit of the others.\n"
+    "Exit code 1, and nothing written, when the recording cannot tell an effect from what the "
+    "model "
+    "has already, or when the fit is not physical.\n\n";
+
+}  // namespace
+
+void register_add(CLI::App& app, ExitCode& exit_code) {
+  CLI::App* verb = app.add_subcommand(
+      "add", "Fit an effect to a recording and write the robot file that has it");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("EFFECT", options->effects,
+                   "One or more effects, all on one joint; listed below")
+      ->required();
+  verb->add_option("--joint", options->joint, "The joint that they act on, from 1")->required();
+  verb->add_option("--robot", options->robot, "Robot file to start from")->required();
+  verb->add_option("--log", options->log, "Recording to fit, CSV or MATLAB .mat")->required();
+  verb->add_option("--holdout", options->holdout, "Recording to judge the fit on");
+  verb->add_option("-o,--output", options->output, "Robot file to write")->required();
+  verb->add_flag("--force", options->force, "Allow -o to be the robot file that is read");
+  verb->add_option("--set", options->set,
+                   "NAME=VALUE or EFFECT.NAME=VALUE: a parameter of the new effects that is given, "
+                   "not fitted; SI units")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb->add_flag("--keep", options->keep, "Leave effects that were fitted before as they are");
+  verb->add_option("--refit-inertia", options->refit_inertia_percent,
+                   "Fit mass and inertia of every link as well, believed to be right to within so "
+                   "many percent (one standard deviation)");
+  verb->add_option("--channels", options->channels,
+                   "TOML file that maps the recordings' columns, instead of the robot file's "
+                   "[channels]");
+  add_filter_options(*verb, options->filter);
+  verb->add_option("--report", options->report, "Write the pictures as an HTML page");
+  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
+  verb->footer(kHowItFits + effects_text());
+  verb->callback([verb, options, &exit_code] { run(*options, command_line_of(*verb), exit_code); });
+}
+
+}  // namespace offnominal::tools

@@ -1,0 +1,73 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "analysis/compare_report.hpp"
+#include "command/command_line.hpp"
+#include "command/filter_options.hpp"
+#include "command/progress.hpp"
+#include "command/verbs.hpp"
+#include "log/read_log.hpp"
+#include "report/page.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+struct Options {
+  std::string log;
+  std::string robot;
+  std::optional<std::filesystem::path> channels;
+  FilterRequest filter;
+  std::optional<std::string> report;
+  bool json = false;
+};
+
+void run(const Options& options, const std::string& command_line) {
+  Progress progress;
+  progress.begin("reading " + options.log);
+  const RobotDescription robot = read_robot_file(options.robot);
+  Log log = read_log(options.log, robot, options.channels);
+  progress.begin("filtering");
+  const Measurement measured = measure(std::move(log), options.filter);
+  progress.begin("computing the model's torque");
+  const Comparison comparison = compare(robot, measured);
+  progress.end();
+  const CompareNames names{options.log, options.robot, command_line};
+  if (options.report) report::write_page(*options.report, page_of(comparison, names));
+  if (options.json) {
+    std::cout << to_json(comparison, names).dump(2) << '\n';
+    return;
+  }
+  std::cout << text_of(comparison, names);
+  if (options.report) std::cout << "written: " << *options.report << '\n';
+}
+
+}  // namespace
+
+void register_compare(CLI::App& app, ExitCode& exit_code) {
+  static_cast<void>(exit_code);
+  CLI::App* verb = app.add_subcommand(
+      "compare", "Compare a model with a recording: error per joint, and what it follows");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("LOG", options->log, "Recording, CSV or MATLAB .mat")->required();
+  verb->add_option("--robot", options->robot, "Robot file")->required();
+  verb->add_option("--channels", options->channels,
+                   "TOML file that maps the recording's columns, instead of the robot file's "
+                   "[channels]");
+  add_filter_options(*verb, options->filter);
+  verb->add_option("--report", options->report, "Write the pictures as an HTML page");
+  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
+  verb->footer(
+      "Velocity and acceleration come from the low-passed position. Measured and model torque pass "
+      "the same low-pass, without phase; the recording's ends, where the filter has not settled, "
+      "are "
+      "left out. Without a channel map the recording's columns are t, q1.., dq1.., tau1.. in SI "
+      "units.");
+  verb->callback([verb, options] { run(*options, command_line_of(*verb)); });
+}
+
+}  // namespace offnominal::tools

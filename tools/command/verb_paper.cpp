@@ -1,0 +1,307 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "command/verbs.hpp"
+#include "common/error.hpp"
+#include "paper/figures.hpp"
+#include "paper/paper_json.hpp"
+#include "paper/paper_runs.hpp"
+#include "paper/two_link_robot.hpp"
+#include "report/page.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+using paper::Experiment;
+using paper::ExperimentResult;
+
+struct Options {
+  std::optional<std::string> fault;
+  std::optional<double> mass_loss;
+  std::optional<double> rho;
+  bool accommodate = false;
+  std::string scalar = "float";
+  std::optional<std::string> dead_zone;
+  std::optional<int> hidden;
+  std::optional<double> step;
+  std::optional<std::uint32_t> seed;
+  std::optional<std::string> robot;
+  std::optional<std::string> report;
+  bool sweep = false;
+  bool json = false;
+  std::string command_line;
+};
+
+// Names on stderr what is running, once it has taken over two seconds and somebody is there to see.
+class Progress {
+ public:
+  Progress() = default;
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void operator()(const std::string& part) {
+    if (!terminal_ || std::chrono::steady_clock::now() - start_ < std::chrono::seconds(2)) return;
+    std::cerr << "\r\033[K" << part << std::flush;
+    shown_ = true;
+  }
+  ~Progress() {
+    if (shown_) std::cerr << "\r\033[K" << std::flush;
+  }
+
+ private:
+  bool terminal_ = isatty(STDERR_FILENO) != 0;
+  bool shown_ = false;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// A number in a range, NaN excluded, told in the same words for every option.
+CLI::Validator number_where(bool (*allowed)(double), const std::string& words) {
+  return CLI::Validator(
+      [allowed, words](const std::string& text) -> std::string {
+        double value = 0.0;
+        const bool good = CLI::detail::lexical_cast(text, value) && allowed(value);
+        return good ? "" : "found " + text + "; allowed: " + words;
+      },
+      words);
+}
+
+[[noreturn]] void refuse(const std::string& option, const std::string& found,
+                         const std::string& mend) {
+  throw InputError(
+      {.file = "offnominal paper", .place = option, .found = found, .allowed = "", .mend = mend});
+}
+
+// An option that would be ignored is a misunderstanding.
+void check_together(const Options& options) {
+  if (options.sweep) {
+    if (options.fault && *options.fault != "mass_loss") {
+      refuse("--sweep", "--fault " + *options.fault, "leave --fault out; the sweep loses mass");
+    }
+    if (options.mass_loss) refuse("--sweep", "--mass-loss", "leave it out; the sweep tries all");
+    if (options.accommodate) {
+      refuse("--sweep", "--accommodate", "leave it out; nothing is compensated before detection");
+    }
+    if (options.report) {
+      refuse("--sweep", "--report", "run `offnominal paper --report FILE`, which holds the sweep");
+    }
+  }
+  if (options.mass_loss && options.fault && *options.fault != "mass_loss") {
+    refuse("--mass-loss", "--fault " + *options.fault, "leave one of the two out");
+  }
+  if (options.rho && options.fault && *options.fault == "none") {
+    refuse("--rho", "--fault none", "leave one of the two out");
+  }
+}
+
+RobotDescription robot_of(const Options& options) {
+  RobotDescription robot =
+      options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
+  EstimatorSettings& estimator = robot.estimator;
+  if (options.dead_zone) {
+    estimator.dead_zone = *options.dead_zone == "continuous" ? DeadZoneChoice::kContinuous
+                                                             : DeadZoneChoice::kDiscontinuous;
+  }
+  if (options.hidden) estimator.hidden_units = *options.hidden;
+  if (options.step) estimator.period_s = *options.step;
+  if (options.seed) estimator.seed = *options.seed;
+  return robot;
+}
+
+Experiment experiment_of(const Options& options) {
+  Experiment experiment;
+  const std::string fault = options.fault.value_or(options.sweep ? "mass_loss" : "none");
+  experiment.fault.kind = fault == "mass_loss"   ? sim::FaultKind::kMassLoss
+                          : fault == "nonlinear" ? sim::FaultKind::kNonlinear
+                                                 : sim::FaultKind::kNone;
+  if (options.mass_loss) experiment.fault.mass_loss = *options.mass_loss;
+  if (options.rho) experiment.fault.rate_per_s = *options.rho;
+  experiment.accommodate = options.accommodate;
+  experiment.precision =
+      options.scalar == "float" ? paper::Precision::kFloat : paper::Precision::kDouble;
+  experiment.record = options.report.has_value();
+  return experiment;
+}
+
+std::string or_none(const std::optional<double>& value, const char* format) {
+  return value ? fmt::format(fmt::runtime(format), *value) : "none";
+}
+
+void print_run(const ExperimentResult& run) {
+  const auto row = [](const std::string& name, const std::string& value) {
+    std::cout << fmt::format("  {:<38} {}\n", name, value);
+  };
+  std::cout << fmt::format("fault {}{}, {}, seed {}, {} steps\n", paper::name_of(run.fault),
+                           run.accommodate ? ", accommodated" : "", paper::name_of(run.precision),
+                           run.seed, run.steps);
+  row("fault begins", or_none(run.fault_time_s, "{:g} s"));
+  row("detected", or_none(run.detection_time_s, "{:.3f} s"));
+  row("certain to be detected (Theorem 4.2)", or_none(run.guaranteed_time_s, "{:.3f} s"));
+  row("before the fault: largest |e| / mu",
+      fmt::format("{:.4f}", run.max_error_to_threshold_before_fault));
+  row("before the fault: largest |psi_hat|",
+      fmt::format("{:g} rad/s^2", run.max_abs_psi_hat_before_fault));
+  row("tracking error, last quarter", fmt::format("{:.4f} rad rms", run.tracking_rms_rad));
+  row("error of the fault estimate",
+      run.fault_estimate_relative_error
+          ? fmt::format("{:.1f} % of the fault", 100.0 * *run.fault_estimate_relative_error)
+          : "none");
+  row("largest |theta|", fmt::format("{:.3f}", run.max_weight_norm));
+  std::cout << paper::words_of(run) << '\n';
+}
+
+void print_everything(const std::vector<paper::Comparison>& lines, const std::string& verdict) {
+  constexpr const char* kRow = "{:<46} {:<21} {:<32} {}\n";
+  std::cout << fmt::format(kRow, "what", "paper", "here", "agrees");
+  for (const paper::Comparison& line : lines) {
+    const char* agrees = !line.agrees ? "" : *line.agrees ? "yes" : "no";
+    std::cout << fmt::format(kRow, line.what, line.paper, line.here, agrees);
+  }
+  std::cout << verdict << '\n';
+}
+
+void run_sweep(const RobotDescription& robot, const Experiment& base, bool json) {
+  Progress progress;
+  const auto on_probe = [&](const paper::SweepProbe& probe) {
+    const std::string words = fmt::format(
+        "mass loss {:5.1f} %  {}", 100.0 * probe.mass_loss,
+        probe.detection_time_s ? fmt::format("detected at {:.3f} s", *probe.detection_time_s)
+                               : std::string("not detected"));
+    if (json) {
+      progress(words);
+    } else {
+      std::cout << words << '\n';
+    }
+  };
+  const paper::SweepResult sweep = paper::sweep_mass_loss(robot, base, 0.005, on_probe);
+  if (json) {
+    std::cout << paper::to_json(sweep).dump(2) << '\n';
+    return;
+  }
+  const auto percent = [](const std::optional<double>& share) {
+    return share ? fmt::format("{:.1f} %", 100.0 * *share) : std::string("none");
+  };
+  std::cout << "smallest mass loss that is detected: " << percent(sweep.smallest_detected)
+            << " (paper: 10 %)\nlargest that is not: " << percent(sweep.largest_undetected) << '\n';
+}
+
+void run_one(const RobotDescription& robot, const Experiment& experiment, const Options& options) {
+  const ExperimentResult run = paper::run_experiment(robot, experiment);
+  if (options.report) {
+    report::write_page(*options.report, paper::page_of(run, options.command_line));
+  }
+  if (options.json) {
+    std::cout << paper::to_json(run).dump(2) << '\n';
+  } else {
+    print_run(run);
+    if (options.report) std::cout << "written: " << *options.report << '\n';
+  }
+}
+
+void run_all(const RobotDescription& robot, const Experiment& experiment, const Options& options) {
+  paper::PaperRuns runs;
+  {
+    Progress progress;
+    runs =
+        paper::run_everything(robot, experiment, [&](const std::string& part) { progress(part); });
+  }
+  const auto lines = paper::compare_with_paper(runs);
+  const bool paper_settings = !options.mass_loss && !options.rho && !options.dead_zone &&
+                              !options.hidden && !options.step && !options.robot;
+  const std::string verdict = paper::verdict_of(lines, paper_settings);
+  if (options.report) {
+    report::write_page(*options.report, paper::page_of(runs, lines, verdict, options.command_line));
+  }
+  if (options.json) {
+    std::cout << paper::to_json(runs, lines, verdict).dump(2) << '\n';
+  } else {
+    print_everything(lines, verdict);
+    if (options.report) std::cout << "written: " << *options.report << '\n';
+  }
+}
+
+void run(const Options& options) {
+  check_together(options);
+  const RobotDescription robot = robot_of(options);
+  const Experiment experiment = experiment_of(options);
+  if (options.sweep) {
+    run_sweep(robot, experiment, options.json);
+  } else if (options.fault) {
+    run_one(robot, experiment, options);
+  } else {
+    run_all(robot, experiment, options);
+  }
+}
+
+// As the user would type it again; the page shows it.
+std::string command_line_of(const CLI::App& verb) {
+  std::string line = "offnominal paper";
+  for (const CLI::Option* option : verb.get_options()) {
+    if (option->count() == 0) continue;
+    line += " " + option->get_name();
+    if (option->get_type_size() > 0) line += " " + option->as<std::string>();
+  }
+  return line;
+}
+
+void add_options(CLI::App& verb, Options& options) {
+  verb.add_option("--fault", options.fault, "Run one fault; without it, everything")
+      ->check(CLI::IsMember({"none", "mass_loss", "nonlinear"}));
+  verb.add_option("--mass-loss", options.mass_loss,
+                  "Share of mass 1 that is lost in the end, default 0.75")
+      ->check(number_where([](double x) { return x >= 0.0 && x < 1.0; }, "0 to below 1"));
+  verb.add_option("--rho", options.rho,
+                  "How fast the fault evolves, 1/s, default 0.5; inf for an abrupt one")
+      ->check(number_where([](double x) { return x > 0.0; }, "above 0, or inf"));
+  verb.add_flag("--accommodate", options.accommodate, "Add the compensating torque, eq. (31)");
+  verb.add_option("--scalar", options.scalar, "Arithmetic of monitor and controller")
+      ->check(CLI::IsMember({"float", "double"}))
+      ->capture_default_str();
+  verb.add_option("--dead-zone", options.dead_zone, "Dead-zone of the learning law")
+      ->check(CLI::IsMember({"continuous", "discontinuous"}));
+  verb.add_option("--hidden", options.hidden, "Hidden units of the network, default 35")
+      ->check(number_where(
+          [](double x) { return x >= 1 && x <= paper::kMaxHiddenUnits && x == std::floor(x); },
+          "a whole number from 1 to " + std::to_string(paper::kMaxHiddenUnits)));
+  verb.add_option("--step", options.step, "Length of a control tick, s, default 0.001")
+      ->check(
+          number_where([](double x) { return x >= paper::kMinPeriod && x <= paper::kMaxPeriod; },
+                       fmt::format("{:g} to {:g} s", paper::kMinPeriod, paper::kMaxPeriod)));
+  verb.add_option("--seed", options.seed, "Seed of the network's first layer, default 1")
+      ->check(number_where(
+          [](double x) {
+            return x >= 0 && x <= std::numeric_limits<std::uint32_t>::max() && x == std::floor(x);
+          },
+          "a whole number from 0 to 4294967295"));
+  verb.add_option(
+      "--robot", options.robot,
+      "Robot file of the controller and the monitor; default: the paper's two-link arm");
+  verb.add_flag("--sweep", options.sweep, "Find the smallest mass loss that is detected");
+  verb.add_option("--report", options.report, "Write the figures as an HTML page");
+  verb.add_flag("--json", options.json, "Print one JSON object and nothing else");
+}
+
+}  // namespace
+
+void register_paper(CLI::App& app, ExitCode& exit_code) {
+  static_cast<void>(exit_code);
+  CLI::App* verb = app.add_subcommand(
+      "paper", "Run the paper's experiment: faults of a two-link arm, detected and accommodated");
+  const auto options = std::make_shared<Options>();
+  add_options(*verb, *options);
+  verb->callback([verb, options] {
+    options->command_line = command_line_of(*verb);
+    run(*options);
+  });
+}
+
+}  // namespace offnominal::tools

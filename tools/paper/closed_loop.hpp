@@ -1,0 +1,60 @@
+// Plant, controller and monitor in one loop, tick by tick.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <offnominal/control/computed_torque.hpp>
+#include <offnominal/monitor.hpp>
+
+#include "offnominal/sim/two_link_plant.hpp"
+
+namespace offnominal::tools::paper {
+
+template <typename Scalar>
+struct ControllerSetup {
+  MonitorConfig<2, Scalar> monitor;  // max_compensation zero: the monitor watches and does not act
+  ComputedTorqueGains<2, Scalar> gains;
+};
+
+struct LoopTiming {
+  double period_s = 0.001;
+  std::int64_t ticks = 0;
+  int plant_substeps = 1;
+};
+
+/// The loop at the end of a tick. The torque that was applied over the tick has already acted.
+struct TickRecord {
+  std::int64_t tick = 0;
+  double time_s = 0.0;
+  sim::JointState state;
+  Eigen::Vector2d q_desired = Eigen::Vector2d::Zero();
+  Eigen::Vector2d tau = Eigen::Vector2d::Zero();  // applied over the tick
+  Eigen::Vector2d psi = Eigen::Vector2d::Zero();  // true fault function at this state and torque
+  Eigen::Vector2d psi_hat = Eigen::Vector2d::Zero();
+  double error_norm = 0.0;
+  double threshold = 0.0;
+  double weight_norm = 0.0;
+  bool detected = false;  // latched
+};
+
+using TickObserver = std::function<void(const TickRecord&)>;
+
+/// Runs the loop from the start of the desired trajectory and shows every tick to `observe`. Throws
+/// InputError when the monitor refuses its settings or a sample. Capacity is the number of hidden
+/// units that are compiled in; instantiated for the capacities of with_capacity() and both scalars.
+template <int Capacity, typename Scalar>
+void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPlant& plant,
+                     const LoopTiming& timing, const TickObserver& observe);
+
+/// Calls `use` with the smallest capacity that holds `hidden_units`, which must be at most 256, as
+/// a std::integral_constant.
+template <typename Use>
+void with_capacity(int hidden_units, Use&& use) {
+  if (hidden_units <= 35) return use(std::integral_constant<int, 35>{});
+  if (hidden_units <= 64) return use(std::integral_constant<int, 64>{});
+  if (hidden_units <= 128) return use(std::integral_constant<int, 128>{});
+  return use(std::integral_constant<int, 256>{});
+}
+
+}  // namespace offnominal::tools::paper
