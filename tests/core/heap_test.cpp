@@ -1,0 +1,93 @@
+// Eigen asserts that it does not allocate while allocation is forbidden; the assertion has to be on
+// in every build, and to be a failed test instead of an abort.
+#include <stdexcept>
+
+#define EIGEN_RUNTIME_NO_MALLOC
+#define eigen_assert(condition)                                     \
+  do {                                                              \
+    if (!(condition)) throw std::logic_error("Eigen: " #condition); \
+  } while (false)
+
+#include <gtest/gtest.h>
+
+#include <offnominal/control/computed_torque.hpp>
+#include <offnominal/monitor.hpp>
+
+#include "core/model/random_chain.hpp"
+#include "core/print_status.hpp"
+#include "core/watched_arm.hpp"
+
+namespace offnominal::test {
+namespace {
+
+class HeapForbidden {
+ public:
+  HeapForbidden() { Eigen::internal::set_is_malloc_allowed(false); }
+  ~HeapForbidden() { Eigen::internal::set_is_malloc_allowed(true); }
+  HeapForbidden(const HeapForbidden&) = delete;
+  HeapForbidden& operator=(const HeapForbidden&) = delete;
+};
+
+TEST(Heap, TheForbiddanceIsNoticed) {
+  Eigen::VectorXd grown;
+  const HeapForbidden forbidden;
+  EXPECT_THROW(grown.resize(100), std::logic_error);
+}
+
+template <int N, int L, typename Scalar>
+MonitorConfig<N, Scalar> any_config(std::mt19937_64& generator) {
+  MonitorConfig<N, Scalar> config;
+  config.chain = random_chain<N, Scalar>(generator);
+  for (std::uint8_t joint = 0; joint < N; ++joint) {
+    EXPECT_TRUE(config.chain.effects.add({EffectKind::kViscousFriction, joint, {Scalar(0.5)}}));
+    EXPECT_TRUE(config.chain.effects.add(
+        {EffectKind::kStribeckFriction, joint, {Scalar(0.5), Scalar(0.1), Scalar(0.01)}}));
+  }
+  config.estimator.hidden_units = L;
+  config.bound.kind = BoundKind::kScaledNorm;
+  config.bound.offset = Scalar(0.01);
+  config.bound.matrix.fill(Scalar(0.01));
+  config.max_compensation.fill(Scalar(10));
+  return config;
+}
+
+// A thousand ticks with learning and projection, and a controller beside them.
+template <int N, int L, typename Scalar>
+void expect_no_heap(std::mt19937_64& generator) {
+  using Watch = Monitor<N, L, Scalar>;
+  MonitorConfig<N, Scalar> config = any_config<N, L, Scalar>(generator);
+  config.estimator.weight_radius = 4;
+  Watch monitor;
+  typename Watch::State state;
+  typename Watch::Output output;
+  JointSample<N, Scalar> sample;
+  const ComputedTorqueGains<N, Scalar> gains{};
+  const Reference<N, Scalar> reference;
+  int learnt = 0;
+  {
+    const HeapForbidden forbidden;
+    ASSERT_EQ(Watch::create(config, monitor), Status::kOk);
+    ASSERT_EQ(monitor.reset(sample, state), Status::kOk);
+    for (int tick = 0; tick < 1000; ++tick) {
+      sample.q += Scalar(0.001) * sample.dq;
+      sample.dq = random_vector<N, Scalar>(generator, 1.0);
+      sample.tau = computed_torque(monitor.model(), gains, reference, sample.q, sample.dq,
+                                   static_cast<Scalar>(tick) * Scalar(0.001));
+      ASSERT_EQ(monitor.step(sample, state, output), Status::kOk);
+      learnt += output.detector.level ? 1 : 0;
+    }
+  }
+  EXPECT_GT(learnt, 100);
+}
+
+TEST(Heap, IsNotUsedByATickOfAnyShape) {
+  std::mt19937_64 generator = seeded_generator();
+  expect_no_heap<1, 1, float>(generator);
+  expect_no_heap<2, 35, float>(generator);
+  expect_no_heap<2, 35, double>(generator);
+  expect_no_heap<6, 48, float>(generator);
+  expect_no_heap<7, 64, double>(generator);
+}
+
+}  // namespace
+}  // namespace offnominal::test

@@ -1,0 +1,95 @@
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "heap_counter.hpp"
+#include "whole_core.hpp"
+
+// Drives the very object that the symbol gates judge, with malloc and its kin replaced by counters.
+
+namespace offnominal::gates {
+namespace {
+
+constexpr std::uint32_t kTicks = 1'000'000;
+constexpr std::uint32_t kHealthyTicks = 1000;
+
+template <int Joints, int Hidden, typename Type>
+struct Size {
+  static constexpr int kJoints = Joints;
+  static constexpr int kHidden = Hidden;
+  using Scalar = Type;
+};
+
+template <int N, typename Scalar>
+MonitorConfig<N, Scalar> config() {
+  MonitorConfig<N, Scalar> config;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+    auto& joint = config.chain.joints[i];
+    // One prismatic joint, then axes in turn.
+    joint.type = i == 1 ? JointType::kPrismatic : JointType::kRevolute;
+    joint.axis = {0, 0, 0};
+    joint.axis[i % 3] = 1;
+    joint.origin_m = {Scalar(0.3), 0, Scalar(0.1)};
+    joint.centre_of_mass_m = {Scalar(0.15), Scalar(0.05), 0};
+    joint.inertia_kg_m2 = {Scalar(0.01), Scalar(0.02), Scalar(0.02), 0, 0, 0};
+  }
+  for (const EffectInfo& info : kAllEffectInfos) {
+    Effect<Scalar> effect;
+    effect.kind = info.kind;
+    for (std::size_t k = 0; k < info.parameters.size(); ++k) {
+      effect.parameters[k] = Scalar(0.05);
+    }
+    if (!config.chain.effects.add(effect)) throw std::length_error("effects do not fit");
+  }
+  config.bound.kind = BoundKind::kScaledNorm;
+  config.bound.matrix[0] = 1;
+  config.max_compensation.fill(50);
+  return config;
+}
+
+template <typename S>
+class HeapCalls : public ::testing::Test {};
+
+using Sizes = ::testing::Types<Size<2, 35, float>, Size<2, 35, double>, Size<6, 35, float>,
+                               Size<7, 64, float>>;
+TYPED_TEST_SUITE(HeapCalls, Sizes);
+
+TYPED_TEST(HeapCalls, AreNoneInAMillionTicksHealthyAndAdapting) {
+  using Scalar = typename TypeParam::Scalar;
+  constexpr int kJoints = TypeParam::kJoints;
+  constexpr int kHidden = TypeParam::kHidden;
+  const auto controller = std::make_unique<Controller<kJoints, kHidden, Scalar>>();
+  const MonitorConfig<kJoints, Scalar> settings = config<kJoints, Scalar>();
+  ComputedTorqueGains<kJoints, Scalar> gains;
+  gains.kp.fill(100);
+  gains.kd.fill(20);
+  const Vector<kJoints, Scalar> q = Vector<kJoints, Scalar>::Constant(Scalar(0.1));
+
+  const std::uint64_t before = bench::heap_calls();
+  const Status started = start(settings, gains, *controller);
+  const Status healthy = run(*controller, kHealthyTicks, Scalar(0));
+  const bool latched_while_healthy = controller->output.detector.latched;
+  const Status adapting = run(*controller, kTicks - kHealthyTicks, Scalar(40));
+  const double rest = call_the_rest(*controller, q);
+  const std::uint64_t calls = bench::heap_calls() - before;
+
+  EXPECT_EQ(calls, 0u);
+  EXPECT_STREQ(name_of(started), "Ok");
+  EXPECT_STREQ(name_of(healthy), "Ok");
+  EXPECT_FALSE(latched_while_healthy);
+  EXPECT_STREQ(name_of(adapting), "Ok");
+  EXPECT_TRUE(controller->output.detector.latched);
+  EXPECT_GT(controller->output.psi_hat.norm(), Scalar(0));
+  EXPECT_EQ(controller->state.tick, kTicks);
+  EXPECT_TRUE(std::isfinite(rest));
+}
+
+TEST(HeapCounter, SeesAnAllocation) {
+  const std::uint64_t before = bench::heap_calls();
+  const auto block = std::make_unique<int[]>(1000);
+  EXPECT_NE(block.get(), nullptr);
+  EXPECT_GT(bench::heap_calls(), before);
+}
+
+}  // namespace
+}  // namespace offnominal::gates

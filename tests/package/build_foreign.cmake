@@ -1,0 +1,44 @@
+# cmake -DWAY=find_package|add_subdirectory -DSOURCE=<checkout> -DWORK=<folder, wiped> ...
+#
+# Installs the core into an empty prefix as a firmware project would (no tools, no tests), then
+# builds and runs tests/package/foreign against it; or adds the checkout to it as a subfolder.
+cmake_minimum_required(VERSION 3.22)
+
+function(run)
+  execute_process(COMMAND ${ARGV} RESULT_VARIABLE outcome OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  if(NOT outcome EQUAL 0)
+    string(REPLACE ";" " " command "${ARGV}")
+    message(FATAL_ERROR "${command}\n${text}")
+  endif()
+  set(output "${text}" PARENT_SCOPE)
+endfunction()
+
+set(common -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${COMPILER}" -DCMAKE_BUILD_TYPE=Release)
+file(REMOVE_RECURSE "${WORK}")
+
+if(WAY STREQUAL "find_package")
+  run("${CMAKE_COMMAND}" -S "${SOURCE}" -B "${WORK}/core" ${common} -DOFFNOMINAL_BUILD_TOOLS=OFF
+      -DOFFNOMINAL_BUILD_TESTS=OFF -DOFFNOMINAL_BUILD_BENCH=OFF)
+  run("${CMAKE_COMMAND}" --build "${WORK}/core")
+  run("${CMAKE_COMMAND}" --install "${WORK}/core" --prefix "${WORK}/prefix")
+  set(where "-DCMAKE_PREFIX_PATH=${WORK}/prefix")
+else()
+  set(where "-DOFFNOMINAL_FOLDER=${SOURCE}")
+endif()
+
+run("${CMAKE_COMMAND}" -S "${SOURCE}/tests/package/foreign" -B "${WORK}/foreign" ${common} ${where})
+run("${CMAKE_COMMAND}" --build "${WORK}/foreign")
+run("${WORK}/foreign/firmware")
+message(STATUS "${output}")
+if(NOT output MATCHES "offnominal ${VERSION}: fault after")
+  message(FATAL_ERROR "expected the words `offnominal ${VERSION}: fault after`")
+endif()
+
+# The package must have been found where it was put, not somewhere on the machine.
+if(WAY STREQUAL "find_package")
+  file(STRINGS "${WORK}/foreign/CMakeCache.txt" found REGEX "^offnominal_DIR:")
+  string(FIND "${found}" "${WORK}/prefix/" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "found another offnominal: ${found}")
+  endif()
+endif()

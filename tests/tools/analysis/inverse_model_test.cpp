@@ -1,0 +1,105 @@
+#include "analysis/inverse_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "analysis/measurement.hpp"
+#include "analysis/unknown.hpp"
+#include "recorded_arm.hpp"
+#include "support/seed.hpp"
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using offnominal::EffectInfo;
+using offnominal::kAllEffectInfos;
+using offnominal::ParameterInfo;
+using offnominal::test::arm_description;
+using offnominal::test::arm_motion;
+using offnominal::test::effect_of;
+using offnominal::test::record_arm;
+using namespace offnominal::tools;
+
+// The arm's motion without any filter.
+Motion exact_motion(Index samples) {
+  Motion motion{VectorXd(samples), MatrixXd(samples, 2), MatrixXd(samples, 2),
+                MatrixXd(samples, 2)};
+  for (Index i = 0; i < samples; ++i) {
+    const auto at = arm_motion(0.05 * static_cast<double>(i), 1);
+    motion.t_s[i] = at.t_s;
+    motion.q.row(i) = at.q;
+    motion.dq.row(i) = at.dq;
+    motion.ddq.row(i) = at.ddq;
+  }
+  return motion;
+}
+
+TEST(InverseModel, EqualsTheClosedFormArm) {
+  const Motion motion = exact_motion(200);
+  const MatrixXd torque = model_torque(arm_description(), motion);
+  const offnominal::sim::TwoLinkParameters arm;
+  for (Index i = 0; i < 200; ++i) {
+    const Eigen::Vector2d q = motion.q.row(i);
+    const Eigen::Vector2d dq = motion.dq.row(i);
+    const Eigen::Vector2d ddq = motion.ddq.row(i);
+    const Eigen::Vector2d expected = offnominal::sim::mass_matrix(arm, q) * ddq +
+                                     offnominal::sim::velocity_torque(arm, {q, dq}) +
+                                     offnominal::sim::gravity_torque(arm, q);
+    EXPECT_LT((torque.row(i).transpose() - expected).norm(), 1e-11);
+  }
+}
+
+TEST(InverseModel, LinksAddUpToTheRigidBodyTorque) {
+  const Motion motion = exact_motion(50);
+  const RobotDescription robot = arm_description();
+  const MatrixXd sum = link_torque(robot, 0, motion) + link_torque(robot, 1, motion);
+  EXPECT_LT((sum - model_torque(robot, motion)).cwiseAbs().maxCoeff(), 1e-11);
+}
+
+// For every effect there is: torque with it = torque without it + sum of parameter * regressor.
+TEST(InverseModel, EveryEffectIsLinearInItsRegressors) {
+  auto generator = offnominal::test::seeded_generator();
+  std::uniform_real_distribution<double> number(0.1, 2);
+  const Motion motion = exact_motion(60);
+  for (const EffectInfo& info : kAllEffectInfos) {
+    for (const int joint : {0, 1}) {
+      RobotDescription robot = arm_description();
+      robot.effects.push_back(effect_of(info.kind, joint, {}));
+      auto& parameters = robot.effects[0].parameters;
+      for (std::size_t i = 0; i < info.parameters.size(); ++i) parameters[i] = number(generator);
+      MatrixXd expected = model_torque(arm_description(), motion);
+      for (const Unknown& unknown : unknowns_of_effect(robot, 0, true)) {
+        for (const JointColumn& column : regressor(robot, unknown, motion)) {
+          expected.col(static_cast<Index>(column.joint)) += unknown.start * column.values;
+        }
+      }
+      EXPECT_LT((model_torque(robot, motion) - expected).cwiseAbs().maxCoeff(), 1e-10)
+          << info.name << " on joint " << joint + 1;
+    }
+  }
+}
+
+TEST(InverseModel, ScaledLinkIsItsRegressorMore) {
+  const Motion motion = exact_motion(60);
+  const RobotDescription robot = arm_description();
+  const auto scales = link_scales(robot, 0.05);
+  const RobotDescription changed = with_values(robot, scales, Eigen::Vector2d(0.2, -0.1));
+  MatrixXd expected = model_torque(robot, motion);
+  for (std::size_t link = 0; link < 2; ++link) {
+    for (const JointColumn& column : regressor(robot, scales[link], motion)) {
+      expected.col(static_cast<Index>(column.joint)) += (link == 0 ? 0.2 : -0.1) * column.values;
+    }
+  }
+  EXPECT_LT((model_torque(changed, motion) - expected).cwiseAbs().maxCoeff(), 1e-11);
+}
+
+TEST(InverseModel, NumberOfJointsMustAgree) {
+  RobotDescription robot = arm_description();
+  robot.joints.pop_back();
+  EXPECT_THROW(model_torque(robot, exact_motion(5)), std::invalid_argument);
+}
+
+}  // namespace

@@ -1,0 +1,39 @@
+#include "common/nearest.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace offnominal::tools {
+namespace {
+
+const std::vector<std::string> kWords{"mass_kg", "centre_of_mass_m", "inertia_kg_m2"};
+
+TEST(Nearest, FindsTheWordThatWasMeant) {
+  EXPECT_EQ(nearest("mas_kg", kWords), "mass_kg");
+  EXPECT_EQ(nearest("MASS_KG", kWords), "mass_kg");
+  EXPECT_EQ(nearest("center_of_mass_m", kWords), "centre_of_mass_m");
+  EXPECT_EQ(nearest("inertia", kWords), "");
+}
+
+TEST(Nearest, TakesTheNearerOfTwo) {
+  const std::vector<std::string> words{"value", "values"};
+  EXPECT_EQ(nearest("values", words), "values");
+  EXPECT_EQ(nearest("valu", words), "value");
+}
+
+TEST(Nearest, GuessesNothingFarFetched) {
+  EXPECT_EQ(nearest("colour", kWords), "");
+  EXPECT_EQ(nearest("x", {}), "");
+  const std::vector<std::string> short_words{"kp", "type"};
+  EXPECT_EQ(nearest("xy", short_words), "");
+  EXPECT_EQ(nearest("tpye", short_words), "type");
+}
+
+TEST(ListOf, SeparatesWithCommas) {
+  EXPECT_EQ(list_of(kWords), "mass_kg, centre_of_mass_m, inertia_kg_m2");
+  EXPECT_EQ(list_of({}), "");
+}
+
+}  // namespace
+}  // namespace offnominal::tools

@@ -1,0 +1,33 @@
+#include "common/number.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "support/seed.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+TEST(Shortest, IsShort) {
+  EXPECT_EQ(shortest(0.1), "0.1");
+  EXPECT_EQ(shortest(-3), "-3");
+  EXPECT_EQ(shortest(-0.0), "-0");
+  EXPECT_EQ(shortest(1e22), "1e+22");
+  EXPECT_EQ(shortest(std::numeric_limits<double>::quiet_NaN()), "nan");
+}
+
+TEST(Shortest, IsReadBackToTheBit) {
+  auto generator = test::seeded_generator();
+  for (int i = 0; i < 10000; ++i) {
+    const double value = std::bit_cast<double>(static_cast<std::uint64_t>(generator()));
+    if (!std::isfinite(value)) continue;
+    ASSERT_EQ(std::strtod(shortest(value).c_str(), nullptr), value) << shortest(value);
+  }
+}
+
+}  // namespace
+}  // namespace offnominal::tools

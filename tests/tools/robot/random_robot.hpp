@@ -1,0 +1,183 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "robot/read_joint.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::test {
+
+/// Robots of every shape that a robot file can hold, drawn from one generator.
+class RandomRobot {
+ public:
+  explicit RandomRobot(std::mt19937_64& generator) : generator_(generator) {}
+
+  tools::RobotDescription draw() {
+    tools::RobotDescription robot;
+    robot.name = word();
+    robot.source = any_text();
+    robot.gravity_m_s2 = {number(), number(), number()};
+    const int joints = whole(1, tools::kMaxJoints);
+    for (int i = 0; i < joints; ++i) robot.joints.push_back(joint(i));
+    const int effects = whole(0, kEffectsPerJoint * joints);
+    for (int i = 0; i < effects; ++i) robot.effects.push_back(effect(robot));
+    robot.estimator = estimator();
+    if (coin()) robot.bound = bound(joints);
+    if (coin()) robot.channels = channels(joints);
+    return robot;
+  }
+
+ private:
+  bool coin() { return whole(0, 1) == 1; }
+  int whole(int min, int max) { return std::uniform_int_distribution<int>(min, max)(generator_); }
+  double uniform() { return std::uniform_real_distribution<double>(-1, 1)(generator_); }
+
+  // Of any size, whole numbers and both zeros among them.
+  double number() {
+    switch (whole(0, 4)) {
+      case 0:
+        return coin() ? 0.0 : -0.0;
+      case 1:
+        return whole(-1000, 1000);
+      default:
+        return std::ldexp(uniform(), whole(-60, 60));
+    }
+  }
+  double positive() { return std::ldexp(1 + std::fabs(uniform()), whole(-28, 30)); }
+  std::string word() { return "w" + std::to_string(whole(0, 1 << 30)); }
+  std::string any_text() {
+    const std::string parts[]{"a",      " ", "\"", "\\", "\n",   "\t",
+                              "\"\"\"", "#", "é",  "\r", "\x1b", "'"};
+    std::string text;
+    for (int i = whole(0, 12); i > 0; --i) text += parts[whole(0, 11)];
+    return text;
+  }
+
+  tools::RobotJoint joint(int index) {
+    tools::RobotJoint result;
+    result.name = word() + std::to_string(index);
+    result.source = any_text();
+    Joint<double>& joint = result.joint;
+    joint.type = coin() ? JointType::kRevolute : JointType::kPrismatic;
+    const Eigen::Vector3d axis = Eigen::Vector3d(uniform(), uniform(), uniform() + 2).normalized();
+    joint.axis = {axis[0], axis[1], axis[2]};
+    joint.origin_m = {number(), number(), number()};
+    const Eigen::Matrix3d turn = Eigen::Quaterniond(uniform(), uniform(), uniform(), 1 + uniform())
+                                     .normalized()
+                                     .toRotationMatrix();
+    if (coin()) {
+      for (int i = 0; i < 9; ++i) joint.rotation[static_cast<std::size_t>(i)] = turn(i / 3, i % 3);
+    }
+    joint.mass_kg = positive();
+    joint.centre_of_mass_m = {number(), number(), number()};
+    if (coin()) joint.inertia_kg_m2 = inertia(turn);
+    if (coin()) joint.min_position = -positive();
+    if (coin()) joint.max_position = positive();
+    if (coin()) joint.max_velocity = positive();
+    if (coin()) joint.max_torque = positive();
+    if (coin()) result.encoder.counts_per_unit = positive();
+    if (coin() && joint.type == JointType::kRevolute) {
+      result.encoder.counts_per_unit = tools::counts_per_rad(whole(1, tools::kMaxEncoderBits));
+    }
+    if (coin()) result.kp = positive();
+    if (coin()) result.kd = positive();
+    return result;
+  }
+
+  // Of a solid box, turned.
+  std::array<double, 6> inertia(const Eigen::Matrix3d& turn) {
+    const Eigen::Vector3d squares(positive(), positive(), positive());
+    const Eigen::Vector3d moments = squares.sum() * Eigen::Vector3d::Ones() - squares;
+    const Eigen::Matrix3d tensor = turn * moments.asDiagonal() * turn.transpose();
+    return {tensor(0, 0), tensor(1, 1), tensor(2, 2), tensor(0, 1), tensor(0, 2), tensor(1, 2)};
+  }
+
+  tools::RobotEffect effect(const tools::RobotDescription& robot) {
+    tools::RobotEffect result;
+    const EffectInfo& info = kAllEffectInfos[static_cast<std::size_t>(
+        whole(0, static_cast<int>(kAllEffectInfos.size()) - 1))];
+    result.kind = info.kind;
+    result.joint = static_cast<std::uint8_t>(whole(0, robot.joint_count() - 1));
+    for (std::size_t i = 0; i < info.parameters.size(); ++i) {
+      const double value = number();
+      result.parameters[i] = value >= info.parameters[i].min ? value : positive();
+    }
+    result.fitted = coin();
+    result.source = any_text();
+    return result;
+  }
+
+  tools::EstimatorSettings estimator() {
+    tools::EstimatorSettings settings;
+    settings.period_s = positive();
+    settings.alpha_per_s = 0.9 / settings.period_s;
+    settings.hidden_units = whole(1, tools::kMaxHiddenUnits);
+    settings.learning_rate = coin() ? positive() : 0.0;
+    settings.weight_radius = positive();
+    settings.initial_weight_range = settings.weight_radius / 100;
+    settings.seed = static_cast<std::uint32_t>(generator_());
+    settings.dead_zone =
+        coin() ? tools::DeadZoneChoice::kContinuous : tools::DeadZoneChoice::kDiscontinuous;
+    settings.source = any_text();
+    return settings;
+  }
+
+  tools::BoundSettings bound(int joints) {
+    tools::BoundSettings result;
+    result.source = any_text();
+    if (coin()) result.velocity_error = positive();
+    result.kind = static_cast<tools::BoundSettings::Kind>(whole(0, 2));
+    if (result.kind == tools::BoundSettings::Kind::kConstant) result.constant.value = positive();
+    if (result.kind == tools::BoundSettings::Kind::kScaledNorm) {
+      result.scaled_norm.scale = positive();
+      result.scaled_norm.offset = coin() ? positive() : 0.0;
+      for (int row = whole(1, joints); row > 0; --row) {
+        auto& numbers = result.scaled_norm.matrix.emplace_back();
+        for (int i = 0; i < joints; ++i) numbers.push_back(number());
+      }
+    }
+    if (result.kind == tools::BoundSettings::Kind::kTable) {
+      result.table.variable = static_cast<tools::BoundVariable>(whole(0, 2));
+      result.table.joint = whole(0, joints - 1);
+      double at = number();
+      for (int i = whole(1, 16); i > 0; --i) {
+        result.table.at.push_back(at);
+        result.table.value.push_back(positive());
+        at = std::nextafter(at + positive(), std::numeric_limits<double>::max());
+      }
+    }
+    return result;
+  }
+
+  tools::Channel channel() {
+    tools::Channel result;
+    result.source = "c" + any_text();
+    if (coin()) {
+      result.scale = positive();
+      result.unit = "u" + any_text();
+    }
+    if (coin()) result.offset = number();
+    if (coin()) result.scale_source = "g" + any_text();
+    return result;
+  }
+
+  tools::ChannelMap channels(int joints) {
+    tools::ChannelMap map;
+    map.time = channel();
+    for (int i = 0; i < joints; ++i) {
+      map.position.push_back(channel());
+      map.velocity.push_back(coin() ? std::optional(channel()) : std::nullopt);
+      map.torque.push_back(channel());
+    }
+    for (int i = whole(0, 3); i > 0; --i) map.extra[word() + any_text()] = channel();
+    return map;
+  }
+
+  std::mt19937_64& generator_;
+};
+
+}  // namespace offnominal::test

@@ -1,0 +1,66 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "common/error.hpp"
+#include "expect_same_robot.hpp"
+#include "random_robot.hpp"
+#include "robot/robot_file.hpp"
+#include "sample_robot.hpp"
+#include "support/seed.hpp"
+#include "tools/support/temporary_folder.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(RobotText, IsReadBackAsTheSameRobotToTheBit) {
+  auto generator = test::seeded_generator();
+  test::RandomRobot random(generator);
+  for (int i = 0; i < 300 && !testing::Test::HasFailure(); ++i) {
+    const RobotDescription robot = random.draw();
+    const std::string text = robot_text(robot);
+    SCOPED_TRACE(text);
+    test::expect_same(robot, parse_robot(text, "written.toml"));
+  }
+}
+
+TEST(RobotText, KeepsWhatWasReadFromAFile) {
+  const RobotDescription robot = parse_robot(test::kSampleRobot, "sample.toml");
+  const std::string text = robot_text(robot);
+  test::expect_same(robot, parse_robot(text, "written.toml"));
+  EXPECT_THAT(text, HasSubstr("bits = 17"));
+  EXPECT_THAT(text, HasSubstr("fitted = true"));
+  EXPECT_THAT(text, HasSubstr("source = \"add, log A\""));
+}
+
+TEST(WriteRobotFile, WritesANewFileAndNeverOverAnother) {
+  const test::TemporaryFolder folder;
+  RobotDescription robot = parse_robot(test::kSampleRobot, "sample.toml");
+  write_robot_file(robot, folder / "r.toml");
+  test::expect_same(robot, read_robot_file(folder / "r.toml"));
+  robot.name = "another";
+  EXPECT_THROW(write_robot_file(robot, folder / "r.toml"), InputError);
+  EXPECT_EQ(read_robot_file(folder / "r.toml").name, "sample");
+  write_robot_file(robot, folder / "r.toml", Existing::kReplace);
+  EXPECT_EQ(read_robot_file(folder / "r.toml").name, "another");
+}
+
+TEST(WriteRobotFile, WritesNoRobotThatCouldNotBeReadAgain) {
+  const test::TemporaryFolder folder;
+  RobotDescription robot = parse_robot(test::kSampleRobot, "sample.toml");
+  robot.effects[1].parameters[0] = std::numeric_limits<double>::quiet_NaN();
+  try {
+    write_robot_file(robot, folder / "r.toml");
+    ADD_FAILURE() << "written";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("effect[2].coefficient: found nan"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "r.toml"));
+}
+
+}  // namespace
+}  // namespace offnominal::tools
