@@ -38,7 +38,8 @@ template <int N, int L, typename Scalar>
 MonitorConfig<N, Scalar> any_config(std::mt19937_64& generator) {
   MonitorConfig<N, Scalar> config;
   config.chain = random_chain<N, Scalar>(generator);
-  for (std::uint8_t joint = 0; joint < N; ++joint) {
+  for (int i = 0; i < N; ++i) {
+    const auto joint = static_cast<std::uint8_t>(i);
     EXPECT_TRUE(config.chain.effects.add({EffectKind::kViscousFriction, joint, {Scalar(0.5)}}));
     EXPECT_TRUE(config.chain.effects.add(
         {EffectKind::kStribeckFriction, joint, {Scalar(0.5), Scalar(0.1), Scalar(0.01)}}));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace offnominal::sim {
@@ -63,7 +64,7 @@ TEST(Fault, RefusesWrongFields) {
   EXPECT_THROW(validate(mass_loss(0.5, 0.0)), std::invalid_argument);
   EXPECT_THROW(validate(mass_loss(0.5, std::nan(""))), std::invalid_argument);
   Fault never = mass_loss(0.5);
-  never.time_s = INFINITY;
+  never.time_s = std::numeric_limits<double>::infinity();
   EXPECT_THROW(validate(never), std::invalid_argument);
   EXPECT_NO_THROW(validate(mass_loss(0.0, kAbrupt)));
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <stdexcept>
 
@@ -130,7 +131,8 @@ TEST(TwoLinkPlant, RefusesWhatIsNotAPlant) {
   EXPECT_THROW(make([](auto& a) { a.mass1_kg = 0.0; }), std::invalid_argument);
   EXPECT_THROW(make([](auto& a) { a.mass2_kg = -1.0; }), std::invalid_argument);
   EXPECT_THROW(make([](auto& a) { a.length1_m = std::nan(""); }), std::invalid_argument);
-  EXPECT_THROW(make([](auto& a) { a.gravity_m_s2 = INFINITY; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& a) { a.gravity_m_s2 = std::numeric_limits<double>::infinity(); }),
+               std::invalid_argument);
   EXPECT_THROW(TwoLinkPlant({}, {}, nullptr), std::invalid_argument);
   const TwoLinkPlant plant({}, {}, no_uncertainty());
   EXPECT_THROW(static_cast<void>(plant.step(0.0, {}, {}, 0.0)), std::invalid_argument);

@@ -66,8 +66,8 @@ PaperRuns run_everything(const RobotDescription& robot, const Experiment& base,
 
 std::vector<Comparison> compare_with_paper(const PaperRuns& runs) {
   const auto& [healthy, mass, nonlinear, mass_acc, nonlinear_acc, sweep] = runs;
-  const auto largest = [&](auto member) {
-    return std::max({healthy.*member, mass.*member, nonlinear.*member});
+  const auto largest = [&runs](auto member) {
+    return std::max({runs.healthy.*member, runs.mass_loss.*member, runs.nonlinear.*member});
   };
   const double psi_hat = largest(&ExperimentResult::max_abs_psi_hat_before_fault);
   const double ratio = largest(&ExperimentResult::max_error_to_threshold_before_fault);

@@ -61,7 +61,9 @@ std::string inertia_fault(const std::array<double, 6>& inertia_kg_m2) {
   const Eigen::Vector3d moments =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
   // Six digits are enough to see what is wrong.
-  const auto rounded = [](double x) { return shortest(static_cast<float>(x)); };
+  const auto rounded = [](double x) {
+    return shortest(static_cast<double>(static_cast<float>(x)));
+  };
   const std::string list =
       rounded(moments[0]) + ", " + rounded(moments[1]) + ", " + rounded(moments[2]);
   if (moments[0] < moments[2] * kTolerance) {

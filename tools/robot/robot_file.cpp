@@ -78,7 +78,7 @@ void check_initial_weights(const TomlTable& root, const RobotDescription& robot)
   });
   if (norm < settings.weight_radius) return;
   root.refuse("estimator",
-              "initial weights of norm " + shortest(static_cast<float>(norm)) +
+              "initial weights of norm " + shortest(static_cast<double>(static_cast<float>(norm))) +
                   " with a weight_radius of " + shortest(settings.weight_radius),
               "initial weights inside the radius",
               "lower estimator.initial_weight_range, or raise estimator.weight_radius");

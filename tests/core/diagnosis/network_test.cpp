@@ -164,16 +164,16 @@ TEST(Network, ThePlainGradientAgreesWithFiniteDifferences) {
 // against finite differences of its own network.
 TEST(Network, TheProductLearnsAlongTheGradientOfItsOwnOutput) {
   std::mt19937_64 generator = seeded_generator();
-  constexpr int kHidden = 5;
+  constexpr int kUnits = 5;
   EstimatorConfig<double> config;
   config.period_s = 1e-6;
-  config.hidden_units = kHidden;
+  config.hidden_units = kUnits;
   config.dead_zone = DeadZone::kDiscontinuous;
   PlainSample sample{random_vector<2, double>(generator, 1), random_vector<2, double>(generator, 1),
                      random_vector<2, double>(generator, 1), Eigen::Vector2d::Zero(), 0.1};
-  EstimatorState<2, kHidden, double> state;
+  EstimatorState<2, kUnits, double> state;
   ASSERT_EQ(reset_at(config, sample, state), Status::kOk);
-  const auto weights = random_weights<2, kHidden>(generator);
+  const auto weights = random_weights<2, kUnits>(generator);
   set_weights(weights, state);
   const Eigen::Vector2d error(2, -1.5);
   state.omega -= error;
@@ -189,7 +189,7 @@ TEST(Network, TheProductLearnsAlongTheGradientOfItsOwnOutput) {
     return error.dot(network_output(plus, z) - network_output(minus, z)) / (2 * h);
   };
   const double scale = config.period_s * config.learning_rate;
-  for (Eigen::Index unit = 0; unit < kHidden; ++unit) {
+  for (Eigen::Index unit = 0; unit < kUnits; ++unit) {
     for (Eigen::Index input = 0; input < 7; ++input) {
       const double expected = slope([&](auto& w, double h) { w.w1(unit, input) += h; });
       const double moved = state.weights.w1(unit, input) - weights.w1(unit, input);

@@ -12,11 +12,12 @@ namespace offnominal::test {
 namespace {
 
 template <typename Scalar>
-constexpr Scalar kNaN = std::numeric_limits<Scalar>::quiet_NaN();
+constexpr Scalar kNotANumber = std::numeric_limits<Scalar>::quiet_NaN();
 
 template <int N, typename Scalar>
 void add_some_friction(Chain<N, Scalar>& chain) {
-  for (std::uint8_t joint = 0; joint < N; ++joint) {
+  for (int i = 0; i < N; ++i) {
+    const auto joint = static_cast<std::uint8_t>(i);
     ASSERT_TRUE(chain.effects.add({EffectKind::kViscousFriction, joint, {Scalar(0.7)}}));
     ASSERT_TRUE(
         chain.effects.add({EffectKind::kCoulombFriction, joint, {Scalar(0.4), Scalar(0.1)}}));
@@ -95,7 +96,7 @@ void expect_every_nan_refused(std::mt19937_64& generator) {
   const auto model = make_model(chain);
   using Vec = Vector<2, Scalar>;
   const Vec good = Vec::Constant(Scalar(0.3));
-  for (const Scalar bad : {kNaN<Scalar>, std::numeric_limits<Scalar>::infinity()}) {
+  for (const Scalar bad : {kNotANumber<Scalar>, std::numeric_limits<Scalar>::infinity()}) {
     for (Eigen::Index joint = 0; joint < 2; ++joint) {
       Vec one_bad = good;
       one_bad[joint] = bad;

@@ -22,7 +22,9 @@ void expect_symmetric_positive_definite(std::mt19937_64& generator, int chains) 
     const auto q = random_vector<N, Scalar>(generator, std::numbers::pi);
     const Matrix<N, N, Scalar> m = mass_matrix(model, q);
     EXPECT_EQ(m, m.transpose());
-    const Eigen::SelfAdjointEigenSolver<Matrix<N, N, Scalar>> eigen(m, Eigen::EigenvaluesOnly);
+    // Of any size: the solver is compiled once, not for every number of joints.
+    using AnySize = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+    const Eigen::SelfAdjointEigenSolver<AnySize> eigen(AnySize(m), Eigen::EigenvaluesOnly);
     EXPECT_GT(eigen.eigenvalues().minCoeff(), Scalar(0));
   }
 }
@@ -44,7 +46,8 @@ double worst_column_against_newton_euler(std::mt19937_64& generator, int chains)
   for (int sample = 0; sample < chains; ++sample) {
     Chain<N, Scalar> chain = random_chain<N, Scalar>(generator);
     chain.gravity_m_s2 = {0, 0, 0};
-    for (std::uint8_t joint = 0; joint < N; ++joint) {
+    for (int i = 0; i < N; ++i) {
+      const auto joint = static_cast<std::uint8_t>(i);
       const auto inertia = static_cast<Scalar>(uniform(generator, 0, 2));
       EXPECT_TRUE(chain.effects.add({EffectKind::kRotorInertia, joint, {inertia}}));
     }

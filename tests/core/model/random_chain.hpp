@@ -104,8 +104,8 @@ Vector<N, Scalar> random_vector(std::mt19937_64& generator, double size) {
 template <typename Actual, typename Expected>
 double deviation(const Eigen::MatrixBase<Actual>& actual,
                  const Eigen::MatrixBase<Expected>& expected) {
-  const auto a = actual.template cast<double>();
-  const auto b = expected.template cast<double>();
+  const auto& a = actual.template cast<double>();
+  const auto& b = expected.template cast<double>();
   const double scale = std::max(1.0, b.cwiseAbs().maxCoeff());
   const double difference = (a - b).cwiseAbs().maxCoeff();
   // A NaN must not compare as "small".

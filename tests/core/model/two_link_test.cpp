@@ -51,8 +51,8 @@ Worst worst_against_closed_form(std::mt19937_64& generator) {
     const auto dq = random_vector<2, Scalar>(generator, 3.0);
     const auto ddq = random_vector<2, Scalar>(generator, 3.0);
     const auto tau = random_vector<2, Scalar>(generator, 10.0);
-    const Eigen::Vector2d q_exact = q.template cast<double>();
-    const Eigen::Vector2d dq_exact = dq.template cast<double>();
+    const Eigen::Vector2d& q_exact = q.template cast<double>();
+    const Eigen::Vector2d& dq_exact = dq.template cast<double>();
     ForwardDynamics<2, Scalar> forward;
     EXPECT_EQ(forward_dynamics(model, q, dq, tau, Scalar(0), forward), Status::kOk);
     const auto keep = [](double& largest, double value) { largest = std::max(largest, value); };
@@ -82,7 +82,7 @@ TEST(TwoLinkArm, AgreesWithItsClosedFormInDouble) {
 TEST(TwoLinkArm, AgreesWithItsClosedFormInFloat) {
   std::mt19937_64 generator = seeded_generator();
   const Worst worst = worst_against_closed_form<float>(generator);
-  const double rounding = std::numeric_limits<float>::epsilon();
+  const auto rounding = static_cast<double>(std::numeric_limits<float>::epsilon());
   EXPECT_LE(worst.inertia, 32 * rounding);
   EXPECT_LE(worst.bias, 32 * rounding);
   EXPECT_LE(worst.torque, 32 * rounding);

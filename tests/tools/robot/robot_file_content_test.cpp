@@ -10,10 +10,10 @@
 namespace offnominal::tools {
 namespace {
 
-RobotDescription sample() { return parse_robot(test::kSampleRobot, "sample.toml"); }
+RobotDescription content() { return parse_robot(test::kSampleRobot, "sample.toml"); }
 
 TEST(RobotFileContent, HoldsTheJoints) {
-  const RobotDescription robot = sample();
+  const RobotDescription robot = content();
   EXPECT_EQ(robot.name, "sample");
   EXPECT_EQ(robot.source, "made up");
   EXPECT_EQ(robot.gravity_m_s2, (std::array{0.0, 0.0, -9.81}));
@@ -44,7 +44,7 @@ TEST(RobotFileContent, HoldsTheJoints) {
 }
 
 TEST(RobotFileContent, HoldsTheEffectsInTheirOrder) {
-  const RobotDescription robot = sample();
+  const RobotDescription robot = content();
   ASSERT_EQ(robot.effects.size(), 2U);
   EXPECT_EQ(robot.effects[0].kind, EffectKind::kStribeckFriction);
   EXPECT_EQ(robot.effects[0].joint, 0);
@@ -58,7 +58,7 @@ TEST(RobotFileContent, HoldsTheEffectsInTheirOrder) {
 }
 
 TEST(RobotFileContent, HoldsEstimatorBoundAndChannels) {
-  const RobotDescription robot = sample();
+  const RobotDescription robot = content();
   EXPECT_EQ(robot.estimator.period_s, 0.002);
   EXPECT_EQ(robot.estimator.alpha_per_s, 20);
   EXPECT_EQ(robot.estimator.hidden_units, 12);
