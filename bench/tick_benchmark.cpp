@@ -42,6 +42,7 @@ MonitorConfig<kJoints, Scalar> paper_arm() {
   config.bound.kind = BoundKind::kScaledNorm;
   config.bound.scale = static_cast<Scalar>(4.4);
   config.bound.matrix = {2, -6, 0, 0};
+  config.torque_signal = TorqueSignal::kHeld;
   config.max_compensation = {50, 50};
   return config;
 }

@@ -110,6 +110,7 @@ template <int N, typename Scalar>
   config.chain = chain_of<N, Scalar>(robot);
   config.estimator = estimator_config_of<Scalar>(robot.estimator);
   config.bound = bound_of<N, Scalar>(*robot.bound);
+  config.torque_signal = robot.estimator.torque_signal;
   for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
     config.max_compensation[i] = config.chain.joints[i].max_torque;
   }

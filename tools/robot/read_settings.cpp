@@ -47,10 +47,11 @@ TableBoundSettings read_table_bound(const TomlTable& table, int joint_count) {
 }  // namespace
 
 const std::vector<std::string>& estimator_keys() {
-  static const std::vector<std::string> keys{
-      "period_s",      "alpha_per_s",   "hidden_units",
-      "learning_rate", "weight_radius", "initial_weight_range",
-      "seed",          "dead_zone",     "source"};
+  static const std::vector<std::string> keys{"period_s",      "alpha_per_s",
+                                             "hidden_units",  "learning_rate",
+                                             "weight_radius", "initial_weight_range",
+                                             "seed",          "dead_zone",
+                                             "torque_signal", "source"};
   return keys;
 }
 
@@ -93,6 +94,11 @@ EstimatorSettings read_estimator(const TomlTable& table) {
     settings.dead_zone = table.choice("dead_zone", {"continuous", "discontinuous"}) == 0
                              ? DeadZoneChoice::kContinuous
                              : DeadZoneChoice::kDiscontinuous;
+  }
+  if (table.has("torque_signal")) {
+    settings.torque_signal = table.choice("torque_signal", {"sampled", "held"}) == 0
+                                 ? TorqueSignal::kSampled
+                                 : TorqueSignal::kHeld;
   }
   settings.source = table.text_or_empty("source");
   return settings;

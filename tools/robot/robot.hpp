@@ -5,6 +5,7 @@
 #include <map>
 #include <offnominal/model/chain.hpp>
 #include <offnominal/model/effect_list.hpp>
+#include <offnominal/sample.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,7 @@ struct EstimatorSettings {
   double initial_weight_range = 0.1;  // W1(0) is uniform in [-range, range]
   std::uint32_t seed = 1;
   DeadZoneChoice dead_zone = DeadZoneChoice::kContinuous;
+  TorqueSignal torque_signal = TorqueSignal::kSampled;
   std::string source = {};  // where the numbers come from, free text; empty: not said
 };
 

@@ -159,6 +159,8 @@ void write_estimator(Writer& out, const EstimatorSettings& settings) {
   out.value(
       "dead_zone",
       quoted(settings.dead_zone == DeadZoneChoice::kContinuous ? "continuous" : "discontinuous"));
+  out.value("torque_signal",
+            quoted(settings.torque_signal == TorqueSignal::kSampled ? "sampled" : "held"));
   out.text_if_any("source", settings.source);
 }
 

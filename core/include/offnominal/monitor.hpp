@@ -22,6 +22,7 @@ struct MonitorConfig {
   Chain<N, Scalar> chain;
   EstimatorConfig<Scalar> estimator;
   UncertaintyBound<N, Scalar> bound;
+  TorqueSignal torque_signal = TorqueSignal::kSampled;
   // Largest compensating torque per joint, N m or N, >= 0. Zero: report, do not act.
   std::array<Scalar, static_cast<std::size_t>(N)> max_compensation{};
 };
@@ -44,6 +45,7 @@ struct MonitorState {
   bool initialised = false;
   std::uint32_t tick = 0;  // since reset()
   JointSample<N, Scalar> sample;
+  Matrix<N, N, Scalar> inertia_factor = Matrix<N, N, Scalar>::Zero();  // of M(sample.q), lower
   EstimatorState<N, L, Scalar> estimator;
   DetectorState<Scalar> detector;
 };
@@ -101,6 +103,7 @@ class Monitor {
     if (started != Status::kOk) return started;
     fresh.estimator.mu = velocity_allowance();
     fresh.sample = sample;
+    fresh.inertia_factor = nominal.factor;
     fresh.initialised = true;
     state = fresh;
     return Status::kOk;
@@ -119,11 +122,13 @@ class Monitor {
     if (status != Status::kOk) return status;
     const EstimatorInput<N, Scalar> input{network_input<N, Scalar>(sample.q, sample.dq, sample.tau),
                                           nominal.ddq, bound_at(sample)};
-    status = offnominal::step(config_.estimator, input, state.estimator);
+    status = offnominal::step(config_.estimator, begin_of_tick(sample.tau, state), input,
+                              state.estimator);
     if (status != Status::kOk) return status;
 
     ++state.tick;
     state.sample = sample;
+    state.inertia_factor = nominal.factor;
     output.time_s = end_s;
     output.error = state.estimator.error;
     output.error_norm = state.estimator.error.norm();
@@ -147,6 +152,18 @@ class Monitor {
   [[nodiscard]] Scalar bound_at(const Sample& sample) const {
     return evaluate(config_.bound, sample.q, sample.dq, sample.tau) +
            config_.estimator.alpha * velocity_allowance();
+  }
+
+  // A held torque jumps at the sample: f and the bound there are those of the new torque.
+  [[nodiscard]] TickBegin<N, Scalar> begin_of_tick(const Vector<N, Scalar>& tau,
+                                                   const State& state) const {
+    TickBegin<N, Scalar> begin{state.estimator.nominal_ddq, state.estimator.mu_bar};
+    if (config_.torque_signal == TorqueSignal::kSampled) return begin;
+    Vector<N, Scalar> jump = tau - state.sample.tau;
+    solve_in_place<N, Scalar>(state.inertia_factor, jump);
+    begin.nominal_ddq += jump;
+    begin.mu_bar = bound_at({state.sample.q, state.sample.dq, tau});
+    return begin;
   }
 
   Config config_{};

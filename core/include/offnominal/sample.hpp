@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <offnominal/model/chain.hpp>
 #include <offnominal/model/rigid_body_model.hpp>
 #include <offnominal/status.hpp>
@@ -17,6 +18,12 @@ struct JointSample {
   Vector<N, Scalar> q = Vector<N, Scalar>::Zero();    // rad or m
   Vector<N, Scalar> dq = Vector<N, Scalar>::Zero();   // rad/s or m/s
   Vector<N, Scalar> tau = Vector<N, Scalar>::Zero();  // really applied, N m or N, not commanded
+};
+
+// The torque between two samples, which the samples alone do not say.
+enum class TorqueSignal : std::uint8_t {
+  kSampled = 0,  // linear from one sample to the next
+  kHeld = 1,  // over the whole tick what the sample at its end says: a drive with zero-order hold
 };
 
 // kOk where every number is finite and inside the joint's limits; otherwise the first fault, with

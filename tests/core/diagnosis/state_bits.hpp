@@ -80,6 +80,7 @@ Bits bits_of(const MonitorState<N, L, Scalar>& state) {
   bits.add(state.sample.q);
   bits.add(state.sample.dq);
   bits.add(state.sample.tau);
+  bits.add(state.inertia_factor);
   add_bits(state.estimator, bits);
   add_bits(state.detector, bits);
   return bits;

@@ -124,6 +124,8 @@ TEST(MonitorConfigOf, IsAcceptedByTheCoreInBothScalars) {
   EXPECT_EQ(validate<35>(config), Status::kOk);
   EXPECT_EQ(config.max_compensation[0], 50);
   EXPECT_EQ((gains_of<2, double>(robot).kp[0]), 100);
+  EXPECT_EQ(config.torque_signal, TorqueSignal::kHeld);
+  EXPECT_EQ(EstimatorSettings{}.torque_signal, (MonitorConfig<2, float>{}.torque_signal));
 }
 
 TEST(MonitorConfigOf, NeedsABound) {

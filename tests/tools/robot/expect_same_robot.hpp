@@ -63,6 +63,7 @@ inline void expect_same(const tools::EstimatorSettings& a, const tools::Estimato
   expect_same(a.initial_weight_range, b.initial_weight_range);
   EXPECT_EQ(a.seed, b.seed);
   EXPECT_EQ(a.dead_zone, b.dead_zone);
+  EXPECT_EQ(a.torque_signal, b.torque_signal);
   EXPECT_EQ(a.source, b.source);
 }
 

@@ -122,6 +122,7 @@ class RandomRobot {
     settings.seed = static_cast<std::uint32_t>(generator_());
     settings.dead_zone =
         coin() ? tools::DeadZoneChoice::kContinuous : tools::DeadZoneChoice::kDiscontinuous;
+    settings.torque_signal = coin() ? TorqueSignal::kSampled : TorqueSignal::kHeld;
     settings.source = any_text();
     return settings;
   }

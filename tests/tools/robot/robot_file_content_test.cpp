@@ -67,6 +67,7 @@ TEST(RobotFileContent, HoldsEstimatorBoundAndChannels) {
   EXPECT_EQ(robot.estimator.initial_weight_range, 0.2);
   EXPECT_EQ(robot.estimator.seed, 7U);
   EXPECT_EQ(robot.estimator.dead_zone, DeadZoneChoice::kDiscontinuous);
+  EXPECT_EQ(robot.estimator.torque_signal, TorqueSignal::kHeld);
   ASSERT_TRUE(robot.bound);
   EXPECT_EQ(robot.bound->kind, BoundSettings::Kind::kTable);
   EXPECT_EQ(robot.bound->table.variable, BoundVariable::kTorque);

@@ -154,6 +154,8 @@ const std::vector<Mistake> kMistakes{
      "lower estimator.initial_weight_range"},
     {"UnknownDeadZone", "\"discontinuous\"", "\"none\"", "dead_zone", "estimator.dead_zone",
      "the string \"none\"", "continuous, discontinuous", "write one of these"},
+    {"UnknownTorqueSignal", "\"held\"", "\"zoh\"", "torque_signal", "estimator.torque_signal",
+     "the string \"zoh\"", "sampled, held", "write one of these"},
     {"NotANumber", "velocity = 4.0", "velocity = nan", "velocity", "joint[1].limits.velocity",
      "nan", "a finite number > 0, in rad/s", "write a number"},
     {"Infinity", "mass_kg = 2.5", "mass_kg = inf", "mass_kg", "joint[1].link.mass_kg", "inf",

@@ -65,6 +65,7 @@ weight_radius = 3.0
 initial_weight_range = 0.2
 seed = 7
 dead_zone = "discontinuous"
+torque_signal = "held"
 
 [uncertainty_bound]
 kind = "table"

@@ -15,6 +15,7 @@
 //   theta' = P{ Gamma Z^T D[e] }, projected to |theta| <= M
 // One classical Runge-Kutta step of the whole state per tick. Inside the tick the measured signals
 // q, dq, tau and what follows from them at a sample, f and mu_bar, are linear between its two ends.
+// What f and mu_bar were at the tick's beginning may be said anew, for a torque that jumped there.
 // (Evaluating f at interpolated measurements instead would differ in the order of the
 // interpolation's own error, and would double the cost of the dynamics.)
 
@@ -45,13 +46,14 @@ template <int N, int L, typename Scalar>
   return Status::kOk;
 }
 
-// Advances the estimator by one tick. kNumericOverflow where the input is so large that the result
-// would not be finite; `state` is then unchanged. |theta| <= M holds afterwards, always.
+// Advances the estimator by one tick that begins with `begin`. kNumericOverflow where the input is
+// so large that the result would not be finite; `state` is then unchanged. |theta| <= M holds
+// afterwards, always.
 template <int N, int L, typename Scalar>
-[[nodiscard]] Status step(const EstimatorConfig<Scalar>& config,
+[[nodiscard]] Status step(const EstimatorConfig<Scalar>& config, const TickBegin<N, Scalar>& begin,
                           const EstimatorInput<N, Scalar>& input,
                           EstimatorState<N, L, Scalar>& state) {
-  detail::TickIntegrator<N, L, Scalar> tick(config, input, state);
+  detail::TickIntegrator<N, L, Scalar> tick(config, begin, input, state);
   const detail::TickEnd<N, Scalar> end = tick.integrate();
   const Scalar limit = std::numeric_limits<Scalar>::max() / 64;
   const bool bounded = tick.squared_reach(end.theta) <= limit &&
@@ -66,6 +68,14 @@ template <int N, int L, typename Scalar>
   state.mu_bar = input.mu_bar;
   state.error = input.z.template segment<N>(1 + N) - state.omega;
   return Status::kOk;
+}
+
+// The same for a tick that begins with what the one before it ended with.
+template <int N, int L, typename Scalar>
+[[nodiscard]] Status step(const EstimatorConfig<Scalar>& config,
+                          const EstimatorInput<N, Scalar>& input,
+                          EstimatorState<N, L, Scalar>& state) {
+  return step(config, TickBegin<N, Scalar>{state.nominal_ddq, state.mu_bar}, input, state);
 }
 
 }  // namespace offnominal

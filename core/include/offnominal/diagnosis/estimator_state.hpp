@@ -23,6 +23,13 @@ struct EstimatorState {
   Scalar z_squared_norm{};                                          // |z|^2
 };
 
+// What the model and the bound say at the beginning of one tick.
+template <int N, typename Scalar>
+struct TickBegin {
+  Vector<N, Scalar> nominal_ddq;  // f, rad/s^2 or m/s^2
+  Scalar mu_bar{};                // bound, >= 0
+};
+
 // The signals at the end of one tick.
 template <int N, typename Scalar>
 struct EstimatorInput {

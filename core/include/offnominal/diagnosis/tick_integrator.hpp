@@ -56,9 +56,10 @@ template <int N, int L, typename Scalar>
 class TickIntegrator {
  public:
   EIGEN_ALWAYS_INLINE TickIntegrator(const EstimatorConfig<Scalar>& config,
+                                     const TickBegin<N, Scalar>& model,
                                      const EstimatorInput<N, Scalar>& input,
                                      const EstimatorState<N, L, Scalar>& begin)
-      : config_(config), input_(input), begin_(begin) {
+      : config_(config), model_(model), input_(input), begin_(begin) {
     const Scalar half(0.5);
     z_.z00 = begin.z_squared_norm;
     z_.z01 = begin.z.dot(input.z);
@@ -76,8 +77,8 @@ class TickIntegrator {
   [[nodiscard]] EIGEN_ALWAYS_INLINE TickEnd<N, Scalar> integrate() {
     const Scalar h = config_.period_s;
     const Scalar half = Scalar(0.5);
-    const StageSignals<N, Scalar> begin{begin_.z.template segment<N>(1 + N), begin_.nominal_ddq,
-                                        begin_.mu_bar};
+    const StageSignals<N, Scalar> begin{begin_.z.template segment<N>(1 + N), model_.nominal_ddq,
+                                        model_.mu_bar};
     const StageSignals<N, Scalar> end{input_.z.template segment<N>(1 + N), input_.nominal_ddq,
                                       input_.mu_bar};
     const StageSignals<N, Scalar> middle{half * (begin.dq + end.dq),
@@ -204,6 +205,7 @@ class TickIntegrator {
   }
 
   const EstimatorConfig<Scalar>& config_;
+  const TickBegin<N, Scalar>& model_;
   const EstimatorInput<N, Scalar>& input_;
   const EstimatorState<N, L, Scalar>& begin_;
   Scalar largest_d_{};

@@ -13,7 +13,15 @@ template <int N, typename Scalar>
 struct ForwardDynamics {
   Vector<N, Scalar> ddq = Vector<N, Scalar>::Zero();            // rad/s^2 or m/s^2
   Matrix<N, N, Scalar> inertia = Matrix<N, N, Scalar>::Zero();  // M(q)
+  Matrix<N, N, Scalar> factor = Matrix<N, N, Scalar>::Zero();   // lower, M(q) = factor factor^T
 };
+
+// x = M(q)^-1 x with the factor that forward_dynamics() gives for q.
+template <int N, typename Scalar>
+void solve_in_place(const Matrix<N, N, Scalar>& factor, Vector<N, Scalar>& x) {
+  factor.template triangularView<Eigen::Lower>().solveInPlace(x);
+  factor.transpose().template triangularView<Eigen::Upper>().solveInPlace(x);
+}
 
 // ddq = M(q)^-1 (tau - V(q, dq) dq - G(q) - effects): the paper's f with the known effects. Solves
 // for the vector, the inverse is never formed. kSingularMassMatrix where M(q) is not positive
@@ -34,6 +42,7 @@ template <int N, typename Scalar>
   if (!ddq.allFinite()) return Status::kSingularMassMatrix;
   result.ddq = ddq;
   result.inertia = inertia;
+  result.factor = factor.matrixL();
   return Status::kOk;
 }
 
