@@ -1,8 +1,6 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <iostream>
@@ -11,6 +9,8 @@
 #include <optional>
 #include <string>
 
+#include "command/command_line.hpp"
+#include "command/progress.hpp"
 #include "command/verbs.hpp"
 #include "common/error.hpp"
 #include "paper/figures.hpp"
@@ -41,27 +41,6 @@ struct Options {
   bool sweep = false;
   bool json = false;
   std::string command_line;
-};
-
-// Names on stderr what is running, once it has taken over two seconds and somebody is there to see.
-class Progress {
- public:
-  Progress() = default;
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  void operator()(const std::string& part) {
-    if (!terminal_ || std::chrono::steady_clock::now() - start_ < std::chrono::seconds(2)) return;
-    std::cerr << "\r\033[K" << part << std::flush;
-    shown_ = true;
-  }
-  ~Progress() {
-    if (shown_) std::cerr << "\r\033[K" << std::flush;
-  }
-
- private:
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
-  bool shown_ = false;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 // A number in a range, NaN excluded, told in the same words for every option.
@@ -177,7 +156,7 @@ void run_sweep(const RobotDescription& robot, const Experiment& base, bool json)
         probe.detection_time_s ? fmt::format("detected at {:.3f} s", *probe.detection_time_s)
                                : std::string("not detected"));
     if (json) {
-      progress(words);
+      progress.begin(words);
     } else {
       std::cout << words << '\n';
     }
@@ -211,8 +190,8 @@ void run_all(const RobotDescription& robot, const Experiment& experiment, const 
   paper::PaperRuns runs;
   {
     Progress progress;
-    runs =
-        paper::run_everything(robot, experiment, [&](const std::string& part) { progress(part); });
+    runs = paper::run_everything(robot, experiment,
+                                 [&](const std::string& part) { progress.begin(part); });
   }
   const auto lines = paper::compare_with_paper(runs);
   const bool paper_settings = !options.mass_loss && !options.rho && !options.dead_zone &&
@@ -240,17 +219,6 @@ void run(const Options& options) {
   } else {
     run_all(robot, experiment, options);
   }
-}
-
-// As the user would type it again; the page shows it.
-std::string command_line_of(const CLI::App& verb) {
-  std::string line = "offnominal paper";
-  for (const CLI::Option* option : verb.get_options()) {
-    if (option->count() == 0) continue;
-    line += " " + option->get_name();
-    if (option->get_type_size() > 0) line += " " + option->as<std::string>();
-  }
-  return line;
 }
 
 void add_options(CLI::App& verb, Options& options) {
