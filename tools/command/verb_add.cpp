@@ -93,12 +93,12 @@ bool same_file(const std::string& a, const std::string& b) {
 }
 
 void check_files(const Options& options) {
-  if (same_file(options.output, options.robot) && !options.force) {
-    refuse("-o", "the robot file that is read", "another file",
-           "choose another name, or add --force to replace it");
-  }
   for (const std::string& recording : {options.log, options.holdout.value_or(options.log)}) {
     if (same_file(options.output, recording)) refuse("-o", "a recording", "a robot file");
+  }
+  if (std::filesystem::exists(options.output) && !options.force) {
+    refuse("-o", options.output + ", which is there already", "a file that is not there yet",
+           "choose another name, or add --force to replace it");
   }
   if (options.holdout && same_file(options.log, *options.holdout)) {
     refuse("--holdout", "the recording that is fitted", "another recording",
@@ -123,7 +123,8 @@ void run(const Options& options, const std::string& command_line, ExitCode& exit
   progress.end();
   const AddNames names{options.log, options.holdout, options.robot, options.output, command_line};
   if (result.objections.empty()) {
-    write_robot_file(result.robot, options.output, Existing::kReplace);
+    write_robot_file(result.robot, options.output,
+                     options.force ? Existing::kReplace : Existing::kRefuse);
   } else {
     exit_code = ExitCode::kCheckFailed;
   }
@@ -176,7 +177,8 @@ void register_add(CLI::App& app, ExitCode& exit_code) {
   verb->add_option("--log", options->log, "Recording to fit, CSV or MATLAB .mat")->required();
   verb->add_option("--holdout", options->holdout, "Recording to judge the fit on");
   verb->add_option("-o,--output", options->output, "Robot file to write")->required();
-  verb->add_flag("--force", options->force, "Allow -o to be the robot file that is read");
+  verb->add_flag("--force", options->force,
+                 "Replace the file of -o, be it the robot file that is read");
   verb->add_option("--set", options->set,
                    "NAME=VALUE or EFFECT.NAME=VALUE: a parameter of the new effects that is given, "
                    "not fitted; SI units")

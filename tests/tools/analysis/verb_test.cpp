@@ -179,6 +179,14 @@ TEST_F(Verbs, AddLeavesTheRobotFileAloneUnlessForced) {
   EXPECT_EQ(read_robot_file(folder_ / "arm.toml").effects.size(), 1U);
 }
 
+TEST_F(Verbs, AddReplacesNoFileUnlessForced) {
+  put(folder_ / "new.toml", "somebody's work");
+  expect_refusal(add("viscous_friction"), path("new.toml") + ", which is there already");
+  EXPECT_EQ(content_of(folder_ / "new.toml"), "somebody's work");
+  EXPECT_EQ(add("viscous_friction", {"--force"}).exit_code, 0);
+  EXPECT_EQ(read_robot_file(folder_ / "new.toml").effects.size(), 1U);
+}
+
 TEST_F(Verbs, AddThatTheDataDoNotAllowWritesNothingAndExitsWithOne) {
   ASSERT_EQ(add("torque_offset").exit_code, 0);
   std::filesystem::rename(folder_ / "new.toml", folder_ / "arm.toml");
