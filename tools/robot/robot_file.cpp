@@ -11,6 +11,7 @@
 #include "common/number.hpp"
 #include "log/channels.hpp"
 #include "robot/chain_of.hpp"
+#include "robot/check_mass_matrix.hpp"
 #include "robot/read_effect.hpp"
 #include "robot/read_joint.hpp"
 #include "robot/read_settings.hpp"
@@ -100,6 +101,7 @@ RobotDescription parse_robot(std::string_view text, const std::string& file) {
   robot.gravity_m_s2 = {gravity[0], gravity[1], gravity[2]};
   robot.joints = read_joints(root);
   robot.effects = read_effects(root, robot.joints);
+  check_mass_matrix(root, robot);
   if (const auto table = root.optional_table("estimator", estimator_keys())) {
     robot.estimator = read_estimator(*table);
   }

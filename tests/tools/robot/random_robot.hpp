@@ -106,6 +106,10 @@ class RandomRobot {
       const double value = number();
       result.parameters[i] = value >= info.parameters[i].min ? value : positive();
     }
+    // Less mass than none may leave a joint nothing to move.
+    const bool is_mass =
+        result.kind == EffectKind::kLinkMass || result.kind == EffectKind::kTipPayload;
+    if (is_mass) result.parameters[0] = std::fabs(result.parameters[0]);
     result.fitted = coin();
     result.source = any_text();
     return result;

@@ -257,6 +257,62 @@ TEST(RobotFile, RefusesMoreEffectsThanTheModelHolds) {
   EXPECT_EQ(refusal(text), "accepted");
 }
 
+TEST(RobotFile, RefusesAMassThatLeavesNothingToMove) {
+  // The slide weighs 1 kg; the payload hangs 0.1 m off, so that the turn feels it as well.
+  const auto with_masses = [](const std::string& link, const std::string& payload) {
+    return std::string(test::kSampleRobot) +
+           "[[effect]]\nkind = \"link_mass\"\njoint = 2\nmass = " + link +
+           "\n[[effect]]\nkind = \"tip_payload\"\njoint = 2\nmass = " + payload + "\nx = 0.1\n";
+  };
+  EXPECT_EQ(refusal(with_masses("-0.5", "-0.4")), "accepted");
+  EXPECT_EQ(refusal(with_masses("-1.5", "0.6")), "accepted");
+  const std::string heavy = with_masses("-0.25", "-0.8");
+  EXPECT_THAT(refusal(heavy),
+              StartsWith("dir/r.toml: " + line_of(heavy, "mass = -0.8") +
+                         ", effect[4].mass: found -0.8, which leaves a mass matrix that is not "
+                         "positive definite; allowed: a mass that leaves every joint"));
+  const std::string link = with_masses("-1.2", "0.1");
+  EXPECT_THAT(refusal(link), StartsWith("dir/r.toml: " + line_of(link, "mass = -1.2") +
+                                        ", effect[3].mass: found -1.2, which leaves"));
+}
+
+// Only at one end of the range of the second joint is there too little left: its payload is heavier
+// than nothing at the far end alone.
+TEST(RobotFile, RefusesAMassThatLeavesNothingToMoveSomewhereInTheRange) {
+  const auto arm = [](const std::string& limits) {
+    return R"(format = 1
+name = "arm"
+gravity_m_s2 = [0.0, -9.81, 0.0]
+[[joint]]
+name = "a"
+type = "revolute"
+axis = [0.0, 0.0, 1.0]
+[joint.link]
+mass_kg = 1.0
+centre_of_mass_m = [0.5, 0.0, 0.0]
+[[joint]]
+name = "b"
+type = "prismatic"
+axis = [1.0, 0.0, 0.0]
+[joint.link]
+mass_kg = 2.0
+centre_of_mass_m = [0.0, 0.0, 0.0]
+[joint.limits]
+position = )" +
+           limits +
+           R"(
+[[effect]]
+kind = "tip_payload"
+joint = 2
+mass = -1.0
+x = 1.0
+)";
+  };
+  // About joint a: 0.25 + 2 b^2 - (b + 1)^2, above zero for b < -0.32 and b > 2.32 alone.
+  EXPECT_EQ(refusal(arm("[2.5, 4.0]")), "accepted");
+  EXPECT_THAT(refusal(arm("[2.2, 4.0]")), HasSubstr("effect[1].mass: found -1, which leaves"));
+}
+
 TEST(RobotFile, RefusesARobotWithoutJointsOrWithTooMany) {
   const std::string head = "format = 1\nname = \"r\"\ngravity_m_s2 = [0, 0, 0]\n";
   EXPECT_THAT(refusal(head), HasSubstr("joint: found 0 joints; allowed: 1 to 8 joints"));
