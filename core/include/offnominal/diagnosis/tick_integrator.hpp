@@ -38,6 +38,14 @@ struct StagePoint {
   SpanNorms<Scalar> norms;
 };
 
+// The network's output at a stage, with the stage's theta, and with its hidden layer but W2 as the
+// tick began.
+template <int N, typename Scalar>
+struct StageOutput {
+  Vector<N, Scalar> psi_hat;
+  Vector<N, Scalar> with_w2_begin;
+};
+
 // Where the tick ends: omega, mu and the coordinates of theta before it is shrunk into the ball.
 template <int N, typename Scalar>
 struct TickEnd {
@@ -133,32 +141,18 @@ class TickIntegrator {
   }
 
  private:
-  // z_z[j] = z_j . z_s for the stages j before, zz = |z_s|^2.
+  // One stage. z_z[j] = z_j . z_s for the stages j before, zz = |z_s|^2.
   template <int S>
   EIGEN_ALWAYS_INLINE StagePoint<N, Scalar> stage(const StageSignals<N, Scalar>& signals,
                                                   const Vector<N, Scalar>& next_dq,
                                                   const HiddenVector<L, Scalar>& w1_z,
-                                                  std::array<Scalar, kStages> z_z, Scalar zz,
+                                                  const std::array<Scalar, kStages>& z_z, Scalar zz,
                                                   const StagePoint<N, Scalar>& at, Scalar advance,
                                                   Scalar weight, TickEnd<N, Scalar>& sum) {
-    constexpr auto s = static_cast<std::size_t>(S);
-    d_[s] = at.d;
-    Vector<N, Scalar> psi_hat = begin_.psi_hat;
-    Vector<N, Scalar> psi_hat_begin;
-    psi_hat_begin = psi_hat;
-    if constexpr (S > 0) {
-      std::array<Scalar, kStages> kappa{};
-      for (std::size_t j = 0; j < s; ++j) kappa[j] = at.theta.gain[j] * z_z[j];
-      const SigmaSums<N, Scalar> sums =
-          sigma_pass<S, N, L, Scalar>(w1_z, begin_.weights, at.theta.keep, kappa, factors_, pre_);
-      psi_hat_begin = sums.w2_sigma;
-      psi_hat = at.theta.keep * sums.w2_sigma;
-      for (std::size_t j = 0; j < s; ++j) {
-        psi_hat += (at.theta.gain[j] * sums.before[j]) * d_[j];
-      }
-    }
+    d_[static_cast<std::size_t>(S)] = at.d;
+    const StageOutput<N, Scalar> output = network_output_at<S>(w1_z, z_z, at);
     StagePoint<N, Scalar> next;
-    const Vector<N, Scalar> omega_dot = config_.alpha * at.e + signals.nominal_ddq + psi_hat;
+    const Vector<N, Scalar> omega_dot = config_.alpha * at.e + signals.nominal_ddq + output.psi_hat;
     const Scalar mu_dot = signals.mu_bar - config_.alpha * at.mu;
     sum.omega += weight * omega_dot;
     sum.mu += weight * mu_dot;
@@ -168,20 +162,57 @@ class TickIntegrator {
       next.e = next_dq - next.omega;
       next.d = dead_zone<N, Scalar>(next.e, next.mu, config_.dead_zone, largest_d_);
     }
+    learn<S>(gradient_at<S>(w1_z, zz, at, output), at, advance, weight, next, sum);
+    return next;
+  }
 
+  // psi_hat at a stage; needs the directions d of the stages before.
+  template <int S>
+  EIGEN_ALWAYS_INLINE StageOutput<N, Scalar> network_output_at(
+      const HiddenVector<L, Scalar>& w1_z, const std::array<Scalar, kStages>& z_z,
+      const StagePoint<N, Scalar>& at) {
+    if constexpr (S == 0) {
+      return {begin_.psi_hat, begin_.psi_hat};
+    } else {
+      constexpr auto s = static_cast<std::size_t>(S);
+      std::array<Scalar, kStages> kappa{};
+      for (std::size_t j = 0; j < s; ++j) kappa[j] = at.theta.gain[j] * z_z[j];
+      const SigmaSums<N, Scalar> sums =
+          sigma_pass<S, N, L, Scalar>(w1_z, begin_.weights, at.theta.keep, kappa, factors_, pre_);
+      StageOutput<N, Scalar> output{at.theta.keep * sums.w2_sigma, sums.w2_sigma};
+      for (std::size_t j = 0; j < s; ++j) {
+        output.psi_hat += (at.theta.gain[j] * sums.before[j]) * d_[j];
+      }
+      return output;
+    }
+  }
+
+  // The inner products of a stage's gradient; its factors stay in factors_.
+  template <int S>
+  EIGEN_ALWAYS_INLINE GradientProducts<Scalar> gradient_at(const HiddenVector<L, Scalar>& w1_z,
+                                                           Scalar zz,
+                                                           const StagePoint<N, Scalar>& at,
+                                                           const StageOutput<N, Scalar>& output) {
+    constexpr auto s = static_cast<std::size_t>(S);
     std::array<Scalar, kStages> nu{};
     for (std::size_t j = 0; j < s; ++j) nu[j] = Scalar(0.5) * at.theta.gain[j] * d_[j].dot(at.d);
     const GradientSums<Scalar> sums =
         gradient_pass<S, N, L, Scalar>(w1_z, S == 0 ? w1_z : pre_, begin_.weights,
                                        (Scalar(0.5) * at.theta.keep) * at.d, nu, factors_);
     const Scalar w2_squared = sums.sigma_squared * at.d.squaredNorm();
-    const GradientProducts<Scalar> g{sums.with_begin + at.d.dot(psi_hat_begin),
-                                     sums.with_theta + at.d.dot(psi_hat),
-                                     sums.b_squared * zz + w2_squared};
     gradient_reach_[s] = sums.b_squared * (z_.z00 + z_.z11) + w2_squared;
-    const Scalar pull =
-        projection_rate(at.norms.squared) * Eigen::numext::maxi(g.with_theta, Scalar(0));
+    return {sums.with_begin + at.d.dot(output.with_w2_begin),
+            sums.with_theta + at.d.dot(output.psi_hat), sums.b_squared * zz + w2_squared};
+  }
 
+  // Moves theta's coordinates along a stage's gradient, less the pull of projection.
+  template <int S>
+  EIGEN_ALWAYS_INLINE void learn(const GradientProducts<Scalar>& gradient,
+                                 const StagePoint<N, Scalar>& at, Scalar advance, Scalar weight,
+                                 StagePoint<N, Scalar>& next, TickEnd<N, Scalar>& sum) const {
+    constexpr auto s = static_cast<std::size_t>(S);
+    const Scalar pull =
+        projection_rate(at.norms.squared) * Eigen::numext::maxi(gradient.with_theta, Scalar(0));
     const Scalar step = weight * config_.learning_rate;
     const Scalar step_pull = step * pull;
     sum.theta.keep -= step_pull * at.theta.keep;
@@ -190,9 +221,8 @@ class TickIntegrator {
     if constexpr (S + 1 < kStages) {
       const Scalar move = advance * config_.learning_rate;
       next.theta = moved<S>(at.theta, move, pull);
-      next.norms = moved(at.norms, g, begin_.theta_squared_norm, move, pull);
+      next.norms = moved(at.norms, gradient, begin_.theta_squared_norm, move, pull);
     }
-    return next;
   }
 
   // The pull of projection, eq. (9) with scalar Gamma, is <theta, g> / |theta|^2 where |theta| has
