@@ -9,6 +9,7 @@
 #include "core/diagnosis/estimator_run.hpp"
 #include "core/model/random_chain.hpp"
 #include "core/print_status.hpp"
+#include "support/repetitions.hpp"
 #include "support/seed.hpp"
 
 namespace offnominal::test {
@@ -209,16 +210,16 @@ void expect_never_later(std::mt19937_64& generator, int faults) {
 
 TEST(DetectionDelayBound, IsNeverExceededInAThousandRandomFaultsOfItsClass) {
   std::mt19937_64 generator = seeded_generator();
-  expect_never_later<1>(generator, 400);
-  expect_never_later<2>(generator, 400);
-  expect_never_later<6>(generator, 200);
+  expect_never_later<1>(generator, repetitions(400));
+  expect_never_later<2>(generator, repetitions(400));
+  expect_never_later<6>(generator, repetitions(200));
 }
 
 // Constant component signs, turning direction: a positive vector that wanders between the axes.
 TEST(DetectionDelayBound, GivenOnlyConstantSignsThenTheSmallerMarginIsNeverExceeded) {
   std::mt19937_64 generator = seeded_generator();
   const double period_s = 0.002;
-  for (int sample = 0; sample < 300; ++sample) {
+  for (int sample = 0; sample < repetitions(300); ++sample) {
     FaultClass fault = random_fault_class(generator);
     fault.margin = uniform(generator, 1.5, 6);
     FaultClass reduced = fault;

@@ -7,6 +7,7 @@
 #include "core/diagnosis/estimator_run.hpp"
 #include "core/model/random_chain.hpp"
 #include "core/print_status.hpp"
+#include "support/repetitions.hpp"
 #include "support/seed.hpp"
 
 namespace offnominal::test {
@@ -50,7 +51,7 @@ TEST(Sigmoid, IsExactlyZeroAtZeroAndOneAtInfinity) {
 
 TEST(Sigmoid, NeverLeavesMinusOneToOne) {
   std::mt19937_64 generator = seeded_generator();
-  for (int sample = 0; sample < 100000; ++sample) {
+  for (int sample = 0; sample < repetitions(100000); ++sample) {
     const double x =
         std::copysign(std::pow(10, uniform(generator, -30, 30)), uniform(generator, -1, 1));
     EXPECT_LE(std::fabs(sigmoid_of(x)), 1.0) << x;

@@ -7,6 +7,7 @@
 #include "core/diagnosis/estimator_run.hpp"
 #include "core/model/random_chain.hpp"
 #include "core/print_status.hpp"
+#include "support/repetitions.hpp"
 #include "support/seed.hpp"
 
 namespace offnominal::test {
@@ -130,7 +131,7 @@ void expect_ball_never_left() {
     const EstimatorConfig<Scalar> config = config_for<Scalar>(turn);
     const auto radius = static_cast<double>(config.weight_radius);
     RandomLife<Scalar> life(config, generator);
-    for (int tick = 0; tick < 250000; ++tick) {
+    for (int tick = 0; tick < repetitions(250000); ++tick) {
       const Status status = life.step_once();
       ASSERT_TRUE(status == Status::kOk || status == Status::kNumericOverflow);
       const double norm = weight_norm(life.state.weights);
@@ -139,8 +140,8 @@ void expect_ball_never_left() {
       on_ball += norm > 0.999 * radius ? 1 : 0;
     }
   }
-  EXPECT_GT(refused, 1000);
-  EXPECT_GT(on_ball, 10000);
+  EXPECT_GT(refused, repetitions(1000));
+  EXPECT_GT(on_ball, repetitions(10000));
 }
 
 TEST(WeightBall, IsNeverLeftInAMillionRandomStepsInDouble) { expect_ball_never_left<double>(); }

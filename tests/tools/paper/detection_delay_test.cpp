@@ -10,6 +10,7 @@
 #include <offnominal/diagnosis/estimator.hpp>
 #include <random>
 
+#include "support/repetitions.hpp"
 #include "support/seed.hpp"
 
 namespace offnominal {
@@ -119,7 +120,7 @@ FaultClass random_class(std::mt19937_64& generator) {
 template <typename Detector>
 void expect_attained() {
   auto generator = test::seeded_generator();
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < test::repetitions(200); ++i) {
     const FaultClass fault = random_class(generator);
     double bound = 0.0, closed = 0.0;
     ASSERT_EQ(detection_delay_bound(fault, bound), Status::kOk);
@@ -189,7 +190,7 @@ double random_delay(std::mt19937_64& generator, const FaultClass& fault, Directi
 template <typename Detector>
 void expect_never_exceeded(Direction kind) {
   auto generator = test::seeded_generator();
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < test::repetitions(1000); ++i) {
     FaultClass fault = random_class(generator);
     FaultClass guaranteed = fault;
     if (kind == Direction::kConstantSigns) {
