@@ -31,6 +31,7 @@ struct PlainEstimator {
   double gamma = 2.5;
   double radius = 10;
   bool continuous_dead_zone = true;
+  bool learns = false;  // in the tick that runs: it began outside the dead-zone
   // |theta|^2 within this fraction of M^2 counts as on the ball: the end of a step has set it there
   // to rounding only.
   double ball_slack = 1e-13;
@@ -112,13 +113,15 @@ struct PlainEstimator {
     rate.head(joints) =
         -alpha * at_omega + alpha * sample.dq + sample.nominal + psi_hat(weights, z);
     rate[joints] = -alpha * at_mu + sample.mu_bar;
-    const Eigen::VectorXd learning = gamma * gradient(weights, z).transpose() * dead_zone(e, at_mu);
+    const double gain = learns ? gamma : 0;
+    const Eigen::VectorXd learning = gain * gradient(weights, z).transpose() * dead_zone(e, at_mu);
     rate.tail(weight_count()) = projected(weights, learning);
     return rate;
   }
 
   void step(const PlainSample& sample) {
     const PlainSample middle = between(last, sample, 0.5);
+    learns = (last.dq - omega).norm() > mu;
     Eigen::VectorXd start(joints + 1 + weight_count());
     start << omega, mu, theta;
     const double h = period_s;

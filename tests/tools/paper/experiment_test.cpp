@@ -155,7 +155,7 @@ TEST(PaperExperiment, EveryNumberOfHiddenUnitsDetectsAlike) {
     robot.estimator.hidden_units = hidden;
     const ExperimentResult result = run(FaultKind::kMassLoss, Precision::kFloat, false, robot);
     ASSERT_TRUE(result.detection_time_s) << hidden;
-    EXPECT_NEAR(*result.detection_time_s, 10.577, 0.0015) << hidden;
+    EXPECT_NEAR(*result.detection_time_s, 10.575, 0.0015) << hidden;
     EXPECT_LE(result.max_weight_norm, 10.0) << hidden;
   }
 }

@@ -99,6 +99,8 @@ class TickIntegrator {
         dead_zone<N, Scalar>(begin.dq - begin_.omega, begin_.mu, config_.dead_zone, largest_d_),
         {Scalar(1), {}},
         {begin_.theta_squared_norm, begin_.theta_squared_norm}};
+    // A tick that begins inside the dead-zone learns nothing, whatever its inner stages look like.
+    rate_ = at.d.squaredNorm() > Scalar(0) ? config_.learning_rate : Scalar(0);
     TickEnd<N, Scalar> sum{begin_.omega, begin_.mu, {Scalar(1), {}}};
     at = stage<0>(begin, middle.dq, begin_.w1_z, {}, z_.z00, at, h * half, h / 6, sum);
     at = stage<1>(middle, middle.dq, w1_middle_, {z_.z0m}, z_.zmm, at, h * half, h / 3, sum);
@@ -213,13 +215,13 @@ class TickIntegrator {
     constexpr auto s = static_cast<std::size_t>(S);
     const Scalar pull =
         projection_rate(at.norms.squared) * Eigen::numext::maxi(gradient.with_theta, Scalar(0));
-    const Scalar step = weight * config_.learning_rate;
+    const Scalar step = weight * rate_;
     const Scalar step_pull = step * pull;
     sum.theta.keep -= step_pull * at.theta.keep;
     for (std::size_t j = 0; j < s; ++j) sum.theta.gain[j] -= step_pull * at.theta.gain[j];
     sum.theta.gain[s] = step;
     if constexpr (S + 1 < kStages) {
-      const Scalar move = advance * config_.learning_rate;
+      const Scalar move = advance * rate_;
       next.theta = moved<S>(at.theta, move, pull);
       next.norms = moved(at.norms, gradient, begin_.theta_squared_norm, move, pull);
     }
@@ -239,6 +241,7 @@ class TickIntegrator {
   const EstimatorInput<N, Scalar>& input_;
   const EstimatorState<N, L, Scalar>& begin_;
   Scalar largest_d_{};
+  Scalar rate_{};  // of learning, in this tick
   Scalar radius_squared_{};
   InputProducts<Scalar> z_;
   HiddenVector<L, Scalar> w1_middle_;
