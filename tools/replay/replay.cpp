@@ -15,6 +15,14 @@ namespace offnominal::tools {
 namespace {
 
 void check_settings(const RobotDescription& robot, const Log& log) {
+  if (log.q.cols() != robot.joint_count()) {
+    throw InputError(
+        {.file = log.file,
+         .place = "columns",
+         .found = std::to_string(log.q.cols()) + " joints",
+         .allowed = std::to_string(robot.joint_count()) + ", as robot " + robot.name + " has",
+         .mend = "give the recording's own robot file"});
+  }
   if (!robot.bound) {
     throw InputError(
         {.file = "robot " + robot.name,

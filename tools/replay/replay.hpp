@@ -56,8 +56,8 @@ struct Replay {
 
 // Replays `log` through the monitor of `robot`, with the recording's sampling period as the tick.
 // The recording's torque is taken as the torque that was really applied. Throws InputError when the
-// robot file has no uncertainty bound, when a setting does not go with the sampling period, or when
-// no sample is accepted.
+// recording has another number of joints, the robot file has no uncertainty bound, when a setting
+// does not go with the sampling period, or when no sample is accepted.
 [[nodiscard]] Replay replay(const RobotDescription& robot, const Log& log);
 
 [[nodiscard]] nlohmann::json to_json(const Replay& replay);

@@ -103,6 +103,66 @@ TEST_F(Verbs, CompareWritesAPageThatSaysWhatTheJsonSays) {
   EXPECT_THAT(page, HasSubstr("residual over velocity"));
 }
 
+// What a page draws from: the JSON in it.
+nlohmann::json data_of(const std::string& page) {
+  const auto script = page.find("id=\"data\"");
+  const auto begin = page.find('>', script) + 1;
+  return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+// The rows of the table with that caption, wherever it stands on the page.
+nlohmann::json rows_of(const nlohmann::json& data, const std::string& caption) {
+  if (data.is_object() && data.value("caption", "") == caption && data.contains("rows")) {
+    return data.at("rows");
+  }
+  for (const nlohmann::json& inner : data) {
+    if (!inner.is_structured()) continue;
+    if (nlohmann::json rows = rows_of(inner, caption); !rows.is_null()) return rows;
+  }
+  return {};
+}
+
+TEST_F(Verbs, CompareShowsTheSameNumbersOnThePageAsInTheJson) {
+  const auto json = nlohmann::json::parse(compare({"--json", "--report", path("page.html")}).out);
+  const auto rows = rows_of(data_of(content_of(folder_ / "page.html")), "Error per joint");
+  ASSERT_EQ(rows.size(), 2U);
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    const auto& said = json.at("joints").at(joint);
+    const nlohmann::json expected{said.at("joint"),
+                                  said.at("rms_error"),
+                                  said.at("rms_torque"),
+                                  said.at("unit"),
+                                  said.at("relative_error_percent"),
+                                  said.at("fit_percent")};
+    EXPECT_EQ(rows.at(joint), expected);
+  }
+}
+
+TEST_F(Verbs, AddShowsTheSameNumbersOnThePageAsInTheJson) {
+  const auto json =
+      nlohmann::json::parse(add("viscous_friction", {"--holdout", path("other.csv"), "--json",
+                                                     "--report", path("add.html")})
+                                .out);
+  const auto data = data_of(content_of(folder_ / "add.html"));
+  const auto parameters = rows_of(data, "Parameters");
+  ASSERT_EQ(parameters.size(), 1U);
+  const auto& said = json.at("parameters").at("coefficient");
+  EXPECT_EQ(parameters.at(0).at(3), said.at("value"));
+  EXPECT_EQ(parameters.at(0).at(4), said.at("ci95").at(0));
+  EXPECT_EQ(parameters.at(0).at(5), said.at("ci95").at(1));
+  EXPECT_EQ(parameters.at(0).at(6), said.at("unit"));
+  const auto errors = rows_of(data, "Error before and after");
+  ASSERT_EQ(errors.size(), 4U) << "two joints in each recording";
+  // The JSON speaks of the joint that the effect acts on.
+  for (const auto& [row, part] :
+       {std::pair{std::size_t{1}, "fit"}, std::pair{std::size_t{3}, "holdout"}}) {
+    const char* const percent = "relative_error_percent";
+    EXPECT_EQ(errors.at(row).at(1), 2);
+    EXPECT_EQ(errors.at(row).at(5), json.at("before").at(part).at(percent)) << part;
+    EXPECT_EQ(errors.at(row).at(6), json.at("after").at(part).at(percent)) << part;
+  }
+}
+
 TEST_F(Verbs, CompareTakesChannelsFromAFile) {
   std::string renamed = content_of(folder_ / "arm.csv");
   renamed.replace(0, renamed.find('\n'), "time,a,b,c,d");
