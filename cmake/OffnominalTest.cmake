@@ -3,12 +3,14 @@ include(GoogleTest)
 
 set(OFFNOMINAL_TEST_SUPPORT_DIR "${PROJECT_SOURCE_DIR}/tests")
 
-# offnominal_add_test(NAME <target> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>])
+# offnominal_add_test(NAME <target> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>]
+#                     [TOGETHER])
 #
-# Builds one GoogleTest executable and registers each of its cases with CTest. Cases see
+# Builds one GoogleTest executable and registers each of its cases with CTest, or with TOGETHER all of
+# them as one test: for cases that share what takes long to compute. Cases see
 # "support/<header>.hpp" (tests/support) and OFFNOMINAL_SOURCE_DIR, the checkout's folder as a string.
 function(offnominal_add_test)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME;LABELS" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER" "NAME;LABELS" "SOURCES;LIBRARIES")
   if(NOT arg_NAME OR NOT arg_SOURCES)
     message(FATAL_ERROR "offnominal_add_test: NAME and SOURCES are required")
   endif()
@@ -24,6 +26,10 @@ function(offnominal_add_test)
   target_link_libraries(${arg_NAME} PRIVATE offnominal_warnings ${arg_LIBRARIES} GTest::gmock
                                             GTest::gtest GTest::gtest_main)
 
+  if(arg_TOGETHER)
+    add_test(NAME ${arg_NAME} COMMAND ${arg_NAME})
+    return()
+  endif()
   set(properties)
   if(arg_LABELS)
     set(properties PROPERTIES LABELS ${arg_LABELS})

@@ -9,7 +9,6 @@
 #include "random_robot.hpp"
 #include "robot/robot_file.hpp"
 #include "sample_robot.hpp"
-#include "support/repetitions.hpp"
 #include "support/seed.hpp"
 #include "tools/support/temporary_folder.hpp"
 
@@ -21,7 +20,7 @@ using testing::HasSubstr;
 TEST(RobotText, IsReadBackAsTheSameRobotToTheBit) {
   auto generator = test::seeded_generator();
   test::RandomRobot random(generator);
-  for (int i = 0; i < test::repetitions(300) && !testing::Test::HasFailure(); ++i) {
+  for (int i = 0; i < 300 && !testing::Test::HasFailure(); ++i) {
     const RobotDescription robot = random.draw();
     const std::string text = robot_text(robot);
     SCOPED_TRACE(text);

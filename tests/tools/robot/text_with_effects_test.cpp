@@ -11,7 +11,6 @@
 #include "random_robot.hpp"
 #include "robot/robot_file.hpp"
 #include "sample_robot.hpp"
-#include "support/repetitions.hpp"
 #include "support/seed.hpp"
 #include "tools/support/temporary_folder.hpp"
 
@@ -104,7 +103,7 @@ TEST(TextWithEffects, IsReadAsTheRobotOrDeclinesForRobotsOfEveryShape) {
   auto generator = test::seeded_generator();
   test::RandomRobot random(generator);
   int written = 0;
-  for (int i = 0; i < test::repetitions(200) && !testing::Test::HasFailure(); ++i) {
+  for (int i = 0; i < 200 && !testing::Test::HasFailure(); ++i) {
     const std::string old = robot_text(random.draw());
     RobotDescription robot = parse_robot(old, "old.toml");
     for (RobotEffect& effect : robot.effects) {
