@@ -228,9 +228,9 @@ TEST(DetectionDelayBound, GivenOnlyConstantSignsThenTheSmallerMarginIsNeverExcee
     ASSERT_EQ(detection_delay_bound(reduced, bound), Status::kOk);
     const double k = uniform(generator, 0.5, 5);
     const double turning = uniform(generator, 1, 200);
-    const Eigen::Vector2d against = -kJustBelow * k * Eigen::Vector2d(1, 1).normalized();
+    Eigen::Vector2d against = -kJustBelow * k * Eigen::Vector2d(1, 1).normalized();
     const double delay = detection_delay<2>(
-        fault, k, period_s, [&](double) -> Eigen::Vector2d { return against; },
+        fault, k, period_s, [&](double) { return against; },
         [&](double t) {
           const double angle = std::numbers::pi / 4 * (1 + std::sin(turning * t));
           return (2 * fault.margin * k * Eigen::Vector2d(std::cos(angle), std::sin(angle))).eval();
