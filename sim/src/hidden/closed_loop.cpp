@@ -15,9 +15,9 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 constexpr double kMaxSubstepS = 1e-4;
-constexpr double kLoopRadS = 25.0;  // natural frequency of the position loop
+constexpr double kLoopRadS = 18.0;  // natural frequency of the position loop
 constexpr double kLoopDamping = 0.8;
-constexpr double kDifferencePoleRadS = 2.0 * std::numbers::pi * 30.0;
+constexpr double kDifferencePoleRadS = 2.0 * std::numbers::pi * 12.0;
 constexpr double kSignSpeedRadS = 0.03;
 
 PlanarArm nominal_arm(const Nominal& nominal) {
@@ -123,7 +123,7 @@ Trace run_closed_loop(const Robot& robot, const Nominal& nominal, const Motion& 
   const Plant plant(robot, contacts);
   Controller controller(nominal, period_s);
   const DesiredMotion first = motion(0.0);
-  PlantState state = plant.start(first.q, first.dq);
+  PlantState state = plant.start(first.q, first.dq, first.ddq);
   Trace trace = empty_trace(n);
   for (Index k = 0; k < n; ++k) {
     const double t_s = static_cast<double>(k) * period_s;

@@ -75,10 +75,11 @@ void draw_friction(const Survey& survey, Draws& draws, Draws& knowledge, DrawnRo
   }
 }
 
-void set_torque_limits(const Motion& motion, Nominal& nominal) {
+void set_torque_limits(const Survey& survey, Nominal& nominal) {
   Vector2d peak = Vector2d::Zero();
-  for (double t_s = 0.0; t_s < kSurveyS; t_s += 1.0 / kSurveyRateHz) {
-    peak = peak.cwiseMax(nominal_torque(nominal, motion(t_s)).cwiseAbs());
+  for (Index k = 0; k < survey.q.rows(); ++k) {
+    const DesiredMotion m{survey.q.row(k), survey.dq.row(k), survey.ddq.row(k)};
+    peak = peak.cwiseMax(nominal_torque(nominal, m).cwiseAbs());
   }
   for (int j = 0; j < 2; ++j) {
     nominal.joints[static_cast<std::size_t>(j)].torque_limit_nm = rounded_up(2.0 * peak[j]);
@@ -160,10 +161,9 @@ DrawnRobot draw_robot(const Request& request) {
   Draws knowledge(request.seed, Stream::kKnowledge);
   draw_arm(draws, knowledge, drawn);
   Draws motion_draws(request.seed, Stream::kMotion);
-  const Motion motion = rich_motion(drawn.centre_rad, motion_draws);
-  const Survey seen = survey(drawn.robot, motion);
+  const Survey seen = survey(drawn.robot, rich_motion(drawn.centre_rad, motion_draws));
   draw_friction(seen, draws, knowledge, drawn);
-  set_torque_limits(motion, drawn.nominal);
+  set_torque_limits(seen, drawn.nominal);
   drawn.nominal.encoder_bits = request.encoder_bits;
   drawn.truth.fault = request.fault;
   hide_all(request, seen, drawn);

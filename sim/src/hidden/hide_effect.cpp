@@ -115,10 +115,18 @@ Parameters hide_link_mass(const HidingPlace& place) {
 }
 
 Parameters hide_payload(const HidingPlace& place) {
-  const RigidLink& link = place.robot.links[1];
-  const double mass = place.size * place.draws.uniform(0.08, 0.3) * link.mass_kg;
+  const Survey& s = place.survey;
+  const std::array<RigidLink, 2>& links = place.robot.links;
+  std::array<RigidLink, 2> massless = links;
+  for (RigidLink& link : massless) link.mass_kg = link.inertia_kg_m2 = 0.0;
+  const PlanarArm unit_tip(massless, place.robot.gravity_m_s2, 1.0);
+  VectorXd per_kg(s.tau.rows());
+  for (Index k = 0; k < per_kg.size(); ++k) {
+    per_kg[k] = unit_tip.torque(s.q.row(k), s.dq.row(k), s.ddq.row(k))[1];
+  }
+  const double mass = sized(place, 0.08, 0.18, per_kg);
   place.robot.tip_mass_kg = mass;
-  return {{"mass", mass, "kg"}, {"x", link.length_m, "m"}};
+  return {{"mass", mass, "kg"}, {"x", links[1].length_m, "m"}};
 }
 
 Parameters hide_cogging(const HidingPlace& place) {
@@ -172,8 +180,8 @@ Parameters hide_elasticity(const HidingPlace& place) {
   JointTransmission& t = joint_of(place).transmission;
   constexpr double kProbeNmRad = 1e4;  // stiff enough for the first order to hold
   const VectorXd probe = place.survey.tau.col(place.joint) / kProbeNmRad;
-  t.stiffness_nm_rad = kProbeNmRad / sized(place, 0.03, 0.1, torque_of_deflection(place, probe));
-  const double damping_ratio = place.draws.uniform(0.03, 0.08);
+  t.stiffness_nm_rad = kProbeNmRad / sized(place, 0.02, 0.06, torque_of_deflection(place, probe));
+  const double damping_ratio = place.draws.uniform(0.04, 0.1);
   t.damping_nm_s_rad = 2.0 * damping_ratio * std::sqrt(t.stiffness_nm_rad * folded_inertia(place));
   return {{"stiffness", t.stiffness_nm_rad, "N m/rad"},
           {"damping", t.damping_nm_s_rad, "N m s/rad"}};
@@ -181,12 +189,12 @@ Parameters hide_elasticity(const HidingPlace& place) {
 
 Parameters hide_backlash(const HidingPlace& place) {
   JointTransmission& t = joint_of(place).transmission;
-  t.gap_rad = place.size * place.draws.uniform(0.01, 0.035);
+  t.gap_rad = place.size * place.draws.uniform(0.004, 0.025);
   if (t.rigid()) {
-    const double flank_rad_s = 2.0 * std::numbers::pi * 40.0;
+    const double flank_rad_s = 2.0 * std::numbers::pi * 30.0;
     const double inertia = folded_inertia(place);
     t.stiffness_nm_rad = inertia * flank_rad_s * flank_rad_s;
-    t.damping_nm_s_rad = 2.0 * 0.2 * inertia * flank_rad_s;
+    t.damping_nm_s_rad = 2.0 * 0.6 * inertia * flank_rad_s;
   }
   return {{"gap", t.gap_rad, "rad"}};
 }

@@ -46,11 +46,11 @@ Plant::Plant(const Robot& robot, std::vector<Contact> contacts)
   }
 }
 
-PlantState Plant::start(const Vector2d& q, const Vector2d& dq) const {
+PlantState Plant::start(const Vector2d& q, const Vector2d& dq, const Vector2d& ddq) const {
   PlantState state;
   state.motor_q = state.link_q = q;
   state.motor_dq = state.link_dq = dq;
-  const Vector2d load = arm_.terms(q, Vector2d::Zero()).bias;
+  const Vector2d load = arm_.torque(q, dq, ddq);
   for (int j = 0; j < 2; ++j) {
     const JointTransmission& t = robot_.joints[static_cast<std::size_t>(j)].transmission;
     if (t.rigid()) continue;

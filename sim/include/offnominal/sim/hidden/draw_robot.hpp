@@ -20,10 +20,12 @@
 // | torque_offset | level / rms 0.03-0.1, either sign |
 // | torque_scale | 0.06-0.2, either sign |
 // | link_mass | 0.12-0.4 of the link |
-// | tip_payload | 0.08-0.3 of link 2 |
+// | tip_payload | share 0.08-0.18 at joint 2 |
 // | cogging_torque, periodic_disturbance, joint_coupling | share 0.03-0.09 |
-// | joint_elasticity | stiffness such that the deflection's torque has share 0.03-0.1 |
-// | backlash | gap 0.01-0.035 rad |
+// | joint_elasticity | stiffness such that the deflection's torque has share 0.02-0.06, ringing
+// apart;
+//   damping ratio with the link 0.04-0.1 |
+// | backlash | gap 0.004-0.025 rad; flanks of 30 Hz with the link |
 // | time_delay | 2-6 ms |
 // | temperature_drift | 0.7-1.5 of Coulomb and viscous friction, time constant 8-20 s |
 // | end stop, worn spot, drag band, magnetic saturation | share 0.05-0.12 |
@@ -46,7 +48,7 @@ struct Survey {
   [[nodiscard]] double scale_to(double share, int joint, const Eigen::VectorXd& unit_torque) const;
 };
 
-inline constexpr double kSurveyRateHz = 100.0;
+inline constexpr double kSurveyRateHz = 50.0;
 
 Survey survey(const Robot& robot, const Motion& motion);
 

@@ -26,8 +26,9 @@ class Plant {
   /// `contacts` are those of this run.
   explicit Plant(const Robot& robot, std::vector<Contact> contacts = {});
 
-  /// At rest in the bristles, the transmission loaded by gravity.
-  [[nodiscard]] PlantState start(const Eigen::Vector2d& q, const Eigen::Vector2d& dq) const;
+  /// Bristles at rest, the transmission loaded by what the motion needs.
+  [[nodiscard]] PlantState start(const Eigen::Vector2d& q, const Eigen::Vector2d& dq,
+                                 const Eigen::Vector2d& ddq = Eigen::Vector2d::Zero()) const;
 
   /// One step of the midpoint rule under the torque that the motors give. The bristles advance
   /// exactly for the velocity of the step, so stiff friction does not bound h_s; a joint of two
