@@ -68,7 +68,7 @@ void draw_friction(const Survey& survey, Draws& draws, Draws& knowledge, DrawnRo
     JointFriction& friction = drawn.robot.joints[i].friction;
     friction.coulomb_nm = survey.rms_nm[j] * draws.uniform(0.06, 0.12);
     friction.viscous_nm_s_rad = survey.scale_to(draws.uniform(0.04, 0.1), j, survey.dq.col(j));
-    friction.width_rad = draws.log_uniform(2e-4, 6e-4);
+    friction.width_rad = draws.log_uniform(5e-5, 2e-4);
     NominalJoint& known = drawn.nominal.joints[i];
     known.coulomb_nm = friction.coulomb_nm / off_by(kFrictionError, knowledge);
     known.viscous_nm_s_rad = friction.viscous_nm_s_rad / off_by(kFrictionError, knowledge);

@@ -104,6 +104,7 @@ void require_motion(const VectorXd& t_s, const Eigen::MatrixXd& q_rad) {
   if (!t_s.allFinite() || !q_rad.allFinite()) {
     throw std::invalid_argument(found + "one of them is not a finite number");
   }
+  if (t_s[0] != 0.0) throw std::invalid_argument(found + "the first time is not 0");
   for (Index i = 1; i < t_s.size(); ++i) {
     if (t_s[i] > t_s[i - 1]) continue;
     throw std::invalid_argument(found + "time " + std::to_string(i) + " does not rise");

@@ -76,8 +76,10 @@ TEST(EffectSize, NothingHiddenLeavesNothingUnexplained) {
     Request request{seed, {}};
     request.duration_s = 4.0;
     const test::Share share = test::share(request);
-    EXPECT_LT(share.own, 0.015) << seed;
-    EXPECT_LT(share.other, 0.015) << seed;
+    // A joint that sticks rings faster than the trace can show: the whole is looser than the slow.
+    EXPECT_LT(share.own, 0.03) << seed;
+    EXPECT_LT(share.other, 0.03) << seed;
+    EXPECT_LT(share.own_slow, 0.012) << seed;
   }
 }
 

@@ -93,6 +93,7 @@ TEST(HiddenMotion, RefusesTimesAndPositionsThatAreNone) {
   const Eigen::MatrixXd q = Eigen::MatrixXd::Zero(3, 2);
   EXPECT_THROW(given_motion(Eigen::Vector3d(0.0, 1.0, 1.0), q), std::invalid_argument);
   EXPECT_THROW(given_motion(Eigen::Vector3d(0.0, 1.0, std::nan("")), q), std::invalid_argument);
+  EXPECT_THROW(given_motion(Eigen::Vector3d(0.5, 1.0, 2.0), q), std::invalid_argument);
   EXPECT_THROW(given_motion(Eigen::Vector2d(0.0, 1.0), q), std::invalid_argument);
   EXPECT_THROW(given_motion(Eigen::Vector3d(0.0, 1.0, 2.0), Eigen::MatrixXd::Zero(3, 3)),
                std::invalid_argument);

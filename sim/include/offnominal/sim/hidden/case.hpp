@@ -116,7 +116,8 @@ Case make_case(const Request& request);
 /// the times t_s (n >= 2, strictly rising from 0), sampled at request.sample_rate_hz from 0 to the
 /// last of them. Excitation and duration of the request are ignored. Velocities come from a cubic
 /// spline through the positions. `run` tells repetitions apart: noise and transient contacts are
-/// drawn from it. Throws std::invalid_argument on times or positions that are none.
+/// drawn from it. Throws std::invalid_argument on times or positions that are none, and
+/// std::runtime_error where the robot cannot follow and runs away.
 Recording record_motion(const Request& request, const Eigen::VectorXd& t_s,
                         const Eigen::MatrixXd& q_desired, std::uint64_t run = 0);
 

@@ -10,7 +10,7 @@
 // of a
 //   rod of 0.7-1.1 of the length |
 // | rotor inertia, known | 0.2-0.5 of the arm's at that joint, elbow at a right angle |
-// | Coulomb, viscous friction, known | level / rms 0.06-0.12, share 0.04-0.1; width 2e-4-6e-4 rad |
+// | Coulomb, viscous friction, known | level / rms 0.06-0.12, share 0.04-0.1; width 5e-5-2e-4 rad |
 // | coulomb_friction (hidden) | level / rms 0.05-0.14 |
 // | viscous, quadratic friction, rotor inertia, joint stiffness (hidden) | share 0.04-0.12 |
 // | stribeck_friction | share 0.03-0.07, velocity 0.1-0.4 rad/s |

@@ -22,7 +22,7 @@ Motion rich_motion(const Eigen::Vector2d& centre_rad, Draws& draws);
 Motion poor_motion(const Eigen::Vector2d& centre_rad, Draws& draws);
 
 /// Natural cubic spline through given positions; constant beyond its ends. Throws
-/// std::invalid_argument unless times rise strictly, are finite and match the positions.
+/// std::invalid_argument unless times rise strictly from 0, are finite and match the positions.
 Motion given_motion(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& q_rad);
 
 }  // namespace offnominal::sim::hidden

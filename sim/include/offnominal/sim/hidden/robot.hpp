@@ -13,7 +13,7 @@ namespace offnominal::sim::hidden {
 struct JointFriction {
   double coulomb_nm = 0.0;
   double viscous_nm_s_rad = 0.0;
-  double width_rad = 3e-4;  ///< pre-sliding distance
+  double width_rad = 1e-4;  ///< pre-sliding distance
   double quadratic_nm_s2_rad2 = 0.0;
   double stribeck_nm = 0.0;  ///< static less Coulomb
   double stribeck_velocity_rad_s = 0.1;
