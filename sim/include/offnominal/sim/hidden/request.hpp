@@ -66,7 +66,7 @@ enum class DataFault {
   kDegrees,            ///< positions in degrees
   kSwappedTorqueSign,  ///< torque of one joint or of both with the wrong sign
   kStaleSamples,  ///< 2 to 5 % of the rows repeat the last good value of positions, torques or all
-  kClockSkew,     ///< torques 15 to 40 ms late against the positions, or on a clock 0.2 % off
+  kClockSkew,     ///< torques 15 to 40 ms late against the positions, or a clock 0.15 to 0.3 % off
 };
 
 enum class Excitation {
