@@ -31,7 +31,7 @@ TEST_P(EffectSize, IsVisibleAndDoesNotDominate) {
   double mean = 0.0, mean_slow = 0.0, smallest = 1e9, largest = 0.0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     Request request{seed, {bounds.effect}};
-    request.duration_s = 4.0;
+    request.duration_s = 3.0;
     const test::Share share = test::share(request);
     mean += share.own / kSeeds;
     mean_slow += share.own_slow / kSeeds;
@@ -46,7 +46,7 @@ TEST_P(EffectSize, IsVisibleAndDoesNotDominate) {
   EXPECT_LT(mean_slow, bounds.slow_high);
 }
 
-// Four seconds of thirty: some of them are slow phases, hence the wide bounds.
+// Three seconds of thirty: some of them are slow phases, hence the wide bounds.
 INSTANTIATE_TEST_SUITE_P(HiddenRobots, EffectSize,
                          testing::Values(Bounds{HiddenEffect::kCoulombFriction, 0.07, 0.13},
                                          Bounds{HiddenEffect::kViscousFriction, 0.05, 0.12},
