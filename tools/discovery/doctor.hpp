@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "discovery/data_fault.hpp"
+#include "log/log.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::tools::discovery {
+
+// What is wrong with a recording, found before any physics. The robot is right within a few
+// percent, effects worth 15 % of the torque may be missing in it, and the motion may be a poor one:
+// where the recording does not show it clearly, nothing is said. Positions that turn out to be in
+// degrees are converted before the rest is looked at. Throws std::invalid_argument where the robot
+// has another number of joints than the recording.
+std::vector<DataFault> examine(const Log& log, const RobotDescription& robot);
+
+}  // namespace offnominal::tools::discovery
