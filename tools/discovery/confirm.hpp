@@ -1,0 +1,14 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "discovery/data.hpp"
+
+namespace offnominal::tools::discovery {
+
+// Root mean square position error per joint, rad or m, of forward simulations over short windows
+// that each start on the measured motion: the torque error, through the mass matrix, integrated
+// twice along the measured motion (first order in the error).
+Eigen::VectorXd simulated_position_error(const Data& data, const Eigen::VectorXd& residual);
+
+}  // namespace offnominal::tools::discovery

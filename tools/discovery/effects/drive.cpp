@@ -1,0 +1,240 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "discovery/effects/effects.hpp"
+#include "signal/differentiate.hpp"
+
+namespace offnominal::tools::discovery {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::VectorXd;
+
+JointType type_of(const Workspace& at, Index joint) {
+  return at.rigid.joints[static_cast<std::size_t>(joint)].joint.type;
+}
+ArrayXd elapsed(const Workspace& at) { return at.motion.t_s.array() - at.start_s; }
+
+class Offset final : public EffectCandidate {
+ public:
+  const char* name() const override { return "torque_offset"; }
+  const char* formula() const override { return "level"; }
+  const char* words() const override { return "a constant torque"; }
+  const char* motion_hint() const override { return "rest at several positions"; }
+  std::vector<LinearParameter> linear_parameters(JointType type) const override {
+    return {{"level", unit(Quantity::kEffort, type)}};
+  }
+  std::vector<Regressor> regressors(const Workspace& at, Index joint,
+                                    std::span<const double> /*shape*/) const override {
+    return {{{joint, VectorXd::Ones(at.sample_count())}}};
+  }
+  bool applies(const Workspace& /*at*/, Index /*joint*/) const override { return true; }
+};
+
+class Scale final : public EffectCandidate {
+ public:
+  const char* name() const override { return "torque_scale"; }
+  const char* formula() const override { return "error * (torque of the model)"; }
+  const char* words() const override { return "a wrong torque constant"; }
+  const char* motion_hint() const override { return "move with a payload of known mass"; }
+  std::vector<LinearParameter> linear_parameters(JointType /*type*/) const override {
+    return {{"error", "1"}};
+  }
+  std::vector<Regressor> regressors(const Workspace& at, Index joint,
+                                    std::span<const double> /*shape*/) const override {
+    return {{{joint, at.model_torque.col(joint)}}};
+  }
+};
+
+class Stiffness final : public EffectCandidate {
+ public:
+  const char* name() const override { return "joint_stiffness"; }
+  const char* formula() const override { return "stiffness * (q - rest_position)"; }
+  const char* words() const override { return "a spring or cable that pulls to a rest position"; }
+  const char* motion_hint() const override { return "move over the whole range, slowly"; }
+  std::vector<LinearParameter> linear_parameters(JointType type) const override {
+    return {{"stiffness", unit(Quantity::kEffortPerPosition, type)},
+            {"offset", unit(Quantity::kEffort, type)}};
+  }
+  std::vector<Regressor> regressors(const Workspace& at, Index joint,
+                                    std::span<const double> /*shape*/) const override {
+    return {{{joint, at.motion.q.col(joint)}}, {{joint, VectorXd::Ones(at.sample_count())}}};
+  }
+  std::vector<NamedValue> parameters(JointType type, const VectorXd& coefficients,
+                                     const ShapePoint& /*shape*/,
+                                     const std::vector<ShapeRange>& /*ranges*/) const override {
+    return {{"stiffness", coefficients[0], unit(Quantity::kEffortPerPosition, type)},
+            {"rest_position", -coefficients[1] / coefficients[0], unit(Quantity::kPosition, type)}};
+  }
+};
+
+class Cogging final : public EffectCandidate {
+ public:
+  const char* name() const override { return "cogging_torque"; }
+  const char* formula() const override {
+    return "sine * sin(k q) + cosine * cos(k q), k = order (revolute) or 2 pi order (prismatic)";
+  }
+  const char* words() const override { return "a torque ripple that repeats with position"; }
+  const char* motion_hint() const override { return "move slowly over several periods"; }
+  std::vector<LinearParameter> linear_parameters(JointType type) const override {
+    return {{"sine", unit(Quantity::kEffort, type)}, {"cosine", unit(Quantity::kEffort, type)}};
+  }
+  std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index joint) const override {
+    const JointType type = type_of(at[0], joint);
+    const double per_unit = type == JointType::kRevolute ? 2 * std::numbers::pi : 1.0;
+    double range = 0;
+    double highest = 0;
+    for (const Workspace& one : at) {
+      const VectorXd q = one.motion.q.col(joint);
+      range = std::max(range, (q.maxCoeff() - q.minCoeff()) / per_unit);
+      VectorXd speed = one.motion.dq.col(joint).cwiseAbs() / per_unit;
+      const auto rank = static_cast<Index>(0.3 * static_cast<double>(speed.size() - 1));
+      std::nth_element(speed.data(), speed.data() + rank, speed.data() + speed.size());
+      const double slow = std::max(speed[rank], 0.05 * one.top_speed[joint] / per_unit);
+      if (slow > 0) highest = std::max(highest, one.plan.torque_cutoff_hz / slow);
+    }
+    ShapeRange order{"order", unit(Quantity::kCyclesPerPosition, type), {}};
+    if (!(range > 0)) return {order};
+    constexpr double kMost = 1500;
+    const double step = 0.5 / range;
+    const double last = std::min(highest, (2 / range) + kMost * step);
+    for (double k = 2 / range; k <= last; k += step) order.grid.push_back(k);
+    return {order};
+  }
+  std::vector<Regressor> regressors(const Workspace& at, Index joint,
+                                    std::span<const double> shape) const override {
+    const double k =
+        type_of(at, joint) == JointType::kRevolute ? shape[0] : shape[0] * 2 * std::numbers::pi;
+    const ArrayXd phase = k * at.motion.q.col(joint).array();
+    return {{{joint, phase.sin().matrix()}}, {{joint, phase.cos().matrix()}}};
+  }
+  Spectrum spectrum() const override { return Spectrum::kPosition; }
+};
+
+class Periodic final : public EffectCandidate {
+ public:
+  const char* name() const override { return "periodic_disturbance"; }
+  const char* formula() const override {
+    return "sine * sin(frequency t) + cosine * cos(frequency t)";
+  }
+  const char* words() const override { return "a disturbance that repeats in time"; }
+  const char* motion_hint() const override { return "record for longer"; }
+  std::vector<LinearParameter> linear_parameters(JointType type) const override {
+    return {{"sine", unit(Quantity::kEffort, type)}, {"cosine", unit(Quantity::kEffort, type)}};
+  }
+  std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index /*joint*/) const override {
+    ShapeRange frequency{"frequency", "rad/s", {}};
+    double duration_s = 0;
+    double cutoff_hz = 0;
+    for (const Workspace& one : at) {
+      duration_s = std::max(duration_s, static_cast<double>(one.sample_count()) * one.period_s());
+      cutoff_hz = std::max(cutoff_hz, one.plan.torque_cutoff_hz);
+    }
+    const double whole = 2 * std::numbers::pi / duration_s;
+    const double last = 2 * std::numbers::pi * cutoff_hz;
+    constexpr double kMost = 4000;
+    const double step = std::max(0.5 * whole, last / kMost);
+    for (double w = 5 * whole; w < last; w += step) frequency.grid.push_back(w);
+    return {frequency};
+  }
+  std::vector<Regressor> regressors(const Workspace& at, Index joint,
+                                    std::span<const double> shape) const override {
+    const ArrayXd phase = shape[0] * elapsed(at);
+    return {{{joint, phase.sin().matrix()}}, {{joint, phase.cos().matrix()}}};
+  }
+  Spectrum spectrum() const override { return Spectrum::kTime; }
+  bool applies(const Workspace& /*at*/, Index /*joint*/) const override { return true; }
+};
+
+class Delay final : public EffectCandidate {
+ public:
+  const char* name() const override { return "time_delay"; }
+  const char* formula() const override { return "torque(t) is logged `delay` before it acts"; }
+  const char* words() const override { return "a drive that executes its torque late"; }
+  const char* motion_hint() const override {
+    return "accelerate at two frequencies at least, the higher the better";
+  }
+  std::vector<LinearParameter> linear_parameters(JointType /*type*/) const override {
+    return {{"delay", "s"}};
+  }
+  std::vector<Regressor> regressors(const Workspace& at, Index joint,
+                                    std::span<const double> /*shape*/) const override {
+    return {{{joint, central_difference(at.model_torque.col(joint), at.period_s())}}};
+  }
+  bool is_physical(const Eigen::VectorXd& c) const override { return c[0] > 0; }
+  bool replaces_skew() const override { return true; }
+};
+
+class Coupling final : public EffectCandidate {
+ public:
+  const char* name() const override { return "joint_coupling"; }
+  const char* formula() const override {
+    return "coefficient * dq_k + level * tanh(dq_k / smoothing), k = source_joint";
+  }
+  const char* words() const override { return "friction from the motion of another joint"; }
+  const char* motion_hint() const override { return "move one joint at a time"; }
+  std::vector<LinearParameter> linear_parameters(JointType type) const override {
+    return {{"coefficient", unit(Quantity::kEffortPerVelocity, type)},
+            {"level", unit(Quantity::kEffort, type)}};
+  }
+  std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index joint) const override {
+    ShapeRange source{"source_joint", "", {}, 0, 0, false, true};
+    for (Index k = 0; k < at[0].joint_count(); ++k) {
+      if (k != joint && at[0].top_speed[k] > 0) source.grid.push_back(static_cast<double>(k + 1));
+    }
+    return {source};
+  }
+  std::vector<Regressor> regressors(const Workspace& at, Index joint,
+                                    std::span<const double> shape) const override {
+    const auto source = static_cast<Index>(shape[0]) - 1;
+    return {{{joint, at.motion.dq.col(source)}}, {{joint, at.sign(source).matrix()}}};
+  }
+  bool applies(const Workspace& at, Index /*joint*/) const override { return at.joint_count() > 1; }
+};
+
+class TemperatureDrift final : public EffectCandidate {
+ public:
+  const char* name() const override { return "temperature_drift"; }
+  const char* formula() const override {
+    return "exp(-t / time_constant) * (level * tanh(dq / smoothing) + coefficient * dq)";
+  }
+  const char* words() const override { return "friction that changes while the joint warms up"; }
+  const char* motion_hint() const override {
+    return "repeat the same motion from a cold start for several time constants";
+  }
+  std::vector<LinearParameter> linear_parameters(JointType type) const override {
+    return {{"level", unit(Quantity::kEffort, type)},
+            {"coefficient", unit(Quantity::kEffortPerVelocity, type)}};
+  }
+  std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index /*joint*/) const override {
+    double duration_s = 0;
+    for (const Workspace& one : at) {
+      duration_s = std::max(duration_s, static_cast<double>(one.sample_count()) * one.period_s());
+    }
+    return {
+        {"time_constant", "s", logarithmic_grid(duration_s / 12, duration_s * 1.5), 0, 0, true}};
+  }
+  std::vector<Regressor> regressors(const Workspace& at, Index joint,
+                                    std::span<const double> shape) const override {
+    const ArrayXd fade = (-elapsed(at) / shape[0]).exp();
+    return {{{joint, (fade * at.sign(joint)).matrix()}},
+            {{joint, (fade * at.motion.dq.col(joint).array()).matrix()}}};
+  }
+};
+
+}  // namespace
+
+void add_drive_effects(Candidates& all) {
+  all.push_back(std::make_unique<Offset>());
+  all.push_back(std::make_unique<Scale>());
+  all.push_back(std::make_unique<Stiffness>());
+  all.push_back(std::make_unique<Cogging>());
+  all.push_back(std::make_unique<Periodic>());
+  all.push_back(std::make_unique<Delay>());
+  all.push_back(std::make_unique<Coupling>());
+  all.push_back(std::make_unique<TemperatureDrift>());
+}
+
+}  // namespace offnominal::tools::discovery

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "discovery/rows.hpp"
+
+namespace offnominal::tools::discovery {
+
+// What is left of the torque once a model has been fitted, ready for judging columns beside it.
+struct Remainder {
+  const RowLayout* layout = nullptr;
+  RowLayout::Blocks blocks;
+  Eigen::VectorXd joint_weights;
+  Eigen::VectorXd residual;             // weighted, orthogonal to the basis
+  Eigen::MatrixXd basis;                // weighted, orthonormal
+  Eigen::VectorXd energy;               // per joint, of the weighted residual
+  Eigen::VectorXd independent_samples;  // per joint
+};
+
+// Sum of squares per joint of stacked values.
+Eigen::VectorXd joint_energy(const RowLayout& layout, const Eigen::VectorXd& values);
+
+// What columns would add to the model, everything that the model fits adapting to them.
+struct Evidence {
+  Eigen::VectorXd coefficients;  // of the unweighted columns
+  double gain = 0;               // share of the weighted residual's energy that goes
+  double joint_gain = 0;         // the same for the joint where most goes
+  double log_likelihood = 0;     // gain in it, with as many samples as are independent
+  // Wald statistic W with a covariance that holds for errors correlated inside a block and of any
+  // variance, as K W / (K + W) with K blocks: at most their number.
+  double statistic = 0;
+  bool usable = false;            // false: the columns add nothing to the basis
+  Eigen::MatrixXd block_scores;   // of the remainder; rows: blocks, columns: coefficients
+  Eigen::MatrixXd block_moments;  // rows: blocks, columns: the block's d x d products
+};
+
+// `columns`: stacked, unweighted.
+Evidence judge(const Remainder& remainder, const Eigen::MatrixXd& columns);
+
+// Probability of a statistic at least this large without the effect, for one group of columns:
+// blocks - dimension over dimension times t / (blocks - t) is about F(dimension, blocks -
+// dimension).
+double p_of_statistic(double statistic, Eigen::Index dimension, int blocks);
+
+// Largest evidence, as -log10 of p_of_statistic(), that each of `draws` recordings without any
+// effect gives over all the groups: the remainder of every block keeps its size and gets a random
+// sign (wild block bootstrap with Rademacher weights; the statistic is computed anew each time, as
+// in A. C. Cameron, J. B. Gelbach, D. L. Miller, Review of Economics and Statistics 90(3), 2008).
+std::vector<double> largest_without_effect(const std::vector<Evidence>& groups, int blocks,
+                                           int draws, std::uint64_t seed);
+
+// Share of `null` that reaches `value`, at least 1 / (1 + its size).
+double p_among(const std::vector<double>& null, double value);
+
+}  // namespace offnominal::tools::discovery

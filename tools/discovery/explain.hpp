@@ -1,0 +1,124 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "discovery/doctor.hpp"
+#include "discovery/effect_candidate.hpp"
+#include "discovery/excitation.hpp"
+#include "discovery/remainder.hpp"
+#include "log/log.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::tools::discovery {
+
+enum class Verdict {
+  kExplained,
+  kFound,
+  kAmbiguous,
+  kParameterShift,
+  kUnknownStateDependent,
+  kUnknownExternal,
+  kNotExcited,
+  kDataFault
+};
+const char* name_of(Verdict verdict);
+
+// A number with its 95 % interval; none where the data give none.
+struct Estimate {
+  NamedValue value;
+  std::optional<std::array<double, 2>> ci95;
+};
+
+// An effect on a joint; the joint counts from 0.
+struct EffectAt {
+  std::string effect;
+  Eigen::Index joint = 0;
+  friend bool operator==(const EffectAt&, const EffectAt&) = default;
+};
+
+struct Finding {
+  EffectAt what;
+  std::string words;
+  std::vector<Estimate> parameters;
+  double p_value = 1;         // of the whole search, wild block bootstrap
+  double p_replay = 1;        // by playing the model without the effect, 1 where not asked for
+  double holdout_before = 0;  // rms torque error of its joint without it, N m or N
+  double holdout_after = 0;
+  double simulated_before = 0;  // rms position error of short forward simulations, rad or m
+  double simulated_after = 0;
+};
+
+struct Rejection {
+  EffectAt what;
+  double p_value = 1;
+  double smallest_detectable = 0;  // rms torque that would have been seen
+  std::string unit;
+};
+
+struct JointErrors {
+  Eigen::Index joint = 0;
+  std::string unit;
+  double rms_torque = 0;
+  double rms_before = 0;         // of the file's model as it is
+  double rms_fitted_before = 0;  // with its numbers fitted within what they may be off
+  double rms_after = 0;
+  double holdout_before = 0;
+  double holdout_after = 0;
+  double noise_floor = 0;
+};
+
+// A known number of the robot file that the recordings contradict.
+struct Shift {
+  std::string name;
+  double share = 0;  // of the file's value
+};
+
+struct Explanation {
+  Verdict verdict = Verdict::kExplained;
+  std::string words;
+  bool holdout_is_apart = false;  // hold-out recordings, not blocks of time
+  std::vector<JointErrors> joints;
+  std::vector<Finding> found;  // in the order of discovery
+  std::vector<std::vector<EffectAt>> ambiguous;
+  std::vector<Rejection> rejected;
+  std::vector<StructureShare> where;  // of what is left, largest first
+  std::vector<Shift> shifts;
+  std::vector<DataFault> data_faults;
+  std::vector<Excitation> excitation;
+  std::vector<std::string> advice;
+  bool unexcited = false;  // what is left follows a joint whose motion tells nothing apart
+
+  // For pictures: one row per kept sample of the first recording, columns: joints.
+  struct Series {
+    Eigen::VectorXd t_s;
+    Eigen::MatrixXd measured, model_before, model_after, q, dq, load;
+  } series;
+  // Hold-out error of every joint with the findings so far, from none to all.
+  std::vector<Eigen::VectorXd> waterfall;
+};
+
+struct ExplainOptions {
+  int threads = 1;
+  std::uint64_t seed = 1;
+  int bootstrap_draws = 1999;
+  int replays = 19;  // 0: none
+  double link_share = 0.05;
+  int most_effects = 6;
+};
+
+// What is being done, and how much of it.
+using OnProgress = std::function<void(const std::string& doing)>;
+
+// Which effects the robot's model lacks, by recordings of it. `holdout` may be empty: then parts of
+// the recordings are held out in turn. Throws InputError where the recordings and the robot do not
+// fit together or are too short.
+Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
+                    const std::vector<Log>& holdout, const ExplainOptions& options,
+                    const OnProgress& on_progress = {});
+
+}  // namespace offnominal::tools::discovery

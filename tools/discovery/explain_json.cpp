@@ -1,0 +1,101 @@
+#include "discovery/explain_report.hpp"
+
+namespace offnominal::tools::discovery {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+ordered_json effect_at(const EffectAt& what) {
+  return {{"effect", what.effect}, {"joint", what.joint + 1}};
+}
+
+ordered_json parameters_of(const Finding& finding) {
+  ordered_json parameters = ordered_json::object();
+  for (const Estimate& one : finding.parameters) {
+    ordered_json value{{"value", one.value.value}, {"unit", one.value.unit}, {"ci95", nullptr}};
+    if (one.ci95) value["ci95"] = {(*one.ci95)[0], (*one.ci95)[1]};
+    parameters[one.value.name] = std::move(value);
+  }
+  return parameters;
+}
+
+ordered_json json_of(const Finding& finding) {
+  ordered_json json = effect_at(finding.what);
+  json["parameters"] = parameters_of(finding);
+  json["p_value"] = finding.p_value;
+  json["p_value_replay"] = finding.p_replay;
+  json["holdout_error_before"] = finding.holdout_before;
+  json["holdout_error_after"] = finding.holdout_after;
+  json["simulated_position_error_before"] = finding.simulated_before;
+  json["simulated_position_error_after"] = finding.simulated_after;
+  return json;
+}
+
+ordered_json json_of(const JointErrors& joint) {
+  return {{"joint", joint.joint + 1},
+          {"unit", joint.unit},
+          {"rms_torque", joint.rms_torque},
+          {"rms_error_before", joint.rms_before},
+          {"rms_error_after", joint.rms_after},
+          {"holdout_before", joint.holdout_before},
+          {"holdout_after", joint.holdout_after},
+          {"noise_floor", joint.noise_floor}};
+}
+
+template <typename Item, typename Make>
+ordered_json array_of(const std::vector<Item>& items, const Make& make) {
+  ordered_json array = ordered_json::array();
+  for (const Item& item : items) array.push_back(make(item));
+  return array;
+}
+
+}  // namespace
+
+ordered_json to_json(const Explanation& e, const ExplainNames& names) {
+  ordered_json json;
+  json["logs"] = names.logs;
+  json["holdout"] = names.holdout;
+  json["robot"] = names.robot_file;
+  json["verdict"] = name_of(e.verdict);
+  json["words"] = e.words;
+  json["noise_floor"] =
+      array_of(e.joints, [](const JointErrors& joint) { return ordered_json(joint.noise_floor); });
+  json["joints"] = array_of(e.joints, [](const JointErrors& joint) { return json_of(joint); });
+  json["found"] = array_of(e.found, [](const Finding& finding) { return json_of(finding); });
+  json["ambiguous"] = array_of(
+      e.ambiguous, [](const std::vector<EffectAt>& same) { return array_of(same, effect_at); });
+  json["rejected"] = array_of(e.rejected, [](const Rejection& one) {
+    ordered_json rejected = effect_at(one.what);
+    rejected["p_value"] = one.p_value;
+    rejected["smallest_detectable"] = one.smallest_detectable;
+    rejected["unit"] = one.unit;
+    return rejected;
+  });
+  json["where"] = array_of(e.where, [](const StructureShare& share) {
+    return ordered_json{{"joint", share.joint + 1},
+                        {"variable", share.variable},
+                        {"share_of_residual", share.share}};
+  });
+  json["shifts"] = array_of(e.shifts, [](const Shift& shift) {
+    return ordered_json{{"parameter", shift.name}, {"share_of_file_value", shift.share}};
+  });
+  json["data_faults"] = array_of(e.data_faults, [](const DataFault& fault) {
+    ordered_json one{{"fault", name_of(fault.kind)}, {"joint", nullptr}};
+    if (fault.joint >= 0) one["joint"] = fault.joint + 1;
+    one["size"] = fault.size;
+    one["unit"] = fault.unit;
+    one["words"] = fault.words;
+    return one;
+  });
+  json["excitation"] = array_of(e.excitation, [](const Excitation& one) {
+    return ordered_json{{"range", one.range},
+                        {"top_speed", one.top_speed},
+                        {"separation", one.separation},
+                        {"sufficient", one.sufficient}};
+  });
+  json["advice"] = e.advice;
+  return json;
+}
+
+}  // namespace offnominal::tools::discovery

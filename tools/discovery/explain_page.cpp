@@ -1,0 +1,292 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "discovery/explain_report.hpp"
+
+namespace offnominal::tools::discovery {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using report::Level;
+
+Level level_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kExplained:
+    case Verdict::kFound:
+      return Level::kGood;
+    case Verdict::kDataFault:
+    case Verdict::kUnknownExternal:
+    case Verdict::kUnknownStateDependent:
+      return Level::kBad;
+    default:
+      return Level::kWarn;
+  }
+}
+
+std::vector<double> numbers(const Eigen::Ref<const VectorXd>& values) {
+  return {values.begin(), values.end()};
+}
+
+const JointErrors& joint_of(const Explanation& e, Index joint) {
+  return e.joints[static_cast<std::size_t>(joint)];
+}
+
+const char* position_unit(const JointErrors& joint) { return joint.unit == "N" ? "m" : "rad"; }
+const char* velocity_unit(const JointErrors& joint) { return joint.unit == "N" ? "m/s" : "rad/s"; }
+
+report::Table error_table(const Explanation& e) {
+  report::Table table;
+  table.caption = "Torque error per joint, root mean square";
+  table.columns = {{"joint", "", "d"},
+                   {"unit", "", ".4g"},
+                   {"torque", "", ".4g"},
+                   {"error before", "", ".4g"},
+                   {"error after", "", ".4g"},
+                   {"held out, before", "", ".4g"},
+                   {"held out, after", "", ".4g"},
+                   {"noise floor", "", ".4g"}};
+  for (const JointErrors& joint : e.joints) {
+    table.rows.push_back({static_cast<double>(joint.joint + 1), joint.unit, joint.rms_torque,
+                          joint.rms_before, joint.rms_after, joint.holdout_before,
+                          joint.holdout_after, joint.noise_floor});
+  }
+  table.note = e.holdout_is_apart
+                   ? "Held out: recordings that no fit has seen."
+                   : "Held out: contiguous blocks of time, each predicted by a fit of the others.";
+  return table;
+}
+
+report::Table finding_table(const Explanation& e) {
+  report::Table table;
+  table.caption = "Effects found";
+  table.columns = {{"effect", "", ".4g"}, {"joint", "", "d"},       {"parameter", "", ".4g"},
+                   {"value", "", ".5g"},  {"95 % from", "", ".5g"}, {"to", "", ".5g"},
+                   {"unit", "", ".4g"},   {"p", "", ".2g"},         {"p by replay", "", ".2g"}};
+  for (const Finding& finding : e.found) {
+    for (const Estimate& one : finding.parameters) {
+      report::Cell low;
+      report::Cell high;
+      if (one.ci95) {
+        low = (*one.ci95)[0];
+        high = (*one.ci95)[1];
+      }
+      table.rows.push_back({finding.what.effect, static_cast<double>(finding.what.joint + 1),
+                            one.value.name, one.value.value, low, high, one.value.unit,
+                            finding.p_value, finding.p_replay});
+    }
+  }
+  return table;
+}
+
+report::Table where_table(const Explanation& e) {
+  constexpr std::size_t kMost = 8;
+  report::Table table;
+  table.caption = "What the remaining error follows";
+  table.columns = {{"joint", "", "d"}, {"variable", "", ".4g"}, {"share", "%", ".1f"}};
+  for (std::size_t i = 0; i < std::min(kMost, e.where.size()); ++i) {
+    table.rows.push_back(
+        {static_cast<double>(e.where[i].joint + 1), e.where[i].variable, 100 * e.where[i].share});
+  }
+  table.note =
+      "Share of the error's energy on stretches of time that the smooth fit has not seen; "
+      "for time: concentrated in a tenth of it.";
+  return table;
+}
+
+report::Table rejected_table(const Explanation& e) {
+  report::Table table;
+  table.caption = "Effects that these recordings do not show";
+  table.columns = {{"effect", "", ".4g"},
+                   {"joint", "", "d"},
+                   {"p", "", ".2g"},
+                   {"smallest that would have been seen", "", ".3g"},
+                   {"unit", "", ".4g"}};
+  for (const Rejection& one : e.rejected) {
+    table.rows.push_back({one.what.effect, static_cast<double>(one.what.joint + 1), one.p_value,
+                          one.smallest_detectable, one.unit});
+  }
+  return table;
+}
+
+report::Waterfall waterfall_of(const Explanation& e, Index joint) {
+  report::Waterfall waterfall;
+  const JointErrors& errors = joint_of(e, joint);
+  waterfall.title = fmt::format("Held-out error of joint {}, effect by effect", joint + 1);
+  waterfall.value_axis = {"rms torque error", errors.unit};
+  for (std::size_t i = 0; i < e.waterfall.size(); ++i) {
+    const std::string label = i == 0 ? "model as it is" : "+ " + e.found[i - 1].what.effect;
+    waterfall.steps.push_back({label, e.waterfall[i][joint]});
+  }
+  waterfall.levels.push_back({errors.noise_floor, "noise floor"});
+  waterfall.width = report::Width::kHalf;
+  return waterfall;
+}
+
+report::Chart torque_chart(const Explanation& e, Index joint) {
+  const JointErrors& errors = joint_of(e, joint);
+  report::Chart chart;
+  chart.title = fmt::format("Torque of joint {}", joint + 1);
+  chart.x = {"time", "s"};
+  chart.y = {{"torque", errors.unit}};
+  const std::vector<double> t = numbers(e.series.t_s);
+  const auto add = [&](const char* name, const Eigen::MatrixXd& values, report::Tone tone) {
+    report::Series series;
+    series.name = name;
+    series.x = t;
+    series.y = numbers(values.col(joint));
+    series.tone = tone;
+    chart.series.push_back(std::move(series));
+  };
+  add("measured", e.series.measured, report::Tone::kMeasured);
+  add("model with what was found", e.series.model_after, report::Tone::kModel);
+  chart.zoom_group = "time";
+  chart.slider = true;
+  return chart;
+}
+
+report::Chart residual_chart(const Explanation& e, Index joint) {
+  const JointErrors& errors = joint_of(e, joint);
+  report::Chart chart;
+  chart.title = fmt::format("Torque error of joint {}", joint + 1);
+  chart.x = {"time", "s"};
+  chart.y = {{"measured less model", errors.unit}};
+  const auto add = [&](const char* name, const Eigen::MatrixXd& model, report::Tone tone) {
+    report::Series series;
+    series.name = name;
+    series.x = numbers(e.series.t_s);
+    series.y = numbers(e.series.measured.col(joint) - model.col(joint));
+    series.tone = tone;
+    chart.series.push_back(std::move(series));
+  };
+  add("model as it is", e.series.model_before, report::Tone::kFaint);
+  add("with what was found", e.series.model_after, report::Tone::kResidual);
+  chart.zoom_group = "time";
+  return chart;
+}
+
+// Mean error of the model as it is over two variables.
+report::Heatmap error_map(const Explanation& e, Index joint) {
+  constexpr Index kCells = 20;
+  const JointErrors& errors = joint_of(e, joint);
+  report::Heatmap map;
+  map.title = fmt::format("Mean error of joint {}, model as it is", joint + 1);
+  map.x = {"position", position_unit(errors)};
+  map.y = {"velocity", velocity_unit(errors)};
+  map.value_axis = {"torque error", errors.unit};
+  map.diverging = true;
+  const VectorXd q = e.series.q.col(joint);
+  const VectorXd dq = e.series.dq.col(joint);
+  const VectorXd error = e.series.measured.col(joint) - e.series.model_before.col(joint);
+  const auto edges = [](const VectorXd& values) {
+    std::vector<double> at;
+    const double low = values.minCoeff();
+    const double width = std::max(values.maxCoeff() - low, 1e-9);
+    for (Index i = 0; i <= kCells; ++i) {
+      at.push_back(low + width * static_cast<double>(i) / kCells);
+    }
+    return at;
+  };
+  map.x_edges = edges(q);
+  map.y_edges = edges(dq);
+  std::vector<double> sum(static_cast<std::size_t>(kCells * kCells), 0.0);
+  std::vector<double> count(sum.size(), 0.0);
+  const auto cell = [](const std::vector<double>& at, double value) {
+    const double part = (value - at.front()) / (at.back() - at.front());
+    return std::clamp<Index>(static_cast<Index>(part * kCells), 0, kCells - 1);
+  };
+  for (Index i = 0; i < q.size(); ++i) {
+    const auto place =
+        static_cast<std::size_t>(cell(map.y_edges, dq[i]) * kCells + cell(map.x_edges, q[i]));
+    sum[place] += error[i];
+    count[place] += 1;
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    map.value.push_back(count[i] > 0 ? sum[i] / count[i]
+                                     : std::numeric_limits<double>::quiet_NaN());
+  }
+  return map;
+}
+
+// The error over one variable, before and after.
+report::Chart error_over(const Explanation& e, Index joint, const char* variable, const char* unit,
+                         const VectorXd& values) {
+  const JointErrors& errors = joint_of(e, joint);
+  report::Chart chart;
+  chart.title = fmt::format("Error of joint {} over {}", joint + 1, variable);
+  chart.x = {variable, unit};
+  chart.y = {{"measured less model", errors.unit}};
+  const auto add = [&](const char* name, const Eigen::MatrixXd& model, report::Tone tone) {
+    report::Series series;
+    series.name = name;
+    series.kind = report::SeriesKind::kPoints;
+    series.x = numbers(values);
+    series.y = numbers(e.series.measured.col(joint) - model.col(joint));
+    series.tone = tone;
+    chart.series.push_back(std::move(series));
+  };
+  add("model as it is", e.series.model_before, report::Tone::kFaint);
+  add("with what was found", e.series.model_after, report::Tone::kResidual);
+  chart.width = report::Width::kHalf;
+  return chart;
+}
+
+report::Section joint_section(const Explanation& e, Index joint) {
+  const JointErrors& errors = joint_of(e, joint);
+  report::Section section;
+  section.heading = fmt::format("Joint {}", joint + 1);
+  if (!e.waterfall.empty() && e.waterfall.size() == e.found.size() + 1) {
+    section.blocks.emplace_back(waterfall_of(e, joint));
+  }
+  section.blocks.emplace_back(error_map(e, joint));
+  section.blocks.emplace_back(torque_chart(e, joint));
+  section.blocks.emplace_back(residual_chart(e, joint));
+  section.blocks.emplace_back(
+      error_over(e, joint, "velocity", velocity_unit(errors), e.series.dq.col(joint)));
+  section.blocks.emplace_back(
+      error_over(e, joint, "position", position_unit(errors), e.series.q.col(joint)));
+  section.blocks.emplace_back(
+      error_over(e, joint, "load", errors.unit.c_str(), e.series.load.col(joint)));
+  return section;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
+}  // namespace
+
+report::Page page_of(const Explanation& e, const ExplainNames& names) {
+  report::Page page;
+  page.title = "What the model lacks";
+  page.subtitle = joined(names.logs) + " against " + names.robot_file;
+  page.verdict = {std::string(name_of(e.verdict)) + ": " + e.words, level_of(e.verdict)};
+  page.command_line = names.command_line;
+  report::Section overview;
+  overview.heading = "Evidence";
+  for (const DataFault& fault : e.data_faults) {
+    overview.blocks.emplace_back(report::Note{fault.words + ". " + fault.mend, Level::kBad});
+  }
+  if (!e.found.empty()) overview.blocks.emplace_back(finding_table(e));
+  overview.blocks.emplace_back(error_table(e));
+  if (!e.where.empty()) overview.blocks.emplace_back(where_table(e));
+  for (const std::string& advice : e.advice) {
+    overview.blocks.emplace_back(report::Note{advice, Level::kNeutral});
+  }
+  page.sections.push_back(std::move(overview));
+  for (Index joint = 0; joint < static_cast<Index>(e.joints.size()); ++joint) {
+    page.sections.push_back(joint_section(e, joint));
+  }
+  report::Section rejected;
+  rejected.heading = "What these recordings do not show";
+  rejected.blocks.emplace_back(rejected_table(e));
+  page.sections.push_back(std::move(rejected));
+  return page;
+}
+
+}  // namespace offnominal::tools::discovery

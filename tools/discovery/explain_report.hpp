@@ -1,0 +1,29 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "discovery/explain.hpp"
+#include "report/page.hpp"
+
+namespace offnominal::tools::discovery {
+
+// What names an explanation in its outputs.
+struct ExplainNames {
+  std::vector<std::string> logs;
+  std::vector<std::string> holdout;
+  std::string robot_file;
+  std::string command_line;
+};
+
+// docs/explain.md lists the keys. Joints count from 1.
+nlohmann::ordered_json to_json(const Explanation& explanation, const ExplainNames& names);
+
+// For a terminal: the verdict, then the evidence.
+std::string text_of(const Explanation& explanation, const ExplainNames& names);
+
+// The same with pictures; every number on it is in to_json().
+report::Page page_of(const Explanation& explanation, const ExplainNames& names);
+
+}  // namespace offnominal::tools::discovery

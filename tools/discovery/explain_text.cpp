@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include "discovery/explain_report.hpp"
+
+namespace offnominal::tools::discovery {
+namespace {
+
+std::string words_of(const Estimate& one) {
+  std::string words = fmt::format("{} = {:.4g}", one.value.name, one.value.value);
+  if (one.ci95) words += fmt::format(" ({:.4g} .. {:.4g})", (*one.ci95)[0], (*one.ci95)[1]);
+  if (!one.value.unit.empty() && one.value.unit != "1") words += " " + one.value.unit;
+  return words;
+}
+
+std::string unit_at(const Explanation& e, Eigen::Index joint) {
+  return e.joints[static_cast<std::size_t>(joint)].unit;
+}
+
+std::string text_of_joints(const Explanation& e) {
+  std::string text =
+      fmt::format("\n{:<6} {:>12} {:>14} {:>14} {:>14} {:>14} {:>12}\n", "joint", "rms torque",
+                  "error before", "error after", "held out, bef.", "held out, aft.", "noise floor");
+  for (const JointErrors& joint : e.joints) {
+    const auto with_unit = [&](double value) {
+      return fmt::format("{:.4g} {}", value, joint.unit);
+    };
+    text += fmt::format("{:<6} {:>12} {:>14} {:>14} {:>14} {:>14} {:>12}\n", joint.joint + 1,
+                        with_unit(joint.rms_torque), with_unit(joint.rms_before),
+                        with_unit(joint.rms_after), with_unit(joint.holdout_before),
+                        with_unit(joint.holdout_after), with_unit(joint.noise_floor));
+  }
+  return text;
+}
+
+std::string text_of_findings(const Explanation& e) {
+  std::string text;
+  for (std::size_t i = 0; i < e.found.size(); ++i) {
+    const Finding& finding = e.found[i];
+    const std::string unit = unit_at(e, finding.what.joint);
+    text += fmt::format("\n{}. {} on joint {}: {}\n", i + 1, finding.what.effect,
+                        finding.what.joint + 1, finding.words);
+    for (const Estimate& one : finding.parameters) text += "   " + words_of(one) + "\n";
+    text += fmt::format(
+        "   held-out error without it {:.4g} {}, with it {:.4g} {}; p = {:.2g} over the whole "
+        "search, {:.2g} by replay\n",
+        finding.holdout_before, unit, finding.holdout_after, unit, finding.p_value,
+        finding.p_replay);
+  }
+  for (const auto& same : e.ambiguous) {
+    text += "\nnot told apart:";
+    for (const EffectAt& one : same) {
+      text += fmt::format(" {} on joint {};", one.effect, one.joint + 1);
+    }
+    text.back() = '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string text_of(const Explanation& e, const ExplainNames& names) {
+  std::string text = fmt::format("{}: {}\n", name_of(e.verdict), e.words);
+  text += fmt::format("model {}, {} recording{}, held out: {}\n", names.robot_file,
+                      names.logs.size(), names.logs.size() == 1 ? "" : "s",
+                      e.holdout_is_apart ? "other recordings" : "blocks of time");
+  for (const DataFault& fault : e.data_faults) text += "data fault: " + fault.words + "\n";
+  text += text_of_joints(e);
+  text += text_of_findings(e);
+  if (!e.where.empty()) {
+    const StructureShare& first = e.where.front();
+    text += fmt::format("\nwhat is left follows the {} of joint {} by {:.0f} %\n", first.variable,
+                        first.joint + 1, 100 * first.share);
+  }
+  for (const Shift& shift : e.shifts) {
+    text += fmt::format("the file's {} is off by {:+.0f} %\n", shift.name, 100 * shift.share);
+  }
+  for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
+  return text;
+}
+
+}  // namespace offnominal::tools::discovery

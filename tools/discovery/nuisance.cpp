@@ -1,0 +1,146 @@
+#include "discovery/nuisance.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include <algorithm>
+
+#include "analysis/inverse_model.hpp"
+#include "analysis/unknown.hpp"
+#include "discovery/dahl.hpp"
+#include "signal/differentiate.hpp"
+
+namespace offnominal::tools::discovery {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr std::array<double, 3> kPreslidingShares{0.0002, 0.0006, 0.002};
+
+class Builder {
+ public:
+  Builder(const RobotDescription& robot, const std::vector<Workspace>& recordings,
+          const RowLayout& layout, const NuisanceOptions& options)
+      : robot_(robot), recordings_(recordings), layout_(layout), options_(options) {}
+
+  Nuisance build() {
+    for (Index link = 0; link < layout_.joint_count(); ++link) add_link(link);
+    for (std::size_t effect = 0; effect < robot_.effects.size(); ++effect) add_effect(effect);
+    for (Index joint = 0; joint < layout_.joint_count(); ++joint) {
+      add_sign_shapes(joint);
+      add_skew(joint);
+    }
+    Nuisance nuisance;
+    nuisance.terms = std::move(terms_);
+    nuisance.columns.resize(layout_.rows(), static_cast<Index>(columns_.size()));
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      nuisance.columns.col(static_cast<Index>(i)) = columns_[i];
+    }
+    return nuisance;
+  }
+
+ private:
+  template <typename MakeRegressor>
+  void add(NuisanceTerm term, const MakeRegressor& make) {
+    std::vector<Regressor> regressors;
+    for (const Workspace& at : recordings_) regressors.push_back(make(at));
+    VectorXd column = layout_.stack(recordings_, regressors);
+    terms_.push_back(std::move(term));
+    columns_.push_back(std::move(column));
+  }
+
+  void add_link(Index link) {
+    const double share = options_.link_share;
+    add({NuisanceTerm::Kind::kLink, link, 0, 0, {-share, share},
+         fmt::format("mass and inertia of link {}", link + 1)},
+        [&](const Workspace& at) {
+          const MatrixXd torque = link_torque(at.rigid, static_cast<std::size_t>(link), at.motion);
+          Regressor regressor;
+          for (Index joint = 0; joint <= link; ++joint) {
+            regressor.push_back({joint, torque.col(joint)});
+          }
+          return regressor;
+        });
+  }
+
+  void add_effect(std::size_t effect) {
+    for (const Unknown& unknown : unknowns_of_effect(robot_, effect, false)) {
+      add({NuisanceTerm::Kind::kKnownEffect,
+           static_cast<Index>(unknown.joint),
+           effect,
+           unknown.parameter,
+           {},
+           name_of(robot_, unknown)},
+          [&](const Workspace& at) {
+            Regressor columns;
+            for (JointColumn& column : regressor(robot_, unknown, at.motion)) {
+              columns.push_back({static_cast<Index>(column.joint), std::move(column.values)});
+            }
+            return columns;
+          });
+    }
+  }
+
+  // How dry friction builds up at a reversal is never quite the file's smoothed sign: a wider one,
+  // and a Dahl operator of several widths, each a share of the range moved.
+  void add_sign_shapes(Index joint) {
+    const auto add_shape = [&](const std::string& name, const auto& shape) {
+      add({NuisanceTerm::Kind::kSignShape, joint, 0, 0, {},
+           fmt::format("{} of joint {}", name, joint + 1)},
+          [&](const Workspace& at) -> Regressor { return {{joint, shape(at)}}; });
+    };
+    add_shape("wider sign", [&](const Workspace& at) -> VectorXd {
+      return (at.motion.dq.col(joint).array() / (4 * at.sign_width[joint])).tanh() -
+             at.sign(joint);
+    });
+    double range = 0;
+    for (const Workspace& at : recordings_) {
+      const auto q = at.motion.q.col(joint);
+      range = std::max(range, q.maxCoeff() - q.minCoeff());
+    }
+    for (const double share : kPreslidingShares) {
+      add_shape(fmt::format("pre-sliding over {:.2g}", share * range),
+                [&](const Workspace& at) -> VectorXd {
+                  return dahl_state(at.motion.q.col(joint), share * range).array() -
+                         at.sign(joint);
+                });
+    }
+  }
+
+  void add_skew(Index joint) {
+    double period_s = 0;
+    for (const Workspace& at : recordings_) period_s = std::max(period_s, at.skew_s);
+    const double most = options_.skew_samples * period_s;
+    add({NuisanceTerm::Kind::kSkew, joint, 0, 0, {-most, most},
+         fmt::format("time skew of joint {}", joint + 1)},
+        [&](const Workspace& at) -> Regressor {
+          return {{joint, central_difference(at.load_torque.col(joint), at.period_s())}};
+        });
+  }
+
+  const RobotDescription& robot_;
+  const std::vector<Workspace>& recordings_;
+  const RowLayout& layout_;
+  const NuisanceOptions& options_;
+  std::vector<NuisanceTerm> terms_;
+  std::vector<VectorXd> columns_;
+};
+
+}  // namespace
+
+std::vector<Box> Nuisance::boxes() const {
+  std::vector<Box> boxes;
+  for (const NuisanceTerm& term : terms) boxes.push_back(term.box);
+  return boxes;
+}
+
+Nuisance make_nuisance(const RobotDescription& robot, const std::vector<Workspace>& recordings,
+                       const RowLayout& layout, const NuisanceOptions& options) {
+  return Builder(robot, recordings, layout, options).build();
+}
+
+}  // namespace offnominal::tools::discovery

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "discovery/fit.hpp"
+#include "discovery/rows.hpp"
+#include "discovery/workspace.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::tools::discovery {
+
+// What is fitted in every model, with and without a candidate, and never reported as a discovery:
+// the numbers of the robot file within what its author may have got wrong.
+struct NuisanceTerm {
+  enum class Kind {
+    kLink,        // mass and inertia of a link, as a share
+    kKnownEffect,  // a linear parameter of an effect of the robot file, as a difference
+    kSignShape,    // how dry friction builds up at a reversal; only beside dry friction
+    kSkew,         // time skew between torque and position, s
+  };
+  Kind kind = Kind::kLink;
+  Eigen::Index joint = 0;    // or link
+  std::size_t effect = 0;    // kKnownEffect: index into the robot's effects
+  std::size_t parameter = 0;
+  Box box;
+  std::string name;  // in words
+};
+
+struct Nuisance {
+  std::vector<NuisanceTerm> terms;
+  Eigen::MatrixXd columns;  // stacked, filtered, not weighted; one per term
+
+  [[nodiscard]] std::vector<Box> boxes() const;
+};
+
+struct NuisanceOptions {
+  double link_share = 0.05;  // mass and inertia of a link may be off by this share
+  double skew_samples = 1.0;  // torque and position may be this far apart
+};
+
+Nuisance make_nuisance(const RobotDescription& robot, const std::vector<Workspace>& recordings,
+                       const RowLayout& layout, const NuisanceOptions& options);
+
+}  // namespace offnominal::tools::discovery

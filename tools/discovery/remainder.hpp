@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "discovery/data.hpp"
+
+namespace offnominal::tools::discovery {
+
+// Root mean square of the noise per joint, N m or N: the density of the residual in the upper part
+// of the filter's band, taken for white over the whole of it.
+Eigen::VectorXd noise_floor_of(const Data& data, const Eigen::VectorXd& residual);
+
+// How much of the residual of a joint follows a variable, judged on time that the smooth fit to it
+// has not seen.
+struct StructureShare {
+  Eigen::Index joint = 0;
+  std::string variable;  // "position", "velocity", "load", "position and velocity", "time"
+  double share = 0;      // of the residual's energy, 0 to 1
+};
+std::vector<StructureShare> structure_of(const Data& data, const Eigen::VectorXd& residual);
+
+}  // namespace offnominal::tools::discovery

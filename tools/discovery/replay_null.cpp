@@ -1,0 +1,86 @@
+#include "discovery/replay_null.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "discovery/parallel.hpp"
+
+namespace offnominal::tools::discovery {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kBlockS = 0.5;
+
+// The noise with its blocks shuffled and their signs drawn, alike for all joints.
+VectorXd shuffled(const RowLayout& layout, const VectorXd& noise, std::mt19937_64& generator) {
+  VectorXd played(noise.size());
+  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+    const Index n = layout.samples(r);
+    const auto length = std::max<Index>(1, std::lround(kBlockS / layout.period_s(r)));
+    std::vector<Index> source(static_cast<std::size_t>(n / length));
+    std::iota(source.begin(), source.end(), 0);
+    for (std::size_t i = source.size(); i > 1; --i) {
+      std::swap(source[i - 1], source[generator() % i]);
+    }
+    for (Index i = 0; i < n; ++i) {
+      const auto block = static_cast<std::size_t>(i / length);
+      const Index from = block < source.size() ? source[block] * length + i % length : i;
+      for (Index joint = 0; joint < layout.joint_count(); ++joint) {
+        played[layout.begin(r, joint) + i] = noise[layout.begin(r, joint) + from];
+      }
+    }
+    for (Index start = 0; start < n; start += length) {
+      if ((generator() & 1U) == 0) continue;
+      for (Index i = start; i < std::min(n, start + length); ++i) {
+        for (Index joint = 0; joint < layout.joint_count(); ++joint) {
+          played[layout.begin(r, joint) + i] *= -1;
+        }
+      }
+    }
+  }
+  return played;
+}
+
+double best_gain(const Remainder& remainder, const std::vector<MatrixXd>& columns) {
+  double best = 0;
+  for (const MatrixXd& at_shape : columns) {
+    const Evidence evidence = judge(remainder, at_shape);
+    if (evidence.usable) best = std::max(best, evidence.joint_gain);
+  }
+  return best;
+}
+
+}  // namespace
+
+double replay_p(const Search& search, const ModelFit& fit, const VectorXd& noise, const Term& term,
+                int replays, std::uint64_t seed, int threads) {
+  const Data& data = search.data();
+  const std::vector<ShapePoint> points = search.grid_of(term);
+  std::vector<MatrixXd> columns(points.size() + 1);
+  parallel_for(columns.size(), threads, [&](std::size_t i) {
+    Term at = term;
+    if (i < points.size()) at.shape = points[i];
+    columns[i] = Search::columns_of(data, at);
+  });
+  const double measured = best_gain(fit.remainder, {columns.back()});
+  std::vector<char> reached(static_cast<std::size_t>(replays));
+  parallel_for(reached.size(), threads, [&](std::size_t i) {
+    std::mt19937_64 generator(seed + 7919 * (i + 1));
+    Remainder played = fit.remainder;
+    played.residual =
+        data.layout.weighted(shuffled(data.layout, noise, generator), fit.joint_weights);
+    played.residual -= played.basis * (played.basis.transpose() * played.residual).eval();
+    played.energy = joint_energy(data.layout, played.residual);
+    reached[i] = static_cast<char>(best_gain(played, columns) >= measured);
+  });
+  const auto count = static_cast<double>(std::count(reached.begin(), reached.end(), 1));
+  return (1 + count) / (1 + static_cast<double>(replays));
+}
+
+}  // namespace offnominal::tools::discovery

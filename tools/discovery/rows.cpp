@@ -1,0 +1,120 @@
+#include "discovery/rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace offnominal::tools::discovery {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+RowLayout::RowLayout(const std::vector<Workspace>& recordings) {
+  joints_ = recordings.empty() ? 0 : recordings[0].joint_count();
+  for (const Workspace& at : recordings) {
+    const Index samples = kept_samples(at.plan, at.motion.t_s).size();
+    first_.push_back(rows_);
+    samples_.push_back(samples);
+    period_s_.push_back(at.plan.period_s());
+    rows_ += samples * joints_;
+  }
+}
+
+Index RowLayout::joint_of(Index row) const {
+  const auto after = std::upper_bound(first_.begin(), first_.end(), row);
+  const auto recording = static_cast<std::size_t>(after - first_.begin()) - 1;
+  return (row - first_[recording]) / samples_[recording];
+}
+
+RowLayout::Blocks RowLayout::blocks(double block_s) const {
+  Blocks blocks;
+  blocks.of_row.resize(static_cast<std::size_t>(rows_));
+  for (std::size_t r = 0; r < samples_.size(); ++r) {
+    const auto length = std::max<Index>(1, std::lround(block_s / period_s_[r]));
+    const auto count = static_cast<int>(std::max<Index>(1, samples_[r] / length));
+    for (Index joint = 0; joint < joints_; ++joint) {
+      for (Index i = 0; i < samples_[r]; ++i) {
+        const int block = std::min(static_cast<int>(i / length), count - 1);
+        blocks.of_row[static_cast<std::size_t>(begin(r, joint) + i)] = blocks.count + block;
+      }
+    }
+    blocks.count += count;
+  }
+  return blocks;
+}
+
+VectorXd RowLayout::stack(const std::vector<Workspace>& recordings,
+                          const std::vector<Regressor>& per_recording) const {
+  VectorXd column = VectorXd::Zero(rows_);
+  for (std::size_t r = 0; r < per_recording.size(); ++r) {
+    for (const JointTorque& torque : per_recording[r]) {
+      column.segment(begin(r, torque.joint), samples_[r]) =
+          filtered(recordings[r].plan, torque.values);
+    }
+  }
+  return column;
+}
+
+VectorXd RowLayout::stack_kept(const std::vector<Workspace>& recordings,
+                               const std::vector<Regressor>& per_recording) const {
+  VectorXd column = VectorXd::Zero(rows_);
+  for (std::size_t r = 0; r < per_recording.size(); ++r) {
+    for (const JointTorque& torque : per_recording[r]) {
+      column.segment(begin(r, torque.joint), samples_[r]) =
+          kept_samples(recordings[r].plan, torque.values);
+    }
+  }
+  return column;
+}
+
+VectorXd RowLayout::stack_all(const std::vector<Workspace>& recordings,
+                              const std::vector<const MatrixXd*>& per_recording) const {
+  VectorXd column(rows_);
+  for (std::size_t r = 0; r < per_recording.size(); ++r) {
+    for (Index joint = 0; joint < joints_; ++joint) {
+      column.segment(begin(r, joint), samples_[r]) =
+          filtered(recordings[r].plan, per_recording[r]->col(joint));
+    }
+  }
+  return column;
+}
+
+VectorXd RowLayout::weighted(const VectorXd& values, const VectorXd& joint_weights) const {
+  VectorXd result = values;
+  for (std::size_t r = 0; r < samples_.size(); ++r) {
+    for (Index joint = 0; joint < joints_; ++joint) {
+      result.segment(begin(r, joint), samples_[r]) *= joint_weights[joint];
+    }
+  }
+  return result;
+}
+
+VectorXd RowLayout::rms(const VectorXd& values) const {
+  VectorXd sum = VectorXd::Zero(joints_);
+  double count = 0;
+  for (std::size_t r = 0; r < samples_.size(); ++r) {
+    for (Index joint = 0; joint < joints_; ++joint) {
+      sum[joint] += values.segment(begin(r, joint), samples_[r]).squaredNorm();
+    }
+    count += static_cast<double>(samples_[r]);
+  }
+  return (sum / count).cwiseSqrt();
+}
+
+MatrixXd stacked_columns(const RowLayout& layout, const std::vector<Workspace>& recordings,
+                         const EffectCandidate& candidate, Index joint, const ShapePoint& shape) {
+  std::vector<std::vector<Regressor>> per_recording;
+  for (const Workspace& at : recordings) {
+    per_recording.push_back(candidate.regressors(at, joint, shape));
+  }
+  const std::size_t count = per_recording[0].size();
+  MatrixXd columns(layout.rows(), static_cast<Index>(count));
+  for (std::size_t c = 0; c < count; ++c) {
+    std::vector<Regressor> regressors;
+    for (auto& one : per_recording) regressors.push_back(std::move(one[c]));
+    columns.col(static_cast<Index>(c)) = layout.stack(recordings, regressors);
+  }
+  return columns;
+}
+
+}  // namespace offnominal::tools::discovery

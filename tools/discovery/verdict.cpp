@@ -1,0 +1,201 @@
+#include "discovery/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace offnominal::tools::discovery {
+namespace {
+
+// What is left counts as structure where it stands this far above the noise floor ...
+constexpr double kAboveNoise = 1.5;
+// ... and this share of it follows a variable on time that was not fitted.
+constexpr double kStructured = 0.15;
+// A push or another event: this share of the energy is in a tenth of the time.
+constexpr double kConcentrated = 0.5;
+// ... unless this much follows a variable of the joint.
+constexpr double kFollowsState = 0.4;
+
+bool is_parameter(const std::string& effect) {
+  constexpr std::array<std::string_view, 3> kParameters{"link_mass", "tip_payload", "torque_scale"};
+  return std::find(kParameters.begin(), kParameters.end(), effect) != kParameters.end();
+}
+
+std::string at_joint(Eigen::Index joint) { return fmt::format("joint {}", joint + 1); }
+
+// The variable that what is left follows on the joint where it stands out most; null for noise.
+const StructureShare* remaining_structure(const Explanation& e) {
+  const StructureShare* state = nullptr;
+  const StructureShare* time = nullptr;
+  double worst = kAboveNoise;
+  Eigen::Index where = -1;
+  for (const JointErrors& joint : e.joints) {
+    if (!(joint.rms_after > worst * joint.noise_floor)) continue;
+    worst = joint.rms_after / joint.noise_floor;
+    where = joint.joint;
+  }
+  for (const StructureShare& share : e.where) {  // largest first
+    if (share.joint != where) continue;
+    const bool of_time = share.variable == "time";
+    if (of_time && share.share >= kConcentrated) time = &share;
+    if (!of_time && share.share >= kStructured && state == nullptr) state = &share;
+  }
+  if (time != nullptr && (state == nullptr || state->share < kFollowsState)) return time;
+  return state;
+}
+
+const EffectCandidate* candidate_of(const std::string& name) {
+  for (const auto& candidate : all_candidates()) {
+    if (name == candidate->name()) return candidate.get();
+  }
+  return nullptr;
+}
+
+void advise_on_classes(Explanation& e) {
+  for (const auto& same : e.ambiguous) {
+    const EffectCandidate* candidate = candidate_of(same[0].effect);
+    e.advice.push_back(fmt::format(
+        "to tell {} from {}: {}; `offnominal motion --separate {},{}` writes such a trajectory",
+        same[0].effect, same[1].effect,
+        candidate != nullptr ? candidate->motion_hint() : "make a richer motion", same[0].effect,
+        same[1].effect));
+  }
+}
+
+void judge_found(Explanation& e) {
+  const bool shift = std::all_of(e.found.begin(), e.found.end(),
+                                 [](const Finding& f) { return is_parameter(f.what.effect); });
+  if (!e.ambiguous.empty()) {
+    e.verdict = Verdict::kAmbiguous;
+    std::string names;
+    for (const EffectAt& one : e.ambiguous[0]) {
+      names +=
+          fmt::format("{}{} on {}", names.empty() ? "" : ", or ", one.effect, at_joint(one.joint));
+    }
+    e.words =
+        fmt::format("Something is missing, but these recordings cannot tell which: {}.", names);
+    return;
+  }
+  e.verdict = shift ? Verdict::kParameterShift : Verdict::kFound;
+  const Finding& first = e.found.front();
+  const double fall =
+      first.holdout_before > 0 ? 100 * (1 - first.holdout_after / first.holdout_before) : 0;
+  e.words =
+      fmt::format("{} {} on {} ({}): the error on held-out data of that joint falls by {:.0f} %.",
+                  shift ? "Another value of a known quantity:" : "Missing:", first.what.effect,
+                  at_joint(first.what.joint), first.words, fall);
+  if (e.found.size() > 1) {
+    e.words += " Also:";
+    for (std::size_t i = 1; i < e.found.size(); ++i) {
+      e.words += fmt::format("{} {} on {}", i > 1 ? "," : "", e.found[i].what.effect,
+                             at_joint(e.found[i].what.joint));
+    }
+    e.words += ".";
+  }
+}
+
+// What was found on a joint explains nearly all that there was to explain.
+bool is_nearly_all(const Explanation& e, const JointErrors& joint) {
+  constexpr double kLeft = 0.35;
+  return std::any_of(e.found.begin(), e.found.end(),
+                     [&](const Finding& f) { return f.what.joint == joint.joint; }) &&
+         joint.rms_after < kLeft * joint.rms_fitted_before;
+}
+
+bool judge_unknown(Explanation& e) {
+  const StructureShare* left = remaining_structure(e);
+  if (left == nullptr) return false;
+  const JointErrors& joint = e.joints[static_cast<std::size_t>(left->joint)];
+  if (is_nearly_all(e, joint)) {
+    e.advice.push_back(fmt::format(
+        "joint {}: what is left, {:.3g} {}, still follows its {}: none of the known effects",
+        joint.joint + 1, joint.rms_after, joint.unit, left->variable));
+    return false;
+  }
+  const bool external = left->variable == "time";
+  e.verdict = external ? Verdict::kUnknownExternal : Verdict::kUnknownStateDependent;
+  e.words = fmt::format(
+      "Something acts on {} that is none of the known effects: the error stands {:.1f} times above "
+      "the noise and {}.",
+      at_joint(left->joint), joint.rms_after / joint.noise_floor,
+      external ? "comes in a few stretches of time" : "follows its " + left->variable);
+  for (const Finding& finding : e.found) {
+    e.advice.push_back(
+        fmt::format("{} on {} explains a part, but stands for something else: do not add it",
+                    finding.what.effect, at_joint(finding.what.joint)));
+  }
+  e.found.clear();
+  e.ambiguous.clear();
+  e.waterfall.resize(1);
+  e.advice.push_back(external ? "look at the recording at these times: contact, a cable, a person"
+                              : "see the map of the error over " + left->variable);
+  return true;
+}
+
+}  // namespace
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kExplained:
+      return "explained";
+    case Verdict::kFound:
+      return "found";
+    case Verdict::kAmbiguous:
+      return "ambiguous";
+    case Verdict::kParameterShift:
+      return "parameter_shift";
+    case Verdict::kUnknownStateDependent:
+      return "unknown_state_dependent";
+    case Verdict::kUnknownExternal:
+      return "unknown_external";
+    case Verdict::kNotExcited:
+      return "not_excited";
+    case Verdict::kDataFault:
+      return "data_fault";
+  }
+  return "";
+}
+
+void judge_whole(Explanation& e) {
+  e.advice.clear();
+  for (std::size_t joint = 0; joint < e.excitation.size(); ++joint) {
+    const Excitation& one = e.excitation[joint];
+    if (one.sufficient) continue;
+    e.advice.push_back(fmt::format("joint {}: {}", joint + 1, one.lack));
+  }
+  const bool poor = std::any_of(e.excitation.begin(), e.excitation.end(),
+                                [](const Excitation& one) { return !one.sufficient; });
+  if (!e.data_faults.empty()) {
+    e.verdict = Verdict::kDataFault;
+    e.words = "The recording itself is at fault: " + e.data_faults[0].words + ".";
+    for (const DataFault& fault : e.data_faults) e.advice.push_back(fault.mend);
+    e.found.clear();
+    e.ambiguous.clear();
+    e.waterfall.resize(std::min<std::size_t>(1, e.waterfall.size()));
+    return;
+  }
+  if (!poor && judge_unknown(e)) return;
+  if (!e.found.empty()) {
+    judge_found(e);
+    advise_on_classes(e);
+    return;
+  }
+  if (!e.shifts.empty() && !poor) {
+    e.verdict = Verdict::kParameterShift;
+    e.words = fmt::format("A known quantity has another value: {} is off by {:+.0f} %.",
+                          e.shifts[0].name, 100 * e.shifts[0].share);
+    return;
+  }
+  if (poor) {
+    e.verdict = Verdict::kNotExcited;
+    e.words = "These motions excite too little to judge the model by them.";
+    return;
+  }
+  e.verdict = Verdict::kExplained;
+  e.words =
+      "The model explains these recordings: what is left is noise, and no known effect is missing.";
+}
+
+}  // namespace offnominal::tools::discovery

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "analysis/filter_plan.hpp"
+#include "analysis/motion.hpp"
+#include "log/log.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::tools::discovery {
+
+// One recording with everything that regressors are made from, at a sampling rate that the low-pass
+// of the plan leaves room for. Rows: samples, columns: joints.
+struct Workspace {
+  RobotDescription rigid;       // the robot without effects
+  std::vector<RobotEffect> known_effects;
+  FilterPlan plan;  // as of these samples
+  Motion motion;                // low-passed position and its derivatives
+  Eigen::MatrixXd torque;       // measured, N m or N
+  Eigen::MatrixXd load_torque;  // rigid-body torque of the model without any effect
+  Eigen::MatrixXd model_torque;  // of the model with its effects
+  Eigen::MatrixXd own_inertia;   // d (torque of a joint) / d (its acceleration), kg m^2 or kg
+  Eigen::VectorXd torque_noise_density;  // per joint, of the recording, N m or N per root hertz
+  Eigen::VectorXd sign_width;     // per joint: width of the smoothed sign, rad/s or m/s
+  Eigen::VectorXd top_speed;      // per joint: 99 % quantile of |dq|
+  double skew_s = 0;              // sampling period of the recording itself
+  double start_s = 0;             // time stamp that effects in time count from
+
+  [[nodiscard]] Eigen::Index sample_count() const { return motion.sample_count(); }
+  [[nodiscard]] Eigen::Index joint_count() const { return motion.q.cols(); }
+  [[nodiscard]] double period_s() const { return 1 / plan.sample_rate_hz; }
+  // tanh(dq / sign_width) of a joint.
+  [[nodiscard]] Eigen::ArrayXd sign(Eigen::Index joint) const;
+};
+
+// sign_width: per joint, 0 where nothing is known yet: then a hundredth of the top speed.
+Workspace make_workspace(const Log& log, const RobotDescription& robot, const FilterPlan& plan,
+                         const Eigen::VectorXd& sign_width);
+
+}  // namespace offnominal::tools::discovery
