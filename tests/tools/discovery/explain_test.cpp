@@ -1,0 +1,222 @@
+// The search for a missing effect on simulated robots whose physics is the simulator's own. The
+// rates of success are the benchmark's business (./dev bench discovery); here each promise is tried
+// on a few robots.
+
+#include "discovery/explain.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "common/error.hpp"
+#include "discovery/explain_report.hpp"
+#include "hidden_case.hpp"
+
+namespace offnominal::tools::discovery {
+namespace {
+
+namespace hidden = sim::hidden;
+using test::to_log;
+using test::to_robot;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+ExplainOptions quick() {
+  ExplainOptions options;
+  options.bootstrap_draws = 399;
+  options.threads = 2;
+  return options;
+}
+
+Explanation explain_case(const hidden::Case& made, const ExplainOptions& options) {
+  return explain(to_robot(made.nominal), {to_log(made.recording)}, {to_log(made.holdout)}, options);
+}
+
+class EachEffect : public ::testing::TestWithParam<hidden::HiddenEffect> {};
+
+TEST_P(EachEffect, IsNamedFirstOnItsJoint) {
+  hidden::Request request;
+  request.seed = 5;
+  request.effects = {GetParam()};
+  const hidden::Case made = hidden::make_case(request);
+  const Explanation result = explain_case(made, quick());
+  ASSERT_FALSE(result.found.empty()) << result.words;
+  const hidden::TrueEffect& truth = made.truth.effects[0];
+  EXPECT_EQ(result.found[0].what.effect, hidden::name(truth.effect));
+  EXPECT_EQ(result.found[0].what.joint, truth.joint);
+  EXPECT_LE(result.found[0].p_value, 0.01);
+  EXPECT_LE(result.found[0].p_replay, 0.05);
+  EXPECT_LT(result.found[0].holdout_after, result.found[0].holdout_before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Hidden, EachEffect, ::testing::ValuesIn(hidden::kAllHiddenEffects),
+                         [](const auto& parameter) {
+                           return std::string(hidden::name(parameter.param));
+                         });
+
+TEST(Explain, GIVEN_nothing_hidden_THEN_nothing_is_found_at_any_noise) {
+  struct Noise {
+    double share;
+    int bits;
+  };
+  for (const Noise& noise : {Noise{0.002, 19}, Noise{0.01, 16}, Noise{0.03, 13}}) {
+    hidden::Request request;
+    request.seed = 3;
+    request.torque_noise_share = noise.share;
+    request.encoder_bits = noise.bits;
+    const Explanation result = explain_case(hidden::make_case(request), quick());
+    EXPECT_EQ(result.verdict, Verdict::kExplained) << noise.bits << " bit: " << result.words;
+    EXPECT_THAT(result.found, IsEmpty());
+    for (const JointErrors& joint : result.joints) {
+      EXPECT_LT(joint.rms_after, 1.5 * joint.noise_floor);
+    }
+  }
+}
+
+TEST(Explain, GIVEN_an_effect_outside_of_the_list_THEN_it_is_unknown_and_nothing_is_found) {
+  for (const hidden::OutsideEffect outside : hidden::kAllOutsideEffects) {
+    hidden::Request request;
+    request.seed = 2;
+    request.outside = outside;
+    const Explanation result = explain_case(hidden::make_case(request), quick());
+    const bool external = outside == hidden::OutsideEffect::kTransientContact;
+    EXPECT_EQ(result.verdict,
+              external ? Verdict::kUnknownExternal : Verdict::kUnknownStateDependent)
+        << hidden::name(outside) << ": " << result.words;
+    EXPECT_THAT(result.found, IsEmpty()) << hidden::name(outside);
+  }
+}
+
+TEST(Explain, GIVEN_a_poor_motion_THEN_it_says_so_and_finds_nothing) {
+  hidden::Request request;
+  request.seed = 2;
+  request.effects = {hidden::HiddenEffect::kStribeckFriction};
+  request.excitation = hidden::Excitation::kPoor;
+  const Explanation result = explain_case(hidden::make_case(request), quick());
+  EXPECT_EQ(result.verdict, Verdict::kNotExcited) << result.words;
+  EXPECT_THAT(result.found, IsEmpty());
+  EXPECT_FALSE(result.advice.empty());
+}
+
+TEST(Explain, FindsTwoEffectsAtOnce) {
+  hidden::Request request;
+  request.seed = 4;
+  request.effects = {hidden::HiddenEffect::kCoggingTorque,
+                     hidden::HiddenEffect::kPeriodicDisturbance};
+  const hidden::Case made = hidden::make_case(request);
+  const Explanation result = explain_case(made, quick());
+  ASSERT_THAT(result.found, SizeIs(2)) << result.words;
+  for (const hidden::TrueEffect& truth : made.truth.effects) {
+    const EffectAt what{std::string(hidden::name(truth.effect)), truth.joint};
+    EXPECT_TRUE(result.found[0].what == what || result.found[1].what == what) << what.effect;
+  }
+}
+
+TEST(Explain, ParametersComeWithIntervalsThatHoldTheTruth) {
+  hidden::Request request;
+  request.seed = 5;
+  request.effects = {hidden::HiddenEffect::kJointStiffness};
+  const hidden::Case made = hidden::make_case(request);
+  const Explanation result = explain_case(made, quick());
+  ASSERT_THAT(result.found, SizeIs(1));
+  for (const hidden::TrueParameter& truth : made.truth.effects[0].parameters) {
+    for (const Estimate& one : result.found[0].parameters) {
+      if (one.value.name != truth.name) continue;
+      EXPECT_NEAR(one.value.value, truth.value, 0.1 * std::abs(truth.value)) << truth.name;
+      EXPECT_EQ(one.value.unit, truth.unit);
+      ASSERT_TRUE(one.ci95);
+      EXPECT_LT((*one.ci95)[0], (*one.ci95)[1]);
+    }
+  }
+}
+
+TEST(Explain, TheSameInputGivesTheSameBytesForAnyNumberOfThreads) {
+  hidden::Request request;
+  request.seed = 6;
+  request.effects = {hidden::HiddenEffect::kBacklash};
+  const hidden::Case made = hidden::make_case(request);
+  const ExplainNames names{{"log"}, {"holdout"}, "robot", ""};
+  std::vector<std::string> texts;
+  for (const int threads : {1, 2, 8}) {
+    ExplainOptions options = quick();
+    options.threads = threads;
+    texts.push_back(to_json(explain_case(made, options), names).dump());
+  }
+  EXPECT_EQ(texts[0], texts[1]);
+  EXPECT_EQ(texts[0], texts[2]);
+}
+
+TEST(Explain, WithoutHoldOutBlocksOfTimeAreHeldOut) {
+  hidden::Request request;
+  request.seed = 7;
+  request.effects = {hidden::HiddenEffect::kViscousFriction};
+  const hidden::Case made = hidden::make_case(request);
+  const Explanation result = explain(to_robot(made.nominal), {to_log(made.recording)}, {}, quick());
+  EXPECT_FALSE(result.holdout_is_apart);
+  ASSERT_THAT(result.found, SizeIs(1));
+  EXPECT_EQ(result.found[0].what.effect, "viscous_friction");
+}
+
+TEST(Explain, RefusesARecordingOfAnotherRobot) {
+  hidden::Request request;
+  const hidden::Case made = hidden::make_case(request);
+  RobotDescription one_joint = to_robot(made.nominal);
+  one_joint.joints.pop_back();
+  std::erase_if(one_joint.effects, [](const RobotEffect& effect) { return effect.joint > 0; });
+  try {
+    explain(one_joint, {to_log(made.recording)}, {}, quick());
+    FAIL() << "a recording of two joints was taken for one";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("2 joints"));
+  }
+}
+
+TEST(Explain, RefusesTooShortARecording) {
+  hidden::Request request;
+  request.duration_s = 1;
+  const hidden::Case made = hidden::make_case(request);
+  EXPECT_THROW(explain(to_robot(made.nominal), {to_log(made.recording)}, {}, quick()), InputError);
+}
+
+// A joint that is held, and torque that is zero: nothing divides by them.
+TEST(Explain, ConstantSignalsEndInAVerdict) {
+  hidden::Request request;
+  request.duration_s = 10;
+  const hidden::Case made = hidden::make_case(request);
+  Log log = to_log(made.recording);
+  log.q.setConstant(0.3);
+  log.dq.setZero();
+  log.tau.setZero();
+  const Explanation result = explain(to_robot(made.nominal), {log}, {}, quick());
+  EXPECT_THAT(result.found, IsEmpty());
+  for (const JointErrors& joint : result.joints) EXPECT_TRUE(std::isfinite(joint.rms_before));
+}
+
+// The evidence in numbers, so that a broken step shows: a page says what the JSON says.
+TEST(Explain, ThePageHasTheNumbersOfTheJson) {
+  hidden::Request request;
+  request.seed = 5;
+  request.effects = {hidden::HiddenEffect::kCoggingTorque};
+  const Explanation result = explain_case(hidden::make_case(request), quick());
+  const ExplainNames names{{"log"}, {"holdout"}, "robot", ""};
+  const auto json = to_json(result, names);
+  const auto page = report::to_json(page_of(result, names));
+  EXPECT_THAT(page["verdict"]["words"].get<std::string>(),
+              HasSubstr(json["verdict"].get<std::string>()));
+  const std::string text = page.dump();
+  for (const auto& joint : json["joints"]) {
+    EXPECT_THAT(text, HasSubstr(joint["holdout_after"].dump()));
+    EXPECT_THAT(text, HasSubstr(joint["noise_floor"].dump()));
+  }
+  for (const auto& [name, parameter] : json["found"][0]["parameters"].items()) {
+    EXPECT_THAT(text, HasSubstr(parameter["value"].dump())) << name;
+  }
+  EXPECT_NE(report::render(page_of(result, names)).find("<html"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace offnominal::tools::discovery
