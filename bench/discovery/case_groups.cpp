@@ -1,0 +1,126 @@
+#include "case_groups.hpp"
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace offnominal::bench {
+
+using sim::hidden::DataFault;
+using sim::hidden::Excitation;
+using sim::hidden::HiddenEffect;
+using sim::hidden::kAllHiddenEffects;
+using sim::hidden::kAllOutsideEffects;
+using sim::hidden::Request;
+
+namespace {
+
+using Kind = CaseGroup::Kind;
+
+constexpr int kEffectCount = static_cast<int>(kAllHiddenEffects.size());
+
+// G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
+std::uint64_t split_mix(std::uint64_t state) {
+  state += 0x9e3779b97f4a7c15U;
+  state = (state ^ (state >> 30U)) * 0xbf58476d1ce4e5b9U;
+  state = (state ^ (state >> 27U)) * 0x94d049bb133111ebU;
+  return state ^ (state >> 31U);
+}
+
+// Below 2^32: a seed is typed and read by people.
+std::uint64_t case_seed(std::uint64_t base, std::string_view group, int number) {
+  std::uint64_t seed = split_mix(base);
+  for (const char letter : group) seed = split_mix(seed ^ static_cast<unsigned char>(letter));
+  return split_mix(seed + static_cast<std::uint64_t>(number)) >> 32U;
+}
+
+CaseGroup start(std::string name, std::string words, Kind kind, std::uint64_t base, int count) {
+  CaseGroup group{std::move(name), std::move(words), kind, false, {}};
+  for (int i = 0; i < count; ++i) {
+    Request request;
+    request.seed = case_seed(base, group.name, i);
+    group.requests.push_back(request);
+  }
+  return group;
+}
+
+// Each effect alone, in turn.
+CaseGroup one_effect(std::string name, std::string words, std::uint64_t base, int rounds) {
+  CaseGroup group =
+      start(std::move(name), std::move(words), Kind::kEffects, base, rounds * kEffectCount);
+  for (std::size_t i = 0; i < group.requests.size(); ++i) {
+    group.requests[i].effects = {kAllHiddenEffects[i % kAllHiddenEffects.size()]};
+  }
+  return group;
+}
+
+CaseGroup none(std::string name, std::string words, std::uint64_t base, int count, double noise,
+               int bits) {
+  CaseGroup group = start(std::move(name), std::move(words), Kind::kNone, base, count);
+  group.with_baselines = true;
+  for (Request& request : group.requests) {
+    request.torque_noise_share = noise;
+    request.encoder_bits = bits;
+  }
+  return group;
+}
+
+CaseGroup two_effects(std::uint64_t base, int count) {
+  CaseGroup group = start("two", "two effects at once", Kind::kEffects, base, count);
+  group.with_baselines = true;
+  for (Request& request : group.requests) {
+    const std::uint64_t draw = split_mix(request.seed);
+    const auto first = static_cast<std::size_t>(draw % kEffectCount);
+    const auto step = 1 + static_cast<std::size_t>((draw >> 32U) % (kEffectCount - 1));
+    request.effects = {kAllHiddenEffects[first], kAllHiddenEffects[(first + step) % kEffectCount]};
+  }
+  return group;
+}
+
+CaseGroup outside(std::uint64_t base, int rounds) {
+  const auto kinds = static_cast<int>(kAllOutsideEffects.size());
+  CaseGroup group =
+      start("outside", "effect outside of the list", Kind::kOutside, base, rounds * kinds);
+  for (std::size_t i = 0; i < group.requests.size(); ++i) {
+    group.requests[i].outside = kAllOutsideEffects[i % kAllOutsideEffects.size()];
+  }
+  return group;
+}
+
+CaseGroup data_faults(std::uint64_t base, int rounds) {
+  constexpr std::array kFaults = {DataFault::kClockSkew, DataFault::kDegrees,
+                                  DataFault::kSwappedTorqueSign, DataFault::kStaleSamples};
+  CaseGroup group = start("faults", "fault of the recording", Kind::kDataFault, base,
+                          rounds * static_cast<int>(kFaults.size()));
+  for (std::size_t i = 0; i < group.requests.size(); ++i) {
+    group.requests[i].fault = kFaults[i % kFaults.size()];
+  }
+  return group;
+}
+
+}  // namespace
+
+std::vector<CaseGroup> case_groups(std::uint64_t base_seed, bool quick) {
+  const auto count = [quick](int full, int short_form) { return quick ? short_form : full; };
+  std::vector<CaseGroup> groups;
+  groups.push_back(one_effect("single", "one effect", base_seed, count(20, 2)));
+  groups.back().with_baselines = true;
+  groups.push_back(none("none-0.2", "none, 0.2 % / 19 bit", base_seed, count(300, 6), 0.002, 19));
+  groups.push_back(none("none-1", "none, 1 % / 16 bit", base_seed, count(300, 6), 0.01, 16));
+  groups.push_back(none("none-3", "none, 3 % / 13 bit", base_seed, count(300, 6), 0.03, 13));
+  groups.push_back(one_effect("noisy", "one effect, 3 % / 13 bit", base_seed, count(5, 1)));
+  for (Request& request : groups.back().requests) {
+    request.torque_noise_share = 0.03;
+    request.encoder_bits = 13;
+  }
+  groups.push_back(one_effect("small", "one effect at 0.4 of its size", base_seed, count(5, 1)));
+  for (Request& request : groups.back().requests) request.effect_size = 0.4;
+  groups.push_back(one_effect("poor", "one effect, poor motion", base_seed, count(5, 1)));
+  for (Request& request : groups.back().requests) request.excitation = Excitation::kPoor;
+  groups.push_back(two_effects(base_seed, count(100, 10)));
+  groups.push_back(outside(base_seed, count(20, 2)));
+  groups.push_back(data_faults(base_seed, count(20, 2)));
+  return groups;
+}
+
+}  // namespace offnominal::bench

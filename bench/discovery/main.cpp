@@ -1,0 +1,143 @@
+// The blind benchmark of `offnominal explain`; docs/discovery-benchmark.md says how it is made.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "case_groups.hpp"
+#include "discovery/parallel.hpp"
+#include "outcome.hpp"
+#include "tables.hpp"
+
+namespace offnominal::bench {
+namespace {
+
+struct Options {
+  bool quick = false;
+  bool json = false;
+  bool failures = false;
+  std::string cases;  // empty: all
+  std::uint64_t seed = 20261121;
+  int threads = static_cast<int>(std::thread::hardware_concurrency());
+};
+
+struct Results {
+  std::vector<CaseGroup> groups;
+  std::vector<std::vector<Outcome>> outcomes;  // per group and case
+};
+
+// The groups that were asked for: by name, or by its part before the dash.
+std::vector<CaseGroup> chosen_groups(const Options& options) {
+  std::vector<CaseGroup> chosen;
+  std::string names;
+  for (CaseGroup& group : case_groups(options.seed, options.quick)) {
+    names += (names.empty() ? "" : ", ") + group.name;
+    const bool wanted = options.cases.empty() || group.name == options.cases ||
+                        group.name.starts_with(options.cases + "-");
+    if (wanted) chosen.push_back(std::move(group));
+  }
+  if (chosen.empty()) {
+    throw CLI::ValidationError("--cases", "found `" + options.cases + "`, allowed are " + names);
+  }
+  return chosen;
+}
+
+Results run(const Options& options) {
+  Results results{chosen_groups(options), {}};
+  std::size_t total = 0;
+  for (const CaseGroup& group : results.groups) {
+    total += group.requests.size();
+    results.outcomes.emplace_back(group.requests.size());
+  }
+  std::mutex output;
+  std::size_t done = 0;
+  for (std::size_t g = 0; g < results.groups.size(); ++g) {
+    const CaseGroup& group = results.groups[g];
+    tools::discovery::parallel_for(group.requests.size(), options.threads, [&](std::size_t i) {
+      results.outcomes[g][i] = run_case(group, group.requests[i]);
+      const std::lock_guard lock(output);
+      fmt::print(stderr, "\r{} of {}: {:<40}", ++done, total, group.words);
+    });
+  }
+  fmt::print(stderr, "\r{:<60}\r", "");
+  return results;
+}
+
+void print_text(const Options& options, const Results& results) {
+  std::vector<Summary> lines;
+  for (std::size_t g = 0; g < results.groups.size(); ++g) {
+    for (Summary& line : summarise(results.groups[g], results.outcomes[g])) {
+      lines.push_back(std::move(line));
+    }
+  }
+  fmt::print("base seed {}{}\n\n{}", options.seed, options.quick ? ", quick" : "", table_of(lines));
+  for (std::size_t g = 0; g < results.groups.size(); ++g) {
+    if (results.groups[g].name != "single") continue;
+    fmt::print("\n{}", table_of(summarise_effects(results.outcomes[g])));
+  }
+  fmt::print("\n{}", table_of(goals_of(lines)));
+  if (!options.failures) return;
+  fmt::print("\n");
+  for (std::size_t g = 0; g < results.groups.size(); ++g) {
+    fmt::print("{}", failures_of(results.groups[g], results.outcomes[g]));
+  }
+}
+
+void print_json(const Options& options, const Results& results) {
+  nlohmann::ordered_json document{{"base_seed", options.seed}, {"quick", options.quick}};
+  document["table"] = nlohmann::ordered_json::array();
+  document["cases"] = nlohmann::ordered_json::array();
+  for (std::size_t g = 0; g < results.groups.size(); ++g) {
+    for (const Summary& line : summarise(results.groups[g], results.outcomes[g])) {
+      document["table"].push_back(json_of(line));
+    }
+    for (const Outcome& one : results.outcomes[g]) {
+      document["cases"].push_back(json_of(results.groups[g], one));
+    }
+  }
+  fmt::print("{}\n", document.dump(1));
+}
+
+int main_of(int argc, char** argv) {
+  Options options;
+  CLI::App app("Blind benchmark of the search for missing effects", "./dev bench discovery");
+  app.add_flag("--quick", options.quick, "a few cases of each group, less than two minutes");
+  app.add_option("--cases", options.cases, "one group, by the name that --json prints");
+  app.add_option("--seed", options.seed, "base of every case's seed")->capture_default_str();
+  app.add_option("--threads", options.threads, "cases that run at once")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  app.add_flag("--failures", options.failures, "list every case that was not answered rightly");
+  app.add_flag("--json", options.json, "everything as JSON, case by case");
+  try {
+    app.parse(argc, argv);
+    const Results results = run(options);
+    if (options.json) {
+      print_json(options, results);
+    } else {
+      print_text(options, results);
+    }
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace offnominal::bench
+
+int main(int argc, char** argv) {
+  try {
+    return offnominal::bench::main_of(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "offnominal_bench_discovery: %s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,162 @@
+#include "outcome.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+
+#include "recorded_case.hpp"
+#include "true_parameters.hpp"
+
+namespace offnominal::bench {
+
+namespace hidden = sim::hidden;
+using tools::discovery::EffectAt;
+using tools::discovery::Explanation;
+using tools::discovery::Verdict;
+
+namespace {
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+EffectAt place_of(const hidden::TrueEffect& effect) {
+  return {std::string(hidden::name(effect.effect)), effect.joint};
+}
+
+std::string words_for(const hidden::Truth& truth, const Effects& effects) {
+  if (truth.fault != hidden::DataFault::kNone) return std::string(hidden::name(truth.fault));
+  if (truth.outside.effect == hidden::OutsideEffect::kNone) return text_of(effects);
+  return text_of(EffectAt{std::string(hidden::name(truth.outside.effect)), truth.outside.joint});
+}
+
+ParameterCheck check(const ExpectedParameter& expected, const tools::discovery::Estimate& found) {
+  constexpr double kTenth = 0.1;
+  ParameterCheck result{expected.name, expected.value, found.value.value, false, std::nullopt};
+  result.within_tenth = std::abs(result.estimate - result.truth) <= kTenth * expected.scale;
+  if (found.ci95) {
+    result.covered = result.truth >= (*found.ci95)[0] && result.truth <= (*found.ci95)[1];
+  }
+  return result;
+}
+
+void check_parameters(const hidden::Truth& truth, const Explanation& e, double period_s,
+                      Outcome& outcome) {
+  for (const hidden::TrueEffect& effect : truth.effects) {
+    for (const auto& finding : e.found) {
+      if (!(finding.what == place_of(effect))) continue;
+      for (const ExpectedParameter& expected : expected_parameters(effect, period_s)) {
+        for (const auto& estimate : finding.parameters) {
+          if (estimate.value.name != expected.name) continue;
+          outcome.parameters.push_back(check(expected, estimate));
+        }
+      }
+    }
+  }
+}
+
+bool is_unknown(Verdict verdict) {
+  return verdict == Verdict::kUnknownStateDependent || verdict == Verdict::kUnknownExternal;
+}
+
+void judge_outside(const hidden::TrueOutsideEffect& outside, const Explanation& e,
+                   Outcome& outcome) {
+  outcome.right_verdict = is_unknown(e.verdict);
+  const std::string variable(hidden::variable(outside.effect));
+  if (!outcome.right_verdict || variable == "time") {
+    outcome.right_detail = e.verdict == Verdict::kUnknownExternal && variable == "time";
+    return;
+  }
+  if (e.verdict != Verdict::kUnknownStateDependent) return;
+  for (const auto& share : e.where) {  // largest first
+    if (share.joint != outside.joint || share.variable == "time") continue;
+    outcome.right_detail = share.variable == variable;
+    return;
+  }
+}
+
+std::optional<tools::discovery::DataFaultKind> kind_of(hidden::DataFault fault) {
+  using tools::discovery::DataFaultKind;
+  switch (fault) {
+    case hidden::DataFault::kDegrees:
+      return DataFaultKind::kDegrees;
+    case hidden::DataFault::kSwappedTorqueSign:
+      return DataFaultKind::kTorqueSign;
+    case hidden::DataFault::kStaleSamples:
+      return DataFaultKind::kStaleSamples;
+    case hidden::DataFault::kClockSkew:
+      return DataFaultKind::kClockSkew;
+    case hidden::DataFault::kNone:
+      break;
+  }
+  return std::nullopt;
+}
+
+void judge_fault(hidden::DataFault fault, const Explanation& e, Outcome& outcome) {
+  outcome.right_verdict = e.verdict == Verdict::kDataFault;
+  outcome.right_detail = outcome.right_verdict &&
+                         std::any_of(e.data_faults.begin(), e.data_faults.end(),
+                                     [&](const auto& one) { return one.kind == kind_of(fault); });
+}
+
+void judge(const CaseGroup& group, const hidden::Case& made, const Explanation& e,
+           Outcome& outcome) {
+  outcome.verdict = tools::discovery::name_of(e.verdict);
+  for (const auto& finding : e.found) outcome.named.push_back(finding.what);
+  outcome.classes = e.ambiguous;
+  outcome.score = score_of(outcome.truth, outcome.named, outcome.classes);
+  // A shift of a number of the file that is right is as wrong as an effect that is not there.
+  outcome.score.wrong |= e.verdict == Verdict::kParameterShift && e.found.empty();
+  check_parameters(made.truth, e, made.recording.t_s[1] - made.recording.t_s[0], outcome);
+  if (!e.found.empty()) {
+    outcome.holdout_ratio = 0;
+    for (const auto& joint : e.joints) {
+      outcome.holdout_ratio =
+          std::max(*outcome.holdout_ratio, joint.holdout_after / joint.noise_floor);
+    }
+  }
+  if (group.kind == CaseGroup::Kind::kOutside) judge_outside(made.truth.outside, e, outcome);
+  if (group.kind == CaseGroup::Kind::kDataFault) judge_fault(made.truth.fault, e, outcome);
+}
+
+}  // namespace
+
+Outcome run_case(const CaseGroup& group, const hidden::Request& request) {
+  Outcome outcome;
+  outcome.request = request;
+  hidden::Case made;
+  try {
+    made = hidden::make_case(request);
+  } catch (const std::exception& error) {
+    outcome.refused = error.what();
+    return outcome;
+  }
+  for (const auto& effect : made.truth.effects) outcome.truth.push_back(place_of(effect));
+  outcome.hidden = words_for(made.truth, outcome.truth);
+  const tools::RobotDescription robot = robot_of(made.nominal);
+  const tools::Log recording = log_of(made.recording);
+  try {
+    const double start_s = now_s();
+    const Explanation e = tools::discovery::explain(robot, {recording}, {log_of(made.holdout)}, {});
+    outcome.time_s = now_s() - start_s;
+    judge(group, made, e, outcome);
+    if (group.with_baselines) outcome.baselines = select_by_baselines(robot, recording);
+  } catch (const std::exception& error) {
+    outcome.failed = error.what();
+    outcome.verdict = "error";
+  }
+  return outcome;
+}
+
+std::string text_of(const EffectAt& effect) {
+  return effect.effect + "@" + std::to_string(effect.joint + 1);
+}
+
+std::string text_of(const Effects& effects) {
+  std::string text;
+  for (const EffectAt& one : effects) text += (text.empty() ? "" : ", ") + text_of(one);
+  return text.empty() ? "none" : text;
+}
+
+}  // namespace offnominal::bench
