@@ -4,12 +4,10 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include "candidate_columns.hpp"
 #include "discovery/data.hpp"
-#include "discovery/search.hpp"
 
 namespace offnominal::bench {
 
@@ -18,7 +16,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using tools::discovery::Data;
 using tools::discovery::EffectAt;
-using tools::discovery::Search;
 
 namespace {
 
@@ -156,11 +153,9 @@ BaselineSelections select_by_baselines(const tools::RobotDescription& robot,
   std::vector<discovery::Workspace> workspaces;
   workspaces.push_back(discovery::make_workspace(recording, prepared, plan, widths));
   const Data data(std::move(workspaces), prepared, {});
-  const Search search(data, {});
-  const discovery::ModelFit fit = search.fit({});
-  const std::vector<CandidateColumns> candidates = candidate_columns(search, fit);
-  return {stepwise(candidates, fit.remainder.residual),
-          thresholded(candidates, fit.remainder.residual)};
+  const NuisanceFit fit = fit_nuisance(data);
+  const std::vector<CandidateColumns> candidates = candidate_columns(data, fit);
+  return {stepwise(candidates, fit.residual), thresholded(candidates, fit.residual)};
 }
 
 }  // namespace offnominal::bench

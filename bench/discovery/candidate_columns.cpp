@@ -1,17 +1,24 @@
 #include "candidate_columns.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
+#include "discovery/fit.hpp"
+#include "discovery/search.hpp"
+
 namespace offnominal::bench {
 
+using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using tools::discovery::Box;
+using tools::discovery::Data;
 using tools::discovery::EffectCandidate;
-using tools::discovery::ModelFit;
+using tools::discovery::NuisanceTerm;
 using tools::discovery::Regressor;
-using tools::discovery::RowLayout;
 using tools::discovery::Search;
 using tools::discovery::ShapePoint;
 using tools::discovery::Term;
@@ -24,11 +31,14 @@ std::vector<ShapePoint> few_of(const std::vector<ShapePoint>& grid) {
   return {grid.front(), grid[grid.size() / 2], grid.back()};
 }
 
-// Energy of the residual that a sine and a cosine take, unfiltered columns.
-double peak_height(const Search& search, const ModelFit& fit, const Term& term, double at) {
-  const auto& data = search.data();
-  const ShapePoint shape{at};
-  MatrixXd wave(data.layout.rows(), 2);
+// The sine and the cosine of a spectrum at one frequency, unfiltered, stacked.
+struct Wave {
+  ArrayXd sine;
+  ArrayXd cosine;
+};
+
+Wave wave_of(const Data& data, const Term& term, double frequency) {
+  const ShapePoint shape{frequency};
   std::vector<Regressor> sines;
   std::vector<Regressor> cosines;
   for (const auto& recording : data.recordings) {
@@ -36,56 +46,83 @@ double peak_height(const Search& search, const ModelFit& fit, const Term& term, 
     sines.push_back(std::move(both[0]));
     cosines.push_back(std::move(both[1]));
   }
-  wave.col(0) = data.layout.stack_kept(data.recordings, sines);
-  wave.col(1) = data.layout.stack_kept(data.recordings, cosines);
-  return (wave.transpose() * fit.residual).squaredNorm();
+  return {data.layout.stack_kept(data.recordings, sines).array(),
+          data.layout.stack_kept(data.recordings, cosines).array()};
 }
 
-std::vector<ShapePoint> highest_peak(const Search& search, const ModelFit& fit, const Term& term) {
-  constexpr std::size_t kStride = 2;  // the grids are twice as fine as a peak is wide
-  double best = -1;
-  ShapePoint shape;
+// The grid's steps are even: each wave is the one before it, turned by the step's angle.
+std::vector<ShapePoint> highest_peak(const Data& data, const NuisanceFit& fit, const Term& term) {
   const std::vector<double>& grid = term.ranges[0].grid;
-  for (std::size_t i = 0; i < grid.size(); i += kStride) {
-    const double height = peak_height(search, fit, term, grid[i]);
-    if (height <= best) continue;
-    best = height;
-    shape = {grid[i]};
+  if (grid.size() < 2) return {};
+  Wave wave = wave_of(data, term, grid[0]);
+  const Wave step = wave_of(data, term, grid[1] - grid[0]);
+  double best = -1;
+  std::size_t which = 0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const double height = std::pow(wave.sine.matrix().dot(fit.residual), 2) +
+                          std::pow(wave.cosine.matrix().dot(fit.residual), 2);
+    if (height > best) {
+      best = height;
+      which = i;
+    }
+    const ArrayXd sine = wave.sine * step.cosine + wave.cosine * step.sine;
+    wave.cosine = wave.cosine * step.cosine - wave.sine * step.sine;
+    wave.sine = sine;
   }
-  if (shape.empty()) return {};
-  return {shape};
+  return {{grid[which]}};
 }
 
-bool is_known(const Search& search, const EffectCandidate& effect, Index joint) {
-  for (const auto& known : search.data().recordings[0].known_effects) {
-    if (known.joint == joint && effect.spectrum() == EffectCandidate::Spectrum::kNone &&
-        std::string_view(info_of(known.kind)->name) == effect.name()) {
-      return true;
-    }
-  }
-  return false;
+bool knows(const Data& data, const std::string_view effect, Index joint) {
+  const auto& known = data.recordings[0].known_effects;
+  return std::any_of(known.begin(), known.end(), [&](const tools::RobotEffect& one) {
+    return one.joint == joint && std::string_view(info_of(one.kind)->name) == effect;
+  });
 }
 
 }  // namespace
 
-std::vector<CandidateColumns> candidate_columns(const Search& search,
-                                                const ModelFit& nuisance_fit) {
-  const auto& data = search.data();
-  const MatrixXd& basis = nuisance_fit.remainder.basis;
+NuisanceFit fit_nuisance(const Data& data) {
+  const auto& terms = data.nuisance.terms;
+  std::vector<Index> kept;
+  std::vector<Box> boxes;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const bool shape = terms[i].kind == NuisanceTerm::Kind::kSignShape;
+    if (shape && !knows(data, "coulomb_friction", terms[i].joint)) continue;
+    kept.push_back(static_cast<Index>(i));
+    boxes.push_back(terms[i].box);
+  }
+  const MatrixXd columns = data.nuisance.columns(Eigen::all, kept);
+  const VectorXd ones = VectorXd::Ones(data.layout.rows());
+  NuisanceFit fit;
+  VectorXd spread = data.layout.rms(data.target);
+  for (int pass = 0; pass < 2; ++pass) {
+    fit.joint_weights = spread.cwiseInverse();
+    const VectorXd weights = data.layout.weighted(ones, fit.joint_weights);
+    const auto boxed = tools::discovery::boxed_least_squares(
+        weights.asDiagonal() * columns, weights.cwiseProduct(data.target), boxes);
+    fit.residual = boxed.residual;
+    fit.basis = boxed.basis;
+    spread = data.layout.rms(boxed.residual.cwiseQuotient(weights));
+  }
+  return fit;
+}
+
+std::vector<CandidateColumns> candidate_columns(const Data& data, const NuisanceFit& fit) {
   std::vector<CandidateColumns> all;
   for (const auto& effect : tools::discovery::all_candidates()) {
+    const bool spectral = effect->spectrum() != EffectCandidate::Spectrum::kNone;
     for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
-      if (!effect->applies(data.recordings[0], joint) || is_known(search, *effect, joint)) continue;
+      if (!effect->applies(data.recordings[0], joint)) continue;
+      if (!spectral && knows(data, effect->name(), joint)) continue;
       Term term{effect.get(), joint, {}, effect->shapes(data.recordings, joint)};
-      const bool spectral = effect->spectrum() != EffectCandidate::Spectrum::kNone;
       for (const ShapePoint& shape :
-           spectral ? highest_peak(search, nuisance_fit, term) : few_of(Search::grid_of(term))) {
+           spectral ? highest_peak(data, fit, term) : few_of(Search::grid_of(term))) {
         term.shape = shape;
         MatrixXd columns = Search::columns_of(data, term);
         for (Index c = 0; c < columns.cols(); ++c) {
-          columns.col(c) = data.layout.weighted(columns.col(c), nuisance_fit.joint_weights);
+          columns.col(c) = data.layout.weighted(columns.col(c), fit.joint_weights);
         }
-        columns -= basis * (basis.transpose() * columns);
+        columns -= fit.basis * (fit.basis.transpose() * columns);
         all.push_back({{effect->name(), joint}, std::move(columns)});
       }
     }

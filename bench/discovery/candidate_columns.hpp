@@ -3,13 +3,20 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "discovery/search.hpp"
+#include "discovery/data.hpp"
 #include "score.hpp"
 
 namespace offnominal::bench {
 
-// The columns of one candidate at one shape: weighted as the analysis does, and what the nuisance
-// could do removed.
+// What the nuisance alone leaves of the torque, as the analysis weighs it.
+struct NuisanceFit {
+  Eigen::VectorXd joint_weights;
+  Eigen::VectorXd residual;  // weighted
+  Eigen::MatrixXd basis;     // orthonormal, of the weighted nuisance columns that are free
+};
+NuisanceFit fit_nuisance(const tools::discovery::Data& data);
+
+// The columns of one candidate at one shape: weighted, and what the nuisance could do removed.
 struct CandidateColumns {
   tools::discovery::EffectAt what;
   Eigen::MatrixXd columns;
@@ -17,7 +24,7 @@ struct CandidateColumns {
 
 // Every candidate at a few shapes of its grid: the ends and the middle; of a spectrum the largest
 // peak of the residual's periodogram, since a few of its thousands of points would show nothing.
-std::vector<CandidateColumns> candidate_columns(const tools::discovery::Search& search,
-                                                const tools::discovery::ModelFit& nuisance_fit);
+std::vector<CandidateColumns> candidate_columns(const tools::discovery::Data& data,
+                                                const NuisanceFit& fit);
 
 }  // namespace offnominal::bench

@@ -66,8 +66,7 @@ ordered_json json_of(const CaseGroup& group, const Outcome& outcome) {
   one["right_verdict"] = outcome.right_verdict;
   one["right_detail"] = outcome.right_detail;
   one["parameters"] = parameters_of(outcome);
-  one["holdout_ratio"] = nullptr;
-  if (outcome.holdout_ratio) one["holdout_ratio"] = *outcome.holdout_ratio;
+  one["holdout_ratio"] = outcome.holdout_ratio;
   one["time_s"] = outcome.time_s;
   if (!outcome.refused.empty()) one["refused"] = outcome.refused;
   if (!outcome.failed.empty()) one["failed"] = outcome.failed;

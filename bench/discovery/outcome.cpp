@@ -109,12 +109,10 @@ void judge(const CaseGroup& group, const hidden::Case& made, const Explanation& 
   // A shift of a number of the file that is right is as wrong as an effect that is not there.
   outcome.score.wrong |= e.verdict == Verdict::kParameterShift && e.found.empty();
   check_parameters(made.truth, e, made.recording.t_s[1] - made.recording.t_s[0], outcome);
-  if (!e.found.empty()) {
-    outcome.holdout_ratio = 0;
-    for (const auto& joint : e.joints) {
-      outcome.holdout_ratio =
-          std::max(*outcome.holdout_ratio, joint.holdout_after / joint.noise_floor);
-    }
+  outcome.holdout_ratio = 0;
+  for (const auto& joint : e.joints) {
+    outcome.holdout_ratio =
+        std::max(outcome.holdout_ratio, joint.holdout_after / joint.noise_floor);
   }
   if (group.kind == CaseGroup::Kind::kOutside) judge_outside(made.truth.outside, e, outcome);
   if (group.kind == CaseGroup::Kind::kDataFault) judge_fault(made.truth.fault, e, outcome);

@@ -32,10 +32,10 @@ struct Outcome {
   std::vector<Effects> classes;
   Score score;
   std::vector<ParameterCheck> parameters;
-  std::optional<double> holdout_ratio;  // to the noise floor, of the worst joint, where named
-  bool right_verdict = false;           // outside of the list, or a fault of the recording
-  bool right_detail = false;            // ... with the variable, or the kind of fault
-  double time_s = 0;                    // of explain() alone
+  double holdout_ratio = 0;    // hold-out error to the noise floor, of the worst joint
+  bool right_verdict = false;  // outside of the list, or a fault of the recording
+  bool right_detail = false;   // ... with the variable, or the kind of fault
+  double time_s = 0;           // of explain() alone
   std::optional<BaselineSelections> baselines;
 };
 

@@ -53,7 +53,7 @@ Summary of_explain(const CaseGroup& group, const std::vector<Outcome>& outcomes)
     ++summary.verdicts[one.verdict];
     count_score(one.score, summary);
     count_parameters(one, summary);
-    if (one.holdout_ratio) summary.holdout.count(*one.holdout_ratio <= kNearFloor);
+    if (!one.named.empty()) summary.holdout.count(one.holdout_ratio <= kNearFloor);
     summary.right_verdict.count(one.right_verdict);
     summary.right_detail.count(one.right_detail);
     const bool undecided = one.verdict == "not_excited" || one.verdict == "ambiguous";

@@ -25,6 +25,8 @@ struct ExpectedParameter {
 // | joint_elasticity | stiffness, damping | stiffness; damping is not modelled |
 // | time_delay | delay of the drive d | a row is held for a period T, which makes it late by T / 2
 //   in the mean: d + T / 2 |
+// | periodic_disturbance | phase at the instant | a row's torque answers what acts T / 2 later in
+//   the mean: the phase is ahead by frequency * T / 2 |
 // | joint_coupling | coefficient or level | both; the one that is there is compared |
 //
 // What the simulator does not have (width of a smoothed sign, share of an operator) is left out.
