@@ -1,5 +1,6 @@
 // The blind benchmark of `offnominal explain`; docs/discovery-benchmark.md says how it is made.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
@@ -24,6 +25,7 @@ struct Options {
   bool json = false;
   bool failures = false;
   std::string cases;  // empty: all
+  int most = 1000;    // cases of each group
   std::uint64_t seed = 20261121;
   int threads = static_cast<int>(std::thread::hardware_concurrency());
 };
@@ -41,7 +43,11 @@ std::vector<CaseGroup> chosen_groups(const Options& options) {
     names += (names.empty() ? "" : ", ") + group.name;
     const bool wanted = options.cases.empty() || group.name == options.cases ||
                         group.name.starts_with(options.cases + "-");
-    if (wanted) chosen.push_back(std::move(group));
+    if (!wanted) continue;
+    if (group.requests.size() > static_cast<std::size_t>(options.most)) {
+      group.requests.resize(static_cast<std::size_t>(options.most));
+    }
+    chosen.push_back(std::move(group));
   }
   if (chosen.empty()) {
     throw CLI::ValidationError("--cases", "found `" + options.cases + "`, allowed are " + names);
@@ -56,6 +62,7 @@ Results run(const Options& options) {
     total += group.requests.size();
     results.outcomes.emplace_back(group.requests.size());
   }
+  const bool shows_progress = isatty(STDERR_FILENO) != 0;
   std::mutex output;
   std::size_t done = 0;
   for (std::size_t g = 0; g < results.groups.size(); ++g) {
@@ -63,10 +70,11 @@ Results run(const Options& options) {
     tools::discovery::parallel_for(group.requests.size(), options.threads, [&](std::size_t i) {
       results.outcomes[g][i] = run_case(group, group.requests[i]);
       const std::lock_guard lock(output);
-      fmt::print(stderr, "\r{} of {}: {:<40}", ++done, total, group.words);
+      ++done;
+      if (shows_progress) fmt::print(stderr, "\r{} of {}: {:<40}", done, total, group.words);
     });
   }
-  fmt::print(stderr, "\r{:<60}\r", "");
+  if (shows_progress) fmt::print(stderr, "\r{:<60}\r", "");
   return results;
 }
 
@@ -110,6 +118,9 @@ int main_of(int argc, char** argv) {
   CLI::App app("Blind benchmark of the search for missing effects", "./dev bench discovery");
   app.add_flag("--quick", options.quick, "a few cases of each group, less than two minutes");
   app.add_option("--cases", options.cases, "one group, by the name that --json prints");
+  app.add_option("--most", options.most, "only the first of each group")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_option("--seed", options.seed, "base of every case's seed")->capture_default_str();
   app.add_option("--threads", options.threads, "cases that run at once")
       ->check(CLI::Range(1, 1024))
