@@ -10,6 +10,7 @@
 
 #include "../analysis/recorded_arm.hpp"
 #include "hidden_case.hpp"
+#include "support/repetitions.hpp"
 
 namespace offnominal::tools::discovery {
 namespace {
@@ -44,7 +45,7 @@ hidden::Request request_of(std::uint64_t seed, bool noisy) {
   return request;
 }
 
-constexpr std::uint64_t kSeeds = 3;
+constexpr std::uint64_t kSeeds = test::repetitions(20) > 1 ? 3 : 1;
 
 void expect_fault(hidden::DataFault fault, const std::string& kind) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -120,7 +121,9 @@ TEST(Doctor, FindsNothingInCleanRecordings) {
 }
 
 TEST(Doctor, TakesNoHiddenEffectForAFault) {
-  for (const hidden::HiddenEffect effect : hidden::kAllHiddenEffects) {
+  for (std::size_t i = 0;
+       i<hidden::kAllHiddenEffects.size(); i += test::repetitions(20)> 1 ? 1 : 5) {
+    const hidden::HiddenEffect effect = hidden::kAllHiddenEffects[i];
     for (const bool noisy : {false, true}) {
       hidden::Request request = request_of(11, noisy);
       request.effects = {effect};
