@@ -49,8 +49,8 @@ FilterPlan discovery_filter(const std::vector<Log>& logs, const RobotDescription
       const VectorXd ddq = motion_of(log, coarse).ddq.col(joint);
       const double moves = std::sqrt(ddq.squaredNorm() / static_cast<double>(ddq.size()));
       // Power of white noise over f, differentiated twice: (2 pi)^4 f^5 / 5 per rate / 2.
-      const double f5 = 5 * rate_hz / 2 * std::pow(kShare * moves / noise, 2) /
-                        std::pow(2 * 3.14159265358979, 4);
+      const double f5 =
+          5 * rate_hz / 2 * std::pow(kShare * moves / noise, 2) / std::pow(2 * 3.14159265358979, 4);
       const double highest = std::pow(f5, 0.2);
       if (highest > 0) cutoff_hz = std::min(cutoff_hz, std::max(highest, kLowestHz));
     }
@@ -60,8 +60,8 @@ FilterPlan discovery_filter(const std::vector<Log>& logs, const RobotDescription
   plan.sample_rate_hz = first.sample_rate_hz();
   plan.torque_cutoff_hz = cutoff_hz;
   plan.position_cutoff_hz = std::min(2.5 * cutoff_hz, 0.45 * plan.sample_rate_hz);
-  plan.decimation = std::max<Index>(
-      1, static_cast<Index>(std::floor(plan.sample_rate_hz / (2.5 * cutoff_hz))));
+  plan.decimation =
+      std::max<Index>(1, static_cast<Index>(std::floor(plan.sample_rate_hz / (2.5 * cutoff_hz))));
   plan.edge_samples = static_cast<Index>(std::ceil(2 * plan.sample_rate_hz / cutoff_hz));
   return plan;
 }

@@ -16,8 +16,7 @@ std::vector<NamedValue> EffectCandidate::parameters(JointType type,
   std::vector<NamedValue> values;
   const std::vector<LinearParameter> linear = linear_parameters(type);
   for (std::size_t i = 0; i < linear.size(); ++i) {
-    values.push_back(
-        {linear[i].name, coefficients[static_cast<Eigen::Index>(i)], linear[i].unit});
+    values.push_back({linear[i].name, coefficients[static_cast<Eigen::Index>(i)], linear[i].unit});
   }
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     values.push_back({ranges[i].name, shape[i], ranges[i].unit});

@@ -76,8 +76,8 @@ BoxedFit boxed_least_squares(const MatrixXd& columns, const VectorXd& target,
     if (worst < 0) {
       VectorXd x_free(static_cast<Index>(free.size()));
       for (std::size_t i = 0; i < free.size(); ++i) {
-        x_free[static_cast<Index>(i)] = solution[static_cast<Index>(i)] *
-                                        part.length[static_cast<Index>(i)];
+        x_free[static_cast<Index>(i)] =
+            solution[static_cast<Index>(i)] * part.length[static_cast<Index>(i)];
       }
       fit.residual = rest - part.columns * x_free;
       fit.basis = qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());

@@ -21,8 +21,8 @@ struct BoxedFit {
   Eigen::MatrixXd basis;
 };
 
-// `columns` and `target` are already weighted. Unknowns whose column adds nothing to those before it
-// (relative 1e-9) stay at 0.
+// `columns` and `target` are already weighted. Unknowns whose column adds nothing to those before
+// it (relative 1e-9) stay at 0.
 BoxedFit boxed_least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target,
                              const std::vector<Box>& boxes);
 

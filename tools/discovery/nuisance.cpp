@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <string_view>
-
 #include <algorithm>
+#include <string_view>
 
 #include "analysis/inverse_model.hpp"
 #include "analysis/unknown.hpp"
@@ -55,7 +54,11 @@ class Builder {
 
   void add_link(Index link) {
     const double share = options_.link_share;
-    add({NuisanceTerm::Kind::kLink, link, 0, 0, {-share, share},
+    add({NuisanceTerm::Kind::kLink,
+         link,
+         0,
+         0,
+         {-share, share},
          fmt::format("mass and inertia of link {}", link + 1)},
         [&](const Workspace& at) {
           const MatrixXd torque = link_torque(at.rigid, static_cast<std::size_t>(link), at.motion);
@@ -89,13 +92,18 @@ class Builder {
   // and a Dahl operator of several widths, each a share of the range moved.
   void add_sign_shapes(Index joint) {
     const auto add_shape = [&](const std::string& name, const auto& shape) {
-      add({NuisanceTerm::Kind::kSignShape, joint, 0, 0, {},
+      add({NuisanceTerm::Kind::kSignShape,
+           joint,
+           0,
+           0,
+           {},
            fmt::format("{} of joint {}", name, joint + 1)},
-          [&](const Workspace& at) -> Regressor { return {{joint, shape(at)}}; });
+          [&](const Workspace& at) -> Regressor {
+            return {{joint, shape(at)}};
+          });
     };
     add_shape("wider sign", [&](const Workspace& at) -> VectorXd {
-      return (at.motion.dq.col(joint).array() / (4 * at.sign_width[joint])).tanh() -
-             at.sign(joint);
+      return (at.motion.dq.col(joint).array() / (4 * at.sign_width[joint])).tanh() - at.sign(joint);
     });
     double range = 0;
     for (const Workspace& at : recordings_) {
@@ -105,8 +113,7 @@ class Builder {
     for (const double share : kPreslidingShares) {
       add_shape(fmt::format("pre-sliding over {:.2g}", share * range),
                 [&](const Workspace& at) -> VectorXd {
-                  return dahl_state(at.motion.q.col(joint), share * range).array() -
-                         at.sign(joint);
+                  return dahl_state(at.motion.q.col(joint), share * range).array() - at.sign(joint);
                 });
     }
   }
@@ -115,7 +122,11 @@ class Builder {
     double period_s = 0;
     for (const Workspace& at : recordings_) period_s = std::max(period_s, at.skew_s);
     const double most = options_.skew_samples * period_s;
-    add({NuisanceTerm::Kind::kSkew, joint, 0, 0, {-most, most},
+    add({NuisanceTerm::Kind::kSkew,
+         joint,
+         0,
+         0,
+         {-most, most},
          fmt::format("time skew of joint {}", joint + 1)},
         [&](const Workspace& at) -> Regressor {
           return {{joint, central_difference(at.load_torque.col(joint), at.period_s())}};

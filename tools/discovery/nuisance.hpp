@@ -15,14 +15,14 @@ namespace offnominal::tools::discovery {
 // the numbers of the robot file within what its author may have got wrong.
 struct NuisanceTerm {
   enum class Kind {
-    kLink,        // mass and inertia of a link, as a share
+    kLink,         // mass and inertia of a link, as a share
     kKnownEffect,  // a linear parameter of an effect of the robot file, as a difference
     kSignShape,    // how dry friction builds up at a reversal; only beside dry friction
     kSkew,         // time skew between torque and position, s
   };
   Kind kind = Kind::kLink;
-  Eigen::Index joint = 0;    // or link
-  std::size_t effect = 0;    // kKnownEffect: index into the robot's effects
+  Eigen::Index joint = 0;  // or link
+  std::size_t effect = 0;  // kKnownEffect: index into the robot's effects
   std::size_t parameter = 0;
   Box box;
   std::string name;  // in words
@@ -36,7 +36,7 @@ struct Nuisance {
 };
 
 struct NuisanceOptions {
-  double link_share = 0.05;  // mass and inertia of a link may be off by this share
+  double link_share = 0.05;   // mass and inertia of a link may be off by this share
   double skew_samples = 1.0;  // torque and position may be this far apart
 };
 

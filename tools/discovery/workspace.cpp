@@ -78,8 +78,7 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
   at.torque_noise_density.resize(torque.cols());
   for (Index joint = 0; joint < torque.cols(); ++joint) {
     const VectorXd raw = log.tau.col(joint);
-    const VectorXd smooth =
-        zero_phase_low_pass(raw, plan.position_cutoff_hz, plan.sample_rate_hz);
+    const VectorXd smooth = zero_phase_low_pass(raw, plan.position_cutoff_hz, plan.sample_rate_hz);
     at.torque_noise_density[joint] = noise_density(raw, smooth, plan);
     if (stride > 1) torque.col(joint) = smooth;
   }

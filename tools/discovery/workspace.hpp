@@ -15,19 +15,19 @@ namespace offnominal::tools::discovery {
 // One recording with everything that regressors are made from, at a sampling rate that the low-pass
 // of the plan leaves room for. Rows: samples, columns: joints.
 struct Workspace {
-  RobotDescription rigid;       // the robot without effects
+  RobotDescription rigid;  // the robot without effects
   std::vector<RobotEffect> known_effects;
-  FilterPlan plan;  // as of these samples
-  Motion motion;                // low-passed position and its derivatives
-  Eigen::MatrixXd torque;       // measured, N m or N
-  Eigen::MatrixXd load_torque;  // rigid-body torque of the model without any effect
+  FilterPlan plan;               // as of these samples
+  Motion motion;                 // low-passed position and its derivatives
+  Eigen::MatrixXd torque;        // measured, N m or N
+  Eigen::MatrixXd load_torque;   // rigid-body torque of the model without any effect
   Eigen::MatrixXd model_torque;  // of the model with its effects
   Eigen::MatrixXd own_inertia;   // d (torque of a joint) / d (its acceleration), kg m^2 or kg
   Eigen::VectorXd torque_noise_density;  // per joint, of the recording, N m or N per root hertz
-  Eigen::VectorXd sign_width;     // per joint: width of the smoothed sign, rad/s or m/s
-  Eigen::VectorXd top_speed;      // per joint: 99 % quantile of |dq|
-  double skew_s = 0;              // sampling period of the recording itself
-  double start_s = 0;             // time stamp that effects in time count from
+  Eigen::VectorXd sign_width;            // per joint: width of the smoothed sign, rad/s or m/s
+  Eigen::VectorXd top_speed;             // per joint: 99 % quantile of |dq|
+  double skew_s = 0;                     // sampling period of the recording itself
+  double start_s = 0;                    // time stamp that effects in time count from
 
   [[nodiscard]] Eigen::Index sample_count() const { return motion.sample_count(); }
   [[nodiscard]] Eigen::Index joint_count() const { return motion.q.cols(); }
