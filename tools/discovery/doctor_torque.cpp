@@ -171,10 +171,10 @@ void find_saturation(const Log& log, const RobotDescription& robot,
   // An extreme value counts as reached within this share of the torque's range.
   constexpr double kNearExtreme = 1e-3;
   // A sine spends 2 % of its time so near to its peaks, but a third as much just below.
-  constexpr double kSmallestShare = 0.01;
+  constexpr double kSmallestShareAtExtreme = 0.01;
   constexpr double kAgainstNext = 5;
   // Where torque is at its extremes most of the time, it switches between two levels: dry friction.
-  constexpr double kLargestShare = 0.5;
+  constexpr double kLargestShareAtExtreme = 0.5;
   constexpr double kAtLimit = 0.98;
   for (Index joint = 0; joint < log.tau.cols(); ++joint) {
     const VectorXd tau = log.tau.col(joint);
@@ -191,12 +191,12 @@ void find_saturation(const Log& log, const RobotDescription& robot,
       const auto distance = (tau.array() - end).abs();
       const auto reached = static_cast<double>((distance <= near).count());
       const auto next = static_cast<double>((distance <= 2 * near).count()) - reached;
-      if (reached < kSmallestShare * rows || reached < kAgainstNext * (next + 1)) continue;
+      if (reached < kSmallestShareAtExtreme * rows || reached < kAgainstNext * (next + 1)) continue;
       if (reached > share * rows) at = end;
       share += reached / rows;
       at_limit = at_limit || std::abs(end) >= kAtLimit * limit;
     }
-    if (!(share > 0) || (share > kLargestShare && !at_limit)) continue;
+    if (!(share > 0) || (share > kLargestShareAtExtreme && !at_limit)) continue;
     DataFault fault;
     fault.kind = DataFaultKind::kSaturation;
     fault.joint = joint;

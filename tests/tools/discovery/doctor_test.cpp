@@ -47,7 +47,7 @@ hidden::Request request_of(std::uint64_t seed, bool noisy) {
 
 constexpr std::uint64_t kSeeds = test::repetitions(20) > 1 ? 3 : 1;
 // Under the sanitizers a part of the effects has to do.
-constexpr std::size_t kStride = test::repetitions(20) > 1 ? 1 : 5;
+constexpr std::size_t kEffectStride = test::repetitions(20) > 1 ? 1 : 5;
 
 void expect_fault(hidden::DataFault fault, const std::string& kind) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -123,7 +123,7 @@ TEST(Doctor, FindsNothingInCleanRecordings) {
 }
 
 TEST(Doctor, TakesNoHiddenEffectForAFault) {
-  for (std::size_t i = 0; i < hidden::kAllHiddenEffects.size(); i += kStride) {
+  for (std::size_t i = 0; i < hidden::kAllHiddenEffects.size(); i += kEffectStride) {
     const hidden::HiddenEffect effect = hidden::kAllHiddenEffects[i];
     for (const bool noisy : {false, true}) {
       hidden::Request request = request_of(11, noisy);
