@@ -162,7 +162,9 @@ class Monitor {
     Vector<N, Scalar> jump = tau - state.sample.tau;
     solve_in_place<N, Scalar>(state.inertia_factor, jump);
     begin.nominal_ddq += jump;
-    begin.mu_bar = bound_at({state.sample.q, state.sample.dq, tau});
+    const bool bound_follows_torque =
+        config_.bound.kind == BoundKind::kTable && config_.bound.variable == BoundVariable::kTorque;
+    if (bound_follows_torque) begin.mu_bar = bound_at({state.sample.q, state.sample.dq, tau});
     return begin;
   }
 
