@@ -38,6 +38,8 @@ class Explainer {
             const std::vector<Log>& holdout, const ExplainOptions& options,
             const OnProgress& on_progress)
       : robot_(robot), options_(options), on_progress_(on_progress) {
+    check_joints(logs);
+    check_joints(holdout);
     const FilterPlan plan = discovery_filter(logs, robot_);
     constexpr Index kFewest = 200;
     check(logs, plan, kFewest);
@@ -76,14 +78,19 @@ class Explainer {
     if (on_progress_) on_progress_(doing);
   }
 
-  void check(const std::vector<Log>& logs, const FilterPlan& plan, Index fewest) const {
-    Index whole = 0;
+  void check_joints(const std::vector<Log>& logs) const {
     for (const Log& log : logs) {
       if (log.joint_count() != robot_.joint_count()) {
         throw InputError({log.file, "", fmt::format("{} joints", log.joint_count()),
                           fmt::format("{}, as the robot has", robot_.joint_count()),
                           "give the robot file that belongs to this recording, or [channels]"});
       }
+    }
+  }
+
+  void check(const std::vector<Log>& logs, const FilterPlan& plan, Index fewest) const {
+    Index whole = 0;
+    for (const Log& log : logs) {
       const Index left = (log.sample_count() - 2 * plan.edge_samples) / plan.decimation;
       if (left < kMinFilteredSamples) {
         throw InputError(
