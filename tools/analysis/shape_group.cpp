@@ -6,6 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include "signal/quantile.hpp"
+
 namespace offnominal::tools {
 namespace {
 
@@ -14,13 +16,6 @@ using Eigen::VectorXd;
 
 constexpr std::string_view kWidth = effects::kSmoothing.name;
 constexpr std::size_t kMostGridPoints = 20000;
-
-// The value that `share` of the values do not exceed.
-double quantile(VectorXd values, double share) {
-  const auto rank = static_cast<Index>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.data(), values.data() + rank, values.data() + values.size());
-  return values[rank];
-}
 
 // Four points per factor of ten, from a thousandth to once the highest speed of the motion. A sign
 // narrower than that would follow the velocity's noise, and no recording shows it apart.

@@ -12,6 +12,13 @@ Eigen::VectorXd every_nth(const Eigen::Ref<const Eigen::VectorXd>& signal, Eigen
   return signal(Eigen::seq(0, signal.size() - 1, factor));
 }
 
+Eigen::MatrixXd every_nth_row(const Eigen::Ref<const Eigen::MatrixXd>& signals,
+                              Eigen::Index factor) {
+  if (factor < 1) throw std::invalid_argument("the decimation factor is a number from 1");
+  if (signals.rows() == 0) return signals;
+  return signals(Eigen::seq(0, signals.rows() - 1, factor), Eigen::all);
+}
+
 Eigen::VectorXd decimate(const Eigen::Ref<const Eigen::VectorXd>& signal, Eigen::Index factor) {
   if (factor < 1) throw std::invalid_argument("the decimation factor is a number from 1");
   if (factor == 1) return signal;

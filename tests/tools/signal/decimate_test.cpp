@@ -27,6 +27,15 @@ TEST(Decimate, TakesEveryNthFromTheFirst) {
   EXPECT_EQ(every_nth(signal, 100).size(), 1);
 }
 
+TEST(Decimate, TakesEveryNthRowAsItDoesSamples) {
+  Eigen::MatrixXd signals(7, 2);
+  signals << 0, 10, 1, 11, 2, 12, 3, 13, 4, 14, 5, 15, 6, 16;
+  const Eigen::MatrixXd kept = offnominal::tools::every_nth_row(signals, 3);
+  ASSERT_EQ(kept.rows(), 3);
+  EXPECT_EQ(kept.col(0), every_nth(signals.col(0), 3));
+  EXPECT_EQ(kept.col(1), every_nth(signals.col(1), 3));
+}
+
 TEST(Decimate, KeepsWhatIsSlow) {
   const VectorXd slow = sine(2);
   const VectorXd out = decimate(slow, 10);
