@@ -15,17 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-std::vector<BeforeAfter> both(const Comparison& before, const Comparison& after) {
-  std::vector<BeforeAfter> result;
-  for (std::size_t i = 0; i < before.joints.size(); ++i) {
-    const JointComparison& old_one = before.joints[i];
-    const JointComparison& new_one = after.joints[i];
-    result.push_back({old_one.joint, old_one.unit, old_one.relative_error_percent,
-                      new_one.relative_error_percent, old_one.rms_error, new_one.rms_error});
-  }
-  return result;
-}
-
 // The held-out parts of the fitted recording: the old model on the same samples.
 std::vector<BeforeAfter> both_held_out(const Comparison& before, const Fit& fit,
                                        const std::vector<int>& parts) {
@@ -156,11 +145,11 @@ AddResult add(const RobotDescription& robot, const AddRequest& request, const Me
   result.cross_validated = holdout == nullptr;
   const Comparison before = compare(robot, log);
   const Comparison after = compare(result.robot, log);
-  result.fitted_log = both(before, after);
+  result.fitted_log = before_after(before, after);
   if (holdout != nullptr) {
     result.before = compare(robot, *holdout);
     result.after = compare(result.robot, *holdout);
-    result.held_out = both(result.before, result.after);
+    result.held_out = before_after(result.before, result.after);
   } else {
     result.before = before;
     result.after = after;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/before_after.hpp"
 #include "analysis/compare.hpp"
 #include "analysis/fit.hpp"
 #include "analysis/measurement.hpp"
@@ -21,16 +22,6 @@ struct AddRequest {
   std::optional<double> inertia_deviation;
   bool keep = false;   // leave effects that were fitted before as they are
   std::string source;  // what the written effects say of where their numbers come from
-};
-
-// Error of one joint with the old model and with the new one, on the same samples.
-struct BeforeAfter {
-  std::size_t joint = 0;
-  std::string unit;
-  double before_percent = 0;  // 100 |tau - tau_m| / |tau|
-  double after_percent = 0;
-  double before_rms = 0;  // N m or N
-  double after_rms = 0;
 };
 
 struct AddResult {

@@ -111,8 +111,6 @@ std::string held_out_words(const AddResult& result) {
              : std::string("hold-out recording");
 }
 
-double fall_of(const BeforeAfter& error) { return 1 - error.after_rms / error.before_rms; }
-
 report::Table parameter_table(const AddResult& result) {
   report::Table table;
   table.caption = "Parameters";
@@ -199,7 +197,7 @@ std::string verdict_of(const AddResult& result, const AddRequest& request) {
       fmt::format("from {:.2f} % to {:.2f} % of the {} of joint {} ({:.4g} to {:.4g} {} rms)",
                   error.before_percent, error.after_percent, error.unit == "N" ? "force" : "torque",
                   error.joint + 1, error.before_rms, error.after_rms, error.unit);
-  if (!(fall_of(error) > 0)) {
+  if (!(error.fall() > 0)) {
     return fmt::format(
         "With {} the error on data not used for the fit does not fall: it goes {}. These data do "
         "not support the effect.",
@@ -212,7 +210,7 @@ Level level_of(const AddResult& result, const AddRequest& request) {
   // A twentieth of the error is what an effect has to take away to be worth its place.
   constexpr double kRelevant = 0.05;
   if (!result.objections.empty()) return Level::kBad;
-  const double fall = fall_of(of_joint(result.held_out, request.joint));
+  const double fall = of_joint(result.held_out, request.joint).fall();
   if (!(fall > 0)) return Level::kBad;
   return fall < kRelevant ? Level::kWarn : Level::kGood;
 }

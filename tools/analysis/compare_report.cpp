@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "analysis/before_after.hpp"
 #include "analysis/torque_charts.hpp"
 
 namespace offnominal::tools {
@@ -85,8 +86,27 @@ report::Table table_of(const Comparison& comparison) {
   return table;
 }
 
-report::Section joint_section(const Comparison& comparison, std::size_t joint) {
-  const std::vector<NamedComparison> models{{"model", &comparison, report::Tone::kModel}};
+report::Table fall_table(const Comparison& comparison, const Comparison& against,
+                         const CompareNames& names) {
+  report::Table table;
+  table.caption = "Fall of the error";
+  table.columns = {
+      {"joint", "", "d"},  {"rms before", "", ".4g"},       {"rms after", "", ".4g"},
+      {"unit", "", ".4g"}, {"relative before", "%", ".2f"}, {"relative after", "%", ".2f"},
+      {"fall", "%", ".1f"}};
+  for (const BeforeAfter& error : before_after(against, comparison)) {
+    table.rows.push_back({static_cast<double>(error.joint + 1), error.before_rms, error.after_rms,
+                          error.unit, error.before_percent, error.after_percent,
+                          100 * error.fall()});
+  }
+  table.note = "Before: " + names.against_file + ". Fall of the rms error; negative: it has grown.";
+  return table;
+}
+
+report::Section joint_section(const Comparison& comparison, const Comparison* against,
+                              std::size_t joint) {
+  std::vector<NamedComparison> models{{"model", &comparison, report::Tone::kModel}};
+  if (against != nullptr) models.insert(models.begin(), {"before", against, report::Tone::kFaint});
   report::Section section;
   section.heading = fmt::format("Joint {}", joint + 1);
   section.text =
@@ -106,8 +126,16 @@ report::Section joint_section(const Comparison& comparison, std::size_t joint) {
 
 }  // namespace
 
-std::string verdict_of(const Comparison& comparison) {
+std::string verdict_of(const Comparison& comparison, const Comparison* against) {
   std::string words;
+  if (against != nullptr) {
+    for (const BeforeAfter& error : before_after(*against, comparison)) {
+      words += fmt::format("{}Joint {}: the error {} from {:.2f} % to {:.2f} %.",
+                           words.empty() ? "" : " ", error.joint + 1,
+                           error.fall() > 0 ? "falls" : "does not fall: it goes",
+                           error.before_percent, error.after_percent);
+    }
+  }
   for (const JointComparison& joint : comparison.joints) {
     if (!words.empty()) words += " ";
     words += sentence(joint);
@@ -128,7 +156,8 @@ nlohmann::ordered_json to_json(const FilterPlan& plan) {
           {"decimation", plan.decimation}};
 }
 
-nlohmann::ordered_json to_json(const Comparison& comparison, const CompareNames& names) {
+nlohmann::ordered_json to_json(const Comparison& comparison, const CompareNames& names,
+                               const Comparison* against) {
   nlohmann::ordered_json json;
   json["log"] = names.log;
   json["robot"] = names.robot_file;
@@ -150,7 +179,16 @@ nlohmann::ordered_json to_json(const Comparison& comparison, const CompareNames&
   json["samples"] = comparison.t_s.size();
   json["filter"] = to_json(comparison.plan);
   json["remarks"] = comparison.remarks;
-  json["verdict"] = verdict_of(comparison);
+  json["verdict"] = verdict_of(comparison, against);
+  if (against == nullptr) return json;
+  json["against"] = {{"robot", names.against_file}, {"joints", nlohmann::ordered_json::array()}};
+  for (const BeforeAfter& error : before_after(*against, comparison)) {
+    json["against"]["joints"].push_back({{"joint", error.joint + 1},
+                                         {"unit", error.unit},
+                                         {"rms_error", error.before_rms},
+                                         {"relative_error_percent", error.before_percent},
+                                         {"fall_percent", 100 * error.fall()}});
+  }
   return json;
 }
 
@@ -161,7 +199,8 @@ std::string words_of(const FilterPlan& plan) {
   return words + fmt::format(" at {:.6g} Hz", plan.sample_rate_hz);
 }
 
-std::string text_of(const Comparison& comparison, const CompareNames& names) {
+std::string text_of(const Comparison& comparison, const CompareNames& names,
+                    const Comparison* against) {
   std::string text =
       fmt::format("{} against {}\n{}, {} samples left\n", names.log, names.robot_file,
                   words_of(comparison.plan), comparison.t_s.size());
@@ -174,25 +213,39 @@ std::string text_of(const Comparison& comparison, const CompareNames& names) {
                         fmt::format("{:.4g} {}", joint.rms_torque, joint.unit),
                         percent(joint.relative_error_percent), percent(joint.fit_percent));
   }
-  return text + verdict_of(comparison) + "\n";
+  if (against != nullptr) {
+    text += fmt::format("{:<6} {:>22} {:>22} {:>10}\n", "joint", "before", "after", "fall");
+    for (const BeforeAfter& error : before_after(*against, comparison)) {
+      const auto both = [&](double percent_of, double rms) {
+        return fmt::format("{} ({:.4g} {})", percent(percent_of), rms, error.unit);
+      };
+      text += fmt::format("{:<6} {:>22} {:>22} {:>8.1f} %\n", error.joint + 1,
+                          both(error.before_percent, error.before_rms),
+                          both(error.after_percent, error.after_rms), 100 * error.fall());
+    }
+    text += "before: " + names.against_file + "\n";
+  }
+  return text + verdict_of(comparison, against) + "\n";
 }
 
-report::Page page_of(const Comparison& comparison, const CompareNames& names) {
+report::Page page_of(const Comparison& comparison, const CompareNames& names,
+                     const Comparison* against) {
   report::Page page;
   page.title = "Model against measurement";
   page.subtitle = names.log + " against " + names.robot_file;
-  page.verdict = {verdict_of(comparison), level_of(comparison)};
+  page.verdict = {verdict_of(comparison, against), level_of(comparison)};
   page.command_line = names.command_line;
   report::Section overview;
   overview.heading = "Error";
   overview.blocks.emplace_back(key_figures(comparison));
   overview.blocks.emplace_back(table_of(comparison));
+  if (against != nullptr) overview.blocks.emplace_back(fall_table(comparison, *against, names));
   for (const std::string& remark : comparison.remarks) {
     overview.blocks.emplace_back(report::Note{remark, Level::kWarn});
   }
   page.sections.push_back(std::move(overview));
   for (std::size_t joint = 0; joint < comparison.joints.size(); ++joint) {
-    page.sections.push_back(joint_section(comparison, joint));
+    page.sections.push_back(joint_section(comparison, against, joint));
   }
   return page;
 }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -10,6 +12,7 @@
 #include "command/filter_options.hpp"
 #include "command/progress.hpp"
 #include "command/verbs.hpp"
+#include "common/error.hpp"
 #include "log/read_log.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
@@ -20,6 +23,7 @@ namespace {
 struct Options {
   std::string log;
   std::string robot;
+  std::optional<std::string> against;
   std::optional<std::filesystem::path> channels;
   FilterRequest filter;
   std::optional<std::string> report;
@@ -30,19 +34,29 @@ void run(const Options& options, const std::string& command_line) {
   Progress progress;
   progress.begin("reading " + options.log);
   const RobotDescription robot = read_robot_file(options.robot);
+  std::optional<RobotDescription> older;
+  if (options.against) older = read_robot_file(*options.against);
+  if (older && older->joint_count() != robot.joint_count()) {
+    throw InputError({*options.against, "", fmt::format("{} joints", older->joint_count()),
+                      fmt::format("{}, as in {}", robot.joint_count(), options.robot),
+                      "give an older file of the same robot"});
+  }
   Log log = read_log(options.log, robot, options.channels);
   progress.begin("filtering");
   const Measurement measured = measure(std::move(log), options.filter);
   progress.begin("computing the model's torque");
   const Comparison comparison = compare(robot, measured);
+  std::optional<Comparison> before;
+  if (older) before = compare(*older, measured);
+  const Comparison* against = before ? &*before : nullptr;
   progress.end();
-  const CompareNames names{options.log, options.robot, command_line};
-  if (options.report) report::write_page(*options.report, page_of(comparison, names));
+  const CompareNames names{options.log, options.robot, command_line, options.against.value_or("")};
+  if (options.report) report::write_page(*options.report, page_of(comparison, names, against));
   if (options.json) {
-    std::cout << to_json(comparison, names).dump(2) << '\n';
+    std::cout << to_json(comparison, names, against).dump(2) << '\n';
     return;
   }
-  std::cout << text_of(comparison, names);
+  std::cout << text_of(comparison, names, against);
   if (options.report) std::cout << "written: " << *options.report << '\n';
 }
 
@@ -55,6 +69,8 @@ void register_compare(CLI::App& app, ExitCode& exit_code) {
   const auto options = std::make_shared<Options>();
   verb->add_option("LOG", options->log, "Recording, CSV or MATLAB .mat")->required();
   verb->add_option("--robot", options->robot, "Robot file")->required();
+  verb->add_option("--against", options->against,
+                   "An older file of the robot: prints how far the error has fallen from it");
   verb->add_option("--channels", options->channels,
                    "TOML file that maps the recording's columns, instead of the robot file's "
                    "[channels]");
