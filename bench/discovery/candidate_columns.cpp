@@ -14,10 +14,10 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using tools::discovery::Box;
 using tools::discovery::Data;
 using tools::discovery::EffectCandidate;
 using tools::discovery::NuisanceTerm;
+using tools::discovery::Prior;
 using tools::discovery::Regressor;
 using tools::discovery::Search;
 using tools::discovery::ShapePoint;
@@ -84,12 +84,13 @@ bool knows(const Data& data, const std::string_view effect, Index joint) {
 NuisanceFit fit_nuisance(const Data& data) {
   const auto& terms = data.nuisance.terms;
   std::vector<Index> kept;
-  std::vector<Box> boxes;
+  std::vector<Prior> priors;
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const bool shape = terms[i].kind == NuisanceTerm::Kind::kSignShape;
     if (shape && !knows(data, "coulomb_friction", terms[i].joint)) continue;
     kept.push_back(static_cast<Index>(i));
-    boxes.push_back(terms[i].box);
+    // Only the ends: what these methods compute has no rows for a belief.
+    priors.push_back({.low = terms[i].prior.low, .high = terms[i].prior.high});
   }
   const MatrixXd columns = data.nuisance.columns(Eigen::all, kept);
   const VectorXd ones = VectorXd::Ones(data.layout.rows());
@@ -98,11 +99,11 @@ NuisanceFit fit_nuisance(const Data& data) {
   for (int pass = 0; pass < 2; ++pass) {
     fit.joint_weights = spread.cwiseInverse();
     const VectorXd weights = data.layout.weighted(ones, fit.joint_weights);
-    const auto boxed = tools::discovery::boxed_least_squares(
-        weights.asDiagonal() * columns, weights.cwiseProduct(data.target), boxes);
-    fit.residual = boxed.residual;
-    fit.basis = boxed.basis;
-    spread = data.layout.rms(boxed.residual.cwiseQuotient(weights));
+    const auto fitted = tools::discovery::least_squares_with_priors(
+        weights.asDiagonal() * columns, weights.cwiseProduct(data.target), priors, 1);
+    fit.residual = fitted.residual;
+    fit.basis = fitted.basis;
+    spread = data.layout.rms(fitted.residual.cwiseQuotient(weights));
   }
   return fit;
 }
@@ -118,7 +119,7 @@ std::vector<CandidateColumns> candidate_columns(const Data& data, const Nuisance
       for (const ShapePoint& shape :
            spectral ? highest_peak(data, fit, term) : few_of(Search::grid_of(term))) {
         term.shape = shape;
-        MatrixXd columns = Search::columns_of(data, term);
+        MatrixXd columns = tools::discovery::columns_of(data, term);
         for (Index c = 0; c < columns.cols(); ++c) {
           columns.col(c) = data.layout.weighted(columns.col(c), fit.joint_weights);
         }

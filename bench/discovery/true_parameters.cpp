@@ -27,17 +27,6 @@ std::vector<ExpectedParameter> only(const std::string& name, double value) {
   return {{name, value, std::abs(value)}};
 }
 
-std::vector<ExpectedParameter> of_periodic(const TrueEffect& truth, double sampling_period_s) {
-  const double sine = value_of(truth, "sine");
-  const double cosine = value_of(truth, "cosine");
-  const double frequency = value_of(truth, "frequency");
-  const double amplitude = std::hypot(sine, cosine);
-  const double phase = std::atan2(cosine, sine) + frequency * sampling_period_s / 2;
-  return {{"sine", amplitude * std::cos(phase), amplitude},
-          {"cosine", amplitude * std::sin(phase), amplitude},
-          {"frequency", frequency, frequency}};
-}
-
 }  // namespace
 
 std::vector<ExpectedParameter> expected_parameters(const TrueEffect& truth,
@@ -53,8 +42,6 @@ std::vector<ExpectedParameter> expected_parameters(const TrueEffect& truth,
       return only("stiffness", value_of(truth, "stiffness"));
     case HiddenEffect::kTimeDelay:
       return only("delay", value_of(truth, "delay") + sampling_period_s / 2);
-    case HiddenEffect::kPeriodicDisturbance:
-      return of_periodic(truth, sampling_period_s);
     default:
       break;
   }

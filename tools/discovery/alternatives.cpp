@@ -23,7 +23,7 @@ bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternati
         other[row] * other[row] - mine[row] * mine[row];
   }
   const double mean = difference.mean();
-  const double count = static_cast<double>(blocks.count);
+  const auto count = static_cast<double>(blocks.count);
   const double deviation = std::sqrt((difference.array() - mean).square().sum() / (count - 1));
   return mean < kTellApart * deviation / std::sqrt(count);
 }
@@ -31,14 +31,12 @@ bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternati
 bool is_nested(const Data& data, const ModelFit& baseline, const Term& inner, const Term& outer) {
   constexpr double kSine = 0.1;
   Remainder target = baseline.remainder;
-  const MatrixXd outside = Search::columns_of(data, outer);
-  const MatrixXd inside = Search::columns_of(data, inner);
+  const MatrixXd outside = columns_of(data, outer);
+  const MatrixXd inside = columns_of(data, inner);
   if (outside.cols() <= inside.cols()) return false;
   for (Index c = 0; c < inside.cols(); ++c) {
-    VectorXd column = data.layout.weighted(inside.col(c), target.joint_weights);
-    column -= target.basis * (target.basis.transpose() * column).eval();
-    target.residual = column;
-    target.energy = joint_energy(data.layout, column);
+    target.residual = target.beside_basis(inside.col(c));
+    target.energy = data.layout.energy(target.residual);
     const Evidence evidence = judge(target, outside);
     if (!evidence.usable || 1 - evidence.gain > kSine * kSine) return false;
   }
@@ -60,10 +58,11 @@ bool shows(const Data& data, const Excitation& motion, const Term& term) {
     for (const std::vector<Regressor>& one : per_recording) same.push_back(one[i]);
     standard.col(static_cast<Index>(i)) = data.layout.stack(data.recordings, same);
   }
-  const MatrixXd columns = Search::columns_of(data, term);
+  const MatrixXd columns = columns_of(data, term);
   for (Index c = 0; c < columns.cols(); ++c) {
     const double length = columns.col(c).norm();
-    const BoxedFit fit = boxed_least_squares(standard, columns.col(c), std::vector<Box>(count));
+    const PriorFit fit =
+        least_squares_with_priors(standard, columns.col(c), std::vector<Prior>(count), 1);
     if (fit.residual.norm() < kApart * length) return false;
   }
   return true;

@@ -2,7 +2,7 @@
 
 #include "discovery/data.hpp"
 #include "discovery/excitation.hpp"
-#include "discovery/search.hpp"
+#include "discovery/regression.hpp"
 
 namespace offnominal::tools::discovery {
 

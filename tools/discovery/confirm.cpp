@@ -3,8 +3,6 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "analysis/inverse_model.hpp"
-
 namespace offnominal::tools::discovery {
 
 using Eigen::Index;
@@ -21,15 +19,11 @@ VectorXd simulated_position_error(const Data& data, const VectorXd& residual) {
     const Workspace& at = data.recordings[r];
     const double h = layout.period_s(r);
     const Index n = layout.samples(r);
-    // Columns of the mass matrix at the kept samples.
-    std::vector<MatrixXd> mass(static_cast<std::size_t>(joints), MatrixXd(n, joints));
-    for (Index joint = 0; joint < joints; ++joint) {
-      Motion faster = at.motion;
-      faster.ddq.col(joint).array() += 1;
-      const MatrixXd column = model_torque(at.rigid, faster) - at.load_torque;
-      for (Index i = 0; i < joints; ++i) {
-        mass[static_cast<std::size_t>(joint)].col(i) = kept_samples(at.plan, column.col(i));
-      }
+    std::vector<MatrixXd> mass;
+    for (const MatrixXd& column : at.mass) {
+      MatrixXd kept(n, joints);
+      for (Index i = 0; i < joints; ++i) kept.col(i) = kept_samples(at.plan, column.col(i));
+      mass.push_back(std::move(kept));
     }
     const auto window = std::max<Index>(2, std::lround(kWindowS / h));
     VectorXd position = VectorXd::Zero(joints);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "discovery/effects/effects.hpp"
+#include "signal/quantile.hpp"
 
 namespace offnominal::tools::discovery {
 
@@ -50,7 +52,7 @@ FilterPlan discovery_filter(const std::vector<Log>& logs, const RobotDescription
       const double moves = std::sqrt(ddq.squaredNorm() / static_cast<double>(ddq.size()));
       // Power of white noise over f, differentiated twice: (2 pi)^4 f^5 / 5 per rate / 2.
       const double f5 =
-          5 * rate_hz / 2 * std::pow(kShare * moves / noise, 2) / std::pow(2 * 3.14159265358979, 4);
+          5 * rate_hz / 2 * std::pow(kShare * moves / noise, 2) / std::pow(2 * std::numbers::pi, 4);
       const double highest = std::pow(f5, 0.2);
       if (highest > 0) cutoff_hz = std::min(cutoff_hz, std::max(highest, kLowestHz));
     }
@@ -88,13 +90,14 @@ VectorXd set_sign_widths(RobotDescription& robot, const std::vector<Log>& logs,
                          const FilterPlan& plan) {
   constexpr double kShareOfTopSpeed = 0.004;
   VectorXd widths = VectorXd::Zero(robot.joint_count());
-  for (Index joint = 0; joint < robot.joint_count(); ++joint) {
-    for (const Log& log : logs) {
-      VectorXd speed = motion_of(log, plan).dq.col(joint).cwiseAbs();
-      const auto rank = static_cast<Index>(0.99 * static_cast<double>(speed.size() - 1));
-      std::nth_element(speed.data(), speed.data() + rank, speed.data() + speed.size());
-      widths[joint] = std::max(widths[joint], kShareOfTopSpeed * speed[rank]);
+  for (const Log& log : logs) {
+    const MatrixXd dq = motion_of(log, plan).dq;
+    for (Index joint = 0; joint < robot.joint_count(); ++joint) {
+      const double top = quantile(dq.col(joint).cwiseAbs(), kTopSpeedShare);
+      widths[joint] = std::max(widths[joint], kShareOfTopSpeed * top);
     }
+  }
+  for (Index joint = 0; joint < robot.joint_count(); ++joint) {
     if (widths[joint] > 0) set_width(robot, joint, widths[joint]);
   }
   return widths;

@@ -10,6 +10,7 @@
 #include "analysis/motion.hpp"
 #include "discovery/doctor_checks.hpp"
 #include "log/sampling.hpp"
+#include "signal/decimate.hpp"
 #include "signal/zero_phase.hpp"
 
 namespace offnominal::tools::discovery {
@@ -64,11 +65,6 @@ std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& ro
       std::max<Index>(1, static_cast<Index>(rate_hz / (kSamplesPerCutoff * pair.cutoff_hz)));
   pair.period_s = log.period_s * static_cast<double>(stride);
   const Index edge = rows_per_period / stride + 1;
-  const auto every = [&](const MatrixXd& rows) {
-    MatrixXd kept((rows.rows() + stride - 1) / stride, rows.cols());
-    for (Index i = 0; i < kept.rows(); ++i) kept.row(i) = rows.row(i * stride);
-    return kept;
-  };
   const auto smooth = [&](const MatrixXd& thin) {
     MatrixXd result(thin.rows() - 2 * edge, thin.cols());
     for (Index joint = 0; joint < thin.cols(); ++joint) {
@@ -77,14 +73,15 @@ std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& ro
     }
     return result;
   };
-  const Motion thin{every(full.t_s), every(full.q), every(full.dq), every(full.ddq)};
+  const Motion thin{every_nth(full.t_s, stride), every_nth_row(full.q, stride),
+                    every_nth_row(full.dq, stride), every_nth_row(full.ddq, stride)};
   MatrixXd torque = log.tau;
   for (Index joint = 0; joint < torque.cols(); ++joint) {
     torque.col(joint) = zero_phase_low_pass(log.tau.col(joint), plan.position_cutoff_hz, rate_hz);
   }
   RobotDescription rigid = robot;
   rigid.effects.clear();
-  pair.measured = smooth(every(torque));
+  pair.measured = smooth(every_nth_row(torque, stride));
   pair.model = smooth(model_torque(robot, thin));
   pair.load = smooth(model_torque(rigid, thin));
   for (std::size_t link = 0; link < robot.joints.size(); ++link) {

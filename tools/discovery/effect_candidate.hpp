@@ -26,11 +26,15 @@ using ShapePoint = std::vector<double>;
 struct ShapeRange {
   std::string name;
   std::string unit;
-  std::vector<double> grid;  // ascending; one value: screened there, refined between low and high
-  double low = 0;
-  double high = 0;
-  bool logarithmic = false;  // refined in its logarithm
-  bool discrete = false;     // only the grid's values have a meaning
+  std::vector<double> grid;  // ascending; a single value is given, not looked for
+  enum class Kind {
+    kLinear,       // refined between the grid's values
+    kLogarithmic,  // the same, in its logarithm
+    kDiscrete      // only the grid's values have a meaning
+  } kind = Kind::kLinear;
+
+  // Whether the best value lies anywhere between the grid's ends and has to be looked for.
+  [[nodiscard]] bool is_searched() const { return kind != Kind::kDiscrete && grid.size() >= 2; }
 };
 
 struct NamedValue {

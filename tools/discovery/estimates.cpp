@@ -22,8 +22,7 @@ VectorXd shape_derivative(const Data& data, const Term& term, const VectorXd& co
   Term below = term;
   above.shape[axis] += step;
   below.shape[axis] -= step;
-  return (Search::columns_of(data, above) - Search::columns_of(data, below)) * coefficients /
-         (2 * step);
+  return (columns_of(data, above) - columns_of(data, below)) * coefficients / (2 * step);
 }
 
 // Where one term's numbers stand in the covariance.
@@ -82,67 +81,107 @@ std::vector<Estimate> of_term(const Data& data, const Term& term, const VectorXd
   return estimates;
 }
 
+// The model about its fit: one column and prior per unknown, nuisance first, shapes included.
+struct Linearised {
+  std::vector<VectorXd> columns;
+  std::vector<Prior> priors;
+  std::vector<Place> places;
+};
+
+Linearised linearise(const Regression& regression, const std::vector<Term>& terms,
+                     const ModelFit& fit) {
+  const Regression::Design design = regression.design(terms);
+  Linearised model;
+  const auto add = [&](VectorXd column, const Prior& prior) {
+    model.columns.push_back(std::move(column));
+    model.priors.push_back(prior);
+  };
+  for (Index c = 0; c < design.first[0]; ++c) {
+    add(design.columns.col(c), design.priors[static_cast<std::size_t>(c)]);
+  }
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    Place place{
+        static_cast<Index>(model.columns.size()), design.first[i + 1] - design.first[i], {}};
+    for (Index c = design.first[i]; c < design.first[i + 1]; ++c) add(design.columns.col(c), {});
+    for (std::size_t axis = 0; axis < terms[i].ranges.size(); ++axis) {
+      const bool searched = terms[i].ranges[axis].is_searched();
+      place.shape.push_back(searched ? static_cast<Index>(model.columns.size()) : -1);
+      if (!searched) continue;
+      add(shape_derivative(regression.data(), terms[i], fit.coefficients[i], axis), {});
+    }
+    model.places.push_back(std::move(place));
+  }
+  return model;
+}
+
+// Weighted columns with the rows of the priors below them, each scaled to length 1.
+struct ScaledColumns {
+  MatrixXd columns;
+  VectorXd length;
+};
+
+ScaledColumns weighted_columns(const Linearised& model, const RowLayout& layout,
+                               const ModelFit& fit) {
+  const auto unknowns = static_cast<Index>(model.columns.size());
+  ScaledColumns scaled{MatrixXd::Zero(layout.rows() + unknowns, unknowns), VectorXd(unknowns)};
+  for (Index c = 0; c < unknowns; ++c) {
+    const auto at = static_cast<std::size_t>(c);
+    auto column = scaled.columns.col(c);
+    column.head(layout.rows()) = layout.weighted(model.columns[at], fit.joint_weights);
+    column[layout.rows() + c] = fit.prior_weight / model.priors[at].deviation;  // 0: no prior
+    // A column that does not act has no interval; it must not take the others' along.
+    if (!std::isfinite(column.norm()) || !(column.norm() > 0)) column.setZero();
+    scaled.length[c] = column.norm() > 0 ? column.norm() : 1;
+    column /= scaled.length[c];
+  }
+  return scaled;
+}
+
+struct Covariance {
+  MatrixXd matrix;      // of the unknowns; empty where there are too few blocks
+  double quantile = 0;  // of Student's t, two-sided 95 %
+};
+
+Covariance covariance_of(const Linearised& model, const RowLayout& layout, const ModelFit& fit) {
+  const ScaledColumns scaled = weighted_columns(model, layout, fit);
+  const RowLayout::Blocks& blocks = fit.remainder.blocks;
+  const VectorXd residual = layout.weighted(fit.residual, fit.joint_weights);
+  const Index unknowns = scaled.columns.cols();
+  MatrixXd scores = MatrixXd::Zero(blocks.count, unknowns);
+  for (Index row = 0; row < layout.rows(); ++row) {
+    scores.row(blocks.of_row[static_cast<std::size_t>(row)]) +=
+        residual[row] * scaled.columns.row(row);
+  }
+  MatrixXd meat = scores.transpose() * scores;
+  // A prior is off by one standard deviation, whatever this one robot shows of it.
+  meat.diagonal() += fit.prior_weight * fit.prior_weight *
+                     scaled.columns.bottomRows(unknowns).diagonal().cwiseAbs2();
+  const auto of_recordings = static_cast<double>(blocks.count);
+  const auto judged_by_data = static_cast<double>(unknowns - fit.remainder.prior_rows());
+  const double free = of_recordings - judged_by_data;
+  if (free < 3) return {};
+  constexpr double kUpper = 0.975;
+  const MatrixXd bread = (scaled.columns.transpose() * scaled.columns)
+                             .completeOrthogonalDecomposition()
+                             .pseudoInverse();
+  const MatrixXd per_length = scaled.length.cwiseInverse().asDiagonal();
+  return {per_length * (of_recordings / free * bread * meat * bread) * per_length,
+          boost::math::quantile(boost::math::students_t(free), kUpper)};
+}
+
 }  // namespace
 
-std::vector<std::vector<Estimate>> estimates_of(const Search& search,
+std::vector<std::vector<Estimate>> estimates_of(const Regression& regression,
                                                 const std::vector<Term>& terms,
                                                 const ModelFit& fit) {
   if (terms.empty()) return {};
-  const Data& data = search.data();
-  const Search::Design design = search.design(terms);
-  std::vector<VectorXd> columns;
-  for (Index c = 0; c < design.first[0]; ++c) {
-    if (!fit.at_bound[static_cast<std::size_t>(c)]) columns.push_back(design.columns.col(c));
-  }
-  std::vector<Place> places;
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    Place place{static_cast<Index>(columns.size()), design.first[i + 1] - design.first[i], {}};
-    for (Index c = design.first[i]; c < design.first[i + 1]; ++c) {
-      columns.push_back(design.columns.col(c));
-    }
-    for (std::size_t axis = 0; axis < terms[i].ranges.size(); ++axis) {
-      const ShapeRange& range = terms[i].ranges[axis];
-      const bool fixed = range.discrete || (range.grid.size() < 2 && !(range.high > range.low));
-      place.shape.push_back(fixed ? -1 : static_cast<Index>(columns.size()));
-      if (!fixed) columns.push_back(shape_derivative(data, terms[i], fit.coefficients[i], axis));
-    }
-    places.push_back(std::move(place));
-  }
-
-  MatrixXd weighted(data.layout.rows(), static_cast<Index>(columns.size()));
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    weighted.col(static_cast<Index>(c)) = data.layout.weighted(columns[c], fit.joint_weights);
-  }
-  // A column that does not act has no interval; it must not take the others' along.
-  VectorXd length = weighted.colwise().norm().transpose();
-  for (Index c = 0; c < length.size(); ++c) {
-    if (std::isfinite(length[c]) && length[c] > 0) continue;
-    weighted.col(c).setZero();
-    length[c] = 1;
-  }
-  weighted = weighted * length.cwiseInverse().asDiagonal();
-  const MatrixXd bread =
-      (weighted.transpose() * weighted).completeOrthogonalDecomposition().pseudoInverse();
-  const VectorXd residual = data.layout.weighted(fit.residual, fit.joint_weights);
-  const RowLayout::Blocks blocks = fit.remainder.blocks;
-  MatrixXd scores = MatrixXd::Zero(blocks.count, weighted.cols());
-  for (Index row = 0; row < weighted.rows(); ++row) {
-    scores.row(blocks.of_row[static_cast<std::size_t>(row)]) += residual[row] * weighted.row(row);
-  }
-  const double free = static_cast<double>(blocks.count) - static_cast<double>(weighted.cols());
+  const Data& data = regression.data();
+  const Linearised model = linearise(regression, terms, fit);
+  const Covariance covariance = covariance_of(model, data.layout, fit);
   std::vector<std::vector<Estimate>> all;
-  MatrixXd covariance;
-  double quantile = 0;
-  if (free >= 3) {
-    const double small_sample = static_cast<double>(blocks.count) / free;
-    covariance = length.cwiseInverse().asDiagonal() *
-                 (small_sample * bread * (scores.transpose() * scores) * bread) *
-                 length.cwiseInverse().asDiagonal();
-    constexpr double kUpper = 0.975;
-    quantile = boost::math::quantile(boost::math::students_t(free), kUpper);
-  }
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    all.push_back(of_term(data, terms[i], fit.coefficients[i], covariance, places[i], quantile));
+    all.push_back(of_term(data, terms[i], fit.coefficients[i], covariance.matrix, model.places[i],
+                          covariance.quantile));
   }
   return all;
 }

@@ -14,23 +14,25 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd joint_energy(const RowLayout& layout, const VectorXd& values) {
-  VectorXd energy = VectorXd::Zero(layout.joint_count());
-  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
-    for (Index joint = 0; joint < layout.joint_count(); ++joint) {
-      energy[joint] += values.segment(layout.begin(r, joint), layout.samples(r)).squaredNorm();
-    }
-  }
-  return energy;
+VectorXd Remainder::beside_basis(const VectorXd& values) const {
+  VectorXd whole = VectorXd::Zero(residual.size());
+  whole.head(layout->rows()) = layout->weighted(values, joint_weights);
+  if (basis.cols() > 0) whole -= basis * (basis.transpose() * whole).eval();
+  return whole;
 }
 
 namespace {
 
+// Block of a row; those of the priors come last, in one.
+int block_of(const Remainder& remainder, Index row) {
+  const auto at = static_cast<std::size_t>(row);
+  return at < remainder.blocks.of_row.size() ? remainder.blocks.of_row[at] : remainder.blocks.count;
+}
+
 MatrixXd scores_of(const Remainder& remainder, const MatrixXd& columns) {
-  MatrixXd scores = MatrixXd::Zero(remainder.blocks.count, columns.cols());
+  MatrixXd scores = MatrixXd::Zero(remainder.blocks.count + 1, columns.cols());
   for (Index row = 0; row < columns.rows(); ++row) {
-    const int block = remainder.blocks.of_row[static_cast<std::size_t>(row)];
-    scores.row(block) += remainder.residual[row] * columns.row(row);
+    scores.row(block_of(remainder, row)) += remainder.residual[row] * columns.row(row);
   }
   return scores;
 }
@@ -38,9 +40,9 @@ MatrixXd scores_of(const Remainder& remainder, const MatrixXd& columns) {
 // The d x d products of the columns, block by block, flattened.
 MatrixXd moments_of(const Remainder& remainder, const MatrixXd& columns) {
   const Index d = columns.cols();
-  MatrixXd moments = MatrixXd::Zero(remainder.blocks.count, d * d);
+  MatrixXd moments = MatrixXd::Zero(remainder.blocks.count + 1, d * d);
   for (Index row = 0; row < columns.rows(); ++row) {
-    const int block = remainder.blocks.of_row[static_cast<std::size_t>(row)];
+    const int block = block_of(remainder, row);
     for (Index i = 0; i < d; ++i) {
       for (Index j = 0; j < d; ++j) moments(block, i * d + j) += columns(row, i) * columns(row, j);
     }
@@ -48,11 +50,13 @@ MatrixXd moments_of(const Remainder& remainder, const MatrixXd& columns) {
   return moments;
 }
 
-// The bounded Wald statistic of blocks' scores and moments, the blocks' scores times `signs`.
-double statistic_of(const MatrixXd& scores, const MatrixXd& moments, const MatrixXd& whole_inverse,
-                    const VectorXd& signs) {
+// The bounded Wald statistic, the blocks' scores times `signs`. What a block of a recording
+// contributes varies as it is seen to, what the priors contribute as they say.
+double statistic_of(const Evidence& group, const MatrixXd& whole_inverse, const VectorXd& signs) {
+  const MatrixXd& scores = group.block_scores;
+  const MatrixXd& moments = group.block_moments;
   const Index d = scores.cols();
-  const Index blocks = scores.rows();
+  const Index blocks = scores.rows() - 1;
   const VectorXd solution = whole_inverse * (scores.transpose() * signs);
   MatrixXd after(blocks, d);
   for (Index k = 0; k < blocks; ++k) {
@@ -62,8 +66,11 @@ double statistic_of(const MatrixXd& scores, const MatrixXd& moments, const Matri
       after(k, i) = signs[k] * scores(k, i) - fitted;
     }
   }
-  const MatrixXd covariance = whole_inverse * (after.transpose() * after) * whole_inverse;
-  const double wald = solution.dot(covariance.ldlt().solve(solution));
+  const VectorXd of_priors = group.prior_variance * moments.row(blocks).transpose();
+  const MatrixXd variance =
+      after.transpose() * after + Eigen::Map<const MatrixXd>(of_priors.data(), d, d);
+  const double wald =
+      solution.dot((whole_inverse * variance * whole_inverse).ldlt().solve(solution));
   const auto count = static_cast<double>(blocks);
   return std::isfinite(wald) && wald >= 0 ? count * wald / (count + wald) : 0;
 }
@@ -103,13 +110,11 @@ Evidence judge(const Remainder& remainder, const MatrixXd& columns) {
   constexpr double kNothingNew = 1e-3;  // sine of the angle to what is fitted already
   Evidence evidence;
   const RowLayout& layout = *remainder.layout;
-  MatrixXd own(columns.rows(), columns.cols());
+  MatrixXd own(remainder.residual.size(), columns.cols());
+  VectorXd before(columns.cols());
   for (Index c = 0; c < columns.cols(); ++c) {
-    own.col(c) = layout.weighted(columns.col(c), remainder.joint_weights);
-  }
-  const VectorXd before = own.colwise().norm().transpose();
-  if (remainder.basis.cols() > 0) {
-    own -= remainder.basis * (remainder.basis.transpose() * own).eval();
+    before[c] = layout.weighted(columns.col(c), remainder.joint_weights).norm();
+    own.col(c) = remainder.beside_basis(columns.col(c));
   }
   MatrixXd scaled = own;
   for (Index c = 0; c < own.cols(); ++c) {
@@ -125,7 +130,7 @@ Evidence judge(const Remainder& remainder, const MatrixXd& columns) {
   const VectorXd solution = qr.solve(remainder.residual);
   evidence.coefficients = solution.array() / own.colwise().norm().transpose().array();
   const VectorXd left = remainder.residual - scaled * solution;
-  const VectorXd energy = joint_energy(layout, left);
+  const VectorXd energy = layout.energy(left);
   evidence.gain = 1 - energy.sum() / remainder.energy.sum();
   for (Index joint = 0; joint < energy.size(); ++joint) {
     if (!(energy[joint] > 0) || !(remainder.energy[joint] > 0)) continue;
@@ -136,9 +141,9 @@ Evidence judge(const Remainder& remainder, const MatrixXd& columns) {
   }
   evidence.block_scores = scores_of(remainder, scaled);
   evidence.block_moments = moments_of(remainder, scaled);
-  evidence.statistic = statistic_of(evidence.block_scores, evidence.block_moments,
-                                    inverse_of_sum(evidence.block_moments, own.cols()),
-                                    VectorXd::Ones(remainder.blocks.count));
+  evidence.prior_variance = remainder.prior_weight * remainder.prior_weight;
+  evidence.statistic = statistic_of(evidence, inverse_of_sum(evidence.block_moments, own.cols()),
+                                    VectorXd::Ones(remainder.blocks.count + 1));
   evidence.usable = std::isfinite(evidence.statistic);
   return evidence;
 }
@@ -160,11 +165,11 @@ std::vector<double> largest_without_effect(const std::vector<Evidence>& groups, 
     if (group.usable && !scales.contains(d)) scales.emplace(d, EvidenceScale(d, blocks));
   }
   std::mt19937_64 generator(seed);
-  MatrixXd signs(draws, blocks);
+  MatrixXd signs(draws, blocks + 1);
   std::uint64_t bits = 0;
   int left = 0;
   for (Index row = 0; row < draws; ++row) {
-    for (Index block = 0; block < blocks; ++block) {
+    for (Index block = 0; block <= blocks; ++block) {
       if (left == 0) {
         bits = generator();
         left = 64;
@@ -181,8 +186,7 @@ std::vector<double> largest_without_effect(const std::vector<Evidence>& groups, 
     const EvidenceScale& scale = scales.at(d);
     const MatrixXd inverse = inverse_of_sum(group.block_moments, d);
     for (Index draw = 0; draw < draws; ++draw) {
-      const double statistic = statistic_of(group.block_scores, group.block_moments, inverse,
-                                            signs.row(draw).transpose());
+      const double statistic = statistic_of(group, inverse, signs.row(draw).transpose());
       double& at = largest[static_cast<std::size_t>(draw)];
       at = std::max(at, scale(statistic));
     }

@@ -9,6 +9,7 @@
 namespace offnominal::tools::discovery {
 
 // What is left of the torque once a model has been fitted, ready for judging columns beside it.
+// Behind the rows of the layout come those of the priors (fit.hpp), where candidates are 0.
 struct Remainder {
   const RowLayout* layout = nullptr;
   RowLayout::Blocks blocks;
@@ -17,10 +18,12 @@ struct Remainder {
   Eigen::MatrixXd basis;                // weighted, orthonormal
   Eigen::VectorXd energy;               // per joint, of the weighted residual
   Eigen::VectorXd independent_samples;  // per joint
-};
+  double prior_weight = 1;              // standard deviation of the rows of the priors
 
-// Sum of squares per joint of stacked values.
-Eigen::VectorXd joint_energy(const RowLayout& layout, const Eigen::VectorXd& values);
+  [[nodiscard]] Eigen::Index prior_rows() const { return residual.size() - layout->rows(); }
+  // Stacked values, weighted, with zeros in the rows of the priors, less what the basis takes.
+  [[nodiscard]] Eigen::VectorXd beside_basis(const Eigen::VectorXd& values) const;
+};
 
 // What columns would add to the model, everything that the model fits adapting to them.
 struct Evidence {
@@ -31,9 +34,11 @@ struct Evidence {
   // Wald statistic W with a covariance that holds for errors correlated inside a block and of any
   // variance, as K W / (K + W) with K blocks: at most their number.
   double statistic = 0;
-  bool usable = false;            // false: the columns add nothing to the basis
-  Eigen::MatrixXd block_scores;   // of the remainder; rows: blocks, columns: coefficients
-  Eigen::MatrixXd block_moments;  // rows: blocks, columns: the block's d x d products
+  bool usable = false;  // false: the columns add nothing to the basis
+  // Rows: blocks, then one for all priors; columns: coefficients, and the d x d products.
+  Eigen::MatrixXd block_scores;
+  Eigen::MatrixXd block_moments;
+  double prior_variance = 1;  // of one row of the priors: no single robot shows it
 };
 
 // `columns`: stacked, unweighted.

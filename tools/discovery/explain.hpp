@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "discovery/doctor.hpp"
 #include "discovery/effect_candidate.hpp"
 #include "discovery/excitation.hpp"
+#include "discovery/on_progress.hpp"
 #include "discovery/remainder.hpp"
 #include "log/log.hpp"
 #include "robot/robot.hpp"
@@ -44,6 +44,7 @@ struct EffectAt {
 struct Finding {
   EffectAt what;
   std::string words;
+  std::string formula;  // of its torque, in its parameters
   std::vector<Estimate> parameters;
   double p_value = 1;         // of the whole search, wild block bootstrap
   double p_replay = 1;        // by playing the model without the effect, 1 where not asked for
@@ -91,7 +92,6 @@ struct Explanation {
   std::vector<DataFault> data_faults;
   std::vector<Excitation> excitation;
   std::vector<std::string> advice;
-  bool unexcited = false;  // what is left follows a joint whose motion tells nothing apart
 
   // For pictures: one row per kept sample of the first recording, columns: joints.
   struct Series {
@@ -100,6 +100,9 @@ struct Explanation {
   } series;
   // Hold-out error of every joint with the findings so far, from none to all.
   std::vector<Eigen::VectorXd> waterfall;
+  // The robot with what was found and with the numbers fitted beside it; improved_robot.hpp.
+  RobotDescription improved;
+  std::vector<std::string> not_in_robot_files;
 };
 
 struct ExplainOptions {
@@ -109,10 +112,8 @@ struct ExplainOptions {
   int replays = 19;  // 0: none
   double link_share = 0.05;
   int most_effects = 6;
+  std::string source = {};  // what `improved` says of where its numbers come from
 };
-
-// What is being done, and how much of it.
-using OnProgress = std::function<void(const std::string& doing)>;
 
 // Which effects the robot's model lacks, by recordings of it. `holdout` may be empty: then parts of
 // the recordings are held out in turn. Throws InputError where the recordings and the robot do not

@@ -22,6 +22,7 @@ ordered_json parameters_of(const Finding& finding) {
 
 ordered_json json_of(const Finding& finding) {
   ordered_json json = effect_at(finding.what);
+  json["formula"] = finding.formula;
   json["parameters"] = parameters_of(finding);
   json["p_value"] = finding.p_value;
   json["p_value_replay"] = finding.p_replay;

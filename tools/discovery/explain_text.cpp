@@ -39,6 +39,7 @@ std::string text_of_findings(const Explanation& e) {
     const std::string unit = unit_at(e, finding.what.joint);
     text += fmt::format("\n{}. {} on joint {}: {}\n", i + 1, finding.what.effect,
                         finding.what.joint + 1, finding.words);
+    text += "   torque: " + finding.formula + "\n";
     for (const Estimate& one : finding.parameters) text += "   " + words_of(one) + "\n";
     text += fmt::format(
         "   held-out error without it {:.4g} {}, with it {:.4g} {}; p = {:.2g} over the whole "
@@ -75,6 +76,13 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
     text += fmt::format("the file's {} is off by {:+.0f} %\n", shift.name, 100 * shift.share);
   }
   for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
+  const bool to_write = e.verdict == Verdict::kFound || e.verdict == Verdict::kParameterShift;
+  if (to_write && !e.found.empty() && e.not_in_robot_files.empty()) {
+    text += fmt::format(
+        "to write a robot file with it: offnominal add --all-found --robot {} --log {}{} -o FILE\n",
+        names.robot_file, fmt::join(names.logs, " "),
+        names.holdout.empty() ? "" : fmt::format(" --holdout {}", fmt::join(names.holdout, " ")));
+  }
   return text;
 }
 

@@ -5,18 +5,23 @@ namespace offnominal::tools::discovery {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-VectorXd residual_on(const Data& other, const std::vector<Term>& terms, const ModelFit& fit) {
-  VectorXd residual = other.target - other.nuisance.columns * fit.nuisance;
+VectorXd HoldOut::residual(const std::vector<Term>& terms, const ModelFit& fit) const {
+  if (apart_ == nullptr) return cross_validated(terms);
+  VectorXd residual = apart_->target - apart_->nuisance.columns * fit.nuisance;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    residual -= Search::columns_of(other, terms[i]) * fit.coefficients[i];
+    residual -= columns_of(*apart_, terms[i]) * fit.coefficients[i];
   }
   return residual;
 }
 
-VectorXd cross_validated_residual(const Search& search, const std::vector<Term>& terms) {
+VectorXd HoldOut::rms(const VectorXd& residual) const {
+  return (apart_ != nullptr ? *apart_ : regression_.data()).layout.rms(residual);
+}
+
+VectorXd HoldOut::cross_validated(const std::vector<Term>& terms) const {
   constexpr int kParts = 5;
   constexpr double kBlockS = 2;
-  const RowLayout& layout = search.data().layout;
+  const RowLayout& layout = regression_.data().layout;
   const RowLayout::Blocks blocks = layout.blocks(kBlockS);
   VectorXd residual(layout.rows());
   for (int part = 0; part < kParts; ++part) {
@@ -24,7 +29,7 @@ VectorXd cross_validated_residual(const Search& search, const std::vector<Term>&
     for (std::size_t i = 0; i < rows.size(); ++i) {
       rows[i] = static_cast<char>(blocks.of_row[i] % kParts != part);
     }
-    const VectorXd whole = search.fit(terms, rows).residual;
+    const VectorXd whole = regression_.fit(terms, rows).residual;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (rows[i] == 0) residual[static_cast<Index>(i)] = whole[static_cast<Index>(i)];
     }

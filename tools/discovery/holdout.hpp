@@ -3,15 +3,29 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "discovery/search.hpp"
+#include "discovery/regression.hpp"
 
 namespace offnominal::tools::discovery {
 
-// Residual of a fitted model on other recordings of the same robot, stacked.
-Eigen::VectorXd residual_on(const Data& other, const std::vector<Term>& terms, const ModelFit& fit);
+// Judges models by data that their fit has not seen: recordings kept apart, or contiguous parts of
+// the fitted ones, each predicted by a fit of the others. What it is made with has to outlive it.
+class HoldOut {
+ public:
+  // `apart`: recordings kept apart; null: there are none.
+  HoldOut(const Regression& regression, const Data* apart)
+      : regression_(regression), apart_(apart) {}
 
-// Residual of every part of the recordings by a fit of the other parts: contiguous blocks of time,
-// never single rows. Shapes stay as the whole recording gave them.
-Eigen::VectorXd cross_validated_residual(const Search& search, const std::vector<Term>& terms);
+  [[nodiscard]] bool is_apart() const { return apart_ != nullptr; }
+  // Stacked as the held-out data are; `fit`: of the terms to all fitted recordings.
+  [[nodiscard]] Eigen::VectorXd residual(const std::vector<Term>& terms, const ModelFit& fit) const;
+  // Root mean square per joint of such a residual.
+  [[nodiscard]] Eigen::VectorXd rms(const Eigen::VectorXd& residual) const;
+
+ private:
+  [[nodiscard]] Eigen::VectorXd cross_validated(const std::vector<Term>& terms) const;
+
+  const Regression& regression_;
+  const Data* apart_;
+};
 
 }  // namespace offnominal::tools::discovery

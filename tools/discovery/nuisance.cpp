@@ -20,6 +20,16 @@ namespace {
 
 constexpr std::array<double, 3> kPreslidingShares{0.0002, 0.0006, 0.002};
 
+// Not beyond +-most, which is two standard deviations.
+Prior within(double most) { return {0, most / 2, -most, most}; }
+
+// The same for an unknown that is counted from another value: `factor` times (1 + unknown) is 1 +
+// what the prior is about.
+Prior counted_from(const Prior& prior, double factor) {
+  const auto moved = [&](double value) { return (1 + value) / factor - 1; };
+  return {moved(prior.mean), prior.deviation / factor, moved(prior.low), moved(prior.high)};
+}
+
 class Builder {
  public:
   Builder(const RobotDescription& robot, const std::vector<Workspace>& recordings,
@@ -27,9 +37,11 @@ class Builder {
       : robot_(robot), recordings_(recordings), layout_(layout), options_(options) {}
 
   Nuisance build() {
-    for (Index link = 0; link < layout_.joint_count(); ++link) add_link(link);
+    for (Index link = 0; options_.link_share > 0 && link < layout_.joint_count(); ++link) {
+      add_link(link);
+    }
     for (std::size_t effect = 0; effect < robot_.effects.size(); ++effect) add_effect(effect);
-    for (Index joint = 0; joint < layout_.joint_count(); ++joint) {
+    for (Index joint = 0; options_.beyond_robot_files && joint < layout_.joint_count(); ++joint) {
       add_sign_shapes(joint);
       add_skew(joint);
     }
@@ -53,15 +65,12 @@ class Builder {
   }
 
   void add_link(Index link) {
-    const double share = options_.link_share;
-    add({NuisanceTerm::Kind::kLink,
-         link,
-         0,
-         0,
-         {-share, share},
+    const auto which = static_cast<std::size_t>(link);
+    const double factor = options_.link_factors.empty() ? 1 : options_.link_factors[which];
+    add({NuisanceTerm::Kind::kLink, link, 0, 0, counted_from(within(options_.link_share), factor),
          fmt::format("mass and inertia of link {}", link + 1)},
         [&](const Workspace& at) {
-          const MatrixXd torque = link_torque(at.rigid, static_cast<std::size_t>(link), at.motion);
+          const MatrixXd torque = link_torque(at.rigid, which, at.motion);
           Regressor regressor;
           for (Index joint = 0; joint <= link; ++joint) {
             regressor.push_back({joint, torque.col(joint)});
@@ -105,11 +114,7 @@ class Builder {
     add_shape("wider sign", [&](const Workspace& at) -> VectorXd {
       return (at.motion.dq.col(joint).array() / (4 * at.sign_width[joint])).tanh() - at.sign(joint);
     });
-    double range = 0;
-    for (const Workspace& at : recordings_) {
-      const auto q = at.motion.q.col(joint);
-      range = std::max(range, q.maxCoeff() - q.minCoeff());
-    }
+    const double range = range_moved(recordings_, joint);
     for (const double share : kPreslidingShares) {
       add_shape(fmt::format("pre-sliding over {:.2g}", share * range),
                 [&](const Workspace& at) -> VectorXd {
@@ -122,14 +127,10 @@ class Builder {
     double period_s = 0;
     for (const Workspace& at : recordings_) period_s = std::max(period_s, at.skew_s);
     const double most = options_.skew_samples * period_s;
-    add({NuisanceTerm::Kind::kSkew,
-         joint,
-         0,
-         0,
-         {-most, most},
+    add({NuisanceTerm::Kind::kSkew, joint, 0, 0, within(most),
          fmt::format("time skew of joint {}", joint + 1)},
         [&](const Workspace& at) -> Regressor {
-          return {{joint, central_difference(at.load_torque.col(joint), at.period_s())}};
+          return {{joint, central_difference(at.torque.col(joint), at.period_s())}};
         });
   }
 
@@ -142,12 +143,6 @@ class Builder {
 };
 
 }  // namespace
-
-std::vector<Box> Nuisance::boxes() const {
-  std::vector<Box> boxes;
-  for (const NuisanceTerm& term : terms) boxes.push_back(term.box);
-  return boxes;
-}
 
 Nuisance make_nuisance(const RobotDescription& robot, const std::vector<Workspace>& recordings,
                        const RowLayout& layout, const NuisanceOptions& options) {

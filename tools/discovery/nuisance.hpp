@@ -24,20 +24,24 @@ struct NuisanceTerm {
   Eigen::Index joint = 0;  // or link
   std::size_t effect = 0;  // kKnownEffect: index into the robot's effects
   std::size_t parameter = 0;
-  Box box;
+  Prior prior;
   std::string name;  // in words
 };
 
 struct Nuisance {
   std::vector<NuisanceTerm> terms;
   Eigen::MatrixXd columns;  // stacked, filtered, not weighted; one per term
-
-  [[nodiscard]] std::vector<Box> boxes() const;
 };
 
 struct NuisanceOptions {
-  double link_share = 0.05;   // mass and inertia of a link may be off by this share
-  double skew_samples = 1.0;  // torque and position may be this far apart
+  // As far as these may be off, two standard deviations of what is believed:
+  double link_share = 0.05;   // mass and inertia of a link, as a share; 0: they are right
+  double skew_samples = 1.0;  // torque against position
+  // Whether what no robot file can say is a nuisance too: how dry friction builds up, the skew.
+  bool beyond_robot_files = true;
+  // Factor by which mass and inertia of each link of the robot differ from what the prior is about;
+  // empty: by none.
+  std::vector<double> link_factors = {};
 };
 
 Nuisance make_nuisance(const RobotDescription& robot, const std::vector<Workspace>& recordings,

@@ -58,25 +58,22 @@ double best_gain(const Remainder& remainder, const std::vector<MatrixXd>& column
 
 }  // namespace
 
-double replay_p(const Search& search, const ModelFit& fit, const VectorXd& noise, const Term& term,
+double replay_p(const Data& data, const ModelFit& fit, const VectorXd& noise, const Term& term,
                 int replays, std::uint64_t seed, int threads) {
-  const Data& data = search.data();
-  const std::vector<ShapePoint> points = search.grid_of(term);
+  const std::vector<ShapePoint> points = Search::grid_of(term);
   std::vector<MatrixXd> columns(points.size() + 1);
   parallel_for(columns.size(), threads, [&](std::size_t i) {
     Term at = term;
     if (i < points.size()) at.shape = points[i];
-    columns[i] = Search::columns_of(data, at);
+    columns[i] = columns_of(data, at);
   });
   const double measured = best_gain(fit.remainder, {columns.back()});
   std::vector<char> reached(static_cast<std::size_t>(replays));
   parallel_for(reached.size(), threads, [&](std::size_t i) {
     std::mt19937_64 generator(seed + 7919 * (i + 1));
     Remainder played = fit.remainder;
-    played.residual =
-        data.layout.weighted(shuffled(data.layout, noise, generator), fit.joint_weights);
-    played.residual -= played.basis * (played.basis.transpose() * played.residual).eval();
-    played.energy = joint_energy(data.layout, played.residual);
+    played.residual = played.beside_basis(shuffled(data.layout, noise, generator));
+    played.energy = data.layout.energy(played.residual);
     reached[i] = static_cast<char>(best_gain(played, columns) >= measured);
   });
   const auto count = static_cast<double>(std::count(reached.begin(), reached.end(), 1));

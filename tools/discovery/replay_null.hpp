@@ -12,7 +12,7 @@ namespace offnominal::tools::discovery {
 // another order and sign (the spectrum within a block stays). How often does the term's family of
 // shapes then gain as much as it did? At least 1 / (1 + replays).
 // `fit`: of the model without the term; `noise`: residual of the full model, stacked.
-double replay_p(const Search& search, const ModelFit& fit, const Eigen::VectorXd& noise,
+double replay_p(const Data& data, const ModelFit& fit, const Eigen::VectorXd& noise,
                 const Term& term, int replays, std::uint64_t seed, int threads);
 
 }  // namespace offnominal::tools::discovery

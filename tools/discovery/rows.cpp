@@ -20,12 +20,6 @@ RowLayout::RowLayout(const std::vector<Workspace>& recordings) {
   }
 }
 
-Index RowLayout::joint_of(Index row) const {
-  const auto after = std::upper_bound(first_.begin(), first_.end(), row);
-  const auto recording = static_cast<std::size_t>(after - first_.begin()) - 1;
-  return (row - first_[recording]) / samples_[recording];
-}
-
 RowLayout::Blocks RowLayout::blocks(double block_s) const {
   Blocks blocks;
   blocks.of_row.resize(static_cast<std::size_t>(rows_));
@@ -89,16 +83,19 @@ VectorXd RowLayout::weighted(const VectorXd& values, const VectorXd& joint_weigh
   return result;
 }
 
-VectorXd RowLayout::rms(const VectorXd& values) const {
-  VectorXd sum = VectorXd::Zero(joints_);
-  double count = 0;
+VectorXd RowLayout::energy(const VectorXd& values) const {
+  VectorXd energy = VectorXd::Zero(joints_);
   for (std::size_t r = 0; r < samples_.size(); ++r) {
     for (Index joint = 0; joint < joints_; ++joint) {
-      sum[joint] += values.segment(begin(r, joint), samples_[r]).squaredNorm();
+      energy[joint] += values.segment(begin(r, joint), samples_[r]).squaredNorm();
     }
-    count += static_cast<double>(samples_[r]);
   }
-  return (sum / count).cwiseSqrt();
+  return energy;
+}
+
+VectorXd RowLayout::rms(const VectorXd& values) const {
+  const Index per_joint = rows_ / std::max<Index>(1, joints_);
+  return (energy(values) / static_cast<double>(per_joint)).cwiseSqrt();
 }
 
 MatrixXd stacked_columns(const RowLayout& layout, const std::vector<Workspace>& recordings,

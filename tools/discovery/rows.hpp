@@ -24,9 +24,6 @@ class RowLayout {
     return first_[recording] + joint * samples_[recording];
   }
   [[nodiscard]] double period_s(std::size_t recording) const { return period_s_[recording]; }
-  // Joint of every row.
-  [[nodiscard]] Eigen::Index joint_of(Eigen::Index row) const;
-
   // Block of every row, from 0, for blocks of about block_s seconds.
   struct Blocks {
     std::vector<int> of_row;
@@ -47,6 +44,8 @@ class RowLayout {
   // Each row times its joint's weight.
   [[nodiscard]] Eigen::VectorXd weighted(const Eigen::VectorXd& values,
                                          const Eigen::VectorXd& joint_weights) const;
+  // Sum of squares per joint; rows beyond the layout's do not count.
+  [[nodiscard]] Eigen::VectorXd energy(const Eigen::VectorXd& values) const;
   // Root mean square per joint.
   [[nodiscard]] Eigen::VectorXd rms(const Eigen::VectorXd& values) const;
 

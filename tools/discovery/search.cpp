@@ -1,13 +1,12 @@
 #include "discovery/search.hpp"
 
 #include <algorithm>
-#include <boost/math/tools/minima.hpp>
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 #include "analysis/fit_problem.hpp"
 #include "discovery/parallel.hpp"
+#include "signal/periodogram.hpp"
 
 namespace offnominal::tools::discovery {
 
@@ -17,7 +16,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kShortestBlockS = 0.3;
 constexpr double kSmallestShare = 0.02;  // of the energy, for a closer look
 
 std::vector<ShapePoint> product_grid(const std::vector<ShapeRange>& ranges) {
@@ -35,29 +33,7 @@ std::vector<ShapePoint> product_grid(const std::vector<ShapeRange>& ranges) {
   return points;
 }
 
-VectorXd independent_samples_of(const RowLayout& layout, const VectorXd& residual) {
-  VectorXd samples = VectorXd::Zero(layout.joint_count());
-  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
-    for (Index joint = 0; joint < layout.joint_count(); ++joint) {
-      const auto part = residual.segment(layout.begin(r, joint), layout.samples(r));
-      samples[joint] += static_cast<double>(part.size()) / correlation_samples(part);
-    }
-  }
-  return samples;
-}
-
 }  // namespace
-
-bool Search::has_dry_friction(const std::vector<Term>& terms, Index joint) const {
-  const auto& known = data_.recordings[0].known_effects;
-  return std::any_of(known.begin(), known.end(),
-                     [&](const RobotEffect& effect) {
-                       return effect.joint == joint && effect.kind == EffectKind::kCoulombFriction;
-                     }) ||
-         std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
-           return term.joint == joint && term.effect->is_dry_friction();
-         });
-}
 
 // In the robot file already, where it is one of a kind: then its numbers are a nuisance.
 bool Search::is_known(const EffectCandidate& effect, Index joint) const {
@@ -68,12 +44,13 @@ bool Search::is_known(const EffectCandidate& effect, Index joint) const {
   });
 }
 
-Search::Search(const Data& data, const SearchOptions& options) : data_(data), options_(options) {
+Search::Search(const Regression& regression, const SearchOptions& options)
+    : regression_(regression), data_(regression.data()), options_(options) {
   for (const auto& effect : all_candidates()) {
-    for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
-      if (!effect->applies(data.recordings[0], joint) || is_known(*effect, joint)) continue;
+    for (Index joint = 0; joint < data_.layout.joint_count(); ++joint) {
+      if (!effect->applies(data_.recordings[0], joint) || is_known(*effect, joint)) continue;
       Slot slot;
-      slot.term = {effect.get(), joint, {}, effect->shapes(data.recordings, joint)};
+      slot.term = {effect.get(), joint, {}, effect->shapes(data_.recordings, joint)};
       slot.grid = product_grid(slot.term.ranges);
       if (!slot.grid.empty()) slots_.push_back(std::move(slot));
     }
@@ -92,87 +69,6 @@ Search::Search(const Data& data, const SearchOptions& options) : data_(data), op
   });
 }
 
-MatrixXd Search::columns_of(const Data& data, const Term& term) {
-  return stacked_columns(data.layout, data.recordings, *term.effect, term.joint, term.shape);
-}
-
-Search::Design Search::design(const std::vector<Term>& terms) const {
-  Design made;
-  for (std::size_t i = 0; i < data_.nuisance.terms.size(); ++i) {
-    const NuisanceTerm& nuisance = data_.nuisance.terms[i];
-    if (nuisance.kind == NuisanceTerm::Kind::kSignShape &&
-        !has_dry_friction(terms, nuisance.joint)) {
-      continue;
-    }
-    const bool replaced = nuisance.kind == NuisanceTerm::Kind::kSkew &&
-                          std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
-                            return term.joint == nuisance.joint && term.effect->replaces_skew();
-                          });
-    if (!replaced) made.kept.push_back(static_cast<Index>(i));
-  }
-  std::vector<MatrixXd> of_terms;
-  Index count = static_cast<Index>(made.kept.size());
-  for (const Term& term : terms) {
-    of_terms.push_back(columns_of(data_, term));
-    made.first.push_back(count);
-    count += of_terms.back().cols();
-  }
-  made.first.push_back(count);
-  made.columns.resize(data_.layout.rows(), count);
-  Index at = 0;
-  for (const Index i : made.kept) {
-    made.columns.col(at++) = data_.nuisance.columns.col(i);
-    made.boxes.push_back(data_.nuisance.terms[static_cast<std::size_t>(i)].box);
-  }
-  for (const MatrixXd& of_term : of_terms) {
-    made.columns.middleCols(at, of_term.cols()) = of_term;
-    at += of_term.cols();
-  }
-  made.boxes.resize(static_cast<std::size_t>(count));
-  return made;
-}
-
-ModelFit Search::fit(const std::vector<Term>& terms, const std::vector<char>& rows) const {
-  const RowLayout& layout = data_.layout;
-  const Design made = design(terms);
-  const MatrixXd& columns = made.columns;
-  VectorXd mask = VectorXd::Ones(layout.rows());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i] == 0) mask[static_cast<Index>(i)] = 0;
-  }
-
-  ModelFit result;
-  BoxedFit boxed;
-  VectorXd spread = layout.rms(data_.target);
-  for (int pass = 0; pass < 2; ++pass) {
-    const double floor = 1e-9 * layout.rms(data_.torque).maxCoeff() + 1e-300;
-    result.joint_weights = spread.cwiseMax(floor).cwiseInverse();
-    VectorXd row_weights = layout.weighted(mask, result.joint_weights);
-    const MatrixXd weighted = row_weights.asDiagonal() * columns;
-    boxed = boxed_least_squares(weighted, row_weights.cwiseProduct(data_.target), made.boxes);
-    result.residual = data_.target - columns * boxed.x;
-    spread = layout.rms(result.residual);
-  }
-  result.nuisance = VectorXd::Zero(data_.nuisance.columns.cols());
-  for (std::size_t i = 0; i < made.kept.size(); ++i) {
-    result.nuisance[made.kept[i]] = boxed.x[static_cast<Index>(i)];
-  }
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    result.coefficients.push_back(
-        boxed.x.segment(made.first[i], made.first[i + 1] - made.first[i]));
-  }
-  result.at_bound = boxed.at_bound;
-  Remainder& remainder = result.remainder;
-  remainder.layout = &layout;
-  remainder.independent_samples = independent_samples_of(layout, result.residual);
-  remainder.blocks = layout.blocks(kShortestBlockS);
-  remainder.joint_weights = result.joint_weights;
-  remainder.residual = boxed.residual;
-  remainder.basis = boxed.basis;
-  remainder.energy = joint_energy(layout, boxed.residual);
-  return result;
-}
-
 std::vector<ShapePoint> Search::grid_of(const Term& term) {
   if (term.effect->spectrum() != EffectCandidate::Spectrum::kNone) return {};
   return product_grid(term.ranges);
@@ -186,39 +82,20 @@ std::vector<ShapePoint> Search::spectral_peaks(const Slot& slot, const Remainder
   const JointType type =
       data_.recordings[0].rigid.joints[static_cast<std::size_t>(slot.term.joint)].joint.type;
   const double unit = position && type == JointType::kPrismatic ? 2 * std::numbers::pi : 1.0;
-  std::vector<double> power(grid.size(), 0.0);
+  VectorXd power = VectorXd::Zero(static_cast<Index>(grid.size()));
   for (std::size_t r = 0; r < layout.recording_count(); ++r) {
     const Workspace& workspace = data_.recordings[r];
     const VectorXd variable = position ? VectorXd(workspace.motion.q.col(slot.term.joint))
                                        : VectorXd(workspace.motion.t_s.array() - workspace.start_s);
-    const Eigen::ArrayXd phase = unit * kept_samples(workspace.plan, variable).array();
-    const Eigen::ArrayXd values =
-        at.residual.segment(layout.begin(r, slot.term.joint), layout.samples(r)).array();
-    const double step = grid.size() > 1 ? grid[1] - grid[0] : 0.0;
-    Eigen::ArrayXd c = (grid[0] * phase).cos();
-    Eigen::ArrayXd s = (grid[0] * phase).sin();
-    const Eigen::ArrayXd dc = (step * phase).cos();
-    const Eigen::ArrayXd ds = (step * phase).sin();
-    for (std::size_t g = 0; g < grid.size(); ++g) {
-      const double in = (values * c).sum();
-      const double quadrature = (values * s).sum();
-      power[g] += in * in + quadrature * quadrature;
-      const Eigen::ArrayXd turned = c * dc - s * ds;
-      s = s * dc + c * ds;
-      c = turned;
-    }
+    const VectorXd phase = unit * kept_samples(workspace.plan, variable);
+    const std::vector<double> own = periodogram(
+        phase, at.residual.segment(layout.begin(r, slot.term.joint), layout.samples(r)), grid);
+    power += Eigen::Map<const VectorXd>(own.data(), power.size());
   }
-  std::vector<std::size_t> peaks;
-  for (std::size_t g = 0; g < power.size(); ++g) {
-    const bool rises = g == 0 || power[g] >= power[g - 1];
-    const bool falls = g + 1 == power.size() || power[g] > power[g + 1];
-    if (rises && falls) peaks.push_back(g);
-  }
-  const std::size_t most = std::min(kPeaks, peaks.size());
-  std::partial_sort(peaks.begin(), peaks.begin() + static_cast<std::ptrdiff_t>(most), peaks.end(),
-                    [&](std::size_t a, std::size_t b) { return power[a] > power[b]; });
   std::vector<ShapePoint> points;
-  for (std::size_t i = 0; i < most; ++i) points.push_back({grid[peaks[i]]});
+  for (const double value : highest_peaks(grid, {power.begin(), power.end()}, kPeaks)) {
+    points.push_back({value});
+  }
   return points;
 }
 
@@ -331,14 +208,14 @@ std::vector<Proposal> Search::propose(const std::vector<Term>& terms, const Mode
     proposal.candidate = *shortlist[i];
     proposal.terms = terms;
     proposal.terms.push_back(shortlist[i]->term);
-    refine(proposal.terms, proposal.terms.size() - 1);
+    regression_.refine(proposal.terms, proposal.terms.size() - 1);
     proposal.candidate.term = proposal.terms.back();
     const Evidence evidence = judge(at.remainder, columns_of(data_, proposal.terms.back()));
     if (evidence.usable) {
       proposal.candidate.evidence = evidence;
       finish(proposal.candidate, at.remainder);
     }
-    proposal.fit = fit(proposal.terms);
+    proposal.fit = regression_.fit(proposal.terms);
     proposal.physical = proposal.terms.back().effect->is_physical(proposal.fit.coefficients.back());
   });
   std::erase_if(proposals, [](const Proposal& one) { return !one.physical; });
@@ -368,39 +245,6 @@ void Search::rank(std::vector<Proposal>& proposals) const {
   }
   std::stable_sort(proposals.begin(), proposals.end(),
                    [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
-}
-
-void Search::refine(std::vector<Term>& terms, std::size_t which) const {
-  Term& term = terms[which];
-  for (std::size_t axis = 0; axis < term.ranges.size(); ++axis) {
-    const ShapeRange& range = term.ranges[axis];
-    if (range.discrete || (range.grid.size() < 2 && !(range.high > range.low))) continue;
-    const auto coordinate = [&](double value) {
-      return range.logarithmic ? std::log(value) : value;
-    };
-    const auto value_at = [&](double x) { return range.logarithmic ? std::exp(x) : x; };
-    const auto above = std::upper_bound(range.grid.begin(), range.grid.end(), term.shape[axis]);
-    const auto place =
-        static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, (above - range.grid.begin()) - 1));
-    const bool one = range.grid.size() < 2;
-    const double low = coordinate(one ? range.low : range.grid[place > 0 ? place - 1 : 0]);
-    const double high =
-        coordinate(one ? range.high : range.grid[std::min(place + 1, range.grid.size() - 1)]);
-    std::vector<Term> others = terms;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
-    const ModelFit beside = fit(others);
-    const auto gain = [&](double x) {
-      Term trial = term;
-      trial.shape[axis] = value_at(x);
-      const Evidence evidence = judge(beside.remainder, columns_of(data_, trial));
-      return evidence.usable ? evidence.gain : -1.0;
-    };
-    constexpr int kBits = 22;
-    std::uintmax_t most = 40;
-    const auto [found, loss] = boost::math::tools::brent_find_minima(
-        [&](double x) { return -gain(x); }, low, high, kBits, most);
-    if (-loss > gain(coordinate(term.shape[axis]))) term.shape[axis] = value_at(found);
-  }
 }
 
 }  // namespace offnominal::tools::discovery

@@ -1,33 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "discovery/data.hpp"
 #include "discovery/effect_candidate.hpp"
 #include "discovery/evidence.hpp"
+#include "discovery/regression.hpp"
 
 namespace offnominal::tools::discovery {
-
-// An effect on a joint that may be in the model.
-struct Term {
-  const EffectCandidate* effect = nullptr;
-  Eigen::Index joint = 0;
-  ShapePoint shape{};
-  std::vector<ShapeRange> ranges{};
-};
-
-// A model's fit to data: the nuisance and the terms.
-struct ModelFit {
-  Eigen::VectorXd nuisance;                   // one per nuisance term
-  std::vector<Eigen::VectorXd> coefficients;  // per term
-  Eigen::VectorXd residual;                   // unweighted, stacked
-  Eigen::VectorXd joint_weights;
-  Remainder remainder;
-  std::vector<bool> at_bound;  // per column of the design
-};
 
 // A candidate at its best shape beside a model.
 struct Screened {
@@ -59,29 +40,14 @@ struct SearchOptions {
   int bootstrap_draws = 1999;
   std::uint64_t seed = 1;
   int threads = 1;
-  int most_effects = 6;
 };
 
+// Looks for the term that a model lacks. The regression has to outlive it.
 class Search {
  public:
-  Search(const Data& data, const SearchOptions& options);
+  Search(const Regression& regression, const SearchOptions& options);
 
-  [[nodiscard]] const Data& data() const { return data_; }
   [[nodiscard]] const SearchOptions& options() const { return options_; }
-  // Columns of a term on any data of the same robot.
-  [[nodiscard]] static Eigen::MatrixXd columns_of(const Data& data, const Term& term);
-
-  // Fits nuisance and terms; `rows`: weights 0 or 1 per row, empty for all.
-  [[nodiscard]] ModelFit fit(const std::vector<Term>& terms,
-                             const std::vector<char>& rows = {}) const;
-  // The regression of a model: nuisance that applies, then the terms' columns, not weighted.
-  struct Design {
-    Eigen::MatrixXd columns;
-    std::vector<Box> boxes;
-    std::vector<Eigen::Index> kept;   // nuisance terms
-    std::vector<Eigen::Index> first;  // first column of every term, and one past the last
-  };
-  [[nodiscard]] Design design(const std::vector<Term>& terms) const;
   // Every candidate that is not in `terms`, each at its best shape, best score first.
   [[nodiscard]] Screening screen(const std::vector<Term>& terms, const ModelFit& at) const;
   // The most promising candidates of a screening, each refined and fitted together with all that
@@ -91,8 +57,6 @@ class Search {
   // Probability that a search as this one shows as much evidence for anything where there is
   // nothing: what the proposal leaves is taken for the noise. `at`: the model without it.
   [[nodiscard]] double family_p(const Proposal& proposal, const ModelFit& at) const;
-  // Moves a term's shape to where the model fits best, the other terms as they are.
-  void refine(std::vector<Term>& terms, std::size_t which) const;
   // Where a term's shape is looked for; for a spectrum the peaks are not among them.
   [[nodiscard]] static std::vector<ShapePoint> grid_of(const Term& term);
 
@@ -102,7 +66,6 @@ class Search {
     std::vector<ShapePoint> grid;
     std::vector<Eigen::MatrixXd> columns;  // at the grid's points; empty for spectra
   };
-  [[nodiscard]] bool has_dry_friction(const std::vector<Term>& terms, Eigen::Index joint) const;
   void rank(std::vector<Proposal>& proposals) const;
   [[nodiscard]] bool is_known(const EffectCandidate& effect, Eigen::Index joint) const;
   [[nodiscard]] Screened judge_slot(const Slot& slot, const Remainder& at,
@@ -110,10 +73,10 @@ class Search {
   [[nodiscard]] std::vector<ShapePoint> spectral_peaks(const Slot& slot, const Remainder& at) const;
   void finish(Screened& screened, const Remainder& at) const;
 
+  const Regression& regression_;
   const Data& data_;
   SearchOptions options_;
   std::vector<Slot> slots_;
-  double block_s_ = 1;
 };
 
 }  // namespace offnominal::tools::discovery

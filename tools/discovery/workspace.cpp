@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "analysis/inverse_model.hpp"
+#include "signal/decimate.hpp"
+#include "signal/quantile.hpp"
 #include "signal/zero_phase.hpp"
 
 namespace offnominal::tools::discovery {
@@ -13,27 +15,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-double top_speed_of(const Eigen::Ref<const VectorXd>& dq) {
-  VectorXd speed = dq.cwiseAbs();
-  const auto rank = static_cast<Index>(0.99 * static_cast<double>(speed.size() - 1));
-  std::nth_element(speed.data(), speed.data() + rank, speed.data() + speed.size());
-  return speed[rank];
-}
-
-}  // namespace
-
-Eigen::ArrayXd Workspace::sign(Index joint) const {
-  return (motion.dq.col(joint).array() / sign_width[joint]).tanh();
-}
-
-namespace {
-
-MatrixXd every_row(const MatrixXd& rows, Index stride) {
-  MatrixXd kept((rows.rows() + stride - 1) / stride, rows.cols());
-  for (Index i = 0; i < kept.rows(); ++i) kept.row(i) = rows.row(i * stride);
-  return kept;
-}
 
 // Everything that is left after the low-pass, at a rate that keeps it.
 FilterPlan thinned(const FilterPlan& plan, Index stride) {
@@ -45,13 +26,14 @@ FilterPlan thinned(const FilterPlan& plan, Index stride) {
   return thin;
 }
 
-void differentiate_load(Workspace& at) {
-  at.own_inertia.resize(at.sample_count(), at.joint_count());
+std::vector<MatrixXd> mass_columns(const Workspace& at) {
+  std::vector<MatrixXd> columns;
   for (Index joint = 0; joint < at.joint_count(); ++joint) {
     Motion faster = at.motion;
     faster.ddq.col(joint).array() += 1;
-    at.own_inertia.col(joint) = (model_torque(at.rigid, faster) - at.load_torque).col(joint);
+    columns.emplace_back(tools::model_torque(at.rigid, faster) - at.load_torque);
   }
+  return columns;
 }
 
 // From what a low-pass takes away, as if white; 0 where the low-pass takes nothing.
@@ -64,6 +46,36 @@ double noise_density(const VectorXd& raw, const VectorXd& smooth, const FilterPl
 
 }  // namespace
 
+Eigen::ArrayXd Workspace::sign(Index joint) const {
+  return (motion.dq.col(joint).array() / sign_width[joint]).tanh();
+}
+
+double range_moved(const std::vector<Workspace>& recordings, Index joint) {
+  double range = 0;
+  for (const Workspace& at : recordings) {
+    const auto q = at.motion.q.col(joint);
+    range = std::max(range, q.maxCoeff() - q.minCoeff());
+  }
+  return range;
+}
+
+double longest_duration_s(const std::vector<Workspace>& recordings) {
+  double duration_s = 0;
+  for (const Workspace& at : recordings) {
+    duration_s = std::max(duration_s, static_cast<double>(at.sample_count()) * at.period_s());
+  }
+  return duration_s;
+}
+
+void Workspace::set_model(const RobotDescription& robot) {
+  rigid = robot;
+  known_effects = robot.effects;
+  rigid.effects.clear();
+  load_torque = tools::model_torque(rigid, motion);
+  model_torque = robot.effects.empty() ? load_torque : tools::model_torque(robot, motion);
+  mass = mass_columns(*this);
+}
+
 Workspace make_workspace(const Log& log, const RobotDescription& robot, const FilterPlan& plan,
                          const VectorXd& sign_width) {
   constexpr double kRatePerCutoff = 20;
@@ -72,8 +84,8 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
   Workspace at;
   at.plan = thinned(plan, stride);
   const Motion full = motion_of(log, plan);
-  at.motion = {every_row(full.t_s, stride), every_row(full.q, stride), every_row(full.dq, stride),
-               every_row(full.ddq, stride)};
+  at.motion = {every_nth(full.t_s, stride), every_nth_row(full.q, stride),
+               every_nth_row(full.dq, stride), every_nth_row(full.ddq, stride)};
   MatrixXd torque = log.tau;
   at.torque_noise_density.resize(torque.cols());
   for (Index joint = 0; joint < torque.cols(); ++joint) {
@@ -82,19 +94,14 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
     at.torque_noise_density[joint] = noise_density(raw, smooth, plan);
     if (stride > 1) torque.col(joint) = smooth;
   }
-  at.torque = every_row(torque, stride);
+  at.torque = every_nth_row(torque, stride);
   at.start_s = log.t_s[0];
   at.skew_s = log.period_s;
-  at.rigid = robot;
-  at.known_effects = robot.effects;
-  at.rigid.effects.clear();
-  at.load_torque = model_torque(at.rigid, at.motion);
-  at.model_torque = robot.effects.empty() ? at.load_torque : model_torque(robot, at.motion);
-  differentiate_load(at);
+  at.set_model(robot);
   at.sign_width = sign_width;
   at.top_speed = VectorXd::Zero(log.q.cols());
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
-    at.top_speed[joint] = top_speed_of(at.motion.dq.col(joint));
+    at.top_speed[joint] = quantile(at.motion.dq.col(joint).cwiseAbs(), kTopSpeedShare);
     if (!(at.sign_width[joint] > 0)) {
       constexpr double kStill = 1e-9;
       at.sign_width[joint] = std::max(0.01 * at.top_speed[joint], kStill);

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <functional>
 #include <vector>
 
 #include "analysis/filter_plan.hpp"
@@ -11,6 +10,9 @@
 #include "robot/robot.hpp"
 
 namespace offnominal::tools::discovery {
+
+// The share of the samples that are not faster than a joint's top speed.
+inline constexpr double kTopSpeedShare = 0.99;
 
 // One recording with everything that regressors are made from, at a sampling rate that the low-pass
 // of the plan leaves room for. Rows: samples, columns: joints.
@@ -22,7 +24,8 @@ struct Workspace {
   Eigen::MatrixXd torque;        // measured, N m or N
   Eigen::MatrixXd load_torque;   // rigid-body torque of the model without any effect
   Eigen::MatrixXd model_torque;  // of the model with its effects
-  Eigen::MatrixXd own_inertia;   // d (torque of a joint) / d (its acceleration), kg m^2 or kg
+  // Column k of the mass matrix over time: what 1 rad/s^2 or m/s^2 of joint k asks of every joint.
+  std::vector<Eigen::MatrixXd> mass;
   Eigen::VectorXd torque_noise_density;  // per joint, of the recording, N m or N per root hertz
   Eigen::VectorXd sign_width;            // per joint: width of the smoothed sign, rad/s or m/s
   Eigen::VectorXd top_speed;             // per joint: 99 % quantile of |dq|
@@ -32,6 +35,8 @@ struct Workspace {
   [[nodiscard]] Eigen::Index sample_count() const { return motion.sample_count(); }
   [[nodiscard]] Eigen::Index joint_count() const { return motion.q.cols(); }
   [[nodiscard]] double period_s() const { return 1 / plan.sample_rate_hz; }
+  // Another model of the same robot: everything that follows from it.
+  void set_model(const RobotDescription& robot);
   // tanh(dq / sign_width) of a joint.
   [[nodiscard]] Eigen::ArrayXd sign(Eigen::Index joint) const;
 };
@@ -39,5 +44,10 @@ struct Workspace {
 // sign_width: per joint, 0 where nothing is known yet: then a hundredth of the top speed.
 Workspace make_workspace(const Log& log, const RobotDescription& robot, const FilterPlan& plan,
                          const Eigen::VectorXd& sign_width);
+
+// Largest range of positions that one recording covers, rad or m.
+double range_moved(const std::vector<Workspace>& recordings, Eigen::Index joint);
+
+double longest_duration_s(const std::vector<Workspace>& recordings);
 
 }  // namespace offnominal::tools::discovery

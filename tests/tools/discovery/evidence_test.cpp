@@ -16,34 +16,51 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-TEST(BoxedLeastSquares, WithoutBoxesItIsLeastSquares) {
+TEST(LeastSquaresWithPriors, WithoutPriorsItIsLeastSquares) {
   auto generator = test::seeded_generator();
   std::normal_distribution<double> normal;
   const MatrixXd columns = MatrixXd::NullaryExpr(50, 3, [&] { return normal(generator); });
   const VectorXd target = VectorXd::NullaryExpr(50, [&] { return normal(generator); });
-  const BoxedFit fit = boxed_least_squares(columns, target, std::vector<Box>(3));
+  const PriorFit fit = least_squares_with_priors(columns, target, std::vector<Prior>(3), 1);
   EXPECT_LT((columns.transpose() * fit.residual).norm(), 1e-10);
   EXPECT_EQ(fit.basis.cols(), 3);
   EXPECT_LT((fit.basis.transpose() * fit.basis - MatrixXd::Identity(3, 3)).norm(), 1e-12);
 }
 
-TEST(BoxedLeastSquares, AnUnknownStaysInItsBoxAndGivesUpItsColumn) {
+TEST(LeastSquaresWithPriors, AnUnknownStaysBetweenItsEndsAndGivesUpItsColumn) {
   MatrixXd columns(3, 2);
   columns << 1, 0, 0, 1, 0, 0;
   const VectorXd target = Eigen::Vector3d(5, 2, 1);
-  const BoxedFit fit = boxed_least_squares(columns, target, {{-1, 1}, {}});
+  const PriorFit fit = least_squares_with_priors(columns, target, {{.low = -1, .high = 1}, {}}, 1);
   EXPECT_EQ(fit.x[0], 1);
-  EXPECT_TRUE(fit.at_bound[0]);
   EXPECT_NEAR(fit.x[1], 2, 1e-12);
   EXPECT_EQ(fit.basis.cols(), 1);
   EXPECT_NEAR(fit.residual[0], 4, 1e-12);
 }
 
-TEST(BoxedLeastSquares, EqualColumnsDoNotSpoilTheSolution) {
+TEST(LeastSquaresWithPriors, APriorCountsAsOneMoreObservation) {
+  // One unknown seen by four rows with errors of size 1 as 3, believed to be 0 +- 0.5: the mean of
+  // both, by the inverse of their variances, 1/4 and 1/4.
+  const MatrixXd columns = MatrixXd::Ones(4, 1);
+  const VectorXd target = VectorXd::Constant(4, 3);
+  const PriorFit fit = least_squares_with_priors(columns, target, {Prior{.deviation = 0.5}}, 1);
+  EXPECT_NEAR(fit.x[0], 1.5, 1e-12);
+  ASSERT_EQ(fit.residual.size(), 5);
+  EXPECT_NEAR(fit.residual[4], -1.5 / 0.5, 1e-12);
+  EXPECT_LT((fit.basis.transpose() * fit.residual).norm(), 1e-12);
+  // About another mean.
+  const PriorFit about = least_squares_with_priors(columns, target, {Prior{1, 0.5}}, 1);
+  EXPECT_NEAR(about.x[0], 2, 1e-12);
+  // Where four rows are one independent observation, the belief weighs four times as much.
+  const PriorFit firm = least_squares_with_priors(columns, target, {Prior{.deviation = 0.5}}, 2);
+  EXPECT_NEAR(firm.x[0], 3.0 / 5, 1e-12);
+}
+
+TEST(LeastSquaresWithPriors, EqualColumnsDoNotSpoilTheSolution) {
   MatrixXd columns(4, 2);
   columns << 1, 1, 2, 2, 3, 3, 4, 4;
   const VectorXd target = 2 * columns.col(0);
-  const BoxedFit fit = boxed_least_squares(columns, target, std::vector<Box>(2));
+  const PriorFit fit = least_squares_with_priors(columns, target, std::vector<Prior>(2), 1);
   EXPECT_LT(fit.residual.norm(), 1e-10);
   EXPECT_EQ(fit.basis.cols(), 1);
 }

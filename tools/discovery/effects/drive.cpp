@@ -4,6 +4,7 @@
 
 #include "discovery/effects/effects.hpp"
 #include "signal/differentiate.hpp"
+#include "signal/quantile.hpp"
 
 namespace offnominal::tools::discovery {
 namespace {
@@ -84,15 +85,12 @@ class Cogging final : public EffectCandidate {
   std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index joint) const override {
     const JointType type = type_of(at[0], joint);
     const double per_unit = type == JointType::kRevolute ? 2 * std::numbers::pi : 1.0;
-    double range = 0;
+    const double range = range_moved(at, joint) / per_unit;
     double highest = 0;
     for (const Workspace& one : at) {
-      const VectorXd q = one.motion.q.col(joint);
-      range = std::max(range, (q.maxCoeff() - q.minCoeff()) / per_unit);
-      VectorXd speed = one.motion.dq.col(joint).cwiseAbs() / per_unit;
-      const auto rank = static_cast<Index>(0.3 * static_cast<double>(speed.size() - 1));
-      std::nth_element(speed.data(), speed.data() + rank, speed.data() + speed.size());
-      const double slow = std::max(speed[rank], 0.05 * one.top_speed[joint] / per_unit);
+      const double slow = std::max(quantile(one.motion.dq.col(joint).cwiseAbs(), 0.3),
+                                   0.05 * one.top_speed[joint]) /
+                          per_unit;
       if (slow > 0) highest = std::max(highest, one.plan.torque_cutoff_hz / slow);
     }
     ShapeRange order{"order", unit(Quantity::kCyclesPerPosition, type), {}};
@@ -126,12 +124,9 @@ class Periodic final : public EffectCandidate {
   }
   std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index /*joint*/) const override {
     ShapeRange frequency{"frequency", "rad/s", {}};
-    double duration_s = 0;
+    const double duration_s = longest_duration_s(at);
     double cutoff_hz = 0;
-    for (const Workspace& one : at) {
-      duration_s = std::max(duration_s, static_cast<double>(one.sample_count()) * one.period_s());
-      cutoff_hz = std::max(cutoff_hz, one.plan.torque_cutoff_hz);
-    }
+    for (const Workspace& one : at) cutoff_hz = std::max(cutoff_hz, one.plan.torque_cutoff_hz);
     const double whole = 2 * std::numbers::pi / duration_s;
     const double last = 2 * std::numbers::pi * cutoff_hz;
     constexpr double kMost = 4000;
@@ -180,7 +175,7 @@ class Coupling final : public EffectCandidate {
             {"level", unit(Quantity::kEffort, type)}};
   }
   std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index joint) const override {
-    ShapeRange source{"source_joint", "", {}, 0, 0, false, true};
+    ShapeRange source{"source_joint", "", {}, ShapeRange::Kind::kDiscrete};
     for (Index k = 0; k < at[0].joint_count(); ++k) {
       if (k != joint && at[0].top_speed[k] > 0) source.grid.push_back(static_cast<double>(k + 1));
     }
@@ -209,12 +204,9 @@ class TemperatureDrift final : public EffectCandidate {
             {"coefficient", unit(Quantity::kEffortPerVelocity, type)}};
   }
   std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index /*joint*/) const override {
-    double duration_s = 0;
-    for (const Workspace& one : at) {
-      duration_s = std::max(duration_s, static_cast<double>(one.sample_count()) * one.period_s());
-    }
-    return {
-        {"time_constant", "s", logarithmic_grid(duration_s / 12, duration_s * 1.5), 0, 0, true}};
+    const double duration_s = longest_duration_s(at);
+    return {{"time_constant", "s", logarithmic_grid(duration_s / 12, duration_s * 1.5),
+             ShapeRange::Kind::kLogarithmic}};
   }
   std::vector<Regressor> regressors(const Workspace& at, Index joint,
                                     std::span<const double> shape) const override {

@@ -61,8 +61,8 @@ class Coulomb final : public EffectCandidate {
   }
   std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index joint) const override {
     const double top = top_speed(at, joint);
-    return {
-        {"smoothing", velocity_unit(at, joint), logarithmic_grid(0.001 * top, 0.05 * top), true}};
+    return {{"smoothing", velocity_unit(at, joint), logarithmic_grid(0.001 * top, 0.05 * top),
+             ShapeRange::Kind::kLogarithmic}};
   }
   std::vector<Regressor> regressors(const Workspace& at, Index joint,
                                     std::span<const double> shape) const override {
@@ -106,7 +106,7 @@ class Stribeck final : public EffectCandidate {
   std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index joint) const override {
     const double top = top_speed(at, joint);
     return {{"stribeck_velocity", velocity_unit(at, joint),
-             logarithmic_grid(0.015 * top, 0.4 * top), true}};
+             logarithmic_grid(0.015 * top, 0.4 * top), ShapeRange::Kind::kLogarithmic}};
   }
   std::vector<Regressor> regressors(const Workspace& at, Index joint,
                                     std::span<const double> shape) const override {
@@ -171,13 +171,9 @@ class Hysteresis final : public EffectCandidate {
     return {{"level", unit(Quantity::kEffort, type)}};
   }
   std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index joint) const override {
-    double range = 0;
-    for (const Workspace& one : at) {
-      range =
-          std::max(range, one.motion.q.col(joint).maxCoeff() - one.motion.q.col(joint).minCoeff());
-    }
-    return {{"width", position_unit(at, joint), logarithmic_grid(0.006 * range, 0.3 * range), 0, 0,
-             true}};
+    const double range = range_moved(at, joint);
+    return {{"width", position_unit(at, joint), logarithmic_grid(0.006 * range, 0.3 * range),
+             ShapeRange::Kind::kLogarithmic}};
   }
   std::vector<Regressor> regressors(const Workspace& at, Index joint,
                                     std::span<const double> shape) const override {

@@ -93,7 +93,7 @@ class Elasticity final : public EffectCandidate {
 // two move together; where the transmitted torque would change its sign they part, and the link
 // moves under its own load until the other side is reached, without rebound.
 VectorXd play_displacement(const Workspace& at, Index joint, double width) {
-  const VectorXd inertia = at.own_inertia.col(joint);
+  const VectorXd inertia = at.mass[static_cast<std::size_t>(joint)].col(joint);
   const double half = width / 2;
   const double h = at.period_s();
   VectorXd x(at.sample_count());
@@ -126,14 +126,10 @@ class Backlash final : public EffectCandidate {
     return {{"share", "1"}};
   }
   std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index joint) const override {
-    double range = 0;
-    for (const Workspace& one : at) {
-      const auto q = one.motion.q.col(joint);
-      range = std::max(range, q.maxCoeff() - q.minCoeff());
-    }
+    const double range = range_moved(at, joint);
     const JointType type = at[0].rigid.joints[static_cast<std::size_t>(joint)].joint.type;
     return {{"width", offnominal::unit_of(Quantity::kPosition, type),
-             logarithmic_grid(0.0005 * range, 0.05 * range), 0, 0, true}};
+             logarithmic_grid(0.0005 * range, 0.05 * range), ShapeRange::Kind::kLogarithmic}};
   }
   std::vector<Regressor> regressors(const Workspace& at, Index joint,
                                     std::span<const double> shape) const override {

@@ -1,0 +1,88 @@
+// The robot that explain() would write: what was found is in it, and it predicts a recording that
+// no fit has seen as well as the search says.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "analysis/before_after.hpp"
+#include "analysis/measurement.hpp"
+#include "discovery/explain.hpp"
+#include "hidden_case.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::tools::discovery {
+namespace {
+
+namespace hidden = sim::hidden;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+hidden::Case case_of(std::uint64_t seed, const std::vector<hidden::HiddenEffect>& effects) {
+  hidden::Request request;
+  request.seed = seed;
+  request.effects = effects;
+  return hidden::make_case(request);
+}
+
+Explanation explained(const hidden::Case& made, const RobotDescription& robot) {
+  ExplainOptions options;
+  options.bootstrap_draws = 399;
+  options.replays = 0;
+  options.threads = 2;
+  options.source = "a test";
+  return explain(robot, {test::to_log(made.recording)}, {test::to_log(made.holdout)}, options);
+}
+
+TEST(ImprovedRobot, HasTheEffectAndPredictsWhatNoFitHasSeen) {
+  const hidden::Case made = case_of(5, {hidden::HiddenEffect::kJointStiffness});
+  const RobotDescription file = test::to_robot(made.nominal);
+  const Explanation result = explained(made, file);
+  ASSERT_EQ(result.found.size(), 1U) << result.words;
+  EXPECT_THAT(result.not_in_robot_files, IsEmpty());
+  const RobotDescription& improved = result.improved;
+  ASSERT_EQ(improved.effects.size(), file.effects.size() + 1);
+  const RobotEffect& added = improved.effects.back();
+  EXPECT_EQ(added.kind, EffectKind::kJointStiffness);
+  EXPECT_TRUE(added.fitted);
+  EXPECT_THAT(added.source, HasSubstr("a test"));
+  const hidden::TrueEffect& truth = made.truth.effects[0];
+  EXPECT_EQ(added.joint, truth.joint);
+  EXPECT_NEAR(added.parameters[0], truth.parameters[0].value,
+              0.1 * std::abs(truth.parameters[0].value));
+  // A robot file can be made of it.
+  EXPECT_EQ(robot_text(parse_robot(robot_text(improved), "")), robot_text(improved));
+
+  const Measurement unseen = measure(test::to_log(made.holdout), {});
+  const auto gain = before_after(compare(file, unseen), compare(improved, unseen));
+  EXPECT_GT(gain[static_cast<std::size_t>(truth.joint)].fall(), 0.5);
+}
+
+// Files that are off by 1.5 % of each other come out with the same masses.
+TEST(ImprovedRobot, LinksComeOutTheSameFromFilesThatDiffer) {
+  const hidden::Case made = case_of(5, {hidden::HiddenEffect::kViscousFriction});
+  const RobotDescription file = test::to_robot(made.nominal);
+  RobotDescription lighter = file;
+  for (RobotJoint& joint : lighter.joints) {
+    joint.joint.mass_kg *= 0.985;
+    for (double& inertia : joint.joint.inertia_kg_m2) inertia *= 0.985;
+  }
+  const Explanation a = explained(made, file);
+  const Explanation b = explained(made, lighter);
+  for (std::size_t link = 0; link < 2; ++link) {
+    const double mass = a.improved.joints[link].joint.mass_kg;
+    EXPECT_NEAR(b.improved.joints[link].joint.mass_kg, mass, 0.01 * mass) << "link " << link + 1;
+  }
+}
+
+TEST(ImprovedRobot, SaysWhichEffectsNoRobotFileHas) {
+  const hidden::Case made = case_of(5, {hidden::HiddenEffect::kBacklash});
+  const Explanation result = explained(made, test::to_robot(made.nominal));
+  ASSERT_FALSE(result.found.empty()) << result.words;
+  EXPECT_THAT(result.not_in_robot_files, ::testing::Contains("backlash"));
+}
+
+}  // namespace
+}  // namespace offnominal::tools::discovery

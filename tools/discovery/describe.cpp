@@ -1,0 +1,135 @@
+#include "discovery/describe.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "discovery/confirm.hpp"
+#include "discovery/estimates.hpp"
+
+namespace offnominal::tools::discovery {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+const char* effort_unit(const RobotDescription& robot, Index joint) {
+  return offnominal::unit_of(Quantity::kEffort,
+                             robot.joints[static_cast<std::size_t>(joint)].joint.type);
+}
+
+void describe_joints(const SearchResult& from, Explanation& to) {
+  const Data& data = from.regression.data();
+  const VectorXd torque = data.layout.rms(data.torque);
+  const VectorXd before = data.layout.rms(data.target);
+  const VectorXd fitted = data.layout.rms(from.found.baseline.residual);
+  const VectorXd after = data.layout.rms(from.found.fit.residual);
+  const VectorXd held_before = from.hold_out.rms(from.found.held_out.front());
+  const VectorXd held_after = from.hold_out.rms(from.found.held_out.back());
+  const VectorXd floor = noise_floor_of(data, from.found.fit.residual);
+  for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
+    to.joints.push_back({joint, effort_unit(from.robot, joint), torque[joint], before[joint],
+                         fitted[joint], after[joint], held_before[joint], held_after[joint],
+                         floor[joint]});
+  }
+}
+
+void describe_findings(const SearchResult& from, Explanation& to) {
+  const Data& data = from.regression.data();
+  const auto estimates =
+      estimates_of(Regression(*from.fitted.data), from.fitted.terms, from.fitted.fit);
+  const VectorXd simulated_after = simulated_position_error(data, from.found.fit.residual);
+  const VectorXd held_after = from.hold_out.rms(from.found.held_out.back());
+  for (std::size_t i = 0; i < from.found.accepted.size(); ++i) {
+    const Accepted& accepted = from.found.accepted[i];
+    const EffectCandidate& effect = *accepted.term.effect;
+    const Index joint = accepted.term.joint;
+    const std::vector<Term> without = from.found.terms_without(i);
+    const ModelFit fit = from.regression.fit(without);
+    Finding finding;
+    finding.what = {effect.name(), joint};
+    finding.words = effect.words();
+    finding.formula = effect.formula();
+    finding.parameters = estimates[i];
+    finding.p_value = accepted.p;
+    finding.p_replay = accepted.p_replay;
+    finding.holdout_before = from.hold_out.rms(from.hold_out.residual(without, fit))[joint];
+    finding.holdout_after = held_after[joint];
+    finding.simulated_before = simulated_position_error(data, fit.residual)[joint];
+    finding.simulated_after = simulated_after[joint];
+    to.found.push_back(std::move(finding));
+  }
+}
+
+void describe_rejections(const SearchResult& from, Explanation& to) {
+  const Screening screening = from.search.screen(from.found.terms(), from.found.fit);
+  const VectorXd left = from.regression.data().layout.rms(from.found.fit.residual);
+  for (const Screened& one : screening.candidates) {
+    const Index joint = one.term.joint;
+    const double p = std::min(
+        1.0, std::pow(10.0, -one.log10_p) * static_cast<double>(screening.candidates.size()));
+    to.rejected.push_back({{one.term.effect->name(), joint},
+                           p,
+                           std::sqrt(kRelevantShare) * left[joint],
+                           effort_unit(from.robot, joint)});
+  }
+}
+
+// Numbers of the file's effects that came out far from what the file says, where it matters.
+void describe_shifts(const SearchResult& from, Explanation& to) {
+  constexpr double kShifted = 0.3;
+  constexpr double kMatters = 0.02;  // of the joint's rms torque
+  const Data& data = from.regression.data();
+  const VectorXd torque = data.layout.rms(data.torque);
+  for (std::size_t i = 0; i < data.nuisance.terms.size(); ++i) {
+    const NuisanceTerm& term = data.nuisance.terms[i];
+    if (term.kind != NuisanceTerm::Kind::kKnownEffect) continue;
+    const auto column = static_cast<Index>(i);
+    const double file = from.robot.effects[term.effect].parameters[term.parameter];
+    const double by = from.found.fit.nuisance[column];
+    const double rms =
+        std::abs(by) * data.layout.rms(data.nuisance.columns.col(column))[term.joint];
+    if (std::abs(by) > kShifted * std::abs(file) && rms > kMatters * torque[term.joint]) {
+      to.shifts.push_back({term.name, file != 0 ? by / file : 1.0});
+    }
+  }
+}
+
+void describe_series(const SearchResult& from, Explanation& to) {
+  const Data& data = from.regression.data();
+  const Workspace& at = data.recordings[0];
+  const Index n = data.layout.samples(0);
+  Explanation::Series& series = to.series;
+  series.t_s = kept_samples(at.plan, at.motion.t_s);
+  for (MatrixXd* matrix : {&series.measured, &series.model_before, &series.model_after, &series.q,
+                           &series.dq, &series.load}) {
+    matrix->resize(n, data.layout.joint_count());
+  }
+  for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
+    const Index begin = data.layout.begin(0, joint);
+    const VectorXd measured = data.torque.segment(begin, n);
+    series.measured.col(joint) = measured;
+    series.model_before.col(joint) = measured - data.target.segment(begin, n);
+    series.model_after.col(joint) = measured - from.found.fit.residual.segment(begin, n);
+    series.q.col(joint) = kept_samples(at.plan, at.motion.q.col(joint));
+    series.dq.col(joint) = kept_samples(at.plan, at.motion.dq.col(joint));
+    series.load.col(joint) = kept_samples(at.plan, at.load_torque.col(joint));
+  }
+}
+
+}  // namespace
+
+void describe(const SearchResult& result, Explanation& to) {
+  describe_joints(result, to);
+  describe_findings(result, to);
+  describe_rejections(result, to);
+  describe_shifts(result, to);
+  describe_series(result, to);
+  to.where = structure_of(result.regression.data(), result.found.fit.residual);
+  for (const VectorXd& residual : result.found.held_out) {
+    to.waterfall.push_back(result.hold_out.rms(residual));
+  }
+}
+
+}  // namespace offnominal::tools::discovery

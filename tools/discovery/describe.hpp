@@ -1,0 +1,23 @@
+#pragma once
+
+#include "discovery/explain.hpp"
+#include "discovery/find_model.hpp"
+#include "discovery/relinearise.hpp"
+
+namespace offnominal::tools::discovery {
+
+// What a search has come to.
+struct SearchResult {
+  const RobotDescription& robot;  // of the regression
+  const Regression& regression;
+  const Search& search;
+  const HoldOut& hold_out;
+  const FoundModel& found;
+  const Relinearised& fitted;  // the found model with its final numbers
+};
+
+// Fills in all that an explanation says in numbers: errors per joint, findings, rejections, what
+// the remaining error follows, shifts of known numbers, series for pictures.
+void describe(const SearchResult& result, Explanation& to);
+
+}  // namespace offnominal::tools::discovery

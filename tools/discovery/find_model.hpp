@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "discovery/excitation.hpp"
+#include "discovery/holdout.hpp"
+#include "discovery/on_progress.hpp"
+#include "discovery/regression.hpp"
+#include "discovery/search.hpp"
+
+namespace offnominal::tools::discovery {
+
+// An effect that passed every gate.
+struct Accepted {
+  Term term;
+  double p = 1;         // of the whole search, wild block bootstrap
+  double p_replay = 1;  // by playing the model without the effect, 1 where not asked for
+};
+
+// Share of a joint's residual energy below which an effect is not worth a name.
+inline constexpr double kRelevantShare = 0.08;
+
+struct FoundModel {
+  std::vector<Accepted> accepted;  // largest first
+  ModelFit baseline;               // nuisance alone
+  ModelFit fit;                    // with all that was accepted
+  // Residuals on held-out data with 0, 1, ... of the accepted.
+  std::vector<Eigen::VectorXd> held_out;
+
+  [[nodiscard]] std::vector<Term> terms() const;
+  [[nodiscard]] std::vector<Term> terms_without(std::size_t left_out) const;
+};
+
+// Takes one of the accepted out again and fits the rest.
+void leave_out(std::size_t which, const Regression& regression, const HoldOut& hold_out,
+               FoundModel& found);
+
+struct FindOptions {
+  int most_effects = 6;
+  int replays = 19;  // 0: none
+};
+
+// Adds effects one by one as long as one passes significance over the whole search, relevance,
+// hold-out, replay and, where it remembers, simulation; then tries to do without each again
+// (shared method: S4 to S8). `excitation`: per joint.
+FoundModel find_model(const Search& search, const Regression& regression, const HoldOut& hold_out,
+                      const std::vector<Excitation>& excitation, const FindOptions& options,
+                      const OnProgress& on_progress);
+
+}  // namespace offnominal::tools::discovery

@@ -1,0 +1,102 @@
+#include "discovery/improved_robot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace offnominal::tools::discovery {
+
+using Eigen::Index;
+
+namespace {
+
+const EffectInfo* info_named(std::string_view name) {
+  const auto found = std::find_if(kAllEffectInfos.begin(), kAllEffectInfos.end(),
+                                  [&](const EffectInfo& info) { return name == info.name; });
+  return found == kAllEffectInfos.end() ? nullptr : &*found;
+}
+
+// `sign_width`: of the smoothed sign that the regressors have where it is not a shape of theirs.
+std::optional<RobotEffect> robot_effect(const Term& term, const Eigen::VectorXd& coefficients,
+                                        JointType type, double sign_width) {
+  const EffectInfo* info = info_named(term.effect->name());
+  if (info == nullptr) return std::nullopt;
+  RobotEffect effect;
+  effect.kind = info->kind;
+  effect.joint = static_cast<std::uint8_t>(term.joint);
+  effect.fitted = true;
+  std::vector<NamedValue> values =
+      term.effect->parameters(type, coefficients, term.shape, term.ranges);
+  values.push_back({effects::kSmoothing.name, sign_width, ""});
+  for (std::size_t i = 0; i < info->parameters.size(); ++i) {
+    const ParameterInfo& parameter = info->parameters[i];
+    const auto value = std::find_if(values.begin(), values.end(), [&](const NamedValue& one) {
+      return one.name == parameter.name;
+    });
+    if (value == values.end() && parameter.required) return std::nullopt;
+    effect.parameters[i] = value == values.end() ? parameter.default_value : value->value;
+  }
+  return parameters_valid(effect) ? std::optional(effect) : std::nullopt;
+}
+
+void move_fitted_effects(const Relinearised& found, const std::string& source,
+                         RobotDescription& robot) {
+  for (std::size_t i = 0; i < found.data->nuisance.terms.size(); ++i) {
+    const NuisanceTerm& term = found.data->nuisance.terms[i];
+    if (term.kind != NuisanceTerm::Kind::kKnownEffect) continue;
+    RobotEffect& effect = robot.effects[term.effect];
+    if (!effect.fitted) continue;
+    const ParameterInfo& info = info_of(effect.kind)->parameters[term.parameter];
+    double& value = effect.parameters[term.parameter];
+    value = std::clamp(value + found.fit.nuisance[static_cast<Index>(i)], info.min, info.max);
+    effect.source = source;
+  }
+}
+
+void scale_links(const Relinearised& found, const std::string& source, RobotDescription& robot) {
+  robot = with_link_factors(std::move(robot), found.link_factors);
+  for (std::size_t link = 0; link < found.link_factors.size(); ++link) {
+    if (found.link_factors[link] == 1) continue;
+    std::string& of_link = robot.joints[link].source;
+    if (!of_link.empty()) of_link += " ";
+    of_link += fmt::format("Mass and inertia times {:.6g}: {}", found.link_factors[link], source);
+  }
+}
+
+}  // namespace
+
+ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescription& robot,
+                             const Data& data, const NuisanceOptions& options,
+                             const Relinearised& found, const std::string& source) {
+  NuisanceOptions sayable = options;
+  sayable.beyond_robot_files = false;
+  if (std::all_of(found.link_factors.begin(), found.link_factors.end(),
+                  [](double factor) { return std::abs(factor - 1) < kWorthWriting; })) {
+    sayable.link_share = 0;
+  }
+  const Data plain(data.recordings, robot, sayable);
+  const Relinearised last =
+      relinearise(robot, plain, sayable, found.terms, Regression(plain).fit(found.terms));
+  ImprovedRobot improved{file, {}};
+  scale_links(last, source, improved.robot);
+  move_fitted_effects(last, source, improved.robot);
+  for (std::size_t i = 0; i < last.terms.size(); ++i) {
+    const Term& term = last.terms[i];
+    const JointType type = file.joints[static_cast<std::size_t>(term.joint)].joint.type;
+    std::optional<RobotEffect> effect = robot_effect(term, last.fit.coefficients[i], type,
+                                                     data.recordings[0].sign_width[term.joint]);
+    if (!effect) {
+      improved.not_in_robot_files.emplace_back(term.effect->name());
+      continue;
+    }
+    effect->source = source;
+    improved.robot.effects.push_back(std::move(*effect));
+  }
+  return improved;
+}
+
+}  // namespace offnominal::tools::discovery

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "discovery/data.hpp"
+#include "discovery/effect_candidate.hpp"
+#include "discovery/evidence.hpp"
+#include "discovery/fit.hpp"
+
+namespace offnominal::tools::discovery {
+
+// Blocks of time that errors are taken as independent between are at least this long.
+inline constexpr double kShortestBlockS = 0.3;
+
+// An effect on a joint that may be in the model.
+struct Term {
+  const EffectCandidate* effect = nullptr;
+  Eigen::Index joint = 0;
+  ShapePoint shape{};
+  std::vector<ShapeRange> ranges{};
+};
+
+// A model's fit to data: the nuisance and the terms.
+struct ModelFit {
+  Eigen::VectorXd nuisance;                   // one per nuisance term
+  std::vector<Eigen::VectorXd> coefficients;  // per term
+  Eigen::VectorXd residual;                   // unweighted, stacked
+  Eigen::VectorXd joint_weights;
+  Remainder remainder;
+  double prior_weight = 1;  // fit.hpp
+};
+
+// Columns of a term on any data of the same robot.
+Eigen::MatrixXd columns_of(const Data& data, const Term& term);
+
+// Fits models to data, which have to outlive it: the nuisance, and terms.
+class Regression {
+ public:
+  explicit Regression(const Data& data) : data_(data) {}
+
+  [[nodiscard]] const Data& data() const { return data_; }
+  // Fits nuisance and terms; `rows`: weights 0 or 1 per row, empty for all.
+  [[nodiscard]] ModelFit fit(const std::vector<Term>& terms,
+                             const std::vector<char>& rows = {}) const;
+  // What is fitted: nuisance that applies, then the terms' columns, not weighted.
+  struct Design {
+    Eigen::MatrixXd columns;
+    std::vector<Prior> priors;
+    std::vector<Eigen::Index> kept;   // nuisance terms
+    std::vector<Eigen::Index> first;  // first column of every term, and one past the last
+  };
+  [[nodiscard]] Design design(const std::vector<Term>& terms) const;
+  // Moves a term's shape to where the model fits best, the other terms as they are.
+  void refine(std::vector<Term>& terms, std::size_t which) const;
+
+ private:
+  [[nodiscard]] bool has_dry_friction(const std::vector<Term>& terms, Eigen::Index joint) const;
+
+  const Data& data_;
+};
+
+}  // namespace offnominal::tools::discovery
