@@ -7,9 +7,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "analysis/add_report.hpp"
+#include "command/add_all_found.hpp"
 #include "command/command_line.hpp"
 #include "command/filter_options.hpp"
 #include "command/progress.hpp"
@@ -27,8 +29,9 @@ struct Options {
   std::vector<std::string> effects;
   int joint = 0;
   std::string robot;
-  std::string log;
-  std::optional<std::string> holdout;
+  std::vector<std::string> logs;
+  std::vector<std::string> holdout;
+  bool all_found = false;
   std::optional<std::filesystem::path> channels;
   std::string output;
   std::vector<std::string> set;
@@ -36,6 +39,8 @@ struct Options {
   bool keep = false;
   bool force = false;
   FilterRequest filter;
+  std::optional<double> link_share;
+  int threads = 1;
   std::optional<std::string> report;
   bool json = false;
 };
@@ -82,8 +87,8 @@ AddRequest request_of(const Options& options) {
     request.inertia_deviation = percent / 100;
   }
   request.keep = options.keep;
-  request.source =
-      "Fitted to " + std::filesystem::path(options.log).filename().string() + " by offnominal add.";
+  request.source = "Fitted to " + std::filesystem::path(options.logs[0]).filename().string() +
+                   " by offnominal add.";
   return request;
 }
 
@@ -93,35 +98,68 @@ bool same_file(const std::string& a, const std::string& b) {
 }
 
 void check_files(const Options& options) {
-  for (const std::string& recording : {options.log, options.holdout.value_or(options.log)}) {
-    if (same_file(options.output, recording)) refuse("-o", "a recording", "a robot file");
+  for (const auto* recordings : {&options.logs, &options.holdout}) {
+    for (const std::string& recording : *recordings) {
+      if (same_file(options.output, recording)) refuse("-o", "a recording", "a robot file");
+    }
   }
   if (std::filesystem::exists(options.output) && !options.force) {
     refuse("-o", options.output + ", which is there already", "a file that is not there yet",
            "choose another name, or add --force to replace it");
   }
-  if (options.holdout && same_file(options.log, *options.holdout)) {
-    refuse("--holdout", "the recording that is fitted", "another recording",
-           "leave --holdout out: parts of the recording are then held out");
+  for (const std::string& held_out : options.holdout) {
+    for (const std::string& log : options.logs) {
+      if (!same_file(log, held_out)) continue;
+      refuse("--holdout", "a recording that is fitted", "another recording",
+             "leave --holdout out: parts of the recording are then held out");
+    }
   }
 }
 
-void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {
+// One effect by name: what only a search takes is not for it, and the other way round.
+void check_kind(const Options& options) {
+  if (!options.all_found) {
+    if (options.effects.empty()) {
+      refuse("EFFECT", "none", "one or more effects, or --all-found",
+             "name an effect, or let --all-found search for what is missing");
+    }
+    if (options.logs.size() != 1) refuse("--log", "several", "one, unless with --all-found");
+    if (options.holdout.size() > 1) refuse("--holdout", "several", "one, unless with --all-found");
+    if (options.link_share) refuse("--link-share", "given", "only with --all-found");
+    return;
+  }
+  const std::string alone = "nothing of it with --all-found";
+  if (!options.effects.empty()) refuse("EFFECT", "\"" + options.effects[0] + "\"", alone);
+  if (options.joint != 0) refuse("--joint", std::to_string(options.joint), alone);
+  if (!options.set.empty()) refuse("--set", "\"" + options.set[0] + "\"", alone);
+  if (options.keep) refuse("--keep", "given", alone);
+  if (options.refit_inertia_percent) {
+    refuse("--refit-inertia", "given", alone, "say --link-share, as for explain");
+  }
+  if (options.filter.cutoff_hz || options.filter.decimate) {
+    refuse("--cutoff or --decimate", "given", alone,
+           "the search chooses its filter by the encoders");
+  }
+}
+
+void add_named(const Options& options, const std::string& command_line, ExitCode& exit_code) {
   const AddRequest request = request_of(options);
-  check_files(options);
+  const std::string& log_file = options.logs[0];
+  std::optional<std::string> holdout_file;
+  if (!options.holdout.empty()) holdout_file = options.holdout[0];
   Progress progress;
-  progress.begin("reading " + options.log);
+  progress.begin("reading " + log_file);
   const RobotDescription robot = read_robot_file(options.robot);
-  const Measurement log = measure(read_log(options.log, robot, options.channels), options.filter);
+  const Measurement log = measure(read_log(log_file, robot, options.channels), options.filter);
   std::optional<Measurement> holdout;
-  if (options.holdout) {
-    holdout = measure(read_log(*options.holdout, robot, options.channels), options.filter);
+  if (holdout_file) {
+    holdout = measure(read_log(*holdout_file, robot, options.channels), options.filter);
   }
   progress.begin("fitting");
   const AddResult result =
       add(robot, request, log, holdout ? &*holdout : nullptr, [&progress] { progress.step(); });
   progress.end();
-  const AddNames names{options.log, options.holdout, options.robot, options.output, command_line};
+  const AddNames names{log_file, holdout_file, options.robot, options.output, command_line};
   if (result.objections.empty()) {
     write_robot_file(result.robot, options.output,
                      options.force ? Existing::kReplace : Existing::kRefuse);
@@ -136,6 +174,18 @@ void run(const Options& options, const std::string& command_line, ExitCode& exit
   std::cout << text_of(result, request, names);
   if (result.objections.empty()) std::cout << "written: " << options.output << '\n';
   if (options.report) std::cout << "written: " << *options.report << '\n';
+}
+
+void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {
+  check_kind(options);
+  check_files(options);
+  if (!options.all_found) {
+    add_named(options, command_line, exit_code);
+    return;
+  }
+  add_all_found({options.logs, options.holdout, options.robot, options.channels, options.output,
+                 options.force, options.link_share, options.threads, options.report, options.json},
+                command_line, exit_code);
 }
 
 std::string effects_text() {
@@ -159,6 +209,10 @@ constexpr const char* kHowItFits =
     "smoothed sign of one joint have one common value.\n"
     "The error is judged on data that the fit has not seen: --holdout, or else every fifth of the "
     "recording predicted by a fit of the others.\n"
+    "--all-found fits all that explain finds, together with the effects marked `fitted = true` and "
+    "with mass and inertia of the links within --link-share. It writes nothing unless the verdict "
+    "is "
+    "found or parameter_shift.\n"
     "Exit code 1, and nothing written, when the recording cannot tell an effect from what the "
     "model "
     "has already, or when the fit is not physical.\n\n";
@@ -169,13 +223,18 @@ void register_add(CLI::App& app, ExitCode& exit_code) {
   CLI::App* verb = app.add_subcommand(
       "add", "Fit an effect to a recording and write the robot file that has it");
   const auto options = std::make_shared<Options>();
+  options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   verb->add_option("EFFECT", options->effects,
-                   "One or more effects, all on one joint; listed below")
-      ->required();
-  verb->add_option("--joint", options->joint, "The joint that they act on, from 1")->required();
+                   "One or more effects, all on one joint; listed below");
+  verb->add_option("--joint", options->joint, "The joint that they act on, from 1");
+  verb->add_flag("--all-found", options->all_found,
+                 "Search for what is missing, as explain does, and add all of it");
   verb->add_option("--robot", options->robot, "Robot file to start from")->required();
-  verb->add_option("--log", options->log, "Recording to fit, CSV or MATLAB .mat")->required();
-  verb->add_option("--holdout", options->holdout, "Recording to judge the fit on");
+  verb->add_option("--log", options->logs,
+                   "Recording to fit, CSV or MATLAB .mat; with --all-found one or more")
+      ->required();
+  verb->add_option("--holdout", options->holdout,
+                   "Recording to judge the fit on; with --all-found one or more");
   verb->add_option("-o,--output", options->output, "Robot file to write")->required();
   verb->add_flag("--force", options->force,
                  "Replace the file of -o, be it the robot file that is read");
@@ -192,6 +251,13 @@ void register_add(CLI::App& app, ExitCode& exit_code) {
                    "TOML file that maps the recordings' columns, instead of the robot file's "
                    "[channels]");
   add_filter_options(*verb, options->filter);
+  verb->add_option("--link-share", options->link_share,
+                   "With --all-found: how far mass and inertia of a link may be off the file, as a "
+                   "share [0.05]")
+      ->check(CLI::Range(0.0, 1.0));
+  verb->add_option("--threads", options->threads,
+                   "With --all-found: threads; the result does not depend on their number")
+      ->check(CLI::Range(1, 256));
   verb->add_option("--report", options->report, "Write the pictures as an HTML page");
   verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
   verb->footer(kHowItFits + effects_text());

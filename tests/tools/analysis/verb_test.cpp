@@ -41,10 +41,10 @@ class Verbs : public ::testing::Test {
     put(folder_ / "other.csv", csv(0.7));
   }
 
-  static std::string csv(double amplitude) {
-    const Log log =
-        record_arm({.duration_s = 12, .rate_hz = 500, .torque_noise = 0.05, .amplitude = amplitude},
-                   [](const ArmInstant& at) { return Vector2d(0, 0.8 * at.dq[1] + 0.3); });
+  static std::string csv(double amplitude, double duration_s = 12) {
+    const Log log = record_arm(
+        {.duration_s = duration_s, .rate_hz = 500, .torque_noise = 0.05, .amplitude = amplitude},
+        [](const ArmInstant& at) { return Vector2d(0, 0.8 * at.dq[1] + 0.3); });
     std::string text = "t,q1,q2,tau1,tau2\n";
     for (Eigen::Index i = 0; i < log.sample_count(); ++i) {
       for (const double value : {log.t_s[i], log.q(i, 0), log.q(i, 1), log.tau(i, 0)}) {
@@ -136,6 +136,98 @@ TEST_F(Verbs, CompareShowsTheSameNumbersOnThePageAsInTheJson) {
                                   said.at("fit_percent")};
     EXPECT_EQ(rows.at(joint), expected);
   }
+}
+
+TEST_F(Verbs, CompareAgainstAnOlderFileSaysHowFarTheErrorFell) {
+  ASSERT_EQ(add("viscous_friction").exit_code, 0);
+  const CommandResult result =
+      run({"compare", path("other.csv"), "--robot", path("new.toml"), "--against", path("arm.toml"),
+           "--json", "--report", path("fall.html")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  const auto& now = json.at("joints").at(1);
+  const auto& before = json.at("against").at("joints").at(1);
+  const double fall = 1 - now.at("rms_error").get<double>() / before.at("rms_error").get<double>();
+  EXPECT_GT(fall, 0.4);
+  EXPECT_NEAR(before.at("fall_percent").get<double>(), 100 * fall, 1e-9);
+  // The same older model by itself gives the same number.
+  const auto alone = nlohmann::json::parse(
+      run({"compare", path("other.csv"), "--robot", path("arm.toml"), "--json"}).out);
+  EXPECT_EQ(alone.at("joints").at(1).at("rms_error"), before.at("rms_error"));
+  const auto rows = rows_of(data_of(content_of(folder_ / "fall.html")), "Fall of the error");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows.at(1).at(6), before.at("fall_percent"));
+
+  const CommandResult text = run(
+      {"compare", path("other.csv"), "--robot", path("new.toml"), "--against", path("arm.toml")});
+  EXPECT_THAT(text.out, AllOf(HasSubstr("Joint 2: the error falls from"), HasSubstr("arm.toml")));
+}
+
+TEST_F(Verbs, CompareRefusesAnOlderFileOfAnotherRobot) {
+  auto other = arm_description();
+  other.joints.pop_back();
+  offnominal::tools::write_robot_file(other, folder_ / "one.toml");
+  expect_refusal(compare({"--against", path("one.toml")}), "1 joints");
+}
+
+TEST_F(Verbs, AddAllFoundWritesWhatExplainFinds) {
+  put(folder_ / "long.csv", csv(1, 40));
+  const std::vector<std::string> arguments{
+      "add",   "--all-found",    "--robot",   path("arm.toml"),  "--log",     path("long.csv"),
+      "-o",    path("new.toml"), "--holdout", path("other.csv"), "--threads", "2",
+      "--json"};
+  const CommandResult result = run(arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json.at("verdict"), "found");
+  EXPECT_EQ(json.at("written"), path("new.toml"));
+  const auto robot = read_robot_file(folder_ / "new.toml");
+  double viscous = 0;
+  for (const auto& effect : robot.effects) {
+    EXPECT_TRUE(effect.fitted);
+    EXPECT_THAT(effect.source, HasSubstr("long.csv"));
+    if (effect.kind == EffectKind::kViscousFriction && effect.joint == 1) {
+      viscous = effect.parameters[0];
+    }
+  }
+  EXPECT_NEAR(viscous, 0.8, 0.04);
+  for (const auto& recording : json.at("recordings")) {
+    const auto& joint = recording.at("joints").at(1);
+    EXPECT_LT(joint.at("rms_error_after").get<double>(),
+              0.5 * joint.at("rms_error_before").get<double>());
+  }
+  EXPECT_EQ(json.at("recordings").at(1).at("held_out"), true);
+  // The file is what compare says it is.
+  const auto compared = nlohmann::json::parse(
+      run({"compare", path("other.csv"), "--robot", path("new.toml"), "--json"}).out);
+  EXPECT_NEAR(compared.at("joints").at(1).at("rms_error").get<double>(),
+              json.at("recordings").at(1).at("joints").at(1).at("rms_error_after").get<double>(),
+              1e-9);
+  // Once it is in, nothing is missing, and nothing is written.
+  auto again = arguments;
+  again[3] = path("new.toml");
+  again[7] = path("newer.toml");
+  const CommandResult second = run(again);
+  EXPECT_EQ(second.exit_code, 1);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "newer.toml"));
+  EXPECT_EQ(nlohmann::json::parse(second.out).at("verdict"), "explained") << second.out;
+}
+
+TEST_F(Verbs, AddAllFoundRefusesWhatOnlyANamedEffectTakes) {
+  const std::vector<std::string> base{"add",   "--all-found",   "--robot", path("arm.toml"),
+                                      "--log", path("arm.csv"), "-o",      path("new.toml")};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), base.begin(), base.end());
+    return run(more);
+  };
+  expect_refusal(with({"--joint", "1"}), "--all-found");
+  expect_refusal(with({"viscous_friction"}), "--all-found");
+  expect_refusal(with({"--cutoff", "20"}), "--all-found");
+  expect_refusal(with({"--set", "smoothing=1"}), "--all-found");
+  expect_refusal(
+      run({"add", "--robot", path("arm.toml"), "--log", path("arm.csv"), "-o", path("new.toml")}),
+      "EFFECT");
+  EXPECT_FALSE(written());
 }
 
 TEST_F(Verbs, AddShowsTheSameNumbersOnThePageAsInTheJson) {

@@ -1,0 +1,59 @@
+#include "command/add_all_found.hpp"
+
+#include <fmt/format.h>
+
+#include <iostream>
+
+#include "command/progress.hpp"
+#include "common/nearest.hpp"
+#include "discovery/add_found.hpp"
+#include "log/read_log.hpp"
+#include "report/page.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::tools {
+
+void add_all_found(const AddAllFound& options, const std::string& command_line,
+                   ExitCode& exit_code) {
+  Progress progress;
+  const RobotDescription robot = read_robot_file(options.robot);
+  const auto read_all = [&](const std::vector<std::string>& files) {
+    std::vector<Log> logs;
+    for (const std::string& file : files) {
+      progress.begin("reading " + file);
+      logs.push_back(read_log(file, robot, options.channels));
+    }
+    return logs;
+  };
+  const std::vector<Log> logs = read_all(options.logs);
+  const std::vector<Log> holdout = read_all(options.holdout);
+  discovery::ExplainOptions explain;
+  explain.threads = options.threads;
+  explain.link_share = options.link_share.value_or(explain.link_share);
+  std::vector<std::string> fitted;
+  for (const std::string& file : options.logs) {
+    fitted.push_back(std::filesystem::path(file).filename().string());
+  }
+  explain.source =
+      fmt::format("Fitted to {} by offnominal add --all-found.", fmt::join(fitted, ", "));
+  const discovery::AddedFindings added = discovery::add_found(
+      robot, logs, holdout, explain, [&](const std::string& doing) { progress.begin(doing); });
+  progress.end();
+  if (added.objections.empty()) {
+    write_robot_file(added.explanation.improved, options.output,
+                     options.force ? Existing::kReplace : Existing::kRefuse);
+  } else {
+    exit_code = ExitCode::kCheckFailed;
+  }
+  const discovery::ExplainNames names{options.logs, options.holdout, options.robot, command_line};
+  if (options.report) report::write_page(*options.report, page_of(added.explanation, names));
+  if (options.json) {
+    std::cout << to_json(added, names, options.output).dump(2) << '\n';
+    return;
+  }
+  std::cout << text_of(added, names);
+  if (added.objections.empty()) std::cout << "written: " << options.output << '\n';
+  if (options.report) std::cout << "written: " << *options.report << '\n';
+}
+
+}  // namespace offnominal::tools

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "analysis/before_after.hpp"
+#include "discovery/explain.hpp"
+#include "discovery/explain_report.hpp"
+
+namespace offnominal::tools::discovery {
+
+// What a robot's file gains from everything that was found, recording by recording.
+struct Gain {
+  std::string log;
+  bool held_out = false;  // no fit has seen it
+  std::vector<BeforeAfter> joints;
+};
+
+struct AddedFindings {
+  Explanation explanation;  // `improved` is the robot to write, where nothing is objected
+  std::vector<Gain> gains;
+  std::vector<std::string> objections;  // why it must not be written; empty: it may
+};
+
+// Searches as explain() does and compares the robot with everything that was found to the robot as
+// it was, with the filter of `offnominal compare`. Errors as of explain().
+AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& logs,
+                        const std::vector<Log>& holdout, const ExplainOptions& options,
+                        const OnProgress& on_progress);
+
+// {verdict, words, found, recordings: [{log, held_out, joints: [{joint, unit, rms_error_before,
+//  rms_error_after, relative_error_before_percent, relative_error_after_percent}]}], objections,
+//  written}. `written` is null where nothing was.
+nlohmann::ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
+                               const std::string& output_file);
+
+// The same for a terminal.
+std::string text_of(const AddedFindings& added, const ExplainNames& names);
+
+}  // namespace offnominal::tools::discovery
