@@ -96,4 +96,5 @@ check "lint: static analysis (clang-tidy)" "$root/scripts/lint.sh" tidy
 suite release
 check "build (sanitize)" build sanitize
 suite sanitize
+check "fuzz: every reader, 10 s each" "$root/scripts/fuzz.sh" 10
 finish

@@ -53,10 +53,16 @@ std::optional<Eigen::VectorXd> numbers_of(const matvar_t& variable, std::size_t 
   }
 }
 
+// More than any recording has signals; a damaged header claims any number.
+constexpr std::size_t kMostColumns = 4096;
+// What a byte of the file can stand for: zlib packs by a factor of 1032 at most.
+constexpr double kMostPerByte = 1100;
+
 bool is_numeric_array(const matvar_t& variable) {
   return variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64 &&
          variable.isComplex == 0 && variable.rank == 2 && variable.dims[0] > 0 &&
-         variable.dims[1] > 0;
+         variable.dims[1] > 0 &&
+         (variable.dims[0] == 1 || variable.dims[1] == 1 || variable.dims[1] <= kMostColumns);
 }
 
 std::string kind_of(const matvar_t& variable) {
@@ -76,7 +82,10 @@ std::string kind_of(const matvar_t& variable) {
       break;
   }
   if (variable.isComplex != 0) return "complex numbers";
-  return variable.rank == 2 ? "an empty array" : "an array of more than two dimensions";
+  if (variable.rank != 2) return "an array of more than two dimensions";
+  return variable.dims[1] > kMostColumns
+             ? "a matrix of " + std::to_string(variable.dims[1]) + " columns"
+             : "an empty array";
 }
 
 class MatReader {
@@ -126,6 +135,10 @@ class MatReader {
       wanted = wanted || need_of_(result_.names.back()) != Need::kNone;
     }
     if (!wanted) return;
+    const auto claimed = static_cast<double>(rows) * static_cast<double>(columns);
+    if (claimed > kMostPerByte * static_cast<double>(std::filesystem::file_size(path_))) {
+      fail("variable " + name, "more values than the file can hold", "a complete file");
+    }
     const std::size_t size = rows * columns;
     if (Mat_VarReadDataAll(mat_.get(), &info) != 0 || info.data == nullptr ||
         info.nbytes != size * static_cast<std::size_t>(info.data_size)) {

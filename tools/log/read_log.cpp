@@ -103,11 +103,21 @@ class Assembler {
     for (const auto& [name, channel] : map.extra) log_.extra[name] = sampled(channel, name);
     make_even(log_);
     derive_velocities(log_);
+    check_derived();
     remark_constants();
     return std::move(log_);
   }
 
  private:
+  // Finite values can still be too large, or too close in time, to be resampled and differentiated.
+  void check_derived() const {
+    if (log_.t_s.allFinite() && log_.q.allFinite() && log_.dq.allFinite() && log_.tau.allFinite()) {
+      return;
+    }
+    fail("", "positions or steps of time of which no velocity can be computed",
+         "values in SI units", "look for a column in another unit, or one that is no position");
+  }
+
   [[noreturn]] void fail(const std::string& place, const std::string& found,
                          const std::string& allowed, const std::string& mend = {}) const {
     throw InputError({columns_.file, place, found, allowed, mend});

@@ -200,6 +200,15 @@ TEST(CsvLog, NotANumberAndInfinityAreRefusedWithTheirPlace) {
               AllOf(HasSubstr("line 5, tau1"), HasSubstr("infinite")));
 }
 
+// Without dq the velocity is derived, and of such positions it would be infinite.
+TEST(CsvLog, PositionsTooLargeToDifferentiateAreRefused) {
+  std::string text = "t,q1,tau1\n";
+  for (int i = 0; i < 20; ++i) {
+    text += std::to_string(0.01 * i) + (i % 2 == 0 ? ",1.7e308" : ",-1.7e308") + ",0\n";
+  }
+  EXPECT_THAT(refusal(text), HasSubstr("no velocity can be computed"));
+}
+
 TEST(CsvLog, TooShortOrNoRecordingIsRefused) {
   EXPECT_THAT(refusal(one_joint_csv(3, kAsIs)), HasSubstr("3 samples"));
   EXPECT_THAT(message_of<InputError>([] { read_log("no/such/log.csv", 1, std::nullopt); }),

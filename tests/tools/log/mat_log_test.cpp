@@ -31,7 +31,8 @@ using ::testing::HasSubstr;
 // Writes variables to a .mat file of level 5.
 class MatWriter {
  public:
-  explicit MatWriter(const std::string& name) : file_(name) {
+  explicit MatWriter(const std::string& name, matio_compression compression = MAT_COMPRESSION_ZLIB)
+      : file_(name), compression_(compression) {
     mat_.reset(Mat_CreateVer(file_.path().c_str(), nullptr, MAT_FT_MAT5));
   }
   MatWriter& doubles(const char* name, std::size_t rows, std::size_t columns,
@@ -54,12 +55,13 @@ class MatWriter {
                    std::size_t rows, std::size_t columns, void* data) {
     std::size_t dims[2] = {rows, columns};
     matvar_t* const variable = Mat_VarCreate(name, class_type, data_type, 2, dims, data, 0);
-    EXPECT_EQ(Mat_VarWrite(mat_.get(), variable, MAT_COMPRESSION_ZLIB), 0);
+    EXPECT_EQ(Mat_VarWrite(mat_.get(), variable, compression_), 0);
     Mat_VarFree(variable);
     return *this;
   }
 
   TemporaryFile file_;
+  matio_compression compression_;
   std::unique_ptr<mat_t, decltype(&Mat_Close)> mat_{nullptr, &Mat_Close};
 };
 
@@ -165,6 +167,21 @@ TEST(MatLog, DamagedFilesAreRefused) {
     const TemporaryFile cut("cut.mat", whole.substr(0, size));
     EXPECT_THROW(read_log(cut.path(), 1, drive_map()), InputError) << size << " bytes";
   }
+}
+
+// A header may claim any number of columns; found by fuzzing, it took minutes and all memory.
+TEST(MatLog, AMatrixThatClaimsMoreColumnsThanAnySignalIsRefusedAtOnce) {
+  MatWriter mat("claims.mat", MAT_COMPRESSION_NONE);
+  mat.doubles("t", 50, 1, ramp(50, 0.01)).doubles("qm", 50, 3, ramp(150, 0.7));
+  std::ifstream input(mat.path(), std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(input)), {});
+  const std::string size("\x32\0\0\0\x03\0\0\0", 8);  // 50 x 3
+  const auto at = bytes.find(size);
+  ASSERT_NE(at, std::string::npos);
+  bytes[at + 7] = 0x40;  // 50 x 2^30
+  const TemporaryFile claims("claims.mat", bytes);
+  EXPECT_THAT(message_of<InputError>([&] { read_log(claims.path(), 1, drive_map()); }),
+              HasSubstr("qm"));
 }
 
 TEST(MatLog, ContentDecidesBeforeTheExtension) {

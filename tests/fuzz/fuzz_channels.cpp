@@ -1,0 +1,15 @@
+// A channel map that is none: read_channels_file() refuses it with an InputError.
+
+#include "common/error.hpp"
+#include "input_file.hpp"
+#include "log/channels.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace offnominal;
+  const auto path = fuzz::input_file(data, size, ".toml");
+  try {
+    static_cast<void>(tools::read_channels_file(path, 2));
+  } catch (const tools::InputError&) {
+  }
+  return 0;
+}

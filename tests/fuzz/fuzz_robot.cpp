@@ -1,0 +1,23 @@
+// A robot file that is none: parse_robot() refuses it with an InputError, or what it reads can be
+// written and read again, the same.
+
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "common/error.hpp"
+#include "robot/robot_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace offnominal;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  tools::RobotDescription robot;
+  try {
+    robot = tools::parse_robot(text, "fuzz.toml");
+  } catch (const tools::InputError&) {
+    return 0;
+  }
+  const std::string written = tools::robot_text(robot);
+  if (tools::robot_text(tools::parse_robot(written, "written.toml")) != written) std::abort();
+  return 0;
+}
