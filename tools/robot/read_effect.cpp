@@ -39,6 +39,22 @@ NumberRule rule_of(const ParameterInfo& parameter, JointType type) {
   return rule;
 }
 
+double read_other_joint(const TomlTable& table, const ParameterInfo& parameter,
+                        const RobotEffect& effect, std::size_t joint_count) {
+  const std::string key = parameter.name;
+  const std::string own = std::to_string(effect.joint + 1);
+  if (joint_count < 2) {
+    table.refuse("kind", "an effect that follows another joint, on a robot of one joint",
+                 "a robot of two joints or more", "remove the effect");
+  }
+  const auto number = table.integer(key, 1, static_cast<std::int64_t>(joint_count));
+  if (number == effect.joint + 1) {
+    table.refuse(key, own + ", the effect's own joint", "another joint",
+                 "give " + std::string(parameter.meaning));
+  }
+  return static_cast<double>(number);
+}
+
 }  // namespace
 
 const std::vector<std::string>& effect_keys() {
@@ -75,6 +91,10 @@ RobotEffect read_effect(const TomlTable& table, const std::vector<RobotJoint>& j
   const JointType type = joints[effect.joint].joint.type;
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {
     const ParameterInfo& parameter = info.parameters[i];
+    if (parameter.quantity == Quantity::kJointNumber) {
+      effect.parameters[i] = read_other_joint(table, parameter, effect, joints.size());
+      continue;
+    }
     const NumberRule rule = rule_of(parameter, type);
     effect.parameters[i] = parameter.required
                                ? table.number(parameter.name, rule)

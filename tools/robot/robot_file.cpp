@@ -65,7 +65,16 @@ std::vector<RobotEffect> read_effects(const TomlTable& root,
         "remove those that matter least");
   }
   std::vector<RobotEffect> effects;
-  for (const TomlTable& table : tables) effects.push_back(read_effect(table, joints));
+  std::vector<double> friction_per_load(joints.size());
+  constexpr double kMost = effects::LoadDependentFriction::kMostFactor;
+  for (const TomlTable& table : tables) {
+    effects.push_back(read_effect(table, joints));
+    double& of_joint = friction_per_load[effects.back().joint];
+    of_joint += most_friction_per_load<double>(effects.back());
+    if (of_joint <= kMost) continue;
+    table.refuse("factor", "factors of this joint that add up to " + shortest(of_joint),
+                 "at most " + shortest(kMost) + " per joint", "make one effect of them");
+  }
   return effects;
 }
 

@@ -234,7 +234,9 @@ std::string effect_text(const RobotEffect& effect) {
   out.value("kind", quoted(info->name));
   out.value("joint", std::to_string(effect.joint + 1));
   for (std::size_t i = 0; i < info->parameters.size(); ++i) {
-    out.value(info->parameters[i].name, number(effect.parameters[i]));
+    const bool whole = info->parameters[i].quantity == Quantity::kJointNumber;
+    out.value(info->parameters[i].name,
+              whole ? shortest(effect.parameters[i]) : number(effect.parameters[i]));
   }
   if (effect.fitted) out.value("fitted", "true");
   out.text_if_any("source", effect.source);

@@ -136,8 +136,8 @@ class Monitor {
     output.psi_hat = state.estimator.psi_hat;
     update(state.detector, output.error_norm, output.threshold, state.tick, end_s);
     output.detector = state.detector;
-    output.compensation =
-        compensating_torque<N, Scalar>(nominal.inertia, output.psi_hat, max_compensation_);
+    output.compensation = compensating_torque<N, Scalar>(nominal.inertia, output.psi_hat,
+                                                         max_compensation_, nominal.told_per_load);
     return Status::kOk;
   }
 
@@ -159,13 +159,23 @@ class Monitor {
                                                    const State& state) const {
     TickBegin<N, Scalar> begin{state.estimator.nominal_ddq, state.estimator.mu_bar};
     if (config_.torque_signal == TorqueSignal::kSampled) return begin;
-    Vector<N, Scalar> jump = tau - state.sample.tau;
+    Vector<N, Scalar> jump = load_jump(tau, state);
     solve_in_place<N, Scalar>(state.inertia_factor, jump);
     begin.nominal_ddq += jump;
     const bool bound_follows_torque =
         config_.bound.kind == BoundKind::kTable && config_.bound.variable == BoundVariable::kTorque;
     if (bound_follows_torque) begin.mu_bar = bound_at({state.sample.q, state.sample.dq, tau});
     return begin;
+  }
+
+  // What the torque's jump at the last sample changes of the load there.
+  [[nodiscard]] Vector<N, Scalar> load_jump(const Vector<N, Scalar>& tau,
+                                            const State& state) const {
+    const Sample& at = state.sample;
+    if (!model_.has_torque_path) return tau - at.tau;
+    const Scalar time_s = static_cast<Scalar>(state.tick) * config_.estimator.period_s;
+    const JointEffects<N, Scalar> effects = joint_effects(model_, at.q, at.dq, time_s);
+    return load_torque(model_, effects, tau) - load_torque(model_, effects, at.tau);
   }
 
   Config config_{};

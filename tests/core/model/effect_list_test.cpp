@@ -16,7 +16,7 @@ TEST(EffectList, EveryEffectHasItsOwnNumberAndName) {
     EXPECT_EQ(info_of(info.kind), &info);
     EXPECT_STRNE(info.formula, "");
   }
-  EXPECT_EQ(kinds.size(), 12U);
+  EXPECT_EQ(kinds.size(), 16U);
 }
 
 TEST(EffectList, EveryParameterHasARangeThatHoldsItsDefault) {
@@ -48,6 +48,24 @@ TEST(EffectList, VisitingGivesTheStructOfTheNumber) {
     const char* name = "";
     EXPECT_TRUE(visit_effect(info.kind, [&]<typename E>() { name = E::kName; }));
     EXPECT_STREQ(name, info.name);
+  }
+}
+
+// One and only one way to act, of those that effect.hpp lists.
+TEST(EffectList, EveryEffectActsInOneWay) {
+  using Parameters = std::array<double, kMaxEffectParameters>;
+  for (const EffectInfo& info : kAllEffectInfos) {
+    int ways = 0;
+    visit_effect(info.kind, [&]<typename E>() {
+      using At = JointInstant<double>;
+      using Centre = std::array<double, 3>;
+      ways += requires(Parameters p, At at) { E::torque(p, at); };
+      ways += requires(Parameters p) { E::reflected_inertia(p); };
+      ways += requires(Parameters p, Centre centre) { E::point_mass(p, centre); };
+      ways += requires(Parameters p, At at) { E::friction_per_load(p, at); };
+      ways += requires(Parameters p) { E::told_per_given(p); };
+    });
+    EXPECT_EQ(ways, 1) << info.name;
   }
 }
 

@@ -76,6 +76,13 @@ std::vector<Formula> formulas_of(JointType type) {
        [](const Parameters& p, double, double, double t) {
          return p[0] * std::sin(p[2] * t) + p[1] * std::cos(p[2] * t);
        }},
+      {EffectKind::kTemperatureDrift, type,
+       [](auto& g) {
+         return Parameters{level(g), level(g), uniform(g, 0.5, 20), width(g)};
+       },
+       [](const Parameters& p, double, double dq, double t) {
+         return std::exp(-t / p[2]) * (p[0] * std::tanh(dq / p[3]) + p[1] * dq);
+       }},
   };
 }
 
@@ -198,6 +205,7 @@ TEST(EffectRoles, TheTorqueIsProportionalToTheLinearParameters) {
     Effect<double> doubled = effect;
     for (std::size_t i = 0; i < info.parameters.size(); ++i) {
       effect.parameters[i] = uniform(generator, 0.1, 2);
+      if (info.parameters[i].quantity == Quantity::kJointNumber) effect.parameters[i] = 1;
       const bool linear = info.parameters[i].role == ParameterRole::kLinear;
       doubled.parameters[i] = (linear ? 2 : 1) * effect.parameters[i];
     }
@@ -238,6 +246,60 @@ INSTANTIATE_TEST_SUITE_P(All, FrictionSign,
                          [](const testing::TestParamInfo<EffectKind>& tested) {
                            return std::string(info_of(tested.param)->name);
                          });
+
+TEST(TemperatureDrift, TakesEnergyOutOfTheJointAndFadesToNothing) {
+  Chain<1, double> chain;
+  ASSERT_TRUE(chain.effects.add({EffectKind::kTemperatureDrift, 0, {2.0, 0.5, 4.0, 0.01}}));
+  const auto model = make_model(chain);
+  for (const double velocity : {-3.0, -1e-3, 1e-3, 0.2, 3.0}) {
+    const Vector<1, double> at(velocity);
+    const double cold = effect_torque(model, at, at, 0.0)[0];
+    EXPECT_GT(cold * velocity, 0) << velocity;
+    EXPECT_NEAR(effect_torque(model, at, at, 4.0)[0], cold * std::exp(-1.0), 1e-12);
+    EXPECT_NEAR(effect_torque(model, at, at, 400.0)[0], 0, 1e-12);
+  }
+}
+
+// By the definition, in the C library's own functions: the torque follows the other joint,
+// whichever it is, and nothing else.
+template <typename Scalar>
+void expect_coupling_follows_its_source(std::mt19937_64& generator, double tolerance) {
+  for (int sample = 0; sample < 300; ++sample) {
+    Chain<3, Scalar> chain = random_chain<3, Scalar>(generator);
+    const auto joint = static_cast<std::uint8_t>(sample % 3);
+    const int source = (sample % 3 + 1 + sample % 2) % 3;
+    const Effect<Scalar> effect{
+        EffectKind::kJointCoupling,
+        joint,
+        {static_cast<Scalar>(level(generator)), static_cast<Scalar>(level(generator)),
+         static_cast<Scalar>(source + 1), static_cast<Scalar>(width(generator))}};
+    ASSERT_TRUE(chain.effects.add(effect));
+    ASSERT_EQ(validate(chain), Status::kOk);
+    const auto q = random_vector<3, Scalar>(generator, 2.0);
+    const auto dq = random_vector<3, Scalar>(generator, 1.0);
+    const auto torque = effect_torque(make_model(chain), q, dq, Scalar(0.3));
+    const auto p = rounded(effect);
+    const auto other = static_cast<double>(dq[source]);
+    Eigen::Vector3d expected = Eigen::Vector3d::Zero();
+    expected[joint] = p[0] * other + p[1] * std::tanh(other / p[3]);
+    EXPECT_LE(deviation(torque, expected), tolerance);
+  }
+}
+
+TEST(JointCoupling, FollowsTheJointThatItNamesAndNothingElse) {
+  std::mt19937_64 generator = seeded_generator();
+  expect_coupling_follows_its_source<double>(generator, 1e-13);
+  expect_coupling_follows_its_source<float>(generator, 1e-5);
+}
+
+TEST(JointCoupling, GivenAJointThatIsNotThereThenTheModelLeavesItOutAndDoesNotCrash) {
+  std::mt19937_64 generator = seeded_generator();
+  for (const double source : {0.0, 1.0, 3.0, 1e30, std::numeric_limits<double>::quiet_NaN()}) {
+    Chain<2, double> chain = random_chain<2, double>(generator);
+    ASSERT_TRUE(chain.effects.add({EffectKind::kJointCoupling, 0, {1, 1, source, 0.1}}));
+    EXPECT_EQ(make_model(chain).torque_effects.view().size(), 0U) << source;
+  }
+}
 
 TEST(FrictionAsymmetry, BesideCoulombAndViscousFrictionEachDirectionHasItsOwnLevelAndSlope) {
   Chain<1, double> chain;

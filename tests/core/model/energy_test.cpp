@@ -141,11 +141,12 @@ TEST(Energy, IsConservedOverTenSecondsWithoutFriction) {
 
 TEST(Energy, FallsAndNeverRisesUnderEveryFriction) {
   std::mt19937_64 generator = seeded_generator();
-  const std::array<Effect<double>, 4> frictions{{
+  const std::array<Effect<double>, 5> frictions{{
       {EffectKind::kViscousFriction, 0, {0.5}},
       {EffectKind::kCoulombFriction, 0, {0.5, 0.05}},
       {EffectKind::kStribeckFriction, 0, {0.5, 0.8, 0.05}},
       {EffectKind::kQuadraticFriction, 0, {0.5}},
+      {EffectKind::kTemperatureDrift, 0, {0.5, 0.2, 1.0, 0.05}},
   }};
   for (const Effect<double>& friction : frictions) {
     Chain<2, double> chain = random_chain<2, double>(generator);

@@ -103,8 +103,21 @@ class RandomRobot {
     result.kind = info.kind;
     result.joint = static_cast<std::uint8_t>(whole(0, robot.joint_count() - 1));
     for (std::size_t i = 0; i < info.parameters.size(); ++i) {
+      const ParameterInfo& parameter = info.parameters[i];
+      if (parameter.quantity == Quantity::kJointNumber) {
+        if (robot.joint_count() == 1) return effect(robot);
+        const int other = whole(1, robot.joint_count() - 1);
+        result.parameters[i] = other + (other > result.joint ? 1 : 0);
+        continue;
+      }
       const double value = number();
-      result.parameters[i] = value >= info.parameters[i].min ? value : positive();
+      result.parameters[i] = value >= parameter.min ? value : positive();
+      // A small share of the range: those of one joint may have to add up to no more than its end.
+      if (parameter.max < effects::kAny) {
+        constexpr double kMost = kEffectsPerJoint * tools::kMaxJoints;
+        result.parameters[i] =
+            parameter.min + (parameter.max - parameter.min) * std::fabs(uniform()) / kMost;
+      }
     }
     // Less mass than none may leave a joint nothing to move.
     const bool is_mass =

@@ -44,6 +44,20 @@ TEST(TextWithEffects, PutsANewEffectBehindTheLast) {
   EXPECT_EQ(text_with_effects(kCommented, robot), wanted);
 }
 
+TEST(TextWithEffects, WritesAnotherJointAsAWholeNumber) {
+  RobotDescription robot = parse_robot(kCommented, "r.toml");
+  RobotEffect coupling;
+  coupling.kind = EffectKind::kJointCoupling;
+  coupling.joint = 1;
+  coupling.parameters = {0.5, 0.0, 1.0, 0.25};
+  robot.effects.push_back(coupling);
+  const std::string wanted =
+      test::changed(kCommented, "coefficient = 12\n",
+                    "coefficient = 12\n\n[[effect]]\nkind = \"joint_coupling\"\njoint = 2\n"
+                    "coefficient = 0.5\nlevel = 0.0\nsource_joint = 1\nsmoothing = 0.25\n");
+  EXPECT_EQ(text_with_effects(kCommented, robot), wanted);
+}
+
 TEST(TextWithEffects, WritesOnlyTheChangedEffectAnew) {
   RobotDescription robot = parse_robot(kCommented, "r.toml");
   robot.effects[0].parameters[0] = 1.75;
@@ -107,7 +121,8 @@ TEST(TextWithEffects, IsReadAsTheRobotOrDeclinesForRobotsOfEveryShape) {
     const std::string old = robot_text(random.draw());
     RobotDescription robot = parse_robot(old, "old.toml");
     for (RobotEffect& effect : robot.effects) {
-      if (generator() % 3 == 0) effect.parameters[0] += 1;
+      // Towards 0, which every range has room for.
+      if (generator() % 3 == 0) effect.parameters[0] *= 0.75;
       if (generator() % 3 == 0) effect.source += "\n[estimator]\n[[effect]]\n";
     }
     while (!robot.effects.empty() && generator() % 4 == 0) robot.effects.pop_back();

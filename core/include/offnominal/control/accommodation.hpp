@@ -12,13 +12,16 @@ struct CompensatingTorque {
 };
 
 // Accommodation, paper eq. (31): tau_r = tau + torque with torque = -M(q) psi_hat, every joint
-// clamped to +-limit (N m or N, >= 0). psi_hat in rad/s^2 or m/s^2. NaN in, NaN out.
+// clamped to +-limit (N m or N, >= 0). psi_hat in rad/s^2 or m/s^2. told_per_load (1 in the paper):
+// what a drive has to be told for 1 N m more behind its gear, ForwardDynamics::told_per_load; exact
+// while the compensation does not turn the load's sign. NaN in, NaN out.
 template <int N, typename Scalar>
-[[nodiscard]] CompensatingTorque<N, Scalar> compensating_torque(const Matrix<N, N, Scalar>& inertia,
-                                                                const Vector<N, Scalar>& psi_hat,
-                                                                const Vector<N, Scalar>& limit) {
+[[nodiscard]] CompensatingTorque<N, Scalar> compensating_torque(
+    const Matrix<N, N, Scalar>& inertia, const Vector<N, Scalar>& psi_hat,
+    const Vector<N, Scalar>& limit,
+    const Vector<N, Scalar>& told_per_load = Vector<N, Scalar>::Ones()) {
   CompensatingTorque<N, Scalar> result;
-  const Vector<N, Scalar> wanted = -inertia.lazyProduct(psi_hat);
+  const Vector<N, Scalar> wanted = -told_per_load.cwiseProduct(inertia.lazyProduct(psi_hat));
   for (Eigen::Index i = 0; i < N; ++i) {
     const Scalar w = wanted[i];
     const bool over = w > limit[i];

@@ -36,7 +36,8 @@ template <int N, typename Scalar>
 }
 
 // Computed torque, paper eq. (29): M(q)(ddq_d + K_d (dq_d - dq) + K_p (q_d - q)) + V dq + G, plus
-// the effects that the model knows. N m or N, not limited. One inverse-dynamics recursion.
+// the effects that the model knows, as the drive has to be told. N m or N, not limited. One
+// inverse-dynamics recursion.
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> computed_torque(const RigidBodyModel<N, Scalar>& model,
                                                 const ComputedTorqueGains<N, Scalar>& gains,

@@ -130,8 +130,15 @@ template <int N, typename Scalar>
     if (status != Status::kOk) return status;
   }
   if (chain.effects.size > chain.effects.items.size()) return Status::kTooManyEffects;
+  std::array<Scalar, static_cast<std::size_t>(N)> friction_per_load{};
   for (const Effect<Scalar>& effect : chain.effects.view()) {
-    if (effect.joint >= N || !parameters_valid(effect)) return Status::kInvalidEffect;
+    const bool usable =
+        effect.joint < N && parameters_valid(effect) && source_joint_valid(effect, N);
+    if (!usable) return Status::kInvalidEffect;
+    Scalar& of_joint = friction_per_load[effect.joint];
+    of_joint += most_friction_per_load(effect);
+    const double most = effects::LoadDependentFriction::kMostFactor;
+    if (!(of_joint <= static_cast<Scalar>(most))) return Status::kInvalidEffect;
   }
   return Status::kOk;
 }

@@ -8,6 +8,12 @@
 // joint. Sign: an effect's torque is what the drive has to supply for it, so that
 //   M(q) ddq + V(q, dq) dq + G(q) + sum of effects = tau.
 // A positive friction coefficient therefore takes energy out of the joint.
+//
+// There are three ways to act, told apart by what an effect's struct has:
+//   torque()                              a torque by the motion and the time (most of them)
+//   reflected_inertia(), point_mass()     a change of the inertia, taken up when the model is made
+//   friction_per_load(), told_per_given() a scale on what passes from drive to load
+//   (torque_path.hpp)
 
 namespace offnominal {
 
@@ -27,6 +33,10 @@ enum class EffectKind : std::uint8_t {
   kJointStiffness = 9,
   kCoggingTorque = 10,
   kPeriodicDisturbance = 11,
+  kTemperatureDrift = 12,
+  kJointCoupling = 13,
+  kLoadDependentFriction = 14,
+  kTorqueScale = 15,
 };
 
 // How a parameter enters the effect's torque.
@@ -61,6 +71,9 @@ struct JointInstant {
   Scalar q{};       // position, rad or m
   Scalar dq{};      // velocity, rad/s or m/s
   Scalar time_s{};  // time since the run's origin, s
+  // Velocity of the joint that the effect's parameter of Quantity::kJointNumber names, rad/s or
+  // m/s; 0 for an effect without one.
+  Scalar source_dq{};
 };
 
 }  // namespace offnominal

@@ -8,6 +8,7 @@
 #include <offnominal/model/effects/drive.hpp>
 #include <offnominal/model/effects/friction.hpp>
 #include <offnominal/model/effects/inertia.hpp>
+#include <offnominal/model/effects/torque_path.hpp>
 #include <span>
 
 namespace offnominal {
@@ -20,7 +21,9 @@ using AllEffects =
     EffectTypes<effects::ViscousFriction, effects::CoulombFriction, effects::FrictionAsymmetry,
                 effects::TorqueOffset, effects::StribeckFriction, effects::QuadraticFriction,
                 effects::RotorInertia, effects::TipPayload, effects::LinkMass,
-                effects::JointStiffness, effects::CoggingTorque, effects::PeriodicDisturbance>;
+                effects::JointStiffness, effects::CoggingTorque, effects::PeriodicDisturbance,
+                effects::TemperatureDrift, effects::JointCoupling, effects::LoadDependentFriction,
+                effects::TorqueScale>;
 
 // What a user may know of an effect: its name, its formula and its parameters.
 struct EffectInfo {
@@ -78,6 +81,53 @@ struct EffectList {
     return true;
   }
 };
+
+// Which of an effect's parameters names another joint; its parameter count where none does.
+template <typename E>
+inline constexpr std::size_t kSourceParameter = [] {
+  std::size_t i = 0;
+  while (i < E::kParameters.size() && E::kParameters[i].quantity != Quantity::kJointNumber) ++i;
+  return i;
+}();
+template <typename E>
+inline constexpr bool kHasSource = kSourceParameter<E> < E::kParameters.size();
+
+// The other joint that an effect with kHasSource names, from 0.
+template <typename E, typename Scalar>
+[[nodiscard]] constexpr int source_joint(
+    const std::array<Scalar, kMaxEffectParameters>& parameters) {
+  return static_cast<int>(parameters[kSourceParameter<E>]) - 1;
+}
+
+// False where an effect names another joint and that is none of `joint_count` joints, the effect's
+// own one, or not a whole number.
+template <typename Scalar>
+[[nodiscard]] constexpr bool source_joint_valid(const Effect<Scalar>& effect, int joint_count) {
+  bool valid = true;
+  visit_effect(effect.kind, [&]<typename E>() {
+    if constexpr (kHasSource<E>) {
+      const Scalar number = effect.parameters[kSourceParameter<E>];
+      valid = number >= 1 && number <= static_cast<Scalar>(joint_count);
+      if (!valid) return;
+      const int source = source_joint<E>(effect.parameters);
+      valid = static_cast<Scalar>(source + 1) == number && source != effect.joint;
+    }
+  });
+  return valid;
+}
+
+// What an effect takes of the load at most, per load; those of one joint must not add up to more
+// than LoadDependentFriction::kMostFactor. 0 for an effect that does not depend on the load.
+template <typename Scalar>
+[[nodiscard]] constexpr Scalar most_friction_per_load(const Effect<Scalar>& effect) {
+  Scalar most{};
+  visit_effect(effect.kind, [&]<typename E>() {
+    if constexpr (requires { E::most_friction_per_load(effect.parameters); }) {
+      most = E::most_friction_per_load(effect.parameters);
+    }
+  });
+  return most;
+}
 
 // True where every parameter is finite and inside its documented range.
 template <typename Scalar>

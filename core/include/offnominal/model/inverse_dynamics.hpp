@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <offnominal/model/joint_transforms.hpp>
 #include <offnominal/model/rigid_body_model.hpp>
+#include <offnominal/model/torque_path.hpp>
 
 // Recursive Newton-Euler in the links' own frames (J. Y. S. Luh, M. W. Walker, R. P. Paul, ASME
 // JDSMC 102, 1980; in this form R. Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 5).
@@ -127,41 +128,23 @@ template <int N, typename Scalar>
   return detail::rigid_body_torque<false, N, Scalar>(model, at, dq, dq);
 }
 
-// Sum of the model's torque effects per joint, N m or N. time_s: since the run's origin.
-template <int N, typename Scalar>
-[[nodiscard]] Vector<N, Scalar> effect_torque(const RigidBodyModel<N, Scalar>& model,
-                                              const Vector<N, Scalar>& q,
-                                              const Vector<N, Scalar>& dq, Scalar time_s) {
-  Vector<N, Scalar> torque = Vector<N, Scalar>::Zero();
-  for (const Effect<Scalar>& effect : model.torque_effects.view()) {
-    const auto joint = static_cast<Eigen::Index>(effect.joint);
-    const JointInstant<Scalar> instant{q[joint], dq[joint], time_s};
-    visit_effect(effect.kind, [&]<typename E>() {
-      if constexpr (requires { E::torque(effect.parameters, instant); }) {
-        torque[joint] += E::torque(effect.parameters, instant);
-      }
-    });
-  }
-  return torque;
-}
-
-// The torque that the model needs for the motion (q, dq, ddq) at time_s, effects included.
+// The torque that the drive has to be told for the motion (q, dq, ddq) at time_s, effects included.
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> inverse_dynamics(const RigidBodyModel<N, Scalar>& model,
                                                  const Vector<N, Scalar>& q,
                                                  const Vector<N, Scalar>& dq,
                                                  const Vector<N, Scalar>& ddq, Scalar time_s) {
-  return rigid_body_torque(model, joint_transforms(model, q), dq, ddq) +
-         effect_torque(model, q, dq, time_s);
+  return drive_torque<N, Scalar>(model, joint_effects(model, q, dq, time_s),
+                                 rigid_body_torque(model, joint_transforms(model, q), dq, ddq));
 }
 
-// V(q, dq) dq + G(q) + effects: the torque without acceleration.
+// The same without acceleration: V(q, dq) dq + G(q) and the effects.
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> bias_torque(const RigidBodyModel<N, Scalar>& model,
                                             const Vector<N, Scalar>& q, const Vector<N, Scalar>& dq,
                                             Scalar time_s) {
-  return rigid_body_bias(model, joint_transforms(model, q), dq) +
-         effect_torque(model, q, dq, time_s);
+  return drive_torque<N, Scalar>(model, joint_effects(model, q, dq, time_s),
+                                 rigid_body_bias(model, joint_transforms(model, q), dq));
 }
 
 }  // namespace offnominal

@@ -20,6 +20,9 @@ enum class Quantity : std::uint8_t {
   kLength,                    // m
   kCyclesPerPosition,         // periods per turn (2 pi rad), or periods per m
   kAngularFrequency,          // rad/s of time
+  kTime,                      // s
+  kRatio,                     // 1
+  kJointNumber,               // which other joint, counted from 1: a whole number without a unit
 };
 
 [[nodiscard]] constexpr const char* unit_of(Quantity quantity, JointType type) {
@@ -47,6 +50,12 @@ enum class Quantity : std::uint8_t {
       return turns ? "1/turn" : "1/m";
     case Quantity::kAngularFrequency:
       return "rad/s";
+    case Quantity::kTime:
+      return "s";
+    case Quantity::kRatio:
+      return "1";
+    case Quantity::kJointNumber:
+      return "";
   }
   return "";
 }

@@ -64,7 +64,12 @@ struct RigidBodyModel {
   };
   std::array<Body, static_cast<std::size_t>(N)> bodies{};
   Vector<3, Scalar> gravity = Vector<3, Scalar>::Zero();
-  EffectList<Scalar, kEffectsPerJoint * N> torque_effects{};  // those with a torque() only
+  // Those with a torque() or a friction_per_load() only.
+  EffectList<Scalar, kEffectsPerJoint * N> torque_effects{};
+  // Torque that the drive is told, and that a log says, per torque that it gives; product of the
+  // effects with a told_per_given().
+  Vector<N, Scalar> told_per_given = Vector<N, Scalar>::Ones();
+  bool has_torque_path = false;  // some effect scales what passes from drive to load
 };
 
 // Makes the model of a chain that validate() has accepted; of any other the result is undefined
@@ -106,6 +111,7 @@ template <int N, typename Scalar>
     body.link.inertia += about_centre;
   }
   for (Effect<Scalar> effect : chain.effects.view()) {
+    if (effect.joint >= N || !source_joint_valid(effect, N)) continue;
     const Joint<Scalar>& joint = chain.joints[effect.joint];
     auto& body = model.bodies[effect.joint];
     visit_effect(effect.kind, [&]<typename E>() {
@@ -118,7 +124,13 @@ template <int N, typename Scalar>
         const auto added = E::point_mass(effect.parameters, joint.centre_of_mass_m);
         body.link.add_point_mass(
             added.mass_kg, Vec3(added.position_m[0], added.position_m[1], added.position_m[2]));
+      } else if constexpr (requires { E::told_per_given(effect.parameters); }) {
+        model.told_per_given[effect.joint] *= E::told_per_given(effect.parameters);
+        model.has_torque_path = true;
       } else {
+        if constexpr (requires { E::most_friction_per_load(effect.parameters); }) {
+          model.has_torque_path = true;
+        }
         static_cast<void>(model.torque_effects.add(effect));
       }
     });

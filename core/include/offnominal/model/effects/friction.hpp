@@ -111,4 +111,49 @@ struct QuadraticFriction {
   }
 };
 
+// What a cold joint has above the Coulomb and viscous friction of the warm one. A run starts cold.
+struct TemperatureDrift {
+  static constexpr EffectKind kKind = EffectKind::kTemperatureDrift;
+  static constexpr const char* kName = "temperature_drift";
+  static constexpr const char* kFormula =
+      "exp(-t / time_constant) * (level * tanh(dq / smoothing) + coefficient * dq)";
+  static constexpr std::array<ParameterInfo, 4> kParameters{{
+      {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "excess of the Coulomb level at the start"},
+      {"coefficient", Quantity::kEffortPerVelocity, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "excess of the viscous slope at the start"},
+      {"time_constant", Quantity::kTime, ParameterRole::kShape, 1e-9, kAny, true, 0,
+       "time after which the excess has fallen to 1/e"},
+      kSmoothing,
+  }};
+  template <typename Scalar>
+  static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
+                       const JointInstant<Scalar>& at) {
+    return Eigen::numext::exp(-at.time_s / p[2]) *
+           (p[0] * smooth_sign(at.dq, p[3]) + p[1] * at.dq);
+  }
+};
+
+// Friction that the motion of another joint causes at this one: a belt, a differential, a wrist.
+struct JointCoupling {
+  static constexpr EffectKind kKind = EffectKind::kJointCoupling;
+  static constexpr const char* kName = "joint_coupling";
+  static constexpr const char* kFormula =
+      "coefficient * dq_k + level * tanh(dq_k / smoothing), k = source_joint";
+  static constexpr std::array<ParameterInfo, 4> kParameters{{
+      {"coefficient", Quantity::kEffortPerVelocity, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "torque per velocity of the other joint"},
+      {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
+       "torque by the direction of the other joint"},
+      {"source_joint", Quantity::kJointNumber, ParameterRole::kShape, 1, kAny, true, 0,
+       "the other joint, from 1"},
+      kSmoothing,
+  }};
+  template <typename Scalar>
+  static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
+                       const JointInstant<Scalar>& at) {
+    return p[0] * at.source_dq + p[1] * smooth_sign(at.source_dq, p[3]);
+  }
+};
+
 }  // namespace offnominal::effects

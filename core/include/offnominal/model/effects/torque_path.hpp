@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <offnominal/model/effects/friction.hpp>
+
+// Effects on the way of the torque from the drive to the load: they scale what passes, where the
+// other torque effects add to it. torque_path.hpp says how they act together.
+
+namespace offnominal::effects {
+
+// Friction of a gear whose teeth are pressed together by what they transmit.
+// Source: P. Hamon, M. Gautier, P. Garrec, IROS 2010 (dry friction that depends on load and
+// velocity), with the reflected inertia counted as load, as torque_path.hpp explains.
+struct LoadDependentFriction {
+  static constexpr EffectKind kKind = EffectKind::kLoadDependentFriction;
+  static constexpr const char* kName = "load_dependent_friction";
+  static constexpr const char* kFormula = "factor * |load torque| * tanh(dq / smoothing)";
+  // At 1 a joint that its load drives would lock, and no acceleration would follow from the torque.
+  static constexpr double kMostFactor = 0.95;
+  static constexpr std::array<ParameterInfo, 2> kParameters{{
+      {"factor", Quantity::kRatio, ParameterRole::kLinear, 0, kMostFactor, true, 0,
+       "friction per torque that passes through the gear"},
+      kSmoothing,
+  }};
+  // Signed by the direction: the drive supplies this times |load torque| beside the load.
+  template <typename Scalar>
+  static Scalar friction_per_load(const std::array<Scalar, kMaxEffectParameters>& p,
+                                  const JointInstant<Scalar>& at) {
+    return p[0] * smooth_sign(at.dq, p[1]);
+  }
+  // What its magnitude never exceeds.
+  template <typename Scalar>
+  static Scalar most_friction_per_load(const std::array<Scalar, kMaxEffectParameters>& p) {
+    return p[0];
+  }
+};
+
+// A wrong torque constant: (1 + error) times the torque that acts is what the drive is told to
+// give, and what a log says. A drive that gives (1 + share) times what it is told has error = 1 /
+// (1 + share) - 1.
+struct TorqueScale {
+  static constexpr EffectKind kKind = EffectKind::kTorqueScale;
+  static constexpr const char* kName = "torque_scale";
+  static constexpr const char* kFormula = "error * (torque of the model)";
+  static constexpr std::array<ParameterInfo, 1> kParameters{{
+      {"error", Quantity::kRatio, ParameterRole::kLinear, -0.9, 9, true, 0,
+       "logged torque per torque that acts, less 1"},
+  }};
+  template <typename Scalar>
+  static Scalar told_per_given(const std::array<Scalar, kMaxEffectParameters>& p) {
+    return 1 + p[0];
+  }
+};
+
+}  // namespace offnominal::effects

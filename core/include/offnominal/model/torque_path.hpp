@@ -1,0 +1,103 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <offnominal/model/rigid_body_model.hpp>
+
+// The way of the torque from the drive to the load. Per joint,
+//   tau = told_per_given (load + friction_per_load |load| + torque)
+// with tau: what the drive is told to give and what a log says; torque: sum of the effects that do
+// not depend on the load; load: M ddq + V dq + G, what the joint passes on to all that has inertia
+// or weight. Reflected inertia counts as load, whichever side of the gear it sits on: only then
+// does each joint's equation close by itself, so that the acceleration follows from the torque
+// without an iteration. What that is off where a rotor sits before the gear is friction_per_load
+// times the torque that accelerates the rotor.
+//
+// |friction_per_load| < 1, hence load has the sign of what is left for it, and the equation has
+// exactly one solution in either direction: drive_torque() and load_torque() are each other's
+// inverse. Non-finite input gives non-finite output.
+
+namespace offnominal {
+
+// What the effects of every joint are at one instant, whatever the torque.
+template <int N, typename Scalar>
+struct JointEffects {
+  Vector<N, Scalar> torque = Vector<N, Scalar>::Zero();             // N m or N
+  Vector<N, Scalar> friction_per_load = Vector<N, Scalar>::Zero();  // signed by the direction
+};
+
+// time_s: since the run's origin.
+template <int N, typename Scalar>
+[[nodiscard]] JointEffects<N, Scalar> joint_effects(const RigidBodyModel<N, Scalar>& model,
+                                                    const Vector<N, Scalar>& q,
+                                                    const Vector<N, Scalar>& dq, Scalar time_s) {
+  JointEffects<N, Scalar> sum;
+  for (const Effect<Scalar>& effect : model.torque_effects.view()) {
+    const auto joint = static_cast<Eigen::Index>(effect.joint);
+    JointInstant<Scalar> instant{q[joint], dq[joint], time_s};
+    visit_effect(effect.kind, [&]<typename E>() {
+      if constexpr (kHasSource<E>) instant.source_dq = dq[source_joint<E>(effect.parameters)];
+      if constexpr (requires { E::torque(effect.parameters, instant); }) {
+        sum.torque[joint] += E::torque(effect.parameters, instant);
+      } else if constexpr (requires { E::friction_per_load(effect.parameters, instant); }) {
+        sum.friction_per_load[joint] += E::friction_per_load(effect.parameters, instant);
+      }
+    });
+  }
+  return sum;
+}
+
+// Sum of the model's torque effects per joint that do not depend on the load, N m or N.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> effect_torque(const RigidBodyModel<N, Scalar>& model,
+                                              const Vector<N, Scalar>& q,
+                                              const Vector<N, Scalar>& dq, Scalar time_s) {
+  return joint_effects(model, q, dq, time_s).torque;
+}
+
+// What the drive has to be told for this load, N m or N per joint.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> drive_torque(const RigidBodyModel<N, Scalar>& model,
+                                             const JointEffects<N, Scalar>& effects,
+                                             const Vector<N, Scalar>& load) {
+  if (!model.has_torque_path) return load + effects.torque;
+  return model.told_per_given.cwiseProduct(
+      load + effects.friction_per_load.cwiseProduct(load.cwiseAbs()) + effects.torque);
+}
+
+namespace detail {
+
+// d (given torque) / d (load) on the side of zero where `load` lies.
+template <typename Scalar>
+[[nodiscard]] inline Scalar given_per_load(Scalar friction_per_load, Scalar load) {
+  return Scalar(1) + (load < Scalar(0) ? -friction_per_load : friction_per_load);
+}
+
+}  // namespace detail
+
+// What is left for the load of what the drive is told, N m or N per joint.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> load_torque(const RigidBodyModel<N, Scalar>& model,
+                                            const JointEffects<N, Scalar>& effects,
+                                            const Vector<N, Scalar>& tau) {
+  if (!model.has_torque_path) return tau - effects.torque;
+  Vector<N, Scalar> load = tau.cwiseQuotient(model.told_per_given) - effects.torque;
+  for (Eigen::Index i = 0; i < N; ++i) {
+    load[i] /= detail::given_per_load(effects.friction_per_load[i], load[i]);
+  }
+  return load;
+}
+
+// d drive_torque / d load at this load: what the drive has to be told per unit of load more.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> told_per_load(const RigidBodyModel<N, Scalar>& model,
+                                              const JointEffects<N, Scalar>& effects,
+                                              const Vector<N, Scalar>& load) {
+  Vector<N, Scalar> per_load = model.told_per_given;
+  if (!model.has_torque_path) return per_load;
+  for (Eigen::Index i = 0; i < N; ++i) {
+    per_load[i] *= detail::given_per_load(effects.friction_per_load[i], load[i]);
+  }
+  return per_load;
+}
+
+}  // namespace offnominal

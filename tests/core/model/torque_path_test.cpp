@@ -1,0 +1,191 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <offnominal/control/computed_torque.hpp>
+#include <offnominal/model/forward_dynamics.hpp>
+
+#include "core/model/random_chain.hpp"
+#include "core/model/two_link_closed_form.hpp"
+#include "core/print_status.hpp"
+#include "support/seed.hpp"
+
+namespace offnominal::test {
+namespace {
+
+// Every joint with rotor, friction of the motor, friction by the load and a wrong torque constant.
+template <int N, typename Scalar>
+Chain<N, Scalar> chain_with_path(std::mt19937_64& generator) {
+  Chain<N, Scalar> chain = random_chain<N, Scalar>(generator);
+  for (int i = 0; i < N; ++i) {
+    const auto joint = static_cast<std::uint8_t>(i);
+    const auto add = [&](EffectKind kind, double first, double second) {
+      EXPECT_TRUE(chain.effects.add(
+          {kind, joint, {static_cast<Scalar>(first), static_cast<Scalar>(second)}}));
+    };
+    add(EffectKind::kRotorInertia, uniform(generator, 0.01, 0.3), 0);
+    add(EffectKind::kCoulombFriction, uniform(generator, 0, 2), 0.1);
+    add(EffectKind::kLoadDependentFriction, uniform(generator, 0, 0.8), 0.05);
+    add(EffectKind::kLoadDependentFriction, uniform(generator, 0, 0.15), 0.4);
+    add(EffectKind::kTorqueScale, uniform(generator, -0.4, 0.4), 0);
+    add(EffectKind::kTorqueScale, uniform(generator, -0.4, 0.4), 0);
+  }
+  EXPECT_EQ(validate(chain), Status::kOk);
+  return chain;
+}
+
+struct RoundTrip {
+  double torque = 0;        // tau -> ddq -> tau
+  double acceleration = 0;  // ddq -> tau -> ddq
+};
+
+template <int N, typename Scalar>
+RoundTrip worst_round_trip(std::mt19937_64& generator) {
+  RoundTrip worst;
+  for (int sample = 0; sample < 300; ++sample) {
+    const auto model = make_model(chain_with_path<N, Scalar>(generator));
+    EXPECT_TRUE(model.has_torque_path);
+    const auto q = random_vector<N, Scalar>(generator, std::numbers::pi);
+    const auto dq = random_vector<N, Scalar>(generator, sample % 2 == 0 ? 2.0 : 0.1);
+    const auto tau = random_vector<N, Scalar>(generator, 50.0);
+    ForwardDynamics<N, Scalar> forward;
+    EXPECT_EQ(forward_dynamics(model, q, dq, tau, Scalar(1), forward), Status::kOk);
+    const auto back = inverse_dynamics(model, q, dq, forward.ddq, Scalar(1));
+    worst.torque = std::max(worst.torque, deviation(back, tau));
+    const auto ddq = random_vector<N, Scalar>(generator, 20.0);
+    const auto needed = inverse_dynamics(model, q, dq, ddq, Scalar(1));
+    EXPECT_EQ(forward_dynamics(model, q, dq, needed, Scalar(1), forward), Status::kOk);
+    worst.acceleration = std::max(worst.acceleration, deviation(forward.ddq, ddq));
+  }
+  return worst;
+}
+
+TEST(TorquePath, ForwardAndInverseDynamicsAreEachOthersInverse) {
+  std::mt19937_64 generator = seeded_generator();
+  const auto expect_below = [](const RoundTrip& worst, double torque, double acceleration) {
+    EXPECT_LE(worst.torque, torque);
+    EXPECT_LE(worst.acceleration, acceleration);
+  };
+  expect_below(worst_round_trip<1, double>(generator), 1e-10, 1e-9);
+  expect_below(worst_round_trip<2, double>(generator), 1e-10, 1e-9);
+  expect_below(worst_round_trip<6, double>(generator), 1e-9, 1e-8);
+  // The acceleration in float is as good as the mass matrix' condition lets it be.
+  expect_below(worst_round_trip<2, float>(generator), 5e-3, 0.5);
+}
+
+// The two-link arm in closed form, the path by its definition in the C library's own functions.
+TEST(TorquePath, IsItsDefinitionOnAnArmInClosedForm) {
+  std::mt19937_64 generator = seeded_generator();
+  const TwoLinkClosedForm arm;
+  Chain<2, double> chain;
+  chain.gravity_m_s2 = {0, -arm.gravity, 0};
+  chain.joints[0].mass_kg = arm.mass1;
+  chain.joints[0].centre_of_mass_m = {arm.length1, 0, 0};
+  chain.joints[1].origin_m = {arm.length1, 0, 0};
+  chain.joints[1].mass_kg = arm.mass2;
+  chain.joints[1].centre_of_mass_m = {arm.length2, 0, 0};
+  ASSERT_TRUE(chain.effects.add({EffectKind::kLoadDependentFriction, 0, {0.3, 0.2}}));
+  ASSERT_TRUE(chain.effects.add({EffectKind::kTorqueScale, 0, {0.25}}));
+  ASSERT_TRUE(chain.effects.add({EffectKind::kViscousFriction, 0, {0.7}}));
+  ASSERT_TRUE(chain.effects.add({EffectKind::kTorqueScale, 1, {-0.2}}));
+  ASSERT_TRUE(chain.effects.add({EffectKind::kTorqueOffset, 1, {1.5}}));
+  ASSERT_EQ(validate(chain), Status::kOk);
+  const auto model = make_model(chain);
+  for (int sample = 0; sample < 300; ++sample) {
+    const auto q = random_vector<2, double>(generator, 3.0);
+    const auto dq = random_vector<2, double>(generator, 0.5);
+    const auto ddq = random_vector<2, double>(generator, 5.0);
+    const Eigen::Vector2d load = arm.torque(q, dq, ddq);
+    const double friction = 0.3 * std::fabs(load[0]) * std::tanh(dq[0] / 0.2);
+    const Eigen::Vector2d expected(1.25 * (load[0] + friction + 0.7 * dq[0]),
+                                   0.8 * (load[1] + 1.5));
+    EXPECT_LE(deviation(inverse_dynamics(model, q, dq, ddq, 0.0), expected), 1e-12);
+    ForwardDynamics<2, double> forward;
+    ASSERT_EQ(forward_dynamics(model, q, dq, expected, 0.0, forward), Status::kOk);
+    EXPECT_LE(deviation(forward.ddq, ddq), 1e-10);
+    const Eigen::Vector2d still = arm.bias(q, dq);
+    const double held = 0.3 * std::fabs(still[0]) * std::tanh(dq[0] / 0.2);
+    const Eigen::Vector2d without(1.25 * (still[0] + held + 0.7 * dq[0]), 0.8 * (still[1] + 1.5));
+    EXPECT_LE(deviation(bias_torque(model, q, dq, 0.0), without), 1e-12);
+  }
+}
+
+TEST(TorquePath, FrictionByTheLoadNeverGivesEnergyAndNeedsMotion) {
+  std::mt19937_64 generator = seeded_generator();
+  for (int sample = 0; sample < 200; ++sample) {
+    Chain<2, double> chain = random_chain<2, double>(generator);
+    const auto bare = make_model(chain);
+    for (const std::uint8_t joint : {std::uint8_t{0}, std::uint8_t{1}}) {
+      ASSERT_TRUE(chain.effects.add({EffectKind::kLoadDependentFriction, joint, {0.4, 0.05}}));
+    }
+    const auto model = make_model(chain);
+    const auto q = random_vector<2, double>(generator, 3.0);
+    const auto dq = random_vector<2, double>(generator, 1.0);
+    const auto ddq = random_vector<2, double>(generator, 5.0);
+    const Eigen::Vector2d friction =
+        inverse_dynamics(model, q, dq, ddq, 0.0) - inverse_dynamics(bare, q, dq, ddq, 0.0);
+    EXPECT_GE(friction[0] * dq[0], 0);
+    EXPECT_GE(friction[1] * dq[1], 0);
+    EXPECT_GT(friction.norm(), 0);
+    const Eigen::Vector2d rest = Eigen::Vector2d::Zero();
+    EXPECT_EQ(inverse_dynamics(model, q, rest, ddq, 0.0),
+              inverse_dynamics(bare, q, rest, ddq, 0.0));
+  }
+}
+
+TEST(TorquePath, ToldPerLoadIsTheSlopeOfTheInverseDynamics) {
+  std::mt19937_64 generator = seeded_generator();
+  for (int sample = 0; sample < 200; ++sample) {
+    const auto model = make_model(chain_with_path<2, double>(generator));
+    const auto q = random_vector<2, double>(generator, 3.0);
+    const auto dq = random_vector<2, double>(generator, 1.0);
+    const auto tau = random_vector<2, double>(generator, 50.0);
+    ForwardDynamics<2, double> at;
+    ASSERT_EQ(forward_dynamics(model, q, dq, tau, 0.0, at), Status::kOk);
+    const Eigen::Vector2d more = 1e-7 * random_vector<2, double>(generator, 1.0);
+    const Eigen::Vector2d told = inverse_dynamics<2, double>(model, q, dq, at.ddq + more, 0.0) -
+                                 inverse_dynamics(model, q, dq, at.ddq, 0.0);
+    const Eigen::Vector2d expected = at.told_per_load.cwiseProduct(at.inertia * more);
+    EXPECT_LE((told - expected).norm(), 1e-4 * expected.norm() + 1e-11);
+  }
+}
+
+TEST(TorquePath, WithoutSuchEffectsNothingIsScaled) {
+  std::mt19937_64 generator = seeded_generator();
+  Chain<2, double> chain = random_chain<2, double>(generator);
+  ASSERT_TRUE(chain.effects.add({EffectKind::kCoulombFriction, 0, {1, 0.1}}));
+  const auto model = make_model(chain);
+  EXPECT_FALSE(model.has_torque_path);
+  const Eigen::Vector2d at(0.3, 0.4);
+  ForwardDynamics<2, double> result;
+  ASSERT_EQ((forward_dynamics<2, double>(model, at, at, at, 0.0, result)), Status::kOk);
+  EXPECT_EQ(result.told_per_load, Eigen::Vector2d::Ones());
+}
+
+// The loop that computed torque closes stays linear and decoupled: the command is what the drive
+// has to be told.
+TEST(TorquePath, ComputedTorqueReachesTheAccelerationThatItAsksFor) {
+  std::mt19937_64 generator = seeded_generator();
+  const ComputedTorqueGains<2, double> gains{{25, 16}, {10, 8}};
+  for (int sample = 0; sample < 200; ++sample) {
+    const auto model = make_model(chain_with_path<2, double>(generator));
+    const Reference<2, double> reference{random_vector<2, double>(generator, 2),
+                                         random_vector<2, double>(generator, 2),
+                                         random_vector<2, double>(generator, 2)};
+    const auto q = random_vector<2, double>(generator, 2);
+    const auto dq = random_vector<2, double>(generator, 2);
+    const Eigen::Vector2d tau = computed_torque(model, gains, reference, q, dq, 0.4);
+    ForwardDynamics<2, double> forward;
+    ASSERT_EQ(forward_dynamics(model, q, dq, tau, 0.4, forward), Status::kOk);
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      const auto joint = static_cast<std::size_t>(i);
+      const double expected = reference.ddq[i] + gains.kd[joint] * (reference.dq[i] - dq[i]) +
+                              gains.kp[joint] * (reference.q[i] - q[i]);
+      EXPECT_NEAR(forward.ddq[i], expected, 1e-8 * (1 + forward.ddq.norm()));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace offnominal::test
