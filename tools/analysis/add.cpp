@@ -95,11 +95,13 @@ void object_to_ranges(AddResult& result) {
     const RobotEffect& effect = result.robot.effects[parameter.effect];
     const ParameterInfo& info = info_of(effect.kind)->parameters[parameter.parameter];
     if (parameter.value >= info.min && parameter.value <= info.max) continue;
-    result.objections.push_back(fmt::format(
-        "{}.{} came out as {:.6g} {}, {:g} or more is possible: the recording does not "
-        "show this effect",
-        info_of(effect.kind)->name, info.name, parameter.value,
-        unit_of(info.quantity, result.robot.joints[effect.joint].joint.type), info.min));
+    const bool below = parameter.value < info.min;
+    result.objections.push_back(
+        fmt::format("{}.{} came out as {:.6g} {}, {:g} or {} is possible: the recording does not "
+                    "show this effect",
+                    info_of(effect.kind)->name, info.name, parameter.value,
+                    unit_of(info.quantity, result.robot.joints[effect.joint].joint.type),
+                    below ? info.min : info.max, below ? "more" : "less"));
   }
   for (const FittedLink& link : result.fit.links) {
     if (link.factor > 0) continue;
@@ -132,7 +134,8 @@ AddResult add(const RobotDescription& robot, const AddRequest& request, const Me
   AddSetup setup = set_up(robot, request);
   std::vector<ShapeGroup> groups = make_shape_groups(
       setup.robot, setup.added, setup.refitted, setup.given, log.motion, log.plan.torque_cutoff_hz);
-  const FitProblem problem(setup.robot, setup.unknowns, std::move(groups), log);
+  const FitProblem problem =
+      settled({setup.robot, setup.unknowns, std::move(groups), log}, on_step);
   std::optional<std::vector<int>> parts;
   if (holdout == nullptr) {
     parts = contiguous_parts(problem.samples(), log.plan.edge_samples / log.plan.decimation + 1);

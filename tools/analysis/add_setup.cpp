@@ -11,11 +11,12 @@
 namespace offnominal::tools {
 namespace {
 
-// Several of these may act on one joint: each has its own period.
+// Several of these may act on one joint: each has its own period, or follows its own joint.
 bool may_repeat(const EffectInfo& info) {
   return std::any_of(info.parameters.begin(), info.parameters.end(), [](const ParameterInfo& p) {
-    return p.role == ParameterRole::kShape && (p.quantity == Quantity::kCyclesPerPosition ||
-                                               p.quantity == Quantity::kAngularFrequency);
+    return p.role == ParameterRole::kShape &&
+           (p.quantity == Quantity::kCyclesPerPosition ||
+            p.quantity == Quantity::kAngularFrequency || p.quantity == Quantity::kJointNumber);
   });
 }
 
@@ -54,6 +55,7 @@ class SetUp {
           {"--joint", "", std::to_string(request_.joint + 1),
            fmt::format("1 to {}, the joints of robot {}", robot.joints.size(), robot.name), ""});
     }
+    check_sources();
     std::set<EffectKind> seen;
     for (const EffectKind kind : request_.effects) {
       const EffectInfo& info = *info_of(kind);
@@ -74,6 +76,19 @@ class SetUp {
       throw InputError({robot.name, "effects",
                         std::to_string(robot.effects.size() + request_.effects.size()),
                         fmt::format("up to {}", room), "remove one"});
+    }
+  }
+
+  // An effect that follows another joint needs one.
+  void check_sources() const {
+    if (setup_.robot.joints.size() > 1) return;
+    for (const EffectKind kind : request_.effects) {
+      const EffectInfo& info = *info_of(kind);
+      for (const ParameterInfo& parameter : info.parameters) {
+        if (parameter.quantity != Quantity::kJointNumber) continue;
+        throw InputError({setup_.robot.name, "joints", "one",
+                          fmt::format("two or more: {} follows another joint", info.name), ""});
+      }
     }
   }
 
@@ -105,6 +120,7 @@ class SetUp {
           if (name != own && name != std::string(info.name) + "." + own) continue;
           check_range(name, value, info.parameters[i]);
           setup_.robot.effects[effect].parameters[i] = value;
+          check_source(name, info.parameters[i], setup_.robot.effects[effect]);
           setup_.given.push_back({effect, i});
           used = true;
         }
@@ -113,10 +129,20 @@ class SetUp {
     }
   }
 
+  void check_source(const std::string& name, const ParameterInfo& info,
+                    const RobotEffect& effect) const {
+    const auto count = setup_.robot.joint_count();
+    if (info.quantity != Quantity::kJointNumber || source_joint_valid(effect, count)) return;
+    throw InputError({"--set " + name, "", "no joint beside the effect's own",
+                      fmt::format("a whole number from 1 to {}, not {}", count, effect.joint + 1),
+                      ""});
+  }
+
   static void check_range(const std::string& name, double value, const ParameterInfo& info) {
     if (value >= info.min && value <= info.max) return;
-    const std::string allowed =
+    std::string allowed =
         info.min <= -effects::kAny ? "a finite number" : fmt::format("{:g} or more", info.min);
+    if (info.max < effects::kAny) allowed += fmt::format(", up to {:g}", info.max);
     throw InputError({"--set " + name, "", fmt::format("{:g}", value), allowed, ""});
   }
 

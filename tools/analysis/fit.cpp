@@ -106,6 +106,7 @@ Fit fit(const FitProblem& problem, const std::optional<std::vector<int>>& parts,
   Fit result;
   result.robot = with_values(with_shapes(problem.robot(), problem.groups(), shapes),
                              problem.unknowns(), solution.x);
+  result.values = solution.x;
   const Intervals intervals = intervals_of(problem, solution, shapes, weights);
   take_linear(problem, solution, intervals, result);
   take_shapes(problem, shapes, intervals, result);
@@ -114,6 +115,20 @@ Fit fit(const FitProblem& problem, const std::optional<std::vector<int>>& parts,
     result.held_out = cross_validate(problem, search, weights);
   }
   return result;
+}
+
+FitProblem settled(const FitProblem& problem, const OnStep& on_step) {
+  if (problem.is_linear()) return problem;
+  constexpr int kMost = 8;
+  constexpr double kUnchanged = 1e-6;
+  VectorXd at = fit(problem, std::nullopt, on_step).values;
+  for (int pass = 1; pass < kMost; ++pass) {
+    const VectorXd next = fit(problem.about(at), std::nullopt, on_step).values;
+    const bool unchanged = (next - at).norm() <= kUnchanged * next.norm();
+    at = next;
+    if (unchanged) break;
+  }
+  return problem.about(at);
 }
 
 }  // namespace offnominal::tools

@@ -42,6 +42,7 @@ struct HeldOutError {
 
 struct Fit {
   RobotDescription robot;
+  Eigen::VectorXd values;  // of the problem's unknowns
   std::vector<FittedParameter> parameters;
   std::vector<FittedLink> links;
   std::vector<Indistinct> indistinct;
@@ -57,7 +58,12 @@ inline constexpr int kPartBlocks = 20;
 
 // Fits the unknowns and the shape groups of a problem. With parts (contiguous_parts()) every part
 // is also predicted by a fit of the others, shape values included. on_step is called now and then.
+// A problem that is not linear is taken as linear where it was made: settled() first.
 Fit fit(const FitProblem& problem, const std::optional<std::vector<int>>& parts,
         const OnStep& on_step = {});
+
+// The problem made about what its own fit gives, found by fitting again and again (Gauss-Newton).
+// One that is linear comes back as it is.
+FitProblem settled(const FitProblem& problem, const OnStep& on_step = {});
 
 }  // namespace offnominal::tools

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "analysis/inverse_model.hpp"
+
 namespace offnominal::tools {
 
 using Eigen::Index;
@@ -10,17 +12,31 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 FitProblem::FitProblem(RobotDescription robot, std::vector<Unknown> unknowns,
-                       std::vector<ShapeGroup> groups, const Measurement& measured)
+                       std::vector<ShapeGroup> groups, const Measurement& measured,
+                       std::optional<VectorXd> at)
     : robot_(std::move(robot)),
       unknowns_(std::move(unknowns)),
       groups_(std::move(groups)),
-      measured_(measured) {
+      measured_(measured),
+      has_path_(has_path_effect(robot_)) {
   std::set<std::size_t> joints;
   for (const Unknown& unknown : unknowns_) {
     for (const std::size_t joint : joints_of(robot_, unknown)) joints.insert(joint);
   }
   joints_.assign(joints.begin(), joints.end());
   const auto count = static_cast<Index>(unknowns_.size());
+  if (has_path_) {
+    at_.resize(count);
+    for (Index i = 0; i < count; ++i) at_[i] = unknowns_[static_cast<std::size_t>(i)].start;
+    if (at) at_ = std::move(*at);
+    for (const Unknown& unknown : unknowns_) {
+      loads_.push_back(is_load(robot_, unknown)
+                           ? regressor_before_path(robot_, unknown, measured_.motion)
+                           : std::vector<JointColumn>{});
+    }
+    at_start_ = rows_about(start_shapes());
+    return;
+  }
   const MatrixXd known =
       filtered_model_torque(with_values(robot_, unknowns_, VectorXd::Zero(count)), measured_);
   for (const std::size_t joint : joints_) {
@@ -29,7 +45,39 @@ FitProblem::FitProblem(RobotDescription robot, std::vector<Unknown> unknowns,
                          measured_.torque.col(column) - known.col(column)});
   }
   const RobotDescription shaped = with_shapes(robot_, groups_, start_shapes());
-  for (std::size_t i = 0; i < unknowns_.size(); ++i) fill(shaped, i, at_start_);
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    fill(regressor(shaped, unknowns_[i], measured_.motion), i, at_start_);
+  }
+}
+
+FitProblem FitProblem::about(const VectorXd& at) const {
+  return {robot_, unknowns_, groups_, measured_, at};
+}
+
+// The model at at_ and the unknowns' columns there: target = measured - model + columns at_.
+std::vector<JointRows> FitProblem::rows_about(const std::vector<double>& shapes) const {
+  const RobotDescription here = with_shapes(with_values(robot_, unknowns_, at_), groups_, shapes);
+  const MatrixXd model = filtered_model_torque(here, measured_);
+  std::vector<JointRows> rows;
+  for (const std::size_t joint : joints_) {
+    const auto column = static_cast<Index>(joint);
+    rows.push_back({joint, MatrixXd::Zero(samples(), at_.size()),
+                    measured_.torque.col(column) - model.col(column)});
+  }
+  const ToldTorque told = told_torque(here, measured_.motion);
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const Unknown& unknown = unknowns_[i];
+    std::vector<JointColumn> columns = loads_[i];
+    if (columns.empty() && is_path_effect(here.effects[unknown.effect].kind)) {
+      columns = regressor(here, unknown, measured_.motion);
+    } else {
+      if (columns.empty()) columns = regressor_before_path(here, unknown, measured_.motion);
+      pass_path(here, unknown, told, columns);
+    }
+    fill(columns, i, rows);
+  }
+  for (JointRows& joint : rows) joint.target += joint.columns * at_;
+  return rows;
 }
 
 std::vector<double> FitProblem::start_shapes() const {
@@ -56,9 +104,9 @@ bool FitProblem::depends_on_shapes(const Unknown& unknown) const {
   });
 }
 
-void FitProblem::fill(const RobotDescription& robot, std::size_t index,
+void FitProblem::fill(const std::vector<JointColumn>& columns, std::size_t index,
                       std::vector<JointRows>& rows) const {
-  for (const JointColumn& column : regressor(robot, unknowns_[index], measured_.motion)) {
+  for (const JointColumn& column : columns) {
     for (JointRows& joint : rows) {
       if (joint.joint != column.joint) continue;
       joint.columns.col(static_cast<Index>(index)) = filtered(measured_.plan, column.values);
@@ -67,10 +115,12 @@ void FitProblem::fill(const RobotDescription& robot, std::size_t index,
 }
 
 std::vector<JointRows> FitProblem::rows(const std::vector<double>& shapes) const {
+  if (has_path_) return shapes == start_shapes() ? at_start_ : rows_about(shapes);
   std::vector<JointRows> rows = at_start_;
   const RobotDescription shaped = with_shapes(robot_, groups_, shapes);
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    if (depends_on_shapes(unknowns_[i])) fill(shaped, i, rows);
+    if (!depends_on_shapes(unknowns_[i])) continue;
+    fill(regressor(shaped, unknowns_[i], measured_.motion), i, rows);
   }
   return rows;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "analysis/measurement.hpp"
@@ -12,11 +13,13 @@
 namespace offnominal::tools {
 
 // What is fitted, and to what: torque = known part + sum of unknowns times their columns, where
-// some columns depend on shape values. Rows are the joints that any unknown acts on.
+// some columns depend on shape values. Rows are the joints that any unknown acts on. Path effects
+// make the torque a product of unknowns: it is then linear about the values `at`, and a fit is
+// repeated about what it has found (is_linear()).
 class FitProblem {
  public:
   FitProblem(RobotDescription robot, std::vector<Unknown> unknowns, std::vector<ShapeGroup> groups,
-             const Measurement& measured);
+             const Measurement& measured, std::optional<Eigen::VectorXd> at = {});
 
   [[nodiscard]] const RobotDescription& robot() const { return robot_; }
   [[nodiscard]] const std::vector<Unknown>& unknowns() const { return unknowns_; }
@@ -24,6 +27,10 @@ class FitProblem {
   [[nodiscard]] const Measurement& measured() const { return measured_; }
   [[nodiscard]] const std::vector<std::size_t>& joints() const { return joints_; }
   [[nodiscard]] Eigen::Index samples() const { return measured_.torque.rows(); }
+  // False where the columns depend on the values that they were made at.
+  [[nodiscard]] bool is_linear() const { return !has_path_; }
+  // The same problem, linear about the unknowns' values `at`.
+  [[nodiscard]] FitProblem about(const Eigen::VectorXd& at) const;
   [[nodiscard]] std::vector<double> start_shapes() const;
   [[nodiscard]] std::vector<UnknownPrior> priors() const;
 
@@ -33,13 +40,19 @@ class FitProblem {
 
  private:
   [[nodiscard]] bool depends_on_shapes(const Unknown& unknown) const;
-  void fill(const RobotDescription& robot, std::size_t index, std::vector<JointRows>& rows) const;
+  void fill(const std::vector<JointColumn>& columns, std::size_t index,
+            std::vector<JointRows>& rows) const;
+  [[nodiscard]] std::vector<JointRows> rows_about(const std::vector<double>& shapes) const;
 
   RobotDescription robot_;
   std::vector<Unknown> unknowns_;
   std::vector<ShapeGroup> groups_;
   const Measurement& measured_;
   std::vector<std::size_t> joints_;
+  bool has_path_;
+  // Read where has_path_: the values, and the columns of unknowns that are loads, before the path.
+  Eigen::VectorXd at_;
+  std::vector<std::vector<JointColumn>> loads_;
   std::vector<JointRows> at_start_;
 };
 

@@ -30,6 +30,7 @@ std::vector<MatrixXd> shape_columns(const FitProblem& problem, const VectorXd& x
   const auto count = static_cast<Index>(shapes.size());
   std::vector<MatrixXd> columns(problem.joints().size(), MatrixXd::Zero(problem.samples(), count));
   for (std::size_t group = 0; group < shapes.size(); ++group) {
+    if (problem.groups()[group].search == ShapeGroup::Search::kDiscrete) continue;
     const bool logarithmic = problem.groups()[group].logarithmic;
     const double size = std::abs(shapes[group]);
     const double step = logarithmic ? kRelativeStep * size : kRelativeStep * std::max(size, 1e-3);
@@ -42,7 +43,9 @@ std::vector<MatrixXd> shape_columns(const FitProblem& problem, const VectorXd& x
     const std::vector<JointRows> rows_below = problem.rows(below);
     for (std::size_t joint = 0; joint < columns.size(); ++joint) {
       columns[joint].col(static_cast<Index>(group)) =
-          (rows_above[joint].columns - rows_below[joint].columns) * x / width;
+          ((rows_above[joint].columns - rows_below[joint].columns) * x -
+           (rows_above[joint].target - rows_below[joint].target)) /
+          width;
     }
   }
   return columns;

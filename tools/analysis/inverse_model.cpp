@@ -1,5 +1,6 @@
 #include "analysis/inverse_model.hpp"
 
+#include <algorithm>
 #include <offnominal/model/inverse_dynamics.hpp>
 #include <stdexcept>
 
@@ -22,7 +23,7 @@ MatrixXd model_torque(const RobotDescription& robot, const Motion& motion) {
       const Vector<N, double> q = motion.q.row(i);
       const Vector<N, double> dq = motion.dq.row(i);
       const Vector<N, double> ddq = motion.ddq.row(i);
-      torque.row(i) = inverse_dynamics(model, q, dq, ddq, motion.t_s[i]);
+      torque.row(i) = inverse_dynamics(model, q, dq, ddq, motion.t_s[i] - motion.t_s[0]);
     }
     return torque;
   });
@@ -49,16 +50,49 @@ bool is_torque_effect(EffectKind kind) {
   return torque;
 }
 
+bool is_path_effect(EffectKind kind) {
+  bool path = false;
+  visit_effect(kind, [&]<typename E>() {
+    path = requires(std::array<double, kMaxEffectParameters> p) { E::most_friction_per_load(p); }
+    || requires(std::array<double, kMaxEffectParameters> p) { E::told_per_given(p); };
+  });
+  return path;
+}
+
+bool has_path_effect(const RobotDescription& robot) {
+  return std::any_of(robot.effects.begin(), robot.effects.end(),
+                     [](const RobotEffect& effect) { return is_path_effect(effect.kind); });
+}
+
+ToldTorque told_torque(const RobotDescription& robot, const Motion& motion) {
+  return with_joint_count(robot.joint_count(), [&]<int N>() {
+    const auto model = make_model(chain_of<N, double>(robot));
+    ToldTorque told{model.told_per_given, MatrixXd(motion.sample_count(), N)};
+    for (Index i = 0; i < motion.sample_count(); ++i) {
+      const Vector<N, double> q = motion.q.row(i);
+      const Vector<N, double> dq = motion.dq.row(i);
+      const Vector<N, double> ddq = motion.ddq.row(i);
+      const auto effects = joint_effects(model, q, dq, motion.t_s[i] - motion.t_s[0]);
+      const Vector<N, double> load = rigid_body_torque(model, joint_transforms(model, q), dq, ddq);
+      told.per_load.row(i) = told_per_load(model, effects, load);
+    }
+    return told;
+  });
+}
+
 VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Motion& motion) {
   const auto joint = static_cast<Index>(effect.joint);
   VectorXd torque = VectorXd::Zero(motion.sample_count());
+  if (!source_joint_valid(effect, static_cast<int>(motion.q.cols()))) return torque;
   visit_effect(effect.kind, [&]<typename E>() {
     auto parameters = effect.parameters;
     if constexpr (requires { E::prepare(parameters, type); }) E::prepare(parameters, type);
     if constexpr (requires(JointInstant<double> at) { E::torque(parameters, at); }) {
       for (Index i = 0; i < motion.sample_count(); ++i) {
-        torque[i] = E::torque(parameters, JointInstant<double>{motion.q(i, joint),
-                                                               motion.dq(i, joint), motion.t_s[i]});
+        JointInstant<double> at{motion.q(i, joint), motion.dq(i, joint),
+                                motion.t_s[i] - motion.t_s[0]};
+        if constexpr (kHasSource<E>) at.source_dq = motion.dq(i, source_joint<E>(parameters));
+        torque[i] = E::torque(parameters, at);
       }
     }
   });

@@ -8,7 +8,8 @@
 
 // A robot description's torques over a recorded motion: core's inverse dynamics, sample by sample.
 // Results have the motion's rows and one column per joint, N m or N. A motion has as many joints as
-// the robot, otherwise std::invalid_argument.
+// the robot, otherwise std::invalid_argument. A run begins at the motion's first sample: effects in
+// time count from there, as the on-board monitor does.
 
 namespace offnominal::tools {
 
@@ -18,8 +19,23 @@ Eigen::MatrixXd model_torque(const RobotDescription& robot, const Motion& motion
 // The share of one link's mass and inertia in it; linear in them.
 Eigen::MatrixXd link_torque(const RobotDescription& robot, std::size_t link, const Motion& motion);
 
-// True where an effect acts as a torque of its own joint, false where it changes the inertia.
+// True where an effect acts as a torque of its own joint, by the motion and the time.
 bool is_torque_effect(EffectKind kind);
+
+// True where an effect scales what passes from the drive to the load of its own joint (core's
+// torque_path.hpp).
+bool is_path_effect(EffectKind kind);
+
+// Some effect of the robot is one of these.
+bool has_path_effect(const RobotDescription& robot);
+
+// What the drive has to be told per torque more that it gives, and per torque more of the load, at
+// every sample: 1 without path effects.
+struct ToldTorque {
+  Eigen::VectorXd per_given;  // per joint
+  Eigen::MatrixXd per_load;
+};
+ToldTorque told_torque(const RobotDescription& robot, const Motion& motion);
 
 // The torque of one torque effect on its own joint, of the given type.
 Eigen::VectorXd torque_of_effect(const Effect<double>& effect, JointType type,

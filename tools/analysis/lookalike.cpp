@@ -83,7 +83,8 @@ std::vector<Lookalike> lookalikes(const FitProblem& problem, const Fit& fit) {
     }
     const VectorXd own = without(others, of_joint->columns.col(static_cast<Index>(i)));
     for (const EffectInfo& info : kAllEffectInfos) {
-      if (!is_torque_effect(info.kind) || needs_a_shape(info) ||
+      const bool on_own_joint = is_torque_effect(info.kind) || is_path_effect(info.kind);
+      if (!on_own_joint || needs_a_shape(info) ||
           is_in_model(fit.robot, info.kind, unknown.joint)) {
         continue;
       }

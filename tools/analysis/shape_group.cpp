@@ -58,6 +58,17 @@ std::vector<double> frequency_grid(const VectorXd& t_s, double torque_cutoff_hz)
   return even_grid(2 * whole, 2 * std::numbers::pi * torque_cutoff_hz, 0.25 * whole);
 }
 
+// As long as the recording lasts, and down to a twelfth of it.
+std::vector<double> duration_grid(const VectorXd& t_s) {
+  constexpr int kPoints = 13;
+  const double duration = t_s[t_s.size() - 1] - t_s[0];
+  std::vector<double> grid;
+  for (int i = 0; i < kPoints; ++i) {
+    grid.push_back(duration / 12 * std::pow(18.0, static_cast<double>(i) / (kPoints - 1)));
+  }
+  return grid;
+}
+
 std::vector<double> position_grid(const VectorXd& q) {
   constexpr int kPoints = 41;
   const double low = q.minCoeff();
@@ -77,6 +88,7 @@ class GroupMaker {
         torque_cutoff_hz_(torque_cutoff_hz) {}
 
   std::vector<ShapeGroup> make(const std::vector<std::size_t>& added) {
+    for (const std::size_t effect : added) set_only_source(effect);
     for (const std::size_t effect : added) {
       const auto parameters = info_of(robot_.effects[effect].kind)->parameters;
       for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -106,17 +118,46 @@ class GroupMaker {
     return std::nullopt;
   }
 
+  // The joint whose velocity an effect follows: its own, or the one that it names.
+  std::size_t velocity_joint(std::size_t effect) const {
+    const RobotEffect& of = robot_.effects[effect];
+    const auto parameters = info_of(of.kind)->parameters;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const bool names_one = parameters[i].quantity == Quantity::kJointNumber &&
+                             source_joint_valid(of, robot_.joint_count());
+      if (names_one) return static_cast<std::size_t>(of.parameters[i]) - 1;
+    }
+    return of.joint;
+  }
+
+  std::vector<double> source_grid(std::size_t own) const {
+    std::vector<double> grid;
+    for (std::size_t joint = 0; joint < robot_.joints.size(); ++joint) {
+      if (joint != own) grid.push_back(static_cast<double>(joint + 1));
+    }
+    return grid;
+  }
+
+  void set_only_source(std::size_t effect) {
+    const auto parameters = info_of(robot_.effects[effect].kind)->parameters;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      if (parameters[i].quantity != Quantity::kJointNumber || is_given(effect, i)) continue;
+      const std::vector<double> grid = source_grid(robot_.effects[effect].joint);
+      if (grid.size() == 1) value({effect, i}) = grid.front();
+    }
+  }
+
   double& value(const ShapeMember& member) {
     return robot_.effects[member.effect].parameters[member.parameter];
   }
 
   void add_width(const std::vector<std::size_t>& added, const ShapeMember& member) {
-    const std::size_t joint = robot_.effects[member.effect].joint;
+    const std::size_t joint = velocity_joint(member.effect);
     const auto is_listed = [](const std::vector<std::size_t>& list, std::size_t effect) {
       return std::find(list.begin(), list.end(), effect) != list.end();
     };
     for (ShapeGroup& group : groups_) {
-      if (group.name != kWidth || robot_.effects[group.members[0].effect].joint != joint) continue;
+      if (group.name != kWidth || velocity_joint(group.members[0].effect) != joint) continue;
       value(member) = group.start;
       group.members.push_back(member);
       return;
@@ -124,7 +165,7 @@ class GroupMaker {
     ShapeGroup group{{member}, std::string(kWidth), ShapeGroup::Search::kGrid, true, {}, 0};
     for (std::size_t effect = 0; effect < robot_.effects.size(); ++effect) {
       const auto width = width_of(effect);
-      if (!width || robot_.effects[effect].joint != joint || is_listed(added, effect)) continue;
+      if (!width || velocity_joint(effect) != joint || is_listed(added, effect)) continue;
       value(member) = value({effect, *width});
       if (!is_listed(refitted_, effect)) return;
       group.members.push_back({effect, *width});
@@ -146,6 +187,15 @@ class GroupMaker {
         break;
       case Quantity::kPosition:
         group.grid = position_grid(motion_.q.col(column));
+        break;
+      case Quantity::kTime:
+        group.logarithmic = true;
+        group.grid = duration_grid(motion_.t_s);
+        break;
+      case Quantity::kJointNumber:
+        group.grid = source_grid(joint);
+        if (group.grid.size() < 2) return;
+        group.search = ShapeGroup::Search::kDiscrete;
         break;
       case Quantity::kCyclesPerPosition:
         group.search = ShapeGroup::Search::kPeriodicQ;

@@ -20,6 +20,7 @@ struct ShapeMember {
 struct ShapeGroup {
   enum class Search {
     kGrid,         // the whole grid, then between its points
+    kDiscrete,     // the whole grid and nothing between
     kPeriodicQ,    // period in position: the grid is screened with the residual first
     kPeriodicTime  // period in time: likewise
   };
@@ -36,7 +37,8 @@ struct ShapeGroup {
 // with grids chosen from the motion. Lengths are never searched.
 // Widths of the smoothed sign: where a refitted effect of the joint has one, it joins the group;
 // where an effect that is not refitted has one, the added effects take that value over and nothing
-// is searched. Sets such taken-over and starting values in `robot`.
+// is searched. The width of a coupling is that of the joint it follows. Another joint that has only
+// one candidate is not searched for. Sets such taken-over and starting values in `robot`.
 std::vector<ShapeGroup> make_shape_groups(RobotDescription& robot,
                                           const std::vector<std::size_t>& added,
                                           const std::vector<std::size_t>& refitted,

@@ -62,7 +62,9 @@ std::vector<double> ShapeSearch::candidates(std::size_t group, const std::vector
                                             int left_out) {
   constexpr std::size_t kMost = 8;
   const ShapeGroup& of = problem_.groups()[group];
-  if (of.search == ShapeGroup::Search::kGrid) return of.grid;
+  const bool spectral =
+      of.search == ShapeGroup::Search::kPeriodicQ || of.search == ShapeGroup::Search::kPeriodicTime;
+  if (!spectral) return of.grid;
   const std::size_t effect = of.members[0].effect;
   const std::size_t joint = problem_.robot().effects[effect].joint;
   std::vector<JointRows> rows = problem_.rows(at);
@@ -124,6 +126,7 @@ void ShapeSearch::refine(std::size_t group, int left_out, std::vector<double>& b
                          double& best_cost) {
   constexpr int kBits = 16;
   const ShapeGroup& of = problem_.groups()[group];
+  if (of.search == ShapeGroup::Search::kDiscrete) return;
   const auto above = std::upper_bound(of.grid.begin(), of.grid.end(), best[group]);
   const auto below = std::lower_bound(of.grid.begin(), of.grid.end(), best[group]);
   double low = below == of.grid.begin() ? of.grid.front() : *std::prev(below);

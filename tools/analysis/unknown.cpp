@@ -22,6 +22,17 @@ Effect<double> unit_effect(const RobotDescription& robot, const Unknown& unknown
   return effect;
 }
 
+// The torque is linear in the parameter while all else stands still.
+Eigen::VectorXd of_path_effect(const RobotDescription& robot, const Unknown& unknown,
+                               const Motion& motion) {
+  const auto with = [&](double value) {
+    RobotDescription changed = robot;
+    changed.effects[unknown.effect].parameters[unknown.parameter] = value;
+    return model_torque(changed, motion).col(static_cast<Eigen::Index>(unknown.joint)).eval();
+  };
+  return with(1) - with(0);
+}
+
 }  // namespace
 
 std::vector<Unknown> unknowns_of_effect(const RobotDescription& robot, std::size_t effect,
@@ -68,8 +79,8 @@ std::string unit_of(const RobotDescription& robot, const Unknown& unknown) {
                              robot.joints[unknown.joint].joint.type);
 }
 
-std::vector<JointColumn> regressor(const RobotDescription& robot, const Unknown& unknown,
-                                   const Motion& motion) {
+std::vector<JointColumn> regressor_before_path(const RobotDescription& robot,
+                                               const Unknown& unknown, const Motion& motion) {
   Eigen::MatrixXd torque;
   if (unknown.kind == Unknown::Kind::kLinkScale) {
     torque = link_torque(robot, unknown.joint, motion);
@@ -88,9 +99,38 @@ std::vector<JointColumn> regressor(const RobotDescription& robot, const Unknown&
   return columns;
 }
 
+void pass_path(const RobotDescription& robot, const Unknown& unknown, const ToldTorque& told,
+               std::vector<JointColumn>& columns) {
+  for (JointColumn& column : columns) {
+    const auto joint = static_cast<Eigen::Index>(column.joint);
+    if (is_load(robot, unknown)) {
+      column.values.array() *= told.per_load.col(joint).array();
+    } else {
+      column.values *= told.per_given[joint];
+    }
+  }
+}
+
+std::vector<JointColumn> regressor(const RobotDescription& robot, const Unknown& unknown,
+                                   const Motion& motion) {
+  const bool of_path = unknown.kind == Unknown::Kind::kEffectParameter &&
+                       is_path_effect(robot.effects[unknown.effect].kind);
+  if (of_path) return {{unknown.joint, of_path_effect(robot, unknown, motion)}};
+  std::vector<JointColumn> columns = regressor_before_path(robot, unknown, motion);
+  if (has_path_effect(robot)) pass_path(robot, unknown, told_torque(robot, motion), columns);
+  return columns;
+}
+
+bool is_load(const RobotDescription& robot, const Unknown& unknown) {
+  if (unknown.kind == Unknown::Kind::kLinkScale) return true;
+  const EffectKind kind = robot.effects[unknown.effect].kind;
+  return !is_torque_effect(kind) && !is_path_effect(kind);
+}
+
 std::vector<std::size_t> joints_of(const RobotDescription& robot, const Unknown& unknown) {
   const bool own_joint_only = unknown.kind == Unknown::Kind::kEffectParameter &&
                               (is_torque_effect(robot.effects[unknown.effect].kind) ||
+                               is_path_effect(robot.effects[unknown.effect].kind) ||
                                robot.effects[unknown.effect].kind == EffectKind::kRotorInertia);
   if (own_joint_only) return {unknown.joint};
   std::vector<std::size_t> joints;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/inverse_model.hpp"
 #include "analysis/motion.hpp"
 #include "robot/robot.hpp"
 
@@ -45,9 +46,21 @@ struct JointColumn {
 };
 
 // d torque / d unknown over the motion, for the joints whose torque the unknown changes. Shape
-// parameters are those of `robot`; the effect's other linear parameters play no part.
+// parameters are those of `robot`; the effect's other linear parameters play no part. Where path
+// effects scale the torque the derivative is the one at the values of `robot`.
 std::vector<JointColumn> regressor(const RobotDescription& robot, const Unknown& unknown,
                                    const Motion& motion);
+
+// True where the unknown changes inertia or weight: its torque passes the gear.
+bool is_load(const RobotDescription& robot, const Unknown& unknown);
+
+// regressor() in two steps, for an unknown that is no path effect's: what it adds to the load or to
+// the effects' torque, which for a load does not depend on any effect's value; and what the drive
+// has to be told for that.
+std::vector<JointColumn> regressor_before_path(const RobotDescription& robot,
+                                               const Unknown& unknown, const Motion& motion);
+void pass_path(const RobotDescription& robot, const Unknown& unknown, const ToldTorque& told,
+               std::vector<JointColumn>& columns);
 
 // The joints that regressor() has columns for.
 std::vector<std::size_t> joints_of(const RobotDescription& robot, const Unknown& unknown);

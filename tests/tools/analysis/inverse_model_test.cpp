@@ -69,7 +69,10 @@ TEST(InverseModel, EveryEffectIsLinearInItsRegressors) {
       RobotDescription robot = arm_description();
       robot.effects.push_back(effect_of(info.kind, joint, {}));
       auto& parameters = robot.effects[0].parameters;
-      for (std::size_t i = 0; i < info.parameters.size(); ++i) parameters[i] = number(generator);
+      for (std::size_t i = 0; i < info.parameters.size(); ++i) {
+        const bool other_joint = info.parameters[i].quantity == offnominal::Quantity::kJointNumber;
+        parameters[i] = other_joint ? 2 - joint : number(generator);
+      }
       MatrixXd expected = model_torque(arm_description(), motion);
       for (const Unknown& unknown : unknowns_of_effect(robot, 0, true)) {
         for (const JointColumn& column : regressor(robot, unknown, motion)) {
