@@ -37,7 +37,8 @@ MonitorConfig<N, Scalar> config() {
     Effect<Scalar> effect;
     effect.kind = info.kind;
     for (std::size_t k = 0; k < info.parameters.size(); ++k) {
-      effect.parameters[k] = Scalar(0.05);
+      const bool other_joint = info.parameters[k].quantity == Quantity::kJointNumber;
+      effect.parameters[k] = other_joint ? Scalar(2) : Scalar(0.05);
     }
     if (!config.chain.effects.add(effect)) throw std::length_error("effects do not fit");
   }

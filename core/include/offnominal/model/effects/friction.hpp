@@ -129,8 +129,7 @@ struct TemperatureDrift {
   template <typename Scalar>
   static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
                        const JointInstant<Scalar>& at) {
-    return Eigen::numext::exp(-at.time_s / p[2]) *
-           (p[0] * smooth_sign(at.dq, p[3]) + p[1] * at.dq);
+    return Eigen::numext::exp(-at.time_s / p[2]) * (p[0] * smooth_sign(at.dq, p[3]) + p[1] * at.dq);
   }
 };
 
