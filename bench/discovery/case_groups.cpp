@@ -98,6 +98,19 @@ CaseGroup data_faults(std::uint64_t base, int rounds) {
   return group;
 }
 
+// One effect and a first motion that does not show which (motion_case.hpp): too little of it, and
+// every second time too much alike.
+CaseGroup motions(std::uint64_t base, int count) {
+  CaseGroup group =
+      start("motion", "undecided, then a designed motion", Kind::kMotion, base, count);
+  for (std::size_t i = 0; i < group.requests.size(); ++i) {
+    group.requests[i].effects = {kAllHiddenEffects[i % kAllHiddenEffects.size()]};
+    const bool poor = (i + i / kAllHiddenEffects.size()) % 2 == 0;
+    group.requests[i].excitation = poor ? Excitation::kPoor : Excitation::kRich;
+  }
+  return group;
+}
+
 }  // namespace
 
 std::vector<CaseGroup> case_groups(std::uint64_t base_seed, bool quick) {
@@ -120,6 +133,7 @@ std::vector<CaseGroup> case_groups(std::uint64_t base_seed, bool quick) {
   groups.push_back(two_effects(base_seed, count(100, 10)));
   groups.push_back(outside(base_seed, count(20, 2)));
   groups.push_back(data_faults(base_seed, count(20, 2)));
+  groups.push_back(motions(base_seed, count(50, 2)));
   return groups;
 }
 

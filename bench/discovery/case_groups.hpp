@@ -10,7 +10,7 @@ namespace offnominal::bench {
 
 // Cases that are judged by the same numbers.
 struct CaseGroup {
-  enum class Kind { kEffects, kNone, kOutside, kDataFault };
+  enum class Kind { kEffects, kNone, kOutside, kDataFault, kMotion };
   std::string name;   // for --cases
   std::string words;  // for the table
   Kind kind = Kind::kEffects;

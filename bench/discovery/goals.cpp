@@ -75,6 +75,7 @@ std::vector<Goal> goals_of(const std::vector<Summary>& lines) {
   goals.at_most("outside", "wrong found", &Summary::wrong, 5);
   goals.at_least("faults", "verdict data_fault", &Summary::right_verdict, 100);
   goals.at_least("faults", "right fault", &Summary::right_detail, 100);
+  goals.at_least("motion", "resolved by the designed motion", &Summary::sure, 90);
   goals.time(10);
   return goals.take();
 }

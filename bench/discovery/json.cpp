@@ -59,6 +59,7 @@ ordered_json json_of(const CaseGroup& group, const Outcome& outcome) {
                    {"hidden", outcome.hidden},
                    {"verdict", outcome.verdict},
                    {"named", json_of(outcome.named)}};
+  if (!outcome.before.empty()) one["before"] = outcome.before;
   ordered_json classes = ordered_json::array();
   for (const Effects& same : outcome.classes) classes.push_back(json_of(same));
   one["classes"] = std::move(classes);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <exception>
 
+#include "motion_case.hpp"
 #include "recorded_case.hpp"
 #include "true_parameters.hpp"
 
@@ -121,6 +122,7 @@ void judge(const CaseGroup& group, const hidden::Case& made, const Explanation& 
 }  // namespace
 
 Outcome run_case(const CaseGroup& group, const hidden::Request& request) {
+  if (group.kind == CaseGroup::Kind::kMotion) return run_motion_case(request);
   Outcome outcome;
   outcome.request = request;
   hidden::Case made;

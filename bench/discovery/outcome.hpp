@@ -28,6 +28,7 @@ struct Outcome {
   Effects truth;
   std::string hidden;  // in words: effects with joints, or what else is hidden
   std::string verdict;
+  std::string before;  // kMotion: the verdict on the first motion, and the class
   Effects named;
   std::vector<Effects> classes;
   Score score;

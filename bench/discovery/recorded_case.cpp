@@ -49,6 +49,7 @@ tools::RobotJoint joint_of(const NominalLink& link, const NominalJoint& known, i
   joint.joint.inertia_kg_m2 = {inertia / 2, inertia / 2, inertia, 0, 0, 0};
   joint.joint.min_position = known.position_min_rad;
   joint.joint.max_position = known.position_max_rad;
+  joint.joint.max_velocity = known.velocity_limit_rad_s;
   joint.joint.max_torque = known.torque_limit_nm;
   joint.encoder.counts_per_unit = std::exp2(encoder_bits) / (2 * std::numbers::pi);
   return joint;

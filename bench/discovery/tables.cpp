@@ -26,7 +26,8 @@ std::string histogram(const std::map<std::string, int>& counts) {
 }
 
 std::string line_of(const Summary& line) {
-  const bool effects = line.kind == CaseGroup::Kind::kEffects;
+  const bool effects =
+      line.kind == CaseGroup::Kind::kEffects || line.kind == CaseGroup::Kind::kMotion;
   const bool explains = line.method == "explain";
   const auto of_effects = [&](const Rate& rate) { return effects ? percent(rate) : "-"; };
   std::string verdicts = histogram(line.verdicts);
@@ -45,6 +46,8 @@ bool is_right(const CaseGroup& group, const Outcome& one) {
   switch (group.kind) {
     case CaseGroup::Kind::kEffects:
       return one.score.in_class && !one.score.wrong;
+    case CaseGroup::Kind::kMotion:
+      return one.score.sure;
     case CaseGroup::Kind::kNone:
       return !one.score.wrong;
     case CaseGroup::Kind::kOutside:
@@ -97,6 +100,7 @@ std::string failures_of(const CaseGroup& group, const std::vector<Outcome>& outc
     text += fmt::format("{} {} seed {}: hidden {} -> {}; named {}", group.name, i, one.request.seed,
                         one.hidden, one.verdict, text_of(one.named));
     for (const Effects& same : one.classes) text += "; class {" + text_of(same) + "}";
+    if (!one.before.empty()) text += "; before " + one.before;
     if (!one.failed.empty()) text += "; " + one.failed;
     text += "\n";
   }

@@ -56,11 +56,15 @@ const EffectCandidate* candidate_of(const std::string& name) {
 void advise_on_classes(Explanation& e) {
   for (const auto& same : e.ambiguous) {
     const EffectCandidate* candidate = candidate_of(same[0].effect);
+    std::string all;
+    for (const EffectAt& one : same) {
+      all += fmt::format("{}{}@{}", all.empty() ? "" : ",", one.effect, one.joint + 1);
+    }
     e.advice.push_back(fmt::format(
-        "to tell {} from {}: {}; `offnominal motion --separate {},{}` writes such a trajectory",
+        "to tell {} from {}: {}; `offnominal motion --robot ROBOT --separate {} -o motion.csv` "
+        "writes such a motion",
         same[0].effect, same[1].effect,
-        candidate != nullptr ? candidate->motion_hint() : "make a richer motion", same[0].effect,
-        same[1].effect));
+        candidate != nullptr ? candidate->motion_hint() : "make a richer motion", all));
   }
 }
 
@@ -191,6 +195,9 @@ void judge_whole(Explanation& e) {
   if (poor) {
     e.verdict = Verdict::kNotExcited;
     e.words = "These motions excite too little to judge the model by them.";
+    e.advice.emplace_back(
+        "`offnominal motion --robot ROBOT -o motion.csv` writes a motion that excites what the "
+        "robot may have");
     return;
   }
   e.verdict = Verdict::kExplained;

@@ -1,0 +1,117 @@
+#include "motion_case.hpp"
+
+#include <chrono>
+#include <exception>
+#include <optional>
+
+#include "first_motion.hpp"
+#include "motion_design/design.hpp"
+#include "offnominal/sim/hidden/draw_robot.hpp"
+#include "recorded_case.hpp"
+
+namespace offnominal::bench {
+
+namespace hidden = sim::hidden;
+using tools::discovery::Explanation;
+using tools::discovery::Verdict;
+
+namespace {
+
+constexpr int kAttempts = 8;
+
+struct FirstRecording {
+  tools::Log log;
+  Explanation explanation;
+};
+
+Score score_against(const Effects& truth, const Explanation& e) {
+  Effects named;
+  for (const auto& finding : e.found) named.push_back(finding.what);
+  return score_of(truth, named, e.ambiguous);
+}
+
+std::optional<FirstRecording> undecided(const hidden::Request& request,
+                                        const hidden::Nominal& nominal, const Effects& truth,
+                                        Verdict wanted) {
+  const tools::RobotDescription robot = robot_of(nominal);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const DesiredPositions motion = wanted == Verdict::kAmbiguous
+                                        ? short_positions(nominal, request.seed, attempt)
+                                        : poor_positions(nominal, request.seed, attempt);
+    FirstRecording first;
+    first.log = log_of(hidden::record_motion(request, motion.t_s, motion.q));
+    first.explanation = tools::discovery::explain(robot, {first.log}, {}, {});
+    if (first.explanation.verdict != wanted) continue;
+    if (wanted == Verdict::kNotExcited || score_against(truth, first.explanation).in_class)
+      return first;
+  }
+  return std::nullopt;
+}
+
+// What explain's advice says to run, as the command would.
+tools::motion_design::DesignRequest request_for(const Explanation& e,
+                                                const tools::RobotDescription& robot,
+                                                std::uint64_t seed) {
+  tools::motion_design::DesignRequest request;
+  request.seed = seed;
+  if (e.verdict != Verdict::kAmbiguous) return request;
+  for (const auto& effect : e.ambiguous[0]) {
+    request.effects.push_back(
+        tools::motion_design::contender_of(text_of(effect), robot, "--separate"));
+  }
+  return request;
+}
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void play_and_judge(const hidden::Request& request, const hidden::Nominal& nominal,
+                    const FirstRecording& first, Outcome& outcome) {
+  const tools::RobotDescription robot = robot_of(nominal);
+  outcome.before = tools::discovery::name_of(first.explanation.verdict);
+  if (!first.explanation.ambiguous.empty()) {
+    outcome.before += " " + text_of(first.explanation.ambiguous[0]);
+  }
+  const auto design = tools::motion_design::design_motion(
+      robot, request_for(first.explanation, robot, request.seed));
+  const auto& motion = design.fitted.motion;
+  const tools::Log log = log_of(hidden::record_motion(request, motion.t_s, motion.q, 1));
+  const double start_s = now_s();
+  const Explanation e = tools::discovery::explain(robot, {log}, {}, {});
+  outcome.time_s = now_s() - start_s;
+  outcome.verdict = tools::discovery::name_of(e.verdict);
+  for (const auto& finding : e.found) outcome.named.push_back(finding.what);
+  outcome.classes = e.ambiguous;
+  outcome.score = score_against(outcome.truth, e);
+}
+
+}  // namespace
+
+Outcome run_motion_case(const hidden::Request& request) {
+  Outcome outcome;
+  outcome.request = request;
+  try {
+    const hidden::DrawnRobot drawn = hidden::draw_robot(request);
+    for (const auto& effect : drawn.truth.effects) {
+      outcome.truth.push_back({std::string(hidden::name(effect.effect)), effect.joint});
+    }
+    outcome.hidden = text_of(outcome.truth);
+    std::optional<FirstRecording> first;
+    if (request.excitation == hidden::Excitation::kRich) {
+      first = undecided(request, drawn.nominal, outcome.truth, Verdict::kAmbiguous);
+    }
+    if (!first) first = undecided(request, drawn.nominal, outcome.truth, Verdict::kNotExcited);
+    if (!first) {
+      outcome.refused = "no first motion left it undecided";
+      return outcome;
+    }
+    play_and_judge(request, drawn.nominal, *first, outcome);
+  } catch (const std::exception& error) {
+    outcome.failed = error.what();
+    outcome.verdict = "error";
+  }
+  return outcome;
+}
+
+}  // namespace offnominal::bench

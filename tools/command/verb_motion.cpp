@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "command/command_line.hpp"
+#include "command/progress.hpp"
+#include "command/verbs.hpp"
+#include "common/error.hpp"
+#include "common/file.hpp"
+#include "log/read_log.hpp"
+#include "motion_design/design_report.hpp"
+#include "report/page.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+using motion_design::Contender;
+
+struct Options {
+  std::string robot;
+  std::vector<std::string> separate;
+  std::optional<std::string> excite;
+  std::vector<std::string> logs;
+  std::optional<std::filesystem::path> channels;
+  std::string output;
+  bool force = false;
+  double margin_percent = 10;
+  double effect_percent = 5;
+  double noise_percent = 1;
+  motion_design::DesignRequest design;
+  std::optional<std::string> report;
+  bool json = false;
+};
+
+[[noreturn]] void refuse(const std::string& option, const std::string& found,
+                         const std::string& allowed, const std::string& mend = {}) {
+  throw InputError({"offnominal motion", option, found, allowed, mend});
+}
+
+std::vector<Contender> effects_of(const Options& options, const RobotDescription& robot) {
+  std::vector<Contender> effects;
+  if (options.excite) {
+    if (*options.excite != "all") {
+      effects.push_back(motion_design::contender_of(*options.excite, robot, "--excite"));
+    }
+    return effects;
+  }
+  for (const std::string& text : options.separate) {
+    const Contender one = motion_design::contender_of(text, robot, "--separate");
+    if (std::find(effects.begin(), effects.end(), one) != effects.end()) {
+      refuse("--separate", motion_design::text_of(one) + " twice", "different effects",
+             "name the two that explain could not tell apart");
+    }
+    effects.push_back(one);
+  }
+  if (effects.size() == 1) {
+    refuse("--separate", motion_design::text_of(effects[0]) + " alone", "two effects or more",
+           "write A,B; for one effect: --excite " + motion_design::text_of(effects[0]));
+  }
+  return effects;
+}
+
+void check_output(const Options& options) {
+  if (std::filesystem::exists(options.output) && !options.force) {
+    refuse("-o", options.output + ", which is there already", "a file that is not there yet",
+           "choose another name, or add --force to replace it");
+  }
+}
+
+void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {
+  using namespace motion_design;
+  check_output(options);
+  const RobotDescription robot = read_robot_file(options.robot);
+  DesignRequest request = options.design;
+  request.effects = effects_of(options, robot);
+  request.margin = options.margin_percent / 100;
+  request.expectation.effect_share = options.effect_percent / 100;
+  request.expectation.noise_share = options.noise_percent / 100;
+  Progress progress;
+  for (const std::string& file : options.logs) {
+    progress.begin("reading " + file);
+    request.recordings.push_back(read_log(file, robot, options.channels));
+  }
+  const Design design = design_motion(
+      robot, request,
+      {[&](const std::string& doing) { progress.begin(doing); }, [&] { progress.step(); }});
+  progress.end();
+  const DesignNames names{options.robot, options.logs, options.output, command_line};
+  const bool useful = design.worst() != nullptr;
+  if (useful) {
+    write_file_atomically(options.output, csv_of(design.fitted.motion),
+                          options.force ? Existing::kReplace : Existing::kRefuse);
+  } else {
+    exit_code = ExitCode::kCheckFailed;
+  }
+  if (options.report) report::write_page(*options.report, page_of(robot, design, names));
+  if (options.json) {
+    std::cout << to_json(robot, design, names).dump(2) << '\n';
+    return;
+  }
+  std::cout << text_of(robot, design, names);
+  if (useful) std::cout << "written: " << options.output << '\n';
+  if (options.report) std::cout << "written: " << *options.report << '\n';
+}
+
+constexpr const char* kHowItChooses =
+    "Every joint starts and ends at rest, oscillates from slow to fast, then visits poses at "
+    "constant speeds, and stays within the robot file's limits of position, velocity and torque "
+    "(as the model predicts it) less --margin. Random motions are tried and the best are improved: "
+    "best is the one on which the worst pair of effects, at the worst shapes, differs most against "
+    "the noise, once everything that explain lets every model adapt has been taken away.\n"
+    "Exit code 1, and nothing written, when no motion can tell the effects apart.\n"
+    "The motion knows nothing of obstacles or of a cable: look at it, and play it slowly first.";
+
+}  // namespace
+
+void register_motion(CLI::App& app, ExitCode& exit_code) {
+  CLI::App* verb = app.add_subcommand(
+      "motion", "Write a motion that tells effects apart, or shows what recordings did not");
+  const auto options = std::make_shared<Options>();
+  options->design.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  verb->add_option("--robot", options->robot, "Robot file, with limits")->required();
+  CLI::Option* separate =
+      verb->add_option("--separate", options->separate,
+                       "A,B[,...]: effects to tell apart, each EFFECT@JOINT with joints from 1, as "
+                       "explain names them")
+          ->delimiter(',');
+  verb->add_option("--excite", options->excite,
+                   "EFFECT@JOINT to excite, or all (the default): every effect that the robot may "
+                   "have")
+      ->excludes(separate);
+  verb->add_option("-o,--output", options->output, "Motion to write, CSV")->required();
+  verb->add_flag("--force", options->force, "Replace the file of -o");
+  verb->add_option("--log", options->logs,
+                   "Recordings that could not tell, to say how much better the motion is");
+  verb->add_option("--channels", options->channels,
+                   "TOML file that maps the recordings' columns, instead of the robot file's "
+                   "[channels]");
+  verb->add_option("--duration", options->design.duration_s, "Length of the motion, s")
+      ->check(CLI::Range(8.0, 600.0))
+      ->capture_default_str();
+  verb->add_option("--rate", options->design.rate_hz, "Rows per second, Hz")
+      ->check(CLI::Range(50.0, 10000.0))
+      ->capture_default_str();
+  verb->add_option("--margin", options->margin_percent,
+                   "How much of every limit stays unused, percent")
+      ->check(CLI::Range(0.0, 90.0))
+      ->capture_default_str();
+  verb->add_option("--effect-size", options->effect_percent,
+                   "Expected rms torque of an effect, percent of the joint's rms torque")
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
+  verb->add_option("--noise", options->noise_percent,
+                   "Expected rms torque error behind the low-pass, percent of the joint's rms "
+                   "torque")
+      ->check(CLI::Range(0.001, 100.0))
+      ->capture_default_str();
+  verb->add_option("--tries", options->design.starts,
+                   "Random motions to start from; by default as many as suit the robot")
+      ->check(CLI::Range(1, 100000));
+  verb->add_option("--seed", options->design.seed, "Seed of the random motions")
+      ->capture_default_str();
+  verb->add_option("--threads", options->design.threads,
+                   "Threads; the result does not depend on their number")
+      ->check(CLI::Range(1, 256));
+  verb->add_option("--report", options->report, "Write the pictures as an HTML page");
+  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
+  verb->footer(kHowItChooses);
+  verb->callback([verb, options, &exit_code] { run(*options, command_line_of(*verb), exit_code); });
+}
+
+}  // namespace offnominal::tools
