@@ -80,7 +80,7 @@ DesiredPositions poor_positions(const Nominal& nominal, std::uint64_t seed, int 
 
 DesiredPositions short_positions(const Nominal& nominal, std::uint64_t seed, int attempt) {
   Draws draws = draws_for(seed, attempt);
-  DesiredPositions motion = at_rest(nominal, draws.uniform(5, 10));
+  DesiredPositions motion = at_rest(nominal, draws.uniform(7, 11));
   for (Index j = 0; j < 2; ++j) {
     add_sine(motion, j, draws.uniform(0.4, 0.8), draws.uniform(0.12, 0.3), draws);
     add_sine(motion, j, draws.uniform(0.1, 0.3), draws.uniform(0.5, 1.0), draws);

@@ -108,7 +108,7 @@ class Designer {
   [[nodiscard]] std::size_t start_count() const {
     if (request_.starts > 0) return static_cast<std::size_t>(request_.starts);
     const double joints = std::max(1.0, static_cast<double>(robot_.joints.size()) / 2);
-    return static_cast<std::size_t>(std::max(16.0, 96 / (joints * joints)));
+    return static_cast<std::size_t>(std::max(16.0, 64 / (joints * joints)));
   }
 
   std::optional<FittedMotion> fitted(const MotionPlan& plan, double rate_hz) const {

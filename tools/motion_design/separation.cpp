@@ -108,13 +108,13 @@ VectorXd rms_per_joint(const MatrixXd& torque) {
   return (torque.colwise().squaredNorm() / static_cast<double>(torque.rows())).cwiseSqrt();
 }
 
-// How far an adapting number is believed to be off; 0: nothing is known of it.
-double prior_deviation(const NuisanceTerm& term) {
-  return std::isfinite(term.box.high) ? term.box.high : 0;
-}
+// An adapting number that may move within bounds only.
+bool is_bounded(const NuisanceTerm& term) { return std::isfinite(term.box.high); }
 
-// Directions that the adapting numbers explain, in units of the noise, one row more per number that
-// has a prior: to move it is as dear as an error of the torque.
+// Directions that the adapting numbers explain, in units of the noise. A bounded one has a row
+// more, which makes it as dear to move it as to leave its torque unexplained: of an effect that
+// looks like it, it takes a half. That is an effect of about twice what the bounds allow; the
+// motions of a smaller one cannot matter, since it is no finding.
 MatrixXd adapting_basis(const Data& data, const VectorXd& weights) {
   const auto& known = data.recordings[0].known_effects;
   const auto has_dry_friction = [&](Index joint) {
@@ -132,8 +132,8 @@ MatrixXd adapting_basis(const Data& data, const VectorXd& weights) {
     if (term.kind == NuisanceTerm::Kind::kSignShape && !has_dry_friction(term.joint)) continue;
     VectorXd column = VectorXd::Zero(rows + count);
     column.head(rows) = data.layout.weighted(data.nuisance.columns.col(i), weights);
-    const double deviation = prior_deviation(term);
-    if (deviation > 0) column[rows + i] = 1 / deviation;
+    const double torque = column.head(rows).norm();
+    if (is_bounded(term)) column[rows + i] = torque;
     const double length = column.norm();
     if (!(length > 0) || !std::isfinite(length)) continue;
     columns.col(kept++) = column / length;
