@@ -77,7 +77,7 @@ std::string sentence_of(const RobotDescription& robot, const Design& design,
   const double duration_s = design.request.duration_s;
   std::string text = fmt::format(
       "A motion of {:g} s that {}: {:.0f} s of oscillation from slow to fast, then {:.0f} s of "
-      "constant speeds between poses, with rests, within {:.0f} % of the joints' limits.",
+      "constant speeds between poses, within {:.0f} % of the joints' limits.",
       duration_s, purpose_words(design), design.slow_from_s, duration_s - design.slow_from_s,
       100 * (1 - design.request.margin));
   const PairReport* worst = design.worst();

@@ -14,6 +14,15 @@ constexpr double kSlowestHz = 0.08;
 constexpr double kFastestHz = 2.0;
 constexpr std::size_t kPerJoint = 2 + 3 * kSines + 3 + kPoses;
 
+// `pose`, or one that is far enough from where the joint comes from: a move that is hardly one
+// would be a rest.
+double away_from(double from, double pose) {
+  constexpr double kLeast = 0.3;
+  if (std::abs(pose - from) >= kLeast) return pose;
+  const double side = pose >= from ? kLeast : -kLeast;
+  return std::abs(from + side) <= 1 ? from + side : from - side;
+}
+
 // Takes the coordinates of a point one after the other.
 class Reader {
  public:
@@ -48,10 +57,13 @@ MotionPlan PlanSpace::plan_at(const std::vector<double>& point) const {
       one.phase_rad = read.turn();
       joint.sines.push_back(one);
     }
-    joint.swell_depth = read.between(0.5, 1);
+    joint.swell_depth = read.between(0.3, 0.9);
     joint.swell_hz = read.between(0.06, 0.12);
     joint.swell_phase_rad = read.turn();
-    for (std::size_t i = 0; i < kPoses; ++i) joint.poses.push_back(read.between(-1, 1));
+    for (std::size_t i = 0; i < kPoses; ++i) {
+      const double from = i == 0 ? joint.home : joint.poses.back();
+      joint.poses.push_back(away_from(from, read.between(-1, 1)));
+    }
     plan.joints.push_back(std::move(joint));
   }
   return plan;

@@ -48,7 +48,7 @@ Jet step_up(double t_s, double rise_s) {
 
 // 1 between 0 and `length_s`, smoothly to 0 at both ends and beyond.
 Jet window(double t_s, double length_s) {
-  const double rise_s = std::min(2.0, length_s / 4);
+  const double rise_s = std::min(0.8, length_s / 4);
   const Jet down = step_up(t_s - (length_s - rise_s), rise_s);
   return step_up(t_s, rise_s) * Jet{1 - down.value, -down.first, -down.second};
 }
@@ -86,15 +86,14 @@ Jet oscillation_at(const JointPlan& joint, double t_s, double length_s) {
   return window(t_s, length_s) * (swell * sum);
 }
 
-// Relative to home, of half the range. A move takes most of its time slot, a rest what is left.
+// Relative to home, of half the range.
 Jet poses_at(const JointPlan& joint, double t_s, double length_s) {
-  constexpr double kMoves = 0.8;
   if (t_s <= 0 || t_s >= length_s || joint.poses.empty()) return {};
   const double slot_s = length_s / static_cast<double>(joint.poses.size() + 1);
   const auto slot = std::min(joint.poses.size(), static_cast<std::size_t>(t_s / slot_s));
   const double from = slot == 0 ? 0 : joint.poses[slot - 1] - joint.home;
   const double to = slot == joint.poses.size() ? 0 : joint.poses[slot] - joint.home;
-  Jet at = (to - from) * ramp(t_s - static_cast<double>(slot) * slot_s, kMoves * slot_s);
+  Jet at = (to - from) * ramp(t_s - static_cast<double>(slot) * slot_s, slot_s);
   at.value += from;
   return at;
 }

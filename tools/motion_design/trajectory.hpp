@@ -10,8 +10,9 @@
 // home. First it oscillates: a sum of sinusoids (J. Swevers et al., "Optimal robot excitation and
 // identification", IEEE Trans. Robotics and Automation 13(5), 1997), which swells and fades, so
 // that fast phases alternate with slow ones. Then it visits poses one after the other at constant
-// speeds, with rests: what friction at low speed, load and offsets show themselves by. Position,
-// velocity and acceleration are continuous.
+// speeds: what friction at low speed, load and offsets show themselves by. It never rests in
+// between: what friction holds a joint at rest with is anybody's guess, so that a rest adds error
+// and no knowledge. Position, velocity and acceleration are continuous.
 
 namespace offnominal::tools::motion_design {
 
