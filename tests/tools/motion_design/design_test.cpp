@@ -59,7 +59,7 @@ TEST_P(DesignedPair, IsToldApartBetterThanOnASlowSineWithinTheLimits) {
     EXPECT_LE(motion.dq.col(column).cwiseAbs().maxCoeff(), limits.velocity);
     EXPECT_LE(design.fitted.torque.col(column).cwiseAbs().maxCoeff(), limits.torque);
   }
-  EXPECT_EQ(motion.dq.row(0).norm() + motion.dq.row(motion.sample_count() - 1).norm(), 0);
+  EXPECT_NEAR(motion.dq.row(0).norm() + motion.dq.row(motion.sample_count() - 1).norm(), 0, 1e-12);
 }
 
 INSTANTIATE_TEST_SUITE_P(
