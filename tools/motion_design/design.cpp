@@ -69,8 +69,7 @@ class Designer {
                      [](const Tried& a, const Tried& b) { return a.score > b.score; });
     if (tried.size() > kImproved) tried.resize(kImproved);
     begin("improving the best of them");
-    discovery::parallel_for(tried.size(), request_.threads,
-                            [&](std::size_t i) { improve(tried[i], starts); });
+    for (Tried& one : tried) improve(one, starts);
     const auto best =
         std::max_element(tried.begin(), tried.end(),
                          [](const Tried& a, const Tried& b) { return a.score < b.score; });
@@ -147,7 +146,10 @@ class Designer {
     }
   }
 
-  static double worth(const Separation& one) { return std::log(std::max(one.evidence, 1e-3)); }
+  static double worth(const Separation& one) {
+    constexpr double kLeast = 1e-3;
+    return std::log(one.evidence > kLeast ? one.evidence : kLeast);
+  }
 
   // What the worst of all rivals leaves of a true effect.
   [[nodiscard]] double worst_rival(const SeparationTable& table, std::size_t truth) const {
@@ -225,7 +227,12 @@ class Designer {
     nlopt_set_upper_bounds1(optimiser.get(), 1);
     nlopt_set_initial_step1(optimiser.get(), kStep);
     nlopt_set_maxeval(optimiser.get(), static_cast<int>(starts));
-    nlopt_optimize(optimiser.get(), point.data(), &least);
+    {
+      // NLopt does not promise that two searches may run at once: its trees share a global node.
+      static std::mutex one_at_a_time;
+      const std::lock_guard lock(one_at_a_time);
+      nlopt_optimize(optimiser.get(), point.data(), &least);
+    }
     if (context.error) std::rethrow_exception(context.error);
   }
 
