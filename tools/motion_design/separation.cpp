@@ -64,7 +64,7 @@ Data data_of(const RobotDescription& robot, const FittedMotion& fitted, double r
 // too many and are spread by their logarithm.
 std::vector<double> some_of(const ShapeRange& range, bool spectrum) {
   const std::size_t count = range.grid.size();
-  if (count <= kMostShapes || range.discrete) return range.grid;
+  if (count <= kMostShapes || range.kind == discovery::ShapeRange::Kind::kDiscrete) return range.grid;
   std::vector<double> points;
   for (std::size_t i = 0; i < kMostShapes; ++i) {
     const double part = static_cast<double>(i) / (kMostShapes - 1);
@@ -109,7 +109,7 @@ VectorXd rms_per_joint(const MatrixXd& torque) {
 }
 
 // An adapting number that may move within bounds only.
-bool is_bounded(const NuisanceTerm& term) { return std::isfinite(term.box.high); }
+bool is_bounded(const NuisanceTerm& term) { return term.prior.is_informative(); }
 
 // Directions that the adapting numbers explain, in units of the noise. A bounded one has a row
 // more, which makes it as dear to move it as to leave its torque unexplained: of an effect that
