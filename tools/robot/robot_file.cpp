@@ -15,6 +15,7 @@
 #include "robot/read_effect.hpp"
 #include "robot/read_joint.hpp"
 #include "robot/read_settings.hpp"
+#include "robot/text_with_bound.hpp"
 #include "robot/text_with_effects.hpp"
 #include "robot/toml_table.hpp"
 
@@ -94,6 +95,16 @@ void check_initial_weights(const TomlTable& root, const RobotDescription& robot)
               "lower estimator.initial_weight_range, or raise estimator.weight_radius");
 }
 
+// The text that `robot` was read from with what has changed since; none where it cannot be cut.
+std::optional<std::string> text_with_changes(const RobotDescription& robot) {
+  if (robot.file_text.empty()) return std::nullopt;
+  RobotDescription effects_only = robot;
+  effects_only.bound = parse_robot(robot.file_text, "").bound;
+  auto text = text_with_effects(robot.file_text, effects_only);
+  if (!text || !robot.bound) return robot.bound ? std::nullopt : text;
+  return text_with_bound(*text, robot);
+}
+
 }  // namespace
 
 RobotDescription parse_robot(std::string_view text, const std::string& file) {
@@ -133,7 +144,7 @@ void write_robot_file(const RobotDescription& robot, const std::filesystem::path
                       Existing existing) {
   const std::string plain = robot_text(robot);
   static_cast<void>(parse_robot(plain, path.string() + " (to be written)"));
-  const auto as_it_was = text_with_effects(robot.file_text, robot);
+  const auto as_it_was = text_with_changes(robot);
   write_file_atomically(path, as_it_was.value_or(plain), existing);
 }
 

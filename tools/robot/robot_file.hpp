@@ -26,7 +26,8 @@ inline constexpr int kRobotFileFormat = 1;
 /// parse_robot(robot_text(robot)) == robot, for every robot that can be read.
 [[nodiscard]] std::string robot_text(const RobotDescription& robot);
 
-/// Writes a robot file, whole or not at all. Where only effects were changed since `robot` was
+/// Writes a robot file, whole or not at all. Where only effects and the uncertainty
+/// bound were changed since `robot` was
 /// read, every other line stays as it was, comments and order included; otherwise robot_text() is
 /// written. Throws InputError, nothing written, when the text would not be read again (a robot that
 /// was changed into a wrong one), when `path` exists and `existing` refuses that, or when it cannot

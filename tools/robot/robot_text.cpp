@@ -4,6 +4,7 @@
 #include <span>
 
 #include "common/number.hpp"
+#include "robot/bound_text.hpp"
 #include "robot/effect_text.hpp"
 #include "robot/read_joint.hpp"
 #include "robot/robot_file.hpp"
@@ -165,7 +166,7 @@ void write_estimator(Writer& out, const EstimatorSettings& settings) {
 }
 
 void write_bound(Writer& out, const BoundSettings& bound) {
-  out.table("[uncertainty_bound]");
+  out.line("[uncertainty_bound]");
   switch (bound.kind) {
     case BoundSettings::Kind::kConstant:
       out.value("kind", quoted("constant"));
@@ -243,6 +244,12 @@ std::string effect_text(const RobotEffect& effect) {
   return out.text();
 }
 
+std::string bound_text(const BoundSettings& bound) {
+  Writer out;
+  write_bound(out, bound);
+  return out.text();
+}
+
 std::string robot_text(const RobotDescription& robot) {
   Writer out;
   out.line("# A robot file of offnominal: docs/robot-file.md explains every key.");
@@ -253,7 +260,7 @@ std::string robot_text(const RobotDescription& robot) {
   for (const RobotJoint& joint : robot.joints) write_joint(out, joint);
   for (const RobotEffect& effect : robot.effects) out.block(effect_text(effect));
   write_estimator(out, robot.estimator);
-  if (robot.bound) write_bound(out, *robot.bound);
+  if (robot.bound) out.block(bound_text(*robot.bound));
   if (robot.channels) write_channels(out, *robot.channels);
   return out.text();
 }

@@ -3,49 +3,21 @@
 #include <toml++/toml.h>
 
 #include <cstddef>
-#include <sstream>
 #include <string_view>
 #include <vector>
 
 #include "common/error.hpp"
 #include "robot/effect_text.hpp"
 #include "robot/robot_file.hpp"
+#include "robot/text_lines.hpp"
 
 namespace offnominal::tools {
 namespace {
-
-using Lines = std::vector<std::string>;
 
 struct Block {
   std::size_t begin;  // line of [[effect]], from 0
   std::size_t end;    // behind its last key
 };
-
-Lines lines_of(const std::string& text) {
-  Lines lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-std::string_view trimmed(const std::string& line) {
-  const auto first = line.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return {};
-  return std::string_view(line).substr(first);
-}
-
-bool is_header(const std::string& line) { return trimmed(line).starts_with('['); }
-bool is_comment(const std::string& line) { return trimmed(line).starts_with('#'); }
-
-// Comments and blank lines above the next header belong to that one.
-std::size_t end_of_block(const Lines& lines, std::size_t begin) {
-  std::size_t next = begin + 1;
-  while (next < lines.size() && !is_header(lines[next])) ++next;
-  while (next > begin + 1 && (trimmed(lines[next - 1]).empty() || is_comment(lines[next - 1]))) {
-    --next;
-  }
-  return next;
-}
 
 std::optional<std::vector<Block>> effect_blocks(const std::string& text, const Lines& lines) {
   std::vector<Block> blocks;
@@ -76,32 +48,9 @@ std::size_t place_for_first_effect(const Lines& lines) {
   return lines.size();
 }
 
-class Composer {
- public:
-  explicit Composer(const Lines& lines) : lines_(lines) {}
-
-  void copy_until(std::size_t end) {
-    for (; next_ < end; ++next_) text_ += lines_[next_] + "\n";
-  }
-  void skip_to(std::size_t line) { next_ = line; }
-  void insert(const std::string& block) {
-    if (!text_.empty() && !text_.ends_with("\n\n")) text_ += "\n";
-    text_ += block;
-  }
-  void blank_line_unless_at_end() {
-    if (next_ < lines_.size() && !trimmed(lines_[next_]).empty()) text_ += "\n";
-  }
-  [[nodiscard]] const std::string& text() const { return text_; }
-
- private:
-  const Lines& lines_;
-  std::size_t next_ = 0;
-  std::string text_;
-};
-
 std::string compose(const Lines& lines, const std::vector<Block>& blocks,
                     const RobotDescription& old, const RobotDescription& robot) {
-  Composer out(lines);
+  LineComposer out(lines);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     out.copy_until(blocks[i].begin);
     const bool kept = i < robot.effects.size();
