@@ -13,9 +13,13 @@
 #include "command/progress.hpp"
 #include "command/verbs.hpp"
 #include "common/error.hpp"
+#include "common/file.hpp"
+#include "log/csv_text.hpp"
 #include "paper/figures.hpp"
 #include "paper/paper_json.hpp"
 #include "paper/paper_runs.hpp"
+#include "paper/recording.hpp"
+#include "paper/sweep_pair.hpp"
 #include "paper/two_link_robot.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
@@ -37,6 +41,11 @@ struct Options {
   std::optional<double> step;
   std::optional<std::uint32_t> seed;
   std::optional<std::string> robot;
+  std::optional<std::string> against;
+  std::optional<double> duration;
+  std::optional<double> start;
+  std::optional<std::string> log;
+  bool force = false;
   std::optional<std::string> report;
   bool sweep = false;
   bool json = false;
@@ -70,10 +79,16 @@ void check_together(const Options& options) {
     if (options.accommodate) {
       refuse("--sweep", "--accommodate", "leave it out; nothing is compensated before detection");
     }
-    if (options.report) {
-      refuse("--sweep", "--report", "run `offnominal paper --report FILE`, which holds the sweep");
+    if (options.report && !options.against) {
+      refuse("--sweep", "--report",
+             "run `offnominal paper --report FILE`, which holds the sweep, or add --against");
     }
   }
+  if (options.log && !options.fault) {
+    refuse("--log", "no --fault", "add --fault none for a recording of the healthy arm");
+  }
+  if (options.against && !options.sweep) refuse("--against", "no --sweep", "add --sweep");
+  if (options.force && !options.log) refuse("--force", "no --log", "leave it out");
   if (options.mass_loss && options.fault && *options.fault != "mass_loss") {
     refuse("--mass-loss", "--fault " + *options.fault, "leave one of the two out");
   }
@@ -82,9 +97,8 @@ void check_together(const Options& options) {
   }
 }
 
-RobotDescription robot_of(const Options& options) {
-  RobotDescription robot =
-      options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
+RobotDescription robot_of(const Options& options, const std::optional<std::string>& file) {
+  RobotDescription robot = file ? read_robot_file(*file) : paper::two_link_robot();
   EstimatorSettings& estimator = robot.estimator;
   if (options.dead_zone) {
     estimator.dead_zone = *options.dead_zone == "continuous" ? DeadZoneChoice::kContinuous
@@ -107,7 +121,9 @@ Experiment experiment_of(const Options& options) {
   experiment.accommodate = options.accommodate;
   experiment.precision =
       options.scalar == "float" ? paper::Precision::kFloat : paper::Precision::kDouble;
-  experiment.record = options.report.has_value();
+  if (options.duration) experiment.duration_s = *options.duration;
+  if (options.start) experiment.motion_start_s = *options.start;
+  experiment.record = options.report.has_value() || options.log.has_value();
   return experiment;
 }
 
@@ -169,12 +185,41 @@ void run_sweep(const RobotDescription& robot, const Experiment& base, bool json)
   const auto percent = [](const std::optional<double>& share) {
     return share ? fmt::format("{:.1f} %", 100.0 * *share) : std::string("none");
   };
+  if (sweep.false_alarm_s) {
+    std::cout << fmt::format("false alarm at {:.3f} s, before the fault\n", *sweep.false_alarm_s);
+  }
   std::cout << "smallest mass loss that is detected: " << percent(sweep.smallest_detected)
             << " (paper: 10 %)\nlargest that is not: " << percent(sweep.largest_undetected) << '\n';
 }
 
+void run_pair(const RobotDescription& robot, const RobotDescription& other, const Experiment& base,
+              const Options& options) {
+  Progress progress;
+  const auto on_probe = [&](const paper::SweepProbe& probe) {
+    progress.begin(fmt::format("mass loss {:.1f} %", 100.0 * probe.mass_loss));
+  };
+  const paper::SweepPair pair{*options.against,
+                              paper::sweep_mass_loss(other, base, 0.005, on_probe),
+                              options.robot.value_or("the paper's arm"),
+                              paper::sweep_mass_loss(robot, base, 0.005, on_probe)};
+  progress.end();
+  if (options.report) {
+    report::write_page(*options.report, paper::page_of(pair, options.command_line));
+  }
+  if (options.json) {
+    std::cout << paper::to_json(pair).dump(2) << '\n';
+    return;
+  }
+  std::cout << paper::words_of(pair) << '\n';
+  if (options.report) std::cout << "written: " << *options.report << '\n';
+}
+
 void run_one(const RobotDescription& robot, const Experiment& experiment, const Options& options) {
   const ExperimentResult run = paper::run_experiment(robot, experiment);
+  if (options.log) {
+    write_file_atomically(*options.log, csv_text(paper::recording_of(robot, experiment, run)),
+                          options.force ? Existing::kReplace : Existing::kRefuse);
+  }
   if (options.report) {
     report::write_page(*options.report, paper::page_of(run, options.command_line));
   }
@@ -182,6 +227,7 @@ void run_one(const RobotDescription& robot, const Experiment& experiment, const 
     std::cout << paper::to_json(run).dump(2) << '\n';
   } else {
     print_run(run);
+    if (options.log) std::cout << "written: " << *options.log << '\n';
     if (options.report) std::cout << "written: " << *options.report << '\n';
   }
 }
@@ -195,7 +241,8 @@ void run_all(const RobotDescription& robot, const Experiment& experiment, const 
   }
   const auto lines = paper::compare_with_paper(runs);
   const bool paper_settings = !options.mass_loss && !options.rho && !options.dead_zone &&
-                              !options.hidden && !options.step && !options.robot;
+                              !options.hidden && !options.step && !options.robot &&
+                              !options.duration && !options.start;
   const std::string verdict = paper::verdict_of(lines, paper_settings);
   if (options.report) {
     report::write_page(*options.report, paper::page_of(runs, lines, verdict, options.command_line));
@@ -210,9 +257,11 @@ void run_all(const RobotDescription& robot, const Experiment& experiment, const 
 
 void run(const Options& options) {
   check_together(options);
-  const RobotDescription robot = robot_of(options);
+  const RobotDescription robot = robot_of(options, options.robot);
   const Experiment experiment = experiment_of(options);
-  if (options.sweep) {
+  if (options.against) {
+    run_pair(robot, robot_of(options, options.against), experiment, options);
+  } else if (options.sweep) {
     run_sweep(robot, experiment, options.json);
   } else if (options.fault) {
     run_one(robot, experiment, options);
@@ -253,7 +302,20 @@ void add_options(CLI::App& verb, Options& options) {
   verb.add_option(
       "--robot", options.robot,
       "Robot file of the controller and the monitor; default: the paper's two-link arm");
+  verb.add_option("--duration", options.duration, "Length of a run, s, default 20")
+      ->check(number_where([](double x) { return x >= 1 && x <= 1e5; }, "1 to 1e5 s"));
+  verb.add_option("--start", options.start,
+                  "Time on the desired motion at which a run starts, s, default 0: other motion "
+                  "under the same disturbance")
+      ->check(number_where([](double x) { return x >= 0 && x <= 1e5; }, "0 to 1e5 s"));
+  verb.add_option(
+      "--log", options.log,
+      "With --fault: write the run as a recording, CSV: t, q, dq and the torque applied "
+      "over the tick that ends there");
+  verb.add_flag("--force", options.force, "Replace the file of --log");
   verb.add_flag("--sweep", options.sweep, "Find the smallest mass loss that is detected");
+  verb.add_option("--against", options.against,
+                  "With --sweep: another robot file, whose smallest mass loss stands beside it");
   verb.add_option("--report", options.report, "Write the figures as an HTML page");
   verb.add_flag("--json", options.json, "Print one JSON object and nothing else");
 }

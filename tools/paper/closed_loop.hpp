@@ -21,6 +21,7 @@ struct LoopTiming {
   double period_s = 0.001;
   std::int64_t ticks = 0;
   int plant_substeps = 1;
+  double motion_start_s = 0.0;  // time on the desired motion at which the run starts
 };
 
 /// The loop at the end of a tick. The torque that was applied over the tick has already acted.
@@ -40,7 +41,7 @@ struct TickRecord {
 
 using TickObserver = std::function<void(const TickRecord&)>;
 
-/// Runs the loop from the start of the desired trajectory and shows every tick to `observe`. Throws
+/// Runs the loop from a start on the desired trajectory and shows every tick to `observe`. Throws
 /// InputError when the monitor refuses its settings or a sample. Capacity is the number of hidden
 /// units that are compiled in; instantiated for the capacities of with_capacity() and both scalars.
 template <int Capacity, typename Scalar>

@@ -26,9 +26,9 @@ inline void require_ok(Status status, const std::string& place, const std::strin
 template <typename Scalar>
 [[nodiscard]] Vector<2, Scalar> drive_torque(const ControllerSetup<Scalar>& setup,
                                              const RigidBodyModel<2, Scalar>& model, double time_s,
+                                             const sim::DesiredMotion& desired,
                                              const sim::JointState& state,
                                              const Vector<2, Scalar>& compensation) {
-  const sim::DesiredMotion desired = sim::paper_trajectory(time_s);
   const Reference<2, Scalar> reference{desired.q.cast<Scalar>(), desired.dq.cast<Scalar>(),
                                        desired.ddq.cast<Scalar>()};
   Vector<2, Scalar> tau =
@@ -53,9 +53,12 @@ void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPla
                      "correct the setting that the status names");
   detail::require_ok(validate(setup.gains), "control gains", "give kp and kd of at least 0");
 
-  sim::JointState state = sim::on_trajectory(sim::paper_trajectory(0.0));
-  Vector<2, Scalar> tau =
-      detail::drive_torque(setup, monitor.model(), 0.0, state, Vector<2, Scalar>::Zero().eval());
+  const auto desired_at = [&timing](double time_s) {
+    return sim::paper_trajectory(timing.motion_start_s + time_s);
+  };
+  sim::JointState state = sim::on_trajectory(desired_at(0.0));
+  Vector<2, Scalar> tau = detail::drive_torque(setup, monitor.model(), 0.0, desired_at(0.0), state,
+                                               Vector<2, Scalar>::Zero().eval());
   const auto monitor_state = std::make_unique<typename LoopMonitor::State>();
   typename LoopMonitor::Output output;
   detail::require_ok(
@@ -76,7 +79,8 @@ void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPla
         "the arm has left the range that the robot file gives it: take a shorter step, a "
         "smaller fault or wider joint limits");
     record.state = state;
-    record.q_desired = sim::paper_trajectory(record.time_s).q;
+    const sim::DesiredMotion desired = desired_at(record.time_s);
+    record.q_desired = desired.q;
     record.psi = plant.fault_function(record.time_s, state, record.tau);
     record.psi_hat = output.psi_hat.template cast<double>();
     record.error_norm = static_cast<double>(output.error_norm);
@@ -85,7 +89,7 @@ void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPla
         std::sqrt(static_cast<double>(squared_norm(monitor_state->estimator.weights)));
     record.detected = output.detector.latched;
     observe(record);
-    tau = detail::drive_torque(setup, monitor.model(), record.time_s, state,
+    tau = detail::drive_torque(setup, monitor.model(), record.time_s, desired, state,
                                output.compensation.torque);
   }
 }

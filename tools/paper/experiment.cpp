@@ -34,6 +34,9 @@ void check(const RobotDescription& robot, const Experiment& experiment) {
   if (!(experiment.duration_s >= period && experiment.duration_s <= 1e5)) {
     refuse("duration", std::to_string(experiment.duration_s) + " s", "one step to 1e5 s");
   }
+  if (!(std::abs(experiment.motion_start_s) <= 1e5)) {
+    refuse("start", std::to_string(experiment.motion_start_s) + " s", "-1e5 to 1e5 s");
+  }
 }
 
 // Sums of squares over the window in which the paper's figures have settled.
@@ -100,6 +103,8 @@ class Observer {
     series.time_s.push_back(tick.time_s);
     for (int i = 0; i < 2; ++i) {
       series.q[i].push_back(tick.state.q[i]);
+      series.dq[i].push_back(tick.state.dq[i]);
+      series.tau[i].push_back(tick.tau[i]);
       series.q_desired[i].push_back(tick.q_desired[i]);
       series.psi[i].push_back(tick.psi[i]);
       series.psi_hat[i].push_back(tick.psi_hat[i]);
@@ -144,7 +149,7 @@ ExperimentResult run_experiment(const RobotDescription& robot, const Experiment&
   const sim::TwoLinkPlant plant = plant_of(experiment);
   const double period = robot.estimator.period_s;
   const LoopTiming timing{period, std::llround(experiment.duration_s / period),
-                          experiment.plant_substeps};
+                          experiment.plant_substeps, experiment.motion_start_s};
   Observer observer(experiment, robot.estimator.alpha_per_s, period);
   const auto observe = [&observer](const TickRecord& tick) { observer(tick); };
   if (experiment.precision == Precision::kFloat) {

@@ -27,6 +27,7 @@ struct Experiment {
   bool accommodate = false;  // add the compensating torque, eq. (31)
   Precision precision = Precision::kFloat;
   double duration_s = 20.0;
+  double motion_start_s = 0.0;  // time on the desired motion at which the run starts
   int plant_substeps = 1;  // Runge-Kutta steps of the plant in one tick
   bool record = false;     // keep the time series
 };
@@ -35,6 +36,8 @@ struct Experiment {
 struct TimeSeries {
   std::vector<double> time_s;
   std::vector<double> q[2];            // rad
+  std::vector<double> dq[2];           // rad/s
+  std::vector<double> tau[2];          // applied over the tick, N m
   std::vector<double> q_desired[2];    // rad
   std::vector<double> psi[2];          // fault function beta psi, rad/s^2
   std::vector<double> psi_hat[2];      // its estimate, rad/s^2

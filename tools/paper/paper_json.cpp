@@ -36,6 +36,7 @@ Json to_json(const SweepResult& sweep) {
   return {{"resolution", sweep.resolution},
           {"smallest_detected_mass_loss", nullable(sweep.smallest_detected)},
           {"largest_undetected_mass_loss", nullable(sweep.largest_undetected)},
+          {"false_alarm_s", nullable(sweep.false_alarm_s)},
           {"probes", probes}};
 }
 

@@ -14,7 +14,7 @@ namespace offnominal::tools::paper {
 [[nodiscard]] nlohmann::ordered_json to_json(const ExperimentResult& result);
 
 /// resolution, smallest_detected_mass_loss, largest_undetected_mass_loss (shares of mass 1, null
-/// where there is none), probes: [{mass_loss, detection_time_s}].
+/// where there is none), false_alarm_s, probes: [{mass_loss, detection_time_s}].
 [[nodiscard]] nlohmann::ordered_json to_json(const SweepResult& sweep);
 
 /// runs: [...], sweep: {...}, comparison: [{what, paper, here, agrees}], verdict. agrees is null

@@ -29,7 +29,11 @@ SweepResult sweep_mass_loss(const RobotDescription& robot, const Experiment& bas
     experiment.fault.kind = sim::FaultKind::kMassLoss;
     experiment.fault.mass_loss = loss;
     experiment.record = false;
-    const SweepProbe found{loss, run_experiment(robot, experiment).detection_time_s};
+    SweepProbe found{loss, run_experiment(robot, experiment).detection_time_s};
+    if (found.detection_time_s && *found.detection_time_s <= experiment.fault.time_s) {
+      if (!result.false_alarm_s) result.false_alarm_s = found.detection_time_s;
+      found.detection_time_s.reset();
+    }
     result.probes.push_back(found);
     if (!found.detection_time_s) {
       result.largest_undetected = loss;

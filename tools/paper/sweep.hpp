@@ -19,6 +19,8 @@ struct SweepResult {
   std::vector<SweepProbe> probes;            // ascending
   std::optional<double> smallest_detected;   // none: no loss was detected
   std::optional<double> largest_undetected;  // none: every loss was detected
+  // Of the first run with an alarm before its fault. Such a run detects nothing.
+  std::optional<double> false_alarm_s;
 };
 
 /// Every loss from `resolution` upwards in steps of `resolution` up to twice the first one that is

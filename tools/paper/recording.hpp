@@ -1,0 +1,16 @@
+// A run of the paper's experiment as a recording, as a controller would have written it down.
+#pragma once
+
+#include "log/log.hpp"
+#include "paper/experiment.hpp"
+
+namespace offnominal::tools::paper {
+
+/// One sample per tick and one before the first, on the desired motion, from which the monitor
+/// starts. The torque of a sample is what was applied over the tick that ends at it, as
+/// torque_signal = "held" takes it. `run` is what run_experiment(robot, experiment) gave; throws
+/// std::invalid_argument where its series was not recorded.
+[[nodiscard]] Log recording_of(const RobotDescription& robot, const Experiment& experiment,
+                               const ExperimentResult& run);
+
+}  // namespace offnominal::tools::paper
