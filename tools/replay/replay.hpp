@@ -41,6 +41,7 @@ struct Replay {
 
   // One entry per sample that was accepted; times as in the recording.
   Eigen::VectorXd t_s;
+  Eigen::MatrixXd error;       // e; rows: samples, columns: joints
   Eigen::VectorXd error_norm;  // |e|
   Eigen::VectorXd threshold;   // mu
   Eigen::MatrixXd psi_hat;     // rows: samples, columns: joints; rad/s^2 or m/s^2

@@ -31,6 +31,7 @@ class ReplayCollector {
  public:
   ReplayCollector(Eigen::Index samples, int joints, Replay& result) : result_(result) {
     result.t_s.resize(samples);
+    result.error.resize(samples, joints);
     result.error_norm.resize(samples);
     result.threshold.resize(samples);
     result.psi_hat.resize(samples, joints);
@@ -39,6 +40,7 @@ class ReplayCollector {
   template <int N>
   void accept(double t_s, const MonitorOutput<N, double>& output, double weight_norm) {
     result_.t_s[count_] = t_s;
+    result_.error.row(count_) = output.error.transpose();
     result_.error_norm[count_] = output.error_norm;
     result_.threshold[count_] = output.threshold;
     result_.psi_hat.row(count_) = output.psi_hat.transpose();
@@ -65,6 +67,7 @@ class ReplayCollector {
 
   void finish() {
     result_.t_s.conservativeResize(count_);
+    result_.error.conservativeResize(count_, Eigen::NoChange);
     result_.error_norm.conservativeResize(count_);
     result_.threshold.conservativeResize(count_);
     result_.psi_hat.conservativeResize(count_, Eigen::NoChange);

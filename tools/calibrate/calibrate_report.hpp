@@ -1,0 +1,37 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "calibrate/calibrate.hpp"
+#include "report/page.hpp"
+
+namespace offnominal::tools {
+
+/// How the robot file and the result are called in what is shown.
+struct CalibrateNames {
+  std::string robot;
+  std::string output;
+  std::string command_line;
+};
+
+/// A bound in one line of words: "scaled_norm: 4.4 (|[[2, -6]] dq| + 1) rad/s^2".
+[[nodiscard]] std::string words_of(const BoundSettings& bound, const std::string& unit);
+
+/// The result in one sentence or two.
+[[nodiscard]] std::string verdict_of(const Calibration& calibration);
+
+[[nodiscard]] std::string text_of(const Calibration& calibration, const CalibrateNames& names);
+[[nodiscard]] nlohmann::ordered_json to_json(const Calibration& calibration,
+                                             const CalibrateNames& names);
+[[nodiscard]] report::Page page_of(const Calibration& calibration, const CalibrateNames& names);
+
+/// Mean threshold over all recordings with the old bound and with the new one, rad/s or m/s; the
+/// first is none where there was no bound.
+struct MeanThresholds {
+  std::optional<double> before;
+  double after = 0;
+};
+[[nodiscard]] MeanThresholds mean_thresholds(const Calibration& calibration);
+
+}  // namespace offnominal::tools

@@ -1,0 +1,101 @@
+#include "calibrate/shape_fit.hpp"
+
+#include "calibrate/tightest.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// The rows of one fold, as a linear programme asks for them.
+struct FoldRows {
+  MatrixXd along;
+  MatrixXd first_tick;
+  VectorXd error;             // |e| that the unknown numbers have to reach
+  VectorXd first_tick_error;  // the same after a first tick
+};
+
+// A velocity error that is given is no unknown: its 2 v is taken off the error that is left to
+// cover.
+FoldRows fold_rows(const FilteredBasis& basis, const RecordedError& recording, const Stretch& fold,
+                   const std::optional<double>& velocity_error) {
+  const Index rows = fold.end - fold.begin;
+  const Index columns = basis.along.cols() - (velocity_error ? 1 : 0);
+  const double allowance = 2 * velocity_error.value_or(0);
+  FoldRows result;
+  result.along = basis.along.block(fold.begin, 0, rows, columns);
+  result.first_tick = basis.first_tick.block(fold.begin, 0, rows, columns);
+  result.error = (recording.error_norm.segment(fold.begin, rows).array() - allowance).max(0.0);
+  result.first_tick_error =
+      (recording.first_tick.segment(fold.begin, rows).array() - allowance).max(0.0);
+  return result;
+}
+
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+VectorXd tightest_without(const std::vector<FoldRows>& folds, std::size_t unseen,
+                          const VectorXd& lowest) {
+  std::vector<ThresholdRows> parts;
+  for (std::size_t i = 0; i < folds.size(); ++i) {
+    if (i == unseen) continue;
+    parts.push_back({folds[i].along, folds[i].error, true});
+    // A run may start at any sample: its first tick has to hold, on which the velocity's own error
+    // weighs most.
+    parts.push_back({folds[i].first_tick, folds[i].first_tick_error, false});
+  }
+  return tightest(parts, lowest);
+}
+
+// Row 0 of a recording is the start of its run, where there is no error and may be no threshold.
+VectorXd ratio_of(const FoldRows& fold, const VectorXd& c) {
+  const VectorXd threshold = fold.along * c;
+  return (fold.error.array() > 0).select(fold.error.array() / threshold.array(), 0.0);
+}
+
+}  // namespace
+
+BoundSettings ShapeFit::widened(const BoundShape& shape, double widening,
+                                const std::optional<double>& velocity_error) const {
+  return bound_with(shape, widening * coefficients.head(shape.size),
+                    velocity_error ? *velocity_error : widening * coefficients[shape.size]);
+}
+
+ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
+                   const std::vector<RecordedError>& recordings, const std::vector<Stretch>& folds,
+                   double lowest, const std::optional<double>& velocity_error) {
+  std::vector<FoldRows> rows;
+  {
+    FilteredBasis basis;
+    std::size_t held = kNone;
+    for (const Stretch& fold : folds) {
+      const RecordedError& recording = recordings[fold.recording];
+      if (fold.recording != held) basis = filtered_basis(robot, shape, recording);
+      held = fold.recording;
+      rows.push_back(fold_rows(basis, recording, fold, velocity_error));
+    }
+  }
+  const Index unknowns = rows.front().along.cols();
+  VectorXd least = VectorXd::Constant(unknowns, lowest);
+  if (!velocity_error) least[unknowns - 1] = 0;
+  // An offset may be zero, a scale may not.
+  if (shape.settings.kind == BoundSettings::Kind::kScaledNorm) least[1] = 0;
+
+  ShapeFit fit;
+  const VectorXd all = tightest_without(rows, kNone, least);
+  double sum = 0;
+  Index count = 0;
+  for (std::size_t i = 0; i < folds.size(); ++i) {
+    fit.unseen_ratio.push_back(ratio_of(rows[i], tightest_without(rows, i, least)));
+    sum += (rows[i].along * all).sum();
+    count += rows[i].along.rows();
+  }
+  fit.mean_threshold = sum / static_cast<double>(count);
+  fit.coefficients.resize(shape.size + 1);
+  fit.coefficients.head(shape.size) = all.head(shape.size);
+  fit.coefficients[shape.size] = velocity_error ? *velocity_error : all[unknowns - 1];
+  return fit;
+}
+
+}  // namespace offnominal::tools

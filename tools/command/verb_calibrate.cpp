@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrate/calibrate.hpp"
+#include "calibrate/calibrate_report.hpp"
+#include "command/command_line.hpp"
+#include "command/progress.hpp"
+#include "command/verbs.hpp"
+#include "common/error.hpp"
+#include "log/read_log.hpp"
+#include "report/page.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+struct Options {
+  std::vector<std::string> logs;
+  std::vector<std::string> holdout;
+  std::string robot;
+  std::string output;
+  double alarms_per_hour = 0.1;
+  std::optional<double> velocity_error;
+  std::optional<std::filesystem::path> channels;
+  bool force = false;
+  std::optional<std::string> report;
+  bool json = false;
+};
+
+[[noreturn]] void refuse(const std::string& option, const std::string& found,
+                         const std::string& allowed, const std::string& mend = {}) {
+  throw InputError({"offnominal calibrate", option, found, allowed, mend});
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code not_there;
+  return std::filesystem::equivalent(a, b, not_there) && !not_there;
+}
+
+void check_numbers(const Options& options) {
+  if (!(options.alarms_per_hour >= 1e-6 && options.alarms_per_hour <= 60)) {
+    refuse("--alarms-per-hour", fmt::format("{:g}", options.alarms_per_hour), "1e-6 to 60");
+  }
+  const double error = options.velocity_error.value_or(0);
+  if (!(error >= 0 && std::isfinite(error))) {
+    refuse("--velocity-error", fmt::format("{:g}", error), "at least 0, rad/s or m/s");
+  }
+}
+
+void check_files(const Options& options) {
+  std::vector<std::string> all = options.logs;
+  all.insert(all.end(), options.holdout.begin(), options.holdout.end());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (same_file(options.output, all[i])) refuse("-o", "a recording", "a robot file");
+    for (std::size_t j = 0; j < i; ++j) {
+      if (same_file(all[i], all[j])) {
+        refuse(i < options.logs.size() ? "LOG" : "--holdout", all[i] + " a second time",
+               "recordings that differ", "leave one of the two out");
+      }
+    }
+  }
+  if (std::filesystem::exists(options.output) && !options.force) {
+    refuse("-o", options.output + ", which is there already", "a file that is not there yet",
+           "choose another name, or add --force to replace it");
+  }
+}
+
+std::string source_of(const std::vector<std::string>& logs) {
+  std::string names;
+  for (const std::string& log : logs) {
+    names += (names.empty() ? "" : ", ") + std::filesystem::path(log).filename().string();
+  }
+  return "Calibrated by offnominal calibrate on " + names + ".";
+}
+
+void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {
+  check_numbers(options);
+  check_files(options);
+  Progress progress;
+  const RobotDescription robot = read_robot_file(options.robot);
+  const auto read_all = [&](const std::vector<std::string>& files) {
+    std::vector<Log> logs;
+    for (const std::string& file : files) {
+      progress.begin("reading " + file);
+      logs.push_back(read_log(file, robot, options.channels));
+    }
+    return logs;
+  };
+  const std::vector<Log> logs = read_all(options.logs);
+  const std::vector<Log> holdout = read_all(options.holdout);
+  progress.begin("shapes of the bound");
+  const CalibrateRequest request{options.alarms_per_hour, options.velocity_error,
+                                 source_of(options.logs)};
+  const Calibration result =
+      calibrate(robot, request, logs, holdout, [&progress] { progress.step(); });
+  progress.end();
+  const CalibrateNames names{options.robot, options.output, command_line};
+  const bool good = result.objections.empty();
+  if (good) {
+    write_robot_file(result.robot, options.output,
+                     options.force ? Existing::kReplace : Existing::kRefuse);
+  } else {
+    exit_code = ExitCode::kCheckFailed;
+  }
+  if (options.report) report::write_page(*options.report, page_of(result, names));
+  if (options.json) {
+    std::cout << to_json(result, names).dump(2) << '\n';
+    return;
+  }
+  for (const auto* group : {&logs, &holdout}) {
+    for (const Log& log : *group) {
+      for (const std::string& remark : log.remarks) {
+        std::cout << "note: " << log.file << ": " << remark << '\n';
+      }
+    }
+  }
+  std::cout << text_of(result, names);
+  if (good) std::cout << "written: " << options.output << '\n';
+  if (options.report) std::cout << "written: " << *options.report << '\n';
+}
+
+constexpr const char* kHowItCalibrates =
+    "The recordings must be free of faults: what they hold is what the monitor will tolerate. The "
+    "threshold mu is the bound after the monitor's own filter, and it is mu, not the bound at an "
+    "instant, that |e| is held against.\n"
+    "Constant, scaled-norm and table bounds are tried; the tightest that keeps the level on parts "
+    "it has not seen is taken. Without --holdout the last of several recordings is held out, or "
+    "the last fifth of a single one.\n"
+    "Exit code 1, and nothing written, when the hold-out data raise more alarms than the level "
+    "allows, or when one part's error is so unlike the others' that it may hold a fault.";
+
+}  // namespace
+
+void register_calibrate(CLI::App& app, ExitCode& exit_code) {
+  CLI::App* verb = app.add_subcommand(
+      "calibrate", "Find the uncertainty bound from recordings of the healthy robot");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("LOG", options->logs, "Fault-free recordings, CSV or MATLAB .mat")->required();
+  verb->add_option("--robot", options->robot, "Robot file to start from")->required();
+  verb->add_option("--holdout", options->holdout, "Fault-free recordings to count alarms on");
+  verb->add_option("-o,--output", options->output, "Robot file to write")->required();
+  verb->add_flag("--force", options->force,
+                 "Replace the file of -o, be it the robot file that is read");
+  verb->add_option("--alarms-per-hour", options->alarms_per_hour,
+                   "False alarms per hour to aim at, by extrapolation")
+      ->capture_default_str();
+  verb->add_option("--velocity-error", options->velocity_error,
+                   "Largest error of the measured velocity, rad/s or m/s, where it is known; "
+                   "without it, it is found with the bound");
+  verb->add_option("--channels", options->channels,
+                   "TOML file that maps the recordings' columns, instead of the robot file's "
+                   "[channels]");
+  verb->add_option("--report", options->report, "Write the pictures as an HTML page");
+  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
+  verb->footer(kHowItCalibrates);
+  verb->callback([verb, options, &exit_code] { run(*options, command_line_of(*verb), exit_code); });
+}
+
+}  // namespace offnominal::tools
