@@ -47,8 +47,8 @@ Data data_of(const RobotDescription& robot, const std::vector<Log>& logs,
   for (const auto* group : {&logs, &holdout}) {
     for (const Log& log : *group) data.recordings.push_back(recorded_error(robot, log));
   }
-  data.split = split(data.recordings, logs.size());
   data.block_s = std::max(kShortestBlock, kBlockTimeConstants / robot.estimator.alpha_per_s);
+  data.split = split(data.recordings, logs.size(), 0.5 * data.block_s);
   std::int64_t blocks = 0;
   double largest = 0;
   for (const Stretch& fold : data.split.folds) {
@@ -106,14 +106,14 @@ std::vector<Tried> try_shapes(const RobotDescription& robot, const Data& data,
                               const CalibrateRequest& request,
                               const std::function<void()>& on_step) {
   std::vector<RecordedError> fitted;
-  for (const Stretch& fold : data.split.folds) {
-    if (fold.begin == 0) fitted.push_back(data.recordings[fold.recording]);
+  for (std::size_t i = 0; i <= data.split.folds.back().recording; ++i) {
+    fitted.push_back(data.recordings[i]);
   }
   std::vector<Tried> tried;
   double lowest = 0;
   for (const BoundShape& shape : bound_shapes(robot, fitted)) {
     ShapeFit fit =
-        fit_shape(robot, shape, data.recordings, data.split.folds, lowest, request.velocity_error);
+        fit_shape(robot, shape, data.recordings, data.split, lowest, request.velocity_error);
     if (shape.settings.kind == BoundSettings::Kind::kConstant) {
       lowest = kLowestShare * fit.coefficients[0];
     }
@@ -171,6 +171,9 @@ JudgedStretch judged_stretch(const RecordedError& recording, const VectorXd& thr
   judged.mean_threshold_after = judged.threshold_after.mean();
   judged.max_ratio_after = largest_ratio(judged.error_norm, judged.threshold_after);
   judged.alarms_after = alarms_in(judged.error_norm, judged.threshold_after);
+  for (Index i = 0; i < judged.t_s.size() && !judged.first_alarm_s; ++i) {
+    if (judged.error_norm[i] > judged.threshold_after[i]) judged.first_alarm_s = judged.t_s[i];
+  }
   if (recording.old_threshold.size() == 0) return judged;
   judged.threshold_before = recording.old_threshold.segment(begin, end - begin);
   judged.mean_threshold_before = judged.threshold_before.mean();
@@ -207,25 +210,30 @@ void judge_all(const Data& data, const std::vector<Log>& logs, const std::vector
                                                 stretch.begin, stretch.end, held_out));
     }
   };
-  add(joined_stretches(data.split.folds), false);
+  std::vector<Stretch> calibrated = data.split.always;
+  calibrated.insert(calibrated.end(), data.split.folds.begin(), data.split.folds.end());
+  add(joined_stretches(calibrated), false);
   add(data.split.held_out, true);
 }
 
 void count_held_out(Calibration& result) {
   FalseAlarmLevel& level = result.level;
+  std::string where;
   for (const JudgedStretch& stretch : result.stretches) {
     if (!stretch.held_out) continue;
     level.held_out_s += stretch.end_s - stretch.begin_s;
     level.held_out_alarms += stretch.alarms_after;
+    if (!stretch.first_alarm_s) continue;
+    where += fmt::format("{}{} from {:.3f} s on, |e| up to {:.3g} mu", where.empty() ? "" : "; ",
+                         stretch.file, *stretch.first_alarm_s, stretch.max_ratio_after);
   }
   level.highest_per_hour = 3600 * highest_rate(level.held_out_alarms, level.held_out_s);
   const double expected = level.alarms_per_hour / 3600 * level.held_out_s;
-  if (probability_of_as_many(level.held_out_alarms, expected) < kUnlikely) {
-    result.objections.push_back(fmt::format(
-        "{} alarm(s) in {:g} s of hold-out data, where {:.2g} were expected: the bound does not "
-        "keep its level. Calibrate on more recordings, of all the motions that the robot makes.",
-        level.held_out_alarms, level.held_out_s, expected));
-  }
+  if (probability_of_as_many(level.held_out_alarms, expected) >= kUnlikely) return;
+  result.objections.push_back(fmt::format(
+      "{} alarm(s) in {:g} s of hold-out data, where {:.2g} were expected ({}): the bound does not "
+      "keep its level. Calibrate on more recordings, of all the motions that the robot makes.",
+      level.held_out_alarms, level.held_out_s, expected, where));
 }
 
 void look_for_strays(const Data& data, const Tried& constant, Calibration& result) {

@@ -36,6 +36,7 @@ struct JudgedStretch {
   double max_ratio_after = 0;
   std::int64_t alarms_before = 0;  // stretches with |e| > mu
   std::int64_t alarms_after = 0;
+  std::optional<double> first_alarm_s;  // of the new bound, as recorded
 
   Eigen::VectorXd t_s;
   Eigen::VectorXd error_norm;

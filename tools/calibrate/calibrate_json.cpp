@@ -52,7 +52,8 @@ ordered_json calibration_json(const JudgedStretch& stretch) {
           {"max_error_to_threshold_after", optional(stretch.max_ratio_after)},
           {"alarms_before",
            stretch.mean_threshold_before ? ordered_json(stretch.alarms_before) : ordered_json()},
-          {"alarms_after", stretch.alarms_after}};
+          {"alarms_after", stretch.alarms_after},
+          {"first_alarm_s", optional(stretch.first_alarm_s)}};
 }
 
 ordered_json calibration_json(const FalseAlarmLevel& level) {

@@ -1,5 +1,7 @@
 #include "calibrate/shape_fit.hpp"
 
+#include <algorithm>
+
 #include "calibrate/tightest.hpp"
 
 namespace offnominal::tools {
@@ -33,19 +35,30 @@ FoldRows fold_rows(const FilteredBasis& basis, const RecordedError& recording, c
   return result;
 }
 
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+constexpr double kPriceOfVelocityError = 2;
+// Which folds are unseen together: every kMostTurns-th, so that many recordings cost no more than
+// few.
+constexpr std::size_t kMostTurns = 5;
+struct Turn {
+  std::size_t judged = 0;  // the folds from here on are never unseen
+  std::size_t number = 0;
 
-VectorXd tightest_without(const std::vector<FoldRows>& folds, std::size_t unseen,
-                          const VectorXd& lowest) {
+  [[nodiscard]] bool leaves_out(std::size_t fold) const {
+    return fold < judged && fold % kMostTurns == number;
+  }
+};
+
+VectorXd tightest_without(const std::vector<FoldRows>& folds, const Turn& turn,
+                          const VectorXd& lowest, const VectorXd& price) {
   std::vector<ThresholdRows> parts;
   for (std::size_t i = 0; i < folds.size(); ++i) {
-    if (i == unseen) continue;
+    if (turn.leaves_out(i)) continue;
     parts.push_back({folds[i].along, folds[i].error, true});
     // A run may start at any sample: its first tick has to hold, on which the velocity's own error
     // weighs most.
     parts.push_back({folds[i].first_tick, folds[i].first_tick_error, false});
   }
-  return tightest(parts, lowest);
+  return tightest(parts, lowest, price);
 }
 
 // Row 0 of a recording is the start of its run, where there is no error and may be no threshold.
@@ -63,12 +76,14 @@ BoundSettings ShapeFit::widened(const BoundShape& shape, double widening,
 }
 
 ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
-                   const std::vector<RecordedError>& recordings, const std::vector<Stretch>& folds,
-                   double lowest, const std::optional<double>& velocity_error) {
+                   const std::vector<RecordedError>& recordings, const Split& split, double lowest,
+                   const std::optional<double>& velocity_error) {
+  std::vector<Stretch> folds = split.folds;
+  folds.insert(folds.end(), split.always.begin(), split.always.end());
   std::vector<FoldRows> rows;
   {
     FilteredBasis basis;
-    std::size_t held = kNone;
+    std::optional<std::size_t> held;
     for (const Stretch& fold : folds) {
       const RecordedError& recording = recordings[fold.recording];
       if (fold.recording != held) basis = filtered_basis(robot, shape, recording);
@@ -79,15 +94,24 @@ ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
   const Index unknowns = rows.front().along.cols();
   VectorXd least = VectorXd::Constant(unknowns, lowest);
   if (!velocity_error) least[unknowns - 1] = 0;
-  // An offset may be zero, a scale may not.
-  if (shape.settings.kind == BoundSettings::Kind::kScaledNorm) least[1] = 0;
+  // Once the filter has forgotten its start, 2 v and a constant part of the bound are the same: v
+  // is to be only what the first ticks ask for.
+  VectorXd price = VectorXd::Ones(unknowns);
+  if (!velocity_error) price[unknowns - 1] = kPriceOfVelocityError;
 
   ShapeFit fit;
-  const VectorXd all = tightest_without(rows, kNone, least);
+  const VectorXd all = tightest_without(rows, {}, least, price);
+  const std::size_t judged = split.folds.size();
+  std::vector<VectorXd> of_turn;
+  for (std::size_t turn = 0; turn < std::min(judged, kMostTurns); ++turn) {
+    of_turn.push_back(tightest_without(rows, {judged, turn}, least, price));
+  }
+  for (std::size_t i = 0; i < judged; ++i) {
+    fit.unseen_ratio.push_back(ratio_of(rows[i], of_turn[i % kMostTurns]));
+  }
   double sum = 0;
   Index count = 0;
   for (std::size_t i = 0; i < folds.size(); ++i) {
-    fit.unseen_ratio.push_back(ratio_of(rows[i], tightest_without(rows, i, least)));
     sum += (rows[i].along * all).sum();
     count += rows[i].along.rows();
   }

@@ -14,8 +14,8 @@ namespace offnominal::tools {
 struct ShapeFit {
   Eigen::VectorXd coefficients;  // c_1.., then v
   double mean_threshold = 0;     // over all folds, rad/s or m/s, without the 2 v of a given v
-  // |e| over the threshold that the other folds ask for, sample by sample; one entry per fold. The
-  // 2 v of a given v is taken off both.
+  // |e| over the threshold that the folds of other turns ask for, sample by sample; one entry per
+  // fold. The 2 v of a given v is taken off both.
   std::vector<Eigen::VectorXd> unseen_ratio;
 
   /// The bound whose threshold is `widening` times this one; a given v is not widened.
@@ -23,10 +23,10 @@ struct ShapeFit {
                                       const std::optional<double>& velocity_error) const;
 };
 
-/// `lowest` is what no c_k may fall below. A `velocity_error` that is given is kept as it is.
+/// Fits to the folds and to what is always calibrated on. `lowest` is what no c_k may fall below. A
+/// `velocity_error` that is given is kept as it is.
 [[nodiscard]] ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
-                                 const std::vector<RecordedError>& recordings,
-                                 const std::vector<Stretch>& folds, double lowest,
-                                 const std::optional<double>& velocity_error);
+                                 const std::vector<RecordedError>& recordings, const Split& split,
+                                 double lowest, const std::optional<double>& velocity_error);
 
 }  // namespace offnominal::tools

@@ -1,5 +1,7 @@
 #include "calibrate/split.hpp"
 
+#include <algorithm>
+
 namespace offnominal::tools {
 namespace {
 
@@ -7,7 +9,7 @@ constexpr Eigen::Index kFifths = 5;
 
 }  // namespace
 
-Split split(const std::vector<RecordedError>& recordings, std::size_t given) {
+Split split(const std::vector<RecordedError>& recordings, std::size_t given, double settling_s) {
   Split result;
   const auto whole = [&](std::size_t i) { return Stretch{i, 0, recordings[i].samples()}; };
   for (std::size_t i = given; i < recordings.size(); ++i) result.held_out.push_back(whole(i));
@@ -22,9 +24,13 @@ Split split(const std::vector<RecordedError>& recordings, std::size_t given) {
     result.held_out.push_back({0, kept, only.end});
     only.end = kept;
   }
+  const auto settling = static_cast<Eigen::Index>(settling_s / recordings.front().period_s) + 1;
+  const Eigen::Index begin = std::min(settling, only.end);
+  const Eigen::Index rest = only.end - begin;
+  result.always.push_back({0, 0, begin});
   result.folds.clear();
   for (Eigen::Index part = 0; part < kFifths; ++part) {
-    result.folds.push_back({0, part * only.end / kFifths, (part + 1) * only.end / kFifths});
+    result.folds.push_back({0, begin + part * rest / kFifths, begin + (part + 1) * rest / kFifths});
   }
   return result;
 }

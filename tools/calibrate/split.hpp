@@ -17,12 +17,15 @@ struct Stretch {
 
 struct Split {
   std::vector<Stretch> folds;     // to calibrate on; each takes its turn at being unseen
+  std::vector<Stretch> always;    // calibrated on, never unseen: the only start of a run there is
   std::vector<Stretch> held_out;  // to count alarms on
 };
 
 /// `given` recordings come first in `recordings`; those behind them are for hold-out. Where there
 /// are none, the last of several given ones is held out, or the last fifth of the only one. Folds
-/// are whole recordings, or fifths where one is left.
-[[nodiscard]] Split split(const std::vector<RecordedError>& recordings, std::size_t given);
+/// are whole recordings, or fifths of the one that is left: there the first `settling_s`, in which
+/// the filter forgets its start, cannot be told from the other fifths and are always calibrated on.
+[[nodiscard]] Split split(const std::vector<RecordedError>& recordings, std::size_t given,
+                          double settling_s);
 
 }  // namespace offnominal::tools

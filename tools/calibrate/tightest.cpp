@@ -107,14 +107,15 @@ double add_missed(const std::vector<ThresholdRows>& parts, const Eigen::VectorXd
 
 }  // namespace
 
-Eigen::VectorXd tightest(const std::vector<ThresholdRows>& parts, const Eigen::VectorXd& lowest) {
+Eigen::VectorXd tightest(const std::vector<ThresholdRows>& parts, const Eigen::VectorXd& lowest,
+                         const Eigen::VectorXd& price) {
   const Eigen::VectorXd cost = mean_row(parts);
   Eigen::VectorXd size = Eigen::VectorXd::Ones(cost.size());
   for (Index k = 0; k < cost.size(); ++k) {
     if (cost[k] > 0) size[k] = 1 / cost[k];
   }
   // In units in which every number adds the same to the mean threshold.
-  const Eigen::VectorXd scaled_cost = (cost.array() * size.array()).max(1e-3);
+  const Eigen::VectorXd scaled_cost = (cost.array() * size.array()).max(1e-3) * price.array();
   Programme programme(scaled_cost, lowest.cwiseQuotient(size));
   Eigen::VectorXd c = size;
   double missed = add_missed(parts, size, c, programme);
