@@ -60,6 +60,15 @@ TEST(MassLossSweep, NothingIsDetectedUnderAHugeBound) {
   EXPECT_NEAR(*sweep.largest_undetected, 0.95, 1e-9);
 }
 
+TEST(MassLossSweep, AnAlarmBeforeTheFaultDetectsNothing) {
+  RobotDescription robot = two_link_robot();
+  robot.bound->scaled_norm.scale = 0.1;
+  const SweepResult sweep = sweep_mass_loss(robot, {}, 0.1);
+  ASSERT_TRUE(sweep.false_alarm_s);
+  EXPECT_LT(*sweep.false_alarm_s, 10);
+  EXPECT_FALSE(sweep.smallest_detected);
+}
+
 TEST(MassLossSweep, RefusesResolutionsOutOfRange) {
   for (const double resolution : {0.0, 0.2, -0.005, std::nan("")}) {
     EXPECT_THROW(static_cast<void>(sweep_mass_loss(two_link_robot(), {}, resolution)), InputError);

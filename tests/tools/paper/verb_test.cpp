@@ -102,6 +102,40 @@ TEST(PaperVerb, OwnRobotFileGivesTheSameAsTheBuiltInOne) {
             paper({"--fault", "nonlinear", "--json"}).out);
 }
 
+TEST(PaperVerb, ARecordedRunReplaysAsItRan) {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder / "run.csv").string();
+  const std::vector<std::string> arguments{"--fault",    "none",  "--start",  "1.5",
+                                           "--duration", "5",     "--scalar", "double",
+                                           "--json",     "--log", log};
+  const CommandResult run = paper(arguments);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string robot = std::string(OFFNOMINAL_SOURCE_DIR) + "/robots/two_link.toml";
+  const CommandResult replayed =
+      test::run_command(OFFNOMINAL_COMMAND, {"replay", log, "--robot", robot, "--json"});
+  ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
+  const json told = json::parse(replayed.out);
+  EXPECT_EQ(told["samples"], 5001);
+  EXPECT_NEAR(told["max_error_to_threshold"].get<double>(),
+              json::parse(run.out)["max_error_to_threshold_before_fault"].get<double>(), 1e-6);
+  const CommandResult again = paper(arguments);
+  EXPECT_EQ(again.exit_code, 2) << "a recording is not replaced unasked";
+  EXPECT_THAT(again.err, HasSubstr(log));
+}
+
+TEST(PaperVerb, TwoRobotFilesSideBySide) {
+  const test::TemporaryFolder folder;
+  const std::string file = std::string(OFFNOMINAL_SOURCE_DIR) + "/robots/two_link.toml";
+  const std::string page = (folder / "sweep.html").string();
+  const CommandResult result = paper({"--sweep", "--against", file, "--json", "--report", page});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json pair = json::parse(result.out);
+  EXPECT_EQ(pair["before"]["robot"], file);
+  EXPECT_EQ(pair["before"]["smallest_detected_mass_loss"],
+            pair["after"]["smallest_detected_mass_loss"]);
+  EXPECT_THAT(test::content_of(page), HasSubstr("Smallest mass loss that is detected"));
+}
+
 struct Wrong {
   std::vector<std::string> arguments;
   std::string told;
@@ -140,6 +174,12 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{{"--sweep", "--mass-loss", "0.5"}, "--sweep: found --mass-loss"},
         Wrong{{"--sweep", "--accommodate"}, "--sweep: found --accommodate"},
         Wrong{{"--sweep", "--report", "x.html"}, "--sweep: found --report"},
+        Wrong{{"--against", "x.toml"}, "--against: found no --sweep"},
+        Wrong{{"--log", "x.csv"}, "--log: found no --fault"},
+        Wrong{{"--fault", "none", "--force"}, "--force: found no --log"},
+        Wrong{{"--fault", "none", "--duration", "0"}, "--duration: found 0"},
+        Wrong{{"--fault", "none", "--start", "-1"}, "--start: found -1"},
+        Wrong{{"--fault", "none", "--log", "/nowhere/x.csv"}, "/nowhere/x.csv"},
         Wrong{{"--robot", "/nowhere/robot.toml"}, "/nowhere/robot.toml"},
         Wrong{{"--fault", "none", "--report", "/nowhere/x.html"}, "/nowhere/x.html"}));
 
