@@ -16,6 +16,7 @@
 #include "discovery/parallel.hpp"
 #include "outcome.hpp"
 #include "tables.hpp"
+#include "write_cases.hpp"
 
 namespace offnominal::bench {
 namespace {
@@ -25,6 +26,7 @@ struct Options {
   bool json = false;
   bool failures = false;
   std::string cases;  // empty: all
+  std::string write;  // folder that gets the cases, in place of a run; empty: none
   int most = 1000;    // cases of each group
   std::uint64_t seed = 20261121;
   int threads = static_cast<int>(std::thread::hardware_concurrency());
@@ -125,10 +127,19 @@ int main_of(int argc, char** argv) {
   app.add_option("--threads", options.threads, "cases that run at once")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+  app.add_option("--write", options.write,
+                 "write the chosen cases as robot files and recordings into this folder, and what "
+                 "they hide beside them; nothing is run");
   app.add_flag("--failures", options.failures, "list every case that was not answered rightly");
   app.add_flag("--json", options.json, "everything as JSON, case by case");
   try {
     app.parse(argc, argv);
+    if (!options.write.empty()) {
+      for (const auto& folder : write_cases(chosen_groups(options), options.write)) {
+        fmt::print("written: {}\n", folder.string());
+      }
+      return 0;
+    }
     const Results results = run(options);
     if (options.json) {
       print_json(options, results);

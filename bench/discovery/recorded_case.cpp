@@ -62,6 +62,7 @@ tools::RobotDescription robot_of(const Nominal& nominal) {
   robot.gravity_m_s2 = {0, -nominal.gravity_m_s2, 0};
   for (std::size_t i = 0; i < nominal.links.size(); ++i) {
     robot.joints.push_back(joint_of(nominal.links[i], nominal.joints[i], nominal.encoder_bits));
+    robot.joints[i].name = i == 0 ? "shoulder" : "elbow";
     if (i > 0) robot.joints[i].joint.origin_m = {nominal.links[i - 1].length_m, 0, 0};
     add_known_effects(nominal.joints[i], static_cast<std::uint8_t>(i), robot);
   }

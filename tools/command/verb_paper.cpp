@@ -44,6 +44,7 @@ struct Options {
   std::optional<std::string> against;
   std::optional<double> duration;
   std::optional<double> start;
+  std::optional<std::string> motion;
   std::optional<std::string> log;
   bool force = false;
   std::optional<std::string> report;
@@ -87,6 +88,9 @@ void check_together(const Options& options) {
   if (options.log && !options.fault) {
     refuse("--log", "no --fault", "add --fault none for a recording of the healthy arm");
   }
+  if (options.motion && !options.fault) {
+    refuse("--motion", "no --fault", "add --fault none to see the healthy arm on this motion");
+  }
   if (options.against && !options.sweep) refuse("--against", "no --sweep", "add --sweep");
   if (options.force && !options.log) refuse("--force", "no --log", "leave it out");
   if (options.mass_loss && options.fault && *options.fault != "mass_loss") {
@@ -123,6 +127,11 @@ Experiment experiment_of(const Options& options) {
       options.scalar == "float" ? paper::Precision::kFloat : paper::Precision::kDouble;
   if (options.duration) experiment.duration_s = *options.duration;
   if (options.start) experiment.motion_start_s = *options.start;
+  if (options.motion) {
+    experiment.motion =
+        std::make_shared<paper::RecordedMotion>(paper::RecordedMotion::read(*options.motion));
+    if (!options.duration) experiment.duration_s = experiment.motion->duration_s();
+  }
   experiment.record = options.report.has_value() || options.log.has_value();
   return experiment;
 }
@@ -308,6 +317,9 @@ void add_options(CLI::App& verb, Options& options) {
                   "Time on the desired motion at which a run starts, s, default 0: other motion "
                   "under the same disturbance")
       ->check(number_where([](double x) { return x >= 0 && x <= 1e5; }, "0 to 1e5 s"));
+  verb.add_option("--motion", options.motion,
+                  "With --fault: a desired motion in place of the paper's, CSV as `offnominal "
+                  "motion` writes it; the run is as long as it, unless --duration is given");
   verb.add_option(
       "--log", options.log,
       "With --fault: write the run as a recording, CSV: t, q, dq and the torque applied "

@@ -64,6 +64,13 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
       array_of(e.joints, [](const JointErrors& joint) { return ordered_json(joint.noise_floor); });
   json["joints"] = array_of(e.joints, [](const JointErrors& joint) { return json_of(joint); });
   json["found"] = array_of(e.found, [](const Finding& finding) { return json_of(finding); });
+  json["waterfall"] = ordered_json::array();
+  for (std::size_t i = 0; i < e.waterfall.size(); ++i) {
+    ordered_json step{{"added", nullptr}, {"holdout", ordered_json::array()}};
+    if (i > 0) step["added"] = effect_at(e.found[i - 1].what);
+    for (const double error : e.waterfall[i]) step["holdout"].push_back(error);
+    json["waterfall"].push_back(std::move(step));
+  }
   json["ambiguous"] = array_of(
       e.ambiguous, [](const std::vector<EffectAt>& same) { return array_of(same, effect_at); });
   json["rejected"] = array_of(e.rejected, [](const Rejection& one) {

@@ -64,7 +64,8 @@ Data data_of(const RobotDescription& robot, const FittedMotion& fitted, double r
 // too many and are spread by their logarithm.
 std::vector<double> some_of(const ShapeRange& range, bool spectrum) {
   const std::size_t count = range.grid.size();
-  if (count <= kMostShapes || range.kind == discovery::ShapeRange::Kind::kDiscrete) return range.grid;
+  if (count <= kMostShapes || range.kind == discovery::ShapeRange::Kind::kDiscrete)
+    return range.grid;
   std::vector<double> points;
   for (std::size_t i = 0; i < kMostShapes; ++i) {
     const double part = static_cast<double>(i) / (kMostShapes - 1);

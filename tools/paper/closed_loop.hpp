@@ -7,6 +7,7 @@
 #include <offnominal/control/computed_torque.hpp>
 #include <offnominal/monitor.hpp>
 
+#include "offnominal/sim/trajectory.hpp"
 #include "offnominal/sim/two_link_plant.hpp"
 
 namespace offnominal::tools::paper {
@@ -21,8 +22,10 @@ struct LoopTiming {
   double period_s = 0.001;
   std::int64_t ticks = 0;
   int plant_substeps = 1;
-  double motion_start_s = 0.0;  // time on the desired motion at which the run starts
 };
+
+/// What the arm shall do at a time of the run.
+using DesiredAt = std::function<sim::DesiredMotion(double time_s)>;
 
 /// The loop at the end of a tick. The torque that was applied over the tick has already acted.
 struct TickRecord {
@@ -41,12 +44,13 @@ struct TickRecord {
 
 using TickObserver = std::function<void(const TickRecord&)>;
 
-/// Runs the loop from a start on the desired trajectory and shows every tick to `observe`. Throws
+/// Runs the loop from a start on the desired motion and shows every tick to `observe`. Throws
 /// InputError when the monitor refuses its settings or a sample. Capacity is the number of hidden
 /// units that are compiled in; instantiated for the capacities of with_capacity() and both scalars.
 template <int Capacity, typename Scalar>
 void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPlant& plant,
-                     const LoopTiming& timing, const TickObserver& observe);
+                     const LoopTiming& timing, const DesiredAt& desired_at,
+                     const TickObserver& observe);
 
 /// Calls `use` with the smallest capacity that holds `hidden_units`, which must be at most 256, as
 /// a std::integral_constant.

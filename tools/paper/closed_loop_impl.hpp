@@ -7,7 +7,6 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "offnominal/sim/trajectory.hpp"
 #include "paper/closed_loop.hpp"
 
 namespace offnominal::tools::paper {
@@ -46,16 +45,14 @@ template <typename Scalar>
 
 template <int Capacity, typename Scalar>
 void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPlant& plant,
-                     const LoopTiming& timing, const TickObserver& observe) {
+                     const LoopTiming& timing, const DesiredAt& desired_at,
+                     const TickObserver& observe) {
   using LoopMonitor = Monitor<2, Capacity, Scalar>;
   LoopMonitor monitor;
   detail::require_ok(LoopMonitor::create(setup.monitor, monitor), "robot and options",
                      "correct the setting that the status names");
   detail::require_ok(validate(setup.gains), "control gains", "give kp and kd of at least 0");
 
-  const auto desired_at = [&timing](double time_s) {
-    return sim::paper_trajectory(timing.motion_start_s + time_s);
-  };
   sim::JointState state = sim::on_trajectory(desired_at(0.0));
   Vector<2, Scalar> tau = detail::drive_torque(setup, monitor.model(), 0.0, desired_at(0.0), state,
                                                Vector<2, Scalar>::Zero().eval());
@@ -97,6 +94,6 @@ void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPla
 #define OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(capacity, Scalar)                                   \
   template void run_closed_loop<capacity, Scalar>(const ControllerSetup<Scalar>&,              \
                                                   const sim::TwoLinkPlant&, const LoopTiming&, \
-                                                  const TickObserver&)
+                                                  const DesiredAt&, const TickObserver&)
 
 }  // namespace offnominal::tools::paper

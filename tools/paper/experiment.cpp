@@ -129,7 +129,9 @@ void run_with(const RobotDescription& robot, const Experiment& experiment,
   ControllerSetup<Scalar> setup{monitor_config_of<2, Scalar>(robot), gains_of<2, Scalar>(robot)};
   if (!experiment.accommodate) setup.monitor.max_compensation = {};
   with_capacity(robot.estimator.hidden_units, [&](auto capacity) {
-    run_closed_loop<capacity(), Scalar>(setup, plant, timing, observe);
+    run_closed_loop<capacity(), Scalar>(
+        setup, plant, timing, [&](double time_s) { return experiment.desired_at(time_s); },
+        observe);
   });
 }
 
@@ -144,12 +146,17 @@ sim::TwoLinkPlant plant_of(const Experiment& experiment) {
 
 }  // namespace
 
+sim::DesiredMotion Experiment::desired_at(double time_s) const {
+  const double at_s = motion_start_s + time_s;
+  return motion ? motion->at(at_s) : sim::paper_trajectory(at_s);
+}
+
 ExperimentResult run_experiment(const RobotDescription& robot, const Experiment& experiment) {
   check(robot, experiment);
   const sim::TwoLinkPlant plant = plant_of(experiment);
   const double period = robot.estimator.period_s;
   const LoopTiming timing{period, std::llround(experiment.duration_s / period),
-                          experiment.plant_substeps, experiment.motion_start_s};
+                          experiment.plant_substeps};
   Observer observer(experiment, robot.estimator.alpha_per_s, period);
   const auto observe = [&observer](const TickRecord& tick) { observer(tick); };
   if (experiment.precision == Precision::kFloat) {

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "offnominal/sim/fault.hpp"
+#include "offnominal/sim/trajectory.hpp"
 #include "offnominal/sim/uncertainty.hpp"
+#include "paper/recorded_motion.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::tools::paper {
@@ -28,6 +31,10 @@ struct Experiment {
   Precision precision = Precision::kFloat;
   double duration_s = 20.0;
   double motion_start_s = 0.0;  // time on the desired motion at which the run starts
+  std::shared_ptr<const RecordedMotion> motion;  // in place of the paper's; null: the paper's
+
+  /// What the arm shall do at a time of the run.
+  [[nodiscard]] sim::DesiredMotion desired_at(double time_s) const;
   int plant_substeps = 1;  // Runge-Kutta steps of the plant in one tick
   bool record = false;     // keep the time series
 };

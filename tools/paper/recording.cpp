@@ -2,8 +2,6 @@
 
 #include <stdexcept>
 
-#include "offnominal/sim/trajectory.hpp"
-
 namespace offnominal::tools::paper {
 
 Log recording_of(const RobotDescription& robot, const Experiment& experiment,
@@ -11,7 +9,7 @@ Log recording_of(const RobotDescription& robot, const Experiment& experiment,
   const TimeSeries& series = run.series;
   if (series.time_s.empty()) throw std::invalid_argument("the run was not recorded");
   const auto ticks = static_cast<Eigen::Index>(series.time_s.size());
-  const sim::DesiredMotion start = sim::paper_trajectory(experiment.motion_start_s);
+  const sim::DesiredMotion start = experiment.desired_at(0);
   Log log;
   log.file = "paper";
   log.period_s = robot.estimator.period_s;

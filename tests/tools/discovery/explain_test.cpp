@@ -227,6 +227,10 @@ TEST(Explain, ThePageHasTheNumbersOfTheJson) {
     EXPECT_THAT(text, HasSubstr(joint["holdout_after"].dump()));
     EXPECT_THAT(text, HasSubstr(joint["noise_floor"].dump()));
   }
+  ASSERT_EQ(json["waterfall"].size(), result.found.size() + 1);
+  for (const auto& step : json["waterfall"]) {
+    for (const auto& error : step["holdout"]) EXPECT_THAT(text, HasSubstr(error.dump()));
+  }
   for (const auto& [name, parameter] : json["found"][0]["parameters"].items()) {
     EXPECT_THAT(text, HasSubstr(parameter["value"].dump())) << name;
   }

@@ -205,7 +205,10 @@ class TemperatureDrift final : public EffectCandidate {
   }
   std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index /*joint*/) const override {
     const double duration_s = longest_duration_s(at);
-    return {{"time_constant", "s", logarithmic_grid(duration_s / 12, duration_s * 1.5),
+    // What has not faded by the end is friction that stays: beyond kLongest this effect would stand
+    // for Coulomb and viscous friction at once.
+    constexpr double kLongest = 0.75;
+    return {{"time_constant", "s", logarithmic_grid(duration_s / 12, kLongest * duration_s),
              ShapeRange::Kind::kLogarithmic}};
   }
   std::vector<Regressor> regressors(const Workspace& at, Index joint,
