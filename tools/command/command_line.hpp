@@ -11,7 +11,7 @@ namespace offnominal::tools {
   for (const CLI::Option* option : verb.get_options()) {
     if (option->count() == 0) continue;
     if (!option->get_positional()) line += " " + option->get_name();
-    if (option->get_type_size() == 0) continue;
+    if (option->get_items_expected_max() == 0) continue;  // a flag
     for (const std::string& word : option->results()) line += " " + word;
   }
   return line;

@@ -101,6 +101,8 @@ TEST_F(Verbs, CompareWritesAPageThatSaysWhatTheJsonSays) {
   const auto object = nlohmann::json::parse(result.out);
   EXPECT_THAT(page, HasSubstr(object.at("verdict").get<std::string>()));
   EXPECT_THAT(page, HasSubstr("residual over velocity"));
+  // The command can be run again as the page has it: a flag has no value.
+  EXPECT_THAT(page, AllOf(HasSubstr("--json"), Not(HasSubstr("--json true"))));
 }
 
 // What a page draws from: the JSON in it.
