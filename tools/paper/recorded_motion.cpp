@@ -28,7 +28,8 @@ RecordedMotion RecordedMotion::read(const std::filesystem::path& file) {
   motion.t_s_ = column("t").array() - column("t")[0];
   const auto pair = [&](const std::string& name) {
     MatrixX2d both(motion.t_s_.size(), 2);
-    both << column(name + "1"), column(name + "2");
+    both.col(0) = column(name + "1");
+    both.col(1) = column(name + "2");
     return both;
   };
   motion.q_ = pair("q");

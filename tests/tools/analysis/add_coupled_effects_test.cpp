@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 
+#include "added_value.hpp"
 #include "analysis/add.hpp"
 #include "common/error.hpp"
 #include "recorded_arm.hpp"
@@ -17,13 +18,13 @@ namespace {
 
 using Eigen::Vector2d;
 using offnominal::EffectKind;
-using offnominal::info_of;
 using offnominal::test::arm_description;
 using offnominal::test::ArmInstant;
 using offnominal::test::ArmRecording;
 using offnominal::test::effect_of;
 using offnominal::test::HiddenTorque;
 using offnominal::test::record_arm;
+using offnominal::test::value_of;
 using namespace offnominal::tools;
 using ::testing::HasSubstr;
 namespace sim = offnominal::sim;
@@ -43,18 +44,6 @@ AddResult add_to(const RobotDescription& robot, EffectKind kind, std::size_t joi
   request.joint = joint;
   request.inertia_deviation = inertia_deviation;
   return add(robot, request, measure(record_arm(settings, hidden), {}), nullptr);
-}
-
-double value_of(const AddResult& result, EffectKind kind, const std::string& name) {
-  for (const RobotEffect& effect : result.robot.effects) {
-    if (effect.kind != kind) continue;
-    const auto parameters = info_of(kind)->parameters;
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      if (name == parameters[i].name) return effect.parameters[i];
-    }
-  }
-  ADD_FAILURE() << name;
-  return std::nan("");
 }
 
 double held_out_fall(const AddResult& result, std::size_t joint) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "added_value.hpp"
 #include "analysis/add_report.hpp"
 #include "common/error.hpp"
 #include "recorded_arm.hpp"
@@ -15,7 +16,6 @@ namespace {
 
 using Eigen::Vector2d;
 using offnominal::EffectKind;
-using offnominal::info_of;
 using offnominal::test::arm_description;
 using offnominal::test::arm_motion;
 using offnominal::test::ArmInstant;
@@ -23,6 +23,7 @@ using offnominal::test::ArmRecording;
 using offnominal::test::effect_of;
 using offnominal::test::HiddenTorque;
 using offnominal::test::record_arm;
+using offnominal::test::value_of;
 using namespace offnominal::tools;
 using ::testing::Contains;
 using ::testing::HasSubstr;
@@ -45,18 +46,6 @@ AddResult fit_one(EffectKind kind, std::size_t joint, const HiddenTorque& hidden
                   const ArmRecording& settings = kUsual) {
   return add(arm_description(), request_for({kind}, joint),
              measure(record_arm(settings, hidden), {}), nullptr);
-}
-
-double value_of(const AddResult& result, EffectKind kind, const std::string& name) {
-  for (const RobotEffect& effect : result.robot.effects) {
-    if (effect.kind != kind) continue;
-    const auto parameters = info_of(kind)->parameters;
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      if (name == parameters[i].name) return effect.parameters[i];
-    }
-  }
-  ADD_FAILURE() << name;
-  return std::nan("");
 }
 
 TEST(Add, GivenHiddenViscousFrictionThenItsCoefficientIsFound) {

@@ -3,10 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "common/error.hpp"
 #include "robot/robot_file.hpp"
+#include "support/robots.hpp"
 
 namespace offnominal::tools::motion_design {
 namespace {
@@ -14,7 +13,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const std::filesystem::path kRobots = std::filesystem::path(OFFNOMINAL_SOURCE_DIR) / "robots";
+using test::kRobots;
 
 class Contenders : public ::testing::Test {
  protected:

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -12,11 +11,12 @@
 #include "motion_design/design_report.hpp"
 #include "robot/robot_file.hpp"
 #include "support/repetitions.hpp"
+#include "support/robots.hpp"
 
 namespace offnominal::tools::motion_design {
 namespace {
 
-const std::filesystem::path kRobots = std::filesystem::path(OFFNOMINAL_SOURCE_DIR) / "robots";
+using test::kRobots;
 
 DesignRequest request_for(const RobotDescription& robot, const std::vector<std::string>& effects) {
   DesignRequest request;

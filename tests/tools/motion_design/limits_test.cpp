@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <limits>
 #include <offnominal/sim/hidden/draw_robot.hpp>
 
@@ -12,6 +11,7 @@
 #include "motion_design/plan_space.hpp"
 #include "robot/robot_file.hpp"
 #include "support/repetitions.hpp"
+#include "support/robots.hpp"
 #include "support/seed.hpp"
 #include "tools/discovery/hidden_case.hpp"
 
@@ -21,7 +21,7 @@ namespace {
 using Eigen::Index;
 using ::testing::HasSubstr;
 
-const std::filesystem::path kRobots = std::filesystem::path(OFFNOMINAL_SOURCE_DIR) / "robots";
+using test::kRobots;
 
 std::vector<RobotDescription> robots() {
   std::vector<RobotDescription> all{read_robot_file(kRobots / "emps.toml"),
