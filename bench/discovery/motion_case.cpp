@@ -8,6 +8,7 @@
 #include "motion_design/design.hpp"
 #include "offnominal/sim/hidden/draw_robot.hpp"
 #include "recorded_case.hpp"
+#include "wall_clock.hpp"
 
 namespace offnominal::bench {
 
@@ -60,10 +61,6 @@ tools::motion_design::DesignRequest request_for(const Explanation& e,
         tools::motion_design::contender_of(text_of(effect), robot, "--separate"));
   }
   return request;
-}
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 void play_and_judge(const hidden::Request& request, const hidden::Nominal& nominal,

@@ -8,6 +8,7 @@
 #include "motion_case.hpp"
 #include "recorded_case.hpp"
 #include "true_parameters.hpp"
+#include "wall_clock.hpp"
 
 namespace offnominal::bench {
 
@@ -17,10 +18,6 @@ using tools::discovery::Explanation;
 using tools::discovery::Verdict;
 
 namespace {
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 EffectAt place_of(const hidden::TrueEffect& effect) {
   return {std::string(hidden::name(effect.effect)), effect.joint};
