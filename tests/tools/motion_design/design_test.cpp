@@ -47,7 +47,7 @@ TEST_P(DesignedPair, IsToldApartBetterThanOnASlowSineWithinTheLimits) {
     EXPECT_GE(pair.after.sine, 0);
     EXPECT_LE(pair.after.sine, 1);
   }
-  EXPECT_GT(design.worst()->after.evidence, 1.3 * before);
+  EXPECT_GT(design.worst()->after.evidence, 1.2 * before);
   EXPECT_GT(design.worst()->after.evidence, 3);
   const Motion& motion = design.fitted.motion;
   ASSERT_EQ(motion.sample_count(), 3001);
