@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cmath>
+#include <offnominal/status.hpp>
+
+// Velocity from positions alone, for encoders that send no velocity: a tracking loop of second
+// order with both poles at the bandwidth (R. D. Lorenz, K. W. Van Patten, High-resolution velocity
+// estimation for all-digital, AC servo drives, 1991, without its torque feed-forward).
+
+namespace offnominal {
+
+template <typename Scalar>
+struct VelocityObserverConfig {
+  Scalar bandwidth_rad_s = 200;  // of both poles, > 0
+  Scalar period_s = Scalar(0.001);
+};
+
+template <typename Scalar>
+struct VelocityObserverState {
+  bool started = false;
+  Scalar position{};  // rad or m
+  Scalar velocity{};  // rad/s or m/s
+};
+
+// kInvalidPeriod, or kInvalidFilterPole where the loop would be slower than it samples: bandwidth
+// times period has to stay below 0.5.
+template <typename Scalar>
+[[nodiscard]] Status validate(const VelocityObserverConfig<Scalar>& config) {
+  if (!(std::isfinite(config.period_s) && config.period_s > 0)) return Status::kInvalidPeriod;
+  const Scalar share = config.bandwidth_rad_s * config.period_s;
+  return share > 0 && share < Scalar(0.5) ? Status::kOk : Status::kInvalidFilterPole;
+}
+
+// One tick: the position measured at its end, rad or m. The first call starts at rest there.
+// kNonFinitePosition, and the state unchanged, for a position that is not a number.
+template <typename Scalar>
+[[nodiscard]] Status update(const VelocityObserverConfig<Scalar>& config, Scalar position,
+                            VelocityObserverState<Scalar>& state) {
+  if (!std::isfinite(position)) return Status::kNonFinitePosition;
+  if (!state.started) {
+    state = {true, position, Scalar(0)};
+    return Status::kOk;
+  }
+  // Poles of the sampled loop at exp(-bandwidth period), both.
+  const Scalar pole = std::exp(-config.bandwidth_rad_s * config.period_s);
+  const Scalar innovation = position - (state.position + config.period_s * state.velocity);
+  state.position += config.period_s * state.velocity + (Scalar(1) - pole * pole) * innovation;
+  state.velocity += (Scalar(1) - pole) * (Scalar(1) - pole) / config.period_s * innovation;
+  return Status::kOk;
+}
+
+// A tick without a measurement: the position moves on at the velocity that is known.
+template <typename Scalar>
+constexpr void coast(const VelocityObserverConfig<Scalar>& config,
+                     VelocityObserverState<Scalar>& state) {
+  state.position += config.period_s * state.velocity;
+}
+
+// Largest error of the velocity that the observer can make once it has settled, rad/s or m/s, on a
+// motion whose acceleration stays within +-max_acceleration (rad/s^2 or m/s^2) and positions that
+// are off by at most position_error (half a count): the sums of the magnitudes of its impulse
+// responses. What a bound's velocity_error has to hold.
+template <typename Scalar>
+[[nodiscard]] Scalar velocity_error_bound(const VelocityObserverConfig<Scalar>& config,
+                                          Scalar max_acceleration, Scalar position_error) {
+  const Scalar period = config.period_s;
+  const Scalar pole = std::exp(-config.bandwidth_rad_s * period);
+  const Scalar position_gain = Scalar(1) - pole * pole;
+  const Scalar velocity_gain = (Scalar(1) - pole) * (Scalar(1) - pole) / period;
+  // Error of position and velocity, a = true - estimated, one tick after the other:
+  //   predicted p = a_p + T a_v + T^2/2 acc;  innovation = p + n;  a_p' = p - g_p i;
+  //   a_v' = a_v + T acc - g_v i.
+  const auto response = [&](Scalar acceleration, Scalar noise) {
+    constexpr int kMostTicks = 1 << 20;
+    constexpr Scalar kSettled = Scalar(1e-7);
+    Scalar sum = 0;
+    Scalar error_p = 0;
+    Scalar error_v = 0;
+    for (int tick = 0; tick < kMostTicks; ++tick) {
+      const Scalar now = tick == 0 ? Scalar(1) : Scalar(0);
+      const Scalar predicted =
+          error_p + period * error_v + period * period / Scalar(2) * acceleration * now;
+      const Scalar innovation = predicted + noise * now;
+      error_p = predicted - position_gain * innovation;
+      error_v += period * acceleration * now - velocity_gain * innovation;
+      sum += std::fabs(error_v);
+      if (std::fabs(error_v) + std::fabs(error_p) / period < kSettled * sum) break;
+    }
+    return sum;
+  };
+  return max_acceleration * response(Scalar(1), Scalar(0)) +
+         position_error * response(Scalar(0), Scalar(1));
+}
+
+}  // namespace offnominal
