@@ -19,6 +19,10 @@ void validate(const Fault& fault) {
     throw std::invalid_argument("fault mass_loss: found " + std::to_string(fault.mass_loss) +
                                 ", allowed is 0 to below 1");
   }
+  if (!(fault.payload_kg >= 0.0 && std::isfinite(fault.payload_kg))) {
+    throw std::invalid_argument("fault payload_kg: found " + std::to_string(fault.payload_kg) +
+                                ", allowed is at least 0");
+  }
 }
 
 double time_profile(const Fault& fault, double t_s) {
@@ -31,6 +35,9 @@ TwoLinkParameters faulty_arm(const TwoLinkParameters& healthy, const Fault& faul
   TwoLinkParameters arm = healthy;
   if (fault.kind == FaultKind::kMassLoss) {
     arm.mass1_kg *= 1.0 - fault.mass_loss * time_profile(fault, t_s);
+  }
+  if (fault.kind == FaultKind::kPayload) {
+    arm.mass2_kg += fault.payload_kg * time_profile(fault, t_s);
   }
   return arm;
 }

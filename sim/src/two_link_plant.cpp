@@ -49,7 +49,8 @@ Eigen::Vector2d TwoLinkPlant::fault_function(double t_s, const JointState& state
       break;
     case FaultKind::kNonlinear:
       return time_profile(fault_, t_s) * nonlinear_fault(state);
-    case FaultKind::kMassLoss: {
+    case FaultKind::kMassLoss:
+    case FaultKind::kPayload: {
       if (t_s < fault_.time_s) break;
       const Eigen::Vector2d net = tau - uncertainty_(t_s, state);
       return forward_acceleration(faulty_arm(arm_, fault_, t_s), state, net) -
