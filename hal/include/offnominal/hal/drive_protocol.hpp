@@ -1,0 +1,52 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/messages.hpp>
+#include <offnominal/hal/source.hpp>
+#include <offnominal/hal/status.hpp>
+#include <span>
+
+namespace offnominal::hal {
+
+// What a controller knows of one joint.
+struct JointFeedback {
+  SourceState encoder = SourceState::kNeverSeen;
+  SourceState drive = SourceState::kNeverSeen;
+  Microseconds encoder_time_us = 0;  // when the newest reading came
+  EncoderReading reading;
+  DriveStatus status;
+};
+
+// How drives speak on the bus, as the controller sees it. Nothing blocks, allocates or throws.
+//
+// take(f)                  A frame that has come. kOk: used. kUnknownId: none of this protocol's.
+//                          Otherwise why it was refused; it has changed no more than the counters.
+// feedback(j, now)         Joint j, from 0.
+// outgoing(c, h, into)     The frames of one tick, one command per joint and, when it is due, the
+//                          heartbeat; returns how many, at most kMaxOutgoing. A command that the
+//                          protocol cannot carry is sent as DriveMode::kOff.
+// stop_seen(), clear_stop()  Whether somebody has asked for an emergency stop; latched until
+//                          cleared.
+template <typename P>
+concept DriveProtocol = requires(P& drives, const P& seen, const ReceivedFrame& received,
+                                 std::size_t joint, Microseconds now_us,
+                                 std::span<const TorqueCommand> commands,
+                                 const Heartbeat& heartbeat, std::span<Frame> into) {
+  { P::kJoints } -> std::convertible_to<std::size_t>;
+  { P::kMaxOutgoing } -> std::convertible_to<std::size_t>;
+  { drives.take(received) } -> std::same_as<Status>;
+  { seen.feedback(joint, now_us) } -> std::same_as<JointFeedback>;
+  { drives.outgoing(commands, heartbeat, into) } -> std::same_as<std::size_t>;
+  { seen.stop_seen() } -> std::same_as<bool>;
+  { drives.clear_stop() } -> std::same_as<void>;
+};
+
+// A heartbeat goes out every so many ticks.
+inline constexpr std::uint32_t kHeartbeatTicks = 10;
+// The node number of the controller itself.
+inline constexpr std::uint8_t kControllerNode = 31;
+
+}  // namespace offnominal::hal

@@ -1,0 +1,244 @@
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <offnominal/hal/record.hpp>
+#include <offnominal/hal/status.hpp>
+#include <span>
+
+// What the records mean. hal/offnominal.dbc says the same for other tools, and a test holds the two
+// together. encode() refuses with kInvalidValue what the record cannot carry: a number that is not
+// finite or outside of the range. decode() gives kWrongCrc, or kInvalidValue for content that no
+// encode() makes; what it was to fill is then unchanged.
+
+namespace offnominal::hal {
+
+// Encoder -> controller. Positions are continuous over turns. 2^-18 rad or m per count: +-32, at
+// 1.6 million counts a turn; 2^-10 rad/s or m/s per count of velocity: +-32.
+struct EncoderReading {
+  float position = 0;         // rad or m
+  float velocity = 0;         // rad/s or m/s; 0 where has_velocity is false
+  bool has_velocity = false;  // a drive that sends positions alone says no
+};
+inline constexpr float kPositionPerCount = 0x1p-18F;
+inline constexpr float kVelocityPerCount = 0x1p-10F;
+
+enum class DriveMode : std::uint8_t {
+  kOff = 0,      // no torque
+  kDamping = 1,  // against the motion, as the drive is configured
+  kTorque = 2,   // the torque of the command
+};
+
+// Controller -> drive.
+struct TorqueCommand {
+  DriveMode mode = DriveMode::kOff;
+  float torque = 0;  // N m or N, of the joint; 0 unless the mode is kTorque
+};
+
+// Bits of DriveStatus::flags; the upper half of a byte.
+enum DriveFlag : std::uint8_t {
+  kTorqueLimited = 0x10,   // the drive gives less than was asked for
+  kEncoderFault = 0x20,    // its own encoder
+  kDriveFault = 0x40,      // over-temperature, supply, short circuit
+  kCommandMissing = 0x80,  // it has fallen back by itself, for want of valid commands
+};
+
+// Drive -> controller.
+struct DriveStatus {
+  DriveMode mode = DriveMode::kOff;  // really in
+  std::uint8_t flags = 0;            // of DriveFlag
+  float applied_torque = 0;          // N m or N, over the time since the last status
+};
+
+// States of a controller; docs/sil.md has the picture.
+enum class ControllerState : std::uint8_t {
+  kInit = 0,     // waits for every encoder and drive
+  kPassive = 1,  // evaluates and reports, commands no torque
+  kArmed = 2,    // commands torque
+  kFault = 3,    // safe state, latched until it is re-armed
+};
+
+// Controller -> all.
+struct Heartbeat {
+  ControllerState state = ControllerState::kInit;
+  std::uint8_t fault = 0;   // why it is in kFault: a number of offnominal::Status, hal::Status or
+                            // controller::Fault; 0 otherwise
+  std::uint32_t ticks = 0;  // since the start, modulo 2^24
+};
+
+// Anyone -> all. Whoever sees one has to go to its safe state.
+struct EmergencyStop {
+  std::uint8_t source = 0;  // node that asks for it
+  std::uint8_t reason = 0;  // as Heartbeat::fault
+};
+
+namespace detail {
+
+// Nearest count; false where it needs more than `bits`, sign included, or is the lowest of them,
+// which means "none".
+[[nodiscard]] inline bool to_counts(float value, float per_count, int bits, std::int32_t& counts) {
+  const auto limit = static_cast<float>((1 << (bits - 1)) - 1);
+  const float scaled = value / per_count;
+  if (!(scaled >= -limit && scaled <= limit)) return false;
+  counts = static_cast<std::int32_t>(std::lrint(scaled));
+  return true;
+}
+
+[[nodiscard]] constexpr std::int32_t sign_extended(std::uint32_t value, unsigned bits) {
+  const std::uint32_t sign = 1U << (bits - 1);
+  return static_cast<std::int32_t>((value ^ sign) - sign);
+}
+
+inline constexpr std::int32_t kNoPosition = -(1 << 23);
+inline constexpr std::int32_t kNoVelocity = -(1 << 15);
+
+[[nodiscard]] constexpr bool is_mode(unsigned value) {
+  return value <= static_cast<unsigned>(DriveMode::kTorque);
+}
+
+}  // namespace detail
+
+[[nodiscard]] inline Status encode(const EncoderReading& reading, std::uint8_t counter,
+                                   std::uint16_t data_id, Record& record) {
+  std::int32_t position = 0;
+  std::int32_t velocity = detail::kNoVelocity;
+  if (!detail::to_counts(reading.position, kPositionPerCount, 24, position)) {
+    return Status::kInvalidValue;
+  }
+  if (reading.has_velocity &&
+      !detail::to_counts(reading.velocity, kVelocityPerCount, 16, velocity)) {
+    return Status::kInvalidValue;
+  }
+  Content content{};
+  to_little_endian(static_cast<std::uint32_t>(position), std::span(content).first<3>());
+  to_little_endian(static_cast<std::uint32_t>(velocity), std::span(content).last<2>());
+  record = seal(content, counter, data_id);
+  return Status::kOk;
+}
+
+[[nodiscard]] inline Status decode(std::span<const std::uint8_t, kRecordLength> record,
+                                   std::uint16_t data_id, EncoderReading& reading,
+                                   std::uint8_t& counter) {
+  Content content{};
+  std::uint8_t count = 0;
+  if (const Status status = open(record, data_id, content, count); status != Status::kOk) {
+    return status;
+  }
+  const std::int32_t position =
+      detail::sign_extended(from_little_endian(std::span(content).first<3>()), 24);
+  const std::int32_t velocity =
+      detail::sign_extended(from_little_endian(std::span(content).last<2>()), 16);
+  if (position == detail::kNoPosition) return Status::kInvalidValue;
+  reading.position = static_cast<float>(position) * kPositionPerCount;
+  reading.has_velocity = velocity != detail::kNoVelocity;
+  reading.velocity = reading.has_velocity ? static_cast<float>(velocity) * kVelocityPerCount : 0.0F;
+  counter = count;
+  return Status::kOk;
+}
+
+[[nodiscard]] inline Status encode(const TorqueCommand& command, std::uint8_t counter,
+                                   std::uint16_t data_id, Record& record) {
+  const bool drives = command.mode == DriveMode::kTorque;
+  if (!std::isfinite(command.torque) || (!drives && command.torque != 0)) {
+    return Status::kInvalidValue;
+  }
+  Content content{};
+  to_little_endian(std::bit_cast<std::uint32_t>(command.torque), std::span(content).first<4>());
+  content[4] = static_cast<std::uint8_t>(command.mode);
+  record = seal(content, counter, data_id);
+  return Status::kOk;
+}
+
+[[nodiscard]] inline Status decode(std::span<const std::uint8_t, kRecordLength> record,
+                                   std::uint16_t data_id, TorqueCommand& command,
+                                   std::uint8_t& counter) {
+  Content content{};
+  std::uint8_t count = 0;
+  if (const Status status = open(record, data_id, content, count); status != Status::kOk) {
+    return status;
+  }
+  const auto torque = std::bit_cast<float>(from_little_endian(std::span(content).first<4>()));
+  if (!detail::is_mode(content[4]) || !std::isfinite(torque)) return Status::kInvalidValue;
+  const auto mode = static_cast<DriveMode>(content[4]);
+  if (mode != DriveMode::kTorque && torque != 0) return Status::kInvalidValue;
+  command = {mode, torque};
+  counter = count;
+  return Status::kOk;
+}
+
+[[nodiscard]] inline Status encode(const DriveStatus& drive, std::uint8_t counter,
+                                   std::uint16_t data_id, Record& record) {
+  if (!std::isfinite(drive.applied_torque) || (drive.flags & 0x0FU) != 0) {
+    return Status::kInvalidValue;
+  }
+  Content content{};
+  to_little_endian(std::bit_cast<std::uint32_t>(drive.applied_torque),
+                   std::span(content).first<4>());
+  content[4] = static_cast<std::uint8_t>(static_cast<unsigned>(drive.mode) | drive.flags);
+  record = seal(content, counter, data_id);
+  return Status::kOk;
+}
+
+[[nodiscard]] inline Status decode(std::span<const std::uint8_t, kRecordLength> record,
+                                   std::uint16_t data_id, DriveStatus& drive,
+                                   std::uint8_t& counter) {
+  Content content{};
+  std::uint8_t count = 0;
+  if (const Status status = open(record, data_id, content, count); status != Status::kOk) {
+    return status;
+  }
+  const auto torque = std::bit_cast<float>(from_little_endian(std::span(content).first<4>()));
+  const unsigned mode = content[4] & 0x0FU;
+  if (!detail::is_mode(mode) || !std::isfinite(torque)) return Status::kInvalidValue;
+  drive = {static_cast<DriveMode>(mode), static_cast<std::uint8_t>(content[4] & 0xF0U), torque};
+  counter = count;
+  return Status::kOk;
+}
+
+[[nodiscard]] inline Status encode(const Heartbeat& heartbeat, std::uint8_t counter,
+                                   std::uint16_t data_id, Record& record) {
+  Content content{};
+  content[0] = static_cast<std::uint8_t>(heartbeat.state);
+  content[1] = heartbeat.fault;
+  to_little_endian(heartbeat.ticks, std::span(content).last<3>());
+  record = seal(content, counter, data_id);
+  return Status::kOk;
+}
+
+[[nodiscard]] inline Status decode(std::span<const std::uint8_t, kRecordLength> record,
+                                   std::uint16_t data_id, Heartbeat& heartbeat,
+                                   std::uint8_t& counter) {
+  Content content{};
+  std::uint8_t count = 0;
+  if (const Status status = open(record, data_id, content, count); status != Status::kOk) {
+    return status;
+  }
+  if (content[0] > static_cast<unsigned>(ControllerState::kFault)) return Status::kInvalidValue;
+  heartbeat = {static_cast<ControllerState>(content[0]), content[1],
+               from_little_endian(std::span(content).last<3>())};
+  counter = count;
+  return Status::kOk;
+}
+
+[[nodiscard]] inline Status encode(const EmergencyStop& stop, std::uint8_t counter,
+                                   std::uint16_t data_id, Record& record) {
+  record = seal({stop.source, stop.reason, 0, 0, 0}, counter, data_id);
+  return Status::kOk;
+}
+
+[[nodiscard]] inline Status decode(std::span<const std::uint8_t, kRecordLength> record,
+                                   std::uint16_t data_id, EmergencyStop& stop,
+                                   std::uint8_t& counter) {
+  Content content{};
+  std::uint8_t count = 0;
+  if (const Status status = open(record, data_id, content, count); status != Status::kOk) {
+    return status;
+  }
+  if (content[2] != 0 || content[3] != 0 || content[4] != 0) return Status::kInvalidValue;
+  stop = {content[0], content[1]};
+  counter = count;
+  return Status::kOk;
+}
+
+}  // namespace offnominal::hal

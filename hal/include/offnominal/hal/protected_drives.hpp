@@ -1,0 +1,172 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <offnominal/hal/address.hpp>
+#include <offnominal/hal/drive_protocol.hpp>
+#include <offnominal/hal/messages.hpp>
+#include <offnominal/hal/source.hpp>
+#include <span>
+
+namespace offnominal::hal {
+
+enum class FrameFormat : std::uint8_t {
+  kClassic = 0,  // one frame per joint and message
+  kFd = 1,       // up to 8 joints in one frame
+};
+
+// Records of joints 1, 2, ... in as many frames as the format takes, into the front of `into`;
+// returns how many: one a joint, or one for every 8.
+[[nodiscard]] constexpr std::size_t pack(MessageKind kind, std::span<const Record> records,
+                                         FrameFormat format, std::span<Frame> into) {
+  std::size_t count = 0;
+  if (format == FrameFormat::kClassic) {
+    for (; count < records.size(); ++count) {
+      into[count] = frame_of(kind, static_cast<std::uint8_t>(count), records[count]);
+    }
+    return count;
+  }
+  for (std::size_t first = 0; first < records.size(); first += kMaxRecordsPerFrame) {
+    const std::size_t size = std::min<std::size_t>(kMaxRecordsPerFrame, records.size() - first);
+    static_cast<void>(group_frame_of(kind, static_cast<std::uint8_t>(first),
+                                     records.subspan(first, size), into[count++]));
+  }
+  return count;
+}
+
+// One sender's messages of one kind, joint by joint, as they come in.
+template <typename Message, std::size_t Joints>
+class Inbox {
+ public:
+  // The record of joint `node`, which came at time_us.
+  [[nodiscard]] Status take(const SourceConfig& config, MessageKind kind, std::size_t node,
+                            std::span<const std::uint8_t, kRecordLength> record,
+                            Microseconds time_us) {
+    Source& source = sources_[node];
+    Message message;
+    std::uint8_t counter = 0;
+    Status status =
+        decode(record, data_id_of(kind, static_cast<std::uint8_t>(node)), message, counter);
+    if (status != Status::kOk) {
+      reject(config, source);
+      return status;
+    }
+    status = accept(config, counter, time_us, source);
+    if (status == Status::kOk) newest_[node] = message;
+    return status;
+  }
+
+  [[nodiscard]] const Message& newest(std::size_t node) const { return newest_[node]; }
+  [[nodiscard]] const Source& source(std::size_t node) const { return sources_[node]; }
+
+ private:
+  std::array<Source, Joints> sources_{};
+  std::array<Message, Joints> newest_{};
+};
+
+// offnominal's own frames (address.hpp, messages.hpp), every record with counter and CRC.
+template <std::size_t Joints>
+class ProtectedDrives {
+ public:
+  static_assert(Joints >= 1 && Joints < kControllerNode);
+  static constexpr std::size_t kJoints = Joints;
+  static constexpr std::size_t kMaxOutgoing = Joints + 1;
+
+  ProtectedDrives(const SourceConfig& encoder, const SourceConfig& drive, FrameFormat format)
+      : encoder_config_(encoder), drive_config_(drive), format_(format) {}
+
+  [[nodiscard]] Status take(const ReceivedFrame& received) {
+    Address address;
+    if (const Status status = address_of(received.frame, address); status != Status::kOk) {
+      return status;
+    }
+    Status worst = Status::kOk;
+    for (std::size_t i = 0; i < address.count; ++i) {
+      const std::size_t node = address.first_node + i;
+      const Status status =
+          take_record(address.kind, node, record_in(received.frame, i), received.time_us);
+      if (status != Status::kOk) worst = status;
+    }
+    return worst;
+  }
+
+  [[nodiscard]] JointFeedback feedback(std::size_t joint, Microseconds now_us) const {
+    const Source& encoder = encoders_.source(joint);
+    return {state_of(encoder_config_, encoder, now_us),
+            state_of(drive_config_, drives_.source(joint), now_us), encoder.time_us,
+            encoders_.newest(joint), drives_.newest(joint)};
+  }
+
+  [[nodiscard]] std::size_t outgoing(std::span<const TorqueCommand> commands,
+                                     const Heartbeat& heartbeat, std::span<Frame> into) {
+    std::array<Record, Joints> records{};
+    for (std::size_t joint = 0; joint < Joints; ++joint) {
+      const auto node = static_cast<std::uint8_t>(joint);
+      const std::uint16_t id = data_id_of(MessageKind::kTorqueCommand, node);
+      const std::uint8_t counter = torque_counters_[joint]++;
+      if (encode(commands[joint], counter, id, records[joint]) != Status::kOk) {
+        static_cast<void>(encode(TorqueCommand{}, counter, id, records[joint]));
+      }
+    }
+    std::size_t count = pack(MessageKind::kTorqueCommand, records, format_, into);
+    if (heartbeat.ticks % kHeartbeatTicks != 0) return count;
+    Record record{};
+    static_cast<void>(encode(heartbeat, heartbeat_counter_++,
+                             data_id_of(MessageKind::kHeartbeat, kControllerNode), record));
+    into[count++] = frame_of(MessageKind::kHeartbeat, kControllerNode, record);
+    return count;
+  }
+
+  [[nodiscard]] bool stop_seen() const { return stop_seen_; }
+  void clear_stop() { stop_seen_ = false; }
+
+  // Of what has come in: for reports.
+  [[nodiscard]] const Source& encoder_source(std::size_t joint) const {
+    return encoders_.source(joint);
+  }
+  [[nodiscard]] const Source& drive_source(std::size_t joint) const {
+    return drives_.source(joint);
+  }
+
+ private:
+  Status take_record(MessageKind kind, std::size_t node,
+                     std::span<const std::uint8_t, kRecordLength> record, Microseconds time_us) {
+    switch (kind) {
+      case MessageKind::kEncoder:
+        // What a CAN FD group has too much, by its length.
+        if (node >= Joints) return Status::kOk;
+        return encoders_.take(encoder_config_, kind, node, record, time_us);
+      case MessageKind::kDriveStatus:
+        if (node >= Joints) return Status::kOk;
+        return drives_.take(drive_config_, kind, node, record, time_us);
+      case MessageKind::kEmergencyStop: {
+        EmergencyStop stop;
+        std::uint8_t counter = 0;
+        const Status status =
+            decode(record, data_id_of(kind, static_cast<std::uint8_t>(node)), stop, counter);
+        // An old one that is played back is a stop as well: there is no wrong time for it.
+        if (status == Status::kOk) stop_seen_ = true;
+        return status;
+      }
+      case MessageKind::kTorqueCommand:
+      case MessageKind::kHeartbeat:
+        break;
+    }
+    return Status::kUnknownId;
+  }
+
+  SourceConfig encoder_config_;
+  SourceConfig drive_config_;
+  FrameFormat format_;
+  Inbox<EncoderReading, Joints> encoders_;
+  Inbox<DriveStatus, Joints> drives_;
+  std::array<std::uint8_t, Joints> torque_counters_{};
+  std::uint8_t heartbeat_counter_ = 0;
+  bool stop_seen_ = false;
+};
+
+static_assert(DriveProtocol<ProtectedDrives<2>>);
+
+}  // namespace offnominal::hal
