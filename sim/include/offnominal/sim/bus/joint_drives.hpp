@@ -1,0 +1,153 @@
+// The drives' end of the bus: what stands behind the joints and obeys torque commands.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <offnominal/hal/address.hpp>
+#include <offnominal/hal/messages.hpp>
+#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/source.hpp>
+#include <optional>
+#include <span>
+
+namespace offnominal::sim {
+
+/// How a drive treats what it is told.
+struct DriveConfig {
+  hal::SourceConfig commands{.max_age_us = 5000, .sequence_needed = 1};
+  double max_torque_nm = 1000.0;
+  double damping_nm_s = 1.0;  ///< N m s/rad, in DriveMode::kDamping
+  /// What it does by itself when commands stay away: kOff or kDamping.
+  hal::DriveMode fallback = hal::DriveMode::kOff;
+};
+
+/// N drives with offnominal's own frames. Each has a watch-dog: without a valid command for
+/// commands.max_age_us it falls back, says so in its status, and obeys again with the next valid
+/// command that is not kTorque: a torque has to be asked for anew.
+template <std::size_t N>
+class JointDrives {
+ public:
+  JointDrives(const DriveConfig& config, hal::FrameFormat format)
+      : config_(config), format_(format) {}
+
+  /// Whether the frame was a torque command of one of these drives, or of several, all valid.
+  bool take(const hal::ReceivedFrame& received) {
+    hal::Address address;
+    if (address_of(received.frame, address) != hal::Status::kOk) return false;
+    if (address.kind == hal::MessageKind::kEmergencyStop) stop_at(address, received.frame);
+    if (address.kind != hal::MessageKind::kTorqueCommand) return false;
+    bool valid = true;
+    for (std::size_t i = 0; i < address.count && address.first_node + i < N; ++i) {
+      const std::size_t joint = address.first_node + i;
+      const bool good =
+          commands_.take(config_.commands, address.kind, joint, record_in(received.frame, i),
+                         received.time_us) == hal::Status::kOk;
+      if (good) obey(joint);
+      valid = valid && good;
+    }
+    return valid;
+  }
+
+  /// Watch-dog: to be called every tick.
+  void check_age(hal::Microseconds now_us) {
+    for (std::size_t j = 0; j < N; ++j) {
+      const hal::SourceState state = state_of(config_.commands, commands_.source(j), now_us);
+      if (state == hal::SourceState::kStale || state == hal::SourceState::kError) fall_back(j);
+    }
+  }
+
+  /// Torque at the joint's speed (rad/s), N m, as it is really given.
+  [[nodiscard]] double torque_nm(std::size_t joint, double speed_rad_s) const {
+    const Drive& drive = drives_[joint];
+    switch (drive.mode) {
+      case hal::DriveMode::kTorque:
+        return limited(static_cast<double>(commands_.newest(joint).torque));
+      case hal::DriveMode::kDamping:
+        return limited(-config_.damping_nm_s * speed_rad_s);
+      case hal::DriveMode::kOff:
+        break;
+    }
+    return 0.0;
+  }
+
+  [[nodiscard]] hal::DriveMode mode(std::size_t joint) const { return drives_[joint].mode; }
+  [[nodiscard]] bool all_in_torque_mode() const {
+    for (const Drive& drive : drives_) {
+      if (drive.mode != hal::DriveMode::kTorque) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] const hal::Source& source(std::size_t joint) const {
+    return commands_.source(joint);
+  }
+
+  /// Frames of one tick, at most 2 N: readings, then statuses with the torque that was applied. A
+  /// joint without a reading has an encoder that has failed: its frame is missing, or in a group
+  /// its record is zero.
+  std::size_t frames(const std::array<std::optional<hal::EncoderReading>, N>& readings,
+                     const std::array<double, N>& applied_nm, std::span<hal::Frame> into) {
+    std::array<hal::Record, N> encoders{};
+    std::array<hal::Record, N> statuses{};
+    for (std::size_t j = 0; j < N; ++j) {
+      Drive& drive = drives_[j];
+      const auto node = static_cast<std::uint8_t>(j);
+      std::uint8_t flags = drive.fell_back ? hal::kCommandMissing : 0;
+      if (!readings[j]) flags |= hal::kEncoderFault;
+      if (drive.mode == hal::DriveMode::kTorque && applied_nm[j] != wanted_nm(j)) {
+        flags |= hal::kTorqueLimited;
+      }
+      // A reading that no frame can carry leaves a record of zeros, which no receiver takes.
+      if (readings[j]) {
+        static_cast<void>(encode(*readings[j], drive.encoder_counter++,
+                                 data_id_of(hal::MessageKind::kEncoder, node), encoders[j]));
+      }
+      static_cast<void>(encode(
+          hal::DriveStatus{drive.mode, flags, static_cast<float>(applied_nm[j])},
+          drive.status_counter++, data_id_of(hal::MessageKind::kDriveStatus, node), statuses[j]));
+    }
+    const std::size_t count = pack(hal::MessageKind::kEncoder, encoders, format_, into);
+    return count + pack(hal::MessageKind::kDriveStatus, statuses, format_, into.subspan(count));
+  }
+
+ private:
+  struct Drive {
+    hal::DriveMode mode = hal::DriveMode::kOff;
+    bool fell_back = false;
+    std::uint8_t encoder_counter = 0;
+    std::uint8_t status_counter = 0;
+  };
+
+  [[nodiscard]] double wanted_nm(std::size_t joint) const {
+    return static_cast<double>(commands_.newest(joint).torque);
+  }
+  [[nodiscard]] double limited(double torque) const {
+    return std::clamp(torque, -config_.max_torque_nm, config_.max_torque_nm);
+  }
+  void obey(std::size_t joint) {
+    Drive& drive = drives_[joint];
+    const hal::DriveMode asked = commands_.newest(joint).mode;
+    if (drive.fell_back && asked == hal::DriveMode::kTorque) return;
+    drive.fell_back = false;
+    drive.mode = asked;
+  }
+  void stop_at(const hal::Address& address, const hal::Frame& frame) {
+    hal::EmergencyStop stop;
+    std::uint8_t counter = 0;
+    const std::uint16_t id = data_id_of(address.kind, address.first_node);
+    if (decode(record_in(frame, 0), id, stop, counter) != hal::Status::kOk) return;
+    for (std::size_t j = 0; j < N; ++j) fall_back(j);
+  }
+  void fall_back(std::size_t joint) {
+    Drive& drive = drives_[joint];
+    drive.fell_back = true;
+    drive.mode = config_.fallback;
+  }
+  DriveConfig config_;
+  hal::FrameFormat format_;
+  hal::Inbox<hal::TorqueCommand, N> commands_;
+  std::array<Drive, N> drives_{};
+};
+
+}  // namespace offnominal::sim
