@@ -1,0 +1,93 @@
+// The paper's arm and its controller at the two ends of an in-process bus, in lock-step.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <offnominal/controller/joint_controller.hpp>
+#include <offnominal/hal/in_process_bus.hpp>
+#include <offnominal/hal/protected_drives.hpp>
+
+#include "offnominal/sim/bus/plant_node.hpp"
+#include "offnominal/sim/trajectory.hpp"
+#include "paper/two_link_robot.hpp"
+#include "robot/monitor_config_of.hpp"
+
+namespace offnominal::test {
+
+class ArmOnBus {
+ public:
+  using Scalar = float;
+  using Controller = controller::JointController<2, 35, Scalar>;
+  using Net = hal::InProcessNet<3>;
+  static constexpr hal::Microseconds kPeriodUs = 1000;
+
+  explicit ArmOnBus(const sim::Fault& fault = {}, bool accommodate = false,
+                    const sim::PlantNodeConfig& plant = {})
+      : ArmOnBus(fault, config(accommodate), plant) {}
+
+  ArmOnBus(const sim::Fault& fault, const Controller::Config& config,
+           const sim::PlantNodeConfig& plant,
+           const sim::JointState& start = sim::on_trajectory(sim::paper_trajectory(0.0)))
+      : drives_(kSource, kSource, plant.format),
+        plant_(sim::TwoLinkPlant({}, fault, sim::paper_uncertainty()), start, plant) {
+    if (Controller::create(config, controller) != Status::kOk) throw std::logic_error("refused");
+  }
+
+  static Controller::Config config(bool accommodate) {
+    const tools::RobotDescription robot = tools::paper::two_link_robot();
+    Controller::Config config;
+    config.monitor = tools::monitor_config_of<2, Scalar>(robot);
+    config.gains = tools::gains_of<2, Scalar>(robot);
+    if (!accommodate) config.monitor.max_compensation = {};
+    return config;
+  }
+
+  // One period: the plant moves and measures, then the controller has its tick.
+  void tick() {
+    now_us_ += kPeriodUs;
+    net.set_time(now_us_);
+    if (plant_runs) plant_.tick(now_us_ + kPeriodUs, plant_port_);
+    tick_controller();
+  }
+  void tick_controller(std::uint32_t late_ticks = 0) {
+    controller.step(
+        now_us_, late_ticks,
+        [](Scalar time_s) {
+          const sim::DesiredMotion motion = sim::paper_trajectory(static_cast<double>(time_s));
+          return Reference<2, Scalar>{motion.q.cast<Scalar>(), motion.dq.cast<Scalar>(),
+                                      motion.ddq.cast<Scalar>()};
+        },
+        controller_port_, drives_, *data);
+  }
+  void run(double seconds) {
+    for (long i = std::lround(seconds * 1000); i > 0; --i) tick();
+  }
+  // From cold to commanding torque.
+  bool start() {
+    for (int i = 0; i < 10 && data->state != hal::ControllerState::kPassive; ++i) tick();
+    return controller.arm(*data);
+  }
+  bool clear_fault() { return controller.clear_fault(drives_, *data); }
+  void stop(controller::Fault reason) { controller.stop(reason, controller_port_, *data); }
+
+  [[nodiscard]] const sim::PlantNode& plant() const { return plant_; }
+  [[nodiscard]] const hal::ProtectedDrives<2>& drives() const { return drives_; }
+  [[nodiscard]] hal::Microseconds now() const { return now_us_; }
+
+  Net net;  // port 0: controller, 1: plant, 2: whoever else
+  bool plant_runs = true;
+  Controller controller;
+  std::unique_ptr<Controller::Data> data = std::make_unique<Controller::Data>();
+
+ private:
+  // Two ticks without a frame are borne, at the third the source is stale.
+  static constexpr hal::SourceConfig kSource{.max_age_us = 2500};
+
+  Net::Port controller_port_ = net.port(0);
+  Net::Port plant_port_ = net.port(1);
+  hal::ProtectedDrives<2> drives_;
+  sim::PlantNode plant_;
+  hal::Microseconds now_us_ = 0;
+};
+
+}  // namespace offnominal::test
