@@ -44,9 +44,19 @@ class Parser {
   Parser(std::string file, int joint_count) : file_(std::move(file)), joints_(joint_count) {}
 
   ChannelMap map(const toml::table& table) const {
-    check_keys(table, "channels", {"time", "position", "velocity", "torque", "extra"});
+    check_keys(table, "channels",
+               {"time", "position", "velocity", "torque", "extra", "dbc", "at_rest"});
     ChannelMap map;
     map.time.source = "t";
+    map.at_rest = flag(table, "at_rest");
+    if (map.at_rest) {
+      for (const char* key : {"time", "velocity", "extra"}) {
+        const toml::node* node = table.get(key);
+        if (node == nullptr) continue;
+        fail(*node, std::string("channels.") + key, "a channel beside at_rest = true",
+             "position and torque", "leave it out: readings at rest have none");
+      }
+    }
     if (const toml::node* node = table.get("time")) {
       map.time = channel(*node, "channels.time", &kTimeUnits);
     }
@@ -64,10 +74,22 @@ class Parser {
       map.velocity[i] = channel(*velocity[i].node, velocity[i].place, &kVelocityUnits);
     }
     if (const toml::node* node = table.get("extra")) extra(*node, map);
+    if (const toml::node* node = table.get("dbc")) map.dbc = path_of(*node, "channels.dbc");
     return map;
   }
 
  private:
+  // A path in the file is relative to the file's folder.
+  std::string path_of(const toml::node& node, const std::string& place) const {
+    const auto* text = node.as_string();
+    if (text == nullptr || text->get().empty()) {
+      fail(node, place, type_of(node), "the path of a DBC file");
+    }
+    const std::filesystem::path path(text->get());
+    return path.is_absolute() ? path.string()
+                              : (std::filesystem::path(file_).parent_path() / path).string();
+  }
+
   struct Entry {
     const toml::node* node;
     std::string place;
@@ -87,6 +109,13 @@ class Parser {
       if (contains(allowed, key.str())) continue;
       fail(node, place, "unknown key \"" + std::string(key.str()) + "\"", list_of(allowed));
     }
+  }
+
+  bool flag(const toml::table& table, const std::string& key) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return false;
+    if (!node->is_boolean()) fail(*node, "channels." + key, type_of(*node), "true or false");
+    return node->as_boolean()->get();
   }
 
   // The entries of one list, one per joint; empty where the key is absent and may be.
@@ -212,7 +241,11 @@ ChannelMap read_channels_file(const std::filesystem::path& file, int joint_count
 
 toml::table channels_table(const ChannelMap& channels) {
   toml::table table;
-  table.insert("time", to_table(channels.time));
+  if (channels.at_rest) {
+    table.insert("at_rest", true);
+  } else {
+    table.insert("time", to_table(channels.time));
+  }
   toml::array position;
   for (const Channel& channel : channels.position) position.push_back(to_table(channel));
   table.insert("position", std::move(position));
@@ -235,6 +268,7 @@ toml::table channels_table(const ChannelMap& channels) {
     for (const auto& [name, channel] : channels.extra) extra.insert(name, to_table(channel));
     table.insert("extra", std::move(extra));
   }
+  if (!channels.dbc.empty()) table.insert("dbc", channels.dbc);
   return table;
 }
 

@@ -16,6 +16,10 @@
 //   torque = [{source = "vir", scale_source = "gtau", unit = "V"}]
 //   [channels.extra]                       # further quantities, by the name they get
 //   temp1 = {source = "T_motor", offset = -273.15}
+//   dbc = "drive.dbc"                      # in [channels]: for logs of candump, see
+//   candump_log.hpp
+//
+// Hold maps (hold_map.hpp) have at_rest = true, a position and a torque, and nothing else.
 //
 // A channel's SI value is scale * scale_source * source + offset: scale is 1, offset 0 and
 // scale_source absent unless given. Where there is one joint the list's brackets may be left out.

@@ -7,7 +7,8 @@
 
 namespace offnominal::tools {
 
-// One recording in SI units, evenly sampled, time ascending, every number finite.
+// One recording in SI units, evenly sampled, time ascending, every number finite. Or a hold map
+// (hold_map.hpp), where at_rest.
 struct Log {
   std::string file;              // as the user named it
   double period_s = 0;           // sampling period
@@ -17,7 +18,9 @@ struct Log {
   Eigen::MatrixXd tau;           // torque of the drive, N m or N
   std::vector<bool> dq_derived;  // per joint: dq is the derivative of the low-passed q
   std::map<std::string, Eigen::VectorXd> extra;  // further quantities, by name
-  std::vector<std::string> remarks;              // what a reader of results has to know, in words
+  bool at_rest = false;
+  Eigen::MatrixXd approach;          // where at_rest: 1 or -1, as q; else empty
+  std::vector<std::string> remarks;  // what a reader of results has to know, in words
 
   [[nodiscard]] int joint_count() const { return static_cast<int>(q.cols()); }
   [[nodiscard]] Eigen::Index sample_count() const { return t_s.size(); }

@@ -9,8 +9,10 @@
 
 #include "common/error.hpp"
 #include "common/nearest.hpp"
+#include "log/candump_log.hpp"
 #include "log/channels.hpp"
 #include "log/csv_log.hpp"
+#include "log/hold_map.hpp"
 #include "log/mat_log.hpp"
 #include "log/sampling.hpp"
 
@@ -85,8 +87,13 @@ class Assembler {
       fail("channels", fmt::format("positions of {} joints", map.position.size()),
            fmt::format("{}, as many as the robot has", joints_));
     }
-    log_.t_s = values_of(map.time, "time");
-    check_time();
+    if (map.at_rest) {
+      log_.t_s = values_of(map.position[0], "position of joint 1");
+      check_readings();
+    } else {
+      log_.t_s = values_of(map.time, "time");
+      check_time();
+    }
     const Index samples = log_.t_s.size();
     log_.q.resize(samples, joints_);
     log_.dq = Eigen::MatrixXd::Zero(samples, joints_);
@@ -99,6 +106,11 @@ class Assembler {
       log_.dq_derived.push_back(!measured);
       if (!measured) continue;
       log_.dq.col(i) = sampled(*map.velocity[joint], fmt::format("velocity of joint {}", i + 1));
+    }
+    if (map.at_rest) {
+      make_hold_map(log_);
+      remark_constants();
+      return std::move(log_);
     }
     for (const auto& [name, channel] : map.extra) log_.extra[name] = sampled(channel, name);
     make_even(log_);
@@ -195,7 +207,7 @@ class Assembler {
     VectorXd values = values_of(channel, what);
     if (values.size() != log_.t_s.size()) {
       fail("variable " + channel.source, fmt::format("{} values", values.size()),
-           fmt::format("{}, as many as the time has", log_.t_s.size()));
+           fmt::format("{}, as many as the other channels have", log_.t_s.size()));
     }
     return values;
   }
@@ -211,6 +223,12 @@ class Assembler {
            fmt::format("{:.9g} s after {:.9g} s", t[row], t[row - 1]),
            "time that ascends from sample to sample");
     }
+  }
+
+  void check_readings() const {
+    if (log_.t_s.size() >= kMinReadings) return;
+    fail("", fmt::format("{} readings", log_.t_s.size()),
+         fmt::format("{} readings or more", kMinReadings), "hold the joint at more positions");
   }
 
   void remark_constants() {
@@ -241,7 +259,7 @@ NeedOf needs_of(const std::optional<ChannelMap>& channels) {
     wanted.insert(channel.source);
     if (!channel.scale_source.empty()) wanted.insert(channel.scale_source);
   };
-  want(channels->time);
+  if (!channels->at_rest) want(channels->time);
   for (const Channel& channel : channels->position) want(channel);
   for (const auto& channel : channels->velocity) {
     if (channel) want(*channel);
@@ -253,27 +271,49 @@ NeedOf needs_of(const std::optional<ChannelMap>& channels) {
   };
 }
 
+NamedColumns read_columns(const std::filesystem::path& path,
+                          const std::optional<ChannelMap>& channels, const NeedOf& need_of) {
+  if (is_mat_file(path)) return read_mat(path, need_of);
+  if (!is_candump_file(path)) return read_csv(path, need_of);
+  if (!channels || channels->dbc.empty()) return read_candump(path, nullptr, need_of);
+  const Dbc dbc = read_dbc(channels->dbc);
+  return read_candump(path, &dbc, need_of);
+}
+
 }  // namespace
 
 Log read_log(const std::filesystem::path& path, int joint_count,
              const std::optional<ChannelMap>& channels) {
   if (!std::filesystem::exists(path)) {
-    throw InputError({path.string(), "", "no such file", "a recording, CSV or MATLAB .mat", ""});
+    throw InputError(
+        {path.string(), "", "no such file", "a recording: CSV, MATLAB .mat or candump -l", ""});
   }
   if (std::filesystem::is_directory(path)) {
-    throw InputError({path.string(), "", "a folder", "a recording, CSV or MATLAB .mat", ""});
+    throw InputError(
+        {path.string(), "", "a folder", "a recording: CSV, MATLAB .mat or candump -l", ""});
   }
   const NeedOf need_of = needs_of(channels);
-  Assembler assembler(is_mat_file(path) ? read_mat(path, need_of) : read_csv(path, need_of),
-                      joint_count);
+  Assembler assembler(read_columns(path, channels, need_of), joint_count);
   return channels ? assembler.with(*channels) : assembler.with_common_header();
+}
+
+Log read_log_or_hold_map(const std::filesystem::path& path, const RobotDescription& robot,
+                         const std::optional<std::filesystem::path>& channels_file) {
+  if (!channels_file) return read_log(path, robot.joint_count(), robot.channels);
+  return read_log(path, robot.joint_count(),
+                  read_channels_file(*channels_file, robot.joint_count()));
 }
 
 Log read_log(const std::filesystem::path& path, const RobotDescription& robot,
              const std::optional<std::filesystem::path>& channels_file) {
-  if (!channels_file) return read_log(path, robot.joint_count(), robot.channels);
-  return read_log(path, robot.joint_count(),
-                  read_channels_file(*channels_file, robot.joint_count()));
+  Log log = read_log_or_hold_map(path, robot, channels_file);
+  if (log.at_rest) {
+    throw InputError(
+        {path.string(), "", "a hold map, as the channels' at_rest = true says",
+         "a recording in time",
+         "hold maps are for explain and for add --all-found; give another --channels"});
+  }
+  return log;
 }
 
 }  // namespace offnominal::tools

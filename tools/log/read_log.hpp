@@ -8,7 +8,7 @@
 
 namespace offnominal::tools {
 
-// Reads a recording, CSV or MATLAB .mat, told apart by content and extension.
+// Reads a recording: CSV, MATLAB .mat or a log of candump -l, told apart by content and extension.
 //
 // With a channel map its names are looked up; without one the common header is expected:
 // t, q1..qn, dq1..dqn, tau1..taun in SI units, in any order; a missing dq is derived from q, and
@@ -25,10 +25,16 @@ namespace offnominal::tools {
 Log read_log(const std::filesystem::path& path, int joint_count,
              const std::optional<ChannelMap>& channels);
 
-// The recording as the robot's file maps it, unless `channels_file` names a file that does.
+// The recording as the robot's file maps it, unless `channels_file` names a file that does. Throws
+// InputError where that says that it is a hold map.
 Log read_log(const std::filesystem::path& path, const RobotDescription& robot,
              const std::optional<std::filesystem::path>& channels_file = std::nullopt);
 
+// The same for a recording in time or a hold map (hold_map.hpp), as the channels say.
+Log read_log_or_hold_map(const std::filesystem::path& path, const RobotDescription& robot,
+                         const std::optional<std::filesystem::path>& channels_file);
+
+inline constexpr int kMinReadings = 200;  // of a hold map
 inline constexpr double kSamplingJitter = 0.01;
 inline constexpr int kMinSamples = 10;
 inline constexpr double kMaxGap = 5;

@@ -1,0 +1,153 @@
+// The code of ODrive's protocol against ODrive's own DBC file, bit by bit of what matters.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <offnominal/hal/can_simple.hpp>
+
+#include "log/dbc.hpp"
+#include "support/recordings.hpp"
+
+namespace offnominal::hal {
+namespace {
+
+using Drives = CanSimpleDrives<2>;
+using tools::Dbc;
+using tools::DbcMessage;
+using tools::DbcSignal;
+
+constexpr float kTurn = 2 * std::numbers::pi_v<float>;
+
+class CanSimple : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto file = test_file();
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "SKIP_ no " << file;
+    dbc = tools::read_dbc(file);
+  }
+  static std::filesystem::path test_file() {
+    return offnominal::test::recordings_dir() / "can_odrive_dbc/odrive-cansimple.dbc";
+  }
+  const DbcMessage& message(std::uint32_t id) const {
+    const DbcMessage* found = dbc.find(id, false);
+    if (found == nullptr) throw std::runtime_error("no message " + std::to_string(id));
+    return *found;
+  }
+  std::map<std::string, double> decoded(const Frame& frame) const {
+    std::map<std::string, double> values;
+    for (const DbcSignal& signal : message(frame.id).signals) {
+      values[signal.name] =
+          signal.value_in(std::span<const std::uint8_t>(frame.data).first(frame.length));
+    }
+    return values;
+  }
+  // Sets the bits of an integer signal.
+  void set(Frame& frame, const std::string& name, std::uint64_t value) const {
+    for (const DbcSignal& signal : message(frame.id).signals) {
+      if (signal.name != name) continue;
+      for (int bit = 0; bit < signal.length; ++bit) {
+        const auto at = static_cast<std::size_t>(signal.start_bit + bit);
+        const auto mask = static_cast<std::uint8_t>(1U << (at % 8));
+        auto& byte = frame.data[at / 8];
+        byte = static_cast<std::uint8_t>((value >> bit & 1U) != 0 ? byte | mask : byte & ~mask);
+      }
+      return;
+    }
+    throw std::runtime_error("no signal " + name);
+  }
+  Frame frame_with(std::uint32_t id) const {
+    Frame frame;
+    frame.id = id;
+    frame.length = static_cast<std::uint8_t>(message(id).length);
+    return frame;
+  }
+
+  Dbc dbc;
+  // Axis 0 turns the first joint, axis 1 the second through a gear of 10 that reverses.
+  Drives drives{{}, {{{0, kTurn}, {1, -kTurn / 10}}}};
+};
+
+TEST_F(CanSimple, ReadsEncoderEstimates) {
+  for (const std::uint32_t axis : {0U, 1U}) {
+    Frame frame = frame_with(axis << 5U | 9U);
+    set(frame, "Pos_Estimate", std::bit_cast<std::uint32_t>(1.5F));
+    set(frame, "Vel_Estimate", std::bit_cast<std::uint32_t>(-0.25F));
+    EXPECT_EQ(drives.feedback(axis, 0).encoder, SourceState::kNeverSeen);
+    ASSERT_EQ(drives.take({frame, 1000}), Status::kOk);
+    const JointFeedback feedback = drives.feedback(axis, 1000);
+    const float per_turn = axis == 0 ? kTurn : -kTurn / 10;
+    EXPECT_FLOAT_EQ(feedback.reading.position, 1.5F * per_turn);
+    EXPECT_FLOAT_EQ(feedback.reading.velocity, -0.25F * per_turn);
+    EXPECT_EQ(feedback.encoder, SourceState::kValid);
+    EXPECT_EQ(drives.feedback(axis, 4001).encoder, SourceState::kStale);
+  }
+}
+
+TEST_F(CanSimple, ReadsHeartbeats) {
+  Frame frame = frame_with(1);
+  set(frame, "Axis_State", 8);
+  ASSERT_EQ(drives.take({frame, 0}), Status::kOk);
+  EXPECT_EQ(drives.feedback(0, 0).status.mode, DriveMode::kTorque);
+  EXPECT_EQ(drives.feedback(0, 0).status.flags, 0);
+  EXPECT_EQ(drives.feedback(0, 250001).drive, SourceState::kStale);
+  const auto flags_with = [&](const char* signal, std::uint64_t value) {
+    Frame bad = frame;
+    set(bad, signal, value);
+    EXPECT_EQ(drives.take({bad, 0}), Status::kOk);
+    return drives.feedback(0, 0).status.flags;
+  };
+  EXPECT_EQ(flags_with("Axis_Error", 0x800), kDriveFault);
+  EXPECT_EQ(flags_with("Motor_Error_Flag", 1), kDriveFault);
+  EXPECT_EQ(flags_with("Controller_Error_Flag", 1), kDriveFault);
+  EXPECT_EQ(flags_with("Encoder_Error_Flag", 1), kEncoderFault);
+  set(frame, "Axis_State", 1);
+  ASSERT_EQ(drives.take({frame, 0}), Status::kOk);
+  EXPECT_EQ(drives.feedback(0, 0).status.mode, DriveMode::kOff);
+}
+
+TEST_F(CanSimple, AsksForClosedLoopThenSendsTorque) {
+  std::array<TorqueCommand, 2> commands{{{DriveMode::kTorque, 2.0F}, {DriveMode::kTorque, 3.0F}}};
+  std::array<Frame, Drives::kMaxOutgoing> frames;
+  ASSERT_EQ(drives.outgoing(commands, {.ticks = 1}, frames), 4U);
+  EXPECT_EQ(decoded(frames[0]).at("Axis_Requested_State"), 8);
+  EXPECT_EQ(decoded(frames[1]).at("Input_Torque"), 2.0);
+  EXPECT_NEAR(decoded(frames[3]).at("Input_Torque"), -0.3, 1e-6);
+  // Not in closed loop, it gives nothing.
+  EXPECT_EQ(drives.feedback(0, 0).status.applied_torque, 0.0F);
+  for (const std::uint32_t axis : {0U, 1U}) {
+    Frame frame = frame_with(axis << 5U | 1U);
+    set(frame, "Axis_State", 8);
+    ASSERT_EQ(drives.take({frame, 0}), Status::kOk);
+  }
+  ASSERT_EQ(drives.outgoing(commands, {.ticks = 2}, frames), 2U);
+  EXPECT_EQ(frames[0].id, 14U);
+  EXPECT_EQ(frames[1].id, 32U + 14U);
+  EXPECT_EQ(drives.feedback(0, 0).status.applied_torque, 2.0F);
+  commands.fill({});
+  ASSERT_EQ(drives.outgoing(commands, {.ticks = 3}, frames), 2U);
+  EXPECT_EQ(decoded(frames[0]).at("Axis_Requested_State"), 1);
+}
+
+TEST_F(CanSimple, RefusesWhatIsNoneOfItsFrames) {
+  Frame frame = frame_with(9);
+  frame.length = 7;
+  EXPECT_EQ(drives.take({frame, 0}), Status::kWrongLength);
+  frame = frame_with(9);
+  frame.remote = true;
+  EXPECT_EQ(drives.take({frame, 0}), Status::kNotADataFrame);
+  frame = frame_with(9);
+  frame.extended = true;
+  EXPECT_EQ(drives.take({frame, 0}), Status::kUnknownId);
+  frame.extended = false;
+  frame.id = 5U << 5U | 9U;
+  EXPECT_EQ(drives.take({frame, 0}), Status::kUnknownId);
+  frame = frame_with(9);
+  set(frame, "Pos_Estimate", 0x7FC00000);
+  EXPECT_EQ(drives.take({frame, 0}), Status::kInvalidValue);
+  EXPECT_EQ(drives.feedback(0, 0).encoder, SourceState::kNeverSeen);
+}
+
+}  // namespace
+}  // namespace offnominal::hal

@@ -1,0 +1,185 @@
+#include "log/candump_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <offnominal/hal/address.hpp>
+#include <offnominal/hal/messages.hpp>
+
+#include "common/error.hpp"
+#include "common/file.hpp"
+#include "log/candump_text.hpp"
+#include "log/csv_text.hpp"
+#include "log/read_log.hpp"
+#include "paper/recording.hpp"
+#include "paper/two_link_robot.hpp"
+#include "sil/sil.hpp"
+#include "tools/support/temporary_folder.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+TEST(CandumpLine, IsReadAsItWasWritten) {
+  hal::Frame classic;
+  classic.id = 0x181;
+  classic.length = 3;
+  classic.data = {0x2A, 0x36, 0xFF};
+  hal::Frame fd = classic;
+  fd.fd = true;
+  fd.extended = true;
+  fd.id = 0x1ABCDEF0;
+  fd.length = 12;
+  hal::Frame request;
+  request.id = 5;
+  request.remote = true;
+  request.length = 8;
+  for (const hal::Frame& frame : {classic, fd, request}) {
+    const std::string line = candump_line(frame, 12'000'345, "vcan0");
+    const auto read = parse_candump_line(line.substr(0, line.size() - 1));
+    ASSERT_TRUE(read.has_value()) << line;
+    EXPECT_EQ(read->time_s, 12.000345);
+    EXPECT_EQ(read->interface, "vcan0");
+    EXPECT_EQ(read->frame.id, frame.id);
+    EXPECT_EQ(read->frame.extended, frame.extended);
+    EXPECT_EQ(read->frame.fd, frame.fd);
+    EXPECT_EQ(read->frame.remote, frame.remote);
+    EXPECT_EQ(read->frame.length, frame.length);
+    EXPECT_EQ(read->frame.data, frame.data);
+  }
+  EXPECT_EQ(candump_line(classic, 12'000'345, "vcan0"), "(12.000345) vcan0 181#2A36FF\n");
+}
+
+TEST(CandumpLine, OfAnotherFormIsNone) {
+  for (const char* line :
+       {"", "t,q1", "(1.0) vcan0", "(1.0 vcan0 181#00", "(x) vcan0 181#00", "(1.0) vcan0 181#0",
+        "(1.0) vcan0 18#00", "(1.0) vcan0 181#000102030405060708", "(1.0) vcan0 FFF#00",
+        "(1.0) vcan0 181##", "(1.0) vcan0 181#RX", "(1.0) vcan0 181#zz", "(nan) vcan0 181#00"}) {
+    EXPECT_FALSE(parse_candump_line(line).has_value()) << line;
+  }
+}
+
+class SilLog : public testing::Test {
+ protected:
+  void record(hal::FrameFormat format) {
+    sil::Scenario scenario;
+    scenario.experiment.duration_s = 1.0;
+    scenario.experiment.record = true;
+    scenario.format = format;
+    const auto wire = sil::make_in_process_wire();
+    const auto result = run_in_lock_step(robot, scenario, *wire, sil::kInProcess,
+                                         [&](const hal::Frame& frame, hal::Microseconds time_us) {
+                                           text += candump_line(frame, time_us, "vcan0");
+                                         });
+    as_csv = recording_of(robot, scenario.experiment, result.run);
+  }
+  Log read() const {
+    const test::TemporaryFolder folder;
+    write_file_atomically(folder / "run.log", text);
+    return read_log(folder / "run.log", robot);
+  }
+
+  RobotDescription robot = paper::two_link_robot();
+  std::string text;
+  Log as_csv;
+};
+
+// The log of the frames holds the run, to what a frame resolves.
+TEST_F(SilLog, IsTheRecordingOfTheRun) {
+  for (const auto format : {hal::FrameFormat::kClassic, hal::FrameFormat::kFd}) {
+    text.clear();
+    record(format);
+    const Log log = read();
+    ASSERT_GT(log.sample_count(), as_csv.sample_count() - 1);
+    EXPECT_NEAR(log.period_s, 0.001, 1e-9);
+    const Eigen::Index rows = as_csv.sample_count() - 1;
+    const auto tail = [&](const Eigen::MatrixXd& all) { return all.bottomRows(rows).eval(); };
+    EXPECT_LT((tail(log.q) - tail(as_csv.q)).cwiseAbs().maxCoeff(), 1e-5);
+    EXPECT_LT((tail(log.dq) - tail(as_csv.dq)).cwiseAbs().maxCoeff(), 1e-3);
+    EXPECT_LT((tail(log.tau) - tail(as_csv.tau)).cwiseAbs().maxCoeff(), 1e-4);
+  }
+}
+
+TEST_F(SilLog, LeavesOutRecordsThatAreNotIntact) {
+  record(hal::FrameFormat::kClassic);
+  const Log intact = read();
+  const std::size_t at = text.find("vcan0 181#", text.size() / 2) + 10;
+  text[at] = text[at] == '0' ? '1' : '0';
+  const Log damaged = read();
+  // The row is there, with the neighbour's reading of joint 2.
+  EXPECT_EQ(damaged.sample_count(), intact.sample_count());
+  EXPECT_LT((damaged.q - intact.q).cwiseAbs().maxCoeff(), 1e-2);
+  EXPECT_GT((damaged.q - intact.q).cwiseAbs().maxCoeff(), 0.0);
+}
+
+// GIVEN a log whose writer was killed THEN it is read to its last whole line.
+TEST_F(SilLog, IsReadToItsLastWholeLine) {
+  record(hal::FrameFormat::kClassic);
+  text.resize(text.size() - 5);
+  EXPECT_GT(read().sample_count(), 900);
+}
+
+TEST_F(SilLog, SaysWhichLineIsNone) {
+  record(hal::FrameFormat::kClassic);
+  const std::size_t second = text.find('\n') + 1;
+  text.insert(second, "nonsense\n");
+  try {
+    read();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("line 2"));
+  }
+}
+
+TEST_F(SilLog, APauseIsRefused) {
+  record(hal::FrameFormat::kClassic);
+  // Joint 2 says nothing for 0.1 s.
+  std::string kept;
+  std::size_t line = 0;
+  for (std::size_t begin = 0; begin < text.size(); ++line) {
+    const std::size_t end = text.find('\n', begin) + 1;
+    const std::string content = text.substr(begin, end - begin);
+    begin = end;
+    if (line > 3000 && line < 3600 && content.find(" 181#") != std::string::npos) continue;
+    kept += content;
+  }
+  text = kept;
+  EXPECT_THROW(read(), InputError);
+}
+
+TEST(CandumpLog, OfAnotherProtocolIsReadThroughItsDbcFile) {
+  const test::TemporaryFolder folder;
+  write_file_atomically(folder / "drive.dbc",
+                        "BO_ 9 Axis0: 8 D\n"
+                        " SG_ Vel : 32|32@1- (1,0) [0|0] \"rev/s\" M\n"
+                        " SG_ Pos : 0|32@1- (1,0) [0|0] \"rev\" M\n"
+                        "BO_ 14 Torque0: 4 M\n"
+                        " SG_ Torque : 0|16@1- (0.01,0) [0|0] \"Nm\" D\n");
+  write_file_atomically(folder / "channels.toml",
+                        "dbc = \"drive.dbc\"\n"
+                        "position = [{source = \"Axis0.Pos\", scale = 0.5}]\n"
+                        "torque = [\"Torque0.Torque\"]\n");
+  std::string text;
+  for (int i = 0; i < 20; ++i) {
+    hal::Frame frame;
+    frame.id = 9;
+    frame.length = 8;
+    frame.data[0] = static_cast<std::uint8_t>(i);
+    text += candump_line(frame, 1'700'000'000'000'000 + 10'000 * i, "can0");
+    frame = {};
+    frame.id = 14;
+    frame.length = 4;
+    frame.data[0] = static_cast<std::uint8_t>(2 * i);
+    text += candump_line(frame, 1'700'000'000'000'300 + 10'000 * i, "can0");
+  }
+  write_file_atomically(folder / "drive.log", text);
+  RobotDescription robot;
+  robot.joints.resize(1);
+  const Log log = read_log(folder / "drive.log", robot, folder / "channels.toml");
+  ASSERT_EQ(log.sample_count(), 20);
+  EXPECT_NEAR(log.period_s, 0.01, 1e-6);
+  EXPECT_EQ(log.q(19, 0), 9.5);
+  EXPECT_NEAR(log.tau(19, 0), 0.38, 1e-12);
+}
+
+}  // namespace
+}  // namespace offnominal::tools
