@@ -90,6 +90,8 @@ struct ChannelMap {
   std::vector<std::optional<Channel>> velocity;  // none: derived from the position
   std::vector<Channel> torque;                   // per joint
   std::map<std::string, Channel> extra;          // name -> channel
+  std::string dbc = {};  // DBC file that decodes a candump log; empty: offnominal's own frames
+  bool at_rest = false;  // the recordings are hold maps (log/hold_map.hpp): time is not read
 };
 
 // An effect that the robot's file knows. `fitted`: its numbers come from a recording, `add` may fit

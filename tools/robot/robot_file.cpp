@@ -26,16 +26,6 @@ const std::vector<std::string> kRootKeys{"format",  "name",   "source",    "grav
                                          "joint",   "effect", "estimator", "uncertainty_bound",
                                          "channels"};
 
-toml::table parse_toml(std::string_view text, const std::string& file) {
-  try {
-    return toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    throw InputError({file, "line " + std::to_string(error.source().begin.line),
-                      "text that is not TOML: " + std::string(error.description()),
-                      "TOML 1.0, every key once", "correct the line"});
-  }
-}
-
 std::vector<RobotJoint> read_joints(const TomlTable& root) {
   const std::vector<TomlTable> tables = root.tables("joint", joint_keys());
   if (tables.empty() || tables.size() > static_cast<std::size_t>(kMaxJoints)) {

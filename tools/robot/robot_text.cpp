@@ -210,7 +210,11 @@ std::string channel_list(const Channels& channels, TextOf&& text_of) {
 
 void write_channels(Writer& out, const ChannelMap& channels) {
   out.table("[channels]");
-  out.value("time", channel_text(channels.time));
+  if (channels.at_rest) {
+    out.value("at_rest", "true");
+  } else {
+    out.value("time", channel_text(channels.time));
+  }
   out.value("position", channel_list(channels.position, channel_text));
   const bool any_velocity = std::any_of(channels.velocity.begin(), channels.velocity.end(),
                                         [](const auto& channel) { return channel.has_value(); });

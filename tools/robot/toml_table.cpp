@@ -278,4 +278,14 @@ void TomlTable::refuse_unknown_keys() const {
   }
 }
 
+toml::table parse_toml(std::string_view text, const std::string& file) {
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    throw InputError({file, "line " + std::to_string(error.source().begin.line),
+                      "text that is not TOML: " + std::string(error.description()),
+                      "TOML 1.0, every key once", "correct the line"});
+  }
+}
+
 }  // namespace offnominal::tools

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace offnominal::tools {
@@ -23,6 +24,9 @@ struct NumberRule {
 [[nodiscard]] NumberRule any_number(std::string unit);
 [[nodiscard]] NumberRule positive(std::string unit, std::string mend = {});
 [[nodiscard]] NumberRule not_negative(std::string unit, std::string mend = {});
+
+/// The document of a file's text. Throws InputError, with the line, where it is not TOML.
+[[nodiscard]] toml::table parse_toml(std::string_view text, const std::string& file);
 
 /// One table of a TOML file, read strictly: every refusal is an InputError with the file, the line,
 /// the key's path, what was found, what is allowed and how to mend it. Keys that are not among

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <offnominal/controller/fault.hpp>
 #include <offnominal/model/effect_list.hpp>
 #include <offnominal/status.hpp>
 #include <set>
@@ -38,7 +39,9 @@ TEST(Troubleshooting, HasAParagraphForEveryStatusAndNoOther) {
   const std::string text = document("troubleshooting.md");
   std::set<std::string> headings;
   for (int number = 0; number <= std::numeric_limits<std::uint8_t>::max(); ++number) {
-    const std::string name = name_of(static_cast<Status>(number));
+    // One space of numbers for the core, the bus and the controller.
+    const std::string name =
+        number == 0 ? name_of(Status::kOk) : name_of(static_cast<controller::Fault>(number));
     if (name == "Unknown") continue;
     const std::string heading = "### " + std::to_string(number) + " " + name;
     headings.insert(heading);

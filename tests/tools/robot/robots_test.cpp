@@ -21,7 +21,9 @@ TEST(Robots, AreAllReadAndAcceptedByTheCore) {
     if (entry.path().extension() != ".toml") continue;
     SCOPED_TRACE(entry.path());
     ++count;
-    const RobotDescription robot = read_robot_file(entry.path());
+    RobotDescription robot = read_robot_file(entry.path());
+    // A file that is there for analysis alone has no bound: any will do to look at the rest.
+    if (!robot.bound) robot.bound.emplace();
     EXPECT_EQ(robot.name, entry.path().stem());
     EXPECT_FALSE(robot.source.empty());
     const auto status = with_joint_count(robot.joint_count(), [&]<int N>() {
