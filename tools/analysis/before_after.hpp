@@ -24,4 +24,7 @@ struct BeforeAfter {
 // Joint by joint, of two models on one recording.
 std::vector<BeforeAfter> before_after(const Comparison& before, const Comparison& after);
 
+// A table of them, a line per joint: relative and rms error before and after, and the fall.
+std::string text_of(const std::vector<BeforeAfter>& joints);
+
 }  // namespace offnominal::tools

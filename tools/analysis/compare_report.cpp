@@ -214,15 +214,7 @@ std::string text_of(const Comparison& comparison, const CompareNames& names,
                         percent(joint.relative_error_percent), percent(joint.fit_percent));
   }
   if (against != nullptr) {
-    text += fmt::format("{:<6} {:>22} {:>22} {:>10}\n", "joint", "before", "after", "fall");
-    for (const BeforeAfter& error : before_after(*against, comparison)) {
-      const auto both = [&](double percent_of, double rms) {
-        return fmt::format("{} ({:.4g} {})", percent(percent_of), rms, error.unit);
-      };
-      text += fmt::format("{:<6} {:>22} {:>22} {:>8.1f} %\n", error.joint + 1,
-                          both(error.before_percent, error.before_rms),
-                          both(error.after_percent, error.after_rms), 100 * error.fall());
-    }
+    text += text_of(before_after(*against, comparison));
     text += "before: " + names.against_file + "\n";
   }
   return text + verdict_of(comparison, against) + "\n";

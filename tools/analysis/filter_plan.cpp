@@ -60,6 +60,7 @@ VectorXd kept_samples(const FilterPlan& plan, const Eigen::Ref<const VectorXd>& 
 }
 
 VectorXd filtered(const FilterPlan& plan, const Eigen::Ref<const VectorXd>& signal) {
+  if (std::isinf(plan.torque_cutoff_hz)) return kept_samples(plan, signal);
   return kept_samples(plan,
                       zero_phase_low_pass(signal, plan.torque_cutoff_hz, plan.sample_rate_hz));
 }

@@ -17,7 +17,7 @@ struct FilterRequest {
 // low-pass at position_cutoff_hz before it is differentiated. Torque, model torque and every
 // regressor column pass one and the same low-pass at torque_cutoff_hz; then edge_samples are cut at
 // both ends and every decimation-th sample is kept. Both filters are 4th-order Butterworth, forward
-// and backward (M. Gautier, ICRA 1997).
+// and backward (M. Gautier, ICRA 1997). An infinite cut-off is no low-pass: readings at rest.
 struct FilterPlan {
   double sample_rate_hz = 0;
   double position_cutoff_hz = 0;

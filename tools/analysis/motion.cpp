@@ -7,6 +7,11 @@ namespace offnominal::tools {
 
 Motion motion_of(const Log& log, const FilterPlan& plan) {
   Motion motion{log.t_s, log.q, log.q, log.q};
+  if (log.at_rest) {
+    motion.dq.setZero();
+    motion.ddq.setZero();
+    return motion;
+  }
   for (Eigen::Index joint = 0; joint < log.q.cols(); ++joint) {
     if (log.q.col(joint).maxCoeff() == log.q.col(joint).minCoeff()) {
       // A joint that is held: the filter's rounding must not pass for motion.

@@ -18,7 +18,7 @@ struct Motion {
 };
 
 // Velocity and acceleration both come from the low-passed position, whatever velocity the log has:
-// then all three belong together, and none of them lags.
+// then all three belong together, and none of them lags. Of a hold map: its positions, at rest.
 Motion motion_of(const Log& log, const FilterPlan& plan);
 
 }  // namespace offnominal::tools

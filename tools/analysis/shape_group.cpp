@@ -58,7 +58,7 @@ std::vector<double> frequency_grid(const VectorXd& t_s, double torque_cutoff_hz)
   return even_grid(2 * whole, 2 * std::numbers::pi * torque_cutoff_hz, 0.25 * whole);
 }
 
-// As long as the recording lasts, and down to a twelfth of it.
+// From a twelfth of the recording to one and a half times its length.
 std::vector<double> duration_grid(const VectorXd& t_s) {
   constexpr int kPoints = 13;
   const double duration = t_s[t_s.size() - 1] - t_s[0];

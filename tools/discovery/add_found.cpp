@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "analysis/inverse_model.hpp"
 #include "analysis/measurement.hpp"
 #include "common/nearest.hpp"
 
@@ -23,6 +26,34 @@ std::vector<std::string> objections_to(const Explanation& e) {
                   list_of(e.not_in_robot_files))};
 }
 
+// Of the readings of a hold map, less the friction that holds by the direction of approach.
+std::vector<BeforeAfter> at_rest(const RobotDescription& before, const RobotDescription& after,
+                                 const Log& log) {
+  const Motion held = motion_of(log, {});
+  const auto error_of = [&](const RobotDescription& robot) {
+    Eigen::MatrixXd error = log.tau - model_torque(robot, held);
+    for (Eigen::Index joint = 0; joint < error.cols(); ++joint) {
+      const auto approach = log.approach.col(joint);
+      const double readings = approach.squaredNorm();
+      if (!(readings > 0)) continue;
+      error.col(joint) -= approach * (approach.dot(error.col(joint)) / readings);
+    }
+    return error;
+  };
+  const Eigen::MatrixXd was = error_of(before);
+  const Eigen::MatrixXd is = error_of(after);
+  const double root = std::sqrt(static_cast<double>(log.sample_count()));
+  std::vector<BeforeAfter> joints;
+  for (Eigen::Index i = 0; i < log.tau.cols(); ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    const double torque = log.tau.col(i).norm();
+    joints.push_back({joint, unit_of(Quantity::kEffort, before.joints[joint].joint.type),
+                      100 * was.col(i).norm() / torque, 100 * is.col(i).norm() / torque,
+                      was.col(i).norm() / root, is.col(i).norm() / root});
+  }
+  return joints;
+}
+
 }  // namespace
 
 AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& logs,
@@ -34,6 +65,10 @@ AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& l
   if (!added.objections.empty()) return added;
   const auto compare_on = [&](const Log& log, bool held_out) {
     if (on_progress) on_progress("comparing both models on " + log.file);
+    if (log.at_rest) {
+      added.gains.push_back({log.file, held_out, at_rest(robot, added.explanation.improved, log)});
+      return;
+    }
     const Measurement measured = measure(log, {});
     added.gains.push_back(
         {log.file, held_out,
@@ -73,17 +108,8 @@ ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
 std::string text_of(const AddedFindings& added, const ExplainNames& names) {
   std::string text = text_of(added.explanation, names);
   for (const Gain& gain : added.gains) {
-    text += fmt::format("\n{}{}\n{:<6} {:>26} {:>26} {:>10}\n", gain.log,
-                        gain.held_out ? ", not used for the fit" : "", "joint", "error before",
-                        "error after", "fall");
-    for (const BeforeAfter& error : gain.joints) {
-      const auto both = [&](double percent, double rms) {
-        return fmt::format("{:.2f} % ({:.4g} {})", percent, rms, error.unit);
-      };
-      text += fmt::format("{:<6} {:>26} {:>26} {:>8.1f} %\n", error.joint + 1,
-                          both(error.before_percent, error.before_rms),
-                          both(error.after_percent, error.after_rms), 100 * error.fall());
-    }
+    text += fmt::format("\n{}{}\n{}", gain.log, gain.held_out ? ", not used for the fit" : "",
+                        text_of(gain.joints));
   }
   for (const std::string& objection : added.objections) {
     text += "\nNothing was written: " + objection + "\n";

@@ -24,7 +24,8 @@ struct AddedFindings {
 };
 
 // Searches as explain() does and compares the robot with everything that was found to the robot as
-// it was, with the filter of `offnominal compare`. Errors as of explain().
+// it was, with the filter of `offnominal compare`; on hold maps reading by reading, less the
+// friction that holds by the direction of approach. Errors as of explain().
 AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& logs,
                         const std::vector<Log>& holdout, const ExplainOptions& options,
                         const OnProgress& on_progress);

@@ -12,7 +12,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternative) {
-  constexpr double kTellApart = 3;
   const RowLayout& layout = data.layout;
   const RowLayout::Blocks& blocks = chosen.remainder.blocks;
   const VectorXd mine = layout.weighted(chosen.residual, chosen.joint_weights);

@@ -6,6 +6,10 @@
 
 namespace offnominal::tools::discovery {
 
+// Two models tell apart where the mean difference of their blocks' squared errors is at least so
+// many of its standard errors.
+inline constexpr double kTellApart = 3;
+
 // Whether a model with another effect explains every block of time about as well as the chosen one:
 // the mean difference of the blocks' squared errors is within three of its standard errors.
 bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternative);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <limits>
 
 namespace offnominal::tools::discovery {
 
@@ -13,6 +14,10 @@ VectorXd simulated_position_error(const Data& data, const VectorXd& residual) {
   constexpr double kWindowS = 0.5;
   const RowLayout& layout = data.layout;
   const Index joints = layout.joint_count();
+  if (data.recordings[0].at_rest) {
+    return VectorXd::Constant(joints, std::numeric_limits<double>::quiet_NaN());
+  }
+  const VectorXd error = layout.while_moving(residual);
   VectorXd sum = VectorXd::Zero(joints);
   double count = 0;
   for (std::size_t r = 0; r < layout.recording_count(); ++r) {
@@ -37,7 +42,7 @@ VectorXd simulated_position_error(const Data& data, const VectorXd& residual) {
       VectorXd torque(joints);
       for (Index j = 0; j < joints; ++j) {
         m.col(j) = mass[static_cast<std::size_t>(j)].row(i).transpose();
-        torque[j] = residual[layout.begin(r, j) + i];
+        torque[j] = error[layout.begin(r, j) + i];
       }
       const VectorXd acceleration = m.ldlt().solve(torque);
       position += h * velocity + 0.5 * h * h * acceleration;

@@ -8,7 +8,8 @@ namespace offnominal::tools::discovery {
 
 // Root mean square position error per joint, rad or m, of forward simulations over short windows
 // that each start on the measured motion: the torque error, through the mass matrix, integrated
-// twice along the measured motion (first order in the error).
+// twice along the measured motion (first order in the error). NaN of hold maps: nothing moves
+// there.
 Eigen::VectorXd simulated_position_error(const Data& data, const Eigen::VectorXd& residual);
 
 }  // namespace offnominal::tools::discovery

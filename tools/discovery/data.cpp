@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "discovery/effects/effects.hpp"
@@ -28,7 +29,22 @@ Data::Data(std::vector<Workspace> made, const RobotDescription& robot,
   target = torque - layout.stack_all(recordings, model);
 }
 
+double sample_rate_of(const Log& log) {
+  constexpr double kBlocks = 300;
+  constexpr double kFewestReadings = 5;
+  if (!log.at_rest) return log.sample_rate_hz();
+  const auto readings = static_cast<double>(log.sample_count());
+  return std::max(kFewestReadings, readings / kBlocks) / kShortestBlockS;
+}
+
 FilterPlan discovery_filter(const std::vector<Log>& logs, const RobotDescription& robot) {
+  if (logs.front().at_rest) {
+    FilterPlan none;
+    none.sample_rate_hz = sample_rate_of(logs.front());
+    none.position_cutoff_hz = std::numeric_limits<double>::infinity();
+    none.torque_cutoff_hz = std::numeric_limits<double>::infinity();
+    return none;
+  }
   // An encoder step, uniformly distributed, twice differentiated and low-passed, may make an
   // acceleration error of this share of the motion's own.
   constexpr double kShare = 0.02;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "discovery/band_shift.hpp"
 #include "discovery/confirm.hpp"
 #include "discovery/estimates.hpp"
 
@@ -35,10 +36,28 @@ void describe_joints(const SearchResult& from, Explanation& to) {
   }
 }
 
+// Intervals that hold noise, and what the model's simplifications do: as far as a number moves in
+// narrower bands counts as one standard deviation of that.
+std::vector<std::vector<Estimate>> estimates_with_discrepancy(const Relinearised& fitted) {
+  constexpr double kTwoSided95 = 1.96;
+  auto estimates = estimates_of(Regression(*fitted.data), fitted.terms, fitted.fit);
+  const auto shifts = largest_shifts_in_narrower_bands(fitted);
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    for (std::size_t p = 0; p < estimates[i].size(); ++p) {
+      Estimate& one = estimates[i][p];
+      if (!one.ci95) continue;
+      const double noise = ((*one.ci95)[1] - (*one.ci95)[0]) / 2;
+      const double half = std::hypot(noise, kTwoSided95 * shifts[i][p]);
+      one.ci95 = {one.value.value - half, one.value.value + half};
+    }
+  }
+  return estimates;
+}
+
 void describe_findings(const SearchResult& from, Explanation& to) {
   const Data& data = from.regression.data();
-  const auto estimates =
-      estimates_of(Regression(*from.fitted.data), from.fitted.terms, from.fitted.fit);
+  if (from.found.accepted.empty()) return;
+  const auto estimates = estimates_with_discrepancy(from.fitted);
   const VectorXd simulated_after = simulated_position_error(data, from.found.fit.residual);
   const VectorXd held_after = from.hold_out.rms(from.found.held_out.back());
   for (std::size_t i = 0; i < from.found.accepted.size(); ++i) {
@@ -96,6 +115,16 @@ void describe_shifts(const SearchResult& from, Explanation& to) {
   }
 }
 
+void describe_hold_friction(const SearchResult& from, Explanation& to) {
+  const Data& data = from.regression.data();
+  for (std::size_t i = 0; i < data.nuisance.terms.size(); ++i) {
+    const NuisanceTerm& term = data.nuisance.terms[i];
+    if (term.kind != NuisanceTerm::Kind::kApproach) continue;
+    to.hold_friction.push_back({term.joint, from.found.fit.nuisance[static_cast<Index>(i)],
+                                effort_unit(from.robot, term.joint)});
+  }
+}
+
 void describe_series(const SearchResult& from, Explanation& to) {
   const Data& data = from.regression.data();
   const Workspace& at = data.recordings[0];
@@ -125,6 +154,7 @@ void describe(const SearchResult& result, Explanation& to) {
   describe_findings(result, to);
   describe_rejections(result, to);
   describe_shifts(result, to);
+  describe_hold_friction(result, to);
   describe_series(result, to);
   to.where = structure_of(result.regression.data(), result.found.fit.residual);
   for (const VectorXd& residual : result.found.held_out) {

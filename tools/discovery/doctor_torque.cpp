@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "discovery/doctor_checks.hpp"
+#include "discovery/standstill.hpp"
 
 namespace offnominal::tools::discovery {
 namespace {
@@ -166,6 +167,21 @@ void find_torque_sign(const TorquePair& pair, std::vector<DataFault>& faults) {
   faults.insert(faults.end(), found.begin(), found.end());
 }
 
+namespace {
+
+// Of a joint that stands still friction holds a part: its torque stays what it is, at no limit.
+VectorXd while_moving(const Log& log, const RobotDescription& robot, Index joint) {
+  const VectorXd moving = moving_samples(
+      log, joint, robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit);
+  std::vector<double> kept;
+  for (Index i = 0; i < moving.size(); ++i) {
+    if (moving[i] > 0) kept.push_back(log.tau(i, joint));
+  }
+  return Eigen::Map<const VectorXd>(kept.data(), static_cast<Index>(kept.size()));
+}
+
+}  // namespace
+
 void find_saturation(const Log& log, const RobotDescription& robot,
                      std::vector<DataFault>& faults) {
   // An extreme value counts as reached within this share of the torque's range.
@@ -176,8 +192,11 @@ void find_saturation(const Log& log, const RobotDescription& robot,
   // Where torque is at its extremes most of the time, it switches between two levels: dry friction.
   constexpr double kLargestShareAtExtreme = 0.5;
   constexpr double kAtLimit = 0.98;
+  // A drive's limits are not that far apart: a joint that waits where little is asked of it stays
+  // near zero, and that is the lowest value where all of its torques have one sign.
+  constexpr double kSmallestOfLargest = 0.3;
   for (Index joint = 0; joint < log.tau.cols(); ++joint) {
-    const VectorXd tau = log.tau.col(joint);
+    const VectorXd tau = while_moving(log, robot, joint);
     const double low = tau.minCoeff();
     const double high = tau.maxCoeff();
     const double near = kNearExtreme * (high - low);
@@ -188,6 +207,7 @@ void find_saturation(const Log& log, const RobotDescription& robot,
     double at = 0;
     bool at_limit = false;
     for (const double end : {low, high}) {
+      if (std::abs(end) < kSmallestOfLargest * std::max(std::abs(low), std::abs(high))) continue;
       const auto distance = (tau.array() - end).abs();
       const auto reached = static_cast<double>((distance <= near).count());
       const auto next = static_cast<double>((distance <= 2 * near).count()) - reached;

@@ -4,6 +4,21 @@
 
 namespace offnominal::tools::discovery {
 
+std::vector<ShapePoint> product_grid(const std::vector<ShapeRange>& ranges) {
+  std::vector<ShapePoint> points{{}};
+  for (const ShapeRange& range : ranges) {
+    std::vector<ShapePoint> longer;
+    for (const ShapePoint& point : points) {
+      for (const double value : range.grid) {
+        longer.push_back(point);
+        longer.back().push_back(value);
+      }
+    }
+    points = std::move(longer);
+  }
+  return points;
+}
+
 std::vector<ShapeRange> EffectCandidate::shapes(const std::vector<Workspace>& /*at*/,
                                                 Eigen::Index /*joint*/) const {
   return {};
@@ -28,6 +43,10 @@ bool EffectCandidate::is_physical(const Eigen::VectorXd& /*coefficients*/) const
 
 bool EffectCandidate::applies(const Workspace& at, Eigen::Index joint) const {
   return at.top_speed[joint] > 0;
+}
+
+bool EffectCandidate::acts_at_rest(const Workspace& /*at*/, Eigen::Index /*joint*/) const {
+  return false;
 }
 
 const std::vector<std::unique_ptr<const EffectCandidate>>& all_candidates() {

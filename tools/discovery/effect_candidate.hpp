@@ -37,6 +37,9 @@ struct ShapeRange {
   [[nodiscard]] bool is_searched() const { return kind != Kind::kDiscrete && grid.size() >= 2; }
 };
 
+// Every combination of the ranges' grid values; one empty point where there are no ranges.
+std::vector<ShapePoint> product_grid(const std::vector<ShapeRange>& ranges);
+
 struct NamedValue {
   std::string name;
   double value = 0;
@@ -81,6 +84,8 @@ class EffectCandidate {
   [[nodiscard]] virtual bool is_physical(const Eigen::VectorXd& coefficients) const;
   // Whether the effect can act on this joint of the robot.
   [[nodiscard]] virtual bool applies(const Workspace& at, Eigen::Index joint) const;
+  // Whether it acts on this joint where nothing moves: what hold maps are searched for.
+  [[nodiscard]] virtual bool acts_at_rest(const Workspace& at, Eigen::Index joint) const;
   // Takes the place of the nuisance time skew (nuisance.hpp) once it is in the model.
   [[nodiscard]] virtual bool replaces_skew() const { return false; }
   // Its shape at a reversal becomes a nuisance once it is in the model.

@@ -4,6 +4,8 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "discovery/regimes.hpp"
+
 namespace offnominal::tools::discovery {
 
 using Eigen::Index;
@@ -25,6 +27,11 @@ VectorXd shape_derivative(const Data& data, const Term& term, const VectorXd& co
   return (columns_of(data, above) - columns_of(data, below)) * coefficients / (2 * step);
 }
 
+struct Covariance {
+  MatrixXd matrix;      // of the unknowns
+  double quantile = 0;  // of Student's t, two-sided 95 %
+};
+
 // Where one term's numbers stand in the covariance.
 struct Place {
   Index first = 0;
@@ -33,14 +40,14 @@ struct Place {
 };
 
 std::vector<Estimate> of_term(const Data& data, const Term& term, const VectorXd& coefficients,
-                              const MatrixXd& covariance, const Place& place, double quantile) {
+                              const std::vector<Covariance>& covariances, const Place& place) {
   const JointType type =
       data.recordings[0].rigid.joints[static_cast<std::size_t>(term.joint)].joint.type;
   const auto named = [&](const VectorXd& c, const ShapePoint& shape) {
     return term.effect->parameters(type, c, shape, term.ranges);
   };
   const std::vector<NamedValue> at = named(coefficients, term.shape);
-  const Index unknowns = covariance.rows();
+  const Index unknowns = covariances.empty() ? 0 : covariances[0].matrix.rows();
   MatrixXd slope = MatrixXd::Zero(static_cast<Index>(at.size()), std::max<Index>(unknowns, 1));
   const auto differentiate = [&](Index column, double step, const auto& moved) {
     if (column < 0 || !(step > 0)) return;
@@ -71,7 +78,10 @@ std::vector<Estimate> of_term(const Data& data, const Term& term, const VectorXd
     Estimate estimate{at[i], std::nullopt};
     if (unknowns > 0) {
       const VectorXd row = slope.row(static_cast<Index>(i)).transpose();
-      const double half = quantile * std::sqrt(std::max(0.0, row.dot(covariance * row)));
+      double half = 0;
+      for (const Covariance& one : covariances) {
+        half = std::max(half, one.quantile * std::sqrt(std::max(0.0, row.dot(one.matrix * row))));
+      }
       if (std::isfinite(half) && half > 0) {
         estimate.ci95 = {at[i].value - half, at[i].value + half};
       }
@@ -137,36 +147,50 @@ ScaledColumns weighted_columns(const Linearised& model, const RowLayout& layout,
   return scaled;
 }
 
-struct Covariance {
-  MatrixXd matrix;      // of the unknowns; empty where there are too few blocks
-  double quantile = 0;  // of Student's t, two-sided 95 %
-};
+// Sum over the groups of the outer product of their scores.
+MatrixXd meat_of(const RowLayout::Blocks& groups, const MatrixXd& columns,
+                 const VectorXd& residual) {
+  MatrixXd scores = MatrixXd::Zero(groups.count, columns.cols());
+  for (Index row = 0; row < residual.size(); ++row) {
+    scores.row(groups.of_row[static_cast<std::size_t>(row)]) += residual[row] * columns.row(row);
+  }
+  return scores.transpose() * scores;
+}
 
-Covariance covariance_of(const Linearised& model, const RowLayout& layout, const ModelFit& fit) {
+// One covariance that holds for errors that are independent between blocks of time, and one for
+// each way to group the samples by what the joint does: a model that is slightly wrong is wrong in
+// the same way whenever the joint does the same, and no length of recording averages that out.
+std::vector<Covariance> covariances_of(const Linearised& model, const Data& data,
+                                       const ModelFit& fit) {
+  constexpr double kUpper = 0.975;
+  const RowLayout& layout = data.layout;
   const ScaledColumns scaled = weighted_columns(model, layout, fit);
   const RowLayout::Blocks& blocks = fit.remainder.blocks;
   const VectorXd residual = layout.weighted(fit.residual, fit.joint_weights);
   const Index unknowns = scaled.columns.cols();
-  MatrixXd scores = MatrixXd::Zero(blocks.count, unknowns);
-  for (Index row = 0; row < layout.rows(); ++row) {
-    scores.row(blocks.of_row[static_cast<std::size_t>(row)]) +=
-        residual[row] * scaled.columns.row(row);
-  }
-  MatrixXd meat = scores.transpose() * scores;
   // A prior is off by one standard deviation, whatever this one robot shows of it.
-  meat.diagonal() += fit.prior_weight * fit.prior_weight *
-                     scaled.columns.bottomRows(unknowns).diagonal().cwiseAbs2();
+  const VectorXd of_priors = fit.prior_weight * fit.prior_weight *
+                             scaled.columns.bottomRows(unknowns).diagonal().cwiseAbs2();
   const auto of_recordings = static_cast<double>(blocks.count);
   const auto judged_by_data = static_cast<double>(unknowns - fit.remainder.prior_rows());
   const double free = of_recordings - judged_by_data;
   if (free < 3) return {};
-  constexpr double kUpper = 0.975;
   const MatrixXd bread = (scaled.columns.transpose() * scaled.columns)
                              .completeOrthogonalDecomposition()
                              .pseudoInverse();
   const MatrixXd per_length = scaled.length.cwiseInverse().asDiagonal();
-  return {per_length * (of_recordings / free * bread * meat * bread) * per_length,
-          boost::math::quantile(boost::math::students_t(free), kUpper)};
+  const auto covariance = [&](const RowLayout::Blocks& groups, double degrees, double correction) {
+    MatrixXd meat = meat_of(groups, scaled.columns, residual);
+    meat.diagonal() += of_priors;
+    return Covariance{per_length * (correction * bread * meat * bread) * per_length,
+                      boost::math::quantile(boost::math::students_t(degrees), kUpper)};
+  };
+  std::vector<Covariance> all{covariance(blocks, free, of_recordings / free)};
+  for (const RowLayout::Blocks& regimes : regimes_of(data)) {
+    const auto groups = static_cast<double>(regimes.count);
+    all.push_back(covariance(regimes, groups - 1, groups / (groups - 1)));
+  }
+  return all;
 }
 
 }  // namespace
@@ -177,11 +201,10 @@ std::vector<std::vector<Estimate>> estimates_of(const Regression& regression,
   if (terms.empty()) return {};
   const Data& data = regression.data();
   const Linearised model = linearise(regression, terms, fit);
-  const Covariance covariance = covariance_of(model, data.layout, fit);
+  const std::vector<Covariance> covariances = covariances_of(model, data, fit);
   std::vector<std::vector<Estimate>> all;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    all.push_back(of_term(data, terms[i], fit.coefficients[i], covariance.matrix, model.places[i],
-                          covariance.quantile));
+    all.push_back(of_term(data, terms[i], fit.coefficients[i], covariances, model.places[i]));
   }
   return all;
 }

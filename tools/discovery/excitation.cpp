@@ -72,16 +72,23 @@ std::vector<Excitation> excitation_of(const std::vector<Workspace>& recordings) 
       low = std::min(low, at.motion.q.col(joint).minCoeff());
       high = std::max(high, at.motion.q.col(joint).maxCoeff());
       one.top_speed = std::max(one.top_speed, at.top_speed[joint]);
-      add_products(at, joint, products);
+      if (!at.at_rest) add_products(at, joint, products);
     }
     one.range = high - low;
-    one.separation = smallest_singular_value(products);
+    const bool at_rest = recordings[0].at_rest;
+    one.separation = at_rest ? 0 : smallest_singular_value(products);
     const RobotJoint& of = recordings[0].rigid.joints[static_cast<std::size_t>(joint)];
     const double counts = of.encoder.counts_per_unit;
     const double still = of.joint.type == JointType::kRevolute ? kStillRad : kStillM;
     one.moves = one.range > still && (!(counts > 0) || one.range * counts > kFewestCounts);
     const double limits = of.joint.max_position - of.joint.min_position;
     one.wide = std::isfinite(limits) && one.range >= kGoodPartOfRange * limits;
+    one.sufficient = at_rest && one.moves;
+    if (at_rest) {
+      if (!one.moves) one.lack = "the joint was held at one position only";
+      all.push_back(one);
+      continue;
+    }
     one.sufficient =
         one.moves && one.separation >= (one.wide ? kSmallestOverRange : kSmallestSeparation);
     if (!one.moves) {

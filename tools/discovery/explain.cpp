@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "common/error.hpp"
@@ -10,6 +12,7 @@
 #include "discovery/describe.hpp"
 #include "discovery/find_model.hpp"
 #include "discovery/improved_robot.hpp"
+#include "discovery/stretches.hpp"
 #include "discovery/verdict.hpp"
 
 namespace offnominal::tools::discovery {
@@ -27,16 +30,23 @@ class Explainer {
       : file_(robot), robot_(robot), options_(options), on_progress_(on_progress) {
     check_joints(logs);
     check_joints(holdout);
+    check_kind(logs, logs.front().at_rest);
+    check_kind(holdout, logs.front().at_rest);
     const FilterPlan plan = discovery_filter(logs, robot_);
     constexpr Index kFewest = 200;
     check(logs, plan, kFewest);
     check(holdout, plan, kMinFilteredSamples);
     const VectorXd widths = set_sign_widths(robot_, logs, plan);
     nuisance_.link_share = options.link_share;
-    data_ = std::make_unique<Data>(workspaces(logs, plan, widths), robot_, nuisance_);
-    if (!holdout.empty()) {
-      held_out_ = std::make_unique<Data>(workspaces(holdout, plan, widths), robot_, nuisance_);
-    }
+    both_ways_ = came_both_ways(logs);
+    const auto data_of = [&](const std::vector<Log>& some) {
+      auto made = searched_workspaces(stretches_of(some, robot_, plan), robot_, plan, widths);
+      for (Workspace& at : made) at.came_both_ways = both_ways_;
+      return std::make_unique<Data>(std::move(made), robot_, nuisance_);
+    };
+    data_ = data_of(logs);
+    left_out_ = words_of(stretches_of(logs, robot_, plan), logs);
+    if (!holdout.empty()) held_out_ = data_of(holdout);
     regression_ = std::make_unique<Regression>(*data_);
     tell("preparing the candidates' regressors");
     search_ = std::make_unique<Search>(*regression_,
@@ -48,11 +58,12 @@ class Explainer {
   Explanation run() {
     const HoldOut hold_out(*regression_, held_out_.get());
     Explanation result;
+    result.at_rest = data_->recordings[0].at_rest;
     result.holdout_is_apart = hold_out.is_apart();
     result.excitation = excitation_of(data_->recordings);
-    FoundModel found = find_model(
-        *search_, *regression_, hold_out, result.excitation,
-        {.most_effects = options_.most_effects, .replays = options_.replays}, on_progress_);
+    FoundModel found =
+        find_model(*search_, *regression_, hold_out, result.excitation,
+                   {.most_effects = most_effects(), .replays = options_.replays}, on_progress_);
     result.ambiguous = classes_of(found, hold_out);
     tell("fitting the numbers");
     const Relinearised fitted = relinearise(robot_, *data_, nuisance_, found.terms(), found.fit);
@@ -65,9 +76,20 @@ class Explainer {
     return result;
   }
 
+  void say_what_was_left_out(Explanation& result) const {
+    if (!left_out_.empty()) result.advice.push_back(left_out_);
+  }
+
  private:
   void tell(const std::string& doing) const {
     if (on_progress_) on_progress_(doing);
+  }
+
+  // A hold map may show one order after the other: as many as robot files have room for.
+  [[nodiscard]] int most_effects() const {
+    if (!data_->recordings[0].at_rest) return options_.most_effects;
+    return std::max(1, kEffectsPerJoint * static_cast<int>(robot_.joints.size()) -
+                           static_cast<int>(robot_.effects.size()));
   }
 
   void check_joints(const std::vector<Log>& logs) const {
@@ -77,6 +99,21 @@ class Explainer {
                           fmt::format("{}, as the robot has", robot_.joint_count()),
                           "give the robot file that belongs to this recording, or [channels]"});
       }
+    }
+  }
+
+  // What is held is not what moves, and a model of what happens at rest knows no time.
+  void check_kind(const std::vector<Log>& logs, bool at_rest) const {
+    for (const Log& log : logs) {
+      if (log.at_rest != at_rest) {
+        throw InputError({log.file, "", log.at_rest ? "a hold map" : "a recording in time",
+                          "recordings of one kind", "explain hold maps by themselves"});
+      }
+    }
+    for (const RobotEffect& effect : robot_.effects) {
+      if (!at_rest || effect.kind != EffectKind::kPeriodicDisturbance) continue;
+      throw InputError({logs.front().file, "", "a hold map", "a model without effects in time",
+                        "leave periodic_disturbance out of the robot file for it"});
     }
   }
 
@@ -98,17 +135,6 @@ class Explainer {
                         fmt::format("{} or more, of all recordings together", fewest),
                         "record for longer, or give more recordings"});
     }
-  }
-
-  std::vector<Workspace> workspaces(const std::vector<Log>& logs, const FilterPlan& plan,
-                                    const VectorXd& widths) const {
-    std::vector<Workspace> made;
-    for (const Log& log : logs) {
-      FilterPlan own = plan;
-      own.sample_rate_hz = log.sample_rate_hz();
-      made.push_back(make_workspace(log, robot_, own, widths));
-    }
-    return made;
   }
 
   // What each effect that was found could just as well be. A later, smaller one that as many others
@@ -153,6 +179,8 @@ class Explainer {
   ExplainOptions options_;
   NuisanceOptions nuisance_;
   const OnProgress& on_progress_;
+  std::vector<char> both_ways_;
+  std::string left_out_;
   std::unique_ptr<Data> data_;
   std::unique_ptr<Data> held_out_;
   std::unique_ptr<Regression> regression_;
@@ -169,6 +197,7 @@ Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
   std::vector<DataFault> faults;
   for (const std::vector<Log>* group : {&logs, &holdout}) {
     for (const Log& log : *group) {
+      if (log.at_rest) continue;  // every check there is needs time
       for (DataFault& fault : examine(log, robot)) faults.push_back(std::move(fault));
     }
   }
@@ -177,6 +206,7 @@ Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
     result.data_faults = std::move(faults);
     judge_whole(result);
   }
+  explainer.say_what_was_left_out(result);
   return result;
 }
 

@@ -54,6 +54,9 @@ struct Finding {
   double simulated_after = 0;
 };
 
+// "coulomb_friction"; "cogging_torque of order 72" where there may be several of it.
+std::string title_of(const Finding& finding);
+
 struct Rejection {
   EffectAt what;
   double p_value = 1;
@@ -79,6 +82,14 @@ struct Shift {
   double share = 0;  // of the file's value
 };
 
+// What holds a joint where it has come to rest, by the direction from which it came: fitted beside
+// everything else, never written. A hold map cannot say how much of it is Coulomb friction.
+struct HoldFriction {
+  Eigen::Index joint = 0;
+  double level = 0;  // N m or N
+  std::string unit;
+};
+
 struct Explanation {
   Verdict verdict = Verdict::kExplained;
   std::string words;
@@ -92,6 +103,8 @@ struct Explanation {
   std::vector<DataFault> data_faults;
   std::vector<Excitation> excitation;
   std::vector<std::string> advice;
+  bool at_rest = false;                     // by hold maps
+  std::vector<HoldFriction> hold_friction;  // of hold maps, per joint that came from both sides
 
   // For pictures: one row per kept sample of the first recording, columns: joints.
   struct Series {

@@ -102,6 +102,9 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
                         {"separation", one.separation},
                         {"sufficient", one.sufficient}};
   });
+  json["hold_friction"] = array_of(e.hold_friction, [](const HoldFriction& one) {
+    return ordered_json{{"joint", one.joint + 1}, {"level", one.level}, {"unit", one.unit}};
+  });
   json["advice"] = e.advice;
   return json;
 }

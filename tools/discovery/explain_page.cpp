@@ -54,9 +54,17 @@ report::Table error_table(const Explanation& e) {
                           joint.rms_before, joint.rms_after, joint.holdout_before,
                           joint.holdout_after, joint.noise_floor});
   }
-  table.note = e.holdout_is_apart
-                   ? "Held out: recordings that no fit has seen."
+  table.note = e.holdout_is_apart ? "Held out: recordings that no fit has seen."
+               : e.at_rest
+                   ? "Held out: stretches of readings, each predicted by a fit of the others."
                    : "Held out: contiguous blocks of time, each predicted by a fit of the others.";
+  if (!e.hold_friction.empty()) {
+    table.note += " Fitted beside, and never written: friction by the direction of approach,";
+    for (const HoldFriction& one : e.hold_friction) {
+      table.note += fmt::format(" {:.4g} {} at joint {}", one.level, one.unit, one.joint + 1);
+    }
+    table.note += ".";
+  }
   return table;
 }
 
@@ -74,7 +82,7 @@ report::Table finding_table(const Explanation& e) {
         low = (*one.ci95)[0];
         high = (*one.ci95)[1];
       }
-      table.rows.push_back({finding.what.effect, static_cast<double>(finding.what.joint + 1),
+      table.rows.push_back({title_of(finding), static_cast<double>(finding.what.joint + 1),
                             one.value.name, one.value.value, low, high, one.value.unit,
                             finding.p_value, finding.p_replay});
     }
@@ -118,7 +126,7 @@ report::Waterfall waterfall_of(const Explanation& e, Index joint) {
   waterfall.title = fmt::format("Held-out error of joint {}, effect by effect", joint + 1);
   waterfall.value_axis = {"rms torque error", errors.unit};
   for (std::size_t i = 0; i < e.waterfall.size(); ++i) {
-    const std::string label = i == 0 ? "model as it is" : "+ " + e.found[i - 1].what.effect;
+    const std::string label = i == 0 ? "model as it is" : "+ " + title_of(e.found[i - 1]);
     waterfall.steps.push_back({label, e.waterfall[i][joint]});
   }
   waterfall.levels.push_back({errors.noise_floor, "noise floor"});
@@ -234,12 +242,40 @@ report::Chart error_over(const Explanation& e, Index joint, const char* variable
   return chart;
 }
 
+// Measured and model torque over the position, of readings at rest.
+report::Chart torque_over_position(const Explanation& e, Index joint) {
+  const JointErrors& errors = joint_of(e, joint);
+  report::Chart chart;
+  chart.title = fmt::format("Torque of joint {} over position", joint + 1);
+  chart.x = {"position", position_unit(errors)};
+  chart.y = {{"torque", errors.unit}};
+  const auto add = [&](const char* name, const Eigen::MatrixXd& values, report::Tone tone) {
+    report::Series series;
+    series.name = name;
+    series.kind = report::SeriesKind::kPoints;
+    series.x = numbers(e.series.q.col(joint));
+    series.y = numbers(values.col(joint));
+    series.tone = tone;
+    chart.series.push_back(std::move(series));
+  };
+  add("measured", e.series.measured, report::Tone::kMeasured);
+  add("model with what was found", e.series.model_after, report::Tone::kModel);
+  chart.zoom_group = "position";
+  return chart;
+}
+
 report::Section joint_section(const Explanation& e, Index joint) {
   const JointErrors& errors = joint_of(e, joint);
   report::Section section;
   section.heading = fmt::format("Joint {}", joint + 1);
   if (!e.waterfall.empty() && e.waterfall.size() == e.found.size() + 1) {
     section.blocks.emplace_back(waterfall_of(e, joint));
+  }
+  if (e.at_rest) {
+    section.blocks.emplace_back(torque_over_position(e, joint));
+    section.blocks.emplace_back(
+        error_over(e, joint, "position", position_unit(errors), e.series.q.col(joint)));
+    return section;
   }
   section.blocks.emplace_back(error_map(e, joint));
   section.blocks.emplace_back(torque_chart(e, joint));

@@ -37,7 +37,7 @@ std::string text_of_findings(const Explanation& e) {
   for (std::size_t i = 0; i < e.found.size(); ++i) {
     const Finding& finding = e.found[i];
     const std::string unit = unit_at(e, finding.what.joint);
-    text += fmt::format("\n{}. {} on joint {}: {}\n", i + 1, finding.what.effect,
+    text += fmt::format("\n{}. {} on joint {}: {}\n", i + 1, title_of(finding),
                         finding.what.joint + 1, finding.words);
     text += "   torque: " + finding.formula + "\n";
     for (const Estimate& one : finding.parameters) text += "   " + words_of(one) + "\n";
@@ -63,7 +63,9 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
   std::string text = fmt::format("{}: {}\n", name_of(e.verdict), e.words);
   text += fmt::format("model {}, {} recording{}, held out: {}\n", names.robot_file,
                       names.logs.size(), names.logs.size() == 1 ? "" : "s",
-                      e.holdout_is_apart ? "other recordings" : "blocks of time");
+                      e.holdout_is_apart ? "other recordings"
+                      : e.at_rest        ? "stretches of readings"
+                                         : "blocks of time");
   for (const DataFault& fault : e.data_faults) text += "data fault: " + fault.words + "\n";
   text += text_of_joints(e);
   text += text_of_findings(e);
@@ -71,6 +73,12 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
     const StructureShare& first = e.where.front();
     text += fmt::format("\nwhat is left follows the {} of joint {} by {:.0f} %\n", first.variable,
                         first.joint + 1, 100 * first.share);
+  }
+  for (const HoldFriction& one : e.hold_friction) {
+    text += fmt::format(
+        "joint {} is held by friction, {:.4g} {} by the direction of approach: fitted beside, not "
+        "written\n",
+        one.joint + 1, one.level, one.unit);
   }
   for (const Shift& shift : e.shifts) {
     text += fmt::format("the file's {} is off by {:+.0f} %\n", shift.name, 100 * shift.share);

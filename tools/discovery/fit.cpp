@@ -76,39 +76,94 @@ Outside furthest_outside(const VectorXd& x, const std::vector<Index>& free,
   return worst;
 }
 
+// Least squares over the unknowns that are still free; the others are held at an end of theirs.
+struct Problem {
+  MatrixXd columns;
+  VectorXd rest;  // what the free ones have to explain
+  std::vector<Index> free;
+  VectorXd x;
+
+  void hold(const Outside& at) {
+    x[at.unknown] = at.end;
+    rest -= columns.col(at.unknown) * at.end;
+    std::erase(free, at.unknown);
+  }
+};
+
+struct FreeFit {
+  Scaled part;
+  Eigen::ColPivHouseholderQR<MatrixXd> qr;
+  VectorXd scaled_x;
+};
+
+FreeFit fit_free(Problem& problem) {
+  constexpr double kRank = 1e-7;
+  FreeFit fit{scaled(problem.columns, problem.free), {}, {}};
+  fit.qr.setThreshold(kRank);
+  fit.qr.compute(fit.part.columns);
+  fit.scaled_x = fit.qr.solve(problem.rest);
+  for (std::size_t i = 0; i < problem.free.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    problem.x[problem.free[i]] = fit.scaled_x[at] / fit.part.length[at];
+  }
+  return fit;
+}
+
+// The same problem turned so that only as many rows are left as there are unknowns.
+Problem turned(const Problem& problem, const FreeFit& fit) {
+  const Index rows = std::min(problem.columns.rows(), problem.columns.cols());
+  const MatrixXd upper = fit.qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
+  const MatrixXd in_order = upper * fit.qr.colsPermutation().inverse();
+  VectorXd target = problem.rest;
+  target.applyOnTheLeft(fit.qr.householderQ().adjoint());
+  return {in_order * fit.part.length.asDiagonal(), target.head(rows), problem.free, problem.x};
+}
+
+// Holds one unknown after the other until none is outside of its ends. Which ones that are is found
+// on the turned problem, where a fit costs next to nothing.
+FreeFit fit_within_ends(Problem& whole, const std::vector<Prior>& priors) {
+  FreeFit fit = fit_free(whole);
+  Outside worst = furthest_outside(whole.x, whole.free, priors);
+  if (worst.unknown < 0) return fit;
+  Problem small = turned(whole, fit);
+  while (worst.unknown >= 0 && !whole.free.empty()) {
+    whole.hold(worst);
+    small.hold(worst);
+    if (!small.free.empty()) static_cast<void>(fit_free(small));
+    worst = furthest_outside(small.x, small.free, priors);
+  }
+  while (!whole.free.empty()) {
+    fit = fit_free(whole);
+    worst = furthest_outside(whole.x, whole.free, priors);
+    if (worst.unknown < 0) break;
+    whole.hold(worst);
+  }
+  return fit;
+}
+
 }  // namespace
 
 PriorFit least_squares_with_priors(const MatrixXd& columns, const VectorXd& target,
                                    const std::vector<Prior>& priors, double prior_weight) {
-  constexpr double kRank = 1e-7;
-  const WithPriorRows whole = with_prior_rows(columns, target, priors, prior_weight);
-  PriorFit fit;
-  fit.x = VectorXd::Zero(columns.cols());
-  std::vector<Index> free(static_cast<std::size_t>(columns.cols()));
-  std::iota(free.begin(), free.end(), 0);
-  VectorXd rest = whole.target;
-  while (!free.empty()) {
-    const Scaled part = scaled(whole.columns, free);
-    Eigen::ColPivHouseholderQR<MatrixXd> qr(part.columns);
-    qr.setThreshold(kRank);
-    const VectorXd scaled_x = qr.solve(rest);
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      const auto at = static_cast<Index>(i);
-      fit.x[free[i]] = scaled_x[at] / part.length[at];
+  WithPriorRows rows = with_prior_rows(columns, target, priors, prior_weight);
+  Problem whole{
+      std::move(rows.columns), std::move(rows.target), {}, VectorXd::Zero(columns.cols())};
+  whole.free.resize(static_cast<std::size_t>(columns.cols()));
+  std::iota(whole.free.begin(), whole.free.end(), 0);
+  PriorFit result;
+  result.residual = whole.rest;
+  result.basis.resize(whole.rest.size(), 0);
+  if (!whole.free.empty()) {
+    const FreeFit fit = fit_within_ends(whole, priors);
+    result.residual = whole.rest;
+    if (!whole.free.empty()) {
+      result.residual -= fit.part.columns * fit.scaled_x;
+      result.basis =
+          fit.qr.householderQ() * MatrixXd::Identity(whole.columns.rows(), fit.qr.rank());
     }
-    const Outside worst = furthest_outside(fit.x, free, priors);
-    if (worst.unknown < 0) {
-      fit.residual = rest - part.columns * scaled_x;
-      fit.basis = qr.householderQ() * MatrixXd::Identity(whole.columns.rows(), qr.rank());
-      return fit;
-    }
-    fit.x[worst.unknown] = worst.end;
-    rest -= whole.columns.col(worst.unknown) * worst.end;
-    std::erase(free, worst.unknown);
   }
-  fit.residual = rest;
-  fit.basis.resize(whole.columns.rows(), 0);
-  return fit;
+  result.x = whole.x;
+  return result;
 }
 
 }  // namespace offnominal::tools::discovery

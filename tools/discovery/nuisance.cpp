@@ -41,7 +41,9 @@ class Builder {
       add_link(link);
     }
     for (std::size_t effect = 0; effect < robot_.effects.size(); ++effect) add_effect(effect);
-    for (Index joint = 0; options_.beyond_robot_files && joint < layout_.joint_count(); ++joint) {
+    if (recordings_[0].at_rest) add_approach();
+    const bool moves = options_.beyond_robot_files && !recordings_[0].at_rest;
+    for (Index joint = 0; moves && joint < layout_.joint_count(); ++joint) {
       add_sign_shapes(joint);
       add_skew(joint);
     }
@@ -120,6 +122,21 @@ class Builder {
                 [&](const Workspace& at) -> VectorXd {
                   return dahl_state(at.motion.q.col(joint), share * range).array() - at.sign(joint);
                 });
+    }
+  }
+
+  void add_approach() {
+    for (Index joint = 0; joint < layout_.joint_count(); ++joint) {
+      if (!recordings_[0].both_ways(joint)) continue;
+      add({NuisanceTerm::Kind::kApproach,
+           joint,
+           0,
+           0,
+           {},
+           fmt::format("friction by direction of approach of joint {}", joint + 1)},
+          [&](const Workspace& at) -> Regressor {
+            return {{joint, at.approach.col(joint)}};
+          });
     }
   }
 

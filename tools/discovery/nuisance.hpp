@@ -19,6 +19,7 @@ struct NuisanceTerm {
     kKnownEffect,  // a linear parameter of an effect of the robot file, as a difference
     kSignShape,    // how dry friction builds up at a reversal; only beside dry friction
     kSkew,         // time skew between torque and position, s
+    kApproach,     // of hold maps: friction by the direction of approach, N m or N
   };
   Kind kind = Kind::kLink;
   Eigen::Index joint = 0;  // or link

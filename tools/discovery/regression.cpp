@@ -16,10 +16,11 @@ namespace {
 
 VectorXd independent_samples_of(const RowLayout& layout, const VectorXd& residual) {
   VectorXd samples = VectorXd::Zero(layout.joint_count());
+  const VectorXd moving = layout.while_moving(residual);
   for (std::size_t r = 0; r < layout.recording_count(); ++r) {
     for (Index joint = 0; joint < layout.joint_count(); ++joint) {
-      const auto part = residual.segment(layout.begin(r, joint), layout.samples(r));
-      samples[joint] += static_cast<double>(part.size()) / correlation_samples(part);
+      const auto part = moving.segment(layout.begin(r, joint), layout.samples(r));
+      samples[joint] += layout.moving_count(r, joint) / correlation_samples(part);
     }
   }
   return samples;
@@ -28,11 +29,7 @@ VectorXd independent_samples_of(const RowLayout& layout, const VectorXd& residua
 }  // namespace
 
 bool Regression::has_dry_friction(const std::vector<Term>& terms, Index joint) const {
-  const auto& known = data_.recordings[0].known_effects;
-  return std::any_of(known.begin(), known.end(),
-                     [&](const RobotEffect& effect) {
-                       return effect.joint == joint && effect.kind == EffectKind::kCoulombFriction;
-                     }) ||
+  return data_.recordings[0].knows_coulomb_friction(joint) ||
          std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
            return term.joint == joint && term.effect->is_dry_friction();
          });
@@ -126,6 +123,12 @@ ModelFit Regression::fit(const std::vector<Term>& terms, const std::vector<char>
 }
 
 void Regression::refine(std::vector<Term>& terms, std::size_t which) const {
+  std::vector<Term> others = terms;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
+  refine(terms, which, fit(others));
+}
+
+void Regression::refine(std::vector<Term>& terms, std::size_t which, const ModelFit& beside) const {
   Term& term = terms[which];
   for (std::size_t axis = 0; axis < term.ranges.size(); ++axis) {
     const ShapeRange& range = term.ranges[axis];
@@ -138,9 +141,6 @@ void Regression::refine(std::vector<Term>& terms, std::size_t which) const {
         static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, (above - range.grid.begin()) - 1));
     const double low = coordinate(range.grid[place > 0 ? place - 1 : 0]);
     const double high = coordinate(range.grid[std::min(place + 1, range.grid.size() - 1)]);
-    std::vector<Term> others = terms;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
-    const ModelFit beside = fit(others);
     const auto gain = [&](double x) {
       Term trial = term;
       trial.shape[axis] = value_at(x);

@@ -10,9 +10,6 @@
 
 namespace offnominal::tools::discovery {
 
-// Blocks of time that errors are taken as independent between are at least this long.
-inline constexpr double kShortestBlockS = 0.3;
-
 // An effect on a joint that may be in the model.
 struct Term {
   const EffectCandidate* effect = nullptr;
@@ -53,6 +50,8 @@ class Regression {
   [[nodiscard]] Design design(const std::vector<Term>& terms) const;
   // Moves a term's shape to where the model fits best, the other terms as they are.
   void refine(std::vector<Term>& terms, std::size_t which) const;
+  // The same where fit() of the other terms is known.
+  void refine(std::vector<Term>& terms, std::size_t which, const ModelFit& beside) const;
 
  private:
   [[nodiscard]] bool has_dry_friction(const std::vector<Term>& terms, Eigen::Index joint) const;

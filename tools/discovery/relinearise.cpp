@@ -33,9 +33,9 @@ Relinearised relinearise(const RobotDescription& robot, const Data& data,
   const RobotDescription closer = with_link_factors(robot, anew.link_factors);
   std::vector<Workspace> recordings = data.recordings;
   for (Workspace& at : recordings) at.set_model(closer);
-  NuisanceOptions about = options;
-  about.link_factors = anew.link_factors;
-  anew.data = std::make_unique<Data>(std::move(recordings), closer, about);
+  anew.nuisance = options;
+  anew.nuisance.link_factors = anew.link_factors;
+  anew.data = std::make_unique<Data>(std::move(recordings), closer, anew.nuisance);
   const Regression regression(*anew.data);
   anew.terms = terms;
   for (std::size_t i = 0; i < terms.size(); ++i) regression.refine(anew.terms, i);

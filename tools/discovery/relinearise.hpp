@@ -14,6 +14,7 @@ namespace offnominal::tools::discovery {
 // product; a regression about the robot file alone leaves that product out.
 struct Relinearised {
   std::vector<double> link_factors;  // on mass and inertia of the file's links
+  NuisanceOptions nuisance;          // that `data` was made with
   std::unique_ptr<Data> data;
   std::vector<Term> terms;  // shapes refined
   ModelFit fit;

@@ -137,15 +137,32 @@ double time_share(const JointSeries& series) {
   return std::max(0.0, (in_few - typical * kFewWindows) / whole);
 }
 
+// Of readings at rest: how far two in a row differ.
+VectorXd repeatability_of(const RowLayout& layout, const VectorXd& residual) {
+  VectorXd energy = VectorXd::Zero(layout.joint_count());
+  double pairs = 0;
+  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+    const Index n = layout.samples(r);
+    for (Index joint = 0; joint < layout.joint_count(); ++joint) {
+      const auto part = residual.segment(layout.begin(r, joint), n);
+      energy[joint] += (part.tail(n - 1) - part.head(n - 1)).squaredNorm() / 2;
+    }
+    pairs += static_cast<double>(n - 1);
+  }
+  return (energy / pairs).cwiseSqrt();
+}
+
 }  // namespace
 
-VectorXd noise_floor_of(const Data& data, const VectorXd& residual) {
+VectorXd noise_floor_of(const Data& data, const VectorXd& left) {
   constexpr double kFrom = 0.4;
   constexpr double kTo = 0.75;
   constexpr int kFrequencies = 200;
   const RowLayout& layout = data.layout;
+  if (data.recordings[0].at_rest) return repeatability_of(layout, left);
+  const VectorXd residual = layout.while_moving(left);
   VectorXd power = VectorXd::Zero(layout.joint_count());
-  double samples = 0;
+  VectorXd samples = VectorXd::Zero(layout.joint_count());
   for (std::size_t r = 0; r < layout.recording_count(); ++r) {
     const double cutoff_hz = data.recordings[r].plan.torque_cutoff_hz;
     for (Index joint = 0; joint < layout.joint_count(); ++joint) {
@@ -159,13 +176,14 @@ VectorXd noise_floor_of(const Data& data, const VectorXd& residual) {
       std::nth_element(densities.begin(), densities.begin() + kFrequencies / 2, densities.end());
       power[joint] += static_cast<double>(part.size()) * densities[kFrequencies / 2] /
                       std::numbers::ln2 * cutoff_hz;
+      samples[joint] += layout.moving_count(r, joint);
     }
-    samples += static_cast<double>(layout.samples(r));
   }
-  return (power / samples).cwiseSqrt();
+  return power.cwiseQuotient(samples).cwiseSqrt();
 }
 
-std::vector<StructureShare> structure_of(const Data& data, const VectorXd& residual) {
+std::vector<StructureShare> structure_of(const Data& data, const VectorXd& left) {
+  const VectorXd residual = data.layout.while_moving(left);
   std::vector<StructureShare> shares;
   for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
     const JointSeries series = series_of(data, residual, joint);
@@ -174,6 +192,7 @@ std::vector<StructureShare> structure_of(const Data& data, const VectorXd& resid
     };
     const std::vector<Index> q = equally_filled(series.q, kBins);
     add("position", q, kBins);
+    if (data.recordings[0].at_rest) continue;
     add("velocity", equally_filled(series.dq, kBins), kBins);
     add("load", equally_filled(series.load, kBins), kBins);
     std::vector<Index> map = equally_filled(series.q, kMapBins);

@@ -9,7 +9,8 @@
 namespace offnominal::tools::discovery {
 
 // Root mean square of the noise per joint, N m or N: the density of the residual in the upper part
-// of the filter's band, taken for white over the whole of it.
+// of the filter's band, taken for white over the whole of it. Of hold maps: by how much two
+// readings in a row differ, over root 2.
 Eigen::VectorXd noise_floor_of(const Data& data, const Eigen::VectorXd& residual);
 
 // How much of the residual of a joint follows a variable, judged on time that the smooth fit to it

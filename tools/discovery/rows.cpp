@@ -18,6 +18,27 @@ RowLayout::RowLayout(const std::vector<Workspace>& recordings) {
     period_s_.push_back(at.plan.period_s());
     rows_ += samples * joints_;
   }
+  const bool some_rest = std::any_of(recordings.begin(), recordings.end(),
+                                     [](const Workspace& at) { return at.moving.size() > 0; });
+  if (!some_rest) return;
+  moving_ = VectorXd::Ones(rows_);
+  for (std::size_t r = 0; r < recordings.size(); ++r) {
+    if (recordings[r].moving.size() == 0) continue;
+    for (Index joint = 0; joint < joints_; ++joint) {
+      moving_.segment(begin(r, joint), samples_[r]) =
+          kept_samples(recordings[r].plan, recordings[r].moving.col(joint));
+    }
+  }
+}
+
+VectorXd RowLayout::while_moving(const VectorXd& values) const {
+  return moving_.size() == 0 ? values : values.cwiseProduct(moving_).eval();
+}
+
+double RowLayout::moving_count(std::size_t recording, Index joint) const {
+  const Index n = samples_[recording];
+  return moving_.size() == 0 ? static_cast<double>(n)
+                             : moving_.segment(begin(recording, joint), n).sum();
 }
 
 RowLayout::Blocks RowLayout::blocks(double block_s) const {
@@ -34,7 +55,24 @@ RowLayout::Blocks RowLayout::blocks(double block_s) const {
     }
     blocks.count += count;
   }
+  leave_out_empty(blocks);
   return blocks;
+}
+
+// What says nothing is no independent observation.
+void RowLayout::leave_out_empty(Blocks& blocks) const {
+  if (moving_.size() == 0) return;
+  std::vector<int> number(static_cast<std::size_t>(blocks.count), -1);
+  for (Index row = 0; row < rows_; ++row) {
+    if (moving_[row] > 0)
+      number[static_cast<std::size_t>(blocks.of_row[static_cast<std::size_t>(row)])] = 0;
+  }
+  int count = 0;
+  for (int& one : number) {
+    if (one == 0) one = count++;
+  }
+  blocks.count = count;
+  for (int& block : blocks.of_row) block = std::max(0, number[static_cast<std::size_t>(block)]);
 }
 
 VectorXd RowLayout::stack(const std::vector<Workspace>& recordings,
@@ -74,7 +112,7 @@ VectorXd RowLayout::stack_all(const std::vector<Workspace>& recordings,
 }
 
 VectorXd RowLayout::weighted(const VectorXd& values, const VectorXd& joint_weights) const {
-  VectorXd result = values;
+  VectorXd result = while_moving(values);
   for (std::size_t r = 0; r < samples_.size(); ++r) {
     for (Index joint = 0; joint < joints_; ++joint) {
       result.segment(begin(r, joint), samples_[r]) *= joint_weights[joint];
@@ -87,15 +125,24 @@ VectorXd RowLayout::energy(const VectorXd& values) const {
   VectorXd energy = VectorXd::Zero(joints_);
   for (std::size_t r = 0; r < samples_.size(); ++r) {
     for (Index joint = 0; joint < joints_; ++joint) {
-      energy[joint] += values.segment(begin(r, joint), samples_[r]).squaredNorm();
+      const Index first = begin(r, joint);
+      energy[joint] += moving_.size() == 0 ? values.segment(first, samples_[r]).squaredNorm()
+                                           : values.segment(first, samples_[r])
+                                                 .cwiseProduct(moving_.segment(first, samples_[r]))
+                                                 .squaredNorm();
     }
   }
   return energy;
 }
 
 VectorXd RowLayout::rms(const VectorXd& values) const {
-  const Index per_joint = rows_ / std::max<Index>(1, joints_);
-  return (energy(values) / static_cast<double>(per_joint)).cwiseSqrt();
+  VectorXd mean = energy(values);
+  for (Index joint = 0; joint < joints_; ++joint) {
+    double count = 0;
+    for (std::size_t r = 0; r < samples_.size(); ++r) count += moving_count(r, joint);
+    mean[joint] /= std::max(1.0, count);
+  }
+  return mean.cwiseSqrt();
 }
 
 MatrixXd stacked_columns(const RowLayout& layout, const std::vector<Workspace>& recordings,

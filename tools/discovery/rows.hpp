@@ -8,6 +8,9 @@
 
 namespace offnominal::tools::discovery {
 
+// Blocks of time that errors are taken as independent between are at least this long.
+inline constexpr double kShortestBlockS = 0.3;
+
 // How the filtered samples of every joint of every recording are stacked into one long vector, and
 // which block of time each row belongs to. Blocks never span two recordings; the rows of one
 // instant, joint by joint, are in one block.
@@ -24,7 +27,8 @@ class RowLayout {
     return first_[recording] + joint * samples_[recording];
   }
   [[nodiscard]] double period_s(std::size_t recording) const { return period_s_[recording]; }
-  // Block of every row, from 0, for blocks of about block_s seconds.
+  // Block of every row, from 0, for blocks of about block_s seconds. One in which every joint
+  // stands still does not count: its rows, whose weight is 0, are in the first.
   struct Blocks {
     std::vector<int> of_row;
     int count = 0;
@@ -41,20 +45,27 @@ class RowLayout {
   [[nodiscard]] Eigen::VectorXd stack_all(
       const std::vector<Workspace>& recordings,
       const std::vector<const Eigen::MatrixXd*>& per_recording) const;
-  // Each row times its joint's weight.
+  // Each row as it is, or 0 where its joint stands still (standstill.hpp) and says nothing.
+  [[nodiscard]] Eigen::VectorXd while_moving(const Eigen::VectorXd& values) const;
+  // How many samples of a joint in a recording are not left out so.
+  [[nodiscard]] double moving_count(std::size_t recording, Eigen::Index joint) const;
+  // Each row times its joint's weight; 0 where the joint stands still.
   [[nodiscard]] Eigen::VectorXd weighted(const Eigen::VectorXd& values,
                                          const Eigen::VectorXd& joint_weights) const;
-  // Sum of squares per joint; rows beyond the layout's do not count.
+  // Sum of squares per joint while it moves; rows beyond the layout's do not count.
   [[nodiscard]] Eigen::VectorXd energy(const Eigen::VectorXd& values) const;
-  // Root mean square per joint.
+  // Root mean square per joint while it moves.
   [[nodiscard]] Eigen::VectorXd rms(const Eigen::VectorXd& values) const;
 
  private:
+  void leave_out_empty(Blocks& blocks) const;
+
   Eigen::Index rows_ = 0;
   Eigen::Index joints_ = 0;
   std::vector<Eigen::Index> samples_;
   std::vector<Eigen::Index> first_;
   std::vector<double> period_s_;
+  Eigen::VectorXd moving_;  // per row 1 or 0; empty: 1 throughout
 };
 
 // Columns of a candidate at one shape: one per coefficient.

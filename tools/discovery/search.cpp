@@ -18,21 +18,6 @@ namespace {
 
 constexpr double kSmallestShare = 0.02;  // of the energy, for a closer look
 
-std::vector<ShapePoint> product_grid(const std::vector<ShapeRange>& ranges) {
-  std::vector<ShapePoint> points{{}};
-  for (const ShapeRange& range : ranges) {
-    std::vector<ShapePoint> longer;
-    for (const ShapePoint& point : points) {
-      for (const double value : range.grid) {
-        longer.push_back(point);
-        longer.back().push_back(value);
-      }
-    }
-    points = std::move(longer);
-  }
-  return points;
-}
-
 }  // namespace
 
 // In the robot file already, where it is one of a kind: then its numbers are a nuisance.
@@ -48,7 +33,10 @@ Search::Search(const Regression& regression, const SearchOptions& options)
     : regression_(regression), data_(regression.data()), options_(options) {
   for (const auto& effect : all_candidates()) {
     for (Index joint = 0; joint < data_.layout.joint_count(); ++joint) {
-      if (!effect->applies(data_.recordings[0], joint) || is_known(*effect, joint)) continue;
+      const Workspace& first = data_.recordings[0];
+      const bool acts =
+          first.at_rest ? effect->acts_at_rest(first, joint) : effect->applies(first, joint);
+      if (!acts || is_known(*effect, joint)) continue;
       Slot slot;
       slot.term = {effect.get(), joint, {}, effect->shapes(data_.recordings, joint)};
       slot.grid = product_grid(slot.term.ranges);
@@ -164,12 +152,13 @@ Screening Search::screen(const std::vector<Term>& terms, const ModelFit& at) con
 
 double Search::family_p(const Proposal& proposal, const ModelFit& at) const {
   const RowLayout& layout = data_.layout;
+  const VectorXd moving = layout.while_moving(proposal.fit.residual);
   double correlation_s = 0;
   double whole_s = 0;
   for (std::size_t r = 0; r < layout.recording_count(); ++r) {
     whole_s += layout.period_s(r) * static_cast<double>(layout.samples(r));
     for (Index joint = 0; joint < layout.joint_count(); ++joint) {
-      const auto part = proposal.fit.residual.segment(layout.begin(r, joint), layout.samples(r));
+      const auto part = moving.segment(layout.begin(r, joint), layout.samples(r));
       correlation_s = std::max(correlation_s, correlation_samples(part) * layout.period_s(r));
     }
   }
@@ -208,7 +197,7 @@ std::vector<Proposal> Search::propose(const std::vector<Term>& terms, const Mode
     proposal.candidate = *shortlist[i];
     proposal.terms = terms;
     proposal.terms.push_back(shortlist[i]->term);
-    regression_.refine(proposal.terms, proposal.terms.size() - 1);
+    regression_.refine(proposal.terms, proposal.terms.size() - 1, at);
     proposal.candidate.term = proposal.terms.back();
     const Evidence evidence = judge(at.remainder, columns_of(data_, proposal.terms.back()));
     if (evidence.usable) {

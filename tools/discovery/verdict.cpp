@@ -88,12 +88,12 @@ void judge_found(Explanation& e) {
       first.holdout_before > 0 ? 100 * (1 - first.holdout_after / first.holdout_before) : 0;
   e.words =
       fmt::format("{} {} on {} ({}): the error on held-out data of that joint falls by {:.0f} %.",
-                  shift ? "Another value of a known quantity:" : "Missing:", first.what.effect,
+                  shift ? "Another value of a known quantity:" : "Missing:", title_of(first),
                   at_joint(first.what.joint), first.words, fall);
   if (e.found.size() > 1) {
     e.words += " Also:";
     for (std::size_t i = 1; i < e.found.size(); ++i) {
-      e.words += fmt::format("{} {} on {}", i > 1 ? "," : "", e.found[i].what.effect,
+      e.words += fmt::format("{} {} on {}", i > 1 ? "," : "", title_of(e.found[i]),
                              at_joint(e.found[i].what.joint));
     }
     e.words += ".";
@@ -162,6 +162,15 @@ const char* name_of(Verdict verdict) {
   return "";
 }
 
+std::string title_of(const Finding& finding) {
+  for (const Estimate& one : finding.parameters) {
+    if (finding.what.effect == "cogging_torque" && one.value.name == "order") {
+      return fmt::format("{} of order {:.4g}", finding.what.effect, one.value.value);
+    }
+  }
+  return finding.what.effect;
+}
+
 void judge_whole(Explanation& e) {
   e.advice.clear();
   for (std::size_t joint = 0; joint < e.excitation.size(); ++joint) {
@@ -196,8 +205,9 @@ void judge_whole(Explanation& e) {
     e.verdict = Verdict::kNotExcited;
     e.words = "These motions excite too little to judge the model by them.";
     e.advice.emplace_back(
-        "`offnominal motion --robot ROBOT -o motion.csv` writes a motion that excites what the "
-        "robot may have");
+        e.at_rest ? "hold it at more positions, approached from both sides"
+                  : "`offnominal motion --robot ROBOT -o motion.csv` writes a motion that excites "
+                    "what the robot may have");
     return;
   }
   e.verdict = Verdict::kExplained;

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "analysis/inverse_model.hpp"
+#include "discovery/data.hpp"
+#include "discovery/standstill.hpp"
 #include "signal/decimate.hpp"
 #include "signal/quantile.hpp"
 #include "signal/zero_phase.hpp"
@@ -50,6 +52,22 @@ Eigen::ArrayXd Workspace::sign(Index joint) const {
   return (motion.dq.col(joint).array() / sign_width[joint]).tanh();
 }
 
+std::vector<char> came_both_ways(const std::vector<Log>& logs) {
+  std::vector<char> both(static_cast<std::size_t>(logs.front().q.cols()), 0);
+  for (std::size_t joint = 0; joint < both.size(); ++joint) {
+    bool up = false;
+    bool down = false;
+    for (const Log& log : logs) {
+      if (!log.at_rest) continue;
+      const auto approach = log.approach.col(static_cast<Index>(joint));
+      up = up || approach.maxCoeff() > 0;
+      down = down || approach.minCoeff() < 0;
+    }
+    both[joint] = static_cast<char>(up && down);
+  }
+  return both;
+}
+
 double range_moved(const std::vector<Workspace>& recordings, Index joint) {
   double range = 0;
   for (const Workspace& at : recordings) {
@@ -76,6 +94,12 @@ void Workspace::set_model(const RobotDescription& robot) {
   mass = mass_columns(*this);
 }
 
+bool Workspace::knows_coulomb_friction(Index joint) const {
+  return std::any_of(known_effects.begin(), known_effects.end(), [&](const RobotEffect& effect) {
+    return effect.joint == joint && effect.kind == EffectKind::kCoulombFriction;
+  });
+}
+
 Workspace make_workspace(const Log& log, const RobotDescription& robot, const FilterPlan& plan,
                          const VectorXd& sign_width) {
   constexpr double kRatePerCutoff = 20;
@@ -89,13 +113,23 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
   MatrixXd torque = log.tau;
   at.torque_noise_density.resize(torque.cols());
   for (Index joint = 0; joint < torque.cols(); ++joint) {
+    at.torque_noise_density[joint] = 0;
+    if (log.at_rest) continue;
     const VectorXd raw = log.tau.col(joint);
     const VectorXd smooth = zero_phase_low_pass(raw, plan.position_cutoff_hz, plan.sample_rate_hz);
     at.torque_noise_density[joint] = noise_density(raw, smooth, plan);
     if (stride > 1) torque.col(joint) = smooth;
   }
   at.torque = every_nth_row(torque, stride);
+  MatrixXd moving(log.sample_count(), log.q.cols());
+  for (Index joint = 0; joint < log.q.cols(); ++joint) {
+    moving.col(joint) = moving_samples(
+        log, joint, robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit);
+  }
+  if (moving.minCoeff() < 1) at.moving = every_nth_row(moving, stride);
   at.start_s = log.t_s[0];
+  at.at_rest = log.at_rest;
+  at.approach = log.approach;
   at.skew_s = log.period_s;
   at.set_model(robot);
   at.sign_width = sign_width;
@@ -108,6 +142,17 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
     }
   }
   return at;
+}
+
+std::vector<Workspace> make_workspaces(const std::vector<Log>& logs, const RobotDescription& robot,
+                                       const FilterPlan& plan, const VectorXd& sign_width) {
+  std::vector<Workspace> made;
+  for (const Log& log : logs) {
+    FilterPlan own = plan;
+    own.sample_rate_hz = sample_rate_of(log);
+    made.push_back(make_workspace(log, robot, own, sign_width));
+  }
+  return made;
 }
 
 }  // namespace offnominal::tools::discovery

@@ -3,13 +3,11 @@
 #include <algorithm>
 
 #include "common/number.hpp"
+#include "discovery/alternatives.hpp"
 #include "motion_design/design_report.hpp"
 
 namespace offnominal::tools::motion_design {
 namespace {
-
-// As explain's own threshold for telling two effects apart (discovery/alternatives.cpp).
-constexpr double kTellsApart = 3;
 
 std::string words_of(const Contender& one) {
   return fmt::format("{} on joint {}", one.effect->name(), one.joint + 1);
@@ -99,11 +97,11 @@ std::string sentence_of(const RobotDescription& robot, const Design& design,
       worst->after.torque_rms, unit, worst->after.torque_rms / worst->after.noise_rms,
       worst->before ? fmt::format(", where it was {:.2g} {}", worst->before->torque_rms, unit)
                     : std::string());
-  if (worst->after.evidence < kTellsApart) {
+  if (worst->after.evidence < discovery::kTellApart) {
     text += fmt::format(
         " That is {:.1f} standard deviations where explain asks for {:g}: record it several times, "
         "or allow more of the limits.",
-        worst->after.evidence, kTellsApart);
+        worst->after.evidence, discovery::kTellApart);
   }
   return text;
 }

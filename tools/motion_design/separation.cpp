@@ -7,6 +7,7 @@
 
 #include "discovery/data.hpp"
 #include "discovery/excitation.hpp"
+#include "discovery/regression.hpp"
 
 namespace offnominal::tools::motion_design {
 
@@ -22,7 +23,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kBlockS = 0.3;  // as search.cpp
 constexpr std::size_t kMostShapes = 5;
 
 Log log_of(const FittedMotion& fitted, double rate_hz) {
@@ -37,27 +37,15 @@ Log log_of(const FittedMotion& fitted, double rate_hz) {
   return log;
 }
 
-Data data_of(RobotDescription robot, const std::vector<Log>& logs, const FilterPlan& plan) {
+// `log_rate_hz`: of the recording to come, where it is sampled faster than `logs`.
+Data data_of(RobotDescription robot, const std::vector<Log>& logs, const FilterPlan& plan,
+             std::optional<double> log_rate_hz = std::nullopt) {
   const VectorXd widths = discovery::set_sign_widths(robot, logs, plan);
-  std::vector<discovery::Workspace> recordings;
-  for (const Log& log : logs) {
-    FilterPlan own = plan;
-    own.sample_rate_hz = log.sample_rate_hz();
-    recordings.push_back(discovery::make_workspace(log, robot, own, widths));
+  auto recordings = discovery::make_workspaces(logs, robot, plan, widths);
+  if (log_rate_hz) {
+    for (discovery::Workspace& at : recordings) at.skew_s = 1 / *log_rate_hz;
   }
   return {std::move(recordings), robot, {}};
-}
-
-Data data_of(const RobotDescription& robot, const FittedMotion& fitted, double rate_hz,
-             const FilterPlan& plan, double log_rate_hz) {
-  RobotDescription with_widths = robot;
-  const std::vector<Log> logs{log_of(fitted, rate_hz)};
-  const VectorXd widths = discovery::set_sign_widths(with_widths, logs, plan);
-  std::vector<discovery::Workspace> recordings{
-      discovery::make_workspace(logs[0], with_widths, plan, widths)};
-  // The recording to come is sampled faster than the design.
-  recordings[0].skew_s = 1 / log_rate_hz;
-  return {std::move(recordings), with_widths, {}};
 }
 
 // Some points of a range, from end to end: evenly among the grid's, which for a spectrum are far
@@ -80,19 +68,9 @@ std::vector<double> some_of(const ShapeRange& range, bool spectrum) {
   return points;
 }
 
-std::vector<ShapePoint> shapes_of(const std::vector<ShapeRange>& ranges, bool spectrum) {
-  std::vector<ShapePoint> points{{}};
-  for (const ShapeRange& range : ranges) {
-    std::vector<ShapePoint> longer;
-    for (const ShapePoint& point : points) {
-      for (const double value : some_of(range, spectrum)) {
-        longer.push_back(point);
-        longer.back().push_back(value);
-      }
-    }
-    points = std::move(longer);
-  }
-  return points;
+std::vector<ShapePoint> shapes_of(std::vector<ShapeRange> ranges, bool spectrum) {
+  for (ShapeRange& range : ranges) range.grid = some_of(range, spectrum);
+  return discovery::product_grid(ranges);
 }
 
 // Not the ends, which few robots have.
@@ -109,20 +87,11 @@ VectorXd rms_per_joint(const MatrixXd& torque) {
   return (torque.colwise().squaredNorm() / static_cast<double>(torque.rows())).cwiseSqrt();
 }
 
-// An adapting number that may move within bounds only.
-bool is_bounded(const NuisanceTerm& term) { return term.prior.is_informative(); }
-
-// Directions that the adapting numbers explain, in units of the noise. A bounded one has a row
+// Directions that the adapting numbers explain, in units of the noise. One with a prior has a row
 // more, which makes it as dear to move it as to leave its torque unexplained: of an effect that
 // looks like it, it takes a half. That is an effect of about twice what the bounds allow; the
 // motions of a smaller one cannot matter, since it is no finding.
 MatrixXd adapting_basis(const Data& data, const VectorXd& weights) {
-  const auto& known = data.recordings[0].known_effects;
-  const auto has_dry_friction = [&](Index joint) {
-    return std::any_of(known.begin(), known.end(), [&](const RobotEffect& effect) {
-      return effect.joint == joint && effect.kind == EffectKind::kCoulombFriction;
-    });
-  };
   const Index rows = data.layout.rows();
   const auto& terms = data.nuisance.terms;
   const auto count = static_cast<Index>(terms.size());
@@ -130,11 +99,14 @@ MatrixXd adapting_basis(const Data& data, const VectorXd& weights) {
   Index kept = 0;
   for (Index i = 0; i < count; ++i) {
     const NuisanceTerm& term = terms[static_cast<std::size_t>(i)];
-    if (term.kind == NuisanceTerm::Kind::kSignShape && !has_dry_friction(term.joint)) continue;
+    if (term.kind == NuisanceTerm::Kind::kSignShape &&
+        !data.recordings[0].knows_coulomb_friction(term.joint)) {
+      continue;
+    }
     VectorXd column = VectorXd::Zero(rows + count);
     column.head(rows) = data.layout.weighted(data.nuisance.columns.col(i), weights);
     const double torque = column.head(rows).norm();
-    if (is_bounded(term)) column[rows + i] = torque;
+    if (term.prior.is_informative()) column[rows + i] = torque;
     const double length = column.norm();
     if (!(length > 0) || !std::isfinite(length)) continue;
     columns.col(kept++) = column / length;
@@ -221,7 +193,7 @@ SeparationTable table_of(const Data& data, const std::vector<Contender>& contend
                          const std::vector<MotionJudge::Role>& roles, std::size_t truth_count,
                          const VectorXd& weights) {
   const MatrixXd basis = adapting_basis(data, weights);
-  const RowLayout::Blocks blocks = data.layout.blocks(kBlockS);
+  const RowLayout::Blocks blocks = data.layout.blocks(discovery::kShortestBlockS);
   std::vector<std::vector<MatrixXd>> rivals(contenders.size());
   std::vector<std::vector<Truth>> truths(truth_count);
   for (std::size_t i = 0; i < contenders.size(); ++i) {
@@ -268,7 +240,7 @@ MotionJudge::MotionJudge(const RobotDescription& robot, const FittedMotion& refe
   // A joint that needs no torque on the reference motion still has noise.
   const VectorXd scale = needed.cwiseMax(1e-3 * needed.maxCoeff());
   noise_rms_ = expectation.noise_share * scale;
-  const Data data = data_of(robot, reference, rate_hz_, plan_, expectation.log_rate_hz);
+  const Data data = data_of(robot, {log_of(reference, rate_hz_)}, plan_, expectation.log_rate_hz);
   for (const Contender& one : contenders_) {
     Role role;
     role.shapes = shapes_of(one.effect->shapes(data.recordings, one.joint),
@@ -291,8 +263,8 @@ MotionJudge::MotionJudge(const RobotDescription& robot, const FittedMotion& refe
 }
 
 SeparationTable MotionJudge::judge(const FittedMotion& motion) const {
-  return table_of(data_of(robot_, motion, rate_hz_, plan_, expectation_.log_rate_hz), contenders_,
-                  roles_, truths_, noise_rms_.cwiseInverse());
+  return table_of(data_of(robot_, {log_of(motion, rate_hz_)}, plan_, expectation_.log_rate_hz),
+                  contenders_, roles_, truths_, noise_rms_.cwiseInverse());
 }
 
 SeparationTable MotionJudge::judge(const std::vector<Log>& recordings) const {

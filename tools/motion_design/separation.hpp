@@ -27,7 +27,7 @@ struct Separation {
   double torque_rms = 0;  // N m or N on the true effect's joint: what the rival cannot explain
   double noise_rms = 0;   // N m or N, expected
   // How many standard deviations the true effect would fit better by, block by block of time; what
-  // `explain` calls ambiguous is below 3 (alternatives.cpp).
+  // `explain` calls ambiguous is below discovery::kTellApart.
   double evidence = 0;
 };
 

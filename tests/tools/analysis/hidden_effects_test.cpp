@@ -106,9 +106,14 @@ bool alarms(RobotDescription robot, const Log& log, double bound) {
 
 TEST_P(HiddenEffectInFile, ThenTheMonitorIsSilentWithABoundThatShowsItsAbsence) {
   const Log calibration = to_log(made_.recording);
-  double bound = 0.1;
-  while (alarms(improved_, calibration, bound)) bound *= 1.1;
-  bound *= 1.2;
+  double loud = 0.05;
+  double quiet = 0.1;
+  for (; alarms(improved_, calibration, quiet); quiet *= 2) loud = quiet;
+  while (quiet > 1.1 * loud) {
+    const double between = std::sqrt(loud * quiet);
+    (alarms(improved_, calibration, between) ? loud : quiet) = between;
+  }
+  const double bound = 1.2 * quiet;
   std::cout << "bound " << bound << " rad/s^2\n";
   EXPECT_TRUE(alarms(nominal_, calibration, bound));
   EXPECT_FALSE(alarms(improved_, to_log(made_.holdout), bound));

@@ -32,6 +32,7 @@ class Offset final : public EffectCandidate {
     return {{{joint, VectorXd::Ones(at.sample_count())}}};
   }
   bool applies(const Workspace& /*at*/, Index /*joint*/) const override { return true; }
+  bool acts_at_rest(const Workspace& /*at*/, Index /*joint*/) const override { return true; }
 };
 
 class Scale final : public EffectCandidate {
@@ -47,6 +48,7 @@ class Scale final : public EffectCandidate {
                                     std::span<const double> /*shape*/) const override {
     return {{{joint, at.model_torque.col(joint)}}};
   }
+  bool acts_at_rest(const Workspace& /*at*/, Index /*joint*/) const override { return true; }
 };
 
 class Stiffness final : public EffectCandidate {
@@ -69,7 +71,23 @@ class Stiffness final : public EffectCandidate {
     return {{"stiffness", coefficients[0], unit(Quantity::kEffortPerPosition, type)},
             {"rest_position", -coefficients[1] / coefficients[0], unit(Quantity::kPosition, type)}};
   }
+  bool acts_at_rest(const Workspace& /*at*/, Index /*joint*/) const override { return true; }
 };
+
+// Half a period between neighbouring positions, as they are apart mostly; per rad or m.
+double highest_order_held(const Workspace& at, Index joint) {
+  VectorXd q = at.motion.q.col(joint);
+  std::sort(q.begin(), q.end());
+  const VectorXd apart = q.tail(q.size() - 1) - q.head(q.size() - 1);
+  std::vector<double> steps;
+  for (const double step : apart) {
+    if (step > 0) steps.push_back(step);
+  }
+  if (steps.empty()) return 0;
+  const VectorXd all = Eigen::Map<const VectorXd>(steps.data(), static_cast<Index>(steps.size()));
+  constexpr double kMostly = 0.9;
+  return 0.5 / quantile(all, kMostly) * 2 * std::numbers::pi;
+}
 
 class Cogging final : public EffectCandidate {
  public:
@@ -88,6 +106,7 @@ class Cogging final : public EffectCandidate {
     const double range = range_moved(at, joint) / per_unit;
     double highest = 0;
     for (const Workspace& one : at) {
+      if (one.at_rest) highest = std::max(highest, highest_order_held(one, joint) / per_unit);
       const double slow = std::max(quantile(one.motion.dq.col(joint).cwiseAbs(), 0.3),
                                    0.05 * one.top_speed[joint]) /
                           per_unit;
@@ -106,9 +125,19 @@ class Cogging final : public EffectCandidate {
     const double k =
         type_of(at, joint) == JointType::kRevolute ? shape[0] : shape[0] * 2 * std::numbers::pi;
     const ArrayXd phase = k * at.motion.q.col(joint).array();
-    return {{{joint, phase.sin().matrix()}}, {{joint, phase.cos().matrix()}}};
+    std::vector<Regressor> columns{{{joint, phase.sin().matrix()}},
+                                   {{joint, phase.cos().matrix()}}};
+    if (!at.both_ways(joint)) return columns;
+    // Friction holds a joint a little before where the ripple would: by the direction of approach
+    // the reading is shifted along it.
+    for (std::size_t i = 0; i < 2; ++i) {
+      columns.push_back(
+          {{joint, columns[i][0].values.cwiseProduct(at.approach.col(joint)).eval()}});
+    }
+    return columns;
   }
   Spectrum spectrum() const override { return Spectrum::kPosition; }
+  bool acts_at_rest(const Workspace& /*at*/, Index /*joint*/) const override { return true; }
 };
 
 class Periodic final : public EffectCandidate {

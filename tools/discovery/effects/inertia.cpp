@@ -45,6 +45,7 @@ class LinkMass final : public EffectCandidate {
     Effect<double> effect{EffectKind::kLinkMass, static_cast<std::uint8_t>(joint), {1}};
     return {of_inertial_effect(at, effect)};
   }
+  bool acts_at_rest(const Workspace& /*at*/, Index /*joint*/) const override { return true; }
 };
 
 class TipPayload final : public EffectCandidate {
@@ -70,6 +71,7 @@ class TipPayload final : public EffectCandidate {
   bool applies(const Workspace& at, Index joint) const override {
     return joint + 1 == at.joint_count();
   }
+  bool acts_at_rest(const Workspace& at, Index joint) const override { return applies(at, joint); }
 };
 
 }  // namespace

@@ -1,0 +1,159 @@
+// A joint that dry friction holds shows nothing of the model: such stretches must not count.
+
+#include "discovery/standstill.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "discovery/explain.hpp"
+#include "log/read_log.hpp"
+#include "robot/robot_file.hpp"
+#include "sticking_pendulum.hpp"
+#include "support/recordings.hpp"
+
+namespace offnominal::tools::discovery {
+namespace {
+
+ExplainOptions few_draws() {
+  ExplainOptions options;
+  options.bootstrap_draws = 399;
+  options.threads = 2;
+  return options;
+}
+
+bool names(const std::vector<EffectAt>& same, const std::string& effect) {
+  return std::any_of(same.begin(), same.end(),
+                     [&](const EffectAt& one) { return one.effect == effect; });
+}
+
+// 100 Hz, 1000 counts per rad: moves for 2 s, then as `rest` says, then moves for 2 s again.
+Log interrupted_by(const Eigen::VectorXd& rest) {
+  Log log;
+  log.period_s = 0.01;
+  log.q.resize(400 + rest.size(), 1);
+  log.q.col(0).head(200).setLinSpaced(0, 1);
+  log.q.col(0).segment(200, rest.size()) = 1.01 + rest.array();
+  log.q.col(0).tail(200).setLinSpaced(1.02, 2);
+  log.t_s = 0.01 * Eigen::VectorXd::LinSpaced(log.q.rows(), 0, static_cast<double>(log.q.rows()));
+  return log;
+}
+
+TEST(MovingSamples, AreNotThoseOfALongStandstill) {
+  Eigen::VectorXd flicker = Eigen::VectorXd::Zero(80);
+  flicker[40] = 0.001;
+  const Eigen::VectorXd moving = moving_samples(interrupted_by(flicker), 0, 1000);
+  EXPECT_EQ(moving.segment(200, 80).sum(), 0);
+  EXPECT_EQ(moving.sum(), 400);
+}
+
+TEST(MovingSamples, AreThoseOfAShortRestToo) {
+  EXPECT_EQ(moving_samples(interrupted_by(Eigen::VectorXd::Zero(40)), 0, 1000).minCoeff(), 1);
+}
+
+TEST(MovingSamples, AreAllWhereNothingIsKnownOfTheEncoderOrNothingMoves) {
+  EXPECT_EQ(moving_samples(interrupted_by(Eigen::VectorXd::Zero(80)), 0, 0).minCoeff(), 1);
+  Log still = interrupted_by(Eigen::VectorXd::Zero(80));
+  still.q.setConstant(0.3);
+  EXPECT_EQ(moving_samples(still, 0, 1000).minCoeff(), 1);
+}
+
+TEST(Standstill, LoadDependentFrictionIsNamedThoughItHoldsTheJointMostOfTheTime) {
+  const Log log = test::recording_of({.load_factor = 0.3});
+  RobotDescription robot = test::pendulum();
+  const Explanation e = explain(robot, {log}, {}, few_draws());
+  ASSERT_EQ(e.verdict, Verdict::kFound) << e.words;
+  ASSERT_EQ(e.found.size(), 1U);
+  EXPECT_EQ(e.found[0].what.effect, "load_dependent_friction");
+  EXPECT_NEAR(e.found[0].parameters[0].value.value, 0.3, 0.015);
+  // What the standstills say when they count: structure that no effect has.
+  robot.joints[0].encoder.counts_per_unit = 0;
+  EXPECT_EQ(explain(robot, {log}, {}, few_draws()).verdict, Verdict::kUnknownStateDependent);
+}
+
+TEST(Standstill, CoulombFrictionIsNotTakenForIt) {
+  const Log log = test::recording_of({.load_factor = 0, .dry_nm = 0.06});
+  const Explanation e = explain(test::pendulum(), {log}, {}, few_draws());
+  ASSERT_FALSE(e.found.empty()) << e.words;
+  EXPECT_EQ(e.found[0].what.effect, "coulomb_friction");
+}
+
+TEST(Standstill, NothingIsFoundWhereNothingIsMissing) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const Log log = test::recording_of({.seed = seed, .load_factor = 0});
+    const Explanation e = explain(test::pendulum(), {log}, {}, few_draws());
+    EXPECT_EQ(e.verdict, Verdict::kExplained) << e.words;
+  }
+}
+
+// Twelve recordings of a servo with plastic gears, robots/bam_xl330.toml: four gains, three
+// motions.
+class BamXl330 : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    robot_ =
+        read_robot_file(std::filesystem::path(OFFNOMINAL_SOURCE_DIR) / "robots/bam_xl330.toml");
+    const auto folder = test::recordings_dir() / "bam_xl330/csv";
+    for (const char* gain : {"kp100", "kp200", "kp400", "kp800"}) {
+      for (const char* motion : {"sin_sin", "sin_time_square", "up_and_down"}) {
+        const auto file = folder / (std::string(gain) + "_" + motion + ".csv");
+        if (!std::filesystem::exists(file)) {
+          GTEST_SKIP() << "no recording at " << file << "; OFFNOMINAL_DATA names its folder";
+        }
+        logs_.push_back(read_log(file, robot_));
+      }
+    }
+  }
+
+  void know(EffectKind kind, double first) {
+    RobotEffect effect;
+    effect.kind = kind;
+    effect.parameters = {first, 0.03};
+    effect.fitted = true;
+    robot_.effects.push_back(effect);
+  }
+
+  RobotDescription robot_;
+  std::vector<Log> logs_;
+};
+
+TEST_F(BamXl330, LoadDependentFrictionComesFirst) {
+  const Explanation e = explain(robot_, logs_, {}, few_draws());
+  ASSERT_EQ(e.verdict, Verdict::kAmbiguous) << e.words;
+  ASSERT_EQ(e.found.size(), 1U);
+  EXPECT_EQ(e.found[0].what.effect, "load_dependent_friction");
+  EXPECT_EQ(e.ambiguous[0][0].effect, "load_dependent_friction");
+  EXPECT_LT(e.joints[0].holdout_after, 0.75 * e.joints[0].holdout_before);
+}
+
+TEST_F(BamXl330, BesideItCoulombFrictionIsDropped) {
+  know(EffectKind::kLoadDependentFriction, 0.3);
+  const std::vector<Log> gentle(logs_.begin(), logs_.begin() + 6);
+  const Explanation e = explain(robot_, gentle, {}, few_draws());
+  EXPECT_EQ(e.verdict, Verdict::kExplained) << e.words;
+  EXPECT_LT(e.joints[0].rms_after, 1.2 * e.joints[0].noise_floor);
+  const auto coulomb = std::find_if(e.rejected.begin(), e.rejected.end(), [](const Rejection& one) {
+    return one.what.effect == "coulomb_friction";
+  });
+  ASSERT_NE(coulomb, e.rejected.end());
+  EXPECT_GT(coulomb->p_value, 0.05);
+}
+
+TEST_F(BamXl330, NoChoiceOfRecordingsGivesBareCoulombFriction) {
+  for (std::size_t motion = 0; motion < 3; ++motion) {
+    std::vector<Log> chosen;
+    for (std::size_t i = motion; i < logs_.size(); i += 3) chosen.push_back(logs_[i]);
+    const Explanation e = explain(robot_, chosen, {}, few_draws());
+    for (const Finding& one : e.found) {
+      if (one.what.effect != "coulomb_friction") continue;
+      ASSERT_FALSE(e.ambiguous.empty()) << e.words;
+      EXPECT_TRUE(names(e.ambiguous[0], "load_dependent_friction")) << e.words;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace offnominal::tools::discovery

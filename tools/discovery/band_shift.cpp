@@ -1,0 +1,62 @@
+#include "discovery/band_shift.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace offnominal::tools::discovery {
+
+namespace {
+
+constexpr std::array<double, 2> kBands{0.7, 0.45};  // of the band that was fitted in
+
+std::vector<NamedValue> numbers_of(const Data& data, const Term& term,
+                                   const Eigen::VectorXd& coefficients) {
+  const auto joint = static_cast<std::size_t>(term.joint);
+  return term.effect->parameters(data.recordings[0].rigid.joints[joint].joint.type, coefficients,
+                                 term.shape, term.ranges);
+}
+
+// The same terms fitted in a band of that share of the first one.
+std::vector<std::vector<NamedValue>> numbers_in(double share, const Relinearised& fitted) {
+  std::vector<Workspace> recordings = fitted.data->recordings;
+  for (Workspace& at : recordings) at.plan.torque_cutoff_hz *= share;
+  RobotDescription robot = recordings[0].rigid;
+  robot.effects = recordings[0].known_effects;
+  const Data narrow(std::move(recordings), robot, fitted.nuisance);
+  const Regression regression(narrow);
+  std::vector<Term> terms = fitted.terms;
+  for (std::size_t i = 0; i < terms.size(); ++i) regression.refine(terms, i);
+  const ModelFit fit = regression.fit(terms);
+  std::vector<std::vector<NamedValue>> numbers;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    numbers.push_back(numbers_of(narrow, terms[i], fit.coefficients[i]));
+  }
+  return numbers;
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> largest_shifts_in_narrower_bands(const Relinearised& fitted) {
+  std::vector<std::vector<double>> shifts;
+  for (std::size_t i = 0; i < fitted.terms.size(); ++i) {
+    const auto count = numbers_of(*fitted.data, fitted.terms[i], fitted.fit.coefficients[i]).size();
+    shifts.emplace_back(count, 0.0);
+  }
+  // Readings at rest have no band.
+  if (fitted.data->recordings[0].at_rest) return shifts;
+  for (const double share : kBands) {
+    const auto numbers = numbers_in(share, fitted);
+    for (std::size_t i = 0; i < shifts.size(); ++i) {
+      const auto at = numbers_of(*fitted.data, fitted.terms[i], fitted.fit.coefficients[i]);
+      for (std::size_t p = 0; p < at.size(); ++p) {
+        const double moved = std::abs(numbers[i][p].value - at[p].value);
+        if (std::isfinite(moved)) shifts[i][p] = std::max(shifts[i][p], moved);
+      }
+    }
+  }
+  return shifts;
+}
+
+}  // namespace offnominal::tools::discovery
