@@ -10,6 +10,7 @@
 
 #include "offnominal/sim/fault.hpp"
 #include "offnominal/sim/trajectory.hpp"
+#include "offnominal/sim/two_link_plant.hpp"
 #include "offnominal/sim/uncertainty.hpp"
 #include "paper/recorded_motion.hpp"
 #include "robot/robot.hpp"
@@ -77,6 +78,12 @@ struct ExperimentResult {
 /// the closed loop leaves the range of finite numbers, and names the setting at fault.
 [[nodiscard]] ExperimentResult run_experiment(const RobotDescription& robot,
                                               const Experiment& experiment);
+
+/// Throws InputError where run_experiment() would, before anything runs.
+void check_experiment(const RobotDescription& robot, const Experiment& experiment);
+
+/// The arm of an experiment. Throws InputError where its fault cannot be.
+[[nodiscard]] sim::TwoLinkPlant plant_of(const Experiment& experiment);
 
 [[nodiscard]] std::string name_of(sim::FaultKind fault);  // none, mass_loss, nonlinear
 [[nodiscard]] std::string name_of(Precision precision);   // float, double

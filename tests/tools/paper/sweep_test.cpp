@@ -5,11 +5,13 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "paper/two_link_robot.hpp"
 #include "support/repetitions.hpp"
+#include "tools/paper/quick_arm.hpp"
 
 namespace offnominal::tools::paper {
 namespace {
+
+using test::quick_arm;
 
 // Under the sanitizers every fifth step.
 constexpr double kResolution = test::repetitions(20) == 20 ? 0.005 : 0.025;
@@ -19,7 +21,7 @@ std::optional<double> detection_of(double mass_loss, Precision precision) {
   experiment.fault.kind = sim::FaultKind::kMassLoss;
   experiment.fault.mass_loss = mass_loss;
   experiment.precision = precision;
-  return run_experiment(two_link_robot(), experiment).detection_time_s;
+  return run_experiment(quick_arm(), experiment).detection_time_s;
 }
 
 TEST(MassLossSweep, TenPercentIsDetectedAndSevenAndAHalfIsNot) {
@@ -32,7 +34,7 @@ TEST(MassLossSweep, TenPercentIsDetectedAndSevenAndAHalfIsNot) {
 TEST(MassLossSweep, LeavesNoStepOutUpToTwiceTheSmallestDetected) {
   std::size_t told = 0;
   const SweepResult sweep =
-      sweep_mass_loss(two_link_robot(), {}, kResolution, [&](const SweepProbe&) { ++told; });
+      sweep_mass_loss(quick_arm(), {}, kResolution, [&](const SweepProbe&) { ++told; });
   ASSERT_TRUE(sweep.smallest_detected);
   EXPECT_GT(*sweep.smallest_detected, 0.075);
   EXPECT_LE(*sweep.smallest_detected, 0.10 + 1e-9);
@@ -53,7 +55,7 @@ TEST(MassLossSweep, LeavesNoStepOutUpToTwiceTheSmallestDetected) {
 }
 
 TEST(MassLossSweep, NothingIsDetectedUnderAHugeBound) {
-  RobotDescription robot = two_link_robot();
+  RobotDescription robot = quick_arm();
   robot.bound->scaled_norm.scale = 1000.0;
   const SweepResult sweep = sweep_mass_loss(robot, {}, 0.1);
   EXPECT_FALSE(sweep.smallest_detected);
@@ -61,7 +63,7 @@ TEST(MassLossSweep, NothingIsDetectedUnderAHugeBound) {
 }
 
 TEST(MassLossSweep, AnAlarmBeforeTheFaultDetectsNothing) {
-  RobotDescription robot = two_link_robot();
+  RobotDescription robot = quick_arm();
   robot.bound->scaled_norm.scale = 0.1;
   const SweepResult sweep = sweep_mass_loss(robot, {}, 0.1);
   ASSERT_TRUE(sweep.false_alarm_s);
@@ -71,7 +73,7 @@ TEST(MassLossSweep, AnAlarmBeforeTheFaultDetectsNothing) {
 
 TEST(MassLossSweep, RefusesResolutionsOutOfRange) {
   for (const double resolution : {0.0, 0.2, -0.005, std::nan("")}) {
-    EXPECT_THROW(static_cast<void>(sweep_mass_loss(two_link_robot(), {}, resolution)), InputError);
+    EXPECT_THROW(static_cast<void>(sweep_mass_loss(quick_arm(), {}, resolution)), InputError);
   }
 }
 

@@ -1,0 +1,79 @@
+#include "paper/run_observer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace offnominal::tools::paper {
+
+RunObserver::RunObserver(const RobotDescription& robot, const Experiment& experiment,
+                         double fault_time_s)
+    : robot_(robot),
+      experiment_(experiment),
+      decay_(std::exp(-robot.estimator.alpha_per_s * robot.estimator.period_s)),
+      input_gain_(-std::expm1(-robot.estimator.alpha_per_s * robot.estimator.period_s) /
+                  robot.estimator.alpha_per_s),
+      healthy_until_(std::min(fault_time_s, experiment.duration_s)),
+      window_start_(0.75 * experiment.duration_s),
+      tolerance_(1e-6 * robot.estimator.period_s) {}
+
+void RunObserver::operator()(const TickRecord& tick) {
+  // W_alpha over one tick, its input taken at the tick's mean value.
+  eta_ = decay_ * eta_ + input_gain_ * 0.5 * (last_psi_ + tick.psi);
+  last_psi_ = tick.psi;
+  judge(tick);
+  if (tick.time_s >= window_start_ - tolerance_) add_to_window(tick);
+  if (experiment_.record) keep(tick);
+}
+
+ExperimentResult RunObserver::finish() {
+  const auto ticks = static_cast<double>(window_.ticks);
+  result_.tracking_rms_rad = std::sqrt(window_.tracking / ticks);
+  if (window_.psi > 0.0) {
+    result_.fault_estimate_relative_error = std::sqrt(window_.mismatch / window_.psi);
+  }
+  result_.fault = experiment_.fault.kind;
+  result_.accommodate = experiment_.accommodate;
+  result_.precision = experiment_.precision;
+  result_.seed = robot_.estimator.seed;
+  return std::move(result_);
+}
+
+void RunObserver::judge(const TickRecord& tick) {
+  result_.steps = tick.tick;
+  result_.max_weight_norm = std::max(result_.max_weight_norm, tick.weight_norm);
+  if (tick.detected && !result_.detection_time_s) result_.detection_time_s = tick.time_s;
+  if (eta_.norm() > 2.0 * tick.threshold && !result_.guaranteed_time_s) {
+    result_.guaranteed_time_s = tick.time_s;
+  }
+  if (tick.time_s <= healthy_until_ + tolerance_) {
+    double& ratio = result_.max_error_to_threshold_before_fault;
+    ratio = std::max(ratio, tick.error_norm / tick.threshold);
+    double& largest = result_.max_abs_psi_hat_before_fault;
+    largest = std::max(largest, tick.psi_hat.lpNorm<Eigen::Infinity>());
+  }
+}
+
+void RunObserver::add_to_window(const TickRecord& tick) {
+  ++window_.ticks;
+  window_.tracking += (tick.q_desired - tick.state.q).squaredNorm();
+  window_.psi += tick.psi.squaredNorm();
+  window_.mismatch += (tick.psi - tick.psi_hat).squaredNorm();
+}
+
+void RunObserver::keep(const TickRecord& tick) {
+  TimeSeries& series = result_.series;
+  series.time_s.push_back(tick.time_s);
+  for (int i = 0; i < 2; ++i) {
+    series.q[i].push_back(tick.state.q[i]);
+    series.dq[i].push_back(tick.state.dq[i]);
+    series.tau[i].push_back(tick.tau[i]);
+    series.q_desired[i].push_back(tick.q_desired[i]);
+    series.psi[i].push_back(tick.psi[i]);
+    series.psi_hat[i].push_back(tick.psi_hat[i]);
+  }
+  series.error_norm.push_back(tick.error_norm);
+  series.threshold.push_back(tick.threshold);
+  series.filtered_fault.push_back(eta_.norm());
+}
+
+}  // namespace offnominal::tools::paper
