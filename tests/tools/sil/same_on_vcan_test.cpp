@@ -1,0 +1,62 @@
+// Lock-step over the kernel's bus gives what the in-process bus gives, bit for bit.
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "paper/two_link_robot.hpp"
+#include "sil/sil.hpp"
+#include "sil/sil_report.hpp"
+
+namespace offnominal::tools::sil {
+namespace {
+
+struct Outcome {
+  nlohmann::ordered_json json;
+  paper::TimeSeries series;
+};
+
+Outcome outcome(Scenario scenario, Wire& wire) {
+  scenario.experiment.record = true;
+  SilResult result = run_in_lock_step(paper::two_link_robot(), scenario, wire, "either");
+  Outcome outcome{to_json(result), std::move(result.run.series)};
+  return outcome;
+}
+
+void expect_same(const Scenario& scenario) {
+  const Outcome alone = outcome(scenario, *make_in_process_wire());
+  const Outcome on_bus = outcome(scenario, *make_socketcan_wire("vcan0"));
+  EXPECT_EQ(on_bus.json, alone.json);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(on_bus.series.q[i], alone.series.q[i]);
+    EXPECT_EQ(on_bus.series.tau[i], alone.series.tau[i]);
+    EXPECT_EQ(on_bus.series.psi_hat[i], alone.series.psi_hat[i]);
+  }
+  EXPECT_EQ(on_bus.series.error_norm, alone.series.error_norm);
+}
+
+class PaperFaults : public testing::TestWithParam<std::tuple<sim::FaultEventKind, bool>> {};
+
+TEST_P(PaperFaults, GiveTheSameRunOnVcan) {
+  Scenario scenario;
+  scenario.faults = {
+      {.kind = std::get<0>(GetParam()), .begin_s = 10, .size = 0.75, .rate_per_s = 0.5}};
+  scenario.experiment.accommodate = std::get<1>(GetParam());
+  expect_same(scenario);
+}
+
+INSTANTIATE_TEST_SUITE_P(Vcan, PaperFaults,
+                         testing::Combine(testing::Values(sim::FaultEventKind::kMassLoss,
+                                                          sim::FaultEventKind::kNonlinear),
+                                          testing::Bool()));
+
+TEST(SameOnVcan, WithFaultsOfTheBusAndCanFd) {
+  Scenario scenario;
+  scenario.experiment.duration_s = 1.0;
+  scenario.format = hal::FrameFormat::kFd;
+  scenario.faults = {{.kind = sim::FaultEventKind::kFrameLoss, .begin_s = 0.3, .size = 0.05},
+                     {.kind = sim::FaultEventKind::kBabblingNode, .begin_s = 0.5, .size = 4}};
+  expect_same(scenario);
+}
+
+}  // namespace
+}  // namespace offnominal::tools::sil

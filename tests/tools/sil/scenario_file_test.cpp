@@ -1,0 +1,93 @@
+#include "sil/scenario_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "common/error.hpp"
+#include "common/file.hpp"
+#include "tools/support/temporary_folder.hpp"
+
+namespace offnominal::tools::sil {
+namespace {
+
+Scenario read(const std::string& text) {
+  const test::TemporaryFolder folder;
+  write_file_atomically(folder / "s.toml", text);
+  return read_scenario(folder / "s.toml");
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    read(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "nothing was refused";
+}
+
+TEST(ScenarioFile, HasWhatStandsInIt) {
+  const Scenario scenario = read(R"(format = 1
+duration_s = 12.5
+accommodate = true
+frames = "fd"
+velocity = "observed"
+encoder_bits_per_turn = 19
+seed = 7
+[[fault]]
+kind = "encoder_bias"
+begin_s = 3.0
+end_s = 4.0
+joint = 2
+size = -0.1
+[[fault]]
+kind = "mass_loss"
+begin_s = 5.0
+size = 0.5
+rate_per_s = 0.25
+)");
+  EXPECT_EQ(scenario.experiment.duration_s, 12.5);
+  EXPECT_TRUE(scenario.experiment.accommodate);
+  EXPECT_EQ(scenario.format, hal::FrameFormat::kFd);
+  EXPECT_FALSE(scenario.sends_velocity);
+  EXPECT_EQ(scenario.encoder_bits_per_turn, 19);
+  EXPECT_EQ(scenario.seed, 7U);
+  ASSERT_EQ(scenario.faults.size(), 2U);
+  EXPECT_EQ(scenario.faults[0].kind, sim::FaultEventKind::kEncoderBias);
+  EXPECT_EQ(scenario.faults[0].joint, 1);
+  EXPECT_EQ(scenario.faults[0].size, -0.1);
+  EXPECT_EQ(scenario.faults[0].end_s, 4.0);
+  EXPECT_EQ(scenario.faults[1].rate_per_s, 0.25);
+  EXPECT_TRUE(std::isinf(scenario.faults[1].end_s));
+}
+
+TEST(ScenarioFile, SaysWhereItIsWrong) {
+  using testing::AllOf;
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal("format = 2\n"), HasSubstr("format"));
+  EXPECT_THAT(refusal("format = 1\nspeed = 3\n"), HasSubstr("speed"));
+  EXPECT_THAT(refusal("format = 1\n[[fault]]\nkind = \"mass_los\"\nbegin_s = 1\n"),
+              AllOf(HasSubstr("line 3"), HasSubstr("mass_loss")));
+  EXPECT_THAT(refusal("format = 1\n[[fault]]\nkind = \"bus_off\"\nbegin_s = 1\nsize = 2\n"),
+              AllOf(HasSubstr("line 5"), HasSubstr("size")));
+  EXPECT_THAT(refusal("format = 1\n[[fault]]\nkind = \"frame_loss\"\nbegin_s = 1\nsize = 2\n"),
+              AllOf(HasSubstr("line 5"), HasSubstr("0 to 1")));
+  EXPECT_THAT(refusal("format = 1\n[[fault]]\nkind = \"payload\"\nbegin_s = 1\nend_s = 2\n"),
+              HasSubstr("end_s"));
+  EXPECT_THAT(refusal("format = 1\n[[fault]]\nkind = \"encoder_stuck\"\nbegin_s = 1\n"),
+              HasSubstr("joint"));
+  EXPECT_THAT(refusal("format = 1\nfault = 3\n"), HasSubstr("fault"));
+  EXPECT_THAT(refusal("format = \n"), HasSubstr("line 1"));
+}
+
+TEST(ScenarioFile, KindsStandInTheOrderOfTheirNumbers) {
+  for (std::size_t i = 0; i < sim::kFaultEventInfos.size(); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(sim::kFaultEventInfos[i].kind), i);
+    EXPECT_THAT(fault_kinds_text(), testing::HasSubstr(std::string(sim::kFaultEventInfos[i].name)));
+  }
+}
+
+}  // namespace
+}  // namespace offnominal::tools::sil

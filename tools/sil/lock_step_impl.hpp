@@ -1,0 +1,188 @@
+// Body of run_loop(); included only where it is instantiated.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <offnominal/controller/joint_controller.hpp>
+#include <offnominal/diagnosis/velocity_observer.hpp>
+
+#include "common/error.hpp"
+#include "offnominal/sim/bus/faulty_bus.hpp"
+#include "robot/monitor_config_of.hpp"
+#include "sil/lock_step.hpp"
+
+namespace offnominal::tools::sil {
+
+// Fewer hidden units are exactly a smaller network.
+inline constexpr int kSilCapacity = 128;
+
+template <typename Scalar>
+class LockStepLoop {
+ public:
+  using Controller = controller::JointController<2, kSilCapacity, Scalar>;
+  using Drives = hal::ProtectedDrives<2>;
+
+  LockStepLoop(const RobotDescription& robot, const Scenario& scenario, const LoopSetup& setup,
+               Wire& wire, const TappedPort::OnFrame& on_frame)
+      : scenario_(scenario),
+        setup_(setup),
+        wire_(wire),
+        controller_tap_(wire.controller(), on_frame),
+        plant_tap_(wire.plant(), on_frame),
+        controller_bus_(controller_tap_, sim::BusEnd::kController, scenario.faults, scenario.seed),
+        plant_bus_(plant_tap_, sim::BusEnd::kPlant, scenario.faults, scenario.seed),
+        source_{.max_age_us = 2 * setup.period_us + setup.period_us / 2},
+        drives_(source_, source_, scenario.format),
+        plant_(paper::plant_of(scenario.experiment),
+               sim::on_trajectory(scenario.experiment.desired_at(0.0)), setup.plant) {
+    const Status status = Controller::create(config_of(robot, scenario), controller_);
+    if (status == Status::kOk) return;
+    throw InputError({.file = "robot " + robot.name,
+                      .place = "controller",
+                      .found = std::string("status ") + name_of(status),
+                      .allowed = "",
+                      .mend = "docs/troubleshooting.md says what each status asks for"});
+  }
+
+  void run(const paper::TickObserver& observe, SilResult& result) {
+    start();
+    // Both ends have a tick in which they do what time 0 asks for.
+    tick();
+    std::optional<double> safe_since_s;
+    for (std::int64_t i = 1; i <= setup_.ticks; ++i) {
+      tick();
+      if (data_->state == hal::ControllerState::kArmed) observe(record());
+      if (!safe_since_s && is_safe()) {
+        safe_since_s = plant_.time_s();
+        result.time_to_safe_state_s = *safe_since_s - setup_.first_fault_s;
+      }
+      constexpr double kAfterwards = 0.1;
+      if (safe_since_s && plant_.time_s() > *safe_since_s + kAfterwards) {
+        result.ended_early_s = *safe_since_s;
+        break;
+      }
+    }
+    report(result);
+  }
+
+ private:
+  using Bus = sim::FaultyBus<BusPort>;
+
+  static typename Controller::Config config_of(const RobotDescription& robot,
+                                               const Scenario& scenario) {
+    typename Controller::Config config;
+    config.monitor = monitor_config_of<2, Scalar>(robot);
+    config.gains = gains_of<2, Scalar>(robot);
+    const double period_s = robot.estimator.period_s;
+    config.command_lifetime_us = std::llround(0.9e6 * period_s);
+    config.stop_at_detection = scenario.stop_at_detection;
+    if (!scenario.experiment.accommodate) config.monitor.max_compensation = {};
+    config.velocity_observer.period_s = config.monitor.estimator.period_s;
+    config.velocity_observer.bandwidth_rad_s = static_cast<Scalar>(0.2 / period_s);
+    if (!scenario.sends_velocity) {
+      config.monitor.bound.velocity_error += velocity_error_bound(
+          config.velocity_observer, static_cast<Scalar>(scenario.max_acceleration),
+          static_cast<Scalar>(half_count(scenario)));
+    }
+    return config;
+  }
+  static double half_count(const Scenario& scenario) {
+    sim::EncoderConfig encoder;
+    encoder.bits_per_turn = scenario.encoder_bits_per_turn;
+    return 0.5 * (sim::position_step_rad(encoder) + static_cast<double>(hal::kPositionPerCount));
+  }
+
+  void start() {
+    constexpr int kPatience = 100;
+    for (int i = 0; i < kPatience && data_->state != hal::ControllerState::kPassive; ++i) tick();
+    if (controller_.arm(*data_)) return;
+    throw InputError({.file = "sil",
+                      .place = "start",
+                      .found = "no valid frames of every joint within 100 ticks",
+                      .allowed = "",
+                      .mend = "let the faults on the bus begin later"});
+  }
+
+  void tick() {
+    now_us_ += setup_.period_us;
+    wire_.set_time(now_us_);
+    const double time_s = plant_.time_s();
+    plant_bus_.set_time(time_s);
+    controller_bus_.set_time(time_s);
+    plant_.tick(now_us_ + setup_.period_us, plant_bus_);
+    controller_.step(
+        now_us_, 0,
+        [&](Scalar run_time_s) {
+          const auto desired = scenario_.experiment.desired_at(static_cast<double>(run_time_s));
+          return Reference<2, Scalar>{desired.q.template cast<Scalar>(),
+                                      desired.dq.template cast<Scalar>(),
+                                      desired.ddq.template cast<Scalar>()};
+        },
+        controller_bus_, drives_, *data_);
+  }
+
+  [[nodiscard]] bool is_safe() const {
+    return plant_.started() && plant_.drives().mode(0) != hal::DriveMode::kTorque &&
+           plant_.drives().mode(1) != hal::DriveMode::kTorque;
+  }
+
+  [[nodiscard]] paper::TickRecord record() const {
+    paper::TickRecord record;
+    record.tick = data_->run_ticks;
+    record.time_s = plant_.time_s();
+    record.state = plant_.state();
+    record.q_desired = scenario_.experiment.desired_at(record.time_s).q;
+    record.tau = {plant_.applied_nm()[0], plant_.applied_nm()[1]};
+    record.psi = plant_.plant().fault_function(record.time_s, record.state, record.tau);
+    record.psi_hat = data_->output.psi_hat.template cast<double>();
+    record.error_norm = static_cast<double>(data_->output.error_norm);
+    record.threshold = static_cast<double>(data_->output.threshold);
+    record.weight_norm =
+        std::sqrt(static_cast<double>(squared_norm(data_->monitor.estimator.weights)));
+    record.detected = data_->output.detector.latched;
+    return record;
+  }
+
+  void report(SilResult& result) const {
+    const hal::BusState at_controller = controller_bus_.state();
+    const hal::BusState at_plant = plant_bus_.state();
+    result.bus.frames = std::uint64_t{at_controller.sent} + at_plant.sent;
+    result.bus.late = std::uint64_t{at_controller.late} + at_plant.late;
+    result.bus.stale = data_->missed_samples;
+    for (std::size_t j = 0; j < 2; ++j) {
+      for (const hal::Source* source :
+           {&drives_.encoder_source(j), &drives_.drive_source(j), &plant_.drives().source(j)}) {
+        result.bus.lost += source->lost;
+        result.bus.rejected += std::uint64_t{source->rejected} + source->repeated;
+      }
+    }
+    result.state = data_->state;
+    result.fault = data_->fault;
+    result.overruns = data_->overruns;
+    result.run_time_s = static_cast<double>(now_us_) * 1e-6;
+  }
+
+  const Scenario& scenario_;
+  const LoopSetup& setup_;
+  Wire& wire_;
+  TappedPort controller_tap_;
+  TappedPort plant_tap_;
+  Bus controller_bus_;
+  Bus plant_bus_;
+  hal::SourceConfig source_;
+  Drives drives_;
+  sim::PlantNode plant_;
+  Controller controller_;
+  // On the heap: 128 hidden units do not belong on a stack.
+  std::unique_ptr<typename Controller::Data> data_ = std::make_unique<typename Controller::Data>();
+  hal::Microseconds now_us_ = 0;
+};
+
+template <typename Scalar>
+void run_loop(const RobotDescription& robot, const Scenario& scenario, const LoopSetup& setup,
+              Wire& wire, const TappedPort::OnFrame& on_frame, const paper::TickObserver& observe,
+              SilResult& result) {
+  LockStepLoop<Scalar>(robot, scenario, setup, wire, on_frame).run(observe, result);
+}
+
+}  // namespace offnominal::tools::sil

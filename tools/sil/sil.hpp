@@ -1,0 +1,68 @@
+// Software-in-the-loop: the joint controller and the paper's arm at the two ends of a bus.
+#pragma once
+
+#include <cstdint>
+#include <offnominal/controller/fault.hpp>
+#include <offnominal/hal/messages.hpp>
+#include <offnominal/hal/protected_drives.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "offnominal/sim/bus/fault_event.hpp"
+#include "paper/experiment.hpp"
+#include "sil/wire.hpp"
+
+namespace offnominal::tools::sil {
+
+struct Scenario {
+  /// Motion, precision, accommodation and length of the run. Its fault is taken from `faults`.
+  paper::Experiment experiment;
+  std::vector<sim::FaultEvent> faults;
+  hal::FrameFormat format = hal::FrameFormat::kClassic;
+  int encoder_bits_per_turn = 0;  // on top of what a frame resolves; 0: none
+  bool sends_velocity = true;
+  double max_acceleration = 20;  // rad/s^2; bounds the velocity observer's error
+  bool stop_at_detection = false;
+  std::uint64_t seed = 1;  // of the faults on the bus
+};
+
+/// Counted at both ends.
+struct BusReport {
+  std::uint64_t frames = 0;    // sent
+  std::uint64_t lost = 0;      // by the counters of accepted records
+  std::uint64_t rejected = 0;  // wrong CRC, value, counter, length or format
+  std::uint64_t stale = 0;     // ticks without a fresh reading of every joint
+  std::uint64_t late = 0;      // not sent, their deadline had passed
+  double load = 0;             // share of the time that the bus is busy at most, at hal::BitRates
+};
+
+struct SilResult {
+  paper::ExperimentResult run;  // as far as it got
+  std::string bus_name;
+  std::vector<sim::FaultEvent> faults;
+  BusReport bus;
+  hal::ControllerState state = hal::ControllerState::kInit;  // at the end
+  controller::Fault fault = controller::Fault::kNone;
+  /// From the first fault's begin until no drive gives a commanded torque; none where that is not
+  /// what happened.
+  std::optional<double> time_to_safe_state_s;
+  std::optional<double> ended_early_s;  // since arming; none: the run went to its end
+  std::uint64_t overruns = 0;
+  double run_time_s = 0;  // of the bus, from the first tick to the last
+};
+
+/// Refuses, with InputError, a scenario that cannot be run: as paper::check_experiment(), and a
+/// fault out of its range.
+void check_scenario(const RobotDescription& robot, const Scenario& scenario);
+
+/// Runs it tick by tick, both ends in turn. The same scenario gives the same result on any wire. A
+/// run ends early 0.1 s after the drives have stopped to give torque. `on_frame` sees every frame.
+[[nodiscard]] SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenario,
+                                         Wire& wire, const std::string& bus_name,
+                                         const TappedPort::OnFrame& on_frame = {});
+
+/// "mass_loss at 10 s": every fault of the run; "none".
+[[nodiscard]] std::string words_of(const std::vector<sim::FaultEvent>& faults);
+
+}  // namespace offnominal::tools::sil
