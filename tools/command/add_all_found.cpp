@@ -1,13 +1,10 @@
 #include "command/add_all_found.hpp"
 
-#include <fmt/format.h>
-
 #include <iostream>
 
 #include "command/progress.hpp"
-#include "common/nearest.hpp"
+#include "command/recordings.hpp"
 #include "discovery/add_found.hpp"
-#include "log/read_log.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
@@ -17,25 +14,14 @@ void add_all_found(const AddAllFound& options, const std::string& command_line,
                    ExitCode& exit_code) {
   Progress progress;
   const RobotDescription robot = read_robot_file(options.robot);
-  const auto read_all = [&](const std::vector<std::string>& files) {
-    std::vector<Log> logs;
-    for (const std::string& file : files) {
-      progress.begin("reading " + file);
-      logs.push_back(read_log(file, robot, options.channels));
-    }
-    return logs;
-  };
-  const std::vector<Log> logs = read_all(options.logs);
-  const std::vector<Log> holdout = read_all(options.holdout);
+  const std::vector<Log> logs =
+      read_recordings_or_hold_maps(options.logs, robot, options.channels, progress);
+  const std::vector<Log> holdout =
+      read_recordings_or_hold_maps(options.holdout, robot, options.channels, progress);
   discovery::ExplainOptions explain;
   explain.threads = options.threads;
   explain.link_share = options.link_share.value_or(explain.link_share);
-  std::vector<std::string> fitted;
-  for (const std::string& file : options.logs) {
-    fitted.push_back(std::filesystem::path(file).filename().string());
-  }
-  explain.source =
-      fmt::format("Fitted to {} by offnominal add --all-found.", fmt::join(fitted, ", "));
+  explain.source = "Fitted to " + file_names(options.logs) + " by offnominal add --all-found.";
   const discovery::AddedFindings added = discovery::add_found(
       robot, logs, holdout, explain, [&](const std::string& doing) { progress.begin(doing); });
   progress.end();

@@ -14,6 +14,7 @@
 #include "command/add_all_found.hpp"
 #include "command/command_line.hpp"
 #include "command/filter_options.hpp"
+#include "command/output_file.hpp"
 #include "command/progress.hpp"
 #include "command/verbs.hpp"
 #include "common/error.hpp"
@@ -92,21 +93,10 @@ AddRequest request_of(const Options& options) {
   return request;
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code not_there;
-  return std::filesystem::equivalent(a, b, not_there) && !not_there;
-}
-
 void check_files(const Options& options) {
-  for (const auto* recordings : {&options.logs, &options.holdout}) {
-    for (const std::string& recording : *recordings) {
-      if (same_file(options.output, recording)) refuse("-o", "a recording", "a robot file");
-    }
-  }
-  if (std::filesystem::exists(options.output) && !options.force) {
-    refuse("-o", options.output + ", which is there already", "a file that is not there yet",
-           "choose another name, or add --force to replace it");
-  }
+  std::vector<std::string> recordings = options.logs;
+  recordings.insert(recordings.end(), options.holdout.begin(), options.holdout.end());
+  check_output_file("add", options.output, options.force, recordings);
   for (const std::string& held_out : options.holdout) {
     for (const std::string& log : options.logs) {
       if (!same_file(log, held_out)) continue;

@@ -12,10 +12,11 @@
 #include "calibrate/calibrate.hpp"
 #include "calibrate/calibrate_report.hpp"
 #include "command/command_line.hpp"
+#include "command/output_file.hpp"
 #include "command/progress.hpp"
+#include "command/recordings.hpp"
 #include "command/verbs.hpp"
 #include "common/error.hpp"
-#include "log/read_log.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
@@ -40,11 +41,6 @@ struct Options {
   throw InputError({"offnominal calibrate", option, found, allowed, mend});
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code not_there;
-  return std::filesystem::equivalent(a, b, not_there) && !not_there;
-}
-
 void check_numbers(const Options& options) {
   if (!(options.alarms_per_hour >= 1e-6 && options.alarms_per_hour <= 60)) {
     refuse("--alarms-per-hour", fmt::format("{:g}", options.alarms_per_hour), "1e-6 to 60");
@@ -59,7 +55,6 @@ void check_files(const Options& options) {
   std::vector<std::string> all = options.logs;
   all.insert(all.end(), options.holdout.begin(), options.holdout.end());
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (same_file(options.output, all[i])) refuse("-o", "a recording", "a robot file");
     for (std::size_t j = 0; j < i; ++j) {
       if (same_file(all[i], all[j])) {
         refuse(i < options.logs.size() ? "LOG" : "--holdout", all[i] + " a second time",
@@ -67,18 +62,7 @@ void check_files(const Options& options) {
       }
     }
   }
-  if (std::filesystem::exists(options.output) && !options.force) {
-    refuse("-o", options.output + ", which is there already", "a file that is not there yet",
-           "choose another name, or add --force to replace it");
-  }
-}
-
-std::string source_of(const std::vector<std::string>& logs) {
-  std::string names;
-  for (const std::string& log : logs) {
-    names += (names.empty() ? "" : ", ") + std::filesystem::path(log).filename().string();
-  }
-  return "Calibrated by offnominal calibrate on " + names + ".";
+  check_output_file("calibrate", options.output, options.force, all);
 }
 
 void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {
@@ -86,19 +70,13 @@ void run(const Options& options, const std::string& command_line, ExitCode& exit
   check_files(options);
   Progress progress;
   const RobotDescription robot = read_robot_file(options.robot);
-  const auto read_all = [&](const std::vector<std::string>& files) {
-    std::vector<Log> logs;
-    for (const std::string& file : files) {
-      progress.begin("reading " + file);
-      logs.push_back(read_log(file, robot, options.channels));
-    }
-    return logs;
-  };
-  const std::vector<Log> logs = read_all(options.logs);
-  const std::vector<Log> holdout = read_all(options.holdout);
+  const std::vector<Log> logs = read_recordings(options.logs, robot, options.channels, progress);
+  const std::vector<Log> holdout =
+      read_recordings(options.holdout, robot, options.channels, progress);
   progress.begin("shapes of the bound");
-  const CalibrateRequest request{options.alarms_per_hour, options.velocity_error,
-                                 source_of(options.logs)};
+  const CalibrateRequest request{
+      options.alarms_per_hour, options.velocity_error,
+      "Calibrated by offnominal calibrate on " + file_names(options.logs) + "."};
   const Calibration result =
       calibrate(robot, request, logs, holdout, [&progress] { progress.step(); });
   progress.end();

@@ -9,9 +9,9 @@
 
 #include "command/command_line.hpp"
 #include "command/progress.hpp"
+#include "command/recordings.hpp"
 #include "command/verbs.hpp"
 #include "discovery/explain_report.hpp"
-#include "log/read_log.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
@@ -28,21 +28,13 @@ struct Options {
   bool json = false;
 };
 
-std::vector<Log> read_all(const std::vector<std::string>& files, const RobotDescription& robot,
-                          const Options& options, Progress& progress) {
-  std::vector<Log> logs;
-  for (const std::string& file : files) {
-    progress.begin("reading " + file);
-    logs.push_back(read_log(file, robot, options.channels));
-  }
-  return logs;
-}
-
 void run(const Options& options, const std::string& command_line) {
   Progress progress;
   const RobotDescription robot = read_robot_file(options.robot);
-  const std::vector<Log> logs = read_all(options.logs, robot, options, progress);
-  const std::vector<Log> holdout = read_all(options.holdout, robot, options, progress);
+  const std::vector<Log> logs =
+      read_recordings_or_hold_maps(options.logs, robot, options.channels, progress);
+  const std::vector<Log> holdout =
+      read_recordings_or_hold_maps(options.holdout, robot, options.channels, progress);
   const discovery::Explanation explanation =
       discovery::explain(robot, logs, holdout, options.explain,
                          [&](const std::string& doing) { progress.begin(doing); });

@@ -11,11 +11,12 @@
 #include <vector>
 
 #include "command/command_line.hpp"
+#include "command/output_file.hpp"
 #include "command/progress.hpp"
+#include "command/recordings.hpp"
 #include "command/verbs.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
-#include "log/read_log.hpp"
 #include "motion_design/design_report.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
@@ -69,16 +70,9 @@ std::vector<Contender> effects_of(const Options& options, const RobotDescription
   return effects;
 }
 
-void check_output(const Options& options) {
-  if (std::filesystem::exists(options.output) && !options.force) {
-    refuse("-o", options.output + ", which is there already", "a file that is not there yet",
-           "choose another name, or add --force to replace it");
-  }
-}
-
 void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {
   using namespace motion_design;
-  check_output(options);
+  check_output_file("motion", options.output, options.force);
   const RobotDescription robot = read_robot_file(options.robot);
   DesignRequest request = options.design;
   request.effects = effects_of(options, robot);
@@ -86,10 +80,7 @@ void run(const Options& options, const std::string& command_line, ExitCode& exit
   request.expectation.effect_share = options.effect_percent / 100;
   request.expectation.noise_share = options.noise_percent / 100;
   Progress progress;
-  for (const std::string& file : options.logs) {
-    progress.begin("reading " + file);
-    request.recordings.push_back(read_log(file, robot, options.channels));
-  }
+  request.recordings = read_recordings(options.logs, robot, options.channels, progress);
   const Design design = design_motion(
       robot, request,
       {[&](const std::string& doing) { progress.begin(doing); }, [&] { progress.step(); }});

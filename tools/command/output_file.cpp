@@ -1,0 +1,28 @@
+#include "command/output_file.hpp"
+
+#include <filesystem>
+
+#include "common/error.hpp"
+
+namespace offnominal::tools {
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code not_there;
+  return std::filesystem::equivalent(a, b, not_there) && !not_there;
+}
+
+void check_output_file(const std::string& verb, const std::string& output, bool force,
+                       const std::vector<std::string>& recordings) {
+  for (const std::string& recording : recordings) {
+    if (same_file(output, recording)) {
+      throw InputError({"offnominal " + verb, "-o", "a recording", "a robot file", {}});
+    }
+  }
+  if (std::filesystem::exists(output) && !force) {
+    throw InputError({"offnominal " + verb, "-o", output + ", which is there already",
+                      "a file that is not there yet",
+                      "choose another name, or add --force to replace it"});
+  }
+}
+
+}  // namespace offnominal::tools

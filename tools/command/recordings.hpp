@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command/progress.hpp"
+#include "log/log.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::tools {
+
+// Every file as read_log reads it, each announced to `progress`.
+std::vector<Log> read_recordings(const std::vector<std::string>& files,
+                                 const RobotDescription& robot,
+                                 const std::optional<std::filesystem::path>& channels,
+                                 Progress& progress);
+
+// The same where hold maps will do as well, as read_log_or_hold_map reads them.
+std::vector<Log> read_recordings_or_hold_maps(const std::vector<std::string>& files,
+                                              const RobotDescription& robot,
+                                              const std::optional<std::filesystem::path>& channels,
+                                              Progress& progress);
+
+// "a.csv, b.csv": the files without their folders, for a robot file's word on its source.
+std::string file_names(const std::vector<std::string>& files);
+
+}  // namespace offnominal::tools

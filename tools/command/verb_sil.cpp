@@ -1,0 +1,152 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command/command_line.hpp"
+#include "command/output_file.hpp"
+#include "command/progress.hpp"
+#include "command/verbs.hpp"
+#include "common/error.hpp"
+#include "common/file.hpp"
+#include "log/candump_text.hpp"
+#include "log/csv_text.hpp"
+#include "paper/recording.hpp"
+#include "paper/two_link_robot.hpp"
+#include "report/page.hpp"
+#include "robot/robot_file.hpp"
+#include "sil/scenario_file.hpp"
+#include "sil/sil_report.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+struct Options {
+  std::optional<std::string> fault;
+  std::optional<std::string> scenario;
+  bool accommodate = false;
+  std::string bus = sil::kInProcess;
+  std::string scalar = "float";
+  std::optional<std::string> robot;
+  std::optional<double> duration;
+  bool fd = false;
+  std::optional<std::string> log;
+  std::optional<std::string> candump;
+  bool force = false;
+  std::optional<std::string> report;
+  bool json = false;
+};
+
+[[noreturn]] void refuse(const std::string& option, const std::string& found,
+                         const std::string& allowed, const std::string& mend) {
+  throw InputError({"offnominal sil", option, found, allowed, mend});
+}
+
+sil::Scenario scenario_of(const Options& options) {
+  sil::Scenario scenario;
+  if (options.scenario) {
+    if (options.fault) {
+      refuse("--fault", "together with --scenario", "one of the two",
+             "write the fault into the scenario's file");
+    }
+    scenario = sil::read_scenario(*options.scenario);
+  } else if (options.fault == "mass_loss") {
+    // Section 5.1 of the paper.
+    scenario.faults.push_back(
+        {.kind = sim::FaultEventKind::kMassLoss, .begin_s = 10.0, .size = 0.75, .rate_per_s = 0.5});
+  } else if (options.fault == "nonlinear") {
+    scenario.faults.push_back(
+        {.kind = sim::FaultEventKind::kNonlinear, .begin_s = 10.0, .rate_per_s = 0.5});
+  }
+  paper::Experiment& experiment = scenario.experiment;
+  if (options.accommodate) experiment.accommodate = true;
+  if (options.fd) scenario.format = hal::FrameFormat::kFd;
+  if (options.duration) experiment.duration_s = *options.duration;
+  experiment.precision =
+      options.scalar == "float" ? paper::Precision::kFloat : paper::Precision::kDouble;
+  experiment.record = options.report.has_value() || options.log.has_value();
+  return scenario;
+}
+
+std::unique_ptr<sil::Wire> wire_of(const std::string& bus) {
+  return bus == sil::kInProcess ? sil::make_in_process_wire() : sil::make_socketcan_wire(bus);
+}
+
+void run(const Options& options, const std::string& command_line) {
+  for (const auto* output : {&options.log, &options.candump}) {
+    if (*output) check_output_file("sil", **output, options.force);
+  }
+  const RobotDescription robot =
+      options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
+  const sil::Scenario scenario = scenario_of(options);
+  const std::unique_ptr<sil::Wire> wire = wire_of(options.bus);
+  Progress progress;
+  progress.begin("running");
+  std::string frames;
+  sil::TappedPort::OnFrame on_frame;
+  if (options.candump) {
+    const std::string interface = options.bus == sil::kInProcess ? "vcan0" : options.bus;
+    on_frame = [&frames, interface](const hal::Frame& frame, hal::Microseconds time_us) {
+      frames += candump_line(frame, time_us, interface);
+    };
+  }
+  const sil::SilResult result =
+      sil::run_in_lock_step(robot, scenario, *wire, options.bus, on_frame);
+  progress.end();
+  const Existing existing = options.force ? Existing::kReplace : Existing::kRefuse;
+  if (options.candump) write_file_atomically(*options.candump, frames, existing);
+  if (options.log) {
+    write_file_atomically(*options.log,
+                          csv_text(recording_of(robot, scenario.experiment, result.run)), existing);
+  }
+  if (options.report) report::write_page(*options.report, page_of(result, command_line));
+  if (options.json) {
+    std::cout << to_json(result).dump(2) << '\n';
+    return;
+  }
+  std::cout << text_of(result);
+  for (const auto* output : {&options.log, &options.candump, &options.report}) {
+    if (*output) std::cout << "written: " << **output << '\n';
+  }
+}
+
+std::string footer() {
+  return "Controller and arm take turns, tick by tick, so that every run repeats exactly. The "
+         "controller knows of the arm what comes over the bus, the drives know what it sends.\n"
+         "Faults of a scenario's file (docs/sil.md has its keys; all have begin_s):\n" +
+         sil::fault_kinds_text();
+}
+
+}  // namespace
+
+void register_sil(CLI::App& app, ExitCode& exit_code) {
+  static_cast<void>(exit_code);
+  CLI::App* verb =
+      app.add_subcommand("sil", "Run controller and arm at the two ends of a CAN bus, with faults");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("--fault", options->fault, "The paper's: mass_loss, nonlinear or none")
+      ->check(CLI::IsMember({"none", "mass_loss", "nonlinear"}));
+  verb->add_option("--scenario", options->scenario, "Faults and settings of the run, TOML");
+  verb->add_flag("--accommodate", options->accommodate, "Add the compensating torque");
+  verb->add_option("--bus", options->bus, "in-process, or a CAN interface of the kernel: vcan0")
+      ->capture_default_str();
+  verb->add_flag("--fd", options->fd, "CAN FD: one frame for all joints");
+  verb->add_option("--scalar", options->scalar, "Arithmetic of the controller")
+      ->check(CLI::IsMember({"float", "double"}))
+      ->capture_default_str();
+  verb->add_option("--robot", options->robot,
+                   "Robot file of the controller, two joints; by default the paper's arm");
+  verb->add_option("--duration", options->duration, "Length of the run, s [20]");
+  verb->add_option("--log", options->log, "Write the run as a recording, CSV");
+  verb->add_option("--candump", options->candump,
+                   "Write every frame as candump -l does; hal/offnominal.dbc says what they mean");
+  verb->add_flag("--force", options->force, "Replace the files of --log and --candump");
+  verb->add_option("--report", options->report, "Write the pictures as an HTML page");
+  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
+  verb->footer(footer());
+  verb->callback([verb, options] { run(*options, command_line_of(*verb)); });
+}
+
+}  // namespace offnominal::tools
