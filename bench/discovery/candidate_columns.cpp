@@ -103,7 +103,8 @@ NuisanceFit fit_nuisance(const Data& data) {
         weights.asDiagonal() * columns, weights.cwiseProduct(data.target), priors, 1);
     fit.residual = fitted.residual;
     fit.basis = fitted.basis;
-    spread = data.layout.rms(fitted.residual.cwiseQuotient(weights));
+    const VectorXd left = fitted.residual.cwiseQuotient(weights);
+    spread = data.layout.rms((weights.array() > 0).select(left, 0));
   }
   return fit;
 }

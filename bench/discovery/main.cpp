@@ -15,6 +15,7 @@
 #include "case_groups.hpp"
 #include "discovery/parallel.hpp"
 #include "outcome.hpp"
+#include "scale.hpp"
 #include "tables.hpp"
 #include "write_cases.hpp"
 
@@ -27,7 +28,9 @@ struct Options {
   bool failures = false;
   std::string cases;  // empty: all
   std::string write;  // folder that gets the cases, in place of a run; empty: none
-  int most = 1000;    // cases of each group
+  bool scale = false;
+  ScaleRequest scale_request;
+  int most = 1000;  // cases of each group
   std::uint64_t seed = 20261121;
   int threads = static_cast<int>(std::thread::hardware_concurrency());
 };
@@ -115,6 +118,23 @@ void print_json(const Options& options, const Results& results) {
   fmt::print("{}\n", document.dump(1));
 }
 
+void run_scale(const Options& options) {
+  ScaleRequest request = options.scale_request;
+  request.seed = options.seed;
+  request.threads = options.threads;
+  if (!options.write.empty()) {
+    write_scale(request, options.write);
+    fmt::print("written: {}\n", options.write);
+    return;
+  }
+  const ScaleOutcome outcome = run_scale(request);
+  if (options.json) {
+    fmt::print("{}\n", json_of(request, outcome).dump(1));
+  } else {
+    fmt::print("{}", text_of(request, outcome));
+  }
+}
+
 int main_of(int argc, char** argv) {
   Options options;
   CLI::App app("Blind benchmark of the search for missing effects", "./dev bench discovery");
@@ -130,10 +150,21 @@ int main_of(int argc, char** argv) {
   app.add_option("--write", options.write,
                  "write the chosen cases as robot files and recordings into this folder, and what "
                  "they hide beside them; nothing is run");
+  CLI::Option* scale = app.add_flag(
+      "--scale", options.scale,
+      "one long recording of a seven-joint arm in place of the cases: time and memory of explain");
+  app.add_option("--samples", options.scale_request.samples, "of that recording, at 1 kHz")
+      ->check(CLI::Range(10'000, 10'000'000))
+      ->capture_default_str()
+      ->needs(scale);
   app.add_flag("--failures", options.failures, "list every case that was not answered rightly");
   app.add_flag("--json", options.json, "everything as JSON, case by case");
   try {
     app.parse(argc, argv);
+    if (options.scale) {
+      run_scale(options);
+      return 0;
+    }
     if (!options.write.empty()) {
       for (const auto& folder : write_cases(chosen_groups(options), options.write)) {
         fmt::print("written: {}\n", folder.string());
