@@ -8,6 +8,16 @@ die() {
   exit 2
 }
 
+as_root() {
+  if ((EUID == 0)); then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    die "packages are missing and there is neither root nor sudo. As root: $*"
+  fi
+}
+
 # Compilers of Eigen code take about 1.5 GB each; a small machine must not swap.
 jobs_allowed() {
   local cores memory_kb by_memory

@@ -1,28 +1,18 @@
 #!/usr/bin/env bash
-# setup.sh [build|test]: installs what the project needs and this machine lacks; with `build`, what a
-# build needs. Quick when nothing is missing.
+# setup.sh [build|test|vcan]: installs what the project needs and this machine lacks; with `build`, what a
+# build needs, with `vcan`, what ./dev vcan needs. Quick when nothing is missing.
 set -euo pipefail
 # shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 scope="${1:-test}"
-[[ "$scope" == build || "$scope" == test ]] || die "setup.sh [build|test]"
-
-as_root() {
-  if ((EUID == 0)); then
-    "$@"
-  elif command -v sudo >/dev/null; then
-    sudo "$@"
-  else
-    die "packages are missing and there is neither root nor sudo. As root: $*"
-  fi
-}
+[[ "$scope" == build || "$scope" == test || "$scope" == vcan ]] || die "setup.sh [build|test|vcan]"
 
 install_packages() {
   local package stand_in purpose wanted=() missing=()
   while read -r package stand_in purpose _; do
     [[ -z "$package" || "$package" == \#* ]] && continue
-    [[ "$scope" == build && "$purpose" != build ]] && continue
+    [[ "$scope" != test && "$purpose" != "$scope" ]] && continue
     if [[ "$stand_in" == - ]] || ! command -v "$stand_in" >/dev/null; then
       wanted+=("$package")
     fi
@@ -58,4 +48,4 @@ install_web() {
 }
 
 install_packages
-install_web
+[[ "$scope" == vcan ]] || install_web
