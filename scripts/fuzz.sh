@@ -11,7 +11,7 @@ build fuzz
 broken=0
 # matio asks for whatever a damaged header claims; that it gets nothing is part of what is tried.
 export ASAN_OPTIONS=allocator_may_return_null=1
-for reader in csv mat robot channels; do
+for reader in csv mat log dbc robot channels frames; do
   note "fuzz: $reader, $seconds s"
   found="$root/build/fuzz/found/$reader"
   corpus="$root/tests/fuzz/corpus/$reader"

@@ -1,4 +1,5 @@
-// A recording that is none: read_log() refuses it with an InputError, or what comes back is whole.
+// A recording that is none, of the format that OFFNOMINAL_EXTENSION names: read_log() refuses it
+// with an InputError, or what comes back is whole.
 
 #include <cstdlib>
 
@@ -8,7 +9,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace offnominal;
-  const auto path = fuzz::input_file(data, size, ".csv");
+  const auto path = fuzz::input_file(data, size, OFFNOMINAL_EXTENSION);
   try {
     const tools::Log log = tools::read_log(path, 2, std::nullopt);
     const bool whole = log.q.rows() == log.sample_count() && log.dq.rows() == log.sample_count() &&

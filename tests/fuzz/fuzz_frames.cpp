@@ -1,0 +1,100 @@
+// Frames as they come off a bus on which anything may be: both ends take them one after the other.
+// 5 bytes of input a frame at least: time step, flags, length, identifier, data. Nothing may be
+// read beyond a frame, and what is taken has a right CRC by a division of its own.
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <offnominal/hal/protected_drives.hpp>
+
+#include "offnominal/sim/bus/joint_drives.hpp"
+
+namespace {
+
+using namespace offnominal::hal;
+
+// The next frame of the input.
+Frame frame_of(const std::uint8_t* data, std::size_t size, std::size_t& used) {
+  Frame frame;
+  const unsigned flags = data[1];
+  frame.fd = (flags & 1U) != 0;
+  frame.extended = (flags & 2U) != 0;
+  frame.remote = (flags & 4U) != 0;
+  frame.length = data[2];
+  frame.id = data[3] | (static_cast<std::uint32_t>(data[4]) << 8U);
+  used = 5 + std::min<std::size_t>({frame.length, frame.data.size(), size - 5});
+  std::copy(data + 5, data + used, frame.data.begin());
+  // A record of the input's own that is right, so that more than the CRC is tried.
+  if ((flags & 8U) != 0) {
+    Address address;
+    if (address_of(frame, address) == Status::kOk) {
+      for (std::size_t i = 0; i < address.count; ++i) {
+        Content content;
+        std::copy_n(frame.data.begin() + static_cast<std::ptrdiff_t>(8 * i), content.size(),
+                    content.begin());
+        const auto node = static_cast<std::uint8_t>(address.first_node + i);
+        const Record record =
+            seal(content, frame.data[8 * i + kCounterByte], data_id_of(address.kind, node));
+        std::copy(record.begin(), record.end(),
+                  frame.data.begin() + static_cast<std::ptrdiff_t>(8 * i));
+      }
+    }
+  }
+  return frame;
+}
+
+bool divides(const Frame& frame, const Address& address, std::size_t index) {
+  const auto record = record_in(frame, index);
+  std::uint32_t check =
+      data_id_of(address.kind, static_cast<std::uint8_t>(address.first_node + index));
+  for (std::size_t i = 0; i < 6; ++i) {
+    check ^= static_cast<std::uint32_t>(record[i]) << 8U;
+    for (int bit = 0; bit < 8; ++bit) {
+      check =
+          (check & 0x8000U) != 0 ? ((check << 1U) ^ 0x3D65U) & 0xFFFFU : (check << 1U) & 0xFFFFU;
+    }
+  }
+  return check == (static_cast<std::uint32_t>(record[6]) << 8U | record[7]);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  constexpr SourceConfig kSource{};
+  ProtectedDrives<7> controller(kSource, kSource, FrameFormat::kFd);
+  offnominal::sim::JointDrives<7> drives({}, FrameFormat::kFd);
+  Microseconds now_us = 0;
+  while (size >= 5) {
+    now_us += 100 * data[0];
+    std::size_t used = 0;
+    const Frame frame = frame_of(data, size, used);
+    data += used;
+    size -= used;
+    const bool was_stopped = controller.stop_seen();
+    std::uint32_t before = 0;
+    std::uint32_t after = 0;
+    for (std::size_t j = 0; j < 7; ++j) before += controller.encoder_source(j).accepted;
+    const Status status = controller.take({frame, now_us});
+    for (std::size_t j = 0; j < 7; ++j) after += controller.encoder_source(j).accepted;
+    drives.take({frame, now_us});
+    drives.check_age(now_us);
+    Address address;
+    const bool ours = address_of(frame, address) == Status::kOk;
+    if (!ours && (status == Status::kOk || after != before)) std::abort();
+    if (status == Status::kOk && address.kind == MessageKind::kEmergencyStop &&
+        !divides(frame, address, 0)) {
+      std::abort();
+    }
+    if (!was_stopped && controller.stop_seen() && address.kind != MessageKind::kEmergencyStop) {
+      std::abort();
+    }
+    for (std::size_t j = 0; j < 7; ++j) {
+      const JointFeedback feedback = controller.feedback(j, now_us);
+      const bool finite = feedback.reading.position > -33.0F && feedback.reading.position < 33.0F;
+      if (!finite) std::abort();
+      if (!(drives.torque_nm(j, 0.0) >= -1000.0 && drives.torque_nm(j, 0.0) <= 1000.0))
+        std::abort();
+    }
+  }
+  return 0;
+}
