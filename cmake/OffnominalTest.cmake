@@ -4,13 +4,15 @@ include(GoogleTest)
 set(OFFNOMINAL_TEST_SUPPORT_DIR "${PROJECT_SOURCE_DIR}/tests")
 
 # offnominal_add_test(NAME <target> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>]
-#                     [TOGETHER])
+#                     [TOGETHER | BUS])
 #
 # Builds one GoogleTest executable and registers each of its cases with CTest, or with TOGETHER all of
-# them as one test: for cases that share what takes long to compute. Cases see
+# them as one test: for cases that share what takes long to compute. With BUS its cases need the CAN
+# buses vcan0, vcan1, can0 and can1, one case at a time; they carry the label `bus`, under which
+# `./dev test` runs all of them in one `./dev vcan --controller`. Cases see
 # "support/<header>.hpp" (tests/support) and OFFNOMINAL_SOURCE_DIR, the checkout's folder as a string.
 function(offnominal_add_test)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER" "NAME;LABELS" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER;BUS" "NAME;LABELS" "SOURCES;LIBRARIES")
   if(NOT arg_NAME OR NOT arg_SOURCES)
     message(FATAL_ERROR "offnominal_add_test: NAME and SOURCES are required")
   endif()
@@ -20,6 +22,11 @@ function(offnominal_add_test)
   endif()
 
   add_executable(${arg_NAME} ${arg_SOURCES})
+  # Most of a test's compilation is headers: a few sources share them. What is installed and run is
+  # compiled file by file, which keeps its includes honest.
+  if(NOT CMAKE_UNITY_BUILD)
+    set_target_properties(${arg_NAME} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
+  endif()
   target_include_directories(${arg_NAME} PRIVATE "${OFFNOMINAL_TEST_SUPPORT_DIR}")
   target_compile_definitions(${arg_NAME}
                              PRIVATE OFFNOMINAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
@@ -33,6 +40,8 @@ function(offnominal_add_test)
   set(properties)
   if(arg_LABELS)
     set(properties PROPERTIES LABELS ${arg_LABELS})
+  elseif(arg_BUS)
+    set(properties PROPERTIES LABELS bus RESOURCE_LOCK can_buses)
   endif()
   # Asked at test time: a test executable that cannot start is then a failed test, not a failed build.
   gtest_discover_tests(${arg_NAME} TEST_PREFIX "${arg_NAME}." DISCOVERY_MODE PRE_TEST

@@ -64,17 +64,26 @@ verdicts() {
     }' "$1"
 }
 
-# suite PRESET: runs every test of a build; each counts by itself.
-suite() {
-  local preset="$1" report verdict name outcome before=$failed
+# suite PRESET: runs every test of a build that needs no CAN bus; each counts by itself.
+suite() { run_suite "$1" "tests ($1)" "$(nproc)" -LE '^bus$'; }
+
+# bus_suite PRESET: runs the others, all of them in one place with buses.
+bus_suite() {
+  run_suite "$1" "tests on CAN buses ($1)" 1 -L '^bus$' "$root/scripts/vcan.sh" --controller --timeout 1800 --
+}
+
+# run_suite PRESET TITLE JOBS SELECT LABEL [WHERE...]
+run_suite() {
+  local preset="$1" title="$2" jobs="$3" select=("${@:4:2}") where=("${@:6}")
+  local report verdict name outcome before=$failed
   report="$root/build/$preset/junit.xml"
   rm -f "$report"
-  note "tests ($preset)"
-  ctest --test-dir "$root/build/$preset" -j "$(nproc)" --timeout 900 --output-on-failure \
-    --no-tests=error --output-junit "$report"
+  note "$title"
+  "${where[@]}" ctest --test-dir "$root/build/$preset" -j "$jobs" "${select[@]}" --timeout 900 \
+    --output-on-failure --no-tests=error --output-junit "$report"
   outcome=$?
   if [[ ! -s "$report" ]]; then
-    fail "tests ($preset) did not run"
+    fail "$title did not run"
     return
   fi
   while read -r verdict name; do
@@ -84,7 +93,7 @@ suite() {
       *) fail "$preset: $name" ;;
     esac
   done < <(verdicts "$report")
-  if ((outcome != 0 && failed == before)); then fail "tests ($preset): ctest ended with $outcome"; fi
+  if ((outcome != 0 && failed == before)); then fail "$title: ended with $outcome"; fi
 }
 
 export NINJA_OPTIONS="-k 0"
@@ -94,7 +103,9 @@ check "lint: layout (clang-format)" "$root/scripts/lint.sh" format
 check "build (release)" build release
 check "lint: static analysis (clang-tidy)" "$root/scripts/lint.sh" tidy
 suite release
+bus_suite release
 check "build (sanitize)" build sanitize
 suite sanitize
+bus_suite sanitize
 check "fuzz: every reader, 10 s each" "$root/scripts/fuzz.sh" 10
 finish
