@@ -39,19 +39,19 @@ std::vector<std::vector<NamedValue>> numbers_in(double share, const Relinearised
 }  // namespace
 
 std::vector<std::vector<double>> largest_shifts_in_narrower_bands(const Relinearised& fitted) {
+  std::vector<std::vector<NamedValue>> whole;
   std::vector<std::vector<double>> shifts;
   for (std::size_t i = 0; i < fitted.terms.size(); ++i) {
-    const auto count = numbers_of(*fitted.data, fitted.terms[i], fitted.fit.coefficients[i]).size();
-    shifts.emplace_back(count, 0.0);
+    whole.push_back(numbers_of(*fitted.data, fitted.terms[i], fitted.fit.coefficients[i]));
+    shifts.emplace_back(whole[i].size(), 0.0);
   }
   // Readings at rest have no band.
   if (fitted.data->recordings[0].at_rest) return shifts;
   for (const double share : kBands) {
     const auto numbers = numbers_in(share, fitted);
     for (std::size_t i = 0; i < shifts.size(); ++i) {
-      const auto at = numbers_of(*fitted.data, fitted.terms[i], fitted.fit.coefficients[i]);
-      for (std::size_t p = 0; p < at.size(); ++p) {
-        const double moved = std::abs(numbers[i][p].value - at[p].value);
+      for (std::size_t p = 0; p < shifts[i].size(); ++p) {
+        const double moved = std::abs(numbers[i][p].value - whole[i][p].value);
         if (std::isfinite(moved)) shifts[i][p] = std::max(shifts[i][p], moved);
       }
     }

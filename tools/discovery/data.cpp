@@ -37,6 +37,11 @@ double sample_rate_of(const Log& log) {
   return std::max(kFewestReadings, readings / kBlocks) / kShortestBlockS;
 }
 
+FilterPlan plan_for(const Log& log, FilterPlan plan) {
+  plan.sample_rate_hz = sample_rate_of(log);
+  return plan;
+}
+
 FilterPlan discovery_filter(const std::vector<Log>& logs, const RobotDescription& robot) {
   if (logs.front().at_rest) {
     FilterPlan none;

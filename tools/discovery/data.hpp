@@ -30,6 +30,9 @@ FilterPlan discovery_filter(const std::vector<Log>& logs, const RobotDescription
 // many a "second" that a recording has about 300 of the shortest blocks, of 5 readings or more.
 double sample_rate_of(const Log& log);
 
+// The same filter for a recording that has its own sample rate.
+FilterPlan plan_for(const Log& log, FilterPlan plan);
+
 // Sets the width of the smoothed sign of every effect that has one to what the motion can resolve,
 // and returns it per joint. The shape of the build-up at a reversal is a nuisance.
 Eigen::VectorXd set_sign_widths(RobotDescription& robot, const std::vector<Log>& logs,

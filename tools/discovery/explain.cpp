@@ -39,14 +39,15 @@ class Explainer {
     const VectorXd widths = set_sign_widths(robot_, logs, plan);
     nuisance_.link_share = options.link_share;
     both_ways_ = came_both_ways(logs);
-    const auto data_of = [&](const std::vector<Log>& some) {
-      auto made = searched_workspaces(stretches_of(some, robot_, plan), robot_, plan, widths);
+    const auto data_of = [&](const std::vector<Stretch>& some) {
+      auto made = searched_workspaces(some, robot_, plan, widths);
       for (Workspace& at : made) at.came_both_ways = both_ways_;
       return std::make_unique<Data>(std::move(made), robot_, nuisance_);
     };
-    data_ = data_of(logs);
-    left_out_ = words_of(stretches_of(logs, robot_, plan), logs);
-    if (!holdout.empty()) held_out_ = data_of(holdout);
+    const std::vector<Stretch> searched = stretches_of(logs, robot_, plan);
+    data_ = data_of(searched);
+    left_out_ = words_of(searched, logs);
+    if (!holdout.empty()) held_out_ = data_of(stretches_of(holdout, robot_, plan));
     regression_ = std::make_unique<Regression>(*data_);
     tell("preparing the candidates' regressors");
     search_ = std::make_unique<Search>(*regression_,

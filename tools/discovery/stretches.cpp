@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "discovery/data.hpp"
+
 namespace offnominal::tools::discovery {
 
 using Eigen::Index;
@@ -76,8 +78,7 @@ std::vector<Workspace> searched_workspaces(const std::vector<Stretch>& stretches
                                            const Eigen::VectorXd& sign_width) {
   std::vector<Workspace> made;
   for (const Stretch& stretch : stretches) {
-    FilterPlan own = plan;
-    own.sample_rate_hz = stretch.log->sample_rate_hz();
+    FilterPlan own = plan_for(*stretch.log, plan);
     own.edge_samples = std::max(plan.edge_samples, stretch.margin);
     if (stretch.is_whole()) {
       made.push_back(make_workspace(*stretch.log, robot, own, sign_width));

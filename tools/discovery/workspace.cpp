@@ -148,9 +148,7 @@ std::vector<Workspace> make_workspaces(const std::vector<Log>& logs, const Robot
                                        const FilterPlan& plan, const VectorXd& sign_width) {
   std::vector<Workspace> made;
   for (const Log& log : logs) {
-    FilterPlan own = plan;
-    own.sample_rate_hz = sample_rate_of(log);
-    made.push_back(make_workspace(log, robot, own, sign_width));
+    made.push_back(make_workspace(log, robot, plan_for(log, plan), sign_width));
   }
   return made;
 }
