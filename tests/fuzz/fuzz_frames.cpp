@@ -7,6 +7,7 @@
 #include <cstring>
 #include <offnominal/hal/protected_drives.hpp>
 
+#include "hal/bitwise_crc.hpp"
 #include "offnominal/sim/bus/joint_drives.hpp"
 
 namespace {
@@ -45,16 +46,10 @@ Frame frame_of(const std::uint8_t* data, std::size_t size, std::size_t& used) {
 
 bool divides(const Frame& frame, const Address& address, std::size_t index) {
   const auto record = record_in(frame, index);
-  std::uint32_t check =
-      data_id_of(address.kind, static_cast<std::uint8_t>(address.first_node + index));
-  for (std::size_t i = 0; i < 6; ++i) {
-    check ^= static_cast<std::uint32_t>(record[i]) << 8U;
-    for (int bit = 0; bit < 8; ++bit) {
-      check =
-          (check & 0x8000U) != 0 ? ((check << 1U) ^ 0x3D65U) & 0xFFFFU : (check << 1U) & 0xFFFFU;
-    }
-  }
-  return check == (static_cast<std::uint32_t>(record[6]) << 8U | record[7]);
+  const auto node = static_cast<std::uint8_t>(address.first_node + index);
+  const unsigned check =
+      offnominal::test::bitwise_crc(record.first<6>(), data_id_of(address.kind, node));
+  return check == (static_cast<unsigned>(record[6]) << 8U | record[7]);
 }
 
 }  // namespace

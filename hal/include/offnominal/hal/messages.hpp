@@ -117,26 +117,6 @@ inline constexpr std::int32_t kNoVelocity = -(1 << 15);
   return Status::kOk;
 }
 
-[[nodiscard]] inline Status decode(std::span<const std::uint8_t, kRecordLength> record,
-                                   std::uint16_t data_id, EncoderReading& reading,
-                                   std::uint8_t& counter) {
-  Content content{};
-  std::uint8_t count = 0;
-  if (const Status status = open(record, data_id, content, count); status != Status::kOk) {
-    return status;
-  }
-  const std::int32_t position =
-      detail::sign_extended(from_little_endian(std::span(content).first<3>()), 24);
-  const std::int32_t velocity =
-      detail::sign_extended(from_little_endian(std::span(content).last<2>()), 16);
-  if (position == detail::kNoPosition) return Status::kInvalidValue;
-  reading.position = static_cast<float>(position) * kPositionPerCount;
-  reading.has_velocity = velocity != detail::kNoVelocity;
-  reading.velocity = reading.has_velocity ? static_cast<float>(velocity) * kVelocityPerCount : 0.0F;
-  counter = count;
-  return Status::kOk;
-}
-
 [[nodiscard]] inline Status encode(const TorqueCommand& command, std::uint8_t counter,
                                    std::uint16_t data_id, Record& record) {
   const bool drives = command.mode == DriveMode::kTorque;
@@ -147,23 +127,6 @@ inline constexpr std::int32_t kNoVelocity = -(1 << 15);
   to_little_endian(std::bit_cast<std::uint32_t>(command.torque), std::span(content).first<4>());
   content[4] = static_cast<std::uint8_t>(command.mode);
   record = seal(content, counter, data_id);
-  return Status::kOk;
-}
-
-[[nodiscard]] inline Status decode(std::span<const std::uint8_t, kRecordLength> record,
-                                   std::uint16_t data_id, TorqueCommand& command,
-                                   std::uint8_t& counter) {
-  Content content{};
-  std::uint8_t count = 0;
-  if (const Status status = open(record, data_id, content, count); status != Status::kOk) {
-    return status;
-  }
-  const auto torque = std::bit_cast<float>(from_little_endian(std::span(content).first<4>()));
-  if (!detail::is_mode(content[4]) || !std::isfinite(torque)) return Status::kInvalidValue;
-  const auto mode = static_cast<DriveMode>(content[4]);
-  if (mode != DriveMode::kTorque && torque != 0) return Status::kInvalidValue;
-  command = {mode, torque};
-  counter = count;
   return Status::kOk;
 }
 
@@ -180,22 +143,6 @@ inline constexpr std::int32_t kNoVelocity = -(1 << 15);
   return Status::kOk;
 }
 
-[[nodiscard]] inline Status decode(std::span<const std::uint8_t, kRecordLength> record,
-                                   std::uint16_t data_id, DriveStatus& drive,
-                                   std::uint8_t& counter) {
-  Content content{};
-  std::uint8_t count = 0;
-  if (const Status status = open(record, data_id, content, count); status != Status::kOk) {
-    return status;
-  }
-  const auto torque = std::bit_cast<float>(from_little_endian(std::span(content).first<4>()));
-  const unsigned mode = content[4] & 0x0FU;
-  if (!detail::is_mode(mode) || !std::isfinite(torque)) return Status::kInvalidValue;
-  drive = {static_cast<DriveMode>(mode), static_cast<std::uint8_t>(content[4] & 0xF0U), torque};
-  counter = count;
-  return Status::kOk;
-}
-
 [[nodiscard]] inline Status encode(const Heartbeat& heartbeat, std::uint8_t counter,
                                    std::uint16_t data_id, Record& record) {
   Content content{};
@@ -206,37 +153,68 @@ inline constexpr std::int32_t kNoVelocity = -(1 << 15);
   return Status::kOk;
 }
 
-[[nodiscard]] inline Status decode(std::span<const std::uint8_t, kRecordLength> record,
-                                   std::uint16_t data_id, Heartbeat& heartbeat,
-                                   std::uint8_t& counter) {
-  Content content{};
-  std::uint8_t count = 0;
-  if (const Status status = open(record, data_id, content, count); status != Status::kOk) {
-    return status;
-  }
-  if (content[0] > static_cast<unsigned>(ControllerState::kFault)) return Status::kInvalidValue;
-  heartbeat = {static_cast<ControllerState>(content[0]), content[1],
-               from_little_endian(std::span(content).last<3>())};
-  counter = count;
-  return Status::kOk;
-}
-
 [[nodiscard]] inline Status encode(const EmergencyStop& stop, std::uint8_t counter,
                                    std::uint16_t data_id, Record& record) {
   record = seal({stop.source, stop.reason, 0, 0, 0}, counter, data_id);
   return Status::kOk;
 }
 
-[[nodiscard]] inline Status decode(std::span<const std::uint8_t, kRecordLength> record,
-                                   std::uint16_t data_id, EmergencyStop& stop,
-                                   std::uint8_t& counter) {
+namespace detail {
+
+// Whether some encode() makes such content; what it says, then.
+[[nodiscard]] inline bool from_content(const Content& content, EncoderReading& reading) {
+  const std::int32_t position =
+      sign_extended(from_little_endian(std::span(content).first<3>()), 24);
+  const std::int32_t velocity = sign_extended(from_little_endian(std::span(content).last<2>()), 16);
+  if (position == kNoPosition) return false;
+  reading.position = static_cast<float>(position) * kPositionPerCount;
+  reading.has_velocity = velocity != kNoVelocity;
+  reading.velocity = reading.has_velocity ? static_cast<float>(velocity) * kVelocityPerCount : 0.0F;
+  return true;
+}
+
+[[nodiscard]] inline bool from_content(const Content& content, TorqueCommand& command) {
+  const auto torque = std::bit_cast<float>(from_little_endian(std::span(content).first<4>()));
+  if (!is_mode(content[4]) || !std::isfinite(torque)) return false;
+  const auto mode = static_cast<DriveMode>(content[4]);
+  if (mode != DriveMode::kTorque && torque != 0) return false;
+  command = {mode, torque};
+  return true;
+}
+
+[[nodiscard]] inline bool from_content(const Content& content, DriveStatus& drive) {
+  const auto torque = std::bit_cast<float>(from_little_endian(std::span(content).first<4>()));
+  const unsigned mode = content[4] & 0x0FU;
+  if (!is_mode(mode) || !std::isfinite(torque)) return false;
+  drive = {static_cast<DriveMode>(mode), static_cast<std::uint8_t>(content[4] & 0xF0U), torque};
+  return true;
+}
+
+[[nodiscard]] inline bool from_content(const Content& content, Heartbeat& heartbeat) {
+  if (content[0] > static_cast<unsigned>(ControllerState::kFault)) return false;
+  heartbeat = {static_cast<ControllerState>(content[0]), content[1],
+               from_little_endian(std::span(content).last<3>())};
+  return true;
+}
+
+[[nodiscard]] inline bool from_content(const Content& content, EmergencyStop& stop) {
+  if (content[2] != 0 || content[3] != 0 || content[4] != 0) return false;
+  stop = {content[0], content[1]};
+  return true;
+}
+
+}  // namespace detail
+
+// Message: one of the structures above.
+template <typename Message>
+[[nodiscard]] Status decode(std::span<const std::uint8_t, kRecordLength> record,
+                            std::uint16_t data_id, Message& message, std::uint8_t& counter) {
   Content content{};
   std::uint8_t count = 0;
   if (const Status status = open(record, data_id, content, count); status != Status::kOk) {
     return status;
   }
-  if (content[2] != 0 || content[3] != 0 || content[4] != 0) return Status::kInvalidValue;
-  stop = {content[0], content[1]};
+  if (!detail::from_content(content, message)) return Status::kInvalidValue;
   counter = count;
   return Status::kOk;
 }
