@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/file.hpp"
 #include "common/nearest.hpp"
+#include "common/toml_table.hpp"
 
 namespace offnominal::tools {
 namespace {
@@ -224,13 +226,7 @@ ChannelMap read_channels_file(const std::filesystem::path& file, int joint_count
   if (!std::filesystem::is_regular_file(file)) {
     throw InputError({file.string(), "", "no such file", "a TOML file with [channels]", ""});
   }
-  toml::table whole;
-  try {
-    whole = toml::parse_file(file.string());
-  } catch (const toml::parse_error& error) {
-    throw InputError({file.string(), "line " + std::to_string(error.source().begin.line),
-                      std::string(error.description()), "TOML", ""});
-  }
+  const toml::table whole = parse_toml(read_text_file(file), file.string());
   const toml::node* inner = whole.get("channels");
   if (inner == nullptr) return parse_channels(whole, file.string(), joint_count);
   if (!inner->is_table()) {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "common/toml_table.hpp"
 #include "robot/robot.hpp"
-#include "robot/toml_table.hpp"
 
 namespace offnominal::tools {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "common/toml_table.hpp"
 #include "robot/robot.hpp"
-#include "robot/toml_table.hpp"
 
 namespace offnominal::tools {
 

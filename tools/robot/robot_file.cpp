@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/number.hpp"
+#include "common/toml_table.hpp"
 #include "log/channels.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/check_mass_matrix.hpp"
@@ -17,7 +18,6 @@
 #include "robot/read_settings.hpp"
 #include "robot/text_with_bound.hpp"
 #include "robot/text_with_effects.hpp"
-#include "robot/toml_table.hpp"
 
 namespace offnominal::tools {
 namespace {

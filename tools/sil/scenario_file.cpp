@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/file.hpp"
-#include "robot/toml_table.hpp"
+#include "common/toml_table.hpp"
 
 namespace offnominal::tools::sil {
 namespace {

@@ -1,4 +1,4 @@
-#include "robot/toml_table.hpp"
+#include "common/toml_table.hpp"
 
 #include <cmath>
 #include <utility>
