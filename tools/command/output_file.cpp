@@ -11,15 +11,16 @@ bool same_file(const std::string& a, const std::string& b) {
   return std::filesystem::equivalent(a, b, not_there) && !not_there;
 }
 
-void check_output_file(const std::string& verb, const std::string& output, bool force,
+void check_output_file(const std::string& verb, const std::string& option,
+                       const std::string& output, bool force,
                        const std::vector<std::string>& recordings) {
   for (const std::string& recording : recordings) {
     if (same_file(output, recording)) {
-      throw InputError({"offnominal " + verb, "-o", "a recording", "a robot file", {}});
+      throw InputError({"offnominal " + verb, option, "a recording", "a robot file", {}});
     }
   }
   if (std::filesystem::exists(output) && !force) {
-    throw InputError({"offnominal " + verb, "-o", output + ", which is there already",
+    throw InputError({"offnominal " + verb, option, output + ", which is there already",
                       "a file that is not there yet",
                       "choose another name, or add --force to replace it"});
   }

@@ -96,7 +96,7 @@ AddRequest request_of(const Options& options) {
 void check_files(const Options& options) {
   std::vector<std::string> recordings = options.logs;
   recordings.insert(recordings.end(), options.holdout.begin(), options.holdout.end());
-  check_output_file("add", options.output, options.force, recordings);
+  check_output_file("add", "-o", options.output, options.force, recordings);
   for (const std::string& held_out : options.holdout) {
     for (const std::string& log : options.logs) {
       if (!same_file(log, held_out)) continue;

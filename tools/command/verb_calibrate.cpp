@@ -62,7 +62,7 @@ void check_files(const Options& options) {
       }
     }
   }
-  check_output_file("calibrate", options.output, options.force, all);
+  check_output_file("calibrate", "-o", options.output, options.force, all);
 }
 
 void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {

@@ -72,7 +72,7 @@ std::vector<Contender> effects_of(const Options& options, const RobotDescription
 
 void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {
   using namespace motion_design;
-  check_output_file("motion", options.output, options.force);
+  check_output_file("motion", "-o", options.output, options.force);
   const RobotDescription robot = read_robot_file(options.robot);
   DesignRequest request = options.design;
   request.effects = effects_of(options, robot);

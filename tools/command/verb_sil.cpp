@@ -75,9 +75,8 @@ std::unique_ptr<sil::Wire> wire_of(const std::string& bus) {
 }
 
 void run(const Options& options, const std::string& command_line) {
-  for (const auto* output : {&options.log, &options.candump}) {
-    if (*output) check_output_file("sil", **output, options.force);
-  }
+  if (options.log) check_output_file("sil", "--log", *options.log, options.force);
+  if (options.candump) check_output_file("sil", "--candump", *options.candump, options.force);
   const RobotDescription robot =
       options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
   const sil::Scenario scenario = scenario_of(options);
