@@ -56,7 +56,6 @@ bool parse_frame(std::string_view text, hal::Frame& frame) {
 // The values that one signal has had.
 struct Track {
   std::string name;
-  bool required = false;
   std::vector<double> t_s;
   std::vector<double> value;
   std::vector<std::size_t> line;
@@ -92,21 +91,13 @@ class CandumpReader {
       : file_(std::move(file)), own_(dbc == nullptr), dbc_(own_ ? offnominal_dbc() : *dbc) {
     for (const DbcMessage& message : dbc_.messages) {
       for (const DbcSignal& signal : message.signals) {
-        std::string name = message.name + "." + signal.name;
-        Need need = need_of(name);
-        if (own_) {
-          const std::string common = common_name(message.name, signal.name);
-          const Need common_need = common.empty() ? Need::kNone : need_of(common);
-          if (common_need == Need::kRequired) {
-            name = common;
-            need = common_need;
-          } else if (need != Need::kRequired) {
-            need = Need::kNone;
-          }
+        std::string name = own_ ? common_name(message.name, signal.name) : std::string();
+        if (name.empty() || need_of(name) != Need::kRequired) {
+          name = message.name + "." + signal.name;
+          if (need_of(name) != Need::kRequired) continue;
         }
-        if (need != Need::kRequired) continue;
         wanted_.push_back({&message, &signal, tracks_.size()});
-        tracks_.push_back({name, true, {}, {}, {}});
+        tracks_.push_back({name, {}, {}, {}});
       }
     }
   }
