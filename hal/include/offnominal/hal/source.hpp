@@ -32,6 +32,8 @@ struct Source {
   std::uint8_t in_sequence = 0;  // records whose counters followed one another
   std::uint8_t bad_in_a_row = 0;
   Microseconds time_us = 0;  // of the newest record that was accepted
+  // None is accepted before, since records of another sequence have come.
+  Microseconds trusted_from_us = std::numeric_limits<Microseconds>::min();
   std::uint32_t accepted = 0;
   std::uint32_t lost = 0;  // by the counters of the accepted ones
   std::uint32_t repeated = 0;
@@ -51,7 +53,8 @@ constexpr void count_up(std::uint8_t& value) {
 // A record whose CRC and content are right has come. kOk: its content may be used.
 // kRepeatedCounter: the one before, again; nothing is refreshed. kSkippedCounter: more were lost
 // than the configuration allows, or an old one was played back; the source is in error until
-// records in sequence have come. kNotSynchronised: one of those.
+// records have followed one another, and nothing else has come, for max_age_us: a burst of old ones
+// follows one another as well. kNotSynchronised: one of those.
 [[nodiscard]] constexpr Status accept(const SourceConfig& config, std::uint8_t counter,
                                       Microseconds time_us, Source& source) {
   source.bad_in_a_row = 0;
@@ -68,13 +71,14 @@ constexpr void count_up(std::uint8_t& value) {
     const bool was_synchronised = source.synchronised;
     detail::lose_sequence(source);
     source.in_sequence = 1;
+    source.trusted_from_us = time_us + config.max_age_us;
     ++source.rejected;
     return was_synchronised ? Status::kSkippedCounter : Status::kNotSynchronised;
   }
   detail::count_up(source.in_sequence);
-  if (!source.synchronised && source.in_sequence < config.sequence_needed) {
-    return Status::kNotSynchronised;
-  }
+  const bool trusted =
+      source.in_sequence >= config.sequence_needed && time_us >= source.trusted_from_us;
+  if (!source.synchronised && !trusted) return Status::kNotSynchronised;
   if (source.synchronised) source.lost += static_cast<std::uint32_t>(step - 1);
   source.synchronised = true;
   source.seen = true;
