@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 
 namespace offnominal::test {
 
@@ -11,6 +12,15 @@ constexpr int repetitions(int n) {
   return std::max(1, n / 20);
 #else
   return n;
+#endif
+}
+
+/// Step through a list of cases: all of them, or each n-th where the sanitizers watch.
+constexpr std::size_t stride(std::size_t n) {
+#ifdef OFFNOMINAL_SANITIZE
+  return n;
+#else
+  return n > 0 ? 1 : 0;
 #endif
 }
 

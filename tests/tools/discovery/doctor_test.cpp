@@ -46,8 +46,7 @@ hidden::Request request_of(std::uint64_t seed, bool noisy) {
 }
 
 constexpr std::uint64_t kSeeds = test::repetitions(20) > 1 ? 3 : 1;
-// Under the sanitizers a part of the effects has to do.
-constexpr std::size_t kEffectStride = test::repetitions(20) > 1 ? 1 : 5;
+constexpr std::size_t kEffectStride = test::stride(5);
 
 void expect_fault(hidden::DataFault fault, const std::string& kind) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {

@@ -37,8 +37,7 @@ Explanation explain_case(const hidden::Case& made, const ExplainOptions& options
   return explain(to_robot(made.nominal), {to_log(made.recording)}, {to_log(made.holdout)}, options);
 }
 
-// Under the sanitizers a part of the cases has to do.
-constexpr std::size_t kStride = test::repetitions(20) > 1 ? 1 : 4;
+constexpr std::size_t kStride = test::stride(4);
 
 class EachEffect : public ::testing::TestWithParam<hidden::HiddenEffect> {};
 

@@ -17,6 +17,7 @@
 #include "log/read_log.hpp"
 #include "robot/robot_file.hpp"
 #include "support/recordings.hpp"
+#include "support/repetitions.hpp"
 
 namespace offnominal::tools::discovery {
 namespace {
@@ -62,7 +63,7 @@ TEST(HoldMap, ShowsTheOrderOfSlotsAndMagnetsFirst) {
 }
 
 TEST(HoldMap, WithoutCoggingNothingIsFound) {
-  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+  for (std::uint64_t seed = 1; seed <= 3; seed += test::stride(3)) {
     const test::HeldMotor smooth{.seed = seed, .cogging_nm = 0};
     const Explanation e = explain(test::rotor(), {test::hold_map_of(smooth)}, {}, quick_search());
     EXPECT_TRUE(e.found.empty()) << e.words;
