@@ -4,15 +4,16 @@ include(GoogleTest)
 set(OFFNOMINAL_TEST_SUPPORT_DIR "${PROJECT_SOURCE_DIR}/tests")
 
 # offnominal_add_test(NAME <target> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>]
-#                     [TOGETHER | BUS])
+#                     [TOGETHER | BUS] [LONG])
 #
 # Builds one GoogleTest executable and registers each of its cases with CTest, or with TOGETHER all of
 # them as one test: for cases that share what takes long to compute. With BUS its cases need the CAN
 # buses vcan0, vcan1, can0 and can1, one case at a time; they carry the label `bus`, under which
-# `./dev test` runs all of them in one `./dev vcan --controller`. Cases see
+# `./dev test` runs all of them in one `./dev vcan --controller`. With LONG its cases start before
+# others, so that none of them is left to run alone at the end. Cases see
 # "support/<header>.hpp" (tests/support) and OFFNOMINAL_SOURCE_DIR, the checkout's folder as a string.
 function(offnominal_add_test)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER;BUS" "NAME;LABELS" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER;BUS;LONG" "NAME;LABELS" "SOURCES;LIBRARIES")
   if(NOT arg_NAME OR NOT arg_SOURCES)
     message(FATAL_ERROR "offnominal_add_test: NAME and SOURCES are required")
   endif()
@@ -33,15 +34,19 @@ function(offnominal_add_test)
   target_link_libraries(${arg_NAME} PRIVATE offnominal_warnings ${arg_LIBRARIES} GTest::gmock
                                             GTest::gtest GTest::gtest_main)
 
+  set(properties PROPERTIES COST 0)
+  if(arg_LONG)
+    set(properties PROPERTIES COST 100)
+  endif()
+  if(arg_LABELS)
+    list(APPEND properties LABELS ${arg_LABELS})
+  elseif(arg_BUS)
+    list(APPEND properties LABELS bus RESOURCE_LOCK can_buses)
+  endif()
   if(arg_TOGETHER)
     add_test(NAME ${arg_NAME} COMMAND ${arg_NAME})
+    set_tests_properties(${arg_NAME} ${properties})
     return()
-  endif()
-  set(properties)
-  if(arg_LABELS)
-    set(properties PROPERTIES LABELS ${arg_LABELS})
-  elseif(arg_BUS)
-    set(properties PROPERTIES LABELS bus RESOURCE_LOCK can_buses)
   endif()
   # Asked at test time: a test executable that cannot start is then a failed test, not a failed build.
   gtest_discover_tests(${arg_NAME} TEST_PREFIX "${arg_NAME}." DISCOVERY_MODE PRE_TEST
