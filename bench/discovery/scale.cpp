@@ -45,17 +45,17 @@ tools::RobotDescription with_hidden(tools::RobotDescription robot) {
   return robot;
 }
 
-struct Wave {
+struct MotionWave {
   double size, rad_s, phase;
 };
 
 // Peaks stay within 80 % of the range and of the speed limit.
-std::array<Wave, 6> waves_of(const Joint<double>& joint, std::mt19937_64& generator) {
+std::array<MotionWave, 6> waves_of(const Joint<double>& joint, std::mt19937_64& generator) {
   constexpr double kShare = 0.8;
   constexpr double kSlowestHz = 0.05;
   constexpr double kFastestHz = 1.5;
   std::uniform_real_distribution<double> unit(0, 1);
-  std::array<Wave, 6> waves{};
+  std::array<MotionWave, 6> waves{};
   double range = 0;
   double speed = 0;
   for (std::size_t i = 0; i < waves.size(); ++i) {
@@ -68,7 +68,7 @@ std::array<Wave, 6> waves_of(const Joint<double>& joint, std::mt19937_64& genera
   }
   const double scale = kShare * std::min((joint.max_position - joint.min_position) / 2 / range,
                                          joint.max_velocity / speed);
-  for (Wave& wave : waves) wave.size *= scale;
+  for (MotionWave& wave : waves) wave.size *= scale;
   return waves;
 }
 
@@ -83,7 +83,7 @@ tools::Motion motion_of(const tools::RobotDescription& robot, Index samples,
   for (Index j = 0; j < joints; ++j) {
     const Joint<double>& joint = robot.joints[static_cast<std::size_t>(j)].joint;
     motion.q.col(j).setConstant((joint.max_position + joint.min_position) / 2);
-    for (const Wave& wave : waves_of(joint, generator)) {
+    for (const MotionWave& wave : waves_of(joint, generator)) {
       const Eigen::ArrayXd angle = wave.rad_s * motion.t_s.array() + wave.phase;
       motion.q.col(j).array() += wave.size * angle.sin();
       motion.dq.col(j).array() += wave.size * wave.rad_s * angle.cos();
