@@ -10,7 +10,6 @@
 #include "log/hold_map.hpp"
 #include "log/log.hpp"
 #include "robot/robot.hpp"
-#include "support/repetitions.hpp"
 
 // A brushless motor that is led from position to position and held there, by the energy between its
 // magnets and its teeth: no harmonics are put in, they follow from how many of each there are.
@@ -26,7 +25,6 @@ struct HeldMotor {
   double friction_nm = 0.002;  // that holds it where it stops
   double noise_nm = 0.0004;    // of a reading
   double bristle_rad = 0.004;  // over which friction builds up after a reversal
-  double step_rad = 0.004 * static_cast<double>(stride(2));  // mean, to the next position
 };
 
 // Pull of one tooth on one magnet at an angle between them, -d/dq of exp(k (cos q - 1)).
@@ -65,7 +63,7 @@ inline tools::Log hold_map_of(const HeldMotor& motor) {
   double q = 0;
   for (const double way : {1.0, -1.0}) {
     while (way > 0 ? q < kTurn + kBeyond : q > -kBeyond) {
-      const double step = motor.step_rad * (1 + 0.6 * uniform(generator));
+      const double step = 0.004 * (1 + 0.6 * uniform(generator));
       q += way * step;
       bristle = way + (bristle - way) * std::exp(-step / motor.bristle_rad);
       const double pulled = cogging(q);

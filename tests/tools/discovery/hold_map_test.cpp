@@ -74,7 +74,7 @@ TEST(HoldMap, WithoutCoggingNothingIsFound) {
 TEST(HoldMap, OrdersGoIntoTheRobotFileAndAreNotFoundAgain) {
   const Log log = test::hold_map_of({});
   const AddedFindings added = add_found(test::rotor(), {log}, {}, quick_search(), {});
-  EXPECT_THAT(added.objections, ::testing::IsEmpty());
+  ASSERT_THAT(added.objections, ::testing::IsEmpty());
   const RobotDescription& better = added.explanation.improved;
   ASSERT_EQ(better.effects.size(), added.explanation.found.size());
   for (const RobotEffect& effect : better.effects) {
