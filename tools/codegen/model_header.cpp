@@ -25,9 +25,6 @@
 namespace offnominal::tools {
 namespace {
 
-using cpp_text::number;
-using cpp_text::numbers;
-
 // One member of a designated initialiser, with what it means.
 std::string member(std::string_view name, std::string_view value, std::string_view remark = {}) {
   std::string text = fmt::format(".{} = {},", name, value);
@@ -54,7 +51,8 @@ std::string limits_text(const Joint<double>& joint) {
   const auto limit = [&](const char* name, double value, double none, Quantity quantity,
                          const char* remark) {
     if (value == none) return;
-    text += member(name, number(value), fmt::format("{}{}", unit_of(quantity, joint.type), remark));
+    text += member(name, cpp_text::number(value),
+                   fmt::format("{}{}", unit_of(quantity, joint.type), remark));
   };
   limit("min_position", joint.min_position, unlimited.min_position, Quantity::kPosition, "");
   limit("max_position", joint.max_position, unlimited.max_position, Quantity::kPosition, "");
@@ -75,17 +73,18 @@ std::string joint_text(const Joint<double>& joint) {
   const bool turns = joint.type == JointType::kRevolute;
   std::string text = member(
       "type", turns ? "offnominal::JointType::kRevolute" : "offnominal::JointType::kPrismatic");
-  text += member("axis", numbers(joint.axis), "unit vector, joint's frame");
-  text += member("origin_m", numbers(joint.origin_m), "m, in the frame before it");
+  text += member("axis", cpp_text::numbers(joint.axis), "unit vector, joint's frame");
+  text += member("origin_m", cpp_text::numbers(joint.origin_m), "m, in the frame before it");
   const Joint<double> plain;
   if (!same_bits(joint.rotation, plain.rotation)) {
-    text += member("rotation", numbers(joint.rotation), "row by row, into the frame before it");
+    text += member("rotation", cpp_text::numbers(joint.rotation),
+                   "row by row, into the frame before it");
   }
-  text += member("mass_kg", number(joint.mass_kg), "kg");
-  text += member("centre_of_mass_m", numbers(joint.centre_of_mass_m), "m, link's frame");
+  text += member("mass_kg", cpp_text::number(joint.mass_kg), "kg");
+  text += member("centre_of_mass_m", cpp_text::numbers(joint.centre_of_mass_m), "m, link's frame");
   const bool point_mass = same_bits(joint.inertia_kg_m2, plain.inertia_kg_m2);
   text += member(
-      "inertia_kg_m2", point_mass ? "{}" : numbers(joint.inertia_kg_m2),
+      "inertia_kg_m2", point_mass ? "{}" : cpp_text::numbers(joint.inertia_kg_m2),
       point_mass ? "a point mass" : "kg m^2 about the centre of mass: xx, yy, zz, xy, xz, yz");
   return text + limits_text(joint);
 }
@@ -120,7 +119,7 @@ std::string effect_constant(const Effect<double>& effect, const RobotDescription
       fmt::format("{}: {}; {}", info.name, info.formula, parameter_remark(info, type)));
   const std::span<const double> parameters(effect.parameters.data(), info.parameters.size());
   return text + fmt::format("{{.kind = {}, .joint = {}, .parameters = {}}},\n",
-                            kind_text(effect.kind), effect.joint, numbers(parameters));
+                            kind_text(effect.kind), effect.joint, cpp_text::numbers(parameters));
 }
 
 template <int N>
@@ -137,22 +136,22 @@ std::string chain_text(const Chain<N, double>& chain, const RobotDescription& ro
     effects += effect_constant(effect, robot);
   }
   std::string text = ".joints = {{\n" + indented(joints, "    ") + "}},\n";
-  text += member("gravity_m_s2", numbers(chain.gravity_m_s2), "m/s^2, base frame");
+  text += member("gravity_m_s2", cpp_text::numbers(chain.gravity_m_s2), "m/s^2, base frame");
   if (effects.empty()) return text;
   return text + ".effects =\n    {\n        .items = {{\n" + indented(effects, "            ") +
          fmt::format("        }}}},\n        .size = {},\n    }},\n", chain.effects.size);
 }
 
 std::string estimator_constant(const EstimatorConfig<double>& config) {
-  std::string text = member("period_s", number(config.period_s), "s, length of a tick");
-  text += member("alpha", number(config.alpha), "1/s, pole of the filter");
-  text += member("learning_rate", number(config.learning_rate), "Gamma");
-  text += member("weight_radius", number(config.weight_radius), "M");
+  std::string text = member("period_s", cpp_text::number(config.period_s), "s, length of a tick");
+  text += member("alpha", cpp_text::number(config.alpha), "1/s, pole of the filter");
+  text += member("learning_rate", cpp_text::number(config.learning_rate), "Gamma");
+  text += member("weight_radius", cpp_text::number(config.weight_radius), "M");
   text += member("dead_zone", config.dead_zone == DeadZone::kContinuous
                                   ? "offnominal::DeadZone::kContinuous"
                                   : "offnominal::DeadZone::kDiscontinuous");
   text += member("hidden_units", "kHiddenUnits", "L");
-  text += member("initial_weight_range", number(config.initial_weight_range));
+  text += member("initial_weight_range", cpp_text::number(config.initial_weight_range));
   return text + member("seed", fmt::format("{}U", config.seed), "of the initial weights");
 }
 
@@ -172,7 +171,7 @@ std::string table_text(const UncertaintyBound<N, double>& bound, const RobotDesc
   const auto variable = static_cast<std::size_t>(bound.variable);
   const JointType type = robot.joints[bound.joint].joint.type;
   const auto in_use = [&](const auto& values) {
-    return numbers(std::span<const double>(values.data(), bound.points));
+    return cpp_text::numbers(std::span<const double>(values.data(), bound.points));
   };
   std::string text =
       member("variable", fmt::format("offnominal::BoundVariable::{}", kVariables.at(variable)));
@@ -188,15 +187,16 @@ std::string bound_constant(const UncertaintyBound<N, double>& bound,
   constexpr std::array kKinds{"kConstant", "kScaledNorm", "kTable"};
   std::string text = member("kind", fmt::format("offnominal::BoundKind::{}",
                                                 kKinds.at(static_cast<std::size_t>(bound.kind))));
-  text += member("velocity_error", number(bound.velocity_error),
+  text += member("velocity_error", cpp_text::number(bound.velocity_error),
                  norm_unit(robot, Quantity::kVelocity) + ", of the measurement");
   switch (bound.kind) {
     case BoundKind::kConstant:
-      return text + member("offset", number(bound.offset), "mu_bar");
+      return text + member("offset", cpp_text::number(bound.offset), "mu_bar");
     case BoundKind::kScaledNorm:
-      text += member("offset", number(bound.offset));
-      text += member("scale", number(bound.scale), "mu_bar = scale (|matrix dq| + offset)");
-      return text + member("matrix", numbers(bound.matrix), "row by row");
+      text += member("offset", cpp_text::number(bound.offset));
+      text +=
+          member("scale", cpp_text::number(bound.scale), "mu_bar = scale (|matrix dq| + offset)");
+      return text + member("matrix", cpp_text::numbers(bound.matrix), "row by row");
     case BoundKind::kTable:
       return text + table_text(bound, robot);
   }
@@ -262,7 +262,7 @@ std::string head_text(const RobotDescription& robot, const ModelHeaderOptions& o
 std::string encoder_text(const RobotDescription& robot, const ModelHeader& header) {
   std::vector<double> counts;
   for (const RobotJoint& joint : robot.joints) counts.push_back(joint.encoder.counts_per_unit);
-  std::string list = numbers(counts);
+  std::string list = cpp_text::numbers(counts);
   return "// Counts per rad or per m; 0: no quantisation is known.\n" +
          constant("std::array<Scalar, kJoints>", "kEncoderCountsPerUnit",
                   list.substr(1, list.size() - 2) + ",\n", header);
@@ -301,11 +301,12 @@ ModelHeader write(const RobotDescription& robot, const ModelHeaderOptions& optio
                    member("torque_signal", held ? "offnominal::TorqueSignal::kHeld"
                                                 : "offnominal::TorqueSignal::kSampled") +
                    "// N m or N: the joints' limits. All zero: report, do not act.\n" +
-                   member("max_compensation", numbers(config.max_compensation)),
+                   member("max_compensation", cpp_text::numbers(config.max_compensation)),
                header);
-  text += constant(
-      "offnominal::ComputedTorqueGains<kJoints, Scalar>", "kComputedTorqueGains",
-      member("kp", numbers(gains.kp), "1/s^2") + member("kd", numbers(gains.kd), "1/s"), header);
+  text += constant("offnominal::ComputedTorqueGains<kJoints, Scalar>", "kComputedTorqueGains",
+                   member("kp", cpp_text::numbers(gains.kp), "1/s^2") +
+                       member("kd", cpp_text::numbers(gains.kd), "1/s"),
+                   header);
   header.text =
       text + encoder_text(robot, header) + fmt::format("}}  // namespace {}\n", options.name_space);
   return header;
