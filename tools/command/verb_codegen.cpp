@@ -48,7 +48,7 @@ void run(const Options& options) {
                       .allowed = "a header",
                       .mend = "choose another name"});
   }
-  check_output_file("codegen", options.output, options.force);
+  check_output_file("codegen", "-o", options.output, options.force);
   const RobotDescription robot = read_robot_file(options.robot);
   const ModelHeader header =
       model_header(robot, {.robot_file = options.robot, .name_space = options.name_space});
