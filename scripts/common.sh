@@ -43,8 +43,3 @@ build() {
   # shellcheck disable=SC2086  # a list of options, split on purpose
   ninja -C "$dir" -j "$(jobs_allowed)" ${NINJA_OPTIONS:-} "$@" >&2
 }
-
-# build_firmware: the Cortex-M firmware, both processors; needs the command, which writes its constants.
-build_firmware() {
-  build release offnominal && build cortex-m7 && build cortex-m4
-}

@@ -39,10 +39,6 @@ analyse_one() {
 # together, a dozen to a unit.
 check_tidy() {
   cmake --preset tidy --log-level=WARNING >/dev/null
-  # Headers that a build generates are those of the release build.
-  if [[ -d build/release/tests ]]; then
-    (cd build/release && find tests -name '*.hpp' -exec cp --parents -t ../tidy {} +)
-  fi
   export root
   export -f analyse_one
   # One pair per unit, file and command; not what is generated. The JSON is CMake's own, a key per line.

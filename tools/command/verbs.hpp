@@ -20,14 +20,12 @@ using RegisterVerb = void (*)(CLI::App& app, ExitCode& exit_code);
 
 void register_add(CLI::App& app, ExitCode& exit_code);
 void register_calibrate(CLI::App& app, ExitCode& exit_code);
-void register_codegen(CLI::App& app, ExitCode& exit_code);
 void register_compare(CLI::App& app, ExitCode& exit_code);
 void register_explain(CLI::App& app, ExitCode& exit_code);
 void register_motion(CLI::App& app, ExitCode& exit_code);
 void register_paper(CLI::App& app, ExitCode& exit_code);
 void register_replay(CLI::App& app, ExitCode& exit_code);
 void register_sil(CLI::App& app, ExitCode& exit_code);
-void register_wcet(CLI::App& app, ExitCode& exit_code);
 
 /// Every verb that this build has.
 [[nodiscard]] const std::vector<RegisterVerb>& all_verbs();

@@ -67,12 +67,7 @@ class TickIntegrator {
                                      const TickBegin<N, Scalar>& model,
                                      const EstimatorInput<N, Scalar>& input,
                                      const EstimatorState<N, L, Scalar>& begin)
-      : config_(config),
-        model_(model),
-        input_(input),
-        begin_(begin),
-        w1_z_{begin.w1_z, {}},
-        factors_{{}, begin.sigma, {}} {
+      : config_(config), model_(model), input_(input), begin_(begin) {
     const Scalar half(0.5);
     z_.z00 = begin.z_squared_norm;
     z_.z01 = begin.z.dot(input.z);
@@ -83,7 +78,8 @@ class TickIntegrator {
     largest_d_ = kLargestStep<Scalar> /
                  (config.period_s * config.learning_rate * std::sqrt(z_.z00 + z_.z11));
     radius_squared_ = config.weight_radius * config.weight_radius;
-    first_layer<N, L, Scalar>(begin.weights, input.z, w1_z_.at_end);
+    first_layer<N, L, Scalar>(begin.weights, begin.w1_z, input.z, w1_middle_, w1_z1_);
+    factors_.sigma[0] = begin.sigma;
   }
 
   [[nodiscard]] EIGEN_ALWAYS_INLINE TickEnd<N, Scalar> integrate() {
@@ -106,10 +102,10 @@ class TickIntegrator {
     // A tick that begins inside the dead-zone learns nothing, whatever its inner stages look like.
     rate_ = at.d.squaredNorm() > Scalar(0) ? config_.learning_rate : Scalar(0);
     TickEnd<N, Scalar> sum{begin_.omega, begin_.mu, {Scalar(1), {}}};
-    at = stage<0>(begin, middle.dq, {}, z_.z00, at, h * half, h / 6, sum);
-    at = stage<1>(middle, middle.dq, {z_.z0m}, z_.zmm, at, h * half, h / 3, sum);
-    at = stage<2>(middle, end.dq, {z_.z0m, z_.zmm}, z_.zmm, at, h, h / 3, sum);
-    stage<3>(end, end.dq, {z_.z01, z_.zm1, z_.zm1}, z_.z11, at, h, h / 6, sum);
+    at = stage<0>(begin, middle.dq, begin_.w1_z, {}, z_.z00, at, h * half, h / 6, sum);
+    at = stage<1>(middle, middle.dq, w1_middle_, {z_.z0m}, z_.zmm, at, h * half, h / 3, sum);
+    at = stage<2>(middle, end.dq, w1_middle_, {z_.z0m, z_.zmm}, z_.zmm, at, h, h / 3, sum);
+    stage<3>(end, end.dq, w1_z1_, {z_.z01, z_.zm1, z_.zm1}, z_.z11, at, h, h / 6, sum);
     return sum;
   }
 
@@ -117,10 +113,9 @@ class TickIntegrator {
   // nothing overflows where this is far from the scalar's largest number.
   [[nodiscard]] EIGEN_ALWAYS_INLINE Scalar squared_reach(const SpanPoint<Scalar>& theta) const {
     Scalar sum = theta.keep * theta.keep * begin_.theta_squared_norm;
-    repeat<kStages>([&](int i) __attribute__((always_inline)) {
-      const auto j = static_cast<std::size_t>(i);
+    for (std::size_t j = 0; j < kStages; ++j) {
       sum += theta.gain[j] * theta.gain[j] * gradient_reach_[j];
-    });
+    }
     return sum;
   }
   [[nodiscard]] EIGEN_ALWAYS_INLINE const InputProducts<Scalar>& input_products() const {
@@ -132,15 +127,13 @@ class TickIntegrator {
   EIGEN_ALWAYS_INLINE void finish(const SpanPoint<Scalar>& theta,
                                   EstimatorState<N, L, Scalar>& state) const {
     Matrix<N, kStages, Scalar> share;
-    repeat<kStages>([&](int j) __attribute__((always_inline)) {
+    for (Eigen::Index j = 0; j < kStages; ++j) {
       const auto stage = static_cast<std::size_t>(j);
-      repeat<N>([&](int k) __attribute__((always_inline)) {
-        share(k, j) = theta.gain[stage] * d_[stage][k];
-      });
-    });
+      for (Eigen::Index k = 0; k < N; ++k) share(k, j) = theta.gain[stage] * d_[stage][k];
+    }
     const Scalar squared =
-        update_weights<N, L, Scalar>(theta, share, factors_, w1_z_.at_end, state.z, input_.z,
-                                     z_.z01, z_.z11, state.weights, state.w1_z);
+        update_weights<N, L, Scalar>(theta, share, factors_, w1_z1_, state.z, input_.z, z_.z01,
+                                     z_.z11, state.weights, state.w1_z);
     const Scalar margin = rounding_allowance<L, Scalar>(Scalar(1));
     const Scalar to_ball = std::sqrt(radius_squared_ * (Scalar(1) - Scalar(2) * margin) / squared);
     const Scalar shrink = squared > radius_squared_ * (Scalar(1) - margin) ? to_ball : Scalar(1);
@@ -154,16 +147,12 @@ class TickIntegrator {
   template <int S>
   EIGEN_ALWAYS_INLINE StagePoint<N, Scalar> stage(const StageSignals<N, Scalar>& signals,
                                                   const Vector<N, Scalar>& next_dq,
+                                                  const HiddenVector<L, Scalar>& w1_z,
                                                   const std::array<Scalar, kStages>& z_z, Scalar zz,
                                                   const StagePoint<N, Scalar>& at, Scalar advance,
                                                   Scalar weight, TickEnd<N, Scalar>& sum) {
     d_[static_cast<std::size_t>(S)] = at.d;
-    std::array<Scalar, kStages> kappa{};
-    repeat<S>([&](int i) __attribute__((always_inline)) {
-      const auto j = static_cast<std::size_t>(i);
-      kappa[j] = at.theta.gain[j] * z_z[j];
-    });
-    const StageOutput<N, Scalar> output = network_output_at<S>(kappa, at);
+    const StageOutput<N, Scalar> output = network_output_at<S>(w1_z, z_z, at);
     StagePoint<N, Scalar> next;
     const Vector<N, Scalar> omega_dot = config_.alpha * at.e + signals.nominal_ddq + output.psi_hat;
     const Scalar mu_dot = signals.mu_bar - config_.alpha * at.mu;
@@ -175,43 +164,43 @@ class TickIntegrator {
       next.e = next_dq - next.omega;
       next.d = dead_zone<N, Scalar>(next.e, next.mu, config_.dead_zone, largest_d_);
     }
-    learn<S>(gradient_at<S>(kappa, zz, at, output), at, advance, weight, next, sum);
+    learn<S>(gradient_at<S>(w1_z, zz, at, output), at, advance, weight, next, sum);
     return next;
   }
 
   // psi_hat at a stage; needs the directions d of the stages before.
   template <int S>
   EIGEN_ALWAYS_INLINE StageOutput<N, Scalar> network_output_at(
-      const std::array<Scalar, kStages>& kappa, const StagePoint<N, Scalar>& at) {
+      const HiddenVector<L, Scalar>& w1_z, const std::array<Scalar, kStages>& z_z,
+      const StagePoint<N, Scalar>& at) {
     if constexpr (S == 0) {
       return {begin_.psi_hat, begin_.psi_hat};
     } else {
+      constexpr auto s = static_cast<std::size_t>(S);
+      std::array<Scalar, kStages> kappa{};
+      for (std::size_t j = 0; j < s; ++j) kappa[j] = at.theta.gain[j] * z_z[j];
       const SigmaSums<N, Scalar> sums =
-          sigma_pass<S, N, L, Scalar>(w1_z_, begin_.weights, at.theta.keep, kappa, factors_);
+          sigma_pass<S, N, L, Scalar>(w1_z, begin_.weights, at.theta.keep, kappa, factors_, pre_);
       StageOutput<N, Scalar> output{at.theta.keep * sums.w2_sigma, sums.w2_sigma};
-      repeat<S>([&](int i) __attribute__((always_inline)) {
-        const auto j = static_cast<std::size_t>(i);
+      for (std::size_t j = 0; j < s; ++j) {
         output.psi_hat += (at.theta.gain[j] * sums.before[j]) * d_[j];
-      });
+      }
       return output;
     }
   }
 
   // The inner products of a stage's gradient; its factors stay in factors_.
   template <int S>
-  EIGEN_ALWAYS_INLINE GradientProducts<Scalar> gradient_at(const std::array<Scalar, kStages>& kappa,
+  EIGEN_ALWAYS_INLINE GradientProducts<Scalar> gradient_at(const HiddenVector<L, Scalar>& w1_z,
                                                            Scalar zz,
                                                            const StagePoint<N, Scalar>& at,
                                                            const StageOutput<N, Scalar>& output) {
     constexpr auto s = static_cast<std::size_t>(S);
     std::array<Scalar, kStages> nu{};
-    repeat<S>([&](int i) __attribute__((always_inline)) {
-      const auto j = static_cast<std::size_t>(i);
-      nu[j] = Scalar(0.5) * at.theta.gain[j] * d_[j].dot(at.d);
-    });
+    for (std::size_t j = 0; j < s; ++j) nu[j] = Scalar(0.5) * at.theta.gain[j] * d_[j].dot(at.d);
     const GradientSums<Scalar> sums =
-        gradient_pass<S, N, L, Scalar>(w1_z_, begin_.weights, (Scalar(0.5) * at.theta.keep) * at.d,
-                                       nu, at.theta.keep, kappa, factors_);
+        gradient_pass<S, N, L, Scalar>(w1_z, S == 0 ? w1_z : pre_, begin_.weights,
+                                       (Scalar(0.5) * at.theta.keep) * at.d, nu, factors_);
     const Scalar w2_squared = sums.sigma_squared * at.d.squaredNorm();
     gradient_reach_[s] = sums.b_squared * (z_.z00 + z_.z11) + w2_squared;
     return {sums.with_begin + at.d.dot(output.with_w2_begin),
@@ -229,10 +218,7 @@ class TickIntegrator {
     const Scalar step = weight * rate_;
     const Scalar step_pull = step * pull;
     sum.theta.keep -= step_pull * at.theta.keep;
-    repeat<S>([&](int i) __attribute__((always_inline)) {
-      const auto j = static_cast<std::size_t>(i);
-      sum.theta.gain[j] -= step_pull * at.theta.gain[j];
-    });
+    for (std::size_t j = 0; j < s; ++j) sum.theta.gain[j] -= step_pull * at.theta.gain[j];
     sum.theta.gain[s] = step;
     if constexpr (S + 1 < kStages) {
       const Scalar move = advance * rate_;
@@ -258,8 +244,10 @@ class TickIntegrator {
   Scalar rate_{};  // of learning, in this tick
   Scalar radius_squared_{};
   InputProducts<Scalar> z_;
-  FirstLayer<L, Scalar> w1_z_;
-  StageFactors<L, Scalar> factors_;
+  HiddenVector<L, Scalar> w1_middle_;
+  HiddenVector<L, Scalar> w1_z1_;
+  HiddenVector<L, Scalar> pre_;
+  StageFactors<N, L, Scalar> factors_;
   std::array<Vector<N, Scalar>, kStages> d_;
   std::array<Scalar, kStages> gradient_reach_{};
 };

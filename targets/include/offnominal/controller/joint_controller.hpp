@@ -118,15 +118,6 @@ class JointController {
     return true;
   }
 
-  // kArmed -> kPassive: the commands of the next tick are "off". False, and nothing changed, in any
-  // other state.
-  [[nodiscard]] bool disarm(Data& data) const {
-    if (data.state != ControllerState::kArmed) return false;
-    data.state = ControllerState::kPassive;
-    data.monitor.initialised = false;
-    return true;
-  }
-
   // kFault -> kInit: from there it takes fresh frames of every joint to become passive, and arm()
   // to command torque again. Whoever calls it says that the cause is gone. False in other states.
   template <hal::DriveProtocol Drives>
@@ -170,9 +161,8 @@ class JointController {
            status != hal::Status::kNotSynchronised;
   }
 
-  // The phases of a tick that need much of the stack give it back before the next one begins.
   template <typename Bus, typename Drives>
-  [[gnu::noinline]] static void receive(Bus& bus, Drives& drives, Data& data) {
+  static void receive(Bus& bus, Drives& drives, Data& data) {
     std::array<hal::ReceivedFrame, kBatch> frames;
     for (int batch = 0; batch < kMostBatches; ++batch) {
       const std::size_t count = bus.receive(frames);
@@ -276,7 +266,7 @@ class JointController {
   }
 
   template <typename ReferenceAt, typename Bus>
-  [[gnu::noinline]] void watch(const ReferenceAt& reference_at, Bus& bus, Data& data) const {
+  void watch(const ReferenceAt& reference_at, Bus& bus, Data& data) const {
     const bool armed = data.state == ControllerState::kArmed;
     const bool passive = data.state == ControllerState::kPassive && config_.watch_when_passive;
     if (!armed && !passive) return;
@@ -298,8 +288,8 @@ class JointController {
 
   // Computed torque and compensation, held to what the joints' drives can give.
   template <typename ReferenceAt>
-  [[nodiscard, gnu::noinline]] Vector<N, Scalar> wanted_torque(const ReferenceAt& reference_at,
-                                                               const Data& data) const {
+  [[nodiscard]] Vector<N, Scalar> wanted_torque(const ReferenceAt& reference_at,
+                                                const Data& data) const {
     const Scalar time_s = run_time_s(data);
     Vector<N, Scalar> tau =
         computed_torque<N, Scalar>(monitor_.model(), config_.gains, reference_at(time_s),
@@ -313,7 +303,7 @@ class JointController {
   }
 
   template <typename ReferenceAt>
-  [[gnu::noinline]] void command(const ReferenceAt& reference_at, Data& data) const {
+  void command(const ReferenceAt& reference_at, Data& data) const {
     if (data.state == ControllerState::kFault) return;
     if (!is_running(data)) {
       data.commands.fill({});
@@ -327,7 +317,7 @@ class JointController {
   }
 
   template <typename Bus, typename Drives>
-  [[gnu::noinline]] void send(Microseconds begin_us, Bus& bus, Drives& drives, Data& data) const {
+  void send(Microseconds begin_us, Bus& bus, Drives& drives, Data& data) const {
     std::array<hal::Frame, Drives::kMaxOutgoing> frames;
     const hal::Heartbeat heartbeat{data.state, static_cast<std::uint8_t>(data.fault), data.ticks};
     const std::size_t count = drives.outgoing(data.commands, heartbeat, frames);
