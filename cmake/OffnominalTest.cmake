@@ -23,11 +23,6 @@ function(offnominal_add_test)
   endif()
 
   add_executable(${arg_NAME} ${arg_SOURCES})
-  # Most of a test's compilation is headers: a few sources share them. What is installed and run is
-  # compiled file by file, which keeps its includes honest.
-  if(NOT CMAKE_UNITY_BUILD)
-    set_target_properties(${arg_NAME} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
-  endif()
   target_include_directories(${arg_NAME} PRIVATE "${OFFNOMINAL_TEST_SUPPORT_DIR}")
   target_compile_definitions(${arg_NAME}
                              PRIVATE OFFNOMINAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

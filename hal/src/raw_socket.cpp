@@ -17,7 +17,8 @@ namespace {
 
 ifreq request_for(const char* interface) {
   ifreq request{};
-  std::strncpy(request.ifr_name, interface, IFNAMSIZ - 1);
+  // A name that is too long is cut, and then found nowhere.
+  std::memcpy(request.ifr_name, interface, ::strnlen(interface, IFNAMSIZ - 1));
   return request;
 }
 

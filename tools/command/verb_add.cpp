@@ -26,7 +26,7 @@
 namespace offnominal::tools {
 namespace {
 
-struct Options {
+struct AddOptions {
   std::vector<std::string> effects;
   int joint = 0;
   std::string robot;
@@ -74,7 +74,7 @@ void read_setting(const std::string& text, AddRequest& request) {
   }
 }
 
-AddRequest request_of(const Options& options) {
+AddRequest request_of(const AddOptions& options) {
   AddRequest request;
   for (const std::string& name : options.effects) request.effects.push_back(kind_of(name));
   if (options.joint < 1) refuse("--joint", std::to_string(options.joint), "a number from 1");
@@ -93,7 +93,7 @@ AddRequest request_of(const Options& options) {
   return request;
 }
 
-void check_files(const Options& options) {
+void check_files(const AddOptions& options) {
   std::vector<std::string> recordings = options.logs;
   recordings.insert(recordings.end(), options.holdout.begin(), options.holdout.end());
   check_output_file("add", "-o", options.output, options.force, recordings);
@@ -107,7 +107,7 @@ void check_files(const Options& options) {
 }
 
 // One effect by name: what only a search takes is not for it, and the other way round.
-void check_kind(const Options& options) {
+void check_kind(const AddOptions& options) {
   if (!options.all_found) {
     if (options.effects.empty()) {
       refuse("EFFECT", "none", "one or more effects, or --all-found",
@@ -132,7 +132,7 @@ void check_kind(const Options& options) {
   }
 }
 
-void add_named(const Options& options, const std::string& command_line, ExitCode& exit_code) {
+void add_named(const AddOptions& options, const std::string& command_line, ExitCode& exit_code) {
   const AddRequest request = request_of(options);
   const std::string& log_file = options.logs[0];
   std::optional<std::string> holdout_file;
@@ -166,7 +166,7 @@ void add_named(const Options& options, const std::string& command_line, ExitCode
   if (options.report) std::cout << "written: " << *options.report << '\n';
 }
 
-void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {
+void run(const AddOptions& options, const std::string& command_line, ExitCode& exit_code) {
   check_kind(options);
   check_files(options);
   if (!options.all_found) {
@@ -212,7 +212,7 @@ constexpr const char* kHowItFits =
 void register_add(CLI::App& app, ExitCode& exit_code) {
   CLI::App* verb = app.add_subcommand(
       "add", "Fit an effect to a recording and write the robot file that has it");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<AddOptions>();
   options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   verb->add_option("EFFECT", options->effects,
                    "One or more effects, all on one joint; listed below");

@@ -23,7 +23,7 @@
 namespace offnominal::tools {
 namespace {
 
-struct Options {
+struct CalibrateOptions {
   std::vector<std::string> logs;
   std::vector<std::string> holdout;
   std::string robot;
@@ -41,7 +41,7 @@ struct Options {
   throw InputError({"offnominal calibrate", option, found, allowed, mend});
 }
 
-void check_numbers(const Options& options) {
+void check_numbers(const CalibrateOptions& options) {
   if (!(options.alarms_per_hour >= 1e-6 && options.alarms_per_hour <= 60)) {
     refuse("--alarms-per-hour", fmt::format("{:g}", options.alarms_per_hour), "1e-6 to 60");
   }
@@ -51,7 +51,7 @@ void check_numbers(const Options& options) {
   }
 }
 
-void check_files(const Options& options) {
+void check_files(const CalibrateOptions& options) {
   std::vector<std::string> all = options.logs;
   all.insert(all.end(), options.holdout.begin(), options.holdout.end());
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -65,7 +65,7 @@ void check_files(const Options& options) {
   check_output_file("calibrate", "-o", options.output, options.force, all);
 }
 
-void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {
+void run(const CalibrateOptions& options, const std::string& command_line, ExitCode& exit_code) {
   check_numbers(options);
   check_files(options);
   Progress progress;
@@ -120,7 +120,7 @@ constexpr const char* kHowItCalibrates =
 void register_calibrate(CLI::App& app, ExitCode& exit_code) {
   CLI::App* verb = app.add_subcommand(
       "calibrate", "Find the uncertainty bound from recordings of the healthy robot");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CalibrateOptions>();
   verb->add_option("LOG", options->logs, "Fault-free recordings, CSV or MATLAB .mat")->required();
   verb->add_option("--robot", options->robot, "Robot file to start from")->required();
   verb->add_option("--holdout", options->holdout, "Fault-free recordings to count alarms on");

@@ -20,7 +20,7 @@
 namespace offnominal::tools {
 namespace {
 
-struct Options {
+struct CompareOptions {
   std::string log;
   std::string robot;
   std::optional<std::string> against;
@@ -30,7 +30,7 @@ struct Options {
   bool json = false;
 };
 
-void run(const Options& options, const std::string& command_line) {
+void run(const CompareOptions& options, const std::string& command_line) {
   Progress progress;
   progress.begin("reading " + options.log);
   const RobotDescription robot = read_robot_file(options.robot);
@@ -66,7 +66,7 @@ void register_compare(CLI::App& app, ExitCode& exit_code) {
   static_cast<void>(exit_code);
   CLI::App* verb = app.add_subcommand(
       "compare", "Compare a model with a recording: error per joint, and what it follows");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CompareOptions>();
   verb->add_option("LOG", options->log, "Recording, CSV or MATLAB .mat")->required();
   verb->add_option("--robot", options->robot, "Robot file")->required();
   verb->add_option("--against", options->against,

@@ -18,7 +18,7 @@
 namespace offnominal::tools {
 namespace {
 
-struct Options {
+struct ExplainOptions {
   std::vector<std::string> logs;
   std::vector<std::string> holdout;
   std::string robot;
@@ -28,7 +28,7 @@ struct Options {
   bool json = false;
 };
 
-void run(const Options& options, const std::string& command_line) {
+void run(const ExplainOptions& options, const std::string& command_line) {
   Progress progress;
   const RobotDescription robot = read_robot_file(options.robot);
   const std::vector<Log> logs =
@@ -55,7 +55,7 @@ void register_explain(CLI::App& app, ExitCode& exit_code) {
   static_cast<void>(exit_code);
   CLI::App* verb = app.add_subcommand(
       "explain", "Say which physical effect a model lacks, by recordings, with the evidence");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExplainOptions>();
   options->explain.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   verb->add_option("LOG", options->logs, "Recordings, CSV or MATLAB .mat")->required();
   verb->add_option("--robot", options->robot, "Robot file")->required();

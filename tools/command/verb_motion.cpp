@@ -26,7 +26,7 @@ namespace {
 
 using motion_design::Contender;
 
-struct Options {
+struct MotionOptions {
   std::string robot;
   std::vector<std::string> separate;
   std::optional<std::string> excite;
@@ -47,7 +47,7 @@ struct Options {
   throw InputError({"offnominal motion", option, found, allowed, mend});
 }
 
-std::vector<Contender> effects_of(const Options& options, const RobotDescription& robot) {
+std::vector<Contender> effects_of(const MotionOptions& options, const RobotDescription& robot) {
   std::vector<Contender> effects;
   if (options.excite) {
     if (*options.excite != "all") {
@@ -70,7 +70,7 @@ std::vector<Contender> effects_of(const Options& options, const RobotDescription
   return effects;
 }
 
-void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {
+void run(const MotionOptions& options, const std::string& command_line, ExitCode& exit_code) {
   using namespace motion_design;
   check_output_file("motion", "-o", options.output, options.force);
   const RobotDescription robot = read_robot_file(options.robot);
@@ -117,7 +117,7 @@ constexpr const char* kHowItChooses =
 void register_motion(CLI::App& app, ExitCode& exit_code) {
   CLI::App* verb = app.add_subcommand(
       "motion", "Write a motion that tells effects apart, or shows what recordings did not");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MotionOptions>();
   options->design.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   verb->add_option("--robot", options->robot, "Robot file, with limits")->required();
   CLI::Option* separate =

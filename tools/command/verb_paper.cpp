@@ -30,7 +30,7 @@ namespace {
 using paper::Experiment;
 using paper::ExperimentResult;
 
-struct Options {
+struct PaperOptions {
   std::optional<std::string> fault;
   std::optional<double> mass_loss;
   std::optional<double> rho;
@@ -71,7 +71,7 @@ CLI::Validator number_where(bool (*allowed)(double), const std::string& words) {
 }
 
 // An option that would be ignored is a misunderstanding.
-void check_together(const Options& options) {
+void check_together(const PaperOptions& options) {
   if (options.sweep) {
     if (options.fault && *options.fault != "mass_loss") {
       refuse("--sweep", "--fault " + *options.fault, "leave --fault out; the sweep loses mass");
@@ -101,7 +101,7 @@ void check_together(const Options& options) {
   }
 }
 
-RobotDescription robot_of(const Options& options, const std::optional<std::string>& file) {
+RobotDescription robot_of(const PaperOptions& options, const std::optional<std::string>& file) {
   RobotDescription robot = file ? read_robot_file(*file) : paper::two_link_robot();
   EstimatorSettings& estimator = robot.estimator;
   if (options.dead_zone) {
@@ -114,7 +114,7 @@ RobotDescription robot_of(const Options& options, const std::optional<std::strin
   return robot;
 }
 
-Experiment experiment_of(const Options& options) {
+Experiment experiment_of(const PaperOptions& options) {
   Experiment experiment;
   const std::string fault = options.fault.value_or(options.sweep ? "mass_loss" : "none");
   experiment.fault.kind = fault == "mass_loss"   ? sim::FaultKind::kMassLoss
@@ -202,7 +202,7 @@ void run_sweep(const RobotDescription& robot, const Experiment& base, bool json)
 }
 
 void run_pair(const RobotDescription& robot, const RobotDescription& other, const Experiment& base,
-              const Options& options) {
+              const PaperOptions& options) {
   Progress progress;
   const auto on_probe = [&](const paper::SweepProbe& probe) {
     progress.begin(fmt::format("mass loss {:.1f} %", 100.0 * probe.mass_loss));
@@ -223,7 +223,8 @@ void run_pair(const RobotDescription& robot, const RobotDescription& other, cons
   if (options.report) std::cout << "written: " << *options.report << '\n';
 }
 
-void run_one(const RobotDescription& robot, const Experiment& experiment, const Options& options) {
+void run_one(const RobotDescription& robot, const Experiment& experiment,
+             const PaperOptions& options) {
   const ExperimentResult run = paper::run_experiment(robot, experiment);
   if (options.log) {
     write_file_atomically(*options.log, csv_text(paper::recording_of(robot, experiment, run)),
@@ -241,7 +242,8 @@ void run_one(const RobotDescription& robot, const Experiment& experiment, const 
   }
 }
 
-void run_all(const RobotDescription& robot, const Experiment& experiment, const Options& options) {
+void run_all(const RobotDescription& robot, const Experiment& experiment,
+             const PaperOptions& options) {
   paper::PaperRuns runs;
   {
     Progress progress;
@@ -264,7 +266,7 @@ void run_all(const RobotDescription& robot, const Experiment& experiment, const 
   }
 }
 
-void run(const Options& options) {
+void run(const PaperOptions& options) {
   check_together(options);
   const RobotDescription robot = robot_of(options, options.robot);
   const Experiment experiment = experiment_of(options);
@@ -279,7 +281,7 @@ void run(const Options& options) {
   }
 }
 
-void add_options(CLI::App& verb, Options& options) {
+void add_options(CLI::App& verb, PaperOptions& options) {
   verb.add_option("--fault", options.fault, "Run one fault; without it, everything")
       ->check(CLI::IsMember({"none", "mass_loss", "nonlinear"}));
   verb.add_option("--mass-loss", options.mass_loss,
@@ -338,7 +340,7 @@ void register_paper(CLI::App& app, ExitCode& exit_code) {
   static_cast<void>(exit_code);
   CLI::App* verb = app.add_subcommand(
       "paper", "Run the paper's experiment: faults of a two-link arm, detected and accommodated");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<PaperOptions>();
   add_options(*verb, *options);
   verb->callback([verb, options] {
     options->command_line = command_line_of(*verb);

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kPrintedAlarms = 10;
 
-struct Options {
+struct ReplayOptions {
   std::string log;
   std::string robot;
   std::optional<std::filesystem::path> channels;
@@ -57,7 +57,7 @@ void print(const Replay& replay) {
   std::cout << words_of(replay) << '\n';
 }
 
-void run(const Options& options, const std::string& command_line, ExitCode& exit_code) {
+void run(const ReplayOptions& options, const std::string& command_line, ExitCode& exit_code) {
   const RobotDescription robot = read_robot_file(options.robot);
   const Log log = read_log(options.log, robot, options.channels);
   const Replay result = replay(robot, log);
@@ -77,7 +77,7 @@ void run(const Options& options, const std::string& command_line, ExitCode& exit
 void register_replay(CLI::App& app, ExitCode& exit_code) {
   CLI::App* verb = app.add_subcommand(
       "replay", "Run the on-board monitor over a recording: residual, threshold, alarms");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReplayOptions>();
   verb->add_option("LOG", options->log, "Recording, CSV or MATLAB .mat")->required();
   verb->add_option("--robot", options->robot,
                    "Robot file; its uncertainty bound sets the threshold")

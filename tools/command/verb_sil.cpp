@@ -23,7 +23,7 @@
 namespace offnominal::tools {
 namespace {
 
-struct Options {
+struct SilOptions {
   std::optional<std::string> fault;
   std::optional<std::string> scenario;
   bool accommodate = false;
@@ -44,7 +44,7 @@ struct Options {
   throw InputError({"offnominal sil", option, found, allowed, mend});
 }
 
-sil::Scenario scenario_of(const Options& options) {
+sil::Scenario scenario_of(const SilOptions& options) {
   sil::Scenario scenario;
   if (options.scenario) {
     if (options.fault) {
@@ -74,7 +74,7 @@ std::unique_ptr<sil::Wire> wire_of(const std::string& bus) {
   return bus == sil::kInProcess ? sil::make_in_process_wire() : sil::make_socketcan_wire(bus);
 }
 
-void run(const Options& options, const std::string& command_line) {
+void run(const SilOptions& options, const std::string& command_line) {
   if (options.log) check_output_file("sil", "--log", *options.log, options.force);
   if (options.candump) check_output_file("sil", "--candump", *options.candump, options.force);
   const RobotDescription robot =
@@ -124,7 +124,7 @@ void register_sil(CLI::App& app, ExitCode& exit_code) {
   static_cast<void>(exit_code);
   CLI::App* verb =
       app.add_subcommand("sil", "Run controller and arm at the two ends of a CAN bus, with faults");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SilOptions>();
   verb->add_option("--fault", options->fault, "The paper's: mass_loss, nonlinear or none")
       ->check(CLI::IsMember({"none", "mass_loss", "nonlinear"}));
   verb->add_option("--scenario", options->scenario, "Faults and settings of the run, TOML");
