@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <vector>
 
 namespace offnominal::test {
 
@@ -15,13 +17,18 @@ constexpr int repetitions(int n) {
 #endif
 }
 
-/// Step through a list of cases: all of them, or each n-th where the sanitizers watch.
-constexpr std::size_t stride(std::size_t n) {
+/// Cases to go through: all of a list, or its first and each n-th after it where the sanitizers
+/// watch. n is at least 1.
+template <typename Cases>
+auto every_nth(const Cases& all, [[maybe_unused]] std::size_t n) {
 #ifdef OFFNOMINAL_SANITIZE
-  return n;
+  const std::size_t step = n;
 #else
-  return n > 0 ? 1 : 0;
+  const std::size_t step = 1;
 #endif
+  std::vector<typename Cases::value_type> some;
+  for (std::size_t i = 0; i < std::size(all); i += step) some.push_back(all[i]);
+  return some;
 }
 
 }  // namespace offnominal::test

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "discovery/explain_report.hpp"
 
@@ -134,23 +135,42 @@ report::Waterfall waterfall_of(const Explanation& e, Index joint) {
   return waterfall;
 }
 
+report::Series series_of(const char* name, const VectorXd& x, const VectorXd& y, report::Tone tone,
+                         report::SeriesKind kind) {
+  report::Series series;
+  series.name = name;
+  series.kind = kind;
+  series.x = numbers(x);
+  series.y = numbers(y);
+  series.tone = tone;
+  return series;
+}
+
+// Measured and model torque over x, of as many values as the recording.
+std::vector<report::Series> torques(const Explanation& e, Index joint, const VectorXd& x,
+                                    report::SeriesKind kind) {
+  return {series_of("measured", x, e.series.measured.col(joint), report::Tone::kMeasured, kind),
+          series_of("model with what was found", x, e.series.model_after.col(joint),
+                    report::Tone::kModel, kind)};
+}
+
+// Measured torque less the model's over x, before and after.
+std::vector<report::Series> torque_errors(const Explanation& e, Index joint, const VectorXd& x,
+                                          report::SeriesKind kind) {
+  const VectorXd measured = e.series.measured.col(joint);
+  return {series_of("model as it is", x, measured - e.series.model_before.col(joint),
+                    report::Tone::kFaint, kind),
+          series_of("with what was found", x, measured - e.series.model_after.col(joint),
+                    report::Tone::kResidual, kind)};
+}
+
 report::Chart torque_chart(const Explanation& e, Index joint) {
   const JointErrors& errors = joint_of(e, joint);
   report::Chart chart;
   chart.title = fmt::format("Torque of joint {}", joint + 1);
   chart.x = {"time", "s"};
   chart.y = {{"torque", errors.unit}};
-  const std::vector<double> t = numbers(e.series.t_s);
-  const auto add = [&](const char* name, const Eigen::MatrixXd& values, report::Tone tone) {
-    report::Series series;
-    series.name = name;
-    series.x = t;
-    series.y = numbers(values.col(joint));
-    series.tone = tone;
-    chart.series.push_back(std::move(series));
-  };
-  add("measured", e.series.measured, report::Tone::kMeasured);
-  add("model with what was found", e.series.model_after, report::Tone::kModel);
+  chart.series = torques(e, joint, e.series.t_s, report::SeriesKind::kLine);
   chart.zoom_group = "time";
   chart.slider = true;
   return chart;
@@ -162,16 +182,7 @@ report::Chart residual_chart(const Explanation& e, Index joint) {
   chart.title = fmt::format("Torque error of joint {}", joint + 1);
   chart.x = {"time", "s"};
   chart.y = {{"measured less model", errors.unit}};
-  const auto add = [&](const char* name, const Eigen::MatrixXd& model, report::Tone tone) {
-    report::Series series;
-    series.name = name;
-    series.x = numbers(e.series.t_s);
-    series.y = numbers(e.series.measured.col(joint) - model.col(joint));
-    series.tone = tone;
-    chart.series.push_back(std::move(series));
-  };
-  add("model as it is", e.series.model_before, report::Tone::kFaint);
-  add("with what was found", e.series.model_after, report::Tone::kResidual);
+  chart.series = torque_errors(e, joint, e.series.t_s, report::SeriesKind::kLine);
   chart.zoom_group = "time";
   return chart;
 }
@@ -227,17 +238,7 @@ report::Chart error_over(const Explanation& e, Index joint, const char* variable
   chart.title = fmt::format("Error of joint {} over {}", joint + 1, variable);
   chart.x = {variable, unit};
   chart.y = {{"measured less model", errors.unit}};
-  const auto add = [&](const char* name, const Eigen::MatrixXd& model, report::Tone tone) {
-    report::Series series;
-    series.name = name;
-    series.kind = report::SeriesKind::kPoints;
-    series.x = numbers(values);
-    series.y = numbers(e.series.measured.col(joint) - model.col(joint));
-    series.tone = tone;
-    chart.series.push_back(std::move(series));
-  };
-  add("model as it is", e.series.model_before, report::Tone::kFaint);
-  add("with what was found", e.series.model_after, report::Tone::kResidual);
+  chart.series = torque_errors(e, joint, values, report::SeriesKind::kPoints);
   chart.width = report::Width::kHalf;
   return chart;
 }
@@ -249,17 +250,7 @@ report::Chart torque_over_position(const Explanation& e, Index joint) {
   chart.title = fmt::format("Torque of joint {} over position", joint + 1);
   chart.x = {"position", position_unit(errors)};
   chart.y = {{"torque", errors.unit}};
-  const auto add = [&](const char* name, const Eigen::MatrixXd& values, report::Tone tone) {
-    report::Series series;
-    series.name = name;
-    series.kind = report::SeriesKind::kPoints;
-    series.x = numbers(e.series.q.col(joint));
-    series.y = numbers(values.col(joint));
-    series.tone = tone;
-    chart.series.push_back(std::move(series));
-  };
-  add("measured", e.series.measured, report::Tone::kMeasured);
-  add("model with what was found", e.series.model_after, report::Tone::kModel);
+  chart.series = torques(e, joint, e.series.q.col(joint), report::SeriesKind::kPoints);
   chart.zoom_group = "position";
   return chart;
 }

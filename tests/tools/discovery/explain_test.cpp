@@ -37,8 +37,6 @@ Explanation explain_case(const hidden::Case& made, const ExplainOptions& options
   return explain(to_robot(made.nominal), {to_log(made.recording)}, {to_log(made.holdout)}, options);
 }
 
-constexpr std::size_t kStride = test::stride(4);
-
 class EachEffect : public ::testing::TestWithParam<hidden::HiddenEffect> {};
 
 TEST_P(EachEffect, IsNamedFirstOnItsJoint) {
@@ -56,15 +54,8 @@ TEST_P(EachEffect, IsNamedFirstOnItsJoint) {
   EXPECT_LT(result.found[0].holdout_after, result.found[0].holdout_before);
 }
 
-std::vector<hidden::HiddenEffect> tried_effects() {
-  std::vector<hidden::HiddenEffect> effects;
-  for (std::size_t i = 0; i < hidden::kAllHiddenEffects.size(); i += kStride) {
-    effects.push_back(hidden::kAllHiddenEffects[i]);
-  }
-  return effects;
-}
-
-INSTANTIATE_TEST_SUITE_P(Hidden, EachEffect, ::testing::ValuesIn(tried_effects()),
+INSTANTIATE_TEST_SUITE_P(Hidden, EachEffect,
+                         ::testing::ValuesIn(test::every_nth(hidden::kAllHiddenEffects, 4)),
                          [](const auto& parameter) {
                            return std::string(hidden::name(parameter.param));
                          });
@@ -75,8 +66,7 @@ TEST(Explain, GIVEN_nothing_hidden_THEN_nothing_is_found_at_any_noise) {
     int bits;
   };
   const std::vector<Noise> levels{{0.002, 19}, {0.01, 16}, {0.03, 13}};
-  for (std::size_t i = 0; i < levels.size(); i += kStride) {
-    const Noise& noise = levels[i];
+  for (const Noise& noise : test::every_nth(levels, 4)) {
     hidden::Request request;
     request.seed = 3;
     request.torque_noise_share = noise.share;
@@ -91,8 +81,7 @@ TEST(Explain, GIVEN_nothing_hidden_THEN_nothing_is_found_at_any_noise) {
 }
 
 TEST(Explain, GIVEN_an_effect_outside_of_the_list_THEN_it_is_unknown_and_nothing_is_found) {
-  for (std::size_t i = 0; i < hidden::kAllOutsideEffects.size(); i += kStride) {
-    const hidden::OutsideEffect outside = hidden::kAllOutsideEffects[i];
+  for (const auto outside : test::every_nth(hidden::kAllOutsideEffects, 4)) {
     hidden::Request request;
     request.seed = 2;
     request.outside = outside;

@@ -63,8 +63,8 @@ TEST(HoldMap, ShowsTheOrderOfSlotsAndMagnetsFirst) {
 }
 
 TEST(HoldMap, WithoutCoggingNothingIsFound) {
-  for (std::uint64_t seed = 1; seed <= 3; seed += test::stride(3)) {
-    const test::HeldMotor smooth{.seed = seed, .cogging_nm = 0};
+  for (int seed = 1; seed <= test::repetitions(3); ++seed) {
+    const test::HeldMotor smooth{.seed = static_cast<std::uint64_t>(seed), .cogging_nm = 0};
     const Explanation e = explain(test::rotor(), {test::hold_map_of(smooth)}, {}, quick_search());
     EXPECT_TRUE(e.found.empty()) << e.words;
     EXPECT_EQ(e.verdict, Verdict::kExplained) << e.words;

@@ -70,16 +70,11 @@ TEST_P(FoundEffect, FitsIntoTheRobotFileAndIsKnownThereafter) {
   EXPECT_LT(after.joints[joint].rms_after, 1.2 * before.joints[joint].rms_after);
 }
 
-std::vector<hidden::HiddenEffect> newly_known() {
-  constexpr std::array kAll{
-      hidden::HiddenEffect::kLoadDependentFriction, hidden::HiddenEffect::kTorqueScale,
-      hidden::HiddenEffect::kJointCoupling, hidden::HiddenEffect::kTemperatureDrift};
-  std::vector<hidden::HiddenEffect> tried;
-  for (std::size_t i = 0; i < kAll.size(); i += test::stride(3)) tried.push_back(kAll[i]);
-  return tried;
-}
+constexpr std::array kNewlyKnown{
+    hidden::HiddenEffect::kLoadDependentFriction, hidden::HiddenEffect::kTorqueScale,
+    hidden::HiddenEffect::kJointCoupling, hidden::HiddenEffect::kTemperatureDrift};
 
-INSTANTIATE_TEST_SUITE_P(Hidden, FoundEffect, ::testing::ValuesIn(newly_known()),
+INSTANTIATE_TEST_SUITE_P(Hidden, FoundEffect, ::testing::ValuesIn(test::every_nth(kNewlyKnown, 3)),
                          [](const auto& parameter) {
                            return std::string(hidden::name(parameter.param));
                          });
