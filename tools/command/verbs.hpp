@@ -20,6 +20,7 @@ using RegisterVerb = void (*)(CLI::App& app, ExitCode& exit_code);
 
 void register_add(CLI::App& app, ExitCode& exit_code);
 void register_calibrate(CLI::App& app, ExitCode& exit_code);
+void register_codegen(CLI::App& app, ExitCode& exit_code);
 void register_compare(CLI::App& app, ExitCode& exit_code);
 void register_explain(CLI::App& app, ExitCode& exit_code);
 void register_motion(CLI::App& app, ExitCode& exit_code);

@@ -10,4 +10,10 @@ std::string shortest(double value) {
   return {text, result.ptr};
 }
 
+std::string shortest_real(double value) {
+  std::string text = shortest(value);
+  if (text.find_first_not_of("-0123456789") == std::string::npos) text += ".0";
+  return text;
+}
+
 }  // namespace offnominal::tools

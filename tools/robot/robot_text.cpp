@@ -12,12 +12,7 @@
 namespace offnominal::tools {
 namespace {
 
-// A float in TOML has a point or an exponent; without them -0 would come back as 0.
-std::string number(double value) {
-  std::string text = shortest(value);
-  if (text.find_first_not_of("-0123456789") == std::string::npos) text += ".0";
-  return text;
-}
+std::string number(double value) { return shortest_real(value); }
 
 std::string list(std::span<const double> values) {
   std::string text = "[";

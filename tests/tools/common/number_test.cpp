@@ -20,6 +20,13 @@ TEST(Shortest, IsShort) {
   EXPECT_EQ(shortest(std::numeric_limits<double>::quiet_NaN()), "nan");
 }
 
+TEST(ShortestReal, HasAPointOrAnExponent) {
+  EXPECT_EQ(shortest_real(0.1), "0.1");
+  EXPECT_EQ(shortest_real(-3), "-3.0");
+  EXPECT_EQ(shortest_real(-0.0), "-0.0");
+  EXPECT_EQ(shortest_real(1e22), "1e+22");
+}
+
 TEST(Shortest, IsReadBackToTheBit) {
   auto generator = test::seeded_generator();
   for (int i = 0; i < 10000; ++i) {
