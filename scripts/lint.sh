@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # lint.sh format: layout of every tracked C++ file.
-# lint.sh tidy:   static analysis of every source that the release build compiles; builds nothing.
+# lint.sh tidy:   static analysis of every source that the release build compiles; builds nothing but
+#                 the headers that the command writes.
 # lint.sh rewrite: lays every tracked C++ file out anew.
 set -euo pipefail
 # shellcheck source=scripts/common.sh
@@ -12,18 +13,18 @@ sources() { git -c safe.directory="$root" ls-files -z -- '*.hpp' '*.cpp'; }
 check_format() { sources | xargs -0 -r clang-format --dry-run -Werror; }
 rewrite() { sources | xargs -0 -r clang-format -i; }
 
-# analyse_one FILE COMMAND: one unit of the compile commands, unless its verdict is known. The verdict
-# depends on the unit's files; system headers come with the tool's version.
+# analyse_one FILE COMMAND: one unit of the compile commands, unless it is known to be fine. What is
+# fine depends on the tool, its settings and all files of the unit, not on where the tree lies.
 analyse_one() {
   local unit="$1" command="$2" files stamp
-  files="$(cd build/tidy && eval "${command/ -o * -c / -MM }" | sed 's/^[^:]*://; s/\\$//')" || return 1
+  files="$(cd build/tidy && eval "${command/ -o * -c / -M }" | sed 's/^[^:]*://; s/\\$//')" || return 1
   # shellcheck disable=SC2086  # a list of files without blanks
-  stamp="build/tidy/$({
+  stamp="$known/$({
     clang-tidy --version
     find . -name .clang-tidy -not -path './build/*' -print0 | sort -z | xargs -0 cat
     printf '%s\n' "$command"
     cd build/tidy && cat $files
-  } | sha256sum | cut -d' ' -f1).fine"
+  } | sed "s#$root#.#g" | sha256sum | cut -d' ' -f1).fine"
   [[ -e "$stamp" ]] && return 0
   # The compile commands are GCC's, which knows warnings that Clang does not.
   if clang-tidy -p build/tidy --quiet --warnings-as-errors='*' \
@@ -39,7 +40,12 @@ analyse_one() {
 # together, a dozen to a unit.
 check_tidy() {
   cmake --preset tidy --log-level=WARNING >/dev/null
-  export root
+  build release generated_headers
+  (cd build/release && find tests -name '*.hpp' -exec cp --parents -t ../tidy {} +)
+  known="$(cache_dir)/tidy"
+  mkdir -p "$known"
+  find "$known" -name '*.fine' -mtime +60 -delete
+  export root known
   export -f analyse_one
   # One pair per unit, file and command; not what is generated. The JSON is CMake's own, a key per line.
   sed -n 's/^ *"command": "\(.*\)",\{0,1\}$/\1/p; s/^ *"file": "\(.*\)",\{0,1\}$/\1/p' \

@@ -9,9 +9,20 @@ passed=0
 failed=0
 skipped=0
 failures=()
+durations=()
+
+# begin TITLE, and end: what lies between them is timed.
+begin() {
+  step="$1"
+  step_began=$SECONDS
+  note "$step"
+}
+end() { durations+=("$(printf '%5d s  %s' $((SECONDS - step_began)) "$step")"); }
 
 finish() {
   local name line
+  printf '\ntook:\n'
+  printf '  %s\n' "${durations[@]}" "$(printf '%5d s  in all, on %d cores' "$SECONDS" "$(nproc)")"
   if ((${#failures[@]} > 0)); then
     printf '\nfailed:\n'
     for name in "${failures[@]}"; do printf '  %s\n' "$name"; done
@@ -38,12 +49,13 @@ trap interrupted INT TERM
 check() {
   local name="$1"
   shift
-  note "$name"
+  begin "$name"
   if "$@"; then
     passed=$((passed + 1))
   else
     fail "$name"
   fi
+  end
 }
 
 # One line per test of a JUnit report: pass, fail or skip, and its name. CTest calls a test that was
@@ -78,10 +90,11 @@ run_suite() {
   local report verdict name outcome before=$failed
   report="$root/build/$preset/junit.xml"
   rm -f "$report"
-  note "$title"
+  begin "$title"
   "${where[@]}" ctest --test-dir "$root/build/$preset" -j "$jobs" "${select[@]}" --timeout 900 \
     --output-on-failure --no-tests=error --output-junit "$report"
   outcome=$?
+  end
   if [[ ! -s "$report" ]]; then
     fail "$title did not run"
     return

@@ -64,7 +64,7 @@ static_busybox() {
 # Names in $image the folder of a kernel and a first file system, makes it when there is none.
 find_image() {
   local cache recipe known=() package='' version='' work
-  cache="${XDG_CACHE_HOME:-$HOME/.cache}/offnominal/vcan"
+  cache="$(cache_dir)/vcan"
   recipe="$(cat "$here/vcan/image.sh" "$here/vcan/init.sh" | sha256sum | cut -c1-12)"
   mkdir -p "$cache" || die "$cache: the folder for the machine's kernel cannot be made (XDG_CACHE_HOME names another)"
 
