@@ -118,6 +118,15 @@ class JointController {
     return true;
   }
 
+  // kArmed -> kPassive: the commands of the next tick are "off". False, and nothing changed, in any
+  // other state.
+  [[nodiscard]] bool disarm(Data& data) const {
+    if (data.state != ControllerState::kArmed) return false;
+    data.state = ControllerState::kPassive;
+    data.monitor.initialised = false;
+    return true;
+  }
+
   // kFault -> kInit: from there it takes fresh frames of every joint to become passive, and arm()
   // to command torque again. Whoever calls it says that the cause is gone. False in other states.
   template <hal::DriveProtocol Drives>

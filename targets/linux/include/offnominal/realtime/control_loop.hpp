@@ -1,0 +1,204 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <offnominal/controller/joint_controller.hpp>
+#include <offnominal/realtime/cycle_timer.hpp>
+#include <offnominal/realtime/recorder.hpp>
+#include <string>
+#include <vector>
+
+// The joint controller, tick by tick in real time: what the thread of a controller program runs.
+
+namespace offnominal::realtime {
+
+// What other threads may ask of the loop and see of it.
+struct LoopPanel {
+  std::atomic<bool> end{false};    // disarm, tell the drives, end
+  std::atomic<bool> arm{false};    // kPassive -> kArmed; taken back when it was tried
+  std::atomic<bool> clear{false};  // kFault -> kInit; the same
+  std::atomic<hal::ControllerState> state{hal::ControllerState::kInit};
+  std::atomic<controller::Fault> fault{controller::Fault::kNone};
+};
+
+struct LoopConfig {
+  bool arm_when_passive = false;  // once, as soon as every joint is heard
+  // Ends so long after it was first armed, or without arm_when_passive after the start; 0: never.
+  Microseconds duration_us = 0;
+  bool end_at_fault = false;  // 100 ms after it
+};
+
+// Plain data.
+struct LoopReport {
+  hal::ControllerState state = hal::ControllerState::kInit;  // before the clean stop
+  controller::Fault fault = controller::Fault::kNone;        // the first
+  std::uint32_t ticks = 0;
+  std::uint32_t overruns = 0;      // ticks that began a period or more too late
+  std::uint32_t left_out = 0;      // ticks that they cost
+  Microseconds worst_late_us = 0;  // begin of a tick after its time
+  Microseconds worst_step_us = 0;  // from a tick's begin to its end
+  double mean_step_us = 0;
+  std::uint32_t missed_samples = 0;
+  std::uint32_t refused_frames = 0;
+  std::uint32_t unsent_frames = 0;
+  bool detected = false;
+  double detection_time_s = 0;  // since arming
+};
+
+// The columns of the rows that the loop records, for RecorderConfig::columns.
+[[nodiscard]] inline std::vector<std::string> loop_columns(int joints) {
+  std::vector<std::string> columns;
+  for (const char* quantity : {"q", "dq", "tau", "command", "psi_hat"}) {
+    for (int joint = 1; joint <= joints; ++joint) {
+      columns.push_back(quantity + std::to_string(joint));
+    }
+  }
+  for (const char* name : {"error", "threshold", "weights", "detected", "motion_t", "late_ticks",
+                           "latency_us", "fault", "state"}) {
+    columns.emplace_back(name);
+  }
+  return columns;
+}
+
+namespace detail {
+
+template <int N, int L, typename Scalar>
+[[nodiscard]] Row row_of(const controller::ControllerData<N, L, Scalar>& data, const Tick& tick,
+                         Scalar period_s) {
+  Row row;
+  // When it was due: rows are evenly spaced.
+  row.time_us = tick.begin_us - tick.latency_us;
+  std::size_t next = 0;
+  const auto put = [&](double value) { row.values[next++] = value; };
+  const auto put_all = [&](const Vector<N, Scalar>& values) {
+    for (const Scalar value : values) put(static_cast<double>(value));
+  };
+  put_all(data.sample.q);
+  put_all(data.sample.dq);
+  put_all(data.sample.tau);
+  for (const hal::TorqueCommand& command : data.commands) put(static_cast<double>(command.torque));
+  put_all(data.output.psi_hat);
+  put(static_cast<double>(data.output.error_norm));
+  put(static_cast<double>(data.output.threshold));
+  put(std::sqrt(static_cast<double>(data.monitor.estimator.theta_squared_norm)));
+  put(data.output.detector.latched ? 1 : 0);
+  put(static_cast<double>(data.run_ticks) * static_cast<double>(period_s));
+  put(tick.late_ticks);
+  put(static_cast<double>(tick.latency_us));
+  put(static_cast<double>(data.fault));
+  row.digit = static_cast<std::uint8_t>(data.state);
+  return row;
+}
+
+}  // namespace detail
+
+// Runs until it is asked to end, or what the configuration says. `timer` is a CycleTimer, or what
+// else has its wait(). The rows are those of the ticks with a fresh sample. No heap.
+template <int N, int L, typename Scalar, hal::Bus Bus, hal::DriveProtocol Drives, typename Timer,
+          typename ReferenceAt>
+class ControlLoop {
+ public:
+  using Controller = controller::JointController<N, L, Scalar>;
+  using Data = typename Controller::Data;
+
+  // What a loop is made of; all of it has to outlive the loop. `data` belongs on the heap.
+  struct Parts {
+    const Controller& controller;
+    Timer& timer;
+    Bus& bus;
+    Drives& drives;
+    const ReferenceAt& reference_at;
+    Recorder& recorder;
+    LoopPanel& panel;
+    Data& data;
+  };
+  ControlLoop(const LoopConfig& config, const Parts& parts) : config_(config), parts_(parts) {}
+
+  [[nodiscard]] LoopReport run() {
+    while (!is_over()) tick();
+    finish();
+    return report_;
+  }
+
+ private:
+  [[nodiscard]] bool is_over() const {
+    if (parts_.panel.end.load(std::memory_order_relaxed)) return true;
+    if (end_us_ != 0 && now_us_ >= end_us_) return true;
+    constexpr Microseconds kAfterFault = 100'000;
+    return config_.end_at_fault && fault_us_ != 0 && now_us_ >= fault_us_ + kAfterFault;
+  }
+
+  void tick() {
+    const Tick tick = parts_.timer.wait();
+    obey(tick.begin_us);
+    now_us_ = tick.begin_us;
+    parts_.controller.step(tick.begin_us, tick.late_ticks, parts_.reference_at, parts_.bus,
+                           parts_.drives, parts_.data);
+    if (parts_.data.fresh) {
+      parts_.recorder.keep(
+          detail::row_of(parts_.data, tick, parts_.controller.config().monitor.estimator.period_s));
+    }
+    note(tick, parts_.bus.now() - tick.begin_us);
+  }
+
+  void obey(Microseconds now_us) {
+    if (parts_.panel.clear.exchange(false, std::memory_order_relaxed)) {
+      static_cast<void>(parts_.controller.clear_fault(parts_.drives, parts_.data));
+    }
+    const bool at_once = config_.arm_when_passive && !armed_once_;
+    const bool asked = parts_.panel.arm.exchange(false, std::memory_order_relaxed);
+    if (at_once || asked) armed_once_ = parts_.controller.arm(parts_.data) || armed_once_;
+    const bool counts = armed_once_ || !config_.arm_when_passive;
+    if (config_.duration_us > 0 && end_us_ == 0 && counts) {
+      end_us_ = now_us + config_.duration_us;
+    }
+  }
+
+  void note(const Tick& tick, Microseconds step_us) {
+    parts_.panel.state.store(parts_.data.state, std::memory_order_relaxed);
+    parts_.panel.fault.store(parts_.data.fault, std::memory_order_relaxed);
+    if (parts_.data.fault != controller::Fault::kNone && fault_us_ == 0) {
+      fault_us_ = now_us_;
+      report_.fault = parts_.data.fault;
+    }
+    if (parts_.data.output.detector.latched && !report_.detected) {
+      report_.detected = true;
+      report_.detection_time_s = static_cast<double>(parts_.data.output.detector.detection_time_s);
+    }
+    const Microseconds period_us = parts_.timer.period_us();
+    report_.left_out += tick.late_ticks;
+    report_.worst_late_us =
+        std::max(report_.worst_late_us, tick.latency_us + tick.late_ticks * period_us);
+    report_.worst_step_us = std::max(report_.worst_step_us, step_us);
+    sum_step_us_ += step_us;
+  }
+
+  // The drives are told several times, as a frame may be lost.
+  void finish() {
+    report_.state = parts_.data.state;
+    constexpr int kFarewells = 5;
+    static_cast<void>(parts_.controller.disarm(parts_.data));
+    for (int i = 0; i < kFarewells; ++i) tick();
+    report_.ticks = parts_.data.ticks;
+    report_.overruns = parts_.data.overruns;
+    report_.missed_samples = parts_.data.missed_samples;
+    report_.refused_frames = parts_.data.refused_frames;
+    report_.unsent_frames = parts_.data.unsent_frames;
+    report_.mean_step_us =
+        static_cast<double>(sum_step_us_) / static_cast<double>(std::max(1U, parts_.data.ticks));
+  }
+
+  LoopConfig config_;
+  Parts parts_;
+  LoopReport report_;
+  Microseconds now_us_ = 0;
+  Microseconds end_us_ = 0;
+  Microseconds fault_us_ = 0;
+  Microseconds sum_step_us_ = 0;
+  bool armed_once_ = false;
+};
+
+}  // namespace offnominal::realtime
