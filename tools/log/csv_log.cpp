@@ -112,6 +112,7 @@ class CsvReader {
       return false;
     }
     ++line_number_;
+    unfinished_ = input_.eof();
     if (!line.empty() && line.back() == '\r') line.pop_back();
     return true;
   }
@@ -144,6 +145,13 @@ class CsvReader {
       fail("line " + std::to_string(blank_line_), "a blank line", "samples without gaps");
     }
     const auto* cells = splitter.split(line);
+    // As a writer that was killed leaves it.
+    const bool is_short =
+        cells == nullptr || cells->size() < columns_.size() || cells->back().empty();
+    if (unfinished_ && is_short && rows_ > 0) {
+      cut_off_ = true;
+      return;
+    }
     if (cells == nullptr) fail(line_place(), "an unfinished quote", "numbers");
     if (cells->size() != columns_.size()) {
       fail(line_place(),
@@ -173,6 +181,9 @@ class CsvReader {
     NamedColumns result;
     result.file = path_.string();
     result.names = names_;
+    if (cut_off_) {
+      result.remarks.push_back("The file's last line is cut off and was left out.");
+    }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       if (columns_[i].need == Need::kNone) continue;
       result.columns[names_[i]] = Eigen::Map<const Eigen::VectorXd>(
@@ -189,6 +200,8 @@ class CsvReader {
   std::size_t line_number_ = 0;
   std::size_t blank_line_ = 0;
   std::size_t rows_ = 0;
+  bool unfinished_ = false;  // no line end after the newest line
+  bool cut_off_ = false;     // the last line was left out
   std::vector<std::string> names_;
   std::vector<Column> columns_;
 };

@@ -10,7 +10,8 @@ namespace offnominal::tools {
 // (or by semicolons or tabs, where the header has no comma). Quotes, spaces around values, a byte
 // order mark and either kind of line end are understood. Throws InputError with the line and the
 // column for text in a number, a line with too few or too many values, a blank line between
-// samples, an unnamed or repeated column, a file that is empty or holds a header only.
+// samples, an unnamed or repeated column, a file that is empty or holds a header only. A last line
+// that has no end and too few values is left out, with a remark: a writer was killed.
 NamedColumns read_csv(const std::filesystem::path& path, const NeedOf& need_of);
 
 }  // namespace offnominal::tools

@@ -22,6 +22,7 @@ struct NamedColumns {
   std::vector<std::string> names;  // everything that the file has, in its order
   std::map<std::string, Eigen::VectorXd> columns;
   std::map<std::string, double> scalars;
+  std::vector<std::string> remarks;  // what a reader of results has to know, in words
   // Where row `row` (from 0) stands in the file: "line 12" or "sample 11".
   std::function<std::string(Eigen::Index row)> place_of;
 };

@@ -55,6 +55,7 @@ class Assembler {
   Assembler(NamedColumns columns, int joint_count)
       : columns_(std::move(columns)), joints_(joint_count) {
     log_.file = columns_.file;
+    log_.remarks = columns_.remarks;
   }
 
   Log with_common_header() {

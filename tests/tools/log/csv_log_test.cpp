@@ -127,6 +127,20 @@ TEST(CsvLog, TextInANumberNamesLineAndColumn) {
               AllOf(HasSubstr("line 9, column dq1"), HasSubstr("found nothing")));
 }
 
+// GIVEN a file that its writer could not finish THEN it is read up to its last whole line, wherever
+// in the next one it ends.
+TEST(CsvLog, ALastLineThatIsCutOffIsLeftOutAndSaidSo) {
+  const std::string whole = one_joint_csv(20, kAsIs);
+  const std::string next = "0.2,0.04,0.4,7";
+  for (std::size_t length = 0; length < next.size(); ++length) {
+    const Log log = read(whole + next.substr(0, length));
+    EXPECT_EQ(log.sample_count(), 20) << length;
+    EXPECT_EQ(log.remarks.size(), length == 0 ? 0U : 1U) << length;
+  }
+  EXPECT_EQ(read(whole + next).sample_count(), 21) << "nothing is missing but its end";
+  EXPECT_THAT(refusal(whole + "0.2,0.04\n"), HasSubstr("2 values"));
+}
+
 TEST(CsvLog, RaggedLinesAreRefused) {
   EXPECT_THAT(refusal(one_joint_csv(20,
                                     [](int number, std::string& line) {
