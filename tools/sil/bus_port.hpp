@@ -20,10 +20,11 @@ class BusPort {
 };
 static_assert(hal::Bus<BusPort>);
 
+/// Of a bus of its own, or of another's: BusPortOf<hal::SocketCan&>.
 template <hal::Bus B>
 class BusPortOf final : public BusPort {
  public:
-  explicit BusPortOf(B bus) : bus_(std::move(bus)) {}
+  explicit BusPortOf(B bus) : bus_(std::forward<B>(bus)) {}
   hal::Microseconds now() override { return bus_.now(); }
   hal::Status send(const hal::Frame& frame, hal::Microseconds deadline_us) override {
     return bus_.send(frame, deadline_us);

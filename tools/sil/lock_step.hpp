@@ -3,14 +3,12 @@
 
 #include <functional>
 
-#include "offnominal/sim/bus/plant_node.hpp"
 #include "paper/closed_loop.hpp"
 #include "sil/sil.hpp"
 
 namespace offnominal::tools::sil {
 
 struct LoopSetup {
-  sim::PlantNodeConfig plant;
   hal::Microseconds period_us = 1000;
   std::int64_t ticks = 0;
   double first_fault_s = 0;

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <memory>
 #include <offnominal/controller/joint_controller.hpp>
-#include <offnominal/diagnosis/velocity_observer.hpp>
 
 #include "common/error.hpp"
 #include "offnominal/sim/bus/faulty_bus.hpp"
-#include "robot/monitor_config_of.hpp"
+#include "sil/controller_settings.hpp"
 #include "sil/lock_step.hpp"
+#include "sil/plant_of.hpp"
 
 namespace offnominal::tools::sil {
 
@@ -31,17 +31,10 @@ class LockStepLoop {
         plant_tap_(wire.plant(), on_frame),
         controller_bus_(controller_tap_, sim::BusEnd::kController, scenario.faults, scenario.seed),
         plant_bus_(plant_tap_, sim::BusEnd::kPlant, scenario.faults, scenario.seed),
-        source_{.max_age_us = 2 * setup.period_us + setup.period_us / 2},
+        source_(source_config(setup.period_us)),
         drives_(source_, source_, scenario.format),
-        plant_(paper::plant_of(scenario.experiment),
-               sim::on_trajectory(scenario.experiment.desired_at(0.0)), setup.plant) {
-    const Status status = Controller::create(config_of(robot, scenario), controller_);
-    if (status == Status::kOk) return;
-    throw InputError({.file = "robot " + robot.name,
-                      .place = "controller",
-                      .found = std::string("status ") + name_of(status),
-                      .allowed = "",
-                      .mend = "docs/troubleshooting.md says what each status asks for"});
+        plant_(plant_of(scenario, robot.estimator.period_s)) {
+    create_controller(robot, settings_of(scenario), controller_);
   }
 
   void run(const paper::TickObserver& observe, SilResult& result) {
@@ -67,30 +60,6 @@ class LockStepLoop {
 
  private:
   using Bus = sim::FaultyBus<BusPort>;
-
-  static typename Controller::Config config_of(const RobotDescription& robot,
-                                               const Scenario& scenario) {
-    typename Controller::Config config;
-    config.monitor = monitor_config_of<2, Scalar>(robot);
-    config.gains = gains_of<2, Scalar>(robot);
-    const double period_s = robot.estimator.period_s;
-    config.command_lifetime_us = std::llround(0.9e6 * period_s);
-    config.stop_at_detection = scenario.stop_at_detection;
-    if (!scenario.experiment.accommodate) config.monitor.max_compensation = {};
-    config.velocity_observer.period_s = config.monitor.estimator.period_s;
-    config.velocity_observer.bandwidth_rad_s = static_cast<Scalar>(0.2 / period_s);
-    if (!scenario.sends_velocity) {
-      config.monitor.bound.velocity_error += velocity_error_bound(
-          config.velocity_observer, static_cast<Scalar>(scenario.max_acceleration),
-          static_cast<Scalar>(half_count(scenario)));
-    }
-    return config;
-  }
-  static double half_count(const Scenario& scenario) {
-    sim::EncoderConfig encoder;
-    encoder.bits_per_turn = scenario.encoder_bits_per_turn;
-    return 0.5 * (sim::position_step_rad(encoder) + static_cast<double>(hal::kPositionPerCount));
-  }
 
   void start() {
     constexpr int kPatience = 100;

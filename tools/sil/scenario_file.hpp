@@ -12,6 +12,9 @@ namespace offnominal::tools::sil {
 /// and key; of what the numbers mean together check_scenario() judges.
 [[nodiscard]] Scenario read_scenario(const std::filesystem::path& path);
 
+/// The scenario as a file that read_scenario() reads as the same.
+[[nodiscard]] std::string scenario_text(const Scenario& scenario);
+
 /// Every kind of fault with its unit and what it does, a line each: for a help text.
 [[nodiscard]] std::string fault_kinds_text();
 

@@ -9,6 +9,7 @@
 #include "common/error.hpp"
 #include "paper/run_observer.hpp"
 #include "sil/lock_step.hpp"
+#include "sil/plant_of.hpp"
 
 namespace offnominal::tools::sil {
 namespace {
@@ -40,53 +41,6 @@ void check_fault(const sim::FaultEvent& fault, double duration_s) {
   }
 }
 
-// The arm's own fault, of which there is one at most.
-sim::Fault arm_fault(const std::vector<sim::FaultEvent>& faults) {
-  sim::Fault arm;
-  for (const sim::FaultEvent& fault : faults) {
-    if (!info_of(fault.kind).develops) continue;
-    if (arm.kind != sim::FaultKind::kNone) {
-      refuse("faults", "two of mass_loss, nonlinear and payload", "one of them");
-    }
-    arm.time_s = fault.begin_s;
-    arm.rate_per_s = fault.rate_per_s;
-    if (fault.kind == sim::FaultEventKind::kMassLoss) {
-      arm.kind = sim::FaultKind::kMassLoss;
-      arm.mass_loss = fault.size;
-    } else if (fault.kind == sim::FaultEventKind::kPayload) {
-      arm.kind = sim::FaultKind::kPayload;
-      arm.payload_kg = fault.size;
-    } else {
-      arm.kind = sim::FaultKind::kNonlinear;
-    }
-  }
-  return arm;
-}
-
-// What the arm does that its model does not know, with friction that comes and goes.
-sim::Uncertainty with_friction(sim::Uncertainty base, const std::vector<sim::FaultEvent>& faults) {
-  std::vector<sim::FaultEvent> jumps;
-  std::copy_if(faults.begin(), faults.end(), std::back_inserter(jumps),
-               [](const auto& fault) { return fault.kind == sim::FaultEventKind::kFrictionJump; });
-  if (jumps.empty()) return base;
-  return [base = std::move(base), jumps](double time_s, const sim::JointState& state) {
-    constexpr double kSignWidth = 0.01;  // rad/s
-    Eigen::Vector2d torque = base(time_s, state);
-    for (const sim::FaultEvent& jump : jumps) {
-      const double speed = state.dq[jump.joint];
-      if (jump.is_active(time_s)) torque[jump.joint] += jump.size * std::tanh(speed / kSignWidth);
-    }
-    return torque;
-  };
-}
-
-Scenario with_arm_faults(const Scenario& scenario) {
-  Scenario complete = scenario;
-  complete.experiment.fault = arm_fault(scenario.faults);
-  complete.experiment.uncertainty = with_friction(scenario.experiment.uncertainty, scenario.faults);
-  return complete;
-}
-
 }  // namespace
 
 void check_scenario(const RobotDescription& robot, const Scenario& scenario) {
@@ -105,7 +59,7 @@ void check_scenario(const RobotDescription& robot, const Scenario& scenario) {
   for (const sim::FaultEvent& fault : scenario.faults) {
     check_fault(fault, scenario.experiment.duration_s);
   }
-  static_cast<void>(arm_fault(scenario.faults));
+  static_cast<void>(with_arm_faults(scenario));
 }
 
 SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenario, Wire& wire,
@@ -117,20 +71,10 @@ SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenar
   LoopSetup setup;
   setup.period_us = std::max<hal::Microseconds>(1, std::llround(1e6 * period_s));
   setup.ticks = std::llround(duration_s / period_s);
-  setup.plant.period_s = period_s;
-  setup.plant.substeps = scenario.experiment.plant_substeps;
-  setup.plant.encoders.bits_per_turn = scenario.encoder_bits_per_turn;
-  setup.plant.format = scenario.format;
-  setup.plant.sends_velocity = scenario.sends_velocity;
-  setup.plant.faults = scenario.faults;
-  setup.plant.drives.commands.max_age_us = 5 * setup.period_us;
   SilResult result;
   result.bus_name = bus_name;
   result.faults = scenario.faults;
-  std::optional<double> first_s;
-  for (const sim::FaultEvent& fault : scenario.faults) {
-    first_s = std::min(first_s.value_or(fault.begin_s), fault.begin_s);
-  }
+  const std::optional<double> first_s = first_begin_s(scenario.faults);
   setup.first_fault_s = first_s.value_or(0.0);
   paper::RunObserver observer(robot, complete.experiment, first_s.value_or(duration_s));
   const auto observe = [&](const paper::TickRecord& tick) { observer(tick); };

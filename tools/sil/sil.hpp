@@ -37,6 +37,18 @@ struct BusReport {
   double load = 0;             // share of the time that the bus is busy at most, at hal::BitRates
 };
 
+/// How a run in real time kept its time.
+struct RealTimeReport {
+  std::uint64_t ticks = 0;         // of the controller
+  std::int64_t worst_late_us = 0;  // begin of one of its ticks after its time
+  std::int64_t worst_step_us = 0;  // a tick's work
+  double mean_step_us = 0;
+  int fifo_priority = 0;  // 0: ordinary scheduling
+  bool memory_locked = false;
+  std::uint64_t plant_overruns = 0;  // late ticks of the plant
+  std::uint64_t recording_lost = 0;  // entries, at both ends
+};
+
 struct SilResult {
   paper::ExperimentResult run;  // as far as it got
   std::string bus_name;
@@ -49,7 +61,8 @@ struct SilResult {
   std::optional<double> time_to_safe_state_s;
   std::optional<double> ended_early_s;  // since arming; none: the run went to its end
   std::uint64_t overruns = 0;
-  double run_time_s = 0;  // of the bus, from the first tick to the last
+  double run_time_s = 0;                    // of the bus, from the first tick to the last
+  std::optional<RealTimeReport> real_time;  // none for a run in lock-step
 };
 
 /// Refuses, with InputError, a scenario that cannot be run: as paper::check_experiment(), and a

@@ -13,20 +13,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string name_of(hal::ControllerState state) {
-  switch (state) {
-    case hal::ControllerState::kInit:
-      return "init";
-    case hal::ControllerState::kPassive:
-      return "passive";
-    case hal::ControllerState::kArmed:
-      return "armed";
-    case hal::ControllerState::kFault:
-      return "fault";
-  }
-  return "unknown";
-}
-
 ordered_json nullable(const std::optional<double>& value) {
   return value ? ordered_json(*value) : ordered_json(nullptr);
 }
@@ -46,10 +32,25 @@ std::string tracking(const SilResult& result) {
   return std::isfinite(rms) ? fmt::format("{:.4f} rad rms", rms) : "none: the run ended early";
 }
 
+void add_rows_of(const RealTimeReport& time, std::vector<Row>& rows) {
+  rows.push_back({"ticks of the controller", std::to_string(time.ticks)});
+  rows.push_back({"latest begin of a tick", fmt::format("{} us", time.worst_late_us)});
+  rows.push_back({"a tick's work, mean and longest",
+                  fmt::format("{:.0f} us, {} us", time.mean_step_us, time.worst_step_us)});
+  rows.push_back(
+      {"real time of the controller",
+       fmt::format("{}, {}",
+                   time.fifo_priority > 0 ? fmt::format("SCHED_FIFO {}", time.fifo_priority)
+                                          : std::string("ordinary scheduling"),
+                   time.memory_locked ? "memory locked" : "memory not locked")});
+  rows.push_back({"late ticks of the plant", std::to_string(time.plant_overruns)});
+  rows.push_back({"entries that the recordings lost", std::to_string(time.recording_lost)});
+}
+
 std::vector<Row> rows_of(const SilResult& result) {
   const paper::ExperimentResult& run = result.run;
   const BusReport& bus = result.bus;
-  return {
+  std::vector<Row> rows = {
       {"faults", words_of(result.faults)},
       {"first fault begins", seconds(run.fault_time_s)},
       {"detected", seconds(run.detection_time_s)},
@@ -71,9 +72,25 @@ std::vector<Row> rows_of(const SilResult& result) {
       {"not sent for lateness", std::to_string(bus.late)},
       {"bus load at most, 1 Mbit/s (FD data 5 Mbit/s)", fmt::format("{:.1f} %", 100 * bus.load)},
   };
+  if (result.real_time) add_rows_of(*result.real_time, rows);
+  return rows;
 }
 
 }  // namespace
+
+std::string name_of(hal::ControllerState state) {
+  switch (state) {
+    case hal::ControllerState::kInit:
+      return "init";
+    case hal::ControllerState::kPassive:
+      return "passive";
+    case hal::ControllerState::kArmed:
+      return "armed";
+    case hal::ControllerState::kFault:
+      return "fault";
+  }
+  return "unknown";
+}
 
 ordered_json to_json(const SilResult& result) {
   ordered_json json = paper::to_json(result.run);
@@ -90,6 +107,16 @@ ordered_json to_json(const SilResult& result) {
   json["controller_state"] = name_of(result.state);
   json["controller_fault"] = controller::name_of(result.fault);
   json["ended_early_s"] = nullable(result.ended_early_s);
+  if (!result.real_time) return json;
+  const RealTimeReport& time = *result.real_time;
+  json["real_time"] = {{"ticks", time.ticks},
+                       {"worst_late_us", time.worst_late_us},
+                       {"worst_step_us", time.worst_step_us},
+                       {"mean_step_us", time.mean_step_us},
+                       {"fifo_priority", time.fifo_priority},
+                       {"memory_locked", time.memory_locked},
+                       {"plant_overruns", time.plant_overruns},
+                       {"recording_lost", time.recording_lost}};
   return json;
 }
 

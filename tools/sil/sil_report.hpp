@@ -9,9 +9,13 @@
 
 namespace offnominal::tools::sil {
 
+/// init, passive, armed, fault.
+[[nodiscard]] std::string name_of(hal::ControllerState state);
+
 /// The keys of `offnominal paper --json` for one run, "fault" naming every fault of the scenario;
 /// then bus: {name, frames, lost, rejected, stale, late, load_percent}, time_to_safe_state_s,
-/// overruns, controller_state, controller_fault, ended_early_s. Null where there is none.
+/// overruns, controller_state, controller_fault, ended_early_s; of a run in real time also
+/// real_time: {ticks, worst_late_us, ...}. Null where there is none.
 [[nodiscard]] nlohmann::ordered_json to_json(const SilResult& result);
 
 /// A table, then a sentence.

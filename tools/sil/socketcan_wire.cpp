@@ -4,6 +4,7 @@
 #include <offnominal/hal/socketcan.hpp>
 
 #include "common/error.hpp"
+#include "sil/open_bus.hpp"
 #include "sil/wire.hpp"
 
 namespace offnominal::tools::sil {
@@ -23,15 +24,9 @@ class LockStepPort final : public BusPort {
  public:
   LockStepPort(const std::string& interface, const hal::Microseconds& clock_us)
       : interface_(interface), clock_us_(clock_us) {
-    const hal::SocketCanConfig config{.interface = interface_.c_str(),
-                                      .in_kernel = hal::SocketCanConfig::kMostInKernel,
-                                      .may_restart_interface = false};
-    const hal::Status status = bus_.open(config);
-    if (status == hal::Status::kOk) return;
-    give_up(
-        interface_, hal::name_of(status),
-        "make one: ip link add vcan0 type vcan && ip link set vcan0 mtu 72 up; where the kernel "
-        "has no CAN: ./dev vcan COMMAND");
+    open_bus(interface_,
+             {.in_kernel = hal::SocketCanConfig::kMostInKernel, .may_restart_interface = false},
+             bus_);
   }
 
   void connect(LockStepPort& peer) { peer_ = &peer; }

@@ -49,6 +49,12 @@ class PlantNode {
     publish(deadline_us, bus);
   }
 
+  /// So many periods in which it neither heard nor measured: the arm goes on under the torques that
+  /// it has.
+  void miss(std::uint32_t periods) {
+    for (; periods > 0; --periods) move();
+  }
+
   /// Takes the frames that have come without moving on; returns whether every drive has had a valid
   /// command since the last move.
   template <hal::Bus Bus>

@@ -1,0 +1,72 @@
+// The controller program's loop, for any number of joints behind one face.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/realtime/control_loop.hpp>
+#include <offnominal/realtime/privileges.hpp>
+#include <optional>
+#include <string>
+
+#include "paper/recorded_motion.hpp"
+#include "robot/robot.hpp"
+#include "sil/bus_port.hpp"
+#include "sil/controller_settings.hpp"
+
+namespace offnominal::tools {
+
+/// Where the joints should be: as `motion` has it; else, with `paper`, the paper's motion of two
+/// joints; else where they are when the controller is armed.
+struct ReferenceChoice {
+  std::shared_ptr<const paper::RecordedMotion> motion;
+  bool paper = false;
+};
+
+/// What waits for the next tick.
+class TickTimer {
+ public:
+  virtual ~TickTimer() = default;
+  virtual realtime::Tick wait() = 0;
+  [[nodiscard]] virtual realtime::Microseconds period_us() const = 0;
+};
+
+/// All that is referred to has to outlive the program.
+struct JointProgramSetup {
+  const RobotDescription& robot;
+  sil::ControllerSettings settings;
+  hal::FrameFormat format = hal::FrameFormat::kClassic;
+  realtime::LoopConfig loop;
+  realtime::Wish wish;
+  ReferenceChoice reference;
+  sil::BusPort& bus;
+  TickTimer& timer;
+  realtime::Recorder& recorder;
+  realtime::LoopPanel& panel;
+};
+
+struct JointProgramReport {
+  realtime::LoopReport loop;
+  realtime::Grant grant;
+  std::uint64_t lost = 0;      // frames, by the counters of accepted records
+  std::uint64_t rejected = 0;  // records: wrong CRC, value or counter
+};
+
+class JointProgram {
+ public:
+  virtual ~JointProgram() = default;
+  /// The loop from its first tick to its end, in the calling thread.
+  virtual void run() = 0;
+  [[nodiscard]] virtual const JointProgramReport& report() const = 0;
+};
+
+/// For a robot of 1, 2, 3, 6 or 7 joints. Throws InputError for others, and where the controller
+/// refuses the robot.
+[[nodiscard]] std::unique_ptr<JointProgram> make_joint_program(const JointProgramSetup& setup);
+
+namespace detail {
+template <int N>
+std::unique_ptr<JointProgram> make_program_of(const JointProgramSetup& setup);
+}  // namespace detail
+
+}  // namespace offnominal::tools

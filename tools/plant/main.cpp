@@ -1,0 +1,148 @@
+// offnominal-plant: the paper's arm with drives and encoders at its end of a CAN bus, with faults.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <offnominal/hal/socketcan.hpp>
+#include <offnominal/realtime/privileges.hpp>
+#include <offnominal/realtime/signals.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "common/error.hpp"
+#include "common/program.hpp"
+#include "plant/plant_loop.hpp"
+#include "sil/open_bus.hpp"
+#include "sil/open_recorder.hpp"
+#include "sil/plant_of.hpp"
+#include "sil/scenario_file.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+constexpr const char* kProgram = "offnominal-plant";
+
+struct Options {
+  std::string bus;
+  std::optional<std::string> scenario;
+  double rate_hz = 1000;
+  double phase = 0.5;
+  std::optional<double> duration_s;
+  bool fd = false;
+  int priority = 80;
+  std::optional<std::string> log;
+  bool force = false;
+  bool json = false;
+};
+
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("--bus", options.bus, "CAN interface: vcan0")->required();
+  app.add_option("--scenario", options.scenario,
+                 "Faults and settings of the run, TOML; without it nothing is wrong");
+  app.add_option("--rate", options.rate_hz, "Ticks a second: readings, steps of the arm")
+      ->check(CLI::Range(10.0, 10000.0))
+      ->capture_default_str();
+  app.add_option("--phase", options.phase,
+                 "Ticks begin so much of a period after its multiples on CLOCK_MONOTONIC")
+      ->check(CLI::Range(0.0, 0.999))
+      ->capture_default_str();
+  app.add_option("--duration", options.duration_s, "End after so many seconds")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--fd", options.fd, "CAN FD: one frame for both joints");
+  app.add_option("--priority", options.priority, "Of SCHED_FIFO; 0: do not ask for it")
+      ->check(CLI::Range(0, 99))
+      ->capture_default_str();
+  app.add_option("--log", options.log, "Record the arm's true motion, CSV");
+  app.add_flag("--force", options.force, "Replace the file of --log");
+  app.add_flag("--json", options.json, "Print one JSON object and nothing else");
+  app.footer(
+      "Until every drive is first told to give torque, brakes hold the arm; the faults' times "
+      "count from there. SIGINT and SIGTERM end it. docs/sil.md has the rest.");
+}
+
+sil::Scenario scenario_of(const Options& options) {
+  sil::Scenario scenario;
+  if (options.scenario) scenario = sil::read_scenario(*options.scenario);
+  if (options.fd) scenario.format = hal::FrameFormat::kFd;
+  sil::check_real_time(scenario);
+  return sil::with_arm_faults(scenario);
+}
+
+void print(const Options& options, const PlantReport& report, std::uint64_t recording_lost,
+           const realtime::Grant& grant) {
+  const nlohmann::ordered_json json = {{"ticks", report.ticks},
+                                       {"overruns", report.overruns},
+                                       {"arm_time_s", report.arm_time_s},
+                                       {"in_torque_mode", report.in_torque_mode},
+                                       {"bus",
+                                        {{"name", options.bus},
+                                         {"sent", report.bus.sent},
+                                         {"received", report.bus.received},
+                                         {"late", report.bus.late},
+                                         {"lost", report.lost},
+                                         {"rejected", report.rejected}}},
+                                       {"recording_lost", recording_lost}};
+  if (options.json) {
+    std::cout << json.dump(2) << '\n';
+    return;
+  }
+  std::cout << "real time: " << words_of(grant) << '\n';
+  const nlohmann::ordered_json flat = json.flatten();
+  for (const auto& [name, value] : flat.items()) {
+    std::cout << name.substr(1) << ": " << value << '\n';
+  }
+}
+
+int run(const Options& options) {
+  const sil::Scenario scenario = scenario_of(options);
+  const realtime::Signals signals;
+  hal::SocketCan socket;
+  sil::open_bus(options.bus,
+                {.in_kernel = hal::SocketCanConfig::kMostInKernel, .may_restart_interface = false},
+                socket);
+  sil::BusPortOf<hal::SocketCan&> port(socket);
+  realtime::Recorder recorder;
+  sil::open_recorder(
+      {.csv = options.log.value_or(""), .columns = plant_columns(), .replace = options.force},
+      recorder);
+  const double period_s = 1 / options.rate_hz;
+  const hal::Microseconds period_us = sil::period_us_of(period_s);
+  sim::PlantNode plant = sil::plant_of(scenario, period_s);
+  realtime::CycleTimer timer(period_us,
+                             std::llround(options.phase * static_cast<double>(period_us)));
+  std::atomic<bool> end{false};
+  PlantReport report;
+  realtime::Grant grant;
+  std::thread loop([&] {
+    grant = realtime::ask_for({.priority = options.priority});
+    report = run_plant(plant, scenario, timer, port, recorder, end);
+  });
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  const auto is_over = [&] {
+    return options.duration_s &&
+           std::chrono::duration<double>(Clock::now() - begin).count() >= *options.duration_s;
+  };
+  // Signals that are for controllers do not concern it.
+  for (int signal = 0; signal != SIGINT && signal != SIGTERM && !is_over();) {
+    signal = signals.wait(std::chrono::milliseconds{20});
+  }
+  end.store(true);
+  loop.join();
+  recorder.close();
+  print(options, report, recorder.lost(), grant);
+  return 0;
+}
+
+}  // namespace
+}  // namespace offnominal::tools
+
+int main(int argc, char** argv) {
+  using namespace offnominal::tools;
+  return run_program<Options>(kProgram,
+                              "The paper's arm, its drives and encoders, on a CAN bus in real time",
+                              argc, argv, add_options, run);
+}

@@ -1,0 +1,82 @@
+// The joint controller of a robot file, as software-in-the-loop and the controller program run it.
+#pragma once
+
+#include <cmath>
+#include <offnominal/controller/joint_controller.hpp>
+#include <offnominal/diagnosis/velocity_observer.hpp>
+#include <optional>
+#include <string>
+
+#include "common/error.hpp"
+#include "offnominal/sim/encoder.hpp"
+#include "robot/monitor_config_of.hpp"
+#include "sil/sil.hpp"
+
+namespace offnominal::tools::sil {
+
+/// What a robot file does not say.
+struct ControllerSettings {
+  bool accommodate = false;
+  bool stop_at_detection = false;
+  hal::DriveMode safe_mode = hal::DriveMode::kOff;
+  /// Largest acceleration of a joint, rad/s^2: the drives send positions alone, and it bounds the
+  /// velocity observer's error. None: they send velocities.
+  std::optional<double> max_acceleration;
+  int encoder_bits_per_turn = 0;  // on top of what a frame resolves; 0: none
+};
+
+[[nodiscard]] inline ControllerSettings settings_of(const Scenario& scenario) {
+  ControllerSettings settings;
+  settings.accommodate = scenario.experiment.accommodate;
+  settings.stop_at_detection = scenario.stop_at_detection;
+  if (!scenario.sends_velocity) settings.max_acceleration = scenario.max_acceleration;
+  settings.encoder_bits_per_turn = scenario.encoder_bits_per_turn;
+  return settings;
+}
+
+/// A reading is stale at the third tick without a new one.
+[[nodiscard]] inline hal::SourceConfig source_config(hal::Microseconds period_us) {
+  return {.max_age_us = 2 * period_us + period_us / 2};
+}
+
+template <int N, typename Scalar>
+[[nodiscard]] controller::ControllerConfig<N, Scalar> controller_config_of(
+    const RobotDescription& robot, const ControllerSettings& settings) {
+  controller::ControllerConfig<N, Scalar> config;
+  config.monitor = monitor_config_of<N, Scalar>(robot);
+  config.gains = gains_of<N, Scalar>(robot);
+  const double period_s = robot.estimator.period_s;
+  config.command_lifetime_us = std::llround(0.9e6 * period_s);
+  config.safe_mode = settings.safe_mode;
+  config.stop_at_detection = settings.stop_at_detection;
+  if (!settings.accommodate) config.monitor.max_compensation = {};
+  config.velocity_observer.period_s = config.monitor.estimator.period_s;
+  config.velocity_observer.bandwidth_rad_s = static_cast<Scalar>(0.2 / period_s);
+  if (settings.max_acceleration) {
+    sim::EncoderConfig encoder;
+    encoder.bits_per_turn = settings.encoder_bits_per_turn;
+    const double half_count =
+        0.5 * (sim::position_step_rad(encoder) + static_cast<double>(hal::kPositionPerCount));
+    config.monitor.bound.velocity_error += velocity_error_bound(
+        config.velocity_observer, static_cast<Scalar>(*settings.max_acceleration),
+        static_cast<Scalar>(half_count));
+  }
+  return config;
+}
+
+/// Throws InputError where the controller refuses what the robot file says.
+template <int N, int L, typename Scalar>
+void create_controller(const RobotDescription& robot, const ControllerSettings& settings,
+                       controller::JointController<N, L, Scalar>& controller) {
+  using Controller = controller::JointController<N, L, Scalar>;
+  const Status status =
+      Controller::create(controller_config_of<N, Scalar>(robot, settings), controller);
+  if (status == Status::kOk) return;
+  throw InputError({.file = "robot " + robot.name,
+                    .place = "controller",
+                    .found = std::string("status ") + name_of(status),
+                    .allowed = "",
+                    .mend = "docs/troubleshooting.md says what each status asks for"});
+}
+
+}  // namespace offnominal::tools::sil

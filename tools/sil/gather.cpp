@@ -1,0 +1,160 @@
+#include "sil/gather.hpp"
+
+#include <offnominal/hal/wire_time.hpp>
+
+#include "log/csv_log.hpp"
+#include "paper/run_observer.hpp"
+#include "sil/plant_of.hpp"
+
+namespace offnominal::tools::sil {
+namespace {
+
+using Eigen::Index;
+
+// A table of which every column is there, by name.
+class Table {
+ public:
+  explicit Table(const std::filesystem::path& file)
+      : columns_(read_csv(file, [](const std::string&) { return Need::kRequired; }).columns) {}
+  [[nodiscard]] double at(const std::string& column, Index row) const {
+    return columns_.at(column)[row];
+  }
+  [[nodiscard]] Eigen::Vector2d pair(const std::string& quantity, Index row) const {
+    return {at(quantity + "1", row), at(quantity + "2", row)};
+  }
+  [[nodiscard]] Index rows() const { return columns_.at("t").size(); }
+
+ private:
+  std::map<std::string, Eigen::VectorXd> columns_;
+};
+
+// The controller's tick that used the readings of a tick of the plant: the first one after it.
+class Partner {
+ public:
+  Partner(const Table& controller, double period_s)
+      : controller_(controller), period_s_(period_s) {}
+  // In the order of time. False where it had none, or was not armed.
+  bool find(double plant_t_s) {
+    while (row_ < controller_.rows() && controller_.at("t", row_) <= plant_t_s) ++row_;
+    if (row_ == controller_.rows()) return false;
+    const bool in_time = controller_.at("t", row_) < plant_t_s + 1.5 * period_s_;
+    return in_time &&
+           controller_.at("state", row_) == static_cast<double>(hal::ControllerState::kArmed);
+  }
+  [[nodiscard]] Index row() const { return row_; }
+
+ private:
+  const Table& controller_;
+  double period_s_;
+  Index row_ = 0;
+};
+
+paper::TickRecord record_of(const Table& plant, Index row, const Table& controller, Index partner,
+                            const Scenario& scenario, double period_s) {
+  paper::TickRecord record;
+  record.time_s = plant.at("arm_t", row);
+  record.tick = std::llround(record.time_s / period_s);
+  record.state.q = plant.pair("q", row);
+  record.state.dq = plant.pair("dq", row);
+  record.q_desired = scenario.experiment.desired_at(record.time_s).q;
+  record.tau = plant.pair("tau", row);
+  record.psi = plant.pair("psi", row);
+  record.psi_hat = controller.pair("psi_hat", partner);
+  record.error_norm = controller.at("error", partner);
+  record.threshold = controller.at("threshold", partner);
+  record.weight_norm = controller.at("weights", partner);
+  record.detected = controller.at("detected", partner) != 0;
+  return record;
+}
+
+// When the drives first gave no torque, time of the arm; none where they always did.
+std::optional<double> safe_since_s(const Table& plant) {
+  for (Index row = 0; row < plant.rows(); ++row) {
+    if (plant.at("torque_mode", row) == 0) return plant.at("arm_t", row);
+  }
+  return std::nullopt;
+}
+
+controller::Fault fault_of(const nlohmann::json& controller) {
+  return static_cast<controller::Fault>(controller.at("fault_number").get<int>());
+}
+
+hal::ControllerState state_named(const std::string& name) {
+  if (name == "passive") return hal::ControllerState::kPassive;
+  if (name == "armed") return hal::ControllerState::kArmed;
+  return name == "fault" ? hal::ControllerState::kFault : hal::ControllerState::kInit;
+}
+
+BusReport bus_of(const nlohmann::json& controller, const nlohmann::json& plant,
+                 hal::FrameFormat format, double run_time_s) {
+  const auto sum = [&](const char* key) {
+    return controller.at(key).get<std::uint64_t>() + plant.at(key).get<std::uint64_t>();
+  };
+  BusReport bus;
+  bus.frames = sum("sent");
+  bus.lost = sum("lost");
+  bus.rejected = sum("rejected");
+  bus.late = sum("late");
+  bus.stale = controller.at("stale").get<std::uint64_t>();
+  // Frames of one record each, or of both joints' two.
+  hal::Frame frame;
+  frame.fd = format == hal::FrameFormat::kFd;
+  frame.length = frame.fd ? 2 * hal::kRecordLength : hal::kRecordLength;
+  bus.load = static_cast<double>(bus.frames) * hal::longest_wire_time_s(frame) / run_time_s;
+  return bus;
+}
+
+RealTimeReport time_of(const nlohmann::json& controller, const nlohmann::json& plant) {
+  RealTimeReport time;
+  time.ticks = controller.at("ticks");
+  time.worst_late_us = controller.at("worst_late_us");
+  time.worst_step_us = controller.at("worst_step_us");
+  time.mean_step_us = controller.at("mean_step_us");
+  time.fifo_priority = controller.at("real_time").at("fifo_priority");
+  time.memory_locked = controller.at("real_time").at("memory_locked");
+  time.plant_overruns = plant.at("overruns");
+  time.recording_lost = controller.at("recording_lost").get<std::uint64_t>() +
+                        plant.at("recording_lost").get<std::uint64_t>();
+  return time;
+}
+
+}  // namespace
+
+SilResult gather(const RobotDescription& robot, const Scenario& scenario,
+                 const std::string& bus_name, const Recordings& recordings) {
+  const Scenario complete = with_arm_faults(scenario);
+  const double period_s = robot.estimator.period_s;
+  const double duration_s = scenario.experiment.duration_s;
+  const std::optional<double> first_s = first_begin_s(scenario.faults);
+  const Table plant(recordings.plant_csv);
+  const Table controller(recordings.controller_csv);
+  paper::RunObserver observer(robot, complete.experiment, first_s.value_or(duration_s));
+  Partner partner(controller, period_s);
+  for (Index row = 0; row < plant.rows(); ++row) {
+    if (plant.at("arm_t", row) > duration_s + 0.5 * period_s) break;
+    if (!partner.find(plant.at("t", row))) continue;
+    observer(record_of(plant, row, controller, partner.row(), scenario, period_s));
+  }
+  SilResult result;
+  result.run = observer.finish();
+  result.run.fault_time_s = first_s;
+  result.bus_name = bus_name;
+  result.faults = scenario.faults;
+  result.state = state_named(recordings.controller.at("state"));
+  result.fault = fault_of(recordings.controller);
+  result.overruns = recordings.controller.at("overruns");
+  result.real_time = time_of(recordings.controller, recordings.plant);
+  result.run_time_s = static_cast<double>(result.real_time->ticks) * period_s;
+  result.bus = bus_of(recordings.controller.at("bus"), recordings.plant.at("bus"), scenario.format,
+                      result.run_time_s);
+  // At the motion's end the controller lets go of its own accord.
+  if (result.fault != controller::Fault::kNone) {
+    result.ended_early_s = safe_since_s(plant);
+    if (result.ended_early_s && first_s) {
+      result.time_to_safe_state_s = *result.ended_early_s - *first_s;
+    }
+  }
+  return result;
+}
+
+}  // namespace offnominal::tools::sil
