@@ -17,6 +17,8 @@
 #include "paper/two_link_robot.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
+#include "sil/open_bus.hpp"
+#include "sil/real_time.hpp"
 #include "sil/scenario_file.hpp"
 #include "sil/sil_report.hpp"
 
@@ -31,6 +33,8 @@ struct SilOptions {
   std::string scalar = "float";
   std::optional<std::string> robot;
   std::optional<double> duration;
+  bool real_time = false;
+  bool lock_step = false;
   bool fd = false;
   std::optional<std::string> log;
   std::optional<std::string> candump;
@@ -74,15 +78,21 @@ std::unique_ptr<sil::Wire> wire_of(const std::string& bus) {
   return bus == sil::kInProcess ? sil::make_in_process_wire() : sil::make_socketcan_wire(bus);
 }
 
-void run(const SilOptions& options, const std::string& command_line) {
-  if (options.log) check_output_file("sil", "--log", *options.log, options.force);
-  if (options.candump) check_output_file("sil", "--candump", *options.candump, options.force);
-  const RobotDescription robot =
-      options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
-  const sil::Scenario scenario = scenario_of(options);
+// Frames are written by the controller's program as they come.
+sil::SilResult real_time(const SilOptions& options, const RobotDescription& robot,
+                         const sil::Scenario& scenario) {
+  if (options.bus == sil::kInProcess) {
+    refuse("--real-time", "on the in-process bus", "a CAN interface of the kernel",
+           "give --bus vcan0; where the kernel has no CAN: ./dev vcan COMMAND");
+  }
+  return sil::run_in_real_time(
+      robot, scenario,
+      {.interface = options.bus, .robot_file = options.robot, .candump = options.candump});
+}
+
+sil::SilResult lock_step(const SilOptions& options, const RobotDescription& robot,
+                         const sil::Scenario& scenario) {
   const std::unique_ptr<sil::Wire> wire = wire_of(options.bus);
-  Progress progress;
-  progress.begin("running");
   std::string frames;
   sil::TappedPort::OnFrame on_frame;
   if (options.candump) {
@@ -91,11 +101,28 @@ void run(const SilOptions& options, const std::string& command_line) {
       frames += candump_line(frame, time_us, interface);
     };
   }
+  sil::SilResult result = sil::run_in_lock_step(robot, scenario, *wire, options.bus, on_frame);
+  if (options.candump) {
+    const Existing existing = options.force ? Existing::kReplace : Existing::kRefuse;
+    write_file_atomically(*options.candump, frames, existing);
+  }
+  return result;
+}
+
+void run(const SilOptions& options, const std::string& command_line) {
+  if (options.log) check_output_file("sil", "--log", *options.log, options.force);
+  if (options.candump) check_output_file("sil", "--candump", *options.candump, options.force);
+  const RobotDescription robot =
+      options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
+  const sil::Scenario scenario = scenario_of(options);
+  hal::VirtualCan made;
+  sil::make_if_missing(options.bus, made);
+  Progress progress;
+  progress.begin("running");
   const sil::SilResult result =
-      sil::run_in_lock_step(robot, scenario, *wire, options.bus, on_frame);
+      options.real_time ? real_time(options, robot, scenario) : lock_step(options, robot, scenario);
   progress.end();
   const Existing existing = options.force ? Existing::kReplace : Existing::kRefuse;
-  if (options.candump) write_file_atomically(*options.candump, frames, existing);
   if (options.log) {
     write_file_atomically(*options.log,
                           csv_text(recording_of(robot, scenario.experiment, result.run)), existing);
@@ -112,8 +139,9 @@ void run(const SilOptions& options, const std::string& command_line) {
 }
 
 std::string footer() {
-  return "Controller and arm take turns, tick by tick, so that every run repeats exactly. The "
-         "controller knows of the arm what comes over the bus, the drives know what it sends.\n"
+  return "In lock-step every run repeats exactly; in real time none does, and the table says how "
+         "the controller kept its time. The controller knows of the arm what comes over the bus, "
+         "the drives know what it sends.\n"
          "Faults of a scenario's file (docs/sil.md has its keys; all have begin_s):\n" +
          sil::fault_kinds_text();
 }
@@ -129,8 +157,17 @@ void register_sil(CLI::App& app, ExitCode& exit_code) {
       ->check(CLI::IsMember({"none", "mass_loss", "nonlinear"}));
   verb->add_option("--scenario", options->scenario, "Faults and settings of the run, TOML");
   verb->add_flag("--accommodate", options->accommodate, "Add the compensating torque");
-  verb->add_option("--bus", options->bus, "in-process, or a CAN interface of the kernel: vcan0")
+  verb->add_option(
+          "--bus", options->bus,
+          "in-process, or a CAN interface of the kernel; vcan0 and its like are made where "
+          "there are none, and removed at the end")
       ->capture_default_str();
+  auto* lock_step = verb->add_flag("--lock-step", options->lock_step,
+                                   "Both ends in turn, tick by tick: the default");
+  verb->add_flag("--real-time", options->real_time,
+                 "Both ends as programs of their own, offnominal-plant and offnominal-controller, "
+                 "on the machine's clock")
+      ->excludes(lock_step);
   verb->add_flag("--fd", options->fd, "CAN FD: one frame for all joints");
   verb->add_option("--scalar", options->scalar, "Arithmetic of the controller")
       ->check(CLI::IsMember({"float", "double"}))
