@@ -134,9 +134,17 @@ SilResult run_in_real_time(const RobotDescription& robot, const Scenario& scenar
   const auto json = [&](const char* name) {
     return nlohmann::json::parse(read_text_file(folder / name));
   };
-  return gather(robot, scenario, options.interface,
-                {folder / "controller.csv", json("controller.json"), folder / "plant.csv",
-                 json("plant.json")});
+  const Recordings recordings{folder / "controller.csv", json("controller.json"),
+                              folder / "plant.csv", json("plant.json")};
+  if (recordings.plant.at("arm_time_s").get<double>() > 0) {
+    return gather(robot, scenario, options.interface, recordings);
+  }
+  throw InputError(
+      {"offnominal-controller", "",
+       "fault " + recordings.controller.at("fault").get<std::string>() + " before the arm moved",
+       "ticks that begin in time",
+       "this machine is too slow or too busy for them: fewer ticks, by period_s of "
+       "the robot file"});
 }
 
 }  // namespace offnominal::tools::sil
