@@ -1,6 +1,7 @@
 #include "line_text.hpp"
 
 #include <charconv>
+#include <cstdarg>
 #include <cstdio>
 
 namespace offnominal::realtime {
@@ -13,10 +14,12 @@ class Text {
  public:
   explicit Text(std::span<char> into) : into_(into) {}
 
-  template <typename... Arguments>
-  void print(const char* format, Arguments... arguments) {
+  [[gnu::format(printf, 2, 3)]] void print(const char* format, ...) {
+    std::va_list arguments;
+    va_start(arguments, format);
     const int written =
-        std::snprintf(into_.data() + size_, into_.size() - size_, format, arguments...);
+        std::vsnprintf(into_.data() + size_, into_.size() - size_, format, arguments);
+    va_end(arguments);
     if (written > 0 && static_cast<std::size_t>(written) < into_.size() - size_) {
       size_ += static_cast<std::size_t>(written);
     }
