@@ -59,6 +59,15 @@ class ArmOnBus {
         },
         controller_port_, drives_, *data);
   }
+  // The plant goes on without the controller, whose next tick is then as many periods late.
+  void tick_late(std::uint32_t periods) {
+    for (std::uint32_t i = 0; i <= periods; ++i) {
+      now_us_ += kPeriodUs;
+      net.set_time(now_us_);
+      plant_.tick(now_us_ + kPeriodUs, plant_port_);
+    }
+    tick_controller(periods);
+  }
   void run(double seconds) {
     for (long i = std::lround(seconds * 1000); i > 0; --i) tick();
   }

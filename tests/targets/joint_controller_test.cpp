@@ -160,6 +160,21 @@ TEST(JointController, CountsLateTicksAndStopsAtTooMany) {
   EXPECT_EQ(arm.data->overruns, 5U);
 }
 
+// GIVEN ticks that come too late, and samples lost with them WHEN the arm is healthy THEN nothing
+// is detected: time without samples is not taken for one tick.
+TEST(JointController, LateTicksAreNoFaultOfTheArm) {
+  ArmOnBus arm;
+  ASSERT_TRUE(arm.start());
+  for (int i = 0; i < 200; ++i) {
+    arm.run(0.02);
+    arm.tick_late(2);
+    ASSERT_EQ(arm.data->state, ControllerState::kArmed) << i;
+    ASSERT_FALSE(arm.data->output.detector.latched) << i;
+  }
+  EXPECT_EQ(arm.data->overruns, 200U);
+  EXPECT_EQ(arm.data->monitor.tick + 1, arm.data->run_ticks);
+}
+
 TEST(JointController, StopsAtADetectionWhereItShall) {
   auto config = ArmOnBus::config(false);
   config.stop_at_detection = true;

@@ -109,8 +109,32 @@ class Monitor {
     return Status::kOk;
   }
 
+  // Goes on at a sample before which `missed` ticks had none. What the joints did meanwhile nobody
+  // knows, and integrated as one tick it would look like a fault: the error and what was learnt are
+  // kept as they were, the threshold grows by what the velocity's error may add, and time goes on.
+  // Any refusal leaves `state` unchanged.
+  [[nodiscard]] Status resume(const Sample& sample, std::uint32_t missed, State& state) const {
+    if (!ready_ || !state.initialised) return Status::kNotInitialised;
+    if (const Status status = validate<N>(sample, config_.chain.joints); status != Status::kOk) {
+      return status;
+    }
+    const std::uint32_t tick = state.tick + missed + 1;
+    const Scalar time_s = static_cast<Scalar>(tick) * config_.estimator.period_s;
+    ForwardDynamics<N, Scalar> nominal;
+    const Status status =
+        forward_dynamics(model_, sample.q, sample.dq, sample.tau, time_s, nominal);
+    if (status != Status::kOk) return status;
+    offnominal::resume(network_input<N, Scalar>(sample.q, sample.dq, sample.tau), nominal.ddq,
+                       bound_at(sample), velocity_allowance(), state.estimator);
+    state.tick = tick;
+    state.sample = sample;
+    state.inertia_factor = nominal.factor;
+    return Status::kOk;
+  }
+
   // One control tick: the sample at its end. Any refusal leaves `state` and `output` unchanged; the
-  // next good sample is then taken as if it followed the last good one by one tick.
+  // next good sample is then taken as if it followed the last good one by one tick, unless resume()
+  // is told of the gap.
   [[nodiscard]] Status step(const Sample& sample, State& state, Output& output) const {
     if (!ready_ || !state.initialised) return Status::kNotInitialised;
     if (const Status status = validate<N>(sample, config_.chain.joints); status != Status::kOk) {

@@ -21,6 +21,22 @@
 
 namespace offnominal {
 
+namespace detail {
+
+// Puts a sample, and what the network makes of it, where the next tick looks for its beginning.
+template <int N, int L, typename Scalar>
+void begin_at(const NetworkInput<N, Scalar>& z, const Vector<N, Scalar>& nominal_ddq, Scalar mu_bar,
+              EstimatorState<N, L, Scalar>& state) {
+  state.z = z;
+  state.z_squared_norm = z.squaredNorm();
+  state.nominal_ddq = nominal_ddq;
+  state.mu_bar = mu_bar;
+  state.w1_z = state.weights.w1.lazyProduct(z).array();
+  state.sigma = sigmoid(state.w1_z);
+}
+
+}  // namespace detail
+
 // Starts at a sample: omega(0) = dq(0), mu(0) = 0, W2(0) = 0 and seeded W1(0). `nominal_ddq` and
 // `mu_bar` belong to that sample. kInvalidInitialWeights where |theta(0)| would not lie inside the
 // ball of radius M, `state` is then unchanged.
@@ -36,14 +52,21 @@ template <int N, int L, typename Scalar>
     return Status::kInvalidInitialWeights;
   }
   fresh.omega = z.template segment<N>(1 + N);
-  fresh.z = z;
-  fresh.z_squared_norm = z.squaredNorm();
-  fresh.nominal_ddq = nominal_ddq;
-  fresh.mu_bar = mu_bar;
-  fresh.w1_z = fresh.weights.w1.lazyProduct(z).array();
-  fresh.sigma = sigmoid(fresh.w1_z);
+  detail::begin_at(z, nominal_ddq, mu_bar, fresh);
   state = fresh;
   return Status::kOk;
+}
+
+// Goes on at a sample after a gap without any: e, mu and theta are those before the gap, and omega
+// is moved to the new velocity for it, as if no time had passed. `mu_jump` >= 0 comes on top of mu,
+// for what the velocity's own error puts into omega there.
+template <int N, int L, typename Scalar>
+void resume(const NetworkInput<N, Scalar>& z, const Vector<N, Scalar>& nominal_ddq, Scalar mu_bar,
+            Scalar mu_jump, EstimatorState<N, L, Scalar>& state) {
+  detail::begin_at(z, nominal_ddq, mu_bar, state);
+  state.omega = z.template segment<N>(1 + N) - state.error;
+  state.mu += mu_jump;
+  state.psi_hat = state.weights.w2_transposed.transpose().lazyProduct(state.sigma.matrix());
 }
 
 // Advances the estimator by one tick that begins with `begin`. kNumericOverflow where the input is

@@ -67,7 +67,8 @@ struct ControllerData {
   std::array<hal::TorqueCommand, static_cast<std::size_t>(N)> commands{};
   MonitorState<N, L, Scalar> monitor;
   MonitorOutput<N, Scalar> output;
-  bool fresh = false;  // this tick had a sample of its own
+  bool fresh = false;              // this tick had a sample of its own
+  std::uint32_t unseen_ticks = 0;  // periods without one, since the monitor saw the last
 };
 
 template <int N, int L, typename Scalar>
@@ -103,6 +104,7 @@ class JointController {
     const Fault fault = judge(feedback, drives.stop_seen(), bus.state().mode, data);
     advance(fault, feedback, bus, data);
     take_sample(feedback, data);
+    data.unseen_ticks += late_ticks + (data.fresh ? 0 : 1);
     if (data.fresh) watch(reference_at, bus, data);
     command(reference_at, data);
     send(begin_us, bus, drives, data);
@@ -280,14 +282,17 @@ class JointController {
     const bool passive = data.state == ControllerState::kPassive && config_.watch_when_passive;
     if (!armed && !passive) return;
     Status status = Status::kOk;
-    if (data.monitor.initialised) {
+    if (data.monitor.initialised && data.unseen_ticks == 0) {
       status = monitor_.step(data.sample, data.monitor, data.output);
+    } else if (data.monitor.initialised) {
+      status = monitor_.resume(data.sample, data.unseen_ticks, data.monitor);
     } else {
       data.output = {};
       // From here on the drives give what is commanded now.
       if (armed) data.sample.tau = wanted_torque(reference_at, data);
       status = monitor_.reset(data.sample, data.monitor);
     }
+    data.unseen_ticks = 0;
     if (status != Status::kOk) {
       enter_fault(fault_of(status), bus, data);
     } else if (config_.stop_at_detection && data.output.detector.latched) {
