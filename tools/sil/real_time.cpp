@@ -81,7 +81,7 @@ std::vector<std::string> controller_arguments(const Folder& folder, const Scenar
   return arguments;
 }
 
-[[noreturn]] void give_up(const std::string& program, const std::string& found,
+[[noreturn]] void ended_early(const std::string& program, const std::string& found,
                           const fs::path& words) {
   throw InputError({program, "", found, "a run to its end", read_text_file(words)});
 }
@@ -94,17 +94,17 @@ void wait_for_end(ChildProgram& controller, ChildProgram& plant, const Folder& f
   const auto end = Clock::now() + std::chrono::duration<double>(duration_s + kPatience);
   while (!controller.exit_code()) {
     if (const auto code = plant.exit_code()) {
-      give_up("offnominal-plant", fmt::format("exit code {}", *code), folder / "plant.err");
+      ended_early("offnominal-plant", fmt::format("exit code {}", *code), folder / "plant.err");
     }
     if (Clock::now() > end) {
       controller.wait(true, 1);
-      give_up("offnominal-controller", "no valid frames of every joint", folder / "controller.err");
+      ended_early("offnominal-controller", "no valid frames of every joint", folder / "controller.err");
     }
     std::this_thread::sleep_for(std::chrono::milliseconds{10});
   }
   constexpr int kBadInput = 2;
   if (*controller.exit_code() >= kBadInput) {
-    give_up("offnominal-controller", fmt::format("exit code {}", *controller.exit_code()),
+    ended_early("offnominal-controller", fmt::format("exit code {}", *controller.exit_code()),
             folder / "controller.err");
   }
 }
@@ -129,7 +129,7 @@ SilResult run_in_real_time(const RobotDescription& robot, const Scenario& scenar
   wait_for_end(controller, plant, folder, scenario.experiment.duration_s);
   constexpr double kPatience = 10;
   if (const int code = plant.wait(true, kPatience); code != 0) {
-    give_up("offnominal-plant", fmt::format("exit code {}", code), folder / "plant.err");
+    ended_early("offnominal-plant", fmt::format("exit code {}", code), folder / "plant.err");
   }
   const auto json = [&](const char* name) {
     return nlohmann::json::parse(read_text_file(folder / name));

@@ -3,12 +3,6 @@
 #include <offnominal/realtime/cycle_timer.hpp>
 
 namespace offnominal::realtime {
-namespace {
-
-constexpr Microseconds kSecond = 1'000'000;
-
-}  // namespace
-
 Microseconds monotonic_us() {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);

@@ -3,11 +3,10 @@
 #include <charconv>
 #include <cstdarg>
 #include <cstdio>
+#include <offnominal/realtime/cycle_timer.hpp>
 
 namespace offnominal::realtime {
 namespace {
-
-constexpr Microseconds kSecond = 1'000'000;
 
 // Appends to a line; what does not fit is left out, and nothing that is written here is so long.
 class Text {

@@ -7,6 +7,8 @@ namespace offnominal::realtime {
 
 using hal::Microseconds;
 
+inline constexpr Microseconds kSecond = 1'000'000;
+
 // One tick that has begun.
 struct Tick {
   Microseconds begin_us = 0;     // CLOCK_MONOTONIC
