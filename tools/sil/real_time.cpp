@@ -82,7 +82,7 @@ std::vector<std::string> controller_arguments(const Folder& folder, const Scenar
 }
 
 [[noreturn]] void ended_early(const std::string& program, const std::string& found,
-                          const fs::path& words) {
+                              const fs::path& words) {
   throw InputError({program, "", found, "a run to its end", read_text_file(words)});
 }
 
@@ -98,14 +98,15 @@ void wait_for_end(ChildProgram& controller, ChildProgram& plant, const Folder& f
     }
     if (Clock::now() > end) {
       controller.wait(true, 1);
-      ended_early("offnominal-controller", "no valid frames of every joint", folder / "controller.err");
+      ended_early("offnominal-controller", "no valid frames of every joint",
+                  folder / "controller.err");
     }
     std::this_thread::sleep_for(std::chrono::milliseconds{10});
   }
   constexpr int kBadInput = 2;
   if (*controller.exit_code() >= kBadInput) {
     ended_early("offnominal-controller", fmt::format("exit code {}", *controller.exit_code()),
-            folder / "controller.err");
+                folder / "controller.err");
   }
 }
 

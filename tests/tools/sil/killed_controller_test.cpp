@@ -156,12 +156,12 @@ std::optional<Recorded> kill_once(std::mt19937_64& random) {
 }
 
 // GIVEN an arm under torque WHEN the controller is killed at a random moment THEN every drive has
-// let go a few ticks later, and its recordings are readable up to their last whole line. Thirty
+// let go a few ticks later, and its recordings are readable up to their last whole line. Eight
 // times, or OFFNOMINAL_KILLS times.
 TEST(KilledController, LeavesDrivesThatLetGoAndRecordingsThatCanBeRead) {
   std::mt19937_64 random = test::seeded_generator();
   const char* wished = std::getenv("OFFNOMINAL_KILLS");
-  const int times = wished != nullptr ? std::max(1, std::atoi(wished)) : 30;
+  const int times = wished != nullptr ? std::max(1, std::atoi(wished)) : 8;
   int killed = 0;
   int tried = 0;
   Recorded sum;
