@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "common/error.hpp"
+#include "command/refuse_option.hpp"
 
 namespace offnominal::tools {
 
@@ -16,13 +16,12 @@ void check_output_file(const std::string& verb, const std::string& option,
                        const std::vector<std::string>& recordings) {
   for (const std::string& recording : recordings) {
     if (same_file(output, recording)) {
-      throw InputError({"offnominal " + verb, option, "a recording", "a robot file", {}});
+      refuse_option(verb, option, "a recording", "a robot file");
     }
   }
   if (std::filesystem::exists(output) && !force) {
-    throw InputError({"offnominal " + verb, option, output + ", which is there already",
-                      "a file that is not there yet",
-                      "choose another name, or add --force to replace it"});
+    refuse_option(verb, option, output + ", which is there already", "a file that is not there yet",
+                  "choose another name, or add --force to replace it");
   }
 }
 

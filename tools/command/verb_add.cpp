@@ -16,8 +16,8 @@
 #include "command/filter_options.hpp"
 #include "command/output_file.hpp"
 #include "command/progress.hpp"
+#include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
-#include "common/error.hpp"
 #include "common/nearest.hpp"
 #include "log/read_log.hpp"
 #include "report/page.hpp"
@@ -46,11 +46,6 @@ struct AddOptions {
   bool json = false;
 };
 
-[[noreturn]] void refuse(const std::string& option, const std::string& found,
-                         const std::string& allowed, const std::string& mend = {}) {
-  throw InputError({"offnominal add", option, found, allowed, mend});
-}
-
 EffectKind kind_of(const std::string& name) {
   std::vector<std::string> names;
   for (const EffectInfo& info : kAllEffectInfos) {
@@ -58,7 +53,8 @@ EffectKind kind_of(const std::string& name) {
     names.emplace_back(info.name);
   }
   const std::string meant = nearest(name, names);
-  refuse("EFFECT", "\"" + name + "\"", list_of(names), meant.empty() ? "" : "write " + meant);
+  refuse_option("add", "EFFECT", "\"" + name + "\"", list_of(names),
+                meant.empty() ? "" : "write " + meant);
 }
 
 // "name=value"
@@ -68,22 +64,24 @@ void read_setting(const std::string& text, AddRequest& request) {
   const bool good = equals != std::string::npos && equals > 0 &&
                     CLI::detail::lexical_cast(text.substr(equals + 1), value) &&
                     std::isfinite(value);
-  if (!good) refuse("--set", "\"" + text + "\"", "NAME=NUMBER, such as smoothing=0.001");
+  if (!good)
+    refuse_option("add", "--set", "\"" + text + "\"", "NAME=NUMBER, such as smoothing=0.001");
   if (!request.set.emplace(text.substr(0, equals), value).second) {
-    refuse("--set", "\"" + text.substr(0, equals) + "\" twice", "one value per name");
+    refuse_option("add", "--set", "\"" + text.substr(0, equals) + "\" twice", "one value per name");
   }
 }
 
 AddRequest request_of(const AddOptions& options) {
   AddRequest request;
   for (const std::string& name : options.effects) request.effects.push_back(kind_of(name));
-  if (options.joint < 1) refuse("--joint", std::to_string(options.joint), "a number from 1");
+  if (options.joint < 1)
+    refuse_option("add", "--joint", std::to_string(options.joint), "a number from 1");
   request.joint = static_cast<std::size_t>(options.joint - 1);
   for (const std::string& setting : options.set) read_setting(setting, request);
   if (options.refit_inertia_percent) {
     const double percent = *options.refit_inertia_percent;
     if (!(percent > 0 && percent <= 100)) {
-      refuse("--refit-inertia", fmt::format("{:g}", percent), "above 0, up to 100 %");
+      refuse_option("add", "--refit-inertia", fmt::format("{:g}", percent), "above 0, up to 100 %");
     }
     request.inertia_deviation = percent / 100;
   }
@@ -100,8 +98,8 @@ void check_files(const AddOptions& options) {
   for (const std::string& held_out : options.holdout) {
     for (const std::string& log : options.logs) {
       if (!same_file(log, held_out)) continue;
-      refuse("--holdout", "a recording that is fitted", "another recording",
-             "leave --holdout out: parts of the recording are then held out");
+      refuse_option("add", "--holdout", "a recording that is fitted", "another recording",
+                    "leave --holdout out: parts of the recording are then held out");
     }
   }
 }
@@ -110,25 +108,28 @@ void check_files(const AddOptions& options) {
 void check_kind(const AddOptions& options) {
   if (!options.all_found) {
     if (options.effects.empty()) {
-      refuse("EFFECT", "none", "one or more effects, or --all-found",
-             "name an effect, or let --all-found search for what is missing");
+      refuse_option("add", "EFFECT", "none", "one or more effects, or --all-found",
+                    "name an effect, or let --all-found search for what is missing");
     }
-    if (options.logs.size() != 1) refuse("--log", "several", "one, unless with --all-found");
-    if (options.holdout.size() > 1) refuse("--holdout", "several", "one, unless with --all-found");
-    if (options.link_share) refuse("--link-share", "given", "only with --all-found");
+    if (options.logs.size() != 1)
+      refuse_option("add", "--log", "several", "one, unless with --all-found");
+    if (options.holdout.size() > 1)
+      refuse_option("add", "--holdout", "several", "one, unless with --all-found");
+    if (options.link_share) refuse_option("add", "--link-share", "given", "only with --all-found");
     return;
   }
   const std::string alone = "nothing of it with --all-found";
-  if (!options.effects.empty()) refuse("EFFECT", "\"" + options.effects[0] + "\"", alone);
-  if (options.joint != 0) refuse("--joint", std::to_string(options.joint), alone);
-  if (!options.set.empty()) refuse("--set", "\"" + options.set[0] + "\"", alone);
-  if (options.keep) refuse("--keep", "given", alone);
+  if (!options.effects.empty())
+    refuse_option("add", "EFFECT", "\"" + options.effects[0] + "\"", alone);
+  if (options.joint != 0) refuse_option("add", "--joint", std::to_string(options.joint), alone);
+  if (!options.set.empty()) refuse_option("add", "--set", "\"" + options.set[0] + "\"", alone);
+  if (options.keep) refuse_option("add", "--keep", "given", alone);
   if (options.refit_inertia_percent) {
-    refuse("--refit-inertia", "given", alone, "say --link-share, as for explain");
+    refuse_option("add", "--refit-inertia", "given", alone, "say --link-share, as for explain");
   }
   if (options.filter.cutoff_hz || options.filter.decimate) {
-    refuse("--cutoff or --decimate", "given", alone,
-           "the search chooses its filter by the encoders");
+    refuse_option("add", "--cutoff or --decimate", "given", alone,
+                  "the search chooses its filter by the encoders");
   }
 }
 

@@ -15,8 +15,8 @@
 #include "command/output_file.hpp"
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
+#include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
-#include "common/error.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
@@ -36,18 +36,15 @@ struct CalibrateOptions {
   bool json = false;
 };
 
-[[noreturn]] void refuse(const std::string& option, const std::string& found,
-                         const std::string& allowed, const std::string& mend = {}) {
-  throw InputError({"offnominal calibrate", option, found, allowed, mend});
-}
-
 void check_numbers(const CalibrateOptions& options) {
   if (!(options.alarms_per_hour >= 1e-6 && options.alarms_per_hour <= 60)) {
-    refuse("--alarms-per-hour", fmt::format("{:g}", options.alarms_per_hour), "1e-6 to 60");
+    refuse_option("calibrate", "--alarms-per-hour", fmt::format("{:g}", options.alarms_per_hour),
+                  "1e-6 to 60");
   }
   const double error = options.velocity_error.value_or(0);
   if (!(error >= 0 && std::isfinite(error))) {
-    refuse("--velocity-error", fmt::format("{:g}", error), "at least 0, rad/s or m/s");
+    refuse_option("calibrate", "--velocity-error", fmt::format("{:g}", error),
+                  "at least 0, rad/s or m/s");
   }
 }
 
@@ -57,8 +54,9 @@ void check_files(const CalibrateOptions& options) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (same_file(all[i], all[j])) {
-        refuse(i < options.logs.size() ? "LOG" : "--holdout", all[i] + " a second time",
-               "recordings that differ", "leave one of the two out");
+        refuse_option("calibrate", i < options.logs.size() ? "LOG" : "--holdout",
+                      all[i] + " a second time", "recordings that differ",
+                      "leave one of the two out");
       }
     }
   }

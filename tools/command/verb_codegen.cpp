@@ -9,8 +9,8 @@
 
 #include "codegen/model_header.hpp"
 #include "command/output_file.hpp"
+#include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
-#include "common/error.hpp"
 #include "common/file.hpp"
 #include "robot/robot_file.hpp"
 
@@ -42,11 +42,7 @@ nlohmann::ordered_json to_json(const CodegenOptions& options, const RobotDescrip
 
 void run(const CodegenOptions& options) {
   if (same_file(options.output, options.robot)) {
-    throw InputError({.file = "offnominal codegen",
-                      .place = "-o",
-                      .found = "the robot file itself",
-                      .allowed = "a header",
-                      .mend = "choose another name"});
+    refuse_option("codegen", "-o", "the robot file itself", "a header", "choose another name");
   }
   check_output_file("codegen", "-o", options.output, options.force);
   const RobotDescription robot = read_robot_file(options.robot);

@@ -14,8 +14,8 @@
 #include "command/output_file.hpp"
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
+#include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
-#include "common/error.hpp"
 #include "common/file.hpp"
 #include "motion_design/design_report.hpp"
 #include "report/page.hpp"
@@ -42,11 +42,6 @@ struct MotionOptions {
   bool json = false;
 };
 
-[[noreturn]] void refuse(const std::string& option, const std::string& found,
-                         const std::string& allowed, const std::string& mend = {}) {
-  throw InputError({"offnominal motion", option, found, allowed, mend});
-}
-
 std::vector<Contender> effects_of(const MotionOptions& options, const RobotDescription& robot) {
   std::vector<Contender> effects;
   if (options.excite) {
@@ -58,14 +53,15 @@ std::vector<Contender> effects_of(const MotionOptions& options, const RobotDescr
   for (const std::string& text : options.separate) {
     const Contender one = motion_design::contender_of(text, robot, "--separate");
     if (std::find(effects.begin(), effects.end(), one) != effects.end()) {
-      refuse("--separate", motion_design::text_of(one) + " twice", "different effects",
-             "name the two that explain could not tell apart");
+      refuse_option("motion", "--separate", motion_design::text_of(one) + " twice",
+                    "different effects", "name the two that explain could not tell apart");
     }
     effects.push_back(one);
   }
   if (effects.size() == 1) {
-    refuse("--separate", motion_design::text_of(effects[0]) + " alone", "two effects or more",
-           "write A,B; for one effect: --excite " + motion_design::text_of(effects[0]));
+    refuse_option("motion", "--separate", motion_design::text_of(effects[0]) + " alone",
+                  "two effects or more",
+                  "write A,B; for one effect: --excite " + motion_design::text_of(effects[0]));
   }
   return effects;
 }

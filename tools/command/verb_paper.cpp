@@ -11,8 +11,8 @@
 
 #include "command/command_line.hpp"
 #include "command/progress.hpp"
+#include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
-#include "common/error.hpp"
 #include "common/file.hpp"
 #include "log/csv_text.hpp"
 #include "paper/figures.hpp"
@@ -64,40 +64,43 @@ CLI::Validator number_where(bool (*allowed)(double), const std::string& words) {
       words);
 }
 
-[[noreturn]] void refuse(const std::string& option, const std::string& found,
-                         const std::string& mend) {
-  throw InputError(
-      {.file = "offnominal paper", .place = option, .found = found, .allowed = "", .mend = mend});
-}
-
 // An option that would be ignored is a misunderstanding.
 void check_together(const PaperOptions& options) {
   if (options.sweep) {
     if (options.fault && *options.fault != "mass_loss") {
-      refuse("--sweep", "--fault " + *options.fault, "leave --fault out; the sweep loses mass");
+      refuse_option("paper", "--sweep", "--fault " + *options.fault, "",
+                    "leave --fault out; the sweep loses mass");
     }
-    if (options.mass_loss) refuse("--sweep", "--mass-loss", "leave it out; the sweep tries all");
+    if (options.mass_loss)
+      refuse_option("paper", "--sweep", "--mass-loss", "", "leave it out; the sweep tries all");
     if (options.accommodate) {
-      refuse("--sweep", "--accommodate", "leave it out; nothing is compensated before detection");
+      refuse_option("paper", "--sweep", "--accommodate", "",
+                    "leave it out; nothing is compensated before detection");
     }
     if (options.report && !options.against) {
-      refuse("--sweep", "--report",
-             "run `offnominal paper --report FILE`, which holds the sweep, or add --against");
+      refuse_option(
+          "paper", "--sweep", "--report", "",
+          "run `offnominal paper --report FILE`, which holds the sweep, or add --against");
     }
   }
   if (options.log && !options.fault) {
-    refuse("--log", "no --fault", "add --fault none for a recording of the healthy arm");
+    refuse_option("paper", "--log", "no --fault", "",
+                  "add --fault none for a recording of the healthy arm");
   }
   if (options.motion && !options.fault) {
-    refuse("--motion", "no --fault", "add --fault none to see the healthy arm on this motion");
+    refuse_option("paper", "--motion", "no --fault", "",
+                  "add --fault none to see the healthy arm on this motion");
   }
-  if (options.against && !options.sweep) refuse("--against", "no --sweep", "add --sweep");
-  if (options.force && !options.log) refuse("--force", "no --log", "leave it out");
+  if (options.against && !options.sweep)
+    refuse_option("paper", "--against", "no --sweep", "", "add --sweep");
+  if (options.force && !options.log)
+    refuse_option("paper", "--force", "no --log", "", "leave it out");
   if (options.mass_loss && options.fault && *options.fault != "mass_loss") {
-    refuse("--mass-loss", "--fault " + *options.fault, "leave one of the two out");
+    refuse_option("paper", "--mass-loss", "--fault " + *options.fault, "",
+                  "leave one of the two out");
   }
   if (options.rho && options.fault && *options.fault == "none") {
-    refuse("--rho", "--fault none", "leave one of the two out");
+    refuse_option("paper", "--rho", "--fault none", "", "leave one of the two out");
   }
 }
 

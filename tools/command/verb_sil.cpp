@@ -8,8 +8,8 @@
 #include "command/command_line.hpp"
 #include "command/output_file.hpp"
 #include "command/progress.hpp"
+#include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
-#include "common/error.hpp"
 #include "common/file.hpp"
 #include "log/candump_text.hpp"
 #include "log/csv_text.hpp"
@@ -43,17 +43,12 @@ struct SilOptions {
   bool json = false;
 };
 
-[[noreturn]] void refuse(const std::string& option, const std::string& found,
-                         const std::string& allowed, const std::string& mend) {
-  throw InputError({"offnominal sil", option, found, allowed, mend});
-}
-
 sil::Scenario scenario_of(const SilOptions& options) {
   sil::Scenario scenario;
   if (options.scenario) {
     if (options.fault) {
-      refuse("--fault", "together with --scenario", "one of the two",
-             "write the fault into the scenario's file");
+      refuse_option("sil", "--fault", "together with --scenario", "one of the two",
+                    "write the fault into the scenario's file");
     }
     scenario = sil::read_scenario(*options.scenario);
   } else if (options.fault == "mass_loss") {
@@ -82,8 +77,8 @@ std::unique_ptr<sil::Wire> wire_of(const std::string& bus) {
 sil::SilResult real_time(const SilOptions& options, const RobotDescription& robot,
                          const sil::Scenario& scenario) {
   if (options.bus == sil::kInProcess) {
-    refuse("--real-time", "on the in-process bus", "a CAN interface of the kernel",
-           "give --bus vcan0; where the kernel has no CAN: ./dev vcan COMMAND");
+    refuse_option("sil", "--real-time", "on the in-process bus", "a CAN interface of the kernel",
+                  "give --bus vcan0; where the kernel has no CAN: ./dev vcan COMMAND");
   }
   return sil::run_in_real_time(
       robot, scenario,
