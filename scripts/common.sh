@@ -45,13 +45,13 @@ build() {
   local preset="$1" dir
   shift
   dir="$root/build/$preset"
-  if [[ -f "$dir/build.ninja" ]] &&
-    ninja -C "$dir" -n "$@" 2>/dev/null | grep -q 'no work to do'; then
-    return 0
-  fi
-  note "build ($preset)"
   remember_compilations
-  (cd "$root" && cmake --preset "$preset" --log-level=WARNING) >&2 || return 1
+  # What ninja does not know of; all else makes it configure anew by itself.
+  if [[ ! -f "$dir/build.ninja" || "$root/CMakePresets.json" -nt "$dir/build.ninja" ]]; then
+    note "configure ($preset)"
+    (cd "$root" && cmake --preset "$preset" --log-level=WARNING) >&2 || return 1
+  fi
   # shellcheck disable=SC2086  # a list of options, split on purpose
-  ninja -C "$dir" -j "$(jobs_allowed)" ${NINJA_OPTIONS:-} "$@" >&2
+  ninja -C "$dir" -j "$(jobs_allowed)" ${NINJA_OPTIONS:-} "$@" 2>&1 |
+    sed -u '/^ninja: Entering directory/d; /Re-checking globbed directories/d; /^ninja: no work to do/d' >&2
 }
