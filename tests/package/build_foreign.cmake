@@ -13,7 +13,13 @@ function(run)
   set(output "${text}" PARENT_SCOPE)
 endfunction()
 
-set(common -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${COMPILER}" -DCMAKE_BUILD_TYPE=Release)
+# Either way with the build type that the other has not.
+if(WAY STREQUAL "find_package")
+  set(build_type Release)
+else()
+  set(build_type Debug)
+endif()
+set(common -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_BUILD_TYPE=${build_type}")
 file(REMOVE_RECURSE "${WORK}")
 
 if(WAY STREQUAL "find_package")

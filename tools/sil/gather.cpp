@@ -150,7 +150,8 @@ SilResult gather(const RobotDescription& robot, const Scenario& scenario,
   // At the motion's end the controller lets go of its own accord.
   if (result.fault != controller::Fault::kNone) {
     result.ended_early_s = safe_since_s(plant);
-    if (result.ended_early_s && first_s) {
+    // What came before the first fault was not its doing.
+    if (result.ended_early_s && first_s && *result.ended_early_s >= *first_s) {
       result.time_to_safe_state_s = *result.ended_early_s - *first_s;
     }
   }

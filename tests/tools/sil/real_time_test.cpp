@@ -4,6 +4,7 @@
 #include <net/if.h>
 
 #include <algorithm>
+#include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -35,7 +36,7 @@ class RealTime : public testing::Test {
     put(folder_ / "robot.toml", robot.replace(at, before.size(), "period_s = 0.02"));
   }
   test::CommandResult run(const std::string& scenario, std::vector<std::string> more = {}) {
-    put(folder_ / "scenario.toml", "format = 1\nduration_s = 2.0\n" + scenario);
+    put(folder_ / "scenario.toml", "format = 1\nduration_s = 1.0\n" + scenario);
     std::vector<std::string> words = {
         "sil",     "--real-time",          "--scenario", folder_ / "scenario.toml",
         "--robot", folder_ / "robot.toml", "--json"};
@@ -46,29 +47,48 @@ class RealTime : public testing::Test {
     return run_command(OFFNOMINAL_COMMAND, words);
   }
 
+  // A run that ends with `fault` ("None"). One that the machine made late, so that it ended
+  // otherwise, is tried again; one that was in time and ended otherwise is not.
+  json run_in_time(const std::string& scenario, const json& fault,
+                   const std::vector<std::string>& more = {}) {
+    constexpr int kTries = 12;
+    json run;
+    for (int i = 0; i < kTries; ++i) {
+      const auto result = this->run(scenario, more);
+      EXPECT_EQ(result.exit_code, 0) << result.err;
+      if (result.exit_code != 0) break;
+      run = json::parse(result.out);
+      const int late =
+          run.at("overruns").get<int>() + run.at("real_time").at("plant_overruns").get<int>();
+      if (run.at("controller_fault") == fault || late == 0) break;
+      std::cout << "run " << i + 1 << ": " << late << " late ticks, " << run.at("controller_fault")
+                << '\n';
+    }
+    return run;
+  }
+
   TemporaryFolder folder_;
 };
 
 TEST_F(RealTime, GivesWhatLockStepGivesAndSaysHowItKeptItsTime) {
-  const auto result = run("", {"--candump", folder_ / "run.log"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const json run = json::parse(result.out);
+  const json run = run_in_time("", "None", {"--candump", folder_ / "run.log", "--force"});
+  ASSERT_TRUE(run.is_object());
   EXPECT_EQ(run.at("controller_state"), "armed") << run.dump(2);
   EXPECT_TRUE(run.at("detection_time_s").is_null());
   EXPECT_TRUE(run.at("time_to_safe_state_s").is_null());
   EXPECT_GE(run.at("overruns").get<int>(), 0);
-  EXPECT_NEAR(run.at("real_time").at("ticks").get<double>(), 110, 30);
+  EXPECT_NEAR(run.at("real_time").at("ticks").get<double>(), 60, 20);
   EXPECT_EQ(run.at("bus").at("rejected"), 0);
   EXPECT_LT(run.at("tracking_rms_rad").get<double>(), 0.1);
   const std::string frames = content_of(folder_ / "run.log");
   // Per tick two readings, two statuses and two commands.
-  EXPECT_GT(std::count(frames.begin(), frames.end(), '\n'), 6 * 70);
+  EXPECT_GT(std::count(frames.begin(), frames.end(), '\n'), 6 * 40);
 }
 
 TEST_F(RealTime, AnEncoderThatDropsOutLeadsToTheSafeState) {
-  const auto result = run("[[fault]]\nkind = \"encoder_dropout\"\nbegin_s = 0.5\njoint = 2\n");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const json run = json::parse(result.out);
+  const json run = run_in_time("[[fault]]\nkind = \"encoder_dropout\"\nbegin_s = 0.5\njoint = 2\n",
+                               "DriveReported");
+  ASSERT_TRUE(run.is_object());
   EXPECT_EQ(run.at("controller_state"), "fault");
   EXPECT_EQ(run.at("controller_fault"), "DriveReported");
   EXPECT_GT(run.at("time_to_safe_state_s").get<double>(), 0.0);
