@@ -21,15 +21,18 @@ struct Case {
 template <typename Tested>
 class EstimatorOracle : public testing::Test {};
 
-using Cases = testing::Types<Case<1, 1, 1, DeadZone::kContinuous>,       //
-                             Case<1, 35, 35, DeadZone::kContinuous>,     //
-                             Case<1, 35, 35, DeadZone::kDiscontinuous>,  //
-                             Case<2, 35, 35, DeadZone::kContinuous>,     //
-                             Case<2, 35, 35, DeadZone::kDiscontinuous>,  //
-                             Case<2, 16, 5, DeadZone::kContinuous>,      //
-                             Case<6, 7, 7, DeadZone::kContinuous>,       //
-                             Case<6, 24, 24, DeadZone::kContinuous>,     //
-                             Case<6, 24, 24, DeadZone::kDiscontinuous>>;
+using Cases = testing::Types<
+#ifndef OFFNOMINAL_SANITIZE                     // the same code in other sizes
+    Case<1, 35, 35, DeadZone::kContinuous>,     //
+    Case<1, 35, 35, DeadZone::kDiscontinuous>,  //
+    Case<6, 24, 24, DeadZone::kContinuous>,     //
+    Case<6, 24, 24, DeadZone::kDiscontinuous>,  //
+#endif
+    Case<1, 1, 1, DeadZone::kContinuous>,       //
+    Case<2, 35, 35, DeadZone::kContinuous>,     //
+    Case<2, 35, 35, DeadZone::kDiscontinuous>,  //
+    Case<2, 16, 5, DeadZone::kContinuous>,      //
+    Case<6, 7, 7, DeadZone::kContinuous>>;
 TYPED_TEST_SUITE(EstimatorOracle, Cases);
 
 template <int N, int L>

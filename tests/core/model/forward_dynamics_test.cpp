@@ -45,12 +45,14 @@ double worst_round_trip(std::mt19937_64& generator, int chains) {
 
 TEST(ForwardDynamics, InverseOfForwardGivesTheTorqueBack) {
   std::mt19937_64 generator = seeded_generator();
-  EXPECT_LE((worst_round_trip<1, double>(generator, 300)), 1e-10);
   EXPECT_LE((worst_round_trip<2, double>(generator, 300)), 1e-10);
-  EXPECT_LE((worst_round_trip<6, double>(generator, 300)), 1e-10);
   EXPECT_LE((worst_round_trip<7, double>(generator, 300)), 1e-10);
   EXPECT_LE((worst_round_trip<2, float>(generator, 300)), 1e-3);
+#ifndef OFFNOMINAL_SANITIZE  // the same code in other sizes
+  EXPECT_LE((worst_round_trip<1, double>(generator, 300)), 1e-10);
+  EXPECT_LE((worst_round_trip<6, double>(generator, 300)), 1e-10);
   EXPECT_LE((worst_round_trip<6, float>(generator, 300)), 1e-3);
+#endif
 }
 
 TEST(ForwardDynamics, GivenAMassOnItsOwnAxisThenTheMassMatrixIsReportedSingular) {

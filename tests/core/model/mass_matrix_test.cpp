@@ -31,12 +31,14 @@ void expect_symmetric_positive_definite(std::mt19937_64& generator, int chains) 
 
 TEST(MassMatrix, IsSymmetricPositiveDefiniteOverRandomChains) {
   std::mt19937_64 generator = seeded_generator();
-  expect_symmetric_positive_definite<1, double>(generator, 500);
   expect_symmetric_positive_definite<2, double>(generator, 500);
-  expect_symmetric_positive_definite<6, double>(generator, 500);
   expect_symmetric_positive_definite<7, double>(generator, 500);
   expect_symmetric_positive_definite<2, float>(generator, 500);
+#ifndef OFFNOMINAL_SANITIZE  // the same code in other sizes
+  expect_symmetric_positive_definite<1, double>(generator, 500);
+  expect_symmetric_positive_definite<6, double>(generator, 500);
   expect_symmetric_positive_definite<6, float>(generator, 500);
+#endif
 }
 
 // Column j of M is the torque of a unit acceleration of joint j alone, at rest, without gravity.
@@ -67,9 +69,11 @@ double worst_column_against_newton_euler(std::mt19937_64& generator, int chains)
 
 TEST(MassMatrix, AgreesWithNewtonEulerColumnByColumn) {
   std::mt19937_64 generator = seeded_generator();
-  EXPECT_LE((worst_column_against_newton_euler<1, double>(generator, 200)), 1e-13);
   EXPECT_LE((worst_column_against_newton_euler<2, double>(generator, 200)), 1e-13);
+#ifndef OFFNOMINAL_SANITIZE  // the same code in other sizes
+  EXPECT_LE((worst_column_against_newton_euler<1, double>(generator, 200)), 1e-13);
   EXPECT_LE((worst_column_against_newton_euler<6, double>(generator, 200)), 1e-13);
+#endif
   EXPECT_LE((worst_column_against_newton_euler<7, double>(generator, 200)), 1e-13);
   const double float_tolerance = 64 * static_cast<double>(std::numeric_limits<float>::epsilon());
   EXPECT_LE((worst_column_against_newton_euler<2, float>(generator, 200)), float_tolerance);
