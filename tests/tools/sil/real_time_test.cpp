@@ -77,7 +77,7 @@ TEST_F(RealTime, GivesWhatLockStepGivesAndSaysHowItKeptItsTime) {
   EXPECT_TRUE(run.at("detection_time_s").is_null());
   EXPECT_TRUE(run.at("time_to_safe_state_s").is_null());
   EXPECT_GE(run.at("overruns").get<int>(), 0);
-  EXPECT_NEAR(run.at("real_time").at("ticks").get<double>(), 60, 20);
+  EXPECT_GE(run.at("real_time").at("ticks").get<int>(), 50);
   EXPECT_EQ(run.at("bus").at("rejected"), 0);
   EXPECT_LT(run.at("tracking_rms_rad").get<double>(), 0.1);
   const std::string frames = content_of(folder_ / "run.log");
