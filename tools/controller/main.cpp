@@ -23,6 +23,7 @@
 #include "robot/robot_file.hpp"
 #include "sil/open_bus.hpp"
 #include "sil/open_recorder.hpp"
+#include "sil/plant_of.hpp"
 #include "sil/sil_report.hpp"
 
 namespace offnominal::tools {
@@ -197,7 +198,7 @@ int run(const Options& options) {
                       .columns = realtime::loop_columns(joints),
                       .replace = options.force},
                      recorder);
-  const Microseconds period_us = microseconds(robot.estimator.period_s);
+  const Microseconds period_us = sil::period_us_of(robot.estimator.period_s);
   RealTimeTimer timer(period_us, std::llround(options.phase * static_cast<double>(period_us)));
   realtime::LoopPanel panel;
   const auto program =

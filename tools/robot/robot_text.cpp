@@ -12,11 +12,9 @@
 namespace offnominal::tools {
 namespace {
 
-std::string number(double value) { return shortest_real(value); }
-
 std::string list(std::span<const double> values) {
   std::string text = "[";
-  for (const double value : values) text += (text.size() > 1 ? ", " : "") + number(value);
+  for (const double value : values) text += (text.size() > 1 ? ", " : "") + shortest_real(value);
   return text + "]";
 }
 
@@ -92,8 +90,8 @@ void write_limits(Writer& out, const Joint<double>& joint) {
     const double range[]{joint.min_position, joint.max_position};
     out.value("position", list(range));
   }
-  if (velocity) out.value("velocity", number(joint.max_velocity));
-  if (torque) out.value("torque", number(joint.max_torque));
+  if (velocity) out.value("velocity", shortest_real(joint.max_velocity));
+  if (torque) out.value("torque", shortest_real(joint.max_torque));
 }
 
 void write_encoder(Writer& out, const RobotJoint& joint) {
@@ -104,18 +102,19 @@ void write_encoder(Writer& out, const RobotJoint& joint) {
     out.value("bits", std::to_string(bits));
     return;
   }
-  out.value("counts_per_unit", number(joint.encoder.counts_per_unit));
+  out.value("counts_per_unit", shortest_real(joint.encoder.counts_per_unit));
 }
 
 void write_link(Writer& out, const Joint<double>& joint) {
   out.table("[joint.link]");
-  out.value("mass_kg", number(joint.mass_kg));
+  out.value("mass_kg", shortest_real(joint.mass_kg));
   out.value("centre_of_mass_m", list(joint.centre_of_mass_m));
   if (joint.inertia_kg_m2 == Joint<double>{}.inertia_kg_m2) return;
   const auto& [xx, yy, zz, xy, xz, yz] = joint.inertia_kg_m2;
-  out.value("inertia_kg_m2", "{xx = " + number(xx) + ", yy = " + number(yy) +
-                                 ", zz = " + number(zz) + ", xy = " + number(xy) +
-                                 ", xz = " + number(xz) + ", yz = " + number(yz) + "}");
+  out.value("inertia_kg_m2", "{xx = " + shortest_real(xx) + ", yy = " + shortest_real(yy) +
+                                 ", zz = " + shortest_real(zz) + ", xy = " + shortest_real(xy) +
+                                 ", xz = " + shortest_real(xz) + ", yz = " + shortest_real(yz) +
+                                 "}");
 }
 
 void write_joint(Writer& out, const RobotJoint& robot_joint) {
@@ -138,19 +137,19 @@ void write_joint(Writer& out, const RobotJoint& robot_joint) {
   write_encoder(out, robot_joint);
   if (robot_joint.kp != 0 || robot_joint.kd != 0) {
     out.table("[joint.control]");
-    out.value("kp_per_s2", number(robot_joint.kp));
-    out.value("kd_per_s", number(robot_joint.kd));
+    out.value("kp_per_s2", shortest_real(robot_joint.kp));
+    out.value("kd_per_s", shortest_real(robot_joint.kd));
   }
 }
 
 void write_estimator(Writer& out, const EstimatorSettings& settings) {
   out.table("[estimator]");
-  out.value("period_s", number(settings.period_s));
-  out.value("alpha_per_s", number(settings.alpha_per_s));
+  out.value("period_s", shortest_real(settings.period_s));
+  out.value("alpha_per_s", shortest_real(settings.alpha_per_s));
   out.value("hidden_units", std::to_string(settings.hidden_units));
-  out.value("learning_rate", number(settings.learning_rate));
-  out.value("weight_radius", number(settings.weight_radius));
-  out.value("initial_weight_range", number(settings.initial_weight_range));
+  out.value("learning_rate", shortest_real(settings.learning_rate));
+  out.value("weight_radius", shortest_real(settings.weight_radius));
+  out.value("initial_weight_range", shortest_real(settings.initial_weight_range));
   out.value("seed", std::to_string(settings.seed));
   out.value(
       "dead_zone",
@@ -165,12 +164,12 @@ void write_bound(Writer& out, const BoundSettings& bound) {
   switch (bound.kind) {
     case BoundSettings::Kind::kConstant:
       out.value("kind", quoted("constant"));
-      out.value("value", number(bound.constant.value));
+      out.value("value", shortest_real(bound.constant.value));
       break;
     case BoundSettings::Kind::kScaledNorm:
       out.value("kind", quoted("scaled_norm"));
-      out.value("scale", number(bound.scaled_norm.scale));
-      out.value("offset", number(bound.scaled_norm.offset));
+      out.value("scale", shortest_real(bound.scaled_norm.scale));
+      out.value("offset", shortest_real(bound.scaled_norm.offset));
       out.value("matrix", rows(bound.scaled_norm.matrix));
       break;
     case BoundSettings::Kind::kTable: {
@@ -183,15 +182,15 @@ void write_bound(Writer& out, const BoundSettings& bound) {
       break;
     }
   }
-  if (bound.velocity_error > 0) out.value("velocity_error", number(bound.velocity_error));
+  if (bound.velocity_error > 0) out.value("velocity_error", shortest_real(bound.velocity_error));
   out.text_if_any("source", bound.source);
 }
 
 std::string channel_text(const Channel& channel) {
   std::string text = "{source = " + quoted(channel.source);
-  if (channel.scale != 1) text += ", scale = " + number(channel.scale);
+  if (channel.scale != 1) text += ", scale = " + shortest_real(channel.scale);
   if (!channel.scale_source.empty()) text += ", scale_source = " + quoted(channel.scale_source);
-  if (channel.offset != 0) text += ", offset = " + number(channel.offset);
+  if (channel.offset != 0) text += ", offset = " + shortest_real(channel.offset);
   if (!channel.unit.empty()) text += ", unit = " + quoted(channel.unit);
   return text + "}";
 }
@@ -236,7 +235,7 @@ std::string effect_text(const RobotEffect& effect) {
   for (std::size_t i = 0; i < info->parameters.size(); ++i) {
     const bool whole = info->parameters[i].quantity == Quantity::kJointNumber;
     out.value(info->parameters[i].name,
-              whole ? shortest(effect.parameters[i]) : number(effect.parameters[i]));
+              whole ? shortest(effect.parameters[i]) : shortest_real(effect.parameters[i]));
   }
   if (effect.fitted) out.value("fitted", "true");
   out.text_if_any("source", effect.source);

@@ -55,13 +55,6 @@ sim::FaultEvent read_fault(const TomlTable& table) {
   return fault;
 }
 
-// As read back to the same double; TOML wants a point in it.
-std::string toml_number(double value) {
-  std::string text = shortest(value);
-  if (text.find_first_of(".e") == std::string::npos) text += ".0";
-  return text;
-}
-
 }  // namespace
 
 Scenario read_scenario(const std::filesystem::path& path) {
@@ -105,9 +98,9 @@ std::string scenario_text(const Scenario& scenario) {
   std::string text = fmt::format(
       "format = {}\nduration_s = {}\naccommodate = {}\nstop_at_detection = {}\nframes = \"{}\"\n"
       "velocity = \"{}\"\nmax_acceleration_rad_s2 = {}\nseed = {}\n",
-      kScenarioFormat, toml_number(scenario.experiment.duration_s), scenario.experiment.accommodate,
-      scenario.stop_at_detection, fd ? "fd" : "classic",
-      scenario.sends_velocity ? "sent" : "observed", toml_number(scenario.max_acceleration),
+      kScenarioFormat, shortest_real(scenario.experiment.duration_s),
+      scenario.experiment.accommodate, scenario.stop_at_detection, fd ? "fd" : "classic",
+      scenario.sends_velocity ? "sent" : "observed", shortest_real(scenario.max_acceleration),
       scenario.seed);
   if (scenario.encoder_bits_per_turn > 0) {
     text += fmt::format("encoder_bits_per_turn = {}\n", scenario.encoder_bits_per_turn);
@@ -115,9 +108,9 @@ std::string scenario_text(const Scenario& scenario) {
   for (const sim::FaultEvent& fault : scenario.faults) {
     const sim::FaultEventInfo& info = info_of(fault.kind);
     text += fmt::format("\n[[fault]]\nkind = \"{}\"\nbegin_s = {}\n", info.name,
-                        toml_number(fault.begin_s));
+                        shortest_real(fault.begin_s));
     const auto add = [&](const char* key, double value) {
-      text += fmt::format("{} = {}\n", key, toml_number(value));
+      text += fmt::format("{} = {}\n", key, shortest_real(value));
     };
     if (std::isfinite(fault.end_s)) add("end_s", fault.end_s);
     if (std::isfinite(fault.rate_per_s)) add("rate_per_s", fault.rate_per_s);

@@ -69,7 +69,7 @@ SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenar
   const double period_s = robot.estimator.period_s;
   const double duration_s = scenario.experiment.duration_s;
   LoopSetup setup;
-  setup.period_us = std::max<hal::Microseconds>(1, std::llround(1e6 * period_s));
+  setup.period_us = period_us_of(period_s);
   setup.ticks = std::llround(duration_s / period_s);
   SilResult result;
   result.bus_name = bus_name;

@@ -3,6 +3,7 @@
 #include <offnominal/realtime/cycle_timer.hpp>
 
 namespace offnominal::realtime {
+
 Microseconds monotonic_us() {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "log/candump_log.hpp"
 #include "support/robots.hpp"
 #include "tools/support/run_command.hpp"
 
