@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <offnominal/exponential.hpp>
 #include <offnominal/status.hpp>
 
 // Velocity from positions alone, for encoders that send no velocity: a tracking loop of second
@@ -42,7 +43,7 @@ template <typename Scalar>
     return Status::kOk;
   }
   // Poles of the sampled loop at exp(-bandwidth period), both.
-  const Scalar pole = std::exp(-config.bandwidth_rad_s * config.period_s);
+  const Scalar pole = exponential(-config.bandwidth_rad_s * config.period_s);
   const Scalar innovation = position - (state.position + config.period_s * state.velocity);
   state.position += config.period_s * state.velocity + (Scalar(1) - pole * pole) * innovation;
   state.velocity += (Scalar(1) - pole) * (Scalar(1) - pole) / config.period_s * innovation;
@@ -64,7 +65,7 @@ template <typename Scalar>
 [[nodiscard]] Scalar velocity_error_bound(const VelocityObserverConfig<Scalar>& config,
                                           Scalar max_acceleration, Scalar position_error) {
   const Scalar period = config.period_s;
-  const Scalar pole = std::exp(-config.bandwidth_rad_s * period);
+  const Scalar pole = exponential(-config.bandwidth_rad_s * period);
   const Scalar position_gain = Scalar(1) - pole * pole;
   const Scalar velocity_gain = (Scalar(1) - pole) * (Scalar(1) - pole) / period;
   // Error of position and velocity, a = true - estimated, one tick after the other:

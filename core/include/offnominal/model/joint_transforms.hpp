@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <offnominal/model/rigid_body_model.hpp>
+#include <offnominal/model/sine_cosine.hpp>
 
 namespace offnominal {
 
@@ -23,9 +24,8 @@ template <int N, typename Scalar>
     const auto& body = model.bodies[i];
     const Scalar qi = q[static_cast<Eigen::Index>(i)];
     if (body.type == JointType::kRevolute) {
-      const Scalar sine = Eigen::numext::sin(qi);
-      const Scalar cosine = Eigen::numext::cos(qi);
-      at.rotation[i] = body.fixed + sine * body.sine + cosine * body.cosine;
+      const SineCosine<Scalar> turn = sine_cosine(qi);
+      at.rotation[i] = body.fixed + turn.sine * body.sine + turn.cosine * body.cosine;
       at.origin[i] = body.origin;
     } else {
       at.rotation[i] = body.fixed;

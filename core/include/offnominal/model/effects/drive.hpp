@@ -4,6 +4,7 @@
 #include <array>
 #include <numbers>
 #include <offnominal/model/effects/friction.hpp>
+#include <offnominal/model/sine_cosine.hpp>
 
 // Effects of the drive, of springs and of the surroundings that act at the joint.
 
@@ -59,7 +60,8 @@ struct CoggingTorque {
   static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
                        const JointInstant<Scalar>& at) {
     const Scalar phase = p[3] * at.q;
-    return p[0] * Eigen::numext::sin(phase) + p[1] * Eigen::numext::cos(phase);
+    const SineCosine<Scalar> wave = sine_cosine(phase);
+    return p[0] * wave.sine + p[1] * wave.cosine;
   }
   template <typename Scalar>
   static void prepare(std::array<Scalar, kMaxEffectParameters>& p, JointType type) {
@@ -82,7 +84,8 @@ struct PeriodicDisturbance {
   static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
                        const JointInstant<Scalar>& at) {
     const Scalar phase = p[2] * at.time_s;
-    return p[0] * Eigen::numext::sin(phase) + p[1] * Eigen::numext::cos(phase);
+    const SineCosine<Scalar> wave = sine_cosine(phase);
+    return p[0] * wave.sine + p[1] * wave.cosine;
   }
 };
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <limits>
+#include <offnominal/exponential.hpp>
 #include <offnominal/model/effect.hpp>
 #include <offnominal/model/smooth_sign.hpp>
 
@@ -92,7 +93,7 @@ struct StribeckFriction {
   static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
                        const JointInstant<Scalar>& at) {
     const Scalar ratio = at.dq / p[1];
-    return p[0] * Eigen::numext::exp(-ratio * ratio) * smooth_sign(at.dq, p[2]);
+    return p[0] * exponential(-ratio * ratio) * smooth_sign(at.dq, p[2]);
   }
 };
 
@@ -129,7 +130,7 @@ struct TemperatureDrift {
   template <typename Scalar>
   static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
                        const JointInstant<Scalar>& at) {
-    return Eigen::numext::exp(-at.time_s / p[2]) * (p[0] * smooth_sign(at.dq, p[3]) + p[1] * at.dq);
+    return exponential(-at.time_s / p[2]) * (p[0] * smooth_sign(at.dq, p[3]) + p[1] * at.dq);
   }
 };
 
