@@ -96,16 +96,16 @@ class Monitor {
     const Status solved =
         forward_dynamics(model_, sample.q, sample.dq, sample.tau, Scalar(0), nominal);
     if (solved != Status::kOk) return solved;
-    State fresh;
     const Status started = offnominal::reset(
         config_.estimator, network_input<N, Scalar>(sample.q, sample.dq, sample.tau), nominal.ddq,
-        bound_at(sample), fresh.estimator);
+        bound_at(sample), state.estimator);
     if (started != Status::kOk) return started;
-    fresh.estimator.mu = velocity_allowance();
-    fresh.sample = sample;
-    fresh.inertia_factor = nominal.factor;
-    fresh.initialised = true;
-    state = fresh;
+    state.estimator.mu = velocity_allowance();
+    state.sample = sample;
+    state.inertia_factor = nominal.factor;
+    state.detector = {};
+    state.tick = 0;
+    state.initialised = true;
     return Status::kOk;
   }
 

@@ -44,16 +44,17 @@ template <int N, int L, typename Scalar>
 [[nodiscard]] Status reset(const EstimatorConfig<Scalar>& config, const NetworkInput<N, Scalar>& z,
                            const Vector<N, Scalar>& nominal_ddq, Scalar mu_bar,
                            EstimatorState<N, L, Scalar>& state) {
-  EstimatorState<N, L, Scalar> fresh;
-  fresh.weights =
-      initial_weights<N, L, Scalar>(config.seed, config.hidden_units, config.initial_weight_range);
-  fresh.theta_squared_norm = squared_norm(fresh.weights);
-  if (!(std::sqrt(fresh.theta_squared_norm) < config.weight_radius)) {
-    return Status::kInvalidInitialWeights;
-  }
-  fresh.omega = z.template segment<N>(1 + N);
-  detail::begin_at(z, nominal_ddq, mu_bar, fresh);
-  state = fresh;
+  const Scalar squared = initial_squared_norm<N, L, Scalar>(config.seed, config.hidden_units,
+                                                            config.initial_weight_range);
+  if (!(std::sqrt(squared) < config.weight_radius)) return Status::kInvalidInitialWeights;
+  // In place: on a controller's stack there is no room for another state.
+  set_initial_weights(config.seed, config.hidden_units, config.initial_weight_range, state.weights);
+  state.theta_squared_norm = squared_norm(state.weights);
+  state.omega = z.template segment<N>(1 + N);
+  state.mu = Scalar(0);
+  state.error.setZero();
+  state.psi_hat.setZero();
+  detail::begin_at(z, nominal_ddq, mu_bar, state);
   return Status::kOk;
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <offnominal/diagnosis/gradient_span.hpp>
 #include <offnominal/diagnosis/network.hpp>
+#include <type_traits>
 
 // The work on the hidden layer inside one tick: one sweep over the hidden units per Runge-Kutta
 // stage, in blocks of the processor's vector length, with all inner products of the stage summed on
@@ -13,14 +14,89 @@
 
 namespace offnominal::detail {
 
+// So many hidden units at once; a plain number where there are no vector instructions.
 template <typename Scalar>
-using Block = Eigen::Array<Scalar, kLanes<Scalar>, 1>;
+using Block =
+    std::conditional_t<kLanes<Scalar> == 1, Scalar, Eigen::Array<Scalar, kLanes<Scalar>, 1>>;
+
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Block<Scalar> load(const Scalar* from) {
+  if constexpr (kLanes<Scalar> == 1) {
+    return *from;
+  } else {
+    return Eigen::Map<const Block<Scalar>>(from);
+  }
+}
+template <typename Scalar>
+EIGEN_ALWAYS_INLINE void store(const Block<Scalar>& block, Scalar* to) {
+  if constexpr (kLanes<Scalar> == 1) {
+    *to = block;
+  } else {
+    Eigen::Map<Block<Scalar>> into(to);
+    into = block;
+  }
+}
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Block<Scalar> spread(Scalar value) {
+  if constexpr (kLanes<Scalar> == 1) {
+    return value;
+  } else {
+    return Block<Scalar>::Constant(value);
+  }
+}
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Scalar total(const Block<Scalar>& block) {
+  if constexpr (kLanes<Scalar> == 1) {
+    return block;
+  } else {
+    return block.sum();
+  }
+}
+
+// body(row) for the first row of every block, in turns of `Turn` rows where a block is one.
+template <typename Scalar, int L, int Turn = 5, typename Body>
+EIGEN_ALWAYS_INLINE void for_each_block(const Body& body) {
+  constexpr int kWidth = kLanes<Scalar>;
+  constexpr int kRows = kHiddenRows<L, Scalar>;
+  constexpr int kTurn = kWidth == 1 ? Turn : kWidth;
+  constexpr int kWhole = kRows / kTurn * kTurn;
+  for (int row = 0; row < kWhole; row += kTurn) {
+    repeat<kTurn / kWidth>([&](int i) __attribute__((always_inline)) { body(row + i * kWidth); });
+  }
+  repeat<(kRows - kWhole) / kWidth>([&](int i) __attribute__((always_inline)) {
+    body(kWhole + i * kWidth);
+  });
+}
+
+// Rows in one turn of the sweeps over W1: with many joints a row is long by itself.
+template <int N>
+inline constexpr int kW1Turn = 1;
 
 // Factors of the gradients g_j = (b_j z_j^T, D_j sigma_j^T) of the stages so far.
-template <int N, int L, typename Scalar>
+template <int L, typename Scalar>
 struct StageFactors {
   std::array<HiddenVector<L, Scalar>, kStages> b;
-  std::array<HiddenVector<L, Scalar>, kStages> sigma;
+  const HiddenVector<L, Scalar>& sigma_begin;  // of the first stage, known since the last tick
+  std::array<HiddenVector<L, Scalar>, kStages - 1> sigma_later;
+
+  [[nodiscard]] EIGEN_ALWAYS_INLINE const HiddenVector<L, Scalar>& sigma(std::size_t stage) const {
+    return stage == 0 ? sigma_begin : sigma_later[stage - 1];
+  }
+};
+
+// W1(t0) z of the tick's beginning and end. z of the stages is z0, twice the mean, z1.
+template <int L, typename Scalar>
+struct FirstLayer {
+  const HiddenVector<L, Scalar>& at_begin;
+  HiddenVector<L, Scalar> at_end;
+
+  // factor W1(t0) z of a stage.
+  template <int Stage>
+  [[nodiscard]] EIGEN_ALWAYS_INLINE Block<Scalar> at(int row, Scalar factor) const {
+    if constexpr (Stage == 0) return factor * load(&at_begin[row]);
+    if constexpr (Stage == kStages - 1) return factor * load(&at_end[row]);
+    return (Scalar(0.5) * factor) * (load(&at_begin[row]) + load(&at_end[row]));
+  }
 };
 
 // What psi_hat of a stage is made of.
@@ -30,8 +106,7 @@ struct SigmaSums {
   Vector<N, Scalar> w2_sigma;            // W2(t0) sigma_s
 };
 
-// What the norm of theta is followed with. with_begin stays zero at the last stage, nobody needs it
-// there.
+// What the norm of theta is followed with.
 template <typename Scalar>
 struct GradientSums {
   Scalar sigma_squared{};  // |sigma_s|^2
@@ -40,98 +115,103 @@ struct GradientSums {
   Scalar with_begin{};     // b_s . (W1(t0) z_s)
 };
 
-// W1(t0) z1 and W1(t0) (z0 + z1) / 2.
+// W1(t0) z1.
 template <int N, int L, typename Scalar>
 EIGEN_ALWAYS_INLINE void first_layer(const NetworkWeights<N, L, Scalar>& weights,
-                                     const HiddenVector<L, Scalar>& w1_z0,
                                      const NetworkInput<N, Scalar>& z1,
-                                     HiddenVector<L, Scalar>& w1_middle,
                                      HiddenVector<L, Scalar>& w1_z1) {
-  constexpr int kWidth = kLanes<Scalar>;
-  for (Eigen::Index row = 0; row < kHiddenRows<L, Scalar>; row += kWidth) {
-    Block<Scalar> sum = z1[0] * weights.w1.col(0).array().template segment<kWidth>(row);
-    for (Eigen::Index input = 1; input < kNetworkInputs<N>; ++input) {
-      sum += z1[input] * weights.w1.col(input).array().template segment<kWidth>(row);
-    }
-    w1_z1.template segment<kWidth>(row) = sum;
-    w1_middle.template segment<kWidth>(row) =
-        Scalar(0.5) * (sum + w1_z0.template segment<kWidth>(row));
-  }
+  for_each_block<Scalar, L, kW1Turn<N>>([&](int row) __attribute__((always_inline)) {
+    Block<Scalar> sum = z1[0] * load(&weights.w1(row, 0));
+    repeat<kNetworkInputs<N> - 1>([&](int i) __attribute__((always_inline)) {
+      sum += z1[i + 1] * load(&weights.w1(row, i + 1));
+    });
+    store<Scalar>(sum, &w1_z1[row]);
+  });
 }
 
-// pre = W1 z = keep W1(t0) z + sum kappa_j b_j, w1_z being W1(t0) z, and factors.sigma[Stage] from
-// it.
+// sigma of W1 z = keep W1(t0) z + sum kappa_j b_j at a stage but the first, into factors.
 template <int Stage, int N, int L, typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE SigmaSums<N, Scalar> sigma_pass(
-    const HiddenVector<L, Scalar>& w1_z, const NetworkWeights<N, L, Scalar>& weights, Scalar keep,
-    std::array<Scalar, kStages> kappa, StageFactors<N, L, Scalar>& factors,
-    HiddenVector<L, Scalar>& pre) {
-  constexpr int kWidth = kLanes<Scalar>;
+    const FirstLayer<L, Scalar>& w1_z, const NetworkWeights<N, L, Scalar>& weights, Scalar keep,
+    std::array<Scalar, kStages> kappa, StageFactors<L, Scalar>& factors) {
+  static_assert(Stage > 0);
   constexpr auto kStage = static_cast<std::size_t>(Stage);
   using Lanes = Block<Scalar>;
   std::array<Lanes, kStage> before;
   std::array<Lanes, static_cast<std::size_t>(N)> w2_sigma;
-  for (Lanes& sum : before) sum.setZero();
-  for (Lanes& sum : w2_sigma) sum.setZero();
-  for (Eigen::Index row = 0; row < kHiddenRows<L, Scalar>; row += kWidth) {
-    const auto block = [row](const HiddenVector<L, Scalar>& x) -> Lanes {
-      return x.template segment<kWidth>(row);
-    };
-    Lanes at = keep * block(w1_z);
-    for (std::size_t j = 0; j < kStage; ++j) at += kappa[j] * block(factors.b[j]);
+  before.fill(spread(Scalar(0)));
+  w2_sigma.fill(spread(Scalar(0)));
+  for_each_block<Scalar, L>([&](int row) __attribute__((always_inline)) {
+    Lanes at = w1_z.template at<Stage>(row, keep);
+    repeat<Stage>([&](int j) __attribute__((always_inline)) {
+      const auto stage = static_cast<std::size_t>(j);
+      at += kappa[stage] * load(&factors.b[stage][row]);
+    });
     const Lanes sigma = sigmoid(at);
-    pre.template segment<kWidth>(row) = at;
-    factors.sigma[kStage].template segment<kWidth>(row) = sigma;
-    for (std::size_t j = 0; j < kStage; ++j) before[j] += sigma * block(factors.sigma[j]);
-    for (Eigen::Index k = 0; k < N; ++k) {
-      w2_sigma[static_cast<std::size_t>(k)] +=
-          sigma * weights.w2_transposed.col(k).array().template segment<kWidth>(row);
-    }
-  }
+    store<Scalar>(sigma, &factors.sigma_later[kStage - 1][row]);
+    repeat<Stage>([&](int j) __attribute__((always_inline)) {
+      const auto stage = static_cast<std::size_t>(j);
+      before[stage] += sigma * load(&factors.sigma(stage)[row]);
+    });
+    repeat<N>([&](int k) __attribute__((always_inline)) {
+      w2_sigma[static_cast<std::size_t>(k)] += sigma * load(&weights.w2_transposed(row, k));
+    });
+  });
   SigmaSums<N, Scalar> sums;
-  for (std::size_t j = 0; j < kStage; ++j) sums.before[j] = before[j].sum();
-  for (Eigen::Index k = 0; k < N; ++k) {
-    sums.w2_sigma[k] = w2_sigma[static_cast<std::size_t>(k)].sum();
-  }
+  repeat<Stage>([&](int j) __attribute__((always_inline)) {
+    const auto stage = static_cast<std::size_t>(j);
+    sums.before[stage] = total<Scalar>(before[stage]);
+  });
+  repeat<N>([&](int k) __attribute__((always_inline)) {
+    sums.w2_sigma[k] = total<Scalar>(w2_sigma[static_cast<std::size_t>(k)]);
+  });
   return sums;
 }
 
 // factors.b[Stage] = (1 - sigma^2) / 2 (W2^T D) with W2^T D / 2 = W2(t0)^T kept_d + sum nu_j
-// sigma_j. pre = W1 z and w1_z = W1(t0) z of the stage.
+// sigma_j. keep and kappa as in sigma_pass().
 template <int Stage, int N, int L, typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE GradientSums<Scalar> gradient_pass(
-    const HiddenVector<L, Scalar>& w1_z, const HiddenVector<L, Scalar>& pre,
-    const NetworkWeights<N, L, Scalar>& weights, Vector<N, Scalar> kept_d,
-    std::array<Scalar, kStages> nu, StageFactors<N, L, Scalar>& factors) {
-  constexpr int kWidth = kLanes<Scalar>;
+    const FirstLayer<L, Scalar>& w1_z, const NetworkWeights<N, L, Scalar>& weights,
+    Vector<N, Scalar> kept_d, std::array<Scalar, kStages> nu, Scalar keep,
+    std::array<Scalar, kStages> kappa, StageFactors<L, Scalar>& factors) {
   constexpr auto kStage = static_cast<std::size_t>(Stage);
-  constexpr bool kMiddle = Stage > 0 && Stage < kStages - 1;
   using Lanes = Block<Scalar>;
-  Lanes sigma_squared = Lanes::Zero();
-  Lanes b_squared = Lanes::Zero();
-  Lanes with_theta = Lanes::Zero();
-  Lanes with_begin = Lanes::Zero();
-  for (Eigen::Index row = 0; row < kHiddenRows<L, Scalar>; row += kWidth) {
-    const auto block = [row](const HiddenVector<L, Scalar>& x) -> Lanes {
-      return x.template segment<kWidth>(row);
-    };
-    const auto w2 = [&weights, row](Eigen::Index k) -> Lanes {
-      return weights.w2_transposed.col(k).array().template segment<kWidth>(row);
-    };
-    Lanes back = kept_d[0] * w2(0);
-    for (Eigen::Index k = 1; k < N; ++k) back += kept_d[k] * w2(k);
-    for (std::size_t j = 0; j < kStage; ++j) back += nu[j] * block(factors.sigma[j]);
-    const Lanes squared = block(factors.sigma[kStage]).square();
-    const Lanes b = back * (Scalar(1) - squared);
-    factors.b[kStage].template segment<kWidth>(row) = b;
+  Lanes sigma_squared = spread(Scalar(0));
+  Lanes b_squared = spread(Scalar(0));
+  Lanes with_begin = spread(Scalar(0));
+  std::array<Lanes, kStages> with_b;
+  with_b.fill(spread(Scalar(0)));
+  for_each_block<Scalar, L>([&](int row) __attribute__((always_inline)) {
+    Lanes back = kept_d[0] * load(&weights.w2_transposed(row, 0));
+    repeat<N - 1>([&](int k) __attribute__((always_inline)) {
+      back += kept_d[k + 1] * load(&weights.w2_transposed(row, k + 1));
+    });
+    repeat<Stage>([&](int j) __attribute__((always_inline)) {
+      const auto stage = static_cast<std::size_t>(j);
+      back += nu[stage] * load(&factors.sigma(stage)[row]);
+    });
+    const Lanes sigma = load(&factors.sigma(kStage)[row]);
+    const Lanes squared = sigma * sigma;
+    const Lanes b = back - back * squared;
+    store<Scalar>(b, &factors.b[kStage][row]);
     sigma_squared += squared;
     b_squared += b * b;
-    with_theta += b * block(pre);
-    if constexpr (kMiddle) with_begin += b * block(w1_z);
-  }
-  GradientSums<Scalar> sums{sigma_squared.sum(), b_squared.sum(), with_theta.sum(), Scalar(0)};
-  if constexpr (kMiddle) sums.with_begin = with_begin.sum();
-  if constexpr (Stage == 0) sums.with_begin = sums.with_theta;
+    with_begin += b * w1_z.template at<Stage>(row, Scalar(1));
+    repeat<Stage>([&](int j) __attribute__((always_inline)) {
+      const auto stage = static_cast<std::size_t>(j);
+      with_b[stage] += b * load(&factors.b[stage][row]);
+    });
+  });
+  GradientSums<Scalar> sums;
+  sums.sigma_squared = total<Scalar>(sigma_squared);
+  sums.b_squared = total<Scalar>(b_squared);
+  sums.with_begin = total<Scalar>(with_begin);
+  sums.with_theta = keep * sums.with_begin;
+  repeat<Stage>([&](int j) __attribute__((always_inline)) {
+    const auto stage = static_cast<std::size_t>(j);
+    sums.with_theta += kappa[stage] * total<Scalar>(with_b[stage]);
+  });
   return sums;
 }
 
@@ -141,51 +221,55 @@ template <int Stage, int N, int L, typename Scalar>
 template <int N, int L, typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE Scalar
 update_weights(SpanPoint<Scalar> point, Matrix<N, kStages, Scalar> share,
-               const StageFactors<N, L, Scalar>& factors, const HiddenVector<L, Scalar>& w1_z1,
+               const StageFactors<L, Scalar>& factors, const HiddenVector<L, Scalar>& w1_z1,
                const NetworkInput<N, Scalar>& z0, const NetworkInput<N, Scalar>& z1, Scalar z01,
                Scalar z11, NetworkWeights<N, L, Scalar>& weights, HiddenVector<L, Scalar>& w1_z) {
-  constexpr int kWidth = kLanes<Scalar>;
   using Lanes = Block<Scalar>;
+  constexpr auto kInputs = static_cast<std::size_t>(kNetworkInputs<N>);
   // Spread over the lanes once, not once per block.
-  std::array<Lanes, static_cast<std::size_t>(kNetworkInputs<N>)> at_begin;
-  std::array<Lanes, static_cast<std::size_t>(kNetworkInputs<N>)> at_end;
-  for (Eigen::Index input = 0; input < kNetworkInputs<N>; ++input) {
-    at_begin[static_cast<std::size_t>(input)].setConstant(z0[input]);
-    at_end[static_cast<std::size_t>(input)].setConstant(z1[input]);
-  }
+  std::array<Lanes, kInputs> at_begin;
+  std::array<Lanes, kInputs> at_end;
+  repeat<kNetworkInputs<N>>([&](int i) __attribute__((always_inline)) {
+    at_begin[static_cast<std::size_t>(i)] = spread(z0[i]);
+    at_end[static_cast<std::size_t>(i)] = spread(z1[i]);
+  });
   const Scalar half_1 = Scalar(0.5) * point.gain[1];
   const Scalar half_2 = Scalar(0.5) * point.gain[2];
-  // One sum per column: a single one would be a chain of dependent additions.
-  std::array<Lanes, static_cast<std::size_t>(kNetworkInputs<N> + N)> squares;
-  for (Lanes& sum : squares) sum.setZero();
-  for (Eigen::Index row = 0; row < kHiddenRows<L, Scalar>; row += kWidth) {
-    const auto block = [row](const HiddenVector<L, Scalar>& x) -> Lanes {
-      return x.template segment<kWidth>(row);
-    };
-    const Lanes middle = half_1 * block(factors.b[1]) + half_2 * block(factors.b[2]);
-    const Lanes p = point.gain[0] * block(factors.b[0]) + middle;
-    const Lanes r = point.gain[3] * block(factors.b[3]) + middle;
-    w1_z.template segment<kWidth>(row) = point.keep * block(w1_z1) + z01 * p + z11 * r;
-    for (Eigen::Index input = 0; input < kNetworkInputs<N>; ++input) {
+  // With vectors one sum per column: a single one would be a chain of dependent additions.
+  std::array<Lanes, kLanes<Scalar> == 1 ? 1 : kInputs> squares;
+  squares.fill(spread(Scalar(0)));
+  for_each_block<Scalar, L, kW1Turn<N>>([&](int row) __attribute__((always_inline)) {
+    const Lanes middle = half_1 * load(&factors.b[1][row]) + half_2 * load(&factors.b[2][row]);
+    const Lanes p = point.gain[0] * load(&factors.b[0][row]) + middle;
+    const Lanes r = point.gain[3] * load(&factors.b[3][row]) + middle;
+    store<Scalar>(point.keep * load(&w1_z1[row]) + z01 * p + z11 * r, &w1_z[row]);
+    repeat<kNetworkInputs<N>>([&](int input) __attribute__((always_inline)) {
       const auto i = static_cast<std::size_t>(input);
-      auto w = weights.w1.col(input).array().template segment<kWidth>(row);
-      const Lanes updated = point.keep * w + at_begin[i] * p + at_end[i] * r;
-      squares[i] += updated * updated;
-      w = updated;
-    }
-    for (Eigen::Index k = 0; k < N; ++k) {
-      auto w = weights.w2_transposed.col(k).array().template segment<kWidth>(row);
-      Lanes updated = point.keep * w;
-      for (Eigen::Index j = 0; j < kStages; ++j) {
-        updated += share(k, j) * block(factors.sigma[static_cast<std::size_t>(j)]);
-      }
-      squares[static_cast<std::size_t>(kNetworkInputs<N> + k)] += updated * updated;
-      w = updated;
-    }
-  }
-  Lanes total = Lanes::Zero();
-  for (const Lanes& sum : squares) total += sum;
-  return total.sum();
+      Scalar* const w = &weights.w1(row, input);
+      const Lanes updated = point.keep * load<Scalar>(w) + at_begin[i] * p + at_end[i] * r;
+      squares[i % squares.size()] += updated * updated;
+      store<Scalar>(updated, w);
+    });
+  });
+  for_each_block<Scalar, L>([&](int row) __attribute__((always_inline)) {
+    std::array<Lanes, kStages> sigma;
+    repeat<kStages>([&](int j) __attribute__((always_inline)) {
+      const auto stage = static_cast<std::size_t>(j);
+      sigma[stage] = load(&factors.sigma(stage)[row]);
+    });
+    repeat<N>([&](int k) __attribute__((always_inline)) {
+      Scalar* const w = &weights.w2_transposed(row, k);
+      Lanes updated = point.keep * load<Scalar>(w);
+      repeat<kStages>([&](int j) __attribute__((always_inline)) {
+        updated += share(k, j) * sigma[static_cast<std::size_t>(j)];
+      });
+      squares[static_cast<std::size_t>(k) % squares.size()] += updated * updated;
+      store<Scalar>(updated, w);
+    });
+  });
+  Lanes sum = spread(Scalar(0));
+  for (const Lanes& part : squares) sum += part;
+  return total<Scalar>(sum);
 }
 
 // theta <- shrink theta, likewise w1_z = W1 z; sigma of it, and psi_hat = W2 sigma.
@@ -193,27 +277,29 @@ template <int N, int L, typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE Vector<N, Scalar> shrink_and_look(
     Scalar shrink, NetworkWeights<N, L, Scalar>& weights, HiddenVector<L, Scalar>& w1_z,
     HiddenVector<L, Scalar>& sigma) {
-  constexpr int kWidth = kLanes<Scalar>;
   using Lanes = Block<Scalar>;
   std::array<Lanes, static_cast<std::size_t>(N)> psi;
-  for (Lanes& sum : psi) sum.setZero();
-  for (Eigen::Index row = 0; row < kHiddenRows<L, Scalar>; row += kWidth) {
-    const Lanes pre = shrink * w1_z.template segment<kWidth>(row);
+  psi.fill(spread(Scalar(0)));
+  for_each_block<Scalar, L, kW1Turn<N>>([&](int row) __attribute__((always_inline)) {
+    const Lanes pre = shrink * load<Scalar>(&w1_z[row]);
     const Lanes s = sigmoid(pre);
-    w1_z.template segment<kWidth>(row) = pre;
-    sigma.template segment<kWidth>(row) = s;
-    for (Eigen::Index input = 0; input < kNetworkInputs<N>; ++input) {
-      weights.w1.col(input).array().template segment<kWidth>(row) *= shrink;
-    }
-    for (Eigen::Index k = 0; k < N; ++k) {
-      auto w = weights.w2_transposed.col(k).array().template segment<kWidth>(row);
-      const Lanes w2 = shrink * w;
-      w = w2;
+    store<Scalar>(pre, &w1_z[row]);
+    store<Scalar>(s, &sigma[row]);
+    repeat<kNetworkInputs<N>>([&](int input) __attribute__((always_inline)) {
+      Scalar* const w = &weights.w1(row, input);
+      store<Scalar>(shrink * load<Scalar>(w), w);
+    });
+    repeat<N>([&](int k) __attribute__((always_inline)) {
+      Scalar* const w = &weights.w2_transposed(row, k);
+      const Lanes w2 = shrink * load<Scalar>(w);
+      store<Scalar>(w2, w);
       psi[static_cast<std::size_t>(k)] += s * w2;
-    }
-  }
+    });
+  });
   Vector<N, Scalar> psi_hat;
-  for (Eigen::Index k = 0; k < N; ++k) psi_hat[k] = psi[static_cast<std::size_t>(k)].sum();
+  for (Eigen::Index k = 0; k < N; ++k) {
+    psi_hat[k] = total<Scalar>(psi[static_cast<std::size_t>(k)]);
+  }
   return psi_hat;
 }
 

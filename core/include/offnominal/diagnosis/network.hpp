@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <offnominal/diagnosis/sigmoid.hpp>
 #include <offnominal/model/rigid_body_model.hpp>
@@ -51,28 +52,62 @@ template <int N, typename Scalar>
   return z;
 }
 
-// W2(0) = 0, so that psi_hat = 0 (eq. 6); W1(0) uniform in [-range, range] for the first
-// `hidden_units` rows, row by row, from SplitMix32 (G. L. Steele et al., OOPSLA 2014; 32-bit
-// constants of C. Wellons): the same seed gives the same weights for every scalar and machine, to
-// the scalar's rounding.
+// The initial weights of W1, row by row, uniform in [-range, range], from SplitMix32 (G. L. Steele
+// et al., OOPSLA 2014; 32-bit constants of C. Wellons): the same seed gives the same weights for
+// every scalar and machine, to the scalar's rounding.
+template <typename Scalar>
+class InitialWeights {
+ public:
+  InitialWeights(std::uint32_t seed, Scalar range) : state_(seed), range_(range) {}
+
+  [[nodiscard]] Scalar next() {
+    state_ += 0x9E3779B9U;
+    std::uint32_t bits = state_;
+    bits = (bits ^ (bits >> 16U)) * 0x21F0AAADU;
+    bits = (bits ^ (bits >> 15U)) * 0x735A2D97U;
+    bits ^= bits >> 15U;
+    // 24 bits are exact in float: [-1, 1) in steps of 2^-23.
+    const auto whole = static_cast<std::int32_t>(bits >> 8U) - (1 << 23);
+    return range_ * (static_cast<Scalar>(whole) / Scalar(1 << 23));
+  }
+
+ private:
+  std::uint32_t state_;
+  Scalar range_;
+};
+
+// W2(0) = 0, so that psi_hat = 0 (eq. 6); W1(0) of InitialWeights in the first `hidden_units` rows,
+// at most L; the rest zero.
+template <int N, int L, typename Scalar>
+void set_initial_weights(std::uint32_t seed, int hidden_units, Scalar range,
+                         NetworkWeights<N, L, Scalar>& weights) {
+  weights.w1.setZero();
+  weights.w2_transposed.setZero();
+  InitialWeights<Scalar> sequence(seed, range);
+  for (Eigen::Index unit = 0; unit < hidden_units && unit < L; ++unit) {
+    for (Eigen::Index input = 0; input < kNetworkInputs<N>; ++input) {
+      weights.w1(unit, input) = sequence.next();
+    }
+  }
+}
 template <int N, int L, typename Scalar>
 [[nodiscard]] NetworkWeights<N, L, Scalar> initial_weights(std::uint32_t seed, int hidden_units,
                                                            Scalar range) {
   NetworkWeights<N, L, Scalar> weights;
-  std::uint32_t state = seed;
-  for (Eigen::Index unit = 0; unit < hidden_units && unit < L; ++unit) {
-    for (Eigen::Index input = 0; input < kNetworkInputs<N>; ++input) {
-      state += 0x9E3779B9U;
-      std::uint32_t bits = state;
-      bits = (bits ^ (bits >> 16U)) * 0x21F0AAADU;
-      bits = (bits ^ (bits >> 15U)) * 0x735A2D97U;
-      bits ^= bits >> 15U;
-      // 24 bits are exact in float: [-1, 1) in steps of 2^-23.
-      const auto whole = static_cast<std::int32_t>(bits >> 8U) - (1 << 23);
-      weights.w1(unit, input) = range * (static_cast<Scalar>(whole) / Scalar(1 << 23));
-    }
-  }
+  set_initial_weights(seed, hidden_units, range, weights);
   return weights;
+}
+
+// |theta(0)|^2 of such weights, without room for them.
+template <int N, int L, typename Scalar>
+[[nodiscard]] Scalar initial_squared_norm(std::uint32_t seed, int hidden_units, Scalar range) {
+  InitialWeights<Scalar> sequence(seed, range);
+  Scalar sum(0);
+  for (int i = std::min(hidden_units, L) * kNetworkInputs<N>; i > 0; --i) {
+    const Scalar weight = sequence.next();
+    sum += weight * weight;
+  }
+  return sum;
 }
 
 // psi_hat at input z, rad/s^2 or m/s^2.

@@ -67,7 +67,12 @@ class TickIntegrator {
                                      const TickBegin<N, Scalar>& model,
                                      const EstimatorInput<N, Scalar>& input,
                                      const EstimatorState<N, L, Scalar>& begin)
-      : config_(config), model_(model), input_(input), begin_(begin) {
+      : config_(config),
+        model_(model),
+        input_(input),
+        begin_(begin),
+        w1_z_{begin.w1_z, {}},
+        factors_{{}, begin.sigma, {}} {
     const Scalar half(0.5);
     z_.z00 = begin.z_squared_norm;
     z_.z01 = begin.z.dot(input.z);
@@ -78,8 +83,7 @@ class TickIntegrator {
     largest_d_ = kLargestStep<Scalar> /
                  (config.period_s * config.learning_rate * std::sqrt(z_.z00 + z_.z11));
     radius_squared_ = config.weight_radius * config.weight_radius;
-    first_layer<N, L, Scalar>(begin.weights, begin.w1_z, input.z, w1_middle_, w1_z1_);
-    factors_.sigma[0] = begin.sigma;
+    first_layer<N, L, Scalar>(begin.weights, input.z, w1_z_.at_end);
   }
 
   [[nodiscard]] EIGEN_ALWAYS_INLINE TickEnd<N, Scalar> integrate() {
@@ -102,10 +106,10 @@ class TickIntegrator {
     // A tick that begins inside the dead-zone learns nothing, whatever its inner stages look like.
     rate_ = at.d.squaredNorm() > Scalar(0) ? config_.learning_rate : Scalar(0);
     TickEnd<N, Scalar> sum{begin_.omega, begin_.mu, {Scalar(1), {}}};
-    at = stage<0>(begin, middle.dq, begin_.w1_z, {}, z_.z00, at, h * half, h / 6, sum);
-    at = stage<1>(middle, middle.dq, w1_middle_, {z_.z0m}, z_.zmm, at, h * half, h / 3, sum);
-    at = stage<2>(middle, end.dq, w1_middle_, {z_.z0m, z_.zmm}, z_.zmm, at, h, h / 3, sum);
-    stage<3>(end, end.dq, w1_z1_, {z_.z01, z_.zm1, z_.zm1}, z_.z11, at, h, h / 6, sum);
+    at = stage<0>(begin, middle.dq, {}, z_.z00, at, h * half, h / 6, sum);
+    at = stage<1>(middle, middle.dq, {z_.z0m}, z_.zmm, at, h * half, h / 3, sum);
+    at = stage<2>(middle, end.dq, {z_.z0m, z_.zmm}, z_.zmm, at, h, h / 3, sum);
+    stage<3>(end, end.dq, {z_.z01, z_.zm1, z_.zm1}, z_.z11, at, h, h / 6, sum);
     return sum;
   }
 
@@ -113,9 +117,10 @@ class TickIntegrator {
   // nothing overflows where this is far from the scalar's largest number.
   [[nodiscard]] EIGEN_ALWAYS_INLINE Scalar squared_reach(const SpanPoint<Scalar>& theta) const {
     Scalar sum = theta.keep * theta.keep * begin_.theta_squared_norm;
-    for (std::size_t j = 0; j < kStages; ++j) {
+    repeat<kStages>([&](int i) __attribute__((always_inline)) {
+      const auto j = static_cast<std::size_t>(i);
       sum += theta.gain[j] * theta.gain[j] * gradient_reach_[j];
-    }
+    });
     return sum;
   }
   [[nodiscard]] EIGEN_ALWAYS_INLINE const InputProducts<Scalar>& input_products() const {
@@ -127,13 +132,15 @@ class TickIntegrator {
   EIGEN_ALWAYS_INLINE void finish(const SpanPoint<Scalar>& theta,
                                   EstimatorState<N, L, Scalar>& state) const {
     Matrix<N, kStages, Scalar> share;
-    for (Eigen::Index j = 0; j < kStages; ++j) {
+    repeat<kStages>([&](int j) __attribute__((always_inline)) {
       const auto stage = static_cast<std::size_t>(j);
-      for (Eigen::Index k = 0; k < N; ++k) share(k, j) = theta.gain[stage] * d_[stage][k];
-    }
+      repeat<N>([&](int k) __attribute__((always_inline)) {
+        share(k, j) = theta.gain[stage] * d_[stage][k];
+      });
+    });
     const Scalar squared =
-        update_weights<N, L, Scalar>(theta, share, factors_, w1_z1_, state.z, input_.z, z_.z01,
-                                     z_.z11, state.weights, state.w1_z);
+        update_weights<N, L, Scalar>(theta, share, factors_, w1_z_.at_end, state.z, input_.z,
+                                     z_.z01, z_.z11, state.weights, state.w1_z);
     const Scalar margin = rounding_allowance<L, Scalar>(Scalar(1));
     const Scalar to_ball = std::sqrt(radius_squared_ * (Scalar(1) - Scalar(2) * margin) / squared);
     const Scalar shrink = squared > radius_squared_ * (Scalar(1) - margin) ? to_ball : Scalar(1);
@@ -147,12 +154,16 @@ class TickIntegrator {
   template <int S>
   EIGEN_ALWAYS_INLINE StagePoint<N, Scalar> stage(const StageSignals<N, Scalar>& signals,
                                                   const Vector<N, Scalar>& next_dq,
-                                                  const HiddenVector<L, Scalar>& w1_z,
                                                   const std::array<Scalar, kStages>& z_z, Scalar zz,
                                                   const StagePoint<N, Scalar>& at, Scalar advance,
                                                   Scalar weight, TickEnd<N, Scalar>& sum) {
     d_[static_cast<std::size_t>(S)] = at.d;
-    const StageOutput<N, Scalar> output = network_output_at<S>(w1_z, z_z, at);
+    std::array<Scalar, kStages> kappa{};
+    repeat<S>([&](int i) __attribute__((always_inline)) {
+      const auto j = static_cast<std::size_t>(i);
+      kappa[j] = at.theta.gain[j] * z_z[j];
+    });
+    const StageOutput<N, Scalar> output = network_output_at<S>(kappa, at);
     StagePoint<N, Scalar> next;
     const Vector<N, Scalar> omega_dot = config_.alpha * at.e + signals.nominal_ddq + output.psi_hat;
     const Scalar mu_dot = signals.mu_bar - config_.alpha * at.mu;
@@ -164,43 +175,43 @@ class TickIntegrator {
       next.e = next_dq - next.omega;
       next.d = dead_zone<N, Scalar>(next.e, next.mu, config_.dead_zone, largest_d_);
     }
-    learn<S>(gradient_at<S>(w1_z, zz, at, output), at, advance, weight, next, sum);
+    learn<S>(gradient_at<S>(kappa, zz, at, output), at, advance, weight, next, sum);
     return next;
   }
 
   // psi_hat at a stage; needs the directions d of the stages before.
   template <int S>
   EIGEN_ALWAYS_INLINE StageOutput<N, Scalar> network_output_at(
-      const HiddenVector<L, Scalar>& w1_z, const std::array<Scalar, kStages>& z_z,
-      const StagePoint<N, Scalar>& at) {
+      const std::array<Scalar, kStages>& kappa, const StagePoint<N, Scalar>& at) {
     if constexpr (S == 0) {
       return {begin_.psi_hat, begin_.psi_hat};
     } else {
-      constexpr auto s = static_cast<std::size_t>(S);
-      std::array<Scalar, kStages> kappa{};
-      for (std::size_t j = 0; j < s; ++j) kappa[j] = at.theta.gain[j] * z_z[j];
       const SigmaSums<N, Scalar> sums =
-          sigma_pass<S, N, L, Scalar>(w1_z, begin_.weights, at.theta.keep, kappa, factors_, pre_);
+          sigma_pass<S, N, L, Scalar>(w1_z_, begin_.weights, at.theta.keep, kappa, factors_);
       StageOutput<N, Scalar> output{at.theta.keep * sums.w2_sigma, sums.w2_sigma};
-      for (std::size_t j = 0; j < s; ++j) {
+      repeat<S>([&](int i) __attribute__((always_inline)) {
+        const auto j = static_cast<std::size_t>(i);
         output.psi_hat += (at.theta.gain[j] * sums.before[j]) * d_[j];
-      }
+      });
       return output;
     }
   }
 
   // The inner products of a stage's gradient; its factors stay in factors_.
   template <int S>
-  EIGEN_ALWAYS_INLINE GradientProducts<Scalar> gradient_at(const HiddenVector<L, Scalar>& w1_z,
+  EIGEN_ALWAYS_INLINE GradientProducts<Scalar> gradient_at(const std::array<Scalar, kStages>& kappa,
                                                            Scalar zz,
                                                            const StagePoint<N, Scalar>& at,
                                                            const StageOutput<N, Scalar>& output) {
     constexpr auto s = static_cast<std::size_t>(S);
     std::array<Scalar, kStages> nu{};
-    for (std::size_t j = 0; j < s; ++j) nu[j] = Scalar(0.5) * at.theta.gain[j] * d_[j].dot(at.d);
+    repeat<S>([&](int i) __attribute__((always_inline)) {
+      const auto j = static_cast<std::size_t>(i);
+      nu[j] = Scalar(0.5) * at.theta.gain[j] * d_[j].dot(at.d);
+    });
     const GradientSums<Scalar> sums =
-        gradient_pass<S, N, L, Scalar>(w1_z, S == 0 ? w1_z : pre_, begin_.weights,
-                                       (Scalar(0.5) * at.theta.keep) * at.d, nu, factors_);
+        gradient_pass<S, N, L, Scalar>(w1_z_, begin_.weights, (Scalar(0.5) * at.theta.keep) * at.d,
+                                       nu, at.theta.keep, kappa, factors_);
     const Scalar w2_squared = sums.sigma_squared * at.d.squaredNorm();
     gradient_reach_[s] = sums.b_squared * (z_.z00 + z_.z11) + w2_squared;
     return {sums.with_begin + at.d.dot(output.with_w2_begin),
@@ -218,7 +229,10 @@ class TickIntegrator {
     const Scalar step = weight * rate_;
     const Scalar step_pull = step * pull;
     sum.theta.keep -= step_pull * at.theta.keep;
-    for (std::size_t j = 0; j < s; ++j) sum.theta.gain[j] -= step_pull * at.theta.gain[j];
+    repeat<S>([&](int i) __attribute__((always_inline)) {
+      const auto j = static_cast<std::size_t>(i);
+      sum.theta.gain[j] -= step_pull * at.theta.gain[j];
+    });
     sum.theta.gain[s] = step;
     if constexpr (S + 1 < kStages) {
       const Scalar move = advance * rate_;
@@ -244,10 +258,8 @@ class TickIntegrator {
   Scalar rate_{};  // of learning, in this tick
   Scalar radius_squared_{};
   InputProducts<Scalar> z_;
-  HiddenVector<L, Scalar> w1_middle_;
-  HiddenVector<L, Scalar> w1_z1_;
-  HiddenVector<L, Scalar> pre_;
-  StageFactors<N, L, Scalar> factors_;
+  FirstLayer<L, Scalar> w1_z_;
+  StageFactors<L, Scalar> factors_;
   std::array<Vector<N, Scalar>, kStages> d_;
   std::array<Scalar, kStages> gradient_reach_{};
 };
