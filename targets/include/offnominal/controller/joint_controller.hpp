@@ -172,8 +172,9 @@ class JointController {
            status != hal::Status::kNotSynchronised;
   }
 
+  // The phases of a tick that need much of the stack give it back before the next one begins.
   template <typename Bus, typename Drives>
-  static void receive(Bus& bus, Drives& drives, Data& data) {
+  [[gnu::noinline]] static void receive(Bus& bus, Drives& drives, Data& data) {
     std::array<hal::ReceivedFrame, kBatch> frames;
     for (int batch = 0; batch < kMostBatches; ++batch) {
       const std::size_t count = bus.receive(frames);
@@ -277,7 +278,7 @@ class JointController {
   }
 
   template <typename ReferenceAt, typename Bus>
-  void watch(const ReferenceAt& reference_at, Bus& bus, Data& data) const {
+  [[gnu::noinline]] void watch(const ReferenceAt& reference_at, Bus& bus, Data& data) const {
     const bool armed = data.state == ControllerState::kArmed;
     const bool passive = data.state == ControllerState::kPassive && config_.watch_when_passive;
     if (!armed && !passive) return;
@@ -302,8 +303,8 @@ class JointController {
 
   // Computed torque and compensation, held to what the joints' drives can give.
   template <typename ReferenceAt>
-  [[nodiscard]] Vector<N, Scalar> wanted_torque(const ReferenceAt& reference_at,
-                                                const Data& data) const {
+  [[nodiscard, gnu::noinline]] Vector<N, Scalar> wanted_torque(const ReferenceAt& reference_at,
+                                                               const Data& data) const {
     const Scalar time_s = run_time_s(data);
     Vector<N, Scalar> tau =
         computed_torque<N, Scalar>(monitor_.model(), config_.gains, reference_at(time_s),
@@ -317,7 +318,7 @@ class JointController {
   }
 
   template <typename ReferenceAt>
-  void command(const ReferenceAt& reference_at, Data& data) const {
+  [[gnu::noinline]] void command(const ReferenceAt& reference_at, Data& data) const {
     if (data.state == ControllerState::kFault) return;
     if (!is_running(data)) {
       data.commands.fill({});
@@ -331,7 +332,7 @@ class JointController {
   }
 
   template <typename Bus, typename Drives>
-  void send(Microseconds begin_us, Bus& bus, Drives& drives, Data& data) const {
+  [[gnu::noinline]] void send(Microseconds begin_us, Bus& bus, Drives& drives, Data& data) const {
     std::array<hal::Frame, Drives::kMaxOutgoing> frames;
     const hal::Heartbeat heartbeat{data.state, static_cast<std::uint8_t>(data.fault), data.ticks};
     const std::size_t count = drives.outgoing(data.commands, heartbeat, frames);
