@@ -89,17 +89,12 @@ class Monitor {
   // Starts a run at a sample, time 0. Any refusal leaves `state` unchanged.
   [[nodiscard]] Status reset(const Sample& sample, State& state) const {
     if (!ready_) return Status::kNotInitialised;
-    if (const Status status = validate<N>(sample, config_.chain.joints); status != Status::kOk) {
-      return status;
-    }
     ForwardDynamics<N, Scalar> nominal;
-    const Status solved =
-        forward_dynamics(model_, sample.q, sample.dq, sample.tau, Scalar(0), nominal);
-    if (solved != Status::kOk) return solved;
-    const Status started = offnominal::reset(
-        config_.estimator, network_input<N, Scalar>(sample.q, sample.dq, sample.tau), nominal.ddq,
-        bound_at(sample), state.estimator);
-    if (started != Status::kOk) return started;
+    EstimatorInput<N, Scalar> input;
+    Status status = look(sample, Scalar(0), nominal, input);
+    if (status != Status::kOk) return status;
+    status = offnominal::reset(config_.estimator, input, state.estimator);
+    if (status != Status::kOk) return status;
     state.estimator.mu = velocity_allowance();
     state.sample = sample;
     state.inertia_factor = nominal.factor;
@@ -115,17 +110,12 @@ class Monitor {
   // Any refusal leaves `state` unchanged.
   [[nodiscard]] Status resume(const Sample& sample, std::uint32_t missed, State& state) const {
     if (!ready_ || !state.initialised) return Status::kNotInitialised;
-    if (const Status status = validate<N>(sample, config_.chain.joints); status != Status::kOk) {
-      return status;
-    }
     const std::uint32_t tick = state.tick + missed + 1;
-    const Scalar time_s = static_cast<Scalar>(tick) * config_.estimator.period_s;
     ForwardDynamics<N, Scalar> nominal;
-    const Status status =
-        forward_dynamics(model_, sample.q, sample.dq, sample.tau, time_s, nominal);
+    EstimatorInput<N, Scalar> input;
+    const Status status = look(sample, time_at(tick), nominal, input);
     if (status != Status::kOk) return status;
-    offnominal::resume(network_input<N, Scalar>(sample.q, sample.dq, sample.tau), nominal.ddq,
-                       bound_at(sample), velocity_allowance(), state.estimator);
+    offnominal::resume(input, velocity_allowance(), state.estimator);
     state.tick = tick;
     state.sample = sample;
     state.inertia_factor = nominal.factor;
@@ -137,15 +127,11 @@ class Monitor {
   // is told of the gap.
   [[nodiscard]] Status step(const Sample& sample, State& state, Output& output) const {
     if (!ready_ || !state.initialised) return Status::kNotInitialised;
-    if (const Status status = validate<N>(sample, config_.chain.joints); status != Status::kOk) {
-      return status;
-    }
-    const Scalar end_s = static_cast<Scalar>(state.tick + 1) * config_.estimator.period_s;
+    const Scalar end_s = time_at(state.tick + 1);
     ForwardDynamics<N, Scalar> nominal;
-    Status status = forward_dynamics(model_, sample.q, sample.dq, sample.tau, end_s, nominal);
+    EstimatorInput<N, Scalar> input;
+    Status status = look(sample, end_s, nominal, input);
     if (status != Status::kOk) return status;
-    const EstimatorInput<N, Scalar> input{network_input<N, Scalar>(sample.q, sample.dq, sample.tau),
-                                          nominal.ddq, bound_at(sample)};
     status = offnominal::step(config_.estimator, begin_of_tick(sample.tau, state), input,
                               state.estimator);
     if (status != Status::kOk) return status;
@@ -169,6 +155,24 @@ class Monitor {
   [[nodiscard]] const RigidBodyModel<N, Scalar>& model() const { return model_; }
 
  private:
+  // What the model and the bound say at a sample; refuses one that they cannot judge.
+  [[nodiscard]] Status look(const Sample& sample, Scalar time_s,
+                            ForwardDynamics<N, Scalar>& nominal,
+                            EstimatorInput<N, Scalar>& input) const {
+    Status status = validate<N>(sample, config_.chain.joints);
+    if (status != Status::kOk) return status;
+    status = forward_dynamics(model_, sample.q, sample.dq, sample.tau, time_s, nominal);
+    if (status != Status::kOk) return status;
+    input.z = network_input<N, Scalar>(sample.q, sample.dq, sample.tau);
+    input.nominal_ddq = nominal.ddq;
+    input.mu_bar = bound_at(sample);
+    return Status::kOk;
+  }
+
+  [[nodiscard]] Scalar time_at(std::uint32_t tick) const {
+    return static_cast<Scalar>(tick) * config_.estimator.period_s;
+  }
+
   // The velocity's own error e_v enters e directly, through omega(0) and through the filter's
   // input: together at most 2 |e_v|. With mu starting there and alpha times it in the filter's
   // input, mu stays exactly that much above the filtered bound.
@@ -197,8 +201,7 @@ class Monitor {
                                             const State& state) const {
     const Sample& at = state.sample;
     if (!model_.has_torque_path) return tau - at.tau;
-    const Scalar time_s = static_cast<Scalar>(state.tick) * config_.estimator.period_s;
-    const JointEffects<N, Scalar> effects = joint_effects(model_, at.q, at.dq, time_s);
+    const JointEffects<N, Scalar> effects = joint_effects(model_, at.q, at.dq, time_at(state.tick));
     return load_torque(model_, effects, tau) - load_torque(model_, effects, at.tau);
   }
 

@@ -29,8 +29,7 @@ class WatchedRobot {
     config_.hidden_units = 1;
     config_.learning_rate = 0;
     EXPECT_EQ(validate<1>(config_), Status::kOk);
-    EXPECT_EQ((reset<N, 1, double>(config_, input().z, input().nominal_ddq, bound, state_)),
-              Status::kOk);
+    EXPECT_EQ(reset(config_, input(), state_), Status::kOk);
   }
 
   // True where |e| > mu at the tick's end.

@@ -64,9 +64,7 @@ EstimatorInput<N, Scalar> estimator_input(const PlainSample& sample) {
 template <int N, int L, typename Scalar>
 Status reset_at(const EstimatorConfig<Scalar>& config, const PlainSample& sample,
                 EstimatorState<N, L, Scalar>& state) {
-  return reset<N, L, Scalar>(config, to_input<N, Scalar>(sample),
-                             sample.nominal.template cast<Scalar>(),
-                             static_cast<Scalar>(sample.mu_bar), state);
+  return reset(config, estimator_input<N, Scalar>(sample), state);
 }
 
 // theta in the plain estimator's order: `hidden` units of W1 row by row, W2 column by column.

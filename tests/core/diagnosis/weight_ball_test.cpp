@@ -101,9 +101,7 @@ class RandomLife {
     last_.z[0] = 1;
     last_.nominal_ddq.setZero();
     last_.mu_bar = Scalar(0.1);
-    EXPECT_EQ(
-        (reset<kJoints, kHidden, Scalar>(config_, last_.z, last_.nominal_ddq, last_.mu_bar, state)),
-        Status::kOk);
+    EXPECT_EQ(reset(config_, last_, state), Status::kOk);
     mood_ = static_cast<Mood>(generator_() % 6);
   }
 

@@ -60,7 +60,8 @@ class TheoremEstimator {
     config_.period_s = kPeriod;
     config_.hidden_units = 4;
     const auto z = network_input<2, double>(Vector2::Zero(), Vector2::Zero(), Vector2::Zero());
-    EXPECT_EQ(reset(config_, z, Vector2::Zero().eval(), kBound, state_), Status::kOk);
+    const EstimatorInput<2, double> at_rest{z, Vector2::Zero(), kBound};
+    EXPECT_EQ(reset(config_, at_rest, state_), Status::kOk);
   }
 
   bool step(const Vector2& velocity) {

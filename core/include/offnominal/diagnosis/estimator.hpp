@@ -25,24 +25,23 @@ namespace detail {
 
 // Puts a sample, and what the network makes of it, where the next tick looks for its beginning.
 template <int N, int L, typename Scalar>
-void begin_at(const NetworkInput<N, Scalar>& z, const Vector<N, Scalar>& nominal_ddq, Scalar mu_bar,
-              EstimatorState<N, L, Scalar>& state) {
-  state.z = z;
-  state.z_squared_norm = z.squaredNorm();
-  state.nominal_ddq = nominal_ddq;
-  state.mu_bar = mu_bar;
-  state.w1_z = state.weights.w1.lazyProduct(z).array();
+void begin_at(const EstimatorInput<N, Scalar>& sample, EstimatorState<N, L, Scalar>& state) {
+  state.z = sample.z;
+  state.z_squared_norm = sample.z.squaredNorm();
+  state.nominal_ddq = sample.nominal_ddq;
+  state.mu_bar = sample.mu_bar;
+  state.w1_z = state.weights.w1.lazyProduct(sample.z).array();
   state.sigma = sigmoid(state.w1_z);
 }
 
 }  // namespace detail
 
-// Starts at a sample: omega(0) = dq(0), mu(0) = 0, W2(0) = 0 and seeded W1(0). `nominal_ddq` and
-// `mu_bar` belong to that sample. kInvalidInitialWeights where |theta(0)| would not lie inside the
-// ball of radius M, `state` is then unchanged.
+// Starts at a sample: omega(0) = dq(0), mu(0) = 0, W2(0) = 0 and seeded W1(0).
+// kInvalidInitialWeights where |theta(0)| would not lie inside the ball of radius M, `state` is
+// then unchanged.
 template <int N, int L, typename Scalar>
-[[nodiscard]] Status reset(const EstimatorConfig<Scalar>& config, const NetworkInput<N, Scalar>& z,
-                           const Vector<N, Scalar>& nominal_ddq, Scalar mu_bar,
+[[nodiscard]] Status reset(const EstimatorConfig<Scalar>& config,
+                           const EstimatorInput<N, Scalar>& sample,
                            EstimatorState<N, L, Scalar>& state) {
   const Scalar squared = initial_squared_norm<N, L, Scalar>(config.seed, config.hidden_units,
                                                             config.initial_weight_range);
@@ -50,11 +49,11 @@ template <int N, int L, typename Scalar>
   // In place: on a controller's stack there is no room for another state.
   set_initial_weights(config.seed, config.hidden_units, config.initial_weight_range, state.weights);
   state.theta_squared_norm = squared_norm(state.weights);
-  state.omega = z.template segment<N>(1 + N);
+  state.omega = sample.z.template segment<N>(1 + N);
   state.mu = Scalar(0);
   state.error.setZero();
   state.psi_hat.setZero();
-  detail::begin_at(z, nominal_ddq, mu_bar, state);
+  detail::begin_at(sample, state);
   return Status::kOk;
 }
 
@@ -62,12 +61,12 @@ template <int N, int L, typename Scalar>
 // is moved to the new velocity for it, as if no time had passed. `mu_jump` >= 0 comes on top of mu,
 // for what the velocity's own error puts into omega there.
 template <int N, int L, typename Scalar>
-void resume(const NetworkInput<N, Scalar>& z, const Vector<N, Scalar>& nominal_ddq, Scalar mu_bar,
-            Scalar mu_jump, EstimatorState<N, L, Scalar>& state) {
-  detail::begin_at(z, nominal_ddq, mu_bar, state);
-  state.omega = z.template segment<N>(1 + N) - state.error;
+void resume(const EstimatorInput<N, Scalar>& sample, Scalar mu_jump,
+            EstimatorState<N, L, Scalar>& state) {
+  detail::begin_at(sample, state);
+  state.omega = sample.z.template segment<N>(1 + N) - state.error;
   state.mu += mu_jump;
-  state.psi_hat = state.weights.w2_transposed.transpose().lazyProduct(state.sigma.matrix());
+  state.psi_hat = network_output(state.weights, state.sigma);
 }
 
 // Advances the estimator by one tick that begins with `begin`. kNumericOverflow where the input is

@@ -30,7 +30,7 @@ struct TickBegin {
   Scalar mu_bar{};                // bound, >= 0
 };
 
-// The signals at the end of one tick.
+// The signals at a sample: the end of one tick, or the beginning of the first.
 template <int N, typename Scalar>
 struct EstimatorInput {
   NetworkInput<N, Scalar> z;

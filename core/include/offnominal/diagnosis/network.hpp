@@ -110,13 +110,20 @@ template <int N, int L, typename Scalar>
   return sum;
 }
 
-// psi_hat at input z, rad/s^2 or m/s^2.
+// psi_hat, rad/s^2 or m/s^2, of the hidden units' values.
+template <int N, int L, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> network_output(const NetworkWeights<N, L, Scalar>& weights,
+                                               const HiddenVector<L, Scalar>& sigma) {
+  return weights.w2_transposed.transpose().lazyProduct(sigma.matrix());
+}
+
+// psi_hat at input z.
 template <int N, int L, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> network_output(const NetworkWeights<N, L, Scalar>& weights,
                                                const NetworkInput<N, Scalar>& z) {
   const HiddenVector<L, Scalar> pre = weights.w1.lazyProduct(z).array();
   const HiddenVector<L, Scalar> sigma = sigmoid(pre);
-  return weights.w2_transposed.transpose().lazyProduct(sigma.matrix());
+  return network_output(weights, sigma);
 }
 
 template <int N, int L, typename Scalar>
