@@ -1,7 +1,8 @@
 # cmake -DWAY=find_package|add_subdirectory -DSOURCE=<checkout> -DWORK=<folder, wiped> ...
 #
-# Installs the core into an empty prefix as a firmware project would (no tools, no tests), then
-# builds and runs tests/package/foreign against it; or adds the checkout to it as a subfolder.
+# Installs the headers into an empty prefix as a firmware project would (no tools, no tests), then
+# builds and runs tests/package/foreign against it; or adds the checkout to it as a subfolder. With
+# -DCOMMAND_FILE=<offnominal> also its joint controller, whose model that command writes.
 cmake_minimum_required(VERSION 3.22)
 
 function(run)
@@ -32,12 +33,24 @@ else()
   set(where "-DOFFNOMINAL_FOLDER=${SOURCE}")
 endif()
 
-run("${CMAKE_COMMAND}" -S "${SOURCE}/tests/package/foreign" -B "${WORK}/foreign" ${common} ${where})
+set(model)
+if(COMMAND_FILE)
+  set(model "-DOFFNOMINAL_COMMAND=${COMMAND_FILE}" "-DROBOT=${SOURCE}/robots/two_link.toml")
+endif()
+run("${CMAKE_COMMAND}" -S "${SOURCE}/tests/package/foreign" -B "${WORK}/foreign" ${common} ${where} ${model})
 run("${CMAKE_COMMAND}" --build "${WORK}/foreign")
 run("${WORK}/foreign/firmware")
 message(STATUS "${output}")
 if(NOT output MATCHES "offnominal ${VERSION}: fault after")
   message(FATAL_ERROR "expected the words `offnominal ${VERSION}: fault after`")
+endif()
+
+if(COMMAND_FILE)
+  run("${WORK}/foreign/controller")
+  message(STATUS "${output}")
+  if(NOT output MATCHES "joint1 is held with 44.1")
+    message(FATAL_ERROR "expected the words `joint1 is held with 44.1`")
+  endif()
 endif()
 
 # The package must have been found where it was put, not somewhere on the machine.
