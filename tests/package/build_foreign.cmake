@@ -5,14 +5,7 @@
 # -DCOMMAND_FILE=<offnominal> also its joint controller, whose model that command writes.
 cmake_minimum_required(VERSION 3.22)
 
-function(run)
-  execute_process(COMMAND ${ARGV} RESULT_VARIABLE outcome OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  if(NOT outcome EQUAL 0)
-    string(REPLACE ";" " " command "${ARGV}")
-    message(FATAL_ERROR "${command}\n${text}")
-  endif()
-  set(output "${text}" PARENT_SCOPE)
-endfunction()
+include("${CMAKE_CURRENT_LIST_DIR}/run.cmake")
 
 # Either way with the build type that the other has not.
 if(WAY STREQUAL "find_package")
