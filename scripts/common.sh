@@ -55,3 +55,8 @@ build() {
   ninja -C "$dir" -j "$(jobs_allowed)" ${NINJA_OPTIONS:-} "$@" 2>&1 |
     sed -u '/^ninja: Entering directory/d; /Re-checking globbed directories/d; /^ninja: no work to do/d' >&2
 }
+
+# build_firmware: the Cortex-M firmware, both processors; needs the command, which writes its constants.
+build_firmware() {
+  build release offnominal && build cortex-m7 && build cortex-m4
+}

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# setup.sh [build|test|vcan]: installs what the project needs and this machine lacks; with `build`, what a
-# build needs, with `vcan`, what ./dev vcan needs. Quick when nothing is missing.
+# setup.sh [build|test|vcan|firmware]: installs what the project needs and this machine lacks; with `build`,
+# what a build needs, with `vcan`, what ./dev vcan needs, with `firmware`, what a firmware needs beside a
+# build. Quick when nothing is missing.
 set -euo pipefail
 # shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 scope="${1:-test}"
-[[ "$scope" == build || "$scope" == test || "$scope" == vcan ]] || die "setup.sh [build|test|vcan]"
+[[ "$scope" =~ ^(build|test|vcan|firmware)$ ]] || die "setup.sh [build|test|vcan|firmware]"
 
 install_packages() {
   local package stand_in purpose wanted=() missing=()
@@ -48,4 +49,4 @@ install_web() {
 }
 
 install_packages
-[[ "$scope" == vcan ]] || install_web
+[[ "$scope" == vcan || "$scope" == firmware ]] || install_web

@@ -114,6 +114,7 @@ export NINJA_OPTIONS="-k 0"
 check "setup" "$root/scripts/setup.sh"
 check "lint: layout (clang-format)" "$root/scripts/lint.sh" format
 check "build (release)" build release
+check "build (firmware)" build_firmware
 check "lint: static analysis (clang-tidy)" "$root/scripts/lint.sh" tidy
 suite release
 bus_suite release
