@@ -1,0 +1,60 @@
+# cmake -DFOLDER=<build folder of targets/cortex_m> -P check_images.cmake
+# cmake -DNM=<nm> -DIMAGE=<program> -DEXPECTED=<symbol> -P check_images.cmake
+#
+# Fails when a firmware image, or its map, holds anything of a heap, of exceptions, of RTTI or of
+# guarded statics. With EXPECTED it is a control: it fails unless that symbol is found.
+cmake_minimum_required(VERSION 3.22)
+
+set(forbidden
+    "(malloc|free|calloc|realloc|_malloc_r|_free_r|_sbrk|_sbrk_r|_Zn[wa][jm].*|_Zd[la]P.*|__cxa_throw|__cxa_guard_acquire|__cxa_atexit|_Unwind_.*|__gxx_personality.*|_ZTI.*)")
+
+# forbidden_in(<image> <variable>): the symbols of the image that must not be there.
+function(forbidden_in image variable)
+  execute_process(COMMAND "${NM}" --format=posix "${image}" OUTPUT_VARIABLE text RESULT_VARIABLE outcome
+                  ERROR_VARIABLE complaint)
+  if(NOT outcome EQUAL 0)
+    message(FATAL_ERROR "${NM} ${image}: ${complaint}")
+  endif()
+  string(REGEX MATCHALL "[^\n]+" lines "${text}")
+  list(LENGTH lines count)
+  if(count LESS 20)
+    message(FATAL_ERROR "${image}: ${count} symbols, so there is nothing to judge")
+  endif()
+  set(found)
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "[ @].*" "" symbol "${line}")
+    if(symbol MATCHES "^${forbidden}$")
+      list(APPEND found "${symbol}")
+    endif()
+  endforeach()
+  set(${variable} "${found}" PARENT_SCOPE)
+endfunction()
+
+if(DEFINED EXPECTED)
+  forbidden_in("${IMAGE}" found)
+  if(NOT EXPECTED IN_LIST found)
+    message(FATAL_ERROR "the check did not find ${EXPECTED} in ${IMAGE}: it could not fail")
+  endif()
+  return()
+endif()
+
+set(NM arm-none-eabi-nm)
+file(GLOB images "${FOLDER}/*.elf")
+list(LENGTH images image_count)
+if(image_count LESS 4)
+  message(FATAL_ERROR "${FOLDER}: ${image_count} images; ./dev firmware builds them")
+endif()
+foreach(image IN LISTS images)
+  forbidden_in("${image}" found)
+  if(EXISTS "${image}.map")
+    file(READ "${image}.map" map)
+    # Sections of functions and where archives' members were asked for by name.
+    if(map MATCHES "[ .(]${forbidden}[)\n]")
+      list(APPEND found "in the map: ${CMAKE_MATCH_1}")
+    endif()
+  endif()
+  if(found)
+    message(FATAL_ERROR "${image} holds ${found}")
+  endif()
+endforeach()
+message(STATUS "${image_count} images without heap, exceptions, RTTI and guarded statics")
