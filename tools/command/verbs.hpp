@@ -27,6 +27,7 @@ void register_motion(CLI::App& app, ExitCode& exit_code);
 void register_paper(CLI::App& app, ExitCode& exit_code);
 void register_replay(CLI::App& app, ExitCode& exit_code);
 void register_sil(CLI::App& app, ExitCode& exit_code);
+void register_wcet(CLI::App& app, ExitCode& exit_code);
 
 /// Every verb that this build has.
 [[nodiscard]] const std::vector<RegisterVerb>& all_verbs();

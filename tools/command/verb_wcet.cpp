@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "command/command_line.hpp"
+#include "command/progress.hpp"
+#include "command/verbs.hpp"
+#include "paper/two_link_robot.hpp"
+#include "report/page.hpp"
+#include "robot/robot_file.hpp"
+#include "wcet/wcet_report.hpp"
+
+namespace offnominal::tools {
+namespace {
+
+struct Options {
+  std::optional<std::string> robot;
+  std::string scalar = "float";
+  bool fd = false;
+  wcet::WcetSettings settings;
+  std::optional<std::string> report;
+  bool json = false;
+};
+
+void run(Options& options, const std::string& command_line) {
+  const RobotDescription robot =
+      options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
+  wcet::WcetSettings& settings = options.settings;
+  settings.precision =
+      options.scalar == "float" ? wcet::Precision::kFloat : wcet::Precision::kDouble;
+  settings.format = options.fd ? hal::FrameFormat::kFd : hal::FrameFormat::kClassic;
+  Progress progress;
+  const wcet::WcetResult result =
+      wcet::measure_wcet(robot, settings, [&progress](const std::string& what, std::int64_t done) {
+        progress.begin(done > 0 ? fmt::format("{}: {} done", what, done) : what);
+      });
+  progress.end();
+  if (options.report) report::write_page(*options.report, wcet::page_of(result, command_line));
+  if (options.json) {
+    std::cout << wcet::to_json(result).dump(2) << '\n';
+    return;
+  }
+  std::cout << wcet::text_of(result);
+  if (options.report) std::cout << "written: " << *options.report << '\n';
+}
+
+void add_measurement_options(CLI::App& verb, wcet::WcetSettings& settings) {
+  verb.add_option("--ticks", settings.ticks, "Ticks of the worst input, warm cache")
+      ->check(CLI::Range(std::int64_t{1}, wcet::kMostTicks))
+      ->capture_default_str();
+  verb.add_option("--cold-ticks", settings.cold_ticks,
+                  "Ticks with a cold cache [a thousandth of --ticks, 100 to 10000]")
+      ->check(CLI::Range(std::int64_t{1}, wcet::kMostTicks));
+  verb.add_option("--period", settings.period_s,
+                  "Period that a tick must not outlast, s [the robot's]")
+      ->check(CLI::Range(1e-6, 10.0));
+  verb.add_option("--search", settings.search.evaluations, "Inputs that the search tries")
+      ->check(CLI::Range(0, 10'000'000))
+      ->capture_default_str();
+  verb.add_option("--seed", settings.search.seed, "Of the search")->capture_default_str();
+  verb.add_option("--exceedance", settings.exceedance,
+                  "Probability per tick of the extrapolated bound")
+      ->check(CLI::Range(1e-15, 0.1))
+      ->capture_default_str();
+}
+
+void add_machine_options(CLI::App& verb, wcet::WcetSettings& settings) {
+  verb.add_option("--priority", settings.machine.priority, "Ask for SCHED_FIFO with this priority")
+      ->check(CLI::Range(1, 99));
+  verb.add_flag(
+      "--flush-subnormals", settings.machine.flush_subnormals,
+      "Let the processor take 0 for subnormal numbers (FTZ and DAZ of x86), as a controller "
+      "on Linux may");
+  verb.add_option("--cpu", settings.machine.cpu, "Stay on this CPU");
+  verb.add_flag("--compare-cyclictest", settings.compare_cyclictest,
+                "Also wake the tick every period, and run cyclictest (package rt-tests) under the "
+                "same settings");
+  verb.add_option("--cyclic-ticks", settings.cyclic_ticks, "Wake-ups of each of the two")
+      ->check(CLI::Range(std::int64_t{1}, wcet::kMostTicks))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void register_wcet(CLI::App& app, ExitCode& exit_code) {
+  static_cast<void>(exit_code);
+  CLI::App* verb = app.add_subcommand(
+      "wcet", "Measure how long one control tick takes here, at worst: search, histogram, bound");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("--robot", options->robot, "Robot file; by default the paper's arm");
+  verb->add_option("--scalar", options->scalar, "Arithmetic of the controller")
+      ->check(CLI::IsMember({"float", "double"}))
+      ->capture_default_str();
+  verb->add_flag("--fd", options->fd, "CAN FD: one frame for all joints");
+  add_measurement_options(*verb, options->settings);
+  add_machine_options(*verb, options->settings);
+  verb->add_option("--report", options->report, "Write the histograms as an HTML page");
+  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
+  verb->footer(
+      "A tick receives and decodes frames, runs the monitor, computes the torque and encodes it. "
+      "It "
+      "is timed alone, again and again from the same beginning; docs/worst-case.md says what each "
+      "number means and what it does not prove.");
+  verb->callback([verb, options] { run(*options, command_line_of(*verb)); });
+}
+
+}  // namespace offnominal::tools

@@ -1,0 +1,65 @@
+#include "wcet/tick.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "common/error.hpp"
+#include "wcet/tick_sizes.hpp"
+
+namespace offnominal::tools::wcet {
+namespace {
+
+// The smallest controller that holds the robot's.
+const TickSize* size_for(const RobotDescription& robot) {
+  const TickSize* best = nullptr;
+  for (const TickSize& size : tick_sizes()) {
+    const bool holds =
+        size.joints == robot.joint_count() && size.hidden_units >= robot.estimator.hidden_units;
+    if (holds && (best == nullptr || size.hidden_units < best->hidden_units)) best = &size;
+  }
+  return best;
+}
+
+std::string sizes_words() {
+  std::string words;
+  for (const TickSize& size : tick_sizes()) {
+    words += (words.empty() ? "" : ", ") + std::to_string(size.joints) + "x" +
+             std::to_string(size.hidden_units);
+  }
+  return words;
+}
+
+}  // namespace
+
+std::unique_ptr<Tick> make_tick(const RobotDescription& robot, Precision precision,
+                                hal::FrameFormat format) {
+  if (!robot.bound) {
+    throw InputError({.file = "robot " + robot.name,
+                      .place = "uncertainty_bound",
+                      .found = "nothing",
+                      .allowed = "a table [uncertainty_bound]",
+                      .mend = "add one (docs/robot-file.md)"});
+  }
+  const TickSize* size = size_for(robot);
+  if (size == nullptr) {
+    throw InputError(
+        {.file = "robot " + robot.name,
+         .place = "joints x hidden units",
+         .found = std::to_string(robot.joint_count()) + "x" +
+                  std::to_string(robot.estimator.hidden_units),
+         .allowed = "at most what this build has: " + sizes_words(),
+         .mend = "build with -DOFFNOMINAL_WCET_SIZES=" + std::to_string(robot.joint_count()) + "x" +
+                 std::to_string(robot.estimator.hidden_units)});
+  }
+  try {
+    return size->make(robot, precision, format);
+  } catch (const std::runtime_error& error) {
+    throw InputError({.file = "robot " + robot.name,
+                      .place = "controller",
+                      .found = std::string("status ") + error.what(),
+                      .allowed = "",
+                      .mend = "docs/troubleshooting.md says what each status asks for"});
+  }
+}
+
+}  // namespace offnominal::tools::wcet
