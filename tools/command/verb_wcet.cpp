@@ -17,7 +17,7 @@
 namespace offnominal::tools {
 namespace {
 
-struct Options {
+struct WcetOptions {
   std::optional<std::string> robot;
   std::string scalar = "float";
   bool fd = false;
@@ -26,7 +26,7 @@ struct Options {
   bool json = false;
 };
 
-void run(Options& options, const std::string& command_line) {
+void run(WcetOptions& options, const std::string& command_line) {
   const RobotDescription robot =
       options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
   wcet::WcetSettings& settings = options.settings;
@@ -90,7 +90,7 @@ void register_wcet(CLI::App& app, ExitCode& exit_code) {
   static_cast<void>(exit_code);
   CLI::App* verb = app.add_subcommand(
       "wcet", "Measure how long one control tick takes here, at worst: search, histogram, bound");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<WcetOptions>();
   verb->add_option("--robot", options->robot, "Robot file; by default the paper's arm");
   verb->add_option("--scalar", options->scalar, "Arithmetic of the controller")
       ->check(CLI::IsMember({"float", "double"}))
