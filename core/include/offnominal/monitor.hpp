@@ -155,10 +155,11 @@ class Monitor {
   [[nodiscard]] const RigidBodyModel<N, Scalar>& model() const { return model_; }
 
  private:
-  // What the model and the bound say at a sample; refuses one that they cannot judge.
-  [[nodiscard]] Status look(const Sample& sample, Scalar time_s,
-                            ForwardDynamics<N, Scalar>& nominal,
-                            EstimatorInput<N, Scalar>& input) const {
+  // What the model and the bound say at a sample; refuses one that they cannot judge. Not inlined:
+  // on a controller its callers share its code, and the estimator its stack.
+  [[nodiscard, gnu::noinline]] Status look(const Sample& sample, Scalar time_s,
+                                           ForwardDynamics<N, Scalar>& nominal,
+                                           EstimatorInput<N, Scalar>& input) const {
     Status status = validate<N>(sample, config_.chain.joints);
     if (status != Status::kOk) return status;
     status = forward_dynamics(model_, sample.q, sample.dq, sample.tau, time_s, nominal);

@@ -53,8 +53,13 @@ template <typename Scalar>
   }
 }
 
+// Rows in one turn of a loop where a block is one row: several, unless what is done with a row is
+// so long that the loop's own instructions count for less than the room in flash.
+inline constexpr int kShortRow = 5;
+inline constexpr int kLongRow = 1;
+
 // body(row) for the first row of every block, in turns of `Turn` rows where a block is one.
-template <typename Scalar, int L, int Turn = 5, typename Body>
+template <typename Scalar, int L, int Turn = kShortRow, typename Body>
 EIGEN_ALWAYS_INLINE void for_each_block(const Body& body) {
   constexpr int kWidth = kLanes<Scalar>;
   constexpr int kRows = kHiddenRows<L, Scalar>;
@@ -67,10 +72,6 @@ EIGEN_ALWAYS_INLINE void for_each_block(const Body& body) {
     body(kWhole + i * kWidth);
   });
 }
-
-// Rows in one turn of the sweeps over W1: with many joints a row is long by itself.
-template <int N>
-inline constexpr int kW1Turn = 1;
 
 // Factors of the gradients g_j = (b_j z_j^T, D_j sigma_j^T) of the stages so far.
 template <int L, typename Scalar>
@@ -120,7 +121,7 @@ template <int N, int L, typename Scalar>
 EIGEN_ALWAYS_INLINE void first_layer(const NetworkWeights<N, L, Scalar>& weights,
                                      const NetworkInput<N, Scalar>& z1,
                                      HiddenVector<L, Scalar>& w1_z1) {
-  for_each_block<Scalar, L, kW1Turn<N>>([&](int row) __attribute__((always_inline)) {
+  for_each_block<Scalar, L, kLongRow>([&](int row) __attribute__((always_inline)) {
     Block<Scalar> sum = z1[0] * load(&weights.w1(row, 0));
     repeat<kNetworkInputs<N> - 1>([&](int i) __attribute__((always_inline)) {
       sum += z1[i + 1] * load(&weights.w1(row, i + 1));
@@ -141,7 +142,8 @@ template <int Stage, int N, int L, typename Scalar>
   std::array<Lanes, static_cast<std::size_t>(N)> w2_sigma;
   before.fill(spread(Scalar(0)));
   w2_sigma.fill(spread(Scalar(0)));
-  for_each_block<Scalar, L>([&](int row) __attribute__((always_inline)) {
+  for_each_block<Scalar, L, Stage == kStages - 1 ? kLongRow : kShortRow>([&](
+      int row) __attribute__((always_inline)) {
     Lanes at = w1_z.template at<Stage>(row, keep);
     repeat<Stage>([&](int j) __attribute__((always_inline)) {
       const auto stage = static_cast<std::size_t>(j);
@@ -238,7 +240,7 @@ update_weights(SpanPoint<Scalar> point, Matrix<N, kStages, Scalar> share,
   // With vectors one sum per column: a single one would be a chain of dependent additions.
   std::array<Lanes, kLanes<Scalar> == 1 ? 1 : kInputs> squares;
   squares.fill(spread(Scalar(0)));
-  for_each_block<Scalar, L, kW1Turn<N>>([&](int row) __attribute__((always_inline)) {
+  for_each_block<Scalar, L, kLongRow>([&](int row) __attribute__((always_inline)) {
     const Lanes middle = half_1 * load(&factors.b[1][row]) + half_2 * load(&factors.b[2][row]);
     const Lanes p = point.gain[0] * load(&factors.b[0][row]) + middle;
     const Lanes r = point.gain[3] * load(&factors.b[3][row]) + middle;
@@ -251,7 +253,7 @@ update_weights(SpanPoint<Scalar> point, Matrix<N, kStages, Scalar> share,
       store<Scalar>(updated, w);
     });
   });
-  for_each_block<Scalar, L>([&](int row) __attribute__((always_inline)) {
+  for_each_block<Scalar, L, kLongRow>([&](int row) __attribute__((always_inline)) {
     std::array<Lanes, kStages> sigma;
     repeat<kStages>([&](int j) __attribute__((always_inline)) {
       const auto stage = static_cast<std::size_t>(j);
@@ -280,7 +282,7 @@ template <int N, int L, typename Scalar>
   using Lanes = Block<Scalar>;
   std::array<Lanes, static_cast<std::size_t>(N)> psi;
   psi.fill(spread(Scalar(0)));
-  for_each_block<Scalar, L, kW1Turn<N>>([&](int row) __attribute__((always_inline)) {
+  for_each_block<Scalar, L, kLongRow>([&](int row) __attribute__((always_inline)) {
     const Lanes pre = shrink * load<Scalar>(&w1_z[row]);
     const Lanes s = sigmoid(pre);
     store<Scalar>(pre, &w1_z[row]);

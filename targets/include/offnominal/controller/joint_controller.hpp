@@ -96,14 +96,9 @@ class JointController {
     static_assert(Drives::kJoints == kJoints);
     ++data.ticks;
     receive(bus, drives, data);
-    Feedback feedback;
-    for (std::size_t j = 0; j < kJoints; ++j) feedback[j] = drives.feedback(j, begin_us);
     count_late(late_ticks, data);
     if (is_running(data)) data.run_ticks += 1 + late_ticks;
-
-    const Fault fault = judge(feedback, drives.stop_seen(), bus.state().mode, data);
-    advance(fault, feedback, bus, data);
-    take_sample(feedback, data);
+    take_feedback(begin_us, bus, drives, data);
     data.unseen_ticks += late_ticks + (data.fresh ? 0 : 1);
     if (data.fresh) watch(reference_at, bus, data);
     command(reference_at, data);
@@ -155,8 +150,8 @@ class JointController {
   using Feedback = std::array<hal::JointFeedback, kJoints>;
 
   // At most so many frames in one tick: a node that babbles must not keep the controller busy.
-  static constexpr std::size_t kBatch = 8;
-  static constexpr int kMostBatches = 32;
+  static constexpr std::size_t kBatch = 4;
+  static constexpr int kMostBatches = 64;
 
   // Armed, and the first sample has been there.
   static bool is_running(const Data& data) {
@@ -172,7 +167,7 @@ class JointController {
            status != hal::Status::kNotSynchronised;
   }
 
-  // The phases of a tick that need much of the stack give it back before the next one begins.
+  // Phases of a tick are not inlined: each gives its stack back before the next one begins.
   template <typename Bus, typename Drives>
   [[gnu::noinline]] static void receive(Bus& bus, Drives& drives, Data& data) {
     std::array<hal::ReceivedFrame, kBatch> frames;
@@ -184,6 +179,17 @@ class JointController {
       }
       if (count < kBatch) return;
     }
+  }
+
+  // What all that came says of the joints at the tick's begin: state, fault and sample of it.
+  template <typename Bus, typename Drives>
+  [[gnu::noinline]] void take_feedback(Microseconds begin_us, Bus& bus, Drives& drives,
+                                       Data& data) const {
+    Feedback feedback;
+    for (std::size_t j = 0; j < kJoints; ++j) feedback[j] = drives.feedback(j, begin_us);
+    const Fault fault = judge(feedback, drives.stop_seen(), bus.state().mode, data);
+    advance(fault, feedback, bus, data);
+    take_sample(feedback, data);
   }
 
   static void count_late(std::uint32_t late_ticks, Data& data) {
@@ -282,23 +288,28 @@ class JointController {
     const bool armed = data.state == ControllerState::kArmed;
     const bool passive = data.state == ControllerState::kPassive && config_.watch_when_passive;
     if (!armed && !passive) return;
-    Status status = Status::kOk;
-    if (data.monitor.initialised && data.unseen_ticks == 0) {
-      status = monitor_.step(data.sample, data.monitor, data.output);
-    } else if (data.monitor.initialised) {
-      status = monitor_.resume(data.sample, data.unseen_ticks, data.monitor);
-    } else {
-      data.output = {};
-      // From here on the drives give what is commanded now.
-      if (armed) data.sample.tau = wanted_torque(reference_at, data);
-      status = monitor_.reset(data.sample, data.monitor);
-    }
+    const bool follows = data.monitor.initialised && data.unseen_ticks == 0;
+    const Status status = follows ? monitor_.step(data.sample, data.monitor, data.output)
+                                  : begin_watch(reference_at, armed, data);
     data.unseen_ticks = 0;
     if (status != Status::kOk) {
       enter_fault(fault_of(status), bus, data);
     } else if (config_.stop_at_detection && data.output.detector.latched) {
       enter_fault(Fault::kDetected, bus, data);
     }
+  }
+
+  // The first sample, or the first one after some that nobody saw.
+  template <typename ReferenceAt>
+  [[nodiscard, gnu::noinline]] Status begin_watch(const ReferenceAt& reference_at, bool armed,
+                                                  Data& data) const {
+    if (data.monitor.initialised) {
+      return monitor_.resume(data.sample, data.unseen_ticks, data.monitor);
+    }
+    data.output = {};
+    // From here on the drives give what is commanded now.
+    if (armed) data.sample.tau = wanted_torque(reference_at, data);
+    return monitor_.reset(data.sample, data.monitor);
   }
 
   // Computed torque and compensation, held to what the joints' drives can give.
