@@ -15,7 +15,8 @@ double largest_error(Scalar from, Scalar to, int count) {
     const auto exact = static_cast<long double>(angle);
     const SineCosine<Scalar> pair = sine_cosine(angle);
     const auto off = [&](Scalar value, long double right) {
-      largest = std::fmax(largest, static_cast<double>(std::fabs(value - right)));
+      largest = std::fmax(largest,
+                          static_cast<double>(std::fabs(static_cast<long double>(value) - right)));
     };
     off(pair.sine, std::sin(exact));
     off(pair.cosine, std::cos(exact));
