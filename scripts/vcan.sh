@@ -28,6 +28,9 @@ standard input is empty.
   --memory MIB        of the machine [2048]
   --cpus N            of the machine [2]
   --accel tcg|kvm     how QEMU runs the machine [tcg]; kvm is quicker where it works
+  --clock host|instructions
+                      what the machine's time is, if it is one [host]. With instructions it has one CPU
+                      that takes a nanosecond for each, and nothing is late because this host is busy
   --keep              keep what the machine was given and what it said, and say where it is
   --verbose           say on the standard error where the command runs
 
@@ -40,8 +43,9 @@ controller=0
 where=any
 timeout_s=600
 memory_mib=2048
-cpus=2
-accel=tcg
+cpus=''
+accel=''
+clock=host
 keep=0
 verbose=0
 
@@ -63,7 +67,7 @@ while (($# > 0)); do
     --controller) controller=1 ;;
     --keep) keep=1 ;;
     --verbose) verbose=1 ;;
-    --in | --timeout | --memory | --cpus | --accel)
+    --in | --timeout | --memory | --cpus | --accel | --clock)
       (($# > 1)) || die "vcan: $1 needs a value"
       case "$1" in
         --in) one_of "$1" "$2" native machine && where="$2" ;;
@@ -71,6 +75,7 @@ while (($# > 0)); do
         --memory) number "$1" "$2" 512 && memory_mib="$2" ;;
         --cpus) number "$1" "$2" 1 && cpus="$2" ;;
         --accel) one_of "$1" "$2" tcg kvm && accel="$2" ;;
+        --clock) one_of "$1" "$2" host instructions && clock="$2" ;;
       esac
       shift
       ;;
@@ -90,6 +95,12 @@ done
 (($# > 0)) || die "vcan: no command; ./dev vcan --help"
 if ((controller)) && [[ "$where" == native ]]; then
   die "vcan: --controller and --in native exclude each other: the controllers are emulated by the machine"
+fi
+if [[ "$clock" == instructions ]]; then
+  [[ "$where" != native ]] || die "vcan: --clock instructions and --in native exclude each other: QEMU counts them"
+  [[ "${accel:-tcg}" == tcg ]] || die "vcan: --clock instructions and --accel $accel exclude each other: tcg counts them"
+  ((${cpus:-1} == 1)) || die "vcan: --cpus: found '$cpus', allowed with --clock instructions: 1"
+  cpus=1
 fi
 
 say() {

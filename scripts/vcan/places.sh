@@ -118,7 +118,7 @@ run_in_machine() {
 
   machine=(
     qemu-system-x86_64 -nodefaults -no-user-config -display none -no-reboot
-    -accel "$accel" -cpu max -smp "$cpus" -m "$memory_mib"
+    -accel "${accel:-tcg}" -cpu max -smp "${cpus:-2}" -m "$memory_mib"
     -kernel "$image/kernel" -initrd "$image/initramfs"
     -append "console=ttyS0 quiet panic=-1 mitigations=off controller=$controller"
     -chardev "file,id=console,path=${job//,/,,}/console" -serial chardev:console
@@ -128,6 +128,8 @@ run_in_machine() {
     -chardev "file,id=out,path=${job//,/,,}/out" -device virtserialport,chardev=out,name=out
     -chardev "file,id=err,path=${job//,/,,}/err" -device virtserialport,chardev=err,name=err
   )
+  # Asleep, the machine's time goes straight on to what it waits for.
+  if [[ "$clock" == instructions ]]; then machine+=(-icount shift=0,sleep=off); fi
   if ((controller)); then
     machine+=(-object can-bus,id=bus)
     machine+=(-device kvaser_pci,canbus=bus -device kvaser_pci,canbus=bus)

@@ -85,6 +85,21 @@ output_closed() {
   expect "machines left" 0 "$(machines)"
 }
 
+# Two hours of waiting pass at once, and are two hours in there: time owes nothing to this host.
+clock_of_instructions() {
+  local before after
+  # shellcheck disable=SC2016  # for the shell inside
+  "$vcan" --in machine --clock instructions --timeout 300 bash -c '
+    read -r before _ </proc/uptime
+    sleep 7200
+    read -r after _ </proc/uptime
+    echo "$before $after"' >"$work/out" 2>"$work/err"
+  expect "exit code" 0 $?
+  read -r before after <"$work/out"
+  awk -v before="$before" -v after="$after" 'BEGIN {exit !(after - before >= 7200 && after - before < 7205)}' ||
+    expect "seconds in the machine" "7200 to 7205" "$before to $after"
+}
+
 refused() {
   "$vcan" "$@" >"$work/out" 2>"$work/err"
   expect "exit code of: $*" 2 $?
@@ -99,6 +114,10 @@ arguments() {
   refused --memory 8 true
   refused --in space true
   refused --in native --controller true
+  refused --clock sun true
+  refused --clock instructions --in native true
+  refused --clock instructions --cpus 2 true
+  refused --clock instructions --accel kvm true
   "$vcan" --help | grep -q -- --controller
   expect "exit code of --help" 0 $?
 }
@@ -119,7 +138,7 @@ native() {
 }
 
 case "${1:-}" in
-  hands_back | time_up | terminated | output_closed | arguments | native) "$1" ;;
+  hands_back | time_up | terminated | output_closed | clock_of_instructions | arguments | native) "$1" ;;
   *)
     echo "no case ${1:-}" >&2
     exit 2
