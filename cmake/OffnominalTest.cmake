@@ -4,16 +4,18 @@ include(GoogleTest)
 set(OFFNOMINAL_TEST_SUPPORT_DIR "${PROJECT_SOURCE_DIR}/tests")
 
 # offnominal_add_test(NAME <target> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>]
-#                     [TOGETHER | BUS] [LONG])
+#                     [TOGETHER | BUS | REAL_TIME] [LONG])
 #
 # Builds one GoogleTest executable and registers each of its cases with CTest, or with TOGETHER all of
 # them as one test: for cases that share what takes long to compute. With BUS its cases need the CAN
 # buses vcan0, vcan1, can0 and can1, one case at a time; they carry the label `bus`, under which
-# `./dev test` runs all of them in one `./dev vcan --controller`. With LONG its cases start before
-# others, so that none of them is left to run alone at the end. Cases see
+# `./dev test` runs all of them in one `./dev vcan --controller`. With REAL_TIME its cases need vcan0
+# and a machine that makes nothing late: they carry the label `real_time`, and run in one
+# `./dev vcan --in machine --clock instructions`. With LONG its cases start before others, so that none of them is
+# left to run alone at the end. Cases see
 # "support/<header>.hpp" (tests/support) and OFFNOMINAL_SOURCE_DIR, the checkout's folder as a string.
 function(offnominal_add_test)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER;BUS;LONG" "NAME;LABELS" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER;BUS;REAL_TIME;LONG" "NAME;LABELS" "SOURCES;LIBRARIES")
   if(NOT arg_NAME OR NOT arg_SOURCES)
     message(FATAL_ERROR "offnominal_add_test: NAME and SOURCES are required")
   endif()
@@ -37,6 +39,8 @@ function(offnominal_add_test)
     list(APPEND properties LABELS ${arg_LABELS})
   elseif(arg_BUS)
     list(APPEND properties LABELS bus RESOURCE_LOCK can_buses)
+  elseif(arg_REAL_TIME)
+    list(APPEND properties LABELS real_time RESOURCE_LOCK can_buses)
   endif()
   if(arg_TOGETHER)
     add_test(NAME ${arg_NAME} COMMAND ${arg_NAME})

@@ -77,11 +77,16 @@ verdicts() {
 }
 
 # suite PRESET: runs every test of a build that needs no CAN bus; each counts by itself.
-suite() { run_suite "$1" "tests ($1)" "$(nproc)" -LE '^bus$'; }
+suite() { run_suite "$1" "tests ($1)" "$(nproc)" -LE '^(bus|real_time)$'; }
 
 # bus_suite PRESET: runs the others, all of them in one place with buses.
 bus_suite() {
   run_suite "$1" "tests on CAN buses ($1)" 1 -L '^bus$' "$root/scripts/vcan.sh" --controller --timeout 1800 --
+}
+
+# real_time_suite PRESET: runs those that need a bus and a clock that nobody makes late.
+real_time_suite() {
+  run_suite "$1" "tests in real time ($1)" 1 -L '^real_time$' "$root/scripts/vcan.sh" --in machine --clock instructions --timeout 1800 --
 }
 
 # run_suite PRESET TITLE JOBS SELECT LABEL [WHERE...]
@@ -118,6 +123,7 @@ check "build (firmware)" build_firmware
 check "lint: static analysis (clang-tidy)" "$root/scripts/lint.sh" tidy
 suite release
 bus_suite release
+real_time_suite release
 check "build (sanitize)" build sanitize
 suite sanitize
 bus_suite sanitize
