@@ -127,5 +127,6 @@ real_time_suite release
 check "build (sanitize)" build sanitize
 suite sanitize
 bus_suite sanitize
-check "fuzz: every reader, 10 s each" "$root/scripts/fuzz.sh" 10
+check "fuzz: the bus's frames, 60 s" "$root/scripts/fuzz.sh" 60 frames
+check "fuzz: every other reader, 10 s each" "$root/scripts/fuzz.sh" 10 csv mat log dbc robot channels
 finish
