@@ -29,10 +29,11 @@ void describe_joints(const SearchResult& from, Explanation& to) {
   const VectorXd held_before = from.hold_out.rms(from.found.held_out.front());
   const VectorXd held_after = from.hold_out.rms(from.found.held_out.back());
   const VectorXd floor = noise_floor_of(data, from.found.fit.residual);
+  const VectorXd held_floor = noise_floor_of(from.hold_out.data(), from.found.held_out.back());
   for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
     to.joints.push_back({joint, effort_unit(from.robot, joint), torque[joint], before[joint],
                          fitted[joint], after[joint], held_before[joint], held_after[joint],
-                         floor[joint]});
+                         floor[joint], held_floor[joint]});
   }
 }
 

@@ -73,7 +73,9 @@ struct JointErrors {
   double rms_after = 0;
   double holdout_before = 0;
   double holdout_after = 0;
-  double noise_floor = 0;
+  double noise_floor = 0;  // of the fitted recordings
+  double holdout_noise_floor =
+      0;  // of those that the held-out errors are of: another motion has another
 };
 
 // A known number of the robot file that the recordings contradict.

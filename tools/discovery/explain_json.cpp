@@ -41,7 +41,8 @@ ordered_json json_of(const JointErrors& joint) {
           {"rms_error_after", joint.rms_after},
           {"holdout_before", joint.holdout_before},
           {"holdout_after", joint.holdout_after},
-          {"noise_floor", joint.noise_floor}};
+          {"noise_floor", joint.noise_floor},
+          {"holdout_noise_floor", joint.holdout_noise_floor}};
 }
 
 template <typename Item, typename Make>

@@ -47,13 +47,14 @@ report::Table error_table(const Explanation& e) {
                    {"torque", "", ".4g"},
                    {"error before", "", ".4g"},
                    {"error after", "", ".4g"},
+                   {"noise floor", "", ".4g"},
                    {"held out, before", "", ".4g"},
                    {"held out, after", "", ".4g"},
-                   {"noise floor", "", ".4g"}};
+                   {"held out, noise floor", "", ".4g"}};
   for (const JointErrors& joint : e.joints) {
     table.rows.push_back({static_cast<double>(joint.joint + 1), joint.unit, joint.rms_torque,
-                          joint.rms_before, joint.rms_after, joint.holdout_before,
-                          joint.holdout_after, joint.noise_floor});
+                          joint.rms_before, joint.rms_after, joint.noise_floor,
+                          joint.holdout_before, joint.holdout_after, joint.holdout_noise_floor});
   }
   table.note = e.holdout_is_apart ? "Held out: recordings that no fit has seen."
                : e.at_rest
@@ -130,7 +131,7 @@ report::Waterfall waterfall_of(const Explanation& e, Index joint) {
     const std::string label = i == 0 ? "model as it is" : "+ " + title_of(e.found[i - 1]);
     waterfall.steps.push_back({label, e.waterfall[i][joint]});
   }
-  waterfall.levels.push_back({errors.noise_floor, "noise floor"});
+  waterfall.levels.push_back({errors.holdout_noise_floor, "noise floor"});
   waterfall.width = report::Width::kHalf;
   return waterfall;
 }

@@ -18,16 +18,18 @@ std::string unit_at(const Explanation& e, Eigen::Index joint) {
 
 std::string text_of_joints(const Explanation& e) {
   std::string text =
-      fmt::format("\n{:<6} {:>12} {:>14} {:>14} {:>14} {:>14} {:>12}\n", "joint", "rms torque",
-                  "error before", "error after", "held out, bef.", "held out, aft.", "noise floor");
+      fmt::format("\n{:<6} {:>12} {:>14} {:>14} {:>12} {:>14} {:>14} {:>15}\n", "joint",
+                  "rms torque", "error before", "error after", "noise floor", "held out, bef.",
+                  "held out, aft.", "held out, floor");
   for (const JointErrors& joint : e.joints) {
     const auto with_unit = [&](double value) {
       return fmt::format("{:.4g} {}", value, joint.unit);
     };
-    text += fmt::format("{:<6} {:>12} {:>14} {:>14} {:>14} {:>14} {:>12}\n", joint.joint + 1,
+    text += fmt::format("{:<6} {:>12} {:>14} {:>14} {:>12} {:>14} {:>14} {:>15}\n", joint.joint + 1,
                         with_unit(joint.rms_torque), with_unit(joint.rms_before),
-                        with_unit(joint.rms_after), with_unit(joint.holdout_before),
-                        with_unit(joint.holdout_after), with_unit(joint.noise_floor));
+                        with_unit(joint.rms_after), with_unit(joint.noise_floor),
+                        with_unit(joint.holdout_before), with_unit(joint.holdout_after),
+                        with_unit(joint.holdout_noise_floor));
   }
   return text;
 }

@@ -14,9 +14,7 @@ VectorXd HoldOut::residual(const std::vector<Term>& terms, const ModelFit& fit) 
   return residual;
 }
 
-VectorXd HoldOut::rms(const VectorXd& residual) const {
-  return (apart_ != nullptr ? *apart_ : regression_.data()).layout.rms(residual);
-}
+VectorXd HoldOut::rms(const VectorXd& residual) const { return data().layout.rms(residual); }
 
 VectorXd HoldOut::cross_validated(const std::vector<Term>& terms) const {
   constexpr int kParts = 5;

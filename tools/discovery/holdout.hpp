@@ -20,6 +20,10 @@ class HoldOut {
   [[nodiscard]] Eigen::VectorXd residual(const std::vector<Term>& terms, const ModelFit& fit) const;
   // Root mean square per joint of such a residual.
   [[nodiscard]] Eigen::VectorXd rms(const Eigen::VectorXd& residual) const;
+  // What such a residual is of.
+  [[nodiscard]] const Data& data() const {
+    return apart_ != nullptr ? *apart_ : regression_.data();
+  }
 
  private:
   [[nodiscard]] Eigen::VectorXd cross_validated(const std::vector<Term>& terms) const;

@@ -76,6 +76,7 @@ TEST(Explain, GIVEN_nothing_hidden_THEN_nothing_is_found_at_any_noise) {
     EXPECT_THAT(result.found, IsEmpty());
     for (const JointErrors& joint : result.joints) {
       EXPECT_LT(joint.rms_after, 1.5 * joint.noise_floor);
+      EXPECT_LT(joint.holdout_after, 1.2 * joint.holdout_noise_floor);
     }
   }
 }
@@ -214,6 +215,7 @@ TEST(Explain, ThePageHasTheNumbersOfTheJson) {
   for (const auto& joint : json["joints"]) {
     EXPECT_THAT(text, HasSubstr(joint["holdout_after"].dump()));
     EXPECT_THAT(text, HasSubstr(joint["noise_floor"].dump()));
+    EXPECT_THAT(text, HasSubstr(joint["holdout_noise_floor"].dump()));
   }
   ASSERT_EQ(json["waterfall"].size(), result.found.size() + 1);
   for (const auto& step : json["waterfall"]) {
