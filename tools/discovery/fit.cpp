@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace offnominal::tools::discovery {
 
@@ -164,6 +165,38 @@ PriorFit least_squares_with_priors(const MatrixXd& columns, const VectorXd& targ
   }
   result.x = whole.x;
   return result;
+}
+
+ProfileFit::ProfileFit(const MatrixXd& columns, const VectorXd& target, std::vector<Prior> priors,
+                       double prior_weight)
+    : priors_(std::move(priors)), prior_weight_(prior_weight) {
+  const Eigen::HouseholderQR<MatrixXd> qr(columns);
+  const Index rank = std::min(columns.rows(), columns.cols());
+  basis_ = qr.householderQ() * MatrixXd::Identity(columns.rows(), rank);
+  upper_ = qr.matrixQR().topRows(rank).triangularView<Eigen::Upper>();
+  along_ = basis_.transpose() * target;
+  beside_ = target - basis_ * along_;
+}
+
+double ProfileFit::energy_with(const MatrixXd& more) const {
+  const MatrixXd along = basis_.transpose() * more;
+  const MatrixXd rest = more - basis_ * along;
+  const Eigen::HouseholderQR<MatrixXd> qr(rest);
+  const Index own = upper_.rows();
+  const Index added = more.cols();
+  MatrixXd columns = MatrixXd::Zero(own + added, upper_.cols() + added);
+  columns.topLeftCorner(own, upper_.cols()) = upper_;
+  columns.topRightCorner(own, added) = along;
+  columns.bottomRightCorner(added, added) =
+      qr.matrixQR().topRows(added).triangularView<Eigen::Upper>();
+  VectorXd turned = beside_;
+  turned.applyOnTheLeft(qr.householderQ().adjoint());
+  VectorXd target(own + added);
+  target << along_, turned.head(added);
+  std::vector<Prior> priors = priors_;
+  priors.resize(priors.size() + static_cast<std::size_t>(added));
+  const PriorFit fit = least_squares_with_priors(columns, target, priors, prior_weight_);
+  return fit.residual.squaredNorm() + turned.tail(turned.size() - added).squaredNorm();
 }
 
 }  // namespace offnominal::tools::discovery

@@ -36,4 +36,24 @@ struct PriorFit {
 PriorFit least_squares_with_priors(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target,
                                    const std::vector<Prior>& priors, double prior_weight);
 
+// How well the same regression fits with more columns beside its own, for many of them: what is its
+// own is turned once. Its unknowns are free within their ends, which a basis of the free ones alone
+// does not know.
+class ProfileFit {
+ public:
+  ProfileFit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target,
+             std::vector<Prior> priors, double prior_weight);
+
+  // Energy that is left, rows of the priors included, with these columns, weighted as the others.
+  [[nodiscard]] double energy_with(const Eigen::MatrixXd& more) const;
+
+ private:
+  Eigen::MatrixXd basis_;   // orthonormal
+  Eigen::MatrixXd upper_;   // columns = basis * upper
+  Eigen::VectorXd along_;   // of the target, in the basis
+  Eigen::VectorXd beside_;  // the target less that
+  std::vector<Prior> priors_;
+  double prior_weight_;
+};
+
 }  // namespace offnominal::tools::discovery

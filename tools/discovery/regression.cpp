@@ -26,6 +26,51 @@ VectorXd independent_samples_of(const RowLayout& layout, const VectorXd& residua
   return samples;
 }
 
+// Moves a term's shape, one number after the other, to where gain(term) is largest on its grid.
+template <typename Gain>
+void jump(Term& term, const Gain& gain) {
+  for (std::size_t axis = 0; axis < term.ranges.size(); ++axis) {
+    if (!term.ranges[axis].is_searched()) continue;
+    double most = gain(term);
+    Term trial = term;
+    for (const double value : term.ranges[axis].grid) {
+      trial.shape[axis] = value;
+      const double found = gain(trial);
+      if (found <= most) continue;
+      most = found;
+      term.shape[axis] = value;
+    }
+  }
+}
+
+// Moves a term's shape, one number after the other, within the neighbouring points of its grid to
+// where gain(term) is largest.
+template <typename Gain>
+void climb(Term& term, const Gain& gain) {
+  for (std::size_t axis = 0; axis < term.ranges.size(); ++axis) {
+    const ShapeRange& range = term.ranges[axis];
+    if (!range.is_searched()) continue;
+    const bool logarithmic = range.kind == ShapeRange::Kind::kLogarithmic;
+    const auto coordinate = [&](double value) { return logarithmic ? std::log(value) : value; };
+    const auto value_at = [&](double x) { return logarithmic ? std::exp(x) : x; };
+    const auto above = std::upper_bound(range.grid.begin(), range.grid.end(), term.shape[axis]);
+    const auto place =
+        static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, (above - range.grid.begin()) - 1));
+    const double low = coordinate(range.grid[place > 0 ? place - 1 : 0]);
+    const double high = coordinate(range.grid[std::min(place + 1, range.grid.size() - 1)]);
+    const auto gain_at = [&](double x) {
+      Term trial = term;
+      trial.shape[axis] = value_at(x);
+      return gain(trial);
+    };
+    constexpr int kBits = 22;
+    std::uintmax_t most = 40;
+    const auto [found, loss] = boost::math::tools::brent_find_minima(
+        [&](double x) { return -gain_at(x); }, low, high, kBits, most);
+    if (-loss > gain_at(coordinate(term.shape[axis]))) term.shape[axis] = value_at(found);
+  }
+}
+
 }  // namespace
 
 bool Regression::has_dry_friction(const std::vector<Term>& terms, Index joint) const {
@@ -128,31 +173,39 @@ void Regression::refine(std::vector<Term>& terms, std::size_t which) const {
   refine(terms, which, fit(others));
 }
 
+bool Regression::holds_an_end(const ModelFit& fit) const {
+  for (std::size_t i = 0; i < data_.nuisance.terms.size(); ++i) {
+    const Prior& prior = data_.nuisance.terms[i].prior;
+    const double x = fit.nuisance[static_cast<Index>(i)];
+    if (prior.is_informative() && (x <= prior.low || x >= prior.high)) return true;
+  }
+  return false;
+}
+
 void Regression::refine(std::vector<Term>& terms, std::size_t which, const ModelFit& beside) const {
-  Term& term = terms[which];
-  for (std::size_t axis = 0; axis < term.ranges.size(); ++axis) {
-    const ShapeRange& range = term.ranges[axis];
-    if (!range.is_searched()) continue;
-    const bool logarithmic = range.kind == ShapeRange::Kind::kLogarithmic;
-    const auto coordinate = [&](double value) { return logarithmic ? std::log(value) : value; };
-    const auto value_at = [&](double x) { return logarithmic ? std::exp(x) : x; };
-    const auto above = std::upper_bound(range.grid.begin(), range.grid.end(), term.shape[axis]);
-    const auto place =
-        static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, (above - range.grid.begin()) - 1));
-    const double low = coordinate(range.grid[place > 0 ? place - 1 : 0]);
-    const double high = coordinate(range.grid[std::min(place + 1, range.grid.size() - 1)]);
-    const auto gain = [&](double x) {
-      Term trial = term;
-      trial.shape[axis] = value_at(x);
+  if (!holds_an_end(beside)) {
+    climb(terms[which], [&](const Term& trial) {
       const Evidence evidence = judge(beside.remainder, columns_of(data_, trial));
       return evidence.usable ? evidence.gain : -1.0;
-    };
-    constexpr int kBits = 22;
-    std::uintmax_t most = 40;
-    const auto [found, loss] = boost::math::tools::brent_find_minima(
-        [&](double x) { return -gain(x); }, low, high, kBits, most);
-    if (-loss > gain(coordinate(term.shape[axis]))) term.shape[axis] = value_at(found);
+    });
+    return;
   }
+  // Without the term a nuisance may stand at an end where it does not belong with it: a payload
+  // looks like a heavier link. With what the model leaves as it is now, everything else adapts.
+  std::vector<Term> others = terms;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
+  const ModelFit now = fit(terms);
+  const Design made = design(others);
+  const VectorXd weights =
+      data_.layout.weighted(VectorXd::Ones(data_.layout.rows()), now.joint_weights);
+  const ProfileFit profile(weights.asDiagonal() * made.columns, weights.cwiseProduct(data_.target),
+                           made.priors, now.prior_weight);
+  const auto gain = [&](const Term& trial) {
+    return -profile.energy_with(weights.asDiagonal() * columns_of(data_, trial));
+  };
+  // Which point of the grid it came from was judged without it, too.
+  jump(terms[which], gain);
+  climb(terms[which], gain);
 }
 
 }  // namespace offnominal::tools::discovery

@@ -54,6 +54,8 @@ class Regression {
   void refine(std::vector<Term>& terms, std::size_t which, const ModelFit& beside) const;
 
  private:
+  // An unknown of the nuisance stands at one of its ends: free of it, it might not.
+  [[nodiscard]] bool holds_an_end(const ModelFit& fit) const;
   [[nodiscard]] bool has_dry_friction(const std::vector<Term>& terms, Eigen::Index joint) const;
 
   const Data& data_;

@@ -60,6 +60,23 @@ INSTANTIATE_TEST_SUITE_P(Hidden, EachEffect,
                            return std::string(hidden::name(parameter.param));
                          });
 
+// The links' masses are off too, and without the payload a heavier link looks much like it.
+TEST(Explain, GIVEN_a_payload_THEN_its_mass_and_place_are_not_taken_for_the_links) {
+  hidden::Request request;
+  request.seed = 2699507522;
+  request.effects = {hidden::HiddenEffect::kTipPayload};
+  const hidden::Case made = hidden::make_case(request);
+  const Explanation result = explain_case(made, quick());
+  ASSERT_THAT(result.found, SizeIs(1)) << result.words;
+  EXPECT_EQ(result.found[0].what.effect, "tip_payload");
+  for (const hidden::TrueParameter& truth : made.truth.effects[0].parameters) {
+    for (const Estimate& found : result.found[0].parameters) {
+      if (found.value.name != truth.name) continue;
+      EXPECT_NEAR(found.value.value, truth.value, 0.1 * truth.value) << truth.name;
+    }
+  }
+}
+
 TEST(Explain, GIVEN_nothing_hidden_THEN_nothing_is_found_at_any_noise) {
   struct Noise {
     double share;

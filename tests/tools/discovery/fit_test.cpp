@@ -72,5 +72,25 @@ TEST(LeastSquaresWithPriors, GIVEN_all_unknowns_beyond_their_ends_THEN_nothing_i
   EXPECT_NEAR(fit.residual[0], 9, 1e-12);
 }
 
+TEST(ProfileFit, LeavesWhatTheWholeRegressionLeaves) {
+  std::mt19937_64 generator(test::test_seed());
+  std::normal_distribution<double> normal(0, 1);
+  for (int run = 0; run < 2 * test::repetitions(20); ++run) {
+    const RandomProblem given = random_problem(generator);
+    const ProfileFit profile(given.columns, given.target, given.priors, 1);
+    // Two more columns, the first of them much like one that is there.
+    MatrixXd more(given.columns.rows(), 2);
+    for (double& value : more.reshaped()) value = normal(generator);
+    more.col(0) = given.columns.col(1) + 0.1 * more.col(0);
+    MatrixXd all(given.columns.rows(), given.columns.cols() + 2);
+    all << given.columns, more;
+    std::vector<Prior> priors = given.priors;
+    priors.resize(priors.size() + 2);
+    const double whole =
+        least_squares_with_priors(all, given.target, priors, 1).residual.squaredNorm();
+    EXPECT_NEAR(profile.energy_with(more), whole, 1e-9 * whole);
+  }
+}
+
 }  // namespace
 }  // namespace offnominal::tools::discovery
