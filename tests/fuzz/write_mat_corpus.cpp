@@ -10,6 +10,26 @@
 
 namespace {
 
+// A structure with a cell array in it.
+bool write_structure(mat_t* file, matio_compression compression) {
+  std::array<std::size_t, 2> one{1, 1};
+  double gain = 35;
+  const auto number = [&] {
+    return Mat_VarCreate("gain", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, one.data(), &gain, 0);
+  };
+  std::array<const char*, 2> fields{"gain", "notes"};
+  matvar_t* about = Mat_VarCreateStruct("about", 2, one.data(), fields.data(), fields.size());
+  if (about == nullptr) return false;
+  std::array<matvar_t*, 1> notes{number()};
+  Mat_VarSetStructFieldByName(about, "gain", 0, number());
+  Mat_VarSetStructFieldByName(
+      about, "notes", 0,
+      Mat_VarCreate("notes", MAT_C_CELL, MAT_T_CELL, 2, one.data(), notes.data(), 0));
+  const bool good = Mat_VarWrite(file, about, compression) == 0;
+  Mat_VarFree(about);
+  return good;
+}
+
 bool write(const std::string& path, matio_compression compression, std::size_t samples) {
   mat_t* file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
   if (file == nullptr) return false;
@@ -26,6 +46,7 @@ bool write(const std::string& path, matio_compression compression, std::size_t s
   add("t", 1);
   for (const char* name : {"q1", "q2", "tau1", "tau2"}) add(name, 1);
   add("temp", 2);
+  good = good && write_structure(file, compression);
   Mat_Close(file);
   return good;
 }

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "common/error.hpp"
+#include "log/mat_claims.hpp"
 
 namespace offnominal::tools {
 namespace {
@@ -92,10 +93,15 @@ class MatReader {
  public:
   MatReader(const std::filesystem::path& path, const NeedOf& need_of)
       : path_(path), need_of_(need_of), mat_(nullptr, &Mat_Close) {
+    if (!is_mat_level_5_or_7(path)) refuse_file();
+    if (const auto claim = impossible_claim(path)) {
+      fail(claim->variable.empty() ? "" : "variable " + claim->variable, claim->what,
+           "a complete file");
+    }
     // matio prints to stderr by itself otherwise; what is wrong is said by the exception.
     Mat_LogInitFunc("offnominal", [](int, char*) {});
     mat_.reset(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
-    if (!mat_) fail("", "a file that is not a readable .mat file", "MATLAB level 5 or 7.3");
+    if (!mat_) refuse_file();
   }
 
   NamedColumns read() {
@@ -114,6 +120,10 @@ class MatReader {
   [[noreturn]] void fail(const std::string& place, const std::string& found,
                          const std::string& allowed) const {
     throw InputError({path_.string(), place, found, allowed, ""});
+  }
+
+  [[noreturn]] void refuse_file() const {
+    fail("", "a file that is not a readable .mat file", "MATLAB level 5 or 7.3");
   }
 
   void read_variable(matvar_t& info) {

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace offnominal::tools {
+
+// True where the file's header is that of MATLAB's level 5 or 7.3. matio takes any other file for
+// one of level 4, which has no header, and allocates what its first bytes claim.
+bool is_mat_level_5_or_7(const std::filesystem::path& path);
+
+// What a variable of a MATLAB file of level 5 claims to hold, and cannot. matio allocates what
+// dimensions, cell arrays, structures and function handles claim before it reads them, and goes as
+// deep as they do.
+struct ImpossibleClaim {
+  std::string variable;  // its name; empty where the file ends before it, or it is damaged
+  std::string what;      // "100663300 cells in 90 bytes"
+};
+
+// The first such claim in the file; none for files of other levels. The data of numeric variables
+// is not looked at: whoever reads it knows its size by then. What is nested is read, unpacked where
+// it is packed, and not kept. Format: MathWorks, "MAT-File Format", level 5.
+std::optional<ImpossibleClaim> impossible_claim(const std::filesystem::path& path);
+
+}  // namespace offnominal::tools
