@@ -226,6 +226,23 @@ TEST(JointController, RefusesAConfigurationThatCannotWork) {
   EXPECT_EQ(ArmOnBus::Controller::create(config, controller), Status::kInvalidGain);
 }
 
+TEST(JointController, TimesFollowFromAnyPeriod) {
+  for (const float period_s : {0.00025F, 0.001F, 0.0025F, 0.005F, 0.02F}) {
+    auto monitor = ArmOnBus::config(false).monitor;
+    monitor.estimator.period_s = period_s;
+    const auto config = controller::controller_config(monitor, ArmOnBus::config(false).gains);
+    EXPECT_EQ(validate(config), Status::kOk) << period_s << " s";
+    EXPECT_NEAR(static_cast<double>(config.command_lifetime_us),
+                0.9e6 * static_cast<double>(period_s), 1);
+  }
+  // The observer is judged at the period that it runs with, not at its own.
+  auto config = ArmOnBus::config(false);
+  config.velocity_observer.period_s = 1;
+  EXPECT_EQ(validate(config), Status::kOk);
+  config.velocity_observer.bandwidth_rad_s = 501;
+  EXPECT_EQ(validate(config), Status::kInvalidFilterPole);
+}
+
 // Whatever comes in whatever order: torque is commanded in kArmed alone, kArmed is entered by arm()
 // from kPassive alone, kFault is left by clear_fault() alone.
 TEST(JointController, RandomEventsNeverBreakTheRulesOfItsStates) {

@@ -56,7 +56,7 @@ class JointProgramOf final : public JointProgram {
 
   explicit JointProgramOf(const JointProgramSetup& setup)
       : setup_(setup),
-        source_(sil::source_config(setup.timer.period_us())),
+        source_(controller::source_config(setup.timer.period_us())),
         drives_(source_, source_, setup.format),
         bus_(setup.bus, setup.recorder) {
     sil::create_controller(setup.robot, setup.settings, controller_);

@@ -1,7 +1,6 @@
 // The joint controller of a robot file, as software-in-the-loop and the controller program run it.
 #pragma once
 
-#include <cmath>
 #include <offnominal/controller/joint_controller.hpp>
 #include <offnominal/diagnosis/velocity_observer.hpp>
 #include <optional>
@@ -34,24 +33,14 @@ struct ControllerSettings {
   return settings;
 }
 
-/// A reading is stale at the third tick without a new one.
-[[nodiscard]] inline hal::SourceConfig source_config(hal::Microseconds period_us) {
-  return {.max_age_us = 2 * period_us + period_us / 2};
-}
-
 template <int N, typename Scalar>
 [[nodiscard]] controller::ControllerConfig<N, Scalar> controller_config_of(
     const RobotDescription& robot, const ControllerSettings& settings) {
-  controller::ControllerConfig<N, Scalar> config;
-  config.monitor = monitor_config_of<N, Scalar>(robot);
-  config.gains = gains_of<N, Scalar>(robot);
-  const double period_s = robot.estimator.period_s;
-  config.command_lifetime_us = std::llround(0.9e6 * period_s);
+  controller::ControllerConfig<N, Scalar> config = controller::controller_config(
+      monitor_config_of<N, Scalar>(robot), gains_of<N, Scalar>(robot));
   config.safe_mode = settings.safe_mode;
   config.stop_at_detection = settings.stop_at_detection;
   if (!settings.accommodate) config.monitor.max_compensation = {};
-  config.velocity_observer.period_s = config.monitor.estimator.period_s;
-  config.velocity_observer.bandwidth_rad_s = static_cast<Scalar>(0.2 / period_s);
   if (settings.max_acceleration) {
     sim::EncoderConfig encoder;
     encoder.bits_per_turn = settings.encoder_bits_per_turn;

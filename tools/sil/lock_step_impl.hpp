@@ -31,7 +31,7 @@ class LockStepLoop {
         plant_tap_(wire.plant(), on_frame),
         controller_bus_(controller_tap_, sim::BusEnd::kController, scenario.faults, scenario.seed),
         plant_bus_(plant_tap_, sim::BusEnd::kPlant, scenario.faults, scenario.seed),
-        source_(source_config(setup.period_us)),
+        source_(controller::source_config(setup.period_us)),
         drives_(source_, source_, scenario.format),
         plant_(plant_of(scenario, robot.estimator.period_s)) {
     create_controller(robot, settings_of(scenario), controller_);

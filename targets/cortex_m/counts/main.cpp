@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <offnominal/controller/static_object.hpp>
 #include <offnominal/cortex_m/semihosting.hpp>
-#include <offnominal/cortex_m/static_object.hpp>
 #include <offnominal/cortex_m/systick.hpp>
 
 #include "motion.hpp"
@@ -23,10 +23,10 @@ namespace {
 constexpr std::uint32_t kRepetitions = 40;  // instructions per count
 constexpr std::uint32_t kPaint = 0xDEADBEEF;
 
-constinit StaticObject<Controller> controller;
-constinit StaticObject<Memory> memory;
-constinit StaticObject<Memory> before;   // the tick that is measured
-constinit StaticObject<Memory> working;  // what is measured on
+constinit controller::StaticObject<Controller> controller;
+constinit controller::StaticObject<Memory> memory;
+constinit controller::StaticObject<Memory> before;   // the tick that is measured
+constinit controller::StaticObject<Memory> working;  // what is measured on
 constinit Random random;
 
 using Reference = offnominal::Reference<kJoints, Scalar>;
@@ -203,10 +203,9 @@ void run() {
 
   // A ball that is hardly larger than the initial weights.
   const Scalar radius =
-      Scalar(1.01) *
-      std::sqrt(squared_norm(initial_weights<kJoints, robot_model::kHiddenUnits, Scalar>(
-          robot_model::kEstimatorConfig<Scalar>.seed, robot_model::kHiddenUnits,
-          robot_model::kEstimatorConfig<Scalar>.initial_weight_range)));
+      Scalar(1.01) * std::sqrt(initial_squared_norm<kJoints, robot_model::kHiddenUnits, Scalar>(
+                         robot_model::kEstimatorConfig<Scalar>.seed, robot_model::kHiddenUnits,
+                         robot_model::kEstimatorConfig<Scalar>.initial_weight_range));
   create("projecting", radius);
   const auto harder = [&](std::uint32_t tick) { return on_path(*controller, tick, 5 * kExtra); };
   counts = longest("projecting", kTicks, 2 * kTicks, harder);
@@ -229,8 +228,8 @@ void run() {
   create("arming", Scalar(0));
   constexpr std::uint32_t kArmingTick = 5;
   for (std::uint32_t tick = 0; tick <= kArmingTick; ++tick) {
-    put_frames(path(tick), static_cast<std::uint8_t>(tick), *memory);
     const Sample sample = path(tick);
+    put_frames(sample, static_cast<std::uint8_t>(tick), *memory);
     const Reference reference{sample.q, sample.dq, {}};
     if (tick == kArmingTick) {
       copy(*memory, *before);

@@ -1,11 +1,11 @@
 // Firmware as it would run on a machine: a tick per SysTick interrupt, on a bus without a wire.
 // With the chip's CAN controller in BlankBus's place it commands the robot.
 #include <cstdint>
+#include <offnominal/controller/joint_firmware.hpp>
+#include <offnominal/controller/static_object.hpp>
 #include <offnominal/hal/blank_bus.hpp>
 
-#include "joint_firmware.hpp"
 #include "offnominal/cortex_m/semihosting.hpp"
-#include "offnominal/cortex_m/static_object.hpp"
 #include "offnominal/cortex_m/systick.hpp"
 
 namespace offnominal::cortex_m {
@@ -21,10 +21,10 @@ class Bus : public hal::BlankBus {
   hal::Microseconds now_us_ = 0;
 };
 
-using Firmware = JointFirmware<Bus, float>;
+using Firmware = controller::JointFirmware<Bus, float>;
 
-constinit StaticObject<Bus> bus;
-constinit StaticObject<Firmware> firmware;
+constinit controller::StaticObject<Bus> bus;
+constinit controller::StaticObject<Firmware> firmware;
 
 // The joints stay where the robot's coordinates are zero.
 Reference<Firmware::kJoints, float> hold(float /*time_s*/) { return {}; }

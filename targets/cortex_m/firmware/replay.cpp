@@ -4,10 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <offnominal/controller/static_object.hpp>
 #include <span>
 
 #include "offnominal/cortex_m/semihosting.hpp"
-#include "offnominal/cortex_m/static_object.hpp"
 #include "replay_run.hpp"
 
 namespace offnominal::cortex_m {
@@ -15,9 +15,9 @@ namespace {
 
 enum ExitCode : int { kDone = 0, kWrongCall = 3, kNoFile = 4, kRefused = 5, kCutShort = 6 };
 
-constinit StaticObject<ReplayRun<OFFNOMINAL_SCALAR>> run;
-constinit StaticObject<ReplayTick> tick;
-constinit StaticObject<ReplayResult> result;
+constinit controller::StaticObject<ReplayRun<OFFNOMINAL_SCALAR>> run;
+constinit controller::StaticObject<ReplayTick> tick;
+constinit controller::StaticObject<ReplayResult> result;
 
 // Cuts the line's next word off, null where there is none.
 char* next_word(char*& line) {

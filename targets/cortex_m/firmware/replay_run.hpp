@@ -5,11 +5,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <offnominal/controller/joint_firmware.hpp>
 #include <offnominal/hal/bus.hpp>
 #include <span>
 #include <type_traits>
-
-#include "joint_firmware.hpp"
 
 namespace offnominal::cortex_m {
 
@@ -119,7 +118,7 @@ class ReplayRun {
   }
 
  private:
-  using Firmware = JointFirmware<ReplayBus, Scalar>;
+  using Firmware = controller::JointFirmware<ReplayBus, Scalar>;
 
   void tell(ReplayResult& result) const {
     const auto& data = firmware_.data();

@@ -39,7 +39,7 @@ __attribute__((naked)) void reset_handler() {
 }
 
 // Any fault and any interrupt that nobody has asked for: firmware on a machine goes to its safe
-// state here. kSoftwareError makes QEMU end with 1.
+// state here.
 void fault_handler() { offnominal::cortex_m::exit(2); }
 
 __attribute__((weak)) void systick_handler() { fault_handler(); }

@@ -1,9 +1,7 @@
 #include <cstdint>
-#include <offnominal/controller/joint_controller.hpp>
+#include <offnominal/controller/joint_firmware.hpp>
+#include <offnominal/controller/static_object.hpp>
 #include <offnominal/hal/blank_bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
-
-#include "robot_model.hpp"
 
 // A joint controller without an operating system. Its bus is the blank one of the package, whose
 // copy would drive the chip's CAN controller.
@@ -12,26 +10,24 @@ namespace {
 
 namespace hal = offnominal::hal;
 
-using Controller =
-    offnominal::controller::JointController<robot_model::kJoints, robot_model::kHiddenUnits, float>;
+using Firmware = offnominal::controller::JointFirmware<hal::BlankBus, float>;
+
+constinit offnominal::controller::StaticObject<hal::BlankBus> bus;
+constinit offnominal::controller::StaticObject<Firmware> firmware;
 
 [[noreturn]] void halt() {
   for (;;) asm volatile("wfi");
 }
 
 [[noreturn]] void run() {
-  Controller::Config config;
-  config.monitor = robot_model::kMonitorConfig<float>;
-  config.gains = robot_model::kComputedTorqueGains<float>;
-  static Controller controller;
-  if (Controller::create(config, controller) != offnominal::Status::kOk) halt();
-  static Controller::Data data;
-  static hal::ProtectedDrives<robot_model::kJoints> drives({}, {}, hal::FrameFormat::kClassic);
-  hal::BlankBus bus;
+  firmware.make(bus.make());
+  if (firmware->start() != offnominal::Status::kOk) halt();
   const auto at_rest = [](float) { return offnominal::Reference<robot_model::kJoints, float>{}; };
   for (;;) {
-    controller.step(bus.now(), 0, at_rest, bus, drives, data);
-    if (data.state == hal::ControllerState::kPassive) static_cast<void>(controller.arm(data));
+    firmware->tick(bus->now(), 0, at_rest);
+    if (firmware->data().state == hal::ControllerState::kPassive) {
+      static_cast<void>(firmware->arm());
+    }
     asm volatile("wfi");  // the timer's interrupt
   }
 }

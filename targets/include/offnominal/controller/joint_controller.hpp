@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <offnominal/control/computed_torque.hpp>
+#include <offnominal/controller/controller_config.hpp>
 #include <offnominal/controller/fault.hpp>
 #include <offnominal/diagnosis/velocity_observer.hpp>
 #include <offnominal/hal/bus.hpp>
@@ -19,35 +20,6 @@
 namespace offnominal::controller {
 
 using hal::ControllerState;
-using hal::Microseconds;
-
-template <int N, typename Scalar>
-struct ControllerConfig {
-  // max_compensation zero: the monitor watches and does not act.
-  MonitorConfig<N, Scalar> monitor;
-  ComputedTorqueGains<N, Scalar> gains;
-  // A command that has not gone out so long after its tick began never does; below a period.
-  Microseconds command_lifetime_us = 900;
-  hal::DriveMode safe_mode = hal::DriveMode::kOff;  // kOff or kDamping
-  std::uint8_t late_ticks_allowed = 3;              // in a row
-  std::uint8_t ticks_to_follow = 5;  // until a drive has to be in the mode that it was told to take
-  // For drives that send positions alone; monitor.bound.velocity_error has to hold its
-  // velocity_error_bound() then. Its period_s is the monitor's.
-  VelocityObserverConfig<Scalar> velocity_observer;
-  bool stop_at_detection = false;  // a crossed threshold leads to the safe state
-  // Watch in kPassive too: where brakes are open and somebody else moves the joints.
-  bool watch_when_passive = false;
-};
-
-template <int N, typename Scalar>
-[[nodiscard]] Status validate(const ControllerConfig<N, Scalar>& config) {
-  if (const Status status = validate(config.gains); status != Status::kOk) return status;
-  const auto period_us = static_cast<double>(config.monitor.estimator.period_s) * 1e6;
-  const auto lifetime_us = static_cast<double>(config.command_lifetime_us);
-  if (!(lifetime_us > 0 && lifetime_us <= period_us)) return Status::kInvalidLimit;
-  if (config.safe_mode == hal::DriveMode::kTorque) return Status::kInvalidLimit;
-  return validate(config.velocity_observer);
-}
 
 // Plain data, ready to be logged.
 template <int N, int L, typename Scalar>
@@ -83,7 +55,7 @@ class JointController {
     const Status status = Monitor<N, L, Scalar>::create(config.monitor, controller.monitor_);
     if (status != Status::kOk) return status;
     controller.config_ = config;
-    controller.config_.velocity_observer.period_s = config.monitor.estimator.period_s;
+    controller.config_.velocity_observer = observer_of(config);
     return Status::kOk;
   }
 

@@ -4,14 +4,14 @@
 #include <new>
 #include <utility>
 
-namespace offnominal::cortex_m {
+namespace offnominal::controller {
 
 // Room for one object that lives as long as the firmware, in RAM that the linker accounts for. It
 // is made when make() says so, not before main() in an order that nobody sees, and never destroyed.
 template <typename T>
 class StaticObject {
  public:
-  // Once.
+  // Again makes it anew, without having destroyed the one before.
   template <typename... Arguments>
   T& make(Arguments&&... arguments) {
     return *new (storage_) T(std::forward<Arguments>(arguments)...);
@@ -24,4 +24,4 @@ class StaticObject {
   alignas(T) std::byte storage_[sizeof(T)];
 };
 
-}  // namespace offnominal::cortex_m
+}  // namespace offnominal::controller
