@@ -21,6 +21,7 @@
 #include "common/error.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/monitor_config_of.hpp"
+#include "robot/robot_file.hpp"
 
 namespace offnominal::tools {
 namespace {
@@ -323,15 +324,7 @@ ModelHeader model_header(const RobotDescription& robot, const ModelHeaderOptions
                                  "between them",
                       .mend = "choose another name"});
   }
-  if (!robot.bound) {
-    throw InputError({.file = options.robot_file,
-                      .place = "uncertainty_bound",
-                      .found = "nothing",
-                      .allowed = "a table [uncertainty_bound]",
-                      .mend =
-                          "add one (docs/robot-file.md), or let `offnominal calibrate` find it: "
-                          "without a bound there is no threshold"});
-  }
+  require_bound(robot, options.robot_file);
   return with_joint_count(robot.joint_count(), [&]<int N>() { return write<N>(robot, options); });
 }
 

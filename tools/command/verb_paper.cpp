@@ -126,8 +126,7 @@ Experiment experiment_of(const PaperOptions& options) {
   if (options.mass_loss) experiment.fault.mass_loss = *options.mass_loss;
   if (options.rho) experiment.fault.rate_per_s = *options.rho;
   experiment.accommodate = options.accommodate;
-  experiment.precision =
-      options.scalar == "float" ? paper::Precision::kFloat : paper::Precision::kDouble;
+  experiment.precision = precision_of(options.scalar);
   if (options.duration) experiment.duration_s = *options.duration;
   if (options.start) experiment.motion_start_s = *options.start;
   if (options.motion) {
@@ -148,7 +147,7 @@ void print_run(const ExperimentResult& run) {
     std::cout << fmt::format("  {:<38} {}\n", name, value);
   };
   std::cout << fmt::format("fault {}{}, {}, seed {}, {} steps\n", paper::name_of(run.fault),
-                           run.accommodate ? ", accommodated" : "", paper::name_of(run.precision),
+                           run.accommodate ? ", accommodated" : "", name_of(run.precision),
                            run.seed, run.steps);
   row("fault begins", or_none(run.fault_time_s, "{:g} s"));
   row("detected", or_none(run.detection_time_s, "{:.3f} s"));

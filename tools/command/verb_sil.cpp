@@ -63,8 +63,7 @@ sil::Scenario scenario_of(const SilOptions& options) {
   if (options.accommodate) experiment.accommodate = true;
   if (options.fd) scenario.format = hal::FrameFormat::kFd;
   if (options.duration) experiment.duration_s = *options.duration;
-  experiment.precision =
-      options.scalar == "float" ? paper::Precision::kFloat : paper::Precision::kDouble;
+  experiment.precision = precision_of(options.scalar);
   experiment.record = options.report.has_value() || options.log.has_value();
   return scenario;
 }

@@ -30,8 +30,7 @@ void run(WcetOptions& options, const std::string& command_line) {
   const RobotDescription robot =
       options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
   wcet::WcetSettings& settings = options.settings;
-  settings.precision =
-      options.scalar == "float" ? wcet::Precision::kFloat : wcet::Precision::kDouble;
+  settings.precision = precision_of(options.scalar);
   settings.format = options.fd ? hal::FrameFormat::kFd : hal::FrameFormat::kClassic;
   Progress progress;
   const wcet::WcetResult result =

@@ -103,8 +103,4 @@ std::string name_of(sim::FaultKind fault) {
   return "unknown";
 }
 
-std::string name_of(Precision precision) {
-  return precision == Precision::kFloat ? "float" : "double";
-}
-
 }  // namespace offnominal::tools::paper

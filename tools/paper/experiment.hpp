@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/precision.hpp"
 #include "offnominal/sim/fault.hpp"
 #include "offnominal/sim/trajectory.hpp"
 #include "offnominal/sim/two_link_plant.hpp"
@@ -16,9 +17,6 @@
 #include "robot/robot.hpp"
 
 namespace offnominal::tools::paper {
-
-/// Arithmetic of the monitor and the controller. The plant is always computed in double.
-enum class Precision : std::uint8_t { kFloat, kDouble };
 
 inline constexpr int kMaxHiddenUnits = 256;
 inline constexpr double kMinPeriod = 1e-5;  // s
@@ -86,6 +84,5 @@ void check_experiment(const RobotDescription& robot, const Experiment& experimen
 [[nodiscard]] sim::TwoLinkPlant plant_of(const Experiment& experiment);
 
 [[nodiscard]] std::string name_of(sim::FaultKind fault);  // none, mass_loss, nonlinear
-[[nodiscard]] std::string name_of(Precision precision);   // float, double
 
 }  // namespace offnominal::tools::paper

@@ -10,6 +10,7 @@
 #include "common/number.hpp"
 #include "replay/replay_joints.hpp"
 #include "robot/chain_of.hpp"
+#include "robot/robot_file.hpp"
 
 namespace offnominal::tools {
 namespace {
@@ -23,14 +24,7 @@ void check_settings(const RobotDescription& robot, const Log& log) {
          .allowed = std::to_string(robot.joint_count()) + ", as robot " + robot.name + " has",
          .mend = "give the recording's own robot file"});
   }
-  if (!robot.bound) {
-    throw InputError(
-        {.file = "robot " + robot.name,
-         .place = "uncertainty_bound",
-         .found = "nothing",
-         .allowed = "a table [uncertainty_bound]",
-         .mend = "add one (docs/robot-file.md): without a bound there is no threshold"});
-  }
+  require_bound(robot, "robot " + robot.name);
   const double pole = robot.estimator.alpha_per_s * log.period_s;
   if (pole > kMaxPolePerTick) {
     throw InputError(

@@ -74,8 +74,8 @@ std::vector<RobotEffect> read_effects(const TomlTable& root,
 void check_initial_weights(const TomlTable& root, const RobotDescription& robot) {
   const EstimatorSettings& settings = robot.estimator;
   const double norm = with_joint_count(robot.joint_count(), [&settings]<int N>() {
-    return std::sqrt(squared_norm(initial_weights<N, kMaxHiddenUnits, double>(
-        settings.seed, settings.hidden_units, settings.initial_weight_range)));
+    return std::sqrt(initial_squared_norm<N, kMaxHiddenUnits, double>(
+        settings.seed, settings.hidden_units, settings.initial_weight_range));
   });
   if (norm < settings.weight_radius) return;
   root.refuse("estimator",
@@ -96,6 +96,16 @@ std::optional<std::string> text_with_changes(const RobotDescription& robot) {
 }
 
 }  // namespace
+
+void require_bound(const RobotDescription& robot, const std::string& file) {
+  if (robot.bound) return;
+  throw InputError({.file = file,
+                    .place = "uncertainty_bound",
+                    .found = "nothing",
+                    .allowed = "a table [uncertainty_bound]",
+                    .mend = "add one (docs/robot-file.md), or let `offnominal calibrate` find it: "
+                            "without a bound there is no threshold"});
+}
 
 RobotDescription parse_robot(std::string_view text, const std::string& file) {
   const toml::table document = parse_toml(text, file);

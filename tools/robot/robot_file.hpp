@@ -22,6 +22,10 @@ inline constexpr int kRobotFileFormat = 1;
 /// The same for a text; `file` names it in messages.
 [[nodiscard]] RobotDescription parse_robot(std::string_view text, const std::string& file);
 
+/// Throws InputError, with `file` in it, where the robot has no uncertainty bound: without one
+/// there is no threshold.
+void require_bound(const RobotDescription& robot, const std::string& file);
+
 /// The text of a robot file. Numbers have as many digits as it takes to get them back to the bit:
 /// parse_robot(robot_text(robot)) == robot, for every robot that can be read.
 [[nodiscard]] std::string robot_text(const RobotDescription& robot);

@@ -116,7 +116,7 @@ SilResult run_in_real_time(const RobotDescription& robot, const Scenario& scenar
                            const RealTimeOptions& options) {
   check_scenario(robot, scenario);
   check_real_time(scenario);
-  if (scenario.experiment.precision != paper::Precision::kFloat) {
+  if (scenario.experiment.precision != Precision::kFloat) {
     throw InputError({"sil", "precision", "double", "float, in real time", ""});
   }
   const Folder folder;

@@ -83,7 +83,7 @@ SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenar
     busy_s += hal::longest_wire_time_s(frame);
     if (on_frame) on_frame(frame, time_us);
   };
-  if (scenario.experiment.precision == paper::Precision::kFloat) {
+  if (scenario.experiment.precision == Precision::kFloat) {
     run_loop<float>(robot, complete, setup, wire, see, observe, result);
   } else {
     run_loop<double>(robot, complete, setup, wire, see, observe, result);

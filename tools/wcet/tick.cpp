@@ -1,9 +1,9 @@
 #include "wcet/tick.hpp"
 
-#include <stdexcept>
 #include <string>
 
 #include "common/error.hpp"
+#include "robot/robot_file.hpp"
 #include "wcet/tick_sizes.hpp"
 
 namespace offnominal::tools::wcet {
@@ -33,13 +33,7 @@ std::string sizes_words() {
 
 std::unique_ptr<Tick> make_tick(const RobotDescription& robot, Precision precision,
                                 hal::FrameFormat format) {
-  if (!robot.bound) {
-    throw InputError({.file = "robot " + robot.name,
-                      .place = "uncertainty_bound",
-                      .found = "nothing",
-                      .allowed = "a table [uncertainty_bound]",
-                      .mend = "add one (docs/robot-file.md)"});
-  }
+  require_bound(robot, "robot " + robot.name);
   const TickSize* size = size_for(robot);
   if (size == nullptr) {
     throw InputError(
@@ -51,15 +45,7 @@ std::unique_ptr<Tick> make_tick(const RobotDescription& robot, Precision precisi
          .mend = "build with -DOFFNOMINAL_WCET_SIZES=" + std::to_string(robot.joint_count()) + "x" +
                  std::to_string(robot.estimator.hidden_units)});
   }
-  try {
-    return size->make(robot, precision, format);
-  } catch (const std::runtime_error& error) {
-    throw InputError({.file = "robot " + robot.name,
-                      .place = "controller",
-                      .found = std::string("status ") + error.what(),
-                      .allowed = "",
-                      .mend = "docs/troubleshooting.md says what each status asks for"});
-  }
+  return size->make(robot, precision, format);
 }
 
 }  // namespace offnominal::tools::wcet

@@ -8,14 +8,13 @@
 #include <span>
 #include <vector>
 
+#include "common/precision.hpp"
 #include "robot/robot.hpp"
 
 // One tick of the joint controller, the code that a controller runs, as an object that can be put
 // into any state that a tick may begin with, and run from there again and again.
 
 namespace offnominal::tools::wcet {
-
-enum class Precision { kFloat, kDouble };
 
 /// Where a tick begins, and what it receives. One number per joint in q, dq and tau.
 struct TickInput {

@@ -8,7 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "robot/monitor_config_of.hpp"
+#include "sil/controller_settings.hpp"
+#include "sil/plant_of.hpp"
 #include "wcet/tick.hpp"
 #include "wcet/tick_bus.hpp"
 
@@ -24,15 +25,12 @@ class TickOf final : public Tick {
   using Drives = MarkedDrives<static_cast<std::size_t>(N)>;
 
   TickOf(const RobotDescription& robot, hal::FrameFormat format)
-      : format_(format), used_units_(robot.estimator.hidden_units) {
-    typename Controller::Config config;
-    config.monitor = monitor_config_of<N, Scalar>(robot);
-    config.gains = gains_of<N, Scalar>(robot);
-    period_us_ = std::max<hal::Microseconds>(std::llround(1e6 * robot.estimator.period_s), 1);
-    config.command_lifetime_us = period_us_;
-    config.velocity_observer.period_s = config.monitor.estimator.period_s;
-    config.velocity_observer.bandwidth_rad_s = static_cast<Scalar>(0.2 / robot.estimator.period_s);
-    require(Controller::create(config, work_.controller));
+      : format_(format),
+        used_units_(robot.estimator.hidden_units),
+        period_us_(sil::period_us_of(robot.estimator.period_s)) {
+    sil::ControllerSettings settings;
+    settings.accommodate = true;
+    sil::create_controller(robot, settings, work_.controller);
   }
 
   void prepare(const TickInput& input) override {
@@ -122,8 +120,8 @@ class TickOf final : public Tick {
  private:
   // What a tick touches, in one piece.
   struct Work {
-    Work(hal::Microseconds max_age_us, hal::FrameFormat format, PhaseMarks& marks)
-        : drives({.max_age_us = max_age_us}, format, marks) {}
+    Work(const hal::SourceConfig& source, hal::FrameFormat format, PhaseMarks& marks)
+        : drives(source, format, marks) {}
     Controller controller;
     Data data;
     Drives drives;
@@ -194,7 +192,7 @@ class TickOf final : public Tick {
   // From the start to a controller that is armed and whose monitor runs.
   void arm(const TickInput& input) {
     work_.data = Data{};
-    work_.drives = Drives({.max_age_us = 3 * period_us_}, format_, marks_);
+    work_.drives = Drives(controller::source_config(period_us_), format_, marks_);
     constexpr int kTicksToStart = 12;
     for (int i = 0; i < kTicksToStart; ++i) {
       next_frames(input);
@@ -264,7 +262,7 @@ class TickOf final : public Tick {
 
   hal::FrameFormat format_;
   int used_units_;
-  hal::Microseconds period_us_ = 1000;
+  hal::Microseconds period_us_;
   hal::Microseconds now_us_ = 0;
   std::uint8_t counter_ = 0;
   PhaseMarks marks_;
@@ -273,7 +271,7 @@ class TickOf final : public Tick {
   ForwardDynamics<N, Scalar> nominal_;
   std::vector<hal::ReceivedFrame> frames_;
   std::size_t own_frames_ = 0;
-  Work work_{3000, format_, marks_};
+  Work work_{controller::source_config(period_us_), format_, marks_};
   Data prepared_data_;
   Drives prepared_drives_ = work_.drives;
 };

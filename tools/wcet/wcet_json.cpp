@@ -105,7 +105,7 @@ ordered_json to_json(const WcetResult& result) {
                     {"joints", result.joints},
                     {"hidden_units", result.hidden_units},
                     {"hidden_units_computed", result.hidden_capacity},
-                    {"scalar", result.precision == Precision::kFloat ? "float" : "double"},
+                    {"scalar", name_of(result.precision)},
                     {"period_s", result.period_s},
                     {"seed", result.seed},
                     {"machine", machine_json(result)},

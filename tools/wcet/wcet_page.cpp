@@ -8,9 +8,6 @@
 namespace offnominal::tools::wcet {
 namespace {
 
-double in_us(double ns) { return ns / 1000; }
-double in_us(std::int64_t ns) { return static_cast<double>(ns) / 1000; }
-
 report::Series bars(const std::string& name, const Histogram& histogram) {
   constexpr int kPerDecade = 40;
   report::Series series{.name = name, .kind = report::SeriesKind::kBars};
@@ -136,9 +133,8 @@ report::Section comparison_section(const Comparison& comparison) {
 report::Page page_of(const WcetResult& result, const std::string& command_line) {
   report::Page page;
   page.title = "Duration of one control tick";
-  page.subtitle =
-      fmt::format("{}: {} joints, {} hidden units, {}", result.robot, result.joints,
-                  result.hidden_units, result.precision == Precision::kFloat ? "float" : "double");
+  page.subtitle = fmt::format("{}: {} joints, {} hidden units, {}", result.robot, result.joints,
+                              result.hidden_units, name_of(result.precision));
   page.command_line = command_line;
   const bool overran = result.worst.overruns + result.cold.overruns > 0;
   page.verdict = {measured_words(result), overran ? report::Level::kBad : report::Level::kNeutral};

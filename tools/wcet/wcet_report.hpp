@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@
 // A measurement for people and programs. All times that people see are in us.
 
 namespace offnominal::tools::wcet {
+
+[[nodiscard]] inline double in_us(double ns) { return ns / 1000; }
+[[nodiscard]] inline double in_us(std::int64_t ns) { return static_cast<double>(ns) / 1000; }
 
 [[nodiscard]] std::string text_of(const WcetResult& result);
 [[nodiscard]] nlohmann::ordered_json to_json(const WcetResult& result);

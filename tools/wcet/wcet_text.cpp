@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,26 +10,20 @@
 namespace offnominal::tools::wcet {
 namespace {
 
-double us(double ns) { return ns / 1000; }
-double us(std::int64_t ns) { return static_cast<double>(ns) / 1000; }
-
 std::string yes_no(bool value) { return value ? "yes" : "no"; }
 
 std::string list_words(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values)
-    text += fmt::format("{}{:.4g}", text.empty() ? "" : ", ", value);
-  return text;
+  return fmt::format("{:.4g}", fmt::join(values, ", "));
 }
 
 std::string row_text(const TimeRow& row) {
   const Histogram& h = *row.histogram;
   std::string text = fmt::format("{:<38}{:>11}{:>9.2f}{:>9.2f}", row.name, h.count(),
-                                 us(h.min_ns()), us(h.mean_ns()));
+                                 in_us(h.min_ns()), in_us(h.mean_ns()));
   for (const Quantile& quantile : kQuantiles) {
-    text += fmt::format("{:>9.2f}", us(h.quantile_ns(quantile.p)));
+    text += fmt::format("{:>9.2f}", in_us(h.quantile_ns(quantile.p)));
   }
-  text += fmt::format("{:>10.2f}", us(h.max_ns()));
+  text += fmt::format("{:>10.2f}", in_us(h.max_ns()));
   return text + (row.timing == nullptr ? "" : fmt::format("{:>9}", row.timing->overruns)) + "\n";
 }
 
@@ -41,7 +36,8 @@ std::string facts_text(const std::vector<Fact>& facts) {
 std::string comparison_text(const Comparison& comparison) {
   const auto line = [](const std::string& name, const Histogram& h) {
     return fmt::format("  {:<34}{:>9}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.1f}\n", name, h.count(),
-                       us(h.min_ns()), us(h.mean_ns()), us(h.quantile_ns(0.999)), us(h.max_ns()));
+                       in_us(h.min_ns()), in_us(h.mean_ns()), in_us(h.quantile_ns(0.999)),
+                       in_us(h.max_ns()));
   };
   const CyclictestResult& other = comparison.cyclictest;
   std::string text =
@@ -122,8 +118,8 @@ std::string measured_words(const WcetResult& result) {
       "most {:.2f} us; {} took longer than the period of {:g} us. With a cold cache the longest of "
       "{} "
       "took {:.2f} us.",
-      h.count(), us(h.max_ns()), us(h.quantile_ns(0.5)), result.worst.overruns, period_us,
-      result.cold.histogram.count(), us(result.cold.histogram.max_ns()));
+      h.count(), in_us(h.max_ns()), in_us(h.quantile_ns(0.5)), result.worst.overruns, period_us,
+      result.cold.histogram.count(), in_us(result.cold.histogram.max_ns()));
 }
 
 std::string extrapolated_words(const WcetResult& result) {
@@ -139,8 +135,8 @@ std::string extrapolated_words(const WcetResult& result) {
       "of "
       "every {} ticks follow a Gumbel distribution (fitted to {} blocks: location {:.2f} us, scale "
       "{:.3f} us), are independent, and the machine stays as it was.",
-      1 / beyond.exceedance, us(beyond.bound_ns), beyond.block_size, beyond.blocks,
-      us(beyond.fit->location), us(beyond.fit->scale));
+      1 / beyond.exceedance, in_us(beyond.bound_ns), beyond.block_size, beyond.blocks,
+      in_us(beyond.fit->location), in_us(beyond.fit->scale));
   if (!beyond.holds()) {
     words += fmt::format(
         " They do not: Kolmogorov's statistic is {:.2f}, above {:.3f}. Do not use this number.",
@@ -168,17 +164,18 @@ std::string bars_of(const Histogram& histogram) {
     if (empty > 0) text += fmt::format("{:>24}\n", "...");
     empty = 0;
     const double length = 1 + kCharactersPerDecade * std::log10(static_cast<double>(bin.count));
-    text += fmt::format("{:>10.2f} to {:>10.2f} {:>11} {}\n", us(bin.begin_ns), us(bin.end_ns),
-                        bin.count, std::string(static_cast<std::size_t>(length), '#'));
+    text +=
+        fmt::format("{:>10.2f} to {:>10.2f} {:>11} {}\n", in_us(bin.begin_ns), in_us(bin.end_ns),
+                    bin.count, std::string(static_cast<std::size_t>(length), '#'));
   }
   return text;
 }
 
 std::string text_of(const WcetResult& result) {
-  std::string text = fmt::format(
-      "{}: {} joints, {} hidden units ({} computed), {}, period {:g} us\n", result.robot,
-      result.joints, result.hidden_units, result.hidden_capacity,
-      result.precision == Precision::kFloat ? "float" : "double", 1e6 * result.period_s);
+  std::string text =
+      fmt::format("{}: {} joints, {} hidden units ({} computed), {}, period {:g} us\n",
+                  result.robot, result.joints, result.hidden_units, result.hidden_capacity,
+                  name_of(result.precision), 1e6 * result.period_s);
   text += facts_text(machine_facts(result));
   text += fmt::format("\n{:<38}{:>11}{:>9}{:>9}", "One tick [us]", "ticks", "min", "mean");
   for (const Quantile& quantile : kQuantiles) text += fmt::format("{:>9}", quantile.name);
