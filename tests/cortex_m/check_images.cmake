@@ -5,29 +5,18 @@
 # guarded statics. With EXPECTED it is a control: it fails unless that symbol is found.
 cmake_minimum_required(VERSION 3.22)
 
-set(forbidden
-    "(malloc|free|calloc|realloc|_malloc_r|_free_r|_sbrk|_sbrk_r|_Zn[wa][jm].*|_Zd[la]P.*|__cxa_throw|__cxa_guard_acquire|__cxa_atexit|_Unwind_.*|__gxx_personality.*|_ZTI.*)")
+include("${CMAKE_CURRENT_LIST_DIR}/../gates/forbidden_symbols.cmake")
 
 # forbidden_in(<image> <variable>): the symbols of the image that must not be there.
 function(forbidden_in image variable)
-  execute_process(COMMAND "${NM}" --format=posix "${image}" OUTPUT_VARIABLE text RESULT_VARIABLE outcome
-                  ERROR_VARIABLE complaint)
-  if(NOT outcome EQUAL 0)
-    message(FATAL_ERROR "${NM} ${image}: ${complaint}")
-  endif()
-  string(REGEX MATCHALL "[^\n]+" lines "${text}")
-  list(LENGTH lines count)
+  symbols_of("${NM}" "${image}" symbols)
+  list(LENGTH symbols count)
   if(count LESS 20)
     message(FATAL_ERROR "${image}: ${count} symbols, so there is nothing to judge")
   endif()
-  set(found)
-  foreach(line IN LISTS lines)
-    string(REGEX REPLACE "[ @].*" "" symbol "${line}")
-    if(symbol MATCHES "^${forbidden}$")
-      list(APPEND found "${symbol}")
-    endif()
-  endforeach()
-  set(${variable} "${found}" PARENT_SCOPE)
+  forbidden_among(found ${symbols})
+  list(FILTER symbols INCLUDE REGEX "^_ZTI") # RTTI
+  set(${variable} ${found} ${symbols} PARENT_SCOPE)
 endfunction()
 
 if(DEFINED EXPECTED)
@@ -49,7 +38,7 @@ foreach(image IN LISTS images)
   if(EXISTS "${image}.map")
     file(READ "${image}.map" map)
     # Sections of functions and where archives' members were asked for by name.
-    if(map MATCHES "[ .(]${forbidden}[)\n]")
+    if(map MATCHES "[ .(]${forbidden_symbols}[)\n]")
       list(APPEND found "in the map: ${CMAKE_MATCH_1}")
     endif()
   endif()

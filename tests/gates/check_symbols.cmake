@@ -4,36 +4,9 @@
 # EXPECTED it is a control: it fails unless that symbol is among those found.
 cmake_minimum_required(VERSION 3.22)
 
-set(forbidden
-    "^(malloc|free|calloc|realloc|posix_memalign|aligned_alloc|memalign|valloc)$"
-    "^_Zn[wa]" # operator new
-    "^_Zd[la]" # operator delete
-    "^__cxa_(throw|rethrow|allocate_exception|bad_cast|bad_typeid|guard_.*|atexit)"
-    "^_ZSt.*throw"
-    "^(_Unwind_|__gxx_personality)")
-
-execute_process(
-  COMMAND "${NM}" --undefined-only --format=posix "${OBJECT}"
-  OUTPUT_VARIABLE text
-  RESULT_VARIABLE outcome
-  ERROR_VARIABLE complaint)
-if(NOT outcome EQUAL 0)
-  message(FATAL_ERROR "${NM} ${OBJECT}: ${complaint}")
-endif()
-
-string(REGEX MATCHALL "[^\n]+" lines "${text}")
-set(undefined)
-set(found)
-foreach(line IN LISTS lines)
-  string(REGEX REPLACE " .*" "" symbol "${line}")
-  list(APPEND undefined "${symbol}")
-  foreach(pattern IN LISTS forbidden)
-    if(symbol MATCHES "${pattern}")
-      list(APPEND found "${symbol}")
-      break()
-    endif()
-  endforeach()
-endforeach()
+include("${CMAKE_CURRENT_LIST_DIR}/forbidden_symbols.cmake")
+symbols_of("${NM}" "${OBJECT}" undefined --undefined-only)
+forbidden_among(found ${undefined})
 
 # An object with nothing in it would pass every gate.
 execute_process(COMMAND "${NM}" --defined-only --format=posix "${OBJECT}" OUTPUT_VARIABLE defined)
