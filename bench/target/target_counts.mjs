@@ -54,6 +54,14 @@ function graphOf(file) {
   return nodes;
 }
 
+// Bytes of a floating-point register or of a range of them: s16, d8-d11.
+function floatBytes(list) {
+  const registers = list.trim().match(/^([sd])(\d+)(?:-[sd](\d+))?$/);
+  if (registers === null) stop(`floating-point registers: found ${list}`);
+  const [, kind, first, last] = registers;
+  return (Number(last ?? first) - Number(first) + 1) * (kind === "d" ? 8 : 4);
+}
+
 // The same of functions that come compiled (memcpy and the like), from their instructions.
 function graphOfImage(image) {
   const nodes = new Map();
@@ -72,7 +80,9 @@ function graphOfImage(image) {
     if (pushed && (operation.startsWith("push") || operands.startsWith("sp!"))) {
       node.frame += 4 * operands.match(/\{.*\}/)[0].split(",").length;
     } else if (operation.startsWith("vpush")) {
-      node.frame += operands.match(/\{(.*)\}/)[1].split(",").length * (operands.includes("d") ? 8 : 4);
+      node.frame += operands.match(/\{(.*)\}/)[1].split(",").reduce((sum, list) => sum + floatBytes(list), 0);
+    } else if (/^v?str/.test(operation) && /\[sp, #-\d+\]!/.test(operands)) {
+      node.frame += Number(operands.match(/#-(\d+)\]!/)[1]);
     } else if (operation.startsWith("sub") && /^sp, (sp, )?#/.test(operands)) {
       node.frame += Number(operands.match(/#(\d+)/)[1]);
     } else if (/^bl?(\.[nw])?$/.test(operation)) {
@@ -139,6 +149,9 @@ function countsOf(builds, board, robot, scalar) {
   counts["stack painted"] = painted;
   const graph = onlyFile(join(folder, "CMakeFiles", `tick_${name}_object.dir`), ".ci");
   counts["stack static"] = deepest("offnominal_tick", graphOf(graph), graphOfImage(tick));
+  if (painted > counts["stack static"]) {
+    stop(`${image}: a painted stack of ${painted} bytes, and the deepest path has ${counts["stack static"]}`);
+  }
   const [flash, data] = output("arm-none-eabi-size", [tick]).trim().split("\n")[1].trim().split(/\s+/);
   counts["flash"] = Number(flash) + Number(data);
   return counts;

@@ -1,10 +1,9 @@
 #include "qemu.hpp"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cstdlib>
+#include <filesystem>
 #include <stdexcept>
+
+#include "tools/support/run_command.hpp"
 
 namespace offnominal::test {
 
@@ -17,27 +16,15 @@ int run_on(const Board& board, const std::string& program,
   }
   std::string semihosting = "enable=on,target=native,arg=" + program;
   for (const std::string& argument : arguments) semihosting += ",arg=" + argument;
-  const std::string command = std::string("timeout 300 qemu-system-arm -M ") + board.machine +
-                              " -nographic -semihosting-config '" + semihosting + "' -kernel '" +
-                              image + "' </dev/null";
-  const int status = std::system(command.c_str());
+  // env looks along the PATH.
+  const CommandResult result = run_command(
+      "/usr/bin/env", {"timeout", "300", "qemu-system-arm", "-M", board.machine, "-nographic",
+                       "-semihosting-config", semihosting, "-kernel", image});
   constexpr int kNotFound = 127;
-  if (!WIFEXITED(status) || WEXITSTATUS(status) == kNotFound) {
+  if (result.exit_code == kNotFound) {
     throw std::runtime_error("qemu-system-arm did not run: ./dev setup installs it");
   }
-  return WEXITSTATUS(status);
-}
-
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern =
-      (std::filesystem::temp_directory_path() / "offnominal-firmware-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  path_ = pattern;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+  return result.exit_code;
 }
 
 }  // namespace offnominal::test

@@ -1,7 +1,6 @@
 // Programs of the firmware in QEMU's MPS2 boards.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -18,18 +17,5 @@ inline constexpr Board kCortexM4{"mps2-an386", "cortex-m4"};
 /// where there is no such program or no QEMU. The arguments must hold no blanks and no commas.
 int run_on(const Board& board, const std::string& program,
            const std::vector<std::string>& arguments);
-
-/// A folder of its own, deleted at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder();
-  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace offnominal::test

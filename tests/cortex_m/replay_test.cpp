@@ -12,6 +12,7 @@
 #include "paper/two_link_robot.hpp"
 #include "qemu.hpp"
 #include "recorded_run.hpp"
+#include "tools/support/temporary_folder.hpp"
 
 namespace offnominal::test {
 namespace {
@@ -32,8 +33,8 @@ std::vector<ReplayResult> on_host(const std::vector<ReplayTick>& run) {
 std::vector<ReplayResult> on_target(const Board& board, const std::string& scalar,
                                     const std::vector<ReplayTick>& run) {
   const TemporaryFolder folder;
-  const std::string input = folder.file("in");
-  const std::string output = folder.file("out");
+  const std::string input = (folder / "in").string();
+  const std::string output = (folder / "out").string();
   std::ofstream(input, std::ios::binary)
       .write(reinterpret_cast<const char*>(run.data()),
              static_cast<std::streamsize>(run.size() * sizeof(ReplayTick)));
@@ -66,15 +67,19 @@ struct Differences {
   double error_norm = 0, threshold = 0, psi_hat = 0, torque = 0;
 };
 
+// NaN, which fmax drops, is the worst of all.
+double worse(double a, double b) {
+  return std::isnan(a) || std::isnan(b) ? std::nan("") : std::fmax(a, b);
+}
+
 template <typename Number>
 double largest_difference(const std::vector<ReplayResult>& a, const std::vector<ReplayResult>& b,
                           const Number& number) {
-  double difference = 0;
+  double difference = std::nan("");  // where no tick has the number
   double size = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double x = number(a[i]);
     const double y = number(b[i]);
-    // NaN on one side only must not pass: fmax drops it.
     if (std::isnan(x) != std::isnan(y)) return std::nan("");
     if (std::isnan(x)) continue;
     difference = std::fmax(difference, std::fabs(x - y));
@@ -92,8 +97,8 @@ Differences differences(const std::vector<ReplayResult>& a, const std::vector<Re
         largest_difference(a, b, [j](const ReplayResult& r) { return r.psi_hat[j]; });
     const double torque =
         largest_difference(a, b, [j](const ReplayResult& r) { return torque_of(r.sent[j]); });
-    all.psi_hat = std::isnan(psi) ? psi : std::fmax(all.psi_hat, psi);
-    all.torque = std::isnan(torque) ? torque : std::fmax(all.torque, torque);
+    all.psi_hat = worse(all.psi_hat, psi);
+    all.torque = worse(all.torque, torque);
   }
   return all;
 }
@@ -166,11 +171,11 @@ TEST(FirmwareImage, TicksInItsInterruptAndWaitsForABus) {
 
 TEST(FirmwareImage, SaysThatAFileIsCutShort) {
   const TemporaryFolder folder;
-  std::ofstream(folder.file("in"), std::ios::binary) << "not a tick";
+  put(folder / "in", "not a tick");
   constexpr int kCutShort = 6;
-  EXPECT_EQ(
-      run_on(kCortexM7, "offnominal_replay_float", {"10", folder.file("in"), folder.file("out")}),
-      kCutShort);
+  EXPECT_EQ(run_on(kCortexM7, "offnominal_replay_float",
+                   {"10", (folder / "in").string(), (folder / "out").string()}),
+            kCutShort);
 }
 
 }  // namespace
