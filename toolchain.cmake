@@ -39,5 +39,3 @@ set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,--gc-sections")
 
 # Start-up code and libraries are the firmware's own business: a test program does not link.
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
-# Programs come from this machine, headers of header-only packages (Eigen) as well; nothing else does.
-set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)

@@ -39,4 +39,4 @@ export root seconds
 # matio asks for whatever a damaged header claims; that it gets nothing is part of what is tried.
 export ASAN_OPTIONS=allocator_may_return_null=1
 # shellcheck disable=SC2016  # for the inner shell
-printf '%s\0' "${wanted[@]}" | xargs -0 -P "$(jobs_allowed)" -I {} bash -c 'fuzz_one "$1"' fuzz {} || exit 1
+printf '%s\0' "${wanted[@]}" | xargs -0 -P "$(jobs_allowed)" -I {} bash -euo pipefail -c 'fuzz_one "$1"' fuzz {} || exit 1
