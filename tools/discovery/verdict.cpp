@@ -25,19 +25,26 @@ bool is_parameter(const std::string& effect) {
 
 std::string at_joint(Eigen::Index joint) { return fmt::format("joint {}", joint + 1); }
 
+// The joint where what is left stands furthest above the noise floor; null where none does.
+const JointErrors* above_noise(const Explanation& e) {
+  const JointErrors* loudest = nullptr;
+  double worst = kAboveNoise;
+  for (const JointErrors& joint : e.joints) {
+    if (!(joint.rms_after > worst * joint.noise_floor)) continue;
+    worst = joint.rms_after / joint.noise_floor;
+    loudest = &joint;
+  }
+  return loudest;
+}
+
 // The variable that what is left follows on the joint where it stands out most; null for noise.
 const StructureShare* remaining_structure(const Explanation& e) {
   const StructureShare* state = nullptr;
   const StructureShare* time = nullptr;
-  double worst = kAboveNoise;
-  Eigen::Index where = -1;
-  for (const JointErrors& joint : e.joints) {
-    if (!(joint.rms_after > worst * joint.noise_floor)) continue;
-    worst = joint.rms_after / joint.noise_floor;
-    where = joint.joint;
-  }
+  const JointErrors* loudest = above_noise(e);
+  if (loudest == nullptr) return nullptr;
   for (const StructureShare& share : e.where) {  // largest first
-    if (share.joint != where) continue;
+    if (share.joint != loudest->joint) continue;
     const bool of_time = share.variable == "time";
     if (of_time && share.share >= kConcentrated) time = &share;
     if (!of_time && share.share >= kStructured && state == nullptr) state = &share;
@@ -100,25 +107,35 @@ void judge_found(Explanation& e) {
   }
 }
 
-// What was found on a joint explains nearly all that there was to explain.
-bool is_nearly_all(const Explanation& e, const JointErrors& joint) {
+// What was found on a joint explains nearly all that there was to explain there.
+bool is_nearly_all(const JointErrors& joint) {
   constexpr double kLeft = 0.35;
-  return std::any_of(e.found.begin(), e.found.end(),
-                     [&](const Finding& f) { return f.what.joint == joint.joint; }) &&
-         joint.rms_after < kLeft * joint.rms_fitted_before;
+  return joint.rms_after < kLeft * joint.rms_fitted_before;
+}
+
+// What was found stands by itself, whatever else is left on `joint`: it explains nearly all of its
+// own joints, and what acts on another one is another matter.
+bool stands_beside_rest(const Explanation& e) {
+  return !e.found.empty() && std::all_of(e.found.begin(), e.found.end(), [&](const Finding& f) {
+    return is_nearly_all(e.joints[static_cast<std::size_t>(f.what.joint)]);
+  });
 }
 
 bool judge_unknown(Explanation& e) {
   const StructureShare* left = remaining_structure(e);
   if (left == nullptr) return false;
   const JointErrors& joint = e.joints[static_cast<std::size_t>(left->joint)];
-  if (is_nearly_all(e, joint)) {
+  const bool external = left->variable == "time";
+  const bool found_there = std::any_of(e.found.begin(), e.found.end(), [&](const Finding& f) {
+    return f.what.joint == joint.joint;
+  });
+  if ((found_there && is_nearly_all(joint)) || stands_beside_rest(e)) {
     e.advice.push_back(fmt::format(
-        "joint {}: what is left, {:.3g} {}, still follows its {}: none of the known effects",
-        joint.joint + 1, joint.rms_after, joint.unit, left->variable));
+        "joint {}: what is left, {:.3g} {}, {}: none of the known effects", joint.joint + 1,
+        joint.rms_after, joint.unit,
+        external ? "comes in a few stretches of time" : "still follows its " + left->variable));
     return false;
   }
-  const bool external = left->variable == "time";
   e.verdict = external ? Verdict::kUnknownExternal : Verdict::kUnknownStateDependent;
   e.words = fmt::format(
       "Something acts on {} that is none of the known effects: the error stands {:.1f} times above "
@@ -211,8 +228,15 @@ void judge_whole(Explanation& e) {
     return;
   }
   e.verdict = Verdict::kExplained;
+  const JointErrors* loudest = above_noise(e);
   e.words =
-      "The model explains these recordings: what is left is noise, and no known effect is missing.";
+      loudest == nullptr
+          ? "The model explains these recordings: what is left is noise, and no known effect is "
+            "missing."
+          : fmt::format(
+                "No known effect is missing. What is left on {} stands {:.1f} times above the "
+                "noise, and follows nothing that was looked at.",
+                at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
 }
 
 }  // namespace offnominal::tools::discovery

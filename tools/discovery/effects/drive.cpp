@@ -154,10 +154,17 @@ class Periodic final : public EffectCandidate {
   std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index /*joint*/) const override {
     ShapeRange frequency{"frequency", "rad/s", {}};
     const double duration_s = longest_duration_s(at);
-    double cutoff_hz = 0;
-    for (const Workspace& one : at) cutoff_hz = std::max(cutoff_hz, one.plan.torque_cutoff_hz);
+    // The filter's edge is no wall: a quarter above it a sixth of the amplitude is left, of effect
+    // and regressor alike. Half the rate of what is kept is one.
+    constexpr double kBeyondCutoff = 1.25;
+    constexpr double kBelowHalfRate = 0.99;
+    double highest_hz = 0;
+    for (const Workspace& one : at) {
+      highest_hz = std::max(highest_hz, std::min(kBeyondCutoff * one.plan.torque_cutoff_hz,
+                                                 kBelowHalfRate * 0.5 / one.plan.period_s()));
+    }
     const double whole = 2 * std::numbers::pi / duration_s;
-    const double last = 2 * std::numbers::pi * cutoff_hz;
+    const double last = 2 * std::numbers::pi * highest_hz;
     constexpr double kMost = 4000;
     const double step = std::max(0.5 * whole, last / kMost);
     for (double w = 5 * whole; w < last; w += step) frequency.grid.push_back(w);
