@@ -119,8 +119,10 @@ std::string_view variable(OutsideEffect effect) {
     case OutsideEffect::kNone:
       return "";
     case OutsideEffect::kEndStop:
-    case OutsideEffect::kWornSpot:
       return "position";
+    // Friction: of either sign at that place, so that position alone says nothing on average.
+    case OutsideEffect::kWornSpot:
+      return "position and velocity";
     case OutsideEffect::kDragBand:
       return "velocity";
     case OutsideEffect::kMagneticSaturation:
