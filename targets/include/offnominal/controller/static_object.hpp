@@ -21,7 +21,7 @@ class StaticObject {
   [[nodiscard]] T* operator->() { return &**this; }
 
  private:
-  alignas(T) std::byte storage_[sizeof(T)];
+  alignas(T) std::byte storage_[sizeof(T)]{};  // zeros: constinit, and no part of the image
 };
 
 }  // namespace offnominal::controller
