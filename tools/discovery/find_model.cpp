@@ -124,8 +124,11 @@ class Finder {
     const std::vector<Term> terms = found_.terms();
     const Screening screening = search_.screen(terms, found_.fit);
     const std::vector<Proposal> proposals = search_.propose(terms, found_.fit, screening);
-    if (proposals.empty() || !relevant(found_.fit, proposals[0].fit)) return false;
-    const Proposal& best = proposals[0];
+    const auto best_relevant =
+        std::find_if(proposals.begin(), proposals.end(),
+                     [this](const Proposal& one) { return relevant(found_.fit, one.fit); });
+    if (best_relevant == proposals.end()) return false;
+    const Proposal& best = *best_relevant;
     const Term& term = best.terms.back();
     const Data& data = regression_.data();
     if (!shows(data, excitation_[static_cast<std::size_t>(term.joint)], term)) return false;

@@ -1,0 +1,67 @@
+// docs/find-a-missing-effect.md, as a user follows it with the paper's arm: a motion that shows
+// enough, a recording of it, and the robot file with all that was found.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "robot/robot_file.hpp"
+#include "support/robots.hpp"
+#include "tools/support/run_command.hpp"
+
+namespace {
+
+using offnominal::EffectKind;
+using offnominal::test::CommandResult;
+using offnominal::test::run_command;
+using offnominal::tools::read_robot_file;
+using offnominal::tools::RobotDescription;
+using offnominal::tools::RobotEffect;
+
+// The effect's number of that name; a failure and 0 where the robot has no such effect.
+double number_of(const RobotDescription& robot, EffectKind kind, int joint,
+                 const std::string& name) {
+  for (const RobotEffect& effect : robot.effects) {
+    if (effect.kind != kind || effect.joint != joint) continue;
+    const auto& parameters = info_of(kind)->parameters;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      if (parameters[i].name == name) return effect.parameters[i];
+    }
+  }
+  ADD_FAILURE() << info_of(kind)->name << " with its " << name << " is not on joint " << joint + 1;
+  return 0;
+}
+
+TEST(Walkthrough, ThePapersArmGetsWhatItsSimulatorHas) {
+  const offnominal::test::TemporaryFolder folder;
+  const auto path = [&folder](const char* name) { return (folder / name).string(); };
+  const std::string robot_file = (offnominal::test::kRobots / "two_link.toml").string();
+  // The domain in which the paper's bound holds, as limits of the motion.
+  RobotDescription gentle = read_robot_file(robot_file);
+  for (auto& joint : gentle.joints) {
+    joint.joint.min_position = -0.5;
+    joint.joint.max_position = 0.5;
+    joint.joint.max_velocity = 0.8;
+  }
+  write_robot_file(gentle, path("gentle.toml"));
+  const std::vector<std::vector<std::string>> commands{
+      {"motion", "--robot", path("gentle.toml"), "--duration", "60", "-o", path("motion.csv")},
+      {"paper", "--fault", "none", "--motion", path("motion.csv"), "--log", path("rich.csv")},
+      {"add", "--all-found", "--robot", robot_file, "--log", path("rich.csv"), "-o",
+       path("found.toml")}};
+  for (const std::vector<std::string>& arguments : commands) {
+    const CommandResult result = run_command(OFFNOMINAL_COMMAND, arguments);
+    ASSERT_EQ(result.exit_code, 0) << arguments[0] << "\n" << result.out << result.err;
+  }
+  const RobotDescription found = read_robot_file(path("found.toml"));
+  EXPECT_EQ(found.effects.size(), 5U);
+  EXPECT_NEAR(number_of(found, EffectKind::kCoulombFriction, 0, "level"), 0.5, 0.02);
+  EXPECT_NEAR(number_of(found, EffectKind::kViscousFriction, 0, "coefficient"), 2.0, 0.05);
+  EXPECT_NEAR(number_of(found, EffectKind::kViscousFriction, 1, "coefficient"), 2.5, 0.05);
+  for (const int joint : {0, 1}) {
+    EXPECT_NEAR(number_of(found, EffectKind::kPeriodicDisturbance, joint, "frequency"), 30, 0.01);
+  }
+}
+
+}  // namespace
