@@ -72,15 +72,16 @@ void scale_links(const Relinearised& found, const std::string& source, RobotDesc
 ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescription& robot,
                              const Data& data, const NuisanceOptions& options,
                              const Relinearised& found, const std::string& source) {
-  NuisanceOptions sayable = options;
-  sayable.beyond_robot_files = false;
+  // What is the recordings' own, their skew and how friction builds up at a reversal, is fitted
+  // beside it: left out, it would stand in the numbers that are written.
+  NuisanceOptions of_links = options;
   if (std::all_of(found.link_factors.begin(), found.link_factors.end(),
                   [](double factor) { return std::abs(factor - 1) < kWorthWriting; })) {
-    sayable.link_share = 0;
+    of_links.link_share = 0;
   }
-  const Data plain(data.recordings, robot, sayable);
+  const Data plain(data.recordings, robot, of_links);
   const Relinearised last =
-      relinearise(robot, plain, sayable, found.terms, Regression(plain).fit(found.terms));
+      relinearise(robot, plain, of_links, found.terms, Regression(plain).fit(found.terms));
   ImprovedRobot improved{file, {}};
   scale_links(last, source, improved.robot);
   move_fitted_effects(last, source, improved.robot);

@@ -42,7 +42,7 @@ class Builder {
     }
     for (std::size_t effect = 0; effect < robot_.effects.size(); ++effect) add_effect(effect);
     if (recordings_[0].at_rest) add_approach();
-    const bool moves = options_.beyond_robot_files && !recordings_[0].at_rest;
+    const bool moves = !recordings_[0].at_rest;
     for (Index joint = 0; moves && joint < layout_.joint_count(); ++joint) {
       add_sign_shapes(joint);
       add_skew(joint);

@@ -38,8 +38,6 @@ struct NuisanceOptions {
   // As far as these may be off, two standard deviations of what is believed:
   double link_share = 0.05;   // mass and inertia of a link, as a share; 0: they are right
   double skew_samples = 1.0;  // torque against position
-  // Whether what no robot file can say is a nuisance too: how dry friction builds up, the skew.
-  bool beyond_robot_files = true;
   // Factor by which mass and inertia of each link of the robot differ from what the prior is about;
   // empty: by none.
   std::vector<double> link_factors = {};
