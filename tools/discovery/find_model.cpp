@@ -50,10 +50,8 @@ void leave_out(std::size_t which, const Regression& regression, const HoldOut& h
 
 namespace {
 
-// Share of the energy of what is held out that has to go ...
+// Share of the energy of what is held out that has to go.
 constexpr double kRelevantHeldOut = 0.05;
-// ... and what an effect has to be of the joint's rms torque.
-constexpr double kRelevantTorque = 0.001;
 
 // The joint on which `after` leaves less than `before`, and what share of the energy goes.
 std::pair<Index, double> best_fall(const VectorXd& before, const VectorXd& after) {

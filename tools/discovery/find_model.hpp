@@ -19,6 +19,8 @@ struct Accepted {
 
 // Share of a joint's residual energy below which an effect is not worth a name.
 inline constexpr double kRelevantShare = 0.08;
+// The same of the joint's rms torque, for an effect and for what is left of the error.
+inline constexpr double kRelevantTorque = 0.001;
 
 struct FoundModel {
   std::vector<Accepted> accepted;  // largest first

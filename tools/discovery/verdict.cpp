@@ -6,6 +6,8 @@
 #include <array>
 #include <string_view>
 
+#include "discovery/find_model.hpp"
+
 namespace offnominal::tools::discovery {
 namespace {
 
@@ -25,12 +27,14 @@ bool is_parameter(const std::string& effect) {
 
 std::string at_joint(Eigen::Index joint) { return fmt::format("joint {}", joint + 1); }
 
-// The joint where what is left stands furthest above the noise floor; null where none does.
+// The joint where what is left stands furthest above the noise floor, and is worth a name; null
+// where none does.
 const JointErrors* above_noise(const Explanation& e) {
   const JointErrors* loudest = nullptr;
   double worst = kAboveNoise;
   for (const JointErrors& joint : e.joints) {
     if (!(joint.rms_after > worst * joint.noise_floor)) continue;
+    if (joint.rms_after < kRelevantTorque * joint.rms_torque) continue;
     worst = joint.rms_after / joint.noise_floor;
     loudest = &joint;
   }
@@ -231,8 +235,8 @@ void judge_whole(Explanation& e) {
   const JointErrors* loudest = above_noise(e);
   e.words =
       loudest == nullptr
-          ? "The model explains these recordings: what is left is noise, and no known effect is "
-            "missing."
+          ? "The model explains these recordings: what is left is noise, or less than a thousandth "
+            "of the torque, and no known effect is missing."
           : fmt::format(
                 "No known effect is missing. What is left on {} stands {:.1f} times above the "
                 "noise, and follows nothing that was looked at.",

@@ -54,6 +54,9 @@ TEST(Walkthrough, ThePapersArmGetsWhatItsSimulatorHas) {
     const CommandResult result = run_command(OFFNOMINAL_COMMAND, arguments);
     ASSERT_EQ(result.exit_code, 0) << arguments[0] << "\n" << result.out << result.err;
   }
+  const CommandResult again =
+      run_command(OFFNOMINAL_COMMAND, {"explain", path("rich.csv"), "--robot", path("found.toml")});
+  EXPECT_TRUE(again.out.starts_with("explained: ")) << again.out;
   const RobotDescription found = read_robot_file(path("found.toml"));
   EXPECT_EQ(found.effects.size(), 5U);
   EXPECT_NEAR(number_of(found, EffectKind::kCoulombFriction, 0, "level"), 0.5, 0.02);
