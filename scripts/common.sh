@@ -46,10 +46,11 @@ build() {
   shift
   dir="$root/build/$preset"
   remember_compilations
-  # What ninja does not know of; all else makes it configure anew by itself.
+  # What ninja does not know of; all else makes it configure anew by itself. From nothing: where a preset
+  # has another compiler, CMake drops its cache with all that the preset had put there.
   if [[ ! -f "$dir/build.ninja" || "$root/CMakePresets.json" -nt "$dir/build.ninja" ]]; then
     note "configure ($preset)"
-    (cd "$root" && cmake --preset "$preset" --log-level=WARNING) >&2 || return 1
+    (cd "$root" && cmake --fresh --preset "$preset" --log-level=WARNING) >&2 || return 1
   fi
   # shellcheck disable=SC2086  # a list of options, split on purpose
   ninja -C "$dir" -j "$(jobs_allowed)" ${NINJA_OPTIONS:-} "$@" 2>&1 |
