@@ -6,6 +6,7 @@
 cmake_minimum_required(VERSION 3.22)
 
 include("${CMAKE_CURRENT_LIST_DIR}/../gates/forbidden_symbols.cmake")
+set(forbidden "(${forbidden_symbols}|_ZTI[^ ()\n]*)") # and RTTI
 
 # forbidden_in(<image> <variable>): the symbols of the image that must not be there.
 function(forbidden_in image variable)
@@ -14,9 +15,8 @@ function(forbidden_in image variable)
   if(count LESS 20)
     message(FATAL_ERROR "${image}: ${count} symbols, so there is nothing to judge")
   endif()
-  forbidden_among(found ${symbols})
-  list(FILTER symbols INCLUDE REGEX "^_ZTI") # RTTI
-  set(${variable} ${found} ${symbols} PARENT_SCOPE)
+  list(FILTER symbols INCLUDE REGEX "^${forbidden}$")
+  set(${variable} "${symbols}" PARENT_SCOPE)
 endfunction()
 
 if(DEFINED EXPECTED)
@@ -38,7 +38,7 @@ foreach(image IN LISTS images)
   if(EXISTS "${image}.map")
     file(READ "${image}.map" map)
     # Sections of functions and where archives' members were asked for by name.
-    if(map MATCHES "[ .(]${forbidden_symbols}[)\n]")
+    if(map MATCHES "[ .(]${forbidden}[)\n]")
       list(APPEND found "in the map: ${CMAKE_MATCH_1}")
     endif()
   endif()

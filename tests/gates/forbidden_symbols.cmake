@@ -1,9 +1,10 @@
-# What neither core nor firmware may hold, as whole names: heap, exceptions, guarded statics.
+# What neither core nor firmware may hold: heap, exceptions, guarded statics. A pattern for whole names,
+# which symbols_of() gives.
 set(forbidden_symbols
     "(malloc|free|calloc|realloc|posix_memalign|aligned_alloc|memalign|valloc"
     "|_malloc_r|_free_r|_calloc_r|_realloc_r|_sbrk|_sbrk_r"
     "|_Zn[wa][^ ()\n]*|_Zd[la][^ ()\n]*" # operator new, operator delete
-    "|__cxa_(throw|rethrow|allocate_exception|bad_cast|bad_typeid|guard_[^ ()\n]*|atexit)"
+    "|__cxa_(throw|rethrow|allocate_exception|bad_cast|bad_typeid|guard_|atexit)[^ ()\n]*"
     "|_ZSt[^ ()\n]*throw[^ ()\n]*|_Unwind_[^ ()\n]*|__gxx_personality[^ ()\n]*)")
 string(JOIN "" forbidden_symbols ${forbidden_symbols})
 
@@ -17,11 +18,4 @@ function(symbols_of nm file variable)
   string(REGEX MATCHALL "[^\n]+" lines "${text}")
   list(TRANSFORM lines REPLACE "[ @].*" "")
   set(${variable} "${lines}" PARENT_SCOPE)
-endfunction()
-
-# forbidden_among(<variable> <symbol>...): those of the symbols that are forbidden.
-function(forbidden_among variable)
-  set(found ${ARGN})
-  list(FILTER found INCLUDE REGEX "^${forbidden_symbols}$")
-  set(${variable} "${found}" PARENT_SCOPE)
 endfunction()
