@@ -28,8 +28,6 @@ constexpr std::uint32_t kOpaqueClass = 17;
 
 constexpr std::uint64_t kHeaderSize = 128;
 constexpr std::uint64_t kTagSize = 8;
-// zlib packs by a factor of 1032 at most.
-constexpr std::uint64_t kMostPerPackedByte = 1100;
 // Deeper than anybody nests, and far from what a stack holds.
 constexpr int kMostDeep = 64;
 

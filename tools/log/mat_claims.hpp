@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 
 namespace offnominal::tools {
+
+// What a byte of the file can stand for: zlib packs by a factor of 1032 at most.
+inline constexpr std::uint64_t kMostPerPackedByte = 1100;
 
 // True where the file's header is that of MATLAB's level 5 or 7.3. matio takes any other file for
 // one of level 4, which has no header, and allocates what its first bytes claim.

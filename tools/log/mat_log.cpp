@@ -56,8 +56,6 @@ std::optional<Eigen::VectorXd> numbers_of(const matvar_t& variable, std::size_t 
 
 // More than any recording has signals; a damaged header claims any number.
 constexpr std::size_t kMostColumns = 4096;
-// What a byte of the file can stand for: zlib packs by a factor of 1032 at most.
-constexpr double kMostPerByte = 1100;
 
 bool is_numeric_array(const matvar_t& variable) {
   return variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64 &&
@@ -146,7 +144,7 @@ class MatReader {
     }
     if (!wanted) return;
     const auto claimed = static_cast<double>(rows) * static_cast<double>(columns);
-    if (claimed > kMostPerByte * static_cast<double>(std::filesystem::file_size(path_))) {
+    if (claimed > static_cast<double>(kMostPerPackedByte * std::filesystem::file_size(path_))) {
       fail("variable " + name, "more values than the file can hold", "a complete file");
     }
     const std::size_t size = rows * columns;

@@ -11,6 +11,7 @@
 #include "robot/robot_file.hpp"
 #include "support/repetitions.hpp"
 #include "tools/discovery/hidden_case.hpp"
+#include "tools/support/effect_parameter.hpp"
 
 // From a recording of a simulated robot, whose physics is the simulator's own, over `add` and the
 // robot file's text to the on-board monitor: what was hidden is found, and a monitor with a bound
@@ -75,13 +76,7 @@ class HiddenEffectInFile : public ::testing::TestWithParam<Tried> {
   }
 
   double fitted(const std::string& name) const {
-    const RobotEffect& effect = improved_.effects[result_.added[0]];
-    const auto parameters = info_of(effect.kind)->parameters;
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      if (name == parameters[i].name) return effect.parameters[i];
-    }
-    ADD_FAILURE() << name;
-    return 0;
+    return offnominal::test::parameter_of(improved_.effects[result_.added[0]], name);
   }
 
   hidden::Case made_;

@@ -21,6 +21,7 @@ namespace offnominal::tools::discovery {
 namespace {
 
 namespace hidden = sim::hidden;
+using test::case_of;
 using test::to_log;
 using test::to_robot;
 using ::testing::HasSubstr;
@@ -48,10 +49,7 @@ const Estimate* estimate_of(const std::string& name, const Finding& finding) {
 class EachEffect : public ::testing::TestWithParam<hidden::HiddenEffect> {};
 
 TEST_P(EachEffect, IsNamedFirstOnItsJoint) {
-  hidden::Request request;
-  request.seed = 5;
-  request.effects = {GetParam()};
-  const hidden::Case made = hidden::make_case(request);
+  const hidden::Case made = case_of(5, {GetParam()});
   const Explanation result = explain_case(made, quick());
   ASSERT_FALSE(result.found.empty()) << result.words;
   const hidden::TrueEffect& truth = made.truth.effects[0];
@@ -70,10 +68,7 @@ INSTANTIATE_TEST_SUITE_P(Hidden, EachEffect,
 
 // The links' masses are off too, and without the payload a heavier link looks much like it.
 TEST(Explain, GIVEN_a_payload_THEN_its_mass_and_place_are_not_taken_for_the_links) {
-  hidden::Request request;
-  request.seed = 2699507522;
-  request.effects = {hidden::HiddenEffect::kTipPayload};
-  const hidden::Case made = hidden::make_case(request);
+  const hidden::Case made = case_of(2699507522, {hidden::HiddenEffect::kTipPayload});
   const Explanation result = explain_case(made, quick());
   ASSERT_THAT(result.found, SizeIs(1)) << result.words;
   EXPECT_EQ(result.found[0].what.effect, "tip_payload");
@@ -89,10 +84,7 @@ TEST(Explain, GIVEN_a_payload_THEN_its_mass_and_place_are_not_taken_for_the_link
 
 // At 12.4 Hz, above the filter's edge of 12 Hz.
 TEST(Explain, GIVEN_a_disturbance_at_the_filters_edge_THEN_it_is_named) {
-  hidden::Request request;
-  request.seed = 1174567011;
-  request.effects = {hidden::HiddenEffect::kPeriodicDisturbance};
-  const hidden::Case made = hidden::make_case(request);
+  const hidden::Case made = case_of(1174567011, {hidden::HiddenEffect::kPeriodicDisturbance});
   const Explanation result = explain_case(made, quick());
   ASSERT_THAT(result.found, SizeIs(1)) << result.words;
   EXPECT_EQ(result.found[0].what.effect, "periodic_disturbance");
@@ -104,10 +96,7 @@ TEST(Explain, GIVEN_a_disturbance_at_the_filters_edge_THEN_it_is_named) {
 
 // Joint 2 sticks a few times, which no effect of the list describes; that is another matter.
 TEST(Explain, GIVEN_an_effect_on_one_joint_THEN_what_is_left_on_another_does_not_hide_it) {
-  hidden::Request request;
-  request.seed = 4230267222;
-  request.effects = {hidden::HiddenEffect::kViscousFriction};
-  const hidden::Case made = hidden::make_case(request);
+  const hidden::Case made = case_of(4230267222, {hidden::HiddenEffect::kViscousFriction});
   const Explanation result = explain_case(made, quick());
   ASSERT_THAT(result.found, SizeIs(1)) << result.words;
   EXPECT_EQ(result.found[0].what, (EffectAt{"viscous_friction", 0}));
@@ -161,11 +150,8 @@ TEST(Explain, GIVEN_a_poor_motion_THEN_it_says_so_and_finds_nothing) {
 }
 
 TEST(Explain, FindsTwoEffectsAtOnce) {
-  hidden::Request request;
-  request.seed = 4;
-  request.effects = {hidden::HiddenEffect::kCoggingTorque,
-                     hidden::HiddenEffect::kPeriodicDisturbance};
-  const hidden::Case made = hidden::make_case(request);
+  const hidden::Case made = case_of(
+      4, {hidden::HiddenEffect::kCoggingTorque, hidden::HiddenEffect::kPeriodicDisturbance});
   const Explanation result = explain_case(made, quick());
   ASSERT_THAT(result.found, SizeIs(2)) << result.words;
   for (const hidden::TrueEffect& truth : made.truth.effects) {
@@ -175,10 +161,7 @@ TEST(Explain, FindsTwoEffectsAtOnce) {
 }
 
 TEST(Explain, ParametersComeWithIntervalsThatHoldTheTruth) {
-  hidden::Request request;
-  request.seed = 5;
-  request.effects = {hidden::HiddenEffect::kJointStiffness};
-  const hidden::Case made = hidden::make_case(request);
+  const hidden::Case made = case_of(5, {hidden::HiddenEffect::kJointStiffness});
   const Explanation result = explain_case(made, quick());
   ASSERT_THAT(result.found, SizeIs(1));
   int compared = 0;
@@ -195,10 +178,7 @@ TEST(Explain, ParametersComeWithIntervalsThatHoldTheTruth) {
 }
 
 TEST(Explain, TheSameInputGivesTheSameBytesForAnyNumberOfThreads) {
-  hidden::Request request;
-  request.seed = 6;
-  request.effects = {hidden::HiddenEffect::kBacklash};
-  const hidden::Case made = hidden::make_case(request);
+  const hidden::Case made = case_of(6, {hidden::HiddenEffect::kBacklash});
   const ExplainNames names{{"log"}, {"holdout"}, "robot", ""};
   std::vector<std::string> texts;
   for (const int threads : {1, 2, 8}) {
@@ -211,10 +191,7 @@ TEST(Explain, TheSameInputGivesTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Explain, WithoutHoldOutBlocksOfTimeAreHeldOut) {
-  hidden::Request request;
-  request.seed = 7;
-  request.effects = {hidden::HiddenEffect::kViscousFriction};
-  const hidden::Case made = hidden::make_case(request);
+  const hidden::Case made = case_of(7, {hidden::HiddenEffect::kViscousFriction});
   const Explanation result = explain(to_robot(made.nominal), {to_log(made.recording)}, {}, quick());
   EXPECT_FALSE(result.holdout_is_apart);
   ASSERT_THAT(result.found, SizeIs(1));
@@ -258,10 +235,8 @@ TEST(Explain, ConstantSignalsEndInAVerdict) {
 
 // The evidence in numbers, so that a broken step shows: a page says what the JSON says.
 TEST(Explain, ThePageHasTheNumbersOfTheJson) {
-  hidden::Request request;
-  request.seed = 5;
-  request.effects = {hidden::HiddenEffect::kCoggingTorque};
-  const Explanation result = explain_case(hidden::make_case(request), quick());
+  const Explanation result =
+      explain_case(case_of(5, {hidden::HiddenEffect::kCoggingTorque}), quick());
   const ExplainNames names{{"log"}, {"holdout"}, "robot", ""};
   const auto json = to_json(result, names);
   const auto page = report::to_json(page_of(result, names));

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 #include <offnominal/sim/hidden/case.hpp>
+#include <utility>
+#include <vector>
 
 #include "log/log.hpp"
 #include "log/sampling.hpp"
@@ -15,6 +17,15 @@
 // Cases of the simulator's blind benchmark as the analysis sees them.
 
 namespace offnominal::test {
+
+// Nominal noise and motion; all else drawn from the seed.
+inline sim::hidden::Case case_of(std::uint64_t seed,
+                                 std::vector<sim::hidden::HiddenEffect> effects) {
+  sim::hidden::Request request;
+  request.seed = seed;
+  request.effects = std::move(effects);
+  return sim::hidden::make_case(request);
+}
 
 inline tools::Log to_log(const sim::hidden::Recording& recording) {
   tools::Log log;

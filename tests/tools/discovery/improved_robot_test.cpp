@@ -17,15 +17,9 @@ namespace offnominal::tools::discovery {
 namespace {
 
 namespace hidden = sim::hidden;
+using test::case_of;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-hidden::Case case_of(std::uint64_t seed, const std::vector<hidden::HiddenEffect>& effects) {
-  hidden::Request request;
-  request.seed = seed;
-  request.effects = effects;
-  return hidden::make_case(request);
-}
 
 Explanation explained(const hidden::Case& made, const RobotDescription& robot) {
   ExplainOptions options;

@@ -22,10 +22,8 @@ TEST(Intervals, HoldTheTruthWhereARegressorSimplifiesToo) {
   options.replays = 0;
   options.threads = 2;
   for (std::size_t i = 0; i < static_cast<std::size_t>(test::repetitions(2)); ++i) {
-    hidden::Request request;
-    request.seed = kTruthSeeds[i];
-    request.effects = {hidden::HiddenEffect::kJointElasticity};
-    const hidden::Case made = hidden::make_case(request);
+    const hidden::Case made =
+        test::case_of(kTruthSeeds[i], {hidden::HiddenEffect::kJointElasticity});
     const Explanation told = explain(test::to_robot(made.nominal), {test::to_log(made.recording)},
                                      {test::to_log(made.holdout)}, options);
     ASSERT_EQ(told.found.size(), 1U) << told.words;

@@ -46,10 +46,7 @@ RobotEffect effect_of(const Finding& finding) {
 class FoundEffect : public ::testing::TestWithParam<hidden::HiddenEffect> {};
 
 TEST_P(FoundEffect, FitsIntoTheRobotFileAndIsKnownThereafter) {
-  hidden::Request request;
-  request.seed = 5;
-  request.effects = {GetParam()};
-  const hidden::Case made = hidden::make_case(request);
+  const hidden::Case made = test::case_of(5, {GetParam()});
   ExplainOptions options;
   options.bootstrap_draws = 399;
   options.threads = 2;

@@ -2,35 +2,33 @@
 // enough, a recording of it, and the robot file with all that was found.
 #include <gtest/gtest.h>
 
-#include <cstddef>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "robot/robot_file.hpp"
 #include "support/robots.hpp"
+#include "tools/support/effect_parameter.hpp"
 #include "tools/support/run_command.hpp"
 
 namespace {
 
 using offnominal::EffectKind;
 using offnominal::test::CommandResult;
+using offnominal::test::parameter_of;
 using offnominal::test::run_command;
 using offnominal::tools::read_robot_file;
 using offnominal::tools::RobotDescription;
 using offnominal::tools::RobotEffect;
 
-// The effect's number of that name; a failure and 0 where the robot has no such effect.
+// The effect's number of that name; a failure and NaN where the robot has no such effect.
 double number_of(const RobotDescription& robot, EffectKind kind, int joint,
                  const std::string& name) {
   for (const RobotEffect& effect : robot.effects) {
-    if (effect.kind != kind || effect.joint != joint) continue;
-    const auto& parameters = info_of(kind)->parameters;
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      if (parameters[i].name == name) return effect.parameters[i];
-    }
+    if (effect.kind == kind && effect.joint == joint) return parameter_of(effect, name);
   }
-  ADD_FAILURE() << info_of(kind)->name << " with its " << name << " is not on joint " << joint + 1;
-  return 0;
+  ADD_FAILURE() << info_of(kind)->name << " is not on joint " << joint + 1;
+  return std::nan("");
 }
 
 TEST(Walkthrough, ThePapersArmGetsWhatItsSimulatorHas) {
