@@ -3,6 +3,7 @@
 #include <chrono>
 #include <exception>
 #include <optional>
+#include <utility>
 
 #include "first_motion.hpp"
 #include "motion_design/design.hpp"
@@ -31,22 +32,27 @@ Score score_against(const Effects& truth, const Explanation& e) {
   return score_of(truth, named, e.ambiguous);
 }
 
+using FirstMotion = DesiredPositions (*)(const hidden::Nominal&, std::uint64_t, int);
+
+// Of several draws of a first motion: the first on which `explain` is `ambiguous` with the hidden
+// effect in a class, or else the first that does not excite enough.
 std::optional<FirstRecording> undecided(const hidden::Request& request,
                                         const hidden::Nominal& nominal, const Effects& truth,
-                                        Verdict wanted) {
+                                        FirstMotion draw) {
   const tools::RobotDescription robot = robot_of(nominal);
+  std::optional<FirstRecording> not_excited;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    const DesiredPositions motion = wanted == Verdict::kAmbiguous
-                                        ? short_positions(nominal, request.seed, attempt)
-                                        : poor_positions(nominal, request.seed, attempt);
+    const DesiredPositions motion = draw(nominal, request.seed, attempt);
     FirstRecording first;
     first.log = log_of(hidden::record_motion(request, motion.t_s, motion.q));
     first.explanation = tools::discovery::explain(robot, {first.log}, {}, {});
-    if (first.explanation.verdict != wanted) continue;
-    if (wanted == Verdict::kNotExcited || score_against(truth, first.explanation).in_class)
+    const Verdict verdict = first.explanation.verdict;
+    if (verdict == Verdict::kAmbiguous && score_against(truth, first.explanation).in_class) {
       return first;
+    }
+    if (verdict == Verdict::kNotExcited && !not_excited) not_excited = std::move(first);
   }
-  return std::nullopt;
+  return not_excited;
 }
 
 // What explain's advice says to run, as the command would.
@@ -96,9 +102,9 @@ Outcome run_motion_case(const hidden::Request& request) {
     outcome.hidden = text_of(outcome.truth);
     std::optional<FirstRecording> first;
     if (request.excitation == hidden::Excitation::kRich) {
-      first = undecided(request, drawn.nominal, outcome.truth, Verdict::kAmbiguous);
+      first = undecided(request, drawn.nominal, outcome.truth, short_positions);
     }
-    if (!first) first = undecided(request, drawn.nominal, outcome.truth, Verdict::kNotExcited);
+    if (!first) first = undecided(request, drawn.nominal, outcome.truth, poor_positions);
     if (!first) {
       outcome.refused = "no first motion left it undecided";
       return outcome;

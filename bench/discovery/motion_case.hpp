@@ -8,8 +8,8 @@ namespace offnominal::bench {
 // explain() says `ambiguous` (the hidden effect in the class) or `not_excited`; the motion that its
 // advice asks for is designed from the nominal robot alone; the same hidden robot is recorded on
 // it; explain() judges that recording by itself. Score and verdict are those of the second
-// recording, Outcome::before is the first verdict. Rich excitation of the request asks for
-// `ambiguous`, where such a motion is found; poor for `not_excited`.
+// recording, Outcome::before is the first verdict: `ambiguous` where one of several draws gives it.
+// Rich excitation of the request draws short motions first, then poor ones; poor, these alone.
 Outcome run_motion_case(const sim::hidden::Request& request);
 
 }  // namespace offnominal::bench

@@ -41,6 +41,10 @@ Score score_of(const Effects& truth, const Effects& named, const std::vector<Eff
   score.wrong = std::any_of(named.begin(), named.end(), [&](const EffectAt& one) {
     return !holds(truth, one) && !is_excused(truth, classes, one);
   });
+  score.wrong |= std::any_of(classes.begin(), classes.end(), [&](const Effects& same) {
+    return std::none_of(same.begin(), same.end(),
+                        [&](const EffectAt& one) { return holds(truth, one); });
+  });
   return score;
 }
 

@@ -14,7 +14,8 @@ struct Score {
   bool sure = false;       // ... and stands in no class of effects that cannot be told apart
   bool in_class = false;   // every true effect is named or stands in such a class
   bool all_named = false;  // every true effect is named
-  // An effect is named that is not true and shares no class with a true one.
+  // An effect is named that is not true and shares no class with a true one, or a class holds no
+  // true effect.
   bool wrong = false;
 };
 

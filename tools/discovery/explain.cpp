@@ -13,6 +13,7 @@
 #include "discovery/find_model.hpp"
 #include "discovery/improved_robot.hpp"
 #include "discovery/stretches.hpp"
+#include "discovery/undecided.hpp"
 #include "discovery/verdict.hpp"
 
 namespace offnominal::tools::discovery {
@@ -66,6 +67,9 @@ class Explainer {
         find_model(*search_, *regression_, hold_out, result.excitation,
                    {.most_effects = most_effects(), .replays = options_.replays}, on_progress_);
     result.ambiguous = classes_of(found, hold_out);
+    for (auto& names : undecided(*search_, *regression_, found, result.excitation)) {
+      result.ambiguous.push_back(std::move(names));
+    }
     tell("fitting the numbers");
     const Relinearised fitted = relinearise(robot_, *data_, nuisance_, found.terms(), found.fit);
     describe({robot_, *regression_, *search_, hold_out, found, fitted}, result);

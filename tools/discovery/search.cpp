@@ -184,12 +184,11 @@ double Search::family_p(const Proposal& proposal, const ModelFit& at) const {
 }
 
 std::vector<Proposal> Search::propose(const std::vector<Term>& terms, const ModelFit& at,
-                                      const Screening& screening) const {
-  constexpr std::size_t kShortlist = 10;
+                                      const Screening& screening, const std::size_t most) const {
   std::vector<const Screened*> shortlist;
   for (const Screened& one : screening.candidates) {
     if (!one.physical && one.evidence.gain < kSmallestShare) continue;
-    if (shortlist.size() < kShortlist) shortlist.push_back(&one);
+    if (shortlist.size() < most) shortlist.push_back(&one);
   }
   std::vector<Proposal> proposals(shortlist.size());
   parallel_for(shortlist.size(), options_.threads, [&](std::size_t i) {

@@ -47,13 +47,16 @@ class Search {
  public:
   Search(const Regression& regression, const SearchOptions& options);
 
+  static constexpr std::size_t kShortlist = 10;
+
   [[nodiscard]] const SearchOptions& options() const { return options_; }
   // Every candidate that is not in `terms`, each at its best shape, best score first.
   [[nodiscard]] Screening screen(const std::vector<Term>& terms, const ModelFit& at) const;
-  // The most promising candidates of a screening, each refined and fitted together with all that
-  // the model fits: best first. Only what is physical.
+  // The most promising candidates of a screening, `most` of them, each refined and fitted together
+  // with all that the model fits: best first. Only what is physical.
   [[nodiscard]] std::vector<Proposal> propose(const std::vector<Term>& terms, const ModelFit& at,
-                                              const Screening& screening) const;
+                                              const Screening& screening,
+                                              std::size_t most = kShortlist) const;
   // Probability that a search as this one shows as much evidence for anything where there is
   // nothing: what the proposal leaves is taken for the noise. `at`: the model without it.
   [[nodiscard]] double family_p(const Proposal& proposal, const ModelFit& at) const;

@@ -79,20 +79,20 @@ void advise_on_classes(Explanation& e) {
   }
 }
 
+void judge_ambiguous(Explanation& e) {
+  e.verdict = Verdict::kAmbiguous;
+  std::string names;
+  for (const EffectAt& one : e.ambiguous[0]) {
+    names +=
+        fmt::format("{}{} on {}", names.empty() ? "" : ", or ", one.effect, at_joint(one.joint));
+  }
+  e.words = fmt::format("Something is missing, but these recordings cannot tell which: {}.", names);
+  advise_on_classes(e);
+}
+
 void judge_found(Explanation& e) {
   const bool shift = std::all_of(e.found.begin(), e.found.end(),
                                  [](const Finding& f) { return is_parameter(f.what.effect); });
-  if (!e.ambiguous.empty()) {
-    e.verdict = Verdict::kAmbiguous;
-    std::string names;
-    for (const EffectAt& one : e.ambiguous[0]) {
-      names +=
-          fmt::format("{}{} on {}", names.empty() ? "" : ", or ", one.effect, at_joint(one.joint));
-    }
-    e.words =
-        fmt::format("Something is missing, but these recordings cannot tell which: {}.", names);
-    return;
-  }
   e.verdict = shift ? Verdict::kParameterShift : Verdict::kFound;
   const Finding& first = e.found.front();
   const double fall =
@@ -211,9 +211,12 @@ void judge_whole(Explanation& e) {
     return;
   }
   if (!poor && judge_unknown(e)) return;
+  if (!e.ambiguous.empty()) {
+    judge_ambiguous(e);
+    return;
+  }
   if (!e.found.empty()) {
     judge_found(e);
-    advise_on_classes(e);
     return;
   }
   if (!e.shifts.empty() && !poor) {

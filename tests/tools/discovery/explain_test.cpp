@@ -24,6 +24,7 @@ namespace hidden = sim::hidden;
 using test::case_of;
 using test::to_log;
 using test::to_robot;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -147,6 +148,34 @@ TEST(Explain, GIVEN_a_poor_motion_THEN_it_says_so_and_finds_nothing) {
   EXPECT_EQ(result.verdict, Verdict::kNotExcited) << result.words;
   EXPECT_THAT(result.found, IsEmpty());
   EXPECT_FALSE(result.advice.empty());
+}
+
+// A single slow sine or one speed to and fro, which many effects explain.
+TEST(Explain, GIVEN_a_poor_motion_that_shows_an_effect_THEN_it_says_what_it_could_be) {
+  struct Shown {
+    std::uint64_t seed;
+    hidden::HiddenEffect effect;
+  };
+  // The ripple of the second repeats over more than the joint's range.
+  for (const Shown& shown : {Shown{4100098333, hidden::HiddenEffect::kCoulombFriction},
+                             Shown{3183555967, hidden::HiddenEffect::kCoggingTorque}}) {
+    hidden::Request request;
+    request.seed = shown.seed;
+    request.effects = {shown.effect};
+    request.excitation = hidden::Excitation::kPoor;
+    const hidden::Case made = hidden::make_case(request);
+    const Explanation result = explain_case(made, quick());
+    EXPECT_EQ(result.verdict, Verdict::kAmbiguous) << result.words;
+    EXPECT_THAT(result.found, IsEmpty());
+    ASSERT_THAT(result.ambiguous, SizeIs(1));
+    const EffectAt truth{std::string(hidden::name(shown.effect)), made.truth.effects[0].joint};
+    EXPECT_THAT(result.ambiguous[0], Contains(truth)) << result.words;
+    EXPECT_THAT(result.advice, Contains(HasSubstr("--separate")));
+    request.effects.clear();
+    const Explanation healthy = explain_case(hidden::make_case(request), quick());
+    EXPECT_EQ(healthy.verdict, Verdict::kNotExcited) << healthy.words;
+    EXPECT_THAT(healthy.ambiguous, IsEmpty());
+  }
 }
 
 TEST(Explain, FindsTwoEffectsAtOnce) {

@@ -1,0 +1,151 @@
+#include "discovery/undecided.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "discovery/remainder.hpp"
+
+namespace offnominal::tools::discovery {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+// How far above its noise a joint's error has to stand; joints with nothing missing reach 2.1.
+constexpr double kStandsOut = 3;
+// Share of the error's energy on that joint that the best effect has to explain ...
+constexpr double kExplains = 0.8;
+// ... and what share of the best one's makes another one possible.
+constexpr double kPossible = 0.5;
+
+struct Possible {
+  EffectAt what;
+  double share = 0;  // of the error's energy on the joint in question
+};
+
+// What is left beside the nuisance where joints that do not move have no say: friction holds them
+// at any torque within it, and the links' masses would follow that.
+VectorXd left_of_moving_joints(const Regression& regression,
+                               const std::vector<Excitation>& excitation) {
+  const RowLayout& layout = regression.data().layout;
+  std::vector<char> rows(static_cast<std::size_t>(layout.rows()), 1);
+  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+    for (Index joint = 0; joint < layout.joint_count(); ++joint) {
+      if (excitation[static_cast<std::size_t>(joint)].moves) continue;
+      std::fill_n(rows.begin() + layout.begin(r, joint), layout.samples(r), 0);
+    }
+  }
+  return regression.fit({}, rows).residual;
+}
+
+// Joints that move too poorly and whose error stands out all the same, by how far.
+std::vector<Index> joints_that_show(const Regression& regression,
+                                    const std::vector<Excitation>& excitation) {
+  const Data& data = regression.data();
+  const VectorXd left = left_of_moving_joints(regression, excitation);
+  const VectorXd fitted = data.layout.rms(left);
+  const VectorXd torque = data.layout.rms(data.torque);
+  const VectorXd above = fitted.cwiseQuotient(noise_floor_of(data, left));
+  std::vector<Index> shows;
+  for (Index joint = 0; joint < fitted.size(); ++joint) {
+    const Excitation& motion = excitation[static_cast<std::size_t>(joint)];
+    if (motion.sufficient || !motion.moves || !(above[joint] > kStandsOut)) continue;
+    if (fitted[joint] > kRelevantTorque * torque[joint]) shows.push_back(joint);
+  }
+  std::stable_sort(shows.begin(), shows.end(),
+                   [&](Index a, Index b) { return above[a] > above[b]; });
+  return shows;
+}
+
+// Candidates of a spectrum are searched from two periods per range on; a torque that repeats over
+// more than the range is a curve of the position.
+std::vector<Possible> slow_ripples(const Regression& regression, const VectorXd& before,
+                                   Index joint) {
+  constexpr double kPeriodsInRange = 0.5;
+  const Data& data = regression.data();
+  const double range = range_moved(data.recordings, joint);
+  const JointType type =
+      regression.data().recordings[0].rigid.joints[static_cast<std::size_t>(joint)].joint.type;
+  const double per_turn = type == JointType::kRevolute ? 2 * std::numbers::pi : 1.0;
+  std::vector<Possible> possible;
+  for (const auto& effect : all_candidates()) {
+    if (effect->spectrum() != EffectCandidate::Spectrum::kPosition) continue;
+    if (!effect->applies(data.recordings[0], joint)) continue;
+    const Term term{effect.get(), joint, {kPeriodsInRange * per_turn / range}};
+    const VectorXd left = data.layout.rms(regression.fit({term}).residual);
+    possible.push_back({{effect->name(), joint}, 1 - std::pow(left[joint] / before[joint], 2)});
+  }
+  return possible;
+}
+
+// What every proposal and every slow ripple explains on a joint, the most first.
+std::vector<Possible> explained_on(Index joint, const Regression& regression,
+                                   const VectorXd& before, const std::vector<Proposal>& proposals) {
+  std::vector<Possible> possible = slow_ripples(regression, before, joint);
+  for (const Proposal& one : proposals) {
+    const Term& term = one.terms.back();
+    const EffectAt what{term.effect->name(), term.joint};
+    const double left = regression.data().layout.rms(one.fit.residual)[joint];
+    const double share = 1 - std::pow(left / before[joint], 2);
+    const auto same = std::find_if(possible.begin(), possible.end(),
+                                   [&](const Possible& other) { return other.what == what; });
+    if (same == possible.end()) {
+      possible.push_back({what, share});
+    } else {
+      same->share = std::max(same->share, share);
+    }
+  }
+  std::stable_sort(possible.begin(), possible.end(),
+                   [](const Possible& a, const Possible& b) { return a.share > b.share; });
+  return possible;
+}
+
+// Empty where even the best explains too little. At least two otherwise: a motion as poor as this
+// one does not leave a single effect.
+std::vector<EffectAt> class_of(const std::vector<Possible>& possible) {
+  std::vector<EffectAt> names;
+  if (possible.size() < 2 || possible.front().share < kExplains) return names;
+  for (const Possible& one : possible) {
+    if (names.size() >= 2 && one.share < kPossible * possible.front().share) break;
+    names.push_back(one.what);
+  }
+  return names;
+}
+
+bool share_an_effect(const std::vector<EffectAt>& a, const std::vector<EffectAt>& b) {
+  return std::any_of(a.begin(), a.end(), [&](const EffectAt& one) {
+    return std::find(b.begin(), b.end(), one) != b.end();
+  });
+}
+
+}  // namespace
+
+std::vector<std::vector<EffectAt>> undecided(const Search& search, const Regression& regression,
+                                             const FoundModel& found,
+                                             const std::vector<Excitation>& excitation) {
+  constexpr std::size_t kAll = 24;
+  if (!found.accepted.empty()) return {};
+  const std::vector<Index> joints = joints_that_show(regression, excitation);
+  if (joints.empty()) return {};
+  const VectorXd before = regression.data().layout.rms(found.baseline.residual);
+  const std::vector<Proposal> proposals =
+      search.propose({}, found.baseline, search.screen({}, found.baseline), kAll);
+  if (proposals.empty() ||
+      search.family_p(proposals.front(), found.baseline) > search.options().family_error) {
+    return {};
+  }
+  std::vector<std::vector<EffectAt>> classes;
+  for (const Index joint : joints) {
+    std::vector<EffectAt> names = class_of(explained_on(joint, regression, before, proposals));
+    // One effect may show on several joints.
+    const bool told = std::any_of(classes.begin(), classes.end(), [&](const auto& earlier) {
+      return share_an_effect(earlier, names);
+    });
+    if (!names.empty() && !told) classes.push_back(std::move(names));
+  }
+  return classes;
+}
+
+}  // namespace offnominal::tools::discovery

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "discovery/excitation.hpp"
+#include "discovery/explain.hpp"
+#include "discovery/find_model.hpp"
+#include "discovery/search.hpp"
+
+namespace offnominal::tools::discovery {
+
+// What could be missing on joints that move too poorly to tell effects apart, and whose error
+// stands clearly above their noise all the same: per such joint every effect that explains a good
+// part of what the best one does, best first; the joint that stands out most first. Empty where no
+// joint shows anything, where no effect explains it, or where anything was found.
+std::vector<std::vector<EffectAt>> undecided(const Search& search, const Regression& regression,
+                                             const FoundModel& found,
+                                             const std::vector<Excitation>& excitation);
+
+}  // namespace offnominal::tools::discovery
