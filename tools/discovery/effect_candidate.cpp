@@ -41,6 +41,11 @@ std::vector<NamedValue> EffectCandidate::parameters(JointType type,
 
 bool EffectCandidate::is_physical(const Eigen::VectorXd& /*coefficients*/) const { return true; }
 
+bool EffectCandidate::is_beyond_nuisance(const Workspace& /*at*/,
+                                         const Eigen::VectorXd& /*coefficients*/) const {
+  return true;
+}
+
 bool EffectCandidate::applies(const Workspace& at, Eigen::Index joint) const {
   return at.top_speed[joint] > 0;
 }

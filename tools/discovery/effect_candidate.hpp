@@ -82,6 +82,10 @@ class EffectCandidate {
   // Whether fitted coefficients are physical: friction takes energy out, and an operator whose size
   // is in its shape has a coefficient near 1. True by default.
   [[nodiscard]] virtual bool is_physical(const Eigen::VectorXd& coefficients) const;
+  // Whether they are beyond what every model adapts in its nuisance and never reports. True by
+  // default.
+  [[nodiscard]] virtual bool is_beyond_nuisance(const Workspace& at,
+                                                const Eigen::VectorXd& coefficients) const;
   // Whether the effect can act on this joint of the robot.
   [[nodiscard]] virtual bool applies(const Workspace& at, Eigen::Index joint) const;
   // Whether it acts on this joint where nothing moves: what hold maps are searched for.

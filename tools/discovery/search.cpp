@@ -20,6 +20,11 @@ constexpr double kSmallestShare = 0.02;  // of the energy, for a closer look
 
 }  // namespace
 
+bool Search::is_worth_a_name(const Term& term, const VectorXd& coefficients) const {
+  return term.effect->is_physical(coefficients) &&
+         term.effect->is_beyond_nuisance(data_.recordings[0], coefficients);
+}
+
 // In the robot file already, where it is one of a kind: then its numbers are a nuisance.
 bool Search::is_known(const EffectCandidate& effect, Index joint) const {
   if (effect.spectrum() != EffectCandidate::Spectrum::kNone) return false;
@@ -95,7 +100,7 @@ void Search::finish(Screened& screened, const Remainder& at) const {
   screened.score = evidence.log_likelihood - 0.5 * parameters * std::log(std::max(samples, 2.0));
   screened.log10_p = -std::log10(std::max(
       p_of_statistic(evidence.statistic, evidence.coefficients.size(), at.blocks.count), 1e-300));
-  screened.physical = screened.term.effect->is_physical(evidence.coefficients);
+  screened.physical = is_worth_a_name(screened.term, evidence.coefficients);
 }
 
 Screened Search::judge_slot(const Slot& slot, const Remainder& at,
@@ -204,7 +209,7 @@ std::vector<Proposal> Search::propose(const std::vector<Term>& terms, const Mode
       finish(proposal.candidate, at.remainder);
     }
     proposal.fit = regression_.fit(proposal.terms);
-    proposal.physical = proposal.terms.back().effect->is_physical(proposal.fit.coefficients.back());
+    proposal.physical = is_worth_a_name(proposal.terms.back(), proposal.fit.coefficients.back());
   });
   std::erase_if(proposals, [](const Proposal& one) { return !one.physical; });
   rank(proposals);

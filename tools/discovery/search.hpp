@@ -14,9 +14,10 @@ namespace offnominal::tools::discovery {
 struct Screened {
   Term term;
   Evidence evidence;
-  double score = 0;       // log-likelihood less the price of its parameters
-  double log10_p = 0;     // -log10 of its own p-value
-  bool physical = false;  // its coefficients have the sign that physics asks for
+  double score = 0;    // log-likelihood less the price of its parameters
+  double log10_p = 0;  // -log10 of its own p-value
+  // Its coefficients have the sign that physics asks for, and are beyond what the nuisance adapts.
+  bool physical = false;
 };
 
 struct Screening {
@@ -70,6 +71,7 @@ class Search {
     std::vector<Eigen::MatrixXd> columns;  // at the grid's points; empty for spectra
   };
   void rank(std::vector<Proposal>& proposals) const;
+  [[nodiscard]] bool is_worth_a_name(const Term& term, const Eigen::VectorXd& coefficients) const;
   [[nodiscard]] bool is_known(const EffectCandidate& effect, Eigen::Index joint) const;
   [[nodiscard]] Screened judge_slot(const Slot& slot, const Remainder& at,
                                     std::vector<Evidence>& all) const;

@@ -14,4 +14,12 @@ Eigen::VectorXd moving_samples(const Log& log, Eigen::Index joint, double counts
 
 inline constexpr double kStandstillS = 0.5;
 
+// Sets `moving` to 0 also for moments in which the joint all but stands: slower than 2 % of
+// `top_speed` for 0.1 s or more, and as long as the filter smears them. Friction there is what
+// happens to hold the joint, by microscopic displacements. Steady slow motion for kStandstillS or
+// more, whose speed never comes near zero, is kept: it shows friction at low speed as nothing else
+// does. No change where less than a tenth of the samples would be left. `speed`: rad/s or m/s.
+void leave_out_sticking(const Eigen::VectorXd& speed, double top_speed, double period_s,
+                        Eigen::Ref<Eigen::VectorXd> moving);
+
 }  // namespace offnominal::tools::discovery

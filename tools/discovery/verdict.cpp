@@ -79,6 +79,12 @@ void advise_on_classes(Explanation& e) {
   }
 }
 
+bool is_in_a_class(const Explanation& e, const EffectAt& what) {
+  return std::any_of(e.ambiguous.begin(), e.ambiguous.end(), [&](const auto& same) {
+    return std::find(same.begin(), same.end(), what) != same.end();
+  });
+}
+
 void judge_ambiguous(Explanation& e) {
   e.verdict = Verdict::kAmbiguous;
   std::string names;
@@ -86,7 +92,15 @@ void judge_ambiguous(Explanation& e) {
     names +=
         fmt::format("{}{} on {}", names.empty() ? "" : ", or ", one.effect, at_joint(one.joint));
   }
-  e.words = fmt::format("Something is missing, but these recordings cannot tell which: {}.", names);
+  std::string sure;
+  for (const Finding& finding : e.found) {
+    if (is_in_a_class(e, finding.what)) continue;
+    sure += fmt::format("{}{} on {}", sure.empty() ? "" : ", ", title_of(finding),
+                        at_joint(finding.what.joint));
+  }
+  e.words = sure.empty() ? "Something is missing"
+                         : fmt::format("Missing: {}. Something else is missing too", sure);
+  e.words += fmt::format(", but these recordings cannot tell which: {}.", names);
   advise_on_classes(e);
 }
 

@@ -126,7 +126,7 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
     moving.col(joint) = moving_samples(
         log, joint, robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit);
   }
-  if (moving.minCoeff() < 1) at.moving = every_nth_row(moving, stride);
+  moving = every_nth_row(moving, stride);
   at.start_s = log.t_s[0];
   at.at_rest = log.at_rest;
   at.approach = log.approach;
@@ -140,7 +140,12 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
       constexpr double kStill = 1e-9;
       at.sign_width[joint] = std::max(0.01 * at.top_speed[joint], kStill);
     }
+    if (!at.at_rest) {
+      leave_out_sticking(at.motion.dq.col(joint), at.top_speed[joint], at.period_s(),
+                         moving.col(joint));
+    }
   }
+  if (moving.minCoeff() < 1) at.moving = std::move(moving);
   return at;
 }
 

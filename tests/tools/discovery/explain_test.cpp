@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -95,10 +96,18 @@ TEST(Explain, GIVEN_a_disturbance_at_the_filters_edge_THEN_it_is_named) {
   EXPECT_NEAR(frequency->value.value, 78.0, 0.1) << "rad/s";
 }
 
-// Joint 2 sticks a few times, which no effect of the list describes; that is another matter.
+// Joint 2 is pushed twice, which no effect of the list describes; that is another matter.
 TEST(Explain, GIVEN_an_effect_on_one_joint_THEN_what_is_left_on_another_does_not_hide_it) {
   const hidden::Case made = case_of(4230267222, {hidden::HiddenEffect::kViscousFriction});
-  const Explanation result = explain_case(made, quick());
+  Log pushed = to_log(made.recording);
+  constexpr Eigen::Index kPush = 600;
+  const Eigen::ArrayXd push =
+      Eigen::ArrayXd::LinSpaced(kPush, 0, std::numbers::pi).sin() * pushed.tau.col(1).maxCoeff();
+  for (const Eigen::Index at : {Eigen::Index{9000}, Eigen::Index{20000}}) {
+    pushed.tau.col(1).segment(at, kPush).array() += 0.2 * push;
+  }
+  const Explanation result =
+      explain(to_robot(made.nominal), {pushed}, {to_log(made.holdout)}, quick());
   ASSERT_THAT(result.found, SizeIs(1)) << result.words;
   EXPECT_EQ(result.found[0].what, (EffectAt{"viscous_friction", 0}));
   EXPECT_THAT(result.advice, ::testing::Contains(HasSubstr("joint 2: what is left")));

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "discovery/effects/effects.hpp"
+#include "discovery/nuisance.hpp"
 #include "signal/differentiate.hpp"
 #include "signal/quantile.hpp"
 
@@ -195,6 +196,9 @@ class Delay final : public EffectCandidate {
     return {{{joint, central_difference(at.model_torque.col(joint), at.period_s())}}};
   }
   bool is_physical(const Eigen::VectorXd& c) const override { return c[0] > 0; }
+  bool is_beyond_nuisance(const Workspace& at, const Eigen::VectorXd& c) const override {
+    return c[0] > NuisanceOptions{}.skew_samples * at.skew_s;
+  }
   bool replaces_skew() const override { return true; }
 };
 
