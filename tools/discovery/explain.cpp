@@ -57,19 +57,19 @@ class Explainer {
                                                      .threads = options.threads});
   }
 
-  Explanation run() {
+  // A recording at fault tells nothing of effects: then there is no search, and what the model
+  // leaves of the recording is still shown.
+  Explanation run(bool search) {
     const HoldOut hold_out(*regression_, held_out_.get());
     Explanation result;
     result.at_rest = data_->recordings[0].at_rest;
     result.holdout_is_apart = hold_out.is_apart();
     result.excitation = excitation_of(data_->recordings);
-    FoundModel found =
-        find_model(*search_, *regression_, hold_out, result.excitation,
-                   {.most_effects = most_effects(), .replays = options_.replays}, on_progress_);
+    FoundModel found = find_model(
+        *search_, *regression_, hold_out, result.excitation,
+        {.most_effects = search ? most_effects() : 0, .replays = options_.replays}, on_progress_);
     result.ambiguous = classes_of(found, hold_out);
-    for (auto& names : undecided(*search_, *regression_, found, result.excitation)) {
-      result.ambiguous.push_back(std::move(names));
-    }
+    if (search) name_what_is_undecided(found, result);
     tell("fitting the numbers");
     const Relinearised fitted = relinearise(robot_, *data_, nuisance_, found.terms(), found.fit);
     describe({robot_, *regression_, *search_, hold_out, found, fitted}, result);
@@ -88,6 +88,12 @@ class Explainer {
  private:
   void tell(const std::string& doing) const {
     if (on_progress_) on_progress_(doing);
+  }
+
+  void name_what_is_undecided(const FoundModel& found, Explanation& result) const {
+    for (auto& names : undecided(*search_, *regression_, found, result.excitation)) {
+      result.ambiguous.push_back(std::move(names));
+    }
   }
 
   // A hold map may show one order after the other: as many as robot files have room for.
@@ -206,7 +212,7 @@ Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
       for (DataFault& fault : examine(log, robot)) faults.push_back(std::move(fault));
     }
   }
-  Explanation result = explainer.run();
+  Explanation result = explainer.run(faults.empty());
   if (!faults.empty()) {
     result.data_faults = std::move(faults);
     judge_whole(result);
