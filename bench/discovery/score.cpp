@@ -5,17 +5,10 @@
 namespace offnominal::bench {
 
 using tools::discovery::EffectAt;
+using tools::discovery::holds;
+using tools::discovery::holds_in_any;
 
 namespace {
-
-bool holds(const Effects& effects, const EffectAt& one) {
-  return std::find(effects.begin(), effects.end(), one) != effects.end();
-}
-
-bool in_any(const std::vector<Effects>& classes, const EffectAt& one) {
-  return std::any_of(classes.begin(), classes.end(),
-                     [&](const Effects& same) { return holds(same, one); });
-}
 
 // In one class with a true effect.
 bool is_excused(const Effects& truth, const std::vector<Effects>& classes, const EffectAt& named) {
@@ -34,10 +27,10 @@ Score score_of(const Effects& truth, const Effects& named, const std::vector<Eff
     return !truth.empty() && std::all_of(truth.begin(), truth.end(), condition);
   };
   score.first = !named.empty() && holds(truth, named.front());
-  score.sure = score.first && !in_any(classes, named.front());
+  score.sure = score.first && !holds_in_any(classes, named.front());
   score.all_named = every([&](const EffectAt& one) { return holds(named, one); });
   score.in_class =
-      every([&](const EffectAt& one) { return holds(named, one) || in_any(classes, one); });
+      every([&](const EffectAt& one) { return holds(named, one) || holds_in_any(classes, one); });
   score.wrong = std::any_of(named.begin(), named.end(), [&](const EffectAt& one) {
     return !holds(truth, one) && !is_excused(truth, classes, one);
   });

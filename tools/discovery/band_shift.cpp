@@ -13,8 +13,7 @@ constexpr std::array<double, 2> kBands{0.7, 0.45};  // of the band that was fitt
 
 std::vector<NamedValue> numbers_of(const Data& data, const Term& term,
                                    const Eigen::VectorXd& coefficients) {
-  const auto joint = static_cast<std::size_t>(term.joint);
-  return term.effect->parameters(data.recordings[0].rigid.joints[joint].joint.type, coefficients,
+  return term.effect->parameters(data.recordings[0].joint_type(term.joint), coefficients,
                                  term.shape, term.ranges);
 }
 

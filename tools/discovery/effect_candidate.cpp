@@ -1,5 +1,7 @@
 #include "discovery/effect_candidate.hpp"
 
+#include <numbers>
+
 #include "discovery/effects/effects.hpp"
 
 namespace offnominal::tools::discovery {
@@ -39,12 +41,11 @@ std::vector<NamedValue> EffectCandidate::parameters(JointType type,
   return values;
 }
 
-bool EffectCandidate::is_physical(const Eigen::VectorXd& /*coefficients*/) const { return true; }
-
-bool EffectCandidate::is_beyond_nuisance(const Workspace& /*at*/,
-                                         const Eigen::VectorXd& /*coefficients*/) const {
-  return true;
+double first_order_period(JointType type) {
+  return type == JointType::kRevolute ? 2 * std::numbers::pi : 1.0;
 }
+
+bool EffectCandidate::is_physical(const Eigen::VectorXd& /*coefficients*/) const { return true; }
 
 bool EffectCandidate::applies(const Workspace& at, Eigen::Index joint) const {
   return at.top_speed[joint] > 0;

@@ -46,6 +46,9 @@ struct NamedValue {
   std::string unit;
 };
 
+// Position in which a torque of order 1 repeats: a turn, 2 pi rad, or a metre.
+double first_order_period(JointType type);
+
 // A linear parameter as the user reads it.
 struct LinearParameter {
   std::string name;
@@ -82,15 +85,12 @@ class EffectCandidate {
   // Whether fitted coefficients are physical: friction takes energy out, and an operator whose size
   // is in its shape has a coefficient near 1. True by default.
   [[nodiscard]] virtual bool is_physical(const Eigen::VectorXd& coefficients) const;
-  // Whether they are beyond what every model adapts in its nuisance and never reports. True by
-  // default.
-  [[nodiscard]] virtual bool is_beyond_nuisance(const Workspace& at,
-                                                const Eigen::VectorXd& coefficients) const;
   // Whether the effect can act on this joint of the robot.
   [[nodiscard]] virtual bool applies(const Workspace& at, Eigen::Index joint) const;
   // Whether it acts on this joint where nothing moves: what hold maps are searched for.
   [[nodiscard]] virtual bool acts_at_rest(const Workspace& at, Eigen::Index joint) const;
-  // Takes the place of the nuisance time skew (nuisance.hpp) once it is in the model.
+  // Takes the place of the nuisance time skew (nuisance.hpp) once it is in the model. Its only
+  // coefficient is a time then, and no discovery within what the skew may be.
   [[nodiscard]] virtual bool replaces_skew() const { return false; }
   // Its shape at a reversal becomes a nuisance once it is in the model.
   [[nodiscard]] virtual bool is_dry_friction() const { return false; }

@@ -41,8 +41,7 @@ struct Place {
 
 std::vector<Estimate> of_term(const Data& data, const Term& term, const VectorXd& coefficients,
                               const std::vector<Covariance>& covariances, const Place& place) {
-  const JointType type =
-      data.recordings[0].rigid.joints[static_cast<std::size_t>(term.joint)].joint.type;
+  const JointType type = data.recordings[0].joint_type(term.joint);
   const auto named = [&](const VectorXd& c, const ShapePoint& shape) {
     return term.effect->parameters(type, c, shape, term.ranges);
   };

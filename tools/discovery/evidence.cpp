@@ -106,6 +106,8 @@ class EvidenceScale {
 
 }  // namespace
 
+double explained_share(double before, double left) { return 1 - std::pow(left / before, 2); }
+
 Evidence judge(const Remainder& remainder, const MatrixXd& columns) {
   constexpr double kNothingNew = 1e-3;  // sine of the angle to what is fitted already
   Evidence evidence;

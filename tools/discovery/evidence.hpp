@@ -41,6 +41,9 @@ struct Evidence {
   double prior_variance = 1;  // of one row of the priors: no single robot shows it
 };
 
+// Share of an error's energy that goes with what is left of it, both rms; negative where it grows.
+double explained_share(double before, double left);
+
 // `columns`: stacked, unweighted.
 Evidence judge(const Remainder& remainder, const Eigen::MatrixXd& columns);
 

@@ -69,7 +69,9 @@ class Explainer {
         *search_, *regression_, hold_out, result.excitation,
         {.most_effects = search ? most_effects() : 0, .replays = options_.replays}, on_progress_);
     result.ambiguous = classes_of(found, hold_out);
-    if (search) name_what_is_undecided(found, result);
+    if (search && found.accepted.empty()) {
+      result.ambiguous = undecided(*search_, *regression_, found.baseline, result.excitation);
+    }
     tell("fitting the numbers");
     const Relinearised fitted = relinearise(robot_, *data_, nuisance_, found.terms(), found.fit);
     describe({robot_, *regression_, *search_, hold_out, found, fitted}, result);
@@ -88,12 +90,6 @@ class Explainer {
  private:
   void tell(const std::string& doing) const {
     if (on_progress_) on_progress_(doing);
-  }
-
-  void name_what_is_undecided(const FoundModel& found, Explanation& result) const {
-    for (auto& names : undecided(*search_, *regression_, found, result.excitation)) {
-      result.ambiguous.push_back(std::move(names));
-    }
   }
 
   // A hold map may show one order after the other: as many as robot files have room for.

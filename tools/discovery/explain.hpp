@@ -40,6 +40,8 @@ struct EffectAt {
   Eigen::Index joint = 0;
   friend bool operator==(const EffectAt&, const EffectAt&) = default;
 };
+bool holds(const std::vector<EffectAt>& effects, const EffectAt& one);
+bool holds_in_any(const std::vector<std::vector<EffectAt>>& classes, const EffectAt& one);
 
 struct Finding {
   EffectAt what;

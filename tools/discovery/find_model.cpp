@@ -58,7 +58,7 @@ std::pair<Index, double> best_fall(const VectorXd& before, const VectorXd& after
   std::pair<Index, double> best{0, -1};
   for (Index joint = 0; joint < before.size(); ++joint) {
     if (!(before[joint] > 0)) continue;
-    const double fall = 1 - std::pow(after[joint] / before[joint], 2);
+    const double fall = explained_share(before[joint], after[joint]);
     if (fall > best.second) best = {joint, fall};
   }
   return best;

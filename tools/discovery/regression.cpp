@@ -80,6 +80,11 @@ bool Regression::has_dry_friction(const std::vector<Term>& terms, Index joint) c
          });
 }
 
+bool takes_place_of(const Term& term, const NuisanceTerm& nuisance) {
+  return nuisance.kind == NuisanceTerm::Kind::kSkew && term.joint == nuisance.joint &&
+         term.effect->replaces_skew();
+}
+
 MatrixXd columns_of(const Data& data, const Term& term) {
   return stacked_columns(data.layout, data.recordings, *term.effect, term.joint, term.shape);
 }
@@ -92,10 +97,9 @@ Regression::Design Regression::design(const std::vector<Term>& terms) const {
         !has_dry_friction(terms, nuisance.joint)) {
       continue;
     }
-    const bool replaced = nuisance.kind == NuisanceTerm::Kind::kSkew &&
-                          std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
-                            return term.joint == nuisance.joint && term.effect->replaces_skew();
-                          });
+    const bool replaced = std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
+      return takes_place_of(term, nuisance);
+    });
     if (!replaced) made.kept.push_back(static_cast<Index>(i));
   }
   std::vector<MatrixXd> of_terms;

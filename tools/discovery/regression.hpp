@@ -18,6 +18,9 @@ struct Term {
   std::vector<ShapeRange> ranges{};
 };
 
+// Whether a term takes the place of an unknown of the nuisance once it is in the model.
+bool takes_place_of(const Term& term, const NuisanceTerm& nuisance);
+
 // A model's fit to data: the nuisance and the terms.
 struct ModelFit {
   Eigen::VectorXd nuisance;                   // one per nuisance term

@@ -20,9 +20,13 @@ constexpr double kSmallestShare = 0.02;  // of the energy, for a closer look
 
 }  // namespace
 
+// What every model adapts in its nuisance is no discovery in another name either.
 bool Search::is_worth_a_name(const Term& term, const VectorXd& coefficients) const {
+  const auto& nuisance = data_.nuisance.terms;
   return term.effect->is_physical(coefficients) &&
-         term.effect->is_beyond_nuisance(data_.recordings[0], coefficients);
+         std::none_of(nuisance.begin(), nuisance.end(), [&](const NuisanceTerm& one) {
+           return takes_place_of(term, one) && coefficients[0] <= one.prior.high;
+         });
 }
 
 // In the robot file already, where it is one of a kind: then its numbers are a nuisance.
@@ -72,9 +76,11 @@ std::vector<ShapePoint> Search::spectral_peaks(const Slot& slot, const Remainder
   const RowLayout& layout = data_.layout;
   const std::vector<double>& grid = slot.term.ranges[0].grid;
   const bool position = slot.term.effect->spectrum() == EffectCandidate::Spectrum::kPosition;
-  const JointType type =
-      data_.recordings[0].rigid.joints[static_cast<std::size_t>(slot.term.joint)].joint.type;
-  const double unit = position && type == JointType::kPrismatic ? 2 * std::numbers::pi : 1.0;
+  // Orders count periods of the position.
+  const double unit = position
+                          ? 2 * std::numbers::pi /
+                                first_order_period(data_.recordings[0].joint_type(slot.term.joint))
+                          : 1.0;
   VectorXd power = VectorXd::Zero(static_cast<Index>(grid.size()));
   for (std::size_t r = 0; r < layout.recording_count(); ++r) {
     const Workspace& workspace = data_.recordings[r];

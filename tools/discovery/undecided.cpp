@@ -1,8 +1,6 @@
 #include "discovery/undecided.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "discovery/remainder.hpp"
 
@@ -43,17 +41,20 @@ VectorXd left_of_moving_joints(const Regression& regression,
 // Joints that move too poorly and whose error stands out all the same, by how far.
 std::vector<Index> joints_that_show(const Regression& regression,
                                     const std::vector<Excitation>& excitation) {
+  std::vector<Index> shows;
+  for (Index joint = 0; joint < regression.data().layout.joint_count(); ++joint) {
+    const Excitation& motion = excitation[static_cast<std::size_t>(joint)];
+    if (!motion.sufficient && motion.moves) shows.push_back(joint);
+  }
+  if (shows.empty()) return shows;
   const Data& data = regression.data();
   const VectorXd left = left_of_moving_joints(regression, excitation);
   const VectorXd fitted = data.layout.rms(left);
   const VectorXd torque = data.layout.rms(data.torque);
   const VectorXd above = fitted.cwiseQuotient(noise_floor_of(data, left));
-  std::vector<Index> shows;
-  for (Index joint = 0; joint < fitted.size(); ++joint) {
-    const Excitation& motion = excitation[static_cast<std::size_t>(joint)];
-    if (motion.sufficient || !motion.moves || !(above[joint] > kStandsOut)) continue;
-    if (fitted[joint] > kRelevantTorque * torque[joint]) shows.push_back(joint);
-  }
+  std::erase_if(shows, [&](Index joint) {
+    return !(above[joint] > kStandsOut && fitted[joint] > kRelevantTorque * torque[joint]);
+  });
   std::stable_sort(shows.begin(), shows.end(),
                    [&](Index a, Index b) { return above[a] > above[b]; });
   return shows;
@@ -66,16 +67,14 @@ std::vector<Possible> slow_ripples(const Regression& regression, const VectorXd&
   constexpr double kPeriodsInRange = 0.5;
   const Data& data = regression.data();
   const double range = range_moved(data.recordings, joint);
-  const JointType type =
-      regression.data().recordings[0].rigid.joints[static_cast<std::size_t>(joint)].joint.type;
-  const double per_turn = type == JointType::kRevolute ? 2 * std::numbers::pi : 1.0;
+  const double period = first_order_period(data.recordings[0].joint_type(joint));
   std::vector<Possible> possible;
   for (const auto& effect : all_candidates()) {
     if (effect->spectrum() != EffectCandidate::Spectrum::kPosition) continue;
     if (!effect->applies(data.recordings[0], joint)) continue;
-    const Term term{effect.get(), joint, {kPeriodsInRange * per_turn / range}};
+    const Term term{effect.get(), joint, {kPeriodsInRange * period / range}};
     const VectorXd left = data.layout.rms(regression.fit({term}).residual);
-    possible.push_back({{effect->name(), joint}, 1 - std::pow(left[joint] / before[joint], 2)});
+    possible.push_back({{effect->name(), joint}, explained_share(before[joint], left[joint])});
   }
   return possible;
 }
@@ -88,7 +87,7 @@ std::vector<Possible> explained_on(Index joint, const Regression& regression,
     const Term& term = one.terms.back();
     const EffectAt what{term.effect->name(), term.joint};
     const double left = regression.data().layout.rms(one.fit.residual)[joint];
-    const double share = 1 - std::pow(left / before[joint], 2);
+    const double share = explained_share(before[joint], left);
     const auto same = std::find_if(possible.begin(), possible.end(),
                                    [&](const Possible& other) { return other.what == what; });
     if (same == possible.end()) {
@@ -115,25 +114,22 @@ std::vector<EffectAt> class_of(const std::vector<Possible>& possible) {
 }
 
 bool share_an_effect(const std::vector<EffectAt>& a, const std::vector<EffectAt>& b) {
-  return std::any_of(a.begin(), a.end(), [&](const EffectAt& one) {
-    return std::find(b.begin(), b.end(), one) != b.end();
-  });
+  return std::any_of(a.begin(), a.end(), [&](const EffectAt& one) { return holds(b, one); });
 }
 
 }  // namespace
 
 std::vector<std::vector<EffectAt>> undecided(const Search& search, const Regression& regression,
-                                             const FoundModel& found,
+                                             const ModelFit& baseline,
                                              const std::vector<Excitation>& excitation) {
-  constexpr std::size_t kAll = 24;
-  if (!found.accepted.empty()) return {};
+  constexpr std::size_t kMostProposals = 24;
   const std::vector<Index> joints = joints_that_show(regression, excitation);
   if (joints.empty()) return {};
-  const VectorXd before = regression.data().layout.rms(found.baseline.residual);
+  const VectorXd before = regression.data().layout.rms(baseline.residual);
   const std::vector<Proposal> proposals =
-      search.propose({}, found.baseline, search.screen({}, found.baseline), kAll);
+      search.propose({}, baseline, search.screen({}, baseline), kMostProposals);
   if (proposals.empty() ||
-      search.family_p(proposals.front(), found.baseline) > search.options().family_error) {
+      search.family_p(proposals.front(), baseline) > search.options().family_error) {
     return {};
   }
   std::vector<std::vector<EffectAt>> classes;

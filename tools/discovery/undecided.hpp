@@ -12,9 +12,10 @@ namespace offnominal::tools::discovery {
 // What could be missing on joints that move too poorly to tell effects apart, and whose error
 // stands clearly above their noise all the same: per such joint every effect that explains a good
 // part of what the best one does, best first; the joint that stands out most first. Empty where no
-// joint shows anything, where no effect explains it, or where anything was found.
+// joint shows anything, or where no effect explains it.
+// `baseline`: what is left of a model in which nothing was found.
 std::vector<std::vector<EffectAt>> undecided(const Search& search, const Regression& regression,
-                                             const FoundModel& found,
+                                             const ModelFit& baseline,
                                              const std::vector<Excitation>& excitation);
 
 }  // namespace offnominal::tools::discovery

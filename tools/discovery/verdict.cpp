@@ -1,9 +1,11 @@
 #include "discovery/verdict.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <string_view>
 
 #include "discovery/find_model.hpp"
@@ -26,6 +28,10 @@ bool is_parameter(const std::string& effect) {
 }
 
 std::string at_joint(Eigen::Index joint) { return fmt::format("joint {}", joint + 1); }
+
+std::string words_of(const Finding& finding) {
+  return fmt::format("{} on {}", title_of(finding), at_joint(finding.what.joint));
+}
 
 // The joint where what is left stands furthest above the noise floor, and is worth a name; null
 // where none does.
@@ -67,40 +73,34 @@ const EffectCandidate* candidate_of(const std::string& name) {
 void advise_on_classes(Explanation& e) {
   for (const auto& same : e.ambiguous) {
     const EffectCandidate* candidate = candidate_of(same[0].effect);
-    std::string all;
+    std::vector<std::string> all;
     for (const EffectAt& one : same) {
-      all += fmt::format("{}{}@{}", all.empty() ? "" : ",", one.effect, one.joint + 1);
+      all.push_back(fmt::format("{}@{}", one.effect, one.joint + 1));
     }
     e.advice.push_back(fmt::format(
         "to tell {} from {}: {}; `offnominal motion --robot ROBOT --separate {} -o motion.csv` "
         "writes such a motion",
         same[0].effect, same[1].effect,
-        candidate != nullptr ? candidate->motion_hint() : "make a richer motion", all));
+        candidate != nullptr ? candidate->motion_hint() : "make a richer motion",
+        fmt::join(all, ",")));
   }
-}
-
-bool is_in_a_class(const Explanation& e, const EffectAt& what) {
-  return std::any_of(e.ambiguous.begin(), e.ambiguous.end(), [&](const auto& same) {
-    return std::find(same.begin(), same.end(), what) != same.end();
-  });
 }
 
 void judge_ambiguous(Explanation& e) {
   e.verdict = Verdict::kAmbiguous;
-  std::string names;
+  std::vector<std::string> possible;
   for (const EffectAt& one : e.ambiguous[0]) {
-    names +=
-        fmt::format("{}{} on {}", names.empty() ? "" : ", or ", one.effect, at_joint(one.joint));
+    possible.push_back(fmt::format("{} on {}", one.effect, at_joint(one.joint)));
   }
-  std::string sure;
+  std::vector<std::string> sure;
   for (const Finding& finding : e.found) {
-    if (is_in_a_class(e, finding.what)) continue;
-    sure += fmt::format("{}{} on {}", sure.empty() ? "" : ", ", title_of(finding),
-                        at_joint(finding.what.joint));
+    if (!holds_in_any(e.ambiguous, finding.what)) sure.push_back(words_of(finding));
   }
-  e.words = sure.empty() ? "Something is missing"
-                         : fmt::format("Missing: {}. Something else is missing too", sure);
-  e.words += fmt::format(", but these recordings cannot tell which: {}.", names);
+  e.words = sure.empty()
+                ? "Something is missing"
+                : fmt::format("Missing: {}. Something else is missing too", fmt::join(sure, ", "));
+  e.words +=
+      fmt::format(", but these recordings cannot tell which: {}.", fmt::join(possible, ", or "));
   advise_on_classes(e);
 }
 
@@ -111,18 +111,13 @@ void judge_found(Explanation& e) {
   const Finding& first = e.found.front();
   const double fall =
       first.holdout_before > 0 ? 100 * (1 - first.holdout_after / first.holdout_before) : 0;
-  e.words =
-      fmt::format("{} {} on {} ({}): the error on held-out data of that joint falls by {:.0f} %.",
-                  shift ? "Another value of a known quantity:" : "Missing:", title_of(first),
-                  at_joint(first.what.joint), first.words, fall);
-  if (e.found.size() > 1) {
-    e.words += " Also:";
-    for (std::size_t i = 1; i < e.found.size(); ++i) {
-      e.words += fmt::format("{} {} on {}", i > 1 ? "," : "", title_of(e.found[i]),
-                             at_joint(e.found[i].what.joint));
-    }
-    e.words += ".";
-  }
+  e.words = fmt::format("{} {} ({}): the error on held-out data of that joint falls by {:.0f} %.",
+                        shift ? "Another value of a known quantity:" : "Missing:", words_of(first),
+                        first.words, fall);
+  if (e.found.size() == 1) return;
+  std::vector<std::string> others;
+  std::transform(e.found.begin() + 1, e.found.end(), std::back_inserter(others), words_of);
+  e.words += fmt::format(" Also: {}.", fmt::join(others, ", "));
 }
 
 // What was found on a joint explains nearly all that there was to explain there.
@@ -131,7 +126,7 @@ bool is_nearly_all(const JointErrors& joint) {
   return joint.rms_after < kLeft * joint.rms_fitted_before;
 }
 
-// What was found stands by itself, whatever else is left on `joint`: it explains nearly all of its
+// What was found stands by itself, whatever else is left: it explains nearly all of its
 // own joints, and what acts on another one is another matter.
 bool stands_beside_rest(const Explanation& e) {
   return !e.found.empty() && std::all_of(e.found.begin(), e.found.end(), [&](const Finding& f) {
@@ -195,6 +190,15 @@ const char* name_of(Verdict verdict) {
       return "data_fault";
   }
   return "";
+}
+
+bool holds(const std::vector<EffectAt>& effects, const EffectAt& one) {
+  return std::find(effects.begin(), effects.end(), one) != effects.end();
+}
+
+bool holds_in_any(const std::vector<std::vector<EffectAt>>& classes, const EffectAt& one) {
+  return std::any_of(classes.begin(), classes.end(),
+                     [&](const auto& same) { return holds(same, one); });
 }
 
 std::string title_of(const Finding& finding) {

@@ -38,6 +38,9 @@ struct Workspace {
 
   [[nodiscard]] Eigen::Index sample_count() const { return motion.sample_count(); }
   [[nodiscard]] Eigen::Index joint_count() const { return motion.q.cols(); }
+  [[nodiscard]] JointType joint_type(Eigen::Index joint) const {
+    return rigid.joints[static_cast<std::size_t>(joint)].joint.type;
+  }
   [[nodiscard]] double period_s() const { return 1 / plan.sample_rate_hz; }
   // Another model of the same robot: everything that follows from it.
   void set_model(const RobotDescription& robot);

@@ -111,7 +111,7 @@ TEST(Explain, GIVEN_an_effect_on_one_joint_THEN_what_is_left_on_another_does_not
       explain(to_robot(made.nominal), {pushed}, {to_log(made.holdout)}, quick());
   ASSERT_THAT(result.found, SizeIs(1)) << result.words;
   EXPECT_EQ(result.found[0].what, (EffectAt{"viscous_friction", 0}));
-  EXPECT_THAT(result.advice, ::testing::Contains(HasSubstr("joint 2: what is left")));
+  EXPECT_THAT(result.advice, Contains(HasSubstr("joint 2: what is left")));
 }
 
 TEST(Explain, GIVEN_nothing_hidden_THEN_nothing_is_found_at_any_noise) {

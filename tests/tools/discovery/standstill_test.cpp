@@ -51,7 +51,7 @@ TEST(MovingSamples, AreNotThoseOfALongStandstill) {
   EXPECT_EQ(moving.sum(), 400);
 }
 
-// 100 Hz, top speed 1: moves, is as slow as `speed` for `count` samples, and moves on.
+// 100 Hz, top speed 1: moves, is as slow as `speed`, and moves on.
 Eigen::VectorXd moving_beside(const Eigen::VectorXd& speed) {
   Eigen::VectorXd whole = Eigen::VectorXd::Ones(400 + speed.size());
   whole.segment(200, speed.size()) = speed;

@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "discovery/effects/effects.hpp"
-#include "discovery/nuisance.hpp"
 #include "signal/differentiate.hpp"
 #include "signal/quantile.hpp"
 
@@ -14,9 +13,6 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::VectorXd;
 
-JointType type_of(const Workspace& at, Index joint) {
-  return at.rigid.joints[static_cast<std::size_t>(joint)].joint.type;
-}
 ArrayXd elapsed(const Workspace& at) { return at.motion.t_s.array() - at.start_s; }
 
 class Offset final : public EffectCandidate {
@@ -102,8 +98,8 @@ class Cogging final : public EffectCandidate {
     return {{"sine", unit(Quantity::kEffort, type)}, {"cosine", unit(Quantity::kEffort, type)}};
   }
   std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index joint) const override {
-    const JointType type = type_of(at[0], joint);
-    const double per_unit = type == JointType::kRevolute ? 2 * std::numbers::pi : 1.0;
+    const JointType type = at[0].joint_type(joint);
+    const double per_unit = first_order_period(type);
     const double range = range_moved(at, joint) / per_unit;
     double highest = 0;
     for (const Workspace& one : at) {
@@ -123,9 +119,8 @@ class Cogging final : public EffectCandidate {
   }
   std::vector<Regressor> regressors(const Workspace& at, Index joint,
                                     std::span<const double> shape) const override {
-    const double k =
-        type_of(at, joint) == JointType::kRevolute ? shape[0] : shape[0] * 2 * std::numbers::pi;
-    const ArrayXd phase = k * at.motion.q.col(joint).array();
+    const double k = 2 * std::numbers::pi / first_order_period(at.joint_type(joint));
+    const ArrayXd phase = shape[0] * k * at.motion.q.col(joint).array();
     std::vector<Regressor> columns{{{joint, phase.sin().matrix()}},
                                    {{joint, phase.cos().matrix()}}};
     if (!at.both_ways(joint)) return columns;
@@ -196,9 +191,6 @@ class Delay final : public EffectCandidate {
     return {{{joint, central_difference(at.model_torque.col(joint), at.period_s())}}};
   }
   bool is_physical(const Eigen::VectorXd& c) const override { return c[0] > 0; }
-  bool is_beyond_nuisance(const Workspace& at, const Eigen::VectorXd& c) const override {
-    return c[0] > NuisanceOptions{}.skew_samples * at.skew_s;
-  }
   bool replaces_skew() const override { return true; }
 };
 

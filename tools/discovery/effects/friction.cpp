@@ -28,10 +28,10 @@ double top_speed(const std::vector<Workspace>& at, Index joint) {
 }
 
 std::string velocity_unit(const std::vector<Workspace>& at, Index joint) {
-  return unit(Quantity::kVelocity, at[0].rigid.joints[static_cast<std::size_t>(joint)].joint.type);
+  return unit(Quantity::kVelocity, at[0].joint_type(joint));
 }
 std::string position_unit(const std::vector<Workspace>& at, Index joint) {
-  return unit(Quantity::kPosition, at[0].rigid.joints[static_cast<std::size_t>(joint)].joint.type);
+  return unit(Quantity::kPosition, at[0].joint_type(joint));
 }
 
 class Viscous final : public EffectCandidate {

@@ -127,7 +127,7 @@ class Backlash final : public EffectCandidate {
   }
   std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index joint) const override {
     const double range = range_moved(at, joint);
-    const JointType type = at[0].rigid.joints[static_cast<std::size_t>(joint)].joint.type;
+    const JointType type = at[0].joint_type(joint);
     return {{"width", offnominal::unit_of(Quantity::kPosition, type),
              logarithmic_grid(0.0005 * range, 0.05 * range), ShapeRange::Kind::kLogarithmic}};
   }
