@@ -37,7 +37,7 @@ Status start(const MonitorConfig<N, Scalar>& config, const ComputedTorqueGains<N
   Status status = validate(gains);
   if (status != Status::kOk) return status;
   controller.gains = gains;
-  status = Monitor<N, L, Scalar>::create(config, controller.monitor);
+  status = Monitor<N, L, Scalar, WithMemory>::create(config, controller.monitor);
   if (status != Status::kOk) return status;
   return controller.monitor.reset(sample_at(controller, Scalar(0), Scalar(0)), controller.state);
 }
@@ -101,6 +101,8 @@ OFFNOMINAL_GATE(7, 64, float)
 
 }  // namespace offnominal::gates
 
+template class offnominal::Monitor<2, 35, float, offnominal::WithMemory>;
+template class offnominal::Monitor<7, 64, float, offnominal::WithMemory>;
 template class offnominal::Monitor<2, 35, float>;
 template class offnominal::Monitor<2, 35, double>;
 template class offnominal::Monitor<6, 35, float>;

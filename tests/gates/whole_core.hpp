@@ -9,8 +9,8 @@ namespace offnominal::gates {
 // What a joint controller holds.
 template <int N, int L, typename Scalar>
 struct Controller {
-  Monitor<N, L, Scalar> monitor;
-  MonitorState<N, L, Scalar> state;
+  Monitor<N, L, Scalar, WithMemory> monitor;
+  MonitorState<N, L, Scalar, WithMemory> state;
   MonitorOutput<N, Scalar> output;
   ComputedTorqueGains<N, Scalar> gains;
   Scalar last_torque{};  // of joint 1, after accommodation, N m

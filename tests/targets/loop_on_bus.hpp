@@ -43,7 +43,7 @@ class ScriptedTimer {
 class LoopOnBus {
  public:
   static constexpr int kHidden = 35;
-  using Controller = controller::JointController<2, kHidden, float>;
+  using Controller = controller::JointController<2, kHidden, float, WithMemory>;
 
   LoopOnBus() {
     if (Controller::create(ArmOnBus::config(false), controller_) != Status::kOk) {

@@ -1,10 +1,12 @@
 #include "analysis/inverse_model.hpp"
 
 #include <algorithm>
+#include <offnominal/model/effect_memory.hpp>
 #include <offnominal/model/inverse_dynamics.hpp>
 #include <stdexcept>
 
 #include "robot/chain_of.hpp"
+#include "signal/shift.hpp"
 
 namespace offnominal::tools {
 
@@ -12,18 +14,63 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+// Of an effect with a state, along the way that its joint goes; the state is 0 where the way
+// begins.
+template <typename E>
+VectorXd torque_along(const std::array<double, kMaxEffectParameters>& parameters,
+                      const Eigen::Ref<const VectorXd>& q) {
+  VectorXd torque(q.size());
+  double z = 0;
+  for (Index i = 0; i < q.size(); ++i) {
+    if (i > 0) z = E::next_state(parameters, z, q[i] - q[i - 1]);
+    torque[i] = E::torque_of_state(parameters, z);
+  }
+  return torque;
+}
+
+// Per joint, how many samples later than it is logged its torque acts.
+template <int N>
+VectorXd delays_in_samples(const Chain<N, double>& chain, const Motion& motion) {
+  VectorXd samples = VectorXd::Zero(N);
+  const Index last = motion.sample_count() - 1;
+  if (last < 1) return samples;
+  const double period_s = (motion.t_s[last] - motion.t_s[0]) / static_cast<double>(last);
+  for (Index joint = 0; joint < N; ++joint) {
+    samples[joint] = delay_of_joint(chain, static_cast<std::size_t>(joint)) / period_s;
+  }
+  return samples;
+}
+
+}  // namespace
+
 MatrixXd model_torque(const RobotDescription& robot, const Motion& motion) {
   if (motion.q.cols() != robot.joint_count()) {
     throw std::invalid_argument("the motion has another number of joints than the robot");
   }
   return with_joint_count(robot.joint_count(), [&]<int N>() {
-    const auto model = make_model(chain_of<N, double>(robot));
+    const Chain<N, double> chain = chain_of<N, double>(robot);
+    const auto model = make_model(chain);
     MatrixXd torque(motion.sample_count(), N);
     for (Index i = 0; i < motion.sample_count(); ++i) {
       const Vector<N, double> q = motion.q.row(i);
       const Vector<N, double> dq = motion.dq.row(i);
       const Vector<N, double> ddq = motion.ddq.row(i);
       torque.row(i) = inverse_dynamics(model, q, dq, ddq, motion.t_s[i] - motion.t_s[0]);
+    }
+    for (const RobotEffect& effect : robot.effects) {
+      visit_effect(effect.kind, [&]<typename E>() {
+        if constexpr (requires { E::torque_of_state(effect.parameters, 0.0); }) {
+          const auto joint = static_cast<Index>(effect.joint);
+          torque.col(joint) +=
+              model.told_per_given[joint] * torque_along<E>(effect.parameters, motion.q.col(joint));
+        }
+      });
+    }
+    const VectorXd delays = delays_in_samples(chain, motion);
+    for (Index joint = 0; joint < N; ++joint) {
+      if (delays[joint] != 0) torque.col(joint) = ahead_by(torque.col(joint), delays[joint]);
     }
     return torque;
   });
@@ -45,7 +92,8 @@ bool is_torque_effect(EffectKind kind) {
   visit_effect(kind, [&]<typename E>() {
     torque = requires(std::array<double, kMaxEffectParameters> p, JointInstant<double> at) {
       E::torque(p, at);
-    };
+    }
+    || requires(std::array<double, kMaxEffectParameters> p) { E::torque_of_state(p, 0.0); };
   });
   return torque;
 }
@@ -54,7 +102,8 @@ bool is_path_effect(EffectKind kind) {
   bool path = false;
   visit_effect(kind, [&]<typename E>() {
     path = requires(std::array<double, kMaxEffectParameters> p) { E::most_friction_per_load(p); }
-    || requires(std::array<double, kMaxEffectParameters> p) { E::told_per_given(p); };
+    || requires(std::array<double, kMaxEffectParameters> p) { E::told_per_given(p); }
+    || requires(std::array<double, kMaxEffectParameters> p) { E::delay_s(p); };
   });
   return path;
 }
@@ -66,8 +115,10 @@ bool has_path_effect(const RobotDescription& robot) {
 
 ToldTorque told_torque(const RobotDescription& robot, const Motion& motion) {
   return with_joint_count(robot.joint_count(), [&]<int N>() {
-    const auto model = make_model(chain_of<N, double>(robot));
-    ToldTorque told{model.told_per_given, MatrixXd(motion.sample_count(), N)};
+    const Chain<N, double> chain = chain_of<N, double>(robot);
+    const auto model = make_model(chain);
+    ToldTorque told{model.told_per_given, MatrixXd(motion.sample_count(), N),
+                    delays_in_samples(chain, motion)};
     for (Index i = 0; i < motion.sample_count(); ++i) {
       const Vector<N, double> q = motion.q.row(i);
       const Vector<N, double> dq = motion.dq.row(i);
@@ -87,7 +138,9 @@ VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Mo
   visit_effect(effect.kind, [&]<typename E>() {
     auto parameters = effect.parameters;
     if constexpr (requires { E::prepare(parameters, type); }) E::prepare(parameters, type);
-    if constexpr (requires(JointInstant<double> at) { E::torque(parameters, at); }) {
+    if constexpr (requires { E::torque_of_state(parameters, 0.0); }) {
+      torque = torque_along<E>(parameters, motion.q.col(joint));
+    } else if constexpr (requires(JointInstant<double> at) { E::torque(parameters, at); }) {
       for (Index i = 0; i < motion.sample_count(); ++i) {
         JointInstant<double> at{motion.q(i, joint), motion.dq(i, joint),
                                 motion.t_s[i] - motion.t_s[0]};

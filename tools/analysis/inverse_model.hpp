@@ -19,21 +19,22 @@ Eigen::MatrixXd model_torque(const RobotDescription& robot, const Motion& motion
 // The share of one link's mass and inertia in it; linear in them.
 Eigen::MatrixXd link_torque(const RobotDescription& robot, std::size_t link, const Motion& motion);
 
-// True where an effect acts as a torque of its own joint, by the motion and the time.
+// True where an effect acts as a torque of its own joint, by the motion so far and the time.
 bool is_torque_effect(EffectKind kind);
 
-// True where an effect scales what passes from the drive to the load of its own joint (core's
-// torque_path.hpp).
+// True where an effect scales or delays what passes from the drive to the load of its own joint
+// (core's torque_path.hpp, effect_memory.hpp).
 bool is_path_effect(EffectKind kind);
 
 // Some effect of the robot is one of these.
 bool has_path_effect(const RobotDescription& robot);
 
 // What the drive has to be told per torque more that it gives, and per torque more of the load, at
-// every sample: 1 without path effects.
+// every sample: 1 without path effects; and how much earlier.
 struct ToldTorque {
   Eigen::VectorXd per_given;  // per joint
   Eigen::MatrixXd per_load;
+  Eigen::VectorXd samples_ahead;  // per joint
 };
 ToldTorque told_torque(const RobotDescription& robot, const Motion& motion);
 

@@ -77,6 +77,20 @@ std::vector<double> position_grid(const VectorXd& q) {
   return even_grid(low - range / 2, low + 1.5 * range, 2 * range / (kPoints - 1));
 }
 
+// Four points per factor of ten, from a thousandth of the range moved to half of it.
+std::vector<double> distance_grid(const VectorXd& q) {
+  constexpr double kSmallest = 0.001;
+  constexpr double kLargest = 0.5;
+  constexpr int kPoints = 12;
+  const double range = q.maxCoeff() - q.minCoeff();
+  std::vector<double> grid;
+  for (int i = 0; range > 0 && i < kPoints; ++i) {
+    const double share = static_cast<double>(i) / (kPoints - 1);
+    grid.push_back(range * kSmallest * std::pow(kLargest / kSmallest, share));
+  }
+  return grid;
+}
+
 class GroupMaker {
  public:
   GroupMaker(RobotDescription& robot, const std::vector<std::size_t>& refitted,
@@ -187,6 +201,10 @@ class GroupMaker {
         break;
       case Quantity::kPosition:
         group.grid = position_grid(motion_.q.col(column));
+        break;
+      case Quantity::kDistance:
+        group.logarithmic = true;
+        group.grid = distance_grid(motion_.q.col(column));
         break;
       case Quantity::kTime:
         group.logarithmic = true;

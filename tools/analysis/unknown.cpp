@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "analysis/inverse_model.hpp"
+#include "signal/shift.hpp"
 
 namespace offnominal::tools {
 namespace {
@@ -22,7 +23,8 @@ Effect<double> unit_effect(const RobotDescription& robot, const Unknown& unknown
   return effect;
 }
 
-// The torque is linear in the parameter while all else stands still.
+// The torque is linear in the parameter while all else stands still; in a delay nearly so, over no
+// more than a sample.
 Eigen::VectorXd of_path_effect(const RobotDescription& robot, const Unknown& unknown,
                                const Motion& motion) {
   const auto with = [&](double value) {
@@ -30,7 +32,11 @@ Eigen::VectorXd of_path_effect(const RobotDescription& robot, const Unknown& unk
     changed.effects[unknown.effect].parameters[unknown.parameter] = value;
     return model_torque(changed, motion).col(static_cast<Eigen::Index>(unknown.joint)).eval();
   };
-  return with(1) - with(0);
+  if (info_of_parameter(robot, unknown).quantity != Quantity::kTime) return with(1) - with(0);
+  const double value = robot.effects[unknown.effect].parameters[unknown.parameter];
+  const auto steps = static_cast<double>(motion.sample_count() - 1);
+  const double half = 0.5 * (motion.t_s[motion.sample_count() - 1] - motion.t_s[0]) / steps;
+  return (with(value + half) - with(value - half)) / (2 * half);
 }
 
 }  // namespace
@@ -108,6 +114,7 @@ void pass_path(const RobotDescription& robot, const Unknown& unknown, const Told
     } else {
       column.values *= told.per_given[joint];
     }
+    column.values = ahead_by(column.values, told.samples_ahead[joint]);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -212,6 +213,11 @@ std::string constant(std::string_view type, std::string_view name, std::string_v
                      indented(members, "    "));
 }
 
+bool has_memory(const RobotDescription& robot) {
+  return std::any_of(robot.effects.begin(), robot.effects.end(),
+                     [](const RobotEffect& effect) { return remembers(effect.kind); });
+}
+
 std::string units_remark(const RobotDescription& robot) {
   std::string text = "SI units:";
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
@@ -255,8 +261,11 @@ std::string head_text(const RobotDescription& robot, const ModelHeaderOptions& o
   return text +
          fmt::format("inline constexpr std::array<const char*, kJoints> kJointNames{{{}}};\n\n",
                      names) +
+         fmt::format("// {}\nusing Memory = offnominal::{};\n",
+                     has_memory(robot) ? "Some effects have a memory." : "No effect has a memory.",
+                     has_memory(robot) ? "WithMemory" : "WithoutMemory") +
          "// Takes kMonitorConfig<Scalar>.\ntemplate <typename Scalar>\n"
-         "using Monitor = offnominal::Monitor<kJoints, kHiddenUnits, Scalar>;\n\n";
+         "using Monitor = offnominal::Monitor<kJoints, kHiddenUnits, Scalar, Memory>;\n\n";
 }
 
 // Like the other conversions, but it has no type of the core.
@@ -271,7 +280,10 @@ std::string encoder_text(const RobotDescription& robot, const ModelHeader& heade
 
 template <int N>
 Status validity_in_float(const RobotDescription& robot) {
-  const Status status = validate<kMaxHiddenUnits>(monitor_config_of<N, float>(robot));
+  const MonitorConfig<N, float> config = monitor_config_of<N, float>(robot);
+  Status status = validate<kMaxHiddenUnits>(config);
+  if (status != Status::kOk) return status;
+  status = EffectMemory<N, float>::validate(config.chain, config.estimator.period_s);
   return status == Status::kOk ? validate(gains_of<N, float>(robot)) : status;
 }
 

@@ -51,7 +51,7 @@ template <int N>
 class JointProgramOf final : public JointProgram {
  public:
   using Scalar = float;
-  using Controller = controller::JointController<N, kControllerCapacity, Scalar>;
+  using Controller = controller::JointController<N, kControllerCapacity, Scalar, WithMemory>;
   using Drives = hal::ProtectedDrives<static_cast<std::size_t>(N)>;
 
   explicit JointProgramOf(const JointProgramSetup& setup)

@@ -118,9 +118,12 @@ class Explainer {
       }
     }
     for (const RobotEffect& effect : robot_.effects) {
-      if (!at_rest || effect.kind != EffectKind::kPeriodicDisturbance) continue;
-      throw InputError({logs.front().file, "", "a hold map", "a model without effects in time",
-                        "leave periodic_disturbance out of the robot file for it"});
+      const bool in_time =
+          effect.kind == EffectKind::kPeriodicDisturbance || effect.kind == EffectKind::kTimeDelay;
+      if (!at_rest || !in_time) continue;
+      throw InputError(
+          {logs.front().file, "", "a hold map", "a model without effects in time",
+           fmt::format("leave {} out of the robot file for it", info_of(effect.kind)->name)});
     }
   }
 

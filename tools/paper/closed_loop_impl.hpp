@@ -21,19 +21,19 @@ inline void require_ok(Status status, const std::string& place, const std::strin
                     .mend = mend});
 }
 
-// Computed torque and compensation, held to what the joints' drives can give.
+// Computed torque and what is given beside it, held to what the joints' drives can give.
 template <typename Scalar>
 [[nodiscard]] Vector<2, Scalar> drive_torque(const ControllerSetup<Scalar>& setup,
                                              const RigidBodyModel<2, Scalar>& model, double time_s,
                                              const sim::DesiredMotion& desired,
                                              const sim::JointState& state,
-                                             const Vector<2, Scalar>& compensation) {
+                                             const Vector<2, Scalar>& beside) {
   const Reference<2, Scalar> reference{desired.q.cast<Scalar>(), desired.dq.cast<Scalar>(),
                                        desired.ddq.cast<Scalar>()};
   Vector<2, Scalar> tau =
       computed_torque<2, Scalar>(model, setup.gains, reference, state.q.cast<Scalar>(),
                                  state.dq.cast<Scalar>(), static_cast<Scalar>(time_s)) +
-      compensation;
+      beside;
   for (int i = 0; i < 2; ++i) {
     const Scalar limit = setup.monitor.chain.joints[static_cast<std::size_t>(i)].max_torque;
     tau[i] = std::clamp(tau[i], -limit, limit);
@@ -47,7 +47,7 @@ template <int Capacity, typename Scalar>
 void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPlant& plant,
                      const LoopTiming& timing, const DesiredAt& desired_at,
                      const TickObserver& observe) {
-  using LoopMonitor = Monitor<2, Capacity, Scalar>;
+  using LoopMonitor = Monitor<2, Capacity, Scalar, WithMemory>;
   LoopMonitor monitor;
   detail::require_ok(LoopMonitor::create(setup.monitor, monitor), "robot and options",
                      "correct the setting that the status names");
@@ -86,8 +86,9 @@ void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPla
         std::sqrt(static_cast<double>(squared_norm(monitor_state->estimator.weights)));
     record.detected = output.detector.latched;
     observe(record);
-    tau = detail::drive_torque(setup, monitor.model(), record.time_s, desired, state,
-                               output.compensation.torque);
+    tau =
+        detail::drive_torque<Scalar>(setup, monitor.model(), record.time_s, desired, state,
+                                     output.compensation.torque + monitor_state->memory.remembered);
   }
 }
 

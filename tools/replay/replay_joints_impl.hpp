@@ -81,7 +81,7 @@ class ReplayCollector {
 
 template <int N>
 void replay_joints(const RobotDescription& robot, const Log& log, Replay& result) {
-  using ReplayMonitor = Monitor<N, kReplayCapacity, double>;
+  using ReplayMonitor = Monitor<N, kReplayCapacity, double, WithMemory>;
   MonitorConfig<N, double> config = monitor_config_of<N, double>(robot);
   config.estimator.period_s = log.period_s;
   ReplayMonitor monitor;

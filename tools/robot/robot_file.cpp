@@ -1,9 +1,11 @@
 #include "robot/robot_file.hpp"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <cmath>
 #include <offnominal/diagnosis/network.hpp>
+#include <offnominal/model/effect_memory.hpp>
 #include <set>
 #include <vector>
 
@@ -85,6 +87,25 @@ void check_initial_weights(const TomlTable& root, const RobotDescription& robot)
               "lower estimator.initial_weight_range, or raise estimator.weight_radius");
 }
 
+void check_delays(const TomlTable& root, const RobotDescription& robot) {
+  const double most_s = kMaxDelayTicks * robot.estimator.period_s;
+  const auto delays_s = with_joint_count(robot.joint_count(), [&]<int N>() {
+    const Chain<N, double> chain = chain_of<N, double>(robot);
+    std::vector<double> of_joints;
+    for (std::size_t i = 0; i < chain.joints.size(); ++i) {
+      of_joints.push_back(delay_of_joint(chain, i));
+    }
+    return of_joints;
+  });
+  for (std::size_t i = 0; i < delays_s.size(); ++i) {
+    if (delays_s[i] <= most_s) continue;
+    root.refuse(
+        "effect", fmt::format("a delay of {:g} s on joint {}", delays_s[i], i + 1),
+        fmt::format("at most {:g} s, {} ticks of estimator.period_s", most_s, kMaxDelayTicks),
+        "correct the delay of time_delay, or estimator.period_s");
+  }
+}
+
 // The text that `robot` was read from with what has changed since; none where it cannot be cut.
 std::optional<std::string> text_with_changes(const RobotDescription& robot) {
   if (robot.file_text.empty()) return std::nullopt;
@@ -126,6 +147,7 @@ RobotDescription parse_robot(std::string_view text, const std::string& file) {
     robot.estimator = read_estimator(*table);
   }
   check_initial_weights(root, robot);
+  check_delays(root, robot);
   if (const auto table = root.optional_table("uncertainty_bound", bound_keys())) {
     robot.bound = read_bound(*table, robot.joint_count());
   }

@@ -54,10 +54,10 @@ template <int N, typename Scalar>
 }
 
 /// Throws InputError where the controller refuses what the robot file says.
-template <int N, int L, typename Scalar>
+template <int N, int L, typename Scalar, typename Memory>
 void create_controller(const RobotDescription& robot, const ControllerSettings& settings,
-                       controller::JointController<N, L, Scalar>& controller) {
-  using Controller = controller::JointController<N, L, Scalar>;
+                       controller::JointController<N, L, Scalar, Memory>& controller) {
+  using Controller = controller::JointController<N, L, Scalar, Memory>;
   const Status status =
       Controller::create(controller_config_of<N, Scalar>(robot, settings), controller);
   if (status == Status::kOk) return;

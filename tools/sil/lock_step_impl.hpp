@@ -19,7 +19,7 @@ inline constexpr int kSilCapacity = 128;
 template <typename Scalar>
 class LockStepLoop {
  public:
-  using Controller = controller::JointController<2, kSilCapacity, Scalar>;
+  using Controller = controller::JointController<2, kSilCapacity, Scalar, WithMemory>;
   using Drives = hal::ProtectedDrives<2>;
 
   LockStepLoop(const RobotDescription& robot, const Scenario& scenario, const LoopSetup& setup,

@@ -20,7 +20,7 @@ namespace offnominal::tools::wcet {
 template <int N, int L, typename Scalar>
 class TickOf final : public Tick {
  public:
-  using Controller = controller::JointController<N, L, Scalar>;
+  using Controller = controller::JointController<N, L, Scalar, WithMemory>;
   using Data = typename Controller::Data;
   using Drives = MarkedDrives<static_cast<std::size_t>(N)>;
 
@@ -208,7 +208,7 @@ class TickOf final : public Tick {
   }
 
   void make_monitor_state(const TickInput& input) {
-    MonitorState<N, L, Scalar>& monitor = work_.data.monitor;
+    auto& monitor = work_.data.monitor;
     require(work_.controller.monitor().reset(sample_, monitor));
     monitor.tick = input.ticks;
     EstimatorState<N, L, Scalar>& state = monitor.estimator;

@@ -11,9 +11,11 @@
 #include <offnominal/diagnosis/detector.hpp>
 #include <offnominal/diagnosis/estimator.hpp>
 #include <offnominal/model/chain.hpp>
+#include <offnominal/model/effect_memory.hpp>
 #include <offnominal/model/forward_dynamics.hpp>
 #include <offnominal/sample.hpp>
 #include <offnominal/status.hpp>
+#include <type_traits>
 
 namespace offnominal {
 
@@ -40,7 +42,7 @@ template <int L, int N, typename Scalar>
 }
 
 // Everything that changes from tick to tick; plain data, ready to be logged or copied.
-template <int N, int L, typename Scalar>
+template <int N, int L, typename Scalar, typename Memory = WithoutMemory>
 struct MonitorState {
   bool initialised = false;
   std::uint32_t tick = 0;  // since reset()
@@ -48,6 +50,7 @@ struct MonitorState {
   Matrix<N, N, Scalar> inertia_factor = Matrix<N, N, Scalar>::Zero();  // of M(sample.q), lower
   EstimatorState<N, L, Scalar> estimator;
   DetectorState<Scalar> detector;
+  [[no_unique_address]] typename Memory::template Of<N, Scalar>::State memory{};
 };
 
 // What a controller reads after a tick.
@@ -64,21 +67,28 @@ struct MonitorOutput {
 
 // The whole on-board diagnosis of an N-joint chain with at most L hidden units. The object is the
 // immutable part; all that changes is in MonitorState, so that one monitor serves many states.
-template <int N, int L, typename Scalar>
+// Memory: WithMemory where the model may have effects with one (effect_memory.hpp).
+template <int N, int L, typename Scalar, typename Memory = WithoutMemory>
 class Monitor {
  public:
   using Config = MonitorConfig<N, Scalar>;
-  using State = MonitorState<N, L, Scalar>;
+  using State = MonitorState<N, L, Scalar, Memory>;
   using Sample = JointSample<N, Scalar>;
   using Output = MonitorOutput<N, Scalar>;
+  // Whether its state has a `memory.remembered`: torque that the drive has to be told beside the
+  // model's.
+  static constexpr bool kRemembers = std::is_same_v<Memory, WithMemory>;
 
   // Takes the configuration that validate() accepts; otherwise its status, and `monitor` is
   // unchanged.
   [[nodiscard]] static Status create(const Config& config, Monitor& monitor) {
-    const Status status = validate<L>(config);
+    Status status = validate<L>(config);
+    if (status != Status::kOk) return status;
+    status = EffectMemoryOf::validate(config.chain, config.estimator.period_s);
     if (status != Status::kOk) return status;
     monitor.config_ = config;
     monitor.model_ = make_model(config.chain);
+    monitor.memory_.prepare(config.chain, monitor.model_, config.estimator.period_s);
     for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
       monitor.max_compensation_[static_cast<Eigen::Index>(i)] = config.max_compensation[i];
     }
@@ -91,11 +101,13 @@ class Monitor {
     if (!ready_) return Status::kNotInitialised;
     ForwardDynamics<N, Scalar> nominal;
     EstimatorInput<N, Scalar> input;
-    Status status = look(sample, Scalar(0), nominal, input);
+    const Now now = memory_.begin(sample);
+    Status status = look(sample, now, Scalar(0), nominal, input);
     if (status != Status::kOk) return status;
     status = offnominal::reset(config_.estimator, input, state.estimator);
     if (status != Status::kOk) return status;
     state.estimator.mu = velocity_allowance();
+    memory_.keep_begin(sample, now, state.memory);
     state.sample = sample;
     state.inertia_factor = nominal.factor;
     state.detector = {};
@@ -113,9 +125,11 @@ class Monitor {
     const std::uint32_t tick = state.tick + missed + 1;
     ForwardDynamics<N, Scalar> nominal;
     EstimatorInput<N, Scalar> input;
-    const Status status = look(sample, time_at(tick), nominal, input);
+    const Now now = memory_.next(sample, missed, state.memory);
+    const Status status = look(sample, now, time_at(tick), nominal, input);
     if (status != Status::kOk) return status;
     offnominal::resume(input, velocity_allowance(), state.estimator);
+    memory_.keep(sample, missed, now, state.memory);
     state.tick = tick;
     state.sample = sample;
     state.inertia_factor = nominal.factor;
@@ -130,12 +144,14 @@ class Monitor {
     const Scalar end_s = time_at(state.tick + 1);
     ForwardDynamics<N, Scalar> nominal;
     EstimatorInput<N, Scalar> input;
-    Status status = look(sample, end_s, nominal, input);
+    const Now now = memory_.next(sample, 0, state.memory);
+    Status status = look(sample, now, end_s, nominal, input);
     if (status != Status::kOk) return status;
-    status = offnominal::step(config_.estimator, begin_of_tick(sample.tau, state), input,
-                              state.estimator);
+    status = offnominal::step(config_.estimator, begin_of_tick(now.acting(sample.tau), state),
+                              input, state.estimator);
     if (status != Status::kOk) return status;
 
+    memory_.keep(sample, 0, now, state.memory);
     ++state.tick;
     state.sample = sample;
     state.inertia_factor = nominal.factor;
@@ -155,18 +171,23 @@ class Monitor {
   [[nodiscard]] const RigidBodyModel<N, Scalar>& model() const { return model_; }
 
  private:
+  using EffectMemoryOf = typename Memory::template Of<N, Scalar>;
+  using Now = typename EffectMemoryOf::Now;
+
   // What the model and the bound say at a sample; refuses one that they cannot judge. Not inlined:
   // on a controller its callers share its code, and the estimator its stack.
-  [[nodiscard, gnu::noinline]] Status look(const Sample& sample, Scalar time_s,
+  [[nodiscard, gnu::noinline]] Status look(const Sample& sample, const Now& now, Scalar time_s,
                                            ForwardDynamics<N, Scalar>& nominal,
                                            EstimatorInput<N, Scalar>& input) const {
     Status status = validate<N>(sample, config_.chain.joints);
     if (status != Status::kOk) return status;
-    status = forward_dynamics(model_, sample.q, sample.dq, sample.tau, time_s, nominal);
+    const Vector<N, Scalar>& tau = now.acting(sample.tau);
+    status =
+        forward_dynamics<N, Scalar>(model_, sample.q, sample.dq, now.driving(tau), time_s, nominal);
     if (status != Status::kOk) return status;
-    input.z = network_input<N, Scalar>(sample.q, sample.dq, sample.tau);
+    input.z = network_input<N, Scalar>(sample.q, sample.dq, tau);
     input.nominal_ddq = nominal.ddq;
-    input.mu_bar = bound_at(sample);
+    input.mu_bar = bound_at(sample.q, sample.dq, tau);
     return Status::kOk;
   }
 
@@ -178,9 +199,9 @@ class Monitor {
   // input: together at most 2 |e_v|. With mu starting there and alpha times it in the filter's
   // input, mu stays exactly that much above the filtered bound.
   [[nodiscard]] Scalar velocity_allowance() const { return 2 * config_.bound.velocity_error; }
-  [[nodiscard]] Scalar bound_at(const Sample& sample) const {
-    return evaluate(config_.bound, sample.q, sample.dq, sample.tau) +
-           config_.estimator.alpha * velocity_allowance();
+  [[nodiscard]] Scalar bound_at(const Vector<N, Scalar>& q, const Vector<N, Scalar>& dq,
+                                const Vector<N, Scalar>& tau) const {
+    return evaluate(config_.bound, q, dq, tau) + config_.estimator.alpha * velocity_allowance();
   }
 
   // A held torque jumps at the sample: f and the bound there are those of the new torque.
@@ -193,7 +214,7 @@ class Monitor {
     begin.nominal_ddq += jump;
     const bool bound_follows_torque =
         config_.bound.kind == BoundKind::kTable && config_.bound.variable == BoundVariable::kTorque;
-    if (bound_follows_torque) begin.mu_bar = bound_at({state.sample.q, state.sample.dq, tau});
+    if (bound_follows_torque) begin.mu_bar = bound_at(state.sample.q, state.sample.dq, tau);
     return begin;
   }
 
@@ -201,13 +222,16 @@ class Monitor {
   [[nodiscard]] Vector<N, Scalar> load_jump(const Vector<N, Scalar>& tau,
                                             const State& state) const {
     const Sample& at = state.sample;
-    if (!model_.has_torque_path) return tau - at.tau;
+    const Vector<N, Scalar>& before = state.memory.acting(at.tau);
+    if (!model_.has_torque_path) return tau - before;
     const JointEffects<N, Scalar> effects = joint_effects(model_, at.q, at.dq, time_at(state.tick));
-    return load_torque(model_, effects, tau) - load_torque(model_, effects, at.tau);
+    return load_torque<N, Scalar>(model_, effects, state.memory.driving(tau)) -
+           load_torque<N, Scalar>(model_, effects, state.memory.driving(before));
   }
 
   Config config_{};
   RigidBodyModel<N, Scalar> model_{};
+  [[no_unique_address]] EffectMemoryOf memory_{};
   Vector<N, Scalar> max_compensation_ = Vector<N, Scalar>::Zero();
   bool ready_ = false;
 };

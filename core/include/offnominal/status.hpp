@@ -42,6 +42,7 @@ enum class Status : std::uint8_t {
   kInvalidGravity = 55,
   kInvalidOrigin = 56,
   kTooManyEffects = 57,
+  kNeedsMemory = 58,
 
   // Mathematics without an answer (70..89).
   kSingularMassMatrix = 70,
@@ -108,6 +109,8 @@ enum class Status : std::uint8_t {
       return "InvalidOrigin";
     case Status::kTooManyEffects:
       return "TooManyEffects";
+    case Status::kNeedsMemory:
+      return "NeedsMemory";
     case Status::kSingularMassMatrix:
       return "SingularMassMatrix";
     case Status::kNoGuarantee:

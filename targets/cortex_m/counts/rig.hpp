@@ -17,7 +17,8 @@ inline constexpr int kJoints = robot_model::kJoints;
 inline constexpr auto kCount = static_cast<std::size_t>(kJoints);
 inline constexpr hal::Microseconds kPeriodUs = 1000;
 
-using Controller = controller::JointController<kJoints, robot_model::kHiddenUnits, Scalar>;
+using Controller =
+    controller::JointController<kJoints, robot_model::kHiddenUnits, Scalar, robot_model::Memory>;
 using Drives = hal::ProtectedDrives<kCount>;
 
 // Frames of one tick in, those of its end out: nothing but copies, as from a FIFO in memory.

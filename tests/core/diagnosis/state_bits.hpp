@@ -3,6 +3,7 @@
 #include <cstring>
 #include <offnominal/monitor.hpp>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace offnominal::test {
@@ -72,8 +73,8 @@ void add_bits(const DetectorState<Scalar>& state, Bits& bits) {
   bits.add(state.detection_time_s);
 }
 
-template <int N, int L, typename Scalar>
-Bits bits_of(const MonitorState<N, L, Scalar>& state) {
+template <int N, int L, typename Scalar, typename Memory>
+Bits bits_of(const MonitorState<N, L, Scalar, Memory>& state) {
   Bits bits;
   bits.add(state.initialised);
   bits.add(state.tick);
@@ -83,6 +84,14 @@ Bits bits_of(const MonitorState<N, L, Scalar>& state) {
   bits.add(state.inertia_factor);
   add_bits(state.estimator, bits);
   add_bits(state.detector, bits);
+  if constexpr (std::is_same_v<Memory, WithMemory>) {
+    bits.add(state.memory.tau);
+    bits.add(state.memory.remembered);
+    bits.add(state.memory.q);
+    for (const Scalar z : state.memory.z) bits.add(z);
+    for (const Vector<N, Scalar>& logged : state.memory.logged) bits.add(logged);
+    bits.add(state.memory.newest);
+  }
   return bits;
 }
 

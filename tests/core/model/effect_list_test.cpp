@@ -16,7 +16,7 @@ TEST(EffectList, EveryEffectHasItsOwnNumberAndName) {
     EXPECT_EQ(info_of(info.kind), &info);
     EXPECT_STRNE(info.formula, "");
   }
-  EXPECT_EQ(kinds.size(), 16U);
+  EXPECT_EQ(kinds.size(), 18U);
 }
 
 TEST(EffectList, EveryParameterHasARangeThatHoldsItsDefault) {
@@ -64,6 +64,8 @@ TEST(EffectList, EveryEffectActsInOneWay) {
       ways += requires(Parameters p, Centre centre) { E::point_mass(p, centre); };
       ways += requires(Parameters p, At at) { E::friction_per_load(p, at); };
       ways += requires(Parameters p) { E::told_per_given(p); };
+      ways += requires(Parameters p) { E::torque_of_state(p, 0.0); };
+      ways += requires(Parameters p) { E::delay_s(p); };
     });
     EXPECT_EQ(ways, 1) << info.name;
   }

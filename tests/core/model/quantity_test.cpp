@@ -27,7 +27,8 @@ INSTANTIATE_TEST_SUITE_P(
         Units{Quantity::kEffortPerPosition, "N m/rad", "N/m"},
         Units{Quantity::kPosition, "rad", "m"}, Units{Quantity::kVelocity, "rad/s", "m/s"},
         Units{Quantity::kReflectedInertia, "kg m^2", "kg"}, Units{Quantity::kMass, "kg", "kg"},
-        Units{Quantity::kLength, "m", "m"}, Units{Quantity::kCyclesPerPosition, "1/turn", "1/m"},
+        Units{Quantity::kDistance, "rad", "m"}, Units{Quantity::kLength, "m", "m"},
+        Units{Quantity::kCyclesPerPosition, "1/turn", "1/m"},
         Units{Quantity::kAngularFrequency, "rad/s", "rad/s"}, Units{Quantity::kTime, "s", "s"},
         Units{Quantity::kRatio, "1", "1"}, Units{Quantity::kJointNumber, "", ""}));
 

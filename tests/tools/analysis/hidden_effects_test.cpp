@@ -54,6 +54,7 @@ struct Tried {
   std::string parameter;  // its first one that is not 0
   double tolerance;       // share of the true value
   bool refit_inertia;     // masses are off by 3 %; a scale cannot be told from them
+  double size = 1;        // of what the simulator draws: for the monitor to see it beside the rest
 };
 
 void PrintTo(const Tried& tried, std::ostream* out) { *out << hidden::name(tried.effect); }
@@ -64,6 +65,7 @@ class HiddenEffectInFile : public ::testing::TestWithParam<Tried> {
     hidden::Request request;
     request.seed = 5;
     request.effects = {GetParam().effect};
+    request.effect_size = GetParam().size;
     made_ = hidden::make_case(request);
     nominal_ = to_robot(made_.nominal);
     AddRequest add_request;
@@ -121,10 +123,12 @@ const std::vector<Tried> kTried{
     {hidden::HiddenEffect::kJointCoupling, "coefficient", 0.1, true},
     {hidden::HiddenEffect::kTemperatureDrift, "time_constant", 0.25, true},
     {hidden::HiddenEffect::kLoadDependentFriction, "factor", 0.1, true},
-    {hidden::HiddenEffect::kTorqueScale, "error", 0.35, false}};
+    {hidden::HiddenEffect::kTorqueScale, "error", 0.35, false},
+    {hidden::HiddenEffect::kHysteresis, "level", 0.1, true},
+    {hidden::HiddenEffect::kTimeDelay, "delay", 0.1, true, 3}};
 
 INSTANTIATE_TEST_SUITE_P(All, HiddenEffectInFile,
-                         ::testing::ValuesIn(offnominal::test::every_nth(kTried, 4)),
+                         ::testing::ValuesIn(offnominal::test::every_nth(kTried, 6)),
                          [](const auto& parameter) {
                            return std::string(hidden::name(parameter.param.effect));
                          });

@@ -59,12 +59,13 @@ TEST(InverseModel, LinksAddUpToTheRigidBodyTorque) {
   EXPECT_LT((sum - model_torque(robot, motion)).cwiseAbs().maxCoeff(), 1e-11);
 }
 
-// For every effect there is: torque with it = torque without it + sum of parameter * regressor.
+// For every effect but a delay: torque with it = torque without it + sum of parameter * regressor.
 TEST(InverseModel, EveryEffectIsLinearInItsRegressors) {
   auto generator = offnominal::test::seeded_generator();
   std::uniform_real_distribution<double> number(0.1, 2);
   const Motion motion = exact_motion(60);
   for (const EffectInfo& info : kAllEffectInfos) {
+    if (info.kind == offnominal::EffectKind::kTimeDelay) continue;
     for (const int joint : {0, 1}) {
       RobotDescription robot = arm_description();
       robot.effects.push_back(effect_of(info.kind, joint, {}));
@@ -97,6 +98,43 @@ TEST(InverseModel, ScaledLinkIsItsRegressorMore) {
     }
   }
   EXPECT_LT((model_torque(changed, motion) - expected).cwiseAbs().maxCoeff(), 1e-11);
+}
+
+RobotDescription delayed_arm(double delay_s) {
+  RobotDescription robot = arm_description();
+  robot.effects.push_back(effect_of(offnominal::EffectKind::kTorqueScale, 1, {0.25}));
+  robot.effects.push_back(effect_of(offnominal::EffectKind::kTimeDelay, 1, {delay_s}));
+  return robot;
+}
+
+TEST(InverseModel, ADelayedDriveIsToldEarlier) {
+  const Motion motion = exact_motion(60);  // every 0.05 s
+  const MatrixXd prompt = model_torque(delayed_arm(0), motion);
+  const MatrixXd late = model_torque(delayed_arm(0.15), motion);
+  EXPECT_EQ(late.col(0), prompt.col(0));
+  EXPECT_LT((late.col(1).head(57) - prompt.col(1).tail(57)).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(InverseModel, ADelayedDrivesColumnsAreEarlierTooAndTheDelaysIsItsSlope) {
+  const Motion motion = exact_motion(60);
+  const RobotDescription robot = delayed_arm(0.12);
+  const auto scales = link_scales(robot, 0.05);
+  const MatrixXd heavier =
+      model_torque(with_values(robot, scales, Eigen::Vector2d(0, 0.1)), motion);
+  const MatrixXd change = heavier - model_torque(robot, motion);
+  for (const JointColumn& column : regressor(robot, scales[1], motion)) {
+    const VectorXd expected = change.col(static_cast<Index>(column.joint));
+    EXPECT_LT((0.1 * column.values - expected).cwiseAbs().maxCoeff(), 1e-9);
+  }
+  const auto delay = unknowns_of_effect(robot, 1, true);
+  ASSERT_EQ(delay.size(), 1U);
+  const auto columns = regressor(robot, delay[0], motion);
+  ASSERT_EQ(columns.size(), 1U);
+  const VectorXd slope =
+      (model_torque(delayed_arm(0.121), motion) - model_torque(delayed_arm(0.119), motion)).col(1) /
+      0.002;
+  const double size = slope.cwiseAbs().maxCoeff();
+  EXPECT_LT((columns[0].values - slope).segment(5, 50).cwiseAbs().maxCoeff(), 0.02 * size);
 }
 
 TEST(InverseModel, NumberOfJointsMustAgree) {

@@ -30,6 +30,7 @@ namespace {
 template <typename S>
 struct GeneratedTwoLink {
   using Scalar = S;
+  using Memory = models::two_link::Memory;
   static constexpr int kJoints = models::two_link::kJoints;
   static constexpr int kHiddenUnits = models::two_link::kHiddenUnits;
   static constexpr const auto& kConfig = models::two_link::kMonitorConfig<S>;
@@ -41,6 +42,7 @@ struct GeneratedTwoLink {
 template <typename S>
 struct GeneratedEmps {
   using Scalar = S;
+  using Memory = models::emps::Memory;
   static constexpr int kJoints = models::emps::kJoints;
   static constexpr int kHiddenUnits = models::emps::kHiddenUnits;
   static constexpr const auto& kConfig = models::emps::kMonitorConfig<S>;
@@ -52,6 +54,7 @@ struct GeneratedEmps {
 template <typename S>
 struct GeneratedEveryEffect {
   using Scalar = S;
+  using Memory = models::every_effect::Memory;
   static constexpr int kJoints = models::every_effect::kJoints;
   static constexpr int kHiddenUnits = models::every_effect::kHiddenUnits;
   static constexpr const auto& kConfig = models::every_effect::kMonitorConfig<S>;
@@ -221,7 +224,7 @@ TYPED_TEST(GeneratedModel, GivesTheHostsDynamics) {
 TYPED_TEST(GeneratedModel, TakesTheHostsSteps) {
   constexpr int kN = TypeParam::kJoints;
   using Scalar = typename TypeParam::Scalar;
-  using Watch = Monitor<kN, TypeParam::kHiddenUnits, Scalar>;
+  using Watch = Monitor<kN, TypeParam::kHiddenUnits, Scalar, typename TypeParam::Memory>;
   Watch generated;
   Watch host;
   ASSERT_EQ(Watch::create(TypeParam::kConfig, generated), Status::kOk);

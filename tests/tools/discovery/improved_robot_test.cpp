@@ -30,8 +30,10 @@ Explanation explained(const hidden::Case& made, const RobotDescription& robot) {
   return explain(robot, {test::to_log(made.recording)}, {test::to_log(made.holdout)}, options);
 }
 
-TEST(ImprovedRobot, HasTheEffectAndPredictsWhatNoFitHasSeen) {
-  const hidden::Case made = case_of(5, {hidden::HiddenEffect::kJointStiffness});
+class ImprovedRobotOf : public ::testing::TestWithParam<hidden::HiddenEffect> {};
+
+TEST_P(ImprovedRobotOf, HasTheEffectAndPredictsWhatNoFitHasSeen) {
+  const hidden::Case made = case_of(5, {GetParam()});
   const RobotDescription file = test::to_robot(made.nominal);
   const Explanation result = explained(made, file);
   ASSERT_EQ(result.found.size(), 1U) << result.words;
@@ -39,7 +41,7 @@ TEST(ImprovedRobot, HasTheEffectAndPredictsWhatNoFitHasSeen) {
   const RobotDescription& improved = result.improved;
   ASSERT_EQ(improved.effects.size(), file.effects.size() + 1);
   const RobotEffect& added = improved.effects.back();
-  EXPECT_EQ(added.kind, EffectKind::kJointStiffness);
+  EXPECT_EQ(std::string(info_of(added.kind)->name), hidden::name(GetParam()));
   EXPECT_TRUE(added.fitted);
   EXPECT_THAT(added.source, HasSubstr("a test"));
   const hidden::TrueEffect& truth = made.truth.effects[0];
@@ -52,7 +54,16 @@ TEST(ImprovedRobot, HasTheEffectAndPredictsWhatNoFitHasSeen) {
   const Measurement unseen = measure(test::to_log(made.holdout), {});
   const auto gain = before_after(compare(file, unseen), compare(improved, unseen));
   EXPECT_GT(gain[static_cast<std::size_t>(truth.joint)].fall(), 0.5);
+  // Explained again with it, nothing is missing.
+  const Explanation again = explained(made, improved);
+  EXPECT_EQ(again.verdict, Verdict::kExplained) << again.words;
 }
+
+INSTANTIATE_TEST_SUITE_P(Some, ImprovedRobotOf,
+                         ::testing::Values(hidden::HiddenEffect::kJointStiffness,
+                                           hidden::HiddenEffect::kHysteresis,
+                                           hidden::HiddenEffect::kTimeDelay),
+                         [](const auto& tried) { return std::string(hidden::name(tried.param)); });
 
 // Files that are off by 1.5 % of each other come out with the same masses.
 TEST(ImprovedRobot, LinksComeOutTheSameFromFilesThatDiffer) {

@@ -119,6 +119,8 @@ class RandomRobot {
             parameter.min + (parameter.max - parameter.min) * std::fabs(uniform()) / kMost;
       }
     }
+    // All those of one joint are shorter than the ticks that a monitor keeps.
+    if (result.kind == EffectKind::kTimeDelay) result.parameters[0] = 1e-9 * std::fabs(uniform());
     // Less mass than none may leave a joint nothing to move.
     const bool is_mass =
         result.kind == EffectKind::kLinkMass || result.kind == EffectKind::kTipPayload;

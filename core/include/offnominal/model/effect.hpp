@@ -9,11 +9,12 @@
 //   M(q) ddq + V(q, dq) dq + G(q) + sum of effects = tau.
 // A positive friction coefficient therefore takes energy out of the joint.
 //
-// There are three ways to act, told apart by what an effect's struct has:
+// There are four ways to act, told apart by what an effect's struct has:
 //   torque()                              a torque by the motion and the time (most of them)
 //   reflected_inertia(), point_mass()     a change of the inertia, taken up when the model is made
 //   friction_per_load(), told_per_given() a scale on what passes from drive to load
 //   (torque_path.hpp)
+//   torque_of_state(), delay_s()          by what was before (effect_memory.hpp)
 
 namespace offnominal {
 
@@ -37,6 +38,8 @@ enum class EffectKind : std::uint8_t {
   kJointCoupling = 13,
   kLoadDependentFriction = 14,
   kTorqueScale = 15,
+  kHysteresis = 16,
+  kTimeDelay = 17,
 };
 
 // How a parameter enters the effect's torque.

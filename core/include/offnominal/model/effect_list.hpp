@@ -8,6 +8,7 @@
 #include <offnominal/model/effects/drive.hpp>
 #include <offnominal/model/effects/friction.hpp>
 #include <offnominal/model/effects/inertia.hpp>
+#include <offnominal/model/effects/memory.hpp>
 #include <offnominal/model/effects/torque_path.hpp>
 #include <span>
 
@@ -23,7 +24,7 @@ using AllEffects =
                 effects::RotorInertia, effects::TipPayload, effects::LinkMass,
                 effects::JointStiffness, effects::CoggingTorque, effects::PeriodicDisturbance,
                 effects::TemperatureDrift, effects::JointCoupling, effects::LoadDependentFriction,
-                effects::TorqueScale>;
+                effects::TorqueScale, effects::Hysteresis, effects::TimeDelay>;
 
 // What a user may know of an effect: its name, its formula and its parameters.
 struct EffectInfo {

@@ -14,6 +14,7 @@ enum class Quantity : std::uint8_t {
   kEffortPerVelocitySquared,  // N m s^2/rad^2, or N s^2/m^2
   kEffortPerPosition,         // N m/rad, or N/m
   kPosition,                  // rad, or m
+  kDistance,                  // rad, or m: between two positions
   kVelocity,                  // rad/s, or m/s
   kReflectedInertia,          // kg m^2, or kg
   kMass,                      // kg
@@ -37,6 +38,7 @@ enum class Quantity : std::uint8_t {
     case Quantity::kEffortPerPosition:
       return turns ? "N m/rad" : "N/m";
     case Quantity::kPosition:
+    case Quantity::kDistance:
       return turns ? "rad" : "m";
     case Quantity::kVelocity:
       return turns ? "rad/s" : "m/s";

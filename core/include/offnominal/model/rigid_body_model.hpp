@@ -73,7 +73,7 @@ struct RigidBodyModel {
 };
 
 // Makes the model of a chain that validate() has accepted; of any other the result is undefined
-// (no crash, no meaning).
+// (no crash, no meaning). Effects with a memory are none of an instant: effect_memory.hpp has them.
 template <int N, typename Scalar>
 [[nodiscard]] RigidBodyModel<N, Scalar> make_model(const Chain<N, Scalar>& chain) {
   using Vec3 = Vector<3, Scalar>;
@@ -127,10 +127,12 @@ template <int N, typename Scalar>
       } else if constexpr (requires { E::told_per_given(effect.parameters); }) {
         model.told_per_given[effect.joint] *= E::told_per_given(effect.parameters);
         model.has_torque_path = true;
-      } else {
-        if constexpr (requires { E::most_friction_per_load(effect.parameters); }) {
-          model.has_torque_path = true;
-        }
+      } else if constexpr (requires { E::most_friction_per_load(effect.parameters); }) {
+        model.has_torque_path = true;
+        static_cast<void>(model.torque_effects.add(effect));
+      } else if constexpr (requires(JointInstant<Scalar> at) {
+                             E::torque(effect.parameters, at);
+                           }) {
         static_cast<void>(model.torque_effects.add(effect));
       }
     });

@@ -22,7 +22,7 @@ namespace offnominal::controller {
 using hal::ControllerState;
 
 // Plain data, ready to be logged.
-template <int N, int L, typename Scalar>
+template <int N, int L, typename Scalar, typename Memory = WithoutMemory>
 struct ControllerData {
   ControllerState state = ControllerState::kInit;
   Fault fault = Fault::kNone;
@@ -37,22 +37,24 @@ struct ControllerData {
   JointSample<N, Scalar> sample;
   std::array<VelocityObserverState<Scalar>, static_cast<std::size_t>(N)> velocity{};
   std::array<hal::TorqueCommand, static_cast<std::size_t>(N)> commands{};
-  MonitorState<N, L, Scalar> monitor;
+  MonitorState<N, L, Scalar, Memory> monitor;
   MonitorOutput<N, Scalar> output;
   bool fresh = false;              // this tick had a sample of its own
   std::uint32_t unseen_ticks = 0;  // periods without one, since the monitor saw the last
 };
 
-template <int N, int L, typename Scalar>
+// Memory: as of the Monitor.
+template <int N, int L, typename Scalar, typename Memory = WithoutMemory>
 class JointController {
  public:
   using Config = ControllerConfig<N, Scalar>;
-  using Data = ControllerData<N, L, Scalar>;
+  using Data = ControllerData<N, L, Scalar, Memory>;
+  using Watch = Monitor<N, L, Scalar, Memory>;
 
   // As Monitor::create().
   [[nodiscard]] static Status create(const Config& config, JointController& controller) {
     if (const Status status = validate(config); status != Status::kOk) return status;
-    const Status status = Monitor<N, L, Scalar>::create(config.monitor, controller.monitor_);
+    const Status status = Watch::create(config.monitor, controller.monitor_);
     if (status != Status::kOk) return status;
     controller.config_ = config;
     controller.config_.velocity_observer = observer_of(config);
@@ -115,7 +117,7 @@ class JointController {
   }
 
   [[nodiscard]] const Config& config() const { return config_; }
-  [[nodiscard]] const Monitor<N, L, Scalar>& monitor() const { return monitor_; }
+  [[nodiscard]] const Watch& monitor() const { return monitor_; }
 
  private:
   static constexpr auto kJoints = static_cast<std::size_t>(N);
@@ -293,6 +295,7 @@ class JointController {
         computed_torque<N, Scalar>(monitor_.model(), config_.gains, reference_at(time_s),
                                    data.sample.q, data.sample.dq, time_s) +
         data.output.compensation.torque;
+    if constexpr (Watch::kRemembers) tau += data.monitor.memory.remembered;
     for (Eigen::Index i = 0; i < N; ++i) {
       const Scalar limit = config_.monitor.chain.joints[static_cast<std::size_t>(i)].max_torque;
       tau[i] = std::clamp(tau[i], -limit, limit);
@@ -326,7 +329,7 @@ class JointController {
   }
 
   Config config_{};
-  Monitor<N, L, Scalar> monitor_;
+  Watch monitor_;
 };
 
 }  // namespace offnominal::controller

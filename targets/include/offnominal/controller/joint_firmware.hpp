@@ -19,7 +19,8 @@ class JointFirmware {
   static constexpr auto kPeriodUs =
       static_cast<hal::Microseconds>(robot_model::kEstimatorConfig<double>.period_s * 1e6 + 0.5);
   using Drives = hal::ProtectedDrives<static_cast<std::size_t>(kJoints)>;
-  using Controller = JointController<kJoints, robot_model::kHiddenUnits, Scalar>;
+  using Controller =
+      JointController<kJoints, robot_model::kHiddenUnits, Scalar, robot_model::Memory>;
   using Data = typename Controller::Data;
 
   explicit JointFirmware(Bus& bus)

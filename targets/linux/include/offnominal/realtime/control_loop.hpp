@@ -65,9 +65,9 @@ struct LoopReport {
 
 namespace detail {
 
-template <int N, int L, typename Scalar>
-[[nodiscard]] Row row_of(const controller::ControllerData<N, L, Scalar>& data, const Tick& tick,
-                         Scalar period_s) {
+template <int N, int L, typename Scalar, typename Memory>
+[[nodiscard]] Row row_of(const controller::ControllerData<N, L, Scalar, Memory>& data,
+                         const Tick& tick, Scalar period_s) {
   Row row;
   // When it was due: rows are evenly spaced.
   row.time_us = tick.begin_us - tick.latency_us;
@@ -101,7 +101,7 @@ template <int N, int L, typename Scalar, hal::Bus Bus, hal::DriveProtocol Drives
           typename ReferenceAt>
 class ControlLoop {
  public:
-  using Controller = controller::JointController<N, L, Scalar>;
+  using Controller = controller::JointController<N, L, Scalar, WithMemory>;
   using Data = typename Controller::Data;
 
   // What a loop is made of; all of it has to outlive the loop. `data` belongs on the heap.
