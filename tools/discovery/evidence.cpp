@@ -14,10 +14,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd Remainder::beside_basis(const VectorXd& values) const {
-  VectorXd whole = VectorXd::Zero(residual.size());
-  whole.head(layout->rows()) = layout->weighted(values, joint_weights);
-  if (basis.cols() > 0) whole -= basis * (basis.transpose() * whole).eval();
+MatrixXd Remainder::beside_basis(const MatrixXd& columns) const {
+  MatrixXd whole = MatrixXd::Zero(residual.size(), columns.cols());
+  for (Index c = 0; c < columns.cols(); ++c) {
+    whole.col(c).head(layout->rows()) = layout->weighted(columns.col(c), joint_weights);
+  }
+  if (basis.cols() > 0) {
+    const MatrixXd along = basis.transpose() * whole;
+    whole.noalias() -= basis * along;
+  }
   return whole;
 }
 
@@ -104,24 +109,16 @@ class EvidenceScale {
   std::array<double, kSteps + 1> values_{};
 };
 
-}  // namespace
-
-double explained_share(double before, double left) { return 1 - std::pow(left / before, 2); }
-
-Evidence judge(const Remainder& remainder, const MatrixXd& columns) {
+// `own`: the columns beside the basis.
+Evidence judge_beside(const Remainder& remainder, const MatrixXd& columns, const MatrixXd& own) {
   constexpr double kNothingNew = 1e-3;  // sine of the angle to what is fitted already
   Evidence evidence;
   const RowLayout& layout = *remainder.layout;
-  MatrixXd own(remainder.residual.size(), columns.cols());
-  VectorXd before(columns.cols());
-  for (Index c = 0; c < columns.cols(); ++c) {
-    before[c] = layout.weighted(columns.col(c), remainder.joint_weights).norm();
-    own.col(c) = remainder.beside_basis(columns.col(c));
-  }
   MatrixXd scaled = own;
   for (Index c = 0; c < own.cols(); ++c) {
+    const double before = layout.weighted(columns.col(c), remainder.joint_weights).norm();
     const double length = own.col(c).norm();
-    if (!(length > kNothingNew * before[c]) || !(length > 0)) return evidence;
+    if (!(length > kNothingNew * before) || !(length > 0)) return evidence;
     scaled.col(c) /= length;
   }
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(scaled);
@@ -148,6 +145,41 @@ Evidence judge(const Remainder& remainder, const MatrixXd& columns) {
                                     VectorXd::Ones(remainder.blocks.count + 1));
   evidence.usable = std::isfinite(evidence.statistic);
   return evidence;
+}
+
+}  // namespace
+
+double explained_share(double before, double left) { return 1 - std::pow(left / before, 2); }
+
+Evidence judge(const Remainder& remainder, const MatrixXd& columns) {
+  return judge_beside(remainder, columns, remainder.beside_basis(columns));
+}
+
+std::vector<Evidence> judge_each(const Remainder& remainder, const std::vector<MatrixXd>& groups) {
+  // Several groups at once go past the basis, which is large, as one matrix.
+  constexpr Index kColumnsAtOnce = 16;
+  std::vector<Evidence> judged;
+  for (std::size_t first = 0; first < groups.size();) {
+    std::size_t end = first;
+    Index count = 0;
+    while (end < groups.size() && (end == first || count + groups[end].cols() <= kColumnsAtOnce)) {
+      count += groups[end++].cols();
+    }
+    MatrixXd together(remainder.layout->rows(), count);
+    Index at = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      together.middleCols(at, groups[i].cols()) = groups[i];
+      at += groups[i].cols();
+    }
+    const MatrixXd own = remainder.beside_basis(together);
+    at = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      judged.push_back(judge_beside(remainder, groups[i], own.middleCols(at, groups[i].cols())));
+      at += groups[i].cols();
+    }
+    first = end;
+  }
+  return judged;
 }
 
 double p_of_statistic(double statistic, Index dimension, int blocks) {

@@ -21,8 +21,8 @@ struct Remainder {
   double prior_weight = 1;              // standard deviation of the rows of the priors
 
   [[nodiscard]] Eigen::Index prior_rows() const { return residual.size() - layout->rows(); }
-  // Stacked values, weighted, with zeros in the rows of the priors, less what the basis takes.
-  [[nodiscard]] Eigen::VectorXd beside_basis(const Eigen::VectorXd& values) const;
+  // Stacked columns, weighted, with zeros in the rows of the priors, less what the basis takes.
+  [[nodiscard]] Eigen::MatrixXd beside_basis(const Eigen::MatrixXd& columns) const;
 };
 
 // What columns would add to the model, everything that the model fits adapting to them.
@@ -46,6 +46,9 @@ double explained_share(double before, double left);
 
 // `columns`: stacked, unweighted.
 Evidence judge(const Remainder& remainder, const Eigen::MatrixXd& columns);
+// The same of one group after the other, each by itself.
+std::vector<Evidence> judge_each(const Remainder& remainder,
+                                 const std::vector<Eigen::MatrixXd>& groups);
 
 // Probability of a statistic at least this large without the effect, for one group of columns:
 // blocks - dimension over dimension times t / (blocks - t) is about F(dimension, blocks -

@@ -91,18 +91,59 @@ struct Problem {
   }
 };
 
+// Columns and target turned so that as many rows are left as there are columns: a QR decomposition
+// in pieces that stay in the cache, each on top of what the ones before it left (J. Demmel, L.
+// Grigori, M. Hoemmen, J. Langou, SIAM J. Sci. Comput. 34(1), 2012). As they are where they are
+// few.
+struct Turned {
+  MatrixXd columns;
+  VectorXd target;
+};
+
+Turned few_rows(const MatrixXd& columns, const VectorXd& target) {
+  constexpr Index kPiece = 512;
+  const Index count = columns.cols();
+  if (columns.rows() < kPiece || columns.rows() < 4 * count) return {columns, target};
+  const Index wide = count + 1;  // the target is the last column
+  MatrixXd upper(0, wide);
+  for (Index row = 0; row < columns.rows(); row += kPiece) {
+    const Index rows = std::min(kPiece, columns.rows() - row);
+    MatrixXd piece(upper.rows() + rows, wide);
+    piece.topRows(upper.rows()) = upper;
+    piece.bottomLeftCorner(rows, count) = columns.middleRows(row, rows);
+    piece.bottomRightCorner(rows, 1) = target.segment(row, rows);
+    const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(piece);
+    upper = qr.matrixQR().topRows(std::min(wide, piece.rows())).triangularView<Eigen::Upper>();
+  }
+  return {upper.topLeftCorner(count, count), upper.topRightCorner(count, 1)};
+}
+
 struct FreeFit {
   Scaled part;
-  Eigen::ColPivHouseholderQR<MatrixXd> qr;
+  Turned few;
+  Eigen::ColPivHouseholderQR<MatrixXd> qr;  // of the few rows
   VectorXd scaled_x;
+
+  // Orthonormal columns that span those of the fit.
+  [[nodiscard]] MatrixXd basis() const {
+    const Index rank = qr.rank();
+    MatrixXd in_order = part.columns * qr.colsPermutation();
+    in_order.conservativeResize(Eigen::NoChange, rank);
+    qr.matrixQR()
+        .topLeftCorner(rank, rank)
+        .triangularView<Eigen::Upper>()
+        .solveInPlace<Eigen::OnTheRight>(in_order);
+    return in_order;
+  }
 };
 
 FreeFit fit_free(Problem& problem) {
   constexpr double kRank = 1e-7;
-  FreeFit fit{scaled(problem.columns, problem.free), {}, {}};
+  FreeFit fit{scaled(problem.columns, problem.free), {}, {}, {}};
+  fit.few = few_rows(fit.part.columns, problem.rest);
   fit.qr.setThreshold(kRank);
-  fit.qr.compute(fit.part.columns);
-  fit.scaled_x = fit.qr.solve(problem.rest);
+  fit.qr.compute(fit.few.columns);
+  fit.scaled_x = fit.qr.solve(fit.few.target);
   for (std::size_t i = 0; i < problem.free.size(); ++i) {
     const auto at = static_cast<Index>(i);
     problem.x[problem.free[i]] = fit.scaled_x[at] / fit.part.length[at];
@@ -112,10 +153,10 @@ FreeFit fit_free(Problem& problem) {
 
 // The same problem turned so that only as many rows are left as there are unknowns.
 Problem turned(const Problem& problem, const FreeFit& fit) {
-  const Index rows = std::min(problem.columns.rows(), problem.columns.cols());
+  const Index rows = std::min(fit.few.columns.rows(), fit.few.columns.cols());
   const MatrixXd upper = fit.qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
   const MatrixXd in_order = upper * fit.qr.colsPermutation().inverse();
-  VectorXd target = problem.rest;
+  VectorXd target = fit.few.target;
   target.applyOnTheLeft(fit.qr.householderQ().adjoint());
   return {in_order * fit.part.length.asDiagonal(), target.head(rows), problem.free, problem.x};
 }
@@ -159,8 +200,7 @@ PriorFit least_squares_with_priors(const MatrixXd& columns, const VectorXd& targ
     result.residual = whole.rest;
     if (!whole.free.empty()) {
       result.residual -= fit.part.columns * fit.scaled_x;
-      result.basis =
-          fit.qr.householderQ() * MatrixXd::Identity(whole.columns.rows(), fit.qr.rank());
+      result.basis = fit.basis();
     }
   }
   result.x = whole.x;

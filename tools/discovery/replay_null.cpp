@@ -72,7 +72,7 @@ double replay_p(const Data& data, const ModelFit& fit, const VectorXd& noise, co
   parallel_for(reached.size(), threads, [&](std::size_t i) {
     std::mt19937_64 generator(seed + 7919 * (i + 1));
     Remainder played = fit.remainder;
-    played.residual = played.beside_basis(shuffled(data.layout, noise, generator));
+    played.residual = played.beside_basis(shuffled(data.layout, noise, generator)).col(0);
     played.energy = data.layout.energy(played.residual);
     reached[i] = static_cast<char>(best_gain(played, columns) >= measured);
   });

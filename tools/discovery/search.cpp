@@ -116,11 +116,18 @@ Screened Search::judge_slot(const Slot& slot, const Remainder& at,
   best.score = -std::numeric_limits<double>::infinity();
   const bool spectral = slot.term.effect->spectrum() != EffectCandidate::Spectrum::kNone;
   const std::vector<ShapePoint> points = spectral ? spectral_peaks(slot, at) : slot.grid;
+  std::vector<MatrixXd> of_peaks;
+  for (std::size_t g = 0; spectral && g < points.size(); ++g) {
+    Term peak = slot.term;
+    peak.shape = points[g];
+    of_peaks.push_back(columns_of(data_, peak));
+  }
+  std::vector<Evidence> judged = judge_each(at, spectral ? of_peaks : slot.columns);
   for (std::size_t g = 0; g < points.size(); ++g) {
     Screened here;
     here.term = slot.term;
     here.term.shape = points[g];
-    here.evidence = judge(at, spectral ? columns_of(data_, here.term) : slot.columns[g]);
+    here.evidence = std::move(judged[g]);
     if (!here.evidence.usable) continue;
     finish(here, at);
     if (!spectral) all.push_back(here.evidence);
