@@ -107,6 +107,20 @@ report::Table where_table(const Explanation& e) {
   return table;
 }
 
+report::Table class_table(const Explanation& e) {
+  report::Table table;
+  table.caption = "What these recordings cannot tell apart";
+  table.columns = {{"class", "", "d"}, {"effect", "", ".4g"}, {"joint", "", "d"}};
+  for (std::size_t i = 0; i < e.ambiguous.size(); ++i) {
+    for (const EffectAt& one : e.ambiguous[i]) {
+      table.rows.push_back(
+          {static_cast<double>(i + 1), one.effect, static_cast<double>(one.joint + 1)});
+    }
+  }
+  table.note = "One effect of each class is missing, the likeliest stands first.";
+  return table;
+}
+
 report::Table rejected_table(const Explanation& e) {
   report::Table table;
   table.caption = "Effects that these recordings do not show";
@@ -301,6 +315,7 @@ report::Page page_of(const Explanation& e, const ExplainNames& names) {
     overview.blocks.emplace_back(report::Note{fault.words + ". " + fault.mend, Level::kBad});
   }
   if (!e.found.empty()) overview.blocks.emplace_back(finding_table(e));
+  if (!e.ambiguous.empty()) overview.blocks.emplace_back(class_table(e));
   overview.blocks.emplace_back(error_table(e));
   if (!e.where.empty()) overview.blocks.emplace_back(where_table(e));
   for (const std::string& advice : e.advice) {

@@ -29,6 +29,7 @@ using test::to_robot;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 ExplainOptions quick() {
@@ -296,6 +297,16 @@ TEST(Explain, ThePageHasTheNumbersOfTheJson) {
     EXPECT_THAT(text, HasSubstr(parameter["value"].dump())) << name;
   }
   EXPECT_NE(report::render(page_of(result, names)).find("<html"), std::string::npos);
+}
+
+TEST(Report, ThePageHasEveryClass) {
+  Explanation result = explain_case(case_of(5, {hidden::HiddenEffect::kViscousFriction}), quick());
+  const auto text = [&] { return report::to_json(page_of(result, {})).dump(); };
+  EXPECT_THAT(text(), Not(HasSubstr("cannot tell apart")));
+  result.ambiguous = {{{"viscous_friction", 0}, {"time_delay", 1}},
+                      {{"hysteresis", 1}, {"joint_elasticity", 1}}};
+  EXPECT_THAT(text(), HasSubstr(R"([2.0,"joint_elasticity",2.0])"));
+  EXPECT_THAT(text(), HasSubstr(R"([1.0,"time_delay",2.0])"));
 }
 
 }  // namespace
