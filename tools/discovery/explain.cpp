@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <offnominal/model/effect_memory.hpp>
 #include <string>
 #include <utility>
 
@@ -109,7 +110,8 @@ class Explainer {
     }
   }
 
-  // What is held is not what moves, and a model of what happens at rest knows no time.
+  // What is held is not what moves, and a model of what happens at rest knows neither time nor what
+  // friction did on the way: readings are no path.
   void check_kind(const std::vector<Log>& logs, bool at_rest) const {
     for (const Log& log : logs) {
       if (log.at_rest != at_rest) {
@@ -118,11 +120,12 @@ class Explainer {
       }
     }
     for (const RobotEffect& effect : robot_.effects) {
-      const bool in_time =
-          effect.kind == EffectKind::kPeriodicDisturbance || effect.kind == EffectKind::kTimeDelay;
-      if (!at_rest || !in_time) continue;
+      const bool of_instant =
+          effect.kind != EffectKind::kPeriodicDisturbance && !remembers(effect.kind);
+      if (!at_rest || of_instant) continue;
       throw InputError(
-          {logs.front().file, "", "a hold map", "a model without effects in time",
+          {logs.front().file, "", "a hold map",
+           "a model without effects in time and without effects that have a memory",
            fmt::format("leave {} out of the robot file for it", info_of(effect.kind)->name)});
     }
   }

@@ -86,6 +86,20 @@ TEST(HoldMap, OrdersGoIntoTheRobotFileAndAreNotFoundAgain) {
   }
 }
 
+TEST(HoldMap, IsRefusedWhereTheModelNeedsTimeOrAPath) {
+  for (const EffectKind kind : {EffectKind::kPeriodicDisturbance, EffectKind::kHysteresis,
+                                EffectKind::kTimeDelay, EffectKind::kCoulombFriction}) {
+    RobotDescription robot = test::rotor();
+    robot.effects.push_back({{kind, 0, {0.001, 0.05, 1}}});
+    const auto search = [&] { explain(robot, {test::hold_map_of({})}, {}, quick_search()); };
+    if (kind == EffectKind::kCoulombFriction) {
+      EXPECT_NO_THROW(search());
+    } else {
+      EXPECT_THROW(search(), InputError) << info_of(kind)->name;
+    }
+  }
+}
+
 TEST(HoldMap, IsNotMixedWithARecordingInTime) {
   Log moving = test::hold_map_of({});
   moving.at_rest = false;

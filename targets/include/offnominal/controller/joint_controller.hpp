@@ -281,9 +281,23 @@ class JointController {
       return monitor_.resume(data.sample, data.unseen_ticks, data.monitor);
     }
     data.output = {};
-    // From here on the drives give what is commanded now.
-    if (armed) data.sample.tau = wanted_torque(reference_at, data);
+    if constexpr (Watch::kRemembers) data.monitor.memory = {};  // of another run
+    if (armed) take_wanted_torque(reference_at, data);
     return monitor_.reset(data.sample, data.monitor);
+  }
+
+  // From here on the drives give what is commanded now; a late one still gives what it was told.
+  template <typename ReferenceAt>
+  void take_wanted_torque(const ReferenceAt& reference_at, Data& data) const {
+    if constexpr (Watch::kRemembers) {
+      const Vector<N, Scalar> wanted = wanted_torque(reference_at, data);
+      for (std::size_t j = 0; j < kJoints; ++j) {
+        if (delay_of_joint(config_.monitor.chain, j) > 0) continue;
+        data.sample.tau[static_cast<Eigen::Index>(j)] = wanted[static_cast<Eigen::Index>(j)];
+      }
+    } else {
+      data.sample.tau = wanted_torque(reference_at, data);
+    }
   }
 
   // Computed torque and compensation, held to what the joints' drives can give.

@@ -1,0 +1,154 @@
+// A slide that stands on its drive against gravity, behind a drive that is late, or with friction
+// that remembers: arming must not look like a fault.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <offnominal/controller/joint_controller.hpp>
+#include <vector>
+
+namespace offnominal::controller {
+namespace {
+
+constexpr double kMass = 2;
+constexpr double kWidth = 0.001;
+
+// A bus on which nothing happens, and drives that say what the test puts there.
+struct SilentBus {
+  hal::Microseconds time_us = 0;
+
+  [[nodiscard]] hal::Microseconds now() const { return time_us; }
+  hal::Status send(const hal::Frame& /*frame*/, hal::Microseconds /*deadline_us*/) {
+    return hal::Status::kOk;
+  }
+  std::size_t receive(std::span<hal::ReceivedFrame> /*frames*/) { return 0; }
+  void drop_pending() {}
+  [[nodiscard]] hal::BusState state() const { return {}; }
+};
+struct OneDrive {
+  static constexpr std::size_t kJoints = 1;
+  static constexpr std::size_t kMaxOutgoing = 1;
+  hal::JointFeedback joint;
+  hal::TorqueCommand command;
+
+  hal::Status take(const hal::ReceivedFrame& /*frame*/) { return hal::Status::kOk; }
+  [[nodiscard]] hal::JointFeedback feedback(std::size_t /*j*/, hal::Microseconds /*now_us*/) const {
+    return joint;
+  }
+  std::size_t outgoing(std::span<const hal::TorqueCommand> commands,
+                       const hal::Heartbeat& /*heartbeat*/, std::span<hal::Frame> /*frames*/) {
+    command = commands[0];
+    return 0;
+  }
+  [[nodiscard]] bool stop_seen() const { return false; }
+  void clear_stop() {}
+};
+
+class Slide {
+ public:
+  using Watched = JointController<1, 4, double, WithMemory>;
+
+  Slide(std::size_t late_ticks, double friction, double gravity)
+      : late_ticks_(late_ticks), friction_(friction), gravity_(gravity) {
+    MonitorConfig<1, double> config;
+    config.chain.gravity_m_s2 = {0, 0, -gravity};
+    config.chain.joints[0].type = JointType::kPrismatic;
+    config.chain.joints[0].mass_kg = kMass;
+    config.torque_signal = TorqueSignal::kHeld;
+    config.estimator.hidden_units = 4;
+    config.estimator.learning_rate = 0;
+    config.bound.scale = 1;
+    config.bound.offset = 0.1;
+    config.bound.velocity_error = 0.003;
+    period_s_ = config.estimator.period_s;
+    const double delay_s = static_cast<double>(late_ticks) * period_s_;
+    EXPECT_TRUE(config.chain.effects.add({EffectKind::kTimeDelay, 0, {delay_s}}));
+    EXPECT_TRUE(config.chain.effects.add({EffectKind::kHysteresis, 0, {friction, kWidth}}));
+    ComputedTorqueGains<1, double> gains;
+    gains.kp.fill(100);
+    gains.kd.fill(20);
+    ControllerConfig<1, double> whole = controller_config(config, gains);
+    whole.watch_when_passive = true;
+    EXPECT_EQ(Watched::create(whole, controller_), Status::kOk);
+  }
+
+  void tick() {
+    bus_.time_us += static_cast<hal::Microseconds>(period_s_ * 1e6 + 0.5);
+    drive_.joint.encoder = drive_.joint.drive = hal::SourceState::kValid;
+    drive_.joint.encoder_time_us = bus_.time_us;
+    drive_.joint.reading = {static_cast<float>(q_), static_cast<float>(dq_), true};
+    drive_.joint.status.mode = hal::DriveMode::kTorque;
+    drive_.joint.status.applied_torque = static_cast<float>(told_.back());
+    controller_.step(
+        bus_.time_us, 0, [](double) { return Reference<1, double>{}; }, bus_, drive_, *data_);
+    told_.push_back(drive_.command.mode == hal::DriveMode::kTorque
+                        ? static_cast<double>(drive_.command.torque)
+                        : 0.0);
+    move();
+  }
+  bool arm() {
+    armed_ = controller_.arm(*data_);
+    dq_ = 0;
+    return armed_;
+  }
+  // Until it is armed a hand pushes the slide along at this speed, or holds it.
+  void push(double speed) { dq_ = speed; }
+
+  [[nodiscard]] const Watched::Data& data() const { return *data_; }
+  [[nodiscard]] double told() const { return told_.back(); }
+
+ private:
+  void move() {
+    const double acts = told_[told_.size() - 1 - late_ticks_];
+    constexpr int kSteps = 50;
+    const double h = period_s_ / kSteps;
+    for (int i = 0; i < kSteps; ++i) {
+      q_ += h * dq_;
+      if (armed_) dq_ += h * ((acts - friction_ * z_) / kMass - gravity_);
+      z_ += h * (dq_ - z_ * std::fabs(dq_)) / kWidth;
+    }
+  }
+
+  std::size_t late_ticks_;
+  double friction_;
+  double gravity_;
+  double period_s_ = 0;
+  bool armed_ = false;
+  double q_ = 0, dq_ = 0, z_ = 0;
+  std::vector<double> told_ = std::vector<double>(100, 0.0);
+  SilentBus bus_;
+  OneDrive drive_;
+  Watched controller_;
+  std::unique_ptr<Watched::Data> data_ = std::make_unique<Watched::Data>();
+};
+
+TEST(ControllerWithMemory, ArmingALateDriveIsNoFault) {
+  Slide slide(6, 0, 9.81);
+  for (int i = 0; i < 20; ++i) slide.tick();
+  ASSERT_TRUE(slide.arm());
+  double worst = 0;
+  for (int i = 0; i < 300; ++i) {
+    slide.tick();
+    const auto& output = slide.data().output;
+    if (output.threshold > 0) worst = std::max(worst, output.error_norm / output.threshold);
+  }
+  EXPECT_EQ(slide.data().fault, Fault::kNone);
+  EXPECT_FALSE(slide.data().output.detector.latched);
+  EXPECT_LT(worst, 0.5);
+}
+
+TEST(ControllerWithMemory, WhatAnotherRunRememberedIsNotInTheFirstTorque) {
+  Slide slide(0, 20, 0);
+  slide.push(0.05);
+  for (int i = 0; i < 100; ++i) slide.tick();
+  ASSERT_GT(slide.data().monitor.memory.remembered[0], 15) << "watched while it was passive";
+  ASSERT_TRUE(slide.arm());
+  slide.tick();
+  EXPECT_EQ(slide.data().monitor.memory.remembered[0], 0);
+  EXPECT_NEAR(slide.data().sample.tau[0], slide.told(), 1e-6);
+}
+
+}  // namespace
+}  // namespace offnominal::controller
