@@ -34,11 +34,9 @@ VectorXd torque_along(const std::array<double, kMaxEffectParameters>& parameters
 template <int N>
 VectorXd delays_in_samples(const Chain<N, double>& chain, const Motion& motion) {
   VectorXd samples = VectorXd::Zero(N);
-  const Index last = motion.sample_count() - 1;
-  if (last < 1) return samples;
-  const double period_s = (motion.t_s[last] - motion.t_s[0]) / static_cast<double>(last);
+  if (motion.sample_count() < 2) return samples;
   for (Index joint = 0; joint < N; ++joint) {
-    samples[joint] = delay_of_joint(chain, static_cast<std::size_t>(joint)) / period_s;
+    samples[joint] = delay_of_joint(chain, static_cast<std::size_t>(joint)) / motion.period_s();
   }
   return samples;
 }
@@ -60,13 +58,10 @@ MatrixXd model_torque(const RobotDescription& robot, const Motion& motion) {
       torque.row(i) = inverse_dynamics(model, q, dq, ddq, motion.t_s[i] - motion.t_s[0]);
     }
     for (const RobotEffect& effect : robot.effects) {
-      visit_effect(effect.kind, [&]<typename E>() {
-        if constexpr (requires { E::torque_of_state(effect.parameters, 0.0); }) {
-          const auto joint = static_cast<Index>(effect.joint);
-          torque.col(joint) +=
-              model.told_per_given[joint] * torque_along<E>(effect.parameters, motion.q.col(joint));
-        }
-      });
+      if (!remembers(effect.kind) || !is_torque_effect(effect.kind)) continue;
+      const JointType type = robot.joints[effect.joint].joint.type;
+      torque.col(effect.joint) +=
+          model.told_per_given[effect.joint] * torque_of_effect(effect, type, motion);
     }
     const VectorXd delays = delays_in_samples(chain, motion);
     for (Index joint = 0; joint < N; ++joint) {
@@ -93,7 +88,7 @@ bool is_torque_effect(EffectKind kind) {
     torque = requires(std::array<double, kMaxEffectParameters> p, JointInstant<double> at) {
       E::torque(p, at);
     }
-    || requires(std::array<double, kMaxEffectParameters> p) { E::torque_of_state(p, 0.0); };
+    || offnominal::detail::kHasState<E>;
   });
   return torque;
 }
@@ -103,7 +98,7 @@ bool is_path_effect(EffectKind kind) {
   visit_effect(kind, [&]<typename E>() {
     path = requires(std::array<double, kMaxEffectParameters> p) { E::most_friction_per_load(p); }
     || requires(std::array<double, kMaxEffectParameters> p) { E::told_per_given(p); }
-    || requires(std::array<double, kMaxEffectParameters> p) { E::delay_s(p); };
+    || offnominal::detail::kHasDelay<E>;
   });
   return path;
 }
@@ -138,7 +133,7 @@ VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Mo
   visit_effect(effect.kind, [&]<typename E>() {
     auto parameters = effect.parameters;
     if constexpr (requires { E::prepare(parameters, type); }) E::prepare(parameters, type);
-    if constexpr (requires { E::torque_of_state(parameters, 0.0); }) {
+    if constexpr (offnominal::detail::kHasState<E>) {
       torque = torque_along<E>(parameters, motion.q.col(joint));
     } else if constexpr (requires(JointInstant<double> at) { E::torque(parameters, at); }) {
       for (Index i = 0; i < motion.sample_count(); ++i) {

@@ -15,6 +15,11 @@ struct Motion {
   Eigen::MatrixXd ddq;  // central differences of dq
 
   [[nodiscard]] Eigen::Index sample_count() const { return t_s.size(); }
+  // On average, of two samples or more.
+  [[nodiscard]] double period_s() const {
+    const Eigen::Index last = sample_count() - 1;
+    return (t_s[last] - t_s[0]) / static_cast<double>(last);
+  }
 };
 
 // Velocity and acceleration both come from the low-passed position, whatever velocity the log has:

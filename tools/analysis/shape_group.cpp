@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "analysis/shape_grid.hpp"
 #include "signal/quantile.hpp"
 
 namespace offnominal::tools {
@@ -45,7 +46,7 @@ std::vector<double> even_grid(double from, double to, double step) {
 // at a slow quarter of the motion, in quarters of what the range resolves.
 std::vector<double> order_grid(const VectorXd& q, const VectorXd& dq, JointType type,
                                double torque_cutoff_hz) {
-  const double unit = type == JointType::kRevolute ? 2 * std::numbers::pi : 1.0;
+  const double unit = first_order_period(type);
   const double range = (q.maxCoeff() - q.minCoeff()) / unit;
   const VectorXd speed = dq.cwiseAbs() / unit;
   const double slow = std::max(quantile(speed, 0.25), 0.05 * quantile(speed, 0.99));
@@ -79,16 +80,8 @@ std::vector<double> position_grid(const VectorXd& q) {
 
 // Four points per factor of ten, from a thousandth of the range moved to half of it.
 std::vector<double> distance_grid(const VectorXd& q) {
-  constexpr double kSmallest = 0.001;
-  constexpr double kLargest = 0.5;
-  constexpr int kPoints = 12;
   const double range = q.maxCoeff() - q.minCoeff();
-  std::vector<double> grid;
-  for (int i = 0; range > 0 && i < kPoints; ++i) {
-    const double share = static_cast<double>(i) / (kPoints - 1);
-    grid.push_back(range * kSmallest * std::pow(kLargest / kSmallest, share));
-  }
-  return grid;
+  return logarithmic_grid(0.001 * range, 0.5 * range, 4);
 }
 
 class GroupMaker {

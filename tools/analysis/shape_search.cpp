@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/shape_grid.hpp"
 #include "signal/periodogram.hpp"
 
 namespace offnominal::tools {
@@ -79,11 +80,12 @@ std::vector<double> ShapeSearch::candidates(std::size_t group, const std::vector
   const VectorXd x = solve(without.sum(weights_, left_out), priors_).x;
   const Measurement& measured = problem_.measured();
   const bool in_time = of.search == ShapeGroup::Search::kPeriodicTime;
-  const bool turns = problem_.robot().joints[joint].joint.type == JointType::kRevolute || in_time;
   VectorXd phase =
       in_time ? measured.t_s
               : kept_samples(measured.plan, measured.motion.q.col(static_cast<Index>(joint)));
-  if (!turns) phase *= 2 * std::numbers::pi;
+  if (!in_time) {
+    phase *= 2 * std::numbers::pi / first_order_period(problem_.robot().joints[joint].joint.type);
+  }
   for (const JointRows& joint_rows : rows) {
     if (joint_rows.joint != joint) continue;
     VectorXd error = residual_of(joint_rows, x);

@@ -34,9 +34,8 @@ Eigen::VectorXd of_path_effect(const RobotDescription& robot, const Unknown& unk
   };
   if (info_of_parameter(robot, unknown).quantity != Quantity::kTime) return with(1) - with(0);
   const double value = robot.effects[unknown.effect].parameters[unknown.parameter];
-  const auto steps = static_cast<double>(motion.sample_count() - 1);
-  const double half = 0.5 * (motion.t_s[motion.sample_count() - 1] - motion.t_s[0]) / steps;
-  return (with(value + half) - with(value - half)) / (2 * half);
+  const double period_s = motion.period_s();
+  return (with(value + 0.5 * period_s) - with(value - 0.5 * period_s)) / period_s;
 }
 
 }  // namespace

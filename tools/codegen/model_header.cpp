@@ -213,11 +213,6 @@ std::string constant(std::string_view type, std::string_view name, std::string_v
                      indented(members, "    "));
 }
 
-bool has_memory(const RobotDescription& robot) {
-  return std::any_of(robot.effects.begin(), robot.effects.end(),
-                     [](const RobotEffect& effect) { return remembers(effect.kind); });
-}
-
 std::string units_remark(const RobotDescription& robot) {
   std::string text = "SI units:";
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
@@ -258,12 +253,14 @@ std::string head_text(const RobotDescription& robot, const ModelHeaderOptions& o
   for (const RobotJoint& joint : robot.joints) {
     names += (names.empty() ? "" : ", ") + cpp_text::literal(joint.name);
   }
+  const bool memory = std::any_of(robot.effects.begin(), robot.effects.end(),
+                                  [](const RobotEffect& effect) { return remembers(effect.kind); });
   return text +
          fmt::format("inline constexpr std::array<const char*, kJoints> kJointNames{{{}}};\n\n",
                      names) +
          fmt::format("// {}\nusing Memory = offnominal::{};\n",
-                     has_memory(robot) ? "Some effects have a memory." : "No effect has a memory.",
-                     has_memory(robot) ? "WithMemory" : "WithoutMemory") +
+                     memory ? "Some effects have a memory." : "No effect has a memory.",
+                     memory ? "WithMemory" : "WithoutMemory") +
          "// Takes kMonitorConfig<Scalar>.\ntemplate <typename Scalar>\n"
          "using Monitor = offnominal::Monitor<kJoints, kHiddenUnits, Scalar, Memory>;\n\n";
 }

@@ -34,7 +34,7 @@ bool is_nested(const Data& data, const ModelFit& baseline, const Term& inner, co
   const MatrixXd inside = columns_of(data, inner);
   if (outside.cols() <= inside.cols()) return false;
   for (Index c = 0; c < inside.cols(); ++c) {
-    target.residual = target.beside_basis(inside.col(c)).col(0);
+    target.residual = target.beside_basis(target.weighted(inside.col(c)));
     target.energy = data.layout.energy(target.residual);
     const Evidence evidence = judge(target, outside);
     if (!evidence.usable || 1 - evidence.gain > kSine * kSine) return false;

@@ -1,7 +1,5 @@
 #include "discovery/effect_candidate.hpp"
 
-#include <numbers>
-
 #include "discovery/effects/effects.hpp"
 
 namespace offnominal::tools::discovery {
@@ -39,10 +37,6 @@ std::vector<NamedValue> EffectCandidate::parameters(JointType type,
     values.push_back({ranges[i].name, shape[i], ranges[i].unit});
   }
   return values;
-}
-
-double first_order_period(JointType type) {
-  return type == JointType::kRevolute ? 2 * std::numbers::pi : 1.0;
 }
 
 bool EffectCandidate::is_physical(const Eigen::VectorXd& /*coefficients*/) const { return true; }

@@ -46,9 +46,6 @@ struct NamedValue {
   std::string unit;
 };
 
-// Position in which a torque of order 1 repeats: a turn, 2 pi rad, or a metre.
-double first_order_period(JointType type);
-
 // A linear parameter as the user reads it.
 struct LinearParameter {
   std::string name;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <utility>
 
 namespace offnominal::tools::discovery {
 
@@ -14,16 +15,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd Remainder::beside_basis(const MatrixXd& columns) const {
-  MatrixXd whole = MatrixXd::Zero(residual.size(), columns.cols());
-  for (Index c = 0; c < columns.cols(); ++c) {
-    whole.col(c).head(layout->rows()) = layout->weighted(columns.col(c), joint_weights);
-  }
-  if (basis.cols() > 0) {
-    const MatrixXd along = basis.transpose() * whole;
-    whole.noalias() -= basis * along;
-  }
+VectorXd Remainder::weighted(const VectorXd& values) const {
+  VectorXd whole = VectorXd::Zero(residual.size());
+  whole.head(layout->rows()) = layout->weighted(values, joint_weights);
   return whole;
+}
+
+MatrixXd Remainder::beside_basis(MatrixXd columns) const {
+  if (basis.cols() > 0) {
+    const MatrixXd along = basis.transpose() * columns;
+    columns.noalias() -= basis * along;
+  }
+  return columns;
 }
 
 namespace {
@@ -109,16 +112,16 @@ class EvidenceScale {
   std::array<double, kSteps + 1> values_{};
 };
 
-// `own`: the columns beside the basis.
-Evidence judge_beside(const Remainder& remainder, const MatrixXd& columns, const MatrixXd& own) {
+// `own`: weighted columns beside the basis; `before`: their lengths with what it takes.
+Evidence judge_beside(const Remainder& remainder, const Eigen::Ref<const MatrixXd>& own,
+                      const Eigen::Ref<const VectorXd>& before) {
   constexpr double kNothingNew = 1e-3;  // sine of the angle to what is fitted already
   Evidence evidence;
   const RowLayout& layout = *remainder.layout;
   MatrixXd scaled = own;
   for (Index c = 0; c < own.cols(); ++c) {
-    const double before = layout.weighted(columns.col(c), remainder.joint_weights).norm();
     const double length = own.col(c).norm();
-    if (!(length > kNothingNew * before) || !(length > 0)) return evidence;
+    if (!(length > kNothingNew * before[c]) || !(length > 0)) return evidence;
     scaled.col(c) /= length;
   }
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(scaled);
@@ -152,32 +155,34 @@ Evidence judge_beside(const Remainder& remainder, const MatrixXd& columns, const
 double explained_share(double before, double left) { return 1 - std::pow(left / before, 2); }
 
 Evidence judge(const Remainder& remainder, const MatrixXd& columns) {
-  return judge_beside(remainder, columns, remainder.beside_basis(columns));
+  return std::move(judge_each(remainder, std::span(&columns, 1)).front());
 }
 
-std::vector<Evidence> judge_each(const Remainder& remainder, const std::vector<MatrixXd>& groups) {
+std::vector<Evidence> judge_each(const Remainder& remainder, std::span<const MatrixXd> groups) {
   // Several groups at once go past the basis, which is large, as one matrix.
   constexpr Index kColumnsAtOnce = 16;
   std::vector<Evidence> judged;
-  for (std::size_t first = 0; first < groups.size();) {
-    std::size_t end = first;
+  while (!groups.empty()) {
+    std::size_t taken = 0;
     Index count = 0;
-    while (end < groups.size() && (end == first || count + groups[end].cols() <= kColumnsAtOnce)) {
-      count += groups[end++].cols();
+    while (taken < groups.size() &&
+           (taken == 0 || count + groups[taken].cols() <= kColumnsAtOnce)) {
+      count += groups[taken++].cols();
     }
-    MatrixXd together(remainder.layout->rows(), count);
+    MatrixXd together(remainder.residual.size(), count);
     Index at = 0;
-    for (std::size_t i = first; i < end; ++i) {
-      together.middleCols(at, groups[i].cols()) = groups[i];
-      at += groups[i].cols();
+    for (const MatrixXd& group : groups.first(taken)) {
+      for (const auto& column : group.colwise()) together.col(at++) = remainder.weighted(column);
     }
-    const MatrixXd own = remainder.beside_basis(together);
+    const VectorXd before = together.colwise().norm().transpose();
+    const MatrixXd own = remainder.beside_basis(std::move(together));
     at = 0;
-    for (std::size_t i = first; i < end; ++i) {
-      judged.push_back(judge_beside(remainder, groups[i], own.middleCols(at, groups[i].cols())));
-      at += groups[i].cols();
+    for (const MatrixXd& group : groups.first(taken)) {
+      judged.push_back(judge_beside(remainder, own.middleCols(at, group.cols()),
+                                    before.segment(at, group.cols())));
+      at += group.cols();
     }
-    first = end;
+    groups = groups.subspan(taken);
   }
   return judged;
 }

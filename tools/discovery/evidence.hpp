@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "discovery/rows.hpp"
@@ -21,8 +22,10 @@ struct Remainder {
   double prior_weight = 1;              // standard deviation of the rows of the priors
 
   [[nodiscard]] Eigen::Index prior_rows() const { return residual.size() - layout->rows(); }
-  // Stacked columns, weighted, with zeros in the rows of the priors, less what the basis takes.
-  [[nodiscard]] Eigen::MatrixXd beside_basis(const Eigen::MatrixXd& columns) const;
+  // Stacked values, weighted, with zeros in the rows of the priors.
+  [[nodiscard]] Eigen::VectorXd weighted(const Eigen::VectorXd& values) const;
+  // Weighted columns less what the basis takes of them.
+  [[nodiscard]] Eigen::MatrixXd beside_basis(Eigen::MatrixXd columns) const;
 };
 
 // What columns would add to the model, everything that the model fits adapting to them.
@@ -48,7 +51,7 @@ double explained_share(double before, double left);
 Evidence judge(const Remainder& remainder, const Eigen::MatrixXd& columns);
 // The same of one group after the other, each by itself.
 std::vector<Evidence> judge_each(const Remainder& remainder,
-                                 const std::vector<Eigen::MatrixXd>& groups);
+                                 std::span<const Eigen::MatrixXd> groups);
 
 // Probability of a statistic at least this large without the effect, for one group of columns:
 // blocks - dimension over dimension times t / (blocks - t) is about F(dimension, blocks -

@@ -32,18 +32,18 @@ Scaled scaled(const MatrixXd& columns, const std::vector<Index>& which) {
   return result;
 }
 
-// The regression with one more row per informative prior.
-struct WithPriorRows {
+struct Rows {
   MatrixXd columns;
   VectorXd target;
 };
 
-WithPriorRows with_prior_rows(const MatrixXd& columns, const VectorXd& target,
-                              const std::vector<Prior>& priors, double prior_weight) {
+// The regression with one more row per informative prior.
+Rows with_prior_rows(const MatrixXd& columns, const VectorXd& target,
+                     const std::vector<Prior>& priors, double prior_weight) {
   const auto count = std::count_if(priors.begin(), priors.end(),
                                    [](const Prior& p) { return p.is_informative(); });
-  WithPriorRows whole{MatrixXd::Zero(columns.rows() + count, columns.cols()),
-                      VectorXd::Zero(columns.rows() + count)};
+  Rows whole{MatrixXd::Zero(columns.rows() + count, columns.cols()),
+             VectorXd::Zero(columns.rows() + count)};
   whole.columns.topRows(columns.rows()) = columns;
   whole.target.head(columns.rows()) = target;
   Index row = columns.rows();
@@ -95,12 +95,7 @@ struct Problem {
 // in pieces that stay in the cache, each on top of what the ones before it left (J. Demmel, L.
 // Grigori, M. Hoemmen, J. Langou, SIAM J. Sci. Comput. 34(1), 2012). As they are where they are
 // few.
-struct Turned {
-  MatrixXd columns;
-  VectorXd target;
-};
-
-Turned few_rows(const MatrixXd& columns, const VectorXd& target) {
+Rows few_rows(const MatrixXd& columns, const VectorXd& target) {
   constexpr Index kPiece = 512;
   const Index count = columns.cols();
   if (columns.rows() < kPiece || columns.rows() < 4 * count) return {columns, target};
@@ -120,7 +115,7 @@ Turned few_rows(const MatrixXd& columns, const VectorXd& target) {
 
 struct FreeFit {
   Scaled part;
-  Turned few;
+  Rows few;
   Eigen::ColPivHouseholderQR<MatrixXd> qr;  // of the few rows
   VectorXd scaled_x;
 
@@ -187,7 +182,7 @@ FreeFit fit_within_ends(Problem& whole, const std::vector<Prior>& priors) {
 
 PriorFit least_squares_with_priors(const MatrixXd& columns, const VectorXd& target,
                                    const std::vector<Prior>& priors, double prior_weight) {
-  WithPriorRows rows = with_prior_rows(columns, target, priors, prior_weight);
+  Rows rows = with_prior_rows(columns, target, priors, prior_weight);
   Problem whole{
       std::move(rows.columns), std::move(rows.target), {}, VectorXd::Zero(columns.cols())};
   whole.free.resize(static_cast<std::size_t>(columns.cols()));

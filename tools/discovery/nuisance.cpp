@@ -7,7 +7,6 @@
 
 #include "analysis/inverse_model.hpp"
 #include "analysis/unknown.hpp"
-#include "discovery/dahl.hpp"
 #include "signal/differentiate.hpp"
 
 namespace offnominal::tools::discovery {
@@ -120,7 +119,7 @@ class Builder {
     for (const double share : kPreslidingShares) {
       add_shape(fmt::format("pre-sliding over {:.2g}", share * range),
                 [&](const Workspace& at) -> VectorXd {
-                  return dahl_state(at.motion.q.col(joint), share * range).array() - at.sign(joint);
+                  return at.dahl_state(joint, share * range).array() - at.sign(joint);
                 });
     }
   }

@@ -49,8 +49,7 @@ VectorXd shuffled(const RowLayout& layout, const VectorXd& noise, std::mt19937_6
 
 double best_gain(const Remainder& remainder, const std::vector<MatrixXd>& columns) {
   double best = 0;
-  for (const MatrixXd& at_shape : columns) {
-    const Evidence evidence = judge(remainder, at_shape);
+  for (const Evidence& evidence : judge_each(remainder, columns)) {
     if (evidence.usable) best = std::max(best, evidence.joint_gain);
   }
   return best;
@@ -72,7 +71,7 @@ double replay_p(const Data& data, const ModelFit& fit, const VectorXd& noise, co
   parallel_for(reached.size(), threads, [&](std::size_t i) {
     std::mt19937_64 generator(seed + 7919 * (i + 1));
     Remainder played = fit.remainder;
-    played.residual = played.beside_basis(shuffled(data.layout, noise, generator)).col(0);
+    played.residual = played.beside_basis(played.weighted(shuffled(data.layout, noise, generator)));
     played.energy = data.layout.energy(played.residual);
     reached[i] = static_cast<char>(best_gain(played, columns) >= measured);
   });

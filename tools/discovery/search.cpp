@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "analysis/fit_problem.hpp"
+#include "analysis/shape_grid.hpp"
 #include "discovery/parallel.hpp"
 #include "signal/periodogram.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "analysis/shape_grid.hpp"
 #include "discovery/remainder.hpp"
 
 namespace offnominal::tools::discovery {

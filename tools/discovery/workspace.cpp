@@ -52,6 +52,12 @@ Eigen::ArrayXd Workspace::sign(Index joint) const {
   return (motion.dq.col(joint).array() / sign_width[joint]).tanh();
 }
 
+VectorXd Workspace::dahl_state(Index joint, double width) const {
+  const Effect<double> hysteresis{
+      EffectKind::kHysteresis, static_cast<std::uint8_t>(joint), {1, width}};
+  return torque_of_effect(hysteresis, joint_type(joint), motion);
+}
+
 std::vector<char> came_both_ways(const std::vector<Log>& logs) {
   std::vector<char> both(static_cast<std::size_t>(logs.front().q.cols()), 0);
   for (std::size_t joint = 0; joint < both.size(); ++joint) {

@@ -52,6 +52,8 @@ struct Workspace {
   }
   // tanh(dq / sign_width) of a joint.
   [[nodiscard]] Eigen::ArrayXd sign(Eigen::Index joint) const;
+  // What core's hysteresis of level 1 makes of a joint's way.
+  [[nodiscard]] Eigen::VectorXd dahl_state(Eigen::Index joint, double width) const;
 };
 
 // sign_width: per joint, 0 where nothing is known yet: then a hundredth of the top speed.

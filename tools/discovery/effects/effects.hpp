@@ -1,5 +1,6 @@
 #pragma once
 
+#include "analysis/shape_grid.hpp"
 #include "discovery/effect_candidate.hpp"
 
 // The families of effects, one file each. Every class is local to its file.
@@ -17,8 +18,5 @@ void add_transmission_effects(Candidates& all);  // between motor and link
 inline const char* unit(Quantity quantity, JointType type) {
   return offnominal::unit_of(quantity, type);
 }
-
-// Both ends and even steps of the logarithm between them.
-std::vector<double> logarithmic_grid(double from, double to, double per_decade = 5);
 
 }  // namespace offnominal::tools::discovery

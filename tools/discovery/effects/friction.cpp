@@ -1,23 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "discovery/dahl.hpp"
 #include "discovery/effects/effects.hpp"
 
 namespace offnominal::tools::discovery {
 
 using Eigen::ArrayXd;
 using Eigen::Index;
-
-std::vector<double> logarithmic_grid(double from, double to, double per_decade) {
-  std::vector<double> grid;
-  if (!(from > 0) || !(to > from)) return grid;
-  const auto steps = static_cast<int>(std::ceil(per_decade * std::log10(to / from)));
-  for (int i = 0; i <= steps; ++i) {
-    grid.push_back(from * std::pow(to / from, static_cast<double>(i) / steps));
-  }
-  return grid;
-}
 
 namespace {
 
@@ -177,7 +166,7 @@ class Hysteresis final : public EffectCandidate {
   }
   std::vector<Regressor> regressors(const Workspace& at, Index joint,
                                     std::span<const double> shape) const override {
-    return {{{joint, dahl_state(at.motion.q.col(joint), shape[0])}}};
+    return {{{joint, at.dahl_state(joint, shape[0])}}};
   }
   bool is_physical(const Eigen::VectorXd& c) const override { return c[0] > 0; }
 };
