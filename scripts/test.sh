@@ -9,7 +9,9 @@ passed=0
 failed=0
 skipped=0
 failures=()
+remarks=()
 durations=()
+readonly machine_broke=125  # exit code of vcan.sh
 
 # begin TITLE, and end: what lies between them is timed.
 begin() {
@@ -23,6 +25,10 @@ finish() {
   local name line
   printf '\ntook:\n'
   printf '  %s\n' "${durations[@]}" "$(printf '%5d s  in all, on %d cores' "$SECONDS" "$(nproc)")"
+  if ((${#remarks[@]} > 0)); then
+    printf '\nremarks:\n'
+    printf '  %s\n' "${remarks[@]}"
+  fi
   if ((${#failures[@]} > 0)); then
     printf '\nfailed:\n'
     for name in "${failures[@]}"; do printf '  %s\n' "$name"; done
@@ -92,16 +98,23 @@ real_time_suite() {
 # run_suite PRESET TITLE JOBS SELECT LABEL [WHERE...]
 run_suite() {
   local preset="$1" title="$2" jobs="$3" select=("${@:4:2}") where=("${@:6}")
-  local report verdict name outcome before=$failed
+  local report said verdict name outcome attempt before=$failed
   report="$root/build/$preset/junit.xml"
-  rm -f "$report"
+  said="$root/build/$preset/said"
   begin "$title"
-  "${where[@]}" ctest --test-dir "$root/build/$preset" -j "$jobs" "${select[@]}" --timeout 900 \
-    --output-on-failure --no-tests=error --output-junit "$report"
-  outcome=$?
+  for attempt in first second; do
+    rm -f "$report"
+    "${where[@]}" ctest --test-dir "$root/build/$preset" -j "$jobs" "${select[@]}" --timeout 900 \
+      --output-on-failure --no-tests=error --output-junit "$report" 2> >(tee "$said" >&2)
+    outcome=$?
+    wait $!
+    # Tests have not failed where the machine that they ran in broke: they get another one, once.
+    if ((outcome != machine_broke)); then break; fi
+    remarks+=("$title: the $attempt machine broke: $(tail -n 25 "$said")")
+  done
   end
   if [[ ! -s "$report" ]]; then
-    fail "$title did not run"
+    fail "$title did not run (exit code $outcome): $(tail -n 25 "$said")"
     return
   fi
   while read -r verdict name; do
