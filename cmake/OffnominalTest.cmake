@@ -1,8 +1,6 @@
 find_package(GTest REQUIRED)
 include(GoogleTest)
 
-set(OFFNOMINAL_TEST_SUPPORT_DIR "${PROJECT_SOURCE_DIR}/tests")
-
 # offnominal_add_test(NAME <target> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>]
 #                     [TOGETHER | BUS | REAL_TIME] [LONG])
 #
@@ -13,7 +11,7 @@ set(OFFNOMINAL_TEST_SUPPORT_DIR "${PROJECT_SOURCE_DIR}/tests")
 # and a machine that makes nothing late: they carry the label `real_time`, and run in one
 # `./dev vcan --in machine --clock instructions`. With LONG its cases start before others, so that none of them is
 # left to run alone at the end. Cases see
-# "support/<header>.hpp" (tests/support) and OFFNOMINAL_SOURCE_DIR, the checkout's folder as a string.
+# "support/<header>.hpp" (tests/support).
 function(offnominal_add_test)
   cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER;BUS;REAL_TIME;LONG" "NAME;LABELS" "SOURCES;LIBRARIES")
   if(NOT arg_NAME OR NOT arg_SOURCES)
@@ -25,11 +23,12 @@ function(offnominal_add_test)
   endif()
 
   add_executable(${arg_NAME} ${arg_SOURCES})
-  target_include_directories(${arg_NAME} PRIVATE "${OFFNOMINAL_TEST_SUPPORT_DIR}")
-  target_compile_definitions(${arg_NAME}
-                             PRIVATE OFFNOMINAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_link_libraries(${arg_NAME} PRIVATE offnominal_warnings ${arg_LIBRARIES} GTest::gmock
-                                            GTest::gtest GTest::gtest_main)
+  # Every expectation holds the name of its file. Within the checkout it is the same in every clone:
+  # what one has compiled is remembered for the others.
+  target_compile_options(${arg_NAME} PRIVATE "-ffile-prefix-map=${PROJECT_SOURCE_DIR}/=")
+  target_link_libraries(
+    ${arg_NAME} PRIVATE offnominal_warnings ${arg_LIBRARIES} offnominal_test_support GTest::gmock
+                        GTest::gtest GTest::gtest_main)
 
   set(properties PROPERTIES COST 0)
   if(arg_LONG)

@@ -32,11 +32,12 @@ jobs_allowed() {
 cache_dir() { printf '%s/offnominal' "${XDG_CACHE_HOME:-$HOME/.cache}"; }
 
 # Compilations are remembered (ccache), wherever the tree lies: another clone, or a branch that was
-# left and taken up again, builds in a fraction of the time.
+# left and taken up again, builds in a fraction of the time. Its settings are in the build's own commands:
+# what a plain ninja compiles is remembered alike.
 remember_compilations() {
   command -v ccache >/dev/null || return 0
-  export CMAKE_CXX_COMPILER_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER:-ccache}"
-  export CCACHE_BASEDIR="${CCACHE_BASEDIR:-$root}" CCACHE_NOHASHDIR="${CCACHE_NOHASHDIR:-1}"
+  local launcher="env;CCACHE_BASEDIR=$root;CCACHE_NOHASHDIR=1;ccache"
+  export CMAKE_CXX_COMPILER_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER:-$launcher}"
 }
 
 # build PRESET [TARGET...]: configures and builds; silent when nothing is to do. All output on stderr.
@@ -48,7 +49,8 @@ build() {
   remember_compilations
   # What ninja does not know of; all else makes it configure anew by itself. From nothing: where a preset
   # has another compiler, CMake drops its cache with all that the preset had put there.
-  if [[ ! -f "$dir/build.ninja" || "$root/CMakePresets.json" -nt "$dir/build.ninja" ]]; then
+  if [[ ! -f "$dir/build.ninja" || "$root/CMakePresets.json" -nt "$dir/build.ninja" ||
+    "$root/scripts/common.sh" -nt "$dir/build.ninja" ]]; then
     note "configure ($preset)"
     (cd "$root" && cmake --fresh --preset "$preset" --log-level=WARNING) >&2 || return 1
   fi

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "support/places.hpp"
 #include "tools/support/run_command.hpp"
 
 namespace offnominal::test {
@@ -10,7 +11,7 @@ namespace offnominal::test {
 int run_on(const Board& board, const std::string& program,
            const std::vector<std::string>& arguments) {
   const std::string image =
-      std::string(OFFNOMINAL_BUILDS) + "/" + board.preset + "/targets/cortex_m/" + program + ".elf";
+      source_dir() + "/build/" + board.preset + "/targets/cortex_m/" + program + ".elf";
   if (!std::filesystem::exists(image)) {
     throw std::runtime_error(image + " is not there: ./dev firmware builds it");
   }

@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "support/places.hpp"
+
 namespace offnominal::test {
 
 /// Folder of the real recordings: OFFNOMINAL_DATA, else ../shared/data beside the checkout.
@@ -11,7 +13,7 @@ inline std::filesystem::path recordings_dir() {
   if (const char* folder = std::getenv("OFFNOMINAL_DATA"); folder != nullptr && *folder != '\0') {
     return folder;
   }
-  return std::filesystem::path(OFFNOMINAL_SOURCE_DIR) / ".." / "shared" / "data";
+  return std::filesystem::path(source_dir()) / ".." / "shared" / "data";
 }
 
 }  // namespace offnominal::test

@@ -2,10 +2,11 @@
 
 #include <filesystem>
 
+#include "support/places.hpp"
+
 namespace offnominal::test {
 
 // The robot files of the project.
-inline const std::filesystem::path kRobots =
-    std::filesystem::path(OFFNOMINAL_SOURCE_DIR) / "robots";
+inline const std::filesystem::path kRobots = std::filesystem::path(source_dir()) / "robots";
 
 }  // namespace offnominal::test

@@ -7,6 +7,7 @@
 #include "analysis/compare.hpp"
 #include "log/read_log.hpp"
 #include "robot/robot_file.hpp"
+#include "support/places.hpp"
 #include "support/recordings.hpp"
 
 // The electro-mechanical positioning system of A. Janot, M. Gautier, M. Brunot (2019), effect by
@@ -29,7 +30,8 @@ class Emps : public ::testing::Test {
         GTEST_SKIP() << "no recording at " << folder / name << "; OFFNOMINAL_DATA names its folder";
       }
     }
-    robot_ = read_robot_file(std::filesystem::path(OFFNOMINAL_SOURCE_DIR) / "robots/emps.toml");
+    robot_ =
+        read_robot_file(std::filesystem::path(offnominal::test::source_dir()) / "robots/emps.toml");
     fitted_ = measure(read_log(folder / kFitted, robot_), {});
     validation_ = measure(read_log(folder / kValidation, robot_), {});
   }

@@ -10,6 +10,7 @@
 #include "common/number.hpp"
 #include "recorded_arm.hpp"
 #include "robot/robot_file.hpp"
+#include "support/places.hpp"
 #include "tools/support/run_command.hpp"
 #include "tools/support/temporary_folder.hpp"
 
@@ -58,7 +59,7 @@ class Verbs : public ::testing::Test {
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
   static CommandResult run(const std::vector<std::string>& arguments) {
-    return offnominal::test::run_command(OFFNOMINAL_COMMAND, arguments);
+    return offnominal::test::run_command(offnominal::test::command_file(), arguments);
   }
   CommandResult compare(std::vector<std::string> more = {}) const {
     more.insert(more.begin(), {"compare", path("arm.csv"), "--robot", path("arm.toml")});

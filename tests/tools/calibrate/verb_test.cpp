@@ -8,6 +8,7 @@
 
 #include "log/csv_text.hpp"
 #include "robot/robot_file.hpp"
+#include "support/places.hpp"
 #include "tools/analysis/recorded_arm.hpp"
 #include "tools/support/run_command.hpp"
 
@@ -50,7 +51,7 @@ class CalibrateVerb : public testing::Test {
 
   CommandResult calibrate(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "calibrate");
-    return offnominal::test::run_command(OFFNOMINAL_COMMAND, std::move(arguments));
+    return offnominal::test::run_command(offnominal::test::command_file(), std::move(arguments));
   }
 
   offnominal::test::TemporaryFolder folder_;
@@ -68,7 +69,8 @@ TEST_F(CalibrateVerb, WritesARobotFileThatReplaysWithoutAlarm) {
   EXPECT_THAT(text, HasSubstr("Calibrated by offnominal calibrate on a.csv."));
   EXPECT_THAT(content_of(path("page.html")), HasSubstr("offnominal calibrate"));
   const CommandResult replayed = offnominal::test::run_command(
-      OFFNOMINAL_COMMAND, {"replay", path("b.csv"), "--robot", path("new.toml"), "--check"});
+      offnominal::test::command_file(),
+      {"replay", path("b.csv"), "--robot", path("new.toml"), "--check"});
   EXPECT_EQ(replayed.exit_code, 0) << replayed.out;
 }
 
@@ -117,8 +119,7 @@ TEST_F(CalibrateVerb, RefusesWithOneLineAndExitTwo) {
       {{path("a.csv"), "--robot", robot, "-o", out, "--alarms-per-hour", "0"}, "1e-6 to 60"},
       {{path("a.csv"), "--robot", robot, "-o", out, "--velocity-error", "-1"}, "at least 0"},
       {{path("a.csv"), "--robot", robot, "-o", "/nowhere/new.toml"}, "/nowhere/new.toml"},
-      {{path("a.csv"), "--robot", std::string(OFFNOMINAL_SOURCE_DIR) + "/robots/emps.toml", "-o",
-        out},
+      {{path("a.csv"), "--robot", offnominal::test::source_dir() + "/robots/emps.toml", "-o", out},
        "a.csv"}};
   for (const Wrong& wrong : all) {
     const CommandResult result = calibrate(wrong.arguments);

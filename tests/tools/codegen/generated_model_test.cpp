@@ -18,6 +18,7 @@
 #include "models/two_link.hpp"
 #include "robot/monitor_config_of.hpp"
 #include "robot/robot_file.hpp"
+#include "support/places.hpp"
 #include "support/seed.hpp"
 
 // What a controller computes with a generated header, against what the tools compute with the robot
@@ -37,7 +38,7 @@ struct GeneratedTwoLink {
   static constexpr const auto& kGains = models::two_link::kComputedTorqueGains<S>;
   static constexpr const auto& kEncoders = models::two_link::kEncoderCountsPerUnit<S>;
   static constexpr const auto& kNames = models::two_link::kJointNames;
-  static constexpr const char* kFile = OFFNOMINAL_SOURCE_DIR "/robots/two_link.toml";
+  inline static const std::string kFile = test::source_dir() + "/robots/two_link.toml";
 };
 template <typename S>
 struct GeneratedEmps {
@@ -49,7 +50,7 @@ struct GeneratedEmps {
   static constexpr const auto& kGains = models::emps::kComputedTorqueGains<S>;
   static constexpr const auto& kEncoders = models::emps::kEncoderCountsPerUnit<S>;
   static constexpr const auto& kNames = models::emps::kJointNames;
-  static constexpr const char* kFile = OFFNOMINAL_SOURCE_DIR "/robots/emps.toml";
+  inline static const std::string kFile = test::source_dir() + "/robots/emps.toml";
 };
 template <typename S>
 struct GeneratedEveryEffect {
@@ -61,8 +62,8 @@ struct GeneratedEveryEffect {
   static constexpr const auto& kGains = models::every_effect::kComputedTorqueGains<S>;
   static constexpr const auto& kEncoders = models::every_effect::kEncoderCountsPerUnit<S>;
   static constexpr const auto& kNames = models::every_effect::kJointNames;
-  static constexpr const char* kFile =
-      OFFNOMINAL_SOURCE_DIR "/tests/tools/codegen/every_effect.toml";
+  inline static const std::string kFile =
+      test::source_dir() + "/tests/tools/codegen/every_effect.toml";
 };
 
 // Not only equal: the same bits, so that 0 and -0 differ and NaN equals itself.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "support/places.hpp"
 #include "tools/support/run_command.hpp"
 
 namespace offnominal::tools {
@@ -15,11 +16,11 @@ using test::CommandResult;
 using test::content_of;
 using testing::HasSubstr;
 
-const std::string kTwoLink = OFFNOMINAL_SOURCE_DIR "/robots/two_link.toml";
+const std::string kTwoLink = test::source_dir() + "/robots/two_link.toml";
 
 CommandResult codegen(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "codegen");
-  return test::run_command(OFFNOMINAL_COMMAND, std::move(arguments));
+  return test::run_command(test::command_file(), std::move(arguments));
 }
 
 TEST(CodegenVerb, WritesAHeaderAndSaysSo) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "support/places.hpp"
 #include "tools/support/run_command.hpp"
 
 // The built command as a user meets it.
@@ -20,7 +21,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 CommandResult offnominal(const std::vector<std::string>& arguments) {
-  return test::run_command(OFFNOMINAL_COMMAND, arguments);
+  return test::run_command(test::command_file(), arguments);
 }
 
 // The verbs as the help lists them, below its heading.
@@ -56,7 +57,7 @@ TEST(Command, SaysItsVersion) {
 TEST(Command, HasAVerbForEveryVerbFile) {
   std::vector<std::string> expected;
   const std::filesystem::path folder =
-      std::filesystem::path(OFFNOMINAL_SOURCE_DIR) / "tools" / "command";
+      std::filesystem::path(test::source_dir()) / "tools" / "command";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::string name = entry.path().filename().string();
     if (!name.starts_with("verb_") || entry.path().extension() != ".cpp") continue;
@@ -117,7 +118,7 @@ TEST(Command, RefusesAnUnknownOptionOfItsOwn) {
 
 TEST(Command, FailsWhereItsOutputCannotBeWritten) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
-  const CommandResult result = test::run_command(OFFNOMINAL_COMMAND, {"--help"}, "/dev/full");
+  const CommandResult result = test::run_command(test::command_file(), {"--help"}, "/dev/full");
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, StartsWith("standard output: found that it cannot be written"));
 }

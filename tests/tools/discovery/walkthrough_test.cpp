@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robot/robot_file.hpp"
+#include "support/places.hpp"
 #include "support/robots.hpp"
 #include "tools/support/effect_parameter.hpp"
 #include "tools/support/run_command.hpp"
@@ -49,11 +50,12 @@ TEST(Walkthrough, ThePapersArmGetsWhatItsSimulatorHas) {
       {"add", "--all-found", "--robot", robot_file, "--log", path("rich.csv"), "-o",
        path("found.toml")}};
   for (const std::vector<std::string>& arguments : commands) {
-    const CommandResult result = run_command(OFFNOMINAL_COMMAND, arguments);
+    const CommandResult result = run_command(offnominal::test::command_file(), arguments);
     ASSERT_EQ(result.exit_code, 0) << arguments[0] << "\n" << result.out << result.err;
   }
   const CommandResult again =
-      run_command(OFFNOMINAL_COMMAND, {"explain", path("rich.csv"), "--robot", path("found.toml")});
+      run_command(offnominal::test::command_file(),
+                  {"explain", path("rich.csv"), "--robot", path("found.toml")});
   EXPECT_TRUE(again.out.starts_with("explained: ")) << again.out;
   const RobotDescription found = read_robot_file(path("found.toml"));
   EXPECT_EQ(found.effects.size(), 5U);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "support/places.hpp"
 #include "tools/support/run_command.hpp"
 #include "tools/support/temporary_folder.hpp"
 
@@ -23,8 +24,8 @@ using offnominal::test::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const std::string kEmps = std::string(OFFNOMINAL_SOURCE_DIR) + "/robots/emps.toml";
-const std::string kArm = std::string(OFFNOMINAL_SOURCE_DIR) + "/robots/two_link.toml";
+const std::string kEmps = offnominal::test::source_dir() + "/robots/emps.toml";
+const std::string kArm = offnominal::test::source_dir() + "/robots/two_link.toml";
 
 class MotionVerb : public ::testing::Test {
  protected:
@@ -32,7 +33,7 @@ class MotionVerb : public ::testing::Test {
   CommandResult motion(const std::string& robot, std::vector<std::string> more) const {
     more.insert(more.begin(), {"motion", "--robot", robot, "-o", path("motion.csv"), "--duration",
                                "12", "--rate", "100", "--tries", "4"});
-    return offnominal::test::run_command(OFFNOMINAL_COMMAND, more);
+    return offnominal::test::run_command(offnominal::test::command_file(), more);
   }
   void expect_refusal(const CommandResult& result, const std::string& words) const {
     EXPECT_EQ(result.exit_code, 2);
@@ -135,9 +136,10 @@ TEST_F(MotionVerb, LeavesFilesAloneThatAreThere) {
 }
 
 TEST_F(MotionVerb, SaysWhereItCannotWrite) {
-  const CommandResult result = offnominal::test::run_command(
-      OFFNOMINAL_COMMAND, {"motion", "--robot", kEmps, "-o", path("no/such/folder.csv"),
-                           "--duration", "12", "--rate", "100", "--tries", "2"});
+  const CommandResult result =
+      offnominal::test::run_command(offnominal::test::command_file(),
+                                    {"motion", "--robot", kEmps, "-o", path("no/such/folder.csv"),
+                                     "--duration", "12", "--rate", "100", "--tries", "2"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.out, "");
   EXPECT_THAT(result.err, HasSubstr("no/such"));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "support/places.hpp"
 #include "tools/support/run_command.hpp"
 
 // `offnominal paper` as a user runs it.
@@ -19,7 +20,7 @@ using testing::HasSubstr;
 
 CommandResult paper(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "paper");
-  return test::run_command(OFFNOMINAL_COMMAND, std::move(arguments));
+  return test::run_command(test::command_file(), std::move(arguments));
 }
 
 // Dozens of runs: where the sanitizers watch, with a tick four times as long.
@@ -98,14 +99,14 @@ TEST(PaperVerb, SweepPrintsEveryProbe) {
 }
 
 TEST(PaperVerb, PlaceOfTheRobotFileIsNamedInItsErrors) {
-  const std::string emps = std::string(OFFNOMINAL_SOURCE_DIR) + "/robots/emps.toml";
+  const std::string emps = test::source_dir() + "/robots/emps.toml";
   const CommandResult result = paper({"--fault", "none", "--robot", emps});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("1 joint"));
 }
 
 TEST(PaperVerb, OwnRobotFileGivesTheSameAsTheBuiltInOne) {
-  const std::string file = std::string(OFFNOMINAL_SOURCE_DIR) + "/robots/two_link.toml";
+  const std::string file = test::source_dir() + "/robots/two_link.toml";
   EXPECT_EQ(paper({"--fault", "nonlinear", "--json", "--robot", file}).out,
             paper({"--fault", "nonlinear", "--json"}).out);
 }
@@ -118,9 +119,9 @@ TEST(PaperVerb, ARecordedRunReplaysAsItRan) {
                                            "--json",     "--log", log};
   const CommandResult run = paper(arguments);
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const std::string robot = std::string(OFFNOMINAL_SOURCE_DIR) + "/robots/two_link.toml";
+  const std::string robot = test::source_dir() + "/robots/two_link.toml";
   const CommandResult replayed =
-      test::run_command(OFFNOMINAL_COMMAND, {"replay", log, "--robot", robot, "--json"});
+      test::run_command(test::command_file(), {"replay", log, "--robot", robot, "--json"});
   ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
   const json told = json::parse(replayed.out);
   EXPECT_EQ(told["samples"], 5001);
@@ -133,7 +134,7 @@ TEST(PaperVerb, ARecordedRunReplaysAsItRan) {
 
 TEST(PaperVerb, TwoRobotFilesSideBySide) {
   const test::TemporaryFolder folder;
-  const std::string file = std::string(OFFNOMINAL_SOURCE_DIR) + "/robots/two_link.toml";
+  const std::string file = test::source_dir() + "/robots/two_link.toml";
   const std::string page = (folder / "sweep.html").string();
   const CommandResult result =
       paper_often({"--sweep", "--against", file, "--json", "--report", page});

@@ -15,6 +15,7 @@
 #include "robot/read_joint.hpp"
 #include "robot/read_settings.hpp"
 #include "robot/robot_file.hpp"
+#include "support/places.hpp"
 
 // The documents say what the code does: every status, effect, parameter and key has its place.
 
@@ -24,7 +25,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string document(const std::string& name) {
-  return read_text_file(std::filesystem::path(OFFNOMINAL_SOURCE_DIR) / "docs" / name);
+  return read_text_file(std::filesystem::path(test::source_dir()) / "docs" / name);
 }
 
 // What stands between a heading and the next one; empty where there is no such heading.

@@ -7,13 +7,14 @@
 
 #include "robot/monitor_config_of.hpp"
 #include "robot/robot_file.hpp"
+#include "support/places.hpp"
 
 // The robots that come with the project.
 
 namespace offnominal::tools {
 namespace {
 
-const std::filesystem::path kRobots = std::filesystem::path(OFFNOMINAL_SOURCE_DIR) / "robots";
+const std::filesystem::path kRobots = std::filesystem::path(test::source_dir()) / "robots";
 
 TEST(Robots, AreAllReadAndAcceptedByTheCore) {
   int count = 0;

@@ -16,6 +16,7 @@
 
 #include "offnominal/sim/bus/plant_node.hpp"
 #include "sil/plant_of.hpp"
+#include "support/places.hpp"
 #include "tools/support/temporary_folder.hpp"
 
 namespace offnominal::tools::sil {
@@ -28,7 +29,7 @@ class ControllerProcess {
  public:
   explicit ControllerProcess(const std::vector<std::string>& more) {
     std::vector<std::string> words = {
-        OFFNOMINAL_CONTROLLER, "--bus", "vcan0", "--arm", "--motion", "paper", "--json"};
+        test::controller_file(), "--bus", "vcan0", "--arm", "--motion", "paper", "--json"};
     words.insert(words.end(), more.begin(), more.end());
     std::vector<char*> argv;
     argv.reserve(words.size() + 1);

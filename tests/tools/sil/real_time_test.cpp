@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "support/places.hpp"
 #include "tools/support/run_command.hpp"
 
 namespace offnominal::tools::sil {
@@ -32,7 +33,7 @@ class RealTime : public testing::Test {
     if (std::find(words.begin(), words.end(), "--bus") == words.end()) {
       words.insert(words.end(), {"--bus", "vcan0"});
     }
-    return run_command(OFFNOMINAL_COMMAND, words);
+    return run_command(test::command_file(), words);
   }
 
   TemporaryFolder folder_;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "support/places.hpp"
 #include "tools/support/run_command.hpp"
 
 namespace offnominal::tools {
@@ -17,7 +18,7 @@ test::CommandResult wcet(std::vector<std::string> arguments) {
   const std::vector<std::string> quick{"wcet", "--ticks",  "2000", "--cold-ticks",
                                        "2",    "--search", "20"};
   arguments.insert(arguments.begin(), quick.begin(), quick.end());
-  return test::run_command(OFFNOMINAL_COMMAND, std::move(arguments));
+  return test::run_command(test::command_file(), std::move(arguments));
 }
 
 TEST(WcetVerb, TellsMeasuredFromExtrapolated) {
@@ -76,8 +77,8 @@ TEST(WcetVerb, ComparesWithCyclictest) {
 }
 
 TEST(WcetVerb, RefusesNumbersThatMakeNoSense) {
-  EXPECT_EQ(test::run_command(OFFNOMINAL_COMMAND, {"wcet", "--ticks", "0"}).exit_code, 2);
-  EXPECT_EQ(test::run_command(OFFNOMINAL_COMMAND, {"wcet", "--ticks", "100000001"}).exit_code, 2);
+  EXPECT_EQ(test::run_command(test::command_file(), {"wcet", "--ticks", "0"}).exit_code, 2);
+  EXPECT_EQ(test::run_command(test::command_file(), {"wcet", "--ticks", "100000001"}).exit_code, 2);
   const auto cpu = wcet({"--cpu", "4000"});
   EXPECT_EQ(cpu.exit_code, 2);
   EXPECT_THAT(cpu.err, HasSubstr("--cpu: found 4000"));

@@ -1,0 +1,12 @@
+#include "support/places.hpp"
+
+namespace offnominal::test {
+
+std::string source_dir() { return OFFNOMINAL_SOURCE_DIR; }
+
+#ifdef OFFNOMINAL_COMMAND
+std::string command_file() { return OFFNOMINAL_COMMAND; }
+std::string controller_file() { return OFFNOMINAL_CONTROLLER; }
+#endif
+
+}  // namespace offnominal::test
