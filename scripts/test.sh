@@ -104,9 +104,11 @@ run_suite() {
   begin "$title"
   for attempt in first second; do
     rm -f "$report"
-    "${where[@]}" ctest --test-dir "$root/build/$preset" -j "$jobs" "${select[@]}" --timeout 900 \
-      --output-on-failure --no-tests=error --output-junit "$report" 2> >(tee "$said" >&2)
-    outcome=$?
+    {
+      "${where[@]}" ctest --test-dir "$root/build/$preset" -j "$jobs" "${select[@]}" --timeout 900 \
+        --output-on-failure --no-tests=error --output-junit "$report"
+      outcome=$?
+    } 2> >(tee "$said" >&2)
     wait $!
     # Tests that left no report have not failed, the machine that they ran in broke: once more.
     if [[ -s "$report" ]] || ((outcome == time_is_up)); then break; fi

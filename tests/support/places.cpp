@@ -6,6 +6,9 @@ std::string source_dir() { return OFFNOMINAL_SOURCE_DIR; }
 
 #ifdef OFFNOMINAL_COMMAND
 std::string command_file() { return OFFNOMINAL_COMMAND; }
+#endif
+
+#ifdef OFFNOMINAL_CONTROLLER
 std::string controller_file() { return OFFNOMINAL_CONTROLLER; }
 #endif
 
