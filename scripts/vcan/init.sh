@@ -59,6 +59,8 @@ for process in /proc/[0-9]*; do
   case "$writers" in *" $pid "*) ;; *) kill -9 "$pid" ;; esac
 done
 wait
+# While the tree can be written to: what is not written yet when it becomes read-only stays so.
+sync
 umount /host/dev/job
 umount -r /host
 sync
