@@ -63,6 +63,5 @@ wait
 sync
 umount /host/dev/job
 umount -r /host
-sync
 echo "$code" >/job/exit_code
 poweroff -f

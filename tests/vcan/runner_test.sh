@@ -53,6 +53,14 @@ hands_back() {
   expect "output of the second caller" second "$(<"$work/second")"
 }
 
+# The machine keeps what is written in memory for a while: none of it may be lost where it ends at once.
+writes_back() {
+  head -c 60000000 /dev/urandom >"$work/read"
+  "$vcan" --in machine cp "$work/read" "$work/written" 2>"$work/err"
+  expect "exit code" 0 $?
+  cmp "$work/read" "$work/written" || broken=1
+}
+
 time_up() {
   TMPDIR="$work" "$vcan" --in machine --timeout 2 sleep 1000 >"$work/out" 2>"$work/err"
   expect "exit code" 124 $?
@@ -138,7 +146,7 @@ native() {
 }
 
 case "${1:-}" in
-  hands_back | time_up | terminated | output_closed | clock_of_instructions | arguments | native) "$1" ;;
+  hands_back | writes_back | time_up | terminated | output_closed | clock_of_instructions | arguments | native) "$1" ;;
   *)
     echo "no case ${1:-}" >&2
     exit 2
