@@ -9,9 +9,7 @@ passed=0
 failed=0
 skipped=0
 failures=()
-remarks=()
 durations=()
-readonly time_is_up=124  # exit code of vcan.sh
 
 # begin TITLE, and end: what lies between them is timed.
 begin() {
@@ -25,10 +23,6 @@ finish() {
   local name line
   printf '\ntook:\n'
   printf '  %s\n' "${durations[@]}" "$(printf '%5d s  in all, on %d cores' "$SECONDS" "$(nproc)")"
-  if ((${#remarks[@]} > 0)); then
-    printf '\nremarks:\n'
-    printf '  %s\n' "${remarks[@]}"
-  fi
   if ((${#failures[@]} > 0)); then
     printf '\nfailed:\n'
     for name in "${failures[@]}"; do printf '  %s\n' "$name"; done
@@ -83,7 +77,7 @@ verdicts() {
 }
 
 # whole REPORT: whether a JUnit report is there to its end.
-whole() { [[ -s "$1" ]] && grep -q '</testsuite>' "$1"; }
+whole() { grep -qs '</testsuite>' "$1"; }
 
 # suite PRESET: runs every test of a build that needs no CAN bus; each counts by itself.
 suite() { run_suite "$1" "tests ($1)" "$(nproc)" -LE '^(bus|real_time)$'; }
@@ -101,25 +95,20 @@ real_time_suite() {
 # run_suite PRESET TITLE JOBS SELECT LABEL [WHERE...]
 run_suite() {
   local preset="$1" title="$2" jobs="$3" select=("${@:4:2}") where=("${@:6}")
-  local report said verdict name outcome attempt before=$failed
+  local report said verdict name outcome before=$failed
   report="$root/build/$preset/junit.xml"
   said="$root/build/$preset/said"
   begin "$title"
-  for attempt in first second; do
-    rm -f "$report"
-    {
-      "${where[@]}" ctest --test-dir "$root/build/$preset" -j "$jobs" "${select[@]}" --timeout 900 \
-        --output-on-failure --no-tests=error --output-junit "$report"
-      outcome=$?
-    } 2> >(tee "$said" >&2)
-    wait $!
-    # Tests that left no whole report have not failed, the machine that they ran in broke: once more.
-    if whole "$report" || ((outcome == time_is_up)); then break; fi
-    remarks+=("$title: no whole report of the $attempt run (exit code $outcome): $(tail -n 25 "$said")")
-  done
+  rm -f "$report"
+  {
+    "${where[@]}" ctest --test-dir "$root/build/$preset" -j "$jobs" "${select[@]}" --timeout 900 \
+      --output-on-failure --no-tests=error --output-junit "$report"
+    outcome=$?
+  } 2> >(tee "$said" >&2)
+  wait $!
   end
   if ! whole "$report"; then
-    fail "$title did not run (exit code $outcome)"
+    fail "$title did not run to the end (exit code $outcome): $(tail -n 25 "$said")"
     return
   fi
   while read -r verdict name; do
