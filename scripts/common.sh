@@ -36,7 +36,7 @@ cache_dir() { printf '%s/offnominal' "${XDG_CACHE_HOME:-$HOME/.cache}"; }
 # what a plain ninja compiles is remembered alike.
 remember_compilations() {
   command -v ccache >/dev/null || return 0
-  local launcher="env;CCACHE_BASEDIR=$root;CCACHE_NOHASHDIR=1;ccache"
+  local launcher="env;CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root};CCACHE_NOHASHDIR=${CCACHE_NOHASHDIR:-1};ccache"
   export CMAKE_CXX_COMPILER_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER:-$launcher}"
 }
 
