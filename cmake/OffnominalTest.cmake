@@ -10,8 +10,7 @@ include(GoogleTest)
 # `./dev test` runs all of them in one `./dev vcan --controller`. With REAL_TIME its cases need vcan0
 # and a machine that makes nothing late: they carry the label `real_time`, and run in one
 # `./dev vcan --in machine --clock instructions`. With LONG its cases start before others, so that none of them is
-# left to run alone at the end. Cases see
-# "support/<header>.hpp" (tests/support).
+# left to run alone at the end. Cases see "support/<header>.hpp" (tests/support).
 function(offnominal_add_test)
   cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER;BUS;REAL_TIME;LONG" "NAME;LABELS" "SOURCES;LIBRARIES")
   if(NOT arg_NAME OR NOT arg_SOURCES)

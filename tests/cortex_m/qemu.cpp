@@ -11,7 +11,7 @@ namespace offnominal::test {
 int run_on(const Board& board, const std::string& program,
            const std::vector<std::string>& arguments) {
   const std::string image =
-      source_dir() + "/build/" + board.preset + "/targets/cortex_m/" + program + ".elf";
+      (source_dir() / "build" / board.preset / "targets/cortex_m" / (program + ".elf")).string();
   if (!std::filesystem::exists(image)) {
     throw std::runtime_error(image + " is not there: ./dev firmware builds it");
   }

@@ -2,7 +2,7 @@
 
 namespace offnominal::test {
 
-std::string source_dir() { return OFFNOMINAL_SOURCE_DIR; }
+std::filesystem::path source_dir() { return OFFNOMINAL_SOURCE_DIR; }
 
 #ifdef OFFNOMINAL_COMMAND
 std::string command_file() { return OFFNOMINAL_COMMAND; }

@@ -13,7 +13,7 @@ inline std::filesystem::path recordings_dir() {
   if (const char* folder = std::getenv("OFFNOMINAL_DATA"); folder != nullptr && *folder != '\0') {
     return folder;
   }
-  return std::filesystem::path(source_dir()) / ".." / "shared" / "data";
+  return source_dir() / ".." / "shared" / "data";
 }
 
 }  // namespace offnominal::test

@@ -7,6 +7,6 @@
 namespace offnominal::test {
 
 // The robot files of the project.
-inline const std::filesystem::path kRobots = std::filesystem::path(source_dir()) / "robots";
+inline const std::filesystem::path kRobots = source_dir() / "robots";
 
 }  // namespace offnominal::test

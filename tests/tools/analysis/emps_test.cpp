@@ -7,8 +7,8 @@
 #include "analysis/compare.hpp"
 #include "log/read_log.hpp"
 #include "robot/robot_file.hpp"
-#include "support/places.hpp"
 #include "support/recordings.hpp"
+#include "support/robots.hpp"
 
 // The electro-mechanical positioning system of A. Janot, M. Gautier, M. Brunot (2019), effect by
 // effect, with the figures that its report and issue 2 state.
@@ -30,8 +30,7 @@ class Emps : public ::testing::Test {
         GTEST_SKIP() << "no recording at " << folder / name << "; OFFNOMINAL_DATA names its folder";
       }
     }
-    robot_ =
-        read_robot_file(std::filesystem::path(offnominal::test::source_dir()) / "robots/emps.toml");
+    robot_ = read_robot_file(offnominal::test::kRobots / "emps.toml");
     fitted_ = measure(read_log(folder / kFitted, robot_), {});
     validation_ = measure(read_log(folder / kValidation, robot_), {});
   }

@@ -9,6 +9,7 @@
 #include "log/csv_text.hpp"
 #include "robot/robot_file.hpp"
 #include "support/places.hpp"
+#include "support/robots.hpp"
 #include "tools/analysis/recorded_arm.hpp"
 #include "tools/support/run_command.hpp"
 
@@ -119,7 +120,7 @@ TEST_F(CalibrateVerb, RefusesWithOneLineAndExitTwo) {
       {{path("a.csv"), "--robot", robot, "-o", out, "--alarms-per-hour", "0"}, "1e-6 to 60"},
       {{path("a.csv"), "--robot", robot, "-o", out, "--velocity-error", "-1"}, "at least 0"},
       {{path("a.csv"), "--robot", robot, "-o", "/nowhere/new.toml"}, "/nowhere/new.toml"},
-      {{path("a.csv"), "--robot", offnominal::test::source_dir() + "/robots/emps.toml", "-o", out},
+      {{path("a.csv"), "--robot", (offnominal::test::kRobots / "emps.toml").string(), "-o", out},
        "a.csv"}};
   for (const Wrong& wrong : all) {
     const CommandResult result = calibrate(wrong.arguments);

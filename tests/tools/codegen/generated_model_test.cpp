@@ -38,7 +38,7 @@ struct GeneratedTwoLink {
   static constexpr const auto& kGains = models::two_link::kComputedTorqueGains<S>;
   static constexpr const auto& kEncoders = models::two_link::kEncoderCountsPerUnit<S>;
   static constexpr const auto& kNames = models::two_link::kJointNames;
-  inline static const std::string kFile = test::source_dir() + "/robots/two_link.toml";
+  inline static const std::string kFile = (test::source_dir() / "robots/two_link.toml").string();
 };
 template <typename S>
 struct GeneratedEmps {
@@ -50,7 +50,7 @@ struct GeneratedEmps {
   static constexpr const auto& kGains = models::emps::kComputedTorqueGains<S>;
   static constexpr const auto& kEncoders = models::emps::kEncoderCountsPerUnit<S>;
   static constexpr const auto& kNames = models::emps::kJointNames;
-  inline static const std::string kFile = test::source_dir() + "/robots/emps.toml";
+  inline static const std::string kFile = (test::source_dir() / "robots/emps.toml").string();
 };
 template <typename S>
 struct GeneratedEveryEffect {
@@ -63,7 +63,7 @@ struct GeneratedEveryEffect {
   static constexpr const auto& kEncoders = models::every_effect::kEncoderCountsPerUnit<S>;
   static constexpr const auto& kNames = models::every_effect::kJointNames;
   inline static const std::string kFile =
-      test::source_dir() + "/tests/tools/codegen/every_effect.toml";
+      (test::source_dir() / "tests/tools/codegen/every_effect.toml").string();
 };
 
 // Not only equal: the same bits, so that 0 and -0 differ and NaN equals itself.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/places.hpp"
+#include "support/robots.hpp"
 #include "tools/support/run_command.hpp"
 
 namespace offnominal::tools {
@@ -16,7 +17,7 @@ using test::CommandResult;
 using test::content_of;
 using testing::HasSubstr;
 
-const std::string kTwoLink = test::source_dir() + "/robots/two_link.toml";
+const std::string kTwoLink = (test::kRobots / "two_link.toml").string();
 
 CommandResult codegen(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "codegen");

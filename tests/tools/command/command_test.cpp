@@ -56,8 +56,7 @@ TEST(Command, SaysItsVersion) {
 
 TEST(Command, HasAVerbForEveryVerbFile) {
   std::vector<std::string> expected;
-  const std::filesystem::path folder =
-      std::filesystem::path(test::source_dir()) / "tools" / "command";
+  const std::filesystem::path folder = test::source_dir() / "tools" / "command";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::string name = entry.path().filename().string();
     if (!name.starts_with("verb_") || entry.path().extension() != ".cpp") continue;

@@ -16,9 +16,9 @@
 #include "held_motor.hpp"
 #include "log/read_log.hpp"
 #include "robot/robot_file.hpp"
-#include "support/places.hpp"
 #include "support/recordings.hpp"
 #include "support/repetitions.hpp"
+#include "support/robots.hpp"
 
 namespace offnominal::tools::discovery {
 namespace {
@@ -119,7 +119,7 @@ class HoldMapOfMn4004 : public ::testing::Test {
     if (!std::filesystem::exists(file)) {
       GTEST_SKIP() << "no recording at " << file << "; OFFNOMINAL_DATA names its folder";
     }
-    robot_ = read_robot_file(std::filesystem::path(test::source_dir()) / "robots/mn4004.toml");
+    robot_ = read_robot_file(test::kRobots / "mn4004.toml");
     log_ = read_log_or_hold_map(file, robot_, std::nullopt);
   }
 

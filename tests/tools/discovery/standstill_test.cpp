@@ -14,8 +14,8 @@
 #include "log/read_log.hpp"
 #include "robot/robot_file.hpp"
 #include "sticking_pendulum.hpp"
-#include "support/places.hpp"
 #include "support/recordings.hpp"
+#include "support/robots.hpp"
 
 namespace offnominal::tools::discovery {
 namespace {
@@ -128,7 +128,7 @@ TEST(Standstill, NothingIsFoundWhereNothingIsMissing) {
 class BamXl330 : public ::testing::Test {
  protected:
   void SetUp() override {
-    robot_ = read_robot_file(std::filesystem::path(test::source_dir()) / "robots/bam_xl330.toml");
+    robot_ = read_robot_file(test::kRobots / "bam_xl330.toml");
     const auto folder = test::recordings_dir() / "bam_xl330/csv";
     for (const char* gain : {"kp100", "kp200", "kp400", "kp800"}) {
       for (const char* motion : {"sin_sin", "sin_time_square", "up_and_down"}) {

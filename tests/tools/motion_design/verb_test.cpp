@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/places.hpp"
+#include "support/robots.hpp"
 #include "tools/support/run_command.hpp"
 #include "tools/support/temporary_folder.hpp"
 
@@ -24,8 +25,8 @@ using offnominal::test::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const std::string kEmps = offnominal::test::source_dir() + "/robots/emps.toml";
-const std::string kArm = offnominal::test::source_dir() + "/robots/two_link.toml";
+const std::string kEmps = (offnominal::test::kRobots / "emps.toml").string();
+const std::string kArm = (offnominal::test::kRobots / "two_link.toml").string();
 
 class MotionVerb : public ::testing::Test {
  protected:

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/places.hpp"
+#include "support/robots.hpp"
 #include "tools/support/run_command.hpp"
 
 // `offnominal paper` as a user runs it.
@@ -99,14 +100,14 @@ TEST(PaperVerb, SweepPrintsEveryProbe) {
 }
 
 TEST(PaperVerb, PlaceOfTheRobotFileIsNamedInItsErrors) {
-  const std::string emps = test::source_dir() + "/robots/emps.toml";
+  const std::string emps = (test::kRobots / "emps.toml").string();
   const CommandResult result = paper({"--fault", "none", "--robot", emps});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("1 joint"));
 }
 
 TEST(PaperVerb, OwnRobotFileGivesTheSameAsTheBuiltInOne) {
-  const std::string file = test::source_dir() + "/robots/two_link.toml";
+  const std::string file = (test::kRobots / "two_link.toml").string();
   EXPECT_EQ(paper({"--fault", "nonlinear", "--json", "--robot", file}).out,
             paper({"--fault", "nonlinear", "--json"}).out);
 }
@@ -119,7 +120,7 @@ TEST(PaperVerb, ARecordedRunReplaysAsItRan) {
                                            "--json",     "--log", log};
   const CommandResult run = paper(arguments);
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const std::string robot = test::source_dir() + "/robots/two_link.toml";
+  const std::string robot = (test::kRobots / "two_link.toml").string();
   const CommandResult replayed =
       test::run_command(test::command_file(), {"replay", log, "--robot", robot, "--json"});
   ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
@@ -134,7 +135,7 @@ TEST(PaperVerb, ARecordedRunReplaysAsItRan) {
 
 TEST(PaperVerb, TwoRobotFilesSideBySide) {
   const test::TemporaryFolder folder;
-  const std::string file = test::source_dir() + "/robots/two_link.toml";
+  const std::string file = (test::kRobots / "two_link.toml").string();
   const std::string page = (folder / "sweep.html").string();
   const CommandResult result =
       paper_often({"--sweep", "--against", file, "--json", "--report", page});

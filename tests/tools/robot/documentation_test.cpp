@@ -25,7 +25,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string document(const std::string& name) {
-  return read_text_file(std::filesystem::path(test::source_dir()) / "docs" / name);
+  return read_text_file(test::source_dir() / "docs" / name);
 }
 
 // What stands between a heading and the next one; empty where there is no such heading.

@@ -1,3 +1,5 @@
+#include "support/robots.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,14 +9,13 @@
 
 #include "robot/monitor_config_of.hpp"
 #include "robot/robot_file.hpp"
-#include "support/places.hpp"
 
 // The robots that come with the project.
 
 namespace offnominal::tools {
 namespace {
 
-const std::filesystem::path kRobots = std::filesystem::path(test::source_dir()) / "robots";
+using test::kRobots;
 
 TEST(Robots, AreAllReadAndAcceptedByTheCore) {
   int count = 0;

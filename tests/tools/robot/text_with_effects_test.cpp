@@ -11,7 +11,7 @@
 #include "random_robot.hpp"
 #include "robot/robot_file.hpp"
 #include "sample_robot.hpp"
-#include "support/places.hpp"
+#include "support/robots.hpp"
 #include "support/seed.hpp"
 #include "tools/support/temporary_folder.hpp"
 
@@ -78,7 +78,7 @@ TEST(TextWithEffects, TakesAwayTheLastEffect) {
 }
 
 TEST(TextWithEffects, PutsTheFirstEffectAboveTheSettings) {
-  const auto path = std::filesystem::path(test::source_dir()) / "robots" / "emps.toml";
+  const auto path = test::kRobots / "emps.toml";
   const std::string old = read_text_file(path);
   RobotDescription robot = read_robot_file(path);
   robot.effects.push_back(offset(-3.1648));
