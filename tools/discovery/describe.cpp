@@ -82,6 +82,13 @@ void describe_findings(const SearchResult& from, Explanation& to) {
   }
 }
 
+void describe_suspicion(const SearchResult& from, Explanation& to) {
+  const auto& suspected = from.found.suspected;
+  if (!suspected) return;
+  const Term& term = suspected->term;
+  to.suspected = {{term.effect->name(), term.joint}, suspected->p, suspected->share};
+}
+
 void describe_rejections(const SearchResult& from, Explanation& to) {
   const Screening screening = from.search.screen(from.found.terms(), from.found.fit);
   const VectorXd left = from.regression.data().layout.rms(from.found.fit.residual);
@@ -153,6 +160,7 @@ void describe_series(const SearchResult& from, Explanation& to) {
 void describe(const SearchResult& result, Explanation& to) {
   describe_joints(result, to);
   describe_findings(result, to);
+  describe_suspicion(result, to);
   describe_rejections(result, to);
   describe_shifts(result, to);
   describe_hold_friction(result, to);

@@ -59,6 +59,13 @@ struct Finding {
 // "coulomb_friction"; "cogging_torque of order 72" where there may be several of it.
 std::string title_of(const Finding& finding);
 
+// An effect that is likely by what the whole search shows, and takes too little away to be named.
+struct Suspicion {
+  EffectAt what;
+  double p_value = 1;  // of the whole search, wild block bootstrap
+  double share = 0;    // of the squared error that it takes away, on the joint where that is most
+};
+
 struct Rejection {
   EffectAt what;
   double p_value = 1;
@@ -101,6 +108,7 @@ struct Explanation {
   std::vector<JointErrors> joints;
   std::vector<Finding> found;  // in the order of discovery
   std::vector<std::vector<EffectAt>> ambiguous;
+  std::optional<Suspicion> suspected;  // only where nothing was found
   std::vector<Rejection> rejected;
   std::vector<StructureShare> where;  // of what is left, largest first
   std::vector<Shift> shifts;

@@ -74,6 +74,12 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
   }
   json["ambiguous"] = array_of(
       e.ambiguous, [](const std::vector<EffectAt>& same) { return array_of(same, effect_at); });
+  json["suspected"] = nullptr;
+  if (e.suspected) {
+    json["suspected"] = effect_at(e.suspected->what);
+    json["suspected"]["p_value"] = e.suspected->p_value;
+    json["suspected"]["share_of_squared_error"] = e.suspected->share;
+  }
   json["rejected"] = array_of(e.rejected, [](const Rejection& one) {
     ordered_json rejected = effect_at(one.what);
     rejected["p_value"] = one.p_value;

@@ -53,13 +53,19 @@ namespace {
 // Share of the energy of what is held out that has to go.
 constexpr double kRelevantHeldOut = 0.05;
 
-// The joint on which `after` leaves less than `before`, and what share of the energy goes.
-std::pair<Index, double> best_fall(const VectorXd& before, const VectorXd& after) {
-  std::pair<Index, double> best{0, -1};
+// What goes of an error on the joint where the largest share of its energy goes.
+struct Fall {
+  Index joint = 0;
+  double share = -1;  // of the energy
+  double rms = 0;     // of what goes
+};
+
+Fall best_fall(const VectorXd& before, const VectorXd& after) {
+  Fall best;
   for (Index joint = 0; joint < before.size(); ++joint) {
     if (!(before[joint] > 0)) continue;
-    const double fall = explained_share(before[joint], after[joint]);
-    if (fall > best.second) best = {joint, fall};
+    const double share = explained_share(before[joint], after[joint]);
+    if (share > best.share) best = {joint, share, before[joint] * std::sqrt(std::max(0.0, share))};
   }
   return best;
 }
@@ -92,13 +98,20 @@ class Finder {
     if (on_progress_) on_progress_(doing);
   }
 
-  [[nodiscard]] bool relevant(const ModelFit& before, const ModelFit& after) const {
+  [[nodiscard]] Fall fall_of(const ModelFit& before, const ModelFit& after) const {
+    const RowLayout& layout = regression_.data().layout;
+    return best_fall(layout.rms(before.residual), layout.rms(after.residual));
+  }
+
+  // Whether it is more than nothing to the joint's torque.
+  [[nodiscard]] bool matters(const Fall& fall) const {
     const Data& data = regression_.data();
-    const VectorXd a = data.layout.rms(before.residual);
-    const VectorXd b = data.layout.rms(after.residual);
-    const auto [joint, fall] = best_fall(a, b);
-    const double rms = std::sqrt(std::max(0.0, a[joint] * a[joint] - b[joint] * b[joint]));
-    return fall >= kRelevantShare && rms >= kRelevantTorque * data.layout.rms(data.torque)[joint];
+    return fall.rms >= kRelevantTorque * data.layout.rms(data.torque)[fall.joint];
+  }
+
+  [[nodiscard]] bool relevant(const ModelFit& before, const ModelFit& after) const {
+    const Fall fall = fall_of(before, after);
+    return fall.share >= kRelevantShare && matters(fall);
   }
 
   // An effect with a memory must bring the simulated motion closer too.
@@ -116,6 +129,13 @@ class Finder {
                     options_.replays, search_.options().seed, search_.options().threads);
   }
 
+  // What gets no name is worth a word where nothing else has one. `p`: of the whole search.
+  void suspect(const Proposal& one, double p) {
+    constexpr double kLikely = 0.05;
+    const Fall fall = fall_of(found_.fit, one.fit);
+    if (p <= kLikely && matters(fall)) found_.suspected = {one.terms.back(), p, fall.share};
+  }
+
   bool add_one() {
     constexpr double kReplayError = 0.05;
     tell(fmt::format("searching for effect {}", found_.accepted.size() + 1));
@@ -125,16 +145,24 @@ class Finder {
     const auto best_relevant =
         std::find_if(proposals.begin(), proposals.end(),
                      [this](const Proposal& one) { return relevant(found_.fit, one.fit); });
-    if (best_relevant == proposals.end()) return false;
+    if (best_relevant == proposals.end()) {
+      if (found_.accepted.empty() && !proposals.empty()) {
+        suspect(proposals.front(), search_.family_p(proposals.front(), found_.fit));
+      }
+      return false;
+    }
     const Proposal& best = *best_relevant;
     const Term& term = best.terms.back();
     const Data& data = regression_.data();
     if (!shows(data, excitation_[static_cast<std::size_t>(term.joint)], term)) return false;
     const double p = search_.family_p(best, found_.fit);
-    if (p > search_.options().family_error) return false;
     const VectorXd residual = hold_out_.residual(best.terms, best.fit);
     const VectorXd before = hold_out_.rms(found_.held_out.back());
-    if (best_fall(before, hold_out_.rms(residual)).second < kRelevantHeldOut) return false;
+    if (p > search_.options().family_error ||
+        best_fall(before, hold_out_.rms(residual)).share < kRelevantHeldOut) {
+      if (found_.accepted.empty()) suspect(best, p);
+      return false;
+    }
     if (term.effect->has_memory() && !simulates_better(best)) return false;
     const double p_replay = played_p(best);
     if (options_.replays > 0 && p_replay > kReplayError) return false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "discovery/excitation.hpp"
@@ -17,15 +18,23 @@ struct Accepted {
   double p_replay = 1;  // by playing the model without the effect, 1 where not asked for
 };
 
+// An effect that passed no gate but the first: more than chance, too little to be named.
+struct Suspected {
+  Term term;
+  double p = 1;      // of the whole search, wild block bootstrap
+  double share = 0;  // of the residual energy that it takes away, on the joint where that is most
+};
+
 // Share of a joint's residual energy below which an effect is not worth a name.
 inline constexpr double kRelevantShare = 0.08;
 // The same of the joint's rms torque, for an effect and for what is left of the error.
 inline constexpr double kRelevantTorque = 0.001;
 
 struct FoundModel {
-  std::vector<Accepted> accepted;  // largest first
-  ModelFit baseline;               // nuisance alone
-  ModelFit fit;                    // with all that was accepted
+  std::vector<Accepted> accepted;      // largest first
+  std::optional<Suspected> suspected;  // only where nothing was accepted
+  ModelFit baseline;                   // nuisance alone
+  ModelFit fit;                        // with all that was accepted
   // Residuals on held-out data with 0, 1, ... of the accepted.
   std::vector<Eigen::VectorXd> held_out;
 

@@ -27,6 +27,8 @@ bool is_parameter(const std::string& effect) {
   return std::find(kParameters.begin(), kParameters.end(), effect) != kParameters.end();
 }
 
+constexpr const char* kMorePositions = "hold it at more positions, approached from both sides";
+
 std::string at_joint(Eigen::Index joint) { return fmt::format("joint {}", joint + 1); }
 
 std::string words_of(const Finding& finding) {
@@ -168,6 +170,34 @@ bool judge_unknown(Explanation& e) {
   return true;
 }
 
+// What an effect can have, of its joint's rms torque, without being seen: on the joint where that
+// is most.
+double largest_unseen(const Explanation& e) {
+  double largest = kRelevantTorque;
+  for (const Rejection& one : e.rejected) {
+    const double torque = e.joints[static_cast<std::size_t>(one.what.joint)].rms_torque;
+    if (torque > 0) largest = std::max(largest, one.smallest_detectable / torque);
+  }
+  return largest;
+}
+
+// Something is there, and what it is cannot be said: noise, or an effect that this motion shows
+// weakly.
+void judge_suspected(Explanation& e) {
+  const Suspicion& one = *e.suspected;
+  e.verdict = Verdict::kNotExcited;
+  e.words = fmt::format(
+      "No effect stands out enough to be named, yet chance alone is unlikely (p = {:.2g} over the "
+      "whole search): {} on {} would explain {:.0f} % of a joint's squared error.",
+      one.p_value, one.what.effect, at_joint(one.what.joint), 100 * one.share);
+  e.advice.push_back(
+      e.at_rest
+          ? kMorePositions
+          : fmt::format("`offnominal motion --robot ROBOT --excite {}@{} -o motion.csv` writes a "
+                        "motion that shows it if it is there; a longer recording helps too",
+                        one.what.effect, one.what.joint + 1));
+}
+
 }  // namespace
 
 const char* name_of(Verdict verdict) {
@@ -247,17 +277,26 @@ void judge_whole(Explanation& e) {
     e.verdict = Verdict::kNotExcited;
     e.words = "These motions excite too little to judge the model by them.";
     e.advice.emplace_back(
-        e.at_rest ? "hold it at more positions, approached from both sides"
+        e.at_rest ? kMorePositions
                   : "`offnominal motion --robot ROBOT -o motion.csv` writes a motion that excites "
                     "what the robot may have");
     return;
   }
-  e.verdict = Verdict::kExplained;
   const JointErrors* loudest = above_noise(e);
+  // What stands above the noise without following anything is told as such.
+  if (e.suspected && loudest == nullptr) {
+    judge_suspected(e);
+    return;
+  }
+  e.verdict = Verdict::kExplained;
   e.words =
       loudest == nullptr
-          ? "The model explains these recordings: what is left is noise, or less than a thousandth "
-            "of the torque, and no known effect is missing."
+          ? fmt::format(
+                "The model explains these recordings: what is left is noise, or less than a "
+                "thousandth "
+                "of the torque, and no known effect is missing. One of less than {:.2g} % of a "
+                "joint's torque would not have been seen.",
+                100 * largest_unseen(e))
           : fmt::format(
                 "No known effect is missing. What is left on {} stands {:.1f} times above the "
                 "noise, and follows nothing that was looked at.",

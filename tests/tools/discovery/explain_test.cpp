@@ -136,6 +136,25 @@ TEST(Explain, GIVEN_nothing_hidden_THEN_nothing_is_found_at_any_noise) {
   }
 }
 
+// A delay of 3 ms whose torque the noise hides on all but the whole recording.
+TEST(Explain, GIVEN_an_effect_that_noise_hides_THEN_it_is_neither_named_nor_denied) {
+  hidden::Request request;
+  request.seed = 2998500626;
+  request.effects = {hidden::HiddenEffect::kTimeDelay};
+  request.torque_noise_share = 0.03;
+  request.encoder_bits = 13;
+  const hidden::Case made = hidden::make_case(request);
+  const Explanation result = explain_case(made, quick());
+  EXPECT_EQ(result.verdict, Verdict::kNotExcited) << result.words;
+  EXPECT_THAT(result.found, IsEmpty());
+  ASSERT_TRUE(result.suspected);
+  EXPECT_EQ(result.suspected->what, (EffectAt{"time_delay", made.truth.effects[0].joint}));
+  EXPECT_LT(result.suspected->p_value, 0.05);
+  const auto json = to_json(result, {});
+  EXPECT_EQ(json["suspected"]["effect"], "time_delay");
+  EXPECT_EQ(json["suspected"]["joint"], made.truth.effects[0].joint + 1);
+}
+
 TEST(Explain, GIVEN_an_effect_outside_of_the_list_THEN_it_is_unknown_and_nothing_is_found) {
   for (const auto outside : test::every_nth(hidden::kAllOutsideEffects, 4)) {
     hidden::Request request;

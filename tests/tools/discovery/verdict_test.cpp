@@ -1,0 +1,59 @@
+#include "discovery/verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+// What a search came to, in one word: of explanations made by hand, where simulated recordings would
+// not tell the cases apart.
+
+namespace offnominal::tools::discovery {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+// One joint on which nothing was found, and what is left of its error.
+Explanation nothing_found(double left_to_noise) {
+  Explanation e;
+  JointErrors joint;
+  joint.unit = "N m";
+  joint.rms_torque = 10;
+  joint.noise_floor = 0.2;
+  joint.rms_after = left_to_noise * joint.noise_floor;
+  e.joints = {joint};
+  e.excitation.resize(1);
+  e.excitation[0].sufficient = true;
+  Rejection rejected;
+  rejected.what = {"time_delay", 0};
+  rejected.smallest_detectable = 0.05;
+  e.rejected.push_back(rejected);
+  return e;
+}
+
+TEST(Verdict, OfNoiseAloneSaysWhatWouldNotHaveBeenSeen) {
+  Explanation e = nothing_found(1.1);
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kExplained);
+  EXPECT_THAT(e.words, HasSubstr("less than 0.5 % of a joint's torque would not have been seen"));
+}
+
+TEST(Verdict, OfNoiseThatIsUnlikelyIsUndecidedAndAdvisesTheMotion) {
+  Explanation e = nothing_found(1.1);
+  e.suspected = {{"time_delay", 0}, 0.003, 0.04};
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kNotExcited);
+  EXPECT_THAT(e.words, HasSubstr("time_delay on joint 1 would explain 4 %"));
+  EXPECT_THAT(e.words, HasSubstr("p = 0.003"));
+  EXPECT_THAT(e.advice, ElementsAre(HasSubstr("--excite time_delay@1")));
+}
+
+TEST(Verdict, OfARestThatStandsAboveTheNoiseSaysSoWhateverIsSuspected) {
+  Explanation e = nothing_found(2);
+  e.suspected = {{"time_delay", 0}, 0.003, 0.04};
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kExplained);
+  EXPECT_THAT(e.words, HasSubstr("2.0 times above the noise"));
+}
+
+}  // namespace
+}  // namespace offnominal::tools::discovery
