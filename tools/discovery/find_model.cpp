@@ -129,11 +129,21 @@ class Finder {
                     options_.replays, search_.options().seed, search_.options().threads);
   }
 
-  // What gets no name is worth a word where nothing else has one. `p`: of the whole search.
+  [[nodiscard]] double fall_of_held_out(const VectorXd& residual) const {
+    return best_fall(hold_out_.rms(found_.held_out.back()), hold_out_.rms(residual)).share;
+  }
+
+  // What gets no name is worth a word where nothing else has one: a few per cent of the error, also
+  // on what is held out. `p`: of the whole search.
   void suspect(const Proposal& one, double p) {
     constexpr double kLikely = 0.05;
+    constexpr double kWorthAWord = 0.02;
     const Fall fall = fall_of(found_.fit, one.fit);
-    if (p <= kLikely && matters(fall)) found_.suspected = {one.terms.back(), p, fall.share};
+    // Regression only screens what remembers: its columns hold the noise that they explain.
+    if (one.terms.back().effect->has_memory()) return;
+    if (p > kLikely || fall.share < kWorthAWord || !matters(fall)) return;
+    if (fall_of_held_out(hold_out_.residual(one.terms, one.fit)) < kWorthAWord) return;
+    found_.suspected = {one.terms.back(), p, fall.share};
   }
 
   bool add_one() {
@@ -157,9 +167,7 @@ class Finder {
     if (!shows(data, excitation_[static_cast<std::size_t>(term.joint)], term)) return false;
     const double p = search_.family_p(best, found_.fit);
     const VectorXd residual = hold_out_.residual(best.terms, best.fit);
-    const VectorXd before = hold_out_.rms(found_.held_out.back());
-    if (p > search_.options().family_error ||
-        best_fall(before, hold_out_.rms(residual)).share < kRelevantHeldOut) {
+    if (p > search_.options().family_error || fall_of_held_out(residual) < kRelevantHeldOut) {
       if (found_.accepted.empty()) suspect(best, p);
       return false;
     }
