@@ -37,6 +37,13 @@ void describe_joints(const SearchResult& from, Explanation& to) {
   }
 }
 
+// What is searched by its logarithm, a width, a time or a frequency, is never negative.
+bool is_positive(const Term& term, const std::string& parameter) {
+  return std::any_of(term.ranges.begin(), term.ranges.end(), [&](const ShapeRange& range) {
+    return range.kind == ShapeRange::Kind::kLogarithmic && range.name == parameter;
+  });
+}
+
 // Intervals that hold noise, and what the model's simplifications do: as far as a number moves in
 // narrower bands counts as one standard deviation of that.
 std::vector<std::vector<Estimate>> estimates_with_discrepancy(const Relinearised& fitted) {
@@ -50,6 +57,9 @@ std::vector<std::vector<Estimate>> estimates_with_discrepancy(const Relinearised
       const double noise = ((*one.ci95)[1] - (*one.ci95)[0]) / 2;
       const double half = std::hypot(noise, kTwoSided95 * shifts[i][p]);
       one.ci95 = {one.value.value - half, one.value.value + half};
+      if (is_positive(fitted.terms[i], one.value.name)) {
+        (*one.ci95)[0] = std::max(0.0, (*one.ci95)[0]);
+      }
     }
   }
   return estimates;

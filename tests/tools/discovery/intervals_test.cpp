@@ -1,6 +1,3 @@
-// A gear that gives way is two masses in the simulator and one bent regressor in the analysis: its
-// stiffness comes out a few per cent off, however long the recording is.
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,17 +12,27 @@ namespace {
 
 namespace hidden = sim::hidden;
 
-TEST(Intervals, HoldTheTruthWhereARegressorSimplifiesToo) {
-  constexpr std::array<std::uint64_t, 2> kTruthSeeds{1229024713, 1461820524};
+ExplainOptions numbers_only() {
   ExplainOptions options;
   options.bootstrap_draws = 199;
   options.replays = 0;
   options.threads = 2;
+  return options;
+}
+
+Explanation told_of(const hidden::Case& made) {
+  return explain(test::to_robot(made.nominal), {test::to_log(made.recording)},
+                 {test::to_log(made.holdout)}, numbers_only());
+}
+
+// A gear that gives way is two masses in the simulator and one bent regressor in the analysis: its
+// stiffness comes out a few per cent off, however long the recording is.
+TEST(Intervals, HoldTheTruthWhereARegressorSimplifiesToo) {
+  constexpr std::array<std::uint64_t, 2> kTruthSeeds{1229024713, 1461820524};
   for (std::size_t i = 0; i < static_cast<std::size_t>(test::repetitions(2)); ++i) {
     const hidden::Case made =
         test::case_of(kTruthSeeds[i], {hidden::HiddenEffect::kJointElasticity});
-    const Explanation told = explain(test::to_robot(made.nominal), {test::to_log(made.recording)},
-                                     {test::to_log(made.holdout)}, options);
+    const Explanation told = told_of(made);
     ASSERT_EQ(told.found.size(), 1U) << told.words;
     const Estimate& stiffness = told.found[0].parameters.at(0);
     double truth = 0;
@@ -39,6 +46,18 @@ TEST(Intervals, HoldTheTruthWhereARegressorSimplifiesToo) {
     EXPECT_GT(high, truth);
     EXPECT_LT(high - low, truth) << "an interval that says nothing holds everything";
   }
+}
+
+// How friction turns over at a reversal: finer than a motion with few reversals shows.
+TEST(Intervals, OfAWidthEndAtZero) {
+  const hidden::Case made = test::case_of(3703471377, {hidden::HiddenEffect::kCoulombFriction});
+  const Explanation told = told_of(made);
+  ASSERT_EQ(told.found.size(), 1U) << told.words;
+  const Estimate& width = told.found[0].parameters.at(1);
+  ASSERT_EQ(width.value.name, "smoothing");
+  ASSERT_TRUE(width.ci95);
+  EXPECT_EQ((*width.ci95)[0], 0);
+  EXPECT_GT((*width.ci95)[1], 2 * width.value.value) << "it must reach below zero by itself";
 }
 
 }  // namespace

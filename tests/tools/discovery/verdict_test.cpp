@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-// What a search came to, in one word: of explanations made by hand, where simulated recordings would
-// not tell the cases apart.
+// What a search came to, in one word: of explanations made by hand, where simulated recordings
+// would not tell the cases apart.
 
 namespace offnominal::tools::discovery {
 namespace {
