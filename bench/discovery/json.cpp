@@ -63,6 +63,7 @@ ordered_json json_of(const CaseGroup& group, const Outcome& outcome) {
   ordered_json classes = ordered_json::array();
   for (const Effects& same : outcome.classes) classes.push_back(json_of(same));
   one["classes"] = std::move(classes);
+  one["suspected"] = json_of(outcome.suspected);
   one["wrong"] = outcome.score.wrong;
   one["right_verdict"] = outcome.right_verdict;
   one["right_detail"] = outcome.right_detail;

@@ -103,6 +103,7 @@ void judge(const CaseGroup& group, const hidden::Case& made, const Explanation& 
   outcome.verdict = tools::discovery::name_of(e.verdict);
   for (const auto& finding : e.found) outcome.named.push_back(finding.what);
   outcome.classes = e.ambiguous;
+  if (e.suspected) outcome.suspected = {e.suspected->what};
   outcome.score = score_of(outcome.truth, outcome.named, outcome.classes);
   // A shift of a number of the file that is right is as wrong as an effect that is not there.
   outcome.score.wrong |= e.verdict == Verdict::kParameterShift && e.found.empty();

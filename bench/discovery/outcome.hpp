@@ -31,6 +31,7 @@ struct Outcome {
   std::string before;  // kMotion: the verdict on the first motion, and the class
   Effects named;
   std::vector<Effects> classes;
+  Effects suspected;  // at most one
   Score score;
   std::vector<ParameterCheck> parameters;
   double holdout_ratio = 0;    // hold-out error to the noise floor, of the worst joint

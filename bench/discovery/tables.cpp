@@ -100,6 +100,7 @@ std::string failures_of(const CaseGroup& group, const std::vector<Outcome>& outc
     text += fmt::format("{} {} seed {}: hidden {} -> {}; named {}", group.name, i, one.request.seed,
                         one.hidden, one.verdict, text_of(one.named));
     for (const Effects& same : one.classes) text += "; class {" + text_of(same) + "}";
+    if (!one.suspected.empty()) text += "; suspected " + text_of(one.suspected);
     if (!one.before.empty()) text += "; before " + one.before;
     if (!one.failed.empty()) text += "; " + one.failed;
     text += "\n";

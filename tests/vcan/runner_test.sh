@@ -59,6 +59,7 @@ writes_back() {
   "$vcan" --in machine cp "$work/read" "$work/written" 2>"$work/err"
   expect "exit code" 0 $?
   cmp "$work/read" "$work/written" || broken=1
+  if ((broken)); then cat "$work/err" >&2; fi
 }
 
 time_up() {

@@ -37,10 +37,9 @@ void describe_joints(const SearchResult& from, Explanation& to) {
   }
 }
 
-// What is searched by its logarithm, a width, a time or a frequency, is never negative.
 bool is_positive(const Term& term, const std::string& parameter) {
   return std::any_of(term.ranges.begin(), term.ranges.end(), [&](const ShapeRange& range) {
-    return range.kind == ShapeRange::Kind::kLogarithmic && range.name == parameter;
+    return range.is_positive() && range.name == parameter;
   });
 }
 
@@ -101,15 +100,15 @@ void describe_suspicion(const SearchResult& from, Explanation& to) {
 
 void describe_rejections(const SearchResult& from, Explanation& to) {
   const Screening screening = from.search.screen(from.found.terms(), from.found.fit);
-  const VectorXd left = from.regression.data().layout.rms(from.found.fit.residual);
+  const Data& data = from.regression.data();
+  const VectorXd detectable = (std::sqrt(kRelevantShare) * data.layout.rms(from.found.fit.residual))
+                                  .cwiseMax(kRelevantTorque * data.layout.rms(data.torque));
   for (const Screened& one : screening.candidates) {
     const Index joint = one.term.joint;
     const double p = std::min(
         1.0, std::pow(10.0, -one.log10_p) * static_cast<double>(screening.candidates.size()));
-    to.rejected.push_back({{one.term.effect->name(), joint},
-                           p,
-                           std::sqrt(kRelevantShare) * left[joint],
-                           effort_unit(from.robot, joint)});
+    to.rejected.push_back(
+        {{one.term.effect->name(), joint}, p, detectable[joint], effort_unit(from.robot, joint)});
   }
 }
 

@@ -35,6 +35,8 @@ struct ShapeRange {
 
   // Whether the best value lies anywhere between the grid's ends and has to be looked for.
   [[nodiscard]] bool is_searched() const { return kind != Kind::kDiscrete && grid.size() >= 2; }
+  // Whether it has no meaning below zero: a width, a velocity or a time constant.
+  [[nodiscard]] bool is_positive() const { return kind == Kind::kLogarithmic; }
 };
 
 // Every combination of the ranges' grid values; one empty point where there are no ranges.

@@ -59,7 +59,7 @@ struct Finding {
 // "coulomb_friction"; "cogging_torque of order 72" where there may be several of it.
 std::string title_of(const Finding& finding);
 
-// An effect that is likely by what the whole search shows, and takes too little away to be named.
+// An effect that noise may hide: likely more than chance, and too unsure or too small to be named.
 struct Suspicion {
   EffectAt what;
   double p_value = 1;  // of the whole search, wild block bootstrap
@@ -108,7 +108,7 @@ struct Explanation {
   std::vector<JointErrors> joints;
   std::vector<Finding> found;  // in the order of discovery
   std::vector<std::vector<EffectAt>> ambiguous;
-  std::optional<Suspicion> suspected;  // only where nothing was found
+  std::optional<Suspicion> suspected;  // only where it makes the verdict
   std::vector<Rejection> rejected;
   std::vector<StructureShare> where;  // of what is left, largest first
   std::vector<Shift> shifts;

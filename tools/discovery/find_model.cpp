@@ -129,21 +129,24 @@ class Finder {
                     options_.replays, search_.options().seed, search_.options().threads);
   }
 
-  [[nodiscard]] double fall_of_held_out(const VectorXd& residual) const {
-    return best_fall(hold_out_.rms(found_.held_out.back()), hold_out_.rms(residual)).share;
-  }
-
-  // What gets no name is worth a word where nothing else has one: a few per cent of the error, also
-  // on what is held out. `p`: of the whole search.
-  void suspect(const Proposal& one, double p) {
+  // Where nothing gets a name, what comes closest is worth a word if it takes a few per cent of the
+  // error away, also of what is held out on the same joint. `p`: of the whole search, where known.
+  void suspect(const Proposal& one, std::optional<double> p) {
     constexpr double kLikely = 0.05;
     constexpr double kWorthAWord = 0.02;
-    const Fall fall = fall_of(found_.fit, one.fit);
     // Regression only screens what remembers: its columns hold the noise that they explain.
-    if (one.terms.back().effect->has_memory()) return;
-    if (p > kLikely || fall.share < kWorthAWord || !matters(fall)) return;
-    if (fall_of_held_out(hold_out_.residual(one.terms, one.fit)) < kWorthAWord) return;
-    found_.suspected = {one.terms.back(), p, fall.share};
+    if (!found_.accepted.empty() || one.terms.back().effect->has_memory()) return;
+    if (!std::all_of(excitation_.begin(), excitation_.end(),
+                     [](const Excitation& motion) { return motion.sufficient; })) {
+      return;
+    }
+    const Fall fall = fall_of(found_.fit, one.fit);
+    if (fall.share < kWorthAWord || !matters(fall)) return;
+    const double before = hold_out_.rms(found_.held_out.back())[fall.joint];
+    const double after = hold_out_.rms(hold_out_.residual(one.terms, one.fit))[fall.joint];
+    if (explained_share(before, after) < kWorthAWord) return;
+    if (!p) p = search_.family_p(one, found_.fit);
+    if (*p <= kLikely) found_.suspected = {one.terms.back(), *p, fall.share};
   }
 
   bool add_one() {
@@ -156,9 +159,7 @@ class Finder {
         std::find_if(proposals.begin(), proposals.end(),
                      [this](const Proposal& one) { return relevant(found_.fit, one.fit); });
     if (best_relevant == proposals.end()) {
-      if (found_.accepted.empty() && !proposals.empty()) {
-        suspect(proposals.front(), search_.family_p(proposals.front(), found_.fit));
-      }
+      if (!proposals.empty()) suspect(proposals.front(), std::nullopt);
       return false;
     }
     const Proposal& best = *best_relevant;
@@ -166,9 +167,14 @@ class Finder {
     const Data& data = regression_.data();
     if (!shows(data, excitation_[static_cast<std::size_t>(term.joint)], term)) return false;
     const double p = search_.family_p(best, found_.fit);
+    if (p > search_.options().family_error) {
+      suspect(best, p);
+      return false;
+    }
     const VectorXd residual = hold_out_.residual(best.terms, best.fit);
-    if (p > search_.options().family_error || fall_of_held_out(residual) < kRelevantHeldOut) {
-      if (found_.accepted.empty()) suspect(best, p);
+    const VectorXd before = hold_out_.rms(found_.held_out.back());
+    if (best_fall(before, hold_out_.rms(residual)).share < kRelevantHeldOut) {
+      suspect(best, p);
       return false;
     }
     if (term.effect->has_memory() && !simulates_better(best)) return false;

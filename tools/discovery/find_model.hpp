@@ -18,7 +18,7 @@ struct Accepted {
   double p_replay = 1;  // by playing the model without the effect, 1 where not asked for
 };
 
-// An effect that passed no gate but the first: more than chance, too little to be named.
+// The effect that came closest to a name: likely more than chance, and too unsure or too small.
 struct Suspected {
   Term term;
   double p = 1;      // of the whole search, wild block bootstrap

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <limits>
 #include <string_view>
+#include <utility>
 
 #include "discovery/find_model.hpp"
 
@@ -170,21 +172,27 @@ bool judge_unknown(Explanation& e) {
   return true;
 }
 
-// What an effect can have, of its joint's rms torque, without being seen: on the joint where that
-// is most.
-double largest_unseen(const Explanation& e) {
-  double largest = kRelevantTorque;
+// How small an effect cannot be named, beyond what the model's own numbers take up: a sentence.
+std::string words_of_detectable(const Explanation& e) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0;
   for (const Rejection& one : e.rejected) {
     const double torque = e.joints[static_cast<std::size_t>(one.what.joint)].rms_torque;
-    if (torque > 0) largest = std::max(largest, one.smallest_detectable / torque);
+    if (!(torque > 0)) continue;
+    least = std::min(least, 100 * one.smallest_detectable / torque);
+    most = std::max(most, 100 * one.smallest_detectable / torque);
   }
-  return largest;
+  if (!(most > 0)) return "";
+  const std::string low = fmt::format("{:.2g}", least);
+  const std::string high = fmt::format("{:.2g}", most);
+  return fmt::format(" No effect below {} % of a joint's torque can be named by them.",
+                     low == high ? low : low + " to " + high);
 }
 
 // Something is there, and what it is cannot be said: noise, or an effect that this motion shows
 // weakly.
-void judge_suspected(Explanation& e) {
-  const Suspicion& one = *e.suspected;
+void judge_suspected(const Suspicion& one, Explanation& e) {
+  e.suspected = one;
   e.verdict = Verdict::kNotExcited;
   e.words = fmt::format(
       "No effect stands out enough to be named, yet chance alone is unlikely (p = {:.2g} over the "
@@ -242,6 +250,7 @@ std::string title_of(const Finding& finding) {
 
 void judge_whole(Explanation& e) {
   e.advice.clear();
+  const std::optional<Suspicion> suspected = std::exchange(e.suspected, std::nullopt);
   for (std::size_t joint = 0; joint < e.excitation.size(); ++joint) {
     const Excitation& one = e.excitation[joint];
     if (one.sufficient) continue;
@@ -284,21 +293,18 @@ void judge_whole(Explanation& e) {
   }
   const JointErrors* loudest = above_noise(e);
   // What stands above the noise without following anything is told as such.
-  if (e.suspected && loudest == nullptr) {
-    judge_suspected(e);
+  if (suspected && loudest == nullptr) {
+    judge_suspected(*suspected, e);
     return;
   }
   e.verdict = Verdict::kExplained;
   e.words =
       loudest == nullptr
-          ? fmt::format(
-                "The model explains these recordings: what is left is noise, or less than a "
-                "thousandth "
-                "of the torque, and no known effect is missing. One of less than {:.2g} % of a "
-                "joint's torque would not have been seen.",
-                100 * largest_unseen(e))
+          ? "The model explains these recordings: what is left is noise, or less than a thousandth "
+            "of the torque, and no known effect is missing." +
+                words_of_detectable(e)
           : fmt::format(
-                "No known effect is missing. What is left on {} stands {:.1f} times above the "
+                "No known effect stands out. What is left on {} stands {:.1f} times above the "
                 "noise, and follows nothing that was looked at.",
                 at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
 }

@@ -11,6 +11,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // One joint on which nothing was found, and what is left of its error.
 Explanation nothing_found(double left_to_noise) {
@@ -34,7 +35,26 @@ TEST(Verdict, OfNoiseAloneSaysWhatWouldNotHaveBeenSeen) {
   Explanation e = nothing_found(1.1);
   judge_whole(e);
   EXPECT_EQ(e.verdict, Verdict::kExplained);
-  EXPECT_THAT(e.words, HasSubstr("less than 0.5 % of a joint's torque would not have been seen"));
+  EXPECT_THAT(e.words, HasSubstr("No effect below 0.5 % of a joint's torque can be named"));
+}
+
+TEST(Verdict, OfJointsThatShowMoreAndLessSaysBoth) {
+  Explanation e = nothing_found(1.1);
+  e.joints.push_back(e.joints[0]);
+  e.joints[1].joint = 1;
+  e.rejected.push_back(e.rejected[0]);
+  e.rejected[1].what.joint = 1;
+  e.rejected[1].smallest_detectable = 0.12;
+  judge_whole(e);
+  EXPECT_THAT(e.words, HasSubstr("No effect below 0.5 to 1.2 % of"));
+}
+
+TEST(Verdict, OfAJointWithoutTorqueSaysNoShareOfIt) {
+  Explanation e = nothing_found(1.1);
+  e.joints[0].rms_torque = 0;
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kExplained);
+  EXPECT_THAT(e.words, Not(HasSubstr("can be named")));
 }
 
 TEST(Verdict, OfNoiseThatIsUnlikelyIsUndecidedAndAdvisesTheMotion) {
@@ -45,6 +65,24 @@ TEST(Verdict, OfNoiseThatIsUnlikelyIsUndecidedAndAdvisesTheMotion) {
   EXPECT_THAT(e.words, HasSubstr("time_delay on joint 1 would explain 4 %"));
   EXPECT_THAT(e.words, HasSubstr("p = 0.003"));
   EXPECT_THAT(e.advice, ElementsAre(HasSubstr("--excite time_delay@1")));
+  EXPECT_TRUE(e.suspected);
+}
+
+TEST(Verdict, OfAHoldMapAdvisesMorePositions) {
+  Explanation e = nothing_found(1.1);
+  e.at_rest = true;
+  e.suspected = {{"torque_offset", 0}, 0.003, 0.04};
+  judge_whole(e);
+  EXPECT_THAT(e.advice, ElementsAre(HasSubstr("hold it at more positions")));
+}
+
+TEST(Verdict, OfAPoorMotionSuspectsNothing) {
+  Explanation e = nothing_found(1.1);
+  e.excitation[0].sufficient = false;
+  e.suspected = {{"time_delay", 0}, 0.003, 0.04};
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kNotExcited);
+  EXPECT_FALSE(e.suspected);
 }
 
 TEST(Verdict, OfARestThatStandsAboveTheNoiseSaysSoWhateverIsSuspected) {
@@ -53,6 +91,7 @@ TEST(Verdict, OfARestThatStandsAboveTheNoiseSaysSoWhateverIsSuspected) {
   judge_whole(e);
   EXPECT_EQ(e.verdict, Verdict::kExplained);
   EXPECT_THAT(e.words, HasSubstr("2.0 times above the noise"));
+  EXPECT_FALSE(e.suspected);
 }
 
 }  // namespace
