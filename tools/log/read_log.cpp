@@ -146,6 +146,17 @@ class Assembler {
     return list_of(names);
   }
 
+  // "tau1 to tau7", "tau2 only", or each where some are missing.
+  static std::string words_of_joints(const std::string& prefix, const std::set<int>& joints) {
+    if (joints.size() == 1) return fmt::format("{}{} only", prefix, *joints.begin());
+    if (*joints.rbegin() == static_cast<int>(joints.size())) {
+      return fmt::format("{0}1 to {0}{1}", prefix, joints.size());
+    }
+    std::vector<std::string> names;
+    for (const int joint : joints) names.push_back(fmt::format("{}{}", prefix, joint));
+    return list_of(names);
+  }
+
   void check_joint_count(const std::string& prefix) const {
     std::set<int> joints;
     for (const std::string& name : columns_.names) {
@@ -156,12 +167,10 @@ class Assembler {
            kMendNames);
     }
     if (static_cast<int>(joints.size()) != joints_ || *joints.rbegin() != joints_) {
-      const std::string found =
-          fmt::format("{0}1 to {0}{1}, {2} in all", prefix, *joints.rbegin(), joints.size());
-      fail("columns", joints.size() == 1 && *joints.begin() == 1 ? prefix + "1 only" : found,
+      fail("columns", words_of_joints(prefix, joints),
            fmt::format("one {} for each of the robot's {} joint{}", prefix, joints_,
                        joints_ == 1 ? "" : "s"),
-           "take the robot file of the robot that was recorded");
+           "add what is missing, or take the robot file of the robot that was recorded");
     }
   }
 

@@ -191,6 +191,9 @@ TEST(CsvLog, NumberOfJointsMustBeTheRobots) {
   std::string text = "t,q1,q2,tau1,tau2\n";
   for (int i = 0; i < 10; ++i) text += std::to_string(i) + ",1,1,1,1\n";
   EXPECT_THAT(refusal(text, 1), AllOf(HasSubstr("q1 to q2"), HasSubstr("1 joint")));
+  text = "t,q1,q2,q3,tau1,tau3\n";
+  for (int i = 0; i < 10; ++i) text += std::to_string(i) + ",1,1,1,1,1\n";
+  EXPECT_THAT(refusal(text, 3), AllOf(HasSubstr("tau1, tau3"), HasSubstr("add what is missing")));
 }
 
 TEST(CsvLog, TimeThatDoesNotAscendIsRefused) {
