@@ -5,15 +5,19 @@
 #include <cmath>
 #include <cstddef>
 
+#include "discovery/torque_scale.hpp"
+
 namespace offnominal::tools::discovery {
 
 namespace {
 
 constexpr std::array<double, 2> kBands{0.7, 0.45};  // of the band that was fitted in
 
-std::vector<NamedValue> numbers_of(const Data& data, const Term& term,
-                                   const Eigen::VectorXd& coefficients) {
-  return term.effect->parameters(data.recordings[0].joint_type(term.joint), coefficients,
+std::vector<NamedValue> numbers_of(const Data& data, const std::vector<Term>& terms,
+                                   const ModelFit& fit, std::size_t i) {
+  const Term& term = terms[i];
+  return term.effect->parameters(data.recordings[0].joint_type(term.joint),
+                                 factor_beside_torque_scale(terms, fit, term) * fit.coefficients[i],
                                  term.shape, term.ranges);
 }
 
@@ -30,7 +34,7 @@ std::vector<std::vector<NamedValue>> numbers_in(double share, const Relinearised
   const ModelFit fit = regression.fit(terms);
   std::vector<std::vector<NamedValue>> numbers;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    numbers.push_back(numbers_of(narrow, terms[i], fit.coefficients[i]));
+    numbers.push_back(numbers_of(narrow, terms, fit, i));
   }
   return numbers;
 }
@@ -41,7 +45,7 @@ std::vector<std::vector<double>> largest_shifts_in_narrower_bands(const Relinear
   std::vector<std::vector<NamedValue>> whole;
   std::vector<std::vector<double>> shifts;
   for (std::size_t i = 0; i < fitted.terms.size(); ++i) {
-    whole.push_back(numbers_of(*fitted.data, fitted.terms[i], fitted.fit.coefficients[i]));
+    whole.push_back(numbers_of(*fitted.data, fitted.terms, fitted.fit, i));
     shifts.emplace_back(whole[i].size(), 0.0);
   }
   // Readings at rest have no band.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "discovery/regimes.hpp"
+#include "discovery/torque_scale.hpp"
 
 namespace offnominal::tools::discovery {
 
@@ -39,11 +40,13 @@ struct Place {
   std::vector<Index> shape;  // -1: not estimated
 };
 
+// `factor`: from the regression's coefficients to those of a robot file.
 std::vector<Estimate> of_term(const Data& data, const Term& term, const VectorXd& coefficients,
-                              const std::vector<Covariance>& covariances, const Place& place) {
+                              double factor, const std::vector<Covariance>& covariances,
+                              const Place& place) {
   const JointType type = data.recordings[0].joint_type(term.joint);
   const auto named = [&](const VectorXd& c, const ShapePoint& shape) {
-    return term.effect->parameters(type, c, shape, term.ranges);
+    return term.effect->parameters(type, factor * c, shape, term.ranges);
   };
   const std::vector<NamedValue> at = named(coefficients, term.shape);
   const Index unknowns = covariances.empty() ? 0 : covariances[0].matrix.rows();
@@ -203,7 +206,9 @@ std::vector<std::vector<Estimate>> estimates_of(const Regression& regression,
   const std::vector<Covariance> covariances = covariances_of(model, data, fit);
   std::vector<std::vector<Estimate>> all;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    all.push_back(of_term(data, terms[i], fit.coefficients[i], covariances, model.places[i]));
+    const double factor = factor_beside_torque_scale(terms, fit, terms[i]);
+    all.push_back(
+        of_term(data, terms[i], fit.coefficients[i], factor, covariances, model.places[i]));
   }
   return all;
 }

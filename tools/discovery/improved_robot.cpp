@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "discovery/torque_scale.hpp"
+
 namespace offnominal::tools::discovery {
 
 using Eigen::Index;
@@ -52,7 +54,9 @@ void move_fitted_effects(const Relinearised& found, const std::string& source,
     if (!effect.fitted) continue;
     const ParameterInfo& info = info_of(effect.kind)->parameters[term.parameter];
     double& value = effect.parameters[term.parameter];
-    value = std::clamp(value + found.fit.nuisance[static_cast<Index>(i)], info.min, info.max);
+    const double factor = factor_beside_torque_scale(found.terms, found.fit, term.joint);
+    const double by = factor * found.fit.nuisance[static_cast<Index>(i)];
+    value = std::clamp(value + by, info.min, info.max);
     effect.source = source;
   }
 }
@@ -88,7 +92,8 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   for (std::size_t i = 0; i < last.terms.size(); ++i) {
     const Term& term = last.terms[i];
     const JointType type = file.joints[static_cast<std::size_t>(term.joint)].joint.type;
-    std::optional<RobotEffect> effect = robot_effect(term, last.fit.coefficients[i], type,
+    const double factor = factor_beside_torque_scale(last.terms, last.fit, term);
+    std::optional<RobotEffect> effect = robot_effect(term, factor * last.fit.coefficients[i], type,
                                                      data.recordings[0].sign_width[term.joint]);
     if (!effect) {
       improved.not_in_robot_files.emplace_back(term.effect->name());

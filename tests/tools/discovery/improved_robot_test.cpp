@@ -65,6 +65,28 @@ INSTANTIATE_TEST_SUITE_P(Some, ImprovedRobotOf,
                                            hidden::HiddenEffect::kTimeDelay),
                          [](const auto& tried) { return std::string(hidden::name(tried.param)); });
 
+// A robot file multiplies everything on the joint by its torque scale, the regression only what the
+// file had.
+TEST(ImprovedRobot, GIVEN_a_torque_scale_THEN_what_stands_beside_it_is_not_scaled_twice) {
+  hidden::Case made = case_of(4215208974, {hidden::HiddenEffect::kJointStiffness});
+  const hidden::TrueEffect& truth = made.truth.effects[0];
+  constexpr double kWrongGain = 1.5;
+  made.recording.tau.col(truth.joint) *= kWrongGain;
+  made.holdout.tau.col(truth.joint) *= kWrongGain;
+  const Explanation result = explained(made, test::to_robot(made.nominal));
+  ASSERT_EQ(result.found.size(), 2U) << result.words;
+  ASSERT_EQ(result.found[0].what.effect, "torque_scale");
+  ASSERT_EQ(result.found[1].what.effect, "joint_stiffness");
+  const double stiffness = truth.parameters[0].value;
+  EXPECT_NEAR(result.found[0].parameters[0].value.value, kWrongGain - 1, 0.01);
+  EXPECT_NEAR(result.found[1].parameters[0].value.value, stiffness, 0.02 * stiffness);
+  const RobotEffect& written = result.improved.effects.back();
+  ASSERT_EQ(written.kind, EffectKind::kJointStiffness);
+  EXPECT_NEAR(written.parameters[0], stiffness, 0.02 * stiffness);
+  const Explanation again = explained(made, result.improved);
+  EXPECT_EQ(again.verdict, Verdict::kExplained) << again.words;
+}
+
 // Files that are off by 1.5 % of each other come out with the same masses.
 TEST(ImprovedRobot, LinksComeOutTheSameFromFilesThatDiffer) {
   const hidden::Case made = case_of(5, {hidden::HiddenEffect::kViscousFriction});

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "discovery/regression.hpp"
+
+namespace offnominal::tools::discovery {
+
+// A robot file's torque scale multiplies all that acts on its joint; in a regression it stands beside
+// the other terms. What the coefficients of a term on `joint` are multiplied with to be those of a
+// file: 1 / (1 + error), 1 where no torque scale is among the terms.
+double factor_beside_torque_scale(const std::vector<Term>& terms, const ModelFit& fit,
+                                  Eigen::Index joint);
+
+// The same for one of the terms: 1 for those that act on the sum of a joint's torques themselves.
+double factor_beside_torque_scale(const std::vector<Term>& terms, const ModelFit& fit,
+                                  const Term& term);
+
+}  // namespace offnominal::tools::discovery
