@@ -25,14 +25,14 @@ void add_all_found(const AddAllFound& options, const std::string& command_line,
   const discovery::AddedFindings added = discovery::add_found(
       robot, logs, holdout, explain, [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
+  const discovery::ExplainNames names{options.logs, options.holdout, options.robot, command_line};
+  if (options.report) report::write_page(*options.report, page_of(added.explanation, names));
   if (added.objections.empty()) {
     write_robot_file(added.explanation.improved, options.output,
                      options.force ? Existing::kReplace : Existing::kRefuse);
   } else {
     exit_code = ExitCode::kCheckFailed;
   }
-  const discovery::ExplainNames names{options.logs, options.holdout, options.robot, command_line};
-  if (options.report) report::write_page(*options.report, page_of(added.explanation, names));
   if (options.json) {
     std::cout << to_json(added, names, options.output).dump(2) << '\n';
     return;

@@ -1,11 +1,15 @@
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <offnominal/version.hpp>
 #include <string>
 #include <vector>
 
+#include "command/output_file.hpp"
+#include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/error.hpp"
 #include "common/nearest.hpp"
@@ -45,6 +49,18 @@ void check_verb(const CLI::App& app, int argc, char** argv) {
                     .mend = meant.empty() ? mend : "write `" + meant + "`, or " + mend});
 }
 
+// What CLI11 lets pass for every verb: a number that is none is in any range.
+void check_options(const CLI::App& verb) {
+  for (const CLI::Option* option : verb.get_options()) {
+    if (option->get_type_name().find("FLOAT") == std::string::npos) continue;
+    for (const std::string& word : option->results()) {
+      if (!std::isnan(std::strtod(word.c_str(), nullptr))) continue;
+      refuse_option(verb.get_name(), option->get_name(), word, "a number");
+    }
+  }
+  check_report_apart(verb);
+}
+
 // Parse errors of the options; --help and --version come this way too.
 ExitCode answer(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* verb = &app;
@@ -67,6 +83,9 @@ ExitCode run(int argc, char** argv) {
   app.require_subcommand(1);
   ExitCode exit_code = ExitCode::kDone;
   for (const RegisterVerb register_verb : all_verbs()) register_verb(app, exit_code);
+  for (CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    verb->parse_complete_callback([verb] { check_options(*verb); });
+  }
   check_verb(app, argc, argv);
   try {
     app.parse(argc, argv);

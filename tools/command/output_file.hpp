@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -12,5 +13,13 @@ bool same_file(const std::string& a, const std::string& b);
 void check_output_file(const std::string& verb, const std::string& option,
                        const std::string& output, bool force,
                        const std::vector<std::string>& recordings = {});
+
+// Throws InputError when `output` is one of the files that the verb reads.
+void check_output_is_no_input(const std::string& verb, const std::string& option,
+                              const std::string& output, const std::vector<std::string>& inputs);
+
+// Throws InputError when the page that --report of a verb names is another file of its command
+// line, one that it reads or one that it writes.
+void check_report_apart(const CLI::App& verb);
 
 }  // namespace offnominal::tools

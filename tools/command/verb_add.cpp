@@ -151,13 +151,13 @@ void add_named(const AddOptions& options, const std::string& command_line, ExitC
       add(robot, request, log, holdout ? &*holdout : nullptr, [&progress] { progress.step(); });
   progress.end();
   const AddNames names{log_file, holdout_file, options.robot, options.output, command_line};
+  if (options.report) report::write_page(*options.report, page_of(result, request, names));
   if (result.objections.empty()) {
     write_robot_file(result.robot, options.output,
                      options.force ? Existing::kReplace : Existing::kRefuse);
   } else {
     exit_code = ExitCode::kCheckFailed;
   }
-  if (options.report) report::write_page(*options.report, page_of(result, request, names));
   if (options.json) {
     std::cout << to_json(result, request, names).dump(2) << '\n';
     return;

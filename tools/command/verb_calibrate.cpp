@@ -80,13 +80,13 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
   progress.end();
   const CalibrateNames names{options.robot, options.output, command_line};
   const bool good = result.objections.empty();
+  if (options.report) report::write_page(*options.report, page_of(result, names));
   if (good) {
     write_robot_file(result.robot, options.output,
                      options.force ? Existing::kReplace : Existing::kRefuse);
   } else {
     exit_code = ExitCode::kCheckFailed;
   }
-  if (options.report) report::write_page(*options.report, page_of(result, names));
   if (options.json) {
     std::cout << to_json(result, names).dump(2) << '\n';
     return;

@@ -69,6 +69,10 @@ std::vector<Contender> effects_of(const MotionOptions& options, const RobotDescr
 void run(const MotionOptions& options, const std::string& command_line, ExitCode& exit_code) {
   using namespace motion_design;
   check_output_file("motion", "-o", options.output, options.force);
+  std::vector<std::string> inputs = options.logs;
+  inputs.push_back(options.robot);
+  if (options.channels) inputs.push_back(options.channels->string());
+  check_output_is_no_input("motion", "-o", options.output, inputs);
   const RobotDescription robot = read_robot_file(options.robot);
   DesignRequest request = options.design;
   request.effects = effects_of(options, robot);
@@ -83,13 +87,13 @@ void run(const MotionOptions& options, const std::string& command_line, ExitCode
   progress.end();
   const DesignNames names{options.robot, options.logs, options.output, command_line};
   const bool useful = design.worst() != nullptr;
+  if (options.report) report::write_page(*options.report, page_of(robot, design, names));
   if (useful) {
     write_file_atomically(options.output, csv_of(design.fitted.motion),
                           options.force ? Existing::kReplace : Existing::kRefuse);
   } else {
     exit_code = ExitCode::kCheckFailed;
   }
-  if (options.report) report::write_page(*options.report, page_of(robot, design, names));
   if (options.json) {
     std::cout << to_json(robot, design, names).dump(2) << '\n';
     return;

@@ -174,6 +174,9 @@ class Assembler {
     }
   }
 
+  // No measurement is larger; squares and sums of it stay within what numbers can hold.
+  static constexpr double kLargest = 1e15;
+
   // Values in SI units; a scalar variable serves where every sample has the same value.
   VectorXd values_of(const Channel& channel, const std::string& what) const {
     const auto column = columns_.columns.find(channel.source);
@@ -189,9 +192,11 @@ class Assembler {
     if (!channel.scale_source.empty()) scale *= scalar(channel.scale_source, what);
     VectorXd values = (scale * column->second).array() + channel.offset;
     for (Index row = 0; row < values.size(); ++row) {
-      if (std::isfinite(values[row])) continue;
-      fail(columns_.place_of(row) + ", " + channel.source,
-           std::isnan(values[row]) ? "NaN" : "an infinite number", "a finite number",
+      if (std::abs(values[row]) <= kLargest) continue;
+      const std::string found =
+          std::isfinite(values[row]) ? fmt::format("{:g}", values[row]) : "an infinite number";
+      fail(columns_.place_of(row) + ", " + channel.source, std::isnan(values[row]) ? "NaN" : found,
+           fmt::format("a finite number up to {:g}", kLargest),
            "cut the recording, or fill the gap where it is made");
     }
     return values;

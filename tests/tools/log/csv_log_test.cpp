@@ -196,6 +196,17 @@ TEST(CsvLog, NumberOfJointsMustBeTheRobots) {
   EXPECT_THAT(refusal(text, 3), AllOf(HasSubstr("tau1, tau3"), HasSubstr("add what is missing")));
 }
 
+TEST(CsvLog, ValuesThatNothingMeasuresAreRefused) {
+  for (const char* value : {"1e300", "-3.4e38"}) {
+    EXPECT_THAT(refusal(one_joint_csv(20,
+                                      [&](int number, std::string& line) {
+                                        if (number == 12) line = std::string("0.1,1,2,") + value;
+                                      })),
+                HasSubstr("up to 1e+15"))
+        << value;
+  }
+}
+
 TEST(CsvLog, TimeThatDoesNotAscendIsRefused) {
   EXPECT_THAT(refusal(one_joint_csv(20,
                                     [](int number, std::string& line) {
@@ -218,10 +229,10 @@ TEST(CsvLog, NotANumberAndInfinityAreRefusedWithTheirPlace) {
 }
 
 // Without dq the velocity is derived, and of such positions it would be infinite.
-TEST(CsvLog, PositionsTooLargeToDifferentiateAreRefused) {
+TEST(CsvLog, PositionsTooCloseInTimeToDifferentiateAreRefused) {
   std::string text = "t,q1,tau1\n";
   for (int i = 0; i < 20; ++i) {
-    text += std::to_string(0.01 * i) + (i % 2 == 0 ? ",1.7e308" : ",-1.7e308") + ",0\n";
+    text += std::to_string(i) + "e-300" + (i % 2 == 0 ? ",1e15" : ",-1e15") + ",0\n";
   }
   EXPECT_THAT(refusal(text), HasSubstr("no velocity can be computed"));
 }

@@ -114,6 +114,7 @@ TEST_F(MotionVerb, RefusesWhatItCannotUse) {
   expect_refusal(motion(path("none.toml"), {}), "none.toml");
   expect_refusal(motion(kEmps, {"--log", path("none.csv")}), "none.csv");
   EXPECT_EQ(motion(kEmps, {"--duration", "1"}).exit_code, 2);
+  expect_refusal(motion(kEmps, {"--noise", "nan"}), "--noise: found nan; allowed: a number");
   EXPECT_EQ(motion(kEmps, {"--excite", "all", "--separate", "a,b"}).exit_code, 2);
 }
 
@@ -134,6 +135,27 @@ TEST_F(MotionVerb, LeavesFilesAloneThatAreThere) {
   EXPECT_EQ(content_of(folder_ / "motion.csv"), "mine");
   EXPECT_EQ(motion(kEmps, {"--force"}).exit_code, 0);
   EXPECT_THAT(content_of(folder_ / "motion.csv"), HasSubstr("t,q1"));
+}
+
+TEST_F(MotionVerb, ReplacesNothingThatItReads) {
+  const std::string text = content_of(kEmps);
+  put(folder_ / "motion.csv", text);
+  put(folder_ / "robot.toml", text);
+  const CommandResult output = motion(path("motion.csv"), {"--force"});
+  EXPECT_EQ(output.exit_code, 2);
+  EXPECT_THAT(output.err, HasSubstr("which it reads"));
+  const CommandResult page =
+      motion(path("robot.toml"), {"--force", "--report", path("robot.toml")});
+  EXPECT_EQ(page.exit_code, 2);
+  EXPECT_THAT(page.err, HasSubstr("which is that of --robot"));
+  EXPECT_EQ(content_of(folder_ / "motion.csv"), text);
+  EXPECT_EQ(content_of(folder_ / "robot.toml"), text);
+}
+
+TEST_F(MotionVerb, WritesAllOrNothing) {
+  expect_refusal(motion(kEmps, {"--report", path("motion.csv")}), "which is that of --output");
+  expect_refusal(motion(kEmps, {"--report", path("no/page.html")}), "no/page.html");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "motion.csv"));
 }
 
 TEST_F(MotionVerb, SaysWhereItCannotWrite) {
