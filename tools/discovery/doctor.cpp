@@ -123,6 +123,7 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
   if (log.sample_count() < kFewestSamples) return faults;
   find_gaps(log, faults);
   find_stale_samples(log, faults);
+  find_stuck_encoders(log, robot, faults);
   find_saturation(log, robot, faults);
   const Log radians = without_degrees(log, robot, faults);
   if (const auto pair = torque_pair(radians, robot)) {

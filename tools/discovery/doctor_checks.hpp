@@ -33,6 +33,8 @@ std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& ro
 
 void find_gaps(const Log& log, std::vector<DataFault>& faults);
 void find_stale_samples(const Log& log, std::vector<DataFault>& faults);
+void find_stuck_encoders(const Log& log, const RobotDescription& robot,
+                         std::vector<DataFault>& faults);
 void find_saturation(const Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
 void find_torque_sign(const TorquePair& pair, std::vector<DataFault>& faults);
 void find_clock_skew(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "discovery/doctor_checks.hpp"
@@ -192,6 +193,31 @@ void find_stale_samples(const Log& log, std::vector<DataFault>& faults) {
       "log every sample anew (look for lost packets or a blocked reader), or leave the repeated "
       "rows out";
   faults.push_back(std::move(fault));
+}
+
+void find_stuck_encoders(const Log& log, const RobotDescription& robot,
+                         std::vector<DataFault>& faults) {
+  // 3 degrees, or 5 cm: more than noise of a velocity adds up to on a joint that is locked.
+  constexpr double kTravel = 0.05;
+  for (Index joint = 0; joint < log.q.cols(); ++joint) {
+    const VectorXd q = log.q.col(joint);
+    if (log.dq_derived[static_cast<std::size_t>(joint)] || (q.array() != q[0]).any()) continue;
+    const VectorXd dq = log.dq.col(joint).array() - log.dq.col(joint).mean();
+    VectorXd travel(dq.size());
+    std::partial_sum(dq.begin(), dq.end(), travel.begin());
+    const double moved = log.period_s * (travel.maxCoeff() - travel.minCoeff());
+    if (moved < kTravel) continue;
+    DataFault fault;
+    fault.kind = DataFaultKind::kStaleSamples;
+    fault.joint = joint;
+    fault.size = 1;
+    fault.words = fmt::format(
+        "the position of {} never changes, while its velocity adds up to {:.3g} {} of travel",
+        joint_words(joint), moved,
+        unit_of(Quantity::kPosition, robot.joints[static_cast<std::size_t>(joint)].joint.type));
+    fault.mend = "look at its encoder and at the channel that it is logged from";
+    faults.push_back(std::move(fault));
+  }
 }
 
 }  // namespace offnominal::tools::discovery

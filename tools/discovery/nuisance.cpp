@@ -116,6 +116,7 @@ class Builder {
       return (at.motion.dq.col(joint).array() / (4 * at.sign_width[joint])).tanh() - at.sign(joint);
     });
     const double range = range_moved(recordings_, joint);
+    if (!(range > 0)) return;  // a stuck encoder: nothing builds up over no way
     for (const double share : kPreslidingShares) {
       add_shape(fmt::format("pre-sliding over {:.2g}", share * range),
                 [&](const Workspace& at) -> VectorXd {

@@ -4,9 +4,9 @@
 
 namespace offnominal::tools::discovery {
 
-// A robot file's torque scale multiplies all that acts on its joint; in a regression it stands beside
-// the other terms. What the coefficients of a term on `joint` are multiplied with to be those of a
-// file: 1 / (1 + error), 1 where no torque scale is among the terms.
+// A robot file's torque scale multiplies all that acts on its joint; in a regression it stands
+// beside the other terms. What the coefficients of a term on `joint` are multiplied with to be
+// those of a file: 1 / (1 + error), 1 where no torque scale is among the terms.
 double factor_beside_torque_scale(const std::vector<Term>& terms, const ModelFit& fit,
                                   Eigen::Index joint);
 

@@ -180,6 +180,20 @@ TEST(Explain, GIVEN_a_poor_motion_THEN_it_says_so_and_finds_nothing) {
   EXPECT_FALSE(result.advice.empty());
 }
 
+TEST(Explain, GIVEN_an_encoder_that_is_stuck_THEN_it_says_so_in_numbers) {
+  const hidden::Case made = case_of(5, {hidden::HiddenEffect::kViscousFriction});
+  Log stuck = to_log(made.recording);
+  stuck.q.col(0).setConstant(0.3);
+  stuck.dq_derived[0] = false;
+  const Explanation result = explain(to_robot(made.nominal), {stuck}, {}, quick());
+  EXPECT_EQ(result.verdict, Verdict::kDataFault) << result.words;
+  EXPECT_THAT(result.words, HasSubstr("the position of joint 1 never changes"));
+  for (const JointErrors& joint : result.joints) {
+    EXPECT_TRUE(std::isfinite(joint.rms_after)) << joint.joint;
+    EXPECT_TRUE(std::isfinite(joint.noise_floor)) << joint.joint;
+  }
+}
+
 // A single slow sine or one speed to and fro, which many effects explain.
 TEST(Explain, GIVEN_a_poor_motion_that_shows_an_effect_THEN_it_says_what_it_could_be) {
   struct Shown {
