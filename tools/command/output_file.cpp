@@ -1,5 +1,7 @@
 #include "command/output_file.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "command/refuse_option.hpp"
@@ -33,7 +35,7 @@ void check_report_apart(const CLI::App& verb) {
       if (!same) continue;
       const std::string name =
           option->get_positional() ? option->get_name(true) : option->get_name();
-      refuse_option(verb.get_name(), "--report", page + ", which is that of " + name,
+      refuse_option(verb.get_name(), "--report", fmt::format("{}, which is that of {}", page, name),
                     "a file of its own");
     }
   }
