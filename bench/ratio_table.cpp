@@ -2,12 +2,33 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 namespace offnominal::bench {
 
 RatioReporter::RatioReporter(std::vector<Reference> references)
     : benchmark::ConsoleReporter(OO_Tabular), references_(std::move(references)) {}
+
+bool RatioReporter::ReportContext(const Context& context) {
+#if defined(NDEBUG) && defined(__OPTIMIZE__)
+  std::printf("measured code: optimised, without assertions\n");
+#else
+  std::fprintf(stderr,
+               "measured code: not optimised, or with assertions: its times say nothing; "
+               "./dev bench builds it as they count\n");
+  std::exit(2);
+#endif
+  const benchmark::CPUInfo& cpu = context.cpu_info;
+  std::printf("%d CPUs of %.0f MHz", cpu.num_cpus, cpu.cycles_per_second * 1e-6);
+  if (!cpu.load_avg.empty()) std::printf(", load %.2f", cpu.load_avg[0]);
+  if (cpu.scaling == benchmark::CPUInfo::ENABLED) std::printf(", frequency scaled: times vary");
+  std::printf("\n");
+  name_field_width_ = context.name_field_width;
+  printed_header_ = false;
+  prev_counters_.clear();
+  return true;
+}
 
 void RatioReporter::ReportRuns(const std::vector<Run>& runs) {
   for (const Run& run : runs) {

@@ -5,67 +5,27 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <cstdlib>
+#include <memory>
 #include <offnominal/control/computed_torque.hpp>
 #include <offnominal/monitor.hpp>
+#include <string>
+#include <vector>
 
 #include "heap_counter.hpp"
 #include "ratio_table.hpp"
+#include "tick_alone.hpp"
+#include "tick_rig.hpp"
 
 // One control tick of the paper's two-link arm, beside its parts and beside the least that learning
-// needs: one forward and gradient evaluation of the same network, written in plain Eigen.
+// needs: one forward and gradient evaluation of the same network, written in plain Eigen. And ticks
+// of larger arms: this unit holds all sizes, as a program for several robots does, and what that
+// costs is the ratio of a tick here to the same one from a unit of its own (tick_alone.cpp).
 
 namespace offnominal::bench {
 namespace {
 
 constexpr int kJoints = 2;
 constexpr int kHidden = 35;
-constexpr std::size_t kSamples = 1024;  // a power of two; about one second of the paper's motion
-
-template <typename Scalar>
-using PaperMonitor = Monitor<kJoints, kHidden, Scalar>;
-
-void require(Status status) {
-  if (status == Status::kOk) return;
-  std::fprintf(stderr, "benchmark set-up failed: %s\n", name_of(status));
-  std::exit(2);
-}
-
-template <typename Scalar>
-MonitorConfig<kJoints, Scalar> paper_arm() {
-  MonitorConfig<kJoints, Scalar> config;
-  config.chain.gravity_m_s2 = {0, static_cast<Scalar>(-9.81), 0};
-  for (Joint<Scalar>& joint : config.chain.joints) joint.centre_of_mass_m = {1, 0, 0};
-  config.chain.joints[0].mass_kg = Scalar(0.5);
-  config.chain.joints[1].mass_kg = 2;
-  config.chain.joints[1].origin_m = {1, 0, 0};
-  config.bound.kind = BoundKind::kScaledNorm;
-  config.bound.scale = static_cast<Scalar>(4.4);
-  config.bound.matrix = {2, -6, 0, 0};
-  config.torque_signal = TorqueSignal::kHeld;
-  config.max_compensation = {50, 50};
-  return config;
-}
-
-// The paper's motion with the torque that the model asks for, plus `extra_torque` on both joints: 0
-// leaves the estimator in its dead-zone, 60 N m keeps it adapting.
-template <typename Scalar>
-std::array<JointSample<kJoints, Scalar>, kSamples> samples(
-    const RigidBodyModel<kJoints, Scalar>& model, Scalar extra_torque) {
-  std::array<JointSample<kJoints, Scalar>, kSamples> result;
-  for (std::size_t k = 0; k < kSamples; ++k) {
-    const double t = 0.001 * static_cast<double>(k);
-    const auto pair = [](double first, double second) {
-      return Vector<kJoints, Scalar>(static_cast<Scalar>(first), static_cast<Scalar>(second));
-    };
-    result[k].q = pair(0.18 * std::sin(2 * t), 0.21 * std::sin(3 * t));
-    result[k].dq = pair(0.36 * std::cos(2 * t), 0.63 * std::cos(3 * t));
-    const Vector<kJoints, Scalar> ddq = pair(-0.72 * std::sin(2 * t), -1.89 * std::sin(3 * t));
-    result[k].tau = inverse_dynamics(model, result[k].q, result[k].dq, ddq, Scalar(0));
-    result[k].tau.array() += extra_torque;
-  }
-  return result;
-}
 
 // Runs body(k) once per iteration and reports the heap calls of all iterations together.
 template <typename Body>
@@ -82,21 +42,19 @@ void measure(benchmark::State& state, Body&& body) {
   state.counters["heap_calls"] = static_cast<double>(calls);
 }
 
-template <typename Scalar>
+template <int N, int L, typename Scalar>
 void tick(benchmark::State& state, Scalar extra_torque, bool expect_adapting) {
-  PaperMonitor<Scalar> monitor;
-  require(PaperMonitor<Scalar>::create(paper_arm<Scalar>(), monitor));
-  const auto run = samples<Scalar>(monitor.model(), extra_torque);
-  typename PaperMonitor<Scalar>::State monitor_state;
-  typename PaperMonitor<Scalar>::Output output;
-  require(monitor.reset(run[0], monitor_state));
-  for (std::size_t k = 1; k < kSamples; ++k) require(monitor.step(run[k], monitor_state, output));
-  if (output.detector.latched != expect_adapting) require(Status::kNotInitialised);
+  const auto rig = std::make_unique<TickRig<N, L, Scalar>>(extra_torque, expect_adapting);
   measure(state, [&](std::size_t k) {
-    const Status status = monitor.step(run[k], monitor_state, output);
+    const Status status = rig->step(k);
     benchmark::DoNotOptimize(status);
-    benchmark::DoNotOptimize(output);
+    benchmark::DoNotOptimize(rig->output());
   });
+}
+
+void tick_of_unit(benchmark::State& state, std::unique_ptr<tick_alone::Ticks> (*ticks)()) {
+  const std::unique_ptr<tick_alone::Ticks> alone = ticks();
+  measure(state, [&](std::size_t k) { alone->step(k); });
 }
 
 template <typename Scalar>
@@ -107,8 +65,8 @@ void forward_and_gradient(benchmark::State& state) {
   const Eigen::Matrix<Scalar, kHidden, kInputs> w1 = start.w1.template topRows<kHidden>();
   const Eigen::Matrix<Scalar, kJoints, kHidden> w2 =
       Eigen::Matrix<Scalar, kJoints, kHidden>::Constant(Scalar(0.1));
-  RigidBodyModel<kJoints, Scalar> model = make_model(paper_arm<Scalar>().chain);
-  const auto run = samples<Scalar>(model, Scalar(0));
+  RigidBodyModel<kJoints, Scalar> model = make_model(arm<kJoints, Scalar>().chain);
+  const auto run = samples<kJoints, Scalar>(model, Scalar(0));
   const Eigen::Matrix<Scalar, kJoints, 1> d(Scalar(0.3), Scalar(-0.2));
   Eigen::Matrix<Scalar, kHidden, kInputs> gradient_w1;
   Eigen::Matrix<Scalar, kJoints, kHidden> gradient_w2;
@@ -129,28 +87,57 @@ void forward_and_gradient(benchmark::State& state) {
 
 template <typename Scalar>
 void dynamics(benchmark::State& state) {
-  const RigidBodyModel<kJoints, Scalar> model = make_model(paper_arm<Scalar>().chain);
-  const auto run = samples<Scalar>(model, Scalar(0));
+  const RigidBodyModel<kJoints, Scalar> model = make_model(arm<kJoints, Scalar>().chain);
+  const auto run = samples<kJoints, Scalar>(model, Scalar(0));
   ForwardDynamics<kJoints, Scalar> result;
   measure(state, [&](std::size_t k) {
-    const Status status =
-        forward_dynamics(model, run[k].q, run[k].dq, run[k].tau, Scalar(0), result);
+    const Status status = forward_dynamics(model, run[k].q, run[k].dq, run[k].tau, 0.0, result);
     benchmark::DoNotOptimize(status);
     benchmark::DoNotOptimize(result);
   });
 }
 
+template <typename Function>
+void add(const std::string& name, Function function) {
+  benchmark::RegisterBenchmark(name.c_str(), function)->Repetitions(9)->ReportAggregatesOnly(true);
+}
+
+template <int N, int L, typename Scalar>
+void add_ticks(const std::string& size) {
+  add("tick_healthy" + size,
+      [](benchmark::State& state) { tick<N, L, Scalar>(state, Scalar(0), false); });
+  add("tick_adapting" + size,
+      [](benchmark::State& state) { tick<N, L, Scalar>(state, Scalar(60), true); });
+}
+
 template <typename Scalar>
-void register_all(const std::string& scalar) {
-  const auto add = [&](const std::string& name, auto function) {
-    benchmark::RegisterBenchmark((name + "/" + scalar).c_str(), function)
-        ->Repetitions(9)
-        ->ReportAggregatesOnly(true);
-  };
-  add("forward_and_gradient", forward_and_gradient<Scalar>);
-  add("forward_dynamics", dynamics<Scalar>);
-  add("tick_healthy", [](benchmark::State& state) { tick<Scalar>(state, Scalar(0), false); });
-  add("tick_adapting", [](benchmark::State& state) { tick<Scalar>(state, Scalar(60), true); });
+void add_all(const std::string& scalar) {
+  add("forward_and_gradient/2x35" + scalar, forward_and_gradient<Scalar>);
+  add("forward_dynamics/2x35" + scalar, dynamics<Scalar>);
+  add_ticks<kJoints, kHidden, Scalar>("/2x35" + scalar);
+  add_ticks<6, 35, Scalar>("/6x35" + scalar);
+  add_ticks<7, 64, Scalar>("/7x64" + scalar);
+}
+
+// The same tick from a unit that holds nothing else, and what it is compared with.
+struct Alone {
+  const char* size;
+  std::unique_ptr<tick_alone::Ticks> (*ticks)();
+};
+constexpr std::array<Alone, 4> kAlone{{{"/2x35/float", tick_alone::ticks_2x35_float},
+                                       {"/2x35/double", tick_alone::ticks_2x35_double},
+                                       {"/7x64/float", tick_alone::ticks_7x64_float},
+                                       {"/7x64/double", tick_alone::ticks_7x64_double}}};
+
+std::vector<RatioReporter::Reference> references() {
+  std::vector<RatioReporter::Reference> all;
+  for (const Alone& alone : kAlone) {
+    const std::string size = alone.size;
+    all.push_back({"tick_adapting" + size, "tick_adapting_alone" + size});
+  }
+  all.push_back({"/2x35/float", "forward_and_gradient/2x35/float"});
+  all.push_back({"/2x35/double", "forward_and_gradient/2x35/double"});
+  return all;
 }
 
 }  // namespace
@@ -160,11 +147,13 @@ int main(int argc, char** argv) {
   using namespace offnominal::bench;
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  register_all<float>("float");
-  register_all<double>("double");
-  RatioReporter reporter(
-      {{"/float", "forward_and_gradient/float"}, {"/double", "forward_and_gradient/double"}});
-  std::printf("two-link arm, %d hidden units, one Runge-Kutta step per tick\n", kHidden);
+  add_all<float>("/float");
+  add_all<double>("/double");
+  for (const Alone& alone : kAlone) {
+    add(std::string("tick_adapting_alone") + alone.size,
+        [&alone](benchmark::State& state) { tick_of_unit(state, alone.ticks); });
+  }
+  RatioReporter reporter(references());
   benchmark::RunSpecifiedBenchmarks(&reporter);
   reporter.print_table();
   benchmark::Shutdown();

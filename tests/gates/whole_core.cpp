@@ -24,7 +24,7 @@ JointSample<N, Scalar> sample_at(const Controller<N, L, Scalar>& controller, Sca
   sample.q = reference.q;
   sample.dq = reference.dq;
   sample.tau = computed_torque(controller.monitor.model(), controller.gains, reference, sample.q,
-                               sample.dq, t);
+                               sample.dq, static_cast<double>(t));
   sample.tau.array() += fault_nm;
   return sample;
 }

@@ -10,6 +10,7 @@
 #include <offnominal/diagnosis/bound.hpp>
 #include <offnominal/diagnosis/detector.hpp>
 #include <offnominal/diagnosis/estimator.hpp>
+#include <offnominal/finite.hpp>
 #include <offnominal/model/chain.hpp>
 #include <offnominal/model/effect_memory.hpp>
 #include <offnominal/model/forward_dynamics.hpp>
@@ -36,7 +37,7 @@ template <int L, int N, typename Scalar>
   if (const Status status = validate<L>(config.estimator); status != Status::kOk) return status;
   if (const Status status = validate(config.bound); status != Status::kOk) return status;
   for (const Scalar limit : config.max_compensation) {
-    if (!(limit >= 0)) return Status::kInvalidLimit;
+    if (is_nan(limit) || limit < 0) return Status::kInvalidLimit;
   }
   return Status::kOk;
 }
@@ -45,7 +46,7 @@ template <int L, int N, typename Scalar>
 template <int N, int L, typename Scalar, typename Memory = WithoutMemory>
 struct MonitorState {
   bool initialised = false;
-  std::uint32_t tick = 0;  // since reset()
+  std::uint64_t tick = 0;  // since reset()
   JointSample<N, Scalar> sample;
   Matrix<N, N, Scalar> inertia_factor = Matrix<N, N, Scalar>::Zero();  // of M(sample.q), lower
   EstimatorState<N, L, Scalar> estimator;
@@ -56,7 +57,7 @@ struct MonitorState {
 // What a controller reads after a tick.
 template <int N, typename Scalar>
 struct MonitorOutput {
-  Scalar time_s{};                                        // since reset()
+  double time_s = 0;                                      // since reset()
   Vector<N, Scalar> error = Vector<N, Scalar>::Zero();    // e = dq - omega, rad/s or m/s
   Scalar error_norm{};                                    // |e|
   Scalar threshold{};                                     // mu, rad/s or m/s
@@ -102,7 +103,7 @@ class Monitor {
     ForwardDynamics<N, Scalar> nominal;
     EstimatorInput<N, Scalar> input;
     const Now now = memory_.begin(sample);
-    Status status = look(sample, now, Scalar(0), nominal, input);
+    Status status = look(sample, now, 0.0, nominal, input);
     if (status != Status::kOk) return status;
     status = offnominal::reset(config_.estimator, input, state.estimator);
     if (status != Status::kOk) return status;
@@ -122,13 +123,14 @@ class Monitor {
   // Any refusal leaves `state` unchanged.
   [[nodiscard]] Status resume(const Sample& sample, std::uint32_t missed, State& state) const {
     if (!ready_ || !state.initialised) return Status::kNotInitialised;
-    const std::uint32_t tick = state.tick + missed + 1;
+    const std::uint64_t tick = state.tick + missed + 1;
     ForwardDynamics<N, Scalar> nominal;
     EstimatorInput<N, Scalar> input;
     const Now now = memory_.next(sample, missed, state.memory);
-    const Status status = look(sample, now, time_at(tick), nominal, input);
+    Status status = look(sample, now, time_at(tick), nominal, input);
     if (status != Status::kOk) return status;
-    offnominal::resume(input, velocity_allowance(), state.estimator);
+    status = offnominal::resume(input, velocity_allowance(), state.estimator);
+    if (status != Status::kOk) return status;
     memory_.keep(sample, missed, now, state.memory);
     state.tick = tick;
     state.sample = sample;
@@ -141,7 +143,7 @@ class Monitor {
   // is told of the gap.
   [[nodiscard]] Status step(const Sample& sample, State& state, Output& output) const {
     if (!ready_ || !state.initialised) return Status::kNotInitialised;
-    const Scalar end_s = time_at(state.tick + 1);
+    const double end_s = time_at(state.tick + 1);
     ForwardDynamics<N, Scalar> nominal;
     EstimatorInput<N, Scalar> input;
     const Now now = memory_.next(sample, 0, state.memory);
@@ -176,7 +178,7 @@ class Monitor {
 
   // What the model and the bound say at a sample; refuses one that they cannot judge. Not inlined:
   // on a controller its callers share its code, and the estimator its stack.
-  [[nodiscard, gnu::noinline]] Status look(const Sample& sample, const Now& now, Scalar time_s,
+  [[nodiscard, gnu::noinline]] Status look(const Sample& sample, const Now& now, double time_s,
                                            ForwardDynamics<N, Scalar>& nominal,
                                            EstimatorInput<N, Scalar>& input) const {
     Status status = validate<N>(sample, config_.chain.joints);
@@ -191,8 +193,8 @@ class Monitor {
     return Status::kOk;
   }
 
-  [[nodiscard]] Scalar time_at(std::uint32_t tick) const {
-    return static_cast<Scalar>(tick) * config_.estimator.period_s;
+  [[nodiscard]] double time_at(std::uint64_t tick) const {
+    return static_cast<double>(tick) * static_cast<double>(config_.estimator.period_s);
   }
 
   // The velocity's own error e_v enters e directly, through omega(0) and through the filter's

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <offnominal/finite.hpp>
 #include <offnominal/model/chain.hpp>
 #include <offnominal/model/rigid_body_model.hpp>
 #include <offnominal/status.hpp>
@@ -32,9 +33,9 @@ template <int N, typename Scalar>
 [[nodiscard]] Status validate(
     const JointSample<N, Scalar>& sample,
     const std::array<Joint<Scalar>, static_cast<std::size_t>(N)>& joints) {
-  if (!sample.q.allFinite()) return Status::kNonFinitePosition;
-  if (!sample.dq.allFinite()) return Status::kNonFiniteVelocity;
-  if (!sample.tau.allFinite()) return Status::kNonFiniteTorque;
+  if (!all_finite(sample.q)) return Status::kNonFinitePosition;
+  if (!all_finite(sample.dq)) return Status::kNonFiniteVelocity;
+  if (!all_finite(sample.tau)) return Status::kNonFiniteTorque;
   for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
     const auto index = static_cast<Eigen::Index>(i);
     const Joint<Scalar>& joint = joints[i];

@@ -35,16 +35,16 @@ TEST(Detector, GivenACrossingThenTheLevelFallsBackAndTheLatchStaysWithTheFirstTi
 
 TEST(Detector, GivenAClearedLatchThenTheNextCrossingLatchesWithItsOwnTime) {
   DetectorState<float> state;
-  update(state, 0.6F, 0.5F, 7U, 0.007F);
+  update(state, 0.6F, 0.5F, 7U, 0.007);
   clear_latch(state);
   EXPECT_FALSE(state.latched);
   EXPECT_TRUE(state.level) << "clearing the latch does not deny what is so now";
-  update(state, 0.4F, 0.5F, 8U, 0.008F);
+  update(state, 0.4F, 0.5F, 8U, 0.008);
   EXPECT_FALSE(state.latched);
-  update(state, 0.6F, 0.5F, 9U, 0.009F);
+  update(state, 0.6F, 0.5F, 9U, 0.009);
   EXPECT_TRUE(state.latched);
   EXPECT_EQ(state.detection_tick, 9U);
-  EXPECT_EQ(state.detection_time_s, 0.009F);
+  EXPECT_EQ(state.detection_time_s, 0.009);
 }
 
 TEST(Detector, GivenAClearedLatchWhileTheFaultLastsThenTheNextTickLatchesAgain) {

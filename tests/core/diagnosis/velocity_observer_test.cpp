@@ -76,10 +76,57 @@ TEST(VelocityObserver, RefusesWhatItCannotFollow) {
   EXPECT_EQ(validate(Config{.bandwidth_rad_s = 500}), Status::kInvalidFilterPole);
   EXPECT_EQ(validate(Config{.bandwidth_rad_s = 200, .period_s = 0}), Status::kInvalidPeriod);
   EXPECT_EQ(validate(Config{}), Status::kOk);
-  State state{true, 1, 2};
+  State state{1, 1, 2};
   EXPECT_EQ(update(Config{}, std::numeric_limits<double>::quiet_NaN(), state),
             Status::kNonFinitePosition);
   EXPECT_EQ(state.velocity, 2);
+}
+
+// Whatever speed the joint had when it was first looked at: 0.2 % of it is left when the observer
+// says that it has settled, and it does not take long to say so.
+TEST(VelocityObserver, SaysWhenItHasForgottenItsStart) {
+  for (const double bandwidth : {20.0, 200.0, 450.0}) {
+    const Config config{.bandwidth_rad_s = bandwidth};
+    State state;
+    int ticks = 0;
+    for (; !is_settled(config, state); ++ticks) {
+      ASSERT_EQ(update(config, 3.0 * config.period_s * ticks, state), Status::kOk);
+    }
+    EXPECT_NEAR(state.velocity, 3.0, 0.002 * 3.0) << bandwidth;
+    EXPECT_GT(std::fabs(state.velocity - 3.0), 1e-5 * 3.0) << "waits too long, " << bandwidth;
+    EXPECT_NEAR(ticks * bandwidth * config.period_s, 9.25, 0.5);
+  }
+}
+
+TEST(VelocityObserver, BridgesAShortGapAndForgetsALongOne) {
+  const Config config;
+  State state;
+  int tick = 0;
+  const auto see = [&](int missed) {
+    tick += missed;
+    const Status status =
+        update(config, 3.0 * config.period_s * tick, state, static_cast<std::uint32_t>(missed));
+    ++tick;
+    return status;
+  };
+  for (int i = 0; i < 200; ++i) ASSERT_EQ(see(0), Status::kOk);
+  ASSERT_EQ(see(4), Status::kOk);
+  EXPECT_NEAR(state.velocity, 3.0, 1e-9) << "the position has gone on";
+  EXPECT_TRUE(is_settled(config, state));
+  ASSERT_EQ(see(6), Status::kOk);
+  EXPECT_EQ(state.velocity, 0);
+  EXPECT_FALSE(is_settled(config, state));
+}
+
+TEST(VelocityObserver, NeverHoldsAVelocityThatIsNoNumber) {
+  using Float = VelocityObserverState<float>;
+  Float state{100, 0, 1};
+  EXPECT_EQ(update(VelocityObserverConfig<float>{}, 3e38F, state), Status::kNumericOverflow);
+  EXPECT_EQ(state.velocity, 1);
+  EXPECT_EQ(state.updates, 100U);
+  Float old{std::numeric_limits<std::uint32_t>::max(), 0, 0};
+  EXPECT_EQ(update(VelocityObserverConfig<float>{}, 0.0F, old), Status::kOk);
+  EXPECT_TRUE(is_settled(VelocityObserverConfig<float>{}, old)) << "after 49 days";
 }
 
 }  // namespace

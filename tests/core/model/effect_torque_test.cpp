@@ -130,13 +130,13 @@ double worst_against_formula(const Formula& formula, std::mt19937_64& generator)
     // A width that reaches all the way from the middle of the smoothed sign to its ends.
     const auto dq = random_vector<2, Scalar>(generator, uniform(generator, 0, 1) < 0.5 ? 0.2 : 3);
     const auto ddq = random_vector<2, Scalar>(generator, 3.0);
-    const auto time_s = static_cast<Scalar>(uniform(generator, 0, 2));
+    const double time_s = uniform(generator, 0, 2);
     const Vector<2, Scalar> torque = effect_torque(model, q, dq, time_s);
     const Vector<2, Scalar> whole = inverse_dynamics(model, q, dq, ddq, time_s);
     EXPECT_EQ(torque[0], Scalar(0));
     EXPECT_EQ(whole, (inverse_dynamics(bare, q, dq, ddq, time_s) + torque).eval());
     const double expected = formula.torque(rounded(effect), static_cast<double>(q[1]),
-                                           static_cast<double>(dq[1]), static_cast<double>(time_s));
+                                           static_cast<double>(dq[1]), time_s);
     const double difference = std::fabs(static_cast<double>(torque[1]) - expected);
     worst = difference <= worst ? worst : difference;
   }
@@ -279,7 +279,7 @@ void expect_coupling_follows_its_source(std::mt19937_64& generator, double toler
     ASSERT_EQ(validate(chain), Status::kOk);
     const auto q = random_vector<3, Scalar>(generator, 2.0);
     const auto dq = random_vector<3, Scalar>(generator, 1.0);
-    const auto torque = effect_torque(make_model(chain), q, dq, Scalar(0.3));
+    const auto torque = effect_torque(make_model(chain), q, dq, 0.3);
     const auto p = rounded(effect);
     const auto other = static_cast<double>(dq[source]);
     Eigen::Vector3d expected = Eigen::Vector3d::Zero();

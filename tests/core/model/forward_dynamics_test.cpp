@@ -36,9 +36,9 @@ double worst_round_trip(std::mt19937_64& generator, int chains) {
     const auto dq = random_vector<N, Scalar>(generator, 2.0);
     const auto tau = random_vector<N, Scalar>(generator, 50.0);
     ForwardDynamics<N, Scalar> forward;
-    EXPECT_EQ(forward_dynamics(model, q, dq, tau, Scalar(1), forward), Status::kOk);
+    EXPECT_EQ(forward_dynamics(model, q, dq, tau, 1.0, forward), Status::kOk);
     EXPECT_EQ(forward.inertia, mass_matrix(model, q));
-    worst = std::max(worst, deviation(inverse_dynamics(model, q, dq, forward.ddq, Scalar(1)), tau));
+    worst = std::max(worst, deviation(inverse_dynamics(model, q, dq, forward.ddq, 1.0), tau));
   }
   return worst;
 }
@@ -81,7 +81,7 @@ TEST(ForwardDynamics, GivenMoreMassTakenAwayThanThereIsThenTheMassMatrixIsReport
 
 template <typename Scalar>
 void expect_refused(const RigidBodyModel<2, Scalar>& model, const Vector<2, Scalar>& q,
-                    const Vector<2, Scalar>& dq, const Vector<2, Scalar>& tau, Scalar time_s) {
+                    const Vector<2, Scalar>& dq, const Vector<2, Scalar>& tau, double time_s) {
   ForwardDynamics<2, Scalar> result;
   result.ddq.setConstant(5);
   result.inertia.setConstant(6);

@@ -60,7 +60,7 @@ double worst_column_against_newton_euler(std::mt19937_64& generator, int chains)
     Matrix<N, N, Scalar> columns;
     for (Eigen::Index j = 0; j < N; ++j) {
       const Vector<N, Scalar> unit = Vector<N, Scalar>::Unit(j);
-      columns.col(j) = inverse_dynamics(model, q, rest, unit, Scalar(0));
+      columns.col(j) = inverse_dynamics(model, q, rest, unit, 0.0);
     }
     worst = std::max(worst, deviation(m, columns));
   }

@@ -50,12 +50,12 @@ RoundTrip worst_round_trip(std::mt19937_64& generator) {
     const auto dq = random_vector<N, Scalar>(generator, sample % 2 == 0 ? 2.0 : 0.1);
     const auto tau = random_vector<N, Scalar>(generator, 50.0);
     ForwardDynamics<N, Scalar> forward;
-    EXPECT_EQ(forward_dynamics(model, q, dq, tau, Scalar(1), forward), Status::kOk);
-    const auto back = inverse_dynamics(model, q, dq, forward.ddq, Scalar(1));
+    EXPECT_EQ(forward_dynamics(model, q, dq, tau, 1.0, forward), Status::kOk);
+    const auto back = inverse_dynamics(model, q, dq, forward.ddq, 1.0);
     worst.torque = std::max(worst.torque, deviation(back, tau));
     const auto ddq = random_vector<N, Scalar>(generator, 20.0);
-    const auto needed = inverse_dynamics(model, q, dq, ddq, Scalar(1));
-    EXPECT_EQ(forward_dynamics(model, q, dq, needed, Scalar(1), forward), Status::kOk);
+    const auto needed = inverse_dynamics(model, q, dq, ddq, 1.0);
+    EXPECT_EQ(forward_dynamics(model, q, dq, needed, 1.0, forward), Status::kOk);
     worst.acceleration = std::max(worst.acceleration, deviation(forward.ddq, ddq));
   }
   return worst;

@@ -54,12 +54,12 @@ Worst worst_against_closed_form(std::mt19937_64& generator) {
     const Eigen::Vector2d& q_exact = q.template cast<double>();
     const Eigen::Vector2d& dq_exact = dq.template cast<double>();
     ForwardDynamics<2, Scalar> forward;
-    EXPECT_EQ(forward_dynamics(model, q, dq, tau, Scalar(0), forward), Status::kOk);
+    EXPECT_EQ(forward_dynamics(model, q, dq, tau, 0.0, forward), Status::kOk);
     const auto keep = [](double& largest, double value) { largest = std::max(largest, value); };
     keep(worst.inertia, deviation(mass_matrix(model, q), arm.inertia(q_exact)));
     keep(worst.inertia, deviation(forward.inertia, arm.inertia(q_exact)));
     keep(worst.bias, deviation(bias_torque(model, q, dq, Scalar(0)), arm.bias(q_exact, dq_exact)));
-    keep(worst.torque, deviation(inverse_dynamics(model, q, dq, ddq, Scalar(0)),
+    keep(worst.torque, deviation(inverse_dynamics(model, q, dq, ddq, 0.0),
                                  arm.torque(q_exact, dq_exact, ddq.template cast<double>())));
     keep(worst.acceleration,
          deviation(forward.ddq, arm.acceleration(q_exact, dq_exact, tau.template cast<double>())));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <offnominal/model/cholesky.hpp>
 #include <offnominal/model/rigid_body_model.hpp>
 
 namespace offnominal {
@@ -21,7 +22,8 @@ template <int N, typename Scalar>
     const Vector<N, Scalar>& limit,
     const Vector<N, Scalar>& told_per_load = Vector<N, Scalar>::Ones()) {
   CompensatingTorque<N, Scalar> result;
-  const Vector<N, Scalar> wanted = -told_per_load.cwiseProduct(inertia.lazyProduct(psi_hat));
+  const Vector<N, Scalar> wanted =
+      -told_per_load.cwiseProduct(product<N, Scalar>(inertia, psi_hat));
   for (Eigen::Index i = 0; i < N; ++i) {
     const Scalar w = wanted[i];
     const bool over = w > limit[i];

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cmath>
 #include <cstddef>
+#include <offnominal/finite.hpp>
 #include <offnominal/model/inverse_dynamics.hpp>
 #include <offnominal/model/rigid_body_model.hpp>
 #include <offnominal/status.hpp>
@@ -28,8 +28,8 @@ struct Reference {
 template <int N, typename Scalar>
 [[nodiscard]] Status validate(const ComputedTorqueGains<N, Scalar>& gains) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
-    const bool good = std::isfinite(gains.kp[i]) && gains.kp[i] >= 0 &&
-                      std::isfinite(gains.kd[i]) && gains.kd[i] >= 0;
+    const bool good =
+        is_finite(gains.kp[i]) && gains.kp[i] >= 0 && is_finite(gains.kd[i]) && gains.kd[i] >= 0;
     if (!good) return Status::kInvalidGain;
   }
   return Status::kOk;
@@ -43,7 +43,7 @@ template <int N, typename Scalar>
                                                 const ComputedTorqueGains<N, Scalar>& gains,
                                                 const Reference<N, Scalar>& reference,
                                                 const Vector<N, Scalar>& q,
-                                                const Vector<N, Scalar>& dq, Scalar time_s) {
+                                                const Vector<N, Scalar>& dq, double time_s) {
   using Diagonal = Eigen::Map<const Vector<N, Scalar>>;
   const Diagonal kp(gains.kp.data());
   const Diagonal kd(gains.kd.data());

@@ -3,9 +3,10 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <offnominal/finite.hpp>
+#include <offnominal/model/cholesky.hpp>
 #include <offnominal/model/rigid_body_model.hpp>
 #include <offnominal/status.hpp>
 
@@ -52,7 +53,7 @@ template <int N, typename Scalar>
 [[nodiscard]] bool table_valid(const UncertaintyBound<N, Scalar>& bound) {
   if (bound.points < 1 || bound.points > kMaxTablePoints || bound.joint >= N) return false;
   for (std::size_t i = 0; i < bound.points; ++i) {
-    if (!std::isfinite(bound.at[i]) || !std::isfinite(bound.value[i]) || bound.value[i] <= 0) {
+    if (!is_finite(bound.at[i]) || !is_finite(bound.value[i]) || bound.value[i] <= 0) {
       return false;
     }
     if (i > 0 && bound.at[i] <= bound.at[i - 1]) return false;
@@ -76,17 +77,16 @@ template <int N, typename Scalar>
 template <int N, typename Scalar>
 [[nodiscard]] Status validate(const UncertaintyBound<N, Scalar>& bound) {
   const auto require = [](bool good) { return good ? Status::kOk : Status::kInvalidBound; };
-  if (!std::isfinite(bound.velocity_error) || bound.velocity_error < 0) {
+  if (!is_finite(bound.velocity_error) || bound.velocity_error < 0) {
     return Status::kInvalidBound;
   }
   switch (bound.kind) {
     case BoundKind::kConstant:
-      return require(std::isfinite(bound.offset) && bound.offset > 0);
+      return require(is_finite(bound.offset) && bound.offset > 0);
     case BoundKind::kScaledNorm: {
-      bool good = std::isfinite(bound.scale) && bound.scale > 0 && std::isfinite(bound.offset) &&
-                  bound.offset >= 0;
-      for (const Scalar element : bound.matrix) good = good && std::isfinite(element);
-      return require(good);
+      const bool good =
+          is_finite(bound.scale) && bound.scale > 0 && is_finite(bound.offset) && bound.offset >= 0;
+      return require(good && all_finite(bound.matrix));
     }
     case BoundKind::kTable:
       return require(detail::table_valid(bound));
@@ -104,8 +104,7 @@ template <int N, typename Scalar>
     case BoundKind::kScaledNorm: {
       using RowMajor = Eigen::Matrix<Scalar, N, N, N == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
       const Eigen::Map<const RowMajor> a(bound.matrix.data());
-      const Vector<N, Scalar> product = a.lazyProduct(dq);
-      return bound.scale * (product.norm() + bound.offset);
+      return bound.scale * (product<N, Scalar>(a, dq).norm() + bound.offset);
     }
     case BoundKind::kTable: {
       const auto joint = static_cast<Eigen::Index>(bound.joint);

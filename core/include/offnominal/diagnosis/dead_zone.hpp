@@ -16,9 +16,8 @@ enum class DeadZone : std::uint8_t {
 // mu where continuous. At e = mu = 0 it is 0. mu >= 0; e and mu in rad/s or m/s. |D[e]| does not
 // exceed `largest`, and an error whose norm the scalar cannot hold gives 0.
 template <int N, typename Scalar>
-[[nodiscard]] Vector<N, Scalar> dead_zone(
-    const Vector<N, Scalar>& e, Scalar mu, DeadZone kind,
-    Scalar largest = std::numeric_limits<Scalar>::infinity()) {
+[[nodiscard]] Vector<N, Scalar> dead_zone(const Vector<N, Scalar>& e, Scalar mu, DeadZone kind,
+                                          Scalar largest = std::numeric_limits<Scalar>::max()) {
   const Scalar norm = e.norm();
   const Scalar inverse = Scalar(1) / Eigen::numext::maxi(norm, std::numeric_limits<Scalar>::min());
   const Scalar shrunk = kind == DeadZone::kContinuous ? Scalar(1) - mu * inverse : Scalar(1);

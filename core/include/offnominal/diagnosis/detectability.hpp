@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <offnominal/finite.hpp>
 #include <offnominal/status.hpp>
 
 // Which faults are certain to be seen, and by when. Derivations: docs/theory.md.
@@ -33,18 +34,18 @@ struct FaultClass {
 namespace detail {
 
 [[nodiscard]] inline bool has_guarantee(const FaultClass& fault) {
-  const bool rates = std::isfinite(fault.alpha) && fault.alpha > 0 &&
-                     (std::isinf(fault.rho) ? fault.rho > 0 : fault.alpha > fault.rho) &&
+  const bool rates = is_finite(fault.alpha) && fault.alpha > 0 &&
+                     (is_infinite(fault.rho) ? fault.rho > 0 : fault.alpha > fault.rho) &&
                      fault.rho > 0;
-  return rates && std::isfinite(fault.margin) && fault.margin > 1 &&
-         std::isfinite(fault.fault_time_s) && fault.fault_time_s >= 0;
+  return rates && is_finite(fault.margin) && fault.margin > 1 && is_finite(fault.fault_time_s) &&
+         fault.fault_time_s >= 0;
 }
 
 // |eta| - 2 mu at s after the fault, in the worst case, divided by 2 K / alpha.
 [[nodiscard]] inline double worst_case_margin(const FaultClass& fault, double s) {
   const double a = fault.alpha;
   const double filtered =
-      std::isinf(fault.rho)
+      is_infinite(fault.rho)
           ? -std::expm1(-a * s)
           : 1 - (a * std::exp(-fault.rho * s) - fault.rho * std::exp(-a * s)) / (a - fault.rho);
   return fault.margin * filtered + std::expm1(-a * (s + fault.fault_time_s));
@@ -57,7 +58,7 @@ namespace detail {
 [[nodiscard]] inline Status detection_delay_closed_form(const FaultClass& fault, double& delay_s) {
   if (!detail::has_guarantee(fault)) return Status::kNoGuarantee;
   const double r = fault.margin;
-  delay_s = std::isinf(fault.rho)
+  delay_s = is_infinite(fault.rho)
                 ? std::log(r / (r - 1)) / fault.alpha
                 : std::log(fault.alpha * r / ((fault.alpha - fault.rho) * (r - 1))) / fault.rho;
   return Status::kOk;

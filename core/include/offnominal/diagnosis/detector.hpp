@@ -10,15 +10,15 @@ template <typename Scalar>
 struct DetectorState {
   bool level = false;
   bool latched = false;
-  std::uint32_t detection_tick = 0;  // of the first crossing, from reset(); valid while latched
-  Scalar detection_time_s{};         // the same in seconds
+  std::uint64_t detection_tick = 0;  // of the first crossing, from reset(); valid while latched
+  double detection_time_s = 0;       // the same in seconds
 };
 
 // Judges one tick. error_norm = |e| >= 0 and mu >= 0 in rad/s or m/s. At |e| = mu, and so at
 // |e| = mu = 0, there is no detection.
 template <typename Scalar>
-inline void update(DetectorState<Scalar>& state, Scalar error_norm, Scalar mu, std::uint32_t tick,
-                   Scalar time_s) {
+inline void update(DetectorState<Scalar>& state, Scalar error_norm, Scalar mu, std::uint64_t tick,
+                   double time_s) {
   state.level = error_norm > mu;
   if (state.level && !state.latched) {
     state.latched = true;
@@ -32,7 +32,7 @@ template <typename Scalar>
 inline void clear_latch(DetectorState<Scalar>& state) {
   state.latched = false;
   state.detection_tick = 0;
-  state.detection_time_s = Scalar(0);
+  state.detection_time_s = 0;
 }
 
 }  // namespace offnominal

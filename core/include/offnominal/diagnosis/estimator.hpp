@@ -7,6 +7,7 @@
 #include <offnominal/diagnosis/estimator_state.hpp>
 #include <offnominal/diagnosis/network.hpp>
 #include <offnominal/diagnosis/tick_integrator.hpp>
+#include <offnominal/finite.hpp>
 #include <offnominal/status.hpp>
 
 // The nonlinear estimator and its learning law, paper eqs. (2), (7), (8), (9):
@@ -23,6 +24,19 @@ namespace offnominal {
 
 namespace detail {
 
+// A number, and no square that comes near to the scalar's largest number.
+template <typename Scalar>
+[[nodiscard]] constexpr bool is_within(const Scalar& square) {
+  return is_finite(square) && square <= std::numeric_limits<Scalar>::max() / 64;
+}
+
+// Whether a tick can begin or end with it: otherwise the numbers that come of it are none.
+template <int N, typename Scalar>
+[[nodiscard]] bool is_bounded(const EstimatorInput<N, Scalar>& input, Scalar z_squared_norm) {
+  return is_within(z_squared_norm) && is_within(input.nominal_ddq.squaredNorm()) &&
+         is_within(input.mu_bar);
+}
+
 // Puts a sample, and what the network makes of it, where the next tick looks for its beginning.
 template <int N, int L, typename Scalar>
 void begin_at(const EstimatorInput<N, Scalar>& sample, EstimatorState<N, L, Scalar>& state) {
@@ -30,22 +44,26 @@ void begin_at(const EstimatorInput<N, Scalar>& sample, EstimatorState<N, L, Scal
   state.z_squared_norm = sample.z.squaredNorm();
   state.nominal_ddq = sample.nominal_ddq;
   state.mu_bar = sample.mu_bar;
-  state.w1_z = state.weights.w1.lazyProduct(sample.z).array();
+  first_layer(state.weights, sample.z, state.w1_z);
   state.sigma = sigmoid(state.w1_z);
 }
 
 }  // namespace detail
 
 // Starts at a sample: omega(0) = dq(0), mu(0) = 0, W2(0) = 0 and seeded W1(0).
-// kInvalidInitialWeights where |theta(0)| would not lie inside the ball of radius M, `state` is
-// then unchanged.
+// kInvalidInitialWeights where |theta(0)| would not lie inside the ball of radius M,
+// kNumericOverflow where the sample is so large that no tick could begin with it; `state` is then
+// unchanged.
 template <int N, int L, typename Scalar>
 [[nodiscard]] Status reset(const EstimatorConfig<Scalar>& config,
                            const EstimatorInput<N, Scalar>& sample,
                            EstimatorState<N, L, Scalar>& state) {
+  if (!detail::is_bounded(sample, sample.z.squaredNorm())) return Status::kNumericOverflow;
   const Scalar squared = initial_squared_norm<N, L, Scalar>(config.seed, config.hidden_units,
                                                             config.initial_weight_range);
-  if (!(std::sqrt(squared) < config.weight_radius)) return Status::kInvalidInitialWeights;
+  if (!is_finite(squared) || std::sqrt(squared) >= config.weight_radius) {
+    return Status::kInvalidInitialWeights;
+  }
   // In place: on a controller's stack there is no room for another state.
   set_initial_weights(config.seed, config.hidden_units, config.initial_weight_range, state.weights);
   state.theta_squared_norm = squared_norm(state.weights);
@@ -59,14 +77,16 @@ template <int N, int L, typename Scalar>
 
 // Goes on at a sample after a gap without any: e, mu and theta are those before the gap, and omega
 // is moved to the new velocity for it, as if no time had passed. `mu_jump` >= 0 comes on top of mu,
-// for what the velocity's own error puts into omega there.
+// for what the velocity's own error puts into omega there. kNumericOverflow as reset().
 template <int N, int L, typename Scalar>
-void resume(const EstimatorInput<N, Scalar>& sample, Scalar mu_jump,
-            EstimatorState<N, L, Scalar>& state) {
+[[nodiscard]] Status resume(const EstimatorInput<N, Scalar>& sample, Scalar mu_jump,
+                            EstimatorState<N, L, Scalar>& state) {
+  if (!detail::is_bounded(sample, sample.z.squaredNorm())) return Status::kNumericOverflow;
   detail::begin_at(sample, state);
   state.omega = sample.z.template segment<N>(1 + N) - state.error;
   state.mu += mu_jump;
   state.psi_hat = network_output(state.weights, state.sigma);
+  return Status::kOk;
 }
 
 // Advances the estimator by one tick that begins with `begin`. kNumericOverflow where the input is
@@ -78,10 +98,9 @@ template <int N, int L, typename Scalar>
                           EstimatorState<N, L, Scalar>& state) {
   detail::TickIntegrator<N, L, Scalar> tick(config, begin, input, state);
   const detail::TickEnd<N, Scalar> end = tick.integrate();
-  const Scalar limit = std::numeric_limits<Scalar>::max() / 64;
-  const bool bounded = tick.squared_reach(end.theta) <= limit &&
-                       tick.input_products().z11 <= limit && end.omega.squaredNorm() <= limit &&
-                       input.nominal_ddq.squaredNorm() <= limit && end.mu <= limit;
+  const bool bounded = detail::is_bounded(input, tick.input_products().z11) &&
+                       detail::is_within(tick.squared_reach(end.theta)) &&
+                       detail::is_within(end.omega.squaredNorm()) && detail::is_within(end.mu);
   if (!bounded) return Status::kNumericOverflow;
   tick.finish(end.theta, state);
   state.omega = end.omega;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <offnominal/diagnosis/dead_zone.hpp>
+#include <offnominal/finite.hpp>
 #include <offnominal/status.hpp>
 
 namespace offnominal {
@@ -28,13 +28,13 @@ inline constexpr double kMaxPolePerTick = 1.0;
 // NaN and infinity fail every check.
 template <int L, typename Scalar>
 [[nodiscard]] Status validate(const EstimatorConfig<Scalar>& config) {
-  const auto positive = [](Scalar x) { return std::isfinite(x) && x > 0; };
+  const auto positive = [](Scalar x) { return is_finite(x) && x > 0; };
   if (!positive(config.period_s)) return Status::kInvalidPeriod;
   if (!positive(config.alpha)) return Status::kInvalidFilterPole;
   if (config.alpha * config.period_s > static_cast<Scalar>(kMaxPolePerTick)) {
     return Status::kUnstablePeriod;
   }
-  if (!std::isfinite(config.learning_rate) || config.learning_rate < 0) {
+  if (!is_finite(config.learning_rate) || config.learning_rate < 0) {
     return Status::kInvalidLearningRate;
   }
   if (!positive(config.weight_radius)) return Status::kInvalidWeightRadius;

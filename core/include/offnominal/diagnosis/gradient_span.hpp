@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
-#include <utility>
+#include <offnominal/repeat.hpp>
 
 // The weights inside one tick, without vectors of the length of theta.
 //
@@ -19,16 +19,6 @@
 namespace offnominal::detail {
 
 inline constexpr int kStages = 4;
-
-// body(0) .. body(Count - 1), written out: without vector instructions the bookkeeping of a loop
-// costs as much as its work.
-template <int Count, typename Body>
-EIGEN_ALWAYS_INLINE void repeat(const Body& body) {
-  const auto all = [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
-    (body(I), ...);
-  };
-  all(std::make_integer_sequence<int, Count>{});
-}
 
 // Coordinates in span{theta_0, g_0, .., g_3} and what projection has to know of a point in it.
 template <typename Scalar>

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <offnominal/diagnosis/gradient_span.hpp>
+#include <offnominal/diagnosis/lanes.hpp>
 #include <offnominal/diagnosis/network.hpp>
-#include <type_traits>
 
 // The work on the hidden layer inside one tick: one sweep over the hidden units per Runge-Kutta
 // stage, in blocks of the processor's vector length, with all inner products of the stage summed on
@@ -13,65 +13,6 @@
 // again.
 
 namespace offnominal::detail {
-
-// So many hidden units at once; a plain number where there are no vector instructions.
-template <typename Scalar>
-using Block =
-    std::conditional_t<kLanes<Scalar> == 1, Scalar, Eigen::Array<Scalar, kLanes<Scalar>, 1>>;
-
-template <typename Scalar>
-[[nodiscard]] EIGEN_ALWAYS_INLINE Block<Scalar> load(const Scalar* from) {
-  if constexpr (kLanes<Scalar> == 1) {
-    return *from;
-  } else {
-    return Eigen::Map<const Block<Scalar>>(from);
-  }
-}
-template <typename Scalar>
-EIGEN_ALWAYS_INLINE void store(const Block<Scalar>& block, Scalar* to) {
-  if constexpr (kLanes<Scalar> == 1) {
-    *to = block;
-  } else {
-    Eigen::Map<Block<Scalar>> into(to);
-    into = block;
-  }
-}
-template <typename Scalar>
-[[nodiscard]] EIGEN_ALWAYS_INLINE Block<Scalar> spread(Scalar value) {
-  if constexpr (kLanes<Scalar> == 1) {
-    return value;
-  } else {
-    return Block<Scalar>::Constant(value);
-  }
-}
-template <typename Scalar>
-[[nodiscard]] EIGEN_ALWAYS_INLINE Scalar total(const Block<Scalar>& block) {
-  if constexpr (kLanes<Scalar> == 1) {
-    return block;
-  } else {
-    return block.sum();
-  }
-}
-
-// Rows in one turn of a loop where a block is one row: several, unless what is done with a row is
-// so long that the loop's own instructions count for less than the room in flash.
-inline constexpr int kShortRow = 5;
-inline constexpr int kLongRow = 1;
-
-// body(row) for the first row of every block, in turns of `Turn` rows where a block is one.
-template <typename Scalar, int L, int Turn = kShortRow, typename Body>
-EIGEN_ALWAYS_INLINE void for_each_block(const Body& body) {
-  constexpr int kWidth = kLanes<Scalar>;
-  constexpr int kRows = kHiddenRows<L, Scalar>;
-  constexpr int kTurn = kWidth == 1 ? Turn : kWidth;
-  constexpr int kWhole = kRows / kTurn * kTurn;
-  for (int row = 0; row < kWhole; row += kTurn) {
-    repeat<kTurn / kWidth>([&](int i) __attribute__((always_inline)) { body(row + i * kWidth); });
-  }
-  repeat<(kRows - kWhole) / kWidth>([&](int i) __attribute__((always_inline)) {
-    body(kWhole + i * kWidth);
-  });
-}
 
 // Factors of the gradients g_j = (b_j z_j^T, D_j sigma_j^T) of the stages so far.
 template <int L, typename Scalar>
@@ -116,20 +57,6 @@ struct GradientSums {
   Scalar with_begin{};     // b_s . (W1(t0) z_s)
 };
 
-// W1(t0) z1.
-template <int N, int L, typename Scalar>
-EIGEN_ALWAYS_INLINE void first_layer(const NetworkWeights<N, L, Scalar>& weights,
-                                     const NetworkInput<N, Scalar>& z1,
-                                     HiddenVector<L, Scalar>& w1_z1) {
-  for_each_block<Scalar, L, kLongRow>([&](int row) __attribute__((always_inline)) {
-    Block<Scalar> sum = z1[0] * load(&weights.w1(row, 0));
-    repeat<kNetworkInputs<N> - 1>([&](int i) __attribute__((always_inline)) {
-      sum += z1[i + 1] * load(&weights.w1(row, i + 1));
-    });
-    store<Scalar>(sum, &w1_z1[row]);
-  });
-}
-
 // sigma of W1 z = keep W1(t0) z + sum kappa_j b_j at a stage but the first, into factors.
 template <int Stage, int N, int L, typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE SigmaSums<N, Scalar> sigma_pass(
@@ -149,7 +76,7 @@ template <int Stage, int N, int L, typename Scalar>
       const auto stage = static_cast<std::size_t>(j);
       at += kappa[stage] * load(&factors.b[stage][row]);
     });
-    const Lanes sigma = sigmoid(at);
+    const Lanes sigma = sigmoid_of_block<Scalar>(at);
     store<Scalar>(sigma, &factors.sigma_later[kStage - 1][row]);
     repeat<Stage>([&](int j) __attribute__((always_inline)) {
       const auto stage = static_cast<std::size_t>(j);
@@ -284,7 +211,7 @@ template <int N, int L, typename Scalar>
   psi.fill(spread(Scalar(0)));
   for_each_block<Scalar, L, kLongRow>([&](int row) __attribute__((always_inline)) {
     const Lanes pre = shrink * load<Scalar>(&w1_z[row]);
-    const Lanes s = sigmoid(pre);
+    const Lanes s = sigmoid_of_block<Scalar>(pre);
     store<Scalar>(pre, &w1_z[row]);
     store<Scalar>(s, &sigma[row]);
     repeat<kNetworkInputs<N>>([&](int input) __attribute__((always_inline)) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstdint>
+#include <offnominal/diagnosis/lanes.hpp>
 #include <offnominal/diagnosis/sigmoid.hpp>
 #include <offnominal/model/rigid_body_model.hpp>
 #include <offnominal/status.hpp>
@@ -14,15 +15,6 @@ namespace offnominal {
 // Network inputs of n joints: 1, q, dq, tau.
 template <int N>
 inline constexpr int kNetworkInputs = 3 * N + 1;
-
-// Hidden units are worked on in blocks of the processor's vector length; the capacity is rounded up
-// to whole blocks (to nothing where there are no vector instructions).
-template <typename Scalar>
-inline constexpr int kLanes =
-    Eigen::internal::packet_traits<Scalar>::size < 8 ? Eigen::internal::packet_traits<Scalar>::size
-                                                     : 8;
-template <int L, typename Scalar>
-inline constexpr int kHiddenRows = (L + kLanes<Scalar> - 1) / kLanes<Scalar>* kLanes<Scalar>;
 
 template <int L, typename Scalar>
 using HiddenVector = Eigen::Array<Scalar, kHiddenRows<L, Scalar>, 1>;
@@ -110,25 +102,61 @@ template <int N, int L, typename Scalar>
   return sum;
 }
 
+// W1 z.
+template <int N, int L, typename Scalar>
+EIGEN_ALWAYS_INLINE void first_layer(const NetworkWeights<N, L, Scalar>& weights,
+                                     const NetworkInput<N, Scalar>& z,
+                                     HiddenVector<L, Scalar>& w1_z) {
+  using namespace detail;
+  for_each_block<Scalar, L, kLongRow>([&](int row) __attribute__((always_inline)) {
+    Block<Scalar> sum = z[0] * load(&weights.w1(row, 0));
+    repeat<kNetworkInputs<N> - 1>([&](int i) __attribute__((always_inline)) {
+      sum += z[i + 1] * load(&weights.w1(row, i + 1));
+    });
+    store<Scalar>(sum, &w1_z[row]);
+  });
+}
+
 // psi_hat, rad/s^2 or m/s^2, of the hidden units' values.
 template <int N, int L, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> network_output(const NetworkWeights<N, L, Scalar>& weights,
                                                const HiddenVector<L, Scalar>& sigma) {
-  return weights.w2_transposed.transpose().lazyProduct(sigma.matrix());
+  Vector<N, Scalar> psi_hat;
+  for (Eigen::Index k = 0; k < N; ++k) {
+    detail::Block<Scalar> sum{};
+    detail::for_each_block<Scalar, L>([&](int row) __attribute__((always_inline)) {
+      sum += detail::load(&sigma[row]) * detail::load(&weights.w2_transposed(row, k));
+    });
+    psi_hat[k] = detail::total<Scalar>(sum);
+  }
+  return psi_hat;
 }
 
 // psi_hat at input z.
 template <int N, int L, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> network_output(const NetworkWeights<N, L, Scalar>& weights,
                                                const NetworkInput<N, Scalar>& z) {
-  const HiddenVector<L, Scalar> pre = weights.w1.lazyProduct(z).array();
+  HiddenVector<L, Scalar> pre;
+  first_layer(weights, z, pre);
   const HiddenVector<L, Scalar> sigma = sigmoid(pre);
   return network_output(weights, sigma);
 }
 
+// |theta|^2.
 template <int N, int L, typename Scalar>
 [[nodiscard]] Scalar squared_norm(const NetworkWeights<N, L, Scalar>& weights) {
-  return weights.w1.squaredNorm() + weights.w2_transposed.squaredNorm();
+  detail::Block<Scalar> sum{};
+  const auto add = [&](const auto& matrix) {
+    for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
+      detail::for_each_block<Scalar, L>([&](int row) __attribute__((always_inline)) {
+        const detail::Block<Scalar> w = detail::load(&matrix(row, column));
+        sum += w * w;
+      });
+    }
+  };
+  add(weights.w1);
+  add(weights.w2_transposed);
+  return detail::total<Scalar>(sum);
 }
 
 }  // namespace offnominal

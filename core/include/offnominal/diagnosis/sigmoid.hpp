@@ -6,6 +6,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <offnominal/diagnosis/lanes.hpp>
 #include <offnominal/exponential.hpp>
 
 namespace offnominal {
@@ -24,13 +25,22 @@ namespace detail {
 #endif
 }
 
-// sigma(x) from e^x with one division.
-[[nodiscard]] EIGEN_ALWAYS_INLINE double sigmoid_of(double x) {
-  const ExponentialParts e = exponential_parts(x);
+// The same on vectors.
+template <typename Values>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Values held_to_16(const Values& x) {
+  const Values most = 16.0F - Values{};
+  const Values low = x < most ? x : most;
+  return low > -most ? low : -most;
+}
+
+// sigma(x) from e^x with one division. Values: double, or a vector of them.
+template <typename Values>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Values sigmoid_of(const Values& x) {
+  const ExponentialParts<Values> e = exponential_parts(x);
   return (e.up - e.down) / (e.up + e.down);
 }
 
-// sigma of arguments inside [-16, 16]: numbers or arrays.
+// sigma of arguments inside [-16, 16]. Values: float, or a vector of them.
 template <typename Values>
 [[nodiscard]] EIGEN_ALWAYS_INLINE Values sigmoid_within_16(const Values& x) {
   const Values square = x * x;
@@ -54,21 +64,35 @@ template <typename Values>
 }
 [[nodiscard]] EIGEN_ALWAYS_INLINE double sigmoid(double x) { return detail::sigmoid_of(x); }
 
+namespace detail {
+
+// sigma of every element of a block that is a vector.
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Block<Scalar> sigmoid_of_block(const Block<Scalar>& x) {
+  if constexpr (kLanes<Scalar> == 1) {
+    return sigmoid(x);
+  } else if constexpr (std::same_as<Scalar, float>) {
+    return sigmoid_within_16<Block<float>>(held_to_16<Block<float>>(x));
+  } else {
+    return sigmoid_of<Block<double>>(x);
+  }
+}
+
+}  // namespace detail
+
 template <int Rows, typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE Eigen::Array<Scalar, Rows, 1> sigmoid(
     const Eigen::Array<Scalar, Rows, 1>& x) {
-  using Block = Eigen::Array<Scalar, Rows, 1>;
-  if constexpr (Eigen::internal::packet_traits<Scalar>::size == 1 || Rows == 1) {
-    Block y;
-    for (Eigen::Index i = 0; i < Rows; ++i) y[i] = sigmoid(x[i]);
-    return y;
-  } else if constexpr (std::same_as<Scalar, float>) {
-    return detail::sigmoid_within_16<Block>(
-        Block::Constant(-16.0F).max(Block::Constant(16.0F).min(x)));
+  Eigen::Array<Scalar, Rows, 1> y;
+  if constexpr (Rows % kLanes<Scalar> == 0) {
+    detail::for_each_block<Scalar, Rows, detail::kLongRow>([&](
+        int row) __attribute__((always_inline)) {
+      detail::store<Scalar>(detail::sigmoid_of_block<Scalar>(detail::load(&x[row])), &y[row]);
+    });
   } else {
-    // An exponential that overflows to infinity gives the right limit, 1.
-    return Scalar(1) - Scalar(2) / (x.exp() + Scalar(1));
+    for (Eigen::Index i = 0; i < Rows; ++i) y[i] = sigmoid(x[i]);
   }
+  return y;
 }
 
 }  // namespace offnominal

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <offnominal/exponential.hpp>
+#include <offnominal/finite.hpp>
 #include <offnominal/status.hpp>
 
 // Velocity from positions alone, for encoders that send no velocity: a tracking loop of second
@@ -18,43 +21,56 @@ struct VelocityObserverConfig {
 
 template <typename Scalar>
 struct VelocityObserverState {
-  bool started = false;
-  Scalar position{};  // rad or m
-  Scalar velocity{};  // rad/s or m/s
+  std::uint32_t updates = 0;  // since it started; 0: it has not. Stays at the largest number.
+  Scalar position{};          // rad or m
+  Scalar velocity{};          // rad/s or m/s
 };
 
 // kInvalidPeriod, or kInvalidFilterPole where the loop would be slower than it samples: bandwidth
 // times period has to stay below 0.5.
 template <typename Scalar>
 [[nodiscard]] Status validate(const VelocityObserverConfig<Scalar>& config) {
-  if (!(std::isfinite(config.period_s) && config.period_s > 0)) return Status::kInvalidPeriod;
+  if (!is_finite(config.period_s) || config.period_s <= 0) return Status::kInvalidPeriod;
   const Scalar share = config.bandwidth_rad_s * config.period_s;
-  return share > 0 && share < Scalar(0.5) ? Status::kOk : Status::kInvalidFilterPole;
+  return is_finite(share) && share > 0 && share < Scalar(0.5) ? Status::kOk
+                                                              : Status::kInvalidFilterPole;
 }
 
-// One tick: the position measured at its end, rad or m. The first call starts at rest there.
-// kNonFinitePosition, and the state unchanged, for a position that is not a number.
+// Whether the velocity may be used: of the error that it started with, the speed of a joint that
+// was taken to be at rest, a thousandth is left.
+template <typename Scalar>
+[[nodiscard]] bool is_settled(const VelocityObserverConfig<Scalar>& config,
+                              const VelocityObserverState<Scalar>& state) {
+  constexpr Scalar kTimes = Scalar(9.25);  // (1 + x) exp(-x) = 0.001 at x = 9.23
+  return static_cast<Scalar>(state.updates) * config.bandwidth_rad_s * config.period_s > kTimes;
+}
+
+// One tick: the position measured at its end, rad or m, after `missed` ticks without one. Over
+// these the position goes on at the velocity that is known, for 1/bandwidth at most: after a longer
+// gap nothing is known any more. The first call, and the one after such a gap, starts at rest there
+// and has to settle. kNonFinitePosition for a position that is not a number, kNumericOverflow for
+// one so far away that the velocity would not be; the state is then unchanged.
 template <typename Scalar>
 [[nodiscard]] Status update(const VelocityObserverConfig<Scalar>& config, Scalar position,
-                            VelocityObserverState<Scalar>& state) {
-  if (!std::isfinite(position)) return Status::kNonFinitePosition;
-  if (!state.started) {
-    state = {true, position, Scalar(0)};
+                            VelocityObserverState<Scalar>& state, std::uint32_t missed = 0) {
+  if (!is_finite(position)) return Status::kNonFinitePosition;
+  const Scalar share = config.bandwidth_rad_s * config.period_s;
+  if (state.updates == 0 || static_cast<Scalar>(missed) * share > Scalar(1)) {
+    state = {1, position, Scalar(0)};
     return Status::kOk;
   }
   // Poles of the sampled loop at exp(-bandwidth period), both.
-  const Scalar pole = exponential(-config.bandwidth_rad_s * config.period_s);
-  const Scalar innovation = position - (state.position + config.period_s * state.velocity);
-  state.position += config.period_s * state.velocity + (Scalar(1) - pole * pole) * innovation;
-  state.velocity += (Scalar(1) - pole) * (Scalar(1) - pole) / config.period_s * innovation;
+  const Scalar pole = exponential(-share);
+  const Scalar predicted =
+      state.position + static_cast<Scalar>(missed + 1) * config.period_s * state.velocity;
+  const Scalar innovation = position - predicted;
+  const Scalar velocity =
+      state.velocity + (Scalar(1) - pole) * (Scalar(1) - pole) / config.period_s * innovation;
+  if (!is_finite(velocity)) return Status::kNumericOverflow;
+  state.position = predicted + (Scalar(1) - pole * pole) * innovation;
+  state.velocity = velocity;
+  if (state.updates < std::numeric_limits<std::uint32_t>::max()) ++state.updates;
   return Status::kOk;
-}
-
-// A tick without a measurement: the position moves on at the velocity that is known.
-template <typename Scalar>
-constexpr void coast(const VelocityObserverConfig<Scalar>& config,
-                     VelocityObserverState<Scalar>& state) {
-  state.position += config.period_s * state.velocity;
 }
 
 // Largest error of the velocity that the observer can make once it has settled, rad/s or m/s, on a

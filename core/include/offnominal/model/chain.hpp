@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <offnominal/finite.hpp>
 #include <offnominal/model/effect_list.hpp>
 #include <offnominal/model/quantity.hpp>
 #include <offnominal/status.hpp>
@@ -50,14 +51,6 @@ struct Chain {
 
 namespace detail {
 
-template <typename Scalar, std::size_t Size>
-[[nodiscard]] inline bool all_finite(const std::array<Scalar, Size>& values) {
-  for (const Scalar value : values) {
-    if (!std::isfinite(value)) return false;
-  }
-  return true;
-}
-
 // Sylvester's criterion on the inertia tensor J, and on tr(J)/2 I - J, the second-moment matrix of
 // the mass, which no body can have negative (P. M. Wensing et al., IEEE RA-L 3(1), 2018). A plate
 // makes the second one singular and a thin rod both of them, hence the tolerance.
@@ -73,6 +66,7 @@ template <typename Scalar>
   const Scalar scale = std::fmax(std::fabs(xx), std::fmax(std::fabs(yy), std::fabs(zz)));
   if (scale <= 0) return xy == 0 && xz == 0 && yz == 0;
   const Scalar s = 1 / scale;
+  if (!is_finite(s)) return false;
   const Scalar half = (xx + yy + zz) * s / 2;
   const Scalar tolerance = 100 * std::numeric_limits<Scalar>::epsilon();
   // A rod has one zero moment in J, but two in the second one, whose determinant is rounding only.
@@ -89,7 +83,8 @@ template <typename Scalar>
     for (std::size_t j = 0; j < 3; ++j) {
       const Scalar dot =
           r[3 * i] * r[3 * j] + r[3 * i + 1] * r[3 * j + 1] + r[3 * i + 2] * r[3 * j + 2];
-      if (!(std::fabs(dot - (i == j ? Scalar(1) : Scalar(0))) <= tolerance)) return false;
+      const Scalar error = std::fabs(dot - (i == j ? Scalar(1) : Scalar(0)));
+      if (!is_finite(error) || error > tolerance) return false;
     }
   }
   const Scalar determinant = r[0] * (r[4] * r[8] - r[5] * r[7]) -
@@ -105,18 +100,20 @@ template <typename Scalar>
 [[nodiscard]] inline Status validate(const Joint<Scalar>& joint) {
   const Scalar axis_norm = std::sqrt(joint.axis[0] * joint.axis[0] + joint.axis[1] * joint.axis[1] +
                                      joint.axis[2] * joint.axis[2]);
-  if (!(std::fabs(axis_norm - 1) <= 1000 * std::numeric_limits<Scalar>::epsilon())) {
-    return Status::kInvalidAxis;
-  }
+  const bool unit_axis = is_finite(axis_norm) &&
+                         std::fabs(axis_norm - 1) <= 1000 * std::numeric_limits<Scalar>::epsilon();
+  if (!unit_axis) return Status::kInvalidAxis;
   if (!detail::is_rotation(joint.rotation)) return Status::kInvalidRotation;
-  if (!detail::all_finite(joint.origin_m)) return Status::kInvalidOrigin;
-  if (!(joint.mass_kg > 0) || !std::isfinite(joint.mass_kg)) return Status::kInvalidMass;
-  if (!detail::all_finite(joint.centre_of_mass_m)) return Status::kInvalidInertia;
-  if (!detail::all_finite(joint.inertia_kg_m2) || !detail::inertia_possible(joint.inertia_kg_m2)) {
+  if (!all_finite(joint.origin_m)) return Status::kInvalidOrigin;
+  if (!is_finite(joint.mass_kg) || joint.mass_kg <= 0) return Status::kInvalidMass;
+  if (!all_finite(joint.centre_of_mass_m)) return Status::kInvalidInertia;
+  if (!all_finite(joint.inertia_kg_m2) || !detail::inertia_possible(joint.inertia_kg_m2)) {
     return Status::kInvalidInertia;
   }
-  const bool limits_ok =
-      joint.min_position < joint.max_position && joint.max_velocity > 0 && joint.max_torque > 0;
+  const bool limits_are_numbers = !is_nan(joint.min_position) && !is_nan(joint.max_position) &&
+                                  !is_nan(joint.max_velocity) && !is_nan(joint.max_torque);
+  const bool limits_ok = limits_are_numbers && joint.min_position < joint.max_position &&
+                         joint.max_velocity > 0 && joint.max_torque > 0;
   return limits_ok ? Status::kOk : Status::kInvalidLimit;
 }
 
@@ -124,7 +121,7 @@ template <typename Scalar>
 // kTooManyEffects: the list's size is above its capacity.
 template <int N, typename Scalar>
 [[nodiscard]] inline Status validate(const Chain<N, Scalar>& chain) {
-  if (!detail::all_finite(chain.gravity_m_s2)) return Status::kInvalidGravity;
+  if (!all_finite(chain.gravity_m_s2)) return Status::kInvalidGravity;
   for (const Joint<Scalar>& joint : chain.joints) {
     const Status status = validate(joint);
     if (status != Status::kOk) return status;
@@ -138,7 +135,7 @@ template <int N, typename Scalar>
     Scalar& of_joint = friction_per_load[effect.joint];
     of_joint += most_friction_per_load(effect);
     const double most = effects::LoadDependentFriction::kMostFactor;
-    if (!(of_joint <= static_cast<Scalar>(most))) return Status::kInvalidEffect;
+    if (!is_finite(of_joint) || of_joint > static_cast<Scalar>(most)) return Status::kInvalidEffect;
   }
   return Status::kOk;
 }

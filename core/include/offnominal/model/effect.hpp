@@ -73,7 +73,7 @@ template <typename Scalar>
 struct JointInstant {
   Scalar q{};       // position, rad or m
   Scalar dq{};      // velocity, rad/s or m/s
-  Scalar time_s{};  // time since the run's origin, s
+  double time_s{};  // since the run's origin, s: a float would not tell the ticks of a day apart
   // Velocity of the joint that the effect's parameter of Quantity::kJointNumber names, rad/s or
   // m/s; 0 for an effect without one.
   Scalar source_dq{};

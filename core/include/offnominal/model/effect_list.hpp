@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <offnominal/finite.hpp>
 #include <offnominal/model/effect.hpp>
 #include <offnominal/model/effects/drive.hpp>
 #include <offnominal/model/effects/friction.hpp>
@@ -108,7 +109,7 @@ template <typename Scalar>
   visit_effect(effect.kind, [&]<typename E>() {
     if constexpr (kHasSource<E>) {
       const Scalar number = effect.parameters[kSourceParameter<E>];
-      valid = number >= 1 && number <= static_cast<Scalar>(joint_count);
+      valid = is_finite(number) && number >= 1 && number <= static_cast<Scalar>(joint_count);
       if (!valid) return;
       const int source = source_joint<E>(effect.parameters);
       valid = static_cast<Scalar>(source + 1) == number && source != effect.joint;
@@ -137,7 +138,8 @@ template <typename Scalar>
   if (info == nullptr) return false;
   for (std::size_t i = 0; i < info->parameters.size(); ++i) {
     const auto value = static_cast<double>(effect.parameters[i]);
-    const bool inside = value >= info->parameters[i].min && value <= info->parameters[i].max;
+    const bool inside =
+        is_finite(value) && value >= info->parameters[i].min && value <= info->parameters[i].max;
     if (!inside) return false;
   }
   return true;

@@ -133,7 +133,7 @@ template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> inverse_dynamics(const RigidBodyModel<N, Scalar>& model,
                                                  const Vector<N, Scalar>& q,
                                                  const Vector<N, Scalar>& dq,
-                                                 const Vector<N, Scalar>& ddq, Scalar time_s) {
+                                                 const Vector<N, Scalar>& ddq, double time_s) {
   return drive_torque<N, Scalar>(model, joint_effects(model, q, dq, time_s),
                                  rigid_body_torque(model, joint_transforms(model, q), dq, ddq));
 }
@@ -142,7 +142,7 @@ template <int N, typename Scalar>
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> bias_torque(const RigidBodyModel<N, Scalar>& model,
                                             const Vector<N, Scalar>& q, const Vector<N, Scalar>& dq,
-                                            Scalar time_s) {
+                                            double time_s) {
   return drive_torque<N, Scalar>(model, joint_effects(model, q, dq, time_s),
                                  rigid_body_bias(model, joint_transforms(model, q), dq));
 }

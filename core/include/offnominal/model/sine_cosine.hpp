@@ -4,6 +4,7 @@
 #include <bit>
 #include <concepts>
 #include <cstdint>
+#include <offnominal/finite.hpp>
 
 namespace offnominal {
 
@@ -69,6 +70,7 @@ struct QuarterTurn<double> {
 // the pair is bounded and means nothing. Non-finite gives NaN.
 template <std::floating_point Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE SineCosine<Scalar> sine_cosine(Scalar angle) {
+  OFFNOMINAL_SUMS_IN_ORDER
   using Quarter = detail::QuarterTurn<Scalar>;
   const Scalar shifted = angle * Quarter::kPerRadian + Quarter::kRounding;
   const Scalar quarters = shifted - Quarter::kRounding;

@@ -29,7 +29,7 @@ struct JointEffects {
 template <int N, typename Scalar>
 [[nodiscard]] JointEffects<N, Scalar> joint_effects(const RigidBodyModel<N, Scalar>& model,
                                                     const Vector<N, Scalar>& q,
-                                                    const Vector<N, Scalar>& dq, Scalar time_s) {
+                                                    const Vector<N, Scalar>& dq, double time_s) {
   JointEffects<N, Scalar> sum;
   for (const Effect<Scalar>& effect : model.torque_effects.view()) {
     const auto joint = static_cast<Eigen::Index>(effect.joint);
@@ -50,7 +50,7 @@ template <int N, typename Scalar>
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> effect_torque(const RigidBodyModel<N, Scalar>& model,
                                               const Vector<N, Scalar>& q,
-                                              const Vector<N, Scalar>& dq, Scalar time_s) {
+                                              const Vector<N, Scalar>& dq, double time_s) {
   return joint_effects(model, q, dq, time_s).torque;
 }
 

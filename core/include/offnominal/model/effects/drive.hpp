@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <offnominal/model/effects/friction.hpp>
 #include <offnominal/model/sine_cosine.hpp>
@@ -83,8 +84,11 @@ struct PeriodicDisturbance {
   template <typename Scalar>
   static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
                        const JointInstant<Scalar>& at) {
-    const Scalar phase = p[2] * at.time_s;
-    const SineCosine<Scalar> wave = sine_cosine(phase);
+    double phase = static_cast<double>(p[2]) * at.time_s;
+    // A float keeps what is left of the last turn, not the phase after months.
+    constexpr double kTurn = 2 * std::numbers::pi;
+    if constexpr (sizeof(Scalar) < sizeof(double)) phase -= kTurn * std::floor(phase * (1 / kTurn));
+    const SineCosine<Scalar> wave = sine_cosine(static_cast<Scalar>(phase));
     return p[0] * wave.sine + p[1] * wave.cosine;
   }
 };

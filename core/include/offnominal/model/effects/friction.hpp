@@ -130,7 +130,8 @@ struct TemperatureDrift {
   template <typename Scalar>
   static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
                        const JointInstant<Scalar>& at) {
-    return exponential(-at.time_s / p[2]) * (p[0] * smooth_sign(at.dq, p[3]) + p[1] * at.dq);
+    return exponential(static_cast<Scalar>(-at.time_s) / p[2]) *
+           (p[0] * smooth_sign(at.dq, p[3]) + p[1] * at.dq);
   }
 };
 

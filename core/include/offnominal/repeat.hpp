@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+
+namespace offnominal::detail {
+
+// body(0) .. body(Count - 1), written out: without vector instructions the bookkeeping of a loop
+// costs as much as its work.
+template <int Count, typename Body>
+EIGEN_ALWAYS_INLINE void repeat(const Body& body) {
+  const auto all = [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
+    (body(I), ...);
+  };
+  all(std::make_integer_sequence<int, Count>{});
+}
+
+}  // namespace offnominal::detail
