@@ -1,10 +1,14 @@
 // Frames as they come off a bus on which anything may be: both ends take them one after the other.
 // 5 bytes of input a frame at least: time step, flags, length, identifier, data. Nothing may be
-// read beyond a frame, and what is taken has a right CRC by a division of its own.
+// read beyond a frame, and what is taken has a right CRC by a division of its own. The CAN Simple
+// driver, whose frames have none, takes the same: what it makes of them is finite.
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <offnominal/hal/can_simple.hpp>
 #include <offnominal/hal/protected_drives.hpp>
 
 #include "hal/bitwise_crc.hpp"
@@ -52,15 +56,36 @@ bool divides(const Frame& frame, const Address& address, std::size_t index) {
   return check == (static_cast<unsigned>(record[6]) << 8U | record[7]);
 }
 
+using Odrives = CanSimpleDrives<2>;
+
+void check_odrives(const Frame& frame, Microseconds now_us, Odrives& drives) {
+  static_cast<void>(drives.take({frame, now_us}));
+  for (std::size_t j = 0; j < 2; ++j) {
+    const JointFeedback feedback = drives.feedback(j, now_us);
+    const bool finite = std::isfinite(feedback.reading.position) &&
+                        std::isfinite(feedback.reading.velocity) &&
+                        std::isfinite(feedback.status.applied_torque);
+    if (!finite) std::abort();
+  }
+  const TorqueCommand command{(now_us & 1U) != 0 ? DriveMode::kTorque : DriveMode::kOff, 0.0F};
+  std::array<Frame, Odrives::kMaxOutgoing> frames;
+  const std::size_t count = drives.outgoing(std::array{command, command}, {}, frames);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_well_formed(frames[i])) std::abort();
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr SourceConfig kSource{};
   ProtectedDrives<7> controller(kSource, kSource, FrameFormat::kFd);
   offnominal::sim::JointDrives<7> drives({}, FrameFormat::kFd);
+  Odrives odrives({.torque_interval_us = 1000},
+                  {{{0, 1.0F, CanSimpleFirmware::k05, 0.05F}, {1, -0.1F}}});
   Microseconds now_us = 0;
   while (size >= 5) {
-    now_us += 100 * data[0];
+    now_us += 101 * data[0];
     std::size_t used = 0;
     const Frame frame = frame_of(data, size, used);
     data += used;
@@ -73,6 +98,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (std::size_t j = 0; j < 7; ++j) after += controller.encoder_source(j).accepted;
     drives.take({frame, now_us});
     drives.check_age(now_us);
+    check_odrives(frame, now_us, odrives);
     Address address;
     const bool ours = address_of(frame, address) == Status::kOk;
     if (!ours && (status == Status::kOk || after != before)) std::abort();

@@ -134,5 +134,22 @@ TEST(Messages, KeepWhatTheyHadWhenARecordIsRefused) {
   EXPECT_EQ(counter, 77);
 }
 
+// A joint that turns on and on: every position is carried, off by half a count and by whole tens of
+// turns alone.
+TEST(EncoderReading, CarriesAnyPositionModuloTenTurns) {
+  for (double position = -500; position < 500; position += 0.37) {
+    Record record{};
+    ASSERT_EQ(encode(EncoderReading{carried_position(position), 0, true}, 0, 0, record),
+              Status::kOk);
+    EncoderReading reading;
+    std::uint8_t counter = 0;
+    ASSERT_EQ(decode(record, 0, reading, counter), Status::kOk);
+    const double tens =
+        (position - static_cast<double>(reading.position)) / (20 * std::numbers::pi);
+    EXPECT_NEAR(tens, std::round(tens), 1e-6) << position;
+    EXPECT_LE(std::fabs(reading.position), 31.42F);
+  }
+}
+
 }  // namespace
 }  // namespace offnominal::hal

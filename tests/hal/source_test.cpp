@@ -77,6 +77,23 @@ TEST(Source, ManyUnreadableRecordsAreAnErrorAFewAreNot) {
   EXPECT_EQ(source.rejected, 4U);
 }
 
+// GIVEN a stamp of the future WHEN nothing comes any more THEN the source is not valid until then.
+TEST(Source, AStampOfTheFutureIsNotBelieved) {
+  constexpr Microseconds kHour = 3'600'000'000;
+  Source source;
+  std::uint8_t counter = 0;
+  for (Microseconds time = 1000; time <= 10'000; time += 1000) {
+    static_cast<void>(accept(kConfig, counter++, time + kHour, source));
+  }
+  ASSERT_TRUE(source.synchronised);
+  for (Microseconds now = 10'000; now < kHour; now += 60'000'000) {
+    ASSERT_EQ(state_of(kConfig, source, now), SourceState::kStale) << now;
+  }
+  // One that came while the tick was beginning is of now.
+  ASSERT_EQ(accept(kConfig, counter++, 2 * kHour + 20, source), Status::kOk);
+  EXPECT_EQ(state_of(kConfig, source, 2 * kHour), SourceState::kValid);
+}
+
 // GIVEN a burst of records that were on the bus before WHEN it is played back among the live ones
 // THEN none of the old ones is taken.
 TEST(Source, NothingOldIsTakenOfABurstPlayedBack) {

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <offnominal/hal/address.hpp>
+#include <offnominal/hal/messages.hpp>
 
 #include "common/error.hpp"
-#include "common/file.hpp"
 
 namespace offnominal::tools {
 namespace {
@@ -135,7 +134,7 @@ class CandumpReader {
     if (message == nullptr || frame.frame.remote) return;
     for (const Wanted& wanted : wanted_) {
       if (wanted.message != message || !wanted.signal->fits(frame.frame.length)) continue;
-      if (own_ && !is_intact(frame.frame, *wanted.signal)) continue;
+      if (own_ && !is_told(frame.frame, *wanted.signal)) continue;
       Track& track = tracks_[wanted.track];
       // One message more per tick must not fold time back.
       if (!track.t_s.empty() && frame.time_s <= track.t_s.back()) continue;
@@ -146,16 +145,22 @@ class CandumpReader {
     }
   }
 
-  // Whether the record that the signal lies in opens.
-  static bool is_intact(const hal::Frame& frame, const DbcSignal& signal) {
+  // Whether the record that the signal lies in opens, and tells it: drives that send positions
+  // alone have a mark in the velocity's place.
+  static bool is_told(const hal::Frame& frame, const DbcSignal& signal) {
     hal::Address address;
     if (address_of(frame, address) != hal::Status::kOk) return false;
     const auto index = static_cast<std::size_t>(signal.start_bit / 64);
-    hal::Content content{};
     std::uint8_t counter = 0;
     const auto node = static_cast<std::uint8_t>(address.first_node + index);
-    return hal::open(hal::record_in(frame, index), data_id_of(address.kind, node), content,
-                     counter) == hal::Status::kOk;
+    const std::uint16_t id = data_id_of(address.kind, node);
+    const auto record = hal::record_in(frame, index);
+    if (address.kind == hal::MessageKind::kEncoder && signal.name.ends_with("velocity")) {
+      hal::EncoderReading reading;
+      return decode(record, id, reading, counter) == hal::Status::kOk && reading.has_velocity;
+    }
+    hal::Content content{};
+    return hal::open(record, id, content, counter) == hal::Status::kOk;
   }
 
   NamedColumns columns() {
@@ -248,19 +253,15 @@ std::optional<CandumpFrame> parse_candump_line(std::string_view line) {
   return result;
 }
 
-bool is_candump_file(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::string line;
-  constexpr std::size_t kLongest = 256;
-  char c = 0;
-  while (line.size() < kLongest && file.get(c) && c != '\n') line += c;
-  if (line.ends_with('\r')) line.pop_back();
+bool is_candump_file(const RecordingFile& file) {
+  const std::string_view beginning = file.beginning();
+  std::string_view line = beginning.substr(0, beginning.find('\n'));
+  if (line.ends_with('\r')) line.remove_suffix(1);
   return parse_candump_line(line).has_value();
 }
 
-NamedColumns read_candump(const std::filesystem::path& path, const Dbc* dbc,
-                          const NeedOf& need_of) {
-  return CandumpReader(path.string(), dbc, need_of).read(read_text_file(path));
+NamedColumns read_candump(RecordingFile& file, const Dbc* dbc, const NeedOf& need_of) {
+  return CandumpReader(file.name(), dbc, need_of).read(file.rest());
 }
 
 }  // namespace offnominal::tools

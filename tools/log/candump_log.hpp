@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <offnominal/hal/frame.hpp>
 #include <optional>
 #include <string>
@@ -8,6 +7,7 @@
 
 #include "log/dbc.hpp"
 #include "log/named_columns.hpp"
+#include "log/recording_file.hpp"
 
 namespace offnominal::tools {
 
@@ -22,18 +22,18 @@ struct CandumpFrame {
 [[nodiscard]] std::optional<CandumpFrame> parse_candump_line(std::string_view line);
 
 /// Whether the file's first line is one of a `candump -l` log.
-[[nodiscard]] bool is_candump_file(const std::filesystem::path& path);
+[[nodiscard]] bool is_candump_file(const RecordingFile& file);
 
 /// The signals of a `candump -l` log as columns "message.signal" in the DBC's units, over the
 /// frames of the first message in the log that holds a required one: column "t" has their time
 /// stamps. Of every other signal a row takes the value that came nearest in time. With offnominal's
 /// own frames
-/// (`dbc` null) the columns are also t, q1.., dq1.., tau1.. (the applied torque), and records whose
-/// CRC is wrong are left out. Throws InputError for a line of another form, but for the last one,
-/// which a killed program may have left short; where no frame of a required signal is in the log;
-/// and where one of them pauses for longer than kMostMissed of the first message's periods.
-[[nodiscard]] NamedColumns read_candump(const std::filesystem::path& path, const Dbc* dbc,
-                                        const NeedOf& need_of);
+/// (`dbc` null) the columns are also t, q1.., dq1.., tau1.. (the applied torque); records whose CRC
+/// is wrong are left out, and a joint whose readings have no velocity has no dq. Throws InputError
+/// for a line of another form, but for the last one, which a killed program may have left short;
+/// where no frame of a required signal is in the log; and where one of them pauses for longer than
+/// kMostMissed of the first message's periods.
+[[nodiscard]] NamedColumns read_candump(RecordingFile& file, const Dbc* dbc, const NeedOf& need_of);
 
 inline constexpr double kMostMissed = 5;
 

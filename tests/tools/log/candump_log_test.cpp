@@ -61,7 +61,6 @@ TEST(CandumpLine, OfAnotherFormIsNone) {
 class SilLog : public testing::Test {
  protected:
   void record(hal::FrameFormat format) {
-    sil::Scenario scenario;
     scenario.experiment.duration_s = 1.0;
     scenario.experiment.record = true;
     scenario.format = format;
@@ -79,6 +78,7 @@ class SilLog : public testing::Test {
   }
 
   RobotDescription robot = paper::two_link_robot();
+  sil::Scenario scenario;
   std::string text;
   Log as_csv;
 };
@@ -96,6 +96,27 @@ TEST_F(SilLog, IsTheRecordingOfTheRun) {
     EXPECT_LT((tail(log.q) - tail(as_csv.q)).cwiseAbs().maxCoeff(), 1e-5);
     EXPECT_LT((tail(log.dq) - tail(as_csv.dq)).cwiseAbs().maxCoeff(), 1e-3);
     EXPECT_LT((tail(log.tau) - tail(as_csv.tau)).cwiseAbs().maxCoeff(), 1e-4);
+  }
+}
+
+// GIVEN drives that send positions alone THEN a log of their frames has no velocity, and dq is the
+// derivative of q as in any recording without one.
+TEST_F(SilLog, DerivesVelocitiesThatNobodySent) {
+  for (const auto format : {hal::FrameFormat::kClassic, hal::FrameFormat::kFd}) {
+    text.clear();
+    scenario.sends_velocity = false;
+    record(format);
+    const Log log = read();
+    EXPECT_EQ(log.dq_derived, std::vector<bool>({true, true}));
+    const Eigen::Index rows = as_csv.sample_count();
+    ASSERT_GE(log.sample_count(), rows);
+    // Away from the ends, where a filter has to begin.
+    for (Eigen::Index row = rows / 4; row < 3 * rows / 4; ++row) {
+      for (int joint = 0; joint < 2; ++joint) {
+        const double truth = as_csv.extra.at("dq_true" + std::to_string(joint + 1))[row];
+        ASSERT_NEAR(log.dq(log.sample_count() - rows + row, joint), truth, 0.02) << row;
+      }
+    }
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -7,26 +8,39 @@
 #include <cstdint>
 #include <numbers>
 #include <offnominal/hal/drive_protocol.hpp>
+#include <offnominal/hal/finite.hpp>
 #include <offnominal/hal/record.hpp>
 #include <span>
 
-// ODrive's CANSimple protocol, as far as a torque controller needs it: heartbeat with axis error,
-// encoder estimates, input torque, axis state (ODrive documentation, "CAN Protocol", firmware 0.5;
-// tools/odrive-cansimple.dbc). Its frames carry neither counter nor CRC: a repeated or forged one
-// is not seen, a source is judged by its age alone.
+// ODrive's CANSimple protocol, as far as a torque controller needs it (docs/can-simple.md): ODrive
+// documentation, "CAN Protocol", firmware 0.5 (tools/odrive-cansimple.dbc) and 0.6. Its frames
+// carry neither counter nor CRC: a repeated or forged one is not seen, a source is judged by its
+// age alone.
 
 namespace offnominal::hal {
+
+// They differ in the heartbeat's last three bytes and in the message that tells the torque.
+enum class CanSimpleFirmware : std::uint8_t { k05, k06 };
 
 // One axis and the joint behind its gear.
 struct CanSimpleAxis {
   std::uint8_t node = 0;  // axis node id, 0 to 63
   // Joint radians (or metres) per turn of the motor; negative where they turn against each other.
   float joint_per_turn = 2 * std::numbers::pi_v<float>;
+  CanSimpleFirmware firmware = CanSimpleFirmware::k06;
+  // Firmware 0.5, where it tells its current: the motor's torque_constant, negative where its
+  // direction is -1.
+  float motor_nm_per_ampere = 0;
 };
 
+// Intervals of the cyclic messages, as the axes are configured (axis.config.can). A source is stale
+// when the third message in a row is missing.
 struct CanSimpleConfig {
-  Microseconds encoder_max_age_us = 3000;  // of "Get encoder estimates", sent cyclically
-  Microseconds drive_max_age_us = 250000;  // of heartbeats, of which there are ten a second
+  Microseconds encoder_interval_us = 1000;      // "Get encoder estimates"
+  Microseconds heartbeat_interval_us = 100000;  // "Heartbeat": axis state and errors
+  // Firmware 0.6 "Get torques", 0.5 "Get Iq". 0: not sent, the torque that was commanded is taken
+  // for the one applied while the axis is in closed loop.
+  Microseconds torque_interval_us = 0;
 };
 
 template <std::size_t Joints>
@@ -42,58 +56,68 @@ class CanSimpleDrives {
 
   [[nodiscard]] Status take(const ReceivedFrame& received) {
     const Frame& frame = received.frame;
-    const std::uint32_t command = frame.id & kCommandMask;
-    const bool known = command == kHeartbeatCommand || command == kEncoderCommand;
-    if (frame.extended || frame.fd || !known) return Status::kUnknownId;
+    if (frame.extended || frame.fd) return Status::kUnknownId;
     for (std::size_t j = 0; j < Joints; ++j) {
-      if (axes_[j].node != frame.id >> kCommandBits) continue;
-      if (frame.remote) return Status::kNotADataFrame;
-      if (frame.length != kMaxClassicLength) return Status::kWrongLength;
-      const auto data = std::span<const std::uint8_t>(frame.data).first<kMaxClassicLength>();
-      return command == kHeartbeatCommand ? take_heartbeat(j, data, received.time_us)
-                                          : take_encoder(j, data, received.time_us);
+      if (axes_[j].node == frame.id >> kCommandBits) return take_of(j, frame, received.time_us);
     }
     return Status::kUnknownId;
   }
 
-  // The status' applied torque is what was commanded last, while the axis is in closed loop: the
-  // protocol does not tell what a drive really gives.
+  // The status' mode is kTorque where a heartbeat says closed loop that came kStateTimeUs or more
+  // after this axis was last asked for it: an older one may be about what was before.
   [[nodiscard]] JointFeedback feedback(std::size_t joint, Microseconds now_us) const {
     const Axis& axis = state_[joint];
-    return {state_at(axis.encoder, config_.encoder_max_age_us, now_us),
-            state_at(axis.heartbeat, config_.drive_max_age_us, now_us), axis.encoder.time_us,
-            axis.reading, axis.status};
+    DriveStatus status{axis.mode, axis.flags, 0};
+    SourceState drive = state_at(axis.heartbeat, config_.heartbeat_interval_us, now_us);
+    if (config_.torque_interval_us > 0) {
+      status.applied_torque = axis.reported_torque;
+      const SourceState torque = state_at(axis.torque, config_.torque_interval_us, now_us);
+      if (drive == SourceState::kValid) drive = torque;
+    } else if (axis.mode == DriveMode::kTorque) {
+      status.applied_torque = axis.commanded_torque;
+    }
+    return {state_at(axis.encoder, config_.encoder_interval_us, now_us), drive,
+            axis.encoder.time_us, axis.reading, status};
   }
 
-  // Torque for axes in closed loop; others are asked into it first. kOff, and kDamping, which the
-  // protocol does not have, ask for idle, again with every heartbeat.
+  // Torque in every tick, and closed loop asked for once: asking an axis that is in it makes it
+  // leave and enter again, without torque meanwhile. Asked for again where a heartbeat says that it
+  // is not in closed loop. kOff, and kDamping, which the protocol does not have, ask for idle and
+  // no torque, until a heartbeat says so and with every heartbeat of the controller.
   [[nodiscard]] std::size_t outgoing(std::span<const TorqueCommand> commands,
                                      const Heartbeat& heartbeat, std::span<Frame> into) {
     std::size_t count = 0;
     for (std::size_t j = 0; j < Joints; ++j) {
       Axis& axis = state_[j];
       const TorqueCommand& command = commands[j];
-      const bool drives = command.mode == DriveMode::kTorque && std::isfinite(command.torque);
-      const bool changed = drives != axis.told_to_drive;
+      const bool drives = command.mode == DriveMode::kTorque && is_finite(command.torque);
+      const bool asks = drives ? !axis.told_to_drive || axis.refused
+                               : axis.told_to_drive || axis.mode == DriveMode::kTorque ||
+                                     heartbeat.ticks % kHeartbeatTicks == 0;
       axis.told_to_drive = drives;
-      const bool follows = (axis.status.mode == DriveMode::kTorque) == drives;
-      if (changed || !follows || heartbeat.ticks % kHeartbeatTicks == 0) {
-        into[count++] = word_frame(j, kStateCommand, drives ? kClosedLoop : kIdle);
-      }
-      const float torque = drives ? command.torque : 0.0F;
-      axis.status.applied_torque = axis.status.mode == DriveMode::kTorque ? torque : 0.0F;
+      axis.commanded_torque = drives ? command.torque : 0.0F;
+      // The torque first: no axis enters closed loop with one of before.
+      if (drives || asks) into[count++] = torque_frame(j, axis.commanded_torque);
+      if (!asks) continue;
+      into[count++] = word_frame(j, kStateCommand, drives ? kClosedLoop : kIdle);
+      axis.refused = false;
       if (!drives) continue;
-      // Power is the same on both sides of the gear.
-      const float per_turn = axes_[j].joint_per_turn / (2 * std::numbers::pi_v<float>);
-      into[count++] =
-          word_frame(j, kTorqueCommand, std::bit_cast<std::uint32_t>(torque * per_turn));
+      axis.mode = DriveMode::kOff;
+      axis.asked_us = newest_us_;
     }
     return count;
+  }
+
+  [[nodiscard]] Microseconds drive_max_age_us() const {
+    return max_age_us(config_.heartbeat_interval_us);
   }
 
   // Nobody asks for an emergency stop in this protocol; an axis that stopped says so by its error.
   [[nodiscard]] bool stop_seen() const { return false; }
   void clear_stop() {}
+
+  // From being asked for a state until an axis is in it, and its heartbeat has gone out.
+  static constexpr Microseconds kStateTimeUs = 15000;
 
  private:
   static constexpr std::uint32_t kCommandBits = 5;
@@ -102,8 +126,12 @@ class CanSimpleDrives {
   static constexpr std::uint32_t kStateCommand = 0x07;
   static constexpr std::uint32_t kEncoderCommand = 0x09;
   static constexpr std::uint32_t kTorqueCommand = 0x0E;
+  static constexpr std::uint32_t kCurrentsCommand = 0x14;  // "Get Iq"
+  static constexpr std::uint32_t kTorquesCommand = 0x1C;   // firmware 0.5: "Get ADC voltage"
   static constexpr std::uint32_t kIdle = 1;
   static constexpr std::uint32_t kClosedLoop = 8;
+
+  using Data = std::span<const std::uint8_t, kMaxClassicLength>;
 
   struct Age {
     bool seen = false;
@@ -112,36 +140,69 @@ class CanSimpleDrives {
   struct Axis {
     Age encoder;
     Age heartbeat;
+    Age torque;
     EncoderReading reading;
-    DriveStatus status;
+    DriveMode mode = DriveMode::kOff;
+    std::uint8_t flags = 0;
+    float reported_torque = 0;   // of the joint
+    float commanded_torque = 0;  // of the joint
     bool told_to_drive = false;
+    bool refused = false;  // it has been asked for closed loop, and a heartbeat says that it is not
+    Microseconds asked_us = 0;  // for closed loop
   };
 
-  static SourceState state_at(const Age& age, Microseconds max_age_us, Microseconds now_us) {
+  static constexpr Microseconds max_age_us(Microseconds interval_us) { return interval_us * 5 / 2; }
+  static SourceState state_at(const Age& age, Microseconds interval_us, Microseconds now_us) {
     if (!age.seen) return SourceState::kNeverSeen;
-    return now_us - age.time_us > max_age_us ? SourceState::kStale : SourceState::kValid;
+    const bool stale = now_us - age.time_us > max_age_us(interval_us);
+    return stale ? SourceState::kStale : SourceState::kValid;
   }
 
-  Status take_heartbeat(std::size_t joint, std::span<const std::uint8_t, 8> data,
-                        Microseconds time_us) {
+  // Power is the same on both sides of the gear.
+  [[nodiscard]] float motor_torque_per_joint_torque(std::size_t joint) const {
+    return axes_[joint].joint_per_turn / (2 * std::numbers::pi_v<float>);
+  }
+
+  Status take_of(std::size_t joint, const Frame& frame, Microseconds time_us) {
+    const std::uint32_t command = frame.id & kCommandMask;
+    const bool old = axes_[joint].firmware == CanSimpleFirmware::k05;
+    const bool tells_torque =
+        config_.torque_interval_us > 0 &&
+        (old ? command == kCurrentsCommand && axes_[joint].motor_nm_per_ampere != 0
+             : command == kTorquesCommand);
+    const bool known = command == kHeartbeatCommand || command == kEncoderCommand || tells_torque;
+    if (!known) return Status::kUnknownId;
+    if (frame.remote) return Status::kNotADataFrame;
+    if (frame.length != kMaxClassicLength) return Status::kWrongLength;
+    newest_us_ = std::max(newest_us_, time_us);
+    const Data data = std::span<const std::uint8_t>(frame.data).first<kMaxClassicLength>();
+    if (command == kHeartbeatCommand) return take_heartbeat(joint, data, time_us);
+    if (command == kEncoderCommand) return take_encoder(joint, data, time_us);
+    return take_torque(joint, data, time_us);
+  }
+
+  // Bytes 5 to 7 are errors of motor, encoder and controller in firmware 0.5 (none before 0.5.6),
+  // the result of the last procedure and "trajectory done" in 0.6.
+  Status take_heartbeat(std::size_t joint, Data data, Microseconds time_us) {
     Axis& axis = state_[joint];
-    const bool encoder_failed = (data[6] & 1U) != 0;
-    const bool failed =
-        from_little_endian(data.first<4>()) != 0 || (data[5] & 1U) != 0 || (data[7] & 1U) != 0;
-    axis.status.mode = data[4] == kClosedLoop ? DriveMode::kTorque : DriveMode::kOff;
-    axis.status.flags = static_cast<std::uint8_t>((encoder_failed ? kEncoderFault : 0) |
-                                                  (failed ? kDriveFault : 0));
+    const bool old = axes_[joint].firmware == CanSimpleFirmware::k05;
+    const bool encoder_failed = old && (data[6] & 1U) != 0;
+    const bool failed = from_little_endian(data.first<4>()) != 0 ||
+                        (old && ((data[5] & 1U) != 0 || (data[7] & 1U) != 0));
+    axis.flags = static_cast<std::uint8_t>((encoder_failed ? kEncoderFault : 0) |
+                                           (failed ? kDriveFault : 0));
     axis.heartbeat = {true, time_us};
+    const bool early = axis.told_to_drive && time_us - axis.asked_us < kStateTimeUs;
+    if (early) return Status::kOk;
+    axis.mode = data[4] == kClosedLoop ? DriveMode::kTorque : DriveMode::kOff;
+    axis.refused = axis.told_to_drive && axis.mode == DriveMode::kOff;
     return Status::kOk;
   }
 
-  Status take_encoder(std::size_t joint, std::span<const std::uint8_t, 8> data,
-                      Microseconds time_us) {
+  Status take_encoder(std::size_t joint, Data data, Microseconds time_us) {
     const float per_turn = axes_[joint].joint_per_turn;
-    const auto turns = std::bit_cast<float>(from_little_endian(data.first<4>()));
-    const auto turns_per_s = std::bit_cast<float>(from_little_endian(data.last<4>()));
-    const EncoderReading reading{turns * per_turn, turns_per_s * per_turn, true};
-    if (!std::isfinite(reading.position) || !std::isfinite(reading.velocity)) {
+    const EncoderReading reading{first_float(data) * per_turn, last_float(data) * per_turn, true};
+    if (!is_finite(reading.position) || !is_finite(reading.velocity)) {
       return Status::kInvalidValue;
     }
     state_[joint].reading = reading;
@@ -149,6 +210,28 @@ class CanSimpleDrives {
     return Status::kOk;
   }
 
+  // Target and estimate; of the motor's torque, or of its current.
+  Status take_torque(std::size_t joint, Data data, Microseconds time_us) {
+    const CanSimpleAxis& axis = axes_[joint];
+    const float scale = axis.firmware == CanSimpleFirmware::k05 ? axis.motor_nm_per_ampere : 1.0F;
+    const float torque = last_float(data) * scale / motor_torque_per_joint_torque(joint);
+    if (!is_finite(torque)) return Status::kInvalidValue;
+    state_[joint].reported_torque = torque;
+    state_[joint].torque = {true, time_us};
+    return Status::kOk;
+  }
+
+  static float first_float(Data data) {
+    return std::bit_cast<float>(from_little_endian(data.first<4>()));
+  }
+  static float last_float(Data data) {
+    return std::bit_cast<float>(from_little_endian(data.last<4>()));
+  }
+
+  [[nodiscard]] Frame torque_frame(std::size_t joint, float torque) const {
+    return word_frame(joint, kTorqueCommand,
+                      std::bit_cast<std::uint32_t>(torque * motor_torque_per_joint_torque(joint)));
+  }
   [[nodiscard]] Frame word_frame(std::size_t joint, std::uint32_t command,
                                  std::uint32_t word) const {
     Frame frame;
@@ -161,6 +244,7 @@ class CanSimpleDrives {
   CanSimpleConfig config_;
   std::array<CanSimpleAxis, Joints> axes_;
   std::array<Axis, Joints> state_{};
+  Microseconds newest_us_ = 0;  // when the newest of the axes' frames came: this side has no clock
 };
 
 static_assert(DriveProtocol<CanSimpleDrives<2>>);

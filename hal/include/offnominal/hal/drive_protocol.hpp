@@ -28,6 +28,8 @@ struct JointFeedback {
 // outgoing(c, h, into)     The frames of one tick, one command per joint and, when it is due, the
 //                          heartbeat; returns how many, at most kMaxOutgoing. A command that the
 //                          protocol cannot carry is sent as DriveMode::kOff.
+// drive_max_age_us()       How old a drive's status may be before it is stale: a change of its mode
+//                          stays unseen no longer.
 // stop_seen(), clear_stop()  Whether somebody has asked for an emergency stop; latched until
 //                          cleared.
 template <typename P>
@@ -40,11 +42,13 @@ concept DriveProtocol = requires(P& drives, const P& seen, const ReceivedFrame& 
   { drives.take(received) } -> std::same_as<Status>;
   { seen.feedback(joint, now_us) } -> std::same_as<JointFeedback>;
   { drives.outgoing(commands, heartbeat, into) } -> std::same_as<std::size_t>;
+  { seen.drive_max_age_us() } -> std::same_as<Microseconds>;
   { seen.stop_seen() } -> std::same_as<bool>;
   { drives.clear_stop() } -> std::same_as<void>;
 };
 
-// A heartbeat goes out every so many ticks.
+// A heartbeat goes out every so many ticks; where their 32 bits wrap, once in 49 days at 1 kHz, one
+// comes earlier.
 inline constexpr std::uint32_t kHeartbeatTicks = 10;
 // The node number of the controller itself.
 inline constexpr std::uint8_t kControllerNode = 31;

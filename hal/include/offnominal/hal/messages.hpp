@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
+#include <offnominal/hal/finite.hpp>
 #include <offnominal/hal/record.hpp>
 #include <offnominal/hal/status.hpp>
 #include <span>
@@ -23,6 +25,14 @@ struct EncoderReading {
 };
 inline constexpr float kPositionPerCount = 0x1p-18F;
 inline constexpr float kVelocityPerCount = 0x1p-10F;
+
+// A joint that may turn for ever sends its position modulo ten turns, -5 to 5 of them: a whole
+// number, so that who begins to listen at any time knows where in its turn the joint is. The
+// controller counts the tens from there on.
+inline constexpr double kCarriedRangeRad = 20 * std::numbers::pi;
+[[nodiscard]] inline float carried_position(double position_rad) {
+  return static_cast<float>(std::remainder(position_rad, kCarriedRangeRad));
+}
 
 enum class DriveMode : std::uint8_t {
   kOff = 0,      // no torque
@@ -62,9 +72,10 @@ enum class ControllerState : std::uint8_t {
 // Controller -> all.
 struct Heartbeat {
   ControllerState state = ControllerState::kInit;
-  std::uint8_t fault = 0;   // why it is in kFault: a number of offnominal::Status, hal::Status or
-                            // controller::Fault; 0 otherwise
-  std::uint32_t ticks = 0;  // since the start, modulo 2^24
+  std::uint8_t fault = 0;  // why it is in kFault: a number of offnominal::Status, hal::Status or
+                           // controller::Fault; 0 otherwise
+  // Since the start, modulo 2^32; modulo 2^24 on the wire, of which the former is a multiple.
+  std::uint32_t ticks = 0;
 };
 
 // Anyone -> all. Whoever sees one has to go to its safe state.
@@ -80,7 +91,7 @@ namespace detail {
 [[nodiscard]] inline bool to_counts(float value, float per_count, int bits, std::int32_t& counts) {
   const auto limit = static_cast<float>((1 << (bits - 1)) - 1);
   const float scaled = value / per_count;
-  if (!(scaled >= -limit && scaled <= limit)) return false;
+  if (!is_finite(scaled) || scaled < -limit || scaled > limit) return false;
   counts = static_cast<std::int32_t>(std::lrint(scaled));
   return true;
 }
@@ -120,7 +131,7 @@ inline constexpr std::int32_t kNoVelocity = -(1 << 15);
 [[nodiscard]] inline Status encode(const TorqueCommand& command, std::uint8_t counter,
                                    std::uint16_t data_id, Record& record) {
   const bool drives = command.mode == DriveMode::kTorque;
-  if (!std::isfinite(command.torque) || (!drives && command.torque != 0)) {
+  if (!is_finite(command.torque) || (!drives && command.torque != 0)) {
     return Status::kInvalidValue;
   }
   Content content{};
@@ -132,7 +143,7 @@ inline constexpr std::int32_t kNoVelocity = -(1 << 15);
 
 [[nodiscard]] inline Status encode(const DriveStatus& drive, std::uint8_t counter,
                                    std::uint16_t data_id, Record& record) {
-  if (!std::isfinite(drive.applied_torque) || (drive.flags & 0x0FU) != 0) {
+  if (!is_finite(drive.applied_torque) || (drive.flags & 0x0FU) != 0) {
     return Status::kInvalidValue;
   }
   Content content{};
@@ -175,7 +186,7 @@ namespace detail {
 
 [[nodiscard]] inline bool from_content(const Content& content, TorqueCommand& command) {
   const auto torque = std::bit_cast<float>(from_little_endian(std::span(content).first<4>()));
-  if (!is_mode(content[4]) || !std::isfinite(torque)) return false;
+  if (!is_mode(content[4]) || !is_finite(torque)) return false;
   const auto mode = static_cast<DriveMode>(content[4]);
   if (mode != DriveMode::kTorque && torque != 0) return false;
   command = {mode, torque};
@@ -185,7 +196,7 @@ namespace detail {
 [[nodiscard]] inline bool from_content(const Content& content, DriveStatus& drive) {
   const auto torque = std::bit_cast<float>(from_little_endian(std::span(content).first<4>()));
   const unsigned mode = content[4] & 0x0FU;
-  if (!is_mode(mode) || !std::isfinite(torque)) return false;
+  if (!is_mode(mode) || !is_finite(torque)) return false;
   drive = {static_cast<DriveMode>(mode), static_cast<std::uint8_t>(content[4] & 0xF0U), torque};
   return true;
 }

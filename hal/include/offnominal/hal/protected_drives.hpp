@@ -119,6 +119,8 @@ class ProtectedDrives {
     return count;
   }
 
+  [[nodiscard]] Microseconds drive_max_age_us() const { return drive_config_.max_age_us; }
+
   [[nodiscard]] bool stop_seen() const { return stop_seen_; }
   void clear_stop() { stop_seen_ = false; }
 

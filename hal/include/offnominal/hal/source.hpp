@@ -12,7 +12,7 @@ namespace offnominal::hal {
 enum class SourceState : std::uint8_t {
   kNeverSeen = 0,  // no valid record since the start
   kValid = 1,      // the newest record may be used
-  kStale = 2,      // it is too old
+  kStale = 2,      // it is too old, or from the future
   kError = 3,      // what came last cannot be trusted; records in sequence are awaited
 };
 
@@ -98,7 +98,10 @@ constexpr void reject(const SourceConfig& config, Source& source) {
                                              Microseconds now_us) {
   if (!source.seen) return SourceState::kNeverSeen;
   if (!source.synchronised) return SourceState::kError;
-  return now_us - source.time_us > config.max_age_us ? SourceState::kStale : SourceState::kValid;
+  const Microseconds age_us = now_us - source.time_us;
+  // A time of the future says nothing of now: silent or not, it would be valid until then.
+  const bool believed = age_us <= config.max_age_us && age_us >= -config.max_age_us;
+  return believed ? SourceState::kValid : SourceState::kStale;
 }
 
 }  // namespace offnominal::hal

@@ -71,7 +71,10 @@ class PlantNode {
   }
 
   [[nodiscard]] const JointState& state() const { return state_; }
+  /// As the drives have it, and say it.
   [[nodiscard]] const Applied& applied_nm() const { return applied_; }
+  /// That really acted on the joints over the last move: less where a drive loses some.
+  [[nodiscard]] const Eigen::Vector2d& acting_nm() const { return acting_; }
   [[nodiscard]] const JointDrives<kJoints>& drives() const { return drives_; }
   [[nodiscard]] const TwoLinkPlant& plant() const { return plant_; }
   [[nodiscard]] bool started() const { return started_; }
@@ -86,13 +89,13 @@ class PlantNode {
     }
     started_ = started_ || drives_.all_in_torque_mode();
     if (!started_) return;
-    Eigen::Vector2d tau(applied_[0], applied_[1]);
+    acting_ = {applied_[0], applied_[1]};
     for (const FaultEvent& fault : config_.faults) {
       const bool lost = fault.kind == FaultEventKind::kTorqueLoss && fault.is_active(time_s());
       // The drive does not know: its status says what it means to give.
-      if (lost) tau[fault.joint] *= 1.0 - fault.size;
+      if (lost) acting_[fault.joint] *= 1.0 - fault.size;
     }
-    state_ = plant_.step(time_s(), state_, tau, config_.period_s, config_.substeps);
+    state_ = plant_.step(time_s(), state_, acting_, config_.period_s, config_.substeps);
     ++moves_;
   }
 
@@ -113,6 +116,7 @@ class PlantNode {
   JointSensors sensors_;
   JointState state_;
   Applied applied_{};
+  Eigen::Vector2d acting_ = Eigen::Vector2d::Zero();
   std::array<std::uint32_t, kJoints> accepted_at_move_{};
   std::int64_t moves_ = 0;
   bool started_ = false;
