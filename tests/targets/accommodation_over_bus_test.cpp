@@ -27,7 +27,7 @@ BusRun run_over_bus(sim::FaultKind kind, bool accommodate, hal::FrameFormat form
     EXPECT_EQ(arm.data->state, hal::ControllerState::kArmed) << "tick " << tick;
     const auto& detector = arm.data->output.detector;
     if (detector.latched && !run.detection_time_s) {
-      run.detection_time_s = static_cast<double>(detector.detection_time_s);
+      run.detection_time_s = detector.detection_time_s;
     }
     if (tick < 15000) continue;
     const auto desired = sim::paper_trajectory(0.001 * tick);

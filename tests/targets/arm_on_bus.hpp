@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <offnominal/controller/joint_controller.hpp>
 #include <offnominal/hal/in_process_bus.hpp>
@@ -35,9 +36,9 @@ class ArmOnBus {
 
   static Controller::Config config(bool accommodate) {
     const tools::RobotDescription robot = tools::paper::two_link_robot();
-    Controller::Config config;
-    config.monitor = tools::monitor_config_of<2, Scalar>(robot);
-    config.gains = tools::gains_of<2, Scalar>(robot);
+    Controller::Config config = controller::controller_config(
+        tools::monitor_config_of<2, Scalar>(robot), tools::gains_of<2, Scalar>(robot),
+        tools::arming_of<2, Scalar>(robot));
     if (!accommodate) config.monitor.max_compensation = {};
     return config;
   }
@@ -50,14 +51,7 @@ class ArmOnBus {
     tick_controller();
   }
   void tick_controller(std::uint32_t late_ticks = 0) {
-    controller.step(
-        now_us_, late_ticks,
-        [](Scalar time_s) {
-          const sim::DesiredMotion motion = sim::paper_trajectory(static_cast<double>(time_s));
-          return Reference<2, Scalar>{motion.q.cast<Scalar>(), motion.dq.cast<Scalar>(),
-                                      motion.ddq.cast<Scalar>()};
-        },
-        controller_port_, drives_, *data);
+    controller.step(now_us_, late_ticks, reference_at, controller_port_, drives_, *data);
   }
   // The plant goes on without the controller, whose next tick is then as many periods late.
   void tick_late(std::uint32_t periods) {
@@ -73,9 +67,14 @@ class ArmOnBus {
   }
   // From cold to commanding torque.
   bool start() {
-    for (int i = 0; i < 10 && data->state != hal::ControllerState::kPassive; ++i) tick();
-    return controller.arm(*data);
+    controller::Fault refusal = controller::Fault::kNotPassive;
+    for (int i = 0; i < 100 && passes_by_itself(refusal); ++i) {
+      tick();
+      refusal = arm();
+    }
+    return refusal == controller::Fault::kNone;
   }
+  controller::Fault arm() { return controller.arm(reference_at, *data); }
   bool clear_fault() { return controller.clear_fault(drives_, *data); }
   void stop(controller::Fault reason) { controller.stop(reason, controller_port_, *data); }
 
@@ -83,6 +82,12 @@ class ArmOnBus {
   [[nodiscard]] const hal::ProtectedDrives<2>& drives() const { return drives_; }
   [[nodiscard]] hal::Microseconds now() const { return now_us_; }
 
+  static Reference<2, Scalar> paper_reference(double time_s) {
+    const sim::DesiredMotion motion = sim::paper_trajectory(time_s);
+    return {motion.q.cast<Scalar>(), motion.dq.cast<Scalar>(), motion.ddq.cast<Scalar>()};
+  }
+
+  std::function<Reference<2, Scalar>(double)> reference_at = paper_reference;
   Net net;  // port 0: controller, 1: plant, 2: whoever else
   bool plant_runs = true;
   Controller controller;

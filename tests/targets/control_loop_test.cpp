@@ -37,6 +37,34 @@ TEST(ControlLoop, ArmsOnlyWhenAskedTo) {
   EXPECT_EQ(report.state, ControllerState::kArmed);
 }
 
+// GIVEN an arm that lies elsewhere than its motion begins WHEN the loop is to arm it by itself THEN
+// it says why not and ends, and does not wait for somebody to move the arm there.
+TEST(ControlLoop, EndsWhereArmingIsRefused) {
+  LoopOnBus loop;
+  sim::JointState elsewhere;
+  elsewhere.q = {0.5, 0.0};
+  loop.plant = sim::PlantNode(sim::TwoLinkPlant({}, {}, sim::paper_uncertainty()), elsewhere, {});
+  loop.timer.before_tick = [&](int tick) { loop.panel.end.store(tick == 500); };
+  const realtime::LoopReport report = loop.run({.arm_when_passive = true});
+  EXPECT_EQ(report.refusal, Fault::kReferenceFarFromArm);
+  EXPECT_EQ(loop.panel.refusal.load(), Fault::kReferenceFarFromArm);
+  EXPECT_EQ(report.fault, Fault::kNone);
+  EXPECT_LT(report.ticks, 50U);
+  EXPECT_FALSE(loop.plant.started());
+}
+
+TEST(ControlLoop, WhoAsksForArmingIsToldWhyNot) {
+  LoopOnBus loop;
+  loop.timer.before_tick = [&](int tick) {
+    if (tick == 1) loop.panel.arm.store(true);
+    if (tick == 100) loop.panel.end.store(true);
+  };
+  const realtime::LoopReport report = loop.run({});
+  EXPECT_EQ(loop.panel.refusal.load(), Fault::kNotPassive) << "nothing had been heard yet";
+  EXPECT_EQ(report.refusal, Fault::kNone) << "it goes on";
+  EXPECT_GE(report.ticks, 100U);
+}
+
 // GIVEN an armed loop WHEN ticks begin periods too late THEN each is counted, none is made up for,
 // and more in a row than are allowed lead to the safe state.
 TEST(ControlLoop, CountsLateTicksAndBearsAFew) {
@@ -64,7 +92,12 @@ TEST(ControlLoop, ManyLateTicksInARowAreAFault) {
 }
 
 TEST(ControlLoop, AFaultIsClearedAndArmedAgainOnlyWhenAskedTo) {
-  LoopOnBus loop;
+  auto config = ArmOnBus::config(false);
+  config.arming.speed.fill(20);  // the arm falls meanwhile, and is caught where it is
+  LoopOnBus loop(config);
+  loop.reference_at = [&](double) {
+    return Reference<2, float>{loop.data->sample.q, loop.data->sample.dq, {}};
+  };
   std::vector<ControllerState> states;
   loop.timer.before_tick = [&](int tick) {
     loop.timer.plant_runs = tick < 100 || tick > 200;

@@ -6,45 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <offnominal/controller/joint_controller.hpp>
 #include <vector>
+
+#include "joint_on_desk.hpp"
 
 namespace offnominal::controller {
 namespace {
 
+using test::OneDrive;
+using test::SilentBus;
+
 constexpr double kMass = 2;
 constexpr double kWidth = 0.001;
-
-// A bus on which nothing happens, and drives that say what the test puts there.
-struct SilentBus {
-  hal::Microseconds time_us = 0;
-
-  [[nodiscard]] hal::Microseconds now() const { return time_us; }
-  hal::Status send(const hal::Frame& /*frame*/, hal::Microseconds /*deadline_us*/) {
-    return hal::Status::kOk;
-  }
-  std::size_t receive(std::span<hal::ReceivedFrame> /*frames*/) { return 0; }
-  void drop_pending() {}
-  [[nodiscard]] hal::BusState state() const { return {}; }
-};
-struct OneDrive {
-  static constexpr std::size_t kJoints = 1;
-  static constexpr std::size_t kMaxOutgoing = 1;
-  hal::JointFeedback joint;
-  hal::TorqueCommand command;
-
-  hal::Status take(const hal::ReceivedFrame& /*frame*/) { return hal::Status::kOk; }
-  [[nodiscard]] hal::JointFeedback feedback(std::size_t /*j*/, hal::Microseconds /*now_us*/) const {
-    return joint;
-  }
-  std::size_t outgoing(std::span<const hal::TorqueCommand> commands,
-                       const hal::Heartbeat& /*heartbeat*/, std::span<hal::Frame> /*frames*/) {
-    command = commands[0];
-    return 0;
-  }
-  [[nodiscard]] bool stop_seen() const { return false; }
-  void clear_stop() {}
-};
 
 class Slide {
  public:
@@ -56,6 +29,7 @@ class Slide {
     config.chain.gravity_m_s2 = {0, 0, -gravity};
     config.chain.joints[0].type = JointType::kPrismatic;
     config.chain.joints[0].mass_kg = kMass;
+    config.chain.joints[0].max_torque = 1000;
     config.torque_signal = TorqueSignal::kHeld;
     config.estimator.hidden_units = 4;
     config.estimator.learning_rate = 0;
@@ -81,16 +55,16 @@ class Slide {
     drive_.joint.reading = {static_cast<float>(q_), static_cast<float>(dq_), true};
     drive_.joint.status.mode = hal::DriveMode::kTorque;
     drive_.joint.status.applied_torque = static_cast<float>(told_.back());
-    controller_.step(
-        bus_.time_us, 0, [](double) { return Reference<1, double>{}; }, bus_, drive_, *data_);
+    controller_.step(bus_.time_us, 0, at_origin, bus_, drive_, *data_);
     told_.push_back(drive_.command.mode == hal::DriveMode::kTorque
                         ? static_cast<double>(drive_.command.torque)
                         : 0.0);
     move();
   }
   bool arm() {
-    armed_ = controller_.arm(*data_);
     dq_ = 0;
+    tick();
+    armed_ = controller_.arm(at_origin, *data_) == Fault::kNone;
     return armed_;
   }
   // Until it is armed a hand pushes the slide along at this speed, or holds it.
@@ -100,6 +74,7 @@ class Slide {
   [[nodiscard]] double told() const { return told_.back(); }
 
  private:
+  static Reference<1, double> at_origin(double /*time_s*/) { return {}; }
   void move() {
     const double acts = told_[told_.size() - 1 - late_ticks_];
     constexpr int kSteps = 50;

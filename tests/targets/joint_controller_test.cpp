@@ -18,7 +18,7 @@ DriveMode commanded(const ArmOnBus& arm) { return arm.data->commands[0].mode; }
 
 TEST(JointController, BecomesPassiveWhenEveryJointIsHeardAndCommandsNoTorque) {
   ArmOnBus arm;
-  EXPECT_FALSE(arm.controller.arm(*arm.data)) << "armed without a single frame";
+  EXPECT_EQ(arm.arm(), Fault::kNotPassive) << "armed without a single frame";
   arm.tick();
   EXPECT_EQ(arm.data->state, ControllerState::kInit);
   for (int i = 0; i < 5; ++i) arm.tick();
@@ -36,13 +36,15 @@ TEST(JointController, CommandsTorqueOnceArmed) {
   EXPECT_EQ(commanded(arm), DriveMode::kTorque);
   EXPECT_TRUE(arm.plant().started());
   EXPECT_NE(arm.plant().applied_nm()[0], 0.0);
-  EXPECT_FALSE(arm.controller.arm(*arm.data)) << "armed twice";
+  EXPECT_EQ(arm.arm(), Fault::kNotPassive) << "armed twice";
 }
 
 // GIVEN an armed controller WHEN the encoder frames stop THEN it is in its safe state within three
 // ticks, stays there when they come back, and torque takes two explicit steps.
 TEST(JointController, IsSafeWithinThreeTicksOfSilence) {
-  ArmOnBus arm;
+  auto config = ArmOnBus::config(false);
+  config.arming.speed.fill(20);  // it will be falling
+  ArmOnBus arm({}, config, {});
   ASSERT_TRUE(arm.start());
   arm.run(0.1);
   arm.plant_runs = false;
@@ -57,12 +59,16 @@ TEST(JointController, IsSafeWithinThreeTicksOfSilence) {
   arm.plant_runs = true;
   arm.run(0.5);
   EXPECT_EQ(arm.data->state, ControllerState::kFault) << "latched";
-  EXPECT_FALSE(arm.controller.arm(*arm.data));
+  EXPECT_EQ(arm.arm(), Fault::kNotPassive);
   ASSERT_TRUE(arm.clear_fault());
-  EXPECT_FALSE(arm.controller.arm(*arm.data)) << "armed before it has looked again";
+  EXPECT_EQ(arm.arm(), Fault::kNotPassive) << "armed before it has looked again";
   arm.tick();
   EXPECT_EQ(arm.data->state, ControllerState::kPassive);
-  EXPECT_TRUE(arm.controller.arm(*arm.data));
+  EXPECT_EQ(arm.arm(), Fault::kReferenceFarFromArm) << "it has fallen meanwhile";
+  arm.reference_at = [&](double) {
+    return Reference<2, float>{arm.data->sample.q, arm.data->sample.dq, {}};
+  };
+  EXPECT_EQ(arm.arm(), Fault::kNone);
 }
 
 TEST(JointController, CannotBeRearmedWithoutFreshFrames) {
@@ -74,7 +80,7 @@ TEST(JointController, CannotBeRearmedWithoutFreshFrames) {
   ASSERT_TRUE(arm.clear_fault());
   arm.run(0.1);
   EXPECT_EQ(arm.data->state, ControllerState::kInit);
-  EXPECT_FALSE(arm.controller.arm(*arm.data));
+  EXPECT_EQ(arm.arm(), Fault::kNotPassive);
 }
 
 TEST(JointController, HoldsItsTorqueOverASingleLostTick) {
@@ -204,8 +210,10 @@ TEST(JointController, ObservesVelocitiesThatNobodySends) {
 
 TEST(JointController, ASampleOutOfRangeLeadsToTheSafeStateWithItsStatus) {
   auto config = ArmOnBus::config(false);
-  for (auto& joint : config.monitor.chain.joints) joint.max_position = 0.1F;
+  for (auto& joint : config.monitor.chain.joints) joint.max_position = 0.01F;
   ArmOnBus arm({}, config, {});
+  // The arm is on the move and has to be brought to a stop first.
+  arm.reference_at = [](double) { return Reference<2, float>{}; };
   ASSERT_TRUE(arm.start());
   arm.run(2.0);
   EXPECT_EQ(arm.data->state, ControllerState::kFault);
@@ -220,6 +228,9 @@ TEST(JointController, RefusesAConfigurationThatCannotWork) {
   EXPECT_EQ(ArmOnBus::Controller::create(config, controller), Status::kInvalidLimit);
   config = ArmOnBus::config(false);
   config.command_lifetime_us = 1001;
+  EXPECT_EQ(ArmOnBus::Controller::create(config, controller), Status::kInvalidLimit);
+  config = ArmOnBus::config(false);
+  config.time_to_follow_us = -1;
   EXPECT_EQ(ArmOnBus::Controller::create(config, controller), Status::kInvalidLimit);
   config = ArmOnBus::config(false);
   config.gains.kp[0] = -1;
@@ -269,7 +280,7 @@ TEST(JointController, RandomEventsNeverBreakTheRulesOfItsStates) {
           break;
         case 4:
         case 5:
-          armed = arm.controller.arm(*arm.data);
+          armed = arm.arm() == Fault::kNone;
           break;
         case 6:
           arm.stop(Fault::kEmergencyStop);

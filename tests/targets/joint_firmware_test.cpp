@@ -22,9 +22,9 @@ class HeldArm {
     ++counter_;
     net_.set_time(static_cast<hal::Microseconds>(++ticks_) * Firmware::kPeriodUs);
     if (sends) send();
-    const auto at_rest = [](float) { return Reference<Firmware::kJoints, float>{}; };
     firmware.tick(net_.now(), 0, at_rest);
   }
+  controller::Fault arm() { return firmware.arm(at_rest); }
   [[nodiscard]] hal::ControllerState state() const { return firmware.data().state; }
   void tick_until(hal::ControllerState wanted) {
     for (int i = 0; i < 20 && state() != wanted; ++i) tick();
@@ -39,6 +39,8 @@ class HeldArm {
   Firmware firmware{bus_};
 
  private:
+  static Reference<Firmware::kJoints, float> at_rest(double /*time_s*/) { return {}; }
+
   void send() {
     for (std::size_t j = 0; j < kCount; ++j) {
       const auto node = static_cast<std::uint8_t>(j);
@@ -66,7 +68,7 @@ TEST(JointFirmware, ItsTimesFollowTheRobotsPeriod) {
   HeldArm arm;
   ASSERT_EQ(arm.firmware.start(), Status::kOk);
   arm.tick_until(hal::ControllerState::kPassive);
-  ASSERT_TRUE(arm.firmware.arm());
+  ASSERT_EQ(arm.arm(), controller::Fault::kNone);
   for (int i = 0; i < 100; ++i) arm.tick();
   EXPECT_EQ(arm.state(), hal::ControllerState::kArmed);
   // 9.81 m/s^2 (0.5 kg 1 m + 2 kg 2 m) at the first joint.
@@ -79,7 +81,7 @@ TEST(JointFirmware, AFaultEndsWhenItIsCleared) {
   ASSERT_EQ(arm.firmware.start(), Status::kOk);
   EXPECT_FALSE(arm.firmware.clear_fault()) << "there is none";
   arm.tick_until(hal::ControllerState::kPassive);
-  ASSERT_TRUE(arm.firmware.arm());
+  ASSERT_EQ(arm.arm(), controller::Fault::kNone);
   arm.tick();
   // Two ticks without frames are borne, the third is not.
   arm.tick(false);
@@ -89,11 +91,11 @@ TEST(JointFirmware, AFaultEndsWhenItIsCleared) {
   ASSERT_EQ(arm.state(), hal::ControllerState::kFault);
   for (int i = 0; i < 20; ++i) arm.tick();
   ASSERT_EQ(arm.state(), hal::ControllerState::kFault) << "it is latched";
-  EXPECT_FALSE(arm.firmware.arm());
+  EXPECT_EQ(arm.arm(), controller::Fault::kNotPassive);
 
   ASSERT_TRUE(arm.firmware.clear_fault());
   arm.tick_until(hal::ControllerState::kPassive);
-  ASSERT_TRUE(arm.firmware.arm());
+  ASSERT_EQ(arm.arm(), controller::Fault::kNone);
   arm.tick();
   EXPECT_EQ(arm.state(), hal::ControllerState::kArmed);
   EXPECT_TRUE(arm.firmware.disarm());

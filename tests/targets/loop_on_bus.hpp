@@ -45,18 +45,13 @@ class LoopOnBus {
   static constexpr int kHidden = 35;
   using Controller = controller::JointController<2, kHidden, float, WithMemory>;
 
-  LoopOnBus() {
-    if (Controller::create(ArmOnBus::config(false), controller_) != Status::kOk) {
+  explicit LoopOnBus(const Controller::Config& config = ArmOnBus::config(false)) {
+    if (Controller::create(config, controller_) != Status::kOk) {
       throw std::logic_error("refused");
     }
   }
 
   realtime::LoopReport run(const realtime::LoopConfig& config) {
-    const auto reference_at = [](float time_s) {
-      const sim::DesiredMotion motion = sim::paper_trajectory(static_cast<double>(time_s));
-      return Reference<2, float>{motion.q.cast<float>(), motion.dq.cast<float>(),
-                                 motion.ddq.cast<float>()};
-    };
     using Bus = realtime::RecordedBus<hal::InProcessNet<2>::Port>;
     hal::InProcessNet<2>::Port port = net_.port(0);
     Bus bus(port, recorder);
@@ -78,6 +73,7 @@ class LoopOnBus {
   realtime::Recorder recorder;
   realtime::LoopPanel panel;
   std::unique_ptr<Controller::Data> data = std::make_unique<Controller::Data>();
+  std::function<Reference<2, float>(double)> reference_at = ArmOnBus::paper_reference;
 
  private:
   hal::ProtectedDrives<2> drives_{kSource, kSource, hal::FrameFormat::kClassic};

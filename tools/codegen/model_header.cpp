@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <offnominal/control/arming.hpp>
 #include <offnominal/control/computed_torque.hpp>
 #include <offnominal/model/effect_list.hpp>
 #include <offnominal/model/quantity.hpp>
@@ -205,6 +206,15 @@ std::string bound_constant(const UncertaintyBound<N, double>& bound,
   return text;
 }
 
+template <int N>
+std::string arming_constant(const ArmingConfig<N, double>& config, const RobotDescription& robot) {
+  return cpp_text::comment(robot.arming.source) +
+         member("position_window", cpp_text::numbers(config.position_window), "rad or m") +
+         member("speed", cpp_text::numbers(config.speed), "rad/s or m/s") +
+         member("torque_rate", cpp_text::numbers(config.torque_rate), "N m/s or N/s") +
+         member("ramp_s", cpp_text::number(config.ramp_s), "s");
+}
+
 std::string constant(std::string_view type, std::string_view name, std::string_view members,
                      const ModelHeader& header) {
   const char* head = header.in_float == Status::kOk ? "template <typename Scalar>\n"
@@ -234,7 +244,8 @@ std::string head_text(const RobotDescription& robot, const ModelHeaderOptions& o
   if (!robot.source.empty()) text += "//\n" + cpp_text::comment("Source: " + robot.source);
   text +=
       "#pragma once\n\n#include <algorithm>\n#include <array>\n#include <concepts>\n"
-      "#include <limits>\n#include <offnominal/control/computed_torque.hpp>\n"
+      "#include <limits>\n#include <offnominal/control/arming.hpp>\n"
+      "#include <offnominal/control/computed_torque.hpp>\n"
       "#include <offnominal/monitor.hpp>\n#include <offnominal/version.hpp>\n\n";
   text += fmt::format(
       "static_assert(offnominal::kVersionMajor == {} && offnominal::kVersionMinor == {},\n"
@@ -281,7 +292,9 @@ Status validity_in_float(const RobotDescription& robot) {
   Status status = validate<kMaxHiddenUnits>(config);
   if (status != Status::kOk) return status;
   status = EffectMemory<N, float>::validate(config.chain, config.estimator.period_s);
-  return status == Status::kOk ? validate(gains_of<N, float>(robot)) : status;
+  if (status != Status::kOk) return status;
+  status = validate(gains_of<N, float>(robot));
+  return status == Status::kOk ? validate(arming_of<N, float>(robot)) : status;
 }
 
 template <int N>
@@ -317,6 +330,8 @@ ModelHeader write(const RobotDescription& robot, const ModelHeaderOptions& optio
                    member("kp", cpp_text::numbers(gains.kp), "1/s^2") +
                        member("kd", cpp_text::numbers(gains.kd), "1/s"),
                    header);
+  text += constant("offnominal::ArmingConfig<kJoints, Scalar>", "kArmingConfig",
+                   arming_constant(arming_of<N, double>(robot), robot), header);
   header.text =
       text + encoder_text(robot, header) + fmt::format("}}  // namespace {}\n", options.name_space);
   return header;

@@ -1,6 +1,7 @@
 // Body of make_program_of(); included only where it is instantiated.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <offnominal/hal/in_process_bus.hpp>
@@ -21,8 +22,14 @@ template <int N>
 class RehearsalTimer final : public TickTimer {
  public:
   using Net = hal::InProcessNet<2>;
-  RehearsalTimer(Net& net, realtime::Microseconds period_us, hal::FrameFormat format)
-      : net_(net), port_(net.port(1)), period_us_(period_us), drives_({}, format) {}
+  using Positions = Vector<N, float>;
+  RehearsalTimer(Net& net, realtime::Microseconds period_us, hal::FrameFormat format,
+                 const Positions& positions)
+      : net_(net),
+        port_(net.port(1)),
+        period_us_(period_us),
+        positions_(positions),
+        drives_({}, format) {}
   realtime::Tick wait() override {
     now_us_ += period_us_;
     net_.set_time(now_us_);
@@ -30,7 +37,9 @@ class RehearsalTimer final : public TickTimer {
     const std::size_t count = port_.receive(come);
     for (std::size_t i = 0; i < count; ++i) drives_.take(come[i]);
     std::array<std::optional<hal::EncoderReading>, kJoints> readings;
-    readings.fill(hal::EncoderReading{0, 0, true});
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      readings[j] = hal::EncoderReading{positions_[static_cast<Eigen::Index>(j)], 0, true};
+    }
     std::array<hal::Frame, 2 * kJoints> frames;
     const std::size_t made = drives_.frames(readings, {}, frames);
     for (std::size_t i = 0; i < made; ++i) static_cast<void>(port_.send(frames[i], now_us_));
@@ -43,6 +52,7 @@ class RehearsalTimer final : public TickTimer {
   Net& net_;
   Net::Port port_;
   realtime::Microseconds period_us_;
+  Positions positions_;
   sim::JointDrives<kJoints> drives_;
   realtime::Microseconds now_us_ = 0;
 };
@@ -65,8 +75,11 @@ class JointProgramOf final : public JointProgram {
   void run() override {
     report_.grant = realtime::ask_for(setup_.wish);
     rehearse();
-    report_.loop =
-        loop(setup_.loop, drives_, setup_.timer, bus_, setup_.recorder, setup_.panel, *data_);
+    const auto reference_at = [this](double time_s) { return reference(time_s, *data_); };
+    report_.loop = Loop<decltype(reference_at)>(
+                       setup_.loop, {controller_, setup_.timer, bus_, drives_, reference_at,
+                                     setup_.recorder, setup_.panel, *data_})
+                       .run();
     for (std::size_t j = 0; j < static_cast<std::size_t>(N); ++j) {
       for (const hal::Source* source : {&drives_.encoder_source(j), &drives_.drive_source(j)}) {
         report_.lost += source->lost;
@@ -81,14 +94,18 @@ class JointProgramOf final : public JointProgram {
   using Bus = realtime::RecordedBus<sil::BusPort>;
   using Data = typename Controller::Data;
 
-  realtime::LoopReport loop(const realtime::LoopConfig& config, Drives& drives, TickTimer& timer,
-                            Bus& bus, realtime::Recorder& recorder, realtime::LoopPanel& panel,
-                            Data& data) {
-    const auto reference_at = [&](Scalar time_s) { return reference(time_s, data); };
-    using Loop = realtime::ControlLoop<N, kControllerCapacity, Scalar, Bus, Drives, TickTimer,
-                                       decltype(reference_at)>;
-    return Loop(config, {controller_, timer, bus, drives, reference_at, recorder, panel, data})
-        .run();
+  template <typename ReferenceAt>
+  using Loop =
+      realtime::ControlLoop<N, kControllerCapacity, Scalar, Bus, Drives, TickTimer, ReferenceAt>;
+
+  // Joints at rest, where they can be.
+  [[nodiscard]] Vector<N, float> a_position() const {
+    Vector<N, float> position;
+    for (int i = 0; i < N; ++i) {
+      const auto& joint = setup_.robot.joints[static_cast<std::size_t>(i)].joint;
+      position[i] = static_cast<float>(std::clamp(0.0, joint.min_position, joint.max_position));
+    }
+    return position;
   }
 
   // Code that has not run before is slow: it is still to be paged in, where the machine is emulated
@@ -100,19 +117,28 @@ class JointProgramOf final : public JointProgram {
     realtime::Recorder nobody;
     Bus bus(port, nobody);
     Drives drives(source_, source_, setup_.format);
-    RehearsalTimer<N> timer(*net, setup_.timer.period_us(), setup_.format);
+    RehearsalTimer<N> timer(*net, setup_.timer.period_us(), setup_.format, a_position());
     realtime::LoopPanel panel;
+    // Wherever the motion is, these joints are asked to stay.
+    const auto reference_at = [&](double time_s) {
+      Reference<N, Scalar> wanted = reference(time_s, *data);
+      wanted = {};
+      wanted.q = data->sample.q;
+      return wanted;
+    };
     constexpr int kTicks = 50;
-    static_cast<void>(loop({.arm_when_passive = true, .duration_us = kTicks * timer.period_us()},
-                           drives, timer, bus, nobody, panel, *data));
+    const realtime::LoopConfig config{.arm_when_passive = true,
+                                      .duration_us = kTicks * timer.period_us()};
+    static_cast<void>(Loop<decltype(reference_at)>(config, {controller_, timer, bus, drives,
+                                                            reference_at, nobody, panel, *data})
+                          .run());
   }
 
-  Reference<N, Scalar> reference(Scalar time_s, const Data& data) {
+  Reference<N, Scalar> reference(double time_s, const Data& data) {
     Reference<N, Scalar> wanted;
-    const auto time = static_cast<double>(time_s);
     if (setup_.reference.motion) {
       for (int i = 0; i < N; ++i) {
-        const paper::RecordedMotion::Joint joint = setup_.reference.motion->at(time, i);
+        const paper::RecordedMotion::Joint joint = setup_.reference.motion->at(time_s, i);
         wanted.q[i] = static_cast<Scalar>(joint.q);
         wanted.dq[i] = static_cast<Scalar>(joint.dq);
         wanted.ddq[i] = static_cast<Scalar>(joint.ddq);
@@ -121,7 +147,7 @@ class JointProgramOf final : public JointProgram {
     }
     if constexpr (N == 2) {
       if (setup_.reference.paper) {
-        const sim::DesiredMotion desired = sim::paper_trajectory(time);
+        const sim::DesiredMotion desired = sim::paper_trajectory(time_s);
         return {desired.q.template cast<Scalar>(), desired.dq.template cast<Scalar>(),
                 desired.ddq.template cast<Scalar>()};
       }

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "common/error.hpp"
+#include "common/output_file.hpp"
 #include "common/program.hpp"
 #include "controller/joint_program.hpp"
 #include "controller/outcome.hpp"
@@ -73,7 +74,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--duration", options.duration_s,
                  "End after so many seconds; with --arm they count from arming")
       ->check(CLI::PositiveNumber);
-  app.add_flag("--arm", options.arm, "Arm once, as soon as every joint is heard");
+  app.add_flag("--arm", options.arm,
+               "Arm once, as soon as every joint is heard; end where that is refused");
   app.add_option("--motion", options.motion,
                  "Where the joints should be from arming on: hold, paper, or a CSV as offnominal "
                  "motion writes it")
@@ -98,13 +100,16 @@ void add_options(CLI::App& app, Options& options) {
   app.add_flag("--no-lock", options.no_lock, "Do not lock memory");
   app.add_flag("--no-restart", options.no_restart,
                "Never restart the interface to take late frames back from it");
-  app.add_option("--candump", options.candump, "Record every frame, as candump -l does");
-  app.add_option("--log", options.log, "Record every tick with a fresh reading, CSV");
+  app.add_option("--candump", options.candump, "Record every frame, as candump -l does")
+      ->type_name(kNewFile);
+  app.add_option("--log", options.log, "Record every tick with a fresh reading, CSV")
+      ->type_name(kNewFile);
   app.add_flag("--force", options.force, "Replace the files of --log and --candump");
   app.add_flag("--json", options.json, "Print one JSON object and nothing else");
   app.footer(
-      "SIGUSR1 arms (passive -> armed), SIGUSR2 clears a fault (fault -> init), SIGINT and SIGTERM "
-      "disarm and end. Times of the recordings are those of CLOCK_MONOTONIC. Exit codes: 0 ended "
+      "SIGUSR1 arms (passive -> armed), SIGUSR2 clears a fault (fault -> init), SIGINT, SIGTERM, "
+      "SIGHUP, SIGQUIT and SIGPIPE disarm and end. Times of the recordings are those of "
+      "CLOCK_MONOTONIC. Exit codes: 0 ended "
       "without a fault, 1 there was one, 2 wrong input. docs/controller.md has the rest.");
 }
 
@@ -112,9 +117,8 @@ RobotDescription robot_of(const Options& options) {
   RobotDescription robot =
       options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
   if (options.rate_hz) robot.estimator.period_s = 1 / *options.rate_hz;
-  if (robot.bound) return robot;
-  throw InputError({options.robot.value_or(robot.name), "", "no [bound]", "an uncertainty bound",
-                    "offnominal calibrate finds one"});
+  require_bound(robot, options.robot.value_or(robot.name));
+  return robot;
 }
 
 ReferenceChoice reference_of(const Options& options, int joints) {
@@ -151,6 +155,9 @@ void attend(const realtime::Signals& signals, const realtime::Recorder& recorder
     switch (signals.wait(kLook)) {
       case SIGINT:
       case SIGTERM:
+      case SIGHUP:  // the terminal is gone, or who read what is printed: nobody looks any more
+      case SIGQUIT:
+      case SIGPIPE:
         panel.end.store(true);
         break;
       case SIGUSR1:
@@ -170,6 +177,11 @@ void attend(const realtime::Signals& signals, const realtime::Recorder& recorder
       }
       std::cerr << '\n';
       shown = state;
+    }
+    const controller::Fault refusal = panel.refusal.exchange(controller::Fault::kNone);
+    if (refusal != controller::Fault::kNone) {
+      std::cerr << kProgram << ": not armed: " << controller::name_of(refusal) << " ("
+                << static_cast<int>(refusal) << ", docs/troubleshooting.md)\n";
     }
     if (!recording_failed && recorder.error_number() != 0) {
       recording_failed = true;
@@ -225,7 +237,10 @@ int run(const Options& options) {
   const ControllerOutcome outcome{program->report(), options.bus, socket.state(),
                                   socket.can_take_back(), recorder.lost()};
   std::cout << (options.json ? to_json(outcome).dump(2) + "\n" : text_of(outcome));
-  return outcome.report.loop.fault == controller::Fault::kNone ? 0 : 1;
+  const realtime::LoopReport& report = outcome.report.loop;
+  const bool well =
+      report.fault == controller::Fault::kNone && report.refusal == controller::Fault::kNone;
+  return well ? 0 : 1;
 }
 
 }  // namespace

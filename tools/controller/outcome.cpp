@@ -13,6 +13,7 @@ nlohmann::ordered_json to_json(const ControllerOutcome& outcome) {
   json["state"] = sil::name_of(loop.state);
   json["fault"] = controller::name_of(loop.fault);
   json["fault_number"] = static_cast<int>(loop.fault);
+  json["refusal"] = controller::name_of(loop.refusal);
   json["detection_time_s"] = loop.detected ? nlohmann::ordered_json(loop.detection_time_s)
                                            : nlohmann::ordered_json(nullptr);
   json["ticks"] = loop.ticks;
@@ -48,6 +49,10 @@ std::string text_of(const ControllerOutcome& outcome) {
           ? sil::name_of(loop.state)
           : fmt::format("{}; first fault: {} ({})", sil::name_of(loop.state),
                         controller::name_of(loop.fault), static_cast<int>(loop.fault)));
+  if (loop.refusal != controller::Fault::kNone) {
+    row("not armed",
+        fmt::format("{} ({})", controller::name_of(loop.refusal), static_cast<int>(loop.refusal)));
+  }
   row("detected", loop.detected ? fmt::format("{:.3f} s after arming", loop.detection_time_s)
                                 : std::string("nothing"));
   row("ticks", std::to_string(loop.ticks));

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "common/error.hpp"
+#include "common/output_file.hpp"
 #include "common/program.hpp"
 #include "plant/plant_loop.hpp"
 #include "sil/open_bus.hpp"
@@ -55,7 +56,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--priority", options.priority, "Of SCHED_FIFO; 0: do not ask for it")
       ->check(CLI::Range(0, 99))
       ->capture_default_str();
-  app.add_option("--log", options.log, "Record the arm's true motion, CSV");
+  app.add_option("--log", options.log, "Record the arm's true motion, CSV")->type_name(kNewFile);
   app.add_flag("--force", options.force, "Replace the file of --log");
   app.add_flag("--json", options.json, "Print one JSON object and nothing else");
   app.footer(

@@ -11,7 +11,8 @@ realtime::Row row_of(const sim::PlantNode& plant, realtime::Microseconds time_us
   realtime::Row row;
   row.time_us = time_us;
   std::size_t next = 0;
-  for (const Eigen::Vector2d& pair : {plant.state().q, plant.state().dq, tau, psi}) {
+  for (const Eigen::Vector2d& pair :
+       {plant.state().q, plant.state().dq, tau, psi, plant.acting_nm()}) {
     for (const double value : pair) row.values[next++] = value;
   }
   row.values[next] = plant.time_s();
@@ -25,7 +26,8 @@ realtime::Row row_of(const sim::PlantNode& plant, realtime::Microseconds time_us
 }  // namespace
 
 std::vector<std::string> plant_columns() {
-  return {"q1", "q2", "dq1", "dq2", "tau1", "tau2", "psi1", "psi2", "arm_t", "torque_mode"};
+  return {"q1",   "q2",   "dq1",     "dq2",     "tau1",  "tau2",
+          "psi1", "psi2", "acting1", "acting2", "arm_t", "torque_mode"};
 }
 
 PlantReport run_plant(sim::PlantNode& plant, const sil::Scenario& scenario,

@@ -3,11 +3,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <offnominal/control/arming.hpp>
 #include <offnominal/control/computed_torque.hpp>
 #include <offnominal/diagnosis/bound.hpp>
 #include <offnominal/diagnosis/estimator_config.hpp>
 #include <offnominal/monitor.hpp>
 #include <stdexcept>
+#include <vector>
 
 #include "robot/chain_of.hpp"
 #include "robot/robot.hpp"
@@ -98,6 +100,24 @@ template <int N, typename Scalar>
     gains.kd[i] = static_cast<Scalar>(robot.joints[i].kd);
   }
   return gains;
+}
+
+/// Throws std::invalid_argument where the settings do not fit a robot of N joints.
+template <int N, typename Scalar>
+[[nodiscard]] ArmingConfig<N, Scalar> arming_of(const RobotDescription& robot) {
+  ArmingConfig<N, Scalar> config = default_arming(chain_of<N, Scalar>(robot));
+  const auto set = [](const std::vector<double>& from, auto& into) {
+    if (from.empty()) return;
+    if (from.size() != into.size()) {
+      throw std::invalid_argument("the settings of arming have not one number per joint");
+    }
+    for (std::size_t i = 0; i < into.size(); ++i) into[i] = static_cast<Scalar>(from[i]);
+  };
+  set(robot.arming.position_window, config.position_window);
+  set(robot.arming.speed, config.speed);
+  set(robot.arming.torque_rate, config.torque_rate);
+  config.ramp_s = static_cast<Scalar>(robot.arming.ramp_s);
+  return config;
 }
 
 /// Chain, estimator and bound in one. Compensation is limited to each joint's max_torque. Throws

@@ -32,7 +32,7 @@ void refuse_parameters_of_other_kinds(const TomlTable& table, const EffectInfo& 
 }
 
 NumberRule rule_of(const ParameterInfo& parameter, JointType type) {
-  NumberRule rule = any_number(unit_of(parameter.quantity, type));
+  NumberRule rule = physical(any_number(unit_of(parameter.quantity, type)));
   if (parameter.min > -effects::kAny) rule.min = parameter.min;
   if (parameter.max < effects::kAny) rule.max = parameter.max;
   rule.mend = std::string("give the ") + parameter.meaning;

@@ -58,7 +58,7 @@ std::array<double, 6> inertia_of(const TomlTable& link) {
   std::array<double, 6> inertia{};
   if (!table) return inertia;
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    const NumberRule rule = any_number("kg m^2");
+    const NumberRule rule = physical(any_number("kg m^2"));
     inertia[i] = i < 3 ? table->number(keys[i], rule) : table->number(keys[i], rule, 0);
   }
   const std::string fault = inertia_fault(inertia);
@@ -73,8 +73,8 @@ std::array<double, 6> inertia_of(const TomlTable& link) {
 
 void read_link(const TomlTable& table, Joint<double>& joint) {
   const TomlTable link = table.table("link", {"mass_kg", "centre_of_mass_m", "inertia_kg_m2"});
-  joint.mass_kg = link.number("mass_kg", positive("kg", "give the link's mass in kg"));
-  joint.centre_of_mass_m = vector_of(link, "centre_of_mass_m", any_number("m"));
+  joint.mass_kg = link.number("mass_kg", physical(positive("kg", "give the link's mass in kg")));
+  joint.centre_of_mass_m = vector_of(link, "centre_of_mass_m", physical(any_number("m")));
   joint.inertia_kg_m2 = inertia_of(link);
 }
 
@@ -136,7 +136,7 @@ RobotJoint read_joint(const TomlTable& table) {
                                                                            : JointType::kPrismatic;
   result.joint.axis = axis_of(table);
   result.joint.origin_m =
-      table.has("origin_m") ? vector_of(table, "origin_m", any_number("m")) : kZero;
+      table.has("origin_m") ? vector_of(table, "origin_m", physical(any_number("m"))) : kZero;
   result.joint.rotation = rotation_of(table);
   result.source = table.text_or_empty("source");
   read_link(table, result.joint);

@@ -55,6 +55,12 @@ const std::vector<std::string>& estimator_keys() {
   return keys;
 }
 
+const std::vector<std::string>& arming_keys() {
+  static const std::vector<std::string> keys{"position_window", "speed", "torque_rate", "ramp_s",
+                                             "source"};
+  return keys;
+}
+
 const std::vector<std::string>& bound_keys() {
   static const std::vector<std::string> keys{"kind",   "source",        "value",    "scale",
                                              "offset", "matrix",        "variable", "joint",
@@ -100,6 +106,21 @@ EstimatorSettings read_estimator(const TomlTable& table) {
                                  ? TorqueSignal::kSampled
                                  : TorqueSignal::kHeld;
   }
+  settings.source = table.text_or_empty("source");
+  return settings;
+}
+
+ArmingSettings read_arming(const TomlTable& table, int joint_count) {
+  const auto joints = static_cast<std::size_t>(joint_count);
+  const auto per_joint = [&](const char* key, const char* unit) {
+    if (!table.has(key)) return std::vector<double>{};
+    return table.numbers(key, positive(unit), joints, joints);
+  };
+  ArmingSettings settings;
+  settings.position_window = per_joint("position_window", "rad or m");
+  settings.speed = per_joint("speed", "rad/s or m/s");
+  settings.torque_rate = per_joint("torque_rate", "N m/s or N/s");
+  settings.ramp_s = table.number("ramp_s", positive("s"), settings.ramp_s);
   settings.source = table.text_or_empty("source");
   return settings;
 }

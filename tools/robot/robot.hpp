@@ -47,6 +47,15 @@ struct EstimatorSettings {
   std::string source = {};  // where the numbers come from, free text; empty: not said
 };
 
+// How a controller takes hold of the arm. One number per joint, or none: default_arming().
+struct ArmingSettings {
+  std::vector<double> position_window;  // rad or m
+  std::vector<double> speed;            // rad/s or m/s
+  std::vector<double> torque_rate;      // N m/s or N/s
+  double ramp_s = 1;
+  std::string source = {};  // where the numbers come from, free text; empty: not said
+};
+
 // Bound mu_bar on |M^-1 (unmodelled torque)| (paper assumption 3.1), rad/s^2 or m/s^2.
 struct ConstantBoundSettings {
   double value = 1;
@@ -108,6 +117,7 @@ struct RobotDescription {
   std::vector<RobotJoint> joints;
   std::vector<RobotEffect> effects;  // joint counts from 0
   EstimatorSettings estimator;
+  ArmingSettings arming;
   std::optional<BoundSettings> bound;
   std::optional<ChannelMap> channels;
   // The text it was read from, so that writing keeps comments and order; empty: none.

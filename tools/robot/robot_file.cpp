@@ -24,9 +24,9 @@
 namespace offnominal::tools {
 namespace {
 
-const std::vector<std::string> kRootKeys{"format",  "name",   "source",    "gravity_m_s2",
-                                         "joint",   "effect", "estimator", "uncertainty_bound",
-                                         "channels"};
+const std::vector<std::string> kRootKeys{
+    "format", "name",      "source", "gravity_m_s2",      "joint",
+    "effect", "estimator", "arming", "uncertainty_bound", "channels"};
 
 std::vector<RobotJoint> read_joints(const TomlTable& root) {
   const std::vector<TomlTable> tables = root.tables("joint", joint_keys());
@@ -138,13 +138,17 @@ RobotDescription parse_robot(std::string_view text, const std::string& file) {
   RobotDescription robot;
   robot.name = root.text("name");
   robot.source = root.text_or_empty("source");
-  const std::vector<double> gravity = root.numbers("gravity_m_s2", any_number("m/s^2"), 3, 3);
+  const std::vector<double> gravity =
+      root.numbers("gravity_m_s2", physical(any_number("m/s^2")), 3, 3);
   robot.gravity_m_s2 = {gravity[0], gravity[1], gravity[2]};
   robot.joints = read_joints(root);
   robot.effects = read_effects(root, robot.joints);
   check_mass_matrix(root, robot);
   if (const auto table = root.optional_table("estimator", estimator_keys())) {
     robot.estimator = read_estimator(*table);
+  }
+  if (const auto table = root.optional_table("arming", arming_keys())) {
+    robot.arming = read_arming(*table, robot.joint_count());
   }
   check_initial_weights(root, robot);
   check_delays(root, robot);

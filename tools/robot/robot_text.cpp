@@ -5,6 +5,7 @@
 
 #include "common/number.hpp"
 #include "robot/bound_text.hpp"
+#include "robot/channel_text.hpp"
 #include "robot/effect_text.hpp"
 #include "robot/read_joint.hpp"
 #include "robot/robot_file.hpp"
@@ -159,6 +160,18 @@ void write_estimator(Writer& out, const EstimatorSettings& settings) {
   out.text_if_any("source", settings.source);
 }
 
+void write_arming(Writer& out, const ArmingSettings& settings) {
+  out.table("[arming]");
+  const auto per_joint = [&](const char* name, const std::vector<double>& values) {
+    if (!values.empty()) out.value(name, list(values));
+  };
+  per_joint("position_window", settings.position_window);
+  per_joint("speed", settings.speed);
+  per_joint("torque_rate", settings.torque_rate);
+  out.value("ramp_s", shortest_real(settings.ramp_s));
+  out.text_if_any("source", settings.source);
+}
+
 void write_bound(Writer& out, const BoundSettings& bound) {
   out.line("[uncertainty_bound]");
   switch (bound.kind) {
@@ -202,28 +215,38 @@ std::string channel_list(const Channels& channels, TextOf&& text_of) {
   return text + "]";
 }
 
+std::string channels_value(const ChannelMap& channels, std::string_view key) {
+  if (key == "time") return channel_text(channels.time);
+  if (key == "position") return channel_list(channels.position, channel_text);
+  if (key == "torque") return channel_list(channels.torque, channel_text);
+  return channel_list(channels.velocity, [](const auto& channel) {
+    return channel ? channel_text(*channel) : std::string("\"\"");
+  });
+}
+
 void write_channels(Writer& out, const ChannelMap& channels) {
+  const auto write = [&](const char* key) { out.value(key, channels_value(channels, key)); };
   out.table("[channels]");
   if (channels.at_rest) {
     out.value("at_rest", "true");
   } else {
-    out.value("time", channel_text(channels.time));
+    write("time");
   }
-  out.value("position", channel_list(channels.position, channel_text));
+  write("position");
   const bool any_velocity = std::any_of(channels.velocity.begin(), channels.velocity.end(),
                                         [](const auto& channel) { return channel.has_value(); });
-  if (any_velocity) {
-    out.value("velocity", channel_list(channels.velocity, [](const auto& channel) {
-                return channel ? channel_text(*channel) : std::string("\"\"");
-              }));
-  }
-  out.value("torque", channel_list(channels.torque, channel_text));
+  if (any_velocity) write("velocity");
+  write("torque");
   if (channels.extra.empty()) return;
   out.table("[channels.extra]");
   for (const auto& [name, channel] : channels.extra) out.value(key(name), channel_text(channel));
 }
 
 }  // namespace
+
+std::string channel_line(const ChannelMap& channels, std::string_view key) {
+  return std::string(key) + " = " + channels_value(channels, key);
+}
 
 std::string effect_text(const RobotEffect& effect) {
   const EffectInfo* info = info_of(effect.kind);
@@ -258,6 +281,7 @@ std::string robot_text(const RobotDescription& robot) {
   for (const RobotJoint& joint : robot.joints) write_joint(out, joint);
   for (const RobotEffect& effect : robot.effects) out.block(effect_text(effect));
   write_estimator(out, robot.estimator);
+  write_arming(out, robot.arming);
   if (robot.bound) out.block(bound_text(*robot.bound));
   if (robot.channels) write_channels(out, *robot.channels);
   return out.text();

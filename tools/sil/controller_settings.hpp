@@ -37,7 +37,7 @@ template <int N, typename Scalar>
 [[nodiscard]] controller::ControllerConfig<N, Scalar> controller_config_of(
     const RobotDescription& robot, const ControllerSettings& settings) {
   controller::ControllerConfig<N, Scalar> config = controller::controller_config(
-      monitor_config_of<N, Scalar>(robot), gains_of<N, Scalar>(robot));
+      monitor_config_of<N, Scalar>(robot), gains_of<N, Scalar>(robot), arming_of<N, Scalar>(robot));
   config.safe_mode = settings.safe_mode;
   config.stop_at_detection = settings.stop_at_detection;
   if (!settings.accommodate) config.monitor.max_compensation = {};

@@ -64,6 +64,11 @@ paper::TickRecord record_of(const Table& plant, Index row, const Table& controll
   record.threshold = controller.at("threshold", partner);
   record.weight_norm = controller.at("weights", partner);
   record.detected = controller.at("detected", partner) != 0;
+  // The controller's rows are those of its fresh ticks.
+  record.bus = {true,
+                {controller.pair("q", partner), controller.pair("dq", partner)},
+                controller.pair("tau", partner),
+                plant.pair("acting", row)};
   return record;
 }
 

@@ -62,14 +62,31 @@ class LockStepLoop {
   using Bus = sim::FaultyBus<BusPort>;
 
   void start() {
-    constexpr int kPatience = 100;
-    for (int i = 0; i < kPatience && data_->state != hal::ControllerState::kPassive; ++i) tick();
-    if (controller_.arm(*data_)) return;
+    constexpr int kPatience = 200;
+    controller::Fault refusal = controller::Fault::kNotPassive;
+    for (int i = 0; i < kPatience && passes_by_itself(refusal); ++i) {
+      tick();
+      refusal = controller_.arm(reference(), *data_);
+    }
+    if (refusal == controller::Fault::kNone) return;
+    const bool unheard = passes_by_itself(refusal);
     throw InputError({.file = "sil",
                       .place = "start",
-                      .found = "no valid frames of every joint within 100 ticks",
+                      .found = unheard
+                                   ? "no valid frames of every joint within 200 ticks"
+                                   : std::string("arming refused: ") + controller::name_of(refusal),
                       .allowed = "",
-                      .mend = "let the faults on the bus begin later"});
+                      .mend = unheard ? "let the faults on the bus begin later"
+                                      : "docs/troubleshooting.md says what it asks for"});
+  }
+
+  [[nodiscard]] auto reference() const {
+    return [this](double run_time_s) {
+      const auto desired = scenario_.experiment.desired_at(run_time_s);
+      return Reference<2, Scalar>{desired.q.template cast<Scalar>(),
+                                  desired.dq.template cast<Scalar>(),
+                                  desired.ddq.template cast<Scalar>()};
+    };
   }
 
   void tick() {
@@ -79,15 +96,7 @@ class LockStepLoop {
     plant_bus_.set_time(time_s);
     controller_bus_.set_time(time_s);
     plant_.tick(now_us_ + setup_.period_us, plant_bus_);
-    controller_.step(
-        now_us_, 0,
-        [&](Scalar run_time_s) {
-          const auto desired = scenario_.experiment.desired_at(static_cast<double>(run_time_s));
-          return Reference<2, Scalar>{desired.q.template cast<Scalar>(),
-                                      desired.dq.template cast<Scalar>(),
-                                      desired.ddq.template cast<Scalar>()};
-        },
-        controller_bus_, drives_, *data_);
+    controller_.step(now_us_, 0, reference(), controller_bus_, drives_, *data_);
   }
 
   [[nodiscard]] bool is_safe() const {
@@ -97,7 +106,7 @@ class LockStepLoop {
 
   [[nodiscard]] paper::TickRecord record() const {
     paper::TickRecord record;
-    record.tick = data_->run_ticks;
+    record.tick = static_cast<std::int64_t>(data_->run_ticks);
     record.time_s = plant_.time_s();
     record.state = plant_.state();
     record.q_desired = scenario_.experiment.desired_at(record.time_s).q;
@@ -109,6 +118,12 @@ class LockStepLoop {
     record.weight_norm =
         std::sqrt(static_cast<double>(squared_norm(data_->monitor.estimator.weights)));
     record.detected = data_->output.detector.latched;
+    const auto& seen = data_->sample;
+    // Before the drives follow, a sample holds the torque that is asked for.
+    record.bus = {data_->fresh && data_->drives_follow,
+                  {seen.q.template cast<double>(), seen.dq.template cast<double>()},
+                  seen.tau.template cast<double>(),
+                  plant_.acting_nm()};
     return record;
   }
 

@@ -68,7 +68,8 @@ std::vector<std::string> controller_arguments(const Folder& folder, const Scenar
     arguments.insert(arguments.end(), words);
   };
   if (options.robot_file) add({"--robot", *options.robot_file});
-  if (options.candump) add({"--candump", *options.candump, "--force"});
+  if (options.candump) add({"--candump", *options.candump});
+  if (options.replace_candump) add({"--force"});
   if (scenario.experiment.accommodate) add({"--accommodate"});
   if (scenario.stop_at_detection) add({"--stop-at-detection"});
   if (scenario.format == hal::FrameFormat::kFd) add({"--fd"});
@@ -139,6 +140,12 @@ SilResult run_in_real_time(const RobotDescription& robot, const Scenario& scenar
                               folder / "plant.csv", json("plant.json")};
   if (recordings.plant.at("arm_time_s").get<double>() > 0) {
     return gather(robot, scenario, options.interface, recordings);
+  }
+  const auto refusal = recordings.controller.at("refusal").get<std::string>();
+  if (refusal != controller::name_of(controller::Fault::kNone)) {
+    throw InputError({"offnominal-controller", "", "arming refused: " + refusal,
+                      "an arm where its motion starts, a robot file with gains and torque limits",
+                      "docs/troubleshooting.md says what it asks for"});
   }
   throw InputError(
       {"offnominal-controller", "",

@@ -11,7 +11,8 @@ namespace offnominal::tools::sil {
 struct RealTimeOptions {
   std::string interface;                  // of the kernel, up
   std::optional<std::string> robot_file;  // none: the paper's arm
-  std::optional<std::string> candump;     // every frame that the controller saw; replaced
+  std::optional<std::string> candump;     // every frame that the controller saw
+  bool replace_candump = false;
 };
 
 /// Starts offnominal-plant and offnominal-controller on the interface, waits for the end of the

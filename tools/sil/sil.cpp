@@ -44,7 +44,7 @@ void check_fault(const sim::FaultEvent& fault, double duration_s) {
 }  // namespace
 
 void check_scenario(const RobotDescription& robot, const Scenario& scenario) {
-  paper::check_experiment(robot, scenario.experiment);
+  paper::check_experiment(robot, scenario.experiment, "sil");
   constexpr int kMostHidden = 128;
   if (robot.estimator.hidden_units > kMostHidden) {
     refuse("hidden units", std::to_string(robot.estimator.hidden_units), "1 to 128");

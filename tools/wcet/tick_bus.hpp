@@ -62,7 +62,10 @@ class ReadyBus {
   void rewind() { next_ = 0; }
   [[nodiscard]] std::size_t handed_out() const { return next_; }
 
-  [[nodiscard]] hal::Microseconds now() { return 0; }
+  // When its frames came: all of a tick at once.
+  [[nodiscard]] hal::Microseconds now() const {
+    return frames_.empty() ? 0 : frames_.front().time_us;
+  }
   [[nodiscard]] hal::Status send(const hal::Frame& frame, hal::Microseconds /*deadline_us*/) {
     sent_ = frame;
     return hal::Status::kOk;
@@ -102,6 +105,7 @@ class MarkedDrives {
     marks_->end_of(Phase::kControl);
     return drives_.outgoing(commands, heartbeat, into);
   }
+  [[nodiscard]] hal::Microseconds drive_max_age_us() const { return drives_.drive_max_age_us(); }
   [[nodiscard]] bool stop_seen() const { return drives_.stop_seen(); }
   void clear_stop() { drives_.clear_stop(); }
 

@@ -30,7 +30,7 @@ class TickOf final : public Tick {
         period_us_(sil::period_us_of(robot.estimator.period_s)) {
     sil::ControllerSettings settings;
     settings.accommodate = true;
-    sil::create_controller(robot, settings, work_.controller);
+    sil::create_controller(ready_to_arm(robot), settings, work_.controller);
   }
 
   void prepare(const TickInput& input) override {
@@ -54,7 +54,7 @@ class TickOf final : public Tick {
   void run() override {
     work_.controller.step(
         now_us_, 0,
-        [this](Scalar) {
+        [this](double /*time_s*/) {
           marks_.end_of(Phase::kDiagnose);
           return reference_;
         },
@@ -70,8 +70,8 @@ class TickOf final : public Tick {
   void run_part(Part part) override {
     const auto& monitor = work_.controller.monitor();
     const auto& config = monitor.config();
-    const Scalar end_s =
-        static_cast<Scalar>(work_.data.monitor.tick + 1) * config.estimator.period_s;
+    const double end_s = static_cast<double>(work_.data.monitor.tick + 1) *
+                         static_cast<double>(config.estimator.period_s);
     if (part == Part::kModel) {
       static_cast<void>(
           forward_dynamics(monitor.model(), sample_.q, sample_.dq, sample_.tau, end_s, nominal_));
@@ -128,6 +128,17 @@ class TickOf final : public Tick {
     ReadyBus bus;
   };
 
+  // What is measured is a tick, whether the arm should be armed so or not.
+  static RobotDescription ready_to_arm(RobotDescription robot) {
+    constexpr double kNoLimit = 1e30;
+    for (RobotJoint& joint : robot.joints) {
+      if (joint.kp == 0) joint.kp = 1;
+      if (joint.kd == 0) joint.kd = 1;
+      joint.joint.max_torque = std::min(joint.joint.max_torque, kNoLimit);
+    }
+    robot.arming.speed.assign(robot.joints.size(), kMaxFrameVelocity + 1);
+    return robot;
+  }
   static void require(Status status) {
     if (status != Status::kOk) throw std::runtime_error(name_of(status));
   }
@@ -194,16 +205,19 @@ class TickOf final : public Tick {
     work_.data = Data{};
     work_.drives = Drives(controller::source_config(period_us_), format_, marks_);
     constexpr int kTicksToStart = 12;
-    for (int i = 0; i < kTicksToStart; ++i) {
+    const auto reference_at = [&](double /*time_s*/) { return reference_; };
+    controller::Fault refusal = controller::Fault::kNone;
+    for (int i = 0; i < kTicksToStart && refusal == controller::Fault::kNone; ++i) {
       next_frames(input);
       reference_ = {sample_.q, sample_.dq, Vector<N, Scalar>::Zero()};
       work_.bus.set_frames(frames_);
       run();
-      if (i == kTicksToStart / 2 && !work_.controller.arm(work_.data)) break;
+      if (i == kTicksToStart / 2) refusal = work_.controller.arm(reference_at, work_.data);
     }
     if (work_.data.state != hal::ControllerState::kArmed || !work_.data.monitor.initialised) {
-      throw std::runtime_error("the controller does not take this sample (fault " +
-                               std::to_string(static_cast<int>(work_.data.fault)) + ")");
+      const bool refused = refusal != controller::Fault::kNone;
+      throw std::runtime_error(std::string("the controller does not take this sample (") +
+                               name_of(refused ? refusal : work_.data.fault) + ")");
     }
   }
 

@@ -114,15 +114,30 @@ Counts counts_of(const Reference& reference) {
 }
 
 void create(const char* scenario, Scalar weight_radius) {
-  Controller::Config config;
-  config.monitor = robot_model::kMonitorConfig<Scalar>;
-  config.gains = robot_model::kComputedTorqueGains<Scalar>;
+  Controller::Config config = controller::controller_config(
+      robot_model::kMonitorConfig<Scalar>, robot_model::kComputedTorqueGains<Scalar>,
+      robot_model::kArmingConfig<Scalar>);
+  config.arming.speed.fill(Scalar(1000));  // whatever the first sample is
+  // Also of a robot file that says nothing of its control.
+  for (std::size_t j = 0; j < kCount; ++j) {
+    Scalar& limit = config.monitor.chain.joints[j].max_torque;
+    limit = std::min(limit, Scalar(1e6));
+    config.arming.torque_rate[j] = std::min(config.arming.torque_rate[j], Scalar(1e9));
+    if (config.gains.kp[j] <= 0) config.gains.kp[j] = 1;
+    if (config.gains.kd[j] <= 0) config.gains.kd[j] = 1;
+  }
   if (weight_radius > 0) config.monitor.estimator.weight_radius = weight_radius;
   for (std::size_t j = 0; j < kCount; ++j) {
     config.monitor.max_compensation[j] = config.monitor.chain.joints[j].max_torque;
   }
   if (Controller::create(config, controller.make()) != Status::kOk) give_up(scenario, "refused");
   memory.make();
+}
+
+void arm(const char* scenario, const Reference& reference) {
+  const controller::Fault refusal =
+      controller->arm([&](double /*time_s*/) { return reference; }, memory->data);
+  if (refusal != controller::Fault::kNone) give_up(scenario, name_of(refusal));
 }
 
 // Ticks with the samples of `sample_at`, after so many that arm the controller. The counts of the
@@ -144,7 +159,7 @@ Counts longest(const char* scenario, std::uint32_t from, std::uint32_t ticks,
     if (memory->data.fault != controller::Fault::kNone) {
       give_up(scenario, name_of(memory->data.fault));
     }
-    if (tick == kArmed - 2 && !controller->arm(memory->data)) give_up(scenario, "not armed");
+    if (tick == kArmed - 2) arm(scenario, reference);
     if (tick < from + kArmed || taken <= most) continue;
     most = taken;
     counts = counts_of(reference);
@@ -241,7 +256,7 @@ void run() {
       if (!memory->data.monitor.initialised) give_up("arming", "has not started the monitor");
     } else {
       offnominal_tick(*controller, reference, *memory);
-      if (tick == kArmingTick - 1 && !controller->arm(memory->data)) give_up("arming", "not armed");
+      if (tick == kArmingTick - 1) arm("arming", reference);
     }
   }
   tell("arming", counts);

@@ -25,7 +25,8 @@ inline JointSample<kJoints, Scalar> on_path(const Controller& controller, std::u
     sample.dq[i] = Scalar(0.2) * w * std::cos(w * t);
     ddq[i] = Scalar(-0.2) * w * w * std::sin(w * t);
   }
-  sample.tau = inverse_dynamics(controller.monitor().model(), sample.q, sample.dq, ddq, t);
+  sample.tau = inverse_dynamics(controller.monitor().model(), sample.q, sample.dq, ddq,
+                                static_cast<double>(t));
   for (Eigen::Index i = 0; i < kJoints; ++i) {
     const Scalar most = joints[static_cast<std::size_t>(i)].max_torque;
     sample.tau[i] = std::fmax(-most, std::fmin(most, sample.tau[i] + extra * most));

@@ -5,7 +5,7 @@ using namespace offnominal::cortex_m;
 void offnominal_tick(const Controller& controller,
                      const offnominal::Reference<kJoints, Scalar>& reference, Memory& memory) {
   controller.step(
-      memory.bus.now(), 0, [&reference](Scalar /*time_s*/) { return reference; }, memory.bus,
+      memory.bus.now(), 0, [&reference](double /*time_s*/) { return reference; }, memory.bus,
       memory.drives, memory.data);
 }
 

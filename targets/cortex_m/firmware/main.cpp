@@ -27,7 +27,7 @@ constinit controller::StaticObject<Bus> bus;
 constinit controller::StaticObject<Firmware> firmware;
 
 // The joints stay where the robot's coordinates are zero.
-Reference<Firmware::kJoints, float> hold(float /*time_s*/) { return {}; }
+Reference<Firmware::kJoints, float> hold(double /*time_s*/) { return {}; }
 
 }  // namespace
 }  // namespace offnominal::cortex_m

@@ -103,7 +103,7 @@ class ReplayRun {
   void tick(const ReplayTick& tick, ReplayResult& result) {
     now_us_ += Firmware::kPeriodUs;
     bus_.begin(tick, now_us_);
-    firmware_.tick(now_us_, 0, [&tick](Scalar /*time_s*/) {
+    const auto reference_at = [&tick](double /*time_s*/) {
       Reference<Firmware::kJoints, Scalar> reference;
       for (std::size_t j = 0; j < kReplayJoints; ++j) {
         const auto i = static_cast<Eigen::Index>(j);
@@ -112,9 +112,10 @@ class ReplayRun {
         reference.ddq[i] = static_cast<Scalar>(tick.ddq[j]);
       }
       return reference;
-    });
+    };
+    firmware_.tick(now_us_, 0, reference_at);
     tell(result);
-    static_cast<void>(firmware_.arm());  // refused but in kPassive
+    static_cast<void>(firmware_.arm(reference_at));  // refused but in kPassive
   }
 
  private:
@@ -125,7 +126,7 @@ class ReplayRun {
     result = {};
     result.state = static_cast<std::uint32_t>(data.state);
     result.fault = static_cast<std::uint32_t>(data.fault);
-    result.detection_tick = data.output.detector.detection_tick;
+    result.detection_tick = static_cast<std::uint32_t>(data.output.detector.detection_tick);
     result.sent_count = static_cast<std::uint32_t>(bus_.sent().size());
     std::copy(bus_.sent().begin(), bus_.sent().end(), result.sent.begin());
     result.error_norm = static_cast<double>(data.output.error_norm);

@@ -36,6 +36,7 @@ struct GeneratedTwoLink {
   static constexpr int kHiddenUnits = models::two_link::kHiddenUnits;
   static constexpr const auto& kConfig = models::two_link::kMonitorConfig<S>;
   static constexpr const auto& kGains = models::two_link::kComputedTorqueGains<S>;
+  static constexpr const auto& kArming = models::two_link::kArmingConfig<S>;
   static constexpr const auto& kEncoders = models::two_link::kEncoderCountsPerUnit<S>;
   static constexpr const auto& kNames = models::two_link::kJointNames;
   inline static const std::string kFile = (test::source_dir() / "robots/two_link.toml").string();
@@ -48,6 +49,7 @@ struct GeneratedEmps {
   static constexpr int kHiddenUnits = models::emps::kHiddenUnits;
   static constexpr const auto& kConfig = models::emps::kMonitorConfig<S>;
   static constexpr const auto& kGains = models::emps::kComputedTorqueGains<S>;
+  static constexpr const auto& kArming = models::emps::kArmingConfig<S>;
   static constexpr const auto& kEncoders = models::emps::kEncoderCountsPerUnit<S>;
   static constexpr const auto& kNames = models::emps::kJointNames;
   inline static const std::string kFile = (test::source_dir() / "robots/emps.toml").string();
@@ -60,6 +62,7 @@ struct GeneratedEveryEffect {
   static constexpr int kHiddenUnits = models::every_effect::kHiddenUnits;
   static constexpr const auto& kConfig = models::every_effect::kMonitorConfig<S>;
   static constexpr const auto& kGains = models::every_effect::kComputedTorqueGains<S>;
+  static constexpr const auto& kArming = models::every_effect::kArmingConfig<S>;
   static constexpr const auto& kEncoders = models::every_effect::kEncoderCountsPerUnit<S>;
   static constexpr const auto& kNames = models::every_effect::kJointNames;
   inline static const std::string kFile =
@@ -175,6 +178,11 @@ TYPED_TEST(GeneratedModel, HoldsTheHostsConfigurationToTheBit) {
   const auto gains = gains_of<TypeParam::kJoints, typename TypeParam::Scalar>(this->robot_);
   expect_same_bits(TypeParam::kGains.kp, gains.kp, "kp");
   expect_same_bits(TypeParam::kGains.kd, gains.kd, "kd");
+  const auto arming = arming_of<TypeParam::kJoints, typename TypeParam::Scalar>(this->robot_);
+  expect_same_bits(TypeParam::kArming.position_window, arming.position_window, "window");
+  expect_same_bits(TypeParam::kArming.speed, arming.speed, "speed");
+  expect_same_bits(TypeParam::kArming.torque_rate, arming.torque_rate, "torque rate");
+  EXPECT_EQ(TypeParam::kArming.ramp_s, arming.ramp_s);
 }
 
 TYPED_TEST(GeneratedModel, GivesTheHostsTorqueForEveryEffect) {
@@ -198,7 +206,7 @@ TYPED_TEST(GeneratedModel, GivesTheHostsTorqueForEveryEffect) {
     for (int sample = 0; sample < 20; ++sample) {
       const auto at = random_sample<kN, Scalar>(this->generator_, this->host_);
       const Vector<kN, Scalar> ddq = Scalar(3) * at.dq;
-      const auto time_s = static_cast<Scalar>(sample) * Scalar(0.1);
+      const double time_s = 0.1 * sample;
       expect_same_bits(inverse_dynamics(with_generated, at.q, at.dq, ddq, time_s),
                        inverse_dynamics(with_host, at.q, at.dq, ddq, time_s), "torque");
     }
@@ -212,7 +220,7 @@ TYPED_TEST(GeneratedModel, GivesTheHostsDynamics) {
   const auto host = make_model(this->host_.chain);
   for (int i = 0; i < 200; ++i) {
     const auto at = random_sample<kN, Scalar>(this->generator_, this->host_);
-    const auto time_s = static_cast<Scalar>(i) * Scalar(0.01);
+    const double time_s = 0.01 * static_cast<double>(i);
     ForwardDynamics<kN, Scalar> a;
     ForwardDynamics<kN, Scalar> b;
     ASSERT_EQ(forward_dynamics(generated, at.q, at.dq, at.tau, time_s, a), Status::kOk);

@@ -59,7 +59,7 @@ TEST(CodegenVerb, WritesNothingForAWrongRobotAndNeverOverTheRobotItself) {
   EXPECT_FALSE(std::filesystem::exists(folder / "model.hpp"));
   const CommandResult itself = codegen({robot, "-o", robot, "--force"});
   EXPECT_EQ(itself.exit_code, 2);
-  EXPECT_THAT(itself.err, HasSubstr("-o: found the robot file itself"));
+  EXPECT_THAT(itself.err, HasSubstr("which is that of ROBOT"));
   EXPECT_THAT(content_of(robot), HasSubstr("mass = 3"));
 }
 

@@ -128,6 +128,22 @@ TEST(MonitorConfigOf, IsAcceptedByTheCoreInBothScalars) {
   EXPECT_EQ(EstimatorSettings{}.torque_signal, (MonitorConfig<2, float>{}.torque_signal));
 }
 
+TEST(ArmingOf, IsWhatTheFileSaysAndTheDefaultsElsewhere) {
+  RobotDescription robot = sample();
+  const auto config = arming_of<2, double>(robot);
+  EXPECT_EQ(config.position_window, (std::array{0.1, 0.02}));
+  EXPECT_EQ(config.speed, (std::array{0.2, 0.03}));
+  EXPECT_EQ(config.torque_rate, (std::array{500.0, 60.0}));
+  EXPECT_EQ(config.ramp_s, 0.5);
+  robot.arming = {};
+  const auto otherwise = arming_of<2, double>(robot);
+  EXPECT_EQ(otherwise.position_window, (std::array{0.05, 0.01})) << "a turn and a slide";
+  EXPECT_EQ(otherwise.torque_rate[0], 1000) << "50 N m in 0.05 s";
+  EXPECT_EQ(otherwise.ramp_s, 1);
+  robot.arming.speed = {1.0};
+  EXPECT_THROW(static_cast<void>(arming_of<2, double>(robot)), std::invalid_argument);
+}
+
 TEST(MonitorConfigOf, NeedsABound) {
   RobotDescription robot = sample();
   robot.bound.reset();

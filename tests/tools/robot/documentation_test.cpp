@@ -80,7 +80,8 @@ TEST(RobotFileDocument, HasEveryEffectWithItsFormulaAndParameters) {
 
 TEST(RobotFileDocument, HasEveryKey) {
   const std::string text = document("robot-file.md");
-  for (const auto& keys : {joint_keys(), effect_keys(), estimator_keys(), bound_keys()}) {
+  for (const auto& keys :
+       {joint_keys(), effect_keys(), estimator_keys(), arming_keys(), bound_keys()}) {
     for (const std::string& key : keys) {
       EXPECT_THAT(text, HasSubstr("\n| `" + key + "` |")) << key;
     }

@@ -67,6 +67,14 @@ inline void expect_same(const tools::EstimatorSettings& a, const tools::Estimato
   EXPECT_EQ(a.source, b.source);
 }
 
+inline void expect_same(const tools::ArmingSettings& a, const tools::ArmingSettings& b) {
+  expect_same(a.position_window, b.position_window);
+  expect_same(a.speed, b.speed);
+  expect_same(a.torque_rate, b.torque_rate);
+  expect_same(a.ramp_s, b.ramp_s);
+  EXPECT_EQ(a.source, b.source);
+}
+
 inline void expect_same(const tools::BoundSettings& a, const tools::BoundSettings& b) {
   ASSERT_EQ(a.kind, b.kind);
   EXPECT_EQ(a.source, b.source);
@@ -112,6 +120,7 @@ inline void expect_same(const tools::RobotDescription& a, const tools::RobotDesc
   expect_same(a.joints, b.joints);
   expect_same(a.effects, b.effects);
   expect_same(a.estimator, b.estimator);
+  expect_same(a.arming, b.arming);
   ASSERT_EQ(a.bound.has_value(), b.bound.has_value());
   if (a.bound) expect_same(*a.bound, *b.bound);
   ASSERT_EQ(a.channels.has_value(), b.channels.has_value());

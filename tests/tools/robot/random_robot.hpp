@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "robot/read_joint.hpp"
 #include "robot/robot.hpp"
@@ -20,12 +21,13 @@ class RandomRobot {
     tools::RobotDescription robot;
     robot.name = word();
     robot.source = any_text();
-    robot.gravity_m_s2 = {number(), number(), number()};
+    robot.gravity_m_s2 = {length(), length(), length()};
     const int joints = whole(1, tools::kMaxJoints);
     for (int i = 0; i < joints; ++i) robot.joints.push_back(joint(i));
     const int effects = whole(0, kEffectsPerJoint * joints);
     for (int i = 0; i < effects; ++i) robot.effects.push_back(effect(robot));
     robot.estimator = estimator();
+    robot.arming = arming(joints);
     if (coin()) robot.bound = bound(joints);
     if (coin()) robot.channels = channels(joints);
     return robot;
@@ -36,18 +38,25 @@ class RandomRobot {
   int whole(int min, int max) { return std::uniform_int_distribution<int>(min, max)(generator_); }
   double uniform() { return std::uniform_real_distribution<double>(-1, 1)(generator_); }
 
+  // Powers of 2 up to which a robot file takes lengths, gravity and parameters, and masses.
+  static constexpr int kLargestLength = 15;
+  static constexpr int kLargestMass = 22;
+
   // Of any size, whole numbers and both zeros among them.
-  double number() {
+  double number(int largest = 60) {
     switch (whole(0, 4)) {
       case 0:
         return coin() ? 0.0 : -0.0;
       case 1:
         return whole(-1000, 1000);
       default:
-        return std::ldexp(uniform(), whole(-60, 60));
+        return std::ldexp(uniform(), whole(-60, largest));
     }
   }
-  double positive() { return std::ldexp(1 + std::fabs(uniform()), whole(-28, 30)); }
+  double positive(int largest = 30) {
+    return std::ldexp(1 + std::fabs(uniform()), whole(-28, largest));
+  }
+  double length() { return number(kLargestLength); }
   std::string word() { return "w" + std::to_string(whole(0, 1 << 30)); }
   std::string any_text() {
     const std::string parts[]{"a",      " ", "\"", "\\", "\n",   "\t",
@@ -65,15 +74,15 @@ class RandomRobot {
     joint.type = coin() ? JointType::kRevolute : JointType::kPrismatic;
     const Eigen::Vector3d axis = Eigen::Vector3d(uniform(), uniform(), uniform() + 2).normalized();
     joint.axis = {axis[0], axis[1], axis[2]};
-    joint.origin_m = {number(), number(), number()};
+    joint.origin_m = {length(), length(), length()};
     const Eigen::Matrix3d turn = Eigen::Quaterniond(uniform(), uniform(), uniform(), 1 + uniform())
                                      .normalized()
                                      .toRotationMatrix();
     if (coin()) {
       for (int i = 0; i < 9; ++i) joint.rotation[static_cast<std::size_t>(i)] = turn(i / 3, i % 3);
     }
-    joint.mass_kg = positive();
-    joint.centre_of_mass_m = {number(), number(), number()};
+    joint.mass_kg = positive(kLargestMass);
+    joint.centre_of_mass_m = {length(), length(), length()};
     if (coin()) joint.inertia_kg_m2 = inertia(turn);
     if (coin()) joint.min_position = -positive();
     if (coin()) joint.max_position = positive();
@@ -110,8 +119,8 @@ class RandomRobot {
         result.parameters[i] = other + (other > result.joint ? 1 : 0);
         continue;
       }
-      const double value = number();
-      result.parameters[i] = value >= parameter.min ? value : positive();
+      const double value = length();
+      result.parameters[i] = value >= parameter.min ? value : positive(kLargestLength);
       // A small share of the range: those of one joint may have to add up to no more than its end.
       if (parameter.max < effects::kAny) {
         constexpr double kMost = kEffectsPerJoint * tools::kMaxJoints;
@@ -142,6 +151,21 @@ class RandomRobot {
     settings.dead_zone =
         coin() ? tools::DeadZoneChoice::kContinuous : tools::DeadZoneChoice::kDiscontinuous;
     settings.torque_signal = coin() ? TorqueSignal::kSampled : TorqueSignal::kHeld;
+    settings.source = any_text();
+    return settings;
+  }
+
+  tools::ArmingSettings arming(int joints) {
+    const auto per_joint = [&] {
+      std::vector<double> values;
+      for (int i = 0; i < joints; ++i) values.push_back(positive());
+      return coin() ? values : std::vector<double>{};
+    };
+    tools::ArmingSettings settings;
+    settings.position_window = per_joint();
+    settings.speed = per_joint();
+    settings.torque_rate = per_joint();
+    if (coin()) settings.ramp_s = positive();
     settings.source = any_text();
     return settings;
   }

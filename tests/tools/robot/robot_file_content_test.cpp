@@ -68,6 +68,10 @@ TEST(RobotFileContent, HoldsEstimatorBoundAndChannels) {
   EXPECT_EQ(robot.estimator.seed, 7U);
   EXPECT_EQ(robot.estimator.dead_zone, DeadZoneChoice::kDiscontinuous);
   EXPECT_EQ(robot.estimator.torque_signal, TorqueSignal::kHeld);
+  EXPECT_EQ(robot.arming.position_window, (std::vector{0.1, 0.02}));
+  EXPECT_EQ(robot.arming.speed, (std::vector{0.2, 0.03}));
+  EXPECT_EQ(robot.arming.torque_rate, (std::vector{500.0, 60.0}));
+  EXPECT_EQ(robot.arming.ramp_s, 0.5);
   ASSERT_TRUE(robot.bound);
   EXPECT_EQ(robot.bound->kind, BoundSettings::Kind::kTable);
   EXPECT_EQ(robot.bound->table.variable, BoundVariable::kTorque);

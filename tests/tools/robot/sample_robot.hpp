@@ -67,6 +67,12 @@ seed = 7
 dead_zone = "discontinuous"
 torque_signal = "held"
 
+[arming]
+position_window = [0.1, 0.02]
+speed = [0.2, 0.03]
+torque_rate = [500.0, 60.0]
+ramp_s = 0.5
+
 [uncertainty_bound]
 kind = "table"
 variable = "torque"

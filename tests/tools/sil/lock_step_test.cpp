@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "common/error.hpp"
+#include "paper/recording.hpp"
 #include "paper/two_link_robot.hpp"
 #include "sil/sil.hpp"
 #include "sil/sil_report.hpp"
@@ -75,6 +77,40 @@ TEST(LockStep, SeesWhatChangesTheMotion) {
     EXPECT_TRUE(result.run.detection_time_s.has_value()) << info_of(fault.kind).name;
     EXPECT_EQ(result.fault, Fault::kNone) << info_of(fault.kind).name;
   }
+}
+
+// The recording of a run is what the controller saw, and beside it what was true.
+TEST(LockStep, RecordsWhatTheControllerSawAndTheTruthBesideIt) {
+  const auto recording_with = [](const std::vector<FaultEvent>& faults) {
+    Scenario scenario = scenario_with(faults);
+    scenario.experiment.record = true;
+    const RobotDescription robot = paper::two_link_robot();
+    const auto wire = make_in_process_wire();
+    const SilResult result = run_in_lock_step(robot, scenario, *wire, kInProcess);
+    return recording_of(robot, scenario.experiment, result.run);
+  };
+  const auto tail = [](const Log& log, const Eigen::VectorXd& column) {
+    return column.tail(log.sample_count() / 4).eval();
+  };
+  const Log stuck =
+      recording_with({{.kind = FaultEventKind::kEncoderStuck, .begin_s = 2.0, .joint = 0}});
+  const Eigen::VectorXd q1 = tail(stuck, stuck.q.col(0));
+  EXPECT_EQ(q1.maxCoeff(), q1.minCoeff());
+  const Eigen::VectorXd truth = tail(stuck, stuck.extra.at("q_true1"));
+  EXPECT_GT(truth.maxCoeff() - truth.minCoeff(), 0.01);
+  EXPECT_LT((tail(stuck, stuck.q.col(1)) - tail(stuck, stuck.extra.at("q_true2"))).norm(), 1e-3);
+
+  const Log weak = recording_with(
+      {{.kind = FaultEventKind::kTorqueLoss, .begin_s = 2.0, .joint = 1, .size = 0.4}});
+  EXPECT_LT((0.6 * tail(weak, weak.tau.col(1)) - tail(weak, weak.extra.at("tau_true2"))).norm(),
+            1e-3);
+
+  // A tick without a reading is no row.
+  const Log lossy =
+      recording_with({{.kind = FaultEventKind::kFrameLoss, .begin_s = 0.5, .size = 0.01}});
+  const Log whole = recording_with({});
+  EXPECT_LT(lossy.sample_count(), whole.sample_count());
+  EXPECT_GT(lossy.sample_count(), 0.9 * static_cast<double>(whole.sample_count()));
 }
 
 // GIVEN faults after which nothing can be trusted THEN no drive gives torque after a few ticks.

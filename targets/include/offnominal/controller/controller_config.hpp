@@ -1,8 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <offnominal/control/arming.hpp>
 #include <offnominal/control/computed_torque.hpp>
 #include <offnominal/diagnosis/velocity_observer.hpp>
+#include <offnominal/finite.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/hal/source.hpp>
 #include <offnominal/monitor.hpp>
@@ -16,11 +21,17 @@ struct ControllerConfig {
   // max_compensation zero: the monitor watches and does not act.
   MonitorConfig<N, Scalar> monitor;
   ComputedTorqueGains<N, Scalar> gains;
+  ArmingConfig<N, Scalar> arming;
+  // No joint can be further from 0 than this, rad or m, whatever its limits: what says that it is
+  // must be wrong.
+  Scalar most_position = 1000;
   // A command that has not gone out so long after its tick began never does; below a period.
   Microseconds command_lifetime_us = 900;
   hal::DriveMode safe_mode = hal::DriveMode::kOff;  // kOff or kDamping
   std::uint8_t late_ticks_allowed = 3;              // in a row
-  std::uint8_t ticks_to_follow = 5;  // until a drive has to be in the mode that it was told to take
+  // From arming until every drive has to be in torque mode, besides its protocol's
+  // drive_max_age_us(). The reference and the watch begin when all of them are.
+  Microseconds time_to_follow_us = 20000;
   // For drives that send positions alone; monitor.bound.velocity_error has to hold its
   // velocity_error_bound() then. Its period_s is the monitor's.
   VelocityObserverConfig<Scalar> velocity_observer;
@@ -30,18 +41,27 @@ struct ControllerConfig {
 };
 
 // A configuration whose times follow from the monitor's period, whatever that is: commands live for
-// 0.9 of it, and the velocity observer settles within some ten of them.
+// 0.9 of it, and the velocity observer has forgotten its start within some fifty of them.
 template <int N, typename Scalar>
 [[nodiscard]] ControllerConfig<N, Scalar> controller_config(
-    const MonitorConfig<N, Scalar>& monitor, const ComputedTorqueGains<N, Scalar>& gains) {
+    const MonitorConfig<N, Scalar>& monitor, const ComputedTorqueGains<N, Scalar>& gains,
+    const ArmingConfig<N, Scalar>& arming) {
   ControllerConfig<N, Scalar> config;
   config.monitor = monitor;
   config.gains = gains;
+  config.arming = arming;
   const Scalar period_s = monitor.estimator.period_s;
   config.command_lifetime_us = static_cast<Microseconds>(Scalar(0.9e6) * period_s + Scalar(0.5));
   config.velocity_observer.period_s = period_s;
   config.velocity_observer.bandwidth_rad_s = Scalar(0.2) / period_s;
   return config;
+}
+
+// With default_arming().
+template <int N, typename Scalar>
+[[nodiscard]] ControllerConfig<N, Scalar> controller_config(
+    const MonitorConfig<N, Scalar>& monitor, const ComputedTorqueGains<N, Scalar>& gains) {
+  return controller_config(monitor, gains, default_arming(monitor.chain));
 }
 
 // A reading is stale at the third tick without a new one.
@@ -58,13 +78,39 @@ template <int N, typename Scalar>
   return observer;
 }
 
+// Where a joint can be, rad or m: its limits, or where these say less what the configuration does.
+template <int N, typename Scalar>
+struct PositionRange {
+  Vector<N, Scalar> lowest = Vector<N, Scalar>::Zero();
+  Vector<N, Scalar> highest = Vector<N, Scalar>::Zero();
+};
+
+template <int N, typename Scalar>
+[[nodiscard]] PositionRange<N, Scalar> position_range_of(
+    const ControllerConfig<N, Scalar>& config) {
+  PositionRange<N, Scalar> range;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(N); ++j) {
+    const Joint<Scalar>& joint = config.monitor.chain.joints[j];
+    const auto i = static_cast<Eigen::Index>(j);
+    range.lowest[i] = std::max(joint.min_position, -config.most_position);
+    range.highest[i] = std::min(joint.max_position, config.most_position);
+  }
+  return range;
+}
+
 template <int N, typename Scalar>
 [[nodiscard]] Status validate(const ControllerConfig<N, Scalar>& config) {
   if (const Status status = validate(config.gains); status != Status::kOk) return status;
+  if (const Status status = validate(config.arming); status != Status::kOk) return status;
+  if (!is_finite(config.most_position) || config.most_position <= 0) {
+    return Status::kInvalidLimit;
+  }
   const auto period_us = static_cast<double>(config.monitor.estimator.period_s) * 1e6;
   const auto lifetime_us = static_cast<double>(config.command_lifetime_us);
-  if (!(lifetime_us > 0 && lifetime_us <= period_us)) return Status::kInvalidLimit;
+  if (!is_finite(period_us) || lifetime_us <= 0 || lifetime_us > period_us)
+    return Status::kInvalidLimit;
   if (config.safe_mode == hal::DriveMode::kTorque) return Status::kInvalidLimit;
+  if (config.time_to_follow_us < 0) return Status::kInvalidLimit;
   return validate(observer_of(config));
 }
 

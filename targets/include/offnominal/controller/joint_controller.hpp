@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <offnominal/control/computed_torque.hpp>
+#include <offnominal/control/reference_ramp.hpp>
+#include <offnominal/controller/arming_check.hpp>
 #include <offnominal/controller/controller_config.hpp>
 #include <offnominal/controller/fault.hpp>
-#include <offnominal/diagnosis/velocity_observer.hpp>
+#include <offnominal/controller/sample_taker.hpp>
 #include <offnominal/hal/bus.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/monitor.hpp>
@@ -23,24 +25,24 @@ using hal::ControllerState;
 
 // Plain data, ready to be logged.
 template <int N, int L, typename Scalar, typename Memory = WithoutMemory>
-struct ControllerData {
+struct ControllerData : SampleData<N, Scalar> {
   ControllerState state = ControllerState::kInit;
   Fault fault = Fault::kNone;
-  std::uint32_t ticks = 0;           // since the start
-  std::uint32_t run_ticks = 0;       // since arming
+  std::uint64_t ticks = 0;           // since the start
+  std::uint64_t waiting_ticks = 0;   // from arming until every drive was in torque mode
+  std::uint64_t run_ticks = 0;       // since then
   std::uint32_t overruns = 0;        // ticks that began late, ever
   std::uint32_t missed_samples = 0;  // ticks without a fresh reading of every joint, ever
   std::uint32_t refused_frames = 0;  // that came with something wrong in them, ever
   std::uint32_t unsent_frames = 0;   // that the bus did not take, ever
   std::uint8_t late_in_a_row = 0;
-  std::array<Microseconds, static_cast<std::size_t>(N)> used_time_us{};  // of the last sample
-  JointSample<N, Scalar> sample;
-  std::array<VelocityObserverState<Scalar>, static_cast<std::size_t>(N)> velocity{};
+  ReferenceRamp<N, Scalar> ramp;
   std::array<hal::TorqueCommand, static_cast<std::size_t>(N)> commands{};
   MonitorState<N, L, Scalar, Memory> monitor;
   MonitorOutput<N, Scalar> output;
-  bool fresh = false;              // this tick had a sample of its own
-  std::uint32_t unseen_ticks = 0;  // periods without one, since the monitor saw the last
+  // Of each joint, since arming: the torque rate has let through what is wanted.
+  std::array<bool, static_cast<std::size_t>(N)> torque_is_in{};
+  bool drives_follow = false;  // since arming it has of all, and every drive was in torque mode
 };
 
 // Memory: as of the Monitor.
@@ -57,13 +59,17 @@ class JointController {
     const Status status = Watch::create(config.monitor, controller.monitor_);
     if (status != Status::kOk) return status;
     controller.config_ = config;
-    controller.config_.velocity_observer = observer_of(config);
+    controller.samples_ = SampleTaker<N, Scalar>(config);
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      controller.torque_step_[j] = config.arming.torque_rate[j] * config.monitor.estimator.period_s;
+    }
     return Status::kOk;
   }
 
   // One tick that began at `begin_us` on the bus's clock. reference_at(time_s): where the joints
-  // should be, Reference<N, Scalar>, so long after arming. late_ticks: whole periods that this tick
-  // began too late; they are counted and the reference goes on without them.
+  // should be, Reference<N, Scalar>, so long after arming; a double, which tells ticks apart for
+  // longer than any run. late_ticks: whole periods that this tick began too late; they are counted
+  // and the reference goes on without them.
   template <hal::Bus Bus, hal::DriveProtocol Drives, typename ReferenceAt>
   void step(Microseconds begin_us, std::uint32_t late_ticks, const ReferenceAt& reference_at,
             Bus& bus, Drives& drives, Data& data) const {
@@ -71,22 +77,40 @@ class JointController {
     ++data.ticks;
     receive(bus, drives, data);
     count_late(late_ticks, data);
-    if (is_running(data)) data.run_ticks += 1 + late_ticks;
+    data.unseen_ticks += late_ticks;
     take_feedback(begin_us, bus, drives, data);
-    data.unseen_ticks += late_ticks + (data.fresh ? 0 : 1);
-    if (data.fresh) watch(reference_at, bus, data);
-    command(reference_at, data);
+    if (data.state == ControllerState::kArmed) {
+      (data.drives_follow ? data.run_ticks : data.waiting_ticks) += 1 + late_ticks;
+    }
+    if (data.fresh) {
+      watch(reference_at, bus, data);
+      data.unseen_ticks = 0;
+    }
+    command(reference_at, bus, data);
     send(begin_us, bus, drives, data);
   }
 
-  // kPassive -> kArmed: with the next fresh sample of every joint the monitor starts anew and time
-  // counts from 0. False, and nothing changed, in any other state.
-  [[nodiscard]] bool arm(Data& data) const {
-    if (data.state != ControllerState::kPassive) return false;
+  // kPassive -> kArmed: from the next fresh sample of every joint on the drives are told to give
+  // the torque of the reference's begin. When it is in and all of them say that they are in torque
+  // mode, time begins to count and the monitor to watch. kNone, or why nothing changed: the state
+  // is another, there is no sample or no settled velocity, gains or torque limits are missing, or
+  // reference_at(0) is no way to begin from where the arm is. What changes until that sample is
+  // judged again there, and is then a fault. Until the drives follow, the arm is held where it was
+  // in that sample.
+  template <typename ReferenceAt>
+  [[nodiscard]] Fault arm(const ReferenceAt& reference_at, Data& data) const {
+    if (data.state != ControllerState::kPassive) return Fault::kNotPassive;
+    if (!data.fresh) return Fault::kNoFreshSample;
+    if (!samples_.is_settled(data)) return Fault::kVelocityUnsettled;
+    const Fault refusal = check_beginning(reference_at(0.0), data);
+    if (refusal != Fault::kNone) return refusal;
     data.state = ControllerState::kArmed;
+    data.torque_is_in.fill(false);
+    data.drives_follow = false;
+    data.waiting_ticks = 0;
     data.run_ticks = 0;
     data.monitor.initialised = false;
-    return true;
+    return Fault::kNone;
   }
 
   // kArmed -> kPassive: the commands of the next tick are "off". False, and nothing changed, in any
@@ -107,6 +131,7 @@ class JointController {
     data.state = ControllerState::kInit;
     data.fault = Fault::kNone;
     data.late_in_a_row = 0;
+    samples_.forget(data);
     return true;
   }
 
@@ -121,18 +146,21 @@ class JointController {
 
  private:
   static constexpr auto kJoints = static_cast<std::size_t>(N);
-  using Feedback = std::array<hal::JointFeedback, kJoints>;
+  using Feedback = typename SampleTaker<N, Scalar>::Feedback;
 
   // At most so many frames in one tick: a node that babbles must not keep the controller busy.
   static constexpr std::size_t kBatch = 4;
   static constexpr int kMostBatches = 64;
+  // As many ticks as a silent encoder is borne.
+  static constexpr std::uint8_t kImplausibleAllowed = 2;
 
-  // Armed, and the first sample has been there.
+  // Armed, and every drive gives the torque that it is told.
   static bool is_running(const Data& data) {
-    return data.state == ControllerState::kArmed && data.monitor.initialised;
+    return data.state == ControllerState::kArmed && data.drives_follow;
   }
-  [[nodiscard]] Scalar run_time_s(const Data& data) const {
-    return static_cast<Scalar>(data.run_ticks) * config_.monitor.estimator.period_s;
+  [[nodiscard]] double run_time_s(const Data& data) const {
+    return static_cast<double>(data.run_ticks) *
+           static_cast<double>(config_.monitor.estimator.period_s);
   }
 
   // Not what belongs to somebody else, and not the first records of a source, which are awaited.
@@ -147,7 +175,10 @@ class JointController {
     std::array<hal::ReceivedFrame, kBatch> frames;
     for (int batch = 0; batch < kMostBatches; ++batch) {
       const std::size_t count = bus.receive(frames);
+      const Microseconds now_us = bus.now();
       for (std::size_t i = 0; i < count; ++i) {
+        // Nothing has come later than now: a stamp that says so must not keep a source alive.
+        frames[i].time_us = std::min(frames[i].time_us, now_us);
         const hal::Status status = drives.take(frames[i]);
         if (is_wrong(status)) ++data.refused_frames;
       }
@@ -161,9 +192,31 @@ class JointController {
                                        Data& data) const {
     Feedback feedback;
     for (std::size_t j = 0; j < kJoints; ++j) feedback[j] = drives.feedback(j, begin_us);
-    const Fault fault = judge(feedback, drives.stop_seen(), bus.state().mode, data);
+    samples_.screen(feedback, data);
+    Fault fault = judge(feedback, drives.stop_seen(), bus.state().mode, data);
+    const bool in_torque_mode = all_in_torque_mode(feedback);
+    if (fault == Fault::kNone && !in_torque_mode && has_to_follow(drives, data)) {
+      fault = Fault::kDriveNotFollowing;
+    }
     advance(fault, feedback, bus, data);
-    take_sample(feedback, data);
+    samples_.take(feedback, data);
+    if (!data.fresh && is_running(data)) ++data.missed_samples;
+    // They have been since the tick that began the watch, at the latest.
+    const bool told = data.state == ControllerState::kArmed && data.monitor.initialised;
+    const bool is_in = std::all_of(data.torque_is_in.begin(), data.torque_is_in.end(),
+                                   [](bool of_joint) { return of_joint; });
+    if (told && in_torque_mode && is_in) data.drives_follow = true;
+  }
+
+  // Drives that have followed once have fallen back where they do not.
+  template <typename Drives>
+  [[nodiscard]] bool has_to_follow(const Drives& drives, const Data& data) const {
+    if (data.state != ControllerState::kArmed) return false;
+    if (data.drives_follow) return true;
+    const auto period_us =
+        static_cast<Microseconds>(Scalar(1e6) * config_.monitor.estimator.period_s + Scalar(0.5));
+    const auto waited_us = static_cast<Microseconds>(data.waiting_ticks) * period_us;
+    return waited_us > config_.time_to_follow_us + drives.drive_max_age_us();
   }
 
   static void count_late(std::uint32_t late_ticks, Data& data) {
@@ -188,17 +241,20 @@ class JointController {
       if ((joint.status.flags & (hal::kDriveFault | hal::kEncoderFault)) != 0) {
         return Fault::kDriveReported;
       }
-      const bool has_to_follow = is_running(data) && data.run_ticks > config_.ticks_to_follow;
-      if (has_to_follow && joint.status.mode != hal::DriveMode::kTorque) {
-        return Fault::kDriveNotFollowing;
-      }
     }
+    if (data.implausible_in_a_row > kImplausibleAllowed) return fault_of(data.implausible);
     return Fault::kNone;
   }
 
   static bool all_valid(const Feedback& feedback) {
     return std::all_of(feedback.begin(), feedback.end(), [](const hal::JointFeedback& joint) {
       return joint.encoder == hal::SourceState::kValid && joint.drive == hal::SourceState::kValid;
+    });
+  }
+
+  static bool all_in_torque_mode(const Feedback& feedback) {
+    return std::all_of(feedback.begin(), feedback.end(), [](const hal::JointFeedback& joint) {
+      return joint.status.mode == hal::DriveMode::kTorque;
     });
   }
 
@@ -211,7 +267,8 @@ class JointController {
       if (has_left_init || fault == Fault::kEmergencyStop) enter_fault(fault, bus, data);
       return;
     }
-    if (data.state == ControllerState::kInit && all_valid(feedback)) {
+    const bool well = all_valid(feedback) && data.implausible == Status::kOk;
+    if (data.state == ControllerState::kInit && well) {
       data.state = ControllerState::kPassive;
       data.monitor.initialised = false;
     }
@@ -223,38 +280,8 @@ class JointController {
     data.state = ControllerState::kFault;
     data.fault = fault;
     data.commands.fill({config_.safe_mode, 0});
+    samples_.forget(data);
     bus.drop_pending();
-  }
-
-  // Fresh: every joint has been read since the last sample.
-  void take_sample(const Feedback& feedback, Data& data) const {
-    data.fresh = true;
-    for (std::size_t j = 0; j < kJoints; ++j) {
-      const bool valid = feedback[j].encoder == hal::SourceState::kValid;
-      const bool is_new = feedback[j].encoder_time_us != data.used_time_us[j];
-      data.fresh = data.fresh && valid && is_new;
-    }
-    if (!data.fresh) {
-      if (is_running(data)) ++data.missed_samples;
-      for (auto& velocity : data.velocity) coast(config_.velocity_observer, velocity);
-      return;
-    }
-    for (std::size_t j = 0; j < kJoints; ++j) {
-      const auto i = static_cast<Eigen::Index>(j);
-      data.used_time_us[j] = feedback[j].encoder_time_us;
-      data.sample.q[i] = static_cast<Scalar>(feedback[j].reading.position);
-      data.sample.dq[i] = velocity_of(feedback[j].reading, data.velocity[j]);
-      data.sample.tau[i] = static_cast<Scalar>(feedback[j].status.applied_torque);
-    }
-  }
-
-  [[nodiscard]] Scalar velocity_of(const hal::EncoderReading& reading,
-                                   VelocityObserverState<Scalar>& observer) const {
-    if (reading.has_velocity) return static_cast<Scalar>(reading.velocity);
-    // A position that a frame has carried is finite.
-    static_cast<void>(
-        update(config_.velocity_observer, static_cast<Scalar>(reading.position), observer));
-    return observer.velocity;
   }
 
   template <typename ReferenceAt, typename Bus>
@@ -262,12 +289,19 @@ class JointController {
     const bool armed = data.state == ControllerState::kArmed;
     const bool passive = data.state == ControllerState::kPassive && config_.watch_when_passive;
     if (!armed && !passive) return;
+    if (!samples_.is_settled(data)) {
+      data.monitor.initialised = false;
+      if (armed) enter_fault(Fault::kVelocityUnknown, bus, data);
+      return;
+    }
+    // Until every drive follows nobody knows which torque acts, and until it is what is wanted,
+    // brakes or whatever else held the arm still do: the watch begins with each sample anew.
+    if (armed && !data.drives_follow) data.monitor.initialised = false;
     const bool follows = data.monitor.initialised && data.unseen_ticks == 0;
-    const Status status = follows ? monitor_.step(data.sample, data.monitor, data.output)
-                                  : begin_watch(reference_at, armed, data);
-    data.unseen_ticks = 0;
-    if (status != Status::kOk) {
-      enter_fault(fault_of(status), bus, data);
+    const Fault fault = follows ? fault_of(monitor_.step(data.sample, data.monitor, data.output))
+                                : begin_watch(reference_at, armed, data);
+    if (fault != Fault::kNone) {
+      enter_fault(fault, bus, data);
     } else if (config_.stop_at_detection && data.output.detector.latched) {
       enter_fault(Fault::kDetected, bus, data);
     }
@@ -275,55 +309,91 @@ class JointController {
 
   // The first sample, or the first one after some that nobody saw.
   template <typename ReferenceAt>
-  [[nodiscard, gnu::noinline]] Status begin_watch(const ReferenceAt& reference_at, bool armed,
-                                                  Data& data) const {
+  [[nodiscard, gnu::noinline]] Fault begin_watch(const ReferenceAt& reference_at, bool armed,
+                                                 Data& data) const {
     if (data.monitor.initialised) {
-      return monitor_.resume(data.sample, data.unseen_ticks, data.monitor);
+      return fault_of(monitor_.resume(data.sample, data.unseen_ticks, data.monitor));
     }
     data.output = {};
     if constexpr (Watch::kRemembers) data.monitor.memory = {};  // of another run
-    if (armed) take_wanted_torque(reference_at, data);
-    return monitor_.reset(data.sample, data.monitor);
+    if (armed) {
+      const Fault fault = begin_control(reference_at, data);
+      if (fault != Fault::kNone) return fault;
+    }
+    return fault_of(monitor_.reset(data.sample, data.monitor));
+  }
+
+  [[nodiscard]] Fault check_beginning(const Reference<N, Scalar>& reference,
+                                      const Data& data) const {
+    const Fault fault = check_reference(reference, config_, samples_.range());
+    return fault == Fault::kNone ? check_arming(config_, data.sample, reference) : fault;
   }
 
   // From here on the drives give what is commanded now; a late one still gives what it was told.
   template <typename ReferenceAt>
-  void take_wanted_torque(const ReferenceAt& reference_at, Data& data) const {
+  [[nodiscard]] Fault begin_control(const ReferenceAt& reference_at, Data& data) const {
+    Fault fault = Fault::kNone;
+    // Later samples are of an arm that may be held already, by some of its drives or by all.
+    if (data.commands.front().mode != hal::DriveMode::kTorque) {
+      const Reference<N, Scalar> reference = reference_at(0.0);
+      fault = check_beginning(reference, data);
+      if (fault != Fault::kNone) return fault;
+      data.ramp.q = reference.q - data.sample.q;
+      data.ramp.dq = reference.dq - data.sample.dq;
+    }
+    Vector<N, Scalar> wanted;
+    fault = want_torque(reference_at, data, wanted);
+    if (fault != Fault::kNone) return fault;
     if constexpr (Watch::kRemembers) {
-      const Vector<N, Scalar> wanted = wanted_torque(reference_at, data);
       for (std::size_t j = 0; j < kJoints; ++j) {
         if (delay_of_joint(config_.monitor.chain, j) > 0) continue;
         data.sample.tau[static_cast<Eigen::Index>(j)] = wanted[static_cast<Eigen::Index>(j)];
       }
     } else {
-      data.sample.tau = wanted_torque(reference_at, data);
+      data.sample.tau = wanted;
     }
+    return Fault::kNone;
   }
 
-  // Computed torque and compensation, held to what the joints' drives can give.
+  // Computed torque and compensation, held to what the joints' drives can give and to how fast it
+  // may change. Otherwise why there is no such torque, `tau` is then not to be used.
   template <typename ReferenceAt>
-  [[nodiscard, gnu::noinline]] Vector<N, Scalar> wanted_torque(const ReferenceAt& reference_at,
-                                                               const Data& data) const {
-    const Scalar time_s = run_time_s(data);
-    Vector<N, Scalar> tau =
-        computed_torque<N, Scalar>(monitor_.model(), config_.gains, reference_at(time_s),
-                                   data.sample.q, data.sample.dq, time_s) +
-        data.output.compensation.torque;
+  [[nodiscard, gnu::noinline]] Fault want_torque(const ReferenceAt& reference_at, Data& data,
+                                                 Vector<N, Scalar>& tau) const {
+    const double time_s = run_time_s(data);
+    Reference<N, Scalar> reference = reference_at(time_s);
+    const Fault fault = check_reference(reference, config_, samples_.range());
+    if (fault != Fault::kNone) return fault;
+    ramp_in(data.ramp, time_s, config_.arming.ramp_s, reference);
+    tau = computed_torque<N, Scalar>(monitor_.model(), config_.gains, reference, data.sample.q,
+                                     data.sample.dq, time_s) +
+          data.output.compensation.torque;
     if constexpr (Watch::kRemembers) tau += data.monitor.memory.remembered;
-    for (Eigen::Index i = 0; i < N; ++i) {
-      const Scalar limit = config_.monitor.chain.joints[static_cast<std::size_t>(i)].max_torque;
-      tau[i] = std::clamp(tau[i], -limit, limit);
+    if (!all_finite(tau)) return fault_of(Status::kNumericOverflow);
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      const Scalar limit = config_.monitor.chain.joints[j].max_torque;
+      const auto before = static_cast<Scalar>(data.commands[j].torque);
+      Scalar& wanted = tau[static_cast<Eigen::Index>(j)];
+      wanted = std::clamp(wanted, -limit, limit);
+      const Scalar held = std::clamp(wanted, before - torque_step_[j], before + torque_step_[j]);
+      if (held == wanted) data.torque_is_in[j] = true;
+      wanted = held;
     }
-    return tau;
+    return Fault::kNone;
   }
 
-  template <typename ReferenceAt>
-  [[gnu::noinline]] void command(const ReferenceAt& reference_at, Data& data) const {
+  template <typename ReferenceAt, typename Bus>
+  [[gnu::noinline]] void command(const ReferenceAt& reference_at, Bus& bus, Data& data) const {
     if (data.state == ControllerState::kFault) return;
-    if (!is_running(data)) {
+    if (data.state != ControllerState::kArmed) {
       data.commands.fill({});
     } else if (data.fresh) {
-      const Vector<N, Scalar> tau = wanted_torque(reference_at, data);
+      Vector<N, Scalar> tau;
+      const Fault fault = want_torque(reference_at, data, tau);
+      if (fault != Fault::kNone) {
+        enter_fault(fault, bus, data);
+        return;
+      }
       for (std::size_t j = 0; j < kJoints; ++j) {
         data.commands[j] = {hal::DriveMode::kTorque,
                             static_cast<float>(tau[static_cast<Eigen::Index>(j)])};
@@ -334,7 +404,8 @@ class JointController {
   template <typename Bus, typename Drives>
   [[gnu::noinline]] void send(Microseconds begin_us, Bus& bus, Drives& drives, Data& data) const {
     std::array<hal::Frame, Drives::kMaxOutgoing> frames;
-    const hal::Heartbeat heartbeat{data.state, static_cast<std::uint8_t>(data.fault), data.ticks};
+    const hal::Heartbeat heartbeat{data.state, static_cast<std::uint8_t>(data.fault),
+                                   static_cast<std::uint32_t>(data.ticks)};
     const std::size_t count = drives.outgoing(data.commands, heartbeat, frames);
     for (std::size_t i = 0; i < count; ++i) {
       const hal::Status status = bus.send(frames[i], begin_us + config_.command_lifetime_us);
@@ -344,6 +415,8 @@ class JointController {
 
   Config config_{};
   Watch monitor_;
+  SampleTaker<N, Scalar> samples_;
+  std::array<Scalar, kJoints> torque_step_{};  // in one tick, N m or N
 };
 
 }  // namespace offnominal::controller

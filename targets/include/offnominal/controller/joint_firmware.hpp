@@ -30,7 +30,8 @@ class JointFirmware {
   // What Controller::create() says of the robot's constants. Without kOk there must be no tick.
   [[nodiscard]] Status start() {
     return Controller::create(controller_config(robot_model::kMonitorConfig<Scalar>,
-                                                robot_model::kComputedTorqueGains<Scalar>),
+                                                robot_model::kComputedTorqueGains<Scalar>,
+                                                robot_model::kArmingConfig<Scalar>),
                               controller_);
   }
 
@@ -42,7 +43,10 @@ class JointFirmware {
   }
 
   // As the controller's functions of these names; in the interrupt of the tick, or with it masked.
-  [[nodiscard]] bool arm() { return controller_.arm(data_); }
+  template <typename ReferenceAt>
+  [[nodiscard]] Fault arm(const ReferenceAt& reference_at) {
+    return controller_.arm(reference_at, data_);
+  }
   [[nodiscard]] bool disarm() { return controller_.disarm(data_); }
   [[nodiscard]] bool clear_fault() { return controller_.clear_fault(drives_, data_); }
 

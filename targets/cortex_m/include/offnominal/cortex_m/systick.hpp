@@ -47,9 +47,13 @@ inline void start_systick_counter() {
 
 inline void wait_for_interrupt() { asm volatile("wfi" ::: "memory"); }
 
-// A number that an interrupt writes, read anew each time.
-[[nodiscard]] inline std::uint32_t read_ticks(const std::uint32_t& ticks) {
-  return *const_cast<const volatile std::uint32_t*>(&ticks);
+// A number that an interrupt writes, read anew each time: its two words belong together where they
+// are the same twice.
+[[nodiscard]] inline std::uint64_t read_ticks(const std::uint64_t& ticks) {
+  const auto& now = *const_cast<const volatile std::uint64_t*>(&ticks);
+  std::uint64_t last = now;
+  for (std::uint64_t next = now; next != last; next = now) last = next;
+  return last;
 }
 
 }  // namespace offnominal::cortex_m

@@ -22,10 +22,14 @@ struct LoopPanel {
   std::atomic<bool> clear{false};  // kFault -> kInit; the same
   std::atomic<hal::ControllerState> state{hal::ControllerState::kInit};
   std::atomic<controller::Fault> fault{controller::Fault::kNone};
+  // Why it was not armed when it was last asked to; for whoever reads it to take back.
+  std::atomic<controller::Fault> refusal{controller::Fault::kNone};
 };
 
 struct LoopConfig {
-  bool arm_when_passive = false;  // once, as soon as every joint is heard
+  // Once, as soon as every joint is heard. A refusal that does not pass by itself ends the loop:
+  // nobody shall find the arm armed later, when it has come to lie right.
+  bool arm_when_passive = false;
   // Ends so long after it was first armed, or without arm_when_passive after the start; 0: never.
   Microseconds duration_us = 0;
   bool end_at_fault = false;  // 100 ms after it
@@ -35,7 +39,8 @@ struct LoopConfig {
 struct LoopReport {
   hal::ControllerState state = hal::ControllerState::kInit;  // before the clean stop
   controller::Fault fault = controller::Fault::kNone;        // the first
-  std::uint32_t ticks = 0;
+  controller::Fault refusal = controller::Fault::kNone;      // of arm_when_passive, for good
+  std::uint64_t ticks = 0;
   std::uint32_t overruns = 0;      // ticks that began a period or more too late
   std::uint32_t left_out = 0;      // ticks that they cost
   Microseconds worst_late_us = 0;  // begin of a tick after its time
@@ -126,6 +131,7 @@ class ControlLoop {
  private:
   [[nodiscard]] bool is_over() const {
     if (parts_.panel.end.load(std::memory_order_relaxed)) return true;
+    if (report_.refusal != controller::Fault::kNone) return true;
     if (end_us_ != 0 && now_us_ >= end_us_) return true;
     constexpr Microseconds kAfterFault = 100'000;
     return config_.end_at_fault && fault_us_ != 0 && now_us_ >= fault_us_ + kAfterFault;
@@ -150,11 +156,22 @@ class ControlLoop {
     }
     const bool at_once = config_.arm_when_passive && !armed_once_;
     const bool asked = parts_.panel.arm.exchange(false, std::memory_order_relaxed);
-    if (at_once || asked) armed_once_ = parts_.controller.arm(parts_.data) || armed_once_;
+    if (at_once || asked) arm(asked);
     const bool counts = armed_once_ || !config_.arm_when_passive;
     if (config_.duration_us > 0 && end_us_ == 0 && counts) {
       end_us_ = now_us + config_.duration_us;
     }
+  }
+
+  void arm(bool asked) {
+    const controller::Fault refusal = parts_.controller.arm(parts_.reference_at, parts_.data);
+    if (refusal == controller::Fault::kNone) {
+      armed_once_ = true;
+      return;
+    }
+    const bool for_good = !passes_by_itself(refusal);
+    if (asked || for_good) parts_.panel.refusal.store(refusal, std::memory_order_relaxed);
+    if (config_.arm_when_passive && !armed_once_ && for_good) report_.refusal = refusal;
   }
 
   void note(const Tick& tick, Microseconds step_us) {
@@ -166,7 +183,7 @@ class ControlLoop {
     }
     if (parts_.data.output.detector.latched && !report_.detected) {
       report_.detected = true;
-      report_.detection_time_s = static_cast<double>(parts_.data.output.detector.detection_time_s);
+      report_.detection_time_s = parts_.data.output.detector.detection_time_s;
     }
     const Microseconds period_us = parts_.timer.period_us();
     report_.left_out += tick.late_ticks;
@@ -187,8 +204,8 @@ class ControlLoop {
     report_.missed_samples = parts_.data.missed_samples;
     report_.refused_frames = parts_.data.refused_frames;
     report_.unsent_frames = parts_.data.unsent_frames;
-    report_.mean_step_us =
-        static_cast<double>(sum_step_us_) / static_cast<double>(std::max(1U, parts_.data.ticks));
+    report_.mean_step_us = static_cast<double>(sum_step_us_) /
+                           static_cast<double>(std::max<std::uint64_t>(1, parts_.data.ticks));
   }
 
   LoopConfig config_;

@@ -1,0 +1,163 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <offnominal/controller/controller_config.hpp>
+#include <offnominal/diagnosis/velocity_observer.hpp>
+#include <offnominal/finite.hpp>
+#include <offnominal/hal/drive_protocol.hpp>
+#include <offnominal/sample.hpp>
+
+// From what drives have said of the joints to the sample of a tick.
+
+namespace offnominal::controller {
+
+// Where a joint that may turn for ever is, beyond what a frame carries (hal::carried_position()).
+template <typename Scalar>
+struct TurnCount {
+  bool started = false;
+  std::int32_t tens = 0;  // of turns, above what was carried last
+  Scalar carried{};       // rad
+};
+
+// Plain data.
+template <int N, typename Scalar>
+struct SampleData {
+  JointSample<N, Scalar> sample;
+  bool fresh = false;              // this tick had a sample of its own
+  std::uint32_t unseen_ticks = 0;  // periods without one, since the last
+  // Ticks with a position that cannot be; of the last one, why.
+  std::uint8_t implausible_in_a_row = 0;
+  Status implausible = Status::kOk;
+  std::array<Microseconds, static_cast<std::size_t>(N)> used_time_us{};  // of the last sample
+  std::array<VelocityObserverState<Scalar>, static_cast<std::size_t>(N)> velocity{};
+  std::array<TurnCount<Scalar>, static_cast<std::size_t>(N)> turns{};
+};
+
+template <int N, typename Scalar>
+class SampleTaker {
+ public:
+  using Data = SampleData<N, Scalar>;
+  using Feedback = std::array<hal::JointFeedback, static_cast<std::size_t>(N)>;
+
+  SampleTaker() = default;
+  // Of a configuration that validate() accepts.
+  explicit SampleTaker(const ControllerConfig<N, Scalar>& config)
+      : range_(position_range_of(config)), observer_(observer_of(config)) {
+    const Joint<Scalar> unlimited;
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      const Joint<Scalar>& joint = config.monitor.chain.joints[j];
+      turns_for_ever_[j] = joint.type == JointType::kRevolute &&
+                           joint.min_position <= unlimited.min_position &&
+                           joint.max_position >= unlimited.max_position;
+    }
+  }
+
+  // A position that cannot be is as none: it enters nothing.
+  void screen(const Feedback& feedback, Data& data) const {
+    data.implausible = Status::kOk;
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      const auto i = static_cast<Eigen::Index>(j);
+      const Scalar position = position_in(counted(feedback[j].reading, j, data));
+      const bool valid = feedback[j].encoder == hal::SourceState::kValid;
+      const bool inside =
+          is_finite(position) && position >= range_.lowest[i] && position <= range_.highest[i];
+      if (!valid || inside) continue;
+      data.implausible =
+          is_finite(position) ? Status::kPositionOutOfRange : Status::kNonFinitePosition;
+    }
+    if (data.implausible == Status::kOk) {
+      data.implausible_in_a_row = 0;
+    } else if (data.implausible_in_a_row < std::numeric_limits<std::uint8_t>::max()) {
+      ++data.implausible_in_a_row;
+    }
+  }
+
+  // After screen(). Fresh: every joint has been read since the last sample, where it can be.
+  void take(const Feedback& feedback, Data& data) const {
+    data.fresh = data.implausible == Status::kOk;
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      const bool valid = feedback[j].encoder == hal::SourceState::kValid;
+      const bool is_new = feedback[j].encoder_time_us != data.used_time_us[j];
+      data.fresh = data.fresh && valid && is_new;
+    }
+    if (!data.fresh) {
+      if (data.unseen_ticks < std::numeric_limits<std::uint32_t>::max()) ++data.unseen_ticks;
+      return;
+    }
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      const auto i = static_cast<Eigen::Index>(j);
+      data.used_time_us[j] = feedback[j].encoder_time_us;
+      data.turns[j] = counted(feedback[j].reading, j, data);
+      data.sample.q[i] = position_in(data.turns[j]);
+      data.sample.dq[i] =
+          velocity_of(feedback[j].reading, data.sample.q[i], data.unseen_ticks, data.velocity[j]);
+      data.sample.tau[i] = static_cast<Scalar>(feedback[j].status.applied_torque);
+    }
+  }
+
+  // Every velocity is one that was sent, or that the observer knows by now.
+  [[nodiscard]] bool is_settled(const Data& data) const {
+    return std::all_of(data.velocity.begin(), data.velocity.end(), [&](const auto& observer) {
+      return observer.updates == 0 || offnominal::is_settled(observer_, observer);
+    });
+  }
+
+  // Velocities have to be observed anew, and turns counted from what is carried.
+  void forget(Data& data) const {
+    data.velocity.fill({});
+    data.turns.fill({});
+  }
+
+  [[nodiscard]] const PositionRange<N, Scalar>& range() const { return range_; }
+
+ private:
+  static constexpr auto kJoints = static_cast<std::size_t>(N);
+
+  // The way from one reading to the next is the shorter one.
+  [[nodiscard]] TurnCount<Scalar> counted(const hal::EncoderReading& reading, std::size_t joint,
+                                          const Data& data) const {
+    TurnCount<Scalar> count = data.turns[joint];
+    const auto carried = static_cast<Scalar>(reading.position);
+    constexpr auto kHalf = static_cast<Scalar>(hal::kCarriedRangeRad / 2);
+    // Beyond that range it was not carried modulo anything.
+    if (turns_for_ever_[joint] && count.started && std::fabs(carried) < kHalf + 1) {
+      const Scalar way = carried - count.carried;
+      if (way < -kHalf) ++count.tens;
+      if (way > kHalf) --count.tens;
+    }
+    count.started = true;
+    count.carried = carried;
+    return count;
+  }
+  static Scalar position_in(const TurnCount<Scalar>& count) {
+    if (count.tens == 0) return count.carried;
+    constexpr auto kTen = static_cast<Scalar>(hal::kCarriedRangeRad);
+    return count.carried + static_cast<Scalar>(count.tens) * kTen;
+  }
+
+  [[nodiscard]] Scalar velocity_of(const hal::EncoderReading& reading, Scalar position,
+                                   std::uint32_t missed,
+                                   VelocityObserverState<Scalar>& observer) const {
+    if (reading.has_velocity) {
+      observer = {};
+      return static_cast<Scalar>(reading.velocity);
+    }
+    // What it cannot follow it starts anew from, which nothing that is finite keeps it from.
+    if (update(observer_, position, observer, missed) != Status::kOk) {
+      observer = {};
+      static_cast<void>(update(observer_, position, observer));
+    }
+    return observer.velocity;
+  }
+
+  PositionRange<N, Scalar> range_;
+  VelocityObserverConfig<Scalar> observer_;
+  std::array<bool, kJoints> turns_for_ever_{};
+};
+
+}  // namespace offnominal::controller
