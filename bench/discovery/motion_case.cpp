@@ -83,10 +83,7 @@ void play_and_judge(const hidden::Request& request, const hidden::Nominal& nomin
   const double start_s = now_s();
   const Explanation e = tools::discovery::explain(robot, {log}, {}, {});
   outcome.time_s = now_s() - start_s;
-  outcome.verdict = tools::discovery::name_of(e.verdict);
-  for (const auto& finding : e.found) outcome.named.push_back(finding.what);
-  outcome.classes = e.ambiguous;
-  outcome.score = score_against(outcome.truth, e);
+  take_verdict(e, outcome);
 }
 
 }  // namespace

@@ -100,11 +100,7 @@ void judge_fault(hidden::DataFault fault, const Explanation& e, Outcome& outcome
 
 void judge(const CaseGroup& group, const hidden::Case& made, const Explanation& e,
            Outcome& outcome) {
-  outcome.verdict = tools::discovery::name_of(e.verdict);
-  for (const auto& finding : e.found) outcome.named.push_back(finding.what);
-  outcome.classes = e.ambiguous;
-  if (e.suspected) outcome.suspected = {e.suspected->what};
-  outcome.score = score_of(outcome.truth, outcome.named, outcome.classes);
+  take_verdict(e, outcome);
   // A shift of a number of the file that is right is as wrong as an effect that is not there.
   outcome.score.wrong |= e.verdict == Verdict::kParameterShift && e.found.empty();
   check_parameters(made.truth, e, made.recording.t_s[1] - made.recording.t_s[0], outcome);
@@ -118,6 +114,14 @@ void judge(const CaseGroup& group, const hidden::Case& made, const Explanation& 
 }
 
 }  // namespace
+
+void take_verdict(const Explanation& e, Outcome& outcome) {
+  outcome.verdict = tools::discovery::name_of(e.verdict);
+  for (const auto& finding : e.found) outcome.named.push_back(finding.what);
+  outcome.classes = e.ambiguous;
+  if (e.suspected) outcome.suspected = {e.suspected->what};
+  outcome.score = score_of(outcome.truth, outcome.named, outcome.classes);
+}
 
 Outcome run_case(const CaseGroup& group, const hidden::Request& request) {
   if (group.kind == CaseGroup::Kind::kMotion) return run_motion_case(request);

@@ -41,6 +41,9 @@ struct Outcome {
   std::optional<BaselineSelections> baselines;
 };
 
+// What explain() names, classes and suspects, and its score against outcome.truth.
+void take_verdict(const tools::discovery::Explanation& explanation, Outcome& outcome);
+
 // Simulates one case and lets the analysis, on one thread, say what is hidden.
 Outcome run_case(const CaseGroup& group, const sim::hidden::Request& request);
 

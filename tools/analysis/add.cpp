@@ -7,6 +7,7 @@
 
 #include "analysis/add_setup.hpp"
 #include "analysis/lookalike.hpp"
+#include "analysis/physical_range.hpp"
 #include "common/nearest.hpp"
 
 namespace offnominal::tools {
@@ -90,18 +91,77 @@ void object_to_indistinct(const std::vector<Unknown>& unknowns, AddResult& resul
   }
 }
 
-void object_to_ranges(AddResult& result) {
+std::string name_of(const AddResult& result, const FittedParameter& parameter) {
+  const RobotEffect& effect = result.robot.effects[parameter.effect];
+  const EffectInfo& info = *info_of(effect.kind);
+  return fmt::format("{}.{} of joint {}", info.name, info.parameters[parameter.parameter].name,
+                     effect.joint + 1);
+}
+
+// "-10 N m s/rad, 95 % between -10.2 and -9.8"
+std::string value_words(const AddResult& result, const FittedParameter& parameter) {
+  const RobotEffect& effect = result.robot.effects[parameter.effect];
+  const ParameterInfo& info = info_of(effect.kind)->parameters[parameter.parameter];
+  const std::string unit = unit_of(info.quantity, result.robot.joints[effect.joint].joint.type);
+  std::string words =
+      fmt::format("{:.6g}{}{}", parameter.value, unit == "1" ? "" : " ", unit == "1" ? "" : unit);
+  if (parameter.ci95) {
+    words +=
+        fmt::format(", 95 % between {:.6g} and {:.6g}", (*parameter.ci95)[0], (*parameter.ci95)[1]);
+  }
+  return words;
+}
+
+// A fitted number that physics does not let be what fits best.
+struct Beyond {
+  FittedParameter parameter;
+  PhysicalRange range;
+  bool contradicted = false;  // by the recording; else the end of the range fits as well
+};
+
+// Share of the joint's rms torque that a number's change by `by` makes.
+double torque_share(const FitProblem& problem, const std::vector<JointRows>& rows,
+                    const FittedParameter& parameter, double by) {
+  for (std::size_t i = 0; i < problem.unknowns().size(); ++i) {
+    const Unknown& unknown = problem.unknowns()[i];
+    if (unknown.kind != Unknown::Kind::kEffectParameter || unknown.effect != parameter.effect ||
+        unknown.parameter != parameter.parameter) {
+      continue;
+    }
+    for (const JointRows& joint : rows) {
+      if (joint.joint != unknown.joint) continue;
+      const auto column = joint.columns.col(static_cast<Index>(i));
+      const auto torque = problem.measured().torque.col(static_cast<Index>(joint.joint));
+      return std::abs(by) * column.norm() / torque.norm();
+    }
+  }
+  return 0;
+}
+
+std::vector<Beyond> beyond_their_ranges(const FitProblem& problem, const AddResult& result) {
+  std::vector<Beyond> all;
   for (const FittedParameter& parameter : result.fit.parameters) {
-    const RobotEffect& effect = result.robot.effects[parameter.effect];
-    const ParameterInfo& info = info_of(effect.kind)->parameters[parameter.parameter];
-    if (parameter.value >= info.min && parameter.value <= info.max) continue;
-    const bool below = parameter.value < info.min;
+    const EffectKind kind = result.robot.effects[parameter.effect].kind;
+    const PhysicalRange range = physical_range(kind, parameter.parameter);
+    if (range.holds(parameter.value)) continue;
+    const double share = torque_share(problem, problem.rows(problem.shapes_in(result.robot)),
+                                      parameter, parameter.value - range.nearest(parameter.value));
+    all.push_back({parameter, range, contradicts(range, parameter.ci95, share)});
+  }
+  return all;
+}
+
+void object_to_ranges(const FitProblem& problem, AddResult& result) {
+  for (const auto& [parameter, range, contradicted] : beyond_their_ranges(problem, result)) {
+    const std::string cause =
+        contradicted ? std::string(range.usual_cause())
+                     : fmt::format(
+                           "{:g}, the end of that, fits as well: the recording does not "
+                           "show this effect",
+                           range.nearest(parameter.value));
     result.objections.push_back(
-        fmt::format("{}.{} came out as {:.6g} {}, {:g} or {} is possible: the recording does not "
-                    "show this effect",
-                    info_of(effect.kind)->name, info.name, parameter.value,
-                    unit_of(info.quantity, result.robot.joints[effect.joint].joint.type),
-                    below ? info.min : info.max, below ? "more" : "less"));
+        fmt::format("{} came out as {}; {} is possible: {}", name_of(result, parameter),
+                    value_words(result, parameter), range.words_at(parameter.value), cause));
   }
   for (const FittedLink& link : result.fit.links) {
     if (link.factor > 0) continue;
@@ -122,9 +182,48 @@ void note_what_changed(const AddSetup& setup, const AddRequest& request, AddResu
   if (setup.refitted.empty()) return;
   std::vector<std::string> names;
   for (const std::size_t effect : setup.refitted) {
-    names.emplace_back(info_of(result.robot.effects[effect].kind)->name);
+    const RobotEffect& of = result.robot.effects[effect];
+    names.push_back(fmt::format("{} on joint {}", info_of(of.kind)->name, of.joint + 1));
   }
   result.notes.push_back("fitted again together with it: " + list_of(names));
+}
+
+// On data that the fit has not seen: the joint that was asked for must gain, no other may lose more
+// than what a twentieth is.
+void doubt_what_held_out_data_say(const AddRequest& request, AddResult& result) {
+  constexpr double kRelevant = 0.05;
+  for (const BeforeAfter& error : result.held_out) {
+    const bool asked = error.joint == request.joint;
+    if (asked ? error.fall() > 0 : !(error.fall() < -kRelevant)) continue;
+    result.doubts.push_back(
+        fmt::format("on data not used for the fit the error of joint {} {}, from {:.2f} % to "
+                    "{:.2f} %: these data do not support the effect",
+                    error.joint + 1, asked ? "does not fall" : "rises", error.before_percent,
+                    error.after_percent));
+  }
+}
+
+// What is in the file already and would fit best beyond its end, but not so that the recording
+// contradicts the end: there it is held, and all else is fitted beside it.
+bool hold_one(const FitProblem& problem, AddSetup& setup, AddResult& result) {
+  for (const Beyond& one : beyond_their_ranges(problem, result)) {
+    const FittedParameter& parameter = one.parameter;
+    const PhysicalRange& range = one.range;
+    if (one.contradicted || parameter.effect >= setup.added.front()) continue;
+    RobotEffect& effect = setup.robot.effects[parameter.effect];
+    const double end = range.nearest(parameter.value);
+    result.notes.push_back(fmt::format(
+        "{} was held at {:g}: {} is possible, and free it came out as {}, and {:g} fits as well",
+        name_of(result, parameter), end, range.words_at(parameter.value),
+        value_words(result, parameter), end));
+    effect.parameters[parameter.parameter] = end;
+    std::erase_if(setup.unknowns, [&](const Unknown& unknown) {
+      return unknown.kind == Unknown::Kind::kEffectParameter &&
+             unknown.effect == parameter.effect && unknown.parameter == parameter.parameter;
+    });
+    return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -132,19 +231,21 @@ void note_what_changed(const AddSetup& setup, const AddRequest& request, AddResu
 AddResult add(const RobotDescription& robot, const AddRequest& request, const Measurement& log,
               const Measurement* holdout, const OnStep& on_step) {
   AddSetup setup = set_up(robot, request);
-  std::vector<ShapeGroup> groups = make_shape_groups(
-      setup.robot, setup.added, setup.refitted, setup.given, log.motion, log.plan.torque_cutoff_hz);
-  const FitProblem problem =
-      settled({setup.robot, setup.unknowns, std::move(groups), log}, on_step);
-  std::optional<std::vector<int>> parts;
-  if (holdout == nullptr) {
-    parts = contiguous_parts(problem.samples(), log.plan.edge_samples / log.plan.decimation + 1);
-  }
-
   AddResult result;
   result.added = setup.added;
-  result.fit = fit(problem, parts, on_step);
-  result.robot = result.fit.robot;
+  std::optional<FitProblem> problem;
+  std::optional<std::vector<int>> parts;
+  do {
+    RobotDescription start = setup.robot;
+    std::vector<ShapeGroup> groups = make_shape_groups(
+        start, setup.added, setup.refitted, setup.given, log.motion, log.plan.torque_cutoff_hz);
+    problem.emplace(settled({std::move(start), setup.unknowns, std::move(groups), log}, on_step));
+    if (holdout == nullptr) {
+      parts = contiguous_parts(problem->samples(), log.plan.edge_samples / log.plan.decimation + 1);
+    }
+    result.fit = fit(*problem, parts, on_step);
+    result.robot = result.fit.robot;
+  } while (hold_one(*problem, setup, result));
   result.cross_validated = holdout == nullptr;
   const Comparison before = compare(robot, log);
   const Comparison after = compare(result.robot, log);
@@ -159,9 +260,10 @@ AddResult add(const RobotDescription& robot, const AddRequest& request, const Me
     result.held_out = both_held_out(before, result.fit, *parts);
   }
   object_to_indistinct(setup.unknowns, result);
-  object_to_ranges(result);
+  object_to_ranges(*problem, result);
+  doubt_what_held_out_data_say(request, result);
   note_indistinct(result);
-  note_lookalikes(problem, result);
+  note_lookalikes(*problem, result);
   note_what_changed(setup, request, result);
   return result;
 }

@@ -35,6 +35,12 @@ struct AddResult {
   Comparison after;
   std::vector<std::string> notes;       // what a reader of the numbers has to know
   std::vector<std::string> objections;  // why the result must not be used; empty: it may
+  // Why it should not be, as far as data say that the fit has not seen: for the user to overrule.
+  std::vector<std::string> doubts;
+
+  [[nodiscard]] bool may_be_written(bool overruled) const {
+    return objections.empty() && (doubts.empty() || overruled);
+  }
 };
 
 // Fits new effects together with the effects of `robot` that are marked fitted and act on the same

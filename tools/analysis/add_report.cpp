@@ -37,7 +37,8 @@ struct ParameterLine {
   std::string name;
   std::string unit;
   double value = 0;
-  std::optional<Interval> ci95;
+  std::optional<Interval> ci95 = {};
+  std::string why_no_interval = {};
   bool fitted = false;
 };
 
@@ -47,11 +48,11 @@ std::vector<ParameterLine> lines_of(const AddResult& result, std::size_t effect)
   const auto parameters = info_of(of.kind)->parameters;
   const JointType type = result.robot.joints[of.joint].joint.type;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    ParameterLine line{parameters[i].name, unit_of(parameters[i].quantity, type), of.parameters[i],
-                       std::nullopt, false};
+    ParameterLine line{parameters[i].name, unit_of(parameters[i].quantity, type), of.parameters[i]};
     for (const FittedParameter& fitted : result.fit.parameters) {
       if (fitted.effect != effect || fitted.parameter != i) continue;
       line.ci95 = fitted.ci95;
+      line.why_no_interval = fitted.why_no_interval;
       line.fitted = fitted.fitted;
     }
     lines.push_back(std::move(line));
@@ -85,6 +86,8 @@ ordered_json effect_json(const AddResult& result, std::size_t effect) {
                                      {"unit", line.unit},
                                      {"ci95", interval_json(line.ci95)},
                                      {"fitted", line.fitted}};
+    if (line.fitted && !line.ci95)
+      json["parameters"][line.name]["why_no_ci95"] = line.why_no_interval;
   }
   return json;
 }
@@ -100,7 +103,7 @@ std::string value_text(const ParameterLine& line) {
   } else if (!line.fitted) {
     text += ", not fitted";
   } else {
-    text += ", not determined to within a factor of 7";
+    text += ", " + line.why_no_interval;
   }
   return text;
 }
@@ -116,7 +119,7 @@ report::Table parameter_table(const AddResult& result) {
   table.caption = "Parameters";
   table.columns = {{"effect", "", ".4g"}, {"joint", "", "d"},       {"parameter", "", ".4g"},
                    {"value", "", ".6g"},  {"95 % from", "", ".6g"}, {"to", "", ".6g"},
-                   {"unit", "", ".4g"},   {"", "", ".4g"}};
+                   {"unit", "", ".4g"},   {"fit", "", ".4g"}};
   std::vector<std::size_t> effects = result.added;
   const std::vector<std::size_t> again = refitted(result);
   effects.insert(effects.end(), again.begin(), again.end());
@@ -183,7 +186,7 @@ report::KeyFigures key_figures(const AddResult& result, const AddRequest& reques
 
 }  // namespace
 
-std::string verdict_of(const AddResult& result, const AddRequest& request) {
+std::string verdict_of(const AddResult& result, const AddRequest& request, bool force) {
   const std::string names = names_of_added(result);
   if (!result.objections.empty()) {
     std::string words = fmt::format("Nothing was written: {}", result.objections.front());
@@ -197,11 +200,18 @@ std::string verdict_of(const AddResult& result, const AddRequest& request) {
       fmt::format("from {:.2f} % to {:.2f} % of the {} of joint {} ({:.4g} to {:.4g} {} rms)",
                   error.before_percent, error.after_percent, error.unit == "N" ? "force" : "torque",
                   error.joint + 1, error.before_rms, error.after_rms, error.unit);
-  if (!(error.fall() > 0)) {
-    return fmt::format(
-        "With {} the error on data not used for the fit does not fall: it goes {}. These data do "
-        "not support the effect.",
-        names, numbers);
+  if (!result.doubts.empty()) {
+    std::string words = error.fall() > 0
+                            ? fmt::format(
+                                  "With {} the error of joint {} on data not used for the "
+                                  "fit falls {}, but {}.",
+                                  names, error.joint + 1, numbers, result.doubts.front())
+                            : fmt::format(
+                                  "With {} the error on data not used for the fit does not "
+                                  "fall: it goes {}. These data do not support the effect.",
+                                  names, numbers);
+    return words + (force ? " Written all the same, as --force says."
+                          : " Nothing was written; --force writes it all the same.");
   }
   return fmt::format("With {} the error on data not used for the fit falls {}.", names, numbers);
 }
@@ -211,7 +221,7 @@ Level level_of(const AddResult& result, const AddRequest& request) {
   constexpr double kRelevant = 0.05;
   if (!result.objections.empty()) return Level::kBad;
   const double fall = of_joint(result.held_out, request.joint).fall();
-  if (!(fall > 0)) return Level::kBad;
+  if (!result.doubts.empty()) return Level::kBad;
   return fall < kRelevant ? Level::kWarn : Level::kGood;
 }
 
@@ -241,23 +251,28 @@ ordered_json to_json(const AddResult& result, const AddRequest& request, const A
   }
   json["notes"] = result.notes;
   json["objections"] = result.objections;
-  json["written"] = result.objections.empty() ? ordered_json(names.output_file) : nullptr;
+  json["doubts"] = result.doubts;
+  json["written"] =
+      result.may_be_written(names.force) ? ordered_json(names.output_file) : ordered_json();
   json["filter"] = to_json(result.before.plan);
-  json["verdict"] = verdict_of(result, request);
+  json["verdict"] = verdict_of(result, request, names.force);
   return json;
 }
 
 std::string text_of(const AddResult& result, const AddRequest& request, const AddNames& names) {
   std::string text = fmt::format("{} on joint {} of {}, fitted to {}\n", names_of_added(result),
                                  request.joint + 1, names.robot_file, names.log);
-  const auto describe = [&](std::size_t effect, const char* mark) {
+  const auto describe = [&](std::size_t effect, const std::string& mark) {
     for (const ParameterLine& line : lines_of(result, effect)) {
       text += fmt::format("  {:<38} {}{}\n", effect_name(result, effect) + "." + line.name,
                           value_text(line), mark);
     }
   };
   for (const std::size_t effect : result.added) describe(effect, "");
-  for (const std::size_t effect : refitted(result)) describe(effect, " (fitted again)");
+  for (const std::size_t effect : refitted(result)) {
+    describe(effect,
+             fmt::format(" (fitted again, joint {})", result.robot.effects[effect].joint + 1));
+  }
   for (const FittedLink& link : result.fit.links) {
     text +=
         fmt::format("  mass and inertia of link {}: times {:.6g}\n", link.link + 1, link.factor);
@@ -274,7 +289,7 @@ std::string text_of(const AddResult& result, const AddRequest& request, const Ad
   };
   errors("fitted recording", result.fitted_log);
   errors(result.cross_validated ? "held-out parts" : "hold-out recording", result.held_out);
-  return text + verdict_of(result, request) + "\n";
+  return text + verdict_of(result, request, names.force) + "\n";
 }
 
 report::Page page_of(const AddResult& result, const AddRequest& request, const AddNames& names) {
@@ -282,7 +297,7 @@ report::Page page_of(const AddResult& result, const AddRequest& request, const A
   page.title = "Adding " + names_of_added(result);
   page.subtitle =
       fmt::format("joint {} of {}, fitted to {}", request.joint + 1, names.robot_file, names.log);
-  page.verdict = {verdict_of(result, request), level_of(result, request)};
+  page.verdict = {verdict_of(result, request, names.force), level_of(result, request)};
   page.command_line = names.command_line;
 
   report::Section numbers;

@@ -11,9 +11,9 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-std::optional<Interval> around(double value, const std::optional<double>& half_width) {
-  if (!half_width) return std::nullopt;
-  return Interval{value - *half_width, value + *half_width};
+std::optional<Interval> around(double value, const HalfWidth& half_width) {
+  if (!half_width.value) return std::nullopt;
+  return Interval{value - *half_width.value, value + *half_width.value};
 }
 
 void take_linear(const FitProblem& problem, const LinearSolution& solution,
@@ -25,7 +25,8 @@ void take_linear(const FitProblem& problem, const LinearSolution& solution,
       fit.links.push_back({unknown.joint, 1 + value, around(1 + value, intervals.linear[i])});
     } else {
       fit.parameters.push_back({unknown.effect, unknown.parameter, value,
-                                around(value, intervals.linear[i]), !solution.is_fixed[i]});
+                                around(value, intervals.linear[i]), intervals.linear[i].why_none,
+                                !solution.is_fixed[i]});
     }
   }
   for (const Ambiguity& ambiguity : solution.ambiguities) {
@@ -42,11 +43,12 @@ void take_shapes(const FitProblem& problem, const std::vector<double>& shapes,
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     std::optional<Interval> ci95 = around(shapes[i], intervals.shape[i]);
     if (ci95 && problem.groups()[i].logarithmic) {
-      const double factor = std::exp(*intervals.shape[i]);
+      const double factor = std::exp(*intervals.shape[i].value);
       ci95 = Interval{shapes[i] / factor, shapes[i] * factor};
     }
     for (const ShapeMember& member : problem.groups()[i].members) {
-      fit.parameters.push_back({member.effect, member.parameter, shapes[i], ci95, true});
+      fit.parameters.push_back(
+          {member.effect, member.parameter, shapes[i], ci95, intervals.shape[i].why_none, true});
     }
   }
 }

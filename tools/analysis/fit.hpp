@@ -17,8 +17,9 @@ struct FittedParameter {
   std::size_t effect = 0;  // index into the robot's effects
   std::size_t parameter = 0;
   double value = 0;
-  std::optional<Interval> ci95;  // none where the value is given, or the data do not determine it
-  bool fitted = false;           // false: given, or left where it was
+  std::optional<Interval> ci95;
+  std::string why_no_interval = {};  // where it was fitted and has none, in words
+  bool fitted = false;               // false: given, or left where it was
 };
 
 // Mass and inertia of one link after a fit, as a factor on what they were.

@@ -86,6 +86,15 @@ std::vector<double> FitProblem::start_shapes() const {
   return shapes;
 }
 
+std::vector<double> FitProblem::shapes_in(const RobotDescription& fitted) const {
+  std::vector<double> shapes;
+  for (const ShapeGroup& group : groups_) {
+    const ShapeMember& member = group.members[0];
+    shapes.push_back(fitted.effects[member.effect].parameters[member.parameter]);
+  }
+  return shapes;
+}
+
 std::vector<UnknownPrior> FitProblem::priors() const {
   std::vector<UnknownPrior> priors;
   for (const Unknown& unknown : unknowns_) {

@@ -32,6 +32,8 @@ class FitProblem {
   // The same problem, linear about the unknowns' values `at`.
   [[nodiscard]] FitProblem about(const Eigen::VectorXd& at) const;
   [[nodiscard]] std::vector<double> start_shapes() const;
+  // The groups' values in a robot that was fitted.
+  [[nodiscard]] std::vector<double> shapes_in(const RobotDescription& fitted) const;
   [[nodiscard]] std::vector<UnknownPrior> priors() const;
 
   // The regression at one set of shape values, one per group. Every column has passed the filter of

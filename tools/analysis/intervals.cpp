@@ -1,8 +1,11 @@
 #include "analysis/intervals.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+
+#include "analysis/freedom.hpp"
 
 namespace offnominal::tools {
 namespace {
@@ -11,7 +14,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kWidestLogarithm = 2;  // a factor of about 7 either way: not determined
+// The linearisation says nothing any more of what is further off than a factor of about 7.
+constexpr double kWidestLogarithm = 2;
+
+std::string words_of_wide(double half_width) {
+  constexpr double kAnything = 1000;
+  const double factor = std::exp(half_width);
+  return factor < kAnything ? fmt::format("known to a factor of about {:.2g} only", factor)
+                            : "no interval: next to no influence on the torque";
+}
 
 // Blocks of equal length, in samples; the last one is the longest.
 std::vector<int> blocks_of(Index samples, Index length, int& count) {
@@ -51,10 +62,9 @@ std::vector<MatrixXd> shape_columns(const FitProblem& problem, const VectorXd& x
   return columns;
 }
 
-// Covariance of the solution from the scores of the blocks.
+// Covariance of the solution from the scores of the blocks, as if these were many.
 MatrixXd robust_covariance(const NormalEquations& blocks, const LinearSolution& solution,
-                           const VectorXd& x, const std::vector<double>& weights,
-                           Index free_count) {
+                           const VectorXd& x, const std::vector<double>& weights) {
   const Index n = x.size();
   MatrixXd spread = MatrixXd::Zero(n, n);
   for (int block = 0; block < blocks.group_count(); ++block) {
@@ -65,9 +75,36 @@ MatrixXd robust_covariance(const NormalEquations& blocks, const LinearSolution& 
     }
     spread += score * score.transpose();
   }
-  const double count = blocks.group_count();
-  const double small_sample = count / (count - static_cast<double>(free_count));
-  return small_sample * solution.inverse * spread * solution.inverse;
+  return solution.inverse * spread * solution.inverse;
+}
+
+// How strongly every unknown shows on every joint. Rows: unknowns, columns: joints.
+MatrixXd shown_on_joints(const NormalEquations& blocks, const std::vector<double>& weights,
+                         Index unknowns) {
+  MatrixXd shown = MatrixXd::Zero(unknowns, static_cast<Index>(blocks.joint_count()));
+  for (int block = 0; block < blocks.group_count(); ++block) {
+    for (std::size_t joint = 0; joint < blocks.joint_count(); ++joint) {
+      shown.col(static_cast<Index>(joint)) +=
+          weights[joint] * blocks.products(block, joint).diagonal().head(unknowns);
+    }
+  }
+  return shown;
+}
+
+// Per joint: the blocks, and the unknowns that act on it and that nobody knew anything of before.
+std::vector<Freedom> freedom_of_joints(const MatrixXd& shown, int blocks,
+                                       const std::vector<UnknownPrior>& priors,
+                                       const std::vector<bool>& is_fixed) {
+  std::vector<Freedom> of_joint;
+  for (Index joint = 0; joint < shown.cols(); ++joint) {
+    Freedom freedom{blocks, 0};
+    for (std::size_t i = 0; i < priors.size(); ++i) {
+      const bool by_data = !is_fixed[i] && !(priors[i].precision > 0);
+      freedom.unknowns += by_data && shown(static_cast<Index>(i), joint) > 0;
+    }
+    of_joint.push_back(freedom);
+  }
+  return of_joint;
 }
 
 }  // namespace
@@ -75,8 +112,7 @@ MatrixXd robust_covariance(const NormalEquations& blocks, const LinearSolution& 
 Intervals intervals_of(const FitProblem& problem, const LinearSolution& solution,
                        const std::vector<double>& shapes, const std::vector<double>& weights) {
   const std::size_t linear_count = problem.unknowns().size();
-  Intervals intervals{std::vector<std::optional<double>>(linear_count),
-                      std::vector<std::optional<double>>(shapes.size())};
+  Intervals intervals{std::vector<HalfWidth>(linear_count), std::vector<HalfWidth>(shapes.size())};
   std::vector<JointRows> rows = problem.rows(shapes);
   double correlation = 1;
   for (const JointRows& joint : rows) {
@@ -105,23 +141,38 @@ Intervals intervals_of(const FitProblem& problem, const LinearSolution& solution
   }
   priors.resize(linear_count + shapes.size(), {0, 0, true});
   const LinearSolution joint = solve(blocks.sum(weights), priors);
-  const auto free_count =
-      static_cast<Index>(std::count(joint.is_fixed.begin(), joint.is_fixed.end(), false));
-  if (block_count <= free_count) return intervals;
-
-  const MatrixXd covariance = robust_covariance(blocks, joint, x, weights, free_count);
-  const boost::math::students_t distribution(static_cast<double>(block_count - free_count));
-  const double t = boost::math::quantile(distribution, 0.975);
-  const auto half_width = [&](std::size_t i) -> std::optional<double> {
-    if (joint.is_fixed[i] || (i < linear_count && solution.is_fixed[i])) return std::nullopt;
+  const MatrixXd shown = shown_on_joints(blocks, weights, x.size());
+  const std::vector<Freedom> of_joint =
+      freedom_of_joints(shown, block_count, priors, joint.is_fixed);
+  const MatrixXd covariance = robust_covariance(blocks, joint, x, weights);
+  const auto half_width = [&](std::size_t i) -> HalfWidth {
     const auto index = static_cast<Index>(i);
-    return t * std::sqrt(std::max(covariance(index, index), 0.0));
+    if (joint.is_fixed[i]) {
+      return {std::nullopt, "no interval: close to its value the others make up for any change"};
+    }
+    Index of = 0;
+    shown.row(index).maxCoeff(&of);
+    const Freedom& freedom = of_joint[static_cast<std::size_t>(of)];
+    if (!freedom.suffices()) {
+      return {std::nullopt, words_of_too_few(freedom, rows[static_cast<std::size_t>(of)].joint)};
+    }
+    const double deviation = std::sqrt(std::max(covariance(index, index), 0.0));
+    return {half_width_per_deviation(freedom) * deviation, {}};
   };
-  for (std::size_t i = 0; i < linear_count; ++i) intervals.linear[i] = half_width(i);
+  for (std::size_t i = 0; i < linear_count; ++i) {
+    if (!solution.is_fixed[i]) intervals.linear[i] = half_width(i);
+  }
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    const auto width = half_width(linear_count + i);
-    const bool wide = width && problem.groups()[i].logarithmic && *width > kWidestLogarithm;
-    if (!wide) intervals.shape[i] = width;
+    const ShapeGroup& group = problem.groups()[i];
+    if (group.search == ShapeGroup::Search::kDiscrete) {
+      intervals.shape[i].why_none = "chosen among whole numbers";
+      continue;
+    }
+    intervals.shape[i] = half_width(linear_count + i);
+    const auto& width = intervals.shape[i].value;
+    if (width && group.logarithmic && *width > kWidestLogarithm) {
+      intervals.shape[i] = {std::nullopt, words_of_wide(*width)};
+    }
   }
   return intervals;
 }

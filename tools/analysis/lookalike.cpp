@@ -58,12 +58,7 @@ RobotEffect candidate(const RobotDescription& robot, const EffectInfo& info, std
 
 std::vector<Lookalike> lookalikes(const FitProblem& problem, const Fit& fit) {
   std::vector<Lookalike> found;
-  std::vector<double> shapes;
-  for (const ShapeGroup& group : problem.groups()) {
-    const ShapeMember& member = group.members[0];
-    shapes.push_back(fit.robot.effects[member.effect].parameters[member.parameter]);
-  }
-  const std::vector<JointRows> rows = problem.rows(shapes);
+  const std::vector<JointRows> rows = problem.rows(problem.shapes_in(fit.robot));
   for (std::size_t i = 0; i < problem.unknowns().size(); ++i) {
     const Unknown& unknown = problem.unknowns()[i];
     const bool was_fitted = std::any_of(

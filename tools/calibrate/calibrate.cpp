@@ -7,8 +7,7 @@
 #include <filesystem>
 
 #include "calibrate/recorded_error.hpp"
-#include "calibrate/shape_fit.hpp"
-#include "calibrate/split.hpp"
+#include "calibrate/try_shapes.hpp"
 #include "common/error.hpp"
 #include "common/number.hpp"
 
@@ -21,29 +20,13 @@ using Eigen::VectorXd;
 // Blocks long enough for the filter to have forgotten the one before, and a second at least.
 constexpr double kBlockTimeConstants = 10;
 constexpr double kShortestBlock = 1;  // s
-// A simpler kind is kept unless another one's threshold is lower by this share: numbers beyond what
-// the machine's physics asks for fit the recordings and not the next motion.
-constexpr double kWorthwhile = 0.15;
-// No c_k falls below this share of the constant bound: where the recordings say little, a table
-// would otherwise fall to nothing.
-constexpr double kLowestShare = 0.1;
 // An unseen part whose |e| is so much above what all the others ask for is not like them.
 constexpr double kStrayRatio = 2.5;
 constexpr double kUnlikely = 0.01;
 
-struct Data {
-  std::vector<RecordedError> recordings;
-  Split split;
-  double block_s = 0;
-
-  [[nodiscard]] std::int64_t block_samples(const RecordedError& recording) const {
-    return std::max<std::int64_t>(1, std::llround(block_s / recording.period_s));
-  }
-};
-
-Data data_of(const RobotDescription& robot, const std::vector<Log>& logs,
-             const std::vector<Log>& holdout) {
-  Data data;
+CalibrationData data_of(const RobotDescription& robot, const std::vector<Log>& logs,
+                        const std::vector<Log>& holdout) {
+  CalibrationData data;
   for (const auto* group : {&logs, &holdout}) {
     for (const Log& log : *group) data.recordings.push_back(recorded_error(robot, log));
   }
@@ -73,69 +56,6 @@ Data data_of(const RobotDescription& robot, const std::vector<Log>& logs,
                       .mend = "check that the recordings are not the model's own output"});
   }
   return data;
-}
-
-struct Tried {
-  BoundShape shape;
-  ShapeFit fit;
-  std::vector<double> maxima;  // of the unseen ratio, per block
-  ExtremeLaw law;
-  double largest = 0;
-  double widening = 1;
-  double mean_threshold = 0;
-};
-
-Tried judged(const BoundShape& shape, ShapeFit fit, const Data& data,
-             const CalibrateRequest& request) {
-  Tried tried{shape, std::move(fit), {}, {}, 0, 1, 0};
-  for (std::size_t i = 0; i < data.split.folds.size(); ++i) {
-    const RecordedError& recording = data.recordings[data.split.folds[i].recording];
-    const auto maxima = block_maxima(tried.fit.unseen_ratio[i], data.block_samples(recording));
-    tried.maxima.insert(tried.maxima.end(), maxima.begin(), maxima.end());
-    tried.largest = std::max(tried.largest, tried.fit.unseen_ratio[i].maxCoeff());
-  }
-  tried.law = extreme_law_of(tried.maxima);
-  const double per_block = -std::expm1(-request.alarms_per_hour / 3600 * data.block_s);
-  tried.widening = std::max({1.0, tried.largest, exceeded_with(tried.law, per_block)});
-  tried.mean_threshold =
-      tried.widening * tried.fit.mean_threshold + 2 * request.velocity_error.value_or(0);
-  return tried;
-}
-
-std::vector<Tried> try_shapes(const RobotDescription& robot, const Data& data,
-                              const CalibrateRequest& request,
-                              const std::function<void()>& on_step) {
-  std::vector<RecordedError> fitted;
-  for (std::size_t i = 0; i <= data.split.folds.back().recording; ++i) {
-    fitted.push_back(data.recordings[i]);
-  }
-  std::vector<Tried> tried;
-  double lowest = 0;
-  for (const BoundShape& shape : bound_shapes(robot, fitted)) {
-    ShapeFit fit =
-        fit_shape(robot, shape, data.recordings, data.split, lowest, request.velocity_error);
-    if (shape.settings.kind == BoundSettings::Kind::kConstant) {
-      lowest = kLowestShare * fit.coefficients[0];
-    }
-    tried.push_back(judged(shape, std::move(fit), data, request));
-    if (on_step) on_step();
-  }
-  return tried;
-}
-
-// The best of each kind in turn, from the simplest on: constant, scaled_norm, table.
-std::size_t choice_among(const std::vector<Tried>& tried) {
-  const auto kind_of = [&](std::size_t i) { return tried[i].shape.settings.kind; };
-  std::size_t choice = 0;
-  for (const auto kind : {BoundSettings::Kind::kScaledNorm, BoundSettings::Kind::kTable}) {
-    double best = (1 - kWorthwhile) * tried[choice].mean_threshold;
-    for (std::size_t i = 0; i < tried.size(); ++i) {
-      if (kind_of(i) != kind || tried[i].mean_threshold >= best) continue;
-      best = tried[i].mean_threshold;
-      choice = i;
-    }
-  }
-  return choice;
 }
 
 std::int64_t alarms_in(const VectorXd& error, const VectorXd& threshold) {
@@ -197,8 +117,8 @@ std::vector<Stretch> joined_stretches(const std::vector<Stretch>& folds) {
 }
 
 // The core itself runs over every recording again, with the new bound.
-void judge_all(const Data& data, const std::vector<Log>& logs, const std::vector<Log>& holdout,
-               Calibration& result) {
+void judge_all(const CalibrationData& data, const std::vector<Log>& logs,
+               const std::vector<Log>& holdout, Calibration& result) {
   const auto log_of = [&](std::size_t i) -> const Log& {
     return i < logs.size() ? logs[i] : holdout[i - logs.size()];
   };
@@ -236,22 +156,69 @@ void count_held_out(Calibration& result) {
       level.held_out_alarms, level.held_out_s, expected, where));
 }
 
-void look_for_strays(const Data& data, const Tried& constant, Calibration& result) {
+void object_to_stray(const std::string& file, double time_s, int joint, double ratio,
+                     Calibration& result) {
+  if (ratio <= kStrayRatio) return;
+  result.objections.push_back(fmt::format(
+      "{}: at {:.3f} s |e| is {:.2g} times the largest that all other parts ask for, most of it on "
+      "joint {}. A fault there, or a motion that no other part has: leave the recording out, or "
+      "add recordings like it.",
+      file, time_s, ratio, joint + 1));
+}
+
+void look_for_strays(const CalibrationData& data, const Tried& constant, Calibration& result) {
+  if (result.transient) {
+    const Transient& one = *result.transient;
+    object_to_stray(one.file, one.time_s, one.joint, one.ratio, result);
+  }
   for (std::size_t i = 0; i < data.split.folds.size(); ++i) {
     const Stretch& fold = data.split.folds[i];
     const RecordedError& recording = data.recordings[fold.recording];
     Index at = 0;
     const double ratio = constant.fit.unseen_ratio[i].maxCoeff(&at);
-    if (ratio <= kStrayRatio) continue;
-    result.objections.push_back(fmt::format(
-        "{}: at {:.3f} s |e| is {:.2g} times the largest that all other parts ask for. A fault "
-        "there, or a motion that no other part has: leave the recording out, or add recordings "
-        "like it.",
-        recording.file, recording.t_s[fold.begin + at], ratio));
+    at += fold.begin;
+    object_to_stray(recording.file, recording.t_s[at], recording.loudest_joint[at], ratio, result);
   }
 }
 
-void note_what_matters(const Data& data, Calibration& result) {
+void note_transient(Calibration& result) {
+  if (!result.transient || result.transient->ratio > kStrayRatio) return;
+  const Transient& one = *result.transient;
+  result.notes.push_back(fmt::format(
+      "{}: one transient at {:.3f} s, most of it on joint {}: |e| = {:.3g} {}, {:.2g} times the "
+      "largest that all other parts ask for. The bound covers it and is not widened beyond for "
+      "it: one event says nothing of how large the next one is. Taken for one of many it would "
+      "have made a constant bound {:.3g} times as wide. Record more starts and stops if the robot "
+      "has them.",
+      one.file, one.time_s, one.joint + 1, one.error_norm, result.unit, one.ratio,
+      one.mean_threshold_with / one.mean_threshold_without));
+}
+
+// A bound that grew, or that nothing comes near: what made it so.
+void note_width(const Tried& chosen, Calibration& result) {
+  const BoundMargin margin = margin_of(result);
+  if (!margin.is_remarkable()) return;
+  std::string words =
+      margin.is_much_wider()
+          ? fmt::format("The new bound is {:.3g} times as wide as the old one", *margin.new_to_old)
+          : std::string("The new bound is hardly felt");
+  words +=
+      fmt::format(": the recordings reach |e| / mu of {:.3g} at most", margin.largest_ratio_after);
+  if (margin.largest_ratio_before) {
+    words += fmt::format(" ({:.3g} with the old bound)", *margin.largest_ratio_before);
+  }
+  result.notes.push_back(
+      words +
+      fmt::format(". The tightest bound that covers them has a mean threshold of {:.3g} {}, and it "
+                  "is widened {:.3g} times: their largest unseen |e| asks for {:.3g}, the rest is "
+                  "extrapolation of {} block maxima to {:g} false alarms per hour. Longer and "
+                  "more recordings make that less.",
+                  chosen.fit.mean_threshold, result.unit, chosen.widening,
+                  std::max({1.0, chosen.largest, chosen.fit.apart_ratio}), chosen.maxima.size(),
+                  result.level.alarms_per_hour));
+}
+
+void note_what_matters(const CalibrationData& data, Calibration& result) {
   for (const JudgedStretch& stretch : result.stretches) {
     if (stretch.alarms_before == 0) continue;
     result.notes.push_back(fmt::format(
@@ -285,8 +252,9 @@ std::string source_of(const CalibrateRequest& request, const FalseAlarmLevel& le
 Calibration calibrate(const RobotDescription& robot, const CalibrateRequest& request,
                       const std::vector<Log>& logs, const std::vector<Log>& holdout,
                       const std::function<void()>& on_step) {
-  const Data data = data_of(robot, logs, holdout);
-  const std::vector<Tried> tried = try_shapes(robot, data, request, on_step);
+  const CalibrationData data = data_of(robot, logs, holdout);
+  const Tries tries = try_shapes(robot, data, request, on_step);
+  const std::vector<Tried>& tried = tries.shapes;
   const std::size_t chosen = choice_among(tried);
   const Tried& best = tried[chosen];
 
@@ -297,6 +265,7 @@ Calibration calibrate(const RobotDescription& robot, const CalibrateRequest& req
     result.shapes.push_back({tried[i].shape.words, tried[i].largest, tried[i].widening,
                              tried[i].mean_threshold, i == chosen});
   }
+  result.transient = tries.transient;
   result.unseen_maxima = best.maxima;
   result.level.alarms_per_hour = request.alarms_per_hour;
   result.level.block_s = data.block_s;
@@ -307,6 +276,8 @@ Calibration calibrate(const RobotDescription& robot, const CalibrateRequest& req
   judge_all(data, logs, holdout, result);
   count_held_out(result);
   look_for_strays(data, tried.front(), result);
+  note_transient(result);
+  note_width(best, result);
   note_what_matters(data, result);
   result.robot.bound->source = source_of(request, result.level);
   return result;

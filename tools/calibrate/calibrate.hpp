@@ -64,17 +64,50 @@ struct FalseAlarmLevel {
   double highest_per_hour = 0;  // compatible with that count at 95 % confidence
 };
 
+// One event, of a second or so in one recording, that would have decided the bound alone: the bound
+// covers it, and is not widened for what it would make of the tail of the law.
+struct Transient {
+  std::string file;
+  double time_s = 0;  // of its largest |e|, as recorded
+  int joint = 0;      // from 0; that errs most then
+  double error_norm = 0;
+  double ratio = 0;  // of it to the tightest constant threshold of everything else
+  // Mean threshold of a constant bound, had it been taken for a sample of the law like any other,
+  // and as it is; rad/s or m/s.
+  double mean_threshold_with = 0;
+  double mean_threshold_without = 0;
+};
+
 struct Calibration {
   RobotDescription robot;  // with the new bound
   std::optional<BoundSettings> old_bound;
   std::string unit;  // of |e| and mu
   std::vector<ShapeScore> shapes;
   FalseAlarmLevel level;
+  std::optional<Transient> transient;
   std::vector<double> unseen_maxima;  // block maxima of |e| / tightest mu, the chosen shape's
   std::vector<JudgedStretch> stretches;
   std::vector<std::string> notes;       // what a reader of the numbers has to know
   std::vector<std::string> objections;  // why the result must not be used; empty: it may
 };
+
+/// How the new bound stands to the old one and to what the recordings reach, over all of them.
+struct BoundMargin {
+  std::optional<double> mean_before;  // mean threshold, rad/s or m/s; none: there was no bound
+  double mean_after = 0;
+  std::optional<double> new_to_old;            // of the mean thresholds
+  std::optional<double> largest_ratio_before;  // of |e| / mu
+  double largest_ratio_after = 0;
+
+  /// Much wider than the old bound, or hardly felt by the recordings: worth a word.
+  [[nodiscard]] bool is_much_wider() const { return new_to_old && *new_to_old > kMuchWider; }
+  [[nodiscard]] bool is_remarkable() const {
+    return is_much_wider() || largest_ratio_after < kHardlyReached;
+  }
+  static constexpr double kMuchWider = 2;
+  static constexpr double kHardlyReached = 0.2;
+};
+[[nodiscard]] BoundMargin margin_of(const Calibration& calibration);
 
 /// Calibrates on `logs` and counts the alarms on `holdout`. Without hold-out recordings the last of
 /// several logs is held out, or the last fifth of a single one. Within the rest, whole recordings

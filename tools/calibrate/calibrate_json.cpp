@@ -56,6 +56,17 @@ ordered_json calibration_json(const JudgedStretch& stretch) {
           {"first_alarm_s", optional(stretch.first_alarm_s)}};
 }
 
+ordered_json calibration_json(const std::optional<Transient>& transient) {
+  if (!transient) return {};
+  return {{"log", transient->file},
+          {"time_s", transient->time_s},
+          {"joint", transient->joint + 1},
+          {"error", transient->error_norm},
+          {"times_the_others", transient->ratio},
+          {"mean_threshold_if_extrapolated", transient->mean_threshold_with},
+          {"mean_threshold", transient->mean_threshold_without}};
+}
+
 ordered_json calibration_json(const FalseAlarmLevel& level) {
   return {
       {"alarms_per_hour", level.alarms_per_hour},
@@ -71,7 +82,7 @@ ordered_json calibration_json(const FalseAlarmLevel& level) {
 }  // namespace
 
 ordered_json to_json(const Calibration& calibration, const CalibrateNames& names) {
-  const MeanThresholds means = mean_thresholds(calibration);
+  const BoundMargin margin = margin_of(calibration);
   ordered_json stretches = ordered_json::array();
   for (const JudgedStretch& stretch : calibration.stretches)
     stretches.push_back(calibration_json(stretch));
@@ -91,8 +102,12 @@ ordered_json to_json(const Calibration& calibration, const CalibrateNames& names
                             ? calibration_json(*calibration.old_bound, calibration.unit)
                             : ordered_json()},
           {"new_bound", calibration_json(*calibration.robot.bound, calibration.unit)},
-          {"mean_threshold_before", optional(means.before)},
-          {"mean_threshold_after", means.after},
+          {"mean_threshold_before", optional(margin.mean_before)},
+          {"mean_threshold_after", margin.mean_after},
+          {"new_to_old", optional(margin.new_to_old)},
+          {"max_error_to_threshold_before", optional(margin.largest_ratio_before)},
+          {"max_error_to_threshold_after", margin.largest_ratio_after},
+          {"transient", calibration_json(calibration.transient)},
           {"false_alarms", calibration_json(calibration.level)},
           {"recordings", stretches},
           {"shapes", shapes},

@@ -17,17 +17,27 @@ std::vector<double> axis_values(const Eigen::VectorXd& vector) {
 }
 
 KeyFigures figures_of(const Calibration& calibration) {
-  const MeanThresholds means = mean_thresholds(calibration);
+  const BoundMargin margin = margin_of(calibration);
   const FalseAlarmLevel& level = calibration.level;
   KeyFigures figures;
-  if (means.before) {
+  if (margin.mean_before) {
     figures.figures.push_back(
-        {.label = "mean threshold, old", .value = *means.before, .unit = calibration.unit});
+        {.label = "mean threshold, old", .value = *margin.mean_before, .unit = calibration.unit});
   }
-  figures.figures.push_back({.label = "mean threshold, new",
-                             .value = means.after,
-                             .unit = calibration.unit,
-                             .level = Level::kGood});
+  figures.figures.push_back(
+      {.label = "mean threshold, new",
+       .value = margin.mean_after,
+       .unit = calibration.unit,
+       .level = margin.is_remarkable() ? Level::kWarn : Level::kGood,
+       .note = margin.new_to_old ? fmt::format("{:.3g} times the old", *margin.new_to_old) : ""});
+  figures.figures.push_back(
+      {.label = "largest |e| / mu",
+       .value = margin.largest_ratio_after,
+       .unit = "",
+       .format = ".3g",
+       .note = margin.largest_ratio_before
+                   ? fmt::format("with the old bound {:.3g}", *margin.largest_ratio_before)
+                   : ""});
   figures.figures.push_back({.label = "hold-out alarms",
                              .value = static_cast<double>(level.held_out_alarms),
                              .unit = "",
@@ -41,13 +51,18 @@ KeyFigures figures_of(const Calibration& calibration) {
   return figures;
 }
 
+Level level_of(const Calibration& calibration) {
+  if (!calibration.objections.empty()) return Level::kBad;
+  return margin_of(calibration).is_remarkable() ? Level::kWarn : Level::kGood;
+}
+
 Waterfall bars_of(const Calibration& calibration) {
-  const MeanThresholds means = mean_thresholds(calibration);
+  const BoundMargin margin = margin_of(calibration);
   Waterfall bars;
   bars.title = "Mean threshold";
   bars.value_axis = {.name = "mu", .unit = calibration.unit};
-  if (means.before) bars.steps.push_back({"old bound", *means.before});
-  bars.steps.push_back({"new bound", means.after});
+  if (margin.mean_before) bars.steps.push_back({"old bound", *margin.mean_before});
+  bars.steps.push_back({"new bound", margin.mean_after});
   bars.note = "A fault is seen when it lifts |e| above mu: the lower, the smaller the fault.";
   return bars;
 }
@@ -146,7 +161,7 @@ Table shape_table(const Calibration& calibration) {
                    {"largest |e| / mu on unseen parts", "1", ".3f"},
                    {"widened by", "1", ".3f"},
                    {"mean mu", calibration.unit, ".4g"},
-                   {"", ""}};
+                   {"choice", ""}};
   for (const ShapeScore& shape : calibration.shapes) {
     table.rows.push_back({shape.words, shape.largest_unseen_ratio, shape.widening,
                           shape.mean_threshold, std::string(shape.chosen ? "chosen" : "")});
@@ -157,7 +172,7 @@ Table shape_table(const Calibration& calibration) {
 Table bound_table(const Calibration& calibration) {
   Table table;
   table.caption = "Uncertainty bound mu_bar";
-  table.columns = {{"", ""}, {"bound", ""}};
+  table.columns = {{"robot file", ""}, {"bound", ""}};
   if (calibration.old_bound) {
     table.rows.push_back({std::string("old"), words_of(*calibration.old_bound, calibration.unit)});
   }
@@ -171,8 +186,7 @@ report::Page page_of(const Calibration& calibration, const CalibrateNames& names
   Page page;
   page.title = "Calibrated uncertainty bound of " + names.robot;
   page.subtitle = "judged after the filter: |e| against mu = W[mu_bar]";
-  page.verdict = {verdict_of(calibration),
-                  calibration.objections.empty() ? Level::kGood : Level::kBad};
+  page.verdict = {verdict_of(calibration), level_of(calibration)};
   page.command_line = names.command_line;
   Section result{.heading = "The bound", .text = "", .blocks = {}};
   result.blocks.emplace_back(figures_of(calibration));

@@ -26,12 +26,4 @@ struct CalibrateNames {
                                              const CalibrateNames& names);
 [[nodiscard]] report::Page page_of(const Calibration& calibration, const CalibrateNames& names);
 
-/// Mean threshold over all recordings with the old bound and with the new one, rad/s or m/s; the
-/// first is none where there was no bound.
-struct MeanThresholds {
-  std::optional<double> before;
-  double after = 0;
-};
-[[nodiscard]] MeanThresholds mean_thresholds(const Calibration& calibration);
-
 }  // namespace offnominal::tools

@@ -64,31 +64,21 @@ std::string words_of(const BoundSettings& bound, const std::string& unit) {
   return words;
 }
 
-MeanThresholds mean_thresholds(const Calibration& calibration) {
-  double before = 0;
-  MeanThresholds means;
-  double samples = 0;
-  for (const JudgedStretch& stretch : calibration.stretches) {
-    const auto weight = static_cast<double>(stretch.samples);
-    before += weight * stretch.mean_threshold_before.value_or(0);
-    means.after += weight * stretch.mean_threshold_after;
-    samples += weight;
-  }
-  means.after /= samples;
-  if (calibration.old_bound) means.before = before / samples;
-  return means;
-}
-
 std::string verdict_of(const Calibration& calibration) {
   if (!calibration.objections.empty()) {
     return "These recordings give no bound that can be trusted. " + calibration.objections.front();
   }
-  const MeanThresholds means = mean_thresholds(calibration);
+  const BoundMargin margin = margin_of(calibration);
   std::string words =
-      fmt::format("The threshold is {:.3g} {} on average", means.after, calibration.unit);
-  if (means.before) {
-    words += fmt::format(", {:.2g} times the old one's {:.3g} {}", means.after / *means.before,
-                         *means.before, calibration.unit);
+      fmt::format("The threshold is {:.3g} {} on average", margin.mean_after, calibration.unit);
+  if (margin.mean_before) {
+    words +=
+        fmt::format(", {:.2g} times the old one's {:.3g} {}",
+                    margin.mean_after / *margin.mean_before, *margin.mean_before, calibration.unit);
+  }
+  words += fmt::format("; the recordings reach {:.3g} of it at most", margin.largest_ratio_after);
+  if (margin.largest_ratio_before) {
+    words += fmt::format(", {:.3g} of the old one", *margin.largest_ratio_before);
   }
   const FalseAlarmLevel& level = calibration.level;
   return words + fmt::format("; {} alarm(s) in {:g} s of hold-out data.", level.held_out_alarms,

@@ -36,6 +36,16 @@ Eigen::VectorXd first_ticks(const Eigen::MatrixXd& error, double keep) {
   return norms;
 }
 
+Eigen::VectorXi loudest_joints(const Eigen::MatrixXd& error) {
+  Eigen::VectorXi loudest(error.rows());
+  for (Eigen::Index i = 0; i < error.rows(); ++i) {
+    Eigen::Index joint = 0;
+    error.row(i).cwiseAbs().maxCoeff(&joint);
+    loudest[i] = static_cast<int>(joint);
+  }
+  return loudest;
+}
+
 }  // namespace
 
 TickFilter tick_filter(double alpha_per_s, double period_s) {
@@ -62,6 +72,7 @@ RecordedError recorded_error(const RobotDescription& robot, const Log& log) {
   recorded.error_norm = run.error_norm;
   recorded.first_tick =
       first_ticks(run.error, tick_filter(robot.estimator.alpha_per_s, log.period_s).keep);
+  recorded.loudest_joint = loudest_joints(run.error);
   if (robot.bound) recorded.old_threshold = run.threshold;
   recorded.q = log.q;
   recorded.dq = log.dq;

@@ -29,6 +29,7 @@ struct RecordedError {
   Eigen::VectorXd error_norm;  // |e|, what `offnominal replay` shows before any alarm
   // |e| after the first tick of a run that starts one sample earlier; entry 0 is 0.
   Eigen::VectorXd first_tick;
+  Eigen::VectorXi loudest_joint;  // from 0; the one with the largest |e_j| at the sample
   Eigen::VectorXd old_threshold;  // mu of the robot file's own bound; empty: it has none
   Eigen::MatrixXd q;              // rows: samples, columns: joints
   Eigen::MatrixXd dq;

@@ -17,7 +17,38 @@ struct FoldRows {
   MatrixXd first_tick;
   VectorXd error;             // |e| that the unknown numbers have to reach
   VectorXd first_tick_error;  // the same after a first tick
+  // Rows from apart_begin to apart_end - 1 are only held against the result: their errors.
+  Index apart_begin = 0;
+  Index apart_end = 0;
+  VectorXd apart_error;
+  VectorXd apart_first_tick_error;
 };
+
+// What stands in these rows is no longer asked for.
+void take_apart(const Stretch& fold, const Stretch& apart, FoldRows& rows) {
+  if (apart.recording != fold.recording) return;
+  const Index begin = std::max(apart.begin, fold.begin);
+  const Index end = std::min(apart.end, fold.end);
+  if (begin >= end) return;
+  rows.apart_begin = begin - fold.begin;
+  rows.apart_end = end - fold.begin;
+  const Index count = end - begin;
+  rows.apart_error = rows.error.segment(rows.apart_begin, count);
+  rows.apart_first_tick_error = rows.first_tick_error.segment(rows.apart_begin, count);
+  rows.error.segment(rows.apart_begin, count).setZero();
+  rows.first_tick_error.segment(rows.apart_begin, count).setZero();
+}
+
+double largest_apart(const FoldRows& fold, const VectorXd& c) {
+  const Index count = fold.apart_end - fold.apart_begin;
+  if (count == 0) return 0;
+  const auto largest = [&](const MatrixXd& rows, const VectorXd& error) {
+    const VectorXd threshold = rows.middleRows(fold.apart_begin, count) * c;
+    return (error.array() > 0).select(error.array() / threshold.array(), 0.0).maxCoeff();
+  };
+  return std::max(largest(fold.along, fold.apart_error),
+                  largest(fold.first_tick, fold.apart_first_tick_error));
+}
 
 // A velocity error that is given is no unknown: its 2 v is taken off the error that is left to
 // cover.
@@ -64,7 +95,9 @@ VectorXd tightest_without(const std::vector<FoldRows>& folds, const Turn& turn,
 // Row 0 of a recording is the start of its run, where there is no error and may be no threshold.
 VectorXd ratio_of(const FoldRows& fold, const VectorXd& c) {
   const VectorXd threshold = fold.along * c;
-  return (fold.error.array() > 0).select(fold.error.array() / threshold.array(), 0.0);
+  VectorXd ratio = (fold.error.array() > 0).select(fold.error.array() / threshold.array(), 0.0);
+  ratio.segment(fold.apart_begin, fold.apart_end - fold.apart_begin).setConstant(ShapeFit::kApart);
+  return ratio;
 }
 
 }  // namespace
@@ -77,7 +110,8 @@ BoundSettings ShapeFit::widened(const BoundShape& shape, double widening,
 
 ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
                    const std::vector<RecordedError>& recordings, const Split& split, double lowest,
-                   const std::optional<double>& velocity_error) {
+                   const std::optional<double>& velocity_error,
+                   const std::optional<Stretch>& apart) {
   std::vector<Stretch> folds = split.folds;
   folds.insert(folds.end(), split.always.begin(), split.always.end());
   std::vector<FoldRows> rows;
@@ -89,6 +123,7 @@ ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
       if (fold.recording != held) basis = filtered_basis(robot, shape, recording);
       held = fold.recording;
       rows.push_back(fold_rows(basis, recording, fold, velocity_error));
+      if (apart) take_apart(fold, *apart, rows.back());
     }
   }
   const Index unknowns = rows.front().along.cols();
@@ -112,6 +147,7 @@ ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
   double sum = 0;
   Index count = 0;
   for (std::size_t i = 0; i < folds.size(); ++i) {
+    fit.apart_ratio = std::max(fit.apart_ratio, largest_apart(rows[i], all));
     sum += (rows[i].along * all).sum();
     count += rows[i].along.rows();
   }

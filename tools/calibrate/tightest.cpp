@@ -55,6 +55,9 @@ class Programme {
 
   [[nodiscard]] Eigen::VectorXd solve(Index size) {
     Clp_dual(model_.get(), 0);
+    // Rows of very different size can stop a dual simplex that goes on from the last basis: anew
+    // then.
+    if (Clp_status(model_.get()) != 0) Clp_initialPrimalSolve(model_.get());
     if (Clp_status(model_.get()) != 0) refuse_programme("no numbers that cover every sample");
     return Eigen::Map<const Eigen::VectorXd>(Clp_primalColumnSolution(model_.get()), size);
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/inverse_model.hpp"
@@ -19,11 +20,57 @@ std::vector<std::string> objections_to(const Explanation& e) {
     return {fmt::format("the verdict is {}: {}", name_of(e.verdict), e.words)};
   }
   if (e.found.empty()) return {"no effect is missing: fit the one that is there again with add"};
-  if (e.not_in_robot_files.empty()) return {};
-  return {
-      fmt::format("robot files and controllers do not know {} yet, and what else was found is "
-                  "fitted beside it",
-                  list_of(e.not_in_robot_files))};
+  std::vector<std::string> objections;
+  for (const HeldNumber& held : e.held) {
+    if (held.contradicted) objections.push_back(held.words);
+  }
+  if (!e.not_in_robot_files.empty()) {
+    objections.push_back(fmt::format(
+        "robot files and controllers do not know {} yet, and what else was found is fitted beside "
+        "it",
+        list_of(e.not_in_robot_files)));
+  }
+  return objections;
+}
+
+// Mean square of a joint's error on data that no fit has seen, before and after.
+struct HeldOutSquares {
+  double before = 0;
+  double after = 0;
+};
+
+HeldOutSquares held_out_squares(const AddedFindings& added, std::size_t joint) {
+  const JointErrors& of_parts = added.explanation.joints[joint];
+  HeldOutSquares squares;
+  bool apart = false;
+  for (const Gain& gain : added.gains) {
+    if (!gain.held_out) continue;
+    apart = true;
+    squares.before += std::pow(gain.joints[joint].before_rms, 2);
+    squares.after += std::pow(gain.joints[joint].after_rms, 2);
+  }
+  if (apart) return squares;
+  return {std::pow(of_parts.holdout_before, 2), std::pow(of_parts.holdout_after, 2)};
+}
+
+// A joint with a finding must gain, no other may lose more than what a twentieth is.
+std::vector<std::string> doubts_of(const AddedFindings& added) {
+  constexpr double kRelevant = 0.05;
+  std::vector<std::string> doubts;
+  const Explanation& e = added.explanation;
+  for (std::size_t joint = 0; joint < e.joints.size(); ++joint) {
+    const HeldOutSquares squares = held_out_squares(added, joint);
+    const double fall = 1 - std::sqrt(squares.after / squares.before);
+    const bool asked = std::any_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
+      return one.what.joint == static_cast<Eigen::Index>(joint);
+    });
+    if (asked ? fall > 0 : !(fall < -kRelevant)) continue;
+    doubts.push_back(
+        fmt::format("on data not used for the fit the error of joint {} {}, by {:.1f} %: these "
+                    "data do not support what was found",
+                    joint + 1, asked ? "does not fall but rises" : "rises", -100 * fall));
+  }
+  return doubts;
 }
 
 // Of the readings of a hold map, less the friction that holds by the direction of approach.
@@ -76,11 +123,12 @@ AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& l
   };
   for (const Log& log : logs) compare_on(log, false);
   for (const Log& log : holdout) compare_on(log, true);
+  added.doubts = doubts_of(added);
   return added;
 }
 
 ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
-                     const std::string& output_file) {
+                     const std::string& output_file, bool force) {
   const ordered_json explained = to_json(added.explanation, names);
   ordered_json json;
   for (const char* key : {"logs", "holdout", "robot", "verdict", "words", "found"}) {
@@ -101,11 +149,14 @@ ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
         {{"log", gain.log}, {"held_out", gain.held_out}, {"joints", std::move(joints)}});
   }
   json["objections"] = added.objections;
-  json["written"] = added.objections.empty() ? ordered_json(output_file) : nullptr;
+  json["doubts"] = added.doubts;
+  json["held"] = ordered_json::array();
+  for (const HeldNumber& held : added.explanation.held) json["held"].push_back(held.words);
+  json["written"] = added.may_be_written(force) ? ordered_json(output_file) : ordered_json();
   return json;
 }
 
-std::string text_of(const AddedFindings& added, const ExplainNames& names) {
+std::string text_of(const AddedFindings& added, const ExplainNames& names, bool force) {
   std::string text = text_of(added.explanation, names);
   for (const Gain& gain : added.gains) {
     text += fmt::format("\n{}{}\n{}", gain.log, gain.held_out ? ", not used for the fit" : "",
@@ -113,6 +164,14 @@ std::string text_of(const AddedFindings& added, const ExplainNames& names) {
   }
   for (const std::string& objection : added.objections) {
     text += "\nNothing was written: " + objection + "\n";
+  }
+  for (const HeldNumber& held : added.explanation.held) {
+    if (!held.contradicted) text += "\nnote: " + held.words + "\n";
+  }
+  for (const std::string& doubt : added.doubts) {
+    text += fmt::format("\n{}: {}{}\n",
+                        force ? "Written all the same, as --force says" : "Nothing was written",
+                        doubt, force ? "" : "; --force writes it all the same");
   }
   return text;
 }

@@ -21,6 +21,12 @@ struct AddedFindings {
   Explanation explanation;  // `improved` is the robot to write, where nothing is objected
   std::vector<Gain> gains;
   std::vector<std::string> objections;  // why it must not be written; empty: it may
+  // Why it should not be, as far as data say that the fit has not seen: for the user to overrule.
+  std::vector<std::string> doubts;
+
+  [[nodiscard]] bool may_be_written(bool overruled) const {
+    return objections.empty() && (doubts.empty() || overruled);
+  }
 };
 
 // Searches as explain() does and compares the robot with everything that was found to the robot as
@@ -32,11 +38,11 @@ AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& l
 
 // {verdict, words, found, recordings: [{log, held_out, joints: [{joint, unit, rms_error_before,
 //  rms_error_after, relative_error_before_percent, relative_error_after_percent}]}], objections,
-//  written}. `written` is null where nothing was.
+//  doubts, held, written}. `written` is null where nothing was; `force`: doubts are overruled.
 nlohmann::ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
-                               const std::string& output_file);
+                               const std::string& output_file, bool force = false);
 
 // The same for a terminal.
-std::string text_of(const AddedFindings& added, const ExplainNames& names);
+std::string text_of(const AddedFindings& added, const ExplainNames& names, bool force = false);
 
 }  // namespace offnominal::tools::discovery

@@ -33,8 +33,28 @@ const char* name_of(DataFaultKind kind) {
       return "saturation";
     case DataFaultKind::kGaps:
       return "gaps";
+    case DataFaultKind::kTimeUnit:
+      return "time_unit";
+    case DataFaultKind::kVelocity:
+      return "velocity";
+    case DataFaultKind::kWrapped:
+      return "wrapped_position";
   }
   return "";
+}
+
+bool spoils(const DataFault& fault, RestsOn what) {
+  switch (fault.kind) {
+    case DataFaultKind::kDegrees:
+    case DataFaultKind::kTorqueSign:
+    case DataFaultKind::kTimeUnit:
+    case DataFaultKind::kWrapped:
+      return true;
+    case DataFaultKind::kVelocity:
+      return what == RestsOn::kVelocityToo;
+    default:
+      return false;
+  }
 }
 
 std::string joint_words(Index joint) {
@@ -121,15 +141,20 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
   std::vector<DataFault> faults;
   constexpr Index kFewestSamples = 10;  // as read_log.hpp's kMinSamples
   if (log.sample_count() < kFewestSamples) return faults;
-  find_gaps(log, faults);
-  find_stale_samples(log, faults);
-  find_stuck_encoders(log, robot, faults);
-  find_saturation(log, robot, faults);
-  const Log radians = without_degrees(log, robot, faults);
-  if (const auto pair = torque_pair(radians, robot)) {
-    find_torque_sign(*pair, faults);
-    find_clock_skew(radians, *pair, faults);
+  Log mended = log;
+  mend_wrapped(mended, robot, faults);
+  mend_time(mended, robot, faults);
+  find_gaps(mended, faults);
+  find_stale_samples(mended, faults);
+  find_stuck_encoders(mended, robot, faults);
+  find_saturation(mended, robot, faults);
+  mend_degrees(mended, robot, faults);
+  mend_velocities(mended, robot, faults);
+  if (const auto pair = torque_pair(mended, robot)) {
+    find_torque_sign(mended, *pair, faults);
+    find_clock_skew(mended, *pair, faults);
   }
+  for (DataFault& fault : faults) fault.file = log.file;
   return faults;
 }
 

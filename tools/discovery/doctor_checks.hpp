@@ -36,11 +36,30 @@ void find_stale_samples(const Log& log, std::vector<DataFault>& faults);
 void find_stuck_encoders(const Log& log, const RobotDescription& robot,
                          std::vector<DataFault>& faults);
 void find_saturation(const Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
-void find_torque_sign(const TorquePair& pair, std::vector<DataFault>& faults);
+void find_torque_sign(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
 void find_clock_skew(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
 
-// The recording with the positions of the revolute joints in radians; says so where they were not.
-Log without_degrees(const Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
+// These mend what they name in `log`, so that what is looked at after them is seen.
+void mend_wrapped(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
+void mend_time(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
+void mend_degrees(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
+void mend_velocities(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
+
+// Drives filter the velocity and print it coarsely: real ones differ from the derivative of the
+// position by a factor of up to 1.09. Another unit, or another shaft, is further off than the
+// second.
+inline constexpr double kNearUnit = 1.12;
+inline constexpr double kSameUnit = 1.5;
+
+// The measured velocity over the derivative of the position, negative where they oppose each other;
+// none where the velocity was derived, where the joint stands, or where they have nothing in
+// common.
+std::optional<double> velocity_ratio(const Log& log, Eigen::Index joint);
+
+// Adds the lines of [channels] that `mended` has to the fault and to its advice; those of `keys`,
+// or all that must be there where the recording was read by its common header.
+void propose_channels(const Log& log, const ChannelMap& mended, std::vector<std::string> keys,
+                      DataFault& fault);
 
 // "joint 2", or "all joints" for -1.
 std::string joint_words(Eigen::Index joint);

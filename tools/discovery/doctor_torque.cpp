@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "discovery/doctor_checks.hpp"
 #include "discovery/standstill.hpp"
@@ -34,14 +37,32 @@ double misfit(const TorquePair& pair) {
   return std::sqrt(sum / static_cast<double>(pair.measured.cols()));
 }
 
+// Whether the velocity of a joint was measured, and fits its position as it stands: then it is in
+// degrees as well.
+bool velocity_in_degrees(const Log& log, Index joint) {
+  const auto ratio = velocity_ratio(log, joint);
+  return ratio && *ratio > 1 / kSameUnit && *ratio < kSameUnit;
+}
+
+// Converts one joint, or all revolute ones for -1, in the recording and in where it comes from.
+void to_radians(Log& log, const RobotDescription& robot, Index joint) {
+  for (Index j = 0; j < log.q.cols(); ++j) {
+    const auto index = static_cast<std::size_t>(j);
+    if (joint >= 0 && j != joint) continue;
+    if (robot.joints[index].joint.type != JointType::kRevolute) continue;
+    const bool with_velocity = log.dq_derived[index] || velocity_in_degrees(log, j);
+    log.q.col(j) *= kRadPerDegree;
+    if (index < log.channels.position.size()) log.channels.position[index].scale *= kRadPerDegree;
+    if (!with_velocity) continue;
+    log.dq.col(j) *= kRadPerDegree;
+    if (index >= log.channels.velocity.size() || !log.channels.velocity[index]) continue;
+    log.channels.velocity[index]->scale *= kRadPerDegree;
+  }
+}
+
 Log in_radians(const Log& log, const RobotDescription& robot, Index joint) {
   Log scaled = log;
-  for (Index j = 0; j < log.q.cols(); ++j) {
-    if (joint >= 0 && j != joint) continue;
-    if (robot.joints[static_cast<std::size_t>(j)].joint.type != JointType::kRevolute) continue;
-    scaled.q.col(j) *= kRadPerDegree;
-    if (j < log.dq.cols()) scaled.dq.col(j) *= kRadPerDegree;
-  }
+  to_radians(scaled, robot, joint);
   return scaled;
 }
 
@@ -61,66 +82,107 @@ bool inside_limits(const Log& log, const RobotDescription& robot, Index joint) {
          log.q.col(joint).minCoeff() * kRadPerDegree >= limits.min_position;
 }
 
-}  // namespace
+// The joint whose positions are in degrees, -1 for all, and how that shows.
+struct Degrees {
+  Index joint = -1;
+  std::string reason;
+};
 
-Log without_degrees(const Log& log, const RobotDescription& robot, std::vector<DataFault>& faults) {
+std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription& robot,
+                                         const std::vector<Index>& revolute) {
   // As radians the model must miss most of the torque: missing effects make up 15 %.
   constexpr double kBadFit = 0.6;
   // As degrees it must fit, although effects are missing or a clock is off.
   constexpr double kGoodFit = 0.5;
   // And fit far better.
   constexpr double kBetter = 3;
+  const auto as_is = torque_pair(log, robot);
+  if (!as_is || !(misfit(*as_is) > kBadFit)) return std::nullopt;
+  std::vector<Index> choices{-1};
+  if (revolute.size() > 1) choices.insert(choices.end(), revolute.begin(), revolute.end());
+  std::optional<Degrees> found;
+  double best = std::min(kGoodFit, misfit(*as_is) / kBetter);
+  for (const Index joint : choices) {
+    const auto scaled = torque_pair(in_radians(log, robot, joint), robot);
+    if (!scaled || !(misfit(*scaled) < best)) continue;
+    best = misfit(*scaled);
+    found = Degrees{
+        joint,
+        fmt::format("the model misses {:.0f} % of the torque with the positions as they are, "
+                    "{:.0f} % with the positions times pi/180",
+                    std::min(100 * misfit(*as_is), 1e4), 100 * best)};
+  }
+  return found;
+}
+
+// Velocities in rad/s beside positions that then cannot be in rad.
+std::optional<Degrees> degrees_by_velocity(const Log& log, const std::vector<Index>& revolute) {
+  std::optional<Degrees> found;
+  Index told = 0;
+  Index alike = 0;
+  for (const Index joint : revolute) {
+    const auto ratio = velocity_ratio(log, joint);
+    if (!ratio) continue;
+    ++told;
+    if (!(*ratio > kRadPerDegree / kNearUnit && *ratio < kRadPerDegree * kNearUnit)) continue;
+    ++alike;
+    if (found) continue;
+    found = Degrees{joint, fmt::format("the velocity of joint {} is {:.4g} times their derivative",
+                                       joint + 1, *ratio)};
+  }
+  if (found && alike == told && told > 1) found->joint = -1;
+  return found;
+}
+
+std::optional<Degrees> degrees_by_limits(const Log& log, const RobotDescription& robot,
+                                         const std::vector<Index>& revolute) {
+  std::vector<Index> beyond;
+  for (const Index joint : revolute) {
+    if (leaves_limits(log, robot, joint) && inside_limits(log, robot, joint)) {
+      beyond.push_back(joint);
+    }
+  }
+  if (beyond.empty()) return std::nullopt;
+  return Degrees{
+      beyond.size() == 1 && revolute.size() > 1 ? beyond.front() : -1,
+      fmt::format("positions of joint {} go from {:.4g} to {:.4g}, far beyond its limits",
+                  beyond.front() + 1, log.q.col(beyond.front()).minCoeff(),
+                  log.q.col(beyond.front()).maxCoeff())};
+}
+
+}  // namespace
+
+void mend_degrees(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults) {
   std::vector<Index> revolute;
   for (Index j = 0; j < log.q.cols(); ++j) {
     if (robot.joints[static_cast<std::size_t>(j)].joint.type == JointType::kRevolute) {
       revolute.push_back(j);
     }
   }
-  if (revolute.empty()) return log;
-  std::string reason;
-  Index which = -1;
-  bool found = false;
-  if (const auto as_is = torque_pair(log, robot); as_is && misfit(*as_is) > kBadFit) {
-    std::vector<Index> choices{-1};
-    if (revolute.size() > 1) choices.insert(choices.end(), revolute.begin(), revolute.end());
-    double best = std::min(kGoodFit, misfit(*as_is) / kBetter);
-    for (const Index joint : choices) {
-      const auto scaled = torque_pair(in_radians(log, robot, joint), robot);
-      if (!scaled || !(misfit(*scaled) < best)) continue;
-      best = misfit(*scaled);
-      which = joint;
-      found = true;
-    }
-    reason = fmt::format(
-        "the model misses {:.0f} % of the torque with the positions as they are, {:.0f} % with the "
-        "positions times pi/180",
-        std::min(100 * misfit(*as_is), 1e4), 100 * best);
-  }
-  if (!found) {
-    std::vector<Index> beyond;
-    for (const Index joint : revolute) {
-      if (leaves_limits(log, robot, joint) && inside_limits(log, robot, joint)) {
-        beyond.push_back(joint);
-      }
-    }
-    if (beyond.empty()) return log;
-    found = true;
-    which = beyond.size() == 1 && revolute.size() > 1 ? beyond.front() : -1;
-    reason = fmt::format("positions of joint {} go from {:.4g} to {:.4g}, far beyond its limits",
-                         beyond.front() + 1, log.q.col(beyond.front()).minCoeff(),
-                         log.q.col(beyond.front()).maxCoeff());
-  }
+  if (revolute.empty()) return;
+  auto found = degrees_by_torque(log, robot, revolute);
+  if (!found) found = degrees_by_velocity(log, revolute);
+  if (!found) found = degrees_by_limits(log, robot, revolute);
+  if (!found) return;
   DataFault fault;
   fault.kind = DataFaultKind::kDegrees;
-  fault.joint = which;
+  fault.joint = found->joint;
   fault.size = 1 / kRadPerDegree;
-  fault.words = fmt::format("the positions of {} are in degrees: {}", joint_words(which), reason);
-  fault.mend = "log radians, or scale the position channel by 0.0174533 in the robot's [channels]";
+  fault.words = fmt::format("the positions of {} are in degrees: {}", joint_words(found->joint),
+                            found->reason);
+  fault.mend = "log radians, or scale the positions by 0.0174533";
+  std::vector<std::string> keys{"position"};
+  for (const Index joint : revolute) {
+    if ((found->joint >= 0 && joint != found->joint) || !velocity_in_degrees(log, joint)) continue;
+    fault.words += fmt::format("; so is the velocity of joint {}", joint + 1);
+    if (keys.size() == 1) keys.emplace_back("velocity");
+  }
+  to_radians(log, robot, found->joint);
+  propose_channels(log, log.channels, keys, fault);
   faults.push_back(std::move(fault));
-  return in_radians(log, robot, which);
 }
 
-void find_torque_sign(const TorquePair& pair, std::vector<DataFault>& faults) {
+void find_torque_sign(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults) {
   // The model with the opposite sign must fit: missing effects and a clock that is off leave less.
   constexpr double kGoodFit = 0.6;
   // Where the model explains less than this share of the torque it has nothing to say about the
@@ -131,6 +193,7 @@ void find_torque_sign(const TorquePair& pair, std::vector<DataFault>& faults) {
   constexpr double kClearBraking = -0.6;
   const Index joints = pair.measured.cols();
   std::vector<DataFault> found;
+  std::vector<Index> turned_channels;
   for (Index joint = 0; joint < joints; ++joint) {
     const VectorXd tau = pair.measured.col(joint);
     const VectorXd model = pair.model.col(joint);
@@ -159,12 +222,22 @@ void find_torque_sign(const TorquePair& pair, std::vector<DataFault>& faults) {
           joint + 1, rest.dot(speed) / product);
     }
     fault.mend = fmt::format(
-        "turn the sign of the torque channel of joint {} (scale = -1), or its position's; or "
-        "gravity in the robot file points the wrong way",
+        "turn the sign of the torque of joint {} (scale = -1), or its position's; or gravity in "
+        "the "
+        "robot file points the wrong way",
         joint + 1);
+    turned_channels.push_back(joint);
     found.push_back(std::move(fault));
   }
-  faults.insert(faults.end(), found.begin(), found.end());
+  ChannelMap mended = log.channels;
+  for (const Index joint : turned_channels) {
+    const auto index = static_cast<std::size_t>(joint);
+    if (index < mended.torque.size()) mended.torque[index].scale *= -1;
+  }
+  for (DataFault& fault : found) {
+    propose_channels(log, mended, {"torque"}, fault);
+    faults.push_back(std::move(fault));
+  }
 }
 
 namespace {

@@ -1,9 +1,10 @@
 #include "discovery/estimates.hpp"
 
 #include <Eigen/QR>
-#include <boost/math/distributions/students_t.hpp>
+#include <algorithm>
 #include <cmath>
 
+#include "analysis/freedom.hpp"
 #include "discovery/regimes.hpp"
 #include "discovery/torque_scale.hpp"
 
@@ -28,35 +29,32 @@ VectorXd shape_derivative(const Data& data, const Term& term, const VectorXd& co
   return (columns_of(data, above) - columns_of(data, below)) * coefficients / (2 * step);
 }
 
+// What groups of samples show of how far the unknowns may be off.
 struct Covariance {
-  MatrixXd matrix;      // of the unknowns
-  double quantile = 0;  // of Student's t, two-sided 95 %
+  MatrixXd matrix;  // of the unknowns, as if the groups were many
+  std::vector<Freedom> of_joint;
 };
 
-// Where one term's numbers stand in the covariance.
+// Where one term's numbers stand among the unknowns.
 struct Place {
   Index first = 0;
   Index linear = 0;
   std::vector<Index> shape;  // -1: not estimated
+  Index joint = 0;           // that shows most of the term
 };
 
-// `factor`: from the regression's coefficients to those of a robot file.
-std::vector<Estimate> of_term(const Data& data, const Term& term, const VectorXd& coefficients,
-                              double factor, const std::vector<Covariance>& covariances,
-                              const Place& place) {
-  const JointType type = data.recordings[0].joint_type(term.joint);
-  const auto named = [&](const VectorXd& c, const ShapePoint& shape) {
-    return term.effect->parameters(type, factor * c, shape, term.ranges);
-  };
-  const std::vector<NamedValue> at = named(coefficients, term.shape);
-  const Index unknowns = covariances.empty() ? 0 : covariances[0].matrix.rows();
-  MatrixXd slope = MatrixXd::Zero(static_cast<Index>(at.size()), std::max<Index>(unknowns, 1));
+// How each of a term's numbers changes with the unknowns; one row per number.
+MatrixXd slopes_of(const Term& term, const VectorXd& coefficients, const Place& place,
+                   Index unknowns, const auto& named) {
+  const auto numbers = static_cast<Index>(named(coefficients, term.shape).size());
+  MatrixXd slope = MatrixXd::Zero(numbers, unknowns);
   const auto differentiate = [&](Index column, double step, const auto& moved) {
     if (column < 0 || !(step > 0)) return;
     const std::vector<NamedValue> above = moved(step);
     const std::vector<NamedValue> below = moved(-step);
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      slope(static_cast<Index>(i), column) = (above[i].value - below[i].value) / (2 * step);
+    for (Index i = 0; i < numbers; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      slope(i, column) = (above[at].value - below[at].value) / (2 * step);
     }
   };
   for (Index c = 0; c < place.linear; ++c) {
@@ -75,20 +73,57 @@ std::vector<Estimate> of_term(const Data& data, const Term& term, const VectorXd
                     return named(coefficients, moved);
                   });
   }
-  std::vector<Estimate> estimates;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    Estimate estimate{at[i], std::nullopt};
-    if (unknowns > 0) {
-      const VectorXd row = slope.row(static_cast<Index>(i)).transpose();
-      double half = 0;
-      for (const Covariance& one : covariances) {
-        half = std::max(half, one.quantile * std::sqrt(std::max(0.0, row.dot(one.matrix * row))));
-      }
-      if (std::isfinite(half) && half > 0) {
-        estimate.ci95 = {at[i].value - half, at[i].value + half};
-      }
+  return slope;
+}
+
+// The widest that any way to group the samples asks for.
+void set_interval(const VectorXd& slope, const std::vector<Covariance>& covariances, Index joint,
+                  Estimate& estimate) {
+  const auto of = static_cast<std::size_t>(joint);
+  double half = 0;
+  for (const Covariance& one : covariances) {
+    const Freedom& freedom = one.of_joint[of];
+    if (!freedom.suffices()) {
+      estimate.why_no_interval = words_of_too_few(freedom, of);
+      return;
     }
-    estimates.push_back(estimate);
+    const double deviation = std::sqrt(std::max(0.0, slope.dot(one.matrix * slope)));
+    half = std::max(half, half_width_per_deviation(freedom) * deviation);
+  }
+  if (std::isfinite(half) && half > 0) {
+    estimate.ci95 = {estimate.value.value - half, estimate.value.value + half};
+  } else {
+    estimate.why_no_interval = "no interval: the recordings do not determine it";
+  }
+}
+
+// Chosen among a few values, or the only one there is: no interval belongs to it.
+bool is_chosen(const Term& term, const std::string& number) {
+  return std::any_of(term.ranges.begin(), term.ranges.end(), [&](const ShapeRange& range) {
+    return range.name == number && !range.is_searched();
+  });
+}
+
+// `factor`: from the regression's coefficients to those of a robot file.
+std::vector<Estimate> of_term(const Data& data, const Term& term, const VectorXd& coefficients,
+                              double factor, const std::vector<Covariance>& covariances,
+                              const Place& place) {
+  const JointType type = data.recordings[0].joint_type(term.joint);
+  const auto named = [&](const VectorXd& c, const ShapePoint& shape) {
+    return term.effect->parameters(type, factor * c, shape, term.ranges);
+  };
+  const MatrixXd slope =
+      slopes_of(term, coefficients, place, covariances.front().matrix.rows(), named);
+  std::vector<Estimate> estimates;
+  for (NamedValue& value : named(coefficients, term.shape)) {
+    const auto row = static_cast<Index>(estimates.size());
+    Estimate estimate{std::move(value), std::nullopt};
+    if (is_chosen(term, estimate.value.name)) {
+      estimate.why_no_interval = "no interval: chosen, not measured";
+    } else {
+      set_interval(slope.row(row).transpose(), covariances, place.joint, estimate);
+    }
+    estimates.push_back(std::move(estimate));
   }
   return estimates;
 }
@@ -113,7 +148,7 @@ Linearised linearise(const Regression& regression, const std::vector<Term>& term
   }
   for (std::size_t i = 0; i < terms.size(); ++i) {
     Place place{
-        static_cast<Index>(model.columns.size()), design.first[i + 1] - design.first[i], {}};
+        static_cast<Index>(model.columns.size()), design.first[i + 1] - design.first[i], {}, 0};
     for (Index c = design.first[i]; c < design.first[i + 1]; ++c) add(design.columns.col(c), {});
     for (std::size_t axis = 0; axis < terms[i].ranges.size(); ++axis) {
       const bool searched = terms[i].ranges[axis].is_searched();
@@ -159,40 +194,63 @@ MatrixXd meat_of(const RowLayout::Blocks& groups, const MatrixXd& columns,
   return scores.transpose() * scores;
 }
 
+// Of each joint: the groups that tell of it, and the unknowns that act on it and that nobody knew
+// anything of before.
+std::vector<Freedom> freedom_of_joints(const Linearised& model, const RowLayout& layout,
+                                       const ScaledColumns& scaled,
+                                       const RowLayout::Blocks& groups) {
+  std::vector<Freedom> of_joint;
+  for (const int count : layout.groups_of_joints(groups)) of_joint.push_back({count, 0});
+  for (std::size_t c = 0; c < model.columns.size(); ++c) {
+    if (model.priors[c].is_informative()) continue;
+    const VectorXd energy = layout.energy(scaled.columns.col(static_cast<Index>(c)));
+    for (std::size_t joint = 0; joint < of_joint.size(); ++joint) {
+      of_joint[joint].unknowns += energy[static_cast<Index>(joint)] > 0;
+    }
+  }
+  return of_joint;
+}
+
 // One covariance that holds for errors that are independent between blocks of time, and one for
 // each way to group the samples by what the joint does: a model that is slightly wrong is wrong in
 // the same way whenever the joint does the same, and no length of recording averages that out.
-std::vector<Covariance> covariances_of(const Linearised& model, const Data& data,
-                                       const ModelFit& fit) {
-  constexpr double kUpper = 0.975;
+std::vector<Covariance> covariances_of(const Linearised& model, const ScaledColumns& scaled,
+                                       const Data& data, const ModelFit& fit) {
   const RowLayout& layout = data.layout;
-  const ScaledColumns scaled = weighted_columns(model, layout, fit);
-  const RowLayout::Blocks& blocks = fit.remainder.blocks;
   const VectorXd residual = layout.weighted(fit.residual, fit.joint_weights);
   const Index unknowns = scaled.columns.cols();
   // A prior is off by one standard deviation, whatever this one robot shows of it.
   const VectorXd of_priors = fit.prior_weight * fit.prior_weight *
                              scaled.columns.bottomRows(unknowns).diagonal().cwiseAbs2();
-  const auto of_recordings = static_cast<double>(blocks.count);
-  const auto judged_by_data = static_cast<double>(unknowns - fit.remainder.prior_rows());
-  const double free = of_recordings - judged_by_data;
-  if (free < 3) return {};
   const MatrixXd bread = (scaled.columns.transpose() * scaled.columns)
                              .completeOrthogonalDecomposition()
                              .pseudoInverse();
   const MatrixXd per_length = scaled.length.cwiseInverse().asDiagonal();
-  const auto covariance = [&](const RowLayout::Blocks& groups, double degrees, double correction) {
+  const auto covariance = [&](const RowLayout::Blocks& groups, std::vector<Freedom> of_joint) {
     MatrixXd meat = meat_of(groups, scaled.columns, residual);
     meat.diagonal() += of_priors;
-    return Covariance{per_length * (correction * bread * meat * bread) * per_length,
-                      boost::math::quantile(boost::math::students_t(degrees), kUpper)};
+    return Covariance{per_length * (bread * meat * bread) * per_length, std::move(of_joint)};
   };
-  std::vector<Covariance> all{covariance(blocks, free, of_recordings / free)};
+  const RowLayout::Blocks& blocks = fit.remainder.blocks;
+  std::vector<Covariance> all{covariance(blocks, freedom_of_joints(model, layout, scaled, blocks))};
   for (const RowLayout::Blocks& regimes : regimes_of(data)) {
-    const auto groups = static_cast<double>(regimes.count);
-    all.push_back(covariance(regimes, groups - 1, groups / (groups - 1)));
+    // So few cannot pay for every number of the fit too: one is taken off, as for a mean.
+    std::vector<Freedom> of_joint;
+    for (const int count : layout.groups_of_joints(regimes)) of_joint.push_back({count, 1});
+    all.push_back(covariance(regimes, std::move(of_joint)));
   }
   return all;
+}
+
+// The joint on which most of a term's linear columns is seen.
+Index joint_shown_on(const RowLayout& layout, const ScaledColumns& scaled, const Place& place) {
+  VectorXd energy = VectorXd::Zero(layout.joint_count());
+  for (Index c = 0; c < place.linear; ++c) {
+    energy += layout.energy(scaled.columns.col(place.first + c));
+  }
+  Index joint = 0;
+  energy.maxCoeff(&joint);
+  return joint;
 }
 
 }  // namespace
@@ -202,11 +260,14 @@ std::vector<std::vector<Estimate>> estimates_of(const Regression& regression,
                                                 const ModelFit& fit) {
   if (terms.empty()) return {};
   const Data& data = regression.data();
-  const Linearised model = linearise(regression, terms, fit);
-  const std::vector<Covariance> covariances = covariances_of(model, data, fit);
+  Linearised model = linearise(regression, terms, fit);
+  const ScaledColumns scaled = weighted_columns(model, data.layout, fit);
+  for (Place& place : model.places) place.joint = joint_shown_on(data.layout, scaled, place);
+  const std::vector<Covariance> covariances = covariances_of(model, scaled, data, fit);
   std::vector<std::vector<Estimate>> all;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    const double factor = factor_beside_torque_scale(terms, fit, terms[i]);
+    const double factor =
+        factor_beside_torque_scale(terms, fit, terms[i].joint, terms[i].effect->name());
     all.push_back(
         of_term(data, terms[i], fit.coefficients[i], factor, covariances, model.places[i]));
   }

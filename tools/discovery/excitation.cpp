@@ -103,4 +103,9 @@ std::vector<Excitation> excitation_of(const std::vector<Workspace>& recordings) 
   return all;
 }
 
+bool all_sufficient(const std::vector<Excitation>& joints) {
+  return std::all_of(joints.begin(), joints.end(),
+                     [](const Excitation& joint) { return joint.sufficient; });
+}
+
 }  // namespace offnominal::tools::discovery

@@ -28,4 +28,7 @@ std::vector<Regressor> standard_regressors(const Workspace& at, Eigen::Index joi
 
 std::vector<Excitation> excitation_of(const std::vector<Workspace>& recordings);
 
+// Whether the motion of every joint tells effects apart.
+bool all_sufficient(const std::vector<Excitation>& joints);
+
 }  // namespace offnominal::tools::discovery

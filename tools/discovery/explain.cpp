@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/shell_word.hpp"
 #include "discovery/alternatives.hpp"
 #include "discovery/describe.hpp"
 #include "discovery/find_model.hpp"
@@ -63,6 +64,7 @@ class Explainer {
   Explanation run(bool search) {
     const HoldOut hold_out(*regression_, held_out_.get());
     Explanation result;
+    if (!options_.robot_file.empty()) result.robot_file = shell_word(options_.robot_file);
     result.at_rest = data_->recordings[0].at_rest;
     result.holdout_is_apart = hold_out.is_apart();
     result.excitation = excitation_of(data_->recordings);
@@ -80,6 +82,7 @@ class Explainer {
         improved_robot(file_, robot_, *data_, nuisance_, fitted, options_.source);
     result.improved = std::move(improved.robot);
     result.not_in_robot_files = std::move(improved.not_in_robot_files);
+    result.held = std::move(improved.held);
     judge_whole(result);
     return result;
   }
@@ -208,10 +211,15 @@ Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
   Explainer explainer(robot, logs, holdout, options, on_progress);
   if (on_progress) on_progress("examining the recordings");
   std::vector<DataFault> faults;
+  std::vector<DataFault> hints;
   for (const std::vector<Log>* group : {&logs, &holdout}) {
     for (const Log& log : *group) {
       if (log.at_rest) continue;  // every check there is needs time
-      for (DataFault& fault : examine(log, robot)) faults.push_back(std::move(fault));
+      for (DataFault& fault : examine(log, robot)) {
+        // Velocities come from the positions here: what was recorded of them spoils nothing.
+        const bool hint = fault.kind == DataFaultKind::kVelocity;
+        (hint ? hints : faults).push_back(std::move(fault));
+      }
     }
   }
   Explanation result = explainer.run(faults.empty());
@@ -219,6 +227,10 @@ Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
     result.data_faults = std::move(faults);
     judge_whole(result);
   }
+  for (const DataFault& hint : hints) {
+    result.advice.push_back(hint.words + ", which changes nothing here; to mend: " + hint.mend);
+  }
+  result.data_hints = std::move(hints);
   explainer.say_what_was_left_out(result);
   return result;
 }

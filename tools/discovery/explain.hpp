@@ -28,10 +28,11 @@ enum class Verdict {
 };
 const char* name_of(Verdict verdict);
 
-// A number with its 95 % interval; none where the data give none.
+// A number with its 95 % interval; where the data give none, why, in words.
 struct Estimate {
   NamedValue value;
   std::optional<std::array<double, 2>> ci95;
+  std::string why_no_interval = {};
 };
 
 // An effect on a joint; the joint counts from 0.
@@ -101,6 +102,15 @@ struct HoldFriction {
   std::string unit;
 };
 
+// A number of the file that fitted best where physics does not let it be: it was held at the end of
+// what is possible.
+struct HeldNumber {
+  std::string words;
+  // What it asked for beyond the end is more than nothing to the joint's torque: the recordings
+  // contradict the end.
+  bool contradicted = false;
+};
+
 struct Explanation {
   Verdict verdict = Verdict::kExplained;
   std::string words;
@@ -112,9 +122,11 @@ struct Explanation {
   std::vector<Rejection> rejected;
   std::vector<StructureShare> where;  // of what is left, largest first
   std::vector<Shift> shifts;
-  std::vector<DataFault> data_faults;
+  std::vector<DataFault> data_faults;  // that make the verdict
+  std::vector<DataFault> data_hints;   // that leave the answer right
   std::vector<Excitation> excitation;
   std::vector<std::string> advice;
+  std::string robot_file = "ROBOT";         // as commands in the advice name it
   bool at_rest = false;                     // by hold maps
   std::vector<HoldFriction> hold_friction;  // of hold maps, per joint that came from both sides
 
@@ -128,6 +140,7 @@ struct Explanation {
   // The robot with what was found and with the numbers fitted beside it; improved_robot.hpp.
   RobotDescription improved;
   std::vector<std::string> not_in_robot_files;
+  std::vector<HeldNumber> held;  // of `improved`
 };
 
 struct ExplainOptions {
@@ -137,7 +150,8 @@ struct ExplainOptions {
   int replays = 19;  // 0: none
   double link_share = 0.05;
   int most_effects = 6;
-  std::string source = {};  // what `improved` says of where its numbers come from
+  std::string source = {};      // what `improved` says of where its numbers come from
+  std::string robot_file = {};  // as the user named it, for commands in the advice; empty: "ROBOT"
 };
 
 // Which effects the robot's model lacks, by recordings of it. `holdout` may be empty: then parts of

@@ -1,3 +1,4 @@
+#include "discovery/data_fault_report.hpp"
 #include "discovery/explain_report.hpp"
 
 namespace offnominal::tools::discovery {
@@ -14,7 +15,11 @@ ordered_json parameters_of(const Finding& finding) {
   ordered_json parameters = ordered_json::object();
   for (const Estimate& one : finding.parameters) {
     ordered_json value{{"value", one.value.value}, {"unit", one.value.unit}, {"ci95", nullptr}};
-    if (one.ci95) value["ci95"] = {(*one.ci95)[0], (*one.ci95)[1]};
+    if (one.ci95) {
+      value["ci95"] = {(*one.ci95)[0], (*one.ci95)[1]};
+    } else {
+      value["why_no_ci95"] = one.why_no_interval;
+    }
     parameters[one.value.name] = std::move(value);
   }
   return parameters;
@@ -95,14 +100,8 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
   json["shifts"] = array_of(e.shifts, [](const Shift& shift) {
     return ordered_json{{"parameter", shift.name}, {"share_of_file_value", shift.share}};
   });
-  json["data_faults"] = array_of(e.data_faults, [](const DataFault& fault) {
-    ordered_json one{{"fault", name_of(fault.kind)}, {"joint", nullptr}};
-    if (fault.joint >= 0) one["joint"] = fault.joint + 1;
-    one["size"] = fault.size;
-    one["unit"] = fault.unit;
-    one["words"] = fault.words;
-    return one;
-  });
+  json["data_faults"] = to_json(e.data_faults);
+  json["data_hints"] = to_json(e.data_hints);
   json["excitation"] = array_of(e.excitation, [](const Excitation& one) {
     return ordered_json{{"range", one.range},
                         {"top_speed", one.top_speed},

@@ -83,6 +83,10 @@ report::Table finding_table(const Explanation& e) {
       if (one.ci95) {
         low = (*one.ci95)[0];
         high = (*one.ci95)[1];
+      } else {
+        table.note += fmt::format("{}{} of joint {}, {}: {}.", table.note.empty() ? "" : " ",
+                                  title_of(finding), finding.what.joint + 1, one.value.name,
+                                  one.why_no_interval);
       }
       table.rows.push_back({title_of(finding), static_cast<double>(finding.what.joint + 1),
                             one.value.name, one.value.value, low, high, one.value.unit,

@@ -15,6 +15,7 @@ struct ExplainNames {
   std::vector<std::string> holdout;
   std::string robot_file;
   std::string command_line;
+  std::string channels = {};  // file of --channels, empty: none
 };
 
 // docs/explain.md lists the keys. Joints count from 1.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "common/shell_word.hpp"
 #include "discovery/explain_report.hpp"
 
 namespace offnominal::tools::discovery {
@@ -9,6 +10,7 @@ std::string words_of(const Estimate& one) {
   std::string words = fmt::format("{} = {:.4g}", one.value.name, one.value.value);
   if (one.ci95) words += fmt::format(" ({:.4g} .. {:.4g})", (*one.ci95)[0], (*one.ci95)[1]);
   if (!one.value.unit.empty() && one.value.unit != "1") words += " " + one.value.unit;
+  if (!one.ci95) words += ", " + one.why_no_interval;
   return words;
 }
 
@@ -90,8 +92,9 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
   if (to_write && !e.found.empty() && e.not_in_robot_files.empty()) {
     text += fmt::format(
         "to write a robot file with it: offnominal add --all-found --robot {} --log {}{} -o FILE\n",
-        names.robot_file, fmt::join(names.logs, " "),
-        names.holdout.empty() ? "" : fmt::format(" --holdout {}", fmt::join(names.holdout, " ")));
+        shell_word(names.robot_file), shell_words(names.logs),
+        (names.holdout.empty() ? "" : " --holdout " + shell_words(names.holdout)) +
+            (names.channels.empty() ? "" : " --channels " + shell_word(names.channels)));
   }
   return text;
 }

@@ -136,10 +136,7 @@ class Finder {
     constexpr double kWorthAWord = 0.02;
     // Regression only screens what remembers: its columns hold the noise that they explain.
     if (!found_.accepted.empty() || one.terms.back().effect->has_memory()) return;
-    if (!std::all_of(excitation_.begin(), excitation_.end(),
-                     [](const Excitation& motion) { return motion.sufficient; })) {
-      return;
-    }
+    if (!all_sufficient(excitation_)) return;
     const Fall fall = fall_of(found_.fit, one.fit);
     if (fall.share < kWorthAWord || !matters(fall)) return;
     const double before = hold_out_.rms(found_.held_out.back())[fall.joint];

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "analysis/physical_range.hpp"
 #include "discovery/torque_scale.hpp"
 
 namespace offnominal::tools::discovery {
@@ -45,18 +46,43 @@ std::optional<RobotEffect> robot_effect(const Term& term, const Eigen::VectorXd&
   return parameters_valid(effect) ? std::optional(effect) : std::nullopt;
 }
 
+// `column`: of the nuisance; `beyond`: how far the number would be outside of its range.
+HeldNumber held_number(const Relinearised& found, Index column, double asked, double beyond,
+                       const PhysicalRange& range) {
+  const Data& data = *found.data;
+  const NuisanceTerm& term = data.nuisance.terms[static_cast<std::size_t>(column)];
+  const double rms =
+      std::abs(beyond) * data.layout.rms(data.nuisance.columns.col(column))[term.joint];
+  HeldNumber held;
+  // What is fitted beside the findings has no interval of its own.
+  held.contradicted =
+      contradicts(range, std::nullopt, rms / data.layout.rms(data.torque)[term.joint]);
+  held.words = fmt::format(
+      "{} was held at {:g}, as {} is possible; free it would be {:.4g}: {}", term.name,
+      range.nearest(asked), range.words_at(asked), asked,
+      held.contradicted ? range.usual_cause() : "as good as the end for these recordings");
+  return held;
+}
+
 void move_fitted_effects(const Relinearised& found, const std::string& source,
-                         RobotDescription& robot) {
+                         ImprovedRobot& improved) {
+  RobotDescription& robot = improved.robot;
   for (std::size_t i = 0; i < found.data->nuisance.terms.size(); ++i) {
     const NuisanceTerm& term = found.data->nuisance.terms[i];
     if (term.kind != NuisanceTerm::Kind::kKnownEffect) continue;
     RobotEffect& effect = robot.effects[term.effect];
     if (!effect.fitted) continue;
-    const ParameterInfo& info = info_of(effect.kind)->parameters[term.parameter];
+    const PhysicalRange range = physical_range(effect.kind, term.parameter);
     double& value = effect.parameters[term.parameter];
-    const double factor = factor_beside_torque_scale(found.terms, found.fit, term.joint);
+    const double factor =
+        factor_beside_torque_scale(found.terms, found.fit, term.joint, info_of(effect.kind)->name);
     const double by = factor * found.fit.nuisance[static_cast<Index>(i)];
-    value = std::clamp(value + by, info.min, info.max);
+    const double asked = value + by;
+    value = std::clamp(asked, range.min, range.max);
+    if (!range.holds(asked)) {
+      improved.held.push_back(
+          held_number(found, static_cast<Index>(i), asked, (asked - value) / factor, range));
+    }
     effect.source = source;
   }
 }
@@ -86,13 +112,14 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   const Data plain(data.recordings, robot, of_links);
   const Relinearised last =
       relinearise(robot, plain, of_links, found.terms, Regression(plain).fit(found.terms));
-  ImprovedRobot improved{file, {}};
+  ImprovedRobot improved{file, {}, {}};
   scale_links(last, source, improved.robot);
-  move_fitted_effects(last, source, improved.robot);
+  move_fitted_effects(last, source, improved);
   for (std::size_t i = 0; i < last.terms.size(); ++i) {
     const Term& term = last.terms[i];
     const JointType type = file.joints[static_cast<std::size_t>(term.joint)].joint.type;
-    const double factor = factor_beside_torque_scale(last.terms, last.fit, term);
+    const double factor =
+        factor_beside_torque_scale(last.terms, last.fit, term.joint, term.effect->name());
     std::optional<RobotEffect> effect = robot_effect(term, factor * last.fit.coefficients[i], type,
                                                      data.recordings[0].sign_width[term.joint]);
     if (!effect) {

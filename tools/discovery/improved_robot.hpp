@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "discovery/explain.hpp"
 #include "discovery/relinearise.hpp"
 #include "robot/robot.hpp"
 
@@ -15,6 +16,7 @@ struct ImprovedRobot {
   RobotDescription robot;
   // Found, but not among the effects that a robot file can say; the rest is then of no use alone.
   std::vector<std::string> not_in_robot_files;
+  std::vector<HeldNumber> held;
 };
 
 // `file`: the robot as it was read; `robot`: the one that `data` was made with; `source`: what the

@@ -25,8 +25,9 @@ RowLayout::RowLayout(const std::vector<Workspace>& recordings) {
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     if (recordings[r].moving.size() == 0) continue;
     for (Index joint = 0; joint < joints_; ++joint) {
-      moving_.segment(begin(r, joint), samples_[r]) =
-          kept_samples(recordings[r].plan, recordings[r].moving.col(joint));
+      const VectorXd kept = kept_samples(recordings[r].plan, recordings[r].moving.col(joint));
+      // Where the filter keeps nothing of what moves, rest is all there is (as in standstill.cpp).
+      if (kept.sum() > 0) moving_.segment(begin(r, joint), samples_[r]) = kept;
     }
   }
 }
@@ -73,6 +74,21 @@ void RowLayout::leave_out_empty(Blocks& blocks) const {
   }
   blocks.count = count;
   for (int& block : blocks.of_row) block = std::max(0, number[static_cast<std::size_t>(block)]);
+}
+
+std::vector<int> RowLayout::groups_of_joints(const Blocks& groups) const {
+  std::vector<int> counts;
+  for (Index joint = 0; joint < joints_; ++joint) {
+    std::vector<char> seen(static_cast<std::size_t>(groups.count), 0);
+    for (std::size_t r = 0; r < samples_.size(); ++r) {
+      for (Index row = begin(r, joint); row < begin(r, joint) + samples_[r]; ++row) {
+        if (moving_.size() > 0 && !(moving_[row] > 0)) continue;
+        seen[static_cast<std::size_t>(groups.of_row[static_cast<std::size_t>(row)])] = 1;
+      }
+    }
+    counts.push_back(static_cast<int>(std::count(seen.begin(), seen.end(), 1)));
+  }
+  return counts;
 }
 
 VectorXd RowLayout::stack(const std::vector<Workspace>& recordings,

@@ -34,6 +34,8 @@ class RowLayout {
     int count = 0;
   };
   [[nodiscard]] Blocks blocks(double block_s) const;
+  // Of how many of the groups each joint has rows that say something.
+  [[nodiscard]] std::vector<int> groups_of_joints(const Blocks& groups) const;
 
   // A regressor's filtered samples, stacked; `per_recording` has one regressor per recording.
   [[nodiscard]] Eigen::VectorXd stack(const std::vector<Workspace>& recordings,

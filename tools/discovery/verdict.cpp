@@ -82,10 +82,10 @@ void advise_on_classes(Explanation& e) {
       all.push_back(fmt::format("{}@{}", one.effect, one.joint + 1));
     }
     e.advice.push_back(fmt::format(
-        "to tell {} from {}: {}; `offnominal motion --robot ROBOT --separate {} -o motion.csv` "
+        "to tell {} from {}: {}; `offnominal motion --robot {} --separate {} -o motion.csv` "
         "writes such a motion",
         same[0].effect, same[1].effect,
-        candidate != nullptr ? candidate->motion_hint() : "make a richer motion",
+        candidate != nullptr ? candidate->motion_hint() : "make a richer motion", e.robot_file,
         fmt::join(all, ",")));
   }
 }
@@ -201,9 +201,9 @@ void judge_suspected(const Suspicion& one, Explanation& e) {
   e.advice.push_back(
       e.at_rest
           ? kMorePositions
-          : fmt::format("`offnominal motion --robot ROBOT --excite {}@{} -o motion.csv` writes a "
+          : fmt::format("`offnominal motion --robot {} --excite {}@{} -o motion.csv` writes a "
                         "motion that shows it if it is there; a longer recording helps too",
-                        one.what.effect, one.what.joint + 1));
+                        e.robot_file, one.what.effect, one.what.joint + 1));
 }
 
 }  // namespace
@@ -256,8 +256,7 @@ void judge_whole(Explanation& e) {
     if (one.sufficient) continue;
     e.advice.push_back(fmt::format("joint {}: {}", joint + 1, one.lack));
   }
-  const bool poor = std::any_of(e.excitation.begin(), e.excitation.end(),
-                                [](const Excitation& one) { return !one.sufficient; });
+  const bool poor = !all_sufficient(e.excitation);
   if (!e.data_faults.empty()) {
     e.verdict = Verdict::kDataFault;
     e.words = "The recording itself is at fault: " + e.data_faults[0].words + ".";
@@ -287,8 +286,9 @@ void judge_whole(Explanation& e) {
     e.words = "These motions excite too little to judge the model by them.";
     e.advice.emplace_back(
         e.at_rest ? kMorePositions
-                  : "`offnominal motion --robot ROBOT -o motion.csv` writes a motion that excites "
-                    "what the robot may have");
+                  : fmt::format("`offnominal motion --robot {} -o motion.csv` writes a motion that "
+                                "excites what the robot may have",
+                                e.robot_file));
     return;
   }
   const JointErrors* loudest = above_noise(e);

@@ -199,7 +199,8 @@ TEST(AddLoadFriction, GivenFrictionThatGivesEnergyThenItObjects) {
         return Vector2d(0, -0.1 * std::abs(rigid_torque(at)[1]) * std::tanh(at.dq[1] / 0.03));
       });
   ASSERT_FALSE(result.objections.empty());
-  EXPECT_THAT(result.objections[0], HasSubstr("load_dependent_friction.factor came out as -0.1"));
+  EXPECT_THAT(result.objections[0],
+              HasSubstr("load_dependent_friction.factor of joint 2 came out as -0.1"));
 }
 
 TEST(AddLoadFriction, GivenTheWrongMassThenRefittingInertiaFindsBoth) {

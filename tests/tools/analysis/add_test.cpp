@@ -237,7 +237,8 @@ TEST(Add, GivenANegativeRotorInertiaThenItObjects) {
   const AddResult result = fit_one(EffectKind::kRotorInertia, 1, [](const ArmInstant& at) {
     return Vector2d(0, -0.1 * at.ddq[1]);
   });
-  EXPECT_THAT(result.objections, Contains(HasSubstr("rotor_inertia.inertia came out as -0.09")));
+  EXPECT_THAT(result.objections,
+              Contains(HasSubstr("rotor_inertia.inertia of joint 2 came out as -0.09")));
 }
 
 TEST(Add, OffsetLooksLikeTheLevelOfAnAsymmetryAndTheNotesSaySo) {

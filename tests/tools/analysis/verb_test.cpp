@@ -342,8 +342,19 @@ TEST_F(Verbs, AddReplacesNoFileUnlessForced) {
   EXPECT_EQ(read_robot_file(folder_ / "new.toml").effects.size(), 1U);
 }
 
+TEST_F(Verbs, AddThatTheDataDoNotSupportIsWrittenByForceAlone) {
+  const CommandResult refused = add("torque_offset");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.out, AllOf(HasSubstr("does not fall"), HasSubstr("Nothing was written")));
+  EXPECT_FALSE(written());
+  const CommandResult forced = add("torque_offset", {"--force"});
+  EXPECT_EQ(forced.exit_code, 0) << forced.err;
+  EXPECT_THAT(forced.out, HasSubstr("Written all the same, as --force says"));
+  EXPECT_TRUE(written());
+}
+
 TEST_F(Verbs, AddThatTheDataDoNotAllowWritesNothingAndExitsWithOne) {
-  ASSERT_EQ(add("torque_offset").exit_code, 0);
+  ASSERT_EQ(add("torque_offset", {"--force"}).exit_code, 0);
   std::filesystem::rename(folder_ / "new.toml", folder_ / "arm.toml");
   auto robot = read_robot_file(folder_ / "arm.toml");
   robot.effects.push_back(offnominal::test::effect_of(EffectKind::kLinkMass, 1, {0.0}, true));
@@ -362,13 +373,13 @@ TEST_F(Verbs, AddRefusesWhatItCannotUse) {
   expect_refusal(add("viscous_friction", {"--set", "coefficient"}), "NAME=NUMBER");
   expect_refusal(add("viscous_friction", {"--set", "speed=1"}), "allowed: coefficient");
   expect_refusal(add("viscous_friction", {"--refit-inertia", "0"}), "--refit-inertia");
-  expect_refusal(add("viscous_friction", {"--holdout", path("arm.csv")}), "another recording");
+  expect_refusal(add("viscous_friction", {"--holdout", path("arm.csv")}), "the same as");
   expect_refusal(run({"add", "viscous_friction", "--joint", "3", "--robot", path("arm.toml"),
                       "--log", path("arm.csv"), "-o", path("new.toml")}),
                  "1 to 2");
   expect_refusal(run({"add", "viscous_friction", "--joint", "2", "--robot", path("arm.toml"),
-                      "--log", path("arm.csv"), "-o", path("arm.csv")}),
-                 "a recording");
+                      "--log", path("arm.csv"), "-o", path("arm.csv"), "--force"}),
+                 "which is that of --log");
   expect_refusal(run({"add", "viscous_friction", "--joint", "2", "--robot", path("arm.toml"),
                       "--log", path("arm.csv"), "-o", path("no/folder/new.toml")}),
                  "new.toml");

@@ -53,8 +53,8 @@ TEST(Calibrate, TheNewBoundHoldsAndIsTight) {
   EXPECT_EQ(result.level.held_out_alarms, 0);
   EXPECT_LE(in_force(result), 1);
   EXPECT_GT(in_force(result), 0.3) << "the threshold must be felt";
-  EXPECT_LT(*mean_thresholds(result).before, 50.0 / 10 + 1e-9);
-  EXPECT_LT(mean_thresholds(result).after, 0.5 * *mean_thresholds(result).before);
+  EXPECT_LT(*margin_of(result).mean_before, 50.0 / 10 + 1e-9);
+  EXPECT_LT(margin_of(result).mean_after, 0.5 * *margin_of(result).mean_before);
 }
 
 TEST(Calibrate, TheReplayOfTheWrittenRobotSaysTheSame) {
@@ -106,8 +106,7 @@ TEST(Calibrate, ARarerAlarmAsksForAWiderBound) {
     CalibrateRequest request;
     request.alarms_per_hour = rate;
     const double mean =
-        mean_thresholds(calibrate(arm_description(), request, {recording(1)}, {recording(2)}))
-            .after;
+        margin_of(calibrate(arm_description(), request, {recording(1)}, {recording(2)})).mean_after;
     EXPECT_GE(mean, last);
     last = mean;
   }
@@ -210,7 +209,7 @@ TEST(Calibrate, TheJsonSaysWhatTheTextSays) {
   EXPECT_TRUE(json.at("old_bound").is_null());
   EXPECT_EQ(json.at("new_bound").at("unit"), "rad/s^2");
   EXPECT_EQ(json.at("recordings").size(), 2U);
-  EXPECT_EQ(json.at("mean_threshold_after"), mean_thresholds(result).after);
+  EXPECT_EQ(json.at("mean_threshold_after"), margin_of(result).mean_after);
   EXPECT_EQ(json.at("false_alarms").at("held_out_alarms"), 0);
   EXPECT_THAT(text_of(result, names), HasSubstr(verdict_of(result)));
   EXPECT_NO_THROW(static_cast<void>(report::to_json(page_of(result, names))));

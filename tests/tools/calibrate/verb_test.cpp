@@ -112,9 +112,9 @@ TEST_F(CalibrateVerb, RefusesWithOneLineAndExitTwo) {
   };
   const std::vector<Wrong> all{
       {{path("a.csv"), "--robot", robot, "-o", path("there.toml")}, "there already"},
-      {{path("a.csv"), "--robot", robot, "-o", path("a.csv"), "--force"}, "found a recording"},
-      {{path("a.csv"), path("a.csv"), "--robot", robot, "-o", out}, "a second time"},
-      {{path("a.csv"), "--holdout", path("a.csv"), "--robot", robot, "-o", out}, "a second time"},
+      {{path("a.csv"), "--robot", robot, "-o", path("a.csv"), "--force"}, "which is that of LOG"},
+      {{path("a.csv"), path("a.csv"), "--robot", robot, "-o", out}, "the same as"},
+      {{path("a.csv"), "--holdout", path("a.csv"), "--robot", robot, "-o", out}, "the same as"},
       {{path("short.csv"), "--robot", robot, "-o", out}, "short.csv"},
       {{path("nowhere.csv"), "--robot", robot, "-o", out}, "nowhere.csv"},
       {{path("a.csv"), "--robot", robot, "-o", out, "--alarms-per-hour", "0"}, "1e-6 to 60"},

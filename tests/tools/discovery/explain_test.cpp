@@ -136,7 +136,8 @@ TEST(Explain, GIVEN_nothing_hidden_THEN_nothing_is_found_at_any_noise) {
   }
 }
 
-// A delay of 3 ms whose torque the noise hides on all but the whole recording.
+// Its torque is more than chance on the whole recording, and too little for a name on the held-out
+// one.
 TEST(Explain, GIVEN_an_effect_that_noise_hides_THEN_it_is_neither_named_nor_denied) {
   hidden::Request request;
   request.seed = 2998500626;

@@ -31,6 +31,13 @@ Explanation nothing_found(double left_to_noise) {
   return e;
 }
 
+// The same with a delay that is likely more than chance.
+Explanation suspicious(double left_to_noise) {
+  Explanation e = nothing_found(left_to_noise);
+  e.suspected = {{"time_delay", 0}, 0.003, 0.04};
+  return e;
+}
+
 TEST(Verdict, OfNoiseAloneSaysWhatWouldNotHaveBeenSeen) {
   Explanation e = nothing_found(1.1);
   judge_whole(e);
@@ -58,8 +65,7 @@ TEST(Verdict, OfAJointWithoutTorqueSaysNoShareOfIt) {
 }
 
 TEST(Verdict, OfNoiseThatIsUnlikelyIsUndecidedAndAdvisesTheMotion) {
-  Explanation e = nothing_found(1.1);
-  e.suspected = {{"time_delay", 0}, 0.003, 0.04};
+  Explanation e = suspicious(1.1);
   judge_whole(e);
   EXPECT_EQ(e.verdict, Verdict::kNotExcited);
   EXPECT_THAT(e.words, HasSubstr("time_delay on joint 1 would explain 4 %"));
@@ -69,25 +75,22 @@ TEST(Verdict, OfNoiseThatIsUnlikelyIsUndecidedAndAdvisesTheMotion) {
 }
 
 TEST(Verdict, OfAHoldMapAdvisesMorePositions) {
-  Explanation e = nothing_found(1.1);
+  Explanation e = suspicious(1.1);
   e.at_rest = true;
-  e.suspected = {{"torque_offset", 0}, 0.003, 0.04};
   judge_whole(e);
   EXPECT_THAT(e.advice, ElementsAre(HasSubstr("hold it at more positions")));
 }
 
 TEST(Verdict, OfAPoorMotionSuspectsNothing) {
-  Explanation e = nothing_found(1.1);
+  Explanation e = suspicious(1.1);
   e.excitation[0].sufficient = false;
-  e.suspected = {{"time_delay", 0}, 0.003, 0.04};
   judge_whole(e);
   EXPECT_EQ(e.verdict, Verdict::kNotExcited);
   EXPECT_FALSE(e.suspected);
 }
 
 TEST(Verdict, OfARestThatStandsAboveTheNoiseSaysSoWhateverIsSuspected) {
-  Explanation e = nothing_found(2);
-  e.suspected = {{"time_delay", 0}, 0.003, 0.04};
+  Explanation e = suspicious(2);
   judge_whole(e);
   EXPECT_EQ(e.verdict, Verdict::kExplained);
   EXPECT_THAT(e.words, HasSubstr("2.0 times above the noise"));

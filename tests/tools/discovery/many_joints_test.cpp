@@ -1,0 +1,121 @@
+// Recordings of arms of one to seven joints, down to the shortest that are taken: every joint adds
+// numbers to the fit, and a short recording has fewer independent blocks of time than the whole arm
+// has numbers. Run under the address sanitizer and, for its threads, under the thread sanitizer.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "discovery/add_found.hpp"
+#include "discovery/explain.hpp"
+#include "discovery/explain_report.hpp"
+#include "serial_arm.hpp"
+#include "support/repetitions.hpp"
+
+namespace offnominal::tools::discovery {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+ExplainOptions quick(int threads) {
+  ExplainOptions options;
+  options.bootstrap_draws = 199;
+  options.replays = 0;
+  options.threads = threads;
+  return options;
+}
+
+// A spring that the file does not know, on the arm's last joint.
+Explanation explained(std::size_t joints, double duration_s, int threads) {
+  const RobotDescription robot = test::serial_arm(joints);
+  RobotDescription real = robot;
+  real.effects.push_back(
+      test::effect_of(EffectKind::kJointStiffness, static_cast<int>(joints) - 1, {6, 0.1}, true));
+  return explain(robot, {test::record(real, {.duration_s = duration_s})}, {}, quick(threads));
+}
+
+// Every number that is told has an interval, or says why it has none.
+void expect_intervals_or_words(const Explanation& told) {
+  for (const Finding& finding : told.found) {
+    for (const Estimate& one : finding.parameters) {
+      EXPECT_NE(one.ci95.has_value(), !one.why_no_interval.empty())
+          << finding.what.effect << '.' << one.value.name;
+    }
+  }
+}
+
+class ManyJoints : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(ManyJoints, OfAShortRecordingHaveIntervalsOrWordsForWhyNot) {
+  const Explanation told = explained(GetParam(), 9, 2);
+  ASSERT_THAT(told.found, Not(IsEmpty())) << told.words;
+  expect_intervals_or_words(told);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OneToSeven, ManyJoints,
+    ::testing::ValuesIn(test::every_nth(std::vector<std::size_t>{6, 1, 2, 3, 4, 5, 7}, 6)),
+    [](const auto& parameter) { return std::to_string(parameter.param); });
+
+// What counts is how often the joint concerned has been seen, not how many joints there are.
+TEST(ManyJoints, GIVEN_six_joints_and_blocks_enough_on_the_joint_THEN_its_numbers_have_intervals) {
+  const Explanation told = explained(6, 9, 2);
+  ASSERT_THAT(told.found, Not(IsEmpty())) << told.words;
+  EXPECT_EQ(told.found[0].what, (EffectAt{"joint_stiffness", 5}));
+  const Estimate& stiffness = told.found[0].parameters.at(0);
+  ASSERT_TRUE(stiffness.ci95) << stiffness.why_no_interval;
+  EXPECT_LT((*stiffness.ci95)[0], 6);
+  EXPECT_GT((*stiffness.ci95)[1], 6);
+  EXPECT_LT((*stiffness.ci95)[1] - (*stiffness.ci95)[0], 3);
+}
+
+// Nine ripples of the file are eighteen numbers more on the joint.
+TEST(ManyJoints, GIVEN_more_numbers_on_the_joint_than_blocks_THEN_it_says_so_in_words) {
+  RobotDescription robot = test::serial_arm(3);
+  for (int i = 0; i < 9; ++i) {
+    robot.effects.push_back(
+        test::effect_of(EffectKind::kCoggingTorque, 2, {0.1, 0.05, 7.0 + 3 * i}, true));
+  }
+  RobotDescription real = robot;
+  real.effects.push_back(test::effect_of(EffectKind::kJointStiffness, 2, {6, 0.1}, true));
+  const Explanation told = explain(robot, {test::record(real, {.duration_s = 8})}, {}, quick(2));
+  ASSERT_THAT(told.found, Not(IsEmpty())) << told.words;
+  const Estimate& stiffness = told.found[0].parameters.at(0);
+  EXPECT_FALSE(stiffness.ci95);
+  EXPECT_THAT(stiffness.why_no_interval,
+              AllOf(HasSubstr("fitted numbers of joint 3"), HasSubstr("record for longer")));
+  const ExplainNames names{{"log"}, {}, "robot", "explain"};
+  EXPECT_THAT(text_of(told, names), HasSubstr(stiffness.why_no_interval));
+  const nlohmann::ordered_json said =
+      to_json(told, names).at("found").at(0).at("parameters").at(stiffness.value.name);
+  EXPECT_TRUE(said.at("ci95").is_null());
+  EXPECT_EQ(said.at("why_no_ci95"), stiffness.why_no_interval);
+}
+
+// Coulomb friction that pushes: the file's number is fitted again beside the spring.
+TEST(ManyJoints, GIVEN_a_number_of_the_file_that_physics_forbids_THEN_all_found_is_not_written) {
+  const RobotDescription robot = test::serial_arm(2);
+  RobotDescription real = robot;
+  real.effects.at(3).parameters[0] = -0.3;
+  real.effects.push_back(test::effect_of(EffectKind::kJointStiffness, 1, {6, 0.1}, true));
+  const AddedFindings added =
+      add_found(robot, {test::record(real, {.duration_s = 20})}, {}, quick(2), {});
+  EXPECT_EQ(added.explanation.improved.effects.at(3).parameters[0], 0);
+  EXPECT_THAT(added.objections, Contains(AllOf(HasSubstr("level of joint 2 was held at 0"),
+                                               HasSubstr("sign of the torque"))));
+  EXPECT_FALSE(added.may_be_written(true));
+}
+
+TEST(ManyJoints, TheNumberOfThreadsChangesNothing) {
+  const ExplainNames names{{"log"}, {}, "robot", "explain"};
+  EXPECT_EQ(to_json(explained(6, 9, 1), names), to_json(explained(6, 9, 2), names));
+}
+
+}  // namespace
+}  // namespace offnominal::tools::discovery
