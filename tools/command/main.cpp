@@ -8,11 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "command/output_file.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/error.hpp"
+#include "common/meant_option.hpp"
 #include "common/nearest.hpp"
+#include "common/output_file.hpp"
+#include "report/page.hpp"
 
 namespace offnominal::tools {
 namespace {
@@ -22,9 +24,11 @@ std::string version_text() {
          std::to_string(kVersionPatch);
 }
 
+constexpr auto kEveryVerb = [](const CLI::App* /*verb*/) { return true; };
+
 std::vector<std::string> verb_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+  for (const CLI::App* verb : app.get_subcommands(kEveryVerb)) {
     names.push_back(verb->get_name());
   }
   return names;
@@ -58,7 +62,7 @@ void check_options(const CLI::App& verb) {
       refuse_option(verb.get_name(), option->get_name(), word, "a number");
     }
   }
-  check_report_apart(verb);
+  check_outputs(verb, report::is_page);
 }
 
 // Parse errors of the options; --help and --version come this way too.
@@ -69,11 +73,12 @@ ExitCode answer(const CLI::App& app, const CLI::ParseError& error) {
     return static_cast<ExitCode>(app.exit(error, std::cout, std::cerr));
   }
   const std::string name = verb == &app ? "offnominal" : "offnominal " + verb->get_name();
+  const std::string meant = meant_option(*verb);
   throw InputError({.file = name,
                     .place = error.what(),
                     .found = "",
                     .allowed = "",
-                    .mend = "run `" + name + " --help`"});
+                    .mend = (meant.empty() ? "" : meant + ", or ") + "run `" + name + " --help`"});
 }
 
 ExitCode run(int argc, char** argv) {
@@ -83,7 +88,7 @@ ExitCode run(int argc, char** argv) {
   app.require_subcommand(1);
   ExitCode exit_code = ExitCode::kDone;
   for (const RegisterVerb register_verb : all_verbs()) register_verb(app, exit_code);
-  for (CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+  for (CLI::App* verb : app.get_subcommands(kEveryVerb)) {
     verb->parse_complete_callback([verb] { check_options(*verb); });
   }
   check_verb(app, argc, argv);

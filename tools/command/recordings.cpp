@@ -1,5 +1,7 @@
 #include "command/recordings.hpp"
 
+#include "command/refuse_option.hpp"
+#include "common/output_file.hpp"
 #include "log/read_log.hpp"
 
 namespace offnominal::tools {
@@ -17,7 +19,50 @@ std::vector<Log> read_each(const std::vector<std::string>& files, Progress& prog
   return logs;
 }
 
+bool same_recording(const std::string& a, const std::string& b) { return same_file(a, b); }
+
+bool same_recording(const Log& a, const Log& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.rows() == y.rows() && x.cols() == y.cols() && (x.array() == y.array()).all();
+  };
+  return same(a.t_s, b.t_s) && same(a.q, b.q) && same(a.tau, b.tau);
+}
+
+const std::string& name_of(const std::string& file) { return file; }
+const std::string& name_of(const Log& log) { return log.file; }
+
+template <typename Recording>
+void check_all_differ(const std::string& verb, const std::string& option,
+                      const std::vector<Recording>& logs, const std::vector<Recording>& holdout) {
+  std::vector<const Recording*> seen;
+  const auto check = [&](const Recording& one, const std::string& of, const std::string& mend) {
+    for (const Recording* other : seen) {
+      if (!same_recording(one, *other)) continue;
+      refuse_option(verb, of, name_of(one) + ", the same as " + name_of(*other),
+                    "recordings that differ", mend);
+    }
+    seen.push_back(&one);
+  };
+  for (const Recording& log : logs) check(log, option, "leave one of the two out");
+  for (const Recording& log : holdout) {
+    check(log, "--holdout",
+          "give a recording that is not fitted, or leave --holdout out: parts of the recordings "
+          "are then held out");
+  }
+}
+
 }  // namespace
+
+void check_recordings_differ(const std::string& verb, const std::string& option,
+                             const std::vector<std::string>& logs,
+                             const std::vector<std::string>& holdout) {
+  check_all_differ(verb, option, logs, holdout);
+}
+
+void check_recordings_differ(const std::string& verb, const std::string& option,
+                             const std::vector<Log>& logs, const std::vector<Log>& holdout) {
+  check_all_differ(verb, option, logs, holdout);
+}
 
 std::vector<Log> read_recordings(const std::vector<std::string>& files,
                                  const RobotDescription& robot,

@@ -23,6 +23,14 @@ std::vector<Log> read_recordings_or_hold_maps(const std::vector<std::string>& fi
                                               const std::optional<std::filesystem::path>& channels,
                                               Progress& progress);
 
+// Throws InputError, in the name of `verb`, where a recording is there twice: as the same file by
+// whatever name, or as a copy of it. What is fitted must not judge the fit. `option`: of the logs.
+void check_recordings_differ(const std::string& verb, const std::string& option,
+                             const std::vector<std::string>& logs,
+                             const std::vector<std::string>& holdout);
+void check_recordings_differ(const std::string& verb, const std::string& option,
+                             const std::vector<Log>& logs, const std::vector<Log>& holdout);
+
 // "a.csv, b.csv": the files without their folders, for a robot file's word on its source.
 std::string file_names(const std::vector<std::string>& files);
 

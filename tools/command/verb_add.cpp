@@ -8,18 +8,21 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "analysis/add_report.hpp"
 #include "command/add_all_found.hpp"
 #include "command/command_line.hpp"
+#include "command/doctor.hpp"
 #include "command/filter_options.hpp"
-#include "command/output_file.hpp"
 #include "command/progress.hpp"
+#include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/nearest.hpp"
-#include "log/read_log.hpp"
+#include "common/output_file.hpp"
+#include "discovery/data_fault_report.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
@@ -91,19 +94,6 @@ AddRequest request_of(const AddOptions& options) {
   return request;
 }
 
-void check_files(const AddOptions& options) {
-  std::vector<std::string> recordings = options.logs;
-  recordings.insert(recordings.end(), options.holdout.begin(), options.holdout.end());
-  check_output_file("add", "-o", options.output, options.force, recordings);
-  for (const std::string& held_out : options.holdout) {
-    for (const std::string& log : options.logs) {
-      if (!same_file(log, held_out)) continue;
-      refuse_option("add", "--holdout", "a recording that is fitted", "another recording",
-                    "leave --holdout out: parts of the recording are then held out");
-    }
-  }
-}
-
 // One effect by name: what only a search takes is not for it, and the other way round.
 void check_kind(const AddOptions& options) {
   if (!options.all_found) {
@@ -139,37 +129,49 @@ void add_named(const AddOptions& options, const std::string& command_line, ExitC
   std::optional<std::string> holdout_file;
   if (!options.holdout.empty()) holdout_file = options.holdout[0];
   Progress progress;
-  progress.begin("reading " + log_file);
   const RobotDescription robot = read_robot_file(options.robot);
-  const Measurement log = measure(read_log(log_file, robot, options.channels), options.filter);
+  std::vector<Log> logs = read_recordings(options.logs, robot, options.channels, progress);
+  std::vector<Log> held_out = read_recordings(options.holdout, robot, options.channels, progress);
+  check_recordings_differ("add", "--log", logs, held_out);
+  progress.begin("examining the recordings");
+  const std::vector<discovery::DataFault> faults = examine_all({logs, held_out}, robot);
+  refuse_spoilt(faults, discovery::RestsOn::kTorque);
+  progress.end();
+  print_hints(faults);
+  const Measurement log = measure(std::move(logs[0]), options.filter);
   std::optional<Measurement> holdout;
-  if (holdout_file) {
-    holdout = measure(read_log(*holdout_file, robot, options.channels), options.filter);
-  }
+  if (holdout_file) holdout = measure(std::move(held_out[0]), options.filter);
   progress.begin("fitting");
   const AddResult result =
       add(robot, request, log, holdout ? &*holdout : nullptr, [&progress] { progress.step(); });
   progress.end();
-  const AddNames names{log_file, holdout_file, options.robot, options.output, command_line};
-  if (options.report) report::write_page(*options.report, page_of(result, request, names));
-  if (result.objections.empty()) {
-    write_robot_file(result.robot, options.output,
-                     options.force ? Existing::kReplace : Existing::kRefuse);
+  const AddNames names{log_file,       holdout_file, options.robot,
+                       options.output, command_line, options.force};
+  const bool write = result.may_be_written(options.force);
+  if (options.report) {
+    report::Page page = page_of(result, request, names);
+    add_faults(faults, page);
+    report::write_page(*options.report, page, existing_if(options.force));
+  }
+  if (write) {
+    write_robot_file(result.robot, options.output, existing_if(options.force));
   } else {
     exit_code = ExitCode::kCheckFailed;
   }
   if (options.json) {
-    std::cout << to_json(result, request, names).dump(2) << '\n';
+    auto json = to_json(result, request, names);
+    json["data_faults"] = discovery::to_json(faults);
+    std::cout << json.dump(2) << '\n';
     return;
   }
   std::cout << text_of(result, request, names);
-  if (result.objections.empty()) std::cout << "written: " << options.output << '\n';
+  if (write) std::cout << "written: " << options.output << '\n';
   if (options.report) std::cout << "written: " << *options.report << '\n';
 }
 
 void run(const AddOptions& options, const std::string& command_line, ExitCode& exit_code) {
   check_kind(options);
-  check_files(options);
+  check_recordings_differ("add", "--log", options.logs, options.holdout);
   if (!options.all_found) {
     add_named(options, command_line, exit_code);
     return;
@@ -205,8 +207,8 @@ constexpr const char* kHowItFits =
     "is "
     "found or parameter_shift.\n"
     "Exit code 1, and nothing written, when the recording cannot tell an effect from what the "
-    "model "
-    "has already, or when the fit is not physical.\n\n";
+    "model has already, or when the fit is not physical; so too when the error on data that the "
+    "fit has not seen does not fall, which --force overrules.\n\n";
 
 }  // namespace
 
@@ -226,9 +228,12 @@ void register_add(CLI::App& app, ExitCode& exit_code) {
       ->required();
   verb->add_option("--holdout", options->holdout,
                    "Recording to judge the fit on; with --all-found one or more");
-  verb->add_option("-o,--output", options->output, "Robot file to write")->required();
+  verb->add_option("-o,--output", options->output, "Robot file to write")
+      ->type_name(kNewRobotFile)
+      ->required();
   verb->add_flag("--force", options->force,
-                 "Replace the file of -o, be it the robot file that is read");
+                 "Replace files that are there, for -o be it the robot file that is read, and "
+                 "write it even where the error on data not used for the fit does not fall");
   verb->add_option("--set", options->set,
                    "NAME=VALUE or EFFECT.NAME=VALUE: a parameter of the new effects that is given, "
                    "not fitted; SI units")
@@ -249,7 +254,8 @@ void register_add(CLI::App& app, ExitCode& exit_code) {
   verb->add_option("--threads", options->threads,
                    "With --all-found: threads; the result does not depend on their number")
       ->check(CLI::Range(1, 256));
-  verb->add_option("--report", options->report, "Write the pictures as an HTML page");
+  verb->add_option("--report", options->report, "Write the pictures as an HTML page")
+      ->type_name(kNewPage);
   verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
   verb->footer(kHowItFits + effects_text());
   verb->callback([verb, options, &exit_code] { run(*options, command_line_of(*verb), exit_code); });

@@ -12,11 +12,13 @@
 #include "calibrate/calibrate.hpp"
 #include "calibrate/calibrate_report.hpp"
 #include "command/command_line.hpp"
-#include "command/output_file.hpp"
+#include "command/doctor.hpp"
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
+#include "common/output_file.hpp"
+#include "discovery/data_fault_report.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
@@ -48,29 +50,20 @@ void check_numbers(const CalibrateOptions& options) {
   }
 }
 
-void check_files(const CalibrateOptions& options) {
-  std::vector<std::string> all = options.logs;
-  all.insert(all.end(), options.holdout.begin(), options.holdout.end());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (same_file(all[i], all[j])) {
-        refuse_option("calibrate", i < options.logs.size() ? "LOG" : "--holdout",
-                      all[i] + " a second time", "recordings that differ",
-                      "leave one of the two out");
-      }
-    }
-  }
-  check_output_file("calibrate", "-o", options.output, options.force, all);
-}
-
 void run(const CalibrateOptions& options, const std::string& command_line, ExitCode& exit_code) {
   check_numbers(options);
-  check_files(options);
+  check_recordings_differ("calibrate", "LOG", options.logs, options.holdout);
   Progress progress;
   const RobotDescription robot = read_robot_file(options.robot);
   const std::vector<Log> logs = read_recordings(options.logs, robot, options.channels, progress);
   const std::vector<Log> holdout =
       read_recordings(options.holdout, robot, options.channels, progress);
+  check_recordings_differ("calibrate", "LOG", logs, holdout);
+  progress.begin("examining the recordings");
+  const std::vector<discovery::DataFault> faults = examine_all({logs, holdout}, robot);
+  refuse_spoilt(faults, discovery::RestsOn::kVelocityToo);
+  progress.end();
+  print_hints(faults);
   progress.begin("shapes of the bound");
   const CalibrateRequest request{
       options.alarms_per_hour, options.velocity_error,
@@ -80,15 +73,20 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
   progress.end();
   const CalibrateNames names{options.robot, options.output, command_line};
   const bool good = result.objections.empty();
-  if (options.report) report::write_page(*options.report, page_of(result, names));
+  if (options.report) {
+    report::Page page = page_of(result, names);
+    add_faults(faults, page);
+    report::write_page(*options.report, page, existing_if(options.force));
+  }
   if (good) {
-    write_robot_file(result.robot, options.output,
-                     options.force ? Existing::kReplace : Existing::kRefuse);
+    write_robot_file(result.robot, options.output, existing_if(options.force));
   } else {
     exit_code = ExitCode::kCheckFailed;
   }
   if (options.json) {
-    std::cout << to_json(result, names).dump(2) << '\n';
+    auto json = to_json(result, names);
+    json["data_faults"] = discovery::to_json(faults);
+    std::cout << json.dump(2) << '\n';
     return;
   }
   for (const auto* group : {&logs, &holdout}) {
@@ -122,9 +120,11 @@ void register_calibrate(CLI::App& app, ExitCode& exit_code) {
   verb->add_option("LOG", options->logs, "Fault-free recordings, CSV or MATLAB .mat")->required();
   verb->add_option("--robot", options->robot, "Robot file to start from")->required();
   verb->add_option("--holdout", options->holdout, "Fault-free recordings to count alarms on");
-  verb->add_option("-o,--output", options->output, "Robot file to write")->required();
+  verb->add_option("-o,--output", options->output, "Robot file to write")
+      ->type_name(kNewRobotFile)
+      ->required();
   verb->add_flag("--force", options->force,
-                 "Replace the file of -o, be it the robot file that is read");
+                 "Replace files that are there, for -o be it the robot file that is read");
   verb->add_option("--alarms-per-hour", options->alarms_per_hour,
                    "False alarms per hour to aim at, by extrapolation")
       ->capture_default_str();
@@ -134,7 +134,8 @@ void register_calibrate(CLI::App& app, ExitCode& exit_code) {
   verb->add_option("--channels", options->channels,
                    "TOML file that maps the recordings' columns, instead of the robot file's "
                    "[channels]");
-  verb->add_option("--report", options->report, "Write the pictures as an HTML page");
+  verb->add_option("--report", options->report, "Write the pictures as an HTML page")
+      ->type_name(kNewPage);
   verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
   verb->footer(kHowItCalibrates);
   verb->callback([verb, options, &exit_code] { run(*options, command_line_of(*verb), exit_code); });

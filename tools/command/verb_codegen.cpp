@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "codegen/model_header.hpp"
-#include "command/output_file.hpp"
-#include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
+#include "common/output_file.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::tools {
@@ -41,15 +40,10 @@ nlohmann::ordered_json to_json(const CodegenOptions& options, const RobotDescrip
 }
 
 void run(const CodegenOptions& options) {
-  if (same_file(options.output, options.robot)) {
-    refuse_option("codegen", "-o", "the robot file itself", "a header", "choose another name");
-  }
-  check_output_file("codegen", "-o", options.output, options.force);
   const RobotDescription robot = read_robot_file(options.robot);
   const ModelHeader header =
       model_header(robot, {.robot_file = options.robot, .name_space = options.name_space});
-  write_file_atomically(options.output, header.text,
-                        options.force ? Existing::kReplace : Existing::kRefuse);
+  write_file_atomically(options.output, header.text, existing_if(options.force));
   if (options.json) {
     std::cout << to_json(options, robot, header).dump(2) << '\n';
     return;
@@ -70,7 +64,9 @@ void register_codegen(CLI::App& app, ExitCode& exit_code) {
       app.add_subcommand("codegen", "Write a robot file as a C++ header of constants for firmware");
   const auto options = std::make_shared<CodegenOptions>();
   verb->add_option("ROBOT", options->robot, "Robot file")->required();
-  verb->add_option("-o,--output", options->output, "The header to write")->required();
+  verb->add_option("-o,--output", options->output, "The header to write")
+      ->type_name(kNewFile)
+      ->required();
   verb->add_option("--namespace", options->name_space, "Name space of the constants")
       ->capture_default_str();
   verb->add_flag("--force", options->force, "Replace the header if it is there");

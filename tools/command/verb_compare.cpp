@@ -5,14 +5,19 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "analysis/compare_report.hpp"
 #include "command/command_line.hpp"
+#include "command/doctor.hpp"
 #include "command/filter_options.hpp"
 #include "command/progress.hpp"
 #include "command/verbs.hpp"
 #include "common/error.hpp"
+#include "common/output_file.hpp"
+#include "discovery/data_fault_report.hpp"
 #include "log/read_log.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
@@ -27,6 +32,7 @@ struct CompareOptions {
   std::optional<std::filesystem::path> channels;
   FilterRequest filter;
   std::optional<std::string> report;
+  bool force = false;
   bool json = false;
 };
 
@@ -42,6 +48,10 @@ void run(const CompareOptions& options, const std::string& command_line) {
                       "give an older file of the same robot"});
   }
   Log log = read_log(options.log, robot, options.channels);
+  progress.begin("examining the recording");
+  const std::vector<discovery::DataFault> faults = examine_all({std::span(&log, 1)}, robot);
+  progress.end();
+  print_hints(faults);
   progress.begin("filtering");
   const Measurement measured = measure(std::move(log), options.filter);
   progress.begin("computing the model's torque");
@@ -51,9 +61,15 @@ void run(const CompareOptions& options, const std::string& command_line) {
   const Comparison* against = before ? &*before : nullptr;
   progress.end();
   const CompareNames names{options.log, options.robot, command_line, options.against.value_or("")};
-  if (options.report) report::write_page(*options.report, page_of(comparison, names, against));
+  if (options.report) {
+    report::Page page = page_of(comparison, names, against);
+    add_faults(faults, page);
+    report::write_page(*options.report, page, existing_if(options.force));
+  }
   if (options.json) {
-    std::cout << to_json(comparison, names, against).dump(2) << '\n';
+    auto json = to_json(comparison, names, against);
+    json["data_faults"] = discovery::to_json(faults);
+    std::cout << json.dump(2) << '\n';
     return;
   }
   std::cout << text_of(comparison, names, against);
@@ -75,7 +91,9 @@ void register_compare(CLI::App& app, ExitCode& exit_code) {
                    "TOML file that maps the recording's columns, instead of the robot file's "
                    "[channels]");
   add_filter_options(*verb, options->filter);
-  verb->add_option("--report", options->report, "Write the pictures as an HTML page");
+  verb->add_option("--report", options->report, "Write the pictures as an HTML page")
+      ->type_name(kNewPage);
+  verb->add_flag("--force", options->force, "Replace the file of --report, whatever it is");
   verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
   verb->footer(
       "Velocity and acceleration come from the low-passed position. Measured and model torque pass "

@@ -11,6 +11,7 @@
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
 #include "command/verbs.hpp"
+#include "common/output_file.hpp"
 #include "discovery/explain_report.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
@@ -25,22 +26,28 @@ struct ExplainOptions {
   std::optional<std::filesystem::path> channels;
   discovery::ExplainOptions explain;
   std::optional<std::string> report;
+  bool force = false;
   bool json = false;
 };
 
 void run(const ExplainOptions& options, const std::string& command_line) {
+  check_recordings_differ("explain", "LOG", options.logs, options.holdout);
   Progress progress;
   const RobotDescription robot = read_robot_file(options.robot);
   const std::vector<Log> logs =
       read_recordings_or_hold_maps(options.logs, robot, options.channels, progress);
   const std::vector<Log> holdout =
       read_recordings_or_hold_maps(options.holdout, robot, options.channels, progress);
-  const discovery::Explanation explanation =
-      discovery::explain(robot, logs, holdout, options.explain,
-                         [&](const std::string& doing) { progress.begin(doing); });
+  check_recordings_differ("explain", "LOG", logs, holdout);
+  discovery::ExplainOptions explain = options.explain;
+  explain.robot_file = options.robot;
+  const discovery::Explanation explanation = discovery::explain(
+      robot, logs, holdout, explain, [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
-  const discovery::ExplainNames names{options.logs, options.holdout, options.robot, command_line};
-  if (options.report) report::write_page(*options.report, page_of(explanation, names));
+  const discovery::ExplainNames names{options.logs, options.holdout, options.robot, command_line,
+                                      options.channels ? options.channels->string() : ""};
+  if (options.report)
+    report::write_page(*options.report, page_of(explanation, names), existing_if(options.force));
   if (options.json) {
     std::cout << to_json(explanation, names).dump(2) << '\n';
     return;
@@ -77,7 +84,9 @@ void register_explain(CLI::App& app, ExitCode& exit_code) {
   verb->add_option("--threads", options->explain.threads,
                    "Threads; the result does not depend on their number")
       ->check(CLI::Range(1, 256));
-  verb->add_option("--report", options->report, "Write the pictures as an HTML page");
+  verb->add_option("--report", options->report, "Write the pictures as an HTML page")
+      ->type_name(kNewPage);
+  verb->add_flag("--force", options->force, "Replace the file of --report, whatever it is");
   verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
   verb->footer(
       "Verdicts: explained, found, ambiguous, parameter_shift, unknown_state_dependent, "

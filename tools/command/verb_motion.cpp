@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "command/command_line.hpp"
-#include "command/output_file.hpp"
+#include "command/doctor.hpp"
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
+#include "common/output_file.hpp"
+#include "discovery/data_fault_report.hpp"
 #include "motion_design/design_report.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
@@ -68,11 +70,6 @@ std::vector<Contender> effects_of(const MotionOptions& options, const RobotDescr
 
 void run(const MotionOptions& options, const std::string& command_line, ExitCode& exit_code) {
   using namespace motion_design;
-  check_output_file("motion", "-o", options.output, options.force);
-  std::vector<std::string> inputs = options.logs;
-  inputs.push_back(options.robot);
-  if (options.channels) inputs.push_back(options.channels->string());
-  check_output_is_no_input("motion", "-o", options.output, inputs);
   const RobotDescription robot = read_robot_file(options.robot);
   DesignRequest request = options.design;
   request.effects = effects_of(options, robot);
@@ -81,21 +78,30 @@ void run(const MotionOptions& options, const std::string& command_line, ExitCode
   request.expectation.noise_share = options.noise_percent / 100;
   Progress progress;
   request.recordings = read_recordings(options.logs, robot, options.channels, progress);
+  progress.begin("examining the recordings");
+  const std::vector<discovery::DataFault> faults = examine_all({request.recordings}, robot);
+  progress.end();
+  print_hints(faults);
   const Design design = design_motion(
       robot, request,
       {[&](const std::string& doing) { progress.begin(doing); }, [&] { progress.step(); }});
   progress.end();
   const DesignNames names{options.robot, options.logs, options.output, command_line};
   const bool useful = design.worst() != nullptr;
-  if (options.report) report::write_page(*options.report, page_of(robot, design, names));
+  if (options.report) {
+    report::Page page = page_of(robot, design, names);
+    add_faults(faults, page);
+    report::write_page(*options.report, page, existing_if(options.force));
+  }
   if (useful) {
-    write_file_atomically(options.output, csv_of(design.fitted.motion),
-                          options.force ? Existing::kReplace : Existing::kRefuse);
+    write_file_atomically(options.output, csv_of(design.fitted.motion), existing_if(options.force));
   } else {
     exit_code = ExitCode::kCheckFailed;
   }
   if (options.json) {
-    std::cout << to_json(robot, design, names).dump(2) << '\n';
+    auto json = to_json(robot, design, names);
+    json["data_faults"] = discovery::to_json(faults);
+    std::cout << json.dump(2) << '\n';
     return;
   }
   std::cout << text_of(robot, design, names);
@@ -129,8 +135,10 @@ void register_motion(CLI::App& app, ExitCode& exit_code) {
                    "EFFECT@JOINT to excite, or all (the default): every effect that the robot may "
                    "have")
       ->excludes(separate);
-  verb->add_option("-o,--output", options->output, "Motion to write, CSV")->required();
-  verb->add_flag("--force", options->force, "Replace the file of -o");
+  verb->add_option("-o,--output", options->output, "Motion to write, CSV")
+      ->type_name(kNewFile)
+      ->required();
+  verb->add_flag("--force", options->force, "Replace files that are there");
   verb->add_option("--log", options->logs,
                    "Recordings that could not tell, to say how much better the motion is");
   verb->add_option("--channels", options->channels,
@@ -163,7 +171,8 @@ void register_motion(CLI::App& app, ExitCode& exit_code) {
   verb->add_option("--threads", options->design.threads,
                    "Threads; the result does not depend on their number")
       ->check(CLI::Range(1, 256));
-  verb->add_option("--report", options->report, "Write the pictures as an HTML page");
+  verb->add_option("--report", options->report, "Write the pictures as an HTML page")
+      ->type_name(kNewPage);
   verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
   verb->footer(kHowItChooses);
   verb->callback([verb, options, &exit_code] { run(*options, command_line_of(*verb), exit_code); });

@@ -14,6 +14,7 @@
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
+#include "common/output_file.hpp"
 #include "log/csv_text.hpp"
 #include "paper/figures.hpp"
 #include "paper/paper_json.hpp"
@@ -93,8 +94,8 @@ void check_together(const PaperOptions& options) {
   }
   if (options.against && !options.sweep)
     refuse_option("paper", "--against", "no --sweep", "", "add --sweep");
-  if (options.force && !options.log)
-    refuse_option("paper", "--force", "no --log", "", "leave it out");
+  if (options.force && !options.log && !options.report)
+    refuse_option("paper", "--force", "no --log or --report", "", "leave it out");
   if (options.mass_loss && options.fault && *options.fault != "mass_loss") {
     refuse_option("paper", "--mass-loss", "--fault " + *options.fault, "",
                   "leave one of the two out");
@@ -215,7 +216,8 @@ void run_pair(const RobotDescription& robot, const RobotDescription& other, cons
                               paper::sweep_mass_loss(robot, base, 0.005, on_probe)};
   progress.end();
   if (options.report) {
-    report::write_page(*options.report, paper::page_of(pair, options.command_line));
+    report::write_page(*options.report, paper::page_of(pair, options.command_line),
+                       existing_if(options.force));
   }
   if (options.json) {
     std::cout << paper::to_json(pair).dump(2) << '\n';
@@ -230,10 +232,11 @@ void run_one(const RobotDescription& robot, const Experiment& experiment,
   const ExperimentResult run = paper::run_experiment(robot, experiment);
   if (options.log) {
     write_file_atomically(*options.log, csv_text(paper::recording_of(robot, experiment, run)),
-                          options.force ? Existing::kReplace : Existing::kRefuse);
+                          existing_if(options.force));
   }
   if (options.report) {
-    report::write_page(*options.report, paper::page_of(run, options.command_line));
+    report::write_page(*options.report, paper::page_of(run, options.command_line),
+                       existing_if(options.force));
   }
   if (options.json) {
     std::cout << paper::to_json(run).dump(2) << '\n';
@@ -258,7 +261,8 @@ void run_all(const RobotDescription& robot, const Experiment& experiment,
                               !options.duration && !options.start;
   const std::string verdict = paper::verdict_of(lines, paper_settings);
   if (options.report) {
-    report::write_page(*options.report, paper::page_of(runs, lines, verdict, options.command_line));
+    report::write_page(*options.report, paper::page_of(runs, lines, verdict, options.command_line),
+                       existing_if(options.force));
   }
   if (options.json) {
     std::cout << paper::to_json(runs, lines, verdict).dump(2) << '\n';
@@ -325,14 +329,16 @@ void add_options(CLI::App& verb, PaperOptions& options) {
                   "With --fault: a desired motion in place of the paper's, CSV as `offnominal "
                   "motion` writes it; the run is as long as it, unless --duration is given");
   verb.add_option(
-      "--log", options.log,
-      "With --fault: write the run as a recording, CSV: t, q, dq and the torque applied "
-      "over the tick that ends there");
-  verb.add_flag("--force", options.force, "Replace the file of --log");
+          "--log", options.log,
+          "With --fault: write the run as a recording, CSV: t, q, dq and the torque applied "
+          "over the tick that ends there")
+      ->type_name(kNewFile);
+  verb.add_flag("--force", options.force, "Replace files that are there");
   verb.add_flag("--sweep", options.sweep, "Find the smallest mass loss that is detected");
   verb.add_option("--against", options.against,
                   "With --sweep: another robot file, whose smallest mass loss stands beside it");
-  verb.add_option("--report", options.report, "Write the figures as an HTML page");
+  verb.add_option("--report", options.report, "Write the figures as an HTML page")
+      ->type_name(kNewPage);
   verb.add_flag("--json", options.json, "Print one JSON object and nothing else");
 }
 

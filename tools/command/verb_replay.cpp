@@ -6,10 +6,15 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "command/command_line.hpp"
+#include "command/doctor.hpp"
 #include "command/verbs.hpp"
+#include "common/output_file.hpp"
+#include "discovery/data_fault_report.hpp"
 #include "log/read_log.hpp"
 #include "replay/replay.hpp"
 #include "report/page.hpp"
@@ -25,6 +30,7 @@ struct ReplayOptions {
   std::string robot;
   std::optional<std::filesystem::path> channels;
   std::optional<std::string> report;
+  bool force = false;
   bool check = false;
   bool json = false;
 };
@@ -60,10 +66,18 @@ void print(const Replay& replay) {
 void run(const ReplayOptions& options, const std::string& command_line, ExitCode& exit_code) {
   const RobotDescription robot = read_robot_file(options.robot);
   const Log log = read_log(options.log, robot, options.channels);
+  const std::vector<discovery::DataFault> faults = examine_all({std::span(&log, 1)}, robot);
+  print_hints(faults);
   const Replay result = replay(robot, log);
-  if (options.report) report::write_page(*options.report, page_of(result, command_line));
+  if (options.report) {
+    report::Page page = page_of(result, command_line);
+    add_faults(faults, page);
+    report::write_page(*options.report, page, existing_if(options.force));
+  }
   if (options.json) {
-    std::cout << to_json(result).dump(2) << '\n';
+    auto json = to_json(result);
+    json["data_faults"] = discovery::to_json(faults);
+    std::cout << json.dump(2) << '\n';
   } else {
     for (const std::string& remark : log.remarks) std::cout << "note: " << remark << '\n';
     print(result);
@@ -85,7 +99,9 @@ void register_replay(CLI::App& app, ExitCode& exit_code) {
   verb->add_option("--channels", options->channels,
                    "TOML file that maps the recording's columns, instead of the robot file's "
                    "[channels]");
-  verb->add_option("--report", options->report, "Write the figures as an HTML page");
+  verb->add_option("--report", options->report, "Write the figures as an HTML page")
+      ->type_name(kNewPage);
+  verb->add_flag("--force", options->force, "Replace the file of --report, whatever it is");
   verb->add_flag("--check", options->check, "Exit with 1 when there is an alarm");
   verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
   verb->footer(

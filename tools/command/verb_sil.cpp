@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "command/command_line.hpp"
-#include "command/output_file.hpp"
 #include "command/progress.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
+#include "common/output_file.hpp"
 #include "log/candump_text.hpp"
 #include "log/csv_text.hpp"
 #include "paper/recording.hpp"
@@ -79,9 +79,11 @@ sil::SilResult real_time(const SilOptions& options, const RobotDescription& robo
     refuse_option("sil", "--real-time", "on the in-process bus", "a CAN interface of the kernel",
                   "give --bus vcan0; where the kernel has no CAN: ./dev vcan COMMAND");
   }
-  return sil::run_in_real_time(
-      robot, scenario,
-      {.interface = options.bus, .robot_file = options.robot, .candump = options.candump});
+  return sil::run_in_real_time(robot, scenario,
+                               {.interface = options.bus,
+                                .robot_file = options.robot,
+                                .candump = options.candump,
+                                .replace_candump = options.force});
 }
 
 sil::SilResult lock_step(const SilOptions& options, const RobotDescription& robot,
@@ -97,15 +99,13 @@ sil::SilResult lock_step(const SilOptions& options, const RobotDescription& robo
   }
   sil::SilResult result = sil::run_in_lock_step(robot, scenario, *wire, options.bus, on_frame);
   if (options.candump) {
-    const Existing existing = options.force ? Existing::kReplace : Existing::kRefuse;
+    const Existing existing = existing_if(options.force);
     write_file_atomically(*options.candump, frames, existing);
   }
   return result;
 }
 
 void run(const SilOptions& options, const std::string& command_line) {
-  if (options.log) check_output_file("sil", "--log", *options.log, options.force);
-  if (options.candump) check_output_file("sil", "--candump", *options.candump, options.force);
   const RobotDescription robot =
       options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
   const sil::Scenario scenario = scenario_of(options);
@@ -116,12 +116,13 @@ void run(const SilOptions& options, const std::string& command_line) {
   const sil::SilResult result =
       options.real_time ? real_time(options, robot, scenario) : lock_step(options, robot, scenario);
   progress.end();
-  const Existing existing = options.force ? Existing::kReplace : Existing::kRefuse;
+  const Existing existing = existing_if(options.force);
   if (options.log) {
     write_file_atomically(*options.log,
                           csv_text(recording_of(robot, scenario.experiment, result.run)), existing);
   }
-  if (options.report) report::write_page(*options.report, page_of(result, command_line));
+  if (options.report)
+    report::write_page(*options.report, page_of(result, command_line), existing_if(options.force));
   if (options.json) {
     std::cout << to_json(result).dump(2) << '\n';
     return;
@@ -169,11 +170,15 @@ void register_sil(CLI::App& app, ExitCode& exit_code) {
   verb->add_option("--robot", options->robot,
                    "Robot file of the controller, two joints; by default the paper's arm");
   verb->add_option("--duration", options->duration, "Length of the run, s [20]");
-  verb->add_option("--log", options->log, "Write the run as a recording, CSV");
+  verb->add_option("--log", options->log,
+                   "Write the run as the controller saw it, and beside it what was true, CSV")
+      ->type_name(kNewFile);
   verb->add_option("--candump", options->candump,
-                   "Write every frame as candump -l does; hal/offnominal.dbc says what they mean");
-  verb->add_flag("--force", options->force, "Replace the files of --log and --candump");
-  verb->add_option("--report", options->report, "Write the pictures as an HTML page");
+                   "Write every frame as candump -l does; hal/offnominal.dbc says what they mean")
+      ->type_name(kNewFile);
+  verb->add_flag("--force", options->force, "Replace files that are there");
+  verb->add_option("--report", options->report, "Write the pictures as an HTML page")
+      ->type_name(kNewPage);
   verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
   verb->footer(footer());
   verb->callback([verb, options] { run(*options, command_line_of(*verb)); });

@@ -9,6 +9,7 @@
 #include "command/command_line.hpp"
 #include "command/progress.hpp"
 #include "command/verbs.hpp"
+#include "common/output_file.hpp"
 #include "paper/two_link_robot.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
@@ -23,6 +24,7 @@ struct WcetOptions {
   bool fd = false;
   wcet::WcetSettings settings;
   std::optional<std::string> report;
+  bool force = false;
   bool json = false;
 };
 
@@ -38,7 +40,9 @@ void run(WcetOptions& options, const std::string& command_line) {
         progress.begin(done > 0 ? fmt::format("{}: {} done", what, done) : what);
       });
   progress.end();
-  if (options.report) report::write_page(*options.report, wcet::page_of(result, command_line));
+  if (options.report)
+    report::write_page(*options.report, wcet::page_of(result, command_line),
+                       existing_if(options.force));
   if (options.json) {
     std::cout << wcet::to_json(result).dump(2) << '\n';
     return;
@@ -97,7 +101,9 @@ void register_wcet(CLI::App& app, ExitCode& exit_code) {
   verb->add_flag("--fd", options->fd, "CAN FD: one frame for all joints");
   add_measurement_options(*verb, options->settings);
   add_machine_options(*verb, options->settings);
-  verb->add_option("--report", options->report, "Write the histograms as an HTML page");
+  verb->add_option("--report", options->report, "Write the histograms as an HTML page")
+      ->type_name(kNewPage);
+  verb->add_flag("--force", options->force, "Replace the file of --report, whatever it is");
   verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
   verb->footer(
       "A tick receives and decodes frames, runs the monitor, computes the torque and encodes it. "

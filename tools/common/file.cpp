@@ -25,6 +25,39 @@ std::string reason(int error) { return std::generic_category().message(error); }
                     .mend = "choose another name, or remove the file first"});
 }
 
+[[noreturn]] void refuse_to_write(const std::filesystem::path& path, int error) {
+  throw InputError({.file = path.string(),
+                    .place = "",
+                    .found = "that it cannot be written (" + reason(error) + ")",
+                    .allowed = "",
+                    .mend = "name a file in a folder that exists, is writable and has room"});
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+// `path`, or what it links to. Throws where something that is no regular file stands there.
+std::filesystem::path target_of(const std::filesystem::path& path) {
+  const auto refuse = [&path](const std::string& found) {
+    throw InputError({.file = path.string(),
+                      .place = "",
+                      .found = found,
+                      .allowed = "a new or a regular file",
+                      .mend = "choose another name"});
+  };
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    if (std::filesystem::is_symlink(path, ignored)) refuse("a link to nothing");
+    return path;
+  }
+  if (std::filesystem::is_directory(path, ignored)) refuse("a folder");
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    refuse("something that is not a regular file");
+  }
+  return std::filesystem::canonical(path);
+}
+
 class Descriptor {
  public:
   explicit Descriptor(int value) : value_(value) {}
@@ -89,19 +122,14 @@ class Temporary {
   [[noreturn]] void fail() const {
     const int error = errno;
     if (error == EEXIST) refuse_existing(target_);
-    throw InputError({.file = target_.string(),
-                      .place = "",
-                      .found = "that it cannot be written (" + reason(error) + ")",
-                      .allowed = "",
-                      .mend = "name a file in a folder that exists, is writable and has room"});
+    refuse_to_write(target_, error);
   }
 
   // The new name is only as lasting as the folder's own entry. Some file systems cannot flush a
   // folder; the content is safe by then, so that is no failure.
   void flush_folder() const {
-    const std::filesystem::path folder =
-        target_.has_parent_path() ? target_.parent_path() : std::filesystem::path(".");
-    const Descriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    const Descriptor descriptor(
+        ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (descriptor.get() >= 0) static_cast<void>(::fsync(descriptor.get()));
   }
 
@@ -114,12 +142,11 @@ class Temporary {
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& path) {
-  const auto refuse = [&path](const std::string& found) {
-    throw InputError({.file = path.string(),
-                      .place = "",
-                      .found = found,
-                      .allowed = "a readable file",
-                      .mend = "check the name and its permissions"});
+  const auto refuse = [&path](const std::string& found,
+                              const std::string& allowed = "a readable file",
+                              const std::string& mend = "check the name and its permissions") {
+    throw InputError(
+        {.file = path.string(), .place = "", .found = found, .allowed = allowed, .mend = mend});
   };
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) {
@@ -136,25 +163,24 @@ std::string read_text_file(const std::filesystem::path& path) {
     if (count < 0) refuse("a file that cannot be read (" + reason(errno) + ")");
     if (count <= 0) return content;
     content.append(block, static_cast<std::size_t>(count));
+    if (content.size() > kMostText) {
+      refuse("more than " + std::to_string(kMostText >> 20) + " MiB", "a text file of less",
+             "check the name");
+    }
   }
+}
+
+void check_can_be_written(const std::filesystem::path& path) {
+  const std::filesystem::path target = target_of(path);
+  if (::access(folder_of(target).c_str(), W_OK | X_OK) != 0) refuse_to_write(path, errno);
 }
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view content,
                            Existing existing) {
-  std::filesystem::path target = path;
+  const std::filesystem::path target = target_of(path);
   std::error_code ignored;
-  if (std::filesystem::exists(path, ignored)) {
-    if (!std::filesystem::is_regular_file(path, ignored)) {
-      throw InputError({.file = path.string(),
-                        .place = "",
-                        .found = std::filesystem::is_directory(path, ignored)
-                                     ? "a folder"
-                                     : "something that is not a regular file",
-                        .allowed = "a new or a regular file",
-                        .mend = "choose another name"});
-    }
-    if (existing == Existing::kRefuse) refuse_existing(path);
-    target = std::filesystem::canonical(path);
+  if (existing == Existing::kRefuse && std::filesystem::exists(target, ignored)) {
+    refuse_existing(path);
   }
   Temporary temporary(target);
   temporary.keep_mode_of_target();

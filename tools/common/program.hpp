@@ -7,6 +7,8 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "common/meant_option.hpp"
+#include "common/output_file.hpp"
 
 namespace offnominal::tools {
 
@@ -20,12 +22,15 @@ int run_program(const std::string& name, const std::string& description, int arg
   try {
     add_options(app, options);
     app.parse(argc, argv);
+    check_outputs(app);
     const int exit_code = run(options);
     std::cout.flush();
     return exit_code;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    std::cerr << name << ": " << on_one_line(error.what()) << "; to mend: run `" << name
+    const std::string meant = meant_option(app);
+    std::cerr << name << ": " << on_one_line(error.what())
+              << "; to mend: " << (meant.empty() ? "" : meant + ", or ") << "run `" << name
               << " --help`\n";
   } catch (const InputError& error) {
     std::cerr << error.what() << '\n';

@@ -1,6 +1,7 @@
 #include "common/toml_table.hpp"
 
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "common/error.hpp"
@@ -68,6 +69,14 @@ NumberRule not_negative(std::string unit, std::string mend) {
   NumberRule rule = any_number(std::move(unit));
   rule.min = 0;
   rule.mend = std::move(mend);
+  return rule;
+}
+
+NumberRule physical(NumberRule rule) {
+  static const std::map<std::string, double> kLargest{{"kg", 1e7}, {"m", 1e5}, {"m/s^2", 1e6}};
+  constexpr double kLargestOfOthers = 1e12;
+  const auto of_unit = kLargest.find(rule.unit);
+  rule.largest = of_unit == kLargest.end() ? kLargestOfOthers : of_unit->second;
   return rule;
 }
 
@@ -229,6 +238,12 @@ double TomlTable::checked(const toml::node& node, const std::string& path,
   if (!std::isfinite(value) || !above || value > rule.max) {
     refuse_at(node, path, words_of(node), words_of(rule),
               rule.mend.empty() ? "write a number in this range" : rule.mend);
+  }
+  if (std::abs(value) > rule.largest) {
+    refuse_at(node, path, words_of(node),
+              "at most " + shortest(rule.largest) + (rule.unit.empty() ? "" : " " + rule.unit) +
+                  ": no robot has more",
+              rule.mend.empty() ? "look at its unit" : rule.mend);
   }
   return value;
 }

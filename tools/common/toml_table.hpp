@@ -19,11 +19,16 @@ struct NumberRule {
   double max = std::numeric_limits<double>::infinity();
   std::string unit = {};  // "kg"; empty: none
   std::string mend = {};  // advice for this key; empty: a general one
+  // Told only where a number is larger, whatever its sign.
+  double largest = std::numeric_limits<double>::infinity();
 };
 
 [[nodiscard]] NumberRule any_number(std::string unit);
 [[nodiscard]] NumberRule positive(std::string unit, std::string mend = {});
 [[nodiscard]] NumberRule not_negative(std::string unit, std::string mend = {});
+/// The same rule for what a robot is made of: far above what there is in that unit, and far below
+/// what makes torques of it that no number holds, it ends.
+[[nodiscard]] NumberRule physical(NumberRule rule);
 
 /// The document of a file's text. Throws InputError, with the line, where it is not TOML.
 [[nodiscard]] toml::table parse_toml(std::string_view text, const std::string& file);

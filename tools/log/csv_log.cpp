@@ -2,8 +2,8 @@
 
 #include <csv.h>
 
+#include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <new>
 #include <optional>
 #include <set>
@@ -76,10 +76,7 @@ bool blank(const std::string& line) { return line.find_first_not_of(" \t") == st
 
 class CsvReader {
  public:
-  CsvReader(const std::filesystem::path& path, const NeedOf& need_of)
-      : path_(path), need_of_(need_of), input_(path, std::ios::binary) {
-    if (!input_) fail("", "a file that cannot be opened", "a readable CSV file");
-  }
+  CsvReader(RecordingFile& file, const NeedOf& need_of) : file_(file), need_of_(need_of) {}
 
   NamedColumns read() {
     std::string line;
@@ -88,8 +85,9 @@ class CsvReader {
     separator_ = separator_of(line);
     read_header(line);
     LineSplitter splitter(separator_);
-    while (next(line)) read_row(splitter, line);
-    if (rows_ == 0) fail("line 1", "a header without samples", "one line of numbers per sample");
+    while (kept_ > 0 && next(line)) read_row(splitter, line);
+    if (kept_ > 0 && rows_ == 0)
+      fail("line 1", "a header without samples", "one line of numbers per sample");
     return result();
   }
 
@@ -101,18 +99,15 @@ class CsvReader {
 
   [[noreturn]] void fail(const std::string& place, const std::string& found,
                          const std::string& allowed, const std::string& mend = {}) const {
-    throw InputError({path_.string(), place, found, allowed, mend});
+    throw InputError({file_.name(), place, found, allowed, mend});
   }
 
   std::string line_place() const { return "line " + std::to_string(line_number_); }
 
   bool next(std::string& line) {
-    if (!std::getline(input_, line)) {
-      if (input_.bad()) fail(line_place(), "a read error", "a readable CSV file");
-      return false;
-    }
+    if (!file_.next_line(line)) return false;
     ++line_number_;
-    unfinished_ = input_.eof();
+    unfinished_ = !file_.line_ended();
     if (!line.empty() && line.back() == '\r') line.pop_back();
     return true;
   }
@@ -132,6 +127,7 @@ class CsvReader {
       if (!seen.insert(name).second) fail("line 1", "column \"" + name + "\" twice", "one of each");
       names_.push_back(name);
       columns_.push_back({need_of_(name), {}});
+      if (columns_.back().need != Need::kNone) ++kept_;
     }
     if (names_.empty()) fail("line 1", "a blank line", "a header line that names the columns");
   }
@@ -160,6 +156,9 @@ class CsvReader {
     }
     for (std::size_t i = 0; i < columns_.size(); ++i) read_cell(columns_[i], i, (*cells)[i]);
     ++rows_;
+    if (rows_ <= RecordingFile::kMostNumbers / std::max<std::size_t>(1, kept_)) return;
+    fail(line_place(), "more than " + std::to_string(RecordingFile::kMostNumbers) + " numbers",
+         "a recording that ends", "cut it into parts, or leave samples or columns out");
   }
 
   void read_cell(Column& column, std::size_t index, std::string_view text) {
@@ -170,6 +169,7 @@ class CsvReader {
     } else if (column.need == Need::kWelcome) {
       column.need = Need::kNone;
       column.values = {};
+      --kept_;
     } else {
       const std::string found =
           text.empty() ? "nothing" : "\"" + std::string(text.substr(0, 40)) + "\"";
@@ -179,7 +179,7 @@ class CsvReader {
 
   NamedColumns result() const {
     NamedColumns result;
-    result.file = path_.string();
+    result.file = file_.name();
     result.names = names_;
     if (cut_off_) {
       result.remarks.push_back("The file's last line is cut off and was left out.");
@@ -193,13 +193,13 @@ class CsvReader {
     return result;
   }
 
-  std::filesystem::path path_;
+  RecordingFile& file_;
   const NeedOf& need_of_;
-  std::ifstream input_;
   char separator_ = ',';
   std::size_t line_number_ = 0;
   std::size_t blank_line_ = 0;
   std::size_t rows_ = 0;
+  std::size_t kept_ = 0;     // columns
   bool unfinished_ = false;  // no line end after the newest line
   bool cut_off_ = false;     // the last line was left out
   std::vector<std::string> names_;
@@ -208,8 +208,13 @@ class CsvReader {
 
 }  // namespace
 
+NamedColumns read_csv(RecordingFile& file, const NeedOf& need_of) {
+  return CsvReader(file, need_of).read();
+}
+
 NamedColumns read_csv(const std::filesystem::path& path, const NeedOf& need_of) {
-  return CsvReader(path, need_of).read();
+  RecordingFile file(path);
+  return read_csv(file, need_of);
 }
 
 }  // namespace offnominal::tools

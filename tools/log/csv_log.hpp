@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "log/named_columns.hpp"
+#include "log/recording_file.hpp"
 
 namespace offnominal::tools {
 
@@ -11,7 +12,9 @@ namespace offnominal::tools {
 // order mark and either kind of line end are understood. Throws InputError with the line and the
 // column for text in a number, a line with too few or too many values, a blank line between
 // samples, an unnamed or repeated column, a file that is empty or holds a header only. A last line
-// that has no end and too few values is left out, with a remark: a writer was killed.
+// that has no end and too few values is left out, with a remark: a writer was killed. Where no
+// column is needed the samples are not read.
+NamedColumns read_csv(RecordingFile& file, const NeedOf& need_of);
 NamedColumns read_csv(const std::filesystem::path& path, const NeedOf& need_of);
 
 }  // namespace offnominal::tools

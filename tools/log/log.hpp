@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "robot/robot.hpp"
+
 namespace offnominal::tools {
 
 // One recording in SI units, evenly sampled, time ascending, every number finite. Or a hold map
@@ -21,6 +23,8 @@ struct Log {
   bool at_rest = false;
   Eigen::MatrixXd approach;          // where at_rest: 1 or -1, as q; else empty
   std::vector<std::string> remarks;  // what a reader of results has to know, in words
+  ChannelMap channels;               // where the columns came from; empty: not read from a file
+  bool common_header = false;        // by their names alone, nobody gave the channels
 
   [[nodiscard]] int joint_count() const { return static_cast<int>(q.cols()); }
   [[nodiscard]] Eigen::Index sample_count() const { return t_s.size(); }

@@ -3,9 +3,7 @@
 #include <matio.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -89,21 +87,21 @@ std::string kind_of(const matvar_t& variable) {
 
 class MatReader {
  public:
-  MatReader(const std::filesystem::path& path, const NeedOf& need_of)
-      : path_(path), need_of_(need_of), mat_(nullptr, &Mat_Close) {
-    if (!is_mat_level_5_or_7(path)) refuse_file();
-    if (const auto claim = impossible_claim(path)) {
+  MatReader(RecordingFile& file, const NeedOf& need_of)
+      : name_(file.name()), path_(file.seekable()), need_of_(need_of), mat_(nullptr, &Mat_Close) {
+    if (!is_mat_level_5_or_7(path_)) refuse_file();
+    if (const auto claim = impossible_claim(path_)) {
       fail(claim->variable.empty() ? "" : "variable " + claim->variable, claim->what,
            "a complete file");
     }
     // matio prints to stderr by itself otherwise; what is wrong is said by the exception.
     Mat_LogInitFunc("offnominal", [](int, char*) {});
-    mat_.reset(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+    mat_.reset(Mat_Open(path_.c_str(), MAT_ACC_RDONLY));
     if (!mat_) refuse_file();
   }
 
   NamedColumns read() {
-    result_.file = path_.string();
+    result_.file = name_;
     result_.place_of = [](Eigen::Index row) { return "sample " + std::to_string(row + 1); };
     while (true) {
       const Variable info(Mat_VarReadNextInfo(mat_.get()), &Mat_VarFree);
@@ -117,7 +115,7 @@ class MatReader {
  private:
   [[noreturn]] void fail(const std::string& place, const std::string& found,
                          const std::string& allowed) const {
-    throw InputError({path_.string(), place, found, allowed, ""});
+    throw InputError({name_, place, found, allowed, ""});
   }
 
   [[noreturn]] void refuse_file() const {
@@ -167,6 +165,7 @@ class MatReader {
     }
   }
 
+  std::string name_;
   std::filesystem::path path_;
   const NeedOf& need_of_;
   Mat mat_;
@@ -175,21 +174,16 @@ class MatReader {
 
 }  // namespace
 
-bool is_mat_file(const std::filesystem::path& path) {
-  std::ifstream input(path, std::ios::binary);
-  std::array<char, 6> start{};
-  if (input.read(start.data(), start.size()) &&
-      std::string_view(start.data(), start.size()) == "MATLAB") {
-    return true;
-  }
-  std::string extension = path.extension().string();
+bool is_mat_file(const RecordingFile& file) {
+  if (file.beginning().starts_with("MATLAB")) return true;
+  std::string extension = file.path().extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension == ".mat";
 }
 
-NamedColumns read_mat(const std::filesystem::path& path, const NeedOf& need_of) {
-  return MatReader(path, need_of).read();
+NamedColumns read_mat(RecordingFile& file, const NeedOf& need_of) {
+  return MatReader(file, need_of).read();
 }
 
 }  // namespace offnominal::tools

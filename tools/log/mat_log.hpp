@@ -1,18 +1,17 @@
 #pragma once
 
-#include <filesystem>
-
 #include "log/named_columns.hpp"
+#include "log/recording_file.hpp"
 
 namespace offnominal::tools {
 
 // True where the file begins like a MATLAB .mat file (levels 5 and 7.3), or has that extension.
-bool is_mat_file(const std::filesystem::path& path);
+bool is_mat_file(const RecordingFile& file);
 
 // The numeric variables of a MATLAB .mat file: a row or column vector is a column, a single number
 // a scalar, and the columns of a matrix M are "M(:,1)", "M(:,2)" ... Variables of other kinds
 // (structures, cells, text, complex numbers) are named but not read. Throws InputError where the
 // file cannot be read, is damaged, or a required variable is not of those kinds.
-NamedColumns read_mat(const std::filesystem::path& path, const NeedOf& need_of);
+NamedColumns read_mat(RecordingFile& file, const NeedOf& need_of);
 
 }  // namespace offnominal::tools

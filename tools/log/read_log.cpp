@@ -14,6 +14,7 @@
 #include "log/csv_log.hpp"
 #include "log/hold_map.hpp"
 #include "log/mat_log.hpp"
+#include "log/recording_file.hpp"
 #include "log/sampling.hpp"
 
 namespace offnominal::tools {
@@ -80,6 +81,7 @@ class Assembler {
         log_.remarks.push_back("column " + name + " has values that are not finite: left out");
       }
     }
+    log_.common_header = true;
     return with(map);
   }
 
@@ -88,6 +90,7 @@ class Assembler {
       fail("channels", fmt::format("positions of {} joints", map.position.size()),
            fmt::format("{}, as many as the robot has", joints_));
     }
+    log_.channels = map;
     if (map.at_rest) {
       log_.t_s = values_of(map.position[0], "position of joint 1");
       check_readings();
@@ -288,25 +291,18 @@ NeedOf needs_of(const std::optional<ChannelMap>& channels) {
 
 NamedColumns read_columns(const std::filesystem::path& path,
                           const std::optional<ChannelMap>& channels, const NeedOf& need_of) {
-  if (is_mat_file(path)) return read_mat(path, need_of);
-  if (!is_candump_file(path)) return read_csv(path, need_of);
-  if (!channels || channels->dbc.empty()) return read_candump(path, nullptr, need_of);
+  RecordingFile file(path);
+  if (is_mat_file(file)) return read_mat(file, need_of);
+  if (!is_candump_file(file)) return read_csv(file, need_of);
+  if (!channels || channels->dbc.empty()) return read_candump(file, nullptr, need_of);
   const Dbc dbc = read_dbc(channels->dbc);
-  return read_candump(path, &dbc, need_of);
+  return read_candump(file, &dbc, need_of);
 }
 
 }  // namespace
 
 Log read_log(const std::filesystem::path& path, int joint_count,
              const std::optional<ChannelMap>& channels) {
-  if (!std::filesystem::exists(path)) {
-    throw InputError(
-        {path.string(), "", "no such file", "a recording: CSV, MATLAB .mat or candump -l", ""});
-  }
-  if (std::filesystem::is_directory(path)) {
-    throw InputError(
-        {path.string(), "", "a folder", "a recording: CSV, MATLAB .mat or candump -l", ""});
-  }
   const NeedOf need_of = needs_of(channels);
   Assembler assembler(read_columns(path, channels, need_of), joint_count);
   return channels ? assembler.with(*channels) : assembler.with_common_header();
@@ -324,8 +320,7 @@ Log read_log(const std::filesystem::path& path, const RobotDescription& robot,
   Log log = read_log_or_hold_map(path, robot, channels_file);
   if (log.at_rest) {
     throw InputError(
-        {path.string(), "", "a hold map, as the channels' at_rest = true says",
-         "a recording in time",
+        {log.file, "", "a hold map, as the channels' at_rest = true says", "a recording in time",
          "hold maps are for explain and for add --all-found; give another --channels"});
   }
   return log;

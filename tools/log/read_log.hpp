@@ -9,6 +9,7 @@
 namespace offnominal::tools {
 
 // Reads a recording: CSV, MATLAB .mat or a log of candump -l, told apart by content and extension.
+// It may come through a pipe; the path "-" is standard input (recording_file.hpp).
 //
 // With a channel map its names are looked up; without one the common header is expected:
 // t, q1..qn, dq1..dqn, tau1..taun in SI units, in any order; a missing dq is derived from q, and

@@ -11,10 +11,11 @@ std::vector<double> numbers(const Eigen::Ref<const Eigen::VectorXd>& vector) {
   return {vector.begin(), vector.end()};
 }
 
-Chart joint_chart(const std::string& what, const std::string& unit, const Eigen::VectorXd& t_s,
-                  const Eigen::VectorXd& values, double low, double high) {
+Chart joint_chart(std::size_t joint, const std::string& what, const std::string& unit,
+                  const Eigen::VectorXd& t_s, const Eigen::VectorXd& values, double low,
+                  double high) {
   Chart chart;
-  chart.title = what;
+  chart.title = fmt::format("Joint {}: {}", joint + 1, what);
   chart.x = {.name = "time", .unit = "s"};
   chart.y = {{.name = what, .unit = unit}};
   chart.series = {{.name = what, .x = numbers(t_s), .y = numbers(values), .tone = Tone::kModel}};
@@ -29,11 +30,11 @@ Section joint_section(const RobotDescription& robot, const Design& design, std::
   const JointUse use = use_of(robot, design, joint);
   const JointLimits& limits = design.limits[joint];
   Section section{.heading = fmt::format("Joint {}", joint + 1), .text = "", .blocks = {}};
-  section.blocks.emplace_back(joint_chart("position", use.position_unit, motion.t_s,
+  section.blocks.emplace_back(joint_chart(joint, "position", use.position_unit, motion.t_s,
                                           motion.q.col(j), limits.low, limits.high));
-  section.blocks.emplace_back(joint_chart("velocity", use.velocity_unit, motion.t_s,
+  section.blocks.emplace_back(joint_chart(joint, "velocity", use.velocity_unit, motion.t_s,
                                           motion.dq.col(j), -limits.velocity, limits.velocity));
-  section.blocks.emplace_back(joint_chart("torque of the model", use.torque_unit, motion.t_s,
+  section.blocks.emplace_back(joint_chart(joint, "torque of the model", use.torque_unit, motion.t_s,
                                           design.fitted.torque.col(j), -limits.torque,
                                           limits.torque));
   return section;

@@ -6,9 +6,11 @@
 #include <functional>
 #include <offnominal/control/computed_torque.hpp>
 #include <offnominal/monitor.hpp>
+#include <optional>
 
 #include "offnominal/sim/trajectory.hpp"
 #include "offnominal/sim/two_link_plant.hpp"
+#include "paper/bus_tick.hpp"
 
 namespace offnominal::tools::paper {
 
@@ -40,6 +42,7 @@ struct TickRecord {
   double threshold = 0.0;
   double weight_norm = 0.0;
   bool detected = false;  // latched
+  std::optional<BusTick> bus;
 };
 
 using TickObserver = std::function<void(const TickRecord&)>;

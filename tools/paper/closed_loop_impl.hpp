@@ -32,7 +32,7 @@ template <typename Scalar>
                                        desired.ddq.cast<Scalar>()};
   Vector<2, Scalar> tau =
       computed_torque<2, Scalar>(model, setup.gains, reference, state.q.cast<Scalar>(),
-                                 state.dq.cast<Scalar>(), static_cast<Scalar>(time_s)) +
+                                 state.dq.cast<Scalar>(), time_s) +
       beside;
   for (int i = 0; i < 2; ++i) {
     const Scalar limit = setup.monitor.chain.joints[static_cast<std::size_t>(i)].max_torque;

@@ -6,18 +6,14 @@
 #include <type_traits>
 
 #include "common/error.hpp"
+#include "common/number.hpp"
 #include "paper/closed_loop.hpp"
 #include "paper/run_observer.hpp"
 #include "robot/monitor_config_of.hpp"
+#include "robot/robot_file.hpp"
 
 namespace offnominal::tools::paper {
 namespace {
-
-[[noreturn]] void refuse(const std::string& place, const std::string& found,
-                         const std::string& allowed) {
-  throw InputError(
-      {.file = "paper", .place = place, .found = found, .allowed = allowed, .mend = ""});
-}
 
 template <typename Scalar>
 void run_with(const RobotDescription& robot, const Experiment& experiment,
@@ -39,24 +35,30 @@ sim::DesiredMotion Experiment::desired_at(double time_s) const {
   return motion ? motion->at(at_s) : sim::paper_trajectory(at_s);
 }
 
-void check_experiment(const RobotDescription& robot, const Experiment& experiment) {
+void check_experiment(const RobotDescription& robot, const Experiment& experiment,
+                      const std::string& verb) {
+  const auto refuse = [&verb](const std::string& place, const std::string& found,
+                              const std::string& allowed) {
+    throw InputError(
+        {.file = verb, .place = place, .found = found, .allowed = allowed, .mend = ""});
+  };
   const double period = robot.estimator.period_s;
   if (robot.joint_count() != 2) {
     refuse("robot", std::to_string(robot.joint_count()) + " joint(s)", "2, as the paper's arm has");
   }
-  if (!robot.bound) refuse("robot", "no uncertainty bound", "a [bound]");
+  require_bound(robot, robot.name);
   if (!(period >= kMinPeriod && period <= kMaxPeriod)) {
-    refuse("step", std::to_string(period) + " s", "1e-5 to 0.02 s");
+    refuse("step", shortest(period) + " s", "1e-5 to 0.02 s");
   }
   const int hidden = robot.estimator.hidden_units;
   if (hidden < 1 || hidden > kMaxHiddenUnits) {
     refuse("hidden units", std::to_string(hidden), "1 to " + std::to_string(kMaxHiddenUnits));
   }
   if (!(experiment.duration_s >= period && experiment.duration_s <= 1e5)) {
-    refuse("duration", std::to_string(experiment.duration_s) + " s", "one step to 1e5 s");
+    refuse("duration", shortest(experiment.duration_s) + " s", "one step to 1e5 s");
   }
   if (!(std::abs(experiment.motion_start_s) <= 1e5)) {
-    refuse("start", std::to_string(experiment.motion_start_s) + " s", "-1e5 to 1e5 s");
+    refuse("start", shortest(experiment.motion_start_s) + " s", "-1e5 to 1e5 s");
   }
 }
 
@@ -65,12 +67,12 @@ sim::TwoLinkPlant plant_of(const Experiment& experiment) {
     return sim::TwoLinkPlant({}, experiment.fault, experiment.uncertainty);
   } catch (const std::invalid_argument& error) {
     throw InputError(
-        {.file = "paper", .place = error.what(), .found = "", .allowed = "", .mend = ""});
+        {.file = "arm", .place = error.what(), .found = "", .allowed = "", .mend = ""});
   }
 }
 
 ExperimentResult run_experiment(const RobotDescription& robot, const Experiment& experiment) {
-  check_experiment(robot, experiment);
+  check_experiment(robot, experiment, "paper");
   const sim::TwoLinkPlant plant = plant_of(experiment);
   const double period = robot.estimator.period_s;
   const LoopTiming timing{period, std::llround(experiment.duration_s / period),

@@ -13,6 +13,7 @@
 #include "offnominal/sim/trajectory.hpp"
 #include "offnominal/sim/two_link_plant.hpp"
 #include "offnominal/sim/uncertainty.hpp"
+#include "paper/bus_tick.hpp"
 #include "paper/recorded_motion.hpp"
 #include "robot/robot.hpp"
 
@@ -50,6 +51,7 @@ struct TimeSeries {
   std::vector<double> error_norm;      // |e|, rad/s
   std::vector<double> threshold;       // mu, the filtered uncertainty bound, rad/s
   std::vector<double> filtered_fault;  // |eta|, eta = W_alpha[beta psi], rad/s
+  std::vector<BusTick> bus;            // empty where there is none
 };
 
 struct ExperimentResult {
@@ -77,8 +79,9 @@ struct ExperimentResult {
 [[nodiscard]] ExperimentResult run_experiment(const RobotDescription& robot,
                                               const Experiment& experiment);
 
-/// Throws InputError where run_experiment() would, before anything runs.
-void check_experiment(const RobotDescription& robot, const Experiment& experiment);
+/// Throws InputError where run_experiment() would, before anything runs, in the name of `verb`.
+void check_experiment(const RobotDescription& robot, const Experiment& experiment,
+                      const std::string& verb);
 
 /// The arm of an experiment. Throws InputError where its fault cannot be.
 [[nodiscard]] sim::TwoLinkPlant plant_of(const Experiment& experiment);

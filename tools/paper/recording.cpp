@@ -1,13 +1,55 @@
 #include "paper/recording.hpp"
 
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace offnominal::tools::paper {
+namespace {
+
+// What the controller saw, and beside it what was true.
+Log seen_recording(const TimeSeries& series, double period_s) {
+  std::vector<std::size_t> fresh;
+  for (std::size_t i = 0; i < series.bus.size(); ++i) {
+    if (series.bus[i].fresh) fresh.push_back(i);
+  }
+  const auto rows = static_cast<Eigen::Index>(fresh.size());
+  Log log;
+  log.file = "sil";
+  log.period_s = period_s;
+  log.t_s.resize(rows);
+  for (Eigen::MatrixXd* columns : {&log.q, &log.dq, &log.tau}) columns->resize(rows, 2);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const std::size_t tick = fresh[static_cast<std::size_t>(row)];
+    const BusTick& bus = series.bus[tick];
+    log.t_s[row] = series.time_s[tick];
+    log.q.row(row) = bus.seen.q;
+    log.dq.row(row) = bus.seen.dq;
+    log.tau.row(row) = bus.seen_tau;
+  }
+  for (Eigen::Index joint = 0; joint < 2; ++joint) {
+    const auto put = [&](const char* name, const auto& truth_at) {
+      Eigen::VectorXd& column = log.extra[name + std::to_string(joint + 1)];
+      column.resize(rows);
+      for (Eigen::Index row = 0; row < rows; ++row) {
+        column[row] = truth_at(fresh[static_cast<std::size_t>(row)]);
+      }
+    };
+    put("q_true", [&](std::size_t tick) { return series.q[joint][tick]; });
+    put("dq_true", [&](std::size_t tick) { return series.dq[joint][tick]; });
+    put("tau_true", [&](std::size_t tick) { return series.bus[tick].acting_tau[joint]; });
+  }
+  log.dq_derived = {false, false};
+  return log;
+}
+
+}  // namespace
 
 Log recording_of(const RobotDescription& robot, const Experiment& experiment,
                  const ExperimentResult& run) {
   const TimeSeries& series = run.series;
   if (series.time_s.empty()) throw std::invalid_argument("the run was not recorded");
+  if (!series.bus.empty()) return seen_recording(series, robot.estimator.period_s);
   const auto ticks = static_cast<Eigen::Index>(series.time_s.size());
   const sim::DesiredMotion start = experiment.desired_at(0);
   Log log;

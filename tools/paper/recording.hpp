@@ -8,8 +8,10 @@ namespace offnominal::tools::paper {
 
 /// One sample per tick and one before the first, on the desired motion, from which the monitor
 /// starts. The torque of a sample is what was applied over the tick that ends at it, as
-/// torque_signal = "held" takes it. `run` is what run_experiment(robot, experiment) gave; throws
-/// std::invalid_argument where its series was not recorded.
+/// torque_signal = "held" takes it. Where there is a bus: one sample per tick with a fresh reading
+/// of every joint, as the controller saw it, and what was true as q_true1.., dq_true1..,
+/// tau_true1.. (the torque that acted). `run` is what run_experiment(robot, experiment) gave;
+/// throws std::invalid_argument where its series was not recorded.
 [[nodiscard]] Log recording_of(const RobotDescription& robot, const Experiment& experiment,
                                const ExperimentResult& run);
 

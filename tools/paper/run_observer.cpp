@@ -74,6 +74,7 @@ void RunObserver::keep(const TickRecord& tick) {
   series.error_norm.push_back(tick.error_norm);
   series.threshold.push_back(tick.threshold);
   series.filtered_fault.push_back(eta_.norm());
+  if (tick.bus) series.bus.push_back(*tick.bus);
 }
 
 }  // namespace offnominal::tools::paper

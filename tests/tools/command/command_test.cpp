@@ -10,6 +10,7 @@
 
 #include "support/places.hpp"
 #include "tools/support/run_command.hpp"
+#include "tools/support/verbs.hpp"
 
 // The built command as a user meets it.
 
@@ -17,25 +18,12 @@ namespace offnominal::tools {
 namespace {
 
 using test::CommandResult;
+using test::verbs;
 using testing::HasSubstr;
 using testing::StartsWith;
 
 CommandResult offnominal(const std::vector<std::string>& arguments) {
   return test::run_command(test::command_file(), arguments);
-}
-
-// The verbs as the help lists them, below its heading.
-std::vector<std::string> verbs() {
-  std::istringstream help(offnominal({"--help"}).out);
-  std::vector<std::string> names;
-  bool listed = false;
-  for (std::string line; std::getline(help, line);) {
-    if (listed && line.starts_with("  ") && line.size() > 2 && line[2] != ' ') {
-      names.push_back(line.substr(2, line.find(' ', 2) - 2));
-    }
-    listed = listed || line.starts_with("Subcommands:");
-  }
-  return names;
 }
 
 void expect_one_line_refusal(const CommandResult& result) {
@@ -106,6 +94,77 @@ TEST(Command, RefusesAnUnknownOptionOfEveryVerbInOneLine) {
     expect_one_line_refusal(result);
     EXPECT_THAT(result.err, StartsWith("offnominal " + verb + ": "));
     EXPECT_THAT(result.err, HasSubstr("run `offnominal " + verb + " --help`"));
+  }
+}
+
+// The long options of a verb, as its help lists them.
+std::vector<std::string> options_of(const std::string& verb) {
+  std::istringstream help(offnominal({verb, "--help"}).out);
+  std::vector<std::string> names;
+  for (std::string line; std::getline(help, line);) {
+    if (!line.starts_with("  -")) continue;
+    const std::size_t begin = line.find("--");
+    if (begin > 6) continue;
+    names.push_back(line.substr(begin, line.find_first_of(" ,=", begin) - begin));
+  }
+  return names;
+}
+
+TEST(Command, SuggestsTheOptionThatWasMeant) {
+  EXPECT_THAT(offnominal({"compare", "a.csv", "--robot", "r.toml", "--cutof", "50"}).err,
+              HasSubstr("to mend: write --cutoff, or run `offnominal compare --help`"));
+  for (const std::string& verb : verbs()) {
+    const auto names = options_of(verb);
+    EXPECT_GE(names.size(), 4U) << verb;
+    for (const std::string& name : names) {
+      if (name.size() < 6) continue;
+      // One letter too many, as a finger slips.
+      const CommandResult result = offnominal({verb, name + "x"});
+      expect_one_line_refusal(result);
+      EXPECT_THAT(result.err, HasSubstr("write " + name + ",")) << verb;
+    }
+  }
+}
+
+TEST(Command, RefusesNumbersThatNoRobotHas) {
+  const test::TemporaryFolder folder;
+  test::put(folder / "log.csv", "t,q1,tau1\n0,0,0\n");
+  const std::string robot = test::content_of(test::source_dir() / "robots" / "bam_xl330.toml");
+  struct Wrong {
+    std::string key, told;
+  };
+  for (const Wrong& wrong :
+       {Wrong{"mass_kg = ", "joint[1].link.mass_kg: found 1e+300; allowed: at most 1e+07 kg"},
+        Wrong{"centre_of_mass_m = [", "joint[1].link.centre_of_mass_m[1]: found 1e+300"},
+        Wrong{"gravity_m_s2 = [", "gravity_m_s2[1]: found 1e+300"},
+        Wrong{"inertia = ", "effect[1].inertia: found 1e+300"}}) {
+    std::string text = robot;
+    const auto at = text.find(wrong.key);
+    ASSERT_NE(at, std::string::npos) << wrong.key;
+    const auto begin = at + wrong.key.size();
+    text.replace(begin, text.find_first_of(",] #\n", begin) - begin, "1e300");
+    test::put(folder / "r.toml", text);
+    const CommandResult result = offnominal(
+        {"compare", (folder / "log.csv").string(), "--robot", (folder / "r.toml").string()});
+    expect_one_line_refusal(result);
+    EXPECT_THAT(result.err, HasSubstr("r.toml: line "));
+    EXPECT_THAT(result.err, HasSubstr(wrong.told));
+  }
+}
+
+TEST(Command, NamesTheVerbAndTheTableThatAreMeant) {
+  const CommandResult run = offnominal({"sil", "--duration", "1e9"});
+  expect_one_line_refusal(run);
+  EXPECT_THAT(run.err, StartsWith("sil: duration: found 1e+09 s"));
+  const test::TemporaryFolder folder;
+  std::string text = test::content_of(test::source_dir() / "robots" / "two_link.toml");
+  text.resize(text.find("[uncertainty_bound]"));
+  test::put(folder / "r.toml", text);
+  for (const char* verb : {"sil", "paper"}) {
+    const CommandResult result =
+        offnominal({verb, "--fault", "none", "--robot", (folder / "r.toml").string()});
+    expect_one_line_refusal(result);
+    EXPECT_THAT(result.err, HasSubstr("a table [uncertainty_bound]"));
   }
 }
 

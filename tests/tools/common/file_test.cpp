@@ -68,11 +68,24 @@ TEST(WriteFileAtomically, ReplacesOnlyWhenTold) {
   EXPECT_EQ(files_in(folder), 1);
 }
 
+TEST(CheckCanBeWritten, FindsBeforehandWhatWouldFail) {
+  const TemporaryFolder folder;
+  put(folder / "a", "old");
+  EXPECT_NO_THROW(check_can_be_written(folder / "a"));
+  EXPECT_NO_THROW(check_can_be_written(folder / "new"));
+  EXPECT_THROW(check_can_be_written(folder / "missing/a"), InputError);
+  EXPECT_THROW(check_can_be_written(folder / "a/b"), InputError);
+  EXPECT_THROW(check_can_be_written(folder.path()), InputError);
+  EXPECT_THROW(check_can_be_written("/dev/full"), InputError);
+  EXPECT_EQ(content_of(folder / "a"), "old");
+  EXPECT_EQ(files_in(folder), 1);
+}
+
 TEST(WriteFileAtomically, KeepsThePermissionsOfTheFileItReplaces) {
   const TemporaryFolder folder;
   put(folder / "a", "old");
   ASSERT_EQ(::chmod((folder / "a").c_str(), 0640), 0);
-  write_file_atomically(folder / "a", "new");
+  write_file_atomically(folder / "a", "new", Existing::kReplace);
   struct stat status {};
   ASSERT_EQ(::stat((folder / "a").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777U, 0640U);
@@ -82,7 +95,7 @@ TEST(WriteFileAtomically, FollowsALinkAndKeepsIt) {
   const TemporaryFolder folder;
   put(folder / "target", "old");
   std::filesystem::create_symlink("target", folder / "link");
-  write_file_atomically(folder / "link", "new");
+  write_file_atomically(folder / "link", "new", Existing::kReplace);
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
   EXPECT_EQ(content_of(folder / "target"), "new");
 }
@@ -92,6 +105,10 @@ TEST(WriteFileAtomically, NamesWhatCannotBeWritten) {
   EXPECT_THAT(refusal(folder / "missing/a"), HasSubstr("No such file or directory"));
   EXPECT_THAT(refusal(folder.path()), HasSubstr("a folder"));
   EXPECT_THAT(refusal("/dev/null"), HasSubstr("not a regular file"));
+  std::filesystem::create_symlink("nothing", folder / "link");
+  EXPECT_THAT(refusal(folder / "link"), HasSubstr("a link to nothing"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  std::filesystem::remove(folder / "link");
   EXPECT_EQ(files_in(folder), 0);
 }
 
@@ -121,7 +138,8 @@ TEST(WriteFileAtomically, LeavesTheOldFileWhenWritingIsCutShort) {
   put(folder / "a", "old");
   {
     const FileSizeLimit limit(10000);
-    EXPECT_THROW(write_file_atomically(folder / "a", std::string(20000, 'z')), InputError);
+    EXPECT_THROW(write_file_atomically(folder / "a", std::string(20000, 'z'), Existing::kReplace),
+                 InputError);
     EXPECT_THROW(write_file_atomically(folder / "b", std::string(20000, 'z')), InputError);
   }
   EXPECT_EQ(content_of(folder / "a"), "old");

@@ -155,7 +155,7 @@ TEST(MatLog, WrongSizesAndKindsAreRefused) {
 
 TEST(MatLog, DamagedFilesAreRefused) {
   const TemporaryFile garbage("garbage.mat", "this is no recording");
-  EXPECT_TRUE(is_mat_file(garbage.path()));
+  EXPECT_TRUE(is_mat_file(offnominal::tools::RecordingFile(garbage.path())));
   EXPECT_THAT(message_of<InputError>([&] { read_log(garbage.path(), 1, drive_map()); }),
               HasSubstr("not a readable .mat file"));
 

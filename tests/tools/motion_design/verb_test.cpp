@@ -143,7 +143,7 @@ TEST_F(MotionVerb, ReplacesNothingThatItReads) {
   put(folder_ / "robot.toml", text);
   const CommandResult output = motion(path("motion.csv"), {"--force"});
   EXPECT_EQ(output.exit_code, 2);
-  EXPECT_THAT(output.err, HasSubstr("which it reads"));
+  EXPECT_THAT(output.err, HasSubstr("which is that of --robot"));
   const CommandResult page =
       motion(path("robot.toml"), {"--force", "--report", path("robot.toml")});
   EXPECT_EQ(page.exit_code, 2);
@@ -153,7 +153,7 @@ TEST_F(MotionVerb, ReplacesNothingThatItReads) {
 }
 
 TEST_F(MotionVerb, WritesAllOrNothing) {
-  expect_refusal(motion(kEmps, {"--report", path("motion.csv")}), "which is that of --output");
+  expect_refusal(motion(kEmps, {"--report", path("motion.csv")}), "which is that of --report");
   expect_refusal(motion(kEmps, {"--report", path("no/page.html")}), "no/page.html");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "motion.csv"));
 }

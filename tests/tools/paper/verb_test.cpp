@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{{"--sweep", "--report", "x.html"}, "--sweep: found --report"},
         Wrong{{"--against", "x.toml"}, "--against: found no --sweep"},
         Wrong{{"--log", "x.csv"}, "--log: found no --fault"},
-        Wrong{{"--fault", "none", "--force"}, "--force: found no --log"},
+        Wrong{{"--fault", "none", "--force"}, "--force: found no --log or --report"},
         Wrong{{"--fault", "none", "--duration", "0"}, "--duration: found 0"},
         Wrong{{"--fault", "none", "--start", "-1"}, "--start: found -1"},
         Wrong{{"--fault", "none", "--log", "/nowhere/x.csv"}, "/nowhere/x.csv"},

@@ -20,17 +20,18 @@ struct CommandResult {
   std::string err;
 };
 
-/// Runs a program without a shell, with an empty standard input. `out_to` names the file that takes
-/// its standard output, in place of the result's `out`.
+/// Runs a program without a shell. `out_to` names the file that takes its standard output, in place
+/// of the result's `out`; `in_from` that of its standard input.
 inline CommandResult run_command(const std::string& program, std::vector<std::string> arguments,
-                                 const std::string& out_to = {}) {
+                                 const std::string& out_to = {},
+                                 const std::string& in_from = "/dev/null") {
   const TemporaryFolder folder;
   const std::string out = out_to.empty() ? (folder / "out").string() : out_to;
   const std::string err = (folder / "err").string();
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   const int write_flags = O_WRONLY | O_CREAT;
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, in_from.c_str(), O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), write_flags, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), write_flags, 0600);
   arguments.insert(arguments.begin(), program);

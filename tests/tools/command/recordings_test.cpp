@@ -1,0 +1,150 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "../analysis/recorded_arm.hpp"
+#include "log/csv_text.hpp"
+#include "robot/robot_file.hpp"
+#include "support/places.hpp"
+#include "tools/support/run_command.hpp"
+
+// Recordings as they come to the verbs: files, pipes, standard input, what never ends, and what was
+// given twice.
+
+namespace offnominal::tools {
+namespace {
+
+using test::CommandResult;
+using test::put;
+using testing::HasSubstr;
+using testing::Not;
+using Words = std::vector<std::string>;
+
+class RecordingsOfVerbs : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_robot_file(test::arm_description(), folder_ / "arm.toml");
+    put(folder_ / "a.csv", csv_text(test::record_arm({.duration_s = 6, .rate_hz = 200})));
+    put(folder_ / "b.csv",
+        csv_text(test::record_arm({.duration_s = 6, .rate_hz = 200, .amplitude = 0.8})));
+  }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  CommandResult run(Words words, const std::string& in_from = "/dev/null") const {
+    words.insert(words.end(), {"--robot", path("arm.toml")});
+    return test::run_command(test::command_file(), std::move(words), {}, in_from);
+  }
+  // The command at the end of a pipe, as a shell makes it.
+  CommandResult piped(const std::string& source, const std::string& recording) const {
+    return test::run_command(
+        "/bin/sh", {"-c", source + " | '" + test::command_file() + "' compare " + recording +
+                              " --json --robot '" + path("arm.toml") + "'"});
+  }
+  static void expect_refusal(const CommandResult& result, const std::string& told) {
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(told));
+  }
+  static nlohmann::json without_name(const std::string& out) {
+    nlohmann::json json = nlohmann::json::parse(out);
+    json.erase("log");
+    return json;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(RecordingsOfVerbs, ComeThroughAPipeAsFromAFile) {
+  const CommandResult file = run({"compare", path("a.csv"), "--json"});
+  ASSERT_EQ(file.exit_code, 0) << file.err;
+  const nlohmann::json expected = without_name(file.out);
+  const std::string cat = "cat '" + path("a.csv") + "'";
+  // As small pieces too, as a serial line gives them.
+  const std::string pieces = "dd bs=7 status=none if='" + path("a.csv") + "'";
+  for (const std::string& source : {cat, pieces}) {
+    for (const char* name : {"-", "/dev/stdin"}) {
+      const CommandResult result = piped(source, name);
+      EXPECT_EQ(result.exit_code, 0) << result.err;
+      EXPECT_EQ(without_name(result.out), expected) << source << " " << name;
+    }
+  }
+  const CommandResult redirected = run({"compare", "-", "--json"}, path("a.csv"));
+  EXPECT_EQ(redirected.exit_code, 0) << redirected.err;
+  EXPECT_EQ(without_name(redirected.out), expected);
+}
+
+TEST_F(RecordingsOfVerbs, ThatNeverEndOrAreNoTextAreRefused) {
+  put(folder_ / "binary", std::string("\x7f"
+                                      "ELF\x02\x01\0\0\0",
+                                      9) +
+                              std::string(4096, '\0'));
+  put(folder_ / "empty", "");
+  expect_refusal(run({"compare", "/dev/zero"}), "/dev/zero: line 1: found bytes that are no text");
+  expect_refusal(run({"compare", path("binary")}), "found bytes that are no text");
+  expect_refusal(run({"compare", path("empty")}), "found an empty file");
+  expect_refusal(run({"compare", folder_.path().string()}), "found a folder");
+  expect_refusal(run({"compare", path("none.csv")}), "none.csv: found no such file");
+  expect_refusal(run({"compare", "-"}), "standard input: found an empty file");
+  expect_refusal(piped("tr '\\0' x < /dev/zero", "-"), "found a line longer than 1048576 bytes");
+  expect_refusal(piped("yes 1", "-"), "line 1, column 1: found the number 1");
+  expect_refusal(piped("yes a,b", "-"), "columns: found a, b");
+  expect_refusal(piped("(printf MATLAB; head -c 100000 /dev/zero)", "-"), "readable .mat file");
+}
+
+TEST_F(RecordingsOfVerbs, RobotAndChannelFilesThatNeverEndAreRefused) {
+  const CommandResult robot =
+      test::run_command(test::command_file(), {"compare", path("a.csv"), "--robot", "/dev/zero"});
+  expect_refusal(robot, "/dev/zero: found more than 64 MiB");
+  expect_refusal(run({"compare", path("a.csv"), "--channels", "/dev/zero"}), "more than 64 MiB");
+}
+
+TEST_F(RecordingsOfVerbs, AreNotHeldOutWhereTheyAreFitted) {
+  std::filesystem::create_symlink("a.csv", folder_ / "link.csv");
+  std::filesystem::copy_file(folder_ / "a.csv", folder_ / "copy.csv");
+  for (const char* same : {"a.csv", "link.csv", "copy.csv"}) {
+    SCOPED_TRACE(same);
+    const Words holdout{"--holdout", path(same)};
+    const auto with = [&](Words words) {
+      words.insert(words.end(), holdout.begin(), holdout.end());
+      return run(words);
+    };
+    const std::string told = "--holdout: found " + path(same) + ", the same as " + path("a.csv");
+    expect_refusal(with({"explain", path("a.csv")}), told);
+    expect_refusal(with({"calibrate", path("a.csv"), "-o", path("new.toml")}), told);
+    expect_refusal(with({"add", "viscous_friction", "--joint", "1", "--log", path("a.csv"), "-o",
+                         path("new.toml")}),
+                   told);
+    expect_refusal(with({"add", "--all-found", "--log", path("a.csv"), "-o", path("new.toml")}),
+                   told);
+  }
+  expect_refusal(run({"explain", path("a.csv"), path("copy.csv")}), "LOG: found ");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "new.toml"));
+}
+
+TEST_F(RecordingsOfVerbs, AndRobotsAreNamedInAdviceAsTheyHaveToBeTyped) {
+  std::filesystem::create_directory(folder_ / "my arm");
+  const std::string robot = path("my arm/it's.toml");
+  const std::string log = path("my arm/$a.csv");
+  write_robot_file(test::arm_description(), robot);
+  // A joint that hardly moves: nothing can be said of it.
+  put(log, csv_text(test::record_arm({.duration_s = 20, .rate_hz = 200, .amplitude = 1e-3})));
+  const CommandResult result = test::run_command(
+      test::command_file(),
+      {"explain", log, "--robot", robot, "--replays", "0", "--report", path("page.html")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string quoted = "'" + path("my arm/it") + "'\\''s.toml'";
+  EXPECT_THAT(result.out, HasSubstr("offnominal motion --robot " + quoted + " -o motion.csv"));
+  EXPECT_THAT(result.out, Not(HasSubstr("ROBOT")));
+  const std::string page = test::content_of(folder_ / "page.html");
+  EXPECT_THAT(page, HasSubstr("offnominal explain '" + log + "' --robot"));
+}
+
+}  // namespace
+}  // namespace offnominal::tools

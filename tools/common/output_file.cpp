@@ -1,0 +1,90 @@
+#include "common/output_file.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "common/error.hpp"
+#include "common/file.hpp"
+
+namespace offnominal::tools {
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code failure;
+  if (std::filesystem::equivalent(a, b, failure) && !failure) return true;
+  const std::filesystem::path place = std::filesystem::weakly_canonical(a, failure);
+  return !failure && place == std::filesystem::weakly_canonical(b, failure) && !failure;
+}
+
+namespace {
+
+std::string name_of(const CLI::Option& option) {
+  if (option.get_positional()) return option.get_name(true);
+  return option.get_snames().empty() ? option.get_name() : "-" + option.get_snames().front();
+}
+
+class Output {
+ public:
+  Output(const CLI::App& verb, const CLI::Option& option, std::string file)
+      : verb_(verb), option_(option), file_(std::move(file)) {
+    const CLI::Option* force = verb.get_option_no_throw("--force");
+    forced_ = force != nullptr && force->count() > 0;
+  }
+
+  void check(bool (*is_page)(const std::filesystem::path&)) const {
+    if (file_ == "-") refuse("-, which stands for a stream", "the name of a file");
+    for (const CLI::Option* other : verb_.get_options()) {
+      if (other != &option_) check_apart(*other);
+    }
+    const bool writes_page = option_.get_type_name() == kNewPage;
+    std::error_code ignored;
+    if (std::filesystem::exists(file_, ignored) && !forced_ &&
+        !(writes_page && is_page != nullptr && is_page(file_))) {
+      refuse(file_ + ", which is there already",
+             writes_page ? "a file that is not there yet, or a page of offnominal"
+                         : "a file that is not there yet",
+             "choose another name, or add --force to replace it");
+    }
+    check_can_be_written(file_);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& found, const std::string& allowed,
+                           const std::string& mend = {}) const {
+    const CLI::App* program = verb_.get_parent();
+    const std::string name = program == nullptr ? "" : program->get_name() + " ";
+    throw InputError({name + verb_.get_name(), name_of(option_), found, allowed, mend});
+  }
+
+  void check_apart(const CLI::Option& other) const {
+    const auto& words = other.results();
+    if (std::none_of(words.begin(), words.end(),
+                     [&](const std::string& word) { return same_file(file_, word); })) {
+      return;
+    }
+    const bool in_place = option_.get_type_name() == kNewRobotFile && other.check_name("--robot");
+    if (in_place && forced_) return;
+    refuse(fmt::format("{}, which is that of {}", file_, name_of(other)), "a file of its own",
+           in_place ? "choose another name, or add --force to replace it" : "");
+  }
+
+  const CLI::App& verb_;
+  const CLI::Option& option_;
+  std::string file_;
+  bool forced_ = false;
+};
+
+}  // namespace
+
+void check_outputs(const CLI::App& verb, bool (*is_page)(const std::filesystem::path& file)) {
+  for (const CLI::Option* option : verb.get_options()) {
+    const std::string type = option->get_type_name();
+    if (type != kNewFile && type != kNewPage && type != kNewRobotFile) continue;
+    for (const std::string& file : option->results()) Output(verb, *option, file).check(is_page);
+  }
+}
+
+}  // namespace offnominal::tools

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace offnominal::tools {
+
+// A recording as it comes: a file, a pipe, or standard input, which "-" names. It is opened once
+// and read once, from its beginning. What has no end, or is no text, ends with an InputError and
+// not with the machine's memory.
+class RecordingFile {
+ public:
+  static constexpr std::size_t kBeginning = 512;                     // bytes
+  static constexpr std::size_t kLongestLine = std::size_t{1} << 20;  // bytes
+  static constexpr std::size_t kMostAtOnce = std::size_t{8} << 30;   // bytes
+  static constexpr std::size_t kMostNumbers = 500'000'000;           // of all columns together
+
+  // Throws InputError where there is nothing to read: no such file, a folder, not readable.
+  explicit RecordingFile(const std::filesystem::path& path);
+  RecordingFile(const RecordingFile&) = delete;
+  RecordingFile& operator=(const RecordingFile&) = delete;
+  ~RecordingFile();
+
+  // As messages and results name it.
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  // The first bytes, at most kBeginning of them. Nothing is taken by it.
+  [[nodiscard]] std::string_view beginning() const { return beginning_; }
+
+  // The next line of a text without its end; false where there is none. Throws InputError for a
+  // line longer than kLongestLine and for bytes that no text has.
+  bool next_line(std::string& line);
+  // Whether the line that came last was ended.
+  [[nodiscard]] bool line_ended() const { return line_ended_; }
+
+  // All that is left, as a text; at most kMostAtOnce.
+  std::string rest();
+
+  // A path under which the whole of it can be opened, again and again, as long as this lives: its
+  // own, or that of a copy where it is no regular file; at most kMostAtOnce. Before anything else
+  // is read.
+  std::filesystem::path seekable();
+
+ private:
+  [[nodiscard]] std::string line_place() const { return "line " + std::to_string(lines_ + 1); }
+  [[noreturn]] void fail(const std::string& place, const std::string& found,
+                         const std::string& allowed, const std::string& mend = {}) const;
+  [[noreturn]] void refuse_copy(int error) const;
+  bool fill();  // the buffer, where it is used up; false at the end
+  void copy_to(int file);
+
+  std::filesystem::path path_;
+  std::string name_;
+  int file_ = -1;
+  int copy_ = -1;
+  std::string beginning_;
+  std::string buffer_;
+  std::size_t used_ = 0;  // of the buffer
+  std::size_t lines_ = 0;
+  bool line_ended_ = true;
+};
+
+}  // namespace offnominal::tools
