@@ -1,12 +1,21 @@
-// Opens a report page in headless Chromium with the network closed and checks what it shows:
-//   node check_page.mjs PAGE.html [--screenshot OUT.png] [--dark] [--width 1280] [--pdf OUT.pdf]
+// Opens a report page in headless Chromium with the network closed, light and dark, on a telephone, a desk and
+// a wide screen, and checks what it shows, and that everybody can read it:
+//   node check_page.mjs PAGE.html [--screenshots FOLDER] [--pdf OUT.pdf]
 // Exit 0: the page is whole. Exit 1: one line per fault on stderr. Exit 2: it could not be checked.
 import { createRequire } from "node:module";
 import { mkdtemp, readFile, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
+import { basename, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { parseArgs } from "node:util";
+import {
+  checkDrawings,
+  checkKeyboard,
+  checkLayout,
+  checkPaper,
+  checkWithAxe,
+  readAxe,
+} from "./accessible.mjs";
 
 const kFlags = [
   "--headless",
@@ -19,21 +28,30 @@ const kFlags = [
   "--disable-sync",
 ];
 
+/** One thing changes from look to look, and the open page follows. */
+const kLooks = [
+  [1280, "light"],
+  [1280, "dark"],
+  [2560, "dark"],
+  [2560, "light"],
+  [400, "light"],
+  [400, "dark"],
+];
+const kNarrowest = 400;
+
 const web = fileURLToPath(new URL("../../tools/report/web/", import.meta.url));
 
 function readArguments() {
   const { values, positionals } = parseArgs({
     allowPositionals: true,
     options: {
-      screenshot: { type: "string" },
+      screenshots: { type: "string" },
       pdf: { type: "string" },
-      dark: { type: "boolean", default: false },
-      width: { type: "string", default: "1280" },
       chromium: { type: "string", default: process.env.OFFNOMINAL_CHROMIUM ?? "/usr/bin/chromium" },
     },
   });
   if (positionals.length !== 1) throw new Error("exactly one PAGE.html is needed");
-  return { ...values, page: resolve(positionals[0]), width: Number(values.width) };
+  return { ...values, page: resolve(positionals[0]) };
 }
 
 function embeddedData(html) {
@@ -63,13 +81,26 @@ function listen(page, fault) {
 function observe() {
   const ink = (canvas) => {
     if (canvas.width === 0 || canvas.height === 0) return 0;
-    const pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+    // A copy that is cheap to read.
+    const copy = document.createElement("canvas");
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    const drawn = copy.getContext("2d", { willReadFrequently: true });
+    drawn.drawImage(canvas, 0, 0);
+    const pixels = drawn.getImageData(0, 0, copy.width, copy.height).data;
     const colors = new Set();
     for (let i = 0; i < pixels.length; i += 4) {
       if (pixels[i + 3] > 0) colors.add((pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2]);
     }
     return colors.size;
   };
+  const textAt = (drawing, attribute) => {
+    const ids = drawing?.getAttribute(attribute)?.split(" ") ?? [];
+    return ids.map((id) => document.getElementById(id).textContent).join(" ");
+  };
+  const spokenOf = (drawing) => ({
+    name: textAt(drawing, "aria-labelledby"),
+    description: textAt(drawing, "aria-describedby"),
+  });
   const blocks = {};
   for (const node of document.querySelectorAll("[data-block]")) {
     const canvas = node.querySelector("canvas");
@@ -79,8 +110,10 @@ function observe() {
       columns: node.querySelectorAll("thead th").length,
       figures: node.querySelectorAll("dt").length,
       title: node.querySelector("h3, caption")?.textContent ?? "",
-      label: node.querySelector("[role=img]")?.getAttribute("aria-label") ?? "",
-      legend: [...node.querySelectorAll(".legend button")].map((each) => each.textContent),
+      ...spokenOf(node.querySelector(".drawing")),
+      legend: [...node.querySelectorAll(".legend button")].map(
+        (each) => each.querySelector("span").textContent,
+      ),
       text: node.textContent,
       width: box?.width ?? 0,
       height: box?.height ?? 0,
@@ -114,7 +147,9 @@ function checkBlock(block, seen, place, fault) {
     if (!seen.text.includes(block.text.split("\n")[0])) fault(`${where}: its text is missing`);
   } else {
     expect("title", seen.title, block.title);
-    if (seen.label === "") fault(`${where}: no label for screen readers`);
+    expect("name for screen readers", seen.name, block.title);
+    if (seen.description === "") fault(`${where}: no description for screen readers`);
+    if (seen.rows === 0) fault(`${where}: no numbers in place of the picture`);
     if (seen.width < 200 || seen.height < 60) {
       fault(`${where}: drawn ${seen.width} x ${seen.height} pixels`);
     }
@@ -148,41 +183,78 @@ function checkPage(data, seen, fault) {
   return blocks;
 }
 
-/** Zooms every chart by its API, as a reader would, so that a fault in redrawing shows. */
+/** After the page has answered a change of its window. Runs inside the browser. */
+function settled() {
+  return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())));
+}
+
+/** Zooms the charts by their API, as a reader would, so that a fault in redrawing shows. */
 async function exercise(page) {
   await page.evaluate(() => {
-    for (const figure of figures.filter((each) => each.kind.zooms)) {
+    const groups = figures.map(({ block }) => block.zoom_group || block);
+    // The others of a group follow their first.
+    const zoomed = figures.filter(
+      ({ kind }, index) => kind.cursor !== null && groups.indexOf(groups[index]) === index,
+    );
+    for (const figure of zoomed) {
       figure.chart.dispatchAction({ type: "dataZoom", dataZoomIndex: 0, start: 40, end: 60 });
     }
     for (const button of document.querySelectorAll(".legend button")) {
       button.click();
       button.click();
     }
-    for (const figure of figures.filter((each) => each.kind.zooms)) resetZoom(figure);
+    for (const figure of zoomed) resetZoom(figure);
   });
+}
+
+/** The page as it stands, in its present width and colours. */
+async function checkLook(page, data, options, [width, mode], axeSource, fault) {
+  const inLook = (words) => fault(`${mode}, ${width} pixels wide: ${words}`);
+  const blocks = checkPage(data, await page.evaluate(observe), inLook);
+  if (options.screenshots) {
+    const name = `${basename(options.page, ".html")}_${mode}_${width}.png`;
+    await page.screenshot({ path: join(options.screenshots, name), fullPage: true });
+  }
+  await checkDrawings(page, inLook);
+  await checkWithAxe(page, axeSource, inLook);
+  await checkLayout(page, inLook);
+  return blocks;
 }
 
 async function check(options, fault) {
   const { chromium } = createRequire(join(web, "package.json"))("playwright-core");
-  const data = embeddedData(await readFile(options.page, "utf8"));
+  const html = await readFile(options.page, "utf8");
+  if (html.includes("axe-core")) fault("the page holds what only its tests need");
+  const data = embeddedData(html);
+  const axeSource = await readAxe(web);
   const profile = await mkdtemp(join(tmpdir(), "offnominal-page-"));
   const context = await chromium.launchPersistentContext(profile, {
     executablePath: options.chromium,
     args: kFlags,
-    viewport: { width: options.width, height: 900 },
-    colorScheme: options.dark ? "dark" : "light",
     offline: true,
   });
   try {
-    const address = pathToFileURL(options.page).href;
-    await closeNetwork(context, address, fault);
+    await closeNetwork(context, pathToFileURL(options.page).href, fault);
+    context.setDefaultTimeout(180_000); // a machine that is busy draws slowly
     const page = await context.newPage();
     listen(page, fault);
-    await page.goto(address, { waitUntil: "load" });
-    const blocks = checkPage(data, await page.evaluate(observe), fault);
-    if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });
-    if (options.pdf) await page.pdf({ path: options.pdf, format: "A4" });
+    const look = async (width, mode) => {
+      await page.setViewportSize({ width, height: 900 });
+      await page.emulateMedia({ colorScheme: mode });
+      await page.evaluate(settled);
+    };
+    await look(...kLooks[0]);
+    await page.goto(pathToFileURL(options.page).href, { waitUntil: "load" });
+    let blocks = 0;
+    for (const [width, mode] of kLooks) {
+      await look(width, mode);
+      blocks = await checkLook(page, data, options, [width, mode], axeSource, fault);
+      // Where tables scroll, they are stops of the Tab key, too.
+      if (width === kNarrowest && mode === "light") await checkKeyboard(page, fault);
+    }
     await exercise(page).catch((error) => fault(`zooming and hiding: ${error.message}`));
+    await checkPaper(page, axeSource, fault);
+    if (options.pdf) await page.pdf({ path: options.pdf, format: "A4" });
     return blocks;
   } finally {
     await context.close();

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "common/file.hpp"
+
 /// A report page as a document of plain data, free of any drawing library.
 /// A page is built by value, then written with write_page(). Text is UTF-8, shown as it stands
 /// (no markup; an empty line starts a paragraph). Units are SI symbols ("s", "rad/s", "Nm", "%");
@@ -187,8 +189,13 @@ nlohmann::json to_json(const Page& page);
 /// The same page gives the same bytes. Throws as to_json().
 std::string render(const Page& page);
 
-/// Writes render(page) to `path`; the file appears whole or not at all.
+/// Writes render(page) to `path`; the file appears whole or not at all. With Existing::kRefuse a
+/// file that is there is left alone, unless it is such a page.
 /// Throws as to_json(), and an exception naming the file when it cannot be written.
-void write_page(const std::filesystem::path& path, const Page& page);
+void write_page(const std::filesystem::path& path, const Page& page,
+                Existing existing = Existing::kRefuse);
+
+/// Whether a file is a page that write_page() wrote: its head says so.
+[[nodiscard]] bool is_page(const std::filesystem::path& file);
 
 }  // namespace offnominal::tools::report

@@ -1,3 +1,4 @@
+#include <fstream>
 #include <map>
 #include <stdexcept>
 #include <string_view>
@@ -69,10 +70,13 @@ std::string fill(std::string_view text, const std::map<std::string_view, std::st
 }  // namespace
 
 std::string render(const Page& page) {
-  const std::string data = script_safe(to_json(page));
+  const nlohmann::json content = to_json(page);
+  const std::string data = script_safe(content);
+  const auto version = content.at("version").get<std::string>();
   const std::string title = escape_html(page.title);
   const std::string verdict = escape_html(page.verdict.words);
-  return fill(assets::page_template(), {{"title", title},
+  return fill(assets::page_template(), {{"version", version},
+                                        {"title", title},
                                         {"verdict", verdict},
                                         {"style", assets::style()},
                                         {"data", data},
@@ -80,8 +84,21 @@ std::string render(const Page& page) {
                                         {"script", assets::script()}});
 }
 
-void write_page(const std::filesystem::path& path, const Page& page) {
-  write_file_atomically(path, render(page));
+void write_page(const std::filesystem::path& path, const Page& page, Existing existing) {
+  write_file_atomically(path, render(page), is_page(path) ? Existing::kReplace : existing);
+}
+
+bool is_page(const std::filesystem::path& file) {
+  constexpr std::string_view kBegin = "<!doctype html>";
+  constexpr std::string_view kGenerator = "<meta name=\"generator\" content=\"offnominal ";
+  constexpr std::size_t kHead = 512;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return false;
+  std::string head(kHead, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(head.data(), kHead);
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  return head.starts_with(kBegin) && head.find(kGenerator) != std::string::npos;
 }
 
 }  // namespace offnominal::tools::report

@@ -82,7 +82,10 @@ void check(const Table& table) {
   const std::string block = "table \"" + table.caption + "\"";
   require(!table.caption.empty(), block, "no caption");
   require(!table.columns.empty(), block, "no column");
-  for (const Column& column : table.columns) check_format(block, column.format);
+  for (const Column& column : table.columns) {
+    require(!column.name.empty(), block, "a column has no name");
+    check_format(block, column.format);
+  }
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     check_length(block, "cells of row " + std::to_string(i + 1), table.rows[i].size(),
                  table.columns.size());

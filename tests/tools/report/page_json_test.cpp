@@ -124,6 +124,8 @@ TEST(PageJson, RefusesTablesAndMapsOfTheWrongSize) {
   table.rows.pop_back();
   table.columns[0].format = "%g";
   EXPECT_THAT(refusal(page_of(table)), HasSubstr("\"%g\""));
+  table.columns[0] = {};
+  EXPECT_THAT(refusal(page_of(table)), HasSubstr("a column has no name"));
   Heatmap map;
   map.title = "M";
   map.x = map.y = map.value_axis = {.name = "a", .unit = "1"};

@@ -77,6 +77,14 @@ TEST(Render, NeedsNoOtherFile) {
   EXPECT_THAT(html, Not(HasSubstr("@import")));
   EXPECT_THAT(html, Not(HasSubstr("{{")));
   EXPECT_THAT(html, HasSubstr("Licensed to the Apache Software Foundation"));
+  EXPECT_THAT(html, Not(HasSubstr("axe-core"))) << "what only the tests need";
+}
+
+TEST(Render, NamesItsGeneratorAndItsVersionEarlyInTheFile) {
+  const std::string html = render(page_of(Note{"x"}));
+  const std::string version = to_json(page_of(Note{"x"})).at("version");
+  const std::string marker = "<meta name=\"generator\" content=\"offnominal " + version + "\">";
+  EXPECT_LT(html.find(marker), 200U);
 }
 
 class WritePage : public ::testing::Test {

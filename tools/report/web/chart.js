@@ -15,10 +15,11 @@ function xExtent(charts) {
     for (const series of chart.series) for (const x of series.x) include(drawable(x, chart.x));
     for (const event of chart.events) include(drawable(event.x, chart.x));
   }
-  return low < high ? snappedExtent(low, high) : null;
+  if (!(low < high)) return null;
+  return charts.some((chart) => chart.x.log) ? { low, high } : snappedExtent(low, high);
 }
 
-/** A recording from 0 to 19.999 s is shown from 0 to 20 s. */
+/** A recording from 0 to 19.999 s is shown from 0 to 20 s; a logarithmic axis has no 0 to snap to. */
 function snappedExtent(low, high) {
   const span = high - low;
   const grid = 10 ** Math.floor(Math.log10(span) - 0.7);
@@ -57,6 +58,11 @@ function pointAt(series, x) {
   if (series.x[high] <= x) return high;
   if (series.kind === "steps") return low;
   return x - series.x[low] <= series.x[high] - x ? low : high;
+}
+
+/** Points and bars show a tip each, lines one for all at an x. */
+function showsItems(chart) {
+  return chart.series.every((each) => each.kind === "points" || each.kind === "bars");
 }
 
 /** At one x the value of every shown series: their points need not share that x. */
@@ -189,7 +195,7 @@ function chartOption(chart, look, width, extent, isShown) {
   const bottom = 46 + (chart.slider ? kSliderRoom : 0);
   const colors = seriesColors(chart.series, look);
   const { zooms, filterMode } = chartZoom(chart, look);
-  const byItem = chart.series.every((each) => each.kind === "points" || each.kind === "bars");
+  const byItem = showsItems(chart);
   const series = chart.series.map((each, i) => drawnSeries(each, i, colors[i], chart));
   if (chart.events.length > 0) series.push(eventSeries(chart, look, rows));
   if (chart.levels.length > 0) series.push(levelSeries(chart.levels, look, false));
@@ -260,12 +266,48 @@ function chartCsv(chart) {
   return csvText([head, ...rows]);
 }
 
+/** What the title does not say. */
 function chartWords(chart) {
   const ys = chart.y.map(axisTitle).join(" and ");
-  const names = chart.series.map((series) => series.name).join(", ");
-  const events = chart.events.map(
-    (event) => `${event.label} at ${withUnit(formatSignificant(event.x, 6), chart.x.unit)}`,
-  );
-  const marks = events.length > 0 ? ` Marked: ${events.join("; ")}.` : "";
-  return `${chart.title}. ${ys} against ${axisTitle(chart.x)}. Series: ${names}.${marks}`;
+  const at = (value, axis) => withUnit(formatSignificant(value, 6), axis.unit);
+  const events = chart.events.map((event) => `${event.label} at ${at(event.x, chart.x)}`);
+  const levels = chart.levels.map((level) => `${level.label} at ${at(level.y, chart.y[0])}`);
+  const marks = [...events, ...levels];
+  const marked = marks.length > 0 ? ` Marked: ${marks.join("; ")}.` : "";
+  return `${ys} against ${axisTitle(chart.x)}.${marked}`;
+}
+
+/** The values themselves where they are few and stand at the same x, else the range of each series. */
+function chartNumbers(chart) {
+  const [first, ...others] = chart.series;
+  const isLine = ({ kind }) => kind !== "bars" && kind !== "band";
+  const alike = (other) => isLine(other) && other.x.join() === first.x.join();
+  if (isLine(first) && first.x.length <= 30 && others.every(alike)) {
+    const columns = chart.series.map(({ name, y_axis }) => column(name, chart.y[y_axis].unit));
+    const rows = first.x.map((x, index) => [x, ...chart.series.map((series) => series.y[index])]);
+    return { columns: [column(chart.x.name, chart.x.unit), ...columns], rows };
+  }
+  return {
+    columns: ["Series", "Values drawn", "Lowest", "Highest"].map((name) => column(name, "")),
+    rows: chart.series.map((series) => seriesRange(series, chart)),
+  };
+}
+
+function column(name, unit) {
+  return { name, unit, format: ".5g" };
+}
+
+function seriesRange(series, chart) {
+  const number = (value, axis) => withUnit(formatSignificant(value, 5), axis.unit);
+  const extreme = (values, isBeyond) => {
+    let best = -1;
+    values.forEach((value, index) => {
+      if (value !== null && (best < 0 || isBeyond(value, values[best]))) best = index;
+    });
+    if (best < 0) return null;
+    return `${number(values[best], chart.y[series.y_axis])} at ${number(series.x[best], chart.x)}`;
+  };
+  const count = series.y.filter((value) => value !== null).length;
+  const highest = extreme(series.y_upper ?? series.y, (a, b) => a > b);
+  return [series.name, count, extreme(series.y, (a, b) => a < b), highest];
 }

@@ -1,27 +1,31 @@
-/** Every drawn figure of the page: {block, kind, host, place, chart, extent, legend, hidden}. */
+/** Every drawn figure: {block, kind, host, place, chart, extent, legend, hidden, cursor, option}. */
 const figures = [];
 
+/** A kind with a cursor can be zoomed, too. */
 const kKinds = {
   chart: {
     option: chartOption,
     height: chartHeight,
     csv: chartCsv,
     words: chartWords,
-    zooms: true,
+    numbers: chartNumbers,
+    cursor: chartCursor,
   },
   heatmap: {
     option: heatmapOption,
     height: heatmapHeight,
     csv: heatmapCsv,
     words: heatmapWords,
-    zooms: true,
+    numbers: heatmapNumbers,
+    cursor: heatmapCursor,
   },
   waterfall: {
     option: waterfallOption,
     height: waterfallHeight,
     csv: waterfallCsv,
     words: waterfallWords,
-    zooms: false,
+    numbers: waterfallNumbers,
+    cursor: null,
   },
 };
 
@@ -35,15 +39,19 @@ function element(tag, attributes = {}, ...children) {
 /** A figure with its title, tools, legend and note; drawn later by drawFigure(). */
 function figureElement(block, place) {
   const kind = kKinds[block.type];
+  const id = `figure-${place.replace(".", "-")}`;
   const host = element("div", {
     class: "drawing",
     role: "img",
-    "aria-label": kind.words(block),
+    "aria-labelledby": `${id}-title`,
+    "aria-describedby": `${id}-words`,
     style: `height:${kind.height(block)}px`,
   });
   const figure = { block, kind, host, place, chart: null, extent: null, legend: null };
   figure.hidden = new Set();
-  const title = element("h3", {}, block.title);
+  figure.cursor = null;
+  figure.option = null;
+  const title = element("h3", { id: `${id}-title` }, block.title);
   const root = element("figure", {
     class: `card ${block.width === "half" ? "half" : ""}`.trim(),
     "data-block": place,
@@ -53,25 +61,40 @@ function figureElement(block, place) {
     root.append(element("p", { class: "scale" }, scaleWords(block)));
   }
   if (block.type === "chart") {
-    figure.legend = element("ul", { class: "legend", "aria-label": "Series" });
+    figure.legend = element("ul", { class: "legend", "aria-label": `Series of ${block.title}` });
     root.append(figure.legend);
   }
-  root.append(host);
+  // Only a reader of the description hears what is hidden; it is not read a second time.
+  root.append(host, element("p", { id: `${id}-words`, hidden: "" }, kind.words(block)));
+  if (kind.cursor !== null) root.append(takeKeys(figure));
   if (block.note !== "") root.append(element("p", { class: "remark" }, block.note));
+  root.append(numbersElement(figure));
   figures.push(figure);
   return root;
 }
 
+/** The picture's content for those who do not see it. */
+function numbersElement({ block, kind }) {
+  const summary = element("summary", {}, "Numbers", ofTitle(block));
+  const caption = `Numbers of ${block.title}`;
+  return element("details", {}, summary, scrollingTable({ caption, ...kind.numbers(block) }));
+}
+
+/** Ends the name of a control that every figure has. */
+function ofTitle(block) {
+  return element("span", { class: "hidden-text" }, ` of ${block.title}`);
+}
+
 function toolButtons(figure) {
   const tools = element("div", { class: "tools" });
-  const add = (label, title, action) => {
-    const button = element("button", { type: "button", title }, label);
+  const add = (label, action) => {
+    const button = element("button", { type: "button" }, label, ofTitle(figure.block));
     button.addEventListener("click", action);
     tools.append(button);
   };
-  if (figure.kind.zooms) add("Reset", "Show the whole range (double click)", () => resetZoom(figure));
-  add("PNG", "Save the picture", () => savePicture(figure));
-  add("CSV", "Save the numbers drawn", () => {
+  if (figure.kind.cursor !== null) add("Reset zoom", () => resetZoom(figure));
+  add("Save picture", () => savePicture(figure));
+  add("Save CSV", () => {
     const blob = new Blob([figure.kind.csv(figure.block)], { type: "text/csv" });
     saveAs(URL.createObjectURL(blob), fileName(figure, "csv"));
   });
@@ -126,12 +149,14 @@ function savePicture(figure) {
 }
 
 function resetZoom(figure) {
-  const count = figure.chart.getOption().dataZoom.length;
-  const batch = Array.from({ length: count }, (_, dataZoomIndex) => ({
-    dataZoomIndex,
-    start: 0,
-    end: 100,
-  }));
+  zoomTo(figure, () => ({ start: 0, end: 100 }));
+}
+
+/** Every zoom of the figure to what change({start, end}), in percent, makes of it. */
+function zoomTo(figure, change) {
+  const batch = figure.chart
+    .getOption()
+    .dataZoom.map((zoom, dataZoomIndex) => ({ dataZoomIndex, ...change(zoom, dataZoomIndex) }));
   figure.chart.dispatchAction({ type: "dataZoom", batch });
 }
 
@@ -141,11 +166,11 @@ function fillLegend(figure, look) {
   const items = block.series.map((series, index) => {
     const button = element("button", {
       type: "button",
-      title: "Show or hide",
       "aria-pressed": String(!hidden.has(series.name)),
+      "data-series": series.name,
     });
     button.innerHTML = swatch(series, colors[index]);
-    button.append(element("span", {}, series.name));
+    button.append(element("span", {}, series.name), ofTitle(block));
     button.addEventListener("click", () =>
       chart.dispatchAction({ type: "legendToggleSelect", name: series.name }),
     );
@@ -157,10 +182,11 @@ function fillLegend(figure, look) {
 function watchLegend(figure) {
   figure.chart.on("legendselectchanged", ({ selected }) => {
     for (const button of figure.legend.querySelectorAll("button")) {
-      const shown = selected[button.textContent] !== false;
+      const name = button.dataset.series;
+      const shown = selected[name] !== false;
       button.setAttribute("aria-pressed", String(shown));
-      if (shown) figure.hidden.delete(button.textContent);
-      else figure.hidden.add(button.textContent);
+      if (shown) figure.hidden.delete(name);
+      else figure.hidden.add(name);
     }
   });
 }
@@ -174,9 +200,9 @@ function watchZoom(figure) {
     const option = {};
     axes.forEach((name, index) => {
       const { startValue, endValue } = dataZoom[index];
-      if (block[name].log || !(startValue < endValue)) return;
+      if (!(startValue < endValue)) return;
       const count = name === "x" && block.type === "chart" ? xLabelCount(block) : 5;
-      option[`${name}Axis`] = { axisLabel: edgeLabels(startValue, endValue, count) };
+      option[`${name}Axis`] = { axisLabel: edgeLabels(startValue, endValue, count, block[name].log) };
     });
     const text = JSON.stringify(option);
     if (text !== figure.edges) chart.setOption(option);
@@ -203,7 +229,7 @@ function setZoomBrush(figure, active) {
 }
 
 function watchShift() {
-  const zoomed = figures.filter((figure) => figure.kind.zooms);
+  const zoomed = figures.filter((figure) => figure.kind.cursor !== null);
   const set = (active) => zoomed.forEach((figure) => setZoomBrush(figure, active));
   window.addEventListener("keydown", ({ key, repeat }) => {
     if (key === "Shift" && !repeat) set(false);
@@ -224,7 +250,7 @@ function drawFigure(figure) {
       figure.chart.group = block.zoom_group;
       echarts.connect(block.zoom_group);
     }
-    if (kind.zooms) {
+    if (kind.cursor !== null) {
       figure.chart.getZr().on("dblclick", () => resetZoom(figure));
       watchZoom(figure);
       leaveWheelToPage(host);
@@ -232,10 +258,10 @@ function drawFigure(figure) {
     if (figure.legend !== null) watchLegend(figure);
   }
   const isShown = (name) => !figure.hidden.has(name);
-  const option = kind.option(block, look, host.clientWidth, figure.extent, isShown);
-  figure.chart.setOption(option, { replaceMerge: ["series"] });
+  figure.option = kind.option(block, look, host.clientWidth, figure.extent, isShown);
+  figure.chart.setOption(figure.option, { replaceMerge: ["series"] });
   if (figure.legend !== null) fillLegend(figure, look);
-  if (kind.zooms) setZoomBrush(figure, true);
+  if (kind.cursor !== null) setZoomBrush(figure, true);
 }
 
 /** Charts of one zoom group share the x range that covers them all. */

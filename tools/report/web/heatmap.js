@@ -184,7 +184,16 @@ function heatmapCsv(map) {
   return csvText([head, ...heatmapCells(map).map((cell) => cell.slice(0, 3))]);
 }
 
+/** What the title does not say. */
 function heatmapWords(map) {
-  const value = axisTitle(map.value_axis);
-  return `${map.title}. Map of ${value} over ${axisTitle(map.x)} and ${axisTitle(map.y)}.`;
+  return `Map of ${axisTitle(map.value_axis)} over ${axisTitle(map.x)} and ${axisTitle(map.y)}.`;
+}
+
+/** The ends of the map; all its cells are what is saved as CSV. */
+function heatmapNumbers(map) {
+  const cells = heatmapCells(map).sort((a, b) => a[2] - b[2]);
+  const row = (name, cell) => [name, cell[2], cell[0], cell[1]];
+  const ends = cells.length > 0 ? [row("lowest", cells[0]), row("highest", cells.at(-1))] : [];
+  const axes = [map.value_axis, map.x, map.y].map(({ name, unit }) => column(name, unit));
+  return { columns: [column(`Of ${cells.length} cells`, ""), ...axes], rows: ends };
 }

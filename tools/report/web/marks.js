@@ -1,4 +1,6 @@
 const kEventRow = 17;
+/** How far an event's label may stand out of the plot on its right. */
+const kBesidePlot = 16;
 
 function textWidth(text, fontSize) {
   const context = (textWidth.canvas ??= document.createElement("canvas")).getContext("2d");
@@ -38,7 +40,7 @@ function eventRows(chart, extent, plotWidth) {
   const start = scale(extent.low);
   const perUnit = plotWidth / (scale(extent.high) - start);
   const positions = chart.events.map((event) => (scale(event.x) - start) * perUnit);
-  return placeEventLabels(positions, eventWidths(chart.events), plotWidth).rows;
+  return placeEventLabels(positions, eventWidths(chart.events), plotWidth + kBesidePlot).rows;
 }
 
 /** Vertical lines with their labels above the plot; the labels are placed anew at each zoom. */
@@ -60,7 +62,7 @@ function eventSeries(chart, look, rows) {
       const positions = chart.events.map((each) => api.coord([each.x, 1])[0]);
       const x = positions[params.dataIndex];
       if (!(x >= plot.x - 0.5 && x <= plot.x + plot.width + 0.5)) return null;
-      const { places } = placeEventLabels(positions, widths, plot.x + plot.width + 16);
+      const { places } = placeEventLabels(positions, widths, plot.x + plot.width + kBesidePlot);
       const place = places[params.dataIndex];
       const color = look.levels[event.level];
       const top = plot.y - (Math.min(place.row, rows - 1) + 1) * kEventRow;
@@ -92,6 +94,12 @@ function eventSeries(chart, look, rows) {
   };
 }
 
+/** A label that would leave the plot stands beside its line. */
+function alongAlign(at, half, left, right) {
+  if (at + half > right) return "right";
+  return at - half < left ? "left" : "center";
+}
+
 /** Horizontal lines (vertical where the value axis lies) with their label at the far end. */
 function levelSeries(levels, look, alongX) {
   return {
@@ -115,7 +123,7 @@ function levelSeries(levels, look, alongX) {
         ? { x1: at, y1: plot.y, x2: at, y2: plot.y + plot.height }
         : { x1: plot.x, y1: at, x2: right, y2: at };
       const place = alongX
-        ? { x: at, y: plot.y - 5, align: at > right - 60 ? "right" : "center" }
+        ? { x: at, y: plot.y - 5, align: alongAlign(at, textWidth(label, 12) / 2, plot.x, right) }
         : { x: right - 4, y: at - plot.y < 18 ? at + 17 : at - 4, align: "right" };
       const style = {
         text: label,

@@ -6,6 +6,9 @@ const kLevelPaths = {
   neutral: '<path d="M10 9v5.2"/><path d="M10 5.6v.2"/>',
 };
 
+/** Text that a narrow column does not break: units, single words. */
+const kShortText = 12;
+
 function levelSymbol(level) {
   const holder = element("span", {});
   holder.innerHTML =
@@ -24,7 +27,8 @@ function paragraphs(text) {
   return parts.map((part) => element("p", {}, part));
 }
 
-function tableElement(table, place) {
+/** The table alone; it scrolls by itself where the window is narrower: see watchWidths(). */
+function scrollingTable(table) {
   const text = (index) => table.rows.some((row) => typeof row[index] === "string");
   const head = element("tr");
   table.columns.forEach((column, index) => {
@@ -36,10 +40,14 @@ function tableElement(table, place) {
   });
   const body = element("tbody");
   for (const row of table.rows) body.append(tableRow(row, table.columns));
-  const root = element("div", { class: "card table", "data-block": place });
-  root.append(
-    element("table", {}, element("caption", {}, table.caption), element("thead", {}, head), body),
-  );
+  const caption = element("caption", {}, element("span", {}, table.caption));
+  const grid = element("table", {}, caption, element("thead", {}, head), body);
+  const hint = element("p", { class: "scroll-hint", hidden: "" }, "Wider than shown: scroll \u2192");
+  return element("div", {}, hint, element("div", { class: "scroll" }, grid));
+}
+
+function tableElement(table, place) {
+  const root = element("div", { class: "card", "data-block": place }, scrollingTable(table));
   if (table.note !== "") root.append(element("p", { class: "remark" }, table.note));
   return root;
 }
@@ -50,10 +58,30 @@ function tableRow(row, columns) {
     const isText = typeof value === "string";
     const shown = isText ? value : formatNumber(value, columns[index].format);
     const named = index === 0 && isText;
-    const attributes = { class: isText ? "" : "number", ...(named ? { scope: "row" } : {}) };
+    const kind = isText ? (value.length <= kShortText ? "short" : "") : "number";
+    const attributes = { class: kind, ...(named ? { scope: "row" } : {}) };
     line.append(element(named ? "th" : "td", attributes, shown));
   });
   return line;
+}
+
+/** A table wider than its place says so, and takes the focus so that the arrow keys scroll it. */
+function watchWidths() {
+  const observer = new ResizeObserver((entries) => {
+    for (const { target } of entries) markWidth(target);
+  });
+  for (const scroll of document.querySelectorAll(".scroll")) observer.observe(scroll);
+}
+
+function markWidth(scroll) {
+  const wide = scroll.scrollWidth > scroll.clientWidth + 1;
+  if (wide === scroll.hasAttribute("tabindex")) return;
+  const name = `${scroll.querySelector("caption").textContent}, scrolls sideways`;
+  for (const [key, value] of Object.entries({ tabindex: "0", role: "region", "aria-label": name })) {
+    if (wide) scroll.setAttribute(key, value);
+    else scroll.removeAttribute(key);
+  }
+  scroll.previousElementSibling.hidden = !wide;
 }
 
 function keyFiguresElement(block, place) {
@@ -101,8 +129,9 @@ function sectionElement(section, index) {
 
 function headerElement(data) {
   const words = element("p", { id: "verdict-words" }, data.verdict.words);
-  const verdict = element("div", { class: `verdict ${data.verdict.level}`, role: "status" });
-  verdict.append(levelSymbol(data.verdict.level), words);
+  const verdict = element("div", { class: `verdict ${data.verdict.level}` });
+  const level = hiddenText(kLevelWords[data.verdict.level]);
+  verdict.append(levelSymbol(data.verdict.level), level, words);
   const header = element("header", {}, element("h1", {}, data.title));
   if (data.subtitle !== "") header.append(element("p", { class: "subtitle" }, data.subtitle));
   header.append(verdict);
@@ -121,6 +150,7 @@ function contentsElement(sections) {
 
 function footerElement(data) {
   const footer = element("footer");
+  footer.append(element("p", { id: "spoken", class: "hidden-text", role: "status" }));
   const claim = `offnominal ${data.version}, diagnostic aid, claims no SIL/PL`;
   footer.append(element("p", {}, claim));
   if (data.command_line !== "") {
@@ -131,7 +161,8 @@ function footerElement(data) {
       "p",
       { class: "hint" },
       "Charts: drag to zoom, shift-drag to move, ctrl-wheel to zoom, double click to reset; " +
-        "click a name in a legend to hide it. Drawn with Apache ECharts.",
+        "click a name in a legend to hide it. A chart that has the focus takes keys: arrows show " +
+        "values, + and - zoom, shift and an arrow moves, 0 resets. Drawn with Apache ECharts.",
     ),
   );
   return footer;
@@ -143,6 +174,7 @@ function buildPage() {
   data.sections.forEach((section, index) => main.append(sectionElement(section, index)));
   document.getElementById("page").append(headerElement(data), main, footerElement(data));
   drawAll();
+  watchWidths();
 }
 
 buildPage();

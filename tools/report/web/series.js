@@ -41,7 +41,7 @@ function bandSeries(common, series, color, x, y) {
         children: pieces.map((points) => ({
           type: "polygon",
           shape: { points: outline(points) },
-          style: { fill: withOpacity(color, 0.24), stroke: withOpacity(color, 0.5), lineWidth: 0.6 },
+          style: { fill: withOpacity(color, 0.24), stroke: color, lineWidth: 0.6 },
         })),
       };
     },
@@ -93,8 +93,10 @@ function drawnSeries(series, index, color, chart) {
       data,
       progressive: false,
       progressiveThreshold: Infinity,
-      symbolSize: data.length > 600 ? 3.5 : data.length > 100 ? 5 : 7,
-      itemStyle: { color, opacity: data.length > 600 ? 0.45 : 0.8, borderWidth: 0 },
+      large: true,
+      largeThreshold: 600,
+      symbolSize: data.length > 600 ? 2.5 : data.length > 100 ? 4 : 7,
+      itemStyle: { color, opacity: 1, borderWidth: 0 },
     };
   }
   return {

@@ -7,7 +7,7 @@ const kLightLook = {
   ink: "#17202a",
   soft: "#52606d",
   rule: "#e4e8ec",
-  axis: "#8b97a3",
+  axis: "#7d8995",
   blank: "#dde1e6",
   tip: "rgba(255,255,255,0.97)",
   levels: { good: "#00734f", warn: "#9a5b00", bad: "#b3261e", neutral: "#44576a" },
@@ -16,9 +16,9 @@ const kLightLook = {
     model: "#0072b2",
     residual: "#d55e00",
     threshold: "#aa3377",
-    faint: "#9aa5b1",
+    faint: "#7f8a96",
   },
-  cycle: ["#0072b2", "#d55e00", "#009e73", "#aa3377", "#b08900", "#4aa6dd", "#6b5b95"],
+  cycle: ["#0072b2", "#d55e00", "#009e73", "#aa3377", "#a07c00", "#2f93cc", "#6b5b95"],
   sequential: ["#f4fac4", "#c7e9b4", "#7fcdbb", "#41b6c4", "#1d91c0", "#225ea8", "#0c2c84"],
   diverging: ["#0b4f8a", "#4f93c4", "#a9cde4", "#f5f5f3", "#f4bf96", "#d97a33", "#8f3d00"],
 };
@@ -27,7 +27,7 @@ const kDarkLook = {
   ink: "#e6eaee",
   soft: "#a0acb8",
   rule: "#29313a",
-  axis: "#66727e",
+  axis: "#707c88",
   blank: "#0d1115",
   tip: "rgba(30,37,45,0.97)",
   levels: { good: "#4bc99b", warn: "#e9b04f", bad: "#ff8f80", neutral: "#a9b8c6" },
@@ -107,7 +107,9 @@ function labelStep(span, count) {
 }
 
 /** The ends of an axis are labelled only where they fall in with the other labels. */
-function edgeLabels(low, high, count) {
+function edgeLabels(low, high, count, log) {
+  const isPower = (value) => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-6;
+  if (log) return { showMinLabel: isPower(low), showMaxLabel: isPower(high) };
   const step = labelStep(high - low, count);
   const regular = (value) => Math.abs(value / step - Math.round(value / step)) < 1e-6;
   return { showMinLabel: regular(low), showMaxLabel: regular(high) };
@@ -115,8 +117,8 @@ function edgeLabels(low, high, count) {
 
 /** The same as the part of an axis' option that says so. */
 function edgeLabelOption(axis, low, high, count, look) {
-  if (axis.log || low === null || high === null) return {};
-  return { axisLabel: { ...axisLabelStyle(look), ...edgeLabels(low, high, count) } };
+  if (low === null || high === null) return {};
+  return { axisLabel: { ...axisLabelStyle(look), ...edgeLabels(low, high, count, axis.log) } };
 }
 
 /** What all numeric axes have in common. */

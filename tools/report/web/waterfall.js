@@ -1,4 +1,10 @@
 const kWaterfallRow = 46;
+/** In a narrower picture each label stands above its bar, which is thinner. */
+const kWaterfallNarrow = 480;
+
+function waterfallBar(width) {
+  return width < kWaterfallNarrow ? { half: 9, below: 11 } : { half: 13, below: 0 };
+}
 
 function waterfallHeight(waterfall) {
   return waterfall.steps.length * kWaterfallRow + 76;
@@ -18,14 +24,21 @@ function waterfallFalls(steps) {
 }
 
 function waterfallOption(waterfall, look, width) {
+  const narrow = width < kWaterfallNarrow;
   const labels = waterfallLabelWidth(waterfall, width);
   const value = { ...axisStyle(waterfall.value_axis, look) };
-  const series = [waterfallSeries(waterfall, look)];
+  const series = [waterfallSeries(waterfall, look, waterfallBar(width))];
   if (waterfall.levels.length > 0) series.push(levelSeries(waterfall.levels, look, true));
   return {
     animation: false,
     textStyle: { fontFamily: kFontFamily },
-    grid: { left: labels + 22, right: 128, top: 24, bottom: 50, outerBoundsMode: "none" },
+    grid: {
+      left: narrow ? 8 : labels + 22,
+      right: stepWordsRoom(waterfall),
+      top: 24,
+      bottom: 50,
+      outerBoundsMode: "none",
+    },
     tooltip: {
       ...tooltipStyle(look),
       trigger: "item",
@@ -49,9 +62,14 @@ function waterfallOption(waterfall, look, width) {
         color: look.ink,
         fontSize: 13,
         interval: 0,
-        width: labels,
-        overflow: "break",
         lineHeight: 16,
+        // Each key in both cases: an option is merged into the one before it.
+        inside: narrow,
+        margin: narrow ? 4 : 8,
+        verticalAlign: narrow ? "bottom" : "middle",
+        padding: narrow ? [0, 0, 1, 0] : 0,
+        width: narrow ? null : labels,
+        overflow: narrow ? "none" : "break",
       },
     },
     series,
@@ -71,7 +89,7 @@ function waterfallTip(waterfall, index) {
   return `<table><caption>${escapeHtml(step.label)}</caption>${body.join("")}</table>`;
 }
 
-function waterfallSeries(waterfall, look) {
+function waterfallSeries(waterfall, look, thickness) {
   const falls = waterfallFalls(waterfall.steps);
   return {
     id: "steps",
@@ -81,18 +99,18 @@ function waterfallSeries(waterfall, look) {
     dimensions: ["step", "value", "zero"],
     encode: { x: [1, 2], y: 0 },
     clip: false,
-    renderItem: (params, api) => waterfallShapes(waterfall, falls, look, params, api),
+    renderItem: (params, api) => waterfallShapes(waterfall, falls, look, thickness, params, api),
   };
 }
 
-function waterfallShapes(waterfall, falls, look, params, api) {
+function waterfallShapes(waterfall, falls, look, { half, below }, params, api) {
   const index = params.dataIndex;
   const { value } = waterfall.steps[index];
   if (value === null) return null;
   const fall = falls[index];
-  const [zero, middle] = api.coord([0, index]);
+  const [zero, center] = api.coord([0, index]);
+  const middle = center + below;
   const end = api.coord([value, index])[0];
-  const half = 13;
   const bar = (from, to, style) => ({
     type: "rect",
     shape: { x: Math.min(from, to), y: middle - half, width: Math.abs(to - from), height: 2 * half },
@@ -106,41 +124,39 @@ function waterfallShapes(waterfall, falls, look, params, api) {
   const last = index === waterfall.steps.length - 1;
   const solid = last ? look.tones.model : withOpacity(look.tones.model, 0.72);
   const children = [bar(zero, end, { fill: solid })];
-  const shown = formatNumber(value, waterfall.format);
   let labelAt = end;
   if (fall !== null && fall !== 0) {
     const before = api.coord([value + fall, index])[0];
     const color = fall > 0 ? look.levels.good : look.levels.bad;
     const style = { fill: withOpacity(color, 0.13), stroke: color, lineWidth: 1, lineDash: [3, 3] };
     children.push(bar(end, before, style));
-    children.push(connector(before, middle - half, look));
+    if (below === 0) children.push(connector(before, middle - half, look));
     labelAt = Math.max(end, before);
   }
-  const change = fall === null ? "" : ` (${fall > 0 ? "-" : "+"}${formatChange(fall, waterfall)})`;
+  const [shown, change] = stepWords(waterfall, falls, index);
   const rich = {
     v: { fontWeight: 600, fontSize: 13, fill: look.ink, fontFamily: kFontFamily },
     c: { fontSize: 12, fill: look.soft, fontFamily: kFontFamily },
   };
   const content = `{v|${shown}}{c|${change}}`;
-  const room = params.coordSys.x + params.coordSys.width + 124 - labelAt;
-  const inside = textWidth(shown + change, 13) + 12 > room;
-  children.push(
-    inside
-      ? text(content, labelAt - 8, "right", { rich, ...onBar(fall, look, rich) })
-      : text(content, labelAt + 8, "left", { rich }),
-  );
+  children.push(text(content, labelAt + 8, "left", { rich }));
   return { type: "group", children };
 }
 
-/** A label that finds no room beside its bar stands on it: readable on the full colour, too. */
-function onBar(fall, look, rich) {
-  if (fall !== null && fall > 0) return {};
-  const fill = look.surface;
-  return { rich: { v: { ...rich.v, fill }, c: { ...rich.c, fill } } };
+/** What stands beside a bar: its value, and what the step changed. */
+function stepWords({ steps, format }, falls, index) {
+  const fall = falls[index];
+  const change = fall === null ? "" : formatNumber(Math.abs(fall), format);
+  return [formatNumber(steps[index].value, format), change && ` (${fall > 0 ? "-" : "+"}${change})`];
 }
 
-function formatChange(fall, waterfall) {
-  return formatNumber(Math.abs(fall), waterfall.format);
+/** Room for the widest of these words beside the longest bar: on a bar they could not be read. */
+function stepWordsRoom(waterfall) {
+  const falls = waterfallFalls(waterfall.steps);
+  const widths = waterfall.steps.map((_, index) =>
+    textWidth(stepWords(waterfall, falls, index).join(""), 14),
+  );
+  return Math.ceil(Math.max(...widths)) + 12;
 }
 
 /** Ties what was taken away to the end of the bar above. */
@@ -158,9 +174,27 @@ function waterfallCsv(waterfall) {
   return csvText([head, ...waterfall.steps.map((step) => [step.label, step.value])]);
 }
 
+/** What the title does not say. */
 function waterfallWords(waterfall) {
-  const steps = waterfall.steps.map(
-    (step) => `${step.label} ${formatNumber(step.value, waterfall.format)}`,
-  );
-  return `${waterfall.title}. ${axisTitle(waterfall.value_axis)} step by step: ${steps.join("; ")}.`;
+  const { steps, value_axis, format } = waterfall;
+  const name = (step) => `${step.label} ${formatNumber(step.value, format)}`;
+  const ends = [steps[0], steps.at(-1)].map(name);
+  const words = steps.length > 1 ? `${steps.length} steps, from ${ends.join(" to ")}` : ends[0];
+  return `${axisTitle(value_axis)} step by step: ${words}.`;
+}
+
+function waterfallNumbers({ steps, value_axis, format }) {
+  const falls = waterfallFalls(steps);
+  return {
+    columns: [
+      column("Step", ""),
+      { name: value_axis.name, unit: value_axis.unit, format },
+      { name: "Change", unit: value_axis.unit, format },
+    ],
+    rows: steps.map((step, index) => [
+      step.label,
+      step.value,
+      falls[index] === null ? null : -falls[index],
+    ]),
+  };
 }
