@@ -1,8 +1,10 @@
-# cmake -DWAY=find_package|add_subdirectory -DSOURCE=<checkout> -DWORK=<folder, wiped> ...
+# cmake -DWAY=find_package|add_subdirectory -DSOURCE=<checkout> -DWORK=<folder, wiped> -DLINUX=ON|OFF ...
 #
 # Installs the headers into an empty prefix as a firmware project would (no tools, no tests), then
 # builds and runs tests/package/foreign against it; or adds the checkout to it as a subfolder. With
-# -DCOMMAND_FILE=<offnominal> also its joint controller, whose model that command writes.
+# -DCOMMAND_FILE=<offnominal> also its joint controller, whose model that command writes. -DLINUX=ON:
+# with the libraries for Linux, and every installed header is compiled by itself. Either way what is
+# installed is checked: no header without its target.
 cmake_minimum_required(VERSION 3.22)
 
 include("${CMAKE_CURRENT_LIST_DIR}/run.cmake")
@@ -18,10 +20,17 @@ file(REMOVE_RECURSE "${WORK}")
 
 if(WAY STREQUAL "find_package")
   run("${CMAKE_COMMAND}" -S "${SOURCE}" -B "${WORK}/core" ${common} -DOFFNOMINAL_BUILD_TOOLS=OFF
-      -DOFFNOMINAL_BUILD_TESTS=OFF -DOFFNOMINAL_BUILD_BENCH=OFF)
+      -DOFFNOMINAL_BUILD_TESTS=OFF -DOFFNOMINAL_BUILD_BENCH=OFF -DOFFNOMINAL_BUILD_LINUX=${LINUX})
   run("${CMAKE_COMMAND}" --build "${WORK}/core")
   run("${CMAKE_COMMAND}" --install "${WORK}/core" --prefix "${WORK}/prefix")
   set(where "-DCMAKE_PREFIX_PATH=${WORK}/prefix")
+  include("${CMAKE_CURRENT_LIST_DIR}/installed.cmake")
+  check_installed("${WORK}/prefix" "${SOURCE}")
+  if(COMMAND_FILE AND LINUX)
+    file(WRITE "${WORK}/installed.cmake"
+         "set(_installed_headers \"${headers}\")\nset(_installed_targets \"${targets}\")\n")
+    list(APPEND where "-DINSTALLED=${WORK}/installed.cmake")
+  endif()
 else()
   set(where "-DOFFNOMINAL_FOLDER=${SOURCE}")
 endif()
@@ -43,6 +52,14 @@ if(COMMAND_FILE)
   message(STATUS "${output}")
   if(NOT output MATCHES "joint1 is held with 44.1")
     message(FATAL_ERROR "expected the words `joint1 is held with 44.1`")
+  endif()
+endif()
+
+# As a subfolder the headers alone, unless asked for.
+if(WAY STREQUAL "find_package" AND LINUX)
+  run("${WORK}/foreign/on_linux")
+  if(NOT output MATCHES "a tick on Linux")
+    message(FATAL_ERROR "expected the words `a tick on Linux`, found ${output}")
   endif()
 endif()
 

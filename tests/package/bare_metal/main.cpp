@@ -22,7 +22,9 @@ constinit offnominal::controller::StaticObject<Firmware> firmware;
 [[noreturn]] void run() {
   firmware.make(bus.make());
   if (firmware->start() != offnominal::Status::kOk) halt();
-  const auto at_rest = [](float) { return offnominal::Reference<robot_model::kJoints, float>{}; };
+  const auto at_rest = [](double /*time_s*/) {
+    return offnominal::Reference<robot_model::kJoints, float>{};
+  };
   for (;;) {
     firmware->tick(bus->now(), 0, at_rest);
     if (firmware->data().state == hal::ControllerState::kPassive) {

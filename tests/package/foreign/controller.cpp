@@ -43,9 +43,9 @@ bool send_readings(Net::Port& bus, std::uint8_t counter,
 }  // namespace
 
 int main() {
-  Controller::Config config;
-  config.monitor = robot_model::kMonitorConfig<float>;
-  config.gains = robot_model::kComputedTorqueGains<float>;
+  const Controller::Config config = offnominal::controller::controller_config(
+      robot_model::kMonitorConfig<float>, robot_model::kComputedTorqueGains<float>,
+      robot_model::kArmingConfig<float>);
   static Controller controller;
   if (Controller::create(config, controller) != offnominal::Status::kOk) return 2;
 
@@ -54,13 +54,14 @@ int main() {
   Net::Port bus = net.port(1);
   hal::ProtectedDrives<kJoints> drives({}, {}, hal::FrameFormat::kClassic);
   static Controller::Data data;
-  const auto at_rest = [](float) { return offnominal::Reference<robot_model::kJoints, float>{}; };
+  const auto at_rest = [](double) { return offnominal::Reference<robot_model::kJoints, float>{}; };
   std::array<float, kJoints> torque_nm{};
   for (std::uint8_t tick = 1; tick <= 100; ++tick) {
     net.set_time(1000 * tick);
     if (!send_readings(arm, tick, torque_nm)) return 2;
     controller.step(net.now(), 0, at_rest, bus, drives, data);
-    if (tick == 20 && !controller.arm(data)) return 2;
+    using offnominal::controller::Fault;
+    if (tick == 20 && controller.arm(at_rest, data) != Fault::kNone) return 2;
     for (std::size_t j = 0; j < kJoints; ++j) torque_nm[j] = data.commands[j].torque;
   }
   if (data.state != hal::ControllerState::kArmed || data.output.detector.latched) return 1;

@@ -25,6 +25,6 @@ int main() {
   if (!output.detector.latched) return 1;
   std::printf("offnominal %d.%d.%d: fault after %.3f s\n", offnominal::kVersionMajor,
               offnominal::kVersionMinor, offnominal::kVersionPatch,
-              static_cast<double>(output.detector.detection_time_s));
+              output.detector.detection_time_s);
   return 0;
 }
