@@ -117,12 +117,14 @@ void create(const char* scenario, Scalar weight_radius) {
   Controller::Config config = controller::controller_config(
       robot_model::kMonitorConfig<Scalar>, robot_model::kComputedTorqueGains<Scalar>,
       robot_model::kArmingConfig<Scalar>);
-  config.arming.speed.fill(Scalar(1000));  // whatever the first sample is
+  // Whatever the first sample is, and the torque is in at once: the drives here give what the path
+  // needs, not what they are told.
+  config.arming.speed.fill(Scalar(1000));
+  config.arming.torque_rate.fill(Scalar(1e9));
   // Also of a robot file that says nothing of its control.
   for (std::size_t j = 0; j < kCount; ++j) {
     Scalar& limit = config.monitor.chain.joints[j].max_torque;
     limit = std::min(limit, Scalar(1e6));
-    config.arming.torque_rate[j] = std::min(config.arming.torque_rate[j], Scalar(1e9));
     if (config.gains.kp[j] <= 0) config.gains.kp[j] = 1;
     if (config.gains.kd[j] <= 0) config.gains.kd[j] = 1;
   }
