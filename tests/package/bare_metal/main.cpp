@@ -28,7 +28,7 @@ constinit offnominal::controller::StaticObject<Firmware> firmware;
   for (;;) {
     firmware->tick(bus->now(), 0, at_rest);
     if (firmware->data().state == hal::ControllerState::kPassive) {
-      static_cast<void>(firmware->arm());
+      static_cast<void>(firmware->arm(at_rest));  // a refusal is asked again in the next tick
     }
     asm volatile("wfi");  // the timer's interrupt
   }
