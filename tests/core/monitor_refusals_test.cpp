@@ -14,6 +14,9 @@
 namespace offnominal::test {
 namespace {
 
+// Just above what a measured torque may be, in float too.
+constexpr double kBeyondMargin = (1 + kTorqueMargin) * 1.0001;
+
 template <typename Scalar>
 struct BadSample {
   std::string name;
@@ -47,7 +50,8 @@ std::vector<BadSample<Scalar>> bad_samples() {
                      Status::kPositionOutOfRange});
       all.push_back({"velocity" + to_bad, [=](Sample& s) { s.dq[joint] = beyond(kMaxVelocity); },
                      Status::kVelocityOutOfRange});
-      all.push_back({"torque" + to_bad, [=](Sample& s) { s.tau[joint] = beyond(kMaxTorque); },
+      all.push_back({"torque" + to_bad,
+                     [=](Sample& s) { s.tau[joint] = beyond(kMaxTorque * kBeyondMargin); },
                      Status::kTorqueOutOfRange});
     }
   }
@@ -94,6 +98,14 @@ TYPED_TEST(MonitorRefusals, ASampleAtItsLimitsIsBelieved) {
   sample.q << static_cast<TypeParam>(kMaxPosition), static_cast<TypeParam>(-kMaxPosition);
   sample.dq << static_cast<TypeParam>(kMaxVelocity), static_cast<TypeParam>(-kMaxVelocity);
   sample.tau << static_cast<TypeParam>(kMaxTorque), static_cast<TypeParam>(-kMaxTorque);
+  EXPECT_EQ(this->monitor.reset(sample, this->state), Status::kOk);
+}
+
+// What is commanded has its limit; a drive at it gives a little more.
+TYPED_TEST(MonitorRefusals, AMeasuredTorqueIsBelievedALittleBeyondItsLimit) {
+  JointSample<kArmJoints, TypeParam> sample;
+  const double most = kMaxTorque * (1 + kTorqueMargin) * 0.9999;
+  sample.tau << static_cast<TypeParam>(most), static_cast<TypeParam>(-most);
   EXPECT_EQ(this->monitor.reset(sample, this->state), Status::kOk);
 }
 

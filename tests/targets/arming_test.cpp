@@ -130,6 +130,34 @@ TEST(Arming, JudgesAgainAtTheFirstSample) {
   EXPECT_EQ(joint.drive.heartbeat.fault, 185);
 }
 
+// GIVEN a run WHEN it is disarmed and armed again without a tick between THEN the next one knows
+// nothing of it: it is judged at its first sample, and its torque and its ramp begin anew.
+TEST(Arming, OfARunThatWasJustDisarmedBeginsAnew) {
+  JointOnDesk pushed;
+  ASSERT_EQ(pushed.start(), Fault::kNone);
+  pushed.ticks(100);
+  ASSERT_TRUE(pushed.controller.disarm(*pushed.data));
+  ASSERT_EQ(pushed.arm(), Fault::kNone);
+  pushed.q = 1;
+  pushed.tick();
+  EXPECT_EQ(pushed.data->fault, Fault::kReferenceFarFromArm);
+  EXPECT_EQ(pushed.mode(), DriveMode::kOff);
+
+  auto config = JointOnDesk::config();
+  config.monitor.chain.gravity_m_s2 = {0, -9.81F, 0};
+  JointOnDesk joint(config);
+  joint.push_nm = -9.81 * JointOnDesk::kInertia;
+  joint.reference_at = [](double) { return at(0.04F); };
+  ASSERT_EQ(joint.start(), Fault::kNone);
+  joint.ticks(2000);
+  ASSERT_GT(joint.torque(), 19.0F);
+  ASSERT_TRUE(joint.controller.disarm(*joint.data));
+  ASSERT_EQ(joint.arm(), Fault::kNone);
+  joint.tick();
+  EXPECT_LE(joint.torque(), 2.001F) << "by the torque rate from 0";
+  EXPECT_NEAR(static_cast<double>(joint.data->ramp.q[0]), 0.04 - joint.q, 1e-3);
+}
+
 // GIVEN a reference at the window's edge WHEN it is armed THEN the torque grows no faster than its
 // rate, stays far below its limit, and the joint comes to the reference in the ramp's time.
 TEST(Arming, BringsTheArmToItsReferenceGently) {
@@ -212,6 +240,135 @@ TEST(Arming, TimeAndWatchWaitUntilTheTorqueIsIn) {
   EXPECT_EQ(joint.data->state, hal::ControllerState::kArmed);
 }
 
+JointOnDesk::Config under_gravity(float torque_rate) {
+  auto config = JointOnDesk::config();
+  config.monitor.chain.gravity_m_s2 = {0, -9.81F, 0};
+  config.arming.torque_rate.fill(torque_rate);
+  return config;
+}
+
+// GIVEN a torque that comes in too slowly WHEN the arm falls meanwhile THEN that is a fault as soon
+// as it has left the window of its arming: nothing is watched until the torque is in.
+TEST(Arming, AnArmThatFallsBeforeItsTorqueIsInIsAFault) {
+  for (const double weight_nm : {-19.62, 19.62}) {
+    JointOnDesk joint(under_gravity(0.01F));
+    joint.push_nm = weight_nm;
+    ASSERT_EQ(joint.start(), Fault::kNone);
+    double furthest = 0;
+    int ticks = 0;
+    for (; joint.data->state == ControllerState::kArmed && ticks < 3000; ++ticks) {
+      furthest = std::max(furthest, std::fabs(joint.q));
+      joint.tick();
+    }
+    EXPECT_EQ(joint.data->fault, Fault::kArmNotHeld);
+    EXPECT_LE(furthest, 0.05);
+    EXPECT_GT(std::fabs(joint.q), 0.05);
+    EXPECT_EQ(joint.data->run_ticks, 0U);
+    EXPECT_EQ(joint.mode(), DriveMode::kOff);
+    EXPECT_EQ(joint.drive.heartbeat.fault, 172);
+  }
+}
+
+// GIVEN a brake that stays closed WHEN the torque would take half a minute THEN it is given up
+// after ten seconds.
+TEST(Arming, ATorqueThatDoesNotComeInHasAnEnd) {
+  JointOnDesk joint(under_gravity(0.5F));
+  joint.brake_at = 0;
+  ASSERT_EQ(joint.start(), Fault::kNone);
+  // And 20 ms for the drives to follow, and the age of what they say.
+  joint.ticks(10'000 + 22);
+  ASSERT_EQ(joint.data->state, ControllerState::kArmed);
+  ASSERT_EQ(joint.data->run_ticks, 0U);
+  joint.ticks(3);
+  EXPECT_EQ(joint.data->fault, Fault::kArmNotHeld);
+}
+
+// An arm that sinks while its weight is taken over is brought to rest before time begins; one that
+// is shaken on and on has twice the way of the torque, 0.1 s, and the ramp's time.
+TEST(Arming, TimeBeginsWithAnArmAtRest) {
+  JointOnDesk sinking(under_gravity(500));
+  sinking.push_nm = -19.62;
+  ASSERT_EQ(sinking.start(), Fault::kNone);
+  double fastest = 0;
+  int ticks = 0;
+  for (; sinking.data->run_ticks == 0 && ticks < 1000; ++ticks) {
+    sinking.tick();
+    ASSERT_EQ(sinking.data->state, ControllerState::kArmed);
+    fastest = std::max(fastest, std::fabs(sinking.dq));
+  }
+  EXPECT_GT(fastest, 0.1);
+  EXPECT_LT(std::fabs(static_cast<double>(sinking.data->sample.dq[0])), 0.05);
+  EXPECT_GT(ticks, 40) << "the torque is in";
+  const double begin = sinking.q;
+  EXPECT_LT(begin, -0.003);
+  EXPECT_NEAR(static_cast<double>(sinking.data->ramp.q[0]), -begin, 1e-3) << "from there on";
+  sinking.ticks(1500);
+  EXPECT_NEAR(sinking.q, 0, 1e-3) << "where it was armed";
+  EXPECT_FALSE(sinking.data->output.detector.latched);
+
+  auto config = JointOnDesk::config();
+  config.arming.torque_rate.fill(1000);
+  JointOnDesk shaken(config);
+  ASSERT_EQ(shaken.start(), Fault::kNone);
+  const auto shake = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      shaken.q = 0;
+      shaken.dq = 0.06;
+      shaken.tick();
+    }
+  };
+  shaken.tick();
+  shake(1200);
+  ASSERT_EQ(shaken.data->state, ControllerState::kArmed);
+  ASSERT_EQ(shaken.data->run_ticks, 0U);
+  shake(30);
+  EXPECT_EQ(shaken.data->fault, Fault::kArmNotHeld);
+}
+
+// GIVEN a drive that gives torque and says so late WHEN the reference begins with an acceleration
+// THEN the arm stays where it is until time begins.
+TEST(Arming, HoldsTheArmUntilTheDriveSaysThatItFollows) {
+  auto config = JointOnDesk::config();
+  config.time_to_follow_us = 300'000;
+  JointOnDesk joint(config);
+  joint.reference_at = [](double time_s) {
+    return at(static_cast<float>(0.3 * (1 - std::cos(3 * time_s))),
+              static_cast<float>(0.9 * std::sin(3 * time_s)),
+              static_cast<float>(2.7 * std::cos(3 * time_s)));
+  };
+  joint.tells_mode = false;
+  ASSERT_EQ(joint.start(), Fault::kNone);
+  for (int i = 0; i < 250; ++i) {
+    joint.tick();
+    ASSERT_EQ(joint.data->state, ControllerState::kArmed);
+    ASSERT_EQ(joint.torque(), 0.0F) << i;
+  }
+  EXPECT_EQ(joint.q, 0.0);
+  joint.tells_mode = true;
+  joint.ticks(1000);
+  EXPECT_EQ(joint.data->run_ticks, 1000U);
+  EXPECT_NEAR(joint.q, 0.3 * (1 - std::cos(3.0)), 1e-2);
+}
+
+// What it moves when it is armed fades out meanwhile; it is not stopped with a jerk.
+TEST(Arming, AMovingArmComesToRestUntilTheDriveSaysThatItFollows) {
+  auto config = JointOnDesk::config();
+  config.time_to_follow_us = 3'000'000;
+  config.arming.speed.fill(0.2F);
+  JointOnDesk joint(config);
+  joint.dq = 0.15;
+  joint.tells_mode = false;
+  ASSERT_EQ(joint.start(), Fault::kNone);
+  const double begin = joint.q;
+  for (int i = 0; i < 1500; ++i) {
+    joint.tick();
+    ASSERT_EQ(joint.data->state, ControllerState::kArmed) << name_of(joint.data->fault);
+    ASSERT_LT(std::fabs(joint.torque()), 2.5F) << "0.15 rad/s in 1 s; at once it would be 6";
+  }
+  EXPECT_NEAR(joint.q, begin, 1e-3);
+  EXPECT_NEAR(joint.dq, 0, 1e-3);
+}
+
 TEST(Arming, AConfigurationThatDoesNotSayHowIsRefused) {
   JointOnDesk::Controller controller;
   const auto refused = [&](auto&& change) {
@@ -225,6 +382,9 @@ TEST(Arming, AConfigurationThatDoesNotSayHowIsRefused) {
   EXPECT_TRUE(refused([](Config& config) { config.arming.speed[0] = -1; }));
   EXPECT_TRUE(refused([](Config& config) { config.arming.torque_rate[0] = INFINITY; }));
   EXPECT_TRUE(refused([](Config& config) { config.arming.ramp_s = NAN; }));
+  EXPECT_TRUE(refused([](Config& config) { config.arming.ramp_s = 0; }));
+  EXPECT_TRUE(refused([](Config& config) { config.arming.ramp_s = 0.009F; })) << "9 periods";
+  EXPECT_FALSE(refused([](Config& config) { config.arming.ramp_s = 0.01F; }));
   EXPECT_TRUE(refused([](Config& config) { config.most_position = 0; }));
   EXPECT_FALSE(refused([](Config&) {}));
 }

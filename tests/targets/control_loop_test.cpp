@@ -91,6 +91,105 @@ TEST(ControlLoop, ManyLateTicksInARowAreAFault) {
   EXPECT_LT(report.ticks, 200U) << "it ends 0.1 s after the fault";
 }
 
+// GIVEN a loop that is to arm by itself WHEN that is refused for good, and the arm comes to lie
+// right in one of the last ticks, THEN it is not armed any more.
+TEST(ControlLoop, NothingArmsOnceARefusalHasEndedIt) {
+  LoopOnBus loop;
+  loop.reference_at = [&](double time_s) {
+    Reference<2, float> reference = ArmOnBus::paper_reference(time_s);
+    if (loop.panel.refusal.load() == Fault::kNone) reference.q[0] += 1;
+    return reference;
+  };
+  const realtime::LoopReport report = loop.run({.arm_when_passive = true});
+  EXPECT_EQ(report.refusal, Fault::kReferenceFarFromArm);
+  EXPECT_EQ(loop.data->state, ControllerState::kPassive);
+  EXPECT_FALSE(loop.plant.started());
+}
+
+// GIVEN the end is asked for WHEN the wish to arm comes before, with it or after it, or every joint
+// is heard in one of the last ticks, THEN no drive is told to give torque.
+TEST(ControlLoop, NothingArmsOnceItsEndIsAskedFor) {
+  for (const int asked_to_arm : {50, 51, 52, 54}) {
+    LoopOnBus loop;
+    loop.timer.before_tick = [&](int tick) {
+      if (tick == asked_to_arm) loop.panel.arm.store(true);
+      if (tick == 50) loop.panel.end.store(true);
+    };
+    const realtime::LoopReport report = loop.run({});
+    EXPECT_EQ(report.state, ControllerState::kPassive) << asked_to_arm;
+    EXPECT_EQ(loop.data->state, ControllerState::kPassive) << asked_to_arm;
+    EXPECT_FALSE(loop.plant.started()) << asked_to_arm;
+  }
+  for (const int end : {1, 2, 3, 4}) {
+    LoopOnBus loop;
+    loop.timer.before_tick = [&](int tick) {
+      if (tick == end) loop.panel.end.store(true);
+    };
+    static_cast<void>(loop.run({.arm_when_passive = true}));
+    EXPECT_NE(loop.data->state, ControllerState::kArmed) << end;
+    EXPECT_FALSE(loop.plant.started()) << end;
+  }
+}
+
+// GIVEN a fault with drives that damp WHEN the program ends THEN they are told "off" all the same,
+// and nobody clears the fault any more.
+TEST(ControlLoop, LeavesTheDrivesOffWhateverTheSafeMode) {
+  auto config = ArmOnBus::config(false);
+  config.safe_mode = hal::DriveMode::kDamping;
+  LoopOnBus loop(config);
+  hal::DriveMode before = hal::DriveMode::kOff;
+  loop.timer.before_tick = [&](int tick) {
+    if (tick > 100 && tick < 111) loop.timer.late_ticks = 1;
+    if (tick == 150) before = loop.plant.drives().mode(0);
+    if (tick == 150) loop.panel.end.store(true);
+    if (tick == 151) loop.panel.clear.store(true);
+  };
+  const realtime::LoopReport report = loop.run({.arm_when_passive = true});
+  EXPECT_EQ(report.fault, Fault::kOverrun);
+  EXPECT_EQ(before, hal::DriveMode::kDamping);
+  EXPECT_EQ(loop.data->state, ControllerState::kFault);
+  EXPECT_EQ(loop.plant.drives().mode(0), hal::DriveMode::kOff);
+  EXPECT_EQ(loop.plant.drives().mode(1), hal::DriveMode::kOff);
+}
+
+// GIVEN a fault in one of the last ticks WHEN its safe mode is to damp THEN it is "off" as well.
+TEST(ControlLoop, LeavesTheDrivesOffAfterAFaultInItsLastTicks) {
+  auto config = ArmOnBus::config(false);
+  config.safe_mode = hal::DriveMode::kDamping;
+  LoopOnBus loop(config);
+  loop.timer.before_tick = [&](int tick) {
+    if (tick == 100) loop.panel.end.store(true);
+    loop.timer.plant_runs = tick < 102;
+  };
+  static_cast<void>(loop.run({.arm_when_passive = true}));
+  EXPECT_EQ(loop.data->fault, Fault::kEncoderSilent);
+  EXPECT_EQ(loop.data->commands[0].mode, hal::DriveMode::kOff);
+}
+
+// GIVEN a loop that is to arm once by itself WHEN there is a fault before, and somebody clears it,
+// THEN it stays passive until it is asked to arm.
+TEST(ControlLoop, AFaultEndsTheWishToArmByItself) {
+  LoopOnBus loop;
+  std::vector<ControllerState> states;
+  loop.timer.before_tick = [&](int tick) {
+    if (tick == 2) {
+      hal::Record record{};
+      using hal::MessageKind;
+      static_cast<void>(
+          encode(hal::EmergencyStop{7, 0}, 0, data_id_of(MessageKind::kEmergencyStop, 7), record));
+      loop.send(frame_of(MessageKind::kEmergencyStop, 7, record));
+    }
+    if (tick % 50 == 0) states.push_back(loop.panel.state.load());
+    if (tick == 50) loop.panel.clear.store(true);
+    if (tick == 100) loop.panel.arm.store(true);
+    if (tick == 150) loop.panel.end.store(true);
+  };
+  const realtime::LoopReport report = loop.run({.arm_when_passive = true});
+  using S = ControllerState;
+  EXPECT_EQ(report.fault, Fault::kEmergencyStop);
+  EXPECT_EQ(states, (std::vector{S::kFault, S::kPassive, S::kArmed}));
+}
+
 TEST(ControlLoop, AFaultIsClearedAndArmedAgainOnlyWhenAskedTo) {
   auto config = ArmOnBus::config(false);
   config.arming.speed.fill(20);  // the arm falls meanwhile, and is caught where it is

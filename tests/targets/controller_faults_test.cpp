@@ -94,7 +94,7 @@ TEST(ControllerFaults, ABusThatTakesNoPartIsLost) {
 }
 
 TEST(ControllerFaults, LateTicksInARowAreBorneUpToTheirLimit) {
-  for (const int allowed : {0, 1, 3, 10}) {
+  for (const int allowed : {0, 1, 3, 10, 255}) {
     Config config = ScriptedJoints::default_config();
     config.late_ticks_allowed = static_cast<std::uint8_t>(allowed);
     ScriptedJoints arm(config);
@@ -113,17 +113,35 @@ TEST(ControllerFaults, LateTicksInARowAreBorneUpToTheirLimit) {
   }
 }
 
+// Four periods at once are as long as four late ticks: an armed arm was alone for all of them.
+TEST(ControllerFaults, OneTickThatIsLaterThanThatIsAFaultWhereItIsArmed) {
+  for (const std::uint32_t too_late : {4U, 7999U, 0xFFFFFFFFU}) {
+    ScriptedJoints arm;
+    ASSERT_TRUE(arm.start());
+    arm.tick(3);
+    EXPECT_EQ(arm.state(), ControllerState::kArmed);
+    arm.tick();
+    arm.tick(too_late);
+    EXPECT_EQ(arm.fault(), Fault::kOverrun) << too_late;
+    EXPECT_TRUE(arm.all_commanded(DriveMode::kOff));
+    ScriptedJoints passive;
+    passive.become_passive();
+    passive.tick(too_late);
+    EXPECT_EQ(passive.state(), ControllerState::kPassive) << too_late;
+  }
+}
+
 // GIVEN more late ticks than their counter can hold WHEN all is well but for that THEN the
 // controller does not take them for none.
 TEST(ControllerFaults, NoNumberOfLateTicksIsTakenForNone) {
   ScriptedJoints arm;
-  for (int i = 1; i <= 520; ++i) {
+  for (int i = 1; i <= 70'000; ++i) {
     if (i == 10) arm.be_heard();
     arm.tick(1);
-    ASSERT_EQ(arm.data->late_in_a_row, std::min(i, 255));
+    ASSERT_EQ(arm.data->late_in_a_row, std::min(i, 65'535));
     ASSERT_EQ(arm.state(), ControllerState::kInit) << i;
   }
-  EXPECT_EQ(arm.data->overruns, 520U);
+  EXPECT_EQ(arm.data->overruns, 70'000U);
   arm.tick();
   EXPECT_EQ(arm.state(), ControllerState::kPassive);
 }
@@ -179,6 +197,7 @@ TEST(ControllerFaults, TimeToFollowIsMeasuredInWholePeriods) {
 
 TEST(ControllerFaults, TimeToFollowPassesInLateTicksToo) {
   Config config = ScriptedJoints::default_config();
+  config.late_ticks_allowed = 10;
   config.time_to_follow_us = 6000;
   ScriptedJoints arm(config);
   arm.drives.max_age_us = 4000;

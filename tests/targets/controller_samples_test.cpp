@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "scripted_joints.hpp"
@@ -104,6 +106,18 @@ TEST(ControllerSamples, AreOfEveryJointOrNone) {
     EXPECT_EQ(arm.data->run_ticks, run_ticks + 5);
     EXPECT_EQ(arm.data->monitor.tick, arm.data->run_ticks);
   }
+}
+
+// Time that nobody saw may be long: it is never short again.
+TEST(ControllerSamples, UnseenTimeDoesNotWrap) {
+  ScriptedJoints arm;
+  arm.become_passive();
+  arm.reads.fill(false);
+  constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+  arm.tick(kMost - 5);
+  EXPECT_EQ(arm.data->unseen_ticks, kMost - 4);
+  arm.tick(10);
+  EXPECT_EQ(arm.data->unseen_ticks, kMost);
 }
 
 // A reading that is not valid is none, however new.

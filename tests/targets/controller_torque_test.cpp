@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "scripted_joints.hpp"
@@ -61,6 +63,46 @@ TEST(ControllerTorque, IsHeldToWhatTheDriveCanGive) {
   }
 }
 
+// GIVEN a limit that no float is WHEN the torque is at it THEN no command is above it, and a drive
+// that gives what it is told, or a little more, is healthy; one that gives far more is not.
+TEST(ControllerTorque, AtItsLimitIsNoFault) {
+  for (const double limit : {0.1, 0.7, 3.3, 10.0}) {
+    for (const double sign : {-1.0, 1.0}) {
+      Config config = ScriptedJoints::default_config();
+      for (auto& joint : config.monitor.chain.joints) joint.max_torque = limit;
+      ScriptedJoints arm(config);
+      ASSERT_TRUE(arm.start());
+      Reference<2, double> far;
+      far.q.fill(sign);
+      arm.reference_at = [&far](double) { return far; };
+      arm.run(50);
+      ASSERT_EQ(arm.state(), ControllerState::kArmed) << limit << ' ' << name_of(arm.fault());
+      const auto commanded = static_cast<double>(arm.drives.commands[0].torque);
+      EXPECT_LE(sign * commanded, limit);
+      EXPECT_NEAR(sign * commanded, limit, 1e-6 * limit);
+      arm.follows.fill(false);
+      for (const double share : {0.97, 1.03, 1.19}) {
+        arm.drives.joints[0].status.applied_torque = static_cast<float>(share * sign * limit);
+        arm.run(5);
+        EXPECT_EQ(arm.state(), ControllerState::kArmed) << share;
+      }
+      arm.drives.joints[0].status.applied_torque = static_cast<float>(1.3 * sign * limit);
+      arm.tick();
+      EXPECT_EQ(arm.fault(), controller::fault_of(Status::kTorqueOutOfRange));
+    }
+  }
+}
+
+TEST(ControllerTorque, TheLargestCommandIsNoneAboveItsLimit) {
+  for (const double limit : {1e-30, 0.1, 0.3, 1.0, 100.1, 1e10 / 3}) {
+    const float command = controller::largest_command(limit);
+    EXPECT_LE(static_cast<double>(command), limit);
+    EXPECT_GT(static_cast<double>(std::nextafter(command, INFINITY)), limit);
+  }
+  EXPECT_EQ(controller::largest_command(0.1F), 0.1F);
+  EXPECT_EQ(controller::largest_command(1e300), std::numeric_limits<float>::max());
+}
+
 TEST(ControllerTorque, FollowsAReferenceThatIsAskedOncePerTickAtItsTime) {
   ScriptedJoints arm;
   ASSERT_TRUE(arm.start());
@@ -71,12 +113,12 @@ TEST(ControllerTorque, FollowsAReferenceThatIsAskedOncePerTickAtItsTime) {
   };
   const double before_s = 0.001 * static_cast<double>(arm.data->run_ticks);
   arm.tick();
-  arm.tick(4);
+  arm.tick(3);
   arm.tick();
   ASSERT_EQ(asked.size(), 3U);
   EXPECT_NEAR(asked[0], before_s + 0.001, 1e-12);
-  EXPECT_NEAR(asked[1], before_s + 0.006, 1e-12);
-  EXPECT_NEAR(asked[2], before_s + 0.007, 1e-12);
+  EXPECT_NEAR(asked[1], before_s + 0.005, 1e-12);
+  EXPECT_NEAR(asked[2], before_s + 0.006, 1e-12);
 }
 
 // Until every drive follows, the reference stands at its beginning.
@@ -107,10 +149,9 @@ TEST(ControllerTorque, TimeStandsUntilEveryDriveFollows) {
 
 // The monitor begins with the torque that the drives give from the first sample on.
 TEST(ControllerTorque, TheFirstOneIsInTheFirstSampleThatIsWatched) {
-  ScriptedJoints arm;
-  Reference<2, double> reference;
-  reference.ddq = {0.1, -0.2};
-  arm.reference_at = [&reference](double) { return reference; };
+  Config config = ScriptedJoints::default_config();
+  config.monitor.chain.gravity_m_s2 = {0.1, -0.2, 0};
+  ScriptedJoints arm(config);
   arm.become_passive();
   ASSERT_TRUE(arm.arm());
   arm.tick();

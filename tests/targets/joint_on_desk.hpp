@@ -86,11 +86,12 @@ class JointOnDesk {
       const float position = reading_of(q);
       drive.joint.reading = {lie.value_or(position), sends_velocity ? static_cast<float>(dq) : 0.0F,
                              sends_velocity};
-    } else if (bus.time_us - drive.joint.encoder_time_us > 2500) {
+    } else if (bus.time_us - drive.joint.encoder_time_us > max_silence_us) {
       drive.joint.encoder = hal::SourceState::kStale;
     }
     drive.joint.drive = hal::SourceState::kValid;
-    drive.joint.status = {drive.command.mode, 0, drive.command.torque};
+    drive.joint.status = {tells_mode ? drive.command.mode : hal::DriveMode::kOff, 0,
+                          drive.command.torque};
     controller.step(bus.time_us, late_ticks, reference_at, bus, drive, *data);
   }
   void ticks(int count) {
@@ -114,8 +115,11 @@ class JointOnDesk {
   double dq = 0;       // rad/s
   double push_nm = 0;  // beside the drive's torque, where that acts
   bool encoder_speaks = true;
+  hal::Microseconds max_silence_us = 2500;
   bool sends_velocity = true;
-  std::optional<float> lie;  // of the encoder
+  bool tells_mode = true;          // or says "off", whatever it does
+  std::optional<double> brake_at;  // holds the joint there
+  std::optional<float> lie;        // of the encoder
   std::function<float(double)> reading_of = [](double at) { return static_cast<float>(at); };
   std::function<Reference<1, float>(double)> reference_at = [](double) {
     return Reference<1, float>{};
@@ -132,6 +136,9 @@ class JointOnDesk {
       dq += kPeriod * (static_cast<double>(drive.command.torque) + push_nm) / kInertia;
     }
     q += kPeriod * dq;
+    if (!brake_at) return;
+    q = *brake_at;
+    dq = 0;
   }
 };
 

@@ -61,6 +61,11 @@ class LoopOnBus {
     return loop.run();
   }
 
+  // From the arm's end of the bus.
+  void send(const hal::Frame& frame) {
+    static_cast<void>(net_.port(1).send(frame, net_.now() + 1000));
+  }
+
  private:
   static constexpr hal::SourceConfig kSource{.max_age_us = 2500};
   hal::InProcessNet<2> net_;

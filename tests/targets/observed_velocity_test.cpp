@@ -74,7 +74,9 @@ TEST(ObservedVelocity, IsNotUsedForArmingBeforeItHasSettled) {
 
 // One late tick is borne, one that is later than the observer can bridge is a fault.
 TEST(ObservedVelocity, IsNotUsedForControlAfterALongGap) {
-  JointOnDesk joint(observing());
+  auto config = observing();
+  config.late_ticks_allowed = 20;
+  JointOnDesk joint(config);
   joint.sends_velocity = false;
   ASSERT_EQ(joint.start(), Fault::kNone);
   joint.ticks(50);
@@ -135,6 +137,35 @@ TEST(ImplausiblePosition, EntersNeitherSampleNorVelocity) {
       EXPECT_NEAR(joint.data->sample.dq[0], 0, 1e-3);
     }
   }
+}
+
+// GIVEN an encoder that speaks every tenth tick WHEN two of its readings in a row cannot be THEN
+// that is borne, as two ticks of a faster one are; the third is a fault.
+TEST(ImplausiblePosition, IsCountedByReadingsAndNotByTicks) {
+  JointOnDesk joint;
+  joint.max_silence_us = 25'000;
+  ASSERT_EQ(joint.start(), Fault::kNone);
+  joint.ticks(50);
+  const auto speak = [&](std::optional<float> lie) {
+    joint.lie = lie;
+    joint.encoder_speaks = true;
+    joint.tick();
+    joint.encoder_speaks = false;
+    joint.ticks(9);
+  };
+  for (int round = 0; round < 2; ++round) {
+    speak(1e6F);
+    speak(1e6F);
+    ASSERT_EQ(joint.data->state, ControllerState::kArmed);
+    EXPECT_EQ(joint.data->implausible_in_a_row, 2);
+    speak({});
+    ASSERT_EQ(joint.data->state, ControllerState::kArmed);
+    EXPECT_EQ(joint.data->implausible_in_a_row, 0);
+  }
+  speak(1e6F);
+  speak(1e6F);
+  speak(1e6F);
+  EXPECT_EQ(joint.data->fault, controller::fault_of(Status::kPositionOutOfRange));
 }
 
 TEST(ImplausiblePosition, IsOneBeyondTheJointsLimitsWhereItHasThem) {
@@ -201,6 +232,22 @@ TEST(TurningJoint, CountsFromWhatIsCarriedAfterAFault) {
   ASSERT_TRUE(joint.clear_fault());
   joint.ticks(3);
   EXPECT_NEAR(joint.data->sample.q[0], 32 - hal::kCarriedRangeRad, 1e-5) << "the same in its turn";
+}
+
+// GIVEN a protocol that carries all turns WHEN its axis starts anew, and counts from 0, THEN that
+// is no turn.
+TEST(TurningJoint, TakesNoRestartOfAnAxisForAWrap) {
+  for (const float before : {100.0F, -100.0F, 40.0F, 32.2F, -32.2F, 31.5F, -31.5F}) {
+    JointOnDesk joint;
+    joint.lie = before;
+    joint.ticks(5);
+    joint.lie = 0.0F;
+    joint.ticks(3);
+    EXPECT_EQ(joint.data->sample.q[0], 0.0F) << before;
+    joint.lie = -0.3F;
+    joint.ticks(3);
+    EXPECT_EQ(joint.data->sample.q[0], -0.3F) << before;
+  }
 }
 
 // A joint with limits is where its frames say.

@@ -76,10 +76,9 @@ TEST_P(Odrive, IsWatchedWithTheTorqueThatItTells) {
 // arm; when they do not, it is seen as one.
 TEST_P(Odrive, ALimitedTorqueIsKnownWhereItIsTold) {
   for (const bool tells : {true, false}) {
-    OdriveSetup limited = tells ? telling() : setup();
-    limited.axis.max_torque_nm = 4;
-    OdriveArm arm(limited);
-    ASSERT_TRUE(arm.start());
+    OdriveArm arm(tells ? telling() : setup());
+    start(arm);
+    arm.axes[0].max_torque_nm = 4;
     bool detected = false;
     bool was_limited = false;
     for (int i = 0; i < 500 && !detected; ++i) {
@@ -90,6 +89,16 @@ TEST_P(Odrive, ALimitedTorqueIsKnownWhereItIsTold) {
     EXPECT_TRUE(was_limited);
     EXPECT_EQ(detected, !tells);
   }
+}
+
+// One that is limited from the start does not hold the arm: time does not even begin.
+TEST_P(Odrive, ATorqueThatDoesNotHoldTheArmIsAFaultBeforeTimeBegins) {
+  OdriveArm arm(setup());
+  arm.axes[0].max_torque_nm = 4;
+  ASSERT_TRUE(arm.start());
+  arm.run_until(ControllerState::kFault, 2000);
+  EXPECT_EQ(arm.data->fault, Fault::kArmNotHeld);
+  EXPECT_EQ(arm.data->run_ticks, 0U);
 }
 
 TEST_P(Odrive, AFaultOfTheArmIsDetected) {

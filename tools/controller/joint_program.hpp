@@ -55,7 +55,9 @@ struct JointProgramReport {
 class JointProgram {
  public:
   virtual ~JointProgram() = default;
-  /// The loop from its first tick to its end, in the calling thread.
+  /// The loop from its first tick to its end, in the calling thread. Throws InputError, before the
+  /// first tick, for a robot that the controller would never hear: a joint that cannot be where a
+  /// frame can say.
   virtual void run() = 0;
   [[nodiscard]] virtual const JointProgramReport& report() const = 0;
 };

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <offnominal/hal/in_process_bus.hpp>
 #include <offnominal/realtime/recorded_bus.hpp>
 #include <optional>
 
+#include "common/error.hpp"
 #include "controller/joint_program.hpp"
 #include "offnominal/sim/bus/joint_drives.hpp"
 #include "offnominal/sim/trajectory.hpp"
@@ -23,14 +25,18 @@ class RehearsalTimer final : public TickTimer {
  public:
   using Net = hal::InProcessNet<2>;
   using Positions = Vector<N, float>;
-  RehearsalTimer(Net& net, realtime::Microseconds period_us, hal::FrameFormat format,
-                 const Positions& positions)
+  // Ends what is not over by itself.
+  RehearsalTimer(Net& net, realtime::LoopPanel& panel, realtime::Microseconds period_us,
+                 hal::FrameFormat format, const Positions& positions)
       : net_(net),
+        panel_(panel),
         port_(net.port(1)),
         period_us_(period_us),
         positions_(positions),
         drives_({}, format) {}
   realtime::Tick wait() override {
+    constexpr int kMostTicks = 1000;
+    if (++ticks_ == kMostTicks) panel_.end.store(true);
     now_us_ += period_us_;
     net_.set_time(now_us_);
     std::array<hal::ReceivedFrame, 2 * kJoints> come;
@@ -50,11 +56,13 @@ class RehearsalTimer final : public TickTimer {
  private:
   static constexpr auto kJoints = static_cast<std::size_t>(N);
   Net& net_;
+  realtime::LoopPanel& panel_;
   Net::Port port_;
   realtime::Microseconds period_us_;
   Positions positions_;
   sim::JointDrives<kJoints> drives_;
   realtime::Microseconds now_us_ = 0;
+  int ticks_ = 0;
 };
 
 template <int N>
@@ -98,12 +106,18 @@ class JointProgramOf final : public JointProgram {
   using Loop =
       realtime::ControlLoop<N, kControllerCapacity, Scalar, Bus, Drives, TickTimer, ReferenceAt>;
 
-  // Joints at rest, where they can be.
+  // Joints at rest, where they can be and a frame can say it, away from the ends that its counts
+  // may round to. At 0 where that is such a place.
   [[nodiscard]] Vector<N, float> a_position() const {
+    constexpr double kCarried = 32;
+    constexpr double kMargin = 1e-3;
     Vector<N, float> position;
     for (int i = 0; i < N; ++i) {
       const auto& joint = setup_.robot.joints[static_cast<std::size_t>(i)].joint;
-      position[i] = static_cast<float>(std::clamp(0.0, joint.min_position, joint.max_position));
+      const double lowest = std::clamp(joint.min_position, -kCarried, kCarried);
+      const double highest = std::clamp(joint.max_position, -kCarried, kCarried);
+      const bool at_zero = lowest < -kMargin && highest > kMargin;
+      position[i] = static_cast<float>(at_zero ? 0.0 : (lowest + highest) / 2);
     }
     return position;
   }
@@ -117,8 +131,8 @@ class JointProgramOf final : public JointProgram {
     realtime::Recorder nobody;
     Bus bus(port, nobody);
     Drives drives(source_, source_, setup_.format);
-    RehearsalTimer<N> timer(*net, setup_.timer.period_us(), setup_.format, a_position());
     realtime::LoopPanel panel;
+    RehearsalTimer<N> timer(*net, panel, setup_.timer.period_us(), setup_.format, a_position());
     // Wherever the motion is, these joints are asked to stay.
     const auto reference_at = [&](double time_s) {
       Reference<N, Scalar> wanted = reference(time_s, *data);
@@ -129,14 +143,22 @@ class JointProgramOf final : public JointProgram {
     constexpr int kTicks = 50;
     const realtime::LoopConfig config{.arm_when_passive = true,
                                       .duration_us = kTicks * timer.period_us()};
-    static_cast<void>(Loop<decltype(reference_at)>(config, {controller_, timer, bus, drives,
-                                                            reference_at, nobody, panel, *data})
-                          .run());
+    const realtime::LoopReport report =
+        Loop<decltype(reference_at)>(
+            config, {controller_, timer, bus, drives, reference_at, nobody, panel, *data})
+            .run();
+    if (report.state != hal::ControllerState::kInit) return;
+    throw InputError({"robot " + setup_.robot.name, "joint limits",
+                      "a joint whose positions no frame can say",
+                      "a range within -32 to 32 rad or m",
+                      "count the joint's positions from another place, in the encoder and here"});
   }
 
   Reference<N, Scalar> reference(double time_s, const Data& data) {
     Reference<N, Scalar> wanted;
     if (setup_.reference.motion) {
+      // As it begins and not as it stands before: it may begin on the move.
+      time_s = std::max(time_s, std::numeric_limits<double>::min());
       for (int i = 0; i < N; ++i) {
         const paper::RecordedMotion::Joint joint = setup_.reference.motion->at(time_s, i);
         wanted.q[i] = static_cast<Scalar>(joint.q);
@@ -152,7 +174,7 @@ class JointProgramOf final : public JointProgram {
                 desired.ddq.template cast<Scalar>()};
       }
     }
-    if (time_s == 0) held_ = data.sample.q;
+    if (data.state != hal::ControllerState::kArmed) held_ = data.sample.q;
     wanted.q = held_;
     return wanted;
   }

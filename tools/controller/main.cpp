@@ -6,6 +6,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <exception>
 #include <iostream>
 #include <limits>
 #include <offnominal/hal/socketcan.hpp>
@@ -108,7 +109,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_flag("--json", options.json, "Print one JSON object and nothing else");
   app.footer(
       "SIGUSR1 arms (passive -> armed), SIGUSR2 clears a fault (fault -> init), SIGINT, SIGTERM, "
-      "SIGHUP, SIGQUIT and SIGPIPE disarm and end. Times of the recordings are those of "
+      "SIGHUP, SIGQUIT, SIGPIPE and SIGTSTP (Ctrl-Z) disarm and end. Times of the recordings are "
+      "those of "
       "CLOCK_MONOTONIC. Exit codes: 0 ended "
       "without a fault, 1 there was one, 2 wrong input. docs/controller.md has the rest.");
 }
@@ -158,6 +160,7 @@ void attend(const realtime::Signals& signals, const realtime::Recorder& recorder
       case SIGHUP:  // the terminal is gone, or who read what is printed: nobody looks any more
       case SIGQUIT:
       case SIGPIPE:
+      case SIGTSTP:  // stopped, it would leave the arm alone with its last torque
         panel.end.store(true);
         break;
       case SIGUSR1:
@@ -227,13 +230,19 @@ int run(const Options& options) {
                           .recorder = recorder,
                           .panel = panel});
   std::atomic<bool> over{false};
+  std::exception_ptr refused;
   std::thread loop([&] {
-    program->run();
+    try {
+      program->run();
+    } catch (...) {
+      refused = std::current_exception();
+    }
     over.store(true);
   });
   attend(signals, recorder, panel, over);
   loop.join();
   recorder.close();
+  if (refused) std::rethrow_exception(refused);
   const ControllerOutcome outcome{program->report(), options.bus, socket.state(),
                                   socket.can_take_back(), recorder.lost()};
   std::cout << (options.json ? to_json(outcome).dump(2) + "\n" : text_of(outcome));

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "common/number.hpp"
 #include "offnominal/sim/encoder.hpp"
 #include "robot/monitor_config_of.hpp"
 #include "sil/sil.hpp"
@@ -58,6 +59,14 @@ template <int N, int L, typename Scalar, typename Memory>
 void create_controller(const RobotDescription& robot, const ControllerSettings& settings,
                        controller::JointController<N, L, Scalar, Memory>& controller) {
   using Controller = controller::JointController<N, L, Scalar, Memory>;
+  const double least_ramp_s = controller::kLeastRampPeriods * robot.estimator.period_s;
+  if (robot.arming.ramp_s + robot.estimator.period_s / 2 < least_ramp_s) {
+    throw InputError({.file = "robot " + robot.name,
+                      .place = "arming.ramp_s",
+                      .found = shortest(robot.arming.ramp_s) + " s",
+                      .allowed = shortest(least_ramp_s) + " s or more, ten periods",
+                      .mend = "in less, what is between reference and arm is a jump"});
+  }
   const Status status =
       Controller::create(controller_config_of<N, Scalar>(robot, settings), controller);
   if (status == Status::kOk) return;

@@ -56,7 +56,7 @@ TEST_P(SignalledController, DisarmsBeforeItEnds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SignalledController,
-                         testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE),
+                         testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGTSTP),
                          [](const auto& tested) {
                            return std::string(sigabbrev_np(tested.param));
                          });

@@ -43,6 +43,28 @@ struct CanSimpleConfig {
   Microseconds torque_interval_us = 0;
 };
 
+inline constexpr std::uint8_t kCanSimpleNodes = 64;  // 6 bits of an identifier
+
+// kOk where every axis can be told from the others and the numbers are ones. kInvalidNode: 64 or
+// more, or two axes with the same. kInvalidScale: joint_per_turn is 0, or it or motor_nm_per_ampere
+// is not finite. kInvalidInterval: not above 0, or the torque's below.
+[[nodiscard]] inline Status validate(const CanSimpleConfig& config,
+                                     std::span<const CanSimpleAxis> axes) {
+  if (config.encoder_interval_us <= 0 || config.heartbeat_interval_us <= 0 ||
+      config.torque_interval_us < 0) {
+    return Status::kInvalidInterval;
+  }
+  std::uint64_t taken = 0;
+  for (const CanSimpleAxis& axis : axes) {
+    if (axis.node >= kCanSimpleNodes || (taken >> axis.node & 1U) != 0) return Status::kInvalidNode;
+    taken |= std::uint64_t{1} << axis.node;
+    const bool scaled = is_finite(axis.joint_per_turn) && axis.joint_per_turn != 0 &&
+                        is_finite(axis.motor_nm_per_ampere);
+    if (!scaled) return Status::kInvalidScale;
+  }
+  return Status::kOk;
+}
+
 template <std::size_t Joints>
 class CanSimpleDrives {
  public:
@@ -50,11 +72,16 @@ class CanSimpleDrives {
   static constexpr std::size_t kJoints = Joints;
   static constexpr std::size_t kMaxOutgoing = 2 * Joints;
 
-  // The axes have to be configured for torque control (input mode "passthrough") before.
+  // The axes have to be configured for torque control (input mode "passthrough") before. With a
+  // configuration that validate() refuses it hears nobody and tells nobody anything.
   CanSimpleDrives(const CanSimpleConfig& config, const std::array<CanSimpleAxis, Joints>& axes)
-      : config_(config), axes_(axes) {}
+      : config_(config), axes_(axes), configuration_(validate(config, axes)) {}
+
+  // What validate() says of the configuration; to be looked at before the first tick.
+  [[nodiscard]] Status configuration() const { return configuration_; }
 
   [[nodiscard]] Status take(const ReceivedFrame& received) {
+    if (configuration_ != Status::kOk) return configuration_;
     const Frame& frame = received.frame;
     if (frame.extended || frame.fd) return Status::kUnknownId;
     for (std::size_t j = 0; j < Joints; ++j) {
@@ -86,6 +113,7 @@ class CanSimpleDrives {
   // no torque, until a heartbeat says so and with every heartbeat of the controller.
   [[nodiscard]] std::size_t outgoing(std::span<const TorqueCommand> commands,
                                      const Heartbeat& heartbeat, std::span<Frame> into) {
+    if (configuration_ != Status::kOk) return 0;
     std::size_t count = 0;
     for (std::size_t j = 0; j < Joints; ++j) {
       Axis& axis = state_[j];
@@ -154,8 +182,10 @@ class CanSimpleDrives {
   static constexpr Microseconds max_age_us(Microseconds interval_us) { return interval_us * 5 / 2; }
   static SourceState state_at(const Age& age, Microseconds interval_us, Microseconds now_us) {
     if (!age.seen) return SourceState::kNeverSeen;
-    const bool stale = now_us - age.time_us > max_age_us(interval_us);
-    return stale ? SourceState::kStale : SourceState::kValid;
+    const Microseconds age_us = now_us - age.time_us;
+    // A time of the future says nothing of now: silent or not, it would be valid until then.
+    const bool believed = age_us <= max_age_us(interval_us) && age_us >= -max_age_us(interval_us);
+    return believed ? SourceState::kValid : SourceState::kStale;
   }
 
   // Power is the same on both sides of the gear.
@@ -243,6 +273,7 @@ class CanSimpleDrives {
 
   CanSimpleConfig config_;
   std::array<CanSimpleAxis, Joints> axes_;
+  Status configuration_;
   std::array<Axis, Joints> state_{};
   Microseconds newest_us_ = 0;  // when the newest of the axes' frames came: this side has no clock
 };

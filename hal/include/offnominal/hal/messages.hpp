@@ -26,9 +26,9 @@ struct EncoderReading {
 inline constexpr float kPositionPerCount = 0x1p-18F;
 inline constexpr float kVelocityPerCount = 0x1p-10F;
 
-// A joint that may turn for ever sends its position modulo ten turns, -5 to 5 of them: a whole
+// A joint without position limits sends its position modulo ten turns, -5 to 5 of them: a whole
 // number, so that who begins to listen at any time knows where in its turn the joint is. The
-// controller counts the tens from there on.
+// controller counts the tens from there on, up to 1000 rad either way: 159 turns.
 inline constexpr double kCarriedRangeRad = 20 * std::numbers::pi;
 [[nodiscard]] inline float carried_position(double position_rad) {
   return static_cast<float>(std::remainder(position_rad, kCarriedRangeRad));

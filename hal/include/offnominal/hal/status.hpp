@@ -31,6 +31,11 @@ enum class Status : std::uint8_t {
   kNoSuchInterface = 132,
   kNotPermitted = 133,
   kSystemError = 134,
+
+  // A driver's configuration that validate() refuses (150..159).
+  kInvalidNode = 150,
+  kInvalidScale = 151,
+  kInvalidInterval = 152,
 };
 
 // The name of a status as it stands above, without the leading k; "Unknown" for any other number.
@@ -72,6 +77,12 @@ enum class Status : std::uint8_t {
       return "NotPermitted";
     case Status::kSystemError:
       return "SystemError";
+    case Status::kInvalidNode:
+      return "InvalidNode";
+    case Status::kInvalidScale:
+      return "InvalidScale";
+    case Status::kInvalidInterval:
+      return "InvalidInterval";
   }
   return "Unknown";
 }

@@ -28,9 +28,11 @@ struct ControllerConfig {
   // A command that has not gone out so long after its tick began never does; below a period.
   Microseconds command_lifetime_us = 900;
   hal::DriveMode safe_mode = hal::DriveMode::kOff;  // kOff or kDamping
-  std::uint8_t late_ticks_allowed = 3;              // in a row
+  // Ticks in a row that begin late; armed, also the periods by which one may.
+  std::uint8_t late_ticks_allowed = 3;
   // From arming until every drive has to be in torque mode, besides its protocol's
-  // drive_max_age_us(). The reference and the watch begin when all of them are.
+  // drive_max_age_us(). The reference and the watch begin when all of them are and the arm is held,
+  // which may take twice the longest way from 0 to a joint's torque limit, and ramp_s, more.
   Microseconds time_to_follow_us = 20000;
   // For drives that send positions alone; monitor.bound.velocity_error has to hold its
   // velocity_error_bound() then. Its period_s is the monitor's.
@@ -98,6 +100,10 @@ template <int N, typename Scalar>
   return range;
 }
 
+// In fewer periods, to the nearest, a ramp is a jump: what is between reference and arm is gone
+// before a drive has answered.
+inline constexpr int kLeastRampPeriods = 10;
+
 template <int N, typename Scalar>
 [[nodiscard]] Status validate(const ControllerConfig<N, Scalar>& config) {
   if (const Status status = validate(config.gains); status != Status::kOk) return status;
@@ -111,6 +117,10 @@ template <int N, typename Scalar>
     return Status::kInvalidLimit;
   if (config.safe_mode == hal::DriveMode::kTorque) return Status::kInvalidLimit;
   if (config.time_to_follow_us < 0) return Status::kInvalidLimit;
+  const Scalar period_s = config.monitor.estimator.period_s;
+  if (config.arming.ramp_s < (kLeastRampPeriods - Scalar(0.5)) * period_s) {
+    return Status::kInvalidLimit;
+  }
   return validate(observer_of(config));
 }
 

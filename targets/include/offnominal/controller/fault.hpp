@@ -18,11 +18,12 @@ enum class Fault : std::uint8_t {
   kDriveReported = 164,  // a drive says that it or its encoder has failed
   kEmergencyStop = 165,  // somebody asked for it, on the bus or here
   kBusLost = 166,        // bus-off, or the interface is gone
-  kOverrun = 167,        // more ticks in a row were late than are allowed
+  kOverrun = 167,        // more ticks in a row were late than are allowed, or one by more periods
   kDetected = 168,       // the monitor's threshold was crossed, and the configuration says to stop
   kDriveNotFollowing = 169,    // a drive is not in the mode that it was told to take
   kReferenceOutOfRange = 170,  // it is where the joint cannot be, or faster than it may be
   kVelocityUnknown = 171,      // too many positions in a row are missing to observe it from
+  kArmNotHeld = 172,           // armed, it left where it was, or was not at rest in time
 
   // Why arm() changed nothing; a fault where it comes to be between arm() and the first torque.
   kNotPassive = 180,           // in another state
@@ -74,6 +75,8 @@ enum class Fault : std::uint8_t {
       return "ReferenceOutOfRange";
     case Fault::kVelocityUnknown:
       return "VelocityUnknown";
+    case Fault::kArmNotHeld:
+      return "ArmNotHeld";
     case Fault::kNotPassive:
       return "NotPassive";
     case Fault::kNoFreshSample:

@@ -4,12 +4,16 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <offnominal/control/computed_torque.hpp>
 #include <offnominal/control/reference_ramp.hpp>
 #include <offnominal/controller/arming_check.hpp>
 #include <offnominal/controller/controller_config.hpp>
 #include <offnominal/controller/fault.hpp>
+#include <offnominal/controller/feedback_check.hpp>
 #include <offnominal/controller/sample_taker.hpp>
+#include <offnominal/controller/takeover.hpp>
+#include <offnominal/controller/torque_limiter.hpp>
 #include <offnominal/hal/bus.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/monitor.hpp>
@@ -25,24 +29,21 @@ using hal::ControllerState;
 
 // Plain data, ready to be logged.
 template <int N, int L, typename Scalar, typename Memory = WithoutMemory>
-struct ControllerData : SampleData<N, Scalar> {
+struct ControllerData : SampleData<N, Scalar>, TakeoverData<N, Scalar> {
   ControllerState state = ControllerState::kInit;
   Fault fault = Fault::kNone;
   std::uint64_t ticks = 0;           // since the start
-  std::uint64_t waiting_ticks = 0;   // from arming until every drive was in torque mode
-  std::uint64_t run_ticks = 0;       // since then
+  std::uint64_t run_ticks = 0;       // since time began
   std::uint32_t overruns = 0;        // ticks that began late, ever
   std::uint32_t missed_samples = 0;  // ticks without a fresh reading of every joint, ever
   std::uint32_t refused_frames = 0;  // that came with something wrong in them, ever
   std::uint32_t unsent_frames = 0;   // that the bus did not take, ever
-  std::uint8_t late_in_a_row = 0;
-  ReferenceRamp<N, Scalar> ramp;
+  std::uint32_t late_ticks = 0;      // whole periods that this tick began too late
+  std::uint16_t late_in_a_row = 0;   // ticks that did
+  bool ends = false;                 // let_go() was called
   std::array<hal::TorqueCommand, static_cast<std::size_t>(N)> commands{};
   MonitorState<N, L, Scalar, Memory> monitor;
   MonitorOutput<N, Scalar> output;
-  // Of each joint, since arming: the torque rate has let through what is wanted.
-  std::array<bool, static_cast<std::size_t>(N)> torque_is_in{};
-  bool drives_follow = false;  // since arming it has of all, and every drive was in torque mode
 };
 
 // Memory: as of the Monitor.
@@ -60,9 +61,8 @@ class JointController {
     if (status != Status::kOk) return status;
     controller.config_ = config;
     controller.samples_ = SampleTaker<N, Scalar>(config);
-    for (std::size_t j = 0; j < kJoints; ++j) {
-      controller.torque_step_[j] = config.arming.torque_rate[j] * config.monitor.estimator.period_s;
-    }
+    controller.takeover_ = Takeover<N, Scalar>(config);
+    controller.limiter_ = TorqueLimiter<N, Scalar>(config);
     return Status::kOk;
   }
 
@@ -77,10 +77,10 @@ class JointController {
     ++data.ticks;
     receive(bus, drives, data);
     count_late(late_ticks, data);
-    data.unseen_ticks += late_ticks;
+    samples_.leave_out(late_ticks, data);
     take_feedback(begin_us, bus, drives, data);
     if (data.state == ControllerState::kArmed) {
-      (data.drives_follow ? data.run_ticks : data.waiting_ticks) += 1 + late_ticks;
+      (data.drives_follow ? data.run_ticks : data.waiting_ticks) += std::uint64_t{late_ticks} + 1;
     }
     if (data.fresh) {
       watch(reference_at, bus, data);
@@ -90,13 +90,14 @@ class JointController {
     send(begin_us, bus, drives, data);
   }
 
-  // kPassive -> kArmed: from the next fresh sample of every joint on the drives are told to give
-  // the torque of the reference's begin. When it is in and all of them say that they are in torque
-  // mode, time begins to count and the monitor to watch. kNone, or why nothing changed: the state
-  // is another, there is no sample or no settled velocity, gains or torque limits are missing, or
-  // reference_at(0) is no way to begin from where the arm is. What changes until that sample is
-  // judged again there, and is then a fault. Until the drives follow, the arm is held where it was
-  // in that sample.
+  // kPassive -> kArmed: from the next fresh sample of every joint on the arm is held where it was
+  // in that sample; what it moved then fades out. When the torque that this takes is in, every
+  // drive says that it is in torque mode, and no joint is faster than it may be at arming, time
+  // begins to count and the monitor to watch. An arm that leaves its window before, or takes too
+  // long, is kArmNotHeld. kNone, or why nothing changed: the state is another, there is no sample
+  // or no settled velocity, gains or torque limits are missing, or reference_at(0) is no way to
+  // begin from where the arm is. What changes until that sample is judged again there, and is then
+  // a fault.
   template <typename ReferenceAt>
   [[nodiscard]] Fault arm(const ReferenceAt& reference_at, Data& data) const {
     if (data.state != ControllerState::kPassive) return Fault::kNotPassive;
@@ -104,11 +105,11 @@ class JointController {
     if (!samples_.is_settled(data)) return Fault::kVelocityUnsettled;
     const Fault refusal = check_beginning(reference_at(0.0), data);
     if (refusal != Fault::kNone) return refusal;
+    takeover_.reset(data);
     data.state = ControllerState::kArmed;
-    data.torque_is_in.fill(false);
-    data.drives_follow = false;
-    data.waiting_ticks = 0;
     data.run_ticks = 0;
+    data.ends = false;
+    data.commands.fill({});  // whatever was told before: the torque rises from 0
     data.monitor.initialised = false;
     return Fault::kNone;
   }
@@ -118,8 +119,17 @@ class JointController {
   [[nodiscard]] bool disarm(Data& data) const {
     if (data.state != ControllerState::kArmed) return false;
     data.state = ControllerState::kPassive;
+    data.commands.fill({});
     data.monitor.initialised = false;
     return true;
+  }
+
+  // For the end of a program, in every state: nobody looks after the drives from now on, and all
+  // that they are told is "off". In a fault too, whatever its safe mode. Until arm().
+  void let_go(Data& data) const {
+    static_cast<void>(disarm(data));
+    data.ends = true;
+    data.commands.fill({});
   }
 
   // kFault -> kInit: from there it takes fresh frames of every joint to become passive, and arm()
@@ -154,19 +164,13 @@ class JointController {
   // As many ticks as a silent encoder is borne.
   static constexpr std::uint8_t kImplausibleAllowed = 2;
 
-  // Armed, and every drive gives the torque that it is told.
+  // Armed, and time has begun.
   static bool is_running(const Data& data) {
     return data.state == ControllerState::kArmed && data.drives_follow;
   }
   [[nodiscard]] double run_time_s(const Data& data) const {
     return static_cast<double>(data.run_ticks) *
            static_cast<double>(config_.monitor.estimator.period_s);
-  }
-
-  // Not what belongs to somebody else, and not the first records of a source, which are awaited.
-  static bool is_wrong(hal::Status status) {
-    return status != hal::Status::kOk && status != hal::Status::kUnknownId &&
-           status != hal::Status::kNotSynchronised;
   }
 
   // Phases of a tick are not inlined: each gives its stack back before the next one begins.
@@ -194,68 +198,39 @@ class JointController {
     for (std::size_t j = 0; j < kJoints; ++j) feedback[j] = drives.feedback(j, begin_us);
     samples_.screen(feedback, data);
     Fault fault = judge(feedback, drives.stop_seen(), bus.state().mode, data);
-    const bool in_torque_mode = all_in_torque_mode(feedback);
-    if (fault == Fault::kNone && !in_torque_mode && has_to_follow(drives, data)) {
-      fault = Fault::kDriveNotFollowing;
+    const bool in_torque_mode = all_in_torque_mode<kJoints>(feedback);
+    if (fault == Fault::kNone && data.state == ControllerState::kArmed) {
+      fault = takeover_.judge(in_torque_mode, drives.drive_max_age_us(), data);
     }
     advance(fault, feedback, bus, data);
     samples_.take(feedback, data);
     if (!data.fresh && is_running(data)) ++data.missed_samples;
-    // They have been since the tick that began the watch, at the latest.
-    const bool told = data.state == ControllerState::kArmed && data.monitor.initialised;
-    const bool is_in = std::all_of(data.torque_is_in.begin(), data.torque_is_in.end(),
-                                   [](bool of_joint) { return of_joint; });
-    if (told && in_torque_mode && is_in) data.drives_follow = true;
-  }
-
-  // Drives that have followed once have fallen back where they do not.
-  template <typename Drives>
-  [[nodiscard]] bool has_to_follow(const Drives& drives, const Data& data) const {
-    if (data.state != ControllerState::kArmed) return false;
-    if (data.drives_follow) return true;
-    const auto period_us =
-        static_cast<Microseconds>(Scalar(1e6) * config_.monitor.estimator.period_s + Scalar(0.5));
-    const auto waited_us = static_cast<Microseconds>(data.waiting_ticks) * period_us;
-    return waited_us > config_.time_to_follow_us + drives.drive_max_age_us();
+    if (data.state != ControllerState::kArmed || data.drives_follow) return;
+    // Drives that were told to, in the tick before.
+    const bool follows = data.monitor.initialised && data.fresh && data.unseen_ticks == 0;
+    data.drives_follow = follows && in_torque_mode && takeover_.is_over(data.sample, data);
   }
 
   static void count_late(std::uint32_t late_ticks, Data& data) {
+    data.late_ticks = late_ticks;
     if (late_ticks == 0) {
       data.late_in_a_row = 0;
       return;
     }
     ++data.overruns;
-    if (data.late_in_a_row < 255) ++data.late_in_a_row;
+    if (data.late_in_a_row < std::numeric_limits<std::uint16_t>::max()) ++data.late_in_a_row;
   }
 
   [[nodiscard]] Fault judge(const Feedback& feedback, bool stop_seen, hal::BusMode mode,
                             const Data& data) const {
     if (mode == hal::BusMode::kOff || mode == hal::BusMode::kDown) return Fault::kBusLost;
     if (stop_seen) return Fault::kEmergencyStop;
-    if (data.late_in_a_row > config_.late_ticks_allowed) return Fault::kOverrun;
-    for (const hal::JointFeedback& joint : feedback) {
-      if (joint.encoder == hal::SourceState::kStale) return Fault::kEncoderSilent;
-      if (joint.encoder == hal::SourceState::kError) return Fault::kEncoderUntrusted;
-      if (joint.drive == hal::SourceState::kStale) return Fault::kDriveSilent;
-      if (joint.drive == hal::SourceState::kError) return Fault::kDriveUntrusted;
-      if ((joint.status.flags & (hal::kDriveFault | hal::kEncoderFault)) != 0) {
-        return Fault::kDriveReported;
-      }
-    }
-    if (data.implausible_in_a_row > kImplausibleAllowed) return fault_of(data.implausible);
-    return Fault::kNone;
-  }
-
-  static bool all_valid(const Feedback& feedback) {
-    return std::all_of(feedback.begin(), feedback.end(), [](const hal::JointFeedback& joint) {
-      return joint.encoder == hal::SourceState::kValid && joint.drive == hal::SourceState::kValid;
-    });
-  }
-
-  static bool all_in_torque_mode(const Feedback& feedback) {
-    return std::all_of(feedback.begin(), feedback.end(), [](const hal::JointFeedback& joint) {
-      return joint.status.mode == hal::DriveMode::kTorque;
-    });
+    const bool armed = data.state == ControllerState::kArmed;
+    const bool too_late = armed && data.late_ticks > config_.late_ticks_allowed;
+    if (too_late || data.late_in_a_row > config_.late_ticks_allowed) return Fault::kOverrun;
+    const Fault fault = check_feedback<kJoints>(feedback);
+    const bool implausible = data.implausible_in_a_row > kImplausibleAllowed;
+    return fault == Fault::kNone && implausible ? fault_of(data.implausible) : fault;
   }
 
   template <typename Bus>
@@ -267,7 +242,7 @@ class JointController {
       if (has_left_init || fault == Fault::kEmergencyStop) enter_fault(fault, bus, data);
       return;
     }
-    const bool well = all_valid(feedback) && data.implausible == Status::kOk;
+    const bool well = all_valid<kJoints>(feedback) && data.implausible == Status::kOk;
     if (data.state == ControllerState::kInit && well) {
       data.state = ControllerState::kPassive;
       data.monitor.initialised = false;
@@ -279,7 +254,7 @@ class JointController {
     if (data.state == ControllerState::kFault) return;
     data.state = ControllerState::kFault;
     data.fault = fault;
-    data.commands.fill({config_.safe_mode, 0});
+    data.commands.fill({data.ends ? hal::DriveMode::kOff : config_.safe_mode, 0});
     samples_.forget(data);
     bus.drop_pending();
   }
@@ -332,15 +307,12 @@ class JointController {
   // From here on the drives give what is commanded now; a late one still gives what it was told.
   template <typename ReferenceAt>
   [[nodiscard]] Fault begin_control(const ReferenceAt& reference_at, Data& data) const {
-    Fault fault = Fault::kNone;
+    const Reference<N, Scalar> reference = reference_at(0.0);
     // Later samples are of an arm that may be held already, by some of its drives or by all.
-    if (data.commands.front().mode != hal::DriveMode::kTorque) {
-      const Reference<N, Scalar> reference = reference_at(0.0);
-      fault = check_beginning(reference, data);
-      if (fault != Fault::kNone) return fault;
-      data.ramp.q = reference.q - data.sample.q;
-      data.ramp.dq = reference.dq - data.sample.dq;
-    }
+    Fault fault = data.holds ? check_reference(reference, config_, samples_.range())
+                             : check_beginning(reference, data);
+    if (fault == Fault::kNone) fault = takeover_.hold(data.sample, reference, data);
+    if (fault != Fault::kNone) return fault;
     Vector<N, Scalar> wanted;
     fault = want_torque(reference_at, data, wanted);
     if (fault != Fault::kNone) return fault;
@@ -361,24 +333,21 @@ class JointController {
   [[nodiscard, gnu::noinline]] Fault want_torque(const ReferenceAt& reference_at, Data& data,
                                                  Vector<N, Scalar>& tau) const {
     const double time_s = run_time_s(data);
-    Reference<N, Scalar> reference = reference_at(time_s);
-    const Fault fault = check_reference(reference, config_, samples_.range());
-    if (fault != Fault::kNone) return fault;
-    ramp_in(data.ramp, time_s, config_.arming.ramp_s, reference);
+    Reference<N, Scalar> reference;
+    if (data.drives_follow) {
+      reference = reference_at(time_s);
+      const Fault fault = check_reference(reference, config_, samples_.range());
+      if (fault != Fault::kNone) return fault;
+      ramp_in(data.ramp, time_s, config_.arming.ramp_s, reference);
+    } else {
+      reference = takeover_.held(data);
+    }
     tau = computed_torque<N, Scalar>(monitor_.model(), config_.gains, reference, data.sample.q,
                                      data.sample.dq, time_s) +
           data.output.compensation.torque;
     if constexpr (Watch::kRemembers) tau += data.monitor.memory.remembered;
     if (!all_finite(tau)) return fault_of(Status::kNumericOverflow);
-    for (std::size_t j = 0; j < kJoints; ++j) {
-      const Scalar limit = config_.monitor.chain.joints[j].max_torque;
-      const auto before = static_cast<Scalar>(data.commands[j].torque);
-      Scalar& wanted = tau[static_cast<Eigen::Index>(j)];
-      wanted = std::clamp(wanted, -limit, limit);
-      const Scalar held = std::clamp(wanted, before - torque_step_[j], before + torque_step_[j]);
-      if (held == wanted) data.torque_is_in[j] = true;
-      wanted = held;
-    }
+    limiter_.hold(data.commands, tau, data.torque_is_in);
     return Fault::kNone;
   }
 
@@ -416,7 +385,8 @@ class JointController {
   Config config_{};
   Watch monitor_;
   SampleTaker<N, Scalar> samples_;
-  std::array<Scalar, kJoints> torque_step_{};  // in one tick, N m or N
+  Takeover<N, Scalar> takeover_;
+  TorqueLimiter<N, Scalar> limiter_;
 };
 
 }  // namespace offnominal::controller

@@ -30,9 +30,10 @@ struct SampleData {
   JointSample<N, Scalar> sample;
   bool fresh = false;              // this tick had a sample of its own
   std::uint32_t unseen_ticks = 0;  // periods without one, since the last
-  // Ticks with a position that cannot be; of the last one, why.
+  // Readings of a position that cannot be, of one joint or of several in a tick; of the last, why.
   std::uint8_t implausible_in_a_row = 0;
   Status implausible = Status::kOk;
+  std::array<Microseconds, static_cast<std::size_t>(N)> implausible_time_us{};
   std::array<Microseconds, static_cast<std::size_t>(N)> used_time_us{};  // of the last sample
   std::array<VelocityObserverState<Scalar>, static_cast<std::size_t>(N)> velocity{};
   std::array<TurnCount<Scalar>, static_cast<std::size_t>(N)> turns{};
@@ -57,9 +58,17 @@ class SampleTaker {
     }
   }
 
-  // A position that cannot be is as none: it enters nothing.
+  // Periods that had no tick of their own.
+  static void leave_out(std::uint32_t late_ticks, Data& data) {
+    const std::uint32_t room = std::numeric_limits<std::uint32_t>::max() - data.unseen_ticks;
+    data.unseen_ticks += std::min(late_ticks, room);
+  }
+
+  // A position that cannot be is as none: it enters nothing. One that stands for several ticks, of
+  // a source slower than they are, is one.
   void screen(const Feedback& feedback, Data& data) const {
     data.implausible = Status::kOk;
+    bool is_new = false;
     for (std::size_t j = 0; j < kJoints; ++j) {
       const auto i = static_cast<Eigen::Index>(j);
       const Scalar position = position_in(counted(feedback[j].reading, j, data));
@@ -69,10 +78,12 @@ class SampleTaker {
       if (!valid || inside) continue;
       data.implausible =
           is_finite(position) ? Status::kPositionOutOfRange : Status::kNonFinitePosition;
+      is_new = is_new || feedback[j].encoder_time_us != data.implausible_time_us[j];
+      data.implausible_time_us[j] = feedback[j].encoder_time_us;
     }
     if (data.implausible == Status::kOk) {
       data.implausible_in_a_row = 0;
-    } else if (data.implausible_in_a_row < std::numeric_limits<std::uint8_t>::max()) {
+    } else if (is_new && data.implausible_in_a_row < std::numeric_limits<std::uint8_t>::max()) {
       ++data.implausible_in_a_row;
     }
   }
@@ -118,21 +129,25 @@ class SampleTaker {
  private:
   static constexpr auto kJoints = static_cast<std::size_t>(N);
 
-  // The way from one reading to the next is the shorter one.
+  // A joint passes from one end of what is carried to the other, and not from one half of it to the
+  // other within a reading; what is beyond the ends was not carried modulo anything.
   [[nodiscard]] TurnCount<Scalar> counted(const hal::EncoderReading& reading, std::size_t joint,
                                           const Data& data) const {
     TurnCount<Scalar> count = data.turns[joint];
     const auto carried = static_cast<Scalar>(reading.position);
-    constexpr auto kHalf = static_cast<Scalar>(hal::kCarriedRangeRad / 2);
-    // Beyond that range it was not carried modulo anything.
-    if (turns_for_ever_[joint] && count.started && std::fabs(carried) < kHalf + 1) {
-      const Scalar way = carried - count.carried;
-      if (way < -kHalf) ++count.tens;
-      if (way > kHalf) --count.tens;
+    if (turns_for_ever_[joint] && count.started && is_near_end(carried) &&
+        is_near_end(count.carried)) {
+      if (carried < 0 && count.carried > 0) ++count.tens;
+      if (carried > 0 && count.carried < 0) --count.tens;
     }
     count.started = true;
     count.carried = carried;
     return count;
+  }
+  // By no more than a quarter of the range: two turns and a half, which no joint does in a tick.
+  static bool is_near_end(Scalar carried) {
+    constexpr auto kHalf = static_cast<Scalar>(hal::kCarriedRangeRad / 2);
+    return std::fabs(carried) > kHalf / 2 && std::fabs(carried) < kHalf + 1;
   }
   static Scalar position_in(const TurnCount<Scalar>& count) {
     if (count.tens == 0) return count.carried;

@@ -23,7 +23,6 @@ struct OdriveConfig {
   int torque_ms = 0;              ///< 0.6: Get_Torques, 0.5: Get_Iq
   int watchdog_ms = 0;            ///< 0: not enabled
   double torque_constant = 0.05;  ///< N m/A
-  double max_torque_nm = 1e3;     ///< of the motor
   double current_bandwidth_rad_s = 1000;
   bool calibrated = true;
 };
@@ -68,8 +67,8 @@ class OdriveAxis {
     }
     const bool fed = config_.watchdog_ms == 0 || fed_ms_ <= config_.watchdog_ms;
     if (state_ == kClosedLoop && !fed) fail(kWatchdogExpired);
-    const double wanted = std::clamp(static_cast<double>(input_torque_), -config_.max_torque_nm,
-                                     config_.max_torque_nm);
+    const double wanted =
+        std::clamp(static_cast<double>(input_torque_), -max_torque_nm, max_torque_nm);
     const double share = 1 - std::exp(-1e-3 * config_.current_bandwidth_rad_s);
     torque_nm_ = state_ == kClosedLoop ? torque_nm_ + share * (wanted - torque_nm_) : 0.0;
   }
@@ -102,6 +101,7 @@ class OdriveAxis {
   [[nodiscard]] double torque_nm() const { return torque_nm_; }  ///< of the motor, as it acts
   [[nodiscard]] int requests() const { return requests_; }       ///< for closed loop
 
+  double max_torque_nm = 1e3;  ///< of the motor; less where it is hot, or its supply is weak
   bool silent_heartbeat = false;
   bool silent_torque = false;
   bool refuses = false;  ///< requests, without a word

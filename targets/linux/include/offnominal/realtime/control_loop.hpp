@@ -28,7 +28,9 @@ struct LoopPanel {
 
 struct LoopConfig {
   // Once, as soon as every joint is heard. A refusal that does not pass by itself ends the loop:
-  // nobody shall find the arm armed later, when it has come to lie right.
+  // nobody shall find the arm armed later, when it has come to lie right. A fault before, or
+  // somebody who clears one, is the end of the wish: from then on it is armed only when that is
+  // asked for.
   bool arm_when_passive = false;
   // Ends so long after it was first armed, or without arm_when_passive after the start; 0: never.
   Microseconds duration_us = 0;
@@ -123,7 +125,7 @@ class ControlLoop {
   ControlLoop(const LoopConfig& config, const Parts& parts) : config_(config), parts_(parts) {}
 
   [[nodiscard]] LoopReport run() {
-    while (!is_over()) tick();
+    while (!is_over()) tick(true);
     finish();
     return report_;
   }
@@ -137,9 +139,9 @@ class ControlLoop {
     return config_.end_at_fault && fault_us_ != 0 && now_us_ >= fault_us_ + kAfterFault;
   }
 
-  void tick() {
+  void tick(bool obeys) {
     const Tick tick = parts_.timer.wait();
-    obey(tick.begin_us);
+    if (obeys && !is_over()) obey(tick.begin_us);
     now_us_ = tick.begin_us;
     parts_.controller.step(tick.begin_us, tick.late_ticks, parts_.reference_at, parts_.bus,
                            parts_.drives, parts_.data);
@@ -153,8 +155,9 @@ class ControlLoop {
   void obey(Microseconds now_us) {
     if (parts_.panel.clear.exchange(false, std::memory_order_relaxed)) {
       static_cast<void>(parts_.controller.clear_fault(parts_.drives, parts_.data));
+      wish_is_over_ = true;
     }
-    const bool at_once = config_.arm_when_passive && !armed_once_;
+    const bool at_once = config_.arm_when_passive && !armed_once_ && !wish_is_over_;
     const bool asked = parts_.panel.arm.exchange(false, std::memory_order_relaxed);
     if (at_once || asked) arm(asked);
     const bool counts = armed_once_ || !config_.arm_when_passive;
@@ -171,7 +174,8 @@ class ControlLoop {
     }
     const bool for_good = !passes_by_itself(refusal);
     if (asked || for_good) parts_.panel.refusal.store(refusal, std::memory_order_relaxed);
-    if (config_.arm_when_passive && !armed_once_ && for_good) report_.refusal = refusal;
+    const bool wished = config_.arm_when_passive && !armed_once_ && !wish_is_over_;
+    if (wished && for_good) report_.refusal = refusal;
   }
 
   void note(const Tick& tick, Microseconds step_us) {
@@ -179,6 +183,7 @@ class ControlLoop {
     parts_.panel.fault.store(parts_.data.fault, std::memory_order_relaxed);
     if (parts_.data.fault != controller::Fault::kNone && fault_us_ == 0) {
       fault_us_ = now_us_;
+      wish_is_over_ = true;
       report_.fault = parts_.data.fault;
     }
     if (parts_.data.output.detector.latched && !report_.detected) {
@@ -193,12 +198,13 @@ class ControlLoop {
     sum_step_us_ += step_us;
   }
 
-  // The drives are told several times, as a frame may be lost.
+  // Nobody arms or clears any more. The drives are told "off" several times, as a frame may be
+  // lost; in a fault too, whatever its safe mode: what they do without commands is theirs to know.
   void finish() {
     report_.state = parts_.data.state;
     constexpr int kFarewells = 5;
-    static_cast<void>(parts_.controller.disarm(parts_.data));
-    for (int i = 0; i < kFarewells; ++i) tick();
+    parts_.controller.let_go(parts_.data);
+    for (int i = 0; i < kFarewells; ++i) tick(false);
     report_.ticks = parts_.data.ticks;
     report_.overruns = parts_.data.overruns;
     report_.missed_samples = parts_.data.missed_samples;
@@ -216,6 +222,7 @@ class ControlLoop {
   Microseconds fault_us_ = 0;
   Microseconds sum_step_us_ = 0;
   bool armed_once_ = false;
+  bool wish_is_over_ = false;  // that of arm_when_passive
 };
 
 }  // namespace offnominal::realtime

@@ -5,8 +5,8 @@
 
 namespace offnominal::realtime {
 
-// SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGUSR1 and SIGUSR2 as events of one thread. To be
-// made before any other thread is: those inherit that they are not interrupted.
+// SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGTSTP, SIGUSR1 and SIGUSR2 as events of one thread.
+// To be made before any other thread is: those inherit that they are not interrupted.
 class Signals {
  public:
   Signals();

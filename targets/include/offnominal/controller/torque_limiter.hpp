@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <offnominal/controller/controller_config.hpp>
+#include <offnominal/hal/drive_protocol.hpp>
+
+namespace offnominal::controller {
+
+// The largest command that is none above a limit > 0: frames carry floats, and the nearest one may
+// be above it.
+template <typename Scalar>
+[[nodiscard]] constexpr float largest_command(Scalar limit) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  if (limit >= static_cast<Scalar>(kMost)) return kMost;
+  const auto nearest = static_cast<float>(limit);
+  if (static_cast<Scalar>(nearest) <= limit) return nearest;
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(nearest) - 1);
+}
+
+// Holds torques to what the joints' drives can give, and to how fast they may change.
+template <int N, typename Scalar>
+class TorqueLimiter {
+ public:
+  using Commands = std::array<hal::TorqueCommand, static_cast<std::size_t>(N)>;
+
+  TorqueLimiter() = default;
+  // Of a configuration that validate() accepts.
+  explicit TorqueLimiter(const ControllerConfig<N, Scalar>& config) {
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      limit_[j] = static_cast<Scalar>(largest_command(config.monitor.chain.joints[j].max_torque));
+      step_[j] = config.arming.torque_rate[j] * config.monitor.estimator.period_s;
+    }
+  }
+
+  // commands: of the tick before. is_in[j] becomes true where the rate takes nothing away.
+  void hold(const Commands& commands, Vector<N, Scalar>& tau,
+            std::array<bool, static_cast<std::size_t>(N)>& is_in) const {
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      const auto before = static_cast<Scalar>(commands[j].torque);
+      Scalar& wanted = tau[static_cast<Eigen::Index>(j)];
+      wanted = std::clamp(wanted, -limit_[j], limit_[j]);
+      const Scalar held = std::clamp(wanted, before - step_[j], before + step_[j]);
+      if (held == wanted) is_in[j] = true;
+      wanted = held;
+    }
+  }
+
+ private:
+  static constexpr auto kJoints = static_cast<std::size_t>(N);
+  std::array<Scalar, kJoints> limit_{};  // N m or N
+  std::array<Scalar, kJoints> step_{};   // in one tick, N m or N
+};
+
+}  // namespace offnominal::controller
