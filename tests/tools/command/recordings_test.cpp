@@ -108,7 +108,10 @@ TEST_F(RecordingsOfVerbs, RobotAndChannelFilesThatNeverEndAreRefused) {
 TEST_F(RecordingsOfVerbs, AreNotHeldOutWhereTheyAreFitted) {
   std::filesystem::create_symlink("a.csv", folder_ / "link.csv");
   std::filesystem::copy_file(folder_ / "a.csv", folder_ / "copy.csv");
-  for (const char* same : {"a.csv", "link.csv", "copy.csv"}) {
+  Log later = test::record_arm({.duration_s = 6, .rate_hz = 200});
+  later.t_s.array() += 1234.5;
+  put(folder_ / "later.csv", csv_text(later));
+  for (const char* same : {"a.csv", "link.csv", "copy.csv", "later.csv"}) {
     SCOPED_TRACE(same);
     const Words holdout{"--holdout", path(same)};
     const auto with = [&](Words words) {
