@@ -1,6 +1,7 @@
 #include "command/recordings.hpp"
 
 #include "command/refuse_option.hpp"
+#include "common/input_name.hpp"
 #include "common/output_file.hpp"
 #include "log/read_log.hpp"
 
@@ -85,7 +86,7 @@ std::vector<Log> read_recordings_or_hold_maps(const std::vector<std::string>& fi
 std::string file_names(const std::vector<std::string>& files) {
   std::string names;
   for (const std::string& file : files) {
-    names += (names.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
+    names += (names.empty() ? "" : ", ") + input_name(file);
   }
   return names;
 }
