@@ -112,8 +112,10 @@ TEST_F(RecordingsOfVerbs, ThatCameThroughAPipeAreNamedInWordsThatLast) {
 
 // What add says of the data, it says of them however it was told what to add.
 TEST_F(RecordingsOfVerbs, HaveTheirFaultsInTheJsonOfBothKindsOfAdd) {
+  put(folder_ / "long.csv",
+      csv_text(test::record_arm({.duration_s = 20, .rate_hz = 200, .torque_noise = 0.05})));
   for (const Words& what : {Words{"viscous_friction", "--joint", "2"}, Words{"--all-found"}}) {
-    Words words{"add", "--log", path("a.csv"), "-o", path("new.toml"), "--json"};
+    Words words{"add", "--log", path("long.csv"), "-o", path("new.toml"), "--json"};
     words.insert(words.begin() + 1, what.begin(), what.end());
     const CommandResult result = run(words);
     EXPECT_THAT(result.exit_code, testing::AnyOf(0, 1)) << result.err;
