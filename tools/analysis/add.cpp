@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "analysis/add_setup.hpp"
+#include "analysis/friction_power.hpp"
 #include "analysis/lookalike.hpp"
 #include "analysis/physical_range.hpp"
 #include "common/nearest.hpp"
@@ -170,6 +172,23 @@ void object_to_ranges(const FitProblem& problem, AddResult& result) {
   }
 }
 
+// What no range of one number says. Nothing where a number is beyond its own: that says more.
+void object_to_friction(const Measurement& log, AddResult& result) {
+  if (!result.objections.empty()) return;
+  std::set<std::size_t> joints;
+  for (const FittedParameter& parameter : result.fit.parameters) {
+    const RobotEffect& effect = result.robot.effects[parameter.effect];
+    if (parameter.fitted && is_friction(effect.kind)) joints.insert(effect.joint);
+  }
+  for (const std::size_t joint : joints) {
+    const auto torque = log.torque.col(static_cast<Index>(joint));
+    const double rms = torque.norm() / std::sqrt(static_cast<double>(torque.size()));
+    if (const auto drives = friction_that_drives(result.robot, joint, log.motion, rms)) {
+      result.objections.push_back(drives->words(result.robot));
+    }
+  }
+}
+
 void note_what_changed(const AddSetup& setup, const AddRequest& request, AddResult& result) {
   for (const FittedParameter& parameter : result.fit.parameters) {
     if (parameter.fitted) result.robot.effects[parameter.effect].source = request.source;
@@ -261,6 +280,7 @@ AddResult add(const RobotDescription& robot, const AddRequest& request, const Me
   }
   object_to_indistinct(setup.unknowns, result);
   object_to_ranges(*problem, result);
+  object_to_friction(log, result);
   doubt_what_held_out_data_say(request, result);
   note_indistinct(result);
   note_lookalikes(*problem, result);

@@ -262,17 +262,18 @@ ordered_json to_json(const AddResult& result, const AddRequest& request, const A
 std::string text_of(const AddResult& result, const AddRequest& request, const AddNames& names) {
   std::string text = fmt::format("{} on joint {} of {}, fitted to {}\n", names_of_added(result),
                                  request.joint + 1, names.robot_file, names.log);
-  const auto describe = [&](std::size_t effect, const std::string& mark) {
+  const auto describe = [&](std::size_t effect, bool is_new) {
     for (const ParameterLine& line : lines_of(result, effect)) {
+      const std::string mark =
+          is_new ? ""
+                 : fmt::format(" ({}joint {})", line.fitted ? "fitted again, " : "",
+                               result.robot.effects[effect].joint + 1);
       text += fmt::format("  {:<38} {}{}\n", effect_name(result, effect) + "." + line.name,
                           value_text(line), mark);
     }
   };
-  for (const std::size_t effect : result.added) describe(effect, "");
-  for (const std::size_t effect : refitted(result)) {
-    describe(effect,
-             fmt::format(" (fitted again, joint {})", result.robot.effects[effect].joint + 1));
-  }
+  for (const std::size_t effect : result.added) describe(effect, true);
+  for (const std::size_t effect : refitted(result)) describe(effect, false);
   for (const FittedLink& link : result.fit.links) {
     text +=
         fmt::format("  mass and inertia of link {}: times {:.6g}\n", link.link + 1, link.factor);

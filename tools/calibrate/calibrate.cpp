@@ -186,7 +186,8 @@ void note_transient(Calibration& result) {
   const Transient& one = *result.transient;
   result.notes.push_back(fmt::format(
       "{}: one transient at {:.3f} s, most of it on joint {}: |e| = {:.3g} {}, {:.2g} times the "
-      "largest that all other parts ask for. The bound covers it and is not widened beyond for "
+      "largest that all other parts ask for. The bound covers it with 5 % to spare and is not "
+      "widened beyond for "
       "it: one event says nothing of how large the next one is. Taken for one of many it would "
       "have made a constant bound {:.3g} times as wide. Record more starts and stops if the robot "
       "has them.",

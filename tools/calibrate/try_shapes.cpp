@@ -16,6 +16,9 @@ constexpr double kWorthwhile = 0.15;
 // No c_k falls below this share of the constant bound: where the recordings say little, a table
 // would otherwise fall to nothing.
 constexpr double kLowestShare = 0.1;
+// What a transient that was taken out asks for, and a little more: the next one like it is no
+// smaller. How much larger it may be, one event does not say.
+constexpr double kAboveTransient = 1.05;
 // One event decides the bound where the bound without it is narrower by this factor.
 constexpr double kDecides = 2;
 
@@ -41,8 +44,8 @@ Tried judged(const BoundShape& shape, ShapeFit fit, const CalibrationData& data,
   }
   tried.law = extreme_law_of(tried.maxima);
   const double per_block = -std::expm1(-request.alarms_per_hour / 3600 * data.block_s);
-  tried.widening =
-      std::max({1.0, tried.largest, tried.fit.apart_ratio, exceeded_with(tried.law, per_block)});
+  tried.widening = std::max({1.0, tried.largest, kAboveTransient * tried.fit.apart_ratio,
+                             exceeded_with(tried.law, per_block)});
   tried.mean_threshold =
       tried.widening * tried.fit.mean_threshold + 2 * request.velocity_error.value_or(0);
   return tried;

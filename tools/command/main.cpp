@@ -6,6 +6,7 @@
 #include <iostream>
 #include <offnominal/version.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command/refuse_option.hpp"
@@ -81,6 +82,17 @@ ExitCode answer(const CLI::App& app, const CLI::ParseError& error) {
                     .mend = (meant.empty() ? "" : meant + ", or ") + "run `" + name + " --help`"});
 }
 
+// The rooms below know an option by its name, not the verb that has it.
+InputError in_name_of(const CLI::App& app, const InputError& error) {
+  InputProblem problem = error.problem();
+  const auto verbs = app.get_subcommands();
+  if (verbs.empty() || !problem.file.starts_with("--")) return error;
+  const std::string place = problem.place.empty() ? "" : ": " + problem.place;
+  problem.place = problem.file + place;
+  problem.file = "offnominal " + verbs.front()->get_name();
+  return InputError(std::move(problem));
+}
+
 ExitCode run(int argc, char** argv) {
   CLI::App app{"Model-based fault diagnosis of robot joints", "offnominal"};
   app.set_version_flag("--version", version_text());
@@ -96,6 +108,8 @@ ExitCode run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     exit_code = answer(app, error);
+  } catch (const InputError& error) {
+    throw in_name_of(app, error);
   }
   std::cout.flush();
   if (!std::cout || std::fflush(stdout) != 0) {

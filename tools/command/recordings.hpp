@@ -31,7 +31,8 @@ void check_recordings_differ(const std::string& verb, const std::string& option,
 void check_recordings_differ(const std::string& verb, const std::string& option,
                              const std::vector<Log>& logs, const std::vector<Log>& holdout);
 
-// "a.csv, b.csv": the files without their folders, for a robot file's word on its source.
+// "a.csv, b.csv", "standard input": as input_name() has them, for a robot file's word on its
+// source.
 std::string file_names(const std::vector<std::string>& files);
 
 }  // namespace offnominal::tools

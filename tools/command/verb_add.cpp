@@ -89,8 +89,7 @@ AddRequest request_of(const AddOptions& options) {
     request.inertia_deviation = percent / 100;
   }
   request.keep = options.keep;
-  request.source = "Fitted to " + std::filesystem::path(options.logs[0]).filename().string() +
-                   " by offnominal add.";
+  request.source = "Fitted to " + file_names({options.logs[0]}) + " by offnominal add.";
   return request;
 }
 

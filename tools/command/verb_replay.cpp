@@ -65,6 +65,7 @@ void print(const Replay& replay) {
 
 void run(const ReplayOptions& options, const std::string& command_line, ExitCode& exit_code) {
   const RobotDescription robot = read_robot_file(options.robot);
+  require_bound(robot, options.robot);
   const Log log = read_log(options.log, robot, options.channels);
   const std::vector<discovery::DataFault> faults = examine_all({std::span(&log, 1)}, robot);
   print_hints(faults);

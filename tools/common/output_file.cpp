@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "common/error.hpp"
@@ -12,11 +13,26 @@
 
 namespace offnominal::tools {
 
+namespace {
+
+// Absolute first: of a relative name nothing of which is there, weakly_canonical leaves a relative
+// one, and an absolute one of "./" and the same name.
+std::optional<std::filesystem::path> place_of(const std::string& file) {
+  std::error_code failure;
+  const std::filesystem::path absolute = std::filesystem::absolute(file, failure);
+  if (failure) return std::nullopt;
+  std::filesystem::path place = std::filesystem::weakly_canonical(absolute, failure);
+  if (failure) return std::nullopt;
+  return place;
+}
+
+}  // namespace
+
 bool same_file(const std::string& a, const std::string& b) {
   std::error_code failure;
   if (std::filesystem::equivalent(a, b, failure) && !failure) return true;
-  const std::filesystem::path place = std::filesystem::weakly_canonical(a, failure);
-  return !failure && place == std::filesystem::weakly_canonical(b, failure) && !failure;
+  const std::optional<std::filesystem::path> place = place_of(a);
+  return place && place == place_of(b);
 }
 
 namespace {

@@ -24,6 +24,8 @@ std::vector<std::string> objections_to(const Explanation& e) {
   for (const HeldNumber& held : e.held) {
     if (held.contradicted) objections.push_back(held.words);
   }
+  // A number that is held against the recordings says more of the same joint's friction.
+  if (objections.empty()) objections = e.unphysical;
   if (!e.not_in_robot_files.empty()) {
     objections.push_back(fmt::format(
         "robot files and controllers do not know {} yet, and what else was found is fitted beside "
@@ -131,7 +133,8 @@ ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
                      const std::string& output_file, bool force) {
   const ordered_json explained = to_json(added.explanation, names);
   ordered_json json;
-  for (const char* key : {"logs", "holdout", "robot", "verdict", "words", "found"}) {
+  for (const char* key : {"logs", "holdout", "robot", "verdict", "words", "found", "data_faults",
+                          "data_hints", "advice"}) {
     json[key] = explained[key];
   }
   json["recordings"] = ordered_json::array();

@@ -36,7 +36,8 @@ AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& l
                         const std::vector<Log>& holdout, const ExplainOptions& options,
                         const OnProgress& on_progress);
 
-// {verdict, words, found, recordings: [{log, held_out, joints: [{joint, unit, rms_error_before,
+// {logs, holdout, robot, verdict, words, found, data_faults, data_hints and advice as of explain,
+//  recordings: [{log, held_out, joints: [{joint, unit, rms_error_before,
 //  rms_error_after, relative_error_before_percent, relative_error_after_percent}]}], objections,
 //  doubts, held, written}. `written` is null where nothing was; `force`: doubts are overruled.
 nlohmann::ordered_json to_json(const AddedFindings& added, const ExplainNames& names,

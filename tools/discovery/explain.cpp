@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/input_name.hpp"
 #include "common/shell_word.hpp"
 #include "discovery/alternatives.hpp"
 #include "discovery/describe.hpp"
@@ -64,7 +65,8 @@ class Explainer {
   Explanation run(bool search) {
     const HoldOut hold_out(*regression_, held_out_.get());
     Explanation result;
-    if (!options_.robot_file.empty()) result.robot_file = shell_word(options_.robot_file);
+    if (!options_.robot_file.empty() && !is_stream(options_.robot_file))
+      result.robot_file = shell_word(options_.robot_file);
     result.at_rest = data_->recordings[0].at_rest;
     result.holdout_is_apart = hold_out.is_apart();
     result.excitation = excitation_of(data_->recordings);
@@ -83,7 +85,11 @@ class Explainer {
     result.improved = std::move(improved.robot);
     result.not_in_robot_files = std::move(improved.not_in_robot_files);
     result.held = std::move(improved.held);
+    result.unphysical = std::move(improved.unphysical);
     judge_whole(result);
+    if (!result.found.empty()) {
+      result.advice.insert(result.advice.end(), result.unphysical.begin(), result.unphysical.end());
+    }
     return result;
   }
 

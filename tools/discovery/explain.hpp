@@ -140,7 +140,8 @@ struct Explanation {
   // The robot with what was found and with the numbers fitted beside it; improved_robot.hpp.
   RobotDescription improved;
   std::vector<std::string> not_in_robot_files;
-  std::vector<HeldNumber> held;  // of `improved`
+  std::vector<HeldNumber> held;         // of `improved`
+  std::vector<std::string> unphysical;  // what physics forbids of it
 };
 
 struct ExplainOptions {

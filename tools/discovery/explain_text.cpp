@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "common/input_name.hpp"
 #include "common/shell_word.hpp"
 #include "discovery/explain_report.hpp"
 
@@ -61,6 +62,24 @@ std::string text_of_findings(const Explanation& e) {
   return text;
 }
 
+// The command that writes what was found. What came through a pipe is gone: it is to be kept first.
+std::string command_to_add(const ExplainNames& names) {
+  bool kept = true;
+  const auto word = [&](const std::string& file, const char* instead) {
+    if (!is_stream(file)) return " " + shell_word(file);
+    kept = false;
+    return std::string(" ") + instead;
+  };
+  std::string command = "offnominal add --all-found --robot" + word(names.robot_file, "ROBOT");
+  command += " --log";
+  for (const std::string& log : names.logs) command += word(log, "LOG");
+  if (!names.holdout.empty()) command += " --holdout";
+  for (const std::string& log : names.holdout) command += word(log, "HOLDOUT");
+  if (!names.channels.empty()) command += " --channels" + word(names.channels, "CHANNELS");
+  return fmt::format("to write a robot file with it{}: {} -o FILE\n",
+                     kept ? "" : ", keep what came through a pipe in a file, and", command);
+}
+
 }  // namespace
 
 std::string text_of(const Explanation& e, const ExplainNames& names) {
@@ -90,11 +109,7 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
   for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
   const bool to_write = e.verdict == Verdict::kFound || e.verdict == Verdict::kParameterShift;
   if (to_write && !e.found.empty() && e.not_in_robot_files.empty()) {
-    text += fmt::format(
-        "to write a robot file with it: offnominal add --all-found --robot {} --log {}{} -o FILE\n",
-        shell_word(names.robot_file), shell_words(names.logs),
-        (names.holdout.empty() ? "" : " --holdout " + shell_words(names.holdout)) +
-            (names.channels.empty() ? "" : " --channels " + shell_word(names.channels)));
+    text += command_to_add(names);
   }
   return text;
 }

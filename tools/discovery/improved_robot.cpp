@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
+#include "analysis/friction_power.hpp"
 #include "analysis/physical_range.hpp"
 #include "discovery/torque_scale.hpp"
 
@@ -64,27 +66,109 @@ HeldNumber held_number(const Relinearised& found, Index column, double asked, do
   return held;
 }
 
-void move_fitted_effects(const Relinearised& found, const std::string& source,
-                         ImprovedRobot& improved) {
-  RobotDescription& robot = improved.robot;
+// A number of the file that is fitted beside the findings.
+struct Moved {
+  std::size_t effect = 0;
+  std::size_t parameter = 0;
+  PhysicalRange range;
+  double factor = 1;  // of the regression's numbers
+  double asked = 0;
+};
+
+std::vector<Moved> moved_numbers(const Relinearised& found, const RobotDescription& robot) {
+  std::vector<Moved> all;
   for (std::size_t i = 0; i < found.data->nuisance.terms.size(); ++i) {
     const NuisanceTerm& term = found.data->nuisance.terms[i];
     if (term.kind != NuisanceTerm::Kind::kKnownEffect) continue;
-    RobotEffect& effect = robot.effects[term.effect];
+    const RobotEffect& effect = robot.effects[term.effect];
     if (!effect.fitted) continue;
-    const PhysicalRange range = physical_range(effect.kind, term.parameter);
-    double& value = effect.parameters[term.parameter];
-    const double factor =
+    Moved moved{term.effect, term.parameter, physical_range(effect.kind, term.parameter)};
+    moved.factor =
         factor_beside_torque_scale(found.terms, found.fit, term.joint, info_of(effect.kind)->name);
-    const double by = factor * found.fit.nuisance[static_cast<Index>(i)];
-    const double asked = value + by;
-    value = std::clamp(asked, range.min, range.max);
-    if (!range.holds(asked)) {
-      improved.held.push_back(
-          held_number(found, static_cast<Index>(i), asked, (asked - value) / factor, range));
+    moved.asked = effect.parameters[term.parameter] +
+                  moved.factor * found.fit.nuisance[static_cast<Index>(i)];
+    all.push_back(moved);
+  }
+  return all;
+}
+
+// Column of a number of the file.
+Index column_of(const Relinearised& found, const Moved& moved) {
+  const auto& terms = found.data->nuisance.terms;
+  const auto at = std::find_if(terms.begin(), terms.end(), [&](const NuisanceTerm& term) {
+    return term.kind == NuisanceTerm::Kind::kKnownEffect && term.effect == moved.effect &&
+           term.parameter == moved.parameter;
+  });
+  return static_cast<Index>(at - terms.begin());
+}
+
+// The last fit: numbers of the file that would be beyond what is possible are held at the end of
+// it, and all else is fitted beside them.
+Relinearised fitted_within(const RobotDescription& file, const RobotDescription& robot,
+                           const Data& data, NuisanceOptions options,
+                           const std::vector<Term>& terms, std::vector<HeldNumber>& held) {
+  constexpr double kRounding = 1e-9;
+  for (;;) {
+    const Data plain(data.recordings, robot, options);
+    Relinearised last = relinearise(robot, plain, options, terms, Regression(plain).fit(terms));
+    const std::size_t held_before = options.known.size();
+    for (const Moved& moved : moved_numbers(last, file)) {
+      const bool is_held =
+          std::any_of(options.known.begin(), options.known.end(), [&](const KnownNumber& one) {
+            return one.effect == moved.effect && one.parameter == moved.parameter;
+          });
+      if (is_held || moved.range.holds(moved.asked)) continue;
+      const double end = moved.range.nearest(moved.asked);
+      const double beyond = (moved.asked - end) / moved.factor;
+      held.push_back(held_number(last, column_of(last, moved), moved.asked, beyond, moved.range));
+      const double start = file.effects[moved.effect].parameters[moved.parameter];
+      const double at_end = (end - start) / moved.factor;
+      const double wide = kRounding * std::max(std::abs(at_end), std::abs(beyond));
+      options.known.push_back({moved.effect, moved.parameter, at_end - wide, at_end + wide});
     }
+    if (options.known.size() == held_before) return last;
+  }
+}
+
+void move_fitted_effects(const Relinearised& found, const std::string& source,
+                         RobotDescription& robot) {
+  for (const Moved& moved : moved_numbers(found, robot)) {
+    RobotEffect& effect = robot.effects[moved.effect];
+    // Held ones are at their end but for rounding, and for what the torque scale still moved.
+    effect.parameters[moved.parameter] = std::clamp(moved.asked, moved.range.min, moved.range.max);
     effect.source = source;
   }
+}
+
+// What physics forbids of the numbers that come out of the last fit, whatever the search saw.
+std::vector<std::string> unphysical(const Relinearised& last, const RobotDescription& improved) {
+  std::vector<std::string> objections;
+  std::set<Index> joints;
+  for (std::size_t i = 0; i < last.terms.size(); ++i) {
+    const Term& term = last.terms[i];
+    const EffectInfo* info = info_named(term.effect->name());
+    if (info == nullptr) continue;
+    if (is_friction(info->kind)) joints.insert(term.joint);
+    if (term.effect->is_physical(last.fit.coefficients[i])) continue;
+    objections.push_back(fmt::format(
+        "{} of joint {} came out as {:.4g}, which cannot be, once all was fitted together",
+        info->name, term.joint + 1, last.fit.coefficients[i][0]));
+  }
+  for (const Moved& moved : moved_numbers(last, improved)) {
+    const RobotEffect& effect = improved.effects[moved.effect];
+    if (is_friction(effect.kind)) joints.insert(effect.joint);
+  }
+  const Eigen::VectorXd rms = last.data->layout.rms(last.data->torque);
+  for (const Index joint : joints) {
+    for (const Workspace& at : last.data->recordings) {
+      const auto drives =
+          friction_that_drives(improved, static_cast<std::size_t>(joint), at.motion, rms[joint]);
+      if (!drives) continue;
+      objections.push_back(drives->words(improved));
+      break;
+    }
+  }
+  return objections;
 }
 
 void scale_links(const Relinearised& found, const std::string& source, RobotDescription& robot) {
@@ -109,12 +193,10 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
                   [](double factor) { return std::abs(factor - 1) < kWorthWriting; })) {
     of_links.link_share = 0;
   }
-  const Data plain(data.recordings, robot, of_links);
-  const Relinearised last =
-      relinearise(robot, plain, of_links, found.terms, Regression(plain).fit(found.terms));
-  ImprovedRobot improved{file, {}, {}};
+  ImprovedRobot improved{file, {}, {}, {}};
+  const Relinearised last = fitted_within(file, robot, data, of_links, found.terms, improved.held);
   scale_links(last, source, improved.robot);
-  move_fitted_effects(last, source, improved);
+  move_fitted_effects(last, source, improved.robot);
   for (std::size_t i = 0; i < last.terms.size(); ++i) {
     const Term& term = last.terms[i];
     const JointType type = file.joints[static_cast<std::size_t>(term.joint)].joint.type;
@@ -129,6 +211,7 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
     effect->source = source;
     improved.robot.effects.push_back(std::move(*effect));
   }
+  improved.unphysical = unphysical(last, improved.robot);
   return improved;
 }
 

@@ -17,6 +17,7 @@ struct ImprovedRobot {
   // Found, but not among the effects that a robot file can say; the rest is then of no use alone.
   std::vector<std::string> not_in_robot_files;
   std::vector<HeldNumber> held;
+  std::vector<std::string> unphysical;  // why it must not be used; empty: it may
 };
 
 // `file`: the robot as it was read; `robot`: the one that `data` was made with; `source`: what the

@@ -80,14 +80,20 @@ class Builder {
         });
   }
 
+  [[nodiscard]] Prior prior_of(std::size_t effect, std::size_t parameter) const {
+    Prior prior;
+    for (const KnownNumber& one : options_.known) {
+      if (one.effect != effect || one.parameter != parameter) continue;
+      prior.low = one.low;
+      prior.high = one.high;
+    }
+    return prior;
+  }
+
   void add_effect(std::size_t effect) {
     for (const Unknown& unknown : unknowns_of_effect(robot_, effect, false)) {
-      add({NuisanceTerm::Kind::kKnownEffect,
-           static_cast<Index>(unknown.joint),
-           effect,
-           unknown.parameter,
-           {},
-           name_of(robot_, unknown)},
+      add({NuisanceTerm::Kind::kKnownEffect, static_cast<Index>(unknown.joint), effect,
+           unknown.parameter, prior_of(effect, unknown.parameter), name_of(robot_, unknown)},
           [&](const Workspace& at) {
             Regressor columns;
             for (JointColumn& column : regressor(robot_, unknown, at.motion)) {

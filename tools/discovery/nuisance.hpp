@@ -34,6 +34,14 @@ struct Nuisance {
   Eigen::MatrixXd columns;  // stacked, filtered, not weighted; one per term
 };
 
+// A number of an effect of the robot file, as a difference, is not free.
+struct KnownNumber {
+  std::size_t effect = 0;
+  std::size_t parameter = 0;
+  double low = 0;
+  double high = 0;
+};
+
 struct NuisanceOptions {
   // As far as these may be off, two standard deviations of what is believed:
   double link_share = 0.05;   // mass and inertia of a link, as a share; 0: they are right
@@ -41,6 +49,7 @@ struct NuisanceOptions {
   // Factor by which mass and inertia of each link of the robot differ from what the prior is about;
   // empty: by none.
   std::vector<double> link_factors = {};
+  std::vector<KnownNumber> known = {};  // what is left out is free
 };
 
 Nuisance make_nuisance(const RobotDescription& robot, const std::vector<Workspace>& recordings,

@@ -14,7 +14,7 @@ namespace detail {
 
 inline void require_ok(Status status, const std::string& place, const std::string& mend) {
   if (status == Status::kOk) return;
-  throw InputError({.file = "paper",
+  throw InputError({.file = "offnominal paper",
                     .place = place,
                     .found = std::string("status ") + name_of(status),
                     .allowed = "",

@@ -39,14 +39,18 @@ void check_experiment(const RobotDescription& robot, const Experiment& experimen
                       const std::string& verb) {
   const auto refuse = [&verb](const std::string& place, const std::string& found,
                               const std::string& allowed) {
-    throw InputError(
-        {.file = verb, .place = place, .found = found, .allowed = allowed, .mend = ""});
+    throw InputError({.file = "offnominal " + verb,
+                      .place = place,
+                      .found = found,
+                      .allowed = allowed,
+                      .mend = ""});
   };
   const double period = robot.estimator.period_s;
   if (robot.joint_count() != 2) {
-    refuse("robot", std::to_string(robot.joint_count()) + " joint(s)", "2, as the paper's arm has");
+    refuse("--robot", std::to_string(robot.joint_count()) + " joint(s)",
+           "2, as the paper's arm has");
   }
-  require_bound(robot, robot.name);
+  require_bound(robot, "robot " + robot.name);
   if (!(period >= kMinPeriod && period <= kMaxPeriod)) {
     refuse("step", shortest(period) + " s", "1e-5 to 0.02 s");
   }
@@ -54,11 +58,12 @@ void check_experiment(const RobotDescription& robot, const Experiment& experimen
   if (hidden < 1 || hidden > kMaxHiddenUnits) {
     refuse("hidden units", std::to_string(hidden), "1 to " + std::to_string(kMaxHiddenUnits));
   }
-  if (!(experiment.duration_s >= period && experiment.duration_s <= 1e5)) {
-    refuse("duration", shortest(experiment.duration_s) + " s", "one step to 1e5 s");
+  if (!(experiment.duration_s >= period && experiment.duration_s <= kLongestRunS)) {
+    refuse("--duration", shortest(experiment.duration_s) + " s",
+           "one step to " + shortest(kLongestRunS) + " s");
   }
   if (!(std::abs(experiment.motion_start_s) <= 1e5)) {
-    refuse("start", shortest(experiment.motion_start_s) + " s", "-1e5 to 1e5 s");
+    refuse("--start", shortest(experiment.motion_start_s) + " s", "-1e5 to 1e5 s");
   }
 }
 

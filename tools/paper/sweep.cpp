@@ -16,7 +16,7 @@ SweepResult sweep_mass_loss(const RobotDescription& robot, const Experiment& bas
                             double resolution,
                             const std::function<void(const SweepProbe&)>& on_probe) {
   if (!(resolution >= 0.001 && resolution <= 0.1)) {
-    throw InputError({.file = "paper",
+    throw InputError({.file = "offnominal paper",
                       .place = "sweep resolution",
                       .found = std::to_string(resolution),
                       .allowed = "0.001 to 0.1",

@@ -69,8 +69,10 @@ Scenario read_scenario(const std::filesystem::path& path) {
                 std::to_string(kScenarioFormat), "use the version of offnominal that wrote it");
   }
   Scenario scenario;
+  NumberRule duration = positive("s");
+  duration.max = paper::kLongestRunS;
   scenario.experiment.duration_s =
-      root.number("duration_s", positive("s"), scenario.experiment.duration_s);
+      root.number("duration_s", duration, scenario.experiment.duration_s);
   scenario.experiment.accommodate = root.boolean("accommodate", false);
   scenario.stop_at_detection = root.boolean("stop_at_detection", false);
   if (root.has("frames")) {

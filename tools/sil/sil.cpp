@@ -16,7 +16,8 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& place, const std::string& found,
                          const std::string& allowed) {
-  throw InputError({.file = "sil", .place = place, .found = found, .allowed = allowed, .mend = ""});
+  throw InputError(
+      {.file = "offnominal sil", .place = place, .found = found, .allowed = allowed, .mend = ""});
 }
 
 void check_fault(const sim::FaultEvent& fault, double duration_s) {

@@ -76,6 +76,55 @@ TEST(AddRefuses, GIVEN_a_number_of_the_file_that_fits_best_below_zero_THEN_it_is
   EXPECT_NEAR(result.robot.effects[1].parameters[0], 1.3, 0.02);
 }
 
+// What is hidden gives energy: whatever takes its place in the model would, and none may.
+TEST(AddRefuses, GIVEN_effects_that_all_together_give_energy_THEN_none_of_them_is_written) {
+  for (const EffectKind kind : {EffectKind::kQuadraticFriction, EffectKind::kStribeckFriction,
+                                EffectKind::kTemperatureDrift}) {
+    SCOPED_TRACE(info_of(kind)->name);
+    const AddResult result = fitted(arm_description(), kind, viscous(-10));
+    EXPECT_THAT(result.objections,
+                Contains(AllOf(HasSubstr("the friction of joint 2 all together would give energy"),
+                               HasSubstr("sign of the torque"))));
+    EXPECT_FALSE(result.may_be_written(true));
+  }
+}
+
+TEST(AddRefuses, GIVEN_a_trace_of_friction_that_gives_energy_THEN_it_says_that_none_fits_as_well) {
+  const AddResult result =
+      fitted(arm_description(), EffectKind::kQuadraticFriction, viscous(-0.02));
+  ASSERT_LT(result.fit.parameters.at(0).value, 0);
+  EXPECT_THAT(result.objections, Contains(AllOf(HasSubstr("over the whole motion"),
+                                                HasSubstr("none at all fits as well"))));
+}
+
+// Friction that falls with speed, or that a cold joint has less of, is friction all the same.
+TEST(AddRefuses, GIVEN_enough_friction_beside_it_THEN_an_effect_may_be_negative) {
+  RobotDescription robot = arm_description();
+  robot.effects = {effect_of(EffectKind::kCoulombFriction, 1, {3.0, 0.01}, true)};
+  const auto hidden = [](double level) {
+    return [level](const ArmInstant& at) {
+      return Vector2d(0, std::tanh(at.dq[1] / 0.01) *
+                             (3 + level * std::exp(-at.dq[1] * at.dq[1] / (0.4 * 0.4))));
+    };
+  };
+  const AddResult enough = fitted(robot, EffectKind::kStribeckFriction, hidden(-1.5));
+  EXPECT_THAT(enough.objections, IsEmpty());
+  EXPECT_LT(enough.robot.effects.at(1).parameters[0], -1);
+  const AddResult too_much = fitted(robot, EffectKind::kStribeckFriction, hidden(-6));
+  EXPECT_THAT(too_much.objections, Contains(AllOf(HasSubstr("would give energy: from 0."),
+                                                  HasSubstr(" rad/s it drives the joint"))));
+}
+
+// The same constant torque as a torque_offset where the joint moves: no energy is given.
+TEST(AddRefuses, GIVEN_a_difference_between_the_directions_THEN_it_is_not_taken_for_friction) {
+  const AddResult result =
+      fitted(arm_description(), EffectKind::kFrictionAsymmetry, [](const ArmInstant& at) {
+        const double sign = std::tanh(at.dq[1] / 0.01);
+        return Vector2d(0, 1.3 * sign * sign + 0.5 * at.dq[1] * sign);
+      });
+  EXPECT_THAT(result.objections, IsEmpty());
+}
+
 TEST(AddRefuses, GIVEN_an_error_that_does_not_fall_THEN_only_force_writes_it) {
   const AddRequest request = on_joint_2(EffectKind::kCoggingTorque);
   const AddResult result =
@@ -94,12 +143,14 @@ TEST(AddRefuses, GIVEN_an_error_that_does_not_fall_THEN_only_force_writes_it) {
 
 TEST(AddSays, WhichJointWasFittedAgain) {
   RobotDescription robot = arm_description();
-  robot.effects = {effect_of(EffectKind::kViscousFriction, 1, {2.0}, true)};
+  robot.effects = {effect_of(EffectKind::kViscousFriction, 1, {2.0}, true),
+                   effect_of(EffectKind::kCoulombFriction, 1, {0.5, 0.01}, true)};
   const AddResult result = fitted(robot, EffectKind::kTorqueOffset, [](const ArmInstant& at) {
-    return Vector2d(0, 1.3 + 0.8 * at.dq[1]);
+    return Vector2d(0, 1.3 + 0.8 * at.dq[1] + 0.4 * std::tanh(at.dq[1] / 0.01));
   });
   const std::string text = text_of(result, on_joint_2(EffectKind::kTorqueOffset), kNames);
   EXPECT_THAT(text, HasSubstr("(fitted again, joint 2)"));
+  EXPECT_THAT(text, Not(HasSubstr("not fitted (fitted again")));
   EXPECT_THAT(text, HasSubstr("together with it: viscous_friction on joint 2"));
 }
 

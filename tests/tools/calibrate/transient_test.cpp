@@ -61,7 +61,7 @@ TEST(CalibrateTransient, DoesNotDecideTheBound) {
   EXPECT_GT(bumped.transient->mean_threshold_with, 2 * constant_threshold(bumped));
   // It is covered all the same: no recording raises an alarm.
   for (const JudgedStretch& stretch : bumped.stretches) {
-    EXPECT_LE(stretch.max_ratio_after, 1) << stretch.file;
+    EXPECT_LE(stretch.max_ratio_after, 0.96) << stretch.file << ": a margin of 5 %";
   }
 }
 

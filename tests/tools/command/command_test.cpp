@@ -155,17 +155,49 @@ TEST(Command, RefusesNumbersThatNoRobotHas) {
 TEST(Command, NamesTheVerbAndTheTableThatAreMeant) {
   const CommandResult run = offnominal({"sil", "--duration", "1e9"});
   expect_one_line_refusal(run);
-  EXPECT_THAT(run.err, StartsWith("sil: duration: found 1e+09 s"));
+  EXPECT_THAT(run.err, StartsWith("offnominal sil: --duration: found 1e+09 s"));
   const test::TemporaryFolder folder;
   std::string text = test::content_of(test::source_dir() / "robots" / "two_link.toml");
   text.resize(text.find("[uncertainty_bound]"));
   test::put(folder / "r.toml", text);
-  for (const char* verb : {"sil", "paper"}) {
-    const CommandResult result =
-        offnominal({verb, "--fault", "none", "--robot", (folder / "r.toml").string()});
+  const std::string robot = (folder / "r.toml").string();
+  test::put(folder / "log.csv", "t,q1,q2,tau1,tau2\n0,0,0,0,0\n0.001,0,0,0,0\n0.002,0,0,0,0\n");
+  const std::string log = (folder / "log.csv").string();
+  const std::vector<std::vector<std::string>> calls{
+      {"sil", "--fault", "none", "--robot", robot},
+      {"paper", "--fault", "none", "--robot", robot},
+      {"paper", "--sweep", "--against", robot},
+      {"wcet", "--robot", robot},
+      {"replay", log, "--robot", robot},
+      {"codegen", robot, "-o", (folder / "r.hpp").string()}};
+  for (const std::vector<std::string>& call : calls) {
+    SCOPED_TRACE(call.front());
+    const CommandResult result = offnominal(call);
     expect_one_line_refusal(result);
+    EXPECT_THAT(result.err, StartsWith(robot + ": uncertainty_bound: found nothing"));
     EXPECT_THAT(result.err, HasSubstr("a table [uncertainty_bound]"));
   }
+}
+
+TEST(Command, NamesTheVerbWhereARoomKnowsTheOptionOnly) {
+  const test::TemporaryFolder folder;
+  std::string log = "t,q1,q2,tau1,tau2\n";
+  for (int i = 0; i < 1000; ++i) log += std::to_string(i) + "e-2,0.1,0.1,0,0\n";
+  test::put(folder / "log.csv", log);
+  const std::string file = (folder / "log.csv").string();
+  const std::string robot = (test::source_dir() / "robots" / "two_link.toml").string();
+  const std::string output = (folder / "new.toml").string();
+  const auto told = [&](const std::vector<std::string>& call, const std::string& start) {
+    const CommandResult result = offnominal(call);
+    expect_one_line_refusal(result);
+    EXPECT_THAT(result.err, StartsWith(start));
+  };
+  told({"compare", file, "--robot", robot, "--decimate", "0"},
+       "offnominal compare: --decimate: found 0");
+  told({"compare", file, "--robot", robot, "--cutoff", "1e6"},
+       "offnominal compare: --cutoff: found 1e+06 Hz");
+  told({"add", "viscous_friction", "--joint", "3", "--robot", robot, "--log", file, "-o", output},
+       "offnominal add: --joint: found 3");
 }
 
 TEST(Command, RefusesAnUnknownOptionOfItsOwn) {

@@ -150,5 +150,28 @@ TEST_F(OutputFile, TwoOutputsOfOneCallAreTwoFiles) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "x"));
 }
 
+TEST_F(OutputFile, TwoOutputsOfOneCallAreTwoFilesByWhateverNames) {
+  std::filesystem::create_directory(folder_ / "sub");
+  std::filesystem::create_directory_symlink("sub", folder_ / "link");
+  const std::string here = "cd '" + folder_.path().string() + "' && '" + test::command_file() +
+                           "' sil --duration 1 --force --log ";
+  for (const auto& [log, candump] :
+       std::map<std::string, std::string>{{"x", "./x"},
+                                          {"./y", "y"},
+                                          {"sub/../z", "z"},
+                                          {"u", "\"$PWD/u\""},
+                                          {"link/v", "sub/v"},
+                                          {"sub/w", "./link/../link/w"}}) {
+    SCOPED_TRACE(log + " " + candump);
+    const CommandResult result =
+        test::run_command("/bin/sh", {"-c", here + log + " --candump " + candump});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("which is that of --"));
+  }
+  const CommandResult apart = test::run_command("/bin/sh", {"-c", here + "x --candump sub/x"});
+  EXPECT_EQ(apart.exit_code, 0) << apart.err;
+  EXPECT_NE(content_of(folder_ / "x"), content_of(folder_ / "sub/x"));
+}
+
 }  // namespace
 }  // namespace offnominal::tools

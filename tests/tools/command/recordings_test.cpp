@@ -80,6 +80,53 @@ TEST_F(RecordingsOfVerbs, ComeThroughAPipeAsFromAFile) {
   EXPECT_EQ(without_name(redirected.out), expected);
 }
 
+// What came through a pipe is gone: no word and no command may point at it.
+TEST_F(RecordingsOfVerbs, ThatCameThroughAPipeAreNamedInWordsThatLast) {
+  const auto hidden = [](const test::ArmInstant& at) { return Eigen::Vector2d(0, 4 * at.dq[1]); };
+  put(folder_ / "v.csv",
+      csv_text(test::record_arm({.duration_s = 20, .rate_hz = 200, .torque_noise = 0.05}, hidden)));
+  const auto of_shell = [&](const std::string& line) {
+    return test::run_command(
+        "/bin/bash", {"-c", "cat '" + path("v.csv") + "' | '" + test::command_file() + "' " + line +
+                                " --robot '" + path("arm.toml") + "'"});
+  };
+  const std::string fit = "add viscous_friction --joint 2 --log ";
+  ASSERT_EQ(of_shell(fit + "- -o '" + path("a.toml") + "'").exit_code, 0);
+  EXPECT_THAT(test::content_of(folder_ / "a.toml"),
+              HasSubstr("Fitted to standard input by offnominal add."));
+  const CommandResult piped =
+      of_shell(fit + "<(cat '" + path("v.csv") + "') -o '" + path("b.toml") + "'");
+  ASSERT_EQ(piped.exit_code, 0) << piped.err;
+  EXPECT_THAT(test::content_of(folder_ / "b.toml"),
+              HasSubstr("Fitted to a pipe by offnominal add."));
+  put(folder_ / "c.toml",
+      "[channels]\ntime = \"t\"\nposition = [{source = \"q1\"}, {source = "
+      "\"q2\"}]\ntorque = [{source = \"tau1\"}, {source = \"tau2\"}]\n");
+  const CommandResult told =
+      of_shell("explain - --replays 0 --channels <(cat '" + path("c.toml") + "')");
+  ASSERT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_THAT(told.out, HasSubstr("keep what came through a pipe in a file"));
+  EXPECT_THAT(told.out, HasSubstr(" --log LOG --channels CHANNELS -o FILE"));
+  EXPECT_THAT(told.out, Not(HasSubstr("/dev/fd")));
+}
+
+// What add says of the data, it says of them however it was told what to add.
+TEST_F(RecordingsOfVerbs, HaveTheirFaultsInTheJsonOfBothKindsOfAdd) {
+  put(folder_ / "long.csv",
+      csv_text(test::record_arm({.duration_s = 20, .rate_hz = 200, .torque_noise = 0.05})));
+  for (const Words& what : {Words{"viscous_friction", "--joint", "2"}, Words{"--all-found"}}) {
+    Words words{"add", "--log", path("long.csv"), "-o", path("new.toml"), "--json"};
+    words.insert(words.begin() + 1, what.begin(), what.end());
+    const CommandResult result = run(words);
+    EXPECT_THAT(result.exit_code, testing::AnyOf(0, 1)) << result.err;
+    const nlohmann::json json = nlohmann::json::parse(result.out);
+    EXPECT_TRUE(json.at("data_faults").is_array());
+    if (what.size() > 1) continue;
+    EXPECT_TRUE(json.at("data_hints").is_array());
+    EXPECT_TRUE(json.at("advice").is_array());
+  }
+}
+
 TEST_F(RecordingsOfVerbs, ThatNeverEndOrAreNoTextAreRefused) {
   put(folder_ / "binary", std::string("\x7f"
                                       "ELF\x02\x01\0\0\0",
@@ -108,7 +155,10 @@ TEST_F(RecordingsOfVerbs, RobotAndChannelFilesThatNeverEndAreRefused) {
 TEST_F(RecordingsOfVerbs, AreNotHeldOutWhereTheyAreFitted) {
   std::filesystem::create_symlink("a.csv", folder_ / "link.csv");
   std::filesystem::copy_file(folder_ / "a.csv", folder_ / "copy.csv");
-  for (const char* same : {"a.csv", "link.csv", "copy.csv"}) {
+  Log later = test::record_arm({.duration_s = 6, .rate_hz = 200});
+  later.t_s.array() += 1234.5;
+  put(folder_ / "later.csv", csv_text(later));
+  for (const char* same : {"a.csv", "link.csv", "copy.csv", "later.csv"}) {
     SCOPED_TRACE(same);
     const Words holdout{"--holdout", path(same)};
     const auto with = [&](Words words) {

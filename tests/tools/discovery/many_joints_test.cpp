@@ -5,9 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include "analysis/compare.hpp"
+#include "analysis/measurement.hpp"
 #include "discovery/add_found.hpp"
 #include "discovery/explain.hpp"
 #include "discovery/explain_report.hpp"
@@ -110,6 +113,42 @@ TEST(ManyJoints, GIVEN_a_number_of_the_file_that_physics_forbids_THEN_all_found_
   EXPECT_THAT(added.objections, Contains(AllOf(HasSubstr("level of joint 2 was held at 0"),
                                                HasSubstr("sign of the torque"))));
   EXPECT_FALSE(added.may_be_written(true));
+}
+
+// Coulomb friction that pushes is held at 0, and the viscous number is the one that fits beside it.
+// A joint without known friction that gains energy: whatever explain finds in its place.
+TEST(ManyJoints, GIVEN_friction_that_gives_energy_THEN_all_found_is_not_written) {
+  RobotDescription robot = test::serial_arm(1);
+  RobotDescription real = robot;
+  robot.effects.clear();
+  real.effects = {test::effect_of(EffectKind::kQuadraticFriction, 0, {-0.5}, true)};
+  const AddedFindings added =
+      add_found(robot, {test::record(real, {.duration_s = 20})}, {}, quick(2), {});
+  EXPECT_FALSE(added.may_be_written(true)) << added.explanation.words;
+  ASSERT_THAT(added.explanation.found, Not(IsEmpty())) << added.explanation.words;
+  EXPECT_THAT(added.objections,
+              Contains(HasSubstr("the friction of joint 1 all together would give energy")));
+  EXPECT_THAT(added.explanation.advice, Contains(HasSubstr("would give energy")));
+}
+
+TEST(ManyJoints, GIVEN_a_number_that_is_held_THEN_all_else_is_fitted_beside_it) {
+  const RobotDescription robot = test::serial_arm(2);
+  RobotDescription real = robot;
+  real.effects.at(3).parameters[0] = -0.3;
+  real.effects.push_back(test::effect_of(EffectKind::kJointStiffness, 1, {6, 0.1}, true));
+  const Log log = test::record(real, {.duration_s = 20});
+  const AddedFindings added = add_found(robot, {log}, {}, quick(2), {});
+  const RobotDescription& improved = added.explanation.improved;
+  ASSERT_EQ(improved.effects.at(3).parameters[0], 0);
+  const Measurement measured = measure(log, {});
+  const auto error = [&](double of_viscous) {
+    RobotDescription other = improved;
+    other.effects.at(2).parameters[0] += of_viscous;
+    return compare(other, measured).joints.at(1).rms_error;
+  };
+  const double step = 0.02 * std::abs(improved.effects.at(2).parameters[0]);
+  EXPECT_LT(error(0), error(step));
+  EXPECT_LT(error(0), error(-step));
 }
 
 TEST(ManyJoints, TheNumberOfThreadsChangesNothing) {

@@ -120,7 +120,7 @@ function plotPlaces({ block, chart, hidden }, [left, right]) {
     .sort((a, b) => a - b);
 }
 
-/** Points and bars of the range shown, from left to right; of many, every so manieth. */
+/** Points and bars of the range shown, from left to right; of many, every n-th. */
 function nextItem(figure, right) {
   const { block, chart, hidden } = figure;
   const [low, high] = visibleRange(figure, "x");
