@@ -87,37 +87,39 @@ std::string common_name(const std::string& message, const std::string& signal) {
 class CandumpReader {
  public:
   CandumpReader(std::string file, const Dbc* dbc, const NeedOf& need_of)
-      : file_(std::move(file)), own_(dbc == nullptr), dbc_(own_ ? offnominal_dbc() : *dbc) {
+      : file_(std::move(file)), dbc_(dbc == nullptr ? offnominal_dbc() : *dbc) {
     for (const DbcMessage& message : dbc_.messages) {
+      const bool own = is_own(message);
       for (const DbcSignal& signal : message.signals) {
-        std::string name = own_ ? common_name(message.name, signal.name) : std::string();
-        if (name.empty() || need_of(name) != Need::kRequired) {
+        std::string name = own ? common_name(message.name, signal.name) : std::string();
+        if (name.empty() || !is_required(need_of(name))) {
           name = message.name + "." + signal.name;
-          if (need_of(name) != Need::kRequired) continue;
+          if (!is_required(need_of(name))) continue;
         }
-        wanted_.push_back({&message, &signal, tracks_.size()});
+        wanted_.push_back({&message, &signal, tracks_.size(), own});
         tracks_.push_back({name, {}, {}, {}});
       }
     }
   }
 
-  NamedColumns read(const std::string& text) {
+  NamedColumns read(RecordingFile& file) {
+    std::string content;
+    // Of another form; the last line may be.
+    std::optional<std::string> odd;
     std::size_t line = 0;
-    for (std::size_t begin = 0; begin < text.size();) {
-      const std::size_t end = std::min(text.find('\n', begin), text.size());
-      std::string_view content = std::string_view(text).substr(begin, end - begin);
-      const bool is_last = end + 1 >= text.size();
-      begin = end + 1;
-      ++line;
-      if (content.ends_with('\r')) content.remove_suffix(1);
-      if (content.empty()) continue;
-      const auto frame = parse_candump_line(content);
-      if (!frame) {
-        if (is_last) break;
-        throw InputError({file_, fmt::format("line {}", line), std::string(content.substr(0, 60)),
+    while (file.next_line(content)) {
+      if (odd) {
+        throw InputError({file_, fmt::format("line {}", line), odd->substr(0, 60),
                           "a line of candump -l: (seconds) interface ID#DATA", ""});
       }
-      take(*frame, line);
+      ++line;
+      if (content.ends_with('\r')) content.pop_back();
+      if (content.empty()) continue;
+      if (const auto frame = parse_candump_line(content)) {
+        take(*frame, line);
+      } else {
+        odd = content;
+      }
     }
     return columns();
   }
@@ -127,14 +129,21 @@ class CandumpReader {
     const DbcMessage* message;
     const DbcSignal* signal;
     std::size_t track;
+    bool own;
   };
+
+  // Whether a message is one of offnominal's own, whichever file it is described in.
+  static bool is_own(const DbcMessage& message) {
+    const DbcMessage* own = offnominal_dbc().find(message.id, message.extended);
+    return own != nullptr && *own == message;
+  }
 
   void take(const CandumpFrame& frame, std::size_t line) {
     const DbcMessage* message = dbc_.find(frame.frame.id, frame.frame.extended);
     if (message == nullptr || frame.frame.remote) return;
     for (const Wanted& wanted : wanted_) {
       if (wanted.message != message || !wanted.signal->fits(frame.frame.length)) continue;
-      if (own_ && !is_told(frame.frame, *wanted.signal)) continue;
+      if (wanted.own && !is_told(frame.frame, *wanted.signal)) continue;
       Track& track = tracks_[wanted.track];
       // One message more per tick must not fold time back.
       if (!track.t_s.empty() && frame.time_s <= track.t_s.back()) continue;
@@ -142,6 +151,10 @@ class CandumpReader {
       track.value.push_back(wanted.signal->value_in(
           std::span<const std::uint8_t>(frame.frame.data).first(frame.frame.length)));
       track.line.push_back(line);
+      if (++numbers_ <= RecordingFile::kMostNumbers / kPerValue) continue;
+      throw InputError({file_, fmt::format("line {}", line),
+                        fmt::format("more than {} values", RecordingFile::kMostNumbers / kPerValue),
+                        "a recording that ends", "cut it into parts"});
     }
   }
 
@@ -222,9 +235,12 @@ class CandumpReader {
     return values;
   }
 
+  // Value, time and line are kept of each until all are there.
+  static constexpr std::size_t kPerValue = 3;
+
   std::string file_;
-  bool own_;
   const Dbc& dbc_;
+  std::size_t numbers_ = 0;
   std::vector<Wanted> wanted_;
   std::vector<Track> tracks_;
 };
@@ -261,7 +277,7 @@ bool is_candump_file(const RecordingFile& file) {
 }
 
 NamedColumns read_candump(RecordingFile& file, const Dbc* dbc, const NeedOf& need_of) {
-  return CandumpReader(file.name(), dbc, need_of).read(file.rest());
+  return CandumpReader(file.name(), dbc, need_of).read(file);
 }
 
 }  // namespace offnominal::tools

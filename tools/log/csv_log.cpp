@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <deque>
 #include <new>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/error.hpp"
@@ -85,7 +87,7 @@ class CsvReader {
     separator_ = separator_of(line);
     read_header(line);
     LineSplitter splitter(separator_);
-    while (kept_ > 0 && next(line)) read_row(splitter, line);
+    while (kept_ > 0 && ascending_ && next(line)) read_row(splitter, line);
     if (kept_ > 0 && rows_ == 0)
       fail("line 1", "a header without samples", "one line of numbers per sample");
     return result();
@@ -94,7 +96,7 @@ class CsvReader {
  private:
   struct Column {
     Need need = Need::kNone;
-    std::vector<double> values;
+    std::deque<double> values;  // takes no more memory than it holds
   };
 
   [[noreturn]] void fail(const std::string& place, const std::string& found,
@@ -165,6 +167,9 @@ class CsvReader {
     if (column.need == Need::kNone) return;
     const std::optional<double> value = number_in(text);
     if (value) {
+      if (column.need == Need::kAscending && !column.values.empty()) {
+        ascending_ = *value > column.values.back();
+      }
       column.values.push_back(*value);
     } else if (column.need == Need::kWelcome) {
       column.need = Need::kNone;
@@ -177,7 +182,7 @@ class CsvReader {
     }
   }
 
-  NamedColumns result() const {
+  NamedColumns result() {
     NamedColumns result;
     result.file = file_.name();
     result.names = names_;
@@ -186,8 +191,10 @@ class CsvReader {
     }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       if (columns_[i].need == Need::kNone) continue;
-      result.columns[names_[i]] = Eigen::Map<const Eigen::VectorXd>(
-          columns_[i].values.data(), static_cast<Eigen::Index>(columns_[i].values.size()));
+      std::deque<double> values = std::exchange(columns_[i].values, {});
+      Eigen::VectorXd& column = result.columns[names_[i]];
+      column.resize(static_cast<Eigen::Index>(values.size()));
+      std::copy(values.begin(), values.end(), column.begin());
     }
     result.place_of = [](Eigen::Index row) { return "line " + std::to_string(row + 2); };
     return result;
@@ -200,6 +207,7 @@ class CsvReader {
   std::size_t blank_line_ = 0;
   std::size_t rows_ = 0;
   std::size_t kept_ = 0;     // columns
+  bool ascending_ = true;    // time, so far
   bool unfinished_ = false;  // no line end after the newest line
   bool cut_off_ = false;     // the last line was left out
   std::vector<std::string> names_;

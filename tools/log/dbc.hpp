@@ -24,6 +24,7 @@ struct DbcSignal {
   /// scale * bits + offset. The bytes have to hold the signal; fits() says whether they do.
   [[nodiscard]] double value_in(std::span<const std::uint8_t> bytes) const;
   [[nodiscard]] bool fits(std::size_t bytes) const;
+  bool operator==(const DbcSignal&) const = default;
 };
 
 struct DbcMessage {
@@ -32,6 +33,8 @@ struct DbcMessage {
   std::string name;
   int length = 0;  // bytes
   std::vector<DbcSignal> signals;
+
+  bool operator==(const DbcMessage&) const = default;
 };
 
 struct Dbc {

@@ -294,20 +294,24 @@ struct Header {
   bool big_endian;
 };
 
+std::optional<Header> header_in(std::string_view beginning) {
+  if (beginning.size() < kHeaderSize) return std::nullopt;
+  const std::string_view order = beginning.substr(126, 2);
+  if (order != "IM" && order != "MI") return std::nullopt;
+  const bool big_endian = order == "MI";
+  return Header{beginning[big_endian ? 124 : 125], big_endian};
+}
+
 std::optional<Header> read_header(std::ifstream& file) {
   std::array<char, kHeaderSize> header{};
   if (!file.read(header.data(), header.size())) return std::nullopt;
-  const std::string_view order(&header[126], 2);
-  if (order != "IM" && order != "MI") return std::nullopt;
-  const bool big_endian = order == "MI";
-  return Header{header[big_endian ? 124 : 125], big_endian};
+  return header_in({header.data(), header.size()});
 }
 
 }  // namespace
 
-bool is_mat_level_5_or_7(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const auto header = read_header(file);
+bool is_mat_level_5_or_7(std::string_view beginning) {
+  const auto header = header_in(beginning);
   return header && (header->version == 1 || header->version == 2);
 }
 

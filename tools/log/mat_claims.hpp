@@ -4,15 +4,17 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace offnominal::tools {
 
 // What a byte of the file can stand for: zlib packs by a factor of 1032 at most.
 inline constexpr std::uint64_t kMostPerPackedByte = 1100;
 
-// True where the file's header is that of MATLAB's level 5 or 7.3. matio takes any other file for
-// one of level 4, which has no header, and allocates what its first bytes claim.
-bool is_mat_level_5_or_7(const std::filesystem::path& path);
+// True where a file that begins so, with 128 bytes or more, has the header of MATLAB's level 5
+// or 7.3. matio takes any other file for one of level 4, which has no header, and allocates what
+// its first bytes claim.
+bool is_mat_level_5_or_7(std::string_view beginning);
 
 // What a variable of a MATLAB file of level 5 claims to hold, and cannot. matio allocates what
 // dimensions, cell arrays, structures and function handles claim before it reads them, and goes as

@@ -88,8 +88,10 @@ std::string kind_of(const matvar_t& variable) {
 class MatReader {
  public:
   MatReader(RecordingFile& file, const NeedOf& need_of)
-      : name_(file.name()), path_(file.seekable()), need_of_(need_of), mat_(nullptr, &Mat_Close) {
-    if (!is_mat_level_5_or_7(path_)) refuse_file();
+      : name_(file.name()), need_of_(need_of), mat_(nullptr, &Mat_Close) {
+    // Before a pipe is copied, which may be long.
+    if (!is_mat_level_5_or_7(file.beginning())) refuse_file();
+    path_ = file.seekable();
     if (const auto claim = impossible_claim(path_)) {
       fail(claim->variable.empty() ? "" : "variable " + claim->variable, claim->what,
            "a complete file");
@@ -126,7 +128,7 @@ class MatReader {
     const std::string name = info.name;
     if (!is_numeric_array(info)) {
       result_.names.push_back(name);
-      if (need_of_(name) == Need::kRequired) {
+      if (is_required(need_of_(name))) {
         fail("variable " + name, kind_of(info), "a real vector or matrix");
       }
       return;

@@ -10,10 +10,12 @@ namespace offnominal::tools {
 
 // What a reader shall do with a column of a given name.
 enum class Need {
-  kRequired,  // a cell that is no number is an error
-  kWelcome,   // left out where it is not numeric
-  kNone,      // not read
+  kRequired,   // a cell that is no number is an error
+  kAscending,  // required, and time: what is read as it comes is read as far as it ascends
+  kWelcome,    // left out where it is not numeric
+  kNone,       // not read
 };
+inline bool is_required(Need need) { return need == Need::kRequired || need == Need::kAscending; }
 using NeedOf = std::function<Need(const std::string& name)>;
 
 // The numbers of a recording as its file names them, before anything is known of joints.

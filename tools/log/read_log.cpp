@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <new>
 #include <set>
 #include <string>
 #include <vector>
@@ -232,14 +233,15 @@ class Assembler {
 
   void check_time() const {
     const VectorXd& t = log_.t_s;
-    if (t.size() < kMinSamples) {
-      fail("", fmt::format("{} samples", t.size()), fmt::format("{} samples or more", kMinSamples));
-    }
+    // First, because nothing is read beyond it.
     for (Index row = 1; row < t.size(); ++row) {
       if (t[row] > t[row - 1]) continue;
       fail(columns_.place_of(row) + ", time",
            fmt::format("{:.9g} s after {:.9g} s", t[row], t[row - 1]),
            "time that ascends from sample to sample");
+    }
+    if (t.size() < kMinSamples) {
+      fail("", fmt::format("{} samples", t.size()), fmt::format("{} samples or more", kMinSamples));
     }
   }
 
@@ -250,15 +252,17 @@ class Assembler {
   }
 
   void remark_constants() {
-    const auto remark = [&](const Eigen::MatrixXd& columns, const char* what) {
+    const auto remark = [&](const Eigen::MatrixXd& columns, const char* what, bool derived) {
       for (Index i = 0; i < columns.cols(); ++i) {
+        if (derived && log_.dq_derived[static_cast<std::size_t>(i)]) continue;
         if (columns.col(i).maxCoeff() > columns.col(i).minCoeff()) continue;
         log_.remarks.push_back(fmt::format("{} of joint {} never changes: it is {:.6g} throughout",
                                            what, i + 1, columns(0, i)));
       }
     };
-    remark(log_.q, "the position");
-    remark(log_.tau, "the torque");
+    remark(log_.q, "the position", false);
+    remark(log_.dq, "the velocity", true);
+    remark(log_.tau, "the torque", false);
   }
 
   NamedColumns columns_;
@@ -269,6 +273,7 @@ class Assembler {
 NeedOf needs_of(const std::optional<ChannelMap>& channels) {
   if (!channels) {
     return [](const std::string& name) {
+      if (name == "t") return Need::kAscending;
       return is_common_name(name) ? Need::kRequired : Need::kWelcome;
     };
   }
@@ -284,8 +289,13 @@ NeedOf needs_of(const std::optional<ChannelMap>& channels) {
   }
   for (const Channel& channel : channels->torque) want(channel);
   for (const auto& [name, channel] : channels->extra) want(channel);
-  return [wanted = std::move(wanted)](const std::string& name) {
-    return wanted.contains(name) ? Need::kRequired : Need::kNone;
+  // Scaled by a negative number time ascends where its column descends.
+  const bool ascends =
+      !channels->at_rest && channels->time.scale > 0 && channels->time.scale_source.empty();
+  const std::string time = ascends ? channels->time.source : std::string();
+  return [wanted = std::move(wanted), time](const std::string& name) {
+    if (!wanted.contains(name)) return Need::kNone;
+    return name == time ? Need::kAscending : Need::kRequired;
   };
 }
 
@@ -303,9 +313,15 @@ NamedColumns read_columns(const std::filesystem::path& path,
 
 Log read_log(const std::filesystem::path& path, int joint_count,
              const std::optional<ChannelMap>& channels) {
-  const NeedOf need_of = needs_of(channels);
-  Assembler assembler(read_columns(path, channels, need_of), joint_count);
-  return channels ? assembler.with(*channels) : assembler.with_common_header();
+  try {
+    const NeedOf need_of = needs_of(channels);
+    Assembler assembler(read_columns(path, channels, need_of), joint_count);
+    return channels ? assembler.with(*channels) : assembler.with_common_header();
+  } catch (const std::bad_alloc&) {
+    throw InputError({path == "-" ? "standard input" : path.string(), "",
+                      "more than this machine has memory for", "a recording that fits into it",
+                      "cut it into parts, or leave samples or columns out"});
+  }
 }
 
 Log read_log_or_hold_map(const std::filesystem::path& path, const RobotDescription& robot,

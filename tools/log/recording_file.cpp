@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <system_error>
-#include <utility>
 
 #include "common/error.hpp"
 
@@ -33,14 +32,6 @@ bool write_all(int file, std::string_view content) {
     content.remove_prefix(static_cast<std::size_t>(written));
   }
   return true;
-}
-
-// A file that has no name and goes with its last descriptor; negative where there can be none.
-int nameless_file() {
-  std::string name = (std::filesystem::temp_directory_path() / "offnominal-XXXXXX").string();
-  const int file = ::mkostemp(name.data(), O_CLOEXEC);
-  if (file >= 0) ::unlink(name.c_str());
-  return file;
 }
 
 }  // namespace
@@ -118,38 +109,42 @@ bool RecordingFile::next_line(std::string& line) {
   }
   used_ += length + (line_ended_ ? 1 : 0);
   ++lines_;
+  taken_ += length;
+  if (taken_ > kMostLines) refuse_size(kMostLines, "cut it into parts");
   return true;
 }
 
-std::string RecordingFile::rest() {
-  do {
-    if (buffer_.size() - used_ <= kMostAtOnce) continue;
-    fail("", "more than " + std::to_string(kMostAtOnce >> 30) + " GiB", "a recording that ends",
-         "cut it into parts");
-  } while (fill());
-  buffer_.erase(0, used_);
-  used_ = 0;
-  return std::exchange(buffer_, {});
+void RecordingFile::refuse_size(std::size_t most, const std::string& mend) const {
+  fail("", "more than " + std::to_string(most >> 30) + " GiB", "a recording that ends", mend);
 }
 
-void RecordingFile::refuse_copy(int error) const {
-  fail("", "that no copy of it can be kept (" + std::generic_category().message(error) + ")",
-       "room in the folder for temporary files", "save it as a file and name that");
+void RecordingFile::refuse_copy(const std::error_code& error) const {
+  fail("", "that no copy of it can be kept (" + error.message() + ")",
+       "a folder for temporary files that exists, with room in it",
+       "set TMPDIR to another, or save it as a file and name that");
+}
+
+int RecordingFile::nameless_file() const {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  if (error) refuse_copy(error);
+  std::string name = (folder / "offnominal-XXXXXX").string();
+  const int file = ::mkostemp(name.data(), O_CLOEXEC);
+  if (file < 0) refuse_copy({errno, std::generic_category()});
+  ::unlink(name.c_str());
+  return file;
 }
 
 void RecordingFile::copy_to(int file) {
   const auto written = [&](std::string_view part) {
-    if (!write_all(file, part)) refuse_copy(errno);
+    if (!write_all(file, part)) refuse_copy({errno, std::generic_category()});
   };
   std::size_t size = 0;
   do {
     written(std::string_view(buffer_).substr(used_));
     size += buffer_.size() - used_;
     used_ = buffer_.size();
-    if (size > kMostAtOnce) {
-      fail("", "more than " + std::to_string(kMostAtOnce >> 30) + " GiB", "a recording that ends",
-           "save it as a file and name that");
-    }
+    if (size > kMostCopied) refuse_size(kMostCopied, "save it as a file and name that");
   } while (fill());
 }
 
@@ -158,7 +153,6 @@ std::filesystem::path RecordingFile::seekable() {
   if (path_ != "-" && std::filesystem::is_regular_file(path_, ignored)) return path_;
   if (copy_ < 0) {
     copy_ = nameless_file();
-    if (copy_ < 0) refuse_copy(errno);
     copy_to(copy_);
   }
   return "/proc/self/fd/" + std::to_string(copy_);

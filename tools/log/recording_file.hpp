@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace offnominal::tools {
 
@@ -16,8 +17,11 @@ class RecordingFile {
  public:
   static constexpr std::size_t kBeginning = 512;                     // bytes
   static constexpr std::size_t kLongestLine = std::size_t{1} << 20;  // bytes
-  static constexpr std::size_t kMostAtOnce = std::size_t{8} << 30;   // bytes
-  static constexpr std::size_t kMostNumbers = 500'000'000;           // of all columns together
+  static constexpr std::size_t kMostLines = std::size_t{8} << 30;    // bytes of them together
+  static constexpr std::size_t kMostCopied = std::size_t{2} << 30;   // bytes
+  // Of all columns together, 2 GB of memory: 10 million samples of seven joints and their time have
+  // 220 million.
+  static constexpr std::size_t kMostNumbers = 250'000'000;
 
   // Throws InputError where there is nothing to read: no such file, a folder, not readable.
   explicit RecordingFile(const std::filesystem::path& path);
@@ -32,16 +36,13 @@ class RecordingFile {
   [[nodiscard]] std::string_view beginning() const { return beginning_; }
 
   // The next line of a text without its end; false where there is none. Throws InputError for a
-  // line longer than kLongestLine and for bytes that no text has.
+  // line longer than kLongestLine, after kMostLines, and for bytes that no text has.
   bool next_line(std::string& line);
   // Whether the line that came last was ended.
   [[nodiscard]] bool line_ended() const { return line_ended_; }
 
-  // All that is left, as a text; at most kMostAtOnce.
-  std::string rest();
-
   // A path under which the whole of it can be opened, again and again, as long as this lives: its
-  // own, or that of a copy where it is no regular file; at most kMostAtOnce. Before anything else
+  // own, or that of a copy where it is no regular file; at most kMostCopied. Before anything else
   // is read.
   std::filesystem::path seekable();
 
@@ -49,7 +50,10 @@ class RecordingFile {
   [[nodiscard]] std::string line_place() const { return "line " + std::to_string(lines_ + 1); }
   [[noreturn]] void fail(const std::string& place, const std::string& found,
                          const std::string& allowed, const std::string& mend = {}) const;
-  [[noreturn]] void refuse_copy(int error) const;
+  [[noreturn]] void refuse_copy(const std::error_code& error) const;
+  [[noreturn]] void refuse_size(std::size_t most, const std::string& mend) const;
+  // A file that has no name and goes with its last descriptor.
+  [[nodiscard]] int nameless_file() const;
   bool fill();  // the buffer, where it is used up; false at the end
   void copy_to(int file);
 
@@ -61,6 +65,7 @@ class RecordingFile {
   std::string buffer_;
   std::size_t used_ = 0;  // of the buffer
   std::size_t lines_ = 0;
+  std::size_t taken_ = 0;  // bytes, as lines
   bool line_ended_ = true;
 };
 

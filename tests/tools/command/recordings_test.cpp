@@ -142,7 +142,49 @@ TEST_F(RecordingsOfVerbs, ThatNeverEndOrAreNoTextAreRefused) {
   expect_refusal(piped("tr '\\0' x < /dev/zero", "-"), "found a line longer than 1048576 bytes");
   expect_refusal(piped("yes 1", "-"), "line 1, column 1: found the number 1");
   expect_refusal(piped("yes a,b", "-"), "columns: found a, b");
-  expect_refusal(piped("(printf MATLAB; head -c 100000 /dev/zero)", "-"), "readable .mat file");
+  // Before a copy of it fills the folder for temporary files.
+  expect_refusal(piped("(printf MATLAB; cat /dev/zero)", "-"), "readable .mat file");
+}
+
+// What never ends and looks like a recording is refused where time no longer ascends.
+TEST_F(RecordingsOfVerbs, AreReadAsFarAsTimeAscends) {
+  const std::string header = "t,q1,q2,tau1,tau2";
+  expect_refusal(piped("(echo " + header + "; yes 1,2,3,4,5)", "-"),
+                 "line 3, time: found 1 s after 1 s");
+  expect_refusal(piped("(echo " + header + "; yes nan,2,3,4,5)", "-"), "line 2, t: found NaN");
+  put(folder_ / "channels.toml",
+      "time = {source = \"t\", scale = 0.001}\nposition = [\"q1\", \"q2\"]\n"
+      "torque = [\"tau1\", \"tau2\"]\n");
+  expect_refusal(
+      piped("(echo " + header + "; yes 1,2,3,4,5)", "- --channels '" + path("channels.toml") + "'"),
+      "line 3, time: found 0.001 s after 0.001 s");
+}
+
+TEST_F(RecordingsOfVerbs, ThatNeedMoreMemoryThanThereIsAreRefused) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer takes more address space than a limit could leave";
+#endif
+  const CommandResult result = test::run_command(
+      "/bin/sh",
+      {"-c", "ulimit -v 300000; (echo t,q1,q2,tau1,tau2; seq -f %.0f,1,2,3,4 1 20000000) | '" +
+                 test::command_file() + "' compare - --robot '" + path("arm.toml") + "'"});
+  expect_refusal(result, "standard input: found more than this machine has memory for");
+}
+
+TEST_F(RecordingsOfVerbs, ThroughAPipeNeedAFolderForTemporaryFilesOnlyAsMatFiles) {
+  std::string mat(1000, '\0');
+  mat.replace(0, 6, "MATLAB");
+  mat[125] = 1;
+  mat.replace(126, 2, "IM");
+  put(folder_ / "a.mat", mat);
+  const auto without_folder = [&](const std::string& name) {
+    return test::run_command("/bin/sh", {"-c", "cat '" + path(name) + "' | TMPDIR=/nonexistent '" +
+                                                   test::command_file() + "' compare - --robot '" +
+                                                   path("arm.toml") + "'"});
+  };
+  expect_refusal(without_folder("a.mat"), "standard input: found that no copy of it can be kept (");
+  EXPECT_THAT(without_folder("a.mat").err, HasSubstr("set TMPDIR to another"));
+  EXPECT_EQ(without_folder("a.csv").exit_code, 0);
 }
 
 TEST_F(RecordingsOfVerbs, RobotAndChannelFilesThatNeverEndAreRefused) {

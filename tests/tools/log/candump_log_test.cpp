@@ -14,6 +14,7 @@
 #include "paper/recording.hpp"
 #include "paper/two_link_robot.hpp"
 #include "sil/sil.hpp"
+#include "support/places.hpp"
 #include "tools/support/temporary_folder.hpp"
 
 namespace offnominal::tools {
@@ -116,6 +117,44 @@ TEST_F(SilLog, DerivesVelocitiesThatNobodySent) {
         const double truth = as_csv.extra.at("dq_true" + std::to_string(joint + 1))[row];
         ASSERT_NEAR(log.dq(log.sample_count() - rows + row, joint), truth, 0.02) << row;
       }
+    }
+  }
+}
+
+// The same where the map names the DBC file that offnominal publishes, or a copy of it that has
+// another device's messages too.
+TEST_F(SilLog, ReadsItsOwnFramesThroughANamedDbcAsWithout) {
+  const test::TemporaryFolder folder;
+  const std::string own = test::content_of(test::source_dir() / "hal" / "offnominal.dbc");
+  write_file_atomically(folder / "own.dbc", own);
+  write_file_atomically(folder / "more.dbc",
+                        own + "\nBO_ 9 Axis0: 8 D\n SG_ Vel : 32|32@1- (1,0) [0|0] \"\" M\n");
+  scenario.sends_velocity = false;
+  record(hal::FrameFormat::kClassic);
+  const std::size_t at = text.find("vcan0 181#", text.size() / 2) + 10;
+  text[at] = text[at] == '0' ? '1' : '0';
+  write_file_atomically(folder / "run.log", text);
+  const Log expected = read();
+  for (const std::string name : {"own.dbc", "more.dbc"}) {
+    const std::string dbc = "dbc = \"" + name + "\"\n";
+    test::put(folder / "common.toml", dbc +
+                                          "time = \"t\"\nposition = [\"q1\", \"q2\"]\n"
+                                          "torque = [\"tau1\", \"tau2\"]\n");
+    const Log log = read_log(folder / "run.log", robot, folder / "common.toml");
+    // With the damaged record left out.
+    EXPECT_EQ(log.q, expected.q);
+    EXPECT_EQ(log.tau, expected.tau);
+    test::put(folder / "velocity.toml",
+              dbc +
+                  "time = \"t\"\n"
+                  "position = [\"encoder_1.position\", \"encoder_2.position\"]\n"
+                  "velocity = [\"encoder_1.velocity\", \"encoder_2.velocity\"]\n"
+                  "torque = [\"tau1\", \"tau2\"]\n");
+    try {
+      const Log marked = read_log(folder / "run.log", robot, folder / "velocity.toml");
+      FAIL() << "read a velocity of " << marked.dq(0, 0) << " that nobody sent";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("encoder_1.velocity"));
     }
   }
 }

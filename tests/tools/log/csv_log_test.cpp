@@ -64,6 +64,17 @@ TEST(CsvLog, CommonHeaderIsReadInAnyOrderWithExtras) {
   EXPECT_THAT(log.remarks, testing::Contains(HasSubstr("position of joint 1 never changes")));
 }
 
+TEST(CsvLog, AVelocityThatNeverChangesIsRemarkedAsAPositionIs) {
+  std::string text = "t,q1,q2,dq1,tau1,tau2\n";
+  for (int i = 0; i < 10; ++i) {
+    const std::string number = std::to_string(i);
+    text += number + "," + number + ",1,0," + number + "," + number + "\n";
+  }
+  EXPECT_THAT(read(text, 2).remarks,
+              testing::ElementsAre("the position of joint 2 never changes: it is 1 throughout",
+                                   "the velocity of joint 1 never changes: it is 0 throughout"));
+}
+
 TEST(CsvLog, TwoJointsKeepTheirOrder) {
   std::string text = "t,q2,q1,dq1,tau1,tau2\n";
   for (int i = 0; i < 10; ++i) text += std::to_string(i) + ",2,1,7,10,20\n";

@@ -149,9 +149,8 @@ TEST(MatClaimsOfFiles, AFileMayEndInTheDataOfANumericVariable) {
   }
   const TemporaryFile text("text.mat", std::string(500, 'x'));
   EXPECT_FALSE(impossible_claim(text.path()));
-  EXPECT_FALSE(is_mat_level_5_or_7(text.path()));
-  const TemporaryFile good("good.mat", whole);
-  EXPECT_TRUE(is_mat_level_5_or_7(good.path()));
+  EXPECT_FALSE(is_mat_level_5_or_7(std::string(500, 'x')));
+  EXPECT_TRUE(is_mat_level_5_or_7(whole));
 }
 
 // As matio itself writes it, read back through the whole reader.
