@@ -30,11 +30,13 @@ struct DataFault {
   // kDegrees: factor on the positions. kTorqueSign: slope of measured against model torque, or of
   // torque against velocity. kStaleSamples, kSaturation: share of the samples. kClockSkew: s, the
   // torque late where positive. kGaps: longest step of time, s. kTimeUnit: factor on the time.
-  // kVelocity: the velocity over the derivative of the position. kWrapped: the jump, as recorded.
+  // kVelocity: the velocity over the derivative of the position, 0 where they have nothing in
+  // common. kWrapped: the jump, as recorded.
   double size = 0;
   std::string unit;                   // of size, empty: none
   std::string words;                  // what was found, with numbers
   std::string mend;                   // what to do
+  bool certain = true;                // else it may be right, and nothing is refused for it
   std::string file = {};              // the recording
   std::optional<double> at_s = {};    // where in it first; none: throughout
   std::vector<std::string> channels;  // lines of [channels] that mend it; empty: none can

@@ -44,6 +44,7 @@ const char* name_of(DataFaultKind kind) {
 }
 
 bool spoils(const DataFault& fault, RestsOn what) {
+  if (!fault.certain) return false;
   switch (fault.kind) {
     case DataFaultKind::kDegrees:
     case DataFaultKind::kTorqueSign:
@@ -61,7 +62,8 @@ std::string joint_words(Index joint) {
   return joint < 0 ? "all joints" : fmt::format("joint {}", joint + 1);
 }
 
-std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& robot) {
+std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& robot,
+                                      double cutoff_of_rate) {
   // Robots move below this; above it the second derivative of a coarse encoder outweighs the
   // torque.
   constexpr double kCutoffHz = 5;
@@ -71,7 +73,8 @@ std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& ro
       8;  // of the cut-off; the filter's ends spoil one on each side
   const double rate_hz = log.sample_rate_hz();
   TorquePair pair;
-  pair.cutoff_hz = std::min(kCutoffHz, kCutoffOfRate * rate_hz);
+  pair.cutoff_hz =
+      cutoff_of_rate > 0 ? cutoff_of_rate * rate_hz : std::min(kCutoffHz, kCutoffOfRate * rate_hz);
   const auto rows_per_period = static_cast<Index>(std::ceil(rate_hz / pair.cutoff_hz));
   if (static_cast<double>(log.sample_count()) <
       kShortestPeriods * static_cast<double>(rows_per_period)) {
@@ -149,6 +152,7 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
   find_stuck_encoders(mended, robot, faults);
   find_saturation(mended, robot, faults);
   mend_degrees(mended, robot, faults);
+  mend_strange_velocities(mended, faults);
   mend_velocities(mended, robot, faults);
   if (const auto pair = torque_pair(mended, robot)) {
     find_torque_sign(mended, *pair, faults);

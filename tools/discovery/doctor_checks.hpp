@@ -28,8 +28,15 @@ struct TorquePair {
   std::vector<Eigen::MatrixXd> links;  // share of each link in `load`
 };
 
-// None where the recording is too short for a low-pass, or its model torque is not finite.
-std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& robot);
+// Low-passed at that share of the sampling rate, or for 0 at 5 Hz or what a slow log has. None
+// where the recording is too short for a low-pass, or its model torque is not finite.
+std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& robot,
+                                      double cutoff_of_rate = 0);
+
+// Whether the model fits the torque better with the time in s or in a unit of which a second has
+// `per_second`; angles may be in degrees and torques of the wrong sign either way.
+enum class TimeByTorque { kSeconds, kUnit, kUnknown };
+TimeByTorque time_by_torque(const Log& log, const RobotDescription& robot, double per_second);
 
 void find_gaps(const Log& log, std::vector<DataFault>& faults);
 void find_stale_samples(const Log& log, std::vector<DataFault>& faults);
@@ -43,6 +50,8 @@ void find_clock_skew(const Log& log, const TorquePair& pair, std::vector<DataFau
 void mend_wrapped(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
 void mend_time(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
 void mend_degrees(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
+// Velocities of another joint, of another time, or none at all.
+void mend_strange_velocities(Log& log, std::vector<DataFault>& faults);
 void mend_velocities(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
 
 // Drives filter the velocity and print it coarsely: real ones differ from the derivative of the

@@ -18,6 +18,11 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kRadPerDegree = std::numbers::pi / 180;
+// A model that misses more of the torque than this takes the positions for something else: missing
+// effects make up 15 %.
+constexpr double kBadFit = 0.6;
+// Of two misfits, noise aside.
+constexpr double kClearlyBetter = 0.9;
 
 // Error of the model on a joint as a share of its torque, whatever the torque's sign: both faults
 // may be there at once.
@@ -90,8 +95,6 @@ struct Degrees {
 
 std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription& robot,
                                          const std::vector<Index>& revolute) {
-  // As radians the model must miss most of the torque: missing effects make up 15 %.
-  constexpr double kBadFit = 0.6;
   // As degrees it must fit, although effects are missing or a clock is off.
   constexpr double kGoodFit = 0.5;
   // And fit far better.
@@ -134,14 +137,36 @@ std::optional<Degrees> degrees_by_velocity(const Log& log, const std::vector<Ind
   return found;
 }
 
+// Positions that jump by 2 pi are in radians, however far they go unfolded.
+bool is_folded_into_radians(const std::vector<DataFault>& faults, Index joint) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  return std::any_of(faults.begin(), faults.end(), [joint](const DataFault& fault) {
+    return fault.kind == DataFaultKind::kWrapped && fault.joint == joint &&
+           std::abs(fault.size / kTurn - 1) < 1e-6;
+  });
+}
+
 std::optional<Degrees> degrees_by_limits(const Log& log, const RobotDescription& robot,
-                                         const std::vector<Index>& revolute) {
+                                         const std::vector<Index>& revolute,
+                                         const std::vector<DataFault>& faults) {
   std::vector<Index> beyond;
   for (const Index joint : revolute) {
-    if (leaves_limits(log, robot, joint) && inside_limits(log, robot, joint)) {
+    if (leaves_limits(log, robot, joint) && inside_limits(log, robot, joint) &&
+        !is_folded_into_radians(faults, joint)) {
       beyond.push_back(joint);
     }
   }
+  if (beyond.empty()) return std::nullopt;
+  // Limits of a turn stand beside a joint that turns on and on; its torque knows better.
+  const auto as_is = torque_pair(log, robot);
+  std::erase_if(beyond, [&](Index joint) {
+    if (!as_is || !(as_is->measured.col(joint).norm() > 0)) return false;
+    const auto scaled = torque_pair(in_radians(log, robot, joint), robot);
+    if (!scaled) return false;
+    const double radians = misfit(*as_is, joint);
+    const double degrees = misfit(*scaled, joint);
+    return radians < kClearlyBetter * degrees || (radians <= kBadFit && radians <= degrees);
+  });
   if (beyond.empty()) return std::nullopt;
   return Degrees{
       beyond.size() == 1 && revolute.size() > 1 ? beyond.front() : -1,
@@ -151,6 +176,32 @@ std::optional<Degrees> degrees_by_limits(const Log& log, const RobotDescription&
 }
 
 }  // namespace
+
+TimeByTorque time_by_torque(const Log& log, const RobotDescription& robot, double per_second) {
+  constexpr double kHz = 5;
+  constexpr double kOfRate = 0.1;
+  constexpr double kFewestPeriods = 20;  // of the cut-off in the recording
+  const auto rows = static_cast<double>(log.sample_count());
+  Log scaled = log;
+  scaled.t_s /= per_second;
+  scaled.period_s /= per_second;
+  scaled.dq *= per_second;
+  // Filtered over as many samples either way: else the one that smooths more has less noise.
+  const double share = std::min(kOfRate, std::max(kHz * scaled.period_s, kFewestPeriods / rows));
+  const auto best_misfit = [&](const Log& one) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const bool degrees : {false, true}) {
+      const auto pair = torque_pair(degrees ? in_radians(one, robot, -1) : one, robot, share);
+      if (pair) best = std::min(best, misfit(*pair));
+    }
+    return best;
+  };
+  const double seconds = best_misfit(log);
+  const double other = best_misfit(scaled);
+  if (seconds < kBadFit && seconds < kClearlyBetter * other) return TimeByTorque::kSeconds;
+  if (other < kBadFit && other < kClearlyBetter * seconds) return TimeByTorque::kUnit;
+  return TimeByTorque::kUnknown;
+}
 
 void mend_degrees(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults) {
   std::vector<Index> revolute;
@@ -162,7 +213,7 @@ void mend_degrees(Log& log, const RobotDescription& robot, std::vector<DataFault
   if (revolute.empty()) return;
   auto found = degrees_by_torque(log, robot, revolute);
   if (!found) found = degrees_by_velocity(log, revolute);
-  if (!found) found = degrees_by_limits(log, robot, revolute);
+  if (!found) found = degrees_by_limits(log, robot, revolute, faults);
   if (!found) return;
   DataFault fault;
   fault.kind = DataFaultKind::kDegrees;

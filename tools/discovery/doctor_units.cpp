@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "discovery/doctor_checks.hpp"
@@ -16,8 +17,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kDegreesPerRad = 180 / std::numbers::pi;
-
-constexpr double kCorrelated = 0.9;
 
 struct Unit {
   double per_si;
@@ -79,41 +78,6 @@ void scale_velocity(Log& log, ChannelMap& channels, Index joint, double factor) 
 
 }  // namespace
 
-std::optional<double> velocity_ratio(const Log& log, Index joint) {
-  constexpr Index kLongestStretch = 4096;
-  constexpr Index kStretches = 10;  // at least
-  if (log.dq_derived[static_cast<std::size_t>(joint)]) return std::nullopt;
-  const VectorXd q = log.q.col(joint);
-  VectorXd travel(q.size());
-  travel[0] = 0;
-  for (Index i = 1; i < q.size(); ++i) {
-    travel[i] = travel[i - 1] + log.period_s * (log.dq(i - 1, joint) + log.dq(i, joint)) / 2;
-  }
-  // Over how many samples the two agree best: a coarse encoder asks for many, a fast motion for
-  // few.
-  double best = 0;
-  double ratio = 0;
-  for (Index stretch = 1; stretch <= std::min(q.size() / kStretches, kLongestStretch);
-       stretch *= 2) {
-    double moved = 0;
-    double added = 0;
-    double both = 0;
-    for (Index i = 0; i + stretch < q.size(); i += std::max<Index>(1, stretch / 4)) {
-      const double by_position = q[i + stretch] - q[i];
-      const double by_velocity = travel[i + stretch] - travel[i];
-      moved += by_position * by_position;
-      added += by_velocity * by_velocity;
-      both += by_position * by_velocity;
-    }
-    const double size = std::sqrt(moved) * std::sqrt(added);
-    if (!(size > 0) || std::abs(both) / size <= best) continue;
-    best = std::abs(both) / size;
-    ratio = std::copysign(std::sqrt(added) / std::sqrt(moved), both);
-  }
-  if (best < kCorrelated || !std::isfinite(ratio) || ratio == 0) return std::nullopt;
-  return ratio;
-}
-
 void propose_channels(const Log& log, const ChannelMap& mended, std::vector<std::string> keys,
                       DataFault& fault) {
   if (log.channels.position.empty()) return;
@@ -136,9 +100,21 @@ void propose_channels(const Log& log, const ChannelMap& mended, std::vector<std:
 
 namespace {
 
-// The unit that the time is in where it is not s: by the velocities where they are measured, else
-// by a period that no recording has. Null: it is s, or nothing tells.
-const Unit* unit_of_time(const Log& log, const RobotDescription& robot) {
+// The unit that the time is in where it is not s.
+struct TimeUnit {
+  const Unit* unit;
+  bool certain;  // by velocities, or by torques
+};
+
+bool is_multiple_of(double period_s, double wanted_s, double per_si) {
+  constexpr double kNear = 1.03;
+  return std::abs(std::log(period_s / wanted_s / per_si)) < std::log(kNear);
+}
+
+// By the velocities where they are measured, else by a period that hardly any recording has, or
+// that is the robot file's but for the unit. A slow recording may have either: then the torque
+// tells, or nothing does. None: it is s.
+std::optional<TimeUnit> unit_of_time(const Log& log, const RobotDescription& robot) {
   // Recordings of drives have some 20 Hz to 50 kHz; below 5 Hz nothing is left to judge a motion
   // by.
   constexpr double kShortestPeriodS = 2e-5;
@@ -160,9 +136,12 @@ const Unit* unit_of_time(const Log& log, const RobotDescription& robot) {
       fits[i] = fits[i] && fits_a_unit(ratio / kUnits[i].per_si, revolute);
     }
   }
-  const bool slow = log.period_s > kLongestPeriodS;
-  if (as_it_is || (!slow && (!told || fits_seconds))) return nullptr;
   const double wanted = robot.estimator.period_s;
+  const bool slow = log.period_s > kLongestPeriodS;
+  const bool of_file = !told && std::any_of(kUnits.begin(), kUnits.end(), [&](const Unit& unit) {
+    return is_multiple_of(log.period_s, wanted, unit.per_si);
+  });
+  if (as_it_is || (!slow && !of_file && (!told || fits_seconds))) return std::nullopt;
   const Unit* best = nullptr;
   for (std::size_t i = 0; i < kUnits.size(); ++i) {
     const double period_s = log.period_s / kUnits[i].per_si;
@@ -172,21 +151,32 @@ const Unit* unit_of_time(const Log& log, const RobotDescription& robot) {
       best = &kUnits[i];
     }
   }
-  return best;
+  if (best == nullptr) return std::nullopt;
+  if (told) return TimeUnit{best, true};
+  switch (time_by_torque(log, robot, best->per_si)) {
+    case TimeByTorque::kSeconds:
+      return std::nullopt;
+    case TimeByTorque::kUnit:
+      return TimeUnit{best, true};
+    default:
+      return TimeUnit{best, false};
+  }
 }
 
 }  // namespace
 
 void mend_time(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults) {
-  const Unit* unit = unit_of_time(log, robot);
-  if (unit == nullptr) return;
+  const auto found = unit_of_time(log, robot);
+  if (!found) return;
+  const Unit* const unit = found->unit;
   DataFault fault;
   fault.kind = DataFaultKind::kTimeUnit;
   fault.size = unit->per_si;
   fault.words = fmt::format(
-      "the time is in {}: taken for s, there is a sample every {:.4g} s, where the robot file's "
+      "the time {} in {}: taken for s, there is a sample every {:.4g} s, where the robot file's "
       "period_s is {:.4g}",
-      unit->name, log.period_s, robot.estimator.period_s);
+      found->certain ? "is" : "may be", unit->name, log.period_s, robot.estimator.period_s);
+  fault.certain = found->certain;
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     const auto ratio = velocity_ratio(log, joint);
     if (!ratio) continue;
@@ -200,6 +190,7 @@ void mend_time(Log& log, const RobotDescription& robot, std::vector<DataFault>& 
   mended.time.scale /= unit->per_si;
   propose_channels(log, mended, {"time"}, fault);
   faults.push_back(std::move(fault));
+  if (!found->certain) return;
   log.channels = std::move(mended);
   log.t_s /= unit->per_si;
   log.period_s /= unit->per_si;

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "discovery/doctor_checks.hpp"
+#include "log/sampling.hpp"
+#include "signal/fold.hpp"
 #include "signal/quantile.hpp"
 
 namespace offnominal::tools::discovery {
@@ -14,8 +17,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// A jump is a step by most of the positions' range within this many samples: one where the samples
-// are as recorded, a few where a spline put them on an even grid.
+// Of ranges that are not known. A jump is a step by most of the positions' range within this many
+// samples: one where the samples are as recorded, a few where a spline put them on an even grid.
 constexpr Index kJumpRows = 3;
 // Samples on either side that tell how fast the joint moves there.
 constexpr Index kPaceRows = 8;
@@ -93,15 +96,28 @@ struct Range {
   std::string words;
 };
 
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kTurnInDegrees = 360;
+constexpr int kFewestBits = 8;
+
+// The ranges that positions of a joint are folded into. Of its encoder's that which they fill.
+std::vector<double> known_ranges(const VectorXd& q, const RobotJoint& joint) {
+  std::vector<double> ranges;
+  if (joint.joint.type == JointType::kRevolute) ranges = {kTurn, kTurnInDegrees};
+  const double counts = (q.maxCoeff() - q.minCoeff()) * joint.encoder.counts_per_unit;
+  // The last count of a range is one less.
+  const double bits = counts > 0 ? std::ceil(std::log2(0.99 * counts)) : 0;
+  if (bits >= kFewestBits) ranges.push_back(std::exp2(bits) / joint.encoder.counts_per_unit);
+  return ranges;
+}
+
 // What a position that jumps by about `size` is folded into.
 Range range_of(double size, const std::string& unit, double counts_per_unit) {
   constexpr double kSameRange = 0.02;
   const auto is = [size](double known) { return std::abs(size / known - 1) < kSameRange; };
-  constexpr double kTurn = 2 * std::numbers::pi;
   if (is(kTurn)) return {kTurn, "one turn, 2 pi"};
-  if (is(360)) return {360, "one turn in degrees, 360"};
+  if (is(kTurnInDegrees)) return {kTurnInDegrees, "one turn in degrees, 360"};
   if (counts_per_unit > 0) {
-    constexpr double kFewestBits = 8;
     const double bits = std::round(std::log2(size * counts_per_unit));
     const double known = std::exp2(bits) / counts_per_unit;
     if (bits >= kFewestBits && is(known)) {
@@ -111,33 +127,56 @@ Range range_of(double size, const std::string& unit, double counts_per_unit) {
   return {size, fmt::format("{:.3g} {}", size, unit)};
 }
 
+struct Folded {
+  double size;  // of the range, as the jumps have it
+  Index first;  // row before the first jump
+  std::size_t count;
+};
+
+// Unfolds positions where they are folded. A known range tells by single steps, whatever the joint
+// does there; any other only by a joint that moves on, at its old pace, after a jump.
+std::optional<Folded> unfolded(VectorXd& q, const RobotJoint& joint) {
+  for (const double range : known_ranges(q, joint)) {
+    const std::vector<Index> folds = folds_of(q, range);
+    if (folds.empty()) continue;
+    tools::unfold(q, range, folds);
+    return Folded{range, folds.front(), folds.size()};
+  }
+  const std::vector<Jump> jumps = jumps_of(q);
+  if (jumps.empty()) return std::nullopt;
+  unfold(q, jumps);
+  return Folded{std::abs(jumps[0].size), jumps[0].first + kJumpRows, jumps.size()};
+}
+
 }  // namespace
 
 void mend_wrapped(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults) {
+  bool derived = false;  // a velocity, from folded positions
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
-    VectorXd q = log.q.col(joint);
-    const std::vector<Jump> jumps = jumps_of(q);
-    if (jumps.empty()) continue;
     const RobotJoint& of = robot.joints[static_cast<std::size_t>(joint)];
+    VectorXd q = log.q.col(joint);
+    const auto found = unfolded(q, of);
+    if (!found) continue;
     DataFault fault;
     fault.kind = DataFaultKind::kWrapped;
     fault.joint = joint;
     fault.unit = unit_of(Quantity::kPosition, of.joint.type);
-    const Range range = range_of(std::abs(jumps[0].size), fault.unit, of.encoder.counts_per_unit);
+    const Range range = range_of(found->size, fault.unit, of.encoder.counts_per_unit);
     fault.size = range.size;
-    fault.at_s = log.t_s[jumps[0].first + kJumpRows];
+    fault.at_s = log.t_s[found->first];
     fault.words = fmt::format(
         "the position of {} is folded into {}: it jumps {} time{}, first at t = {:.6g} s, and goes "
-        "on at the pace it had",
-        joint_words(joint), range.words, jumps.size(), jumps.size() == 1 ? "" : "s", *fault.at_s);
+        "on as it came",
+        joint_words(joint), range.words, found->count, found->count == 1 ? "" : "s", *fault.at_s);
     fault.mend = fmt::format(
         "log positions that count turns, or unfold the column before: add {:.6g} after each jump "
         "down and take it off after each jump up",
         fault.size);
     faults.push_back(std::move(fault));
-    unfold(q, jumps);
     log.q.col(joint) = q;
+    derived = derived || log.dq_derived[static_cast<std::size_t>(joint)];
   }
+  if (derived) derive_velocities(log);
 }
 
 }  // namespace offnominal::tools::discovery

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "common/error.hpp"
 #include "log/read_log.hpp"
 #include "signal/differentiate.hpp"
+#include "signal/fold.hpp"
 #include "signal/resample.hpp"
 #include "signal/zero_phase.hpp"
 
@@ -16,6 +19,21 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
+
+// A spline through the jump of an angle that is folded into a turn would swing beyond both ends.
+VectorXd position_at(const VectorXd& t_s, const VectorXd& q, const VectorXd& at_s) {
+  for (const double turn : {2 * std::numbers::pi, 360.0}) {
+    const std::vector<Index> folds = folds_of(q, turn);
+    if (folds.empty()) continue;
+    VectorXd whole = q;
+    unfold(whole, turn, folds);
+    const double low = (q.minCoeff() + q.maxCoeff() - turn) / 2;
+    VectorXd result = spline_at(t_s, whole, at_s);
+    for (double& angle : result) angle -= turn * std::floor((angle - low) / turn);
+    return result;
+  }
+  return spline_at(t_s, q, at_s);
+}
 
 void resample(Log& log, double period_s) {
   const VectorXd recorded = log.t_s;
@@ -32,7 +50,7 @@ void resample(Log& log, double period_s) {
     }
     columns = std::move(result);
   };
-  resample_columns(log.q, spline_at);
+  resample_columns(log.q, position_at);
   resample_columns(log.dq, linear_at);
   resample_columns(log.tau, linear_at);
   for (auto& [name, values] : log.extra) values = linear_at(recorded, values, even);

@@ -15,8 +15,8 @@ struct Sampling {
 Sampling sampling_of(const Eigen::Ref<const Eigen::VectorXd>& t_s);
 
 // Sets period_s of a log whose steps are even to within kSamplingJitter (read_log.hpp); resamples
-// any other to its median step, with a remark. Throws InputError for a gap of more than kMaxGap
-// steps.
+// any other to its median step, with a remark; positions that are folded into a turn stay so.
+// Throws InputError for a gap of more than kMaxGap steps.
 void make_even(Log& log);
 
 // Fills dq of the joints marked dq_derived: q low-passed without phase at 100 Hz (a fifth of the

@@ -10,10 +10,13 @@
 #include <vector>
 
 #include "../analysis/recorded_arm.hpp"
+#include "analysis/inverse_model.hpp"
+#include "analysis/motion.hpp"
 #include "common/error.hpp"
 #include "discovery/doctor.hpp"
 #include "hidden_case.hpp"
 #include "log/channels.hpp"
+#include "log/csv_text.hpp"
 #include "log/read_log.hpp"
 #include "robot/robot_file.hpp"
 #include "support/places.hpp"
@@ -86,6 +89,235 @@ TEST(Doctor, TellsAFastRecordingInMillisecondsByItsVelocity) {
   const auto faults = examined(log);
   ASSERT_EQ(faults.size(), 1U) << words_of(faults);
   EXPECT_EQ(faults[0].kind, DataFaultKind::kTimeUnit);
+}
+
+// A pendulum, swung as `angle` says, with torques that its model has but for noise.
+RobotDescription pendulum(double limit) {
+  RobotDescription robot = test::arm_description();
+  robot.joints.resize(1);
+  robot.effects.clear();
+  robot.joints[0].joint.min_position = -limit;
+  robot.joints[0].joint.max_position = limit;
+  return robot;
+}
+
+// -1 to 1, without a pattern.
+double noise(double seed, Index i) {
+  return std::sin(1e3 * std::sin(seed * static_cast<double>(i)));
+}
+
+template <typename Angle>
+Log swung(const RobotDescription& robot, double rate_hz, double duration_s, Angle angle) {
+  const auto rows = static_cast<Index>(rate_hz * duration_s);
+  Log log;
+  log.period_s = 1 / rate_hz;
+  log.t_s = Eigen::VectorXd::LinSpaced(rows, 0, static_cast<double>(rows - 1) / rate_hz);
+  Motion motion{log.t_s, Eigen::MatrixXd(rows, 1), Eigen::MatrixXd(rows, 1),
+                Eigen::MatrixXd(rows, 1)};
+  constexpr double kStep = 1e-4;
+  for (Index i = 0; i < rows; ++i) {
+    const double t = log.t_s[i];
+    motion.q(i, 0) = angle(t);
+    motion.dq(i, 0) = (angle(t + kStep) - angle(t - kStep)) / (2 * kStep);
+    motion.ddq(i, 0) = (angle(t + kStep) - 2 * angle(t) + angle(t - kStep)) / (kStep * kStep);
+  }
+  log.q = motion.q;
+  log.dq = motion.dq;
+  log.tau = model_torque(robot, motion);
+  for (Index i = 0; i < rows; ++i) log.tau(i, 0) *= 1 + 0.01 * noise(1e3, i);
+  log.dq_derived = {false};
+  return log;
+}
+
+double slow_turns(double t) { return 1.5 * t + 2 * std::sin(1.1 * t); }
+
+// GIVEN a joint that turns several times and a file whose limits are one turn
+// THEN the torque, which fits in radians, is believed, folded or not.
+TEST(Doctor, TakesTurnsBeyondTheLimitsForDegreesOnlyWhereTheTorqueDoes) {
+  const RobotDescription robot = pendulum(kPi);
+  Log log = swung(robot, 500, 30, slow_turns);
+  EXPECT_EQ(words_of(examine(log, robot)), "");
+  Log without = log;
+  without.dq_derived = {true};
+  EXPECT_EQ(words_of(examine(without, robot)), "");
+  Log rubbing = log;  // a friction that the model does not have yet
+  rubbing.tau +=
+      log.tau.norm() / std::sqrt(static_cast<double>(log.tau.size())) * log.dq.cwiseSign();
+  EXPECT_EQ(words_of(examine(rubbing, robot)), "");
+  Log degrees = log;
+  degrees.q *= 180 / kPi;
+  degrees.dq *= 180 / kPi;
+  EXPECT_THAT(words_of(examine(degrees, robot)), HasSubstr("are in degrees"));
+  fold(log, 0, 2 * kPi, -kPi);
+  const auto faults = examine(log, robot);
+  ASSERT_EQ(faults.size(), 1U) << words_of(faults);
+  EXPECT_EQ(faults[0].kind, DataFaultKind::kWrapped);
+  log.tau *= 0.01;  // a torque that says nothing
+  for (const DataFault& fault : examine(log, robot)) EXPECT_NE(fault.kind, DataFaultKind::kDegrees);
+}
+
+// GIVEN two samples in a second and no velocity, as of a quasi-static recording
+// THEN the time is not taken for ms, and where the torque cannot tell nothing is refused.
+TEST(Doctor, TakesASlowRecordingForOneInMillisecondsOnlyWhereTheTorqueDoes) {
+  const RobotDescription robot = pendulum(10);
+  Log log = swung(robot, 2, 2000,
+                  [](double t) { return 1.5 * std::sin(0.01 * t) + 0.3 * std::sin(0.05 * t); });
+  log.dq_derived = {true};
+  EXPECT_EQ(words_of(examine(log, robot)), "");
+  RobotDescription light = robot;
+  light.joints[0].joint.mass_kg = 1e-9;
+  const auto faults = examine(log, light);
+  ASSERT_FALSE(faults.empty());
+  EXPECT_THAT(faults[0].words, HasSubstr("the time may be in ms"));
+  EXPECT_FALSE(spoils(faults[0], RestsOn::kTorque));
+  EXPECT_FALSE(spoils(faults[0], RestsOn::kVelocityToo));
+}
+
+// 10 kHz in ms without velocities: a sample every 0.1 s, a thousand times the file's period.
+TEST(Doctor, TellsAFastRecordingInMillisecondsByThePeriodOfTheFile) {
+  RobotDescription robot = pendulum(10);
+  robot.estimator.period_s = 1e-4;
+  Log log =
+      swung(robot, 10000, 5, [](double t) { return std::sin(2 * t) + 0.3 * std::sin(9 * t); });
+  log.dq_derived = {true};
+  EXPECT_EQ(words_of(examine(log, robot)), "");
+  log.t_s *= 1e3;
+  log.period_s *= 1e3;
+  const auto faults = examine(log, robot);
+  ASSERT_EQ(faults.size(), 1U) << words_of(faults);
+  EXPECT_THAT(faults[0].words, HasSubstr("the time is in ms"));
+  EXPECT_TRUE(spoils(faults[0], RestsOn::kTorque));
+  // 10 Hz in s are as far from it, and are believed.
+  Log slow = swung(robot, 10, 300, [](double t) { return std::sin(0.5 * t); });
+  slow.dq_derived = {true};
+  EXPECT_EQ(words_of(examine(slow, robot)), "");
+}
+
+// Each with its joint, and mended by the lines that are proposed.
+TEST(Doctor, NamesAVelocityThatIsNotThatOfItsPosition) {
+  const test::TemporaryFolder folder;
+  const Log right = recorded();
+  struct Case {
+    const char* words;
+    void (*make)(Log&);
+    std::size_t faults;
+  };
+  for (const Case& one : {Case{"the velocity of joint 2 never changes, it is 0 throughout",
+                               [](Log& log) { log.dq.col(1).setZero(); }, 1},
+                          Case{"the velocity of joint 1 is not that of its position",
+                               [](Log& log) { log.dq.col(0).swap(log.dq.col(1)); }, 2},
+                          Case{"the velocity of joint 1 comes 0.3 s after",
+                               [](Log& log) {
+                                 const Eigen::VectorXd dq = log.dq.col(0);
+                                 for (Index i = 0; i < dq.size(); ++i)
+                                   log.dq(i, 0) = dq[std::max<Index>(0, i - 150)];
+                               },
+                               1},
+                          Case{"the velocity of joint 1 has nothing in common",
+                               [](Log& log) {
+                                 for (Index i = 0; i < log.sample_count(); ++i) {
+                                   log.dq(i, 0) = std::sin(1e3 * std::sin(static_cast<double>(i)));
+                                 }
+                               },
+                               1}}) {
+    SCOPED_TRACE(one.words);
+    Log log = right;
+    one.make(log);
+    test::put(folder / "a.csv", csv_text(log));
+    const auto faults = examined(read_log(folder / "a.csv", 2, std::nullopt));
+    ASSERT_EQ(faults.size(), one.faults) << words_of(faults);
+    EXPECT_EQ(faults[0].kind, DataFaultKind::kVelocity);
+    EXPECT_THAT(faults[0].words, HasSubstr(one.words));
+    EXPECT_FALSE(spoils(faults[0], RestsOn::kTorque));
+    EXPECT_TRUE(spoils(faults[0], RestsOn::kVelocityToo));
+    std::string channels;
+    for (const std::string& line : faults.back().channels) channels += line + "\n";
+    test::put(folder / "channels.toml", channels);
+    const Log mended =
+        read_log(folder / "a.csv", 2, read_channels_file(folder / "channels.toml", 2));
+    EXPECT_EQ(words_of(examined(mended)), "");
+  }
+}
+
+// Velocities as real drives give them: filtered, coarse, of the motor before a gear with play, at
+// rest for most of the time, in a slow log or a short one.
+TEST(Doctor, TakesNoHonestVelocityForAStranger) {
+  const Log right = recorded();
+  const auto expect_nothing = [](const char* what, const Log& log) {
+    for (const DataFault& fault : examined(log)) {
+      EXPECT_NE(fault.kind, DataFaultKind::kVelocity) << what << ": " << fault.words;
+    }
+  };
+  Log log = right;
+  for (Index i = 1; i < log.sample_count(); ++i) {  // a filter of 30 ms
+    log.dq.row(i) = log.dq.row(i - 1) + (right.dq.row(i) - log.dq.row(i - 1)) * 0.002 / 0.03;
+  }
+  expect_nothing("filtered", log);
+  log = right;
+  log.dq = 0.24 * (log.dq / 0.24).array().round().matrix();
+  expect_nothing("coarse", log);
+  log = right;
+  for (Index joint = 0; joint < 2; ++joint) {
+    double link = log.q(0, joint);
+    for (double& q : log.q.col(joint)) {
+      link = std::clamp(link, q - 0.02, q + 0.02);
+      q = link;
+    }
+  }
+  expect_nothing("with play", log);
+  log = right;
+  log.q.bottomRows(5000).rowwise() = log.q.row(1000).eval();
+  log.dq.bottomRows(5000).setZero();
+  expect_nothing("mostly at rest", log);
+  log = right;
+  for (Index i = 0; i < log.sample_count(); ++i) {
+    log.q.row(i) = right.q.row(0).array() + 1e-4 * noise(1.0, i);
+    log.dq.row(i).setConstant(0.01 * noise(2.0, i));
+  }
+  expect_nothing("noise at rest", log);
+  for (const double rate_hz : {10.0, 25.0}) expect_nothing("slow", recorded(rate_hz));
+  log = right;
+  for (const Index rows : {10, 30, 100, 300}) {
+    log.t_s = right.t_s.head(rows);
+    log.q = right.q.topRows(rows);
+    log.dq = right.dq.topRows(rows);
+    log.tau = right.tau.topRows(rows);
+    expect_nothing("short", log);
+  }
+}
+
+// A joint that stands or turns at the fold, with noise, in even samples and in uneven ones.
+TEST(Doctor, NamesPositionsThatRestAtTheFold) {
+  const test::TemporaryFolder folder;
+  const RobotDescription robot = pendulum(10);
+  for (const bool even : {true, false}) {
+    Log log = swung(robot, 200, 20, [](double t) {
+      return kPi + 0.4 * std::sin(std::max(0.0, t - 6)) * (t < 16 ? 1 : 0);
+    });
+    const Eigen::MatrixXd whole = log.q;
+    for (Index i = 0; i < log.sample_count(); ++i) {
+      log.q(i, 0) += 1e-3 * noise(1.0, i);
+      if (!even) log.t_s[i] += 1e-3 * noise(3.0, i);
+    }
+    fold(log, 0, 2 * kPi, -kPi);
+    test::put(folder / "a.csv", csv_text(log));
+    const Log read = read_log(folder / "a.csv", robot);
+    EXPECT_LE(read.q.cwiseAbs().maxCoeff(), kPi + 0.01) << "a spline swings beyond the fold";
+    const auto faults = examine(read, robot);
+    ASSERT_FALSE(faults.empty()) << even;
+    EXPECT_EQ(faults[0].kind, DataFaultKind::kWrapped);
+    EXPECT_THAT(faults[0].words, HasSubstr("one turn, 2 pi"));
+  }
+}
+
+// Set points within a turn, a sample each, from one to any other.
+TEST(Doctor, TakesNoJumpsBetweenSetPointsForFolds) {
+  const RobotDescription robot = pendulum(10);
+  Log log = swung(robot, 1, 400, [](double t) { return 3.14 * std::sin(1e3 * std::sin(t)); });
+  log.dq_derived = {true};
+  for (const DataFault& fault : examine(log, robot)) {
+    EXPECT_NE(fault.kind, DataFaultKind::kWrapped) << fault.words;
+  }
 }
 
 TEST(Doctor, NamesTheUnitOfAVelocity) {
