@@ -80,8 +80,11 @@ sim::PlantNode plant_of(const Scenario& complete, double period_s) {
   config.sends_velocity = complete.sends_velocity;
   config.faults = complete.faults;
   config.drives.commands.max_age_us = 5 * period_us_of(period_s);
-  return {paper::plant_of(complete.experiment),
-          sim::on_trajectory(complete.experiment.desired_at(0.0)), config};
+  sim::JointState start = sim::on_trajectory(complete.experiment.desired_at(0.0));
+  // The brakes hold it where it is until the drives come. Released on the move it would have an
+  // acceleration that no bound of an observer covers.
+  if (!complete.sends_velocity) start.dq.setZero();
+  return {paper::plant_of(complete.experiment), start, config};
 }
 
 hal::Microseconds period_us_of(double period_s) {

@@ -188,7 +188,7 @@ TEST_P(EffectTorque, GivesNaNForNaNWhereItDependsOnTheMotion) {
       chain.effects.add(effect_at_second_joint<float>(GetParam(), GetParam().draw(generator))));
   const auto model = make_model(chain);
   const Vector<2, float> bad = Vector<2, float>::Constant(std::numeric_limits<float>::quiet_NaN());
-  EXPECT_EQ(std::isnan(effect_torque(model, bad, bad, bad[0])[1]), depends);
+  EXPECT_EQ(std::isnan(effect_torque(model, bad, bad, static_cast<double>(bad[0]))[1]), depends);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EffectTorque, testing::ValuesIn(all_formulas()),

@@ -102,11 +102,11 @@ void expect_every_nan_refused(std::mt19937_64& generator) {
     for (Eigen::Index joint = 0; joint < 2; ++joint) {
       Vec one_bad = good;
       one_bad[joint] = bad;
-      expect_refused(model, one_bad, good, good, Scalar(0));
-      expect_refused(model, good, one_bad, good, Scalar(0));
-      expect_refused(model, good, good, one_bad, Scalar(0));
+      expect_refused(model, one_bad, good, good, 0.0);
+      expect_refused(model, good, one_bad, good, 0.0);
+      expect_refused(model, good, good, one_bad, 0.0);
     }
-    expect_refused(model, good, good, good, bad);
+    expect_refused(model, good, good, good, static_cast<double>(bad));
   }
 }
 

@@ -58,7 +58,7 @@ Worst worst_against_closed_form(std::mt19937_64& generator) {
     const auto keep = [](double& largest, double value) { largest = std::max(largest, value); };
     keep(worst.inertia, deviation(mass_matrix(model, q), arm.inertia(q_exact)));
     keep(worst.inertia, deviation(forward.inertia, arm.inertia(q_exact)));
-    keep(worst.bias, deviation(bias_torque(model, q, dq, Scalar(0)), arm.bias(q_exact, dq_exact)));
+    keep(worst.bias, deviation(bias_torque(model, q, dq, 0.0), arm.bias(q_exact, dq_exact)));
     keep(worst.torque, deviation(inverse_dynamics(model, q, dq, ddq, 0.0),
                                  arm.torque(q_exact, dq_exact, ddq.template cast<double>())));
     keep(worst.acceleration,

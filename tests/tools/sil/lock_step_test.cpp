@@ -141,6 +141,17 @@ TEST(LockStep, BearsFramesThatAreLostTwiceOrLate) {
   }
 }
 
+// GIVEN drives that send positions alone WHEN the run begins THEN nothing is detected, and the
+// torque does not swing, while the observer finds what the arm does.
+TEST(LockStep, ObservedVelocitiesBringNoAlarm) {
+  Scenario scenario = scenario_with({});
+  scenario.sends_velocity = false;
+  const SilResult result = run(scenario);
+  EXPECT_FALSE(result.run.detection_time_s.has_value());
+  EXPECT_LT(result.run.max_error_to_threshold_before_fault, 0.9);
+  EXPECT_EQ(result.state, hal::ControllerState::kArmed);
+}
+
 TEST(LockStep, AcceptsNothingThatIsForged) {
   Scenario scenario =
       scenario_with({{.kind = FaultEventKind::kForgedFrames, .begin_s = 2.0, .size = 2}});
