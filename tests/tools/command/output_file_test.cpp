@@ -112,7 +112,7 @@ TEST_F(OutputFile, OfEveryVerbIsRefusedBeforeTheWorkWhereItCannotBeWritten) {
   for (const auto& [verb, call] : calls()) {
     for (const std::string& option : call.outputs) {
       SCOPED_TRACE(verb + " " + option);
-      const auto told_of = [&](const std::string& file, const std::string& told) {
+      const auto told_of = [&, &call = call](const std::string& file, const std::string& told) {
         expect_refusal(with(writing(call, option, file), {"--force"}), told);
       };
       told_of(path("no/such/folder"), "No such file or directory");
