@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <offnominal/controller/arming_check.hpp>
+#include <offnominal/controller/takeover.hpp>
 
 #include "joint_on_desk.hpp"
 
@@ -214,6 +216,14 @@ TEST(Arming, TheTorqueRateHoldsEverAfter) {
   }
   joint.tick();
   EXPECT_EQ(joint.torque(), 100.0F) << "its limit";
+  jumped = false;
+  before = joint.torque();
+  joint.q = 3;
+  for (int i = 0; i < 100; ++i) {
+    joint.tick();
+    ASSERT_NEAR(joint.torque() - before, -2.0F, 1e-3F) << "down as well, " << i;
+    before = joint.torque();
+  }
 }
 
 // GIVEN a joint that its brake holds against gravity WHEN it is armed and its torque rises as fast
@@ -367,6 +377,36 @@ TEST(Arming, AMovingArmComesToRestUntilTheDriveSaysThatItFollows) {
   }
   EXPECT_NEAR(joint.q, begin, 1e-3);
   EXPECT_NEAR(joint.dq, 0, 1e-3);
+}
+
+// The window is about where it was armed, wherever that is.
+TEST(Arming, HoldsAnArmFarFromZeroAsWell) {
+  for (const double place : {-1.5, 1.5}) {
+    JointOnDesk joint;
+    joint.q = place;
+    joint.reference_at = [place](double) { return at(static_cast<float>(place)); };
+    ASSERT_EQ(joint.start(), Fault::kNone);
+    joint.ticks(100);
+    EXPECT_EQ(joint.data->state, ControllerState::kArmed) << name_of(joint.data->fault);
+    EXPECT_GT(joint.data->run_ticks, 90U);
+    EXPECT_NEAR(joint.q, place, 1e-4);
+  }
+}
+
+// GIVEN a moving arm WHEN its first sample after arming comes late THEN it begins to come to rest
+// at that sample, and not where it would be by now.
+TEST(Arming, AMovingArmBeginsToComeToRestAtItsFirstSample) {
+  auto config = JointOnDesk::config();
+  config.arming.speed.fill(0.2F);
+  JointOnDesk joint(config);
+  joint.dq = 0.15;
+  joint.tells_mode = false;
+  joint.ticks(2);
+  ASSERT_EQ(joint.arm(), Fault::kNone);
+  joint.tick(3);
+  ASSERT_EQ(joint.data->state, ControllerState::kArmed);
+  EXPECT_NEAR(joint.torque(), 0, 1e-3);
+  EXPECT_EQ(joint.mode(), DriveMode::kTorque);
 }
 
 TEST(Arming, AConfigurationThatDoesNotSayHowIsRefused) {

@@ -225,8 +225,17 @@ TEST(ControllerStates, ItsDataBeginAtNothing) {
   EXPECT_EQ(data.ticks + data.waiting_ticks + data.run_ticks + data.unseen_ticks, 0U);
   EXPECT_EQ(data.overruns + data.missed_samples + data.refused_frames + data.unsent_frames, 0U);
   EXPECT_EQ(data.late_in_a_row, 0);
+  EXPECT_EQ(data.late_ticks, 0U);
+  EXPECT_EQ(data.held_since, 0U);
+  EXPECT_EQ(data.implausible_in_a_row, 0);
   EXPECT_FALSE(data.fresh);
+  EXPECT_FALSE(data.holds);
   EXPECT_FALSE(data.drives_follow);
+  EXPECT_FALSE(data.ends);
+  for (const auto& turn : data.turns) {
+    EXPECT_FALSE(turn.started);
+    EXPECT_EQ(turn.tens, 0);
+  }
 }
 
 }  // namespace
