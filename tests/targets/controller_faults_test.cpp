@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <offnominal/controller/feedback_check.hpp>
+#include <offnominal/controller/takeover.hpp>
 
 #include "scripted_joints.hpp"
 

@@ -1,6 +1,10 @@
 // The ways from state to state, and what goes out on the bus in each.
 #include <gtest/gtest.h>
 
+#include <offnominal/controller/feedback_check.hpp>
+#include <offnominal/controller/sample_taker.hpp>
+#include <offnominal/controller/takeover.hpp>
+
 #include "scripted_joints.hpp"
 
 namespace offnominal::test {
@@ -128,6 +132,46 @@ TEST(ControllerStates, NothingOlderThanAFaultGoesOut) {
       EXPECT_EQ(arm.bus.drops, 1);
     }
   }
+}
+
+// Nobody looks after drives that were let go: they are told "off" in every state, until arm().
+TEST(ControllerStates, DrivesThatAreLetGoAreOff) {
+  Config config = ScriptedJoints::default_config();
+  config.safe_mode = DriveMode::kDamping;
+  ScriptedJoints arm(config);
+  const auto let_go = [&arm] {
+    arm.controller.let_go(*arm.data);
+    for (const auto& command : arm.data->commands) {
+      EXPECT_EQ(command.mode, DriveMode::kOff) << "from now on";
+    }
+    arm.tick();
+    EXPECT_TRUE(arm.all_commanded(DriveMode::kOff));
+  };
+  ASSERT_TRUE(arm.start());
+  let_go();
+  EXPECT_EQ(arm.state(), ControllerState::kPassive);
+  EXPECT_FALSE(arm.data->monitor.initialised);
+  arm.drives.stop = true;
+  arm.tick();
+  ASSERT_EQ(arm.state(), ControllerState::kFault);
+  EXPECT_TRUE(arm.all_commanded(DriveMode::kOff)) << "not damping";
+  for (const auto& command : arm.data->commands) EXPECT_EQ(command.torque, 0.0F);
+  ASSERT_TRUE(arm.clear_fault());
+  ASSERT_TRUE(arm.start());
+  arm.drives.stop = true;
+  arm.tick();
+  EXPECT_TRUE(arm.all_commanded(DriveMode::kDamping)) << "a new run is looked after";
+  let_go();
+  EXPECT_EQ(arm.state(), ControllerState::kFault);
+  EXPECT_EQ(arm.fault(), Fault::kEmergencyStop);
+}
+
+TEST(ControllerStates, ADisarmedControllerHasNoCommandLeft) {
+  ScriptedJoints arm;
+  ASSERT_TRUE(arm.start());
+  ASSERT_TRUE(arm.disarm());
+  for (const auto& command : arm.data->commands) EXPECT_EQ(command.mode, DriveMode::kOff);
+  EXPECT_FALSE(arm.data->monitor.initialised);
 }
 
 TEST(ControllerStates, TheFirstFaultIsTheOneThatIsKept) {

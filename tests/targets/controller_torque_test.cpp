@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <offnominal/controller/takeover.hpp>
 #include <offnominal/controller/torque_limiter.hpp>
 #include <vector>
 
