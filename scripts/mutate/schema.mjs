@@ -46,7 +46,8 @@ function choice({ role }, mutants, { right, wrong }) {
   const out = [{ code: isStatement ? "{" : "(" }];
   for (const mutant of mutants) {
     const active = `::offnominal_mutate::is_active(${mutant.number})`;
-    out.push({ code: isStatement ? `if (${active}) {\n` : `${active} ? ${opened}\n` });
+    // Of two types that do not go together the compiler speaks where the choice between them begins.
+    out.push(isStatement ? { code: `if (${active}) {\n` } : { code: `${active} ? ${opened}\n`, mutant });
     out.push({ code: wrong(mutant), mutant });
     out.push({ code: isStatement ? "\n} else " : "\n) : " });
   }

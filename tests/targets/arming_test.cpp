@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <offnominal/controller/arming_check.hpp>
+#include <offnominal/controller/takeover.hpp>
+#include <offnominal/controller/torque_limiter.hpp>
 
 #include "joint_on_desk.hpp"
 
@@ -193,7 +196,10 @@ TEST(Arming, WhatTheArmAlreadyDoesIsTheBeginningOfTheMotion) {
   ASSERT_EQ(joint.start(), Fault::kNone);
   joint.tick();
   EXPECT_NEAR(joint.torque(), 0, 0.01) << "position, velocity and acceleration are the arm's own";
-  joint.ticks(1500);
+  joint.ticks(3);
+  ASSERT_GT(joint.data->run_ticks, 0U);
+  EXPECT_NEAR(joint.torque(), 0, 0.2) << "and of the reference from there on";
+  joint.ticks(1497);
   const auto wanted = joint.reference_at(1.5);
   EXPECT_NEAR(joint.q, static_cast<double>(wanted.q[0]), 1e-3);
 }
@@ -214,6 +220,14 @@ TEST(Arming, TheTorqueRateHoldsEverAfter) {
   }
   joint.tick();
   EXPECT_EQ(joint.torque(), 100.0F) << "its limit";
+  jumped = false;
+  before = joint.torque();
+  joint.q = 3;
+  for (int i = 0; i < 100; ++i) {
+    joint.tick();
+    ASSERT_NEAR(joint.torque() - before, -2.0F, 1e-3F) << "down as well, " << i;
+    before = joint.torque();
+  }
 }
 
 // GIVEN a joint that its brake holds against gravity WHEN it is armed and its torque rises as fast
@@ -367,6 +381,36 @@ TEST(Arming, AMovingArmComesToRestUntilTheDriveSaysThatItFollows) {
   }
   EXPECT_NEAR(joint.q, begin, 1e-3);
   EXPECT_NEAR(joint.dq, 0, 1e-3);
+}
+
+// The window is about where it was armed, wherever that is.
+TEST(Arming, HoldsAnArmFarFromZeroAsWell) {
+  for (const double place : {-1.5, 1.5}) {
+    JointOnDesk joint;
+    joint.q = place;
+    joint.reference_at = [place](double) { return at(static_cast<float>(place)); };
+    ASSERT_EQ(joint.start(), Fault::kNone);
+    joint.ticks(100);
+    EXPECT_EQ(joint.data->state, ControllerState::kArmed) << name_of(joint.data->fault);
+    EXPECT_GT(joint.data->run_ticks, 90U);
+    EXPECT_NEAR(joint.q, place, 1e-4);
+  }
+}
+
+// GIVEN a moving arm WHEN its first sample after arming comes late THEN it begins to come to rest
+// at that sample, and not where it would be by now.
+TEST(Arming, AMovingArmBeginsToComeToRestAtItsFirstSample) {
+  auto config = JointOnDesk::config();
+  config.arming.speed.fill(0.2F);
+  JointOnDesk joint(config);
+  joint.dq = 0.15;
+  joint.tells_mode = false;
+  joint.ticks(2);
+  ASSERT_EQ(joint.arm(), Fault::kNone);
+  joint.tick(3);
+  ASSERT_EQ(joint.data->state, ControllerState::kArmed);
+  EXPECT_NEAR(joint.torque(), 0, 1e-3);
+  EXPECT_EQ(joint.mode(), DriveMode::kTorque);
 }
 
 TEST(Arming, AConfigurationThatDoesNotSayHowIsRefused) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <offnominal/controller/feedback_check.hpp>
+#include <offnominal/controller/takeover.hpp>
 
 #include "scripted_joints.hpp"
 
@@ -209,6 +211,65 @@ TEST(ControllerFaults, TimeToFollowPassesInLateTicksToo) {
   EXPECT_EQ(arm.state(), ControllerState::kArmed);
   arm.tick();
   EXPECT_EQ(arm.fault(), Fault::kDriveNotFollowing);
+}
+
+// As long as the slowest joint's torque takes from one limit to the other, and ramp_s: here 0.5 s.
+TEST(ControllerFaults, AnArmHasItsTimeToBeHeldAndNoMore) {
+  for (std::size_t slow = 0; slow < ScriptedJoints::kJoints; ++slow) {
+    Config config = ScriptedJoints::default_config();
+    config.time_to_follow_us = 6000;
+    config.arming.ramp_s = 0.25;
+    config.arming.torque_rate[slow] = ScriptedJoints::kMaxTorque / 0.125;
+    config.arming.torque_rate[1 - slow] = ScriptedJoints::kMaxTorque / 0.0625;
+    ScriptedJoints arm(config);
+    arm.drives.max_age_us = 4000;
+    arm.become_passive();
+    ASSERT_TRUE(arm.arm());
+    arm.tick();
+    arm.drives.joints[0].reading.velocity = 1.5F;
+    // Judged before it is counted, as above.
+    arm.run(510);
+    EXPECT_EQ(arm.state(), ControllerState::kArmed);
+    EXPECT_EQ(arm.data->waiting_ticks, 511U);
+    arm.tick();
+    EXPECT_EQ(arm.fault(), Fault::kArmNotHeld);
+  }
+}
+
+TEST(ControllerFaults, EveryJointHasToStayWhereItWasUntilTimeBegins) {
+  for (std::size_t j = 0; j < ScriptedJoints::kJoints; ++j) {
+    for (const float sign : {-1.0F, 1.0F}) {
+      Config config = ScriptedJoints::default_config();
+      config.arming.position_window.fill(0.05);
+      ScriptedJoints arm(config);
+      arm.become_passive();
+      arm.follows.fill(false);
+      ASSERT_TRUE(arm.arm());
+      arm.tick();
+      arm.drives.joints[j].reading.position = sign * 0.049F;
+      arm.tick();
+      EXPECT_EQ(arm.state(), ControllerState::kArmed);
+      arm.drives.joints[j].reading.position = sign * 0.051F;
+      arm.tick();
+      EXPECT_EQ(arm.fault(), Fault::kArmNotHeld) << j;
+    }
+  }
+}
+
+TEST(ControllerFaults, EveryJointHasToRestBeforeTimeBegins) {
+  for (std::size_t j = 0; j < ScriptedJoints::kJoints; ++j) {
+    ScriptedJoints arm;
+    arm.become_passive();
+    ASSERT_TRUE(arm.arm());
+    arm.tick();
+    arm.drives.joints[j].reading.velocity = 1.01F;
+    arm.run(10);
+    EXPECT_EQ(arm.state(), ControllerState::kArmed);
+    EXPECT_FALSE(arm.data->drives_follow) << j;
+    arm.drives.joints[j].reading.velocity = 0.99F;
+    arm.run(2);
+    EXPECT_TRUE(arm.data->drives_follow);
+  }
 }
 
 TEST(ControllerFaults, ADriveThatFallsBackIsNotFollowingAtOnce) {

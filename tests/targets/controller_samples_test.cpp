@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <offnominal/controller/feedback_check.hpp>
+#include <offnominal/controller/sample_taker.hpp>
 #include <vector>
 
 #include "scripted_joints.hpp"

@@ -1,6 +1,10 @@
 // The ways from state to state, and what goes out on the bus in each.
 #include <gtest/gtest.h>
 
+#include <offnominal/controller/feedback_check.hpp>
+#include <offnominal/controller/sample_taker.hpp>
+#include <offnominal/controller/takeover.hpp>
+
 #include "scripted_joints.hpp"
 
 namespace offnominal::test {
@@ -130,6 +134,46 @@ TEST(ControllerStates, NothingOlderThanAFaultGoesOut) {
   }
 }
 
+// Nobody looks after drives that were let go: they are told "off" in every state, until arm().
+TEST(ControllerStates, DrivesThatAreLetGoAreOff) {
+  Config config = ScriptedJoints::default_config();
+  config.safe_mode = DriveMode::kDamping;
+  ScriptedJoints arm(config);
+  const auto let_go = [&arm] {
+    arm.controller.let_go(*arm.data);
+    for (const auto& command : arm.data->commands) {
+      EXPECT_EQ(command.mode, DriveMode::kOff) << "from now on";
+    }
+    arm.tick();
+    EXPECT_TRUE(arm.all_commanded(DriveMode::kOff));
+  };
+  ASSERT_TRUE(arm.start());
+  let_go();
+  EXPECT_EQ(arm.state(), ControllerState::kPassive);
+  EXPECT_FALSE(arm.data->monitor.initialised);
+  arm.drives.stop = true;
+  arm.tick();
+  ASSERT_EQ(arm.state(), ControllerState::kFault);
+  EXPECT_TRUE(arm.all_commanded(DriveMode::kOff)) << "not damping";
+  for (const auto& command : arm.data->commands) EXPECT_EQ(command.torque, 0.0F);
+  ASSERT_TRUE(arm.clear_fault());
+  ASSERT_TRUE(arm.start());
+  arm.drives.stop = true;
+  arm.tick();
+  EXPECT_TRUE(arm.all_commanded(DriveMode::kDamping)) << "a new run is looked after";
+  let_go();
+  EXPECT_EQ(arm.state(), ControllerState::kFault);
+  EXPECT_EQ(arm.fault(), Fault::kEmergencyStop);
+}
+
+TEST(ControllerStates, ADisarmedControllerHasNoCommandLeft) {
+  ScriptedJoints arm;
+  ASSERT_TRUE(arm.start());
+  ASSERT_TRUE(arm.disarm());
+  for (const auto& command : arm.data->commands) EXPECT_EQ(command.mode, DriveMode::kOff);
+  EXPECT_FALSE(arm.data->monitor.initialised);
+}
+
 TEST(ControllerStates, TheFirstFaultIsTheOneThatIsKept) {
   ScriptedJoints arm;
   ASSERT_TRUE(arm.start());
@@ -225,8 +269,17 @@ TEST(ControllerStates, ItsDataBeginAtNothing) {
   EXPECT_EQ(data.ticks + data.waiting_ticks + data.run_ticks + data.unseen_ticks, 0U);
   EXPECT_EQ(data.overruns + data.missed_samples + data.refused_frames + data.unsent_frames, 0U);
   EXPECT_EQ(data.late_in_a_row, 0);
+  EXPECT_EQ(data.late_ticks, 0U);
+  EXPECT_EQ(data.held_since, 0U);
+  EXPECT_EQ(data.implausible_in_a_row, 0);
   EXPECT_FALSE(data.fresh);
+  EXPECT_FALSE(data.holds);
   EXPECT_FALSE(data.drives_follow);
+  EXPECT_FALSE(data.ends);
+  for (const auto& turn : data.turns) {
+    EXPECT_FALSE(turn.started);
+    EXPECT_EQ(turn.tens, 0);
+  }
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <offnominal/controller/takeover.hpp>
+#include <offnominal/controller/torque_limiter.hpp>
 #include <vector>
 
 #include "scripted_joints.hpp"
@@ -100,7 +102,10 @@ TEST(ControllerTorque, TheLargestCommandIsNoneAboveItsLimit) {
     EXPECT_GT(static_cast<double>(std::nextafter(command, INFINITY)), limit);
   }
   EXPECT_EQ(controller::largest_command(0.1F), 0.1F);
-  EXPECT_EQ(controller::largest_command(1e300), std::numeric_limits<float>::max());
+  constexpr float kMost = std::numeric_limits<float>::max();
+  EXPECT_EQ(controller::largest_command(1e300), kMost);
+  EXPECT_EQ(controller::largest_command(std::numeric_limits<double>::infinity()), kMost);
+  EXPECT_EQ(controller::largest_command(std::numeric_limits<float>::infinity()), kMost);
 }
 
 TEST(ControllerTorque, FollowsAReferenceThatIsAskedOncePerTickAtItsTime) {
@@ -145,6 +150,27 @@ TEST(ControllerTorque, TimeStandsUntilEveryDriveFollows) {
   EXPECT_EQ(arm.data->waiting_ticks, 10U);
   EXPECT_EQ(arm.data->run_ticks, 5U);
   EXPECT_NEAR(last_s, 0.005, 1e-12);
+}
+
+// One joint's torque takes longer than the other's to come in.
+TEST(ControllerTorque, TimeStandsUntilTheTorqueOfEveryJointIsIn) {
+  for (std::size_t j = 0; j < ScriptedJoints::kJoints; ++j) {
+    Config config = ScriptedJoints::default_config();
+    config.monitor.chain.gravity_m_s2 = {-0.3, -0.5, 0};  // 1.5 N at both
+    config.arming.torque_rate[j] = 100;                   // 0.1 N in a tick
+    ScriptedJoints arm(config);
+    arm.become_passive();
+    ASSERT_TRUE(arm.arm());
+    for (int i = 1; i <= 15; ++i) {
+      arm.tick();
+      ASSERT_EQ(arm.state(), ControllerState::kArmed);
+      ASSERT_FALSE(arm.data->drives_follow) << i;
+      ASSERT_NEAR(static_cast<double>(arm.drives.commands[j].torque), 0.1 * i, 1e-5);
+      ASSERT_NEAR(static_cast<double>(arm.drives.commands[1 - j].torque), 1.5, 1e-5);
+    }
+    arm.run(3);
+    EXPECT_TRUE(arm.data->drives_follow);
+  }
 }
 
 // The monitor begins with the torque that the drives give from the first sample on.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <offnominal/controller/sample_taker.hpp>
 
 #include "joint_on_desk.hpp"
 
