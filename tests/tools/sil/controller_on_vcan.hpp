@@ -101,6 +101,8 @@ class Arm {
     }
     return false;
   }
+  // Somebody brings it back to where its motion begins, and closes its brakes.
+  void put_back() { plant_ = plant_of({}, kTickSeconds); }
   [[nodiscard]] const sim::PlantNode& plant() const { return plant_; }
   [[nodiscard]] bool gives_torque() const {
     return plant_.drives().mode(0) == hal::DriveMode::kTorque ||
