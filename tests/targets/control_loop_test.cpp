@@ -191,16 +191,13 @@ TEST(ControlLoop, AFaultEndsTheWishToArmByItself) {
 }
 
 TEST(ControlLoop, AFaultIsClearedAndArmedAgainOnlyWhenAskedTo) {
-  auto config = ArmOnBus::config(false);
-  config.arming.speed.fill(20);  // the arm falls meanwhile, and is caught where it is
-  LoopOnBus loop(config);
-  loop.reference_at = [&](double) {
-    return Reference<2, float>{loop.data->sample.q, loop.data->sample.dq, {}};
-  };
+  LoopOnBus loop;
+  const sim::PlantNode at_the_beginning = loop.plant;
   std::vector<ControllerState> states;
   loop.timer.before_tick = [&](int tick) {
     loop.timer.plant_runs = tick < 100 || tick > 200;
     if (tick % 100 == 0) states.push_back(loop.panel.state.load());
+    if (tick == 250) loop.plant = at_the_beginning;  // somebody brings it back: it has fallen
     if (tick == 300) loop.panel.clear.store(true);
     if (tick == 400) loop.panel.arm.store(true);
     if (tick == 500) loop.panel.end.store(true);

@@ -161,7 +161,7 @@ TEST_F(RecordingsOfVerbs, AreReadAsFarAsTimeAscends) {
 }
 
 TEST_F(RecordingsOfVerbs, ThatNeedMoreMemoryThanThereIsAreRefused) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef OFFNOMINAL_SANITIZE
   GTEST_SKIP() << "a sanitizer takes more address space than a limit could leave";
 #endif
   const CommandResult result = test::run_command(
