@@ -130,11 +130,11 @@ class TickOf final : public Tick {
 
   // What is measured is a tick, whether the arm should be armed so or not.
   static RobotDescription ready_to_arm(RobotDescription robot) {
-    constexpr double kNoLimit = 1e30;
+    constexpr double kMostTorque = 1e30;
     for (RobotJoint& joint : robot.joints) {
       if (joint.kp == 0) joint.kp = 1;
       if (joint.kd == 0) joint.kd = 1;
-      joint.joint.max_torque = std::min(joint.joint.max_torque, kNoLimit);
+      joint.joint.max_torque = std::min(joint.joint.max_torque, kMostTorque);
     }
     robot.arming.speed.assign(robot.joints.size(), kMaxFrameVelocity + 1);
     return robot;

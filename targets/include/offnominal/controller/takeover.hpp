@@ -54,8 +54,9 @@ class Takeover {
     const double time_s = 2 * swing_s + static_cast<double>(config.arming.ramp_s);
     constexpr double kMost = 10;  // nobody waits longer beside an arm, whatever the rate
     time_to_hold_us_ = static_cast<Microseconds>(1e6 * std::min(time_s, kMost));
-    period_s_ = static_cast<double>(config.monitor.estimator.period_s);
-    period_us_ = static_cast<Microseconds>(1e6 * period_s_ + 0.5);
+    const Scalar period_s = config.monitor.estimator.period_s;
+    period_s_ = static_cast<double>(period_s);
+    period_us_ = static_cast<Microseconds>(Scalar(1e6) * period_s + Scalar(0.5));
   }
 
   static void reset(Data& data) { data = {}; }
