@@ -72,8 +72,8 @@ void expect_no_heap(std::mt19937_64& generator) {
     for (int tick = 0; tick < 1000; ++tick) {
       sample.q += Scalar(0.001) * sample.dq;
       sample.dq = random_vector<N, Scalar>(generator, 1.0);
-      sample.tau = computed_torque(monitor.model(), gains, reference, sample.q, sample.dq,
-                                   static_cast<Scalar>(tick) * Scalar(0.001));
+      sample.tau =
+          computed_torque(monitor.model(), gains, reference, sample.q, sample.dq, tick * 0.001);
       ASSERT_EQ(monitor.step(sample, state, output), Status::kOk);
       learnt += output.detector.level ? 1 : 0;
     }

@@ -122,8 +122,7 @@ void move(const RigidBodyModel<N, Scalar>& model, int tick, JointSample<N, Scala
   ComputedTorqueGains<N, Scalar> gains;
   gains.kp.fill(100);
   gains.kd.fill(20);
-  const auto now_s = static_cast<Scalar>(t);
-  sample.tau = computed_torque(model, gains, reference, sample.q, sample.dq, now_s);
+  sample.tau = computed_torque(model, gains, reference, sample.q, sample.dq, t);
   for (Eigen::Index i = 0; i < N; ++i) {
     sample.tau[i] += static_cast<Scalar>(60 * std::sin(37 * t + static_cast<double>(i)));
   }

@@ -65,7 +65,7 @@ template <int N, int L, typename Scalar>
 double call_the_rest(const Controller<N, L, Scalar>& controller, const Vector<N, Scalar>& q) {
   const RigidBodyModel<N, Scalar>& model = controller.monitor.model();
   double sum = static_cast<double>(mass_matrix(model, q).trace());
-  sum += static_cast<double>(bias_torque(model, q, q, Scalar(0)).sum());
+  sum += static_cast<double>(bias_torque(model, q, q, 0.0).sum());
   sum += static_cast<double>(squared_norm(controller.state.estimator.weights));
   sum += detection_guaranteed(controller.output.error_norm, controller.output.threshold) ? 1 : 0;
 
