@@ -70,6 +70,10 @@ std::optional<double> velocity_ratio(const Log& log, Eigen::Index joint);
 void propose_channels(const Log& log, const ChannelMap& mended, std::vector<std::string> keys,
                       DataFault& fault);
 
+// The smallest change from one sample to the next, an encoder's step; infinity where there is none.
+// Rounding of a log that was scaled or printed does not pass for one.
+double smallest_step(const Eigen::VectorXd& x);
+
 // "joint 2", or "all joints" for -1.
 std::string joint_words(Eigen::Index joint);
 

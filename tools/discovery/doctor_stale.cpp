@@ -38,19 +38,6 @@ struct Burst {
   Index length = 0;  // rows that repeat it
 };
 
-// Rounding of a log that was scaled or printed must not pass for an encoder step.
-double rounding_of(const VectorXd& x) { return 1e-12 * x.cwiseAbs().maxCoeff(); }
-
-// Smallest change that the channel ever shows.
-double step_of(const VectorXd& x, double rounding) {
-  double step = std::numeric_limits<double>::infinity();
-  for (Index i = 1; i < x.size(); ++i) {
-    const double change = std::abs(x[i] - x[i - 1]);
-    if (change > rounding) step = std::min(step, change);
-  }
-  return step;
-}
-
 std::vector<Burst> repeats_of(const VectorXd& x) {
   std::vector<Burst> bursts;
   for (Index i = 1; i < x.size(); ++i) {
@@ -118,7 +105,7 @@ struct Stale {
 
 // `smooth`: the channel is free of noise beyond its steps, so that a jump must stand out.
 Stale stale_of(const VectorXd& x, bool smooth) {
-  const double step = step_of(x, rounding_of(x));
+  const double step = smallest_step(x);
   const std::vector<Burst> bursts = repeats_of(x);
   const Index hold = usual_hold(bursts, x.size());
   std::vector<Index> repeats_before(static_cast<std::size_t>(x.size()), 0);
@@ -150,6 +137,16 @@ Stale stale_of(const VectorXd& x, bool smooth) {
 }
 
 }  // namespace
+
+double smallest_step(const VectorXd& x) {
+  const double rounding = 1e-12 * x.cwiseAbs().maxCoeff();
+  double step = std::numeric_limits<double>::infinity();
+  for (Index i = 1; i < x.size(); ++i) {
+    const double change = std::abs(x[i] - x[i - 1]);
+    if (change > rounding) step = std::min(step, change);
+  }
+  return step;
+}
 
 void find_stale_samples(const Log& log, std::vector<DataFault>& faults) {
   struct Found {

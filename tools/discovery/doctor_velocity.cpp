@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -65,16 +64,6 @@ Match best_match(const VectorXd& q, const VectorXd& travel, Index late = 0) {
     if (match.correlation > best.correlation) best = match;
   }
   return best;
-}
-
-double smallest_step(const VectorXd& x) {
-  const double rounding = 1e-12 * x.cwiseAbs().maxCoeff();
-  double step = std::numeric_limits<double>::infinity();
-  for (Index i = 1; i < x.size(); ++i) {
-    const double change = std::abs(x[i] - x[i - 1]);
-    if (change > rounding) step = std::min(step, change);
-  }
-  return step;
 }
 
 // How fast the joint moves by its position alone (rms); 0 where that cannot be said: noise and
