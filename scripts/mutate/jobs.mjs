@@ -41,7 +41,9 @@ function end(child) {
   }
 }
 
-// {code, text}: exit code, 124 for one that took longer, and what it printed, its end where that is long.
+export const killed = 137;
+
+// {code, text}: exit code, `killed` for one that took longer, and what it printed, its end where that is long.
 // memory_kb: of its address space.
 export function run([program, ...args], { seconds = 3600, memory_kb = "unlimited", ...options } = {}) {
   return new Promise((done) => {
@@ -62,7 +64,7 @@ export function run([program, ...args], { seconds = 3600, memory_kb = "unlimited
       running.delete(child);
       // What it has left behind holds no pipe of ours.
       end(child);
-      done({ code: code ?? 137, text });
+      done({ code: code ?? killed, text });
     });
   });
 }

@@ -62,7 +62,7 @@ async function examine(name, settings) {
     const trial = new Trial({ ...settings, path, file, text, parsed, mutants });
     await trial.run();
   }
-  for (const mutant of mutants) if (mutant.outcome === "survived" && mutant.reason) ++mutant.reason.used;
+  for (const { outcome, overdue, reason } of mutants) if (reason && (outcome === "survived" || overdue)) ++reason.used;
   const isWhole = mutants.length === parsed.mutants.length;
   const isStale = (reason) => reason.file === file && reason.used === 0;
   const stale = settings.list || !isWhole ? [] : settings.reasons.filter(isStale);

@@ -2,7 +2,7 @@
 import { spawnSync } from "node:child_process";
 import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { basename, join, relative } from "node:path";
-import { inParallel, run, workFolder, workers } from "./jobs.mjs";
+import { inParallel, killed, run, workFolder, workers } from "./jobs.mjs";
 import { Refused } from "./refused.mjs";
 import { mutated, schemaOf } from "./schema.mjs";
 import { moved, testsOf } from "./tests_of.mjs";
@@ -83,7 +83,7 @@ export class Trial {
     await inParallel(tried, async (mutant, worker) => {
       const place = join(work, `tree${worker}`);
       const { code } = await this.start(test, program, { OFFNOMINAL_MUTANT: mutant.number }, test.seconds, place);
-      if (code !== 0) Object.assign(mutant, { outcome: "caught", by: test.program });
+      if (code !== 0) this.isCaught(mutant, test, code);
     });
     const caught = tried.filter(({ outcome }) => outcome === "caught").length;
     const seconds = (from, to) => `${((to - from) / 1000).toFixed(0)} s`;
@@ -139,7 +139,12 @@ export class Trial {
       }
     }
     const { code } = await this.start(test, await this.link(test, folder), {}, test.seconds, folder);
-    if (code !== 0) Object.assign(mutant, { outcome: "caught", by: test.program });
+    if (code !== 0) this.isCaught(mutant, test, code);
+  }
+
+  // overdue: by its time alone, of which another machine may have enough.
+  isCaught(mutant, test, code) {
+    Object.assign(mutant, { outcome: "caught", by: test.program, overdue: code === killed });
   }
 
   // The file of a worker's own tree, a copy of ours as it was when this began.

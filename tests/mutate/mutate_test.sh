@@ -111,6 +111,8 @@ accepts() {
   # One of them is seen, and one is not there any more.
   reason 'if (value < low) return low;' 'if (value >= low) return low;'
   reason 'if (value < lowest) return low;' 'if (value <= lowest) return low;'
+  # A machine with less to do may have the time.
+  reason 'for (int i = 0; i < 2; ++i) total += 1;' 'for (int i = 0; i < 2; --i) total += 1;'
   mutate "$project/include/limits.hpp"
   expect "exit code with stale reasons" 1 $?
   expect "stale reasons" 2 "$(grep -c 'a reason for what is not there, or is seen' "$work/out")"
@@ -219,6 +221,45 @@ whole_language() {
     --build "$project/build" --reasons "$work/reasons" --list) >"$work/out" 2>"$work/err"
   expect "exit code" 0 $?
   expect "standard error" '' "$(<"$work/err")"
+}
+
+# An error of another type than what it stands beside is set apart, and the others are tried.
+other_types() {
+  cat >"$project/include/limits.hpp" <<'CODE'
+#pragma once
+struct Metres {
+  int value;
+};
+struct Seconds {
+  int value;
+};
+struct Limits {
+  static constexpr Metres kFar{3};
+  static constexpr Seconds kLong{5};
+};
+inline int reach() {
+  const Metres far = Limits::kFar;
+  return far.value;
+}
+inline int patience() {
+  const Seconds seconds = Limits::kLong;
+  return seconds.value;
+}
+CODE
+  cat >"$project/tests/limits_test.cpp" <<'CODE'
+#include <limits.hpp>
+
+int main() { return reach() == 3 && patience() == 5 ? 0 : 1; }
+CODE
+  mutate --json "$project/include/limits.hpp"
+  expect "exit code" 0 $?
+  expect "those that do not compile" "$(
+    cat <<'TEXT'
+const Metres far = Limits::kLong;
+const Seconds seconds = Limits::kFar;
+TEXT
+  )" "$(node -e 'for (const { outcome, after } of JSON.parse(require("fs").readFileSync(0))[0].errors)
+    if (outcome === "refused") console.log(after);' <"$work/out")"
 }
 
 make_project
