@@ -227,6 +227,29 @@ TEST(ControllerSamples, AreWatchedInPassiveWhereTheConfigurationSaysSo) {
   }
 }
 
+TEST(ControllerSamples, OfAnEarlierWatchAreForgottenWhereNobodyKnowsWhatWasBetween) {
+  Config config = ScriptedJoints::default_config();
+  config.watch_when_passive = true;
+  ScriptedJoints arm(config);
+  arm.become_passive();
+  arm.run(10);
+  ASSERT_GT(arm.data->monitor.tick, 0U);
+  arm.stop(Fault::kOverrun);
+  arm.run(10);
+  ASSERT_TRUE(arm.clear_fault());
+  arm.tick();
+  ASSERT_EQ(arm.state(), ControllerState::kPassive);
+  EXPECT_EQ(arm.data->monitor.tick, 0U) << "after a fault";
+
+  arm.run(10);
+  ASSERT_GT(arm.data->monitor.tick, 0U);
+  for (auto& joint : arm.drives.joints) joint.reading.has_velocity = false;
+  arm.tick();
+  EXPECT_FALSE(arm.data->monitor.initialised) << "a velocity that is not known yet";
+  while (!arm.data->monitor.initialised) arm.tick();
+  EXPECT_EQ(arm.data->monitor.tick, 0U);
+}
+
 // What the arm does is judged from the first sample on that the controller commands itself.
 TEST(ControllerSamples, OfAnEarlierWatchAreForgottenAtArming) {
   Config config = ScriptedJoints::default_config();

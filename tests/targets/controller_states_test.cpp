@@ -166,6 +166,37 @@ TEST(ControllerStates, DrivesThatAreLetGoAreOff) {
   EXPECT_EQ(arm.fault(), Fault::kEmergencyStop);
 }
 
+TEST(ControllerStates, TheTimeOfARunEndsWithIt) {
+  for (const bool disarmed : {true, false}) {
+    ScriptedJoints arm;
+    ASSERT_TRUE(arm.start());
+    arm.run(20);
+    const std::uint64_t ticks = arm.data->run_ticks;
+    EXPECT_GT(ticks, 15U);
+    if (disarmed) {
+      ASSERT_TRUE(arm.disarm());
+    } else {
+      arm.stop(Fault::kOverrun);
+    }
+    arm.run(20);
+    EXPECT_EQ(arm.data->run_ticks, ticks) << (disarmed ? "disarmed" : "a fault");
+  }
+}
+
+// Nothing of a fault's safe mode is left once it is cleared: brakes and drives are off again.
+TEST(ControllerStates, TheSafeModeEndsWithItsFault) {
+  Config config = ScriptedJoints::default_config();
+  config.safe_mode = DriveMode::kDamping;
+  ScriptedJoints arm(config);
+  ASSERT_TRUE(arm.start());
+  arm.stop(Fault::kOverrun);
+  arm.run(3);
+  EXPECT_TRUE(arm.all_commanded(DriveMode::kDamping));
+  ASSERT_TRUE(arm.clear_fault());
+  arm.tick();
+  EXPECT_TRUE(arm.all_commanded(DriveMode::kOff));
+}
+
 TEST(ControllerStates, ADisarmedControllerHasNoCommandLeft) {
   ScriptedJoints arm;
   ASSERT_TRUE(arm.start());

@@ -127,6 +127,27 @@ TEST(ControllerTorque, FollowsAReferenceThatIsAskedOncePerTickAtItsTime) {
 }
 
 // Until every drive follows, the reference stands at its beginning.
+TEST(ControllerTorque, IsHeldWhereASampleIsMissing) {
+  ScriptedJoints arm;
+  ASSERT_TRUE(arm.start());
+  arm.reference_at = [](double time_s) {
+    Reference<2, double> reference;
+    reference.q.fill(0.01 * time_s);
+    return reference;
+  };
+  arm.run(100);
+  const auto before = arm.drives.commands;
+  arm.reads[1] = false;
+  arm.tick();
+  for (std::size_t j = 0; j < ScriptedJoints::kJoints; ++j) {
+    EXPECT_EQ(arm.drives.commands[j].torque, before[j].torque);
+    EXPECT_EQ(arm.drives.commands[j].mode, DriveMode::kTorque);
+  }
+  arm.reads[1] = true;
+  arm.tick();
+  EXPECT_NE(arm.drives.commands[0].torque, before[0].torque);
+}
+
 TEST(ControllerTorque, TimeStandsUntilEveryDriveFollows) {
   ScriptedJoints arm;
   arm.become_passive();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "joint_on_desk.hpp"
+#include "scripted_joints.hpp"
 
 namespace offnominal::controller {
 namespace {
@@ -67,6 +68,8 @@ class Slide {
     armed_ = controller_.arm(at_origin, *data_) == Fault::kNone;
     return armed_;
   }
+  // What pulls at the slide beside its drive, N.
+  void pull(double force) { pull_ = force; }
   // Until it is armed a hand pushes the slide along at this speed, or holds it.
   void push(double speed) { dq_ = speed; }
 
@@ -81,7 +84,7 @@ class Slide {
     const double h = period_s_ / kSteps;
     for (int i = 0; i < kSteps; ++i) {
       q_ += h * dq_;
-      if (armed_) dq_ += h * ((acts - friction_ * z_) / kMass - gravity_);
+      if (armed_) dq_ += h * ((acts + pull_ - friction_ * z_) / kMass - gravity_);
       z_ += h * (dq_ - z_ * std::fabs(dq_)) / kWidth;
     }
   }
@@ -89,6 +92,7 @@ class Slide {
   std::size_t late_ticks_;
   double friction_;
   double gravity_;
+  double pull_ = 0;
   double period_s_ = 0;
   bool armed_ = false;
   double q_ = 0, dq_ = 0, z_ = 0;
@@ -123,6 +127,65 @@ TEST(ControllerWithMemory, WhatAnotherRunRememberedIsNotInTheFirstTorque) {
   slide.tick();
   EXPECT_EQ(slide.data().monitor.memory.remembered[0], 0);
   EXPECT_NEAR(slide.data().sample.tau[0], slide.told(), 1e-6);
+}
+
+// GIVEN a slide with friction that remembers, pulled away from where it is to be WHEN it is held
+// there THEN what the model remembers is in the torque, with its sign.
+TEST(ControllerWithMemory, WhatTheModelRemembersIsInTheTorque) {
+  Slide slide(0, 20, 0);
+  for (int i = 0; i < 5; ++i) slide.tick();
+  ASSERT_TRUE(slide.arm());
+  for (int i = 0; i < 1200; ++i) slide.tick();
+  slide.pull(30);
+  for (int i = 0; i < 100; ++i) slide.tick();
+  const auto& data = slide.data();
+  ASSERT_EQ(data.fault, Fault::kNone);
+  const double remembered = data.monitor.memory.remembered[0];
+  ASSERT_GT(remembered, 5);
+  const double computed = kMass * (-20 * data.sample.dq[0] - 100 * data.sample.q[0]);
+  EXPECT_NEAR(slide.told(), computed + remembered, 1e-4);
+}
+
+// The first sample that is watched has the torque that is commanded in it, and behind a drive that
+// is late the one that the drive still gives.
+TEST(ControllerWithMemory, TheFirstSampleHasTheTorqueThatActs) {
+  const double weight = 9.81 * kMass;
+  for (const std::size_t late_ticks : {std::size_t{0}, std::size_t{6}}) {
+    Slide slide(late_ticks, 20, 9.81);
+    for (int i = 0; i < 5; ++i) slide.tick();
+    ASSERT_TRUE(slide.arm());
+    slide.tick();
+    EXPECT_NEAR(slide.told(), weight, 1e-4);
+    EXPECT_NEAR(slide.data().sample.tau[0], late_ticks == 0 ? weight : 0, 1e-4);
+  }
+}
+
+TEST(ControllerWithMemory, SoDoesEveryJointOfIt) {
+  using Watched = JointController<2, 4, double, WithMemory>;
+  auto config = test::ScriptedJoints::default_config();
+  config.monitor.chain.gravity_m_s2 = {-2, -3, 0};
+  for (auto& joint : config.monitor.chain.joints) joint.max_torque = 100;
+  config.arming.torque_rate.fill(1e5);
+  Watched controller;
+  ASSERT_EQ(Watched::create(config, controller), Status::kOk);
+  const auto data = std::make_unique<Watched::Data>();
+  test::ScriptedBus bus;
+  test::ScriptedDrives<2> drives;
+  const auto at_origin = [](double) { return Reference<2, double>{}; };
+  const auto tick = [&] {
+    bus.time_us += 1000;
+    for (hal::JointFeedback& joint : drives.joints) {
+      joint.encoder = joint.drive = hal::SourceState::kValid;
+      joint.reading.has_velocity = true;
+      joint.encoder_time_us = bus.time_us;
+    }
+    controller.step(bus.time_us, 0, at_origin, bus, drives, *data);
+  };
+  tick();
+  ASSERT_EQ(controller.arm(at_origin, *data), Fault::kNone);
+  tick();
+  EXPECT_NEAR(data->sample.tau[0], 2 * test::ScriptedJoints::kMass[0], 1e-9);
+  EXPECT_NEAR(data->sample.tau[1], 3 * test::ScriptedJoints::kMass[1], 1e-9);
 }
 
 }  // namespace

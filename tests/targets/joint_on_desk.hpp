@@ -142,4 +142,13 @@ class JointOnDesk {
   }
 };
 
+// A reference of one joint.
+inline Reference<1, float> at(float q, float dq = 0, float ddq = 0) {
+  Reference<1, float> reference;
+  reference.q[0] = q;
+  reference.dq[0] = dq;
+  reference.ddq[0] = ddq;
+  return reference;
+}
+
 }  // namespace offnominal::test

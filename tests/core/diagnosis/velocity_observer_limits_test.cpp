@@ -78,6 +78,18 @@ TEST(VelocityObserverLimits, ThePositionsShareOfTheBoundIsWhatTheObserverMakesOf
   EXPECT_NEAR(velocity_error_bound(config, 0.0, 0.25), 0.25 * sum, 1e-6 * sum);
 }
 
+// A slow loop over a long period: its lag would be of the size of what a position makes of it.
+TEST(VelocityObserverLimits, ThePositionsShareOfTheBoundHoldsNoLag) {
+  const Config config{.bandwidth_rad_s = 1, .period_s = 0.25};
+  State state{1, 0, 0};
+  double sum = 0;
+  for (int tick = 0; tick < 1000; ++tick) {
+    ASSERT_EQ(update(config, tick == 0 ? 1.0 : 0.0, state), Status::kOk);
+    sum += std::fabs(state.velocity);
+  }
+  EXPECT_NEAR(velocity_error_bound(config, 0.0, 1.0), sum, 1e-5 * sum);
+}
+
 // The same of an acceleration of one for one tick.
 TEST(VelocityObserverLimits, TheAccelerationsShareOfTheBoundIsWhatTheObserverLags) {
   const Config config{.bandwidth_rad_s = 150};

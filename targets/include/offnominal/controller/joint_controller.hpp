@@ -110,7 +110,6 @@ class JointController {
     data.run_ticks = 0;
     data.ends = false;
     data.commands.fill({});  // whatever was told before: the torque rises from 0
-    data.monitor.initialised = false;
     return Fault::kNone;
   }
 
@@ -206,9 +205,9 @@ class JointController {
     samples_.take(feedback, data);
     if (!data.fresh && is_running(data)) ++data.missed_samples;
     if (data.state != ControllerState::kArmed || data.drives_follow) return;
-    // Drives that were told to, in the tick before.
-    const bool follows = data.monitor.initialised && data.fresh && data.unseen_ticks == 0;
-    data.drives_follow = follows && in_torque_mode && takeover_.is_over(data.sample, data);
+    // By a sample right after the one that the torque came in with.
+    data.drives_follow =
+        data.unseen_ticks == 0 && in_torque_mode && takeover_.is_over(data.sample, data);
   }
 
   static void count_late(std::uint32_t late_ticks, Data& data) {
@@ -313,9 +312,8 @@ class JointController {
                              : check_beginning(reference, data);
     if (fault == Fault::kNone) fault = takeover_.hold(data.sample, reference, data);
     if (fault != Fault::kNone) return fault;
-    Vector<N, Scalar> wanted;
-    fault = want_torque(reference_at, data, wanted);
-    if (fault != Fault::kNone) return fault;
+    Vector<N, Scalar> wanted = Vector<N, Scalar>::Zero();
+    const Fault refusal = want_torque(reference_at, data, wanted);
     if constexpr (Watch::kRemembers) {
       for (std::size_t j = 0; j < kJoints; ++j) {
         if (delay_of_joint(config_.monitor.chain, j) > 0) continue;
@@ -324,7 +322,7 @@ class JointController {
     } else {
       data.sample.tau = wanted;
     }
-    return Fault::kNone;
+    return refusal;
   }
 
   // Computed torque and compensation, held to what the joints' drives can give and to how fast it

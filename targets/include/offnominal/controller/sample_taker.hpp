@@ -150,7 +150,6 @@ class SampleTaker {
     return std::fabs(carried) > kHalf / 2 && std::fabs(carried) < kHalf + 1;
   }
   static Scalar position_in(const TurnCount<Scalar>& count) {
-    if (count.tens == 0) return count.carried;
     constexpr auto kTen = static_cast<Scalar>(hal::kCarriedRangeRad);
     return count.carried + static_cast<Scalar>(count.tens) * kTen;
   }
