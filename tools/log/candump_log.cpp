@@ -55,6 +55,7 @@ bool parse_frame(std::string_view text, hal::Frame& frame) {
 // The values that one signal has had.
 struct Track {
   std::string name;
+  std::string interface;
   std::vector<double> t_s;
   std::vector<double> value;
   std::vector<std::size_t> line;
@@ -97,7 +98,7 @@ class CandumpReader {
           if (!is_required(need_of(name))) continue;
         }
         wanted_.push_back({&message, &signal, tracks_.size(), own});
-        tracks_.push_back({name, {}, {}, {}});
+        tracks_.push_back({name, {}, {}, {}, {}});
       }
     }
   }
@@ -145,8 +146,7 @@ class CandumpReader {
       if (wanted.message != message || !wanted.signal->fits(frame.frame.length)) continue;
       if (wanted.own && !is_told(frame.frame, *wanted.signal)) continue;
       Track& track = tracks_[wanted.track];
-      // One message more per tick must not fold time back.
-      if (!track.t_s.empty() && frame.time_s <= track.t_s.back()) continue;
+      if (!is_next(track, frame, line)) continue;
       track.t_s.push_back(frame.time_s);
       track.value.push_back(wanted.signal->value_in(
           std::span<const std::uint8_t>(frame.frame.data).first(frame.frame.length)));
@@ -156,6 +156,31 @@ class CandumpReader {
                         fmt::format("more than {} values", RecordingFile::kMostNumbers / kPerValue),
                         "a recording that ends", "cut it into parts"});
     }
+  }
+
+  // A second message in one tick, or two whose stamps were taken by two processors, is left out. A
+  // clock that was set back and a second recording behind the first one would be left out whole,
+  // and of two buses whoever comes first would be taken.
+  bool is_next(Track& track, const CandumpFrame& frame, std::size_t line) const {
+    constexpr double kMostBack_s = 0.01;
+    if (track.t_s.empty()) {
+      track.interface = frame.interface;
+      return true;
+    }
+    if (frame.interface != track.interface) {
+      throw InputError(
+          {file_, fmt::format("line {}", line),
+           track.name + " on " + frame.interface + " and, before, on " + track.interface,
+           "every signal on one interface",
+           "keep the lines of one, as grep ' " + track.interface + " ' does"});
+    }
+    if (frame.time_s < track.t_s.back() - kMostBack_s) {
+      throw InputError({file_, fmt::format("line {}", line),
+                        fmt::format("a time {:.6g} s before that of {} before it",
+                                    track.t_s.back() - frame.time_s, track.name),
+                        "times that ascend", "cut the recording there, into one for each run"});
+    }
+    return frame.time_s > track.t_s.back();
   }
 
   // Whether the record that the signal lies in opens, and tells it: drives that send positions

@@ -67,6 +67,11 @@ std::optional<double> number_in(std::string_view text) {
   return value;
 }
 
+// Whether it is none yet, and with more digits would be a number: "-", "1.2e-".
+bool is_begun(std::string_view text) {
+  return !number_in(text) && number_in(std::string(text) + "0");
+}
+
 char separator_of(const std::string& header) {
   for (const char separator : {',', ';', '\t'}) {
     if (header.find(separator) != std::string::npos) return separator;
@@ -143,9 +148,9 @@ class CsvReader {
       fail("line " + std::to_string(blank_line_), "a blank line", "samples without gaps");
     }
     const auto* cells = splitter.split(line);
-    // As a writer that was killed leaves it.
-    const bool is_short =
-        cells == nullptr || cells->size() < columns_.size() || cells->back().empty();
+    // As a writer that was killed leaves it; of a number that ends early nobody can tell.
+    const bool is_short = cells == nullptr || cells->size() < columns_.size() ||
+                          cells->back().empty() || is_begun(cells->back());
     if (unfinished_ && is_short && rows_ > 0) {
       cut_off_ = true;
       return;

@@ -36,12 +36,20 @@ bool is_container(std::uint32_t array_class) {
          array_class == kFunctionClass;
 }
 
+bool holds_numbers(std::uint32_t array_class) {
+  return array_class >= kFirstNumberClass && array_class <= kLastNumberClass;
+}
+
 // What an element of an array takes at least; nothing where an array may claim more than it stores.
 double least_size(std::uint32_t array_class) {
   if (is_container(array_class)) return static_cast<double>(kTagSize);
-  const bool numbers_or_text = array_class == kTextClass || (array_class >= kFirstNumberClass &&
-                                                             array_class <= kLastNumberClass);
-  return numbers_or_text ? 1 : 0;
+  return array_class == kTextClass || holds_numbers(array_class) ? 1 : 0;
+}
+
+// Bytes of one number of a data type; 0 for what is none.
+int width_of(std::uint32_t type) {
+  constexpr std::array<int, 14> kWidth{0, 1, 1, 2, 2, 4, 4, 4, 0, 8, 0, 0, 8, 8};
+  return type < kWidth.size() ? kWidth[type] : 0;
 }
 
 const char* unit_of(std::uint32_t array_class) {
@@ -96,8 +104,16 @@ class PackedBytes final : public ByteSource {
       if (stream_.avail_in == 0 && !refill()) return false;
       const int state = inflate(&stream_, Z_NO_FLUSH);
       good_ = state == Z_OK;
+      ended_ = state == Z_STREAM_END;
     }
     return stream_.avail_out == 0;
+  }
+  // Unpacks what is left: whether it ends as it should, with its checksum.
+  bool ends_well() {
+    std::array<char, 16384> scratch{};
+    while (read(scratch.data(), scratch.size())) {
+    }
+    return ended_;
   }
 
  private:
@@ -115,6 +131,7 @@ class PackedBytes final : public ByteSource {
   std::uint64_t left_;
   z_stream stream_{};
   bool good_ = false;
+  bool ended_ = false;
   std::array<char, 16384> chunk_{};
 };
 
@@ -133,7 +150,8 @@ class VariableWalk {
  public:
   VariableWalk(ByteSource& bytes, bool big_endian) : bytes_(bytes), big_endian_(big_endian) {}
 
-  // From its array flags on, as far as matio reads to find the next variable. Throws Damage.
+  // From its array flags on, as far as matio reads to find the next variable; of numbers also how
+  // many are stored. Throws Damage.
   void variable(std::uint64_t left) {
     const Tag flags = tag(left);
     const std::uint32_t array_class = word(left) & 0xffU;
@@ -141,8 +159,9 @@ class VariableWalk {
     if (is_container(array_class) && (flags.type == kUint32 || flags.type == kInt32)) {
       contents(array_class, left, 0);
     } else {
-      read_elements(left, array_class == kOpaqueClass);
+      const double elements = read_elements(left, array_class == kOpaqueClass);
       name_ = read_text(left);
+      if (holds_numbers(array_class)) numbers(elements, left);
     }
   }
 
@@ -190,6 +209,21 @@ class VariableWalk {
     }
     left -= element.size;
     array(element.size, depth + 1);
+  }
+
+  // As many as the dimensions say: where there are fewer, matio says nothing, and what it has
+  // allocated keeps what was in that memory before.
+  void numbers(double elements, std::uint64_t left) {
+    if (elements == 0) return;
+    const Tag data = tag(left);
+    const bool is_small = data.type >> 16U != 0;  // in the tag itself
+    const std::uint64_t size = is_small ? data.type >> 16U : data.size;
+    const int width = width_of(data.type & 0xffffU);
+    if (width == 0) throw Damage{"numbers of an unknown type"};
+    if (elements * width != static_cast<double>(size) || (!is_small && size > left)) {
+      const std::uint64_t there = is_small ? size : std::min(size, left);
+      throw Damage{fmt::format("{:.0f} values in {} bytes", elements, there)};
+    }
   }
 
   // An object has no dimensions where other arrays have theirs; matio looks there all the same.
@@ -270,6 +304,7 @@ class VariableWalk {
 std::optional<ImpossibleClaim> claim_in(std::ifstream& file, const Tag& element,
                                         std::uint64_t file_left, bool big_endian) {
   const std::uint64_t stored = std::min<std::uint64_t>(element.size, file_left);
+  const bool is_whole = element.size <= file_left;
   PlainBytes plain(file);
   PackedBytes packed(file, stored);
   const bool is_packed = element.type == kPacked;
@@ -283,6 +318,10 @@ std::optional<ImpossibleClaim> claim_in(std::ifstream& file, const Tag& element,
       size = std::min<std::uint64_t>(array.size, kMostPerPackedByte * stored);
     }
     walk.variable(size);
+    if (!is_whole) {
+      throw Damage{fmt::format("a variable of {} bytes in {} bytes", element.size, file_left)};
+    }
+    if (is_packed && !packed.ends_well()) throw Damage{"packed data that are damaged"};
   } catch (const Damage& damage) {
     return ImpossibleClaim{walk.name(), damage.what};
   }
@@ -320,7 +359,10 @@ std::optional<ImpossibleClaim> impossible_claim(const std::filesystem::path& pat
   const auto header = read_header(file);
   if (!header || header->version != 1) return std::nullopt;
   const std::uint64_t end = std::filesystem::file_size(path);
-  for (std::uint64_t at = kHeaderSize; at + kTagSize <= end;) {
+  for (std::uint64_t at = kHeaderSize; at < end;) {
+    if (end - at < kTagSize) {
+      return ImpossibleClaim{"", fmt::format("{} bytes where a variable begins", end - at)};
+    }
     file.clear();
     file.seekg(static_cast<std::streamoff>(at));
     PlainBytes plain(file);

@@ -24,9 +24,10 @@ struct ImpossibleClaim {
   std::string what;      // "100663300 cells in 90 bytes"
 };
 
-// The first such claim in the file; none for files of other levels. The data of numeric variables
-// is not looked at: whoever reads it knows its size by then. What is nested is read, unpacked where
-// it is packed, and not kept. Format: MathWorks, "MAT-File Format", level 5.
+// The first such claim in the file; none for files of other levels. Where a file ends early or
+// holds fewer numbers than it says, matio gives what was in its memory before: each variable has to
+// be there to its end, and to agree with its checksum where it is packed. Everything is read,
+// unpacked where it is packed, and not kept. Format: MathWorks, "MAT-File Format", level 5.
 std::optional<ImpossibleClaim> impossible_claim(const std::filesystem::path& path);
 
 }  // namespace offnominal::tools

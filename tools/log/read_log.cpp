@@ -96,7 +96,7 @@ class Assembler {
       log_.t_s = values_of(map.position[0], "position of joint 1");
       check_readings();
     } else {
-      log_.t_s = values_of(map.time, "time");
+      log_.t_s = values_of(map.time, kTime);
       check_time();
     }
     const Index samples = log_.t_s.size();
@@ -180,6 +180,7 @@ class Assembler {
 
   // No measurement is larger; squares and sums of it stay within what numbers can hold.
   static constexpr double kLargest = 1e15;
+  static constexpr const char* kTime = "time";
 
   // Values in SI units; a scalar variable serves where every sample has the same value.
   VectorXd values_of(const Channel& channel, const std::string& what) const {
@@ -197,13 +198,23 @@ class Assembler {
     VectorXd values = (scale * column->second).array() + channel.offset;
     for (Index row = 0; row < values.size(); ++row) {
       if (std::abs(values[row]) <= kLargest) continue;
-      const std::string found =
-          std::isfinite(values[row]) ? fmt::format("{:g}", values[row]) : "an infinite number";
-      fail(columns_.place_of(row) + ", " + channel.source, std::isnan(values[row]) ? "NaN" : found,
-           fmt::format("a finite number up to {:g}", kLargest),
-           "cut the recording, or fill the gap where it is made");
+      refuse_value(values[row], columns_.place_of(row) + ", " + channel.source, what);
     }
     return values;
+  }
+
+  [[noreturn]] void refuse_value(double value, const std::string& place,
+                                 const std::string& what) const {
+    const std::string allowed = fmt::format("a finite number up to {:g}", kLargest);
+    if (!std::isfinite(value)) {
+      fail(place, std::isnan(value) ? "NaN" : "an infinite number", allowed,
+           "cut the recording, or fill the gap where it is made");
+    }
+    fail(place, fmt::format("{:g}", value), allowed,
+         what == kTime ? "say its unit, scale = 1e-9 under [channels.time] for nanoseconds, 1e-6 "
+                         "for microseconds"
+                       : "say its unit with scale under [channels], or mend the number where it "
+                         "is made");
   }
 
   double scalar(const std::string& name, const std::string& what) const {

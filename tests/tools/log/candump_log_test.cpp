@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <offnominal/hal/address.hpp>
 #include <offnominal/hal/messages.hpp>
 
@@ -204,6 +205,51 @@ TEST_F(SilLog, APauseIsRefused) {
   }
   text = kept;
   EXPECT_THROW(read(), InputError);
+}
+
+// What read_log() says against it; "" for nothing.
+std::string refusal_of(const std::string& text) {
+  const test::TemporaryFolder folder;
+  write_file_atomically(folder / "run.log", text);
+  try {
+    read_log(folder / "run.log", paper::two_link_robot());
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// The same log, so many seconds later and on this interface.
+std::string moved(std::string_view text, double by_s, const std::string& interface) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n') + 1;
+    const std::string line(text.substr(0, end));
+    text.remove_prefix(end);
+    const auto frame = parse_candump_line(std::string_view(line).substr(0, line.size() - 1));
+    result +=
+        candump_line(frame.value().frame, std::llround(1e6 * (frame->time_s + by_s)), interface);
+  }
+  return result;
+}
+
+// GIVEN a clock that was set back, or two recordings one behind the other WHEN the log is read THEN
+// nothing of it is left out without a word.
+TEST_F(SilLog, ATimeThatGoesBackIsRefused) {
+  record(hal::FrameFormat::kClassic);
+  EXPECT_EQ(refusal_of(text), "");
+  EXPECT_THAT(refusal_of(text + moved(text, 2, "vcan0")), testing::HasSubstr("gap"));
+  for (const double back_s : {0.0, 0.9}) {
+    EXPECT_THAT(refusal_of(text + moved(text, back_s, "vcan0")),
+                testing::AllOf(testing::HasSubstr("before that of"), testing::HasSubstr("line ")));
+  }
+  EXPECT_EQ(refusal_of(text + moved(text, 0.9945, "vcan0")), "") << "stamps of two processors";
+}
+
+TEST_F(SilLog, OneSignalOfTwoBusesIsRefused) {
+  record(hal::FrameFormat::kClassic);
+  EXPECT_THAT(refusal_of(text + moved(text, 2, "can1")),
+              testing::AllOf(testing::HasSubstr("vcan0"), testing::HasSubstr("can1")));
 }
 
 TEST(CandumpLog, OfAnotherProtocolIsReadThroughItsDbcFile) {

@@ -152,6 +152,16 @@ TEST(CsvLog, ALastLineThatIsCutOffIsLeftOutAndSaidSo) {
   EXPECT_THAT(refusal(whole + "0.2,0.04\n"), HasSubstr("2 values"));
 }
 
+TEST(CsvLog, ALastNumberThatIsOnlyBegunIsLeftOutToo) {
+  const std::string whole = one_joint_csv(20, kAsIs);
+  for (const char* begun : {"-", "1.2e", "1.2e-"}) {
+    const Log log = read(whole + "0.2,0.04,0.4," + begun);
+    EXPECT_EQ(log.sample_count(), 20) << begun;
+    EXPECT_EQ(log.remarks.size(), 1U) << begun;
+  }
+  EXPECT_THAT(refusal(whole + "0.2,0.04,0.4,x"), HasSubstr("line 22"));
+}
+
 TEST(CsvLog, RaggedLinesAreRefused) {
   EXPECT_THAT(refusal(one_joint_csv(20,
                                     [](int number, std::string& line) {
@@ -216,6 +226,14 @@ TEST(CsvLog, ValuesThatNothingMeasuresAreRefused) {
                 HasSubstr("up to 1e+15"))
         << value;
   }
+}
+
+// As ROS stamps samples: the unit is what is missing, and nothing has to be cut or filled.
+TEST(CsvLog, NanosecondsOfTheEpochAreNamed) {
+  std::string text = "t,q1,dq1,tau1\n";
+  for (int i = 0; i < 20; ++i)
+    text += std::to_string(1763942400000000000 + 1000000 * i) + ",1,0,1\n";
+  EXPECT_THAT(refusal(text), AllOf(HasSubstr("nanoseconds"), HasSubstr("scale = 1e-9")));
 }
 
 TEST(CsvLog, TimeThatDoesNotAscendIsRefused) {

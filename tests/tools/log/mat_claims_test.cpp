@@ -112,7 +112,7 @@ TEST_P(MatClaims, TheyAreFoundWhereTheyAreNested) {
             "c: 81 cells in 80 bytes");
   const std::string huge = bytes_.array(6, 1U << 20U, 1, bytes_.element(9, "12345678"));
   EXPECT_EQ(claim(bytes_.cells(1, 1, huge)), "c: 1048576 values in 16 bytes");
-  EXPECT_EQ(claim(huge), "") << "matio allocates nothing for numbers before they are asked for";
+  EXPECT_EQ(claim(huge), "c: 1048576 values in 8 bytes");
 }
 
 TEST_P(MatClaims, NestingHasAnEnd) {
@@ -138,19 +138,61 @@ TEST_P(MatClaims, AVariableOfNoContainerIsReadUpToItsName) {
   EXPECT_EQ(claim(huge_rank), ": 536870912 dimensions in 40 bytes");
 }
 
-TEST(MatClaimsOfFiles, AFileMayEndInTheDataOfANumericVariable) {
+// matio reads what is there of a variable that is cut off, and calls the rest of its memory
+// numbers.
+TEST(MatClaimsOfFiles, AFileEndsWithAVariableAndNotInOne) {
   const Bytes bytes;
-  const std::string whole = bytes.file(bytes.numbers(9));
-  const std::size_t header = 128 + 8 + 16 + 16 + 16;
-  for (std::size_t size = 0; size < whole.size(); size += 7) {
-    const TemporaryFile cut("cut.mat", whole.substr(0, size));
-    EXPECT_EQ(impossible_claim(cut.path()).has_value(), size >= 128 + 8 && size < header)
-        << size << " bytes";
+  const std::string numbers = bytes.numbers(9);
+  for (const std::string& variable : {numbers, bytes.packed(numbers)}) {
+    const std::string whole = bytes.file(numbers + variable);
+    const std::size_t first = 128 + numbers.size();
+    for (std::size_t size = 129; size <= whole.size(); ++size) {
+      const TemporaryFile cut("cut.mat", whole.substr(0, size));
+      EXPECT_EQ(impossible_claim(cut.path()).has_value(), size != first && size != whole.size())
+          << size << " bytes of " << whole.size();
+    }
   }
   const TemporaryFile text("text.mat", std::string(500, 'x'));
   EXPECT_FALSE(impossible_claim(text.path()));
   EXPECT_FALSE(is_mat_level_5_or_7(std::string(500, 'x')));
-  EXPECT_TRUE(is_mat_level_5_or_7(whole));
+  EXPECT_TRUE(is_mat_level_5_or_7(bytes.file(numbers)));
+}
+
+TEST(MatClaimsOfFiles, APackedVariableHasToAgreeWithItsChecksum) {
+  const Bytes bytes;
+  std::string content;
+  for (int i = 0; i < 800; ++i) content += static_cast<char>(i * i / 7);
+  const std::string variable = bytes.packed(bytes.array(6, 100, 1, bytes.element(9, content)));
+  const std::string whole = bytes.file(variable);
+  int found = 0;
+  for (std::size_t at = 136; at < whole.size(); ++at) {
+    std::string wrong = whole;
+    wrong[at] = static_cast<char>(wrong[at] ^ 0x10);
+    const TemporaryFile file("wrong.mat", wrong);
+    found += impossible_claim(file.path()) ? 1 : 0;
+  }
+  // Between the last code and the checksum some bits may be nobody's.
+  EXPECT_GE(found, static_cast<int>(whole.size()) - 136 - 1) << "every byte of it counts";
+}
+
+TEST(MatClaimsOfFiles, NumbersAreAsManyAsTheDimensionsSay) {
+  for (const bool big_endian : {false, true}) {
+    const Bytes bytes{big_endian};
+    const auto claim = [&](std::uint32_t array_class, std::uint32_t rows, const std::string& data) {
+      const TemporaryFile file("few.mat", bytes.file(bytes.array(array_class, rows, 1, data)));
+      const auto found = impossible_claim(file.path());
+      return found ? found->what : "";
+    };
+    EXPECT_EQ(claim(6, 3, bytes.element(9, std::string(24, '\1'))), "");
+    EXPECT_EQ(claim(6, 4, bytes.element(9, std::string(24, '\1'))), "4 values in 24 bytes");
+    EXPECT_EQ(claim(6, 2, bytes.element(9, std::string(24, '\1'))), "2 values in 24 bytes");
+    EXPECT_EQ(claim(6, 12, bytes.element(4, std::string(24, '\1'))), "") << "stored narrower";
+    EXPECT_EQ(claim(6, 3, bytes.element(77, std::string(24, '\1'))), "numbers of an unknown type");
+    EXPECT_EQ(claim(6, 0, ""), "");
+    const std::string small = bytes.word(2U << 16U | 2U) + std::string("\1\2\0\0", 4);
+    EXPECT_EQ(claim(9, 2, small), "") << "in the tag";
+    EXPECT_EQ(claim(9, 3, small), "3 values in 2 bytes");
+  }
 }
 
 // As matio itself writes it, read back through the whole reader.
