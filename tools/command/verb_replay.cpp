@@ -13,6 +13,7 @@
 #include "command/command_line.hpp"
 #include "command/doctor.hpp"
 #include "command/verbs.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "discovery/data_fault_report.hpp"
 #include "log/read_log.hpp"
@@ -78,13 +79,14 @@ void run(const ReplayOptions& options, const std::string& command_line, ExitCode
   if (options.json) {
     auto json = to_json(result);
     json["data_faults"] = discovery::to_json(faults);
-    std::cout << json.dump(2) << '\n';
+    std::cout << json_text(json);
   } else {
     for (const std::string& remark : log.remarks) std::cout << "note: " << remark << '\n';
     print(result);
     if (options.report) std::cout << "written: " << *options.report << '\n';
   }
-  if (options.check && result.detection_time_s) exit_code = ExitCode::kCheckFailed;
+  if (options.check && (result.detection_time_s || result.is_blind()))
+    exit_code = ExitCode::kCheckFailed;
 }
 
 }  // namespace
@@ -103,11 +105,14 @@ void register_replay(CLI::App& app, ExitCode& exit_code) {
   verb->add_option("--report", options->report, "Write the figures as an HTML page")
       ->type_name(kNewPage);
   verb->add_flag("--force", options->force, "Replace the file of --report, whatever it is");
-  verb->add_flag("--check", options->check, "Exit with 1 when there is an alarm");
+  verb->add_flag(
+      "--check", options->check,
+      "Exit with 1 when there is an alarm, or samples were refused that one could hide in");
   verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
   verb->footer(
       "The tick is the recording's sampling period. The recording's torque has to be the torque "
-      "that was really applied, not the commanded one.");
+      "that was really applied, not the commanded one. Samples that the monitor refuses are not "
+      "judged: more than two in a row, or one in a hundred, and the verdict is \"Blind\".");
   verb->callback([verb, options, &exit_code] { run(*options, command_line_of(*verb), exit_code); });
 }
 

@@ -86,12 +86,24 @@ Replay replay(const RobotDescription& robot, const Log& log) {
   return result;
 }
 
+bool Replay::is_blind() const {
+  constexpr std::int64_t kBorneInARow = 2;
+  constexpr std::int64_t kBorneOneIn = 100;
+  return longest_refused > kBorneInARow || (samples() - judged()) * kBorneOneIn > samples();
+}
+
 std::string words_of(const Replay& replay) {
   std::string words;
   if (replay.detection_time_s) {
     words = fmt::format(
         "Off nominal: the residual crosses its threshold at {:.3f} s, in {} stretch{}.",
         *replay.detection_time_s, replay.alarms.size(), replay.alarms.size() == 1 ? "" : "es");
+  } else if (replay.is_blind()) {
+    words = fmt::format(
+        "Blind: {} of {} samples were judged, at most {} in a row were not; in those that were the "
+        "residual is at most {:.1f} % of its threshold.",
+        replay.judged(), replay.samples(), replay.longest_refused,
+        100 * replay.max_error_to_threshold);
   } else {
     words = fmt::format("Nominal: the residual stays below its threshold, at most {:.1f} % of it.",
                         100 * replay.max_error_to_threshold);

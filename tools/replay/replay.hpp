@@ -51,8 +51,13 @@ struct Replay {
   double max_error_to_threshold = 0;
   double max_weight_norm = 0;
   std::map<std::string, Refusals> refused;  // by the status' name
+  std::int64_t longest_refused = 0;         // samples in a row
 
   [[nodiscard]] std::int64_t samples() const;  // accepted and refused
+  [[nodiscard]] std::int64_t judged() const { return t_s.size(); }
+  // Whether so many samples were refused that no alarm says nothing: more than two in a row, which
+  // is as long as a controller bears it, or more than one in a hundred.
+  [[nodiscard]] bool is_blind() const;
 };
 
 // Replays `log` through the monitor of `robot`, with the recording's sampling period as the tick.

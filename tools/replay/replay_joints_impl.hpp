@@ -45,6 +45,7 @@ class ReplayCollector {
     result_.threshold[count_] = output.threshold;
     result_.psi_hat.row(count_) = output.psi_hat.transpose();
     ++count_;
+    refused_in_a_row_ = 0;
     const double ratio = output.threshold > 0    ? output.error_norm / output.threshold
                          : output.error_norm > 0 ? std::numeric_limits<double>::infinity()
                                                  : 0.0;
@@ -63,6 +64,7 @@ class ReplayCollector {
   void refuse(double t_s, Status status) {
     Refusals& refusals = result_.refused[name_of(status)];
     if (refusals.count++ == 0) refusals.first_s = t_s;
+    result_.longest_refused = std::max(result_.longest_refused, ++refused_in_a_row_);
   }
 
   void finish() {
@@ -76,6 +78,7 @@ class ReplayCollector {
  private:
   Replay& result_;
   Eigen::Index count_ = 0;
+  std::int64_t refused_in_a_row_ = 0;
   bool in_alarm_ = false;
 };
 

@@ -30,6 +30,8 @@ nlohmann::json to_json(const Replay& replay) {
           {"hidden_units", replay.hidden_units},
           {"seed", replay.seed},
           {"samples", replay.samples()},
+          {"judged", replay.judged()},
+          {"blind", replay.is_blind()},
           {"refused", refused},
           {"detection_time_s",
            replay.detection_time_s ? nlohmann::json(*replay.detection_time_s) : nlohmann::json()},

@@ -70,26 +70,31 @@ Table alarm_table(const Replay& replay) {
   return table;
 }
 
+// Nothing is good that nobody saw.
+Level level_of(const Replay& replay) {
+  if (replay.detection_time_s) return Level::kBad;
+  return replay.is_blind() ? Level::kWarn : Level::kGood;
+}
+
 KeyFigures key_figures(const Replay& replay) {
   KeyFigures figures;
   KeyFigure detected{.label = "first alarm", .unit = "s", .format = ".3f"};
   if (replay.detection_time_s) {
     detected.value = *replay.detection_time_s;
-    detected.level = Level::kBad;
   } else {
     detected.value = std::string("none");
     detected.unit = "";
-    detected.level = Level::kGood;
   }
+  detected.level = level_of(replay);
   figures.figures = {detected,
                      {.label = "largest |e| / mu",
                       .value = replay.max_error_to_threshold,
                       .unit = "1",
                       .format = ".3g"},
-                     {.label = "samples",
-                      .value = static_cast<double>(replay.samples()),
+                     {.label = "samples judged",
+                      .value = fmt::format("{} of {}", replay.judged(), replay.samples()),
                       .unit = "",
-                      .format = "d"},
+                      .level = replay.is_blind() ? Level::kWarn : Level::kNeutral},
                      {.label = "tick", .value = 1000 * replay.period_s, .unit = "ms"}};
   return figures;
 }
@@ -100,7 +105,7 @@ report::Page page_of(const Replay& replay, const std::string& command_line) {
   Page page;
   page.title = "Replay of " + replay.log;
   page.subtitle = "on-board monitor of robot " + replay.robot;
-  page.verdict = {words_of(replay), replay.detection_time_s ? Level::kBad : Level::kGood};
+  page.verdict = {words_of(replay), level_of(replay)};
   page.command_line = command_line;
   Section residual{.heading = "Residual", .text = "", .blocks = {}};
   residual.text =

@@ -112,6 +112,27 @@ TEST(Replay, GivenSamplesThatAreRefusedThenTheyAreCountedByTheirStatus) {
   EXPECT_NEAR(refusals.first_s, 0.5, 1e-9);
   EXPECT_EQ(result.t_s.size(), 999);
   EXPECT_EQ(result.samples(), 1001);
+  EXPECT_EQ(result.judged(), 999);
+  EXPECT_FALSE(result.is_blind());
+  EXPECT_THAT(words_of(result), HasSubstr("Nominal"));
+}
+
+// GIVEN samples that nobody judged WHEN they are many THEN "no alarm" is no good news.
+TEST(Replay, GivenManySamplesThatAreRefusedThenItIsBlind) {
+  for (const int step : {1, 50}) {  // three in a row; one in fifty
+    Log log = record_arm({.duration_s = 1});
+    for (Eigen::Index row = 500; row < (step == 1 ? 503 : 1000); row += step) {
+      log.tau(row, 1) = std::numeric_limits<double>::quiet_NaN();
+    }
+    Replay result = replay(watched_arm(), log);
+    EXPECT_EQ(result.is_blind(), step == 1) << "10 of 1001 are one in a hundred";
+    log.tau(120, 0) = log.tau(125, 0) = std::numeric_limits<double>::quiet_NaN();
+    result = replay(watched_arm(), log);
+    EXPECT_TRUE(result.is_blind());
+    EXPECT_THAT(words_of(result), HasSubstr("Blind: "));
+    EXPECT_EQ(to_json(result)["blind"], true);
+    EXPECT_EQ(page_of(result, "").verdict.level, report::Level::kWarn);
+  }
 }
 
 TEST(Replay, TheJsonSaysWhatTheReplayDoes) {
