@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -127,6 +128,8 @@ ExitCode run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using offnominal::tools::ExitCode;
+  // A file that grows beyond what this user may have is said with its name, and does not end us.
+  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   try {
     return static_cast<int>(offnominal::tools::run(argc, argv));
   } catch (const offnominal::tools::InputError& error) {

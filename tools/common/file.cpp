@@ -67,24 +67,33 @@ class Descriptor {
     if (value_ >= 0) ::close(value_);
   }
   [[nodiscard]] int get() const { return value_; }
+  void reset(int value) {
+    if (value_ >= 0) ::close(value_);
+    value_ = value;
+  }
 
  private:
   int value_;
 };
 
-/// A file being written; it is removed again unless it was moved to its final name.
+/// A file being written, which has no name until it is whole: however the program ends, nothing is
+/// left of it. On a file system that has no files without a name it has one beside its final one,
+/// and is removed unless the program is killed.
 class Temporary {
  public:
   explicit Temporary(std::filesystem::path target)
       : target_(std::move(target)),
         name_(target_.string() + ".part-" + std::to_string(::getpid())),
-        file_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666)) {
-    if (file_.get() < 0) fail();
+        file_(::open(folder_of(target_).c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666)) {
+    if (file_.get() >= 0) return;
+    file_.reset(::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666));
+    named_ = file_.get() >= 0;
+    if (!named_) fail();
   }
   Temporary(const Temporary&) = delete;
   Temporary& operator=(const Temporary&) = delete;
   ~Temporary() {
-    if (file_.get() >= 0 && !moved_) ::unlink(name_.c_str());
+    if (named_) ::unlink(name_.c_str());
   }
 
   void keep_mode_of_target() {
@@ -103,12 +112,19 @@ class Temporary {
   }
 
   void move_to_target(Existing existing) {
-    if (existing == Existing::kReplace) {
+    if (existing == Existing::kRefuse && !named_) {
+      give_name(target_);
+    } else if (existing == Existing::kReplace) {
+      if (!named_) {
+        ::unlink(name_.c_str());
+        give_name(name_);
+        named_ = true;
+      }
       if (::rename(name_.c_str(), target_.c_str()) != 0) fail();
-      moved_ = true;
+      named_ = false;
     } else if (::renameat2(AT_FDCWD, name_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) ==
                0) {
-      moved_ = true;
+      named_ = false;
     } else if (errno == EINVAL || errno == ENOSYS) {
       // A file system without RENAME_NOREPLACE: a hard link refuses an existing name too.
       if (::link(name_.c_str(), target_.c_str()) != 0) fail();
@@ -119,6 +135,12 @@ class Temporary {
   }
 
  private:
+  // Refuses a name that there is.
+  void give_name(const std::filesystem::path& name) const {
+    const std::string file = "/proc/self/fd/" + std::to_string(file_.get());
+    if (::linkat(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) fail();
+  }
+
   [[noreturn]] void fail() const {
     const int error = errno;
     if (error == EEXIST) refuse_existing(target_);
@@ -136,7 +158,7 @@ class Temporary {
   std::filesystem::path target_;
   std::filesystem::path name_;
   Descriptor file_;
-  bool moved_ = false;
+  bool named_ = false;  // name_ is its own
 };
 
 }  // namespace

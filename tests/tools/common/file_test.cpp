@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <string>
@@ -132,6 +134,29 @@ class FileSizeLimit {
   rlimit before_{};
   void (*handler_)(int) = SIG_DFL;
 };
+
+// A limit on files ends the program in the middle of the writing, as SIGKILL would.
+TEST(WriteFileAtomically, LeavesNothingWhereTheProgramIsKilled) {
+  const TemporaryFolder folder;
+  put(folder / "a", "old");
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const rlimit limit{10000, 10000};
+    if (::setrlimit(RLIMIT_FSIZE, &limit) != 0 || std::signal(SIGXFSZ, SIG_DFL) == SIG_ERR) {
+      ::_exit(1);
+    }
+    const rlimit no_core{0, 0};
+    static_cast<void>(::setrlimit(RLIMIT_CORE, &no_core));
+    write_file_atomically(folder / "a", std::string(20000, 'z'), Existing::kReplace);
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status)) << "it was to be killed while it writes";
+  EXPECT_EQ(content_of(folder / "a"), "old");
+  EXPECT_EQ(files_in(folder), 1);
+}
 
 TEST(WriteFileAtomically, LeavesTheOldFileWhenWritingIsCutShort) {
   const TemporaryFolder folder;
