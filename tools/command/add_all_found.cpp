@@ -4,6 +4,7 @@
 
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
+#include "common/json_text.hpp"
 #include "discovery/add_found.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
@@ -40,7 +41,7 @@ void add_all_found(const AddAllFound& options, const std::string& command_line,
     exit_code = ExitCode::kCheckFailed;
   }
   if (options.json) {
-    std::cout << to_json(added, names, options.output, options.force).dump(2) << '\n';
+    std::cout << json_text(to_json(added, names, options.output, options.force));
     return;
   }
   std::cout << text_of(added, names, options.force);

@@ -4,6 +4,7 @@
 
 #include "command/refuse_option.hpp"
 #include "common/input_name.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "log/read_log.hpp"
 
@@ -99,7 +100,7 @@ std::string file_names(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     names += (names.empty() ? "" : ", ") + input_name(file);
   }
-  return names;
+  return as_utf8(names);
 }
 
 }  // namespace offnominal::tools

@@ -20,6 +20,7 @@
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
+#include "common/json_text.hpp"
 #include "common/nearest.hpp"
 #include "common/output_file.hpp"
 #include "discovery/data_fault_report.hpp"
@@ -78,7 +79,8 @@ AddRequest request_of(const AddOptions& options) {
   AddRequest request;
   for (const std::string& name : options.effects) request.effects.push_back(kind_of(name));
   if (options.joint < 1)
-    refuse_option("add", "--joint", std::to_string(options.joint), "a number from 1");
+    refuse_option("add", "--joint", options.joint == 0 ? "none" : std::to_string(options.joint),
+                  "the joint that the effects act on, from 1");
   request.joint = static_cast<std::size_t>(options.joint - 1);
   for (const std::string& setting : options.set) read_setting(setting, request);
   if (options.refit_inertia_percent) {
@@ -160,7 +162,7 @@ void add_named(const AddOptions& options, const std::string& command_line, ExitC
   if (options.json) {
     auto json = to_json(result, request, names);
     json["data_faults"] = discovery::to_json(faults);
-    std::cout << json.dump(2) << '\n';
+    std::cout << json_text(json);
     return;
   }
   std::cout << text_of(result, request, names);

@@ -17,6 +17,7 @@
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "discovery/data_fault_report.hpp"
 #include "report/page.hpp"
@@ -86,7 +87,7 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
   if (options.json) {
     auto json = to_json(result, names);
     json["data_faults"] = discovery::to_json(faults);
-    std::cout << json.dump(2) << '\n';
+    std::cout << json_text(json);
     return;
   }
   for (const auto* group : {&logs, &holdout}) {

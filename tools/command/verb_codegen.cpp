@@ -10,6 +10,7 @@
 #include "codegen/model_header.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "robot/robot_file.hpp"
 
@@ -45,7 +46,7 @@ void run(const CodegenOptions& options) {
       model_header(robot, {.robot_file = options.robot, .name_space = options.name_space});
   write_file_atomically(options.output, header.text, existing_if(options.force));
   if (options.json) {
-    std::cout << to_json(options, robot, header).dump(2) << '\n';
+    std::cout << json_text(to_json(options, robot, header));
     return;
   }
   if (header.in_float != Status::kOk) {

@@ -16,6 +16,7 @@
 #include "command/progress.hpp"
 #include "command/verbs.hpp"
 #include "common/error.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "discovery/data_fault_report.hpp"
 #include "log/read_log.hpp"
@@ -69,7 +70,7 @@ void run(const CompareOptions& options, const std::string& command_line) {
   if (options.json) {
     auto json = to_json(comparison, names, against);
     json["data_faults"] = discovery::to_json(faults);
-    std::cout << json.dump(2) << '\n';
+    std::cout << json_text(json);
     return;
   }
   std::cout << text_of(comparison, names, against);

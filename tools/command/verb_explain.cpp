@@ -11,6 +11,7 @@
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
 #include "command/verbs.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "discovery/explain_report.hpp"
 #include "report/page.hpp"
@@ -49,7 +50,7 @@ void run(const ExplainOptions& options, const std::string& command_line) {
   if (options.report)
     report::write_page(*options.report, page_of(explanation, names), existing_if(options.force));
   if (options.json) {
-    std::cout << to_json(explanation, names).dump(2) << '\n';
+    std::cout << json_text(to_json(explanation, names));
     return;
   }
   std::cout << text_of(explanation, names);

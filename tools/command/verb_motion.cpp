@@ -17,6 +17,7 @@
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "discovery/data_fault_report.hpp"
 #include "motion_design/design_report.hpp"
@@ -101,7 +102,7 @@ void run(const MotionOptions& options, const std::string& command_line, ExitCode
   if (options.json) {
     auto json = to_json(robot, design, names);
     json["data_faults"] = discovery::to_json(faults);
-    std::cout << json.dump(2) << '\n';
+    std::cout << json_text(json);
     return;
   }
   std::cout << text_of(robot, design, names);

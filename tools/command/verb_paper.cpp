@@ -14,6 +14,7 @@
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "log/csv_text.hpp"
 #include "paper/figures.hpp"
@@ -192,7 +193,7 @@ void run_sweep(const RobotDescription& robot, const Experiment& base, bool json)
   };
   const paper::SweepResult sweep = paper::sweep_mass_loss(robot, base, 0.005, on_probe);
   if (json) {
-    std::cout << paper::to_json(sweep).dump(2) << '\n';
+    std::cout << json_text(paper::to_json(sweep));
     return;
   }
   const auto percent = [](const std::optional<double>& share) {
@@ -221,7 +222,7 @@ void run_pair(const RobotDescription& robot, const RobotDescription& other, cons
                        existing_if(options.force));
   }
   if (options.json) {
-    std::cout << paper::to_json(pair).dump(2) << '\n';
+    std::cout << json_text(paper::to_json(pair));
     return;
   }
   std::cout << paper::words_of(pair) << '\n';
@@ -240,7 +241,7 @@ void run_one(const RobotDescription& robot, const Experiment& experiment,
                        existing_if(options.force));
   }
   if (options.json) {
-    std::cout << paper::to_json(run).dump(2) << '\n';
+    std::cout << json_text(paper::to_json(run));
   } else {
     print_run(run);
     if (options.log) std::cout << "written: " << *options.log << '\n';
@@ -266,7 +267,7 @@ void run_all(const RobotDescription& robot, const Experiment& experiment,
                        existing_if(options.force));
   }
   if (options.json) {
-    std::cout << paper::to_json(runs, lines, verdict).dump(2) << '\n';
+    std::cout << json_text(paper::to_json(runs, lines, verdict));
   } else {
     print_everything(lines, verdict);
     if (options.report) std::cout << "written: " << *options.report << '\n';

@@ -10,6 +10,7 @@
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "log/candump_text.hpp"
 #include "log/csv_text.hpp"
@@ -125,7 +126,7 @@ void run(const SilOptions& options, const std::string& command_line) {
   if (options.report)
     report::write_page(*options.report, page_of(result, command_line), existing_if(options.force));
   if (options.json) {
-    std::cout << to_json(result).dump(2) << '\n';
+    std::cout << json_text(to_json(result));
     return;
   }
   std::cout << text_of(result);

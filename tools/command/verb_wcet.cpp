@@ -9,6 +9,7 @@
 #include "command/command_line.hpp"
 #include "command/progress.hpp"
 #include "command/verbs.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "paper/two_link_robot.hpp"
 #include "report/page.hpp"
@@ -45,7 +46,7 @@ void run(WcetOptions& options, const std::string& command_line) {
     report::write_page(*options.report, wcet::page_of(result, command_line),
                        existing_if(options.force));
   if (options.json) {
-    std::cout << wcet::to_json(result).dump(2) << '\n';
+    std::cout << json_text(wcet::to_json(result));
     return;
   }
   std::cout << wcet::text_of(result);

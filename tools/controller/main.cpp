@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "common/error.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "common/program.hpp"
 #include "controller/joint_program.hpp"
@@ -245,7 +246,7 @@ int run(const Options& options) {
   if (refused) std::rethrow_exception(refused);
   const ControllerOutcome outcome{program->report(), options.bus, socket.state(),
                                   socket.can_take_back(), recorder.lost()};
-  std::cout << (options.json ? to_json(outcome).dump(2) + "\n" : text_of(outcome));
+  std::cout << (options.json ? json_text(to_json(outcome)) : text_of(outcome));
   const realtime::LoopReport& report = outcome.report.loop;
   const bool well =
       report.fault == controller::Fault::kNone && report.refusal == controller::Fault::kNone;

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "common/error.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "common/program.hpp"
 #include "plant/plant_loop.hpp"
@@ -87,7 +88,7 @@ void print(const Options& options, const PlantReport& report, std::uint64_t reco
                                          {"rejected", report.rejected}}},
                                        {"recording_lost", recording_lost}};
   if (options.json) {
-    std::cout << json.dump(2) << '\n';
+    std::cout << json_text(json);
     return;
   }
   std::cout << "real time: " << words_of(grant) << '\n';
