@@ -9,6 +9,7 @@
 
 #include "analysis/compare_report.hpp"
 #include "analysis/torque_charts.hpp"
+#include "common/effort_name.hpp"
 #include "common/nearest.hpp"
 
 namespace offnominal::tools {
@@ -198,7 +199,7 @@ std::string verdict_of(const AddResult& result, const AddRequest& request, bool 
   const BeforeAfter& error = of_joint(result.held_out, request.joint);
   const std::string numbers =
       fmt::format("from {:.2f} % to {:.2f} % of the {} of joint {} ({:.4g} to {:.4g} {} rms)",
-                  error.before_percent, error.after_percent, error.unit == "N" ? "force" : "torque",
+                  error.before_percent, error.after_percent, effort_name(error.unit),
                   error.joint + 1, error.before_rms, error.after_rms, error.unit);
   if (!result.doubts.empty()) {
     std::string words = error.fall() > 0

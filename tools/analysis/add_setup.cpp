@@ -42,7 +42,8 @@ class SetUp {
     if (!request_.keep) refit_coupled(fresh);
     setup_.unknowns.insert(setup_.unknowns.end(), fresh.begin(), fresh.end());
     if (setup_.unknowns.empty()) {
-      throw InputError({"--set", "", "every parameter given", "at least one left to fit", ""});
+      throw InputError(
+          {"--set", "", "every parameter that can be fitted", "at least one left to fit", ""});
     }
     return std::move(setup_);
   }

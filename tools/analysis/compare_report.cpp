@@ -6,6 +6,7 @@
 
 #include "analysis/before_after.hpp"
 #include "analysis/torque_charts.hpp"
+#include "common/effort_name.hpp"
 
 namespace offnominal::tools {
 namespace {
@@ -25,7 +26,7 @@ std::string percent(double value) {
 }
 
 std::string sentence(const JointComparison& joint) {
-  const char* effort = joint.unit == "N" ? "force" : "torque";
+  const char* effort = effort_name(joint.unit);
   if (!std::isfinite(joint.relative_error_percent)) {
     return fmt::format("Joint {}: the recorded {} is 0 throughout, nothing to compare with.",
                        joint.joint + 1, effort);

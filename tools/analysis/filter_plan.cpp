@@ -37,20 +37,22 @@ FilterPlan plan_filter(const Log& log, const FilterRequest& request) {
     const double band_hz = kDecimationBand * half_rate_hz / static_cast<double>(plan.decimation);
     plan.torque_cutoff_hz = std::min(plan.position_cutoff_hz, band_hz);
   }
-  plan.edge_samples =
-      static_cast<Index>(std::ceil(2 * plan.sample_rate_hz / plan.torque_cutoff_hz));
-  const Index left = (log.sample_count() - 2 * plan.edge_samples) / plan.decimation;
-  if (left < kMinFilteredSamples) {
+  // Any number of them, before it is an index.
+  const double edge_samples = std::ceil(2 * plan.sample_rate_hz / plan.torque_cutoff_hz);
+  constexpr auto kFewest = static_cast<double>(kMinFilteredSamples);
+  const auto samples = static_cast<double>(log.sample_count());
+  const auto decimation = static_cast<double>(plan.decimation);
+  const double asked = 2 * edge_samples + (kFewest + 1) * decimation;
+  if (samples - 2 * edge_samples < kFewest * decimation) {
+    const bool by_cutoff = plan.torque_cutoff_hz >= plan.position_cutoff_hz;
     throw InputError(
         {log.file, "",
-         fmt::format("{:.4g} s at {:g} Hz", log.period_s * static_cast<double>(log.sample_count()),
-                     plan.sample_rate_hz),
-         fmt::format("a recording of {:.4g} s or more, with this filter",
-                     static_cast<double>(2 * plan.edge_samples +
-                                         (kMinFilteredSamples + 1) * plan.decimation) *
-                         log.period_s),
-         "record for longer, or choose a smaller --decimate"});
+         fmt::format("{:.4g} s at {:g} Hz", log.period_s * samples, plan.sample_rate_hz),
+         fmt::format("a recording of {:.4g} s or more, with this filter", asked * log.period_s),
+         by_cutoff ? "record for longer, or choose a larger --cutoff"
+                   : "record for longer, or choose a smaller --decimate"});
   }
+  plan.edge_samples = static_cast<Index>(edge_samples);
   return plan;
 }
 

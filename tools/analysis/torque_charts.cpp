@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/effort_name.hpp"
+
 namespace offnominal::tools {
 namespace {
 
@@ -42,16 +44,11 @@ std::string effort_unit(const Comparison& comparison, std::size_t joint) {
   return comparison.joints[joint].unit;
 }
 
-// A force drives a prismatic joint.
-std::string effort_name(const Comparison& comparison, std::size_t joint) {
-  return effort_unit(comparison, joint) == "N" ? "force" : "torque";
-}
-
 Chart time_chart(const Comparison& comparison, std::size_t joint, const std::string& title) {
   Chart chart;
   chart.title = fmt::format("Joint {}: {}", joint + 1, title);
   chart.x = axis("time", "s");
-  chart.y = {axis(effort_name(comparison, joint), effort_unit(comparison, joint))};
+  chart.y = {axis(effort_name(effort_unit(comparison, joint)), effort_unit(comparison, joint))};
   chart.zoom_group = "time";
   return chart;
 }
@@ -85,7 +82,8 @@ Series binned_mean(const std::string& name, Tone tone, const VectorXd& variable,
 Chart torque_over_time(const std::vector<NamedComparison>& models, std::size_t joint) {
   const Comparison& any = *models.front().comparison;
   const auto column = static_cast<Index>(joint);
-  Chart chart = time_chart(any, joint, "measured and model " + effort_name(any, joint));
+  Chart chart = time_chart(
+      any, joint, fmt::format("measured and model {}", effort_name(effort_unit(any, joint))));
   chart.series.push_back(series("measured", SeriesKind::kLine, Tone::kMeasured, numbers(any.t_s),
                                 numbers(any.measured.col(column))));
   for (const NamedComparison& model : models) {
@@ -126,7 +124,7 @@ Chart residual_over(const std::vector<NamedComparison>& models, std::size_t join
     chart.x = axis("acceleration", length + "/s^2");
   }
   chart.title = fmt::format("Joint {}: residual over {}", joint + 1, chart.x.name);
-  chart.y = {axis(effort_name(any, joint), effort_unit(any, joint))};
+  chart.y = {axis(effort_name(effort_unit(any, joint)), effort_unit(any, joint))};
   chart.width = report::Width::kHalf;
   for (const NamedComparison& model : models) {
     const bool alone = models.size() == 1;

@@ -34,9 +34,12 @@ CalibrationData data_of(const RobotDescription& robot, const std::vector<Log>& l
   data.split = split(data.recordings, logs.size(), 0.5 * data.block_s);
   std::int64_t blocks = 0;
   double largest = 0;
+  double longest_s = 0;
   for (const Stretch& fold : data.split.folds) {
     const RecordedError& recording = data.recordings[fold.recording];
     blocks += (fold.end - fold.begin) / data.block_samples(recording);
+    longest_s =
+        std::max(longest_s, recording.period_s * static_cast<double>(fold.end - fold.begin));
     largest = std::max(largest,
                        recording.error_norm.segment(fold.begin, fold.end - fold.begin).maxCoeff());
   }
@@ -44,7 +47,9 @@ CalibrationData data_of(const RobotDescription& robot, const std::vector<Log>& l
     throw InputError(
         {.file = data.recordings.front().file,
          .place = "length of the recordings",
-         .found = fmt::format("{} block(s) of {:g} s to calibrate on", blocks, data.block_s),
+         .found = fmt::format("{} whole block(s) of {:g} s to calibrate on, in {} stretch(es) of "
+                              "{:.3g} s at most",
+                              blocks, data.block_s, data.split.folds.size(), longest_s),
          .allowed = fmt::format("at least {}", kFewestBlocks),
          .mend = "take longer recordings, or more of them"});
   }

@@ -53,12 +53,17 @@ constexpr std::array kReserved{"alignas",       "alignof",     "and",
                                "volatile",      "wchar_t",     "while",
                                "xor",           "xor_eq"};
 
+// Macros of the headers that the generated one includes.
+constexpr std::array kMacros{"EOF", "INFINITY", "NAN", "NULL", "assert", "errno", "offsetof"};
+
 bool is_identifier(std::string_view name) {
   if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0) return false;
   if (!std::all_of(name.begin(), name.end(), is_word)) return false;
   // Reserved to the compiler and its library.
   if (name[0] == '_' || name.find("__") != std::string_view::npos) return false;
-  return std::find(kReserved.begin(), kReserved.end(), name) == kReserved.end();
+  const auto is_name = [name](const char* other) { return name == other; };
+  return std::none_of(kReserved.begin(), kReserved.end(), is_name) &&
+         std::none_of(kMacros.begin(), kMacros.end(), is_name);
 }
 
 // How many bytes from `at` are one character of Unicode that turns the direction of writing; 0
@@ -148,6 +153,9 @@ std::string comment(std::string_view text, std::string_view indent) {
 }
 
 bool is_namespace(std::string_view name) {
+  // Nobody may add to these.
+  const std::string_view outermost = name.substr(0, name.find("::"));
+  if (outermost == "std" || outermost == "posix") return false;
   for (;;) {
     const std::size_t end = name.find("::");
     if (!is_identifier(name.substr(0, end))) return false;

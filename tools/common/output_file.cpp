@@ -57,7 +57,8 @@ class Output {
     }
     const bool writes_page = option_.get_type_name() == kNewPage;
     std::error_code ignored;
-    if (std::filesystem::exists(file_, ignored) && !forced_ &&
+    // What is no regular file is refused below, forced or not.
+    if (std::filesystem::is_regular_file(file_, ignored) && !forced_ &&
         !(writes_page && is_page != nullptr && is_page(file_))) {
       refuse(file_ + ", which is there already",
              writes_page ? "a file that is not there yet, or a page of offnominal"

@@ -152,7 +152,7 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
   find_stuck_encoders(mended, robot, faults);
   find_saturation(mended, robot, faults);
   mend_degrees(mended, robot, faults);
-  mend_strange_velocities(mended, faults);
+  mend_strange_velocities(mended, robot, faults);
   mend_velocities(mended, robot, faults);
   if (const auto pair = torque_pair(mended, robot)) {
     find_torque_sign(mended, *pair, faults);

@@ -51,7 +51,8 @@ void mend_wrapped(Log& log, const RobotDescription& robot, std::vector<DataFault
 void mend_time(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
 void mend_degrees(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
 // Velocities of another joint, of another time, or none at all.
-void mend_strange_velocities(Log& log, std::vector<DataFault>& faults);
+void mend_strange_velocities(Log& log, const RobotDescription& robot,
+                             std::vector<DataFault>& faults);
 void mend_velocities(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
 
 // Drives filter the velocity and print it coarsely: real ones differ from the derivative of the

@@ -159,14 +159,16 @@ std::optional<Stranger> stranger_in(const Log& log, Index joint) {
   return stranger;
 }
 
-std::string words_of(const Stranger& stranger, const Log& log, Index joint) {
+// `unit`: of the joint's positions.
+std::string words_of(const Stranger& stranger, const Log& log, Index joint,
+                     const std::string& unit) {
   const std::string of = joint_words(joint);
   switch (stranger.kind) {
     case Stranger::Kind::kConstant:
       return fmt::format(
           "the velocity of {} never changes, it is {:.4g} throughout, while its "
-          "position moves by {:.3g}",
-          of, log.dq(0, joint), log.q.col(joint).maxCoeff() - log.q.col(joint).minCoeff());
+          "position moves by {:.3g} {}",
+          of, log.dq(0, joint), log.q.col(joint).maxCoeff() - log.q.col(joint).minCoeff(), unit);
     case Stranger::Kind::kOfAnotherJoint:
       return fmt::format(
           "the velocity of {} is not that of its position (correlation {:.2f}), but "
@@ -194,7 +196,8 @@ std::optional<double> velocity_ratio(const Log& log, Index joint) {
   return best.ratio;
 }
 
-void mend_strange_velocities(Log& log, std::vector<DataFault>& faults) {
+void mend_strange_velocities(Log& log, const RobotDescription& robot,
+                             std::vector<DataFault>& faults) {
   struct Found {
     Index joint;
     Stranger stranger;
@@ -228,7 +231,8 @@ void mend_strange_velocities(Log& log, std::vector<DataFault>& faults) {
     fault.kind = DataFaultKind::kVelocity;
     fault.joint = one.joint;
     fault.size = 0;
-    fault.words = words_of(one.stranger, before, one.joint);
+    const JointType type = robot.joints[static_cast<std::size_t>(one.joint)].joint.type;
+    fault.words = words_of(one.stranger, before, one.joint, unit_of(Quantity::kPosition, type));
     fault.mend = one.stranger.kind == Stranger::Kind::kOfAnotherJoint
                      ? "exchange the columns"
                      : "look at what was logged, or leave the velocity out: it is then derived "

@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
+#include "common/effort_name.hpp"
 #include "discovery/explain_report.hpp"
 
 namespace offnominal::tools::discovery {
@@ -36,15 +39,26 @@ const JointErrors& joint_of(const Explanation& e, Index joint) {
   return e.joints[static_cast<std::size_t>(joint)];
 }
 
+// As a title begins.
+std::string titled(std::string word) {
+  word.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(word.front())));
+  return word;
+}
+
 const char* position_unit(const JointErrors& joint) { return joint.unit == "N" ? "m" : "rad"; }
 const char* velocity_unit(const JointErrors& joint) { return joint.unit == "N" ? "m/s" : "rad/s"; }
 
 report::Table error_table(const Explanation& e) {
+  const auto forces = std::count_if(e.joints.begin(), e.joints.end(), [](const JointErrors& one) {
+    return effort_name(one.unit) == effort_name("N");
+  });
+  const bool all = forces == static_cast<std::ptrdiff_t>(e.joints.size());
+  const char* effort = all ? "force" : forces == 0 ? "torque" : "torque or force";
   report::Table table;
-  table.caption = "Torque error per joint, root mean square";
+  table.caption = fmt::format("Error of each joint's {}, root mean square", effort);
   table.columns = {{"joint", "", "d"},
                    {"unit", "", ".4g"},
-                   {"torque", "", ".4g"},
+                   {effort, "", ".4g"},
                    {"error before", "", ".4g"},
                    {"error after", "", ".4g"},
                    {"noise floor", "", ".4g"},
@@ -144,7 +158,7 @@ report::Waterfall waterfall_of(const Explanation& e, Index joint) {
   report::Waterfall waterfall;
   const JointErrors& errors = joint_of(e, joint);
   waterfall.title = fmt::format("Held-out error of joint {}, effect by effect", joint + 1);
-  waterfall.value_axis = {"rms torque error", errors.unit};
+  waterfall.value_axis = {fmt::format("rms {} error", effort_name(errors.unit)), errors.unit};
   for (std::size_t i = 0; i < e.waterfall.size(); ++i) {
     const std::string label = i == 0 ? "model as it is" : "+ " + title_of(e.found[i - 1]);
     waterfall.steps.push_back({label, e.waterfall[i][joint]});
@@ -186,9 +200,9 @@ std::vector<report::Series> torque_errors(const Explanation& e, Index joint, con
 report::Chart torque_chart(const Explanation& e, Index joint) {
   const JointErrors& errors = joint_of(e, joint);
   report::Chart chart;
-  chart.title = fmt::format("Torque of joint {}", joint + 1);
+  chart.title = fmt::format("{} of joint {}", titled(effort_name(errors.unit)), joint + 1);
   chart.x = {"time", "s"};
-  chart.y = {{"torque", errors.unit}};
+  chart.y = {{effort_name(errors.unit), errors.unit}};
   chart.series = torques(e, joint, e.series.t_s, report::SeriesKind::kLine);
   chart.zoom_group = "time";
   chart.slider = true;
@@ -198,7 +212,7 @@ report::Chart torque_chart(const Explanation& e, Index joint) {
 report::Chart residual_chart(const Explanation& e, Index joint) {
   const JointErrors& errors = joint_of(e, joint);
   report::Chart chart;
-  chart.title = fmt::format("Torque error of joint {}", joint + 1);
+  chart.title = fmt::format("{} error of joint {}", titled(effort_name(errors.unit)), joint + 1);
   chart.x = {"time", "s"};
   chart.y = {{"measured less model", errors.unit}};
   chart.series = torque_errors(e, joint, e.series.t_s, report::SeriesKind::kLine);
@@ -214,7 +228,7 @@ report::Heatmap error_map(const Explanation& e, Index joint) {
   map.title = fmt::format("Mean error of joint {}, model as it is", joint + 1);
   map.x = {"position", position_unit(errors)};
   map.y = {"velocity", velocity_unit(errors)};
-  map.value_axis = {"torque error", errors.unit};
+  map.value_axis = {fmt::format("{} error", effort_name(errors.unit)), errors.unit};
   map.diverging = true;
   const VectorXd q = e.series.q.col(joint);
   const VectorXd dq = e.series.dq.col(joint);
@@ -266,9 +280,10 @@ report::Chart error_over(const Explanation& e, Index joint, const char* variable
 report::Chart torque_over_position(const Explanation& e, Index joint) {
   const JointErrors& errors = joint_of(e, joint);
   report::Chart chart;
-  chart.title = fmt::format("Torque of joint {} over position", joint + 1);
+  chart.title =
+      fmt::format("{} of joint {} over position", titled(effort_name(errors.unit)), joint + 1);
   chart.x = {"position", position_unit(errors)};
-  chart.y = {{"torque", errors.unit}};
+  chart.y = {{effort_name(errors.unit), errors.unit}};
   chart.series = torques(e, joint, e.series.q.col(joint), report::SeriesKind::kPoints);
   chart.zoom_group = "position";
   return chart;

@@ -62,6 +62,11 @@ void check_experiment(const RobotDescription& robot, const Experiment& experimen
     refuse("--duration", shortest(experiment.duration_s) + " s",
            "one step to " + shortest(kLongestRunS) + " s");
   }
+  if (experiment.fault.kind != sim::FaultKind::kNone &&
+      !(experiment.fault.time_s < experiment.duration_s)) {
+    refuse("--duration", shortest(experiment.duration_s) + " s",
+           "more than " + shortest(experiment.fault.time_s) + " s, when the fault begins");
+  }
   if (!(std::abs(experiment.motion_start_s) <= 1e5)) {
     refuse("--start", shortest(experiment.motion_start_s) + " s", "-1e5 to 1e5 s");
   }

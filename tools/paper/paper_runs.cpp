@@ -20,7 +20,7 @@ Comparison accommodation(const std::string& fault, const ExperimentResult& witho
                          const ExperimentResult& with) {
   const double ratio = with.tracking_rms_rad / without.tracking_rms_rad;
   return {fault + ": tracking error, accommodated", "considerably reduced",
-          fmt::format("{:.4f} -> {:.4f} rad rms ({:.0f} %)", without.tracking_rms_rad,
+          fmt::format("{:.4f} to {:.4f} rad rms ({:.0f} %)", without.tracking_rms_rad,
                       with.tracking_rms_rad, 100.0 * ratio),
           ratio <= 0.5};
 }

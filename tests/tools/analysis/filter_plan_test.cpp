@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "analysis/motion.hpp"
 #include "common/error.hpp"
@@ -56,6 +57,25 @@ TEST(FilterPlan, RequestIsTakenOrRefusedWithWords) {
 TEST(FilterPlan, RecordingThatIsTooShortIsRefused) {
   EXPECT_NO_THROW(plan_filter(log_at(1000, 0.4), {}));
   EXPECT_THROW(plan_filter(log_at(1000, 0.25), {}), InputError);
+}
+
+// Whatever asks for too much of a recording is what is to be mended.
+TEST(FilterPlan, TheOptionThatAsksForTooMuchIsNamed) {
+  const auto refusal = [](const offnominal::tools::FilterRequest& request) {
+    try {
+      plan_filter(log_at(1000), request);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const double cutoff_hz : {1e-2, 1e-9, 1e-300}) {
+    EXPECT_NE(refusal({.cutoff_hz = cutoff_hz, .decimate = {}}).find("larger --cutoff"),
+              std::string::npos)
+        << cutoff_hz;
+  }
+  EXPECT_NE(refusal({.cutoff_hz = {}, .decimate = 2'000'000'000}).find("smaller --decimate"),
+            std::string::npos);
 }
 
 TEST(FilterPlan, FilteredSamplesStandWhereTheKeptOnesDo) {

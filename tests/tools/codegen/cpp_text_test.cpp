@@ -63,9 +63,10 @@ TEST(CppText, BreaksLongRemarksAtSpaces) {
 }
 
 TEST(CppText, KnowsWhatANamespaceMayBeCalled) {
-  for (const char* good : {"robot_model", "a::b", "Arm7"}) EXPECT_TRUE(is_namespace(good)) << good;
+  for (const char* good : {"robot_model", "a::b", "Arm7", "a::std"})
+    EXPECT_TRUE(is_namespace(good)) << good;
   for (const char* bad : {"", "7arm", "a b", "a-b", "class", "a::", "::a", "a:b", "_a", "a__b",
-                          "a::for", "\xC3\xA4"}) {
+                          "a::for", "\xC3\xA4", "NULL", "a::NAN", "std", "std::a"}) {
     EXPECT_FALSE(is_namespace(bad)) << bad;
   }
 }

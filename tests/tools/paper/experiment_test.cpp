@@ -204,6 +204,8 @@ TEST(PaperExperiment, RefusesWhatItCannotRun) {
   refused([](auto&, auto& experiment) { experiment.fault.rate_per_s = 0.0; });
   refused([nan](auto&, auto& experiment) { experiment.duration_s = nan; });
   refused([](auto&, auto& experiment) { experiment.duration_s = 0.0; });
+  // The fault would begin as the run ends.
+  refused([](auto&, auto& experiment) { experiment.duration_s = 10.0; });
 }
 
 TEST(PaperExperiment, ArmThatLeavesItsRangeIsReportedAsSuch) {

@@ -122,9 +122,11 @@ function levelSeries(levels, look, alongX) {
       const shape = alongX
         ? { x1: at, y1: plot.y, x2: at, y2: plot.y + plot.height }
         : { x1: plot.x, y1: at, x2: right, y2: at };
+      // Below the line where there is no room above it, or most of what is drawn.
+      const under = at - plot.y < 18 || (at > plot.y + 0.75 * plot.height && at < plot.y + plot.height - 20);
       const place = alongX
         ? { x: at, y: plot.y - 5, align: alongAlign(at, textWidth(label, 12) / 2, plot.x, right) }
-        : { x: right - 4, y: at - plot.y < 18 ? at + 17 : at - 4, align: "right" };
+        : { x: right - 4, y: under ? at + 17 : at - 4, align: "right" };
       const style = {
         text: label,
         ...place,
