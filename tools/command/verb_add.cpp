@@ -23,6 +23,7 @@
 #include "common/nearest.hpp"
 #include "common/output_file.hpp"
 #include "discovery/data_fault_report.hpp"
+#include "log/log_format.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
@@ -223,7 +224,7 @@ void register_add(CLI::App& app, ExitCode& exit_code) {
                  "Search for what is missing, as explain does, and add all of it");
   verb->add_option("--robot", options->robot, "Robot file to start from")->required();
   verb->add_option("--log", options->logs,
-                   "Recording to fit, CSV or MATLAB .mat; with --all-found one or more")
+                   "Recording to fit, " + log_format_names() + "; with --all-found one or more")
       ->required();
   verb->add_option("--holdout", options->holdout,
                    "Recording to judge the fit on; with --all-found one or more");

@@ -19,6 +19,7 @@
 #include "command/verbs.hpp"
 #include "common/output_file.hpp"
 #include "discovery/data_fault_report.hpp"
+#include "log/log_format.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
@@ -117,7 +118,8 @@ void register_calibrate(CLI::App& app, ExitCode& exit_code) {
   CLI::App* verb = app.add_subcommand(
       "calibrate", "Find the uncertainty bound from recordings of the healthy robot");
   const auto options = std::make_shared<CalibrateOptions>();
-  verb->add_option("LOG", options->logs, "Fault-free recordings, CSV or MATLAB .mat")->required();
+  verb->add_option("LOG", options->logs, "Fault-free recordings, " + log_format_names())
+      ->required();
   verb->add_option("--robot", options->robot, "Robot file to start from")->required();
   verb->add_option("--holdout", options->holdout, "Fault-free recordings to count alarms on");
   verb->add_option("-o,--output", options->output, "Robot file to write")

@@ -18,6 +18,7 @@
 #include "common/error.hpp"
 #include "common/output_file.hpp"
 #include "discovery/data_fault_report.hpp"
+#include "log/log_format.hpp"
 #include "log/read_log.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
@@ -83,7 +84,7 @@ void register_compare(CLI::App& app, ExitCode& exit_code) {
   CLI::App* verb = app.add_subcommand(
       "compare", "Compare a model with a recording: error per joint, and what it follows");
   const auto options = std::make_shared<CompareOptions>();
-  verb->add_option("LOG", options->log, "Recording, CSV or MATLAB .mat")->required();
+  verb->add_option("LOG", options->log, "Recording, " + log_format_names())->required();
   verb->add_option("--robot", options->robot, "Robot file")->required();
   verb->add_option("--against", options->against,
                    "An older file of the robot: prints how far the error has fallen from it");

@@ -13,6 +13,7 @@
 #include "command/verbs.hpp"
 #include "common/output_file.hpp"
 #include "discovery/explain_report.hpp"
+#include "log/log_format.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
@@ -64,7 +65,7 @@ void register_explain(CLI::App& app, ExitCode& exit_code) {
       "explain", "Say which physical effect a model lacks, by recordings, with the evidence");
   const auto options = std::make_shared<ExplainOptions>();
   options->explain.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  verb->add_option("LOG", options->logs, "Recordings, CSV or MATLAB .mat")->required();
+  verb->add_option("LOG", options->logs, "Recordings, " + log_format_names())->required();
   verb->add_option("--robot", options->robot, "Robot file")->required();
   verb->add_option("--holdout", options->holdout,
                    "Recordings that no fit may see. Without any, blocks of time are held out");

@@ -15,6 +15,7 @@
 #include "command/verbs.hpp"
 #include "common/output_file.hpp"
 #include "discovery/data_fault_report.hpp"
+#include "log/log_format.hpp"
 #include "log/read_log.hpp"
 #include "replay/replay.hpp"
 #include "report/page.hpp"
@@ -93,7 +94,7 @@ void register_replay(CLI::App& app, ExitCode& exit_code) {
   CLI::App* verb = app.add_subcommand(
       "replay", "Run the on-board monitor over a recording: residual, threshold, alarms");
   const auto options = std::make_shared<ReplayOptions>();
-  verb->add_option("LOG", options->log, "Recording, CSV or MATLAB .mat")->required();
+  verb->add_option("LOG", options->log, "Recording, " + log_format_names())->required();
   verb->add_option("--robot", options->robot,
                    "Robot file; its uncertainty bound sets the threshold")
       ->required();

@@ -15,4 +15,7 @@ namespace offnominal::tools {
 /// "a, b, c"
 [[nodiscard]] std::string list_of(std::span<const std::string> words);
 
+/// "a, b or c"
+[[nodiscard]] std::string choice_of(std::span<const std::string> words);
+
 }  // namespace offnominal::tools

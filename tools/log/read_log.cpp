@@ -10,11 +10,9 @@
 
 #include "common/error.hpp"
 #include "common/nearest.hpp"
-#include "log/candump_log.hpp"
 #include "log/channels.hpp"
-#include "log/csv_log.hpp"
 #include "log/hold_map.hpp"
-#include "log/mat_log.hpp"
+#include "log/log_format.hpp"
 #include "log/recording_file.hpp"
 #include "log/sampling.hpp"
 
@@ -299,23 +297,15 @@ NeedOf needs_of(const std::optional<ChannelMap>& channels) {
   };
 }
 
-NamedColumns read_columns(const std::filesystem::path& path,
-                          const std::optional<ChannelMap>& channels, const NeedOf& need_of) {
-  RecordingFile file(path);
-  if (is_mat_file(file)) return read_mat(file, need_of);
-  if (!is_candump_file(file)) return read_csv(file, need_of);
-  if (!channels || channels->dbc.empty()) return read_candump(file, nullptr, need_of);
-  const Dbc dbc = read_dbc(channels->dbc);
-  return read_candump(file, &dbc, need_of);
-}
-
 }  // namespace
 
 Log read_log(const std::filesystem::path& path, int joint_count,
              const std::optional<ChannelMap>& channels) {
   try {
     const NeedOf need_of = needs_of(channels);
-    Assembler assembler(read_columns(path, channels, need_of), joint_count);
+    RecordingFile file(path);
+    const ChannelMap* map = channels ? &*channels : nullptr;
+    Assembler assembler(log_format_of(file).read(file, map, need_of), joint_count);
     return channels ? assembler.with(*channels) : assembler.with_common_header();
   } catch (const std::bad_alloc&) {
     throw InputError({path == "-" ? "standard input" : path.string(), "",

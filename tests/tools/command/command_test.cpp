@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "log/log_format.hpp"
 #include "support/places.hpp"
 #include "tools/support/run_command.hpp"
 #include "tools/support/verbs.hpp"
@@ -64,6 +65,17 @@ TEST(Command, HelpsWithEveryVerb) {
     EXPECT_THAT(result.out, HasSubstr("--json")) << verb;
     EXPECT_EQ(result.err, "") << verb;
   }
+}
+
+TEST(Command, NamesEveryFormatOfARecordingWhereItAsksForOne) {
+  int asked = 0;
+  for (const std::string& verb : verbs()) {
+    std::string help = offnominal({verb, "--help"}).out;
+    if (help.find("\n  LOG ") == std::string::npos && verb != "add") continue;
+    ++asked;
+    EXPECT_THAT(help, HasSubstr(log_format_names())) << verb;
+  }
+  EXPECT_GE(asked, 5);
 }
 
 TEST(Command, ListsItsVerbsWhereNoneOrAnUnknownOneIsGiven) {

@@ -35,5 +35,11 @@ TEST(ListOf, SeparatesWithCommas) {
   EXPECT_EQ(list_of({}), "");
 }
 
+TEST(ChoiceOf, HasOrBeforeTheLast) {
+  EXPECT_EQ(choice_of(kWords), "mass_kg, centre_of_mass_m or inertia_kg_m2");
+  EXPECT_EQ(choice_of(std::span(kWords).first(1)), "mass_kg");
+  EXPECT_EQ(choice_of({}), "");
+}
+
 }  // namespace
 }  // namespace offnominal::tools
