@@ -8,6 +8,7 @@
 #include <offnominal/model/mass_matrix.hpp>
 #include <span>
 
+#include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/monitor_config_of.hpp"
@@ -75,13 +76,8 @@ Eigen::VectorXd basis_values(const UncertaintyBound<N, double>& bound,
 }
 
 std::string matrix_words(const std::vector<std::vector<double>>& matrix) {
-  std::string text;
-  for (const auto& row : matrix) {
-    std::string numbers;
-    for (const double value : row) numbers += (numbers.empty() ? "" : ", ") + shortest(value);
-    text += (text.empty() ? "[" : ", [") + numbers + "]";
-  }
-  return "[" + text + "]";
+  const auto words = [](const auto& row) { return "[" + list_of(row, shortest) + "]"; };
+  return "[" + list_of(matrix, words) + "]";
 }
 
 BoundShape scaled_norm(std::vector<std::vector<double>> matrix) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/nearest.hpp"
 #include "discovery/explain_report.hpp"
 
 namespace offnominal::tools::discovery {
@@ -299,18 +300,12 @@ report::Section joint_section(const Explanation& e, Index joint) {
   return section;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
-}
-
 }  // namespace
 
 report::Page page_of(const Explanation& e, const ExplainNames& names) {
   report::Page page;
   page.title = "What the model lacks";
-  page.subtitle = joined(names.logs) + " against " + names.robot_file;
+  page.subtitle = list_of(names.logs) + " against " + names.robot_file;
   page.verdict = {std::string(name_of(e.verdict)) + ": " + e.words, level_of(e.verdict)};
   page.command_line = names.command_line;
   report::Section overview;

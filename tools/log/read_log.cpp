@@ -154,9 +154,7 @@ class Assembler {
     if (*joints.rbegin() == static_cast<int>(joints.size())) {
       return fmt::format("{0}1 to {0}{1}", prefix, joints.size());
     }
-    std::vector<std::string> names;
-    for (const int joint : joints) names.push_back(fmt::format("{}{}", prefix, joint));
-    return list_of(names);
+    return list_of(joints, [&](int joint) { return fmt::format("{}{}", prefix, joint); });
   }
 
   void check_joint_count(const std::string& prefix) const {

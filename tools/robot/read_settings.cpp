@@ -6,6 +6,7 @@
 #include <offnominal/diagnosis/bound.hpp>
 #include <offnominal/diagnosis/estimator_config.hpp>
 
+#include "common/nearest.hpp"
 #include "common/number.hpp"
 
 namespace offnominal::tools {
@@ -20,9 +21,7 @@ void refuse_keys_other_than(const TomlTable& table, const std::vector<std::strin
     bool known = false;
     for (const std::string& name : allowed) known = known || name == key;
     if (table.has(key) && !known) {
-      std::string list;
-      for (const std::string& name : allowed) list += (list.empty() ? "" : ", ") + name;
-      table.refuse(key, "a key that a bound of kind " + kind + " does not have", list,
+      table.refuse(key, "a key that a bound of kind " + kind + " does not have", list_of(allowed),
                    "remove it, or change kind");
     }
   }

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <span>
 
+#include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "robot/bound_text.hpp"
 #include "robot/channel_text.hpp"
@@ -14,15 +15,11 @@ namespace offnominal::tools {
 namespace {
 
 std::string list(std::span<const double> values) {
-  std::string text = "[";
-  for (const double value : values) text += (text.size() > 1 ? ", " : "") + shortest_real(value);
-  return text + "]";
+  return "[" + list_of(values, shortest_real) + "]";
 }
 
 std::string rows(const std::vector<std::vector<double>>& matrix) {
-  std::string text = "[";
-  for (const auto& row : matrix) text += (text.size() > 1 ? ", " : "") + list(row);
-  return text + "]";
+  return "[" + list_of(matrix, list) + "]";
 }
 
 std::string escaped(char c) {
@@ -208,20 +205,14 @@ std::string channel_text(const Channel& channel) {
   return text + "}";
 }
 
-template <typename Channels, typename TextOf>
-std::string channel_list(const Channels& channels, TextOf&& text_of) {
-  std::string text = "[";
-  for (const auto& channel : channels) text += (text.size() > 1 ? ", " : "") + text_of(channel);
-  return text + "]";
-}
-
 std::string channels_value(const ChannelMap& channels, std::string_view key) {
   if (key == "time") return channel_text(channels.time);
-  if (key == "position") return channel_list(channels.position, channel_text);
-  if (key == "torque") return channel_list(channels.torque, channel_text);
-  return channel_list(channels.velocity, [](const auto& channel) {
+  if (key == "position") return "[" + list_of(channels.position, channel_text) + "]";
+  if (key == "torque") return "[" + list_of(channels.torque, channel_text) + "]";
+  const auto text = [](const auto& channel) {
     return channel ? channel_text(*channel) : std::string("\"\"");
-  });
+  };
+  return "[" + list_of(channels.velocity, text) + "]";
 }
 
 void write_channels(Writer& out, const ChannelMap& channels) {
