@@ -15,20 +15,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using report::Level;
 
-Level level_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kExplained:
-    case Verdict::kFound:
-      return Level::kGood;
-    case Verdict::kDataFault:
-    case Verdict::kUnknownExternal:
-    case Verdict::kUnknownStateDependent:
-      return Level::kBad;
-    default:
-      return Level::kWarn;
-  }
-}
-
 std::vector<double> numbers(const Eigen::Ref<const VectorXd>& values) {
   return {values.begin(), values.end()};
 }

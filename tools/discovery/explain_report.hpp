@@ -18,6 +18,9 @@ struct ExplainNames {
   std::string channels = {};  // file of --channels, empty: none
 };
 
+// How a page shows a verdict.
+report::Level level_of(Verdict verdict);
+
 // docs/explain.md lists the keys. Joints count from 1.
 nlohmann::ordered_json to_json(const Explanation& explanation, const ExplainNames& names);
 

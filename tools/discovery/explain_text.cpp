@@ -112,8 +112,7 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
     text += fmt::format("the file's {} is off by {:+.0f} %\n", shift.name, 100 * shift.share);
   }
   for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
-  const bool to_write = e.verdict == Verdict::kFound || e.verdict == Verdict::kParameterShift;
-  if (to_write && !e.found.empty() && e.not_in_robot_files.empty()) {
+  if (is_to_write(e.verdict) && !e.found.empty() && e.not_in_robot_files.empty()) {
     text += command_to_add(names);
   }
   return text;
