@@ -197,7 +197,7 @@ std::vector<BoundShape> bound_shapes(const RobotDescription& robot,
 
 FilteredBasis filtered_basis(const RobotDescription& robot, const BoundShape& shape,
                              const RecordedError& recording) {
-  const TickFilter filter = tick_filter(robot.estimator.alpha_per_s, recording.period_s);
+  const TickFilter filter = tick_filter(robot.estimator.alpha, recording.period_s);
   const bool held = robot.estimator.torque_signal == TorqueSignal::kHeld;
   // A held torque is over the whole tick what the sample at its end says.
   const Index shift = held && follows_torque(shape) ? 1 : 0;

@@ -110,8 +110,8 @@ RobotDescription robot_of(const PaperOptions& options, const std::optional<std::
   if (file) require_bound(robot, *file);
   EstimatorSettings& estimator = robot.estimator;
   if (options.dead_zone) {
-    estimator.dead_zone = *options.dead_zone == "continuous" ? DeadZoneChoice::kContinuous
-                                                             : DeadZoneChoice::kDiscontinuous;
+    estimator.dead_zone =
+        *options.dead_zone == "continuous" ? DeadZone::kContinuous : DeadZone::kDiscontinuous;
   }
   if (options.hidden) estimator.hidden_units = *options.hidden;
   if (options.step) estimator.period_s = *options.step;

@@ -71,10 +71,9 @@ EstimatorSettings read_estimator(const TomlTable& table) {
   EstimatorSettings settings;
   settings.period_s = table.number(
       "period_s", positive("s", "give the length of a control tick in s"), settings.period_s);
-  settings.alpha_per_s =
-      table.number("alpha_per_s", positive("1/s", "give the pole of the filter 1/(s + alpha)"),
-                   settings.alpha_per_s);
-  const double pole_per_tick = settings.alpha_per_s * settings.period_s;
+  settings.alpha = table.number(
+      "alpha_per_s", positive("1/s", "give the pole of the filter 1/(s + alpha)"), settings.alpha);
+  const double pole_per_tick = settings.alpha * settings.period_s;
   if (pole_per_tick > kMaxPolePerTick) {
     table.refuse(table.has("alpha_per_s") ? "alpha_per_s" : "period_s",
                  "alpha_per_s * period_s = " + shortest(pole_per_tick),
@@ -97,8 +96,8 @@ EstimatorSettings read_estimator(const TomlTable& table) {
       "seed", 0, std::numeric_limits<std::uint32_t>::max(), std::int64_t{settings.seed}));
   if (table.has("dead_zone")) {
     settings.dead_zone = table.choice("dead_zone", {"continuous", "discontinuous"}) == 0
-                             ? DeadZoneChoice::kContinuous
-                             : DeadZoneChoice::kDiscontinuous;
+                             ? DeadZone::kContinuous
+                             : DeadZone::kDiscontinuous;
   }
   if (table.has("torque_signal")) {
     settings.torque_signal = table.choice("torque_signal", {"sampled", "held"}) == 0

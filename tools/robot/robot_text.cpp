@@ -143,15 +143,14 @@ void write_joint(Writer& out, const RobotJoint& robot_joint) {
 void write_estimator(Writer& out, const EstimatorSettings& settings) {
   out.table("[estimator]");
   out.value("period_s", shortest_real(settings.period_s));
-  out.value("alpha_per_s", shortest_real(settings.alpha_per_s));
+  out.value("alpha_per_s", shortest_real(settings.alpha));
   out.value("hidden_units", std::to_string(settings.hidden_units));
   out.value("learning_rate", shortest_real(settings.learning_rate));
   out.value("weight_radius", shortest_real(settings.weight_radius));
   out.value("initial_weight_range", shortest_real(settings.initial_weight_range));
   out.value("seed", std::to_string(settings.seed));
-  out.value(
-      "dead_zone",
-      quoted(settings.dead_zone == DeadZoneChoice::kContinuous ? "continuous" : "discontinuous"));
+  out.value("dead_zone",
+            quoted(settings.dead_zone == DeadZone::kContinuous ? "continuous" : "discontinuous"));
   out.value("torque_signal",
             quoted(settings.torque_signal == TorqueSignal::kSampled ? "sampled" : "held"));
   out.text_if_any("source", settings.source);
