@@ -112,8 +112,9 @@ struct RobotDescription {
   ArmingSettings arming;
   std::optional<BoundSettings> bound;
   std::optional<ChannelMap> channels;
-  // The text it was read from, so that writing keeps comments and order; empty: none.
-  std::string file_text = {};
+  // The text it was read from, so that writing keeps comments and order; null: none. Copies, of
+  // which a fit makes thousands, share it.
+  std::shared_ptr<const std::string> file_text = nullptr;
 
   [[nodiscard]] int joint_count() const { return static_cast<int>(joints.size()); }
 };
