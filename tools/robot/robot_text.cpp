@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <filesystem>
 #include <span>
 
 #include "common/nearest.hpp"
@@ -227,6 +228,10 @@ void write_channels(Writer& out, const ChannelMap& channels) {
                                         [](const auto& channel) { return channel.has_value(); });
   if (any_velocity) write("velocity");
   write("torque");
+  // Read as relative to a file whose folder is not known here.
+  if (!channels.dbc.empty()) {
+    out.value("dbc", quoted(std::filesystem::absolute(channels.dbc).string()));
+  }
   if (channels.extra.empty()) return;
   out.table("[channels.extra]");
   for (const auto& [name, channel] : channels.extra) out.value(key(name), channel_text(channel));

@@ -98,6 +98,8 @@ inline void expect_same(const tools::Channel& a, const tools::Channel& b) {
 }
 
 inline void expect_same(const tools::ChannelMap& a, const tools::ChannelMap& b) {
+  EXPECT_EQ(a.at_rest, b.at_rest);
+  EXPECT_EQ(a.dbc, b.dbc);
   expect_same(a.time, b.time);
   expect_same(a.position, b.position);
   ASSERT_EQ(a.velocity.size(), b.velocity.size());

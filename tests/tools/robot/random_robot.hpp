@@ -210,12 +210,19 @@ class RandomRobot {
 
   tools::ChannelMap channels(int joints) {
     tools::ChannelMap map;
+    map.at_rest = whole(0, 3) == 0;
     map.time = channel();
+    if (map.at_rest) {  // none is read
+      map.time = tools::Channel();
+      map.time.source = "t";
+    }
     for (int i = 0; i < joints; ++i) {
       map.position.push_back(channel());
-      map.velocity.push_back(coin() ? std::optional(channel()) : std::nullopt);
+      map.velocity.push_back(!map.at_rest && coin() ? std::optional(channel()) : std::nullopt);
       map.torque.push_back(channel());
     }
+    if (coin()) map.dbc = "/" + word() + any_text();
+    if (map.at_rest) return map;
     for (int i = whole(0, 3); i > 0; --i) map.extra[word() + any_text()] = channel();
     return map;
   }
