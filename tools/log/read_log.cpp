@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/input_name.hpp"
 #include "common/nearest.hpp"
 #include "log/channels.hpp"
 #include "log/hold_map.hpp"
@@ -306,8 +307,8 @@ Log read_log(const std::filesystem::path& path, int joint_count,
     Assembler assembler(log_format_of(file).read(file, map, need_of), joint_count);
     return channels ? assembler.with(*channels) : assembler.with_common_header();
   } catch (const std::bad_alloc&) {
-    throw InputError({path == "-" ? "standard input" : path.string(), "",
-                      "more than this machine has memory for", "a recording that fits into it",
+    throw InputError({shown_name(path), "", "more than this machine has memory for",
+                      "a recording that fits into it",
                       "cut it into parts, or leave samples or columns out"});
   }
 }

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "common/error.hpp"
+#include "common/input_name.hpp"
 #include "log/log_format.hpp"
 
 namespace offnominal::tools {
@@ -40,9 +41,9 @@ bool write_all(int file, std::string_view content) {
 
 RecordingFile::RecordingFile(const std::filesystem::path& path)
     : path_(path),
-      name_(path == "-" ? "standard input" : path.string()),
-      file_(path == "-" ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
-                        : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+      name_(shown_name(path)),
+      file_(names_standard_input(path) ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                                       : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
   const int error = errno;
   if (file_ < 0 && error == ENOENT) fail("", "no such file", allowed());
   if (file_ < 0) {
@@ -152,7 +153,8 @@ void RecordingFile::copy_to(int file) {
 
 std::filesystem::path RecordingFile::seekable() {
   std::error_code ignored;
-  if (path_ != "-" && std::filesystem::is_regular_file(path_, ignored)) return path_;
+  if (!names_standard_input(path_) && std::filesystem::is_regular_file(path_, ignored))
+    return path_;
   if (copy_ < 0) {
     copy_ = nameless_file();
     copy_to(copy_);
