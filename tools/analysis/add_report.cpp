@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "analysis/compare_report.hpp"
 #include "analysis/torque_charts.hpp"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "analysis/inverse_model.hpp"
 #include "analysis/measurement.hpp"

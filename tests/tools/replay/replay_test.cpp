@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "common/error.hpp"
 #include "tools/analysis/recorded_arm.hpp"
