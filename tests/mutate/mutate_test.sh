@@ -7,14 +7,8 @@ work="$(mktemp -d "${TMPDIR:-/tmp}/mutate,test.XXXXXX")"
 project="$work/project"
 trap 'rm -rf "$work"' EXIT
 export TMPDIR="$work/tmp"
-broken=0
-
-expect() {
-  local what="$1" wanted="$2" found="$3"
-  [[ "$found" == "$wanted" ]] && return
-  printf '%s: expected "%s", found "%s"\n' "$what" "$wanted" "$found" >&2
-  broken=1
-}
+# shellcheck source=tests/support/expect.sh
+source "$root/tests/support/expect.sh"
 
 # A header whose upper bound nobody tries, and a test of it that ninja builds.
 make_project() {

@@ -6,14 +6,8 @@ root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 vcan="$root/scripts/vcan.sh"
 work="$(mktemp -d "${TMPDIR:-/tmp}/vcan test,.XXXXXX")"
 trap 'rm -rf "$work"' EXIT
-broken=0
-
-expect() {
-  local what="$1" wanted="$2" found="$3"
-  [[ "$found" == "$wanted" ]] && return
-  printf '%s: expected "%s", found "%s"\n' "$what" "$wanted" "$found" >&2
-  broken=1
-}
+# shellcheck source=tests/support/expect.sh
+source "$root/tests/support/expect.sh"
 
 # How many machines run whose folder lies here. QEMU wants commas doubled.
 machines() {

@@ -6,11 +6,13 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "analysis/compare_report.hpp"
 #include "analysis/torque_charts.hpp"
 #include "common/effort_name.hpp"
 #include "common/nearest.hpp"
+#include "common/text_table.hpp"
 
 namespace offnominal::tools {
 namespace {
@@ -263,14 +265,15 @@ ordered_json to_json(const AddResult& result, const AddRequest& request, const A
 std::string text_of(const AddResult& result, const AddRequest& request, const AddNames& names) {
   std::string text = fmt::format("{} on joint {} of {}, fitted to {}\n", names_of_added(result),
                                  request.joint + 1, names.robot_file, names.log);
+  const TextTable parameters({{"", -38}, {"", 0}}, "  ");
   const auto describe = [&](std::size_t effect, bool is_new) {
     for (const ParameterLine& line : lines_of(result, effect)) {
       const std::string mark =
           is_new ? ""
                  : fmt::format(" ({}joint {})", line.fitted ? "fitted again, " : "",
                                result.robot.effects[effect].joint + 1);
-      text += fmt::format("  {:<38} {}{}\n", effect_name(result, effect) + "." + line.name,
-                          value_text(line), mark);
+      text +=
+          parameters.row(effect_name(result, effect) + "." + line.name, value_text(line) + mark);
     }
   };
   for (const std::size_t effect : result.added) describe(effect, true);
@@ -281,12 +284,13 @@ std::string text_of(const AddResult& result, const AddRequest& request, const Ad
   }
   for (const std::string& remark : result.before.remarks) text += "note: " + remark + "\n";
   for (const std::string& note : result.notes) text += "note: " + note + "\n";
-  text += fmt::format("{:<48} {:>12} {:>12}\n", "relative error", "before", "after");
+  const TextTable table({{"relative error", -48}, {"before", 12}, {"after", 12}});
+  text += table.heading();
   const auto errors = [&](const std::string& what, const std::vector<BeforeAfter>& all) {
     for (const BeforeAfter& error : all) {
-      text += fmt::format("{:<48} {:>10.2f} % {:>10.2f} %\n",
-                          fmt::format("joint {}, {}", error.joint + 1, what), error.before_percent,
-                          error.after_percent);
+      text += table.row(fmt::format("joint {}, {}", error.joint + 1, what),
+                        fmt::format("{:.2f} %", error.before_percent),
+                        fmt::format("{:.2f} %", error.after_percent));
     }
   };
   errors("fitted recording", result.fitted_log);

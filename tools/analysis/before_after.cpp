@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "common/text_table.hpp"
+
 namespace offnominal::tools {
 
 std::vector<BeforeAfter> before_after(const Comparison& before, const Comparison& after) {
@@ -16,15 +18,15 @@ std::vector<BeforeAfter> before_after(const Comparison& before, const Comparison
 }
 
 std::string text_of(const std::vector<BeforeAfter>& joints) {
-  std::string text =
-      fmt::format("{:<6} {:>26} {:>26} {:>10}\n", "joint", "error before", "error after", "fall");
+  const TextTable table({{"joint", -6}, {"error before", 26}, {"error after", 26}, {"fall", 10}});
+  std::string text = table.heading();
   for (const BeforeAfter& error : joints) {
     const auto both = [&](double percent, double rms) {
       return fmt::format("{:.2f} % ({:.4g} {})", percent, rms, error.unit);
     };
-    text += fmt::format("{:<6} {:>26} {:>26} {:>8.1f} %\n", error.joint + 1,
-                        both(error.before_percent, error.before_rms),
-                        both(error.after_percent, error.after_rms), 100 * error.fall());
+    text += table.row(error.joint + 1, both(error.before_percent, error.before_rms),
+                      both(error.after_percent, error.after_rms),
+                      fmt::format("{:.1f} %", 100 * error.fall()));
   }
   return text;
 }

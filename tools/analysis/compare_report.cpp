@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "analysis/before_after.hpp"
 #include "analysis/torque_charts.hpp"
 #include "common/effort_name.hpp"
+#include "common/text_table.hpp"
 
 namespace offnominal::tools {
 namespace {
@@ -206,13 +208,13 @@ std::string text_of(const Comparison& comparison, const CompareNames& names,
       fmt::format("{} against {}\n{}, {} samples left\n", names.log, names.robot_file,
                   words_of(comparison.plan), comparison.t_s.size());
   for (const std::string& remark : comparison.remarks) text += "note: " + remark + "\n";
-  text += fmt::format("{:<6} {:>14} {:>14} {:>15} {:>10}\n", "joint", "rms error", "rms torque",
-                      "relative error", "fit");
+  const TextTable table(
+      {{"joint", -6}, {"rms error", 14}, {"rms torque", 14}, {"relative error", 15}, {"fit", 10}});
+  text += table.heading();
   for (const JointComparison& joint : comparison.joints) {
-    text += fmt::format("{:<6} {:>14} {:>14} {:>15} {:>10}\n", joint.joint + 1,
-                        fmt::format("{:.4g} {}", joint.rms_error, joint.unit),
-                        fmt::format("{:.4g} {}", joint.rms_torque, joint.unit),
-                        percent(joint.relative_error_percent), percent(joint.fit_percent));
+    text += table.row(joint.joint + 1, fmt::format("{:.4g} {}", joint.rms_error, joint.unit),
+                      fmt::format("{:.4g} {}", joint.rms_torque, joint.unit),
+                      percent(joint.relative_error_percent), percent(joint.fit_percent));
   }
   if (against != nullptr) {
     text += text_of(before_after(*against, comparison));

@@ -8,6 +8,7 @@
 #include <offnominal/model/mass_matrix.hpp>
 #include <span>
 
+#include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/monitor_config_of.hpp"
@@ -75,13 +76,8 @@ Eigen::VectorXd basis_values(const UncertaintyBound<N, double>& bound,
 }
 
 std::string matrix_words(const std::vector<std::vector<double>>& matrix) {
-  std::string text;
-  for (const auto& row : matrix) {
-    std::string numbers;
-    for (const double value : row) numbers += (numbers.empty() ? "" : ", ") + shortest(value);
-    text += (text.empty() ? "[" : ", [") + numbers + "]";
-  }
-  return "[" + text + "]";
+  const auto words = [](const auto& row) { return "[" + list_of(row, shortest) + "]"; };
+  return "[" + list_of(matrix, words) + "]";
 }
 
 BoundShape scaled_norm(std::vector<std::vector<double>> matrix) {
@@ -201,7 +197,7 @@ std::vector<BoundShape> bound_shapes(const RobotDescription& robot,
 
 FilteredBasis filtered_basis(const RobotDescription& robot, const BoundShape& shape,
                              const RecordedError& recording) {
-  const TickFilter filter = tick_filter(robot.estimator.alpha_per_s, recording.period_s);
+  const TickFilter filter = tick_filter(robot.estimator.alpha, recording.period_s);
   const bool held = robot.estimator.torque_signal == TorqueSignal::kHeld;
   // A held torque is over the whole tick what the sample at its end says.
   const Index shift = held && follows_torque(shape) ? 1 : 0;

@@ -30,7 +30,7 @@ CalibrationData data_of(const RobotDescription& robot, const std::vector<Log>& l
   for (const auto* group : {&logs, &holdout}) {
     for (const Log& log : *group) data.recordings.push_back(recorded_error(robot, log));
   }
-  data.block_s = std::max(kShortestBlock, kBlockTimeConstants / robot.estimator.alpha_per_s);
+  data.block_s = std::max(kShortestBlock, kBlockTimeConstants / robot.estimator.alpha);
   data.split = split(data.recordings, logs.size(), 0.5 * data.block_s);
   std::int64_t blocks = 0;
   double largest = 0;

@@ -1,21 +1,19 @@
 #include <fmt/format.h>
 
 #include "calibrate/calibrate_report.hpp"
+#include "common/nearest.hpp"
 #include "common/number.hpp"
+#include "common/text_table.hpp"
 
 namespace offnominal::tools {
 namespace {
 
 std::string list_text(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + shortest(value);
-  return "[" + text + "]";
+  return "[" + list_of(values, shortest) + "]";
 }
 
 std::string matrix_text(const std::vector<std::vector<double>>& matrix) {
-  std::string text;
-  for (const auto& row : matrix) text += (text.empty() ? "" : ", ") + list_text(row);
-  return "[" + text + "]";
+  return "[" + list_of(matrix, list_text) + "]";
 }
 
 // "rad/s" -> "rad/s^2"
@@ -25,14 +23,40 @@ std::string threshold_text(const std::optional<double>& value) {
   return value ? fmt::format("{:.4g}", *value) : std::string("none");
 }
 
-std::string stretch_text(const JudgedStretch& stretch) {
-  return fmt::format("  {:<28} {:>8.3f} {:>9.3f}  {:<10} {:>9} {:>9.4g} {:>9} {:>8.3f} {:>7}\n",
-                     stretch.file, stretch.begin_s, stretch.end_s,
-                     stretch.held_out ? "hold-out" : "calibrated",
-                     threshold_text(stretch.mean_threshold_before), stretch.mean_threshold_after,
-                     stretch.max_ratio_before ? fmt::format("{:.3f}", *stretch.max_ratio_before)
-                                              : std::string("none"),
-                     stretch.max_ratio_after, stretch.alarms_after);
+std::string stretches_text(const std::vector<JudgedStretch>& stretches) {
+  const TextTable table({{"recording", -28},
+                         {"from s", 8},
+                         {"to s", 9},
+                         {"", -11},
+                         {"mean mu", 9},
+                         {"", 9},
+                         {"|e| / mu", 9},
+                         {"", 8},
+                         {"alarms", 7}},
+                        "  ");
+  std::string text = table.heading() + table.row("", "", "", "", "old", "new", "old", "new", "new");
+  for (const JudgedStretch& stretch : stretches) {
+    text += table.row(
+        stretch.file, fmt::format("{:.3f}", stretch.begin_s), fmt::format("{:.3f}", stretch.end_s),
+        stretch.held_out ? " hold-out" : " calibrated",
+        threshold_text(stretch.mean_threshold_before),
+        fmt::format("{:.4g}", stretch.mean_threshold_after),
+        stretch.max_ratio_before ? fmt::format("{:.3f}", *stretch.max_ratio_before) : "none",
+        fmt::format("{:.3f}", stretch.max_ratio_after), stretch.alarms_after);
+  }
+  return text;
+}
+
+std::string shapes_text(const std::vector<ShapeScore>& shapes) {
+  const TextTable table({{"", 1}, {"", -56}, {"", 6}, {"", 9}, {"", 9}}, "  ");
+  std::string text =
+      fmt::format("  shapes tried {:>53} {:>9} {:>9}\n", "unseen", "widened", "mean mu");
+  for (const ShapeScore& shape : shapes) {
+    text += table.row(
+        shape.chosen ? "*" : " ", shape.words, fmt::format("{:.3f}", shape.largest_unseen_ratio),
+        fmt::format("{:.3f}", shape.widening), fmt::format("{:.4g}", shape.mean_threshold));
+  }
+  return text;
 }
 
 }  // namespace
@@ -92,17 +116,7 @@ std::string text_of(const Calibration& calibration, const CalibrateNames& names)
                                          ? words_of(*calibration.old_bound, calibration.unit)
                                          : std::string("none"));
   text += fmt::format("  new  {}\n\n", words_of(*calibration.robot.bound, calibration.unit));
-  text += fmt::format("  {:<28} {:>8} {:>9}  {:<10} {:>9} {:>9} {:>9} {:>8} {:>7}\n", "recording",
-                      "from s", "to s", "", "mean mu", "", "|e| / mu", "", "alarms");
-  text += fmt::format("  {:<28} {:>8} {:>9}  {:<10} {:>9} {:>9} {:>9} {:>8} {:>7}\n", "", "", "",
-                      "", "old", "new", "old", "new", "new");
-  for (const JudgedStretch& stretch : calibration.stretches) text += stretch_text(stretch);
-  text += fmt::format("\n  shapes tried {:>53} {:>9} {:>9}\n", "unseen", "widened", "mean mu");
-  for (const ShapeScore& shape : calibration.shapes) {
-    text +=
-        fmt::format("  {} {:<56} {:>6.3f} {:>9.3f} {:>9.4g}\n", shape.chosen ? "*" : " ",
-                    shape.words, shape.largest_unseen_ratio, shape.widening, shape.mean_threshold);
-  }
+  text += stretches_text(calibration.stretches) + "\n" + shapes_text(calibration.shapes);
   text += fmt::format(
       "\nfalse alarms: {:g} per hour, extrapolated from the maxima of {} blocks of {:g} s that the "
       "bound had not seen\n(extreme-value law with shape {:.3g}; blocks taken as independent, "

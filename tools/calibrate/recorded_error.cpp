@@ -71,7 +71,7 @@ RecordedError recorded_error(const RobotDescription& robot, const Log& log) {
   recorded.t_s = run.t_s;
   recorded.error_norm = run.error_norm;
   recorded.first_tick =
-      first_ticks(run.error, tick_filter(robot.estimator.alpha_per_s, log.period_s).keep);
+      first_ticks(run.error, tick_filter(robot.estimator.alpha, log.period_s).keep);
   recorded.loudest_joint = loudest_joints(run.error);
   if (robot.bound) recorded.old_threshold = run.threshold;
   recorded.q = log.q;

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "common/nearest.hpp"
 #include "common/number.hpp"
 
 namespace offnominal::tools::cpp_text {
@@ -105,11 +106,7 @@ std::string number(double value) {
       shortest_real(std::fabs(value)));
 }
 
-std::string numbers(std::span<const double> values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + number(value);
-  return "{" + text + "}";
-}
+std::string numbers(std::span<const double> values) { return "{" + list_of(values, number) + "}"; }
 
 std::string literal(std::string_view text) {
   std::string result = "\"";

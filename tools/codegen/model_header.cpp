@@ -21,6 +21,7 @@
 
 #include "codegen/cpp_text.hpp"
 #include "common/error.hpp"
+#include "common/nearest.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/monitor_config_of.hpp"
 #include "robot/robot_file.hpp"
@@ -260,10 +261,8 @@ std::string head_text(const RobotDescription& robot, const ModelHeaderOptions& o
   }
   text += fmt::format("inline constexpr int kJoints = {};\n", header.joints);
   text += fmt::format("inline constexpr int kHiddenUnits = {};\n", header.hidden_units);
-  std::string names;
-  for (const RobotJoint& joint : robot.joints) {
-    names += (names.empty() ? "" : ", ") + cpp_text::literal(joint.name);
-  }
+  const std::string names =
+      list_of(robot.joints, [](const RobotJoint& joint) { return cpp_text::literal(joint.name); });
   const bool memory = std::any_of(robot.effects.begin(), robot.effects.end(),
                                   [](const RobotEffect& effect) { return remembers(effect.kind); });
   return text +

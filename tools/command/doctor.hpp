@@ -1,22 +1,35 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "command/progress.hpp"
 #include "discovery/data_fault.hpp"
+#include "discovery/data_fault_report.hpp"
 #include "log/log.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::tools {
 
-// What is wrong with recordings in time, as the doctor sees it (discovery/doctor.hpp).
-std::vector<discovery::DataFault> examine_all(const std::vector<std::span<const Log>>& groups,
-                                              const RobotDescription& robot);
+// What is wrong with recordings in time, as the doctor sees it (discovery/doctor.hpp); says it on
+// stderr too, a line each, beside an answer that is given all the same. Throws InputError at the
+// first fault with which every answer that rests on `what` would be wrong.
+std::vector<discovery::DataFault> examined(const std::vector<std::span<const Log>>& groups,
+                                           const RobotDescription& robot, Progress& progress,
+                                           std::optional<discovery::RestsOn> what = std::nullopt);
 
-// Says it on stderr, a line each, beside an answer that is given all the same.
-void print_hints(const std::vector<discovery::DataFault>& faults);
-
-// Throws InputError at the first fault with which every answer of that kind would be wrong.
-void refuse_spoilt(const std::vector<discovery::DataFault>& faults, discovery::RestsOn what);
+// An answer in JSON, and a page, that say it too.
+template <typename Json>
+Json with_faults(Json json, const std::vector<discovery::DataFault>& faults) {
+  json["data_faults"] = discovery::to_json(faults);
+  return json;
+}
+inline report::Page with_faults(report::Page page,
+                                const std::vector<discovery::DataFault>& faults) {
+  add_faults(faults, page);
+  return page;
+}
 
 }  // namespace offnominal::tools

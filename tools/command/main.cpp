@@ -26,20 +26,11 @@ std::string version_text() {
          std::to_string(kVersionPatch);
 }
 
-constexpr auto kEveryVerb = [](const CLI::App* /*verb*/) { return true; };
-
-std::vector<std::string> verb_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* verb : app.get_subcommands(kEveryVerb)) {
-    names.push_back(verb->get_name());
-  }
-  return names;
-}
-
 // CLI11 would call a wrong first word an argument that was not expected, and say of a wrong option
 // in its place that a subcommand is required.
 void check_verb(const CLI::App& app, int argc, char** argv) {
-  const std::vector<std::string> names = verb_names(app);
+  std::vector<std::string> names;
+  for (const Verb& verb : all_verbs()) names.emplace_back(verb.name);
   const std::string word = argc > 1 ? argv[1] : "";
   if (word.starts_with("-") && app.get_option_no_throw(word) != nullptr) return;
   for (const std::string& name : names) {
@@ -100,9 +91,10 @@ ExitCode run(int argc, char** argv) {
   app.set_help_flag("-h,--help", "Print this help and exit");
   app.require_subcommand(1);
   ExitCode exit_code = ExitCode::kDone;
-  for (const RegisterVerb register_verb : all_verbs()) register_verb(app, exit_code);
-  for (CLI::App* verb : app.get_subcommands(kEveryVerb)) {
-    verb->parse_complete_callback([verb] { check_options(*verb); });
+  for (const Verb& verb : all_verbs()) {
+    CLI::App* parser = app.add_subcommand(verb.name, verb.words);
+    verb.set_up(*parser, exit_code);
+    parser->parse_complete_callback([parser] { check_options(*parser); });
   }
   check_verb(app, argc, argv);
   try {

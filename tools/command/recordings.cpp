@@ -5,23 +5,13 @@
 #include "command/refuse_option.hpp"
 #include "common/input_name.hpp"
 #include "common/json_text.hpp"
+#include "common/nearest.hpp"
 #include "common/output_file.hpp"
-#include "log/read_log.hpp"
+#include "robot/robot_file.hpp"
 
 namespace offnominal::tools {
 
 namespace {
-
-template <typename Read>
-std::vector<Log> read_each(const std::vector<std::string>& files, Progress& progress,
-                           const Read& read) {
-  std::vector<Log> logs;
-  for (const std::string& file : files) {
-    progress.begin("reading " + file);
-    logs.push_back(read(file));
-  }
-  return logs;
-}
 
 bool same_recording(const std::string& a, const std::string& b) { return same_file(a, b); }
 
@@ -67,40 +57,30 @@ void check_all_differ(const std::string& verb, const std::string& option,
 
 }  // namespace
 
-void check_recordings_differ(const std::string& verb, const std::string& option,
-                             const std::vector<std::string>& logs,
-                             const std::vector<std::string>& holdout) {
-  check_all_differ(verb, option, logs, holdout);
-}
-
-void check_recordings_differ(const std::string& verb, const std::string& option,
-                             const std::vector<Log>& logs, const std::vector<Log>& holdout) {
-  check_all_differ(verb, option, logs, holdout);
-}
-
 std::vector<Log> read_recordings(const std::vector<std::string>& files,
                                  const RobotDescription& robot,
                                  const std::optional<std::filesystem::path>& channels,
-                                 Progress& progress) {
-  return read_each(files, progress,
-                   [&](const std::string& file) { return read_log(file, robot, channels); });
+                                 ReadOne* read_one, Progress& progress) {
+  std::vector<Log> logs;
+  for (const std::string& file : files) {
+    progress.begin("reading " + file);
+    logs.push_back(read_one(file, robot, channels));
+  }
+  return logs;
 }
 
-std::vector<Log> read_recordings_or_hold_maps(const std::vector<std::string>& files,
-                                              const RobotDescription& robot,
-                                              const std::optional<std::filesystem::path>& channels,
-                                              Progress& progress) {
-  return read_each(files, progress, [&](const std::string& file) {
-    return read_log_or_hold_map(file, robot, channels);
-  });
+FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
+                      ReadOne* read_one, Progress& progress) {
+  check_all_differ(verb, option, files.logs, files.holdout);
+  FitData data{read_robot_file(files.robot), {}, {}};
+  data.logs = read_recordings(files.logs, data.robot, files.channels, read_one, progress);
+  data.holdout = read_recordings(files.holdout, data.robot, files.channels, read_one, progress);
+  check_all_differ(verb, option, data.logs, data.holdout);
+  return data;
 }
 
 std::string file_names(const std::vector<std::string>& files) {
-  std::string names;
-  for (const std::string& file : files) {
-    names += (names.empty() ? "" : ", ") + input_name(file);
-  }
-  return as_utf8(names);
+  return as_utf8(list_of(files, input_name));
 }
 
 }  // namespace offnominal::tools

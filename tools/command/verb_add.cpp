@@ -2,29 +2,26 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "analysis/add_report.hpp"
-#include "command/add_all_found.hpp"
+#include "command/answer.hpp"
 #include "command/command_line.hpp"
 #include "command/doctor.hpp"
-#include "command/filter_options.hpp"
+#include "command/input_options.hpp"
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
-#include "common/json_text.hpp"
 #include "common/nearest.hpp"
 #include "common/output_file.hpp"
-#include "discovery/data_fault_report.hpp"
-#include "report/page.hpp"
+#include "discovery/add_found.hpp"
+#include "log/log_format.hpp"
+#include "log/read_log.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::tools {
@@ -33,21 +30,16 @@ namespace {
 struct AddOptions {
   std::vector<std::string> effects;
   int joint = 0;
-  std::string robot;
-  std::vector<std::string> logs;
-  std::vector<std::string> holdout;
+  FitFiles files;
   bool all_found = false;
-  std::optional<std::filesystem::path> channels;
   std::string output;
   std::vector<std::string> set;
   std::optional<double> refit_inertia_percent;
   bool keep = false;
-  bool force = false;
   FilterRequest filter;
   std::optional<double> link_share;
   int threads = 1;
-  std::optional<std::string> report;
-  bool json = false;
+  AnswerOptions answer;
 };
 
 EffectKind kind_of(const std::string& name) {
@@ -91,7 +83,7 @@ AddRequest request_of(const AddOptions& options) {
     request.inertia_deviation = percent / 100;
   }
   request.keep = options.keep;
-  request.source = "Fitted to " + file_names({options.logs[0]}) + " by offnominal add.";
+  request.source = "Fitted to " + file_names({options.files.logs[0]}) + " by offnominal add.";
   return request;
 }
 
@@ -102,9 +94,9 @@ void check_kind(const AddOptions& options) {
       refuse_option("add", "EFFECT", "none", "one or more effects, or --all-found",
                     "name an effect, or let --all-found search for what is missing");
     }
-    if (options.logs.size() != 1)
+    if (options.files.logs.size() != 1)
       refuse_option("add", "--log", "several", "one, unless with --all-found");
-    if (options.holdout.size() > 1)
+    if (options.files.holdout.size() > 1)
       refuse_option("add", "--holdout", "several", "one, unless with --all-found");
     if (options.link_share) refuse_option("add", "--link-share", "given", "only with --all-found");
     return;
@@ -126,60 +118,71 @@ void check_kind(const AddOptions& options) {
 
 void add_named(const AddOptions& options, const std::string& command_line, ExitCode& exit_code) {
   const AddRequest request = request_of(options);
-  const std::string& log_file = options.logs[0];
   std::optional<std::string> holdout_file;
-  if (!options.holdout.empty()) holdout_file = options.holdout[0];
+  if (!options.files.holdout.empty()) holdout_file = options.files.holdout[0];
   Progress progress;
-  const RobotDescription robot = read_robot_file(options.robot);
-  std::vector<Log> logs = read_recordings(options.logs, robot, options.channels, progress);
-  std::vector<Log> held_out = read_recordings(options.holdout, robot, options.channels, progress);
-  check_recordings_differ("add", "--log", logs, held_out);
-  progress.begin("examining the recordings");
-  const std::vector<discovery::DataFault> faults = examine_all({logs, held_out}, robot);
-  refuse_spoilt(faults, discovery::RestsOn::kTorque);
-  progress.end();
-  print_hints(faults);
-  const Measurement log = measure(std::move(logs[0]), options.filter);
+  FitData data = read_fit_data("add", "--log", options.files, read_log, progress);
+  const auto faults =
+      examined({data.logs, data.holdout}, data.robot, progress, discovery::RestsOn::kTorque);
+  const Measurement log = measure(std::move(data.logs[0]), options.filter);
   std::optional<Measurement> holdout;
-  if (holdout_file) holdout = measure(std::move(held_out[0]), options.filter);
+  if (holdout_file) holdout = measure(std::move(data.holdout[0]), options.filter);
   progress.begin("fitting");
-  const AddResult result =
-      add(robot, request, log, holdout ? &*holdout : nullptr, [&progress] { progress.step(); });
+  const AddResult result = add(data.robot, request, log, holdout ? &*holdout : nullptr,
+                               [&progress] { progress.step(); });
   progress.end();
-  const AddNames names{log_file,       holdout_file, options.robot,
-                       options.output, command_line, options.force};
-  const bool write = result.may_be_written(options.force);
-  if (options.report) {
-    report::Page page = page_of(result, request, names);
-    add_faults(faults, page);
-    report::write_page(*options.report, page, existing_if(options.force));
-  }
-  if (write) {
-    write_robot_file(result.robot, options.output, existing_if(options.force));
+  const AddNames names{options.files.logs[0], holdout_file, options.files.robot,
+                       options.output,        command_line, options.answer.force};
+  write_report(options.answer,
+               [&] { return with_faults(page_of(result, request, names), faults); });
+  std::vector<std::string> written;
+  if (result.may_be_written(options.answer.force)) {
+    write_robot_file(result.robot, options.output, options.answer.existing());
+    written.push_back(options.output);
   } else {
     exit_code = ExitCode::kCheckFailed;
   }
-  if (options.json) {
-    auto json = to_json(result, request, names);
-    json["data_faults"] = discovery::to_json(faults);
-    std::cout << json_text(json);
-    return;
+  print_answer(
+      options.answer, [&] { return with_faults(to_json(result, request, names), faults); },
+      [&] { return text_of(result, request, names); }, written);
+}
+
+// Searches, writes the robot file with everything that was found, prints the error before and
+// after. Nothing is written where nothing may be added.
+void add_all_found(const AddOptions& options, const std::string& command_line,
+                   ExitCode& exit_code) {
+  const FitFiles& files = options.files;
+  const bool force = options.answer.force;
+  Progress progress;
+  const FitData data = read_fit_data("add", "--log", files, read_log_or_hold_map, progress);
+  discovery::ExplainOptions explain;
+  explain.threads = options.threads;
+  explain.link_share = options.link_share.value_or(explain.link_share);
+  explain.robot_file = files.robot;
+  explain.source = "Fitted to " + file_names(files.logs) + " by offnominal add --all-found.";
+  const discovery::AddedFindings added =
+      discovery::add_found(data.robot, data.logs, data.holdout, explain,
+                           [&](const std::string& doing) { progress.begin(doing); });
+  progress.end();
+  const discovery::ExplainNames names{files.logs, files.holdout, files.robot, command_line,
+                                      files.channels ? files.channels->string() : ""};
+  write_report(options.answer, [&] { return page_of(added.explanation, names); });
+  std::vector<std::string> written;
+  if (added.may_be_written(force)) {
+    write_robot_file(added.explanation.improved, options.output, options.answer.existing());
+    written.push_back(options.output);
+  } else {
+    exit_code = ExitCode::kCheckFailed;
   }
-  std::cout << text_of(result, request, names);
-  if (write) std::cout << "written: " << options.output << '\n';
-  if (options.report) std::cout << "written: " << *options.report << '\n';
+  print_answer(
+      options.answer, [&] { return to_json(added, names, options.output, force); },
+      [&] { return text_of(added, names, force); }, written);
 }
 
 void run(const AddOptions& options, const std::string& command_line, ExitCode& exit_code) {
   check_kind(options);
-  check_recordings_differ("add", "--log", options.logs, options.holdout);
-  if (!options.all_found) {
-    add_named(options, command_line, exit_code);
-    return;
-  }
-  add_all_found({options.logs, options.holdout, options.robot, options.channels, options.output,
-                 options.force, options.link_share, options.threads, options.report, options.json},
-                command_line, exit_code);
+  const auto add = options.all_found ? add_all_found : add_named;
+  add(options, command_line, exit_code);
 }
 
 std::string effects_text() {
@@ -213,53 +216,45 @@ constexpr const char* kHowItFits =
 
 }  // namespace
 
-void register_add(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* verb = app.add_subcommand(
-      "add", "Fit an effect to a recording and write the robot file that has it");
+void set_up_add(CLI::App& verb, ExitCode& exit_code) {
   const auto options = std::make_shared<AddOptions>();
-  options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  verb->add_option("EFFECT", options->effects,
-                   "One or more effects, all on one joint; listed below");
-  verb->add_option("--joint", options->joint, "The joint that they act on, from 1");
-  verb->add_flag("--all-found", options->all_found,
-                 "Search for what is missing, as explain does, and add all of it");
-  verb->add_option("--robot", options->robot, "Robot file to start from")->required();
-  verb->add_option("--log", options->logs,
-                   "Recording to fit, CSV or MATLAB .mat; with --all-found one or more")
+  verb.add_option("EFFECT", options->effects,
+                  "One or more effects, all on one joint; listed below");
+  verb.add_option("--joint", options->joint, "The joint that they act on, from 1");
+  verb.add_flag("--all-found", options->all_found,
+                "Search for what is missing, as explain does, and add all of it");
+  verb.add_option("--robot", options->files.robot, "Robot file to start from")->required();
+  verb.add_option("--log", options->files.logs,
+                  "Recording to fit, " + log_format_names() + "; with --all-found one or more")
       ->required();
-  verb->add_option("--holdout", options->holdout,
-                   "Recording to judge the fit on; with --all-found one or more");
-  verb->add_option("-o,--output", options->output, "Robot file to write")
+  verb.add_option("--holdout", options->files.holdout,
+                  "Recording to judge the fit on; with --all-found one or more");
+  verb.add_option("-o,--output", options->output, "Robot file to write")
       ->type_name(kNewRobotFile)
       ->required();
-  verb->add_flag("--force", options->force,
-                 "Replace files that are there, for -o be it the robot file that is read, and "
-                 "write it even where the error on data not used for the fit does not fall");
-  verb->add_option("--set", options->set,
-                   "NAME=VALUE or EFFECT.NAME=VALUE: a parameter of the new effects that is given, "
-                   "not fitted; SI units")
+  add_force_option(verb, options->answer,
+                   "Replace files that are there, for -o be it the robot file that is read, and "
+                   "write it even where the error on data not used for the fit does not fall");
+  verb.add_option("--set", options->set,
+                  "NAME=VALUE or EFFECT.NAME=VALUE: a parameter of the new effects that is given, "
+                  "not fitted; SI units")
       ->take_all()
       ->allow_extra_args(false);
-  verb->add_flag("--keep", options->keep, "Leave effects that were fitted before as they are");
-  verb->add_option("--refit-inertia", options->refit_inertia_percent,
-                   "Fit mass and inertia of every link as well, believed to be right to within so "
-                   "many percent (one standard deviation)");
-  verb->add_option("--channels", options->channels,
-                   "TOML file that maps the recordings' columns, instead of the robot file's "
-                   "[channels]");
-  add_filter_options(*verb, options->filter);
-  verb->add_option("--link-share", options->link_share,
-                   "With --all-found: how far mass and inertia of a link may be off the file, as a "
-                   "share [0.05]")
+  verb.add_flag("--keep", options->keep, "Leave effects that were fitted before as they are");
+  verb.add_option("--refit-inertia", options->refit_inertia_percent,
+                  "Fit mass and inertia of every link as well, believed to be right to within so "
+                  "many percent (one standard deviation)");
+  add_channels_option(verb, options->files.channels, "recordings'");
+  add_filter_options(verb, options->filter);
+  verb.add_option("--link-share", options->link_share,
+                  "With --all-found: how far mass and inertia of a link may be off the file, as a "
+                  "share [0.05]")
       ->check(CLI::Range(0.0, 1.0));
-  verb->add_option("--threads", options->threads,
-                   "With --all-found: threads; the result does not depend on their number")
-      ->check(CLI::Range(1, 256));
-  verb->add_option("--report", options->report, "Write the pictures as an HTML page")
-      ->type_name(kNewPage);
-  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
-  verb->footer(kHowItFits + effects_text());
-  verb->callback([verb, options, &exit_code] { run(*options, command_line_of(*verb), exit_code); });
+  add_threads_option(verb, options->threads, "With --all-found: threads");
+  add_report_option(verb, options->answer);
+  add_json_option(verb, options->answer);
+  verb.footer(kHowItFits + effects_text());
+  verb.callback([&verb, options, &exit_code] { run(*options, command_line_of(verb), exit_code); });
 }
 
 }  // namespace offnominal::tools

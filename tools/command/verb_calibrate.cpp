@@ -2,8 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,32 +9,28 @@
 
 #include "calibrate/calibrate.hpp"
 #include "calibrate/calibrate_report.hpp"
+#include "command/answer.hpp"
 #include "command/command_line.hpp"
 #include "command/doctor.hpp"
+#include "command/input_options.hpp"
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
-#include "common/json_text.hpp"
 #include "common/output_file.hpp"
-#include "discovery/data_fault_report.hpp"
-#include "report/page.hpp"
+#include "log/log_format.hpp"
+#include "log/read_log.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::tools {
 namespace {
 
 struct CalibrateOptions {
-  std::vector<std::string> logs;
-  std::vector<std::string> holdout;
-  std::string robot;
+  FitFiles files;
   std::string output;
   double alarms_per_hour = 0.1;
   std::optional<double> velocity_error;
-  std::optional<std::filesystem::path> channels;
-  bool force = false;
-  std::optional<std::string> report;
-  bool json = false;
+  AnswerOptions answer;
 };
 
 void check_numbers(const CalibrateOptions& options) {
@@ -53,53 +47,39 @@ void check_numbers(const CalibrateOptions& options) {
 
 void run(const CalibrateOptions& options, const std::string& command_line, ExitCode& exit_code) {
   check_numbers(options);
-  check_recordings_differ("calibrate", "LOG", options.logs, options.holdout);
   Progress progress;
-  const RobotDescription robot = read_robot_file(options.robot);
-  const std::vector<Log> logs = read_recordings(options.logs, robot, options.channels, progress);
-  const std::vector<Log> holdout =
-      read_recordings(options.holdout, robot, options.channels, progress);
-  check_recordings_differ("calibrate", "LOG", logs, holdout);
-  progress.begin("examining the recordings");
-  const std::vector<discovery::DataFault> faults = examine_all({logs, holdout}, robot);
-  refuse_spoilt(faults, discovery::RestsOn::kVelocityToo);
-  progress.end();
-  print_hints(faults);
+  const FitData data = read_fit_data("calibrate", "LOG", options.files, read_log, progress);
+  const auto faults =
+      examined({data.logs, data.holdout}, data.robot, progress, discovery::RestsOn::kVelocityToo);
   progress.begin("shapes of the bound");
   const CalibrateRequest request{
       options.alarms_per_hour, options.velocity_error,
-      "Calibrated by offnominal calibrate on " + file_names(options.logs) + "."};
+      "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + "."};
   const Calibration result =
-      calibrate(robot, request, logs, holdout, [&progress] { progress.step(); });
+      calibrate(data.robot, request, data.logs, data.holdout, [&progress] { progress.step(); });
   progress.end();
-  const CalibrateNames names{options.robot, options.output, command_line};
-  const bool good = result.objections.empty();
-  if (options.report) {
-    report::Page page = page_of(result, names);
-    add_faults(faults, page);
-    report::write_page(*options.report, page, existing_if(options.force));
-  }
-  if (good) {
-    write_robot_file(result.robot, options.output, existing_if(options.force));
+  const CalibrateNames names{options.files.robot, options.output, command_line};
+  write_report(options.answer, [&] { return with_faults(page_of(result, names), faults); });
+  std::vector<std::string> written;
+  if (result.objections.empty()) {
+    write_robot_file(result.robot, options.output, options.answer.existing());
+    written.push_back(options.output);
   } else {
     exit_code = ExitCode::kCheckFailed;
   }
-  if (options.json) {
-    auto json = to_json(result, names);
-    json["data_faults"] = discovery::to_json(faults);
-    std::cout << json_text(json);
-    return;
-  }
-  for (const auto* group : {&logs, &holdout}) {
-    for (const Log& log : *group) {
-      for (const std::string& remark : log.remarks) {
-        std::cout << "note: " << log.file << ": " << remark << '\n';
+  const auto text = [&] {
+    std::string notes;
+    for (const auto* group : {&data.logs, &data.holdout}) {
+      for (const Log& log : *group) {
+        for (const std::string& remark : log.remarks) {
+          notes += fmt::format("note: {}: {}\n", log.file, remark);
+        }
       }
     }
-  }
-  std::cout << text_of(result, names);
-  if (good) std::cout << "written: " << options.output << '\n';
-  if (options.report) std::cout << "written: " << *options.report << '\n';
+    return notes + text_of(result, names);
+  };
+  print_answer(
+      options.answer, [&] { return with_faults(to_json(result, names), faults); }, text, written);
 }
 
 constexpr const char* kHowItCalibrates =
@@ -114,32 +94,28 @@ constexpr const char* kHowItCalibrates =
 
 }  // namespace
 
-void register_calibrate(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* verb = app.add_subcommand(
-      "calibrate", "Find the uncertainty bound from recordings of the healthy robot");
+void set_up_calibrate(CLI::App& verb, ExitCode& exit_code) {
   const auto options = std::make_shared<CalibrateOptions>();
-  verb->add_option("LOG", options->logs, "Fault-free recordings, CSV or MATLAB .mat")->required();
-  verb->add_option("--robot", options->robot, "Robot file to start from")->required();
-  verb->add_option("--holdout", options->holdout, "Fault-free recordings to count alarms on");
-  verb->add_option("-o,--output", options->output, "Robot file to write")
+  verb.add_option("LOG", options->files.logs, "Fault-free recordings, " + log_format_names())
+      ->required();
+  verb.add_option("--robot", options->files.robot, "Robot file to start from")->required();
+  verb.add_option("--holdout", options->files.holdout, "Fault-free recordings to count alarms on");
+  verb.add_option("-o,--output", options->output, "Robot file to write")
       ->type_name(kNewRobotFile)
       ->required();
-  verb->add_flag("--force", options->force,
-                 "Replace files that are there, for -o be it the robot file that is read");
-  verb->add_option("--alarms-per-hour", options->alarms_per_hour,
-                   "False alarms per hour to aim at, by extrapolation")
+  add_force_option(verb, options->answer,
+                   "Replace files that are there, for -o be it the robot file that is read");
+  verb.add_option("--alarms-per-hour", options->alarms_per_hour,
+                  "False alarms per hour to aim at, by extrapolation")
       ->capture_default_str();
-  verb->add_option("--velocity-error", options->velocity_error,
-                   "Largest error of the measured velocity, rad/s or m/s, where it is known; "
-                   "without it, it is found with the bound");
-  verb->add_option("--channels", options->channels,
-                   "TOML file that maps the recordings' columns, instead of the robot file's "
-                   "[channels]");
-  verb->add_option("--report", options->report, "Write the pictures as an HTML page")
-      ->type_name(kNewPage);
-  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
-  verb->footer(kHowItCalibrates);
-  verb->callback([verb, options, &exit_code] { run(*options, command_line_of(*verb), exit_code); });
+  verb.add_option("--velocity-error", options->velocity_error,
+                  "Largest error of the measured velocity, rad/s or m/s, where it is known; "
+                  "without it, it is found with the bound");
+  add_channels_option(verb, options->files.channels, "recordings'");
+  add_report_option(verb, options->answer);
+  add_json_option(verb, options->answer);
+  verb.footer(kHowItCalibrates);
+  verb.callback([&verb, options, &exit_code] { run(*options, command_line_of(verb), exit_code); });
 }
 
 }  // namespace offnominal::tools

@@ -1,16 +1,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "codegen/model_header.hpp"
+#include "command/answer.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
-#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "robot/robot_file.hpp"
 
@@ -21,8 +20,7 @@ struct CodegenOptions {
   std::string robot;
   std::string output;
   std::string name_space = ModelHeaderOptions{}.name_space;
-  bool force = false;
-  bool json = false;
+  AnswerOptions answer;
 };
 
 nlohmann::ordered_json to_json(const CodegenOptions& options, const RobotDescription& robot,
@@ -44,39 +42,37 @@ void run(const CodegenOptions& options) {
   const RobotDescription robot = read_robot_file(options.robot);
   const ModelHeader header =
       model_header(robot, {.robot_file = options.robot, .name_space = options.name_space});
-  write_file_atomically(options.output, header.text, existing_if(options.force));
-  if (options.json) {
-    std::cout << json_text(to_json(options, robot, header));
-    return;
-  }
-  if (header.in_float != Status::kOk) {
-    std::cout << fmt::format("note: for double only; rounded to float the core refuses it ({})\n",
-                             name_of(header.in_float));
-  }
-  std::cout << fmt::format("{}: {} joints, {} effects, {} hidden units\nwritten: {}\n", robot.name,
-                           header.joints, header.effects, header.hidden_units, options.output);
+  write_file_atomically(options.output, header.text, options.answer.existing());
+  const auto text = [&] {
+    const std::string note =
+        header.in_float == Status::kOk
+            ? ""
+            : fmt::format("note: for double only; rounded to float the core refuses it ({})\n",
+                          name_of(header.in_float));
+    return note + fmt::format("{}: {} joints, {} effects, {} hidden units\n", robot.name,
+                              header.joints, header.effects, header.hidden_units);
+  };
+  print_answer(options.answer, [&] { return to_json(options, robot, header); }, text,
+               {options.output});
 }
 
 }  // namespace
 
-void register_codegen(CLI::App& app, ExitCode& exit_code) {
-  static_cast<void>(exit_code);
-  CLI::App* verb =
-      app.add_subcommand("codegen", "Write a robot file as a C++ header of constants for firmware");
+void set_up_codegen(CLI::App& verb, ExitCode& /*exit_code*/) {
   const auto options = std::make_shared<CodegenOptions>();
-  verb->add_option("ROBOT", options->robot, "Robot file")->required();
-  verb->add_option("-o,--output", options->output, "The header to write")
+  verb.add_option("ROBOT", options->robot, "Robot file")->required();
+  verb.add_option("-o,--output", options->output, "The header to write")
       ->type_name(kNewFile)
       ->required();
-  verb->add_option("--namespace", options->name_space, "Name space of the constants")
+  verb.add_option("--namespace", options->name_space, "Name space of the constants")
       ->capture_default_str();
-  verb->add_flag("--force", options->force, "Replace the header if it is there");
-  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
-  verb->footer(
+  add_force_option(verb, options->answer, "Replace the header if it is there");
+  add_json_option(verb, options->answer);
+  verb.footer(
       "The constants are templates over the scalar, kMonitorConfig<float> and so on, and equal to "
       "the bit what the tools compute with. The header needs the core's headers and nothing else "
       "(docs/codegen.md).");
-  verb->callback([options] { run(*options); });
+  verb.callback([options] { run(*options); });
 }
 
 }  // namespace offnominal::tools

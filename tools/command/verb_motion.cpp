@@ -3,25 +3,23 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "command/answer.hpp"
 #include "command/command_line.hpp"
 #include "command/doctor.hpp"
+#include "command/input_options.hpp"
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
-#include "common/json_text.hpp"
 #include "common/output_file.hpp"
-#include "discovery/data_fault_report.hpp"
+#include "log/read_log.hpp"
 #include "motion_design/design_report.hpp"
-#include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::tools {
@@ -36,13 +34,11 @@ struct MotionOptions {
   std::vector<std::string> logs;
   std::optional<std::filesystem::path> channels;
   std::string output;
-  bool force = false;
   double margin_percent = 10;
   double effect_percent = 5;
   double noise_percent = 1;
   motion_design::DesignRequest design;
-  std::optional<std::string> report;
-  bool json = false;
+  AnswerOptions answer;
 };
 
 std::vector<Contender> effects_of(const MotionOptions& options, const RobotDescription& robot) {
@@ -78,36 +74,24 @@ void run(const MotionOptions& options, const std::string& command_line, ExitCode
   request.expectation.effect_share = options.effect_percent / 100;
   request.expectation.noise_share = options.noise_percent / 100;
   Progress progress;
-  request.recordings = read_recordings(options.logs, robot, options.channels, progress);
-  progress.begin("examining the recordings");
-  const std::vector<discovery::DataFault> faults = examine_all({request.recordings}, robot);
-  progress.end();
-  print_hints(faults);
+  request.recordings = read_recordings(options.logs, robot, options.channels, read_log, progress);
+  const auto faults = examined({request.recordings}, robot, progress);
   const Design design = design_motion(
       robot, request,
       {[&](const std::string& doing) { progress.begin(doing); }, [&] { progress.step(); }});
   progress.end();
   const DesignNames names{options.robot, options.logs, options.output, command_line};
-  const bool useful = design.worst() != nullptr;
-  if (options.report) {
-    report::Page page = page_of(robot, design, names);
-    add_faults(faults, page);
-    report::write_page(*options.report, page, existing_if(options.force));
-  }
-  if (useful) {
-    write_file_atomically(options.output, csv_of(design.fitted.motion), existing_if(options.force));
+  write_report(options.answer, [&] { return with_faults(page_of(robot, design, names), faults); });
+  std::vector<std::string> written;
+  if (design.worst() != nullptr) {
+    write_file_atomically(options.output, csv_of(design.fitted.motion), options.answer.existing());
+    written.push_back(options.output);
   } else {
     exit_code = ExitCode::kCheckFailed;
   }
-  if (options.json) {
-    auto json = to_json(robot, design, names);
-    json["data_faults"] = discovery::to_json(faults);
-    std::cout << json_text(json);
-    return;
-  }
-  std::cout << text_of(robot, design, names);
-  if (useful) std::cout << "written: " << options.output << '\n';
-  if (options.report) std::cout << "written: " << *options.report << '\n';
+  print_answer(
+      options.answer, [&] { return with_faults(to_json(robot, design, names), faults); },
+      [&] { return text_of(robot, design, names); }, written);
 }
 
 constexpr const char* kHowItChooses =
@@ -121,62 +105,54 @@ constexpr const char* kHowItChooses =
 
 }  // namespace
 
-void register_motion(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* verb = app.add_subcommand(
-      "motion", "Write a motion that tells effects apart, or shows what recordings did not");
+void set_up_motion(CLI::App& verb, ExitCode& exit_code) {
   const auto options = std::make_shared<MotionOptions>();
-  options->design.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  verb->add_option("--robot", options->robot, "Robot file, with limits")->required();
+  verb.add_option("--robot", options->robot, "Robot file, with limits")->required();
   CLI::Option* separate =
-      verb->add_option("--separate", options->separate,
-                       "A,B[,...]: effects to tell apart, each EFFECT@JOINT with joints from 1, as "
-                       "explain names them")
+      verb.add_option("--separate", options->separate,
+                      "A,B[,...]: effects to tell apart, each EFFECT@JOINT with joints from 1, as "
+                      "explain names them")
           ->delimiter(',');
-  verb->add_option("--excite", options->excite,
-                   "EFFECT@JOINT to excite, or all (the default): every effect that the robot may "
-                   "have")
+  verb.add_option("--excite", options->excite,
+                  "EFFECT@JOINT to excite, or all (the default): every effect that the robot may "
+                  "have")
       ->excludes(separate);
-  verb->add_option("-o,--output", options->output, "Motion to write, CSV")
+  verb.add_option("-o,--output", options->output, "Motion to write, CSV")
       ->type_name(kNewFile)
       ->required();
-  verb->add_flag("--force", options->force, "Replace files that are there");
-  verb->add_option("--log", options->logs,
-                   "Recordings that could not tell, to say how much better the motion is");
-  verb->add_option("--channels", options->channels,
-                   "TOML file that maps the recordings' columns, instead of the robot file's "
-                   "[channels]");
-  verb->add_option("--duration", options->design.duration_s, "Length of the motion, s")
+  add_force_option(verb, options->answer);
+  verb.add_option("--log", options->logs,
+                  "Recordings that could not tell, to say how much better the motion is");
+  add_channels_option(verb, options->channels, "recordings'");
+  verb.add_option("--duration", options->design.duration_s, "Length of the motion, s")
       ->check(CLI::Range(8.0, 600.0))
       ->capture_default_str();
-  verb->add_option("--rate", options->design.rate_hz, "Rows per second, Hz")
+  verb.add_option("--rate", options->design.rate_hz, "Rows per second, Hz")
       ->check(CLI::Range(50.0, 10000.0))
       ->capture_default_str();
-  verb->add_option("--margin", options->margin_percent,
-                   "How much of every limit stays unused, percent")
+  verb.add_option("--margin", options->margin_percent,
+                  "How much of every limit stays unused, percent")
       ->check(CLI::Range(0.0, 90.0))
       ->capture_default_str();
-  verb->add_option("--effect-size", options->effect_percent,
-                   "Expected rms torque of an effect, percent of the joint's rms torque")
+  verb.add_option("--effect-size", options->effect_percent,
+                  "Expected rms torque of an effect, percent of the joint's rms torque")
       ->check(CLI::Range(0.01, 100.0))
       ->capture_default_str();
-  verb->add_option("--noise", options->noise_percent,
-                   "Expected rms torque error behind the low-pass, percent of the joint's rms "
-                   "torque")
+  verb.add_option("--noise", options->noise_percent,
+                  "Expected rms torque error behind the low-pass, percent of the joint's rms "
+                  "torque")
       ->check(CLI::Range(0.001, 100.0))
       ->capture_default_str();
-  verb->add_option("--tries", options->design.starts,
-                   "Random motions to start from; by default as many as suit the robot")
+  verb.add_option("--tries", options->design.starts,
+                  "Random motions to start from; by default as many as suit the robot")
       ->check(CLI::Range(1, 100000));
-  verb->add_option("--seed", options->design.seed, "Seed of the random motions")
+  verb.add_option("--seed", options->design.seed, "Seed of the random motions")
       ->capture_default_str();
-  verb->add_option("--threads", options->design.threads,
-                   "Threads; the result does not depend on their number")
-      ->check(CLI::Range(1, 256));
-  verb->add_option("--report", options->report, "Write the pictures as an HTML page")
-      ->type_name(kNewPage);
-  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
-  verb->footer(kHowItChooses);
-  verb->callback([verb, options, &exit_code] { run(*options, command_line_of(*verb), exit_code); });
+  add_threads_option(verb, options->design.threads);
+  add_report_option(verb, options->answer);
+  add_json_option(verb, options->answer);
+  verb.footer(kHowItChooses);
+  verb.callback([&verb, options, &exit_code] { run(*options, command_line_of(verb), exit_code); });
 }
 
 }  // namespace offnominal::tools

@@ -8,14 +8,16 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "command/answer.hpp"
 #include "command/command_line.hpp"
 #include "command/progress.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
-#include "common/json_text.hpp"
 #include "common/output_file.hpp"
+#include "common/text_table.hpp"
 #include "log/csv_text.hpp"
 #include "paper/figures.hpp"
 #include "paper/paper_json.hpp"
@@ -23,7 +25,6 @@
 #include "paper/recording.hpp"
 #include "paper/sweep_pair.hpp"
 #include "paper/two_link_robot.hpp"
-#include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::tools {
@@ -48,10 +49,8 @@ struct PaperOptions {
   std::optional<double> start;
   std::optional<std::string> motion;
   std::optional<std::string> log;
-  bool force = false;
-  std::optional<std::string> report;
   bool sweep = false;
-  bool json = false;
+  AnswerOptions answer;
   std::string command_line;
 };
 
@@ -79,7 +78,7 @@ void check_together(const PaperOptions& options) {
       refuse_option("paper", "--sweep", "--accommodate", "",
                     "leave it out; nothing is compensated before detection");
     }
-    if (options.report && !options.against) {
+    if (options.answer.report && !options.against) {
       refuse_option(
           "paper", "--sweep", "--report", "",
           "run `offnominal paper --report FILE`, which holds the sweep, or add --against");
@@ -95,7 +94,7 @@ void check_together(const PaperOptions& options) {
   }
   if (options.against && !options.sweep)
     refuse_option("paper", "--against", "no --sweep", "", "add --sweep");
-  if (options.force && !options.log && !options.report)
+  if (options.answer.force && !options.log && !options.answer.report)
     refuse_option("paper", "--force", "no --log or --report", "", "leave it out");
   if (options.mass_loss && options.fault && *options.fault != "mass_loss") {
     refuse_option("paper", "--mass-loss", "--fault " + *options.fault, "",
@@ -111,8 +110,8 @@ RobotDescription robot_of(const PaperOptions& options, const std::optional<std::
   if (file) require_bound(robot, *file);
   EstimatorSettings& estimator = robot.estimator;
   if (options.dead_zone) {
-    estimator.dead_zone = *options.dead_zone == "continuous" ? DeadZoneChoice::kContinuous
-                                                             : DeadZoneChoice::kDiscontinuous;
+    estimator.dead_zone =
+        *options.dead_zone == "continuous" ? DeadZone::kContinuous : DeadZone::kDiscontinuous;
   }
   if (options.hidden) estimator.hidden_units = *options.hidden;
   if (options.step) estimator.period_s = *options.step;
@@ -137,7 +136,7 @@ Experiment experiment_of(const PaperOptions& options) {
         std::make_shared<paper::RecordedMotion>(paper::RecordedMotion::read(*options.motion));
     if (!options.duration) experiment.duration_s = experiment.motion->duration_s();
   }
-  experiment.record = options.report.has_value() || options.log.has_value();
+  experiment.record = options.answer.report.has_value() || options.log.has_value();
   return experiment;
 }
 
@@ -145,37 +144,38 @@ std::string or_none(const std::optional<double>& value, const char* format) {
   return value ? fmt::format(fmt::runtime(format), *value) : "none";
 }
 
-void print_run(const ExperimentResult& run) {
-  const auto row = [](const std::string& name, const std::string& value) {
-    std::cout << fmt::format("  {:<38} {}\n", name, value);
-  };
-  std::cout << fmt::format("fault {}{}, {}, seed {}, {} steps\n", paper::name_of(run.fault),
-                           run.accommodate ? ", accommodated" : "", name_of(run.precision),
-                           run.seed, run.steps);
-  row("fault begins", or_none(run.fault_time_s, "{:g} s"));
-  row("detected", or_none(run.detection_time_s, "{:.3f} s"));
-  row("certain to be detected (Theorem 4.2)", or_none(run.guaranteed_time_s, "{:.3f} s"));
-  row("before the fault: largest |e| / mu",
-      fmt::format("{:.4f}", run.max_error_to_threshold_before_fault));
-  row("before the fault: largest |psi_hat|",
-      fmt::format("{:g} rad/s^2", run.max_abs_psi_hat_before_fault));
-  row("tracking error, last quarter", fmt::format("{:.4f} rad rms", run.tracking_rms_rad));
-  row("error of the fault estimate",
-      run.fault_estimate_relative_error
-          ? fmt::format("{:.1f} % of the fault", 100.0 * *run.fault_estimate_relative_error)
-          : "none");
-  row("largest |theta|", fmt::format("{:.3f}", run.max_weight_norm));
-  std::cout << paper::words_of(run) << '\n';
+std::string text_of(const ExperimentResult& run) {
+  const TextTable table({{"", -38}, {"", 0}}, "  ");
+  const std::string heading = fmt::format(
+      "fault {}{}, {}, seed {}, {} steps\n", paper::name_of(run.fault),
+      run.accommodate ? ", accommodated" : "", name_of(run.precision), run.seed, run.steps);
+  return heading + table.row("fault begins", or_none(run.fault_time_s, "{:g} s")) +
+         table.row("detected", or_none(run.detection_time_s, "{:.3f} s")) +
+         table.row("certain to be detected (Theorem 4.2)",
+                   or_none(run.guaranteed_time_s, "{:.3f} s")) +
+         table.row("before the fault: largest |e| / mu",
+                   fmt::format("{:.4f}", run.max_error_to_threshold_before_fault)) +
+         table.row("before the fault: largest |psi_hat|",
+                   fmt::format("{:g} rad/s^2", run.max_abs_psi_hat_before_fault)) +
+         table.row("tracking error, last quarter",
+                   fmt::format("{:.4f} rad rms", run.tracking_rms_rad)) +
+         table.row(
+             "error of the fault estimate",
+             run.fault_estimate_relative_error
+                 ? fmt::format("{:.1f} % of the fault", 100.0 * *run.fault_estimate_relative_error)
+                 : "none") +
+         table.row("largest |theta|", fmt::format("{:.3f}", run.max_weight_norm)) +
+         paper::words_of(run) + "\n";
 }
 
-void print_everything(const std::vector<paper::Comparison>& lines, const std::string& verdict) {
-  constexpr const char* kRow = "{:<46} {:<21} {:<32} {}\n";
-  std::cout << fmt::format(kRow, "what", "paper", "here", "agrees");
+std::string text_of(const std::vector<paper::Comparison>& lines, const std::string& verdict) {
+  const TextTable table({{"what", -46}, {"paper", -21}, {"here", -32}, {"agrees", 0}});
+  std::string text = table.heading();
   for (const paper::Comparison& line : lines) {
     const char* agrees = !line.agrees ? "" : *line.agrees ? "yes" : "no";
-    std::cout << fmt::format(kRow, line.what, line.paper, line.here, agrees);
+    text += table.row(line.what, line.paper, line.here, agrees);
   }
-  std::cout << verdict << '\n';
+  return text + verdict + "\n";
 }
 
 void run_sweep(const RobotDescription& robot, const Experiment& base, bool json) {
@@ -217,36 +217,24 @@ void run_pair(const RobotDescription& robot, const RobotDescription& other, cons
                               options.robot.value_or("the paper's arm"),
                               paper::sweep_mass_loss(robot, base, 0.005, on_probe)};
   progress.end();
-  if (options.report) {
-    report::write_page(*options.report, paper::page_of(pair, options.command_line),
-                       existing_if(options.force));
-  }
-  if (options.json) {
-    std::cout << json_text(paper::to_json(pair));
-    return;
-  }
-  std::cout << paper::words_of(pair) << '\n';
-  if (options.report) std::cout << "written: " << *options.report << '\n';
+  write_report(options.answer, [&] { return paper::page_of(pair, options.command_line); });
+  print_answer(
+      options.answer, [&] { return paper::to_json(pair); },
+      [&] { return paper::words_of(pair) + "\n"; });
 }
 
 void run_one(const RobotDescription& robot, const Experiment& experiment,
              const PaperOptions& options) {
   const ExperimentResult run = paper::run_experiment(robot, experiment);
+  std::vector<std::string> written;
   if (options.log) {
     write_file_atomically(*options.log, csv_text(paper::recording_of(robot, experiment, run)),
-                          existing_if(options.force));
+                          options.answer.existing());
+    written.push_back(*options.log);
   }
-  if (options.report) {
-    report::write_page(*options.report, paper::page_of(run, options.command_line),
-                       existing_if(options.force));
-  }
-  if (options.json) {
-    std::cout << json_text(paper::to_json(run));
-  } else {
-    print_run(run);
-    if (options.log) std::cout << "written: " << *options.log << '\n';
-    if (options.report) std::cout << "written: " << *options.report << '\n';
-  }
+  write_report(options.answer, [&] { return paper::page_of(run, options.command_line); });
+  print_answer(
+      options.answer, [&] { return paper::to_json(run); }, [&] { return text_of(run); }, written);
 }
 
 void run_all(const RobotDescription& robot, const Experiment& experiment,
@@ -262,16 +250,11 @@ void run_all(const RobotDescription& robot, const Experiment& experiment,
                               !options.hidden && !options.step && !options.robot &&
                               !options.duration && !options.start;
   const std::string verdict = paper::verdict_of(lines, paper_settings);
-  if (options.report) {
-    report::write_page(*options.report, paper::page_of(runs, lines, verdict, options.command_line),
-                       existing_if(options.force));
-  }
-  if (options.json) {
-    std::cout << json_text(paper::to_json(runs, lines, verdict));
-  } else {
-    print_everything(lines, verdict);
-    if (options.report) std::cout << "written: " << *options.report << '\n';
-  }
+  write_report(options.answer,
+               [&] { return paper::page_of(runs, lines, verdict, options.command_line); });
+  print_answer(
+      options.answer, [&] { return paper::to_json(runs, lines, verdict); },
+      [&] { return text_of(lines, verdict); });
 }
 
 void run(const PaperOptions& options) {
@@ -281,7 +264,7 @@ void run(const PaperOptions& options) {
   if (options.against) {
     run_pair(robot, robot_of(options, options.against), experiment, options);
   } else if (options.sweep) {
-    run_sweep(robot, experiment, options.json);
+    run_sweep(robot, experiment, options.answer.json);
   } else if (options.fault) {
     run_one(robot, experiment, options);
   } else {
@@ -335,25 +318,21 @@ void add_options(CLI::App& verb, PaperOptions& options) {
           "With --fault: write the run as a recording, CSV: t, q, dq and the torque applied "
           "over the tick that ends there")
       ->type_name(kNewFile);
-  verb.add_flag("--force", options.force, "Replace files that are there");
+  add_force_option(verb, options.answer);
   verb.add_flag("--sweep", options.sweep, "Find the smallest mass loss that is detected");
   verb.add_option("--against", options.against,
                   "With --sweep: another robot file, whose smallest mass loss stands beside it");
-  verb.add_option("--report", options.report, "Write the figures as an HTML page")
-      ->type_name(kNewPage);
-  verb.add_flag("--json", options.json, "Print one JSON object and nothing else");
+  add_report_option(verb, options.answer, "figures");
+  add_json_option(verb, options.answer);
 }
 
 }  // namespace
 
-void register_paper(CLI::App& app, ExitCode& exit_code) {
-  static_cast<void>(exit_code);
-  CLI::App* verb = app.add_subcommand(
-      "paper", "Run the paper's experiment: faults of a two-link arm, detected and accommodated");
+void set_up_paper(CLI::App& verb, ExitCode& /*exit_code*/) {
   const auto options = std::make_shared<PaperOptions>();
-  add_options(*verb, *options);
-  verb->callback([verb, options] {
-    options->command_line = command_line_of(*verb);
+  add_options(verb, *options);
+  verb.callback([&verb, options] {
+    options->command_line = command_line_of(verb);
     run(*options);
   });
 }

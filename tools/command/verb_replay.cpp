@@ -3,22 +3,22 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "command/answer.hpp"
 #include "command/command_line.hpp"
 #include "command/doctor.hpp"
+#include "command/input_options.hpp"
+#include "command/progress.hpp"
 #include "command/verbs.hpp"
-#include "common/json_text.hpp"
-#include "common/output_file.hpp"
-#include "discovery/data_fault_report.hpp"
+#include "common/text_table.hpp"
+#include "log/log_format.hpp"
 #include "log/read_log.hpp"
 #include "replay/replay.hpp"
-#include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::tools {
@@ -30,19 +30,18 @@ struct ReplayOptions {
   std::string log;
   std::string robot;
   std::optional<std::filesystem::path> channels;
-  std::optional<std::string> report;
-  bool force = false;
   bool check = false;
-  bool json = false;
+  AnswerOptions answer;
 };
 
-void print(const Replay& replay) {
-  const auto row = [](const std::string& name, const std::string& value) {
-    std::cout << fmt::format("  {:<28} {}\n", name, value);
+std::string text_of(const Replay& replay) {
+  const TextTable table({{"", -28}, {"", 0}}, "  ");
+  std::string text = fmt::format("{} on {}: {} samples, tick {:g} ms, {} hidden units, seed {}\n",
+                                 replay.robot, replay.log, replay.samples(), 1000 * replay.period_s,
+                                 replay.hidden_units, replay.seed);
+  const auto row = [&](const std::string& name, const std::string& value) {
+    text += table.row(name, value);
   };
-  std::cout << fmt::format("{} on {}: {} samples, tick {:g} ms, {} hidden units, seed {}\n",
-                           replay.robot, replay.log, replay.samples(), 1000 * replay.period_s,
-                           replay.hidden_units, replay.seed);
   row("largest |e|", fmt::format("{:.4g} {}", replay.error_norm.maxCoeff(), replay.unit));
   row("largest threshold mu", fmt::format("{:.4g} {}", replay.threshold.maxCoeff(), replay.unit));
   row("largest |e| / mu", fmt::format("{:.4g}", replay.max_error_to_threshold));
@@ -61,59 +60,44 @@ void print(const Replay& replay) {
   if (replay.alarms.size() > kPrintedAlarms) {
     row("", fmt::format("and {} more (--json)", replay.alarms.size() - kPrintedAlarms));
   }
-  std::cout << words_of(replay) << '\n';
+  return text + words_of(replay) + "\n";
 }
 
 void run(const ReplayOptions& options, const std::string& command_line, ExitCode& exit_code) {
   const RobotDescription robot = read_robot_file(options.robot);
   require_bound(robot, options.robot);
   const Log log = read_log(options.log, robot, options.channels);
-  const std::vector<discovery::DataFault> faults = examine_all({std::span(&log, 1)}, robot);
-  print_hints(faults);
+  Progress progress;
+  const auto faults = examined({std::span(&log, 1)}, robot, progress);
   const Replay result = replay(robot, log);
-  if (options.report) {
-    report::Page page = page_of(result, command_line);
-    add_faults(faults, page);
-    report::write_page(*options.report, page, existing_if(options.force));
-  }
-  if (options.json) {
-    auto json = to_json(result);
-    json["data_faults"] = discovery::to_json(faults);
-    std::cout << json_text(json);
-  } else {
-    for (const std::string& remark : log.remarks) std::cout << "note: " << remark << '\n';
-    print(result);
-    if (options.report) std::cout << "written: " << *options.report << '\n';
-  }
+  write_report(options.answer, [&] { return with_faults(page_of(result, command_line), faults); });
+  std::string notes;
+  for (const std::string& remark : log.remarks) notes += "note: " + remark + "\n";
+  print_answer(
+      options.answer, [&] { return with_faults(to_json(result), faults); },
+      [&] { return notes + text_of(result); });
   if (options.check && (result.detection_time_s || result.is_blind()))
     exit_code = ExitCode::kCheckFailed;
 }
 
 }  // namespace
 
-void register_replay(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* verb = app.add_subcommand(
-      "replay", "Run the on-board monitor over a recording: residual, threshold, alarms");
+void set_up_replay(CLI::App& verb, ExitCode& exit_code) {
   const auto options = std::make_shared<ReplayOptions>();
-  verb->add_option("LOG", options->log, "Recording, CSV or MATLAB .mat")->required();
-  verb->add_option("--robot", options->robot,
-                   "Robot file; its uncertainty bound sets the threshold")
+  verb.add_option("LOG", options->log, "Recording, " + log_format_names())->required();
+  verb.add_option("--robot", options->robot, "Robot file; its uncertainty bound sets the threshold")
       ->required();
-  verb->add_option("--channels", options->channels,
-                   "TOML file that maps the recording's columns, instead of the robot file's "
-                   "[channels]");
-  verb->add_option("--report", options->report, "Write the figures as an HTML page")
-      ->type_name(kNewPage);
-  verb->add_flag("--force", options->force, "Replace the file of --report, whatever it is");
-  verb->add_flag(
+  add_channels_option(verb, options->channels, "recording's");
+  add_page_options(verb, options->answer, "figures");
+  verb.add_flag(
       "--check", options->check,
       "Exit with 1 when there is an alarm, or samples were refused that one could hide in");
-  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
-  verb->footer(
+  add_json_option(verb, options->answer);
+  verb.footer(
       "The tick is the recording's sampling period. The recording's torque has to be the torque "
       "that was really applied, not the commanded one. Samples that the monitor refuses are not "
       "judged: more than two in a row, or one in a hundred, and the verdict is \"Blind\".");
-  verb->callback([verb, options, &exit_code] { run(*options, command_line_of(*verb), exit_code); });
+  verb.callback([&verb, options, &exit_code] { run(*options, command_line_of(verb), exit_code); });
 }
 
 }  // namespace offnominal::tools

@@ -1,22 +1,20 @@
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command/answer.hpp"
 #include "command/command_line.hpp"
 #include "command/progress.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
-#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "log/candump_text.hpp"
 #include "log/csv_text.hpp"
 #include "paper/recording.hpp"
 #include "paper/two_link_robot.hpp"
-#include "report/page.hpp"
 #include "robot/robot_file.hpp"
 #include "sil/open_bus.hpp"
 #include "sil/real_time.hpp"
@@ -39,9 +37,7 @@ struct SilOptions {
   bool fd = false;
   std::optional<std::string> log;
   std::optional<std::string> candump;
-  bool force = false;
-  std::optional<std::string> report;
-  bool json = false;
+  AnswerOptions answer;
 };
 
 sil::Scenario scenario_of(const SilOptions& options) {
@@ -65,7 +61,7 @@ sil::Scenario scenario_of(const SilOptions& options) {
   if (options.fd) scenario.format = hal::FrameFormat::kFd;
   if (options.duration) experiment.duration_s = *options.duration;
   experiment.precision = precision_of(options.scalar);
-  experiment.record = options.report.has_value() || options.log.has_value();
+  experiment.record = options.answer.report.has_value() || options.log.has_value();
   return scenario;
 }
 
@@ -84,7 +80,7 @@ sil::SilResult real_time(const SilOptions& options, const RobotDescription& robo
                                {.interface = options.bus,
                                 .robot_file = options.robot,
                                 .candump = options.candump,
-                                .replace_candump = options.force});
+                                .replace_candump = options.answer.force});
 }
 
 sil::SilResult lock_step(const SilOptions& options, const RobotDescription& robot,
@@ -100,8 +96,7 @@ sil::SilResult lock_step(const SilOptions& options, const RobotDescription& robo
   }
   sil::SilResult result = sil::run_in_lock_step(robot, scenario, *wire, options.bus, on_frame);
   if (options.candump) {
-    const Existing existing = existing_if(options.force);
-    write_file_atomically(*options.candump, frames, existing);
+    write_file_atomically(*options.candump, frames, options.answer.existing());
   }
   return result;
 }
@@ -118,21 +113,18 @@ void run(const SilOptions& options, const std::string& command_line) {
   const sil::SilResult result =
       options.real_time ? real_time(options, robot, scenario) : lock_step(options, robot, scenario);
   progress.end();
-  const Existing existing = existing_if(options.force);
   if (options.log) {
     write_file_atomically(*options.log,
-                          csv_text(recording_of(robot, scenario.experiment, result.run)), existing);
+                          csv_text(recording_of(robot, scenario.experiment, result.run)),
+                          options.answer.existing());
   }
-  if (options.report)
-    report::write_page(*options.report, page_of(result, command_line), existing_if(options.force));
-  if (options.json) {
-    std::cout << json_text(to_json(result));
-    return;
+  write_report(options.answer, [&] { return page_of(result, command_line); });
+  std::vector<std::string> written;
+  for (const auto* output : {&options.log, &options.candump}) {
+    if (*output) written.push_back(**output);
   }
-  std::cout << text_of(result);
-  for (const auto* output : {&options.log, &options.candump, &options.report}) {
-    if (*output) std::cout << "written: " << **output << '\n';
-  }
+  print_answer(
+      options.answer, [&] { return to_json(result); }, [&] { return text_of(result); }, written);
 }
 
 std::string footer() {
@@ -145,45 +137,40 @@ std::string footer() {
 
 }  // namespace
 
-void register_sil(CLI::App& app, ExitCode& exit_code) {
-  static_cast<void>(exit_code);
-  CLI::App* verb =
-      app.add_subcommand("sil", "Run controller and arm at the two ends of a CAN bus, with faults");
+void set_up_sil(CLI::App& verb, ExitCode& /*exit_code*/) {
   const auto options = std::make_shared<SilOptions>();
-  verb->add_option("--fault", options->fault, "The paper's: mass_loss, nonlinear or none")
+  verb.add_option("--fault", options->fault, "The paper's: mass_loss, nonlinear or none")
       ->check(CLI::IsMember({"none", "mass_loss", "nonlinear"}));
-  verb->add_option("--scenario", options->scenario, "Faults and settings of the run, TOML");
-  verb->add_flag("--accommodate", options->accommodate, "Add the compensating torque");
-  verb->add_option(
-          "--bus", options->bus,
-          "in-process, or a CAN interface of the kernel; vcan0 and its like are made where "
-          "there are none, and removed at the end")
+  verb.add_option("--scenario", options->scenario, "Faults and settings of the run, TOML");
+  verb.add_flag("--accommodate", options->accommodate, "Add the compensating torque");
+  verb.add_option("--bus", options->bus,
+                  "in-process, or a CAN interface of the kernel; vcan0 and its like are made where "
+                  "there are none, and removed at the end")
       ->capture_default_str();
-  auto* lock_step = verb->add_flag("--lock-step", options->lock_step,
-                                   "Both ends in turn, tick by tick: the default");
-  verb->add_flag("--real-time", options->real_time,
-                 "Both ends as programs of their own, offnominal-plant and offnominal-controller, "
-                 "on the machine's clock")
+  auto* lock_step = verb.add_flag("--lock-step", options->lock_step,
+                                  "Both ends in turn, tick by tick: the default");
+  verb.add_flag("--real-time", options->real_time,
+                "Both ends as programs of their own, offnominal-plant and offnominal-controller, "
+                "on the machine's clock")
       ->excludes(lock_step);
-  verb->add_flag("--fd", options->fd, "CAN FD: one frame for all joints");
-  verb->add_option("--scalar", options->scalar, "Arithmetic of the controller")
+  verb.add_flag("--fd", options->fd, "CAN FD: one frame for all joints");
+  verb.add_option("--scalar", options->scalar, "Arithmetic of the controller")
       ->check(CLI::IsMember({"float", "double"}))
       ->capture_default_str();
-  verb->add_option("--robot", options->robot,
-                   "Robot file of the controller, two joints; by default the paper's arm");
-  verb->add_option("--duration", options->duration, "Length of the run, s [20]");
-  verb->add_option("--log", options->log,
-                   "Write the run as the controller saw it, and beside it what was true, CSV")
+  verb.add_option("--robot", options->robot,
+                  "Robot file of the controller, two joints; by default the paper's arm");
+  verb.add_option("--duration", options->duration, "Length of the run, s [20]");
+  verb.add_option("--log", options->log,
+                  "Write the run as the controller saw it, and beside it what was true, CSV")
       ->type_name(kNewFile);
-  verb->add_option("--candump", options->candump,
-                   "Write every frame as candump -l does; hal/offnominal.dbc says what they mean")
+  verb.add_option("--candump", options->candump,
+                  "Write every frame as candump -l does; hal/offnominal.dbc says what they mean")
       ->type_name(kNewFile);
-  verb->add_flag("--force", options->force, "Replace files that are there");
-  verb->add_option("--report", options->report, "Write the pictures as an HTML page")
-      ->type_name(kNewPage);
-  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
-  verb->footer(footer());
-  verb->callback([verb, options] { run(*options, command_line_of(*verb)); });
+  add_force_option(verb, options->answer);
+  add_report_option(verb, options->answer);
+  add_json_option(verb, options->answer);
+  verb.footer(footer());
+  verb.callback([&verb, options] { run(*options, command_line_of(verb)); });
 }
 
 }  // namespace offnominal::tools

@@ -1,18 +1,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "command/answer.hpp"
 #include "command/command_line.hpp"
 #include "command/progress.hpp"
 #include "command/verbs.hpp"
-#include "common/json_text.hpp"
-#include "common/output_file.hpp"
 #include "paper/two_link_robot.hpp"
-#include "report/page.hpp"
 #include "robot/robot_file.hpp"
 #include "wcet/wcet_report.hpp"
 
@@ -24,9 +21,7 @@ struct WcetOptions {
   std::string scalar = "float";
   bool fd = false;
   wcet::WcetSettings settings;
-  std::optional<std::string> report;
-  bool force = false;
-  bool json = false;
+  AnswerOptions answer;
 };
 
 void run(WcetOptions& options, const std::string& command_line) {
@@ -42,15 +37,9 @@ void run(WcetOptions& options, const std::string& command_line) {
         progress.begin(done > 0 ? fmt::format("{}: {} done", what, done) : what);
       });
   progress.end();
-  if (options.report)
-    report::write_page(*options.report, wcet::page_of(result, command_line),
-                       existing_if(options.force));
-  if (options.json) {
-    std::cout << json_text(wcet::to_json(result));
-    return;
-  }
-  std::cout << wcet::text_of(result);
-  if (options.report) std::cout << "written: " << *options.report << '\n';
+  write_report(options.answer, [&] { return wcet::page_of(result, command_line); });
+  print_answer(
+      options.answer, [&] { return wcet::to_json(result); }, [&] { return wcet::text_of(result); });
 }
 
 void add_measurement_options(CLI::App& verb, wcet::WcetSettings& settings) {
@@ -91,28 +80,23 @@ void add_machine_options(CLI::App& verb, wcet::WcetSettings& settings) {
 
 }  // namespace
 
-void register_wcet(CLI::App& app, ExitCode& exit_code) {
-  static_cast<void>(exit_code);
-  CLI::App* verb = app.add_subcommand(
-      "wcet", "Measure how long one control tick takes here, at worst: search, histogram, bound");
+void set_up_wcet(CLI::App& verb, ExitCode& /*exit_code*/) {
   const auto options = std::make_shared<WcetOptions>();
-  verb->add_option("--robot", options->robot, "Robot file; by default the paper's arm");
-  verb->add_option("--scalar", options->scalar, "Arithmetic of the controller")
+  verb.add_option("--robot", options->robot, "Robot file; by default the paper's arm");
+  verb.add_option("--scalar", options->scalar, "Arithmetic of the controller")
       ->check(CLI::IsMember({"float", "double"}))
       ->capture_default_str();
-  verb->add_flag("--fd", options->fd, "CAN FD: one frame for all joints");
-  add_measurement_options(*verb, options->settings);
-  add_machine_options(*verb, options->settings);
-  verb->add_option("--report", options->report, "Write the histograms as an HTML page")
-      ->type_name(kNewPage);
-  verb->add_flag("--force", options->force, "Replace the file of --report, whatever it is");
-  verb->add_flag("--json", options->json, "Print one JSON object and nothing else");
-  verb->footer(
+  verb.add_flag("--fd", options->fd, "CAN FD: one frame for all joints");
+  add_measurement_options(verb, options->settings);
+  add_machine_options(verb, options->settings);
+  add_page_options(verb, options->answer, "histograms");
+  add_json_option(verb, options->answer);
+  verb.footer(
       "A tick receives and decodes frames, runs the monitor, computes the torque and encodes it. "
       "It "
       "is timed alone, again and again from the same beginning; docs/worst-case.md says what each "
       "number means and what it does not prove.");
-  verb->callback([verb, options] { run(*options, command_line_of(*verb)); });
+  verb.callback([&verb, options] { run(*options, command_line_of(verb)); });
 }
 
 }  // namespace offnominal::tools

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include <span>
 
 namespace CLI {
 class App;
@@ -14,22 +14,21 @@ enum class ExitCode : int {
   kBadInput = 2,     // nothing was done; one line on stderr says why
 };
 
-/// Adds one verb to `app`: its name, options, help and the callback that runs it. The callback sets
-/// `exit_code` when it ends in something other than kDone and throws InputError on a bad input.
-using RegisterVerb = void (*)(CLI::App& app, ExitCode& exit_code);
+/// Gives a verb its options, its help and the callback that runs it. The callback sets `exit_code`
+/// when it ends in something other than kDone and throws InputError on a bad input.
+using SetUpVerb = void(CLI::App& verb, ExitCode& exit_code);
 
-void register_add(CLI::App& app, ExitCode& exit_code);
-void register_calibrate(CLI::App& app, ExitCode& exit_code);
-void register_codegen(CLI::App& app, ExitCode& exit_code);
-void register_compare(CLI::App& app, ExitCode& exit_code);
-void register_explain(CLI::App& app, ExitCode& exit_code);
-void register_motion(CLI::App& app, ExitCode& exit_code);
-void register_paper(CLI::App& app, ExitCode& exit_code);
-void register_replay(CLI::App& app, ExitCode& exit_code);
-void register_sil(CLI::App& app, ExitCode& exit_code);
-void register_wcet(CLI::App& app, ExitCode& exit_code);
+/// A verb of the command: the file verb_<name>.cpp, which defines set_up_<name>(), and a row of the
+/// table in verbs.cpp. Dispatch, help and suggestions follow from it.
+struct Verb {
+  const char* name;
+  const char* words;  // what it does, one line of help
+  SetUpVerb* set_up;
+};
 
-/// Every verb that this build has.
-[[nodiscard]] const std::vector<RegisterVerb>& all_verbs();
+[[nodiscard]] std::span<const Verb> all_verbs();
+
+SetUpVerb set_up_add, set_up_calibrate, set_up_codegen, set_up_compare, set_up_explain,
+    set_up_motion, set_up_paper, set_up_replay, set_up_sil, set_up_wcet;
 
 }  // namespace offnominal::tools

@@ -1,5 +1,7 @@
 #include "common/nearest.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
@@ -47,9 +49,12 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
 }
 
 std::string list_of(std::span<const std::string> words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string choice_of(std::span<const std::string> words) {
+  if (words.size() < 2) return list_of(words);
+  return list_of(words.first(words.size() - 1)) + " or " + words.back();
 }
 
 }  // namespace offnominal::tools

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace offnominal::tools {
 
@@ -14,5 +15,16 @@ namespace offnominal::tools {
 
 /// "a, b, c"
 [[nodiscard]] std::string list_of(std::span<const std::string> words);
+
+/// The same of anything, by the text that text_of() gives each.
+template <typename Items, typename TextOf>
+[[nodiscard]] std::string list_of(const Items& items, const TextOf& text_of) {
+  std::vector<std::string> words;
+  for (const auto& item : items) words.push_back(text_of(item));
+  return list_of(words);
+}
+
+/// "a, b or c"
+[[nodiscard]] std::string choice_of(std::span<const std::string> words);
 
 }  // namespace offnominal::tools

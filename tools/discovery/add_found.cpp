@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "analysis/inverse_model.hpp"
 #include "analysis/measurement.hpp"
@@ -16,7 +17,7 @@ using nlohmann::ordered_json;
 namespace {
 
 std::vector<std::string> objections_to(const Explanation& e) {
-  if (e.verdict != Verdict::kFound && e.verdict != Verdict::kParameterShift) {
+  if (!is_to_write(e.verdict)) {
     return {fmt::format("the verdict is {}: {}", name_of(e.verdict), e.words)};
   }
   if (e.found.empty()) return {"no effect is missing: fit the one that is there again with add"};

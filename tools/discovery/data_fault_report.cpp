@@ -1,5 +1,7 @@
 #include "discovery/data_fault_report.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace offnominal::tools::discovery {
 
 using nlohmann::ordered_json;

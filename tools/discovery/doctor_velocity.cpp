@@ -101,9 +101,9 @@ struct Stranger {
 // The lag at which they agree, where there is one.
 std::optional<double> lag_of(const VectorXd& q, const VectorXd& travel, double period_s) {
   constexpr double kAgree = 0.97;
-  constexpr double kLargestLagS = 0.5;
+  constexpr double kLongestLagS = 0.5;
   constexpr Index kTries = 50;  // each way
-  const Index most = std::min(static_cast<Index>(kLargestLagS / period_s), q.size() / kStretches);
+  const Index most = std::min(static_cast<Index>(kLongestLagS / period_s), q.size() / kStretches);
   if (most < 1) return std::nullopt;
   const Index step = std::max<Index>(1, most / kTries);
   double best = kAgree;

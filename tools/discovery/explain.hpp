@@ -27,6 +27,10 @@ enum class Verdict {
   kDataFault
 };
 const char* name_of(Verdict verdict);
+// Whether what was found is to be written to the robot file.
+bool is_to_write(Verdict verdict);
+// The names of all, in the order of the enumeration.
+std::vector<std::string> verdict_names();
 
 // A number with its 95 % interval; where the data give none, why, in words.
 struct Estimate {

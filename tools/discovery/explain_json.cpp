@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "discovery/data_fault_report.hpp"
 #include "discovery/explain_report.hpp"
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/effort_name.hpp"
+#include "common/nearest.hpp"
 #include "discovery/explain_report.hpp"
 
 namespace offnominal::tools::discovery {
@@ -16,20 +17,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 using report::Level;
-
-Level level_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kExplained:
-    case Verdict::kFound:
-      return Level::kGood;
-    case Verdict::kDataFault:
-    case Verdict::kUnknownExternal:
-    case Verdict::kUnknownStateDependent:
-      return Level::kBad;
-    default:
-      return Level::kWarn;
-  }
-}
 
 std::vector<double> numbers(const Eigen::Ref<const VectorXd>& values) {
   return {values.begin(), values.end()};
@@ -314,18 +301,12 @@ report::Section joint_section(const Explanation& e, Index joint) {
   return section;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
-}
-
 }  // namespace
 
 report::Page page_of(const Explanation& e, const ExplainNames& names) {
   report::Page page;
   page.title = "What the model lacks";
-  page.subtitle = joined(names.logs) + " against " + names.robot_file;
+  page.subtitle = list_of(names.logs) + " against " + names.robot_file;
   page.verdict = {std::string(name_of(e.verdict)) + ": " + e.words, level_of(e.verdict)};
   page.command_line = names.command_line;
   report::Section overview;

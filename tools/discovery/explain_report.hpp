@@ -1,6 +1,6 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -17,6 +17,9 @@ struct ExplainNames {
   std::string command_line;
   std::string channels = {};  // file of --channels, empty: none
 };
+
+// How a page shows a verdict.
+report::Level level_of(Verdict verdict);
 
 // docs/explain.md lists the keys. Joints count from 1.
 nlohmann::ordered_json to_json(const Explanation& explanation, const ExplainNames& names);

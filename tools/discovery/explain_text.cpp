@@ -2,6 +2,7 @@
 
 #include "common/input_name.hpp"
 #include "common/shell_word.hpp"
+#include "common/text_table.hpp"
 #include "discovery/explain_report.hpp"
 
 namespace offnominal::tools::discovery {
@@ -20,19 +21,23 @@ std::string unit_at(const Explanation& e, Eigen::Index joint) {
 }
 
 std::string text_of_joints(const Explanation& e) {
-  std::string text =
-      fmt::format("\n{:<6} {:>12} {:>14} {:>14} {:>12} {:>14} {:>14} {:>15}\n", "joint",
-                  "rms torque", "error before", "error after", "noise floor", "held out, bef.",
-                  "held out, aft.", "held out, floor");
+  const TextTable table({{"joint", -6},
+                         {"rms torque", 12},
+                         {"error before", 14},
+                         {"error after", 14},
+                         {"noise floor", 12},
+                         {"held out, bef.", 14},
+                         {"held out, aft.", 14},
+                         {"held out, floor", 15}});
+  std::string text = "\n" + table.heading();
   for (const JointErrors& joint : e.joints) {
     const auto with_unit = [&](double value) {
       return fmt::format("{:.4g} {}", value, joint.unit);
     };
-    text += fmt::format("{:<6} {:>12} {:>14} {:>14} {:>12} {:>14} {:>14} {:>15}\n", joint.joint + 1,
-                        with_unit(joint.rms_torque), with_unit(joint.rms_before),
-                        with_unit(joint.rms_after), with_unit(joint.noise_floor),
-                        with_unit(joint.holdout_before), with_unit(joint.holdout_after),
-                        with_unit(joint.holdout_noise_floor));
+    text += table.row(joint.joint + 1, with_unit(joint.rms_torque), with_unit(joint.rms_before),
+                      with_unit(joint.rms_after), with_unit(joint.noise_floor),
+                      with_unit(joint.holdout_before), with_unit(joint.holdout_after),
+                      with_unit(joint.holdout_noise_floor));
   }
   return text;
 }
@@ -107,8 +112,7 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
     text += fmt::format("the file's {} is off by {:+.0f} %\n", shift.name, 100 * shift.share);
   }
   for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
-  const bool to_write = e.verdict == Verdict::kFound || e.verdict == Verdict::kParameterShift;
-  if (to_write && !e.found.empty() && e.not_in_robot_files.empty()) {
+  if (is_to_write(e.verdict) && !e.found.empty() && e.not_in_robot_files.empty()) {
     text += command_to_add(names);
   }
   return text;

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "discovery/explain_report.hpp"
 #include "discovery/find_model.hpp"
 
 namespace offnominal::tools::discovery {
@@ -23,6 +24,28 @@ constexpr double kStructured = 0.15;
 constexpr double kConcentrated = 0.5;
 // ... unless this much follows a variable of the joint.
 constexpr double kFollowsState = 0.4;
+
+struct VerdictRow {
+  Verdict verdict;
+  const char* name;
+  report::Level level;  // of its page
+  bool to_write;
+};
+constexpr std::array<VerdictRow, 8> kVerdicts = {{
+    {Verdict::kExplained, "explained", report::Level::kGood, false},
+    {Verdict::kFound, "found", report::Level::kGood, true},
+    {Verdict::kAmbiguous, "ambiguous", report::Level::kWarn, false},
+    {Verdict::kParameterShift, "parameter_shift", report::Level::kWarn, true},
+    {Verdict::kUnknownStateDependent, "unknown_state_dependent", report::Level::kBad, false},
+    {Verdict::kUnknownExternal, "unknown_external", report::Level::kBad, false},
+    {Verdict::kNotExcited, "not_excited", report::Level::kWarn, false},
+    {Verdict::kDataFault, "data_fault", report::Level::kBad, false},
+}};
+
+const VerdictRow& row_of(Verdict verdict) {
+  return *std::find_if(kVerdicts.begin(), kVerdicts.end(),
+                       [&](const VerdictRow& row) { return row.verdict == verdict; });
+}
 
 bool is_parameter(const std::string& effect) {
   constexpr std::array<std::string_view, 3> kParameters{"link_mass", "tip_payload", "torque_scale"};
@@ -208,26 +231,16 @@ void judge_suspected(const Suspicion& one, Explanation& e) {
 
 }  // namespace
 
-const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kExplained:
-      return "explained";
-    case Verdict::kFound:
-      return "found";
-    case Verdict::kAmbiguous:
-      return "ambiguous";
-    case Verdict::kParameterShift:
-      return "parameter_shift";
-    case Verdict::kUnknownStateDependent:
-      return "unknown_state_dependent";
-    case Verdict::kUnknownExternal:
-      return "unknown_external";
-    case Verdict::kNotExcited:
-      return "not_excited";
-    case Verdict::kDataFault:
-      return "data_fault";
-  }
-  return "";
+const char* name_of(Verdict verdict) { return row_of(verdict).name; }
+
+bool is_to_write(Verdict verdict) { return row_of(verdict).to_write; }
+
+report::Level level_of(Verdict verdict) { return row_of(verdict).level; }
+
+std::vector<std::string> verdict_names() {
+  std::vector<std::string> names;
+  for (const VerdictRow& row : kVerdicts) names.emplace_back(row.name);
+  return names;
 }
 
 bool holds(const std::vector<EffectAt>& effects, const EffectAt& one) {

@@ -9,6 +9,7 @@
 #include <offnominal/hal/messages.hpp>
 
 #include "common/error.hpp"
+#include "log/dbc.hpp"
 
 namespace offnominal::tools {
 namespace {
@@ -87,8 +88,8 @@ std::string common_name(const std::string& message, const std::string& signal) {
 
 class CandumpReader {
  public:
-  CandumpReader(std::string file, const Dbc* dbc, const NeedOf& need_of)
-      : file_(std::move(file)), dbc_(dbc == nullptr ? offnominal_dbc() : *dbc) {
+  CandumpReader(std::string file, const Dbc& dbc, const NeedOf& need_of)
+      : file_(std::move(file)), dbc_(dbc) {
     for (const DbcMessage& message : dbc_.messages) {
       const bool own = is_own(message);
       for (const DbcSignal& signal : message.signals) {
@@ -301,7 +302,11 @@ bool is_candump_file(const RecordingFile& file) {
   return parse_candump_line(line).has_value();
 }
 
-NamedColumns read_candump(RecordingFile& file, const Dbc* dbc, const NeedOf& need_of) {
+NamedColumns read_candump(RecordingFile& file, const ChannelMap* channels, const NeedOf& need_of) {
+  if (channels == nullptr || channels->dbc.empty()) {
+    return CandumpReader(file.name(), offnominal_dbc(), need_of).read(file);
+  }
+  const Dbc dbc = read_dbc(channels->dbc);
   return CandumpReader(file.name(), dbc, need_of).read(file);
 }
 

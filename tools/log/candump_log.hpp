@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "log/dbc.hpp"
 #include "log/named_columns.hpp"
 #include "log/recording_file.hpp"
+#include "robot/robot.hpp"
 
 namespace offnominal::tools {
 
@@ -26,13 +26,15 @@ struct CandumpFrame {
 
 /// The signals of a `candump -l` log as columns "message.signal" in the DBC's units, over the
 /// frames of the first message in the log that holds a required one: column "t" has their time
-/// stamps. Of every other signal a row takes the value that came nearest in time. `dbc` null is
-/// offnominal's own. Of its messages, in another file too, the columns are also t, q1.., dq1..,
-/// tau1.. (the applied torque); records whose CRC is wrong are left out, and a joint whose readings
-/// have no velocity has no dq. Throws InputError for a line of another form, but for the last one,
-/// which a killed program may have left short; where no frame of a required signal is in the log;
-/// and where one of them pauses for longer than kMostMissed of the first message's periods.
-[[nodiscard]] NamedColumns read_candump(RecordingFile& file, const Dbc* dbc, const NeedOf& need_of);
+/// stamps. Of every other signal a row takes the value that came nearest in time. The DBC file is
+/// that of `channels`; where they are null or name none, offnominal's own. Of its messages, in
+/// another file too, the columns are also t, q1.., dq1.., tau1.. (the applied torque); records
+/// whose CRC is wrong are left out, and a joint whose readings have no velocity has no dq. Throws
+/// InputError for a line of another form, but for the last one, which a killed program may have
+/// left short; where no frame of a required signal is in the log; and where one of them pauses for
+/// longer than kMostMissed of the first message's periods.
+[[nodiscard]] NamedColumns read_candump(RecordingFile& file, const ChannelMap* channels,
+                                        const NeedOf& need_of);
 
 inline constexpr double kMostMissed = 5;
 

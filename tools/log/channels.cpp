@@ -205,17 +205,6 @@ class Parser {
   int joints_;
 };
 
-toml::table to_table(const Channel& channel) {
-  toml::table table;
-  table.insert("source", channel.source);
-  if (channel.scale != 1) table.insert("scale", channel.scale);
-  if (!channel.scale_source.empty()) table.insert("scale_source", channel.scale_source);
-  if (channel.offset != 0) table.insert("offset", channel.offset);
-  if (!channel.unit.empty()) table.insert("unit", channel.unit);
-  table.is_inline(true);
-  return table;
-}
-
 }  // namespace
 
 ChannelMap parse_channels(const toml::table& table, const std::string& file, int joint_count) {
@@ -230,39 +219,6 @@ ChannelMap read_channels_file(const std::filesystem::path& file, int joint_count
     throw InputError({file.string(), "channels", type_of(*inner), "a table", ""});
   }
   return parse_channels(*inner->as_table(), file.string(), joint_count);
-}
-
-toml::table channels_table(const ChannelMap& channels) {
-  toml::table table;
-  if (channels.at_rest) {
-    table.insert("at_rest", true);
-  } else {
-    table.insert("time", to_table(channels.time));
-  }
-  toml::array position;
-  for (const Channel& channel : channels.position) position.push_back(to_table(channel));
-  table.insert("position", std::move(position));
-  toml::array velocity;
-  bool any_velocity = false;
-  for (const auto& channel : channels.velocity) {
-    any_velocity = any_velocity || channel.has_value();
-    if (channel) {
-      velocity.push_back(to_table(*channel));
-    } else {
-      velocity.push_back("");
-    }
-  }
-  if (any_velocity) table.insert("velocity", std::move(velocity));
-  toml::array torque;
-  for (const Channel& channel : channels.torque) torque.push_back(to_table(channel));
-  table.insert("torque", std::move(torque));
-  if (!channels.extra.empty()) {
-    toml::table extra;
-    for (const auto& [name, channel] : channels.extra) extra.insert(name, to_table(channel));
-    table.insert("extra", std::move(extra));
-  }
-  if (!channels.dbc.empty()) table.insert("dbc", channels.dbc);
-  return table;
 }
 
 }  // namespace offnominal::tools

@@ -35,7 +35,4 @@ ChannelMap parse_channels(const toml::table& table, const std::string& file, int
 // Throws InputError where the file cannot be read or is wrong.
 ChannelMap read_channels_file(const std::filesystem::path& file, int joint_count);
 
-// The table that parse_channels() turns into `channels` again, values that are defaults left out.
-toml::table channels_table(const ChannelMap& channels);
-
 }  // namespace offnominal::tools

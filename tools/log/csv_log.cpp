@@ -221,13 +221,13 @@ class CsvReader {
 
 }  // namespace
 
-NamedColumns read_csv(RecordingFile& file, const NeedOf& need_of) {
+NamedColumns read_csv(RecordingFile& file, const ChannelMap* /*channels*/, const NeedOf& need_of) {
   return CsvReader(file, need_of).read();
 }
 
 NamedColumns read_csv(const std::filesystem::path& path, const NeedOf& need_of) {
   RecordingFile file(path);
-  return read_csv(file, need_of);
+  return read_csv(file, nullptr, need_of);
 }
 
 }  // namespace offnominal::tools

@@ -184,7 +184,7 @@ bool is_mat_file(const RecordingFile& file) {
   return extension == ".mat";
 }
 
-NamedColumns read_mat(RecordingFile& file, const NeedOf& need_of) {
+NamedColumns read_mat(RecordingFile& file, const ChannelMap* /*channels*/, const NeedOf& need_of) {
   return MatReader(file, need_of).read();
 }
 

@@ -2,6 +2,7 @@
 
 #include "log/named_columns.hpp"
 #include "log/recording_file.hpp"
+#include "robot/robot.hpp"
 
 namespace offnominal::tools {
 
@@ -11,7 +12,8 @@ bool is_mat_file(const RecordingFile& file);
 // The numeric variables of a MATLAB .mat file: a row or column vector is a column, a single number
 // a scalar, and the columns of a matrix M are "M(:,1)", "M(:,2)" ... Variables of other kinds
 // (structures, cells, text, complex numbers) are named but not read. Throws InputError where the
-// file cannot be read, is damaged, or a required variable is not of those kinds.
-NamedColumns read_mat(RecordingFile& file, const NeedOf& need_of);
+// file cannot be read, is damaged, or a required variable is not of those kinds. `channels` say
+// nothing that it has to know.
+NamedColumns read_mat(RecordingFile& file, const ChannelMap* channels, const NeedOf& need_of);
 
 }  // namespace offnominal::tools

@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/input_name.hpp"
 #include "common/nearest.hpp"
-#include "log/candump_log.hpp"
 #include "log/channels.hpp"
-#include "log/csv_log.hpp"
 #include "log/hold_map.hpp"
-#include "log/mat_log.hpp"
+#include "log/log_format.hpp"
 #include "log/recording_file.hpp"
 #include "log/sampling.hpp"
 
@@ -156,9 +155,7 @@ class Assembler {
     if (*joints.rbegin() == static_cast<int>(joints.size())) {
       return fmt::format("{0}1 to {0}{1}", prefix, joints.size());
     }
-    std::vector<std::string> names;
-    for (const int joint : joints) names.push_back(fmt::format("{}{}", prefix, joint));
-    return list_of(names);
+    return list_of(joints, [&](int joint) { return fmt::format("{}{}", prefix, joint); });
   }
 
   void check_joint_count(const std::string& prefix) const {
@@ -310,27 +307,19 @@ NeedOf needs_of(const std::optional<ChannelMap>& channels) {
   };
 }
 
-NamedColumns read_columns(const std::filesystem::path& path,
-                          const std::optional<ChannelMap>& channels, const NeedOf& need_of) {
-  RecordingFile file(path);
-  if (is_mat_file(file)) return read_mat(file, need_of);
-  if (!is_candump_file(file)) return read_csv(file, need_of);
-  if (!channels || channels->dbc.empty()) return read_candump(file, nullptr, need_of);
-  const Dbc dbc = read_dbc(channels->dbc);
-  return read_candump(file, &dbc, need_of);
-}
-
 }  // namespace
 
 Log read_log(const std::filesystem::path& path, int joint_count,
              const std::optional<ChannelMap>& channels) {
   try {
     const NeedOf need_of = needs_of(channels);
-    Assembler assembler(read_columns(path, channels, need_of), joint_count);
+    RecordingFile file(path);
+    const ChannelMap* map = channels ? &*channels : nullptr;
+    Assembler assembler(log_format_of(file).read(file, map, need_of), joint_count);
     return channels ? assembler.with(*channels) : assembler.with_common_header();
   } catch (const std::bad_alloc&) {
-    throw InputError({path == "-" ? "standard input" : path.string(), "",
-                      "more than this machine has memory for", "a recording that fits into it",
+    throw InputError({shown_name(path), "", "more than this machine has memory for",
+                      "a recording that fits into it",
                       "cut it into parts, or leave samples or columns out"});
   }
 }

@@ -8,7 +8,7 @@
 
 namespace offnominal::tools {
 
-// Reads a recording: CSV, MATLAB .mat or a log of candump -l, told apart by content and extension.
+// Reads a recording of one of the kinds in log_format.hpp, told apart by content and extension.
 // It may come through a pipe; the path "-" is standard input (recording_file.hpp).
 //
 // With a channel map its names are looked up; without one the common header is expected:

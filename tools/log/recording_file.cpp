@@ -9,12 +9,15 @@
 #include <system_error>
 
 #include "common/error.hpp"
+#include "common/input_name.hpp"
+#include "log/log_format.hpp"
 
 namespace offnominal::tools {
 namespace {
 
-constexpr const char* kAllowed = "a recording: CSV, MATLAB .mat or candump -l";
 constexpr std::size_t kBlock = std::size_t{1} << 18;
+
+std::string allowed() { return "a recording: " + log_format_names(); }
 
 // As many bytes as there are, up to `size`; negative at an error.
 ssize_t read_some(int file, char* to, std::size_t size) {
@@ -38,19 +41,19 @@ bool write_all(int file, std::string_view content) {
 
 RecordingFile::RecordingFile(const std::filesystem::path& path)
     : path_(path),
-      name_(path == "-" ? "standard input" : path.string()),
-      file_(path == "-" ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
-                        : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+      name_(shown_name(path)),
+      file_(names_standard_input(path) ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                                       : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
   const int error = errno;
-  if (file_ < 0 && error == ENOENT) fail("", "no such file", kAllowed);
+  if (file_ < 0 && error == ENOENT) fail("", "no such file", allowed());
   if (file_ < 0) {
     fail("", "a file that cannot be opened (" + std::generic_category().message(error) + ")",
-         kAllowed);
+         allowed());
   }
   struct stat status {};
   if (::fstat(file_, &status) == 0 && S_ISDIR(status.st_mode)) {
     ::close(file_);
-    fail("", "a folder", kAllowed);
+    fail("", "a folder", allowed());
   }
   try {
     // A pipe gives less than was asked for, and more later.
@@ -83,7 +86,7 @@ bool RecordingFile::fill() {
   buffer_.resize(kept + static_cast<std::size_t>(count < 0 ? 0 : count));
   if (count < 0) {
     fail("", "a file that cannot be read (" + std::generic_category().message(error) + ")",
-         kAllowed);
+         allowed());
   }
   return count > 0;
 }
@@ -101,7 +104,7 @@ bool RecordingFile::next_line(std::string& line) {
   if (length == 0 && !line_ended_) return false;
   line.assign(buffer_, used_, std::min(length, kLongestLine + 1));
   if (line.find('\0') != std::string::npos) {
-    fail(line_place(), "bytes that are no text", kAllowed, "save it as text in UTF-8");
+    fail(line_place(), "bytes that are no text", allowed(), "save it as text in UTF-8");
   }
   if (length > kLongestLine) {
     fail(line_place(), "a line longer than " + std::to_string(kLongestLine) + " bytes",
@@ -150,7 +153,8 @@ void RecordingFile::copy_to(int file) {
 
 std::filesystem::path RecordingFile::seekable() {
   std::error_code ignored;
-  if (path_ != "-" && std::filesystem::is_regular_file(path_, ignored)) return path_;
+  if (!names_standard_input(path_) && std::filesystem::is_regular_file(path_, ignored))
+    return path_;
   if (copy_ < 0) {
     copy_ = nameless_file();
     copy_to(copy_);

@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "motion_design/design_report.hpp"
 
 namespace offnominal::tools::motion_design {

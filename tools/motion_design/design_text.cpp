@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/number.hpp"
+#include "common/text_table.hpp"
 #include "discovery/alternatives.hpp"
 #include "motion_design/design_report.hpp"
 
@@ -110,14 +111,14 @@ std::string text_of(const RobotDescription& robot, const Design& design, const D
   std::string text = sentence_of(robot, design, names) + "\n";
   text += fmt::format("seed {}, {} motions tried, robot {}\n", design.request.seed,
                       design.motions_tried, names.robot_file);
-  text +=
-      fmt::format("\n{:<6} {:>26} {:>16} {:>16}\n", "joint", "position", "top speed", "top torque");
+  const TextTable joints({{"joint", -6}, {"position", 26}, {"top speed", 16}, {"top torque", 16}});
+  text += "\n" + joints.heading();
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const JointUse use = use_of(robot, design, j);
-    text += fmt::format("{:<6} {:>26} {:>16} {:>16}\n", j + 1,
-                        fmt::format("{:.3g} .. {:.3g} {}", use.low, use.high, use.position_unit),
-                        fmt::format("{:.3g} {}", use.top_speed, use.velocity_unit),
-                        fmt::format("{:.3g} {}", use.top_torque, use.torque_unit));
+    text +=
+        joints.row(j + 1, fmt::format("{:.3g} .. {:.3g} {}", use.low, use.high, use.position_unit),
+                   fmt::format("{:.3g} {}", use.top_speed, use.velocity_unit),
+                   fmt::format("{:.3g} {}", use.top_torque, use.torque_unit));
   }
   constexpr std::size_t kMost = 12;
   std::vector<const PairReport*> pairs;
@@ -126,15 +127,19 @@ std::string text_of(const RobotDescription& robot, const Design& design, const D
     if (a->possible != b->possible) return a->possible;
     return a->after.evidence < b->after.evidence;
   });
-  text += fmt::format("\n{:<28} {:<34} {:>12} {:>12} {:>10}\n", "if it is", "against",
-                      "sine before", "sine after", "evidence");
+  const TextTable table({{"if it is", -28},
+                         {"against", -34},
+                         {"sine before", 12},
+                         {"sine after", 12},
+                         {"evidence", 10}});
+  text += "\n" + table.heading();
   for (std::size_t i = 0; i < std::min(kMost, pairs.size()); ++i) {
     const PairReport& pair = *pairs[i];
     text +=
-        fmt::format("{:<28} {:<34} {:>12} {:>12.3g} {:>10}\n", text_of(pair.truth),
-                    pair.rival ? text_of(*pair.rival) : "adapting numbers alone",
-                    pair.before ? fmt::format("{:.3g}", pair.before->sine) : "-", pair.after.sine,
-                    pair.possible ? fmt::format("{:.1f}", pair.after.evidence) : "never");
+        table.row(text_of(pair.truth), pair.rival ? text_of(*pair.rival) : "adapting numbers alone",
+                  pair.before ? fmt::format("{:.3g}", pair.before->sine) : "-",
+                  fmt::format("{:.3g}", pair.after.sine),
+                  pair.possible ? fmt::format("{:.1f}", pair.after.evidence) : "never");
   }
   if (pairs.size() > kMost) text += fmt::format("and {} easier pairs\n", pairs.size() - kMost);
   return text;

@@ -1,5 +1,7 @@
 #include "paper/paper_json.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace offnominal::tools::paper {
 namespace {
 

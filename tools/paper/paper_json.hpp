@@ -1,7 +1,7 @@
 // Results of the paper's experiment as JSON. Times in s, angles in rad.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "paper/paper_runs.hpp"

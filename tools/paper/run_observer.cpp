@@ -9,9 +9,9 @@ RunObserver::RunObserver(const RobotDescription& robot, const Experiment& experi
                          double fault_time_s)
     : robot_(robot),
       experiment_(experiment),
-      decay_(std::exp(-robot.estimator.alpha_per_s * robot.estimator.period_s)),
-      input_gain_(-std::expm1(-robot.estimator.alpha_per_s * robot.estimator.period_s) /
-                  robot.estimator.alpha_per_s),
+      decay_(std::exp(-robot.estimator.alpha * robot.estimator.period_s)),
+      input_gain_(-std::expm1(-robot.estimator.alpha * robot.estimator.period_s) /
+                  robot.estimator.alpha),
       healthy_until_(std::min(fault_time_s, experiment.duration_s)),
       window_start_(0.75 * experiment.duration_s),
       tolerance_(1e-6 * robot.estimator.period_s) {}

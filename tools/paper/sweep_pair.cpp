@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "paper/paper_json.hpp"
 
 namespace offnominal::tools::paper {

@@ -1,7 +1,7 @@
 // What a better model with its bound is worth: the smallest loss of mass detected before and after.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "paper/sweep.hpp"

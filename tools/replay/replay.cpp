@@ -25,7 +25,7 @@ void check_settings(const RobotDescription& robot, const Log& log) {
          .mend = "give the recording's own robot file"});
   }
   require_bound(robot, "robot " + robot.name);
-  const double pole = robot.estimator.alpha_per_s * log.period_s;
+  const double pole = robot.estimator.alpha * log.period_s;
   if (pole > kMaxPolePerTick) {
     throw InputError(
         {.file = log.file,

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <offnominal/version.hpp>
 
 #include "report/decimate.hpp"
@@ -8,6 +9,24 @@
 #include "report/validate.hpp"
 
 namespace offnominal::tools::report {
+
+NLOHMANN_JSON_SERIALIZE_ENUM(Level, {{Level::kNeutral, "neutral"},
+                                     {Level::kGood, "good"},
+                                     {Level::kWarn, "warn"},
+                                     {Level::kBad, "bad"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(Width, {{Width::kFull, "full"}, {Width::kHalf, "half"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(SeriesKind, {{SeriesKind::kLine, "line"},
+                                          {SeriesKind::kPoints, "points"},
+                                          {SeriesKind::kSteps, "steps"},
+                                          {SeriesKind::kBand, "band"},
+                                          {SeriesKind::kBars, "bars"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(Tone, {{Tone::kAuto, "auto"},
+                                    {Tone::kMeasured, "measured"},
+                                    {Tone::kModel, "model"},
+                                    {Tone::kResidual, "residual"},
+                                    {Tone::kThreshold, "threshold"},
+                                    {Tone::kFaint, "faint"}})
+
 namespace {
 
 using nlohmann::json;
@@ -34,56 +53,6 @@ json rounded(const std::vector<double>& values, int digits) {
 }
 
 json exact(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-std::string name(Level level) {
-  switch (level) {
-    case Level::kGood:
-      return "good";
-    case Level::kWarn:
-      return "warn";
-    case Level::kBad:
-      return "bad";
-    case Level::kNeutral:
-      break;
-  }
-  return "neutral";
-}
-
-std::string name(Width width) { return width == Width::kHalf ? "half" : "full"; }
-
-std::string name(SeriesKind kind) {
-  switch (kind) {
-    case SeriesKind::kPoints:
-      return "points";
-    case SeriesKind::kSteps:
-      return "steps";
-    case SeriesKind::kBand:
-      return "band";
-    case SeriesKind::kBars:
-      return "bars";
-    case SeriesKind::kLine:
-      break;
-  }
-  return "line";
-}
-
-std::string name(Tone tone) {
-  switch (tone) {
-    case Tone::kMeasured:
-      return "measured";
-    case Tone::kModel:
-      return "model";
-    case Tone::kResidual:
-      return "residual";
-    case Tone::kThreshold:
-      return "threshold";
-    case Tone::kFaint:
-      return "faint";
-    case Tone::kAuto:
-      break;
-  }
-  return "auto";
-}
 
 std::string joined(const std::string& first, const std::string& second) {
   return first.empty() || second.empty() ? first + second : first + " " + second;
@@ -133,8 +102,8 @@ struct Json {
   }
 
   static json of(const KeyFigure& figure) {
-    return {{"label", figure.label},   {"value", of(figure.value)},   {"unit", figure.unit},
-            {"format", figure.format}, {"level", name(figure.level)}, {"note", figure.note}};
+    return {{"label", figure.label},   {"value", of(figure.value)}, {"unit", figure.unit},
+            {"format", figure.format}, {"level", figure.level},     {"note", figure.note}};
   }
 
   static json of(const KeyFigures& key_figures) {
@@ -143,8 +112,8 @@ struct Json {
 
   static json of(const Series& series) {
     json result = {{"name", series.name},
-                   {"kind", name(series.kind)},
-                   {"tone", name(series.tone)},
+                   {"kind", series.kind},
+                   {"tone", series.tone},
                    {"dashed", series.dashed},
                    {"y_axis", series.y_axis},
                    {"x", rounded(series.x, kXDigits)},
@@ -154,7 +123,7 @@ struct Json {
   }
 
   static json of(const EventMark& event) {
-    return {{"x", event.x}, {"label", event.label}, {"level", name(event.level)}};
+    return {{"x", event.x}, {"label", event.label}, {"level", event.level}};
   }
 
   static json of(const Chart& chart) {
@@ -177,7 +146,7 @@ struct Json {
             {"levels", list(chart.levels)},
             {"zoom_group", chart.zoom_group},
             {"slider", chart.slider},
-            {"width", name(chart.width)},
+            {"width", chart.width},
             {"note", joined(chart.note, reduction)}};
   }
 
@@ -191,7 +160,7 @@ struct Json {
             {"y_edges", rounded(map.y_edges, kXDigits)},
             {"value", rounded(map.value, kYDigits)},
             {"diverging", map.diverging},
-            {"width", name(map.width)},
+            {"width", map.width},
             {"note", map.note}};
   }
 
@@ -206,12 +175,12 @@ struct Json {
             {"steps", list(waterfall.steps)},
             {"levels", list(waterfall.levels)},
             {"format", waterfall.format},
-            {"width", name(waterfall.width)},
+            {"width", waterfall.width},
             {"note", waterfall.note}};
   }
 
   static json of(const Note& note) {
-    return {{"type", "note"}, {"text", note.text}, {"level", name(note.level)}};
+    return {{"type", "note"}, {"text", note.text}, {"level", note.level}};
   }
 
   static json of(const Block& block) {
@@ -234,7 +203,7 @@ nlohmann::json to_json(const Page& page) {
   validate(page);
   return {{"title", page.title},
           {"subtitle", page.subtitle},
-          {"verdict", {{"words", page.verdict.words}, {"level", name(page.verdict.level)}}},
+          {"verdict", {{"words", page.verdict.words}, {"level", page.verdict.level}}},
           {"sections", Json::list(page.sections)},
           {"command_line", page.command_line},
           {"version", version()}};

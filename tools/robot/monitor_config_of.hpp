@@ -22,11 +22,10 @@ template <typename Scalar>
 [[nodiscard]] EstimatorConfig<Scalar> estimator_config_of(const EstimatorSettings& settings) {
   EstimatorConfig<Scalar> config;
   config.period_s = static_cast<Scalar>(settings.period_s);
-  config.alpha = static_cast<Scalar>(settings.alpha_per_s);
+  config.alpha = static_cast<Scalar>(settings.alpha);
   config.learning_rate = static_cast<Scalar>(settings.learning_rate);
   config.weight_radius = static_cast<Scalar>(settings.weight_radius);
-  config.dead_zone = settings.dead_zone == DeadZoneChoice::kContinuous ? DeadZone::kContinuous
-                                                                       : DeadZone::kDiscontinuous;
+  config.dead_zone = settings.dead_zone;
   config.hidden_units = settings.hidden_units;
   config.initial_weight_range = static_cast<Scalar>(settings.initial_weight_range);
   config.seed = settings.seed;
@@ -60,7 +59,7 @@ void set_table(const TableBoundSettings& settings, UncertaintyBound<N, Scalar>& 
     throw std::invalid_argument("the bound's table has too many points or not a value for each");
   }
   bound.kind = BoundKind::kTable;
-  bound.variable = static_cast<offnominal::BoundVariable>(settings.variable);
+  bound.variable = settings.variable;
   bound.joint = static_cast<std::uint8_t>(settings.joint);
   bound.points = static_cast<std::uint8_t>(settings.at.size());
   for (std::size_t i = 0; i < settings.at.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <offnominal/diagnosis/bound.hpp>
 #include <offnominal/diagnosis/estimator_config.hpp>
 
+#include "common/nearest.hpp"
 #include "common/number.hpp"
 
 namespace offnominal::tools {
@@ -20,9 +21,7 @@ void refuse_keys_other_than(const TomlTable& table, const std::vector<std::strin
     bool known = false;
     for (const std::string& name : allowed) known = known || name == key;
     if (table.has(key) && !known) {
-      std::string list;
-      for (const std::string& name : allowed) list += (list.empty() ? "" : ", ") + name;
-      table.refuse(key, "a key that a bound of kind " + kind + " does not have", list,
+      table.refuse(key, "a key that a bound of kind " + kind + " does not have", list_of(allowed),
                    "remove it, or change kind");
     }
   }
@@ -72,10 +71,9 @@ EstimatorSettings read_estimator(const TomlTable& table) {
   EstimatorSettings settings;
   settings.period_s = table.number(
       "period_s", positive("s", "give the length of a control tick in s"), settings.period_s);
-  settings.alpha_per_s =
-      table.number("alpha_per_s", positive("1/s", "give the pole of the filter 1/(s + alpha)"),
-                   settings.alpha_per_s);
-  const double pole_per_tick = settings.alpha_per_s * settings.period_s;
+  settings.alpha = table.number(
+      "alpha_per_s", positive("1/s", "give the pole of the filter 1/(s + alpha)"), settings.alpha);
+  const double pole_per_tick = settings.alpha * settings.period_s;
   if (pole_per_tick > kMaxPolePerTick) {
     table.refuse(table.has("alpha_per_s") ? "alpha_per_s" : "period_s",
                  "alpha_per_s * period_s = " + shortest(pole_per_tick),
@@ -98,8 +96,8 @@ EstimatorSettings read_estimator(const TomlTable& table) {
       "seed", 0, std::numeric_limits<std::uint32_t>::max(), std::int64_t{settings.seed}));
   if (table.has("dead_zone")) {
     settings.dead_zone = table.choice("dead_zone", {"continuous", "discontinuous"}) == 0
-                             ? DeadZoneChoice::kContinuous
-                             : DeadZoneChoice::kDiscontinuous;
+                             ? DeadZone::kContinuous
+                             : DeadZone::kDiscontinuous;
   }
   if (table.has("torque_signal")) {
     settings.torque_signal = table.choice("torque_signal", {"sampled", "held"}) == 0

@@ -3,6 +3,9 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <offnominal/diagnosis/bound.hpp>
+#include <offnominal/diagnosis/estimator_config.hpp>
 #include <offnominal/model/chain.hpp>
 #include <offnominal/model/effect_list.hpp>
 #include <offnominal/sample.hpp>
@@ -31,18 +34,8 @@ struct RobotJoint {
   std::string source = {};  // where the numbers come from, free text; empty: not said
 };
 
-enum class DeadZoneChoice : std::uint8_t { kContinuous, kDiscontinuous };
-
 // Settings of the on-board estimator (paper section 3).
-struct EstimatorSettings {
-  double period_s = 0.001;
-  double alpha_per_s = 10;
-  int hidden_units = 35;
-  double learning_rate = 2.5;
-  double weight_radius = 10;
-  double initial_weight_range = 0.1;  // W1(0) is uniform in [-range, range]
-  std::uint32_t seed = 1;
-  DeadZoneChoice dead_zone = DeadZoneChoice::kContinuous;
+struct EstimatorSettings : EstimatorConfig<double> {
   TorqueSignal torque_signal = TorqueSignal::kSampled;
   std::string source = {};  // where the numbers come from, free text; empty: not said
 };
@@ -66,7 +59,6 @@ struct ScaledNormBoundSettings {
   double offset = 1;
   std::vector<std::vector<double>> matrix;
 };
-enum class BoundVariable : std::uint8_t { kPosition, kSpeed, kTorque };
 // Linear between points over q, |dq| or |tau| of one joint, constant beyond both ends.
 struct TableBoundSettings {
   BoundVariable variable = BoundVariable::kSpeed;
@@ -120,8 +112,9 @@ struct RobotDescription {
   ArmingSettings arming;
   std::optional<BoundSettings> bound;
   std::optional<ChannelMap> channels;
-  // The text it was read from, so that writing keeps comments and order; empty: none.
-  std::string file_text = {};
+  // The text it was read from, so that writing keeps comments and order; null: none. Copies, of
+  // which a fit makes thousands, share it.
+  std::shared_ptr<const std::string> file_text = nullptr;
 
   [[nodiscard]] int joint_count() const { return static_cast<int>(joints.size()); }
 };

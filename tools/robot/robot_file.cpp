@@ -108,10 +108,10 @@ void check_delays(const TomlTable& root, const RobotDescription& robot) {
 
 // The text that `robot` was read from with what has changed since; none where it cannot be cut.
 std::optional<std::string> text_with_changes(const RobotDescription& robot) {
-  if (robot.file_text.empty()) return std::nullopt;
+  if (robot.file_text == nullptr) return std::nullopt;
   RobotDescription effects_only = robot;
-  effects_only.bound = parse_robot(robot.file_text, "").bound;
-  auto text = text_with_effects(robot.file_text, effects_only);
+  effects_only.bound = parse_robot(*robot.file_text, "").bound;
+  auto text = text_with_effects(*robot.file_text, effects_only);
   if (!text || !robot.bound) return robot.bound ? std::nullopt : text;
   return text_with_bound(*text, robot);
 }
@@ -158,7 +158,7 @@ RobotDescription parse_robot(std::string_view text, const std::string& file) {
   if (const toml::table* table = root.raw_table("channels")) {
     robot.channels = parse_channels(*table, file, robot.joint_count());
   }
-  robot.file_text = text;
+  robot.file_text = std::make_shared<const std::string>(text);
   return robot;
 }
 

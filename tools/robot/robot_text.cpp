@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <filesystem>
 #include <span>
 
+#include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "robot/bound_text.hpp"
 #include "robot/channel_text.hpp"
@@ -14,15 +16,11 @@ namespace offnominal::tools {
 namespace {
 
 std::string list(std::span<const double> values) {
-  std::string text = "[";
-  for (const double value : values) text += (text.size() > 1 ? ", " : "") + shortest_real(value);
-  return text + "]";
+  return "[" + list_of(values, shortest_real) + "]";
 }
 
 std::string rows(const std::vector<std::vector<double>>& matrix) {
-  std::string text = "[";
-  for (const auto& row : matrix) text += (text.size() > 1 ? ", " : "") + list(row);
-  return text + "]";
+  return "[" + list_of(matrix, list) + "]";
 }
 
 std::string escaped(char c) {
@@ -146,15 +144,14 @@ void write_joint(Writer& out, const RobotJoint& robot_joint) {
 void write_estimator(Writer& out, const EstimatorSettings& settings) {
   out.table("[estimator]");
   out.value("period_s", shortest_real(settings.period_s));
-  out.value("alpha_per_s", shortest_real(settings.alpha_per_s));
+  out.value("alpha_per_s", shortest_real(settings.alpha));
   out.value("hidden_units", std::to_string(settings.hidden_units));
   out.value("learning_rate", shortest_real(settings.learning_rate));
   out.value("weight_radius", shortest_real(settings.weight_radius));
   out.value("initial_weight_range", shortest_real(settings.initial_weight_range));
   out.value("seed", std::to_string(settings.seed));
-  out.value(
-      "dead_zone",
-      quoted(settings.dead_zone == DeadZoneChoice::kContinuous ? "continuous" : "discontinuous"));
+  out.value("dead_zone",
+            quoted(settings.dead_zone == DeadZone::kContinuous ? "continuous" : "discontinuous"));
   out.value("torque_signal",
             quoted(settings.torque_signal == TorqueSignal::kSampled ? "sampled" : "held"));
   out.text_if_any("source", settings.source);
@@ -208,20 +205,14 @@ std::string channel_text(const Channel& channel) {
   return text + "}";
 }
 
-template <typename Channels, typename TextOf>
-std::string channel_list(const Channels& channels, TextOf&& text_of) {
-  std::string text = "[";
-  for (const auto& channel : channels) text += (text.size() > 1 ? ", " : "") + text_of(channel);
-  return text + "]";
-}
-
 std::string channels_value(const ChannelMap& channels, std::string_view key) {
   if (key == "time") return channel_text(channels.time);
-  if (key == "position") return channel_list(channels.position, channel_text);
-  if (key == "torque") return channel_list(channels.torque, channel_text);
-  return channel_list(channels.velocity, [](const auto& channel) {
+  if (key == "position") return "[" + list_of(channels.position, channel_text) + "]";
+  if (key == "torque") return "[" + list_of(channels.torque, channel_text) + "]";
+  const auto text = [](const auto& channel) {
     return channel ? channel_text(*channel) : std::string("\"\"");
-  });
+  };
+  return "[" + list_of(channels.velocity, text) + "]";
 }
 
 void write_channels(Writer& out, const ChannelMap& channels) {
@@ -237,6 +228,10 @@ void write_channels(Writer& out, const ChannelMap& channels) {
                                         [](const auto& channel) { return channel.has_value(); });
   if (any_velocity) write("velocity");
   write("torque");
+  // Read as relative to a file whose folder is not known here.
+  if (!channels.dbc.empty()) {
+    out.value("dbc", quoted(std::filesystem::absolute(channels.dbc).string()));
+  }
   if (channels.extra.empty()) return;
   out.table("[channels.extra]");
   for (const auto& [name, channel] : channels.extra) out.value(key(name), channel_text(channel));

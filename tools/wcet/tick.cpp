@@ -3,6 +3,7 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "common/nearest.hpp"
 #include "robot/robot_file.hpp"
 #include "wcet/tick_sizes.hpp"
 
@@ -21,12 +22,9 @@ const TickSize* size_for(const RobotDescription& robot) {
 }
 
 std::string sizes_words() {
-  std::string words;
-  for (const TickSize& size : tick_sizes()) {
-    words += (words.empty() ? "" : ", ") + std::to_string(size.joints) + "x" +
-             std::to_string(size.hidden_units);
-  }
-  return words;
+  return list_of(tick_sizes(), [](const TickSize& size) {
+    return std::to_string(size.joints) + "x" + std::to_string(size.hidden_units);
+  });
 }
 
 }  // namespace

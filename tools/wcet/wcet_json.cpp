@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "wcet/wcet_report.hpp"
 
 namespace offnominal::tools::wcet {

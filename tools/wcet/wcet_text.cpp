@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "common/number.hpp"
+#include "common/text_table.hpp"
 #include "wcet/wcet_report.hpp"
 
 namespace offnominal::tools::wcet {
@@ -16,41 +17,53 @@ std::string list_words(const std::vector<double>& values) {
   return fmt::format("{:.4g}", fmt::join(values, ", "));
 }
 
-std::string row_text(const TimeRow& row) {
-  const Histogram& h = *row.histogram;
-  std::string text = fmt::format("{:<38}{:>11}{:>9.2f}{:>9.2f}", row.name, h.count(),
-                                 in_us(h.min_ns()), in_us(h.mean_ns()));
-  for (const Quantile& quantile : kQuantiles) {
-    text += fmt::format("{:>9.2f}", in_us(h.quantile_ns(quantile.p)));
+std::string times_text(const WcetResult& result) {
+  std::vector<TextColumn> columns{{"One tick [us]", -38}, {"ticks", 11}, {"min", 9}, {"mean", 9}};
+  for (const Quantile& quantile : kQuantiles) columns.push_back({quantile.name, 9});
+  columns.insert(columns.end(), {{"max", 10}, {"overruns", 9}});
+  const TextTable table(std::move(columns), "", "");
+  std::string text = table.heading();
+  const auto us = [](auto ns) { return fmt::format("{:.2f}", in_us(ns)); };
+  for (const TimeRow& row : time_rows(result)) {
+    const Histogram& h = *row.histogram;
+    std::vector<std::string> cells{row.name, std::to_string(h.count()), us(h.min_ns()),
+                                   us(h.mean_ns())};
+    for (const Quantile& quantile : kQuantiles) cells.push_back(us(h.quantile_ns(quantile.p)));
+    cells.push_back(us(h.max_ns()));
+    if (row.timing != nullptr) cells.push_back(std::to_string(row.timing->overruns));
+    text += table.line(cells);
   }
-  text += fmt::format("{:>10.2f}", in_us(h.max_ns()));
-  return text + (row.timing == nullptr ? "" : fmt::format("{:>9}", row.timing->overruns)) + "\n";
+  return text;
 }
 
 std::string facts_text(const std::vector<Fact>& facts) {
+  const TextTable table({{"", -34}, {"", 0}}, "  ");
   std::string text;
-  for (const Fact& fact : facts) text += fmt::format("  {:<34} {}\n", fact.name, fact.value);
+  for (const Fact& fact : facts) text += table.row(fact.name, fact.value);
   return text;
 }
 
 std::string comparison_text(const Comparison& comparison) {
-  const auto line = [](const std::string& name, const Histogram& h) {
-    return fmt::format("  {:<34}{:>9}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.1f}\n", name, h.count(),
-                       in_us(h.min_ns()), in_us(h.mean_ns()), in_us(h.quantile_ns(0.999)),
-                       in_us(h.max_ns()));
+  const TextTable table(
+      {{"", -34}, {"ticks", 9}, {"min", 9}, {"mean", 9}, {"p99.9", 9}, {"max", 9}}, "  ", "");
+  const auto row = [&](const std::string& name, auto count, double min, double mean, double p999,
+                       double max) {
+    const auto us = [](double value) { return fmt::format("{:.1f}", value); };
+    return table.row(name, count, us(min), us(mean), us(p999), us(max));
+  };
+  const auto line = [&](const std::string& name, const Histogram& h) {
+    return row(name, h.count(), in_us(h.min_ns()), in_us(h.mean_ns()), in_us(h.quantile_ns(0.999)),
+               in_us(h.max_ns()));
   };
   const CyclictestResult& other = comparison.cyclictest;
-  std::string text =
-      fmt::format("\nWoken every {} us [us]\n  {:<34}{:>9}{:>9}{:>9}{:>9}{:>9}\n",
-                  comparison.interval_us, "", "ticks", "min", "mean", "p99.9", "max");
-  text += line("the tick: wake-up", comparison.tick.latency);
-  text += line("the tick: wake-up to its end", comparison.tick.response);
-  text += fmt::format("  {:<34}{:>9}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.1f}\n",
-                      "cyclictest " + other.version + ": wake-up", other.cycles, other.min_us,
-                      other.mean_us, other.quantile_us(0.999), other.max_us);
-  return text + fmt::format("  {:<34} {} of {}\n  {:<34} {}\n", "overruns of the tick",
-                            comparison.tick.overruns, comparison.tick.response.count(),
-                            "cyclictest ran as", other.command);
+  return fmt::format("\nWoken every {} us [us]\n", comparison.interval_us) + table.heading() +
+         line("the tick: wake-up", comparison.tick.latency) +
+         line("the tick: wake-up to its end", comparison.tick.response) +
+         row("cyclictest " + other.version + ": wake-up", other.cycles, other.min_us, other.mean_us,
+             other.quantile_us(0.999), other.max_us) +
+         facts_text({{"overruns of the tick", fmt::format("{} of {}", comparison.tick.overruns,
+                                                          comparison.tick.response.count())},
+                     {"cyclictest ran as", other.command}});
 }
 
 }  // namespace
@@ -177,10 +190,7 @@ std::string text_of(const WcetResult& result) {
                   result.robot, result.joints, result.hidden_units, result.hidden_capacity,
                   name_of(result.precision), 1e6 * result.period_s);
   text += facts_text(machine_facts(result));
-  text += fmt::format("\n{:<38}{:>11}{:>9}{:>9}", "One tick [us]", "ticks", "min", "mean");
-  for (const Quantile& quantile : kQuantiles) text += fmt::format("{:>9}", quantile.name);
-  text += fmt::format("{:>10}{:>9}\n", "max", "overruns");
-  for (const TimeRow& row : time_rows(result)) text += row_text(row);
+  text += "\n" + times_text(result);
   text += "\nThe worst input found\n" + facts_text(input_facts(result));
   text += "\nThe worst input found, warm cache [us], ticks, logarithmic bins and bars\n" +
           bars_of(result.worst.histogram);

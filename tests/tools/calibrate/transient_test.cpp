@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "calibrate/calibrate.hpp"
 #include "calibrate/calibrate_report.hpp"
 #include "tools/analysis/recorded_arm.hpp"

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "discovery/explain.hpp"
+#include "log/log_format.hpp"
 #include "support/places.hpp"
 #include "tools/support/run_command.hpp"
 #include "tools/support/verbs.hpp"
@@ -63,6 +65,35 @@ TEST(Command, HelpsWithEveryVerb) {
     EXPECT_THAT(result.out, HasSubstr("offnominal " + verb)) << verb;
     EXPECT_THAT(result.out, HasSubstr("--json")) << verb;
     EXPECT_EQ(result.err, "") << verb;
+  }
+}
+
+TEST(Command, NamesEveryFormatOfARecordingWhereItAsksForOne) {
+  int asked = 0;
+  for (const std::string& verb : verbs()) {
+    std::string help = offnominal({verb, "--help"}).out;
+    if (help.find("\n  LOG ") == std::string::npos && verb != "add") continue;
+    ++asked;
+    EXPECT_THAT(help, HasSubstr(log_format_names())) << verb;
+  }
+  EXPECT_GE(asked, 5);
+}
+
+TEST(Command, IsInTheReadmeWithEveryVerb) {
+  const std::string readme = test::content_of(test::source_dir() / "README.md");
+  for (const std::string& verb : verbs()) {
+    EXPECT_THAT(readme, testing::ContainsRegex("\n[|] `" + verb + "[` ]")) << verb;
+  }
+}
+
+TEST(Command, NamesEveryVerdictInHelpAndGuide) {
+  const std::string help = offnominal({"explain", "--help"}).out;
+  const std::string guide = test::content_of(test::source_dir() / "docs" / "explain.md");
+  const std::vector<std::string> names = discovery::verdict_names();
+  EXPECT_GE(names.size(), 8U);
+  for (const std::string& name : names) {
+    EXPECT_THAT(help, HasSubstr(name));
+    EXPECT_THAT(guide, HasSubstr("`" + name + "`"));
   }
 }
 

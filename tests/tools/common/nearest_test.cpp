@@ -35,5 +35,16 @@ TEST(ListOf, SeparatesWithCommas) {
   EXPECT_EQ(list_of({}), "");
 }
 
+TEST(ListOf, TakesAnythingThatHasText) {
+  const std::vector<int> numbers{1, 22};
+  EXPECT_EQ(list_of(numbers, [](int number) { return std::to_string(number); }), "1, 22");
+}
+
+TEST(ChoiceOf, HasOrBeforeTheLast) {
+  EXPECT_EQ(choice_of(kWords), "mass_kg, centre_of_mass_m or inertia_kg_m2");
+  EXPECT_EQ(choice_of(std::span(kWords).first(1)), "mass_kg");
+  EXPECT_EQ(choice_of({}), "");
+}
+
 }  // namespace
 }  // namespace offnominal::tools

@@ -13,7 +13,6 @@ namespace {
 using offnominal::test::message_of;
 using offnominal::test::TemporaryFile;
 using offnominal::tools::ChannelMap;
-using offnominal::tools::channels_table;
 using offnominal::tools::InputError;
 using offnominal::tools::parse_channels;
 using offnominal::tools::read_channels_file;
@@ -50,27 +49,6 @@ TEST(Channels, OneVelocityOfTwoMayBeDerived) {
   EXPECT_EQ(map.time.source, "ts");
   EXPECT_FALSE(map.velocity[0].has_value());
   EXPECT_EQ(map.velocity[1]->source, "vb");
-}
-
-TEST(Channels, WhatIsWrittenIsReadAgain) {
-  const ChannelMap map = parse(R"(
-    time = {source = "ms", scale = 0.001, unit = "ms"}
-    position = ["a", {source = "b", offset = 0.5}]
-    velocity = ["", "vb"]
-    torque = [{source = "c", scale_source = "g"}, "d"]
-    extra = {temp1 = "T"}
-  )",
-                               2);
-  std::ostringstream text;
-  text << channels_table(map);
-  const ChannelMap again = parse(text.str(), 2);
-  EXPECT_EQ(again.time.scale, 0.001);
-  EXPECT_EQ(again.time.unit, "ms");
-  EXPECT_EQ(again.position[1].offset, 0.5);
-  EXPECT_FALSE(again.velocity[0].has_value());
-  EXPECT_EQ(again.velocity[1]->source, "vb");
-  EXPECT_EQ(again.torque[0].scale_source, "g");
-  EXPECT_EQ(again.extra.at("temp1").source, "T");
 }
 
 TEST(Channels, MistakesNameFileLineAndKey) {

@@ -17,7 +17,6 @@ using offnominal::test::message_of;
 using offnominal::test::TemporaryFile;
 using offnominal::tools::approach_direction;
 using offnominal::tools::ChannelMap;
-using offnominal::tools::channels_table;
 using offnominal::tools::InputError;
 using offnominal::tools::Log;
 using offnominal::tools::parse_channels;
@@ -90,12 +89,6 @@ TEST(HoldMapFile, NothingThatNeedsTimeStandsBesideIt) {
                 parse_channels(toml::parse("at_rest = 1\nposition = 'q'\ntorque = 'i'"), "r", 1);
               }),
               HasSubstr("true or false"));
-}
-
-TEST(HoldMapFile, IsWrittenAsItIsRead) {
-  const ChannelMap again = parse_channels(channels_table(at_rest()), "again", 1);
-  EXPECT_TRUE(again.at_rest);
-  EXPECT_EQ(again.torque.at(0).scale, 0.5);
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ TEST_P(PaperExperiment, EstimateFollowsTheFault) {
 
 TEST_P(PaperExperiment, DiscontinuousDeadZoneDetectsAtTheSameTickAndEstimatesCloser) {
   RobotDescription robot = quick_arm();
-  robot.estimator.dead_zone = DeadZoneChoice::kDiscontinuous;
+  robot.estimator.dead_zone = DeadZone::kDiscontinuous;
   for (const FaultKind fault : {FaultKind::kMassLoss, FaultKind::kNonlinear}) {
     const ExperimentResult continuous = run(fault, GetParam());
     const ExperimentResult discontinuous = run(fault, GetParam(), false, robot);
@@ -198,7 +198,7 @@ TEST(PaperExperiment, RefusesWhatItCannotRun) {
   refused([nan](auto& robot, auto&) { robot.estimator.period_s = nan; });
   refused([](auto& robot, auto&) { robot.estimator.hidden_units = 0; });
   refused([](auto& robot, auto&) { robot.estimator.hidden_units = 257; });
-  refused([](auto& robot, auto&) { robot.estimator.alpha_per_s = -1.0; });
+  refused([](auto& robot, auto&) { robot.estimator.alpha = -1.0; });
   refused([](auto& robot, auto&) { robot.estimator.initial_weight_range = 100.0; });
   refused([](auto&, auto& experiment) { experiment.fault.mass_loss = 1.0; });
   refused([](auto&, auto& experiment) { experiment.fault.rate_per_s = 0.0; });

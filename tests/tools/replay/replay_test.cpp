@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "common/error.hpp"
 #include "tools/analysis/recorded_arm.hpp"
@@ -89,7 +90,7 @@ TEST(Replay, RefusesWhatItCannotReplay) {
   EXPECT_THAT(refusal(robot, log), HasSubstr("found 2 joints; allowed: 1, as robot arm has"));
   EXPECT_THAT(refusal(arm_description(), log), HasSubstr("uncertainty_bound"));
   robot = watched_arm();
-  robot.estimator.alpha_per_s = 2000;
+  robot.estimator.alpha = 2000;
   EXPECT_THAT(refusal(robot, log), HasSubstr("alpha_per_s * period = 2"));
   robot = watched_arm();
   robot.estimator.hidden_units = kMaxHiddenUnits;

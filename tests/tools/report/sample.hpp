@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 

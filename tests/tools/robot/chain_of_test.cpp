@@ -65,19 +65,6 @@ TEST(EstimatorConfigOf, HoldsTheSettings) {
   EXPECT_EQ(estimator_config_of<double>({}).dead_zone, DeadZone::kContinuous);
 }
 
-TEST(EstimatorSettings, HaveTheDefaultsOfTheCore) {
-  const auto from_tools = estimator_config_of<double>(EstimatorSettings{});
-  const EstimatorConfig<double> from_core;
-  EXPECT_EQ(from_tools.period_s, from_core.period_s);
-  EXPECT_EQ(from_tools.alpha, from_core.alpha);
-  EXPECT_EQ(from_tools.learning_rate, from_core.learning_rate);
-  EXPECT_EQ(from_tools.weight_radius, from_core.weight_radius);
-  EXPECT_EQ(from_tools.hidden_units, from_core.hidden_units);
-  EXPECT_EQ(from_tools.initial_weight_range, from_core.initial_weight_range);
-  EXPECT_EQ(from_tools.seed, from_core.seed);
-  EXPECT_EQ(from_tools.dead_zone, from_core.dead_zone);
-}
-
 TEST(BoundOf, EvaluatesEveryKind) {
   const Vector<2, double> q(1, 2);
   const Vector<2, double> dq(-3, 4);

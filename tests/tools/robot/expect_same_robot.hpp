@@ -56,7 +56,7 @@ inline void expect_same(const tools::RobotEffect& a, const tools::RobotEffect& b
 
 inline void expect_same(const tools::EstimatorSettings& a, const tools::EstimatorSettings& b) {
   expect_same(a.period_s, b.period_s);
-  expect_same(a.alpha_per_s, b.alpha_per_s);
+  expect_same(a.alpha, b.alpha);
   EXPECT_EQ(a.hidden_units, b.hidden_units);
   expect_same(a.learning_rate, b.learning_rate);
   expect_same(a.weight_radius, b.weight_radius);
@@ -98,6 +98,8 @@ inline void expect_same(const tools::Channel& a, const tools::Channel& b) {
 }
 
 inline void expect_same(const tools::ChannelMap& a, const tools::ChannelMap& b) {
+  EXPECT_EQ(a.at_rest, b.at_rest);
+  EXPECT_EQ(a.dbc, b.dbc);
   expect_same(a.time, b.time);
   expect_same(a.position, b.position);
   ASSERT_EQ(a.velocity.size(), b.velocity.size());

@@ -142,14 +142,13 @@ class RandomRobot {
   tools::EstimatorSettings estimator() {
     tools::EstimatorSettings settings;
     settings.period_s = positive();
-    settings.alpha_per_s = 0.9 / settings.period_s;
+    settings.alpha = 0.9 / settings.period_s;
     settings.hidden_units = whole(1, tools::kMaxHiddenUnits);
     settings.learning_rate = coin() ? positive() : 0.0;
     settings.weight_radius = positive();
     settings.initial_weight_range = settings.weight_radius / 100;
     settings.seed = static_cast<std::uint32_t>(generator_());
-    settings.dead_zone =
-        coin() ? tools::DeadZoneChoice::kContinuous : tools::DeadZoneChoice::kDiscontinuous;
+    settings.dead_zone = coin() ? DeadZone::kContinuous : DeadZone::kDiscontinuous;
     settings.torque_signal = coin() ? TorqueSignal::kSampled : TorqueSignal::kHeld;
     settings.source = any_text();
     return settings;
@@ -185,7 +184,7 @@ class RandomRobot {
       }
     }
     if (result.kind == tools::BoundSettings::Kind::kTable) {
-      result.table.variable = static_cast<tools::BoundVariable>(whole(0, 2));
+      result.table.variable = static_cast<BoundVariable>(whole(0, 2));
       result.table.joint = whole(0, joints - 1);
       double at = number();
       for (int i = whole(1, 16); i > 0; --i) {
@@ -211,12 +210,19 @@ class RandomRobot {
 
   tools::ChannelMap channels(int joints) {
     tools::ChannelMap map;
+    map.at_rest = whole(0, 3) == 0;
     map.time = channel();
+    if (map.at_rest) {  // none is read
+      map.time = tools::Channel();
+      map.time.source = "t";
+    }
     for (int i = 0; i < joints; ++i) {
       map.position.push_back(channel());
-      map.velocity.push_back(coin() ? std::optional(channel()) : std::nullopt);
+      map.velocity.push_back(!map.at_rest && coin() ? std::optional(channel()) : std::nullopt);
       map.torque.push_back(channel());
     }
+    if (coin()) map.dbc = "/" + word() + any_text();
+    if (map.at_rest) return map;
     for (int i = whole(0, 3); i > 0; --i) map.extra[word() + any_text()] = channel();
     return map;
   }

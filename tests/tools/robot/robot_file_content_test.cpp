@@ -60,13 +60,13 @@ TEST(RobotFileContent, HoldsTheEffectsInTheirOrder) {
 TEST(RobotFileContent, HoldsEstimatorBoundAndChannels) {
   const RobotDescription robot = content();
   EXPECT_EQ(robot.estimator.period_s, 0.002);
-  EXPECT_EQ(robot.estimator.alpha_per_s, 20);
+  EXPECT_EQ(robot.estimator.alpha, 20);
   EXPECT_EQ(robot.estimator.hidden_units, 12);
   EXPECT_EQ(robot.estimator.learning_rate, 0.5);
   EXPECT_EQ(robot.estimator.weight_radius, 3);
   EXPECT_EQ(robot.estimator.initial_weight_range, 0.2);
   EXPECT_EQ(robot.estimator.seed, 7U);
-  EXPECT_EQ(robot.estimator.dead_zone, DeadZoneChoice::kDiscontinuous);
+  EXPECT_EQ(robot.estimator.dead_zone, DeadZone::kDiscontinuous);
   EXPECT_EQ(robot.estimator.torque_signal, TorqueSignal::kHeld);
   EXPECT_EQ(robot.arming.position_window, (std::vector{0.1, 0.02}));
   EXPECT_EQ(robot.arming.speed, (std::vector{0.2, 0.03}));
@@ -92,7 +92,7 @@ TEST(RobotFileContent, LeavesOutWhatTheFileLeavesOut) {
       "type = \"revolute\"\naxis = [1, 0, 0]\n[joint.link]\nmass_kg = 1\n"
       "centre_of_mass_m = [0, 0, 0]\n",
       "r.toml");
-  EXPECT_EQ(robot.estimator.alpha_per_s, EstimatorSettings{}.alpha_per_s);
+  EXPECT_EQ(robot.estimator.alpha, EstimatorSettings{}.alpha);
   EXPECT_FALSE(robot.bound);
   EXPECT_FALSE(robot.channels);
   EXPECT_TRUE(robot.effects.empty());

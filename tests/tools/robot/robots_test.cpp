@@ -62,7 +62,7 @@ TEST(Robots, TwoLinkHasTheSettingsOfThePaper) {
     EXPECT_EQ(joint.kp, 100);
     EXPECT_EQ(joint.kd, 20);
   }
-  EXPECT_EQ(robot.estimator.alpha_per_s, 10);
+  EXPECT_EQ(robot.estimator.alpha, 10);
   EXPECT_EQ(robot.estimator.hidden_units, 35);
   EXPECT_EQ(robot.estimator.learning_rate, 2.5);
   EXPECT_EQ(robot.estimator.weight_radius, 10);

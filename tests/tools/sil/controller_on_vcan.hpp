@@ -8,6 +8,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <offnominal/realtime/cycle_timer.hpp>
 #include <offnominal/realtime/privileges.hpp>
 #include <stdexcept>

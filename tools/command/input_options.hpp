@@ -1,0 +1,41 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "analysis/filter_plan.hpp"
+
+// Options that several verbs have, the same for each.
+
+namespace offnominal::tools {
+
+/// --cutoff and --decimate, of every verb that filters a recording.
+inline void add_filter_options(CLI::App& verb, FilterRequest& request) {
+  verb.add_option(
+      "--cutoff", request.cutoff_hz,
+      "Cut-off of the low-pass, Hz. Default: 100, or a quarter of a sampling rate below "
+      "400 Hz");
+  verb.add_option("--decimate", request.decimate,
+                  "Keep one sample of so many. Default: about 100 samples a second are left");
+}
+
+/// --channels; `whose`: "recording's" or "recordings'".
+inline void add_channels_option(CLI::App& verb, std::optional<std::filesystem::path>& channels,
+                                const std::string& whose) {
+  verb.add_option(
+      "--channels", channels,
+      "TOML file that maps the " + whose + " columns, instead of the robot file's [channels]");
+}
+
+/// --threads, by default as many as the machine has.
+inline void add_threads_option(CLI::App& verb, int& threads, const std::string& words = "Threads") {
+  threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  verb.add_option("--threads", threads, words + "; the result does not depend on their number")
+      ->check(CLI::Range(1, 256));
+}
+
+}  // namespace offnominal::tools
