@@ -2,7 +2,7 @@
 
 #include "common/error.hpp"
 #include "input_file.hpp"
-#include "log/channels.hpp"
+#include "robot/channels.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace offnominal;

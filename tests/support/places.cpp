@@ -12,4 +12,8 @@ std::string command_file() { return OFFNOMINAL_COMMAND; }
 std::string controller_file() { return OFFNOMINAL_CONTROLLER; }
 #endif
 
+#ifdef OFFNOMINAL_WCET
+std::string wcet_file() { return OFFNOMINAL_WCET; }
+#endif
+
 }  // namespace offnominal::test

@@ -10,5 +10,6 @@ namespace offnominal::test {
 std::filesystem::path source_dir();
 std::string command_file();     // offnominal
 std::string controller_file();  // offnominal-controller
+std::string wcet_file();        // offnominal-wcet
 
 }  // namespace offnominal::test

@@ -7,9 +7,11 @@
 
 namespace offnominal::tools {
 
-/// The options of a verb that the user gave, as they would be typed again; pages show it.
+/// The options of a verb, or of a program without verbs, that the user gave, as they would be typed
+/// again; pages show it.
 [[nodiscard]] inline std::string command_line_of(const CLI::App& verb) {
-  std::string line = "offnominal " + verb.get_name();
+  const CLI::App* program = verb.get_parent();
+  std::string line = (program == nullptr ? "" : program->get_name() + " ") + verb.get_name();
   for (const CLI::Option* option : verb.get_options()) {
     if (option->count() == 0) continue;
     if (!option->get_positional()) line += " " + option->get_name();

@@ -1,8 +1,6 @@
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <offnominal/version.hpp>
@@ -10,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/error.hpp"
 #include "common/meant_option.hpp"
 #include "common/nearest.hpp"
+#include "common/numeric_options.hpp"
 #include "common/output_file.hpp"
 #include "report/page.hpp"
 
@@ -46,15 +44,8 @@ void check_verb(const CLI::App& app, int argc, char** argv) {
                     .mend = meant.empty() ? mend : "write `" + meant + "`, or " + mend});
 }
 
-// What CLI11 lets pass for every verb: a number that is none is in any range.
 void check_options(const CLI::App& verb) {
-  for (const CLI::Option* option : verb.get_options()) {
-    if (option->get_type_name().find("FLOAT") == std::string::npos) continue;
-    for (const std::string& word : option->results()) {
-      if (!std::isnan(std::strtod(word.c_str(), nullptr))) continue;
-      refuse_option(verb.get_name(), option->get_name(), word, "a number");
-    }
-  }
+  check_numbers(verb);
   check_outputs(verb, report::is_page);
 }
 

@@ -5,7 +5,7 @@
 namespace offnominal::tools {
 namespace {
 
-constexpr std::array<Verb, 10> kVerbs = {{
+constexpr std::array<Verb, 9> kVerbs = {{
     {"add", "Fit an effect to a recording and write the robot file that has it", set_up_add},
     {"calibrate", "Find the uncertainty bound from recordings of the healthy robot",
      set_up_calibrate},
@@ -21,8 +21,6 @@ constexpr std::array<Verb, 10> kVerbs = {{
     {"replay", "Run the on-board monitor over a recording: residual, threshold, alarms",
      set_up_replay},
     {"sil", "Run controller and arm at the two ends of a CAN bus, with faults", set_up_sil},
-    {"wcet", "Measure how long one control tick takes here, at worst: search, histogram, bound",
-     set_up_wcet},
 }};
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "common/error.hpp"
 #include "common/input_name.hpp"
 #include "common/nearest.hpp"
-#include "log/channels.hpp"
+#include "robot/channels.hpp"
 #include "log/hold_map.hpp"
 #include "log/log_format.hpp"
 #include "log/recording_file.hpp"

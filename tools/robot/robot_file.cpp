@@ -12,7 +12,7 @@
 #include "common/error.hpp"
 #include "common/number.hpp"
 #include "common/toml_table.hpp"
-#include "log/channels.hpp"
+#include "robot/channels.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/check_mass_matrix.hpp"
 #include "robot/read_effect.hpp"

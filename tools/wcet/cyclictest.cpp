@@ -37,7 +37,7 @@ class AnswerFile {
 };
 
 [[noreturn]] void refuse(const std::string& found, const std::string& mend) {
-  throw InputError({.file = "offnominal wcet",
+  throw InputError({.file = "offnominal-wcet",
                     .place = "--compare-cyclictest",
                     .found = found,
                     .allowed = "",

@@ -98,7 +98,7 @@ void bind(int cpu) {
   const bool possible = cpu >= 0 && cpu < CPU_SETSIZE;
   if (possible) CPU_SET(static_cast<std::size_t>(cpu), &set);
   if (possible && ::sched_setaffinity(0, sizeof set, &set) == 0) return;
-  throw InputError({.file = "offnominal wcet",
+  throw InputError({.file = "offnominal-wcet",
                     .place = "--cpu",
                     .found = std::to_string(cpu),
                     .allowed = "a CPU that this process may use",

@@ -198,7 +198,6 @@ TEST(Command, NamesTheVerbAndTheTableThatAreMeant) {
       {"sil", "--fault", "none", "--robot", robot},
       {"paper", "--fault", "none", "--robot", robot},
       {"paper", "--sweep", "--against", robot},
-      {"wcet", "--robot", robot},
       {"replay", log, "--robot", robot},
       {"codegen", robot, "-o", (folder / "r.hpp").string()}};
   for (const std::vector<std::string>& call : calls) {

@@ -50,7 +50,6 @@ class OutputFile : public testing::Test {
         {"paper", {with({"paper", "--fault", "none"}, robot), {"--log", "--report"}}},
         {"replay", {with({"replay", path("a.csv")}, robot), {"--report"}}},
         {"sil", {with({"sil"}, robot), {"--log", "--candump", "--report"}}},
-        {"wcet", {with({"wcet"}, robot), {"--report"}}},
     };
   }
 

@@ -15,7 +15,7 @@
 #include "common/error.hpp"
 #include "discovery/doctor.hpp"
 #include "hidden_case.hpp"
-#include "log/channels.hpp"
+#include "robot/channels.hpp"
 #include "log/csv_text.hpp"
 #include "log/read_log.hpp"
 #include "robot/robot_file.hpp"

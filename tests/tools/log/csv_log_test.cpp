@@ -8,7 +8,7 @@
 
 #include "common/error.hpp"
 #include "log/read_log.hpp"
-#include "temporary_file.hpp"
+#include "tools/support/temporary_file.hpp"
 
 namespace {
 

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "log/channels.hpp"
+#include "robot/channels.hpp"
 #include "log/read_log.hpp"
-#include "temporary_file.hpp"
+#include "tools/support/temporary_file.hpp"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include "common/error.hpp"
 #include "log/read_log.hpp"
 #include "support/recordings.hpp"
-#include "temporary_file.hpp"
+#include "tools/support/temporary_file.hpp"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "common/error.hpp"
 #include "log/read_log.hpp"
 #include "support/seed.hpp"
-#include "temporary_file.hpp"
+#include "tools/support/temporary_file.hpp"
 
 namespace {
 

@@ -15,13 +15,12 @@ namespace {
 using testing::HasSubstr;
 
 test::CommandResult wcet(std::vector<std::string> arguments) {
-  const std::vector<std::string> quick{"wcet", "--ticks",  "2000", "--cold-ticks",
-                                       "2",    "--search", "20"};
+  const std::vector<std::string> quick{"--ticks", "2000", "--cold-ticks", "2", "--search", "20"};
   arguments.insert(arguments.begin(), quick.begin(), quick.end());
-  return test::run_command(test::command_file(), std::move(arguments));
+  return test::run_command(test::wcet_file(), std::move(arguments));
 }
 
-TEST(WcetVerb, TellsMeasuredFromExtrapolated) {
+TEST(WcetProgram, TellsMeasuredFromExtrapolated) {
   const auto result = wcet({});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("\nMeasured: the longest of 2000 ticks"));
@@ -30,7 +29,7 @@ TEST(WcetVerb, TellsMeasuredFromExtrapolated) {
   EXPECT_THAT(result.out, HasSubstr("#"));
 }
 
-TEST(WcetVerb, GivesAHistogramThatAddsUp) {
+TEST(WcetProgram, GivesAHistogramThatAddsUp) {
   const auto result = wcet({"--json", "--scalar", "double"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
@@ -49,7 +48,7 @@ TEST(WcetVerb, GivesAHistogramThatAddsUp) {
   EXPECT_EQ(json["phases"].size(), 6U);
 }
 
-TEST(WcetVerb, SaysWhatToInstallForTheComparison) {
+TEST(WcetProgram, SaysWhatToInstallForTheComparison) {
   const test::TemporaryFolder empty;
   const char* path = std::getenv("PATH");
   const std::string before = path == nullptr ? "" : path;
@@ -63,7 +62,7 @@ TEST(WcetVerb, SaysWhatToInstallForTheComparison) {
 }
 
 // With the program itself: what it writes is what is read.
-TEST(WcetVerb, ComparesWithCyclictest) {
+TEST(WcetProgram, ComparesWithCyclictest) {
   const auto result = wcet({"--compare-cyclictest", "--cyclic-ticks", "20", "--json"});
   if (result.exit_code != 0 && result.err.find("no cyclictest") != std::string::npos) {
     GTEST_SKIP() << "cyclictest is not installed (package rt-tests)";
@@ -76,12 +75,37 @@ TEST(WcetVerb, ComparesWithCyclictest) {
   EXPECT_GT(comparison["cyclictest"]["max_us"], 0);
 }
 
-TEST(WcetVerb, RefusesNumbersThatMakeNoSense) {
-  EXPECT_EQ(test::run_command(test::command_file(), {"wcet", "--ticks", "0"}).exit_code, 2);
-  EXPECT_EQ(test::run_command(test::command_file(), {"wcet", "--ticks", "100000001"}).exit_code, 2);
+TEST(WcetProgram, RefusesNumbersThatMakeNoSense) {
+  EXPECT_EQ(test::run_command(test::wcet_file(), {"--ticks", "0"}).exit_code, 2);
+  EXPECT_EQ(test::run_command(test::wcet_file(), {"--ticks", "100000001"}).exit_code, 2);
   const auto cpu = wcet({"--cpu", "4000"});
   EXPECT_EQ(cpu.exit_code, 2);
   EXPECT_THAT(cpu.err, HasSubstr("--cpu: found 4000"));
+  const auto period = wcet({"--period", "nan"});
+  EXPECT_EQ(period.exit_code, 2);
+  EXPECT_THAT(period.err, HasSubstr("offnominal-wcet: --period: found nan; allowed: a number"));
+}
+
+TEST(WcetProgram, WantsABoundAndReplacesNoFile) {
+  const test::TemporaryFolder folder;
+  std::string text = test::content_of(test::source_dir() / "robots" / "two_link.toml");
+  text.resize(text.find("[uncertainty_bound]"));
+  test::put(folder / "r.toml", text);
+  const auto unbounded = wcet({"--robot", (folder / "r.toml").string()});
+  EXPECT_EQ(unbounded.exit_code, 2);
+  EXPECT_THAT(unbounded.err, HasSubstr("a table [uncertainty_bound]"));
+  const auto over = wcet({"--report", (folder / "r.toml").string()});
+  EXPECT_EQ(over.exit_code, 2);
+  EXPECT_THAT(over.err, HasSubstr("which is there already"));
+  EXPECT_EQ(test::content_of(folder / "r.toml"), text);
+}
+
+// The page says how it was made, with the program's own name.
+TEST(WcetProgram, WritesAPageAndReplacesItByAnother) {
+  const test::TemporaryFolder folder;
+  const std::string page = (folder / "wcet.html").string();
+  for (int i = 0; i < 2; ++i) ASSERT_EQ(wcet({"--report", page}).exit_code, 0);
+  EXPECT_THAT(test::content_of(page), HasSubstr("offnominal-wcet --ticks 2000"));
 }
 
 }  // namespace

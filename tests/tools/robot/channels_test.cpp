@@ -1,4 +1,4 @@
-#include "log/channels.hpp"
+#include "robot/channels.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "temporary_file.hpp"
+#include "tools/support/temporary_file.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "log/channels.hpp"
+#include "robot/channels.hpp"
 
 #include <algorithm>
 #include <cmath>
