@@ -16,6 +16,9 @@ struct LoadDependentFriction {
   static constexpr EffectKind kKind = EffectKind::kLoadDependentFriction;
   static constexpr const char* kName = "load_dependent_friction";
   static constexpr const char* kFormula = "factor * |load torque| * tanh(dq / smoothing)";
+  static constexpr const char* kWords = "friction that grows with the torque transmitted";
+  static constexpr const char* kMotionHint = "reverse at poses with little and with much load";
+  static constexpr EffectTraits kTraits{.is_friction = true, .sign = CoefficientSign::kPositive};
   // At 1 a joint that its load drives would lock, and no acceleration would follow from the torque.
   static constexpr double kMostFactor = 0.95;
   static constexpr std::array<ParameterInfo, 2> kParameters{{
@@ -43,6 +46,9 @@ struct TorqueScale {
   static constexpr EffectKind kKind = EffectKind::kTorqueScale;
   static constexpr const char* kName = "torque_scale";
   static constexpr const char* kFormula = "error * (torque of the model)";
+  static constexpr const char* kWords = "a wrong torque constant";
+  static constexpr const char* kMotionHint = "move with a payload of known mass";
+  static constexpr EffectTraits kTraits{.acts_at_rest = true};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"error", Quantity::kRatio, ParameterRole::kLinear, -0.9, 9, true, 0,
        "logged torque per torque that acts, less 1"},
