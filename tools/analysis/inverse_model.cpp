@@ -149,7 +149,8 @@ VectorXd friction_of_load(const Effect<double>& effect, const Motion& motion,
     if constexpr (offnominal::detail::action_of<E>() == EffectAction::kFrictionPerLoad) {
       for (Index i = 0; i < motion.sample_count(); ++i) {
         const JointInstant<double> at{motion.q(i, joint), motion.dq(i, joint), 0};
-        friction[i] = std::abs(load[i]) * E::friction_per_load(effect.parameters, at);
+        const auto per_load = E::friction_per_load(effect.parameters, at);
+        friction[i] = per_load.by_size * std::abs(load[i]) + per_load.by_load * load[i];
       }
     }
   });

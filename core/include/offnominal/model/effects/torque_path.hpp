@@ -9,6 +9,15 @@
 
 namespace offnominal::effects {
 
+// What a drive supplies beside the load: by_size |load| + by_load load. The first is friction of
+// either direction of power, the second what it is more where the drive moves the load than where
+// the load moves the drive.
+template <typename Scalar>
+struct LoadFriction {
+  Scalar by_size{};
+  Scalar by_load{};
+};
+
 // Friction of a gear whose teeth are pressed together by what they transmit.
 // Source: P. Hamon, M. Gautier, P. Garrec, IROS 2010 (dry friction that depends on load and
 // velocity), with the reflected inertia counted as load, as torque_path.hpp explains.
@@ -26,13 +35,12 @@ struct LoadDependentFriction {
        "friction per torque that passes through the gear"},
       kSmoothing,
   }};
-  // Signed by the direction: the drive supplies this times |load torque| beside the load.
   template <typename Scalar>
-  static Scalar friction_per_load(const std::array<Scalar, kMaxEffectParameters>& p,
-                                  const JointInstant<Scalar>& at) {
-    return p[0] * smooth_sign(at.dq, p[1]);
+  static LoadFriction<Scalar> friction_per_load(const std::array<Scalar, kMaxEffectParameters>& p,
+                                                const JointInstant<Scalar>& at) {
+    return {p[0] * smooth_sign(at.dq, p[1]), Scalar(0)};
   }
-  // What its magnitude never exceeds.
+  // What it never exceeds where the load moves the drive.
   template <typename Scalar>
   static Scalar most_friction_per_load(const std::array<Scalar, kMaxEffectParameters>& p) {
     return p[0];
