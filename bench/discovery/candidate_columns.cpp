@@ -72,10 +72,10 @@ std::vector<ShapePoint> highest_peak(const Data& data, const NuisanceFit& fit, c
   return {{grid[which]}};
 }
 
-bool knows(const Data& data, const std::string_view effect, Index joint) {
+bool knows(const Data& data, EffectKind kind, Index joint) {
   const auto& known = data.recordings[0].known_effects;
   return std::any_of(known.begin(), known.end(), [&](const tools::RobotEffect& one) {
-    return one.joint == joint && std::string_view(info_of(one.kind)->name) == effect;
+    return one.joint == joint && one.kind == kind;
   });
 }
 
@@ -87,7 +87,7 @@ NuisanceFit fit_nuisance(const Data& data) {
   std::vector<Prior> priors;
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const bool shape = terms[i].kind == NuisanceTerm::Kind::kSignShape;
-    if (shape && !knows(data, "coulomb_friction", terms[i].joint)) continue;
+    if (shape && !data.recordings[0].knows_dry_friction(terms[i].joint)) continue;
     kept.push_back(static_cast<Index>(i));
     // Only the ends: what these methods compute has no rows for a belief.
     priors.push_back({.low = terms[i].prior.low, .high = terms[i].prior.high});
@@ -115,7 +115,7 @@ std::vector<CandidateColumns> candidate_columns(const Data& data, const Nuisance
     const bool spectral = effect->spectrum() != EffectCandidate::Spectrum::kNone;
     for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
       if (!effect->applies(data.recordings[0], joint)) continue;
-      if (!spectral && knows(data, effect->name(), joint)) continue;
+      if (!spectral && knows(data, effect->kind(), joint)) continue;
       Term term{effect.get(), joint, {}, effect->shapes(data.recordings, joint)};
       for (const ShapePoint& shape :
            spectral ? highest_peak(data, fit, term) : few_of(Search::grid_of(term))) {
@@ -125,7 +125,7 @@ std::vector<CandidateColumns> candidate_columns(const Data& data, const Nuisance
           columns.col(c) = data.layout.weighted(columns.col(c), fit.joint_weights);
         }
         columns -= fit.basis * (fit.basis.transpose() * columns);
-        all.push_back({{effect->name(), joint}, std::move(columns)});
+        all.push_back({{effect->kind(), joint}, std::move(columns)});
       }
     }
   }

@@ -94,7 +94,7 @@ Outcome run_motion_case(const hidden::Request& request) {
   try {
     const hidden::DrawnRobot drawn = hidden::draw_robot(request);
     for (const auto& effect : drawn.truth.effects) {
-      outcome.truth.push_back({std::string(hidden::name(effect.effect)), effect.joint});
+      outcome.truth.push_back({info_named(hidden::name(effect.effect))->kind, effect.joint});
     }
     outcome.hidden = text_of(outcome.truth);
     std::optional<FirstRecording> first;

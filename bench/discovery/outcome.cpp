@@ -1,9 +1,12 @@
 #include "outcome.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <string_view>
 
 #include "motion_case.hpp"
 #include "recorded_case.hpp"
@@ -19,14 +22,18 @@ using tools::discovery::Verdict;
 
 namespace {
 
+std::string text_at(std::string_view name, Eigen::Index joint) {
+  return fmt::format("{}@{}", name, joint + 1);
+}
+
 EffectAt place_of(const hidden::TrueEffect& effect) {
-  return {std::string(hidden::name(effect.effect)), effect.joint};
+  return {info_named(hidden::name(effect.effect))->kind, effect.joint};
 }
 
 std::string words_for(const hidden::Truth& truth, const Effects& effects) {
   if (truth.fault != hidden::DataFault::kNone) return std::string(hidden::name(truth.fault));
   if (truth.outside.effect == hidden::OutsideEffect::kNone) return text_of(effects);
-  return text_of(EffectAt{std::string(hidden::name(truth.outside.effect)), truth.outside.joint});
+  return text_at(hidden::name(truth.outside.effect), truth.outside.joint);
 }
 
 ParameterCheck check(const ExpectedParameter& expected, const tools::discovery::Estimate& found) {
@@ -151,9 +158,7 @@ Outcome run_case(const CaseGroup& group, const hidden::Request& request) {
   return outcome;
 }
 
-std::string text_of(const EffectAt& effect) {
-  return effect.effect + "@" + std::to_string(effect.joint + 1);
-}
+std::string text_of(const EffectAt& effect) { return text_at(effect.name(), effect.joint); }
 
 std::string text_of(const Effects& effects) {
   std::string text;

@@ -93,7 +93,7 @@ std::vector<EffectSummary> summarise_effects(const std::vector<Outcome>& outcome
   std::vector<EffectSummary> all;
   for (const Outcome& one : outcomes) {
     if (one.truth.size() != 1) continue;
-    const std::string& name = one.truth[0].effect;
+    const std::string_view name = one.truth[0].name();
     auto place = std::find_if(all.begin(), all.end(),
                               [&](const EffectSummary& summary) { return summary.effect == name; });
     if (place == all.end()) {
@@ -118,7 +118,8 @@ std::vector<EffectSummary> summarise_effects(const std::vector<Outcome>& outcome
       ++place->instead["verdict " + one.verdict];
     } else {
       const bool same_joint = one.named[0].joint == one.truth[0].joint;
-      ++place->instead[one.named[0].effect + (same_joint ? "" : " on the other joint")];
+      ++place
+            ->instead[std::string(one.named[0].name()) + (same_joint ? "" : " on the other joint")];
     }
   }
   return all;

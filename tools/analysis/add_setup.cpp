@@ -11,15 +11,6 @@
 namespace offnominal::tools {
 namespace {
 
-// Several of these may act on one joint: each has its own period, or follows its own joint.
-bool may_repeat(const EffectInfo& info) {
-  return std::any_of(info.parameters.begin(), info.parameters.end(), [](const ParameterInfo& p) {
-    return p.role == ParameterRole::kShape &&
-           (p.quantity == Quantity::kCyclesPerPosition ||
-            p.quantity == Quantity::kAngularFrequency || p.quantity == Quantity::kJointNumber);
-  });
-}
-
 class SetUp {
  public:
   SetUp(const RobotDescription& robot, const AddRequest& request) : request_(request) {
@@ -65,7 +56,7 @@ class SetUp {
           std::any_of(robot.effects.begin(), robot.effects.end(), [&](const RobotEffect& effect) {
             return effect.kind == kind && effect.joint == request_.joint;
           });
-      if (!(there || twice) || may_repeat(info)) continue;
+      if (!(there || twice) || info.may_repeat()) continue;
       throw InputError(
           {robot.name, fmt::format("joint {}", request_.joint + 1),
            fmt::format("{} {}", info.name, twice ? "asked for twice" : "in the model already"),

@@ -14,20 +14,7 @@ namespace offnominal::tools {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-bool is_friction(EffectKind kind) {
-  switch (kind) {
-    case EffectKind::kViscousFriction:
-    case EffectKind::kCoulombFriction:
-    case EffectKind::kStribeckFriction:
-    case EffectKind::kQuadraticFriction:
-    case EffectKind::kTemperatureDrift:
-    case EffectKind::kLoadDependentFriction:
-    case EffectKind::kHysteresis:
-      return true;
-    default:
-      return false;
-  }
-}
+bool is_friction(EffectKind kind) { return info_of(kind)->traits.is_friction; }
 
 namespace {
 
@@ -43,7 +30,7 @@ constexpr double kMovingShare = 0.02;
 VectorXd friction_torque(const RobotDescription& robot, std::size_t joint, const Motion& motion) {
   RobotDescription with = robot;
   std::erase_if(with.effects, [](const RobotEffect& effect) {
-    return effect.kind == EffectKind::kTorqueScale || effect.kind == EffectKind::kTimeDelay;
+    return info_of(effect.kind)->acts_on_whole_drive();
   });
   RobotDescription without = with;
   std::erase_if(without.effects, [&](const RobotEffect& effect) {
@@ -52,7 +39,8 @@ VectorXd friction_torque(const RobotDescription& robot, std::size_t joint, const
   const double smoothing =
       kMovingShare * motion.dq.col(static_cast<Index>(joint)).cwiseAbs().maxCoeff();
   for (RobotEffect& effect : with.effects) {
-    if (effect.kind != EffectKind::kHysteresis || effect.joint != joint) continue;
+    const bool stores = info_of(effect.kind)->action == EffectAction::kTorqueOfState;
+    if (!stores || effect.joint != joint) continue;
     effect.kind = EffectKind::kCoulombFriction;
     effect.parameters[1] = smoothing;
   }

@@ -10,9 +10,8 @@
 namespace offnominal::tools {
 
 // Friction takes energy out of its joint, all of it together: the excess of a joint near standstill
-// or of a cold one may well be negative where enough Coulomb friction stands beside it. What tells
-// the two directions apart (friction_asymmetry) is no part of it, since no recording tells that
-// from a constant torque; nor is what another joint's motion causes (joint_coupling).
+// or of a cold one may well be negative where enough Coulomb friction stands beside it. Core's
+// trait says which effects are friction.
 bool is_friction(EffectKind kind);
 
 // Friction that gives energy to its joint.

@@ -1,6 +1,7 @@
 #include "analysis/inverse_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <offnominal/model/effect_memory.hpp>
 #include <offnominal/model/inverse_dynamics.hpp>
 #include <stdexcept>
@@ -83,24 +84,13 @@ MatrixXd link_torque(const RobotDescription& robot, std::size_t link, const Moti
 }
 
 bool is_torque_effect(EffectKind kind) {
-  bool torque = false;
-  visit_effect(kind, [&]<typename E>() {
-    torque = requires(std::array<double, kMaxEffectParameters> p, JointInstant<double> at) {
-      E::torque(p, at);
-    }
-    || offnominal::detail::kHasState<E>;
-  });
-  return torque;
+  const EffectAction action = info_of(kind)->action;
+  return action == EffectAction::kTorque || action == EffectAction::kTorqueOfState;
 }
 
 bool is_path_effect(EffectKind kind) {
-  bool path = false;
-  visit_effect(kind, [&]<typename E>() {
-    path = requires(std::array<double, kMaxEffectParameters> p) { E::most_friction_per_load(p); }
-    || requires(std::array<double, kMaxEffectParameters> p) { E::told_per_given(p); }
-    || offnominal::detail::kHasDelay<E>;
-  });
-  return path;
+  const EffectInfo& info = *info_of(kind);
+  return info.acts_on_whole_drive() || info.action == EffectAction::kFrictionPerLoad;
 }
 
 bool has_path_effect(const RobotDescription& robot) {
@@ -126,7 +116,8 @@ ToldTorque told_torque(const RobotDescription& robot, const Motion& motion) {
   });
 }
 
-VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Motion& motion) {
+VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Motion& motion,
+                          double start_s) {
   const auto joint = static_cast<Index>(effect.joint);
   VectorXd torque = VectorXd::Zero(motion.sample_count());
   if (!source_joint_valid(effect, static_cast<int>(motion.q.cols()))) return torque;
@@ -137,14 +128,43 @@ VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Mo
       torque = torque_along<E>(parameters, motion.q.col(joint));
     } else if constexpr (requires(JointInstant<double> at) { E::torque(parameters, at); }) {
       for (Index i = 0; i < motion.sample_count(); ++i) {
-        JointInstant<double> at{motion.q(i, joint), motion.dq(i, joint),
-                                motion.t_s[i] - motion.t_s[0]};
+        JointInstant<double> at{motion.q(i, joint), motion.dq(i, joint), motion.t_s[i] - start_s};
         if constexpr (kHasSource<E>) at.source_dq = motion.dq(i, source_joint<E>(parameters));
         torque[i] = E::torque(parameters, at);
       }
     }
   });
   return torque;
+}
+
+VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Motion& motion) {
+  return torque_of_effect(effect, type, motion, motion.sample_count() > 0 ? motion.t_s[0] : 0);
+}
+
+VectorXd friction_of_load(const Effect<double>& effect, const Motion& motion,
+                          const Eigen::Ref<const VectorXd>& load) {
+  const auto joint = static_cast<Index>(effect.joint);
+  VectorXd friction = VectorXd::Zero(motion.sample_count());
+  visit_effect(effect.kind, [&]<typename E>() {
+    if constexpr (offnominal::detail::action_of<E>() == EffectAction::kFrictionPerLoad) {
+      for (Index i = 0; i < motion.sample_count(); ++i) {
+        const JointInstant<double> at{motion.q(i, joint), motion.dq(i, joint), 0};
+        const auto per_load = E::friction_per_load(effect.parameters, at);
+        friction[i] = per_load.by_size * std::abs(load[i]) + per_load.by_load * load[i];
+      }
+    }
+  });
+  return friction;
+}
+
+double reflected_inertia_of(const Effect<double>& effect) {
+  double inertia = 0;
+  visit_effect(effect.kind, [&]<typename E>() {
+    if constexpr (offnominal::detail::action_of<E>() == EffectAction::kReflectedInertia) {
+      inertia = E::reflected_inertia(effect.parameters);
+    }
+  });
+  return inertia;
 }
 
 MatrixXd torque_of_inertial_effect(const RobotDescription& robot, const Effect<double>& effect,

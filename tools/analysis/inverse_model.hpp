@@ -38,9 +38,21 @@ struct ToldTorque {
 };
 ToldTorque told_torque(const RobotDescription& robot, const Motion& motion);
 
-// The torque of one torque effect on its own joint, of the given type.
+// The torque of one torque effect on its own joint, of the given type. The run that its time counts
+// from began at `start_s`, on the motion's clock.
+Eigen::VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Motion& motion,
+                                 double start_s);
+// The same of a run that began at the motion's first sample.
 Eigen::VectorXd torque_of_effect(const Effect<double>& effect, JointType type,
                                  const Motion& motion);
+
+// The friction of one effect by what passes from drive to load, on its own joint with this load
+// over the motion, N m or N.
+Eigen::VectorXd friction_of_load(const Effect<double>& effect, const Motion& motion,
+                                 const Eigen::Ref<const Eigen::VectorXd>& load);
+
+// The inertia that an effect adds to its own joint alone, kg m^2 or kg; 0 for all others.
+double reflected_inertia_of(const Effect<double>& effect);
 
 // What an inertial effect adds to the torque of every joint.
 Eigen::MatrixXd torque_of_inertial_effect(const RobotDescription& robot,

@@ -5,24 +5,6 @@
 #include <algorithm>
 
 namespace offnominal::tools {
-namespace {
-
-// Of an effect's parameters: those whose torque is against the motion at every instant.
-bool takes_energy_out(EffectKind kind, const ParameterInfo& parameter) {
-  if (parameter.role != ParameterRole::kLinear) return false;
-  switch (kind) {
-    case EffectKind::kViscousFriction:
-    case EffectKind::kCoulombFriction:
-    case EffectKind::kLoadDependentFriction:
-    case EffectKind::kHysteresis:
-      return true;
-    default:
-      return false;
-  }
-}
-
-}  // namespace
-
 std::string PhysicalRange::words_at(double value) const {
   return value < min ? fmt::format("{:g} or more", min) : fmt::format("{:g} or less", max);
 }
@@ -35,8 +17,12 @@ const char* PhysicalRange::usual_cause() const {
 }
 
 PhysicalRange physical_range(EffectKind kind, std::size_t parameter) {
+  const EffectTraits& traits = info_of(kind)->traits;
   const ParameterInfo& info = info_of(kind)->parameters[parameter];
-  PhysicalRange range{info.min, info.max, takes_energy_out(kind, info)};
+  // Against the motion at every instant.
+  const bool takes_energy_out = info.role == ParameterRole::kLinear && traits.is_friction &&
+                                traits.sign == CoefficientSign::kPositive;
+  PhysicalRange range{info.min, info.max, takes_energy_out};
   if (range.is_friction) range.min = std::max(range.min, 0.0);
   return range;
 }

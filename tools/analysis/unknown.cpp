@@ -134,10 +134,11 @@ bool is_load(const RobotDescription& robot, const Unknown& unknown) {
 }
 
 std::vector<std::size_t> joints_of(const RobotDescription& robot, const Unknown& unknown) {
-  const bool own_joint_only = unknown.kind == Unknown::Kind::kEffectParameter &&
-                              (is_torque_effect(robot.effects[unknown.effect].kind) ||
-                               is_path_effect(robot.effects[unknown.effect].kind) ||
-                               robot.effects[unknown.effect].kind == EffectKind::kRotorInertia);
+  const bool own_joint_only =
+      unknown.kind == Unknown::Kind::kEffectParameter &&
+      (is_torque_effect(robot.effects[unknown.effect].kind) ||
+       is_path_effect(robot.effects[unknown.effect].kind) ||
+       info_of(robot.effects[unknown.effect].kind)->action == EffectAction::kReflectedInertia);
   if (own_joint_only) return {unknown.joint};
   std::vector<std::size_t> joints;
   for (std::size_t joint = 0; joint <= unknown.joint; ++joint) joints.push_back(joint);

@@ -232,7 +232,7 @@ void note_what_matters(const CalibrationData& data, Calibration& result) {
         stretch.file, stretch.alarms_before));
   }
   for (const RobotEffect& effect : result.robot.effects) {
-    if (effect.kind != EffectKind::kPeriodicDisturbance) continue;
+    if (!info_of(effect.kind)->is_periodic_in_time()) continue;
     result.notes.emplace_back(
         "The model knows a disturbance that is periodic in time: the bound holds where the monitor "
         "starts in the same phase of it as these recordings do.");

@@ -16,9 +16,9 @@ constexpr std::array<double, 2> kBands{0.7, 0.45};  // of the band that was fitt
 std::vector<NamedValue> numbers_of(const Data& data, const std::vector<Term>& terms,
                                    const ModelFit& fit, std::size_t i) {
   const Term& term = terms[i];
-  const double factor = factor_beside_torque_scale(terms, fit, term.joint, term.effect->name());
+  const double factor = factor_beside_torque_scale(terms, fit, term.joint, term.effect->kind());
   return term.effect->parameters(data.recordings[0].joint_type(term.joint),
-                                 factor * fit.coefficients[i], term.shape, term.ranges);
+                                 factor * fit.coefficients[i], term.shape);
 }
 
 // The same terms fitted in a band of that share of the first one.

@@ -77,9 +77,9 @@ void describe_findings(const SearchResult& from, Explanation& to) {
     const std::vector<Term> without = from.found.terms_without(i);
     const ModelFit fit = from.regression.fit(without);
     Finding finding;
-    finding.what = {effect.name(), joint};
-    finding.words = effect.words();
-    finding.formula = effect.formula();
+    finding.what = {effect.kind(), joint};
+    finding.words = effect.info().words;
+    finding.formula = effect.info().formula;
     finding.parameters = estimates[i];
     finding.p_value = accepted.p;
     finding.p_replay = accepted.p_replay;
@@ -95,7 +95,7 @@ void describe_suspicion(const SearchResult& from, Explanation& to) {
   const auto& suspected = from.found.suspected;
   if (!suspected) return;
   const Term& term = suspected->term;
-  to.suspected = {{term.effect->name(), term.joint}, suspected->p, suspected->share};
+  to.suspected = {{term.effect->kind(), term.joint}, suspected->p, suspected->share};
 }
 
 void describe_rejections(const SearchResult& from, Explanation& to) {
@@ -108,7 +108,7 @@ void describe_rejections(const SearchResult& from, Explanation& to) {
     const double p = std::min(
         1.0, std::pow(10.0, -one.log10_p) * static_cast<double>(screening.candidates.size()));
     to.rejected.push_back(
-        {{one.term.effect->name(), joint}, p, detectable[joint], effort_unit(from.robot, joint)});
+        {{one.term.effect->kind(), joint}, p, detectable[joint], effort_unit(from.robot, joint)});
   }
 }
 

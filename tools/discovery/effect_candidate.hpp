@@ -48,68 +48,77 @@ struct NamedValue {
   std::string unit;
 };
 
-// A linear parameter as the user reads it.
-struct LinearParameter {
-  std::string name;
-  std::string unit;
-};
-
-// A physical effect that may be missing from a model, on one joint. Regressors follow the sign of
-// offnominal/model/effect.hpp: what the drive has to supply.
+// A physical effect that may be missing from a model, on one joint: core's struct of it as a search
+// sees it. Regressors follow the sign of offnominal/model/effect.hpp: what the drive has to supply.
+// An effect whose mathematics in a search is not the struct's own has a class in effects/.
 class EffectCandidate {
  public:
+  using Parameters = std::array<double, kMaxEffectParameters>;
+
+  // Of an effect that info_of() knows.
+  explicit EffectCandidate(EffectKind kind) : info_(*info_of(kind)) {}
   virtual ~EffectCandidate() = default;
+  EffectCandidate(const EffectCandidate&) = delete;
+  EffectCandidate& operator=(const EffectCandidate&) = delete;
 
-  // Name in robot files and in results.
-  [[nodiscard]] virtual const char* name() const = 0;
-  // The torque as a formula of the parameters.
-  [[nodiscard]] virtual const char* formula() const = 0;
-  // A noun phrase for the report: "friction that falls with speed near standstill".
-  [[nodiscard]] virtual const char* words() const = 0;
-  // Which motion shows it best.
-  [[nodiscard]] virtual const char* motion_hint() const = 0;
+  [[nodiscard]] const EffectInfo& info() const { return info_; }
+  [[nodiscard]] EffectKind kind() const { return info_.kind; }
+  [[nodiscard]] const char* name() const { return info_.name; }
 
-  // Linear parameters, one per regressor.
-  [[nodiscard]] virtual std::vector<LinearParameter> linear_parameters(JointType type) const = 0;
-  // Shape parameters with grids that suit the recordings; none by default.
+  // Shape parameters with grids that suit the recordings: by default those that the struct says a
+  // share for, and the other joint.
   [[nodiscard]] virtual std::vector<ShapeRange> shapes(const std::vector<Workspace>& at,
                                                        Eigen::Index joint) const;
+  // By default one per linear parameter: the struct's own torque with that one 1 and the others 0.
   [[nodiscard]] virtual std::vector<Regressor> regressors(const Workspace& at, Eigen::Index joint,
-                                                          std::span<const double> shape) const = 0;
-  // What the user reads, from the fitted coefficients and the shape; by default the linear
-  // parameters, then the shape's.
-  [[nodiscard]] virtual std::vector<NamedValue> parameters(
-      JointType type, const Eigen::VectorXd& coefficients, const ShapePoint& shape,
-      const std::vector<ShapeRange>& ranges) const;
+                                                          std::span<const double> shape) const;
+  // The struct's parameters, those that the search finds set: by default the coefficients and the
+  // shape, in the struct's order.
+  [[nodiscard]] virtual Parameters found_parameters(const Eigen::VectorXd& coefficients,
+                                                    std::span<const double> shape) const;
   // Whether fitted coefficients are physical: friction takes energy out, and an operator whose size
-  // is in its shape has a coefficient near 1. True by default.
+  // is in its shape has a coefficient near 1. By default what the struct says of their sign.
   [[nodiscard]] virtual bool is_physical(const Eigen::VectorXd& coefficients) const;
   // Whether the effect can act on this joint of the robot.
   [[nodiscard]] virtual bool applies(const Workspace& at, Eigen::Index joint) const;
-  // Whether it acts on this joint where nothing moves: what hold maps are searched for.
+  // Whether it acts on this joint where nothing moves: what hold maps are searched for. By default
+  // what the struct says, unless it counts time, which readings at rest do not have.
   [[nodiscard]] virtual bool acts_at_rest(const Workspace& at, Eigen::Index joint) const;
+  // Decided by forward simulation: regression only screens it.
+  [[nodiscard]] virtual bool is_only_screened() const { return false; }
+
   // Takes the place of the nuisance time skew (nuisance.hpp) once it is in the model. Its only
   // coefficient is a time then, and no discovery within what the skew may be.
-  [[nodiscard]] virtual bool replaces_skew() const { return false; }
-  // Its shape at a reversal becomes a nuisance once it is in the model.
-  [[nodiscard]] virtual bool is_dry_friction() const { return false; }
-  // Decided by forward simulation: the effect remembers, so that regression only screens it.
-  [[nodiscard]] virtual bool has_memory() const { return false; }
+  [[nodiscard]] bool replaces_skew() const { return info_.action == EffectAction::kDelay; }
   // The grid is a spectrum: it is screened by a periodogram over this variable.
   enum class Spectrum { kNone, kPosition, kTime };
-  [[nodiscard]] virtual Spectrum spectrum() const { return Spectrum::kNone; }
+  [[nodiscard]] Spectrum spectrum() const;
+
+  // What the user reads: the parameters that the search finds.
+  [[nodiscard]] std::vector<NamedValue> parameters(JointType type,
+                                                   const Eigen::VectorXd& coefficients,
+                                                   std::span<const double> shape) const;
+  // As core has it. What the search does not find is the struct's default, and the width of the
+  // smoothed sign is that of the joint whose velocity the effect follows, of `sign_width`.
+  [[nodiscard]] Effect<double> effect(Eigen::Index joint, const Eigen::VectorXd& coefficients,
+                                      std::span<const double> shape,
+                                      const Eigen::VectorXd& sign_width) const;
 
  protected:
+  // Whether the search finds this parameter of the struct: by default one that has no default, and
+  // one that the struct says a share for.
+  [[nodiscard]] virtual bool finds(const ParameterInfo& parameter) const;
+  [[nodiscard]] Eigen::Index linear_count() const;
+  // The range of that parameter of the struct, which every class may fill in its own way.
+  [[nodiscard]] ShapeRange range_of(std::size_t parameter, JointType type) const;
   // What remains of an operator's coefficient where the operator itself is the effect.
   [[nodiscard]] static bool is_near_one(double share) { return share > 0.6 && share < 1.5; }
 
-  EffectCandidate() = default;
-  EffectCandidate(const EffectCandidate&) = default;
-  EffectCandidate& operator=(const EffectCandidate&) = default;
+ private:
+  const EffectInfo& info_;
 };
 
-// Every effect that the analysis knows, in the order of results. An effect is one class in effects/
-// and its name in effect_candidate.cpp.
+// Every effect that the analysis knows, in core's order.
 const std::vector<std::unique_ptr<const EffectCandidate>>& all_candidates();
 
 }  // namespace offnominal::tools::discovery

@@ -110,7 +110,7 @@ std::vector<Estimate> of_term(const Data& data, const Term& term, const VectorXd
                               const Place& place) {
   const JointType type = data.recordings[0].joint_type(term.joint);
   const auto named = [&](const VectorXd& c, const ShapePoint& shape) {
-    return term.effect->parameters(type, factor * c, shape, term.ranges);
+    return term.effect->parameters(type, factor * c, shape);
   };
   const MatrixXd slope =
       slopes_of(term, coefficients, place, covariances.front().matrix.rows(), named);
@@ -267,7 +267,7 @@ std::vector<std::vector<Estimate>> estimates_of(const Regression& regression,
   std::vector<std::vector<Estimate>> all;
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const double factor =
-        factor_beside_torque_scale(terms, fit, terms[i].joint, terms[i].effect->name());
+        factor_beside_torque_scale(terms, fit, terms[i].joint, terms[i].effect->kind());
     all.push_back(
         of_term(data, terms[i], fit.coefficients[i], factor, covariances, model.places[i]));
   }

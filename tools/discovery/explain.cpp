@@ -129,8 +129,9 @@ class Explainer {
       }
     }
     for (const RobotEffect& effect : robot_.effects) {
+      const EffectTraits& traits = info_of(effect.kind)->traits;
       const bool of_instant =
-          effect.kind != EffectKind::kPeriodicDisturbance && !remembers(effect.kind);
+          !(traits.acts_at_rest && traits.counts_time) && !remembers(effect.kind);
       if (!at_rest || of_instant) continue;
       throw InputError(
           {logs.front().file, "", "a hold map",
@@ -183,10 +184,10 @@ class Explainer {
     const std::vector<Term> others = found.terms_without(i);
     const ModelFit beside = regression_->fit(others);
     const Screening screening = search_->screen(others, beside);
-    std::vector<EffectAt> same{{mine.effect->name(), mine.joint}};
+    std::vector<EffectAt> same{{mine.effect->kind(), mine.joint}};
     for (const Proposal& other : search_->propose(others, beside, screening)) {
       const Term& term = other.terms.back();
-      const EffectAt name{term.effect->name(), term.joint};
+      const EffectAt name{term.effect->kind(), term.joint};
       if (name == same[0] || !as_good(*data_, found.fit, other.fit) ||
           is_nested(*data_, found.baseline, mine, term)) {
         continue;

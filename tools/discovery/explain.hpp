@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "discovery/doctor.hpp"
@@ -41,8 +42,9 @@ struct Estimate {
 
 // An effect on a joint; the joint counts from 0.
 struct EffectAt {
-  std::string effect;
+  EffectKind kind = EffectKind::kViscousFriction;
   Eigen::Index joint = 0;
+  [[nodiscard]] std::string_view name() const { return info_of(kind)->name; }
   friend bool operator==(const EffectAt&, const EffectAt&) = default;
 };
 bool holds(const std::vector<EffectAt>& effects, const EffectAt& one);

@@ -10,7 +10,7 @@ using nlohmann::ordered_json;
 namespace {
 
 ordered_json effect_at(const EffectAt& what) {
-  return {{"effect", what.effect}, {"joint", what.joint + 1}};
+  return {{"effect", what.name()}, {"joint", what.joint + 1}};
 }
 
 ordered_json parameters_of(const Finding& finding) {

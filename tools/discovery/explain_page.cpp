@@ -118,8 +118,8 @@ report::Table class_table(const Explanation& e) {
   table.columns = {{"class", "", "d"}, {"effect", "", ".4g"}, {"joint", "", "d"}};
   for (std::size_t i = 0; i < e.ambiguous.size(); ++i) {
     for (const EffectAt& one : e.ambiguous[i]) {
-      table.rows.push_back(
-          {static_cast<double>(i + 1), one.effect, static_cast<double>(one.joint + 1)});
+      table.rows.push_back({static_cast<double>(i + 1), std::string(one.name()),
+                            static_cast<double>(one.joint + 1)});
     }
   }
   table.note = "One effect of each class is missing, the likeliest stands first.";
@@ -135,8 +135,8 @@ report::Table rejected_table(const Explanation& e) {
                    {"smallest that would have been seen", "", ".3g"},
                    {"unit", "", ".4g"}};
   for (const Rejection& one : e.rejected) {
-    table.rows.push_back({one.what.effect, static_cast<double>(one.what.joint + 1), one.p_value,
-                          one.smallest_detectable, one.unit});
+    table.rows.push_back({std::string(one.what.name()), static_cast<double>(one.what.joint + 1),
+                          one.p_value, one.smallest_detectable, one.unit});
   }
   return table;
 }

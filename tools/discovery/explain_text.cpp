@@ -60,7 +60,7 @@ std::string text_of_findings(const Explanation& e) {
   for (const auto& same : e.ambiguous) {
     text += "\nnot told apart:";
     for (const EffectAt& one : same) {
-      text += fmt::format(" {} on joint {};", one.effect, one.joint + 1);
+      text += fmt::format(" {} on joint {};", one.name(), one.joint + 1);
     }
     text.back() = '\n';
   }

@@ -135,7 +135,7 @@ class Finder {
     constexpr double kLikely = 0.05;
     constexpr double kWorthAWord = 0.02;
     // Regression only screens what remembers: its columns hold the noise that they explain.
-    if (!found_.accepted.empty() || one.terms.back().effect->has_memory()) return;
+    if (!found_.accepted.empty() || one.terms.back().effect->is_only_screened()) return;
     if (!all_sufficient(excitation_)) return;
     const Fall fall = fall_of(found_.fit, one.fit);
     if (fall.share < kWorthAWord || !matters(fall)) return;
@@ -174,7 +174,7 @@ class Finder {
       suspect(best, p);
       return false;
     }
-    if (term.effect->has_memory() && !simulates_better(best)) return false;
+    if (term.effect->is_only_screened() && !simulates_better(best)) return false;
     const double p_replay = played_p(best);
     if (options_.replays > 0 && p_replay > kReplayError) return false;
     // The earlier shapes are as they were: only the new term's was refined.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include "analysis/friction_power.hpp"
@@ -19,33 +18,12 @@ using Eigen::Index;
 
 namespace {
 
-const EffectInfo* info_named(std::string_view name) {
-  const auto found = std::find_if(kAllEffectInfos.begin(), kAllEffectInfos.end(),
-                                  [&](const EffectInfo& info) { return name == info.name; });
-  return found == kAllEffectInfos.end() ? nullptr : &*found;
-}
-
-// `sign_width`: of the smoothed sign that the regressors have where it is not a shape of theirs.
+// None where a robot file cannot say it.
 std::optional<RobotEffect> robot_effect(const Term& term, const Eigen::VectorXd& coefficients,
-                                        JointType type, double sign_width) {
-  const EffectInfo* info = info_named(term.effect->name());
-  if (info == nullptr) return std::nullopt;
-  RobotEffect effect;
-  effect.kind = info->kind;
-  effect.joint = static_cast<std::uint8_t>(term.joint);
+                                        const Eigen::VectorXd& sign_width) {
+  RobotEffect effect{term.effect->effect(term.joint, coefficients, term.shape, sign_width)};
   effect.fitted = true;
-  std::vector<NamedValue> values =
-      term.effect->parameters(type, coefficients, term.shape, term.ranges);
-  values.push_back({effects::kSmoothing.name, sign_width, ""});
-  for (std::size_t i = 0; i < info->parameters.size(); ++i) {
-    const ParameterInfo& parameter = info->parameters[i];
-    const auto value = std::find_if(values.begin(), values.end(), [&](const NamedValue& one) {
-      return one.name == parameter.name;
-    });
-    if (value == values.end() && parameter.required) return std::nullopt;
-    effect.parameters[i] = value == values.end() ? parameter.default_value : value->value;
-  }
-  return parameters_valid(effect) ? std::optional(effect) : std::nullopt;
+  return parameters_valid(effect) ? std::optional(std::move(effect)) : std::nullopt;
 }
 
 // `column`: of the nuisance; `beyond`: how far the number would be outside of its range.
@@ -83,8 +61,7 @@ std::vector<Moved> moved_numbers(const Relinearised& found, const RobotDescripti
     const RobotEffect& effect = robot.effects[term.effect];
     if (!effect.fitted) continue;
     Moved moved{term.effect, term.parameter, physical_range(effect.kind, term.parameter)};
-    moved.factor =
-        factor_beside_torque_scale(found.terms, found.fit, term.joint, info_of(effect.kind)->name);
+    moved.factor = factor_beside_torque_scale(found.terms, found.fit, term.joint, effect.kind);
     moved.asked = effect.parameters[term.parameter] +
                   moved.factor * found.fit.nuisance[static_cast<Index>(i)];
     all.push_back(moved);
@@ -146,13 +123,12 @@ std::vector<std::string> unphysical(const Relinearised& last, const RobotDescrip
   std::set<Index> joints;
   for (std::size_t i = 0; i < last.terms.size(); ++i) {
     const Term& term = last.terms[i];
-    const EffectInfo* info = info_named(term.effect->name());
-    if (info == nullptr) continue;
-    if (is_friction(info->kind)) joints.insert(term.joint);
+    if (!chain_may_have(term.effect->kind())) continue;
+    if (is_friction(term.effect->kind())) joints.insert(term.joint);
     if (term.effect->is_physical(last.fit.coefficients[i])) continue;
     objections.push_back(fmt::format(
         "{} of joint {} came out as {:.4g}, which cannot be, once all was fitted together",
-        info->name, term.joint + 1, last.fit.coefficients[i][0]));
+        term.effect->name(), term.joint + 1, last.fit.coefficients[i][0]));
   }
   for (const Moved& moved : moved_numbers(last, improved)) {
     const RobotEffect& effect = improved.effects[moved.effect];
@@ -199,11 +175,10 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   move_fitted_effects(last, source, improved.robot);
   for (std::size_t i = 0; i < last.terms.size(); ++i) {
     const Term& term = last.terms[i];
-    const JointType type = file.joints[static_cast<std::size_t>(term.joint)].joint.type;
     const double factor =
-        factor_beside_torque_scale(last.terms, last.fit, term.joint, term.effect->name());
-    std::optional<RobotEffect> effect = robot_effect(term, factor * last.fit.coefficients[i], type,
-                                                     data.recordings[0].sign_width[term.joint]);
+        factor_beside_torque_scale(last.terms, last.fit, term.joint, term.effect->kind());
+    std::optional<RobotEffect> effect =
+        robot_effect(term, factor * last.fit.coefficients[i], data.recordings[0].sign_width);
     if (!effect) {
       improved.not_in_robot_files.emplace_back(term.effect->name());
       continue;

@@ -74,9 +74,9 @@ void climb(Term& term, const Gain& gain) {
 }  // namespace
 
 bool Regression::has_dry_friction(const std::vector<Term>& terms, Index joint) const {
-  return data_.recordings[0].knows_coulomb_friction(joint) ||
+  return data_.recordings[0].knows_dry_friction(joint) ||
          std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
-           return term.joint == joint && term.effect->is_dry_friction();
+           return term.joint == joint && term.effect->info().traits.is_dry;
          });
 }
 

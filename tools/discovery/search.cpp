@@ -35,7 +35,7 @@ bool Search::is_known(const EffectCandidate& effect, Index joint) const {
   if (effect.spectrum() != EffectCandidate::Spectrum::kNone) return false;
   const auto& known = data_.recordings[0].known_effects;
   return std::any_of(known.begin(), known.end(), [&](const RobotEffect& one) {
-    return one.joint == joint && std::string_view(info_of(one.kind)->name) == effect.name();
+    return one.joint == joint && one.kind == effect.kind();
   });
 }
 

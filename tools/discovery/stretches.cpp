@@ -18,10 +18,7 @@ constexpr double kMostRows = 30'000;
 constexpr double kStretchS = 30;
 constexpr double kMarginS = 2;
 
-bool counts_time(const RobotEffect& effect) {
-  return effect.kind == EffectKind::kPeriodicDisturbance ||
-         effect.kind == EffectKind::kTemperatureDrift;
-}
+bool counts_time(const RobotEffect& effect) { return info_of(effect.kind)->traits.counts_time; }
 
 }  // namespace
 

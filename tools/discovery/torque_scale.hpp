@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string_view>
-
 #include "discovery/regression.hpp"
 
 namespace offnominal::tools::discovery {
@@ -11,6 +9,6 @@ namespace offnominal::tools::discovery {
 // those of a file: 1 / (1 + error). 1 where no torque scale is among the terms, and for effects
 // that act on the sum of a joint's torques themselves.
 double factor_beside_torque_scale(const std::vector<Term>& terms, const ModelFit& fit,
-                                  Eigen::Index joint, std::string_view effect);
+                                  Eigen::Index joint, EffectKind effect);
 
 }  // namespace offnominal::tools::discovery

@@ -75,7 +75,7 @@ std::vector<Possible> slow_ripples(const Regression& regression, const VectorXd&
     if (!effect->applies(data.recordings[0], joint)) continue;
     const Term term{effect.get(), joint, {kPeriodsInRange * period / range}};
     const VectorXd left = data.layout.rms(regression.fit({term}).residual);
-    possible.push_back({{effect->name(), joint}, explained_share(before[joint], left[joint])});
+    possible.push_back({{effect->kind(), joint}, explained_share(before[joint], left[joint])});
   }
   return possible;
 }
@@ -86,7 +86,7 @@ std::vector<Possible> explained_on(Index joint, const Regression& regression,
   std::vector<Possible> possible = slow_ripples(regression, before, joint);
   for (const Proposal& one : proposals) {
     const Term& term = one.terms.back();
-    const EffectAt what{term.effect->name(), term.joint};
+    const EffectAt what{term.effect->kind(), term.joint};
     const double left = regression.data().layout.rms(one.fit.residual)[joint];
     const double share = explained_share(before[joint], left);
     const auto same = std::find_if(possible.begin(), possible.end(),

@@ -7,7 +7,6 @@
 #include <array>
 #include <iterator>
 #include <limits>
-#include <string_view>
 #include <utility>
 
 #include "discovery/explain_report.hpp"
@@ -45,11 +44,6 @@ constexpr std::array<VerdictRow, 8> kVerdicts = {{
 const VerdictRow& row_of(Verdict verdict) {
   return *std::find_if(kVerdicts.begin(), kVerdicts.end(),
                        [&](const VerdictRow& row) { return row.verdict == verdict; });
-}
-
-bool is_parameter(const std::string& effect) {
-  constexpr std::array<std::string_view, 3> kParameters{"link_mass", "tip_payload", "torque_scale"};
-  return std::find(kParameters.begin(), kParameters.end(), effect) != kParameters.end();
 }
 
 constexpr const char* kMorePositions = "hold it at more positions, approached from both sides";
@@ -90,25 +84,16 @@ const StructureShare* remaining_structure(const Explanation& e) {
   return state;
 }
 
-const EffectCandidate* candidate_of(const std::string& name) {
-  for (const auto& candidate : all_candidates()) {
-    if (name == candidate->name()) return candidate.get();
-  }
-  return nullptr;
-}
-
 void advise_on_classes(Explanation& e) {
   for (const auto& same : e.ambiguous) {
-    const EffectCandidate* candidate = candidate_of(same[0].effect);
     std::vector<std::string> all;
     for (const EffectAt& one : same) {
-      all.push_back(fmt::format("{}@{}", one.effect, one.joint + 1));
+      all.push_back(fmt::format("{}@{}", one.name(), one.joint + 1));
     }
     e.advice.push_back(fmt::format(
         "to tell {} from {}: {}; `offnominal motion --robot {} --separate {} -o motion.csv` "
         "writes such a motion",
-        same[0].effect, same[1].effect,
-        candidate != nullptr ? candidate->motion_hint() : "make a richer motion", e.robot_file,
+        same[0].name(), same[1].name(), info_of(same[0].kind)->motion_hint, e.robot_file,
         fmt::join(all, ",")));
   }
 }
@@ -117,7 +102,7 @@ void judge_ambiguous(Explanation& e) {
   e.verdict = Verdict::kAmbiguous;
   std::vector<std::string> possible;
   for (const EffectAt& one : e.ambiguous[0]) {
-    possible.push_back(fmt::format("{} on {}", one.effect, at_joint(one.joint)));
+    possible.push_back(fmt::format("{} on {}", one.name(), at_joint(one.joint)));
   }
   std::vector<std::string> sure;
   for (const Finding& finding : e.found) {
@@ -132,8 +117,9 @@ void judge_ambiguous(Explanation& e) {
 }
 
 void judge_found(Explanation& e) {
-  const bool shift = std::all_of(e.found.begin(), e.found.end(),
-                                 [](const Finding& f) { return is_parameter(f.what.effect); });
+  const bool shift = std::all_of(e.found.begin(), e.found.end(), [](const Finding& f) {
+    return info_of(f.what.kind)->is_known_quantity();
+  });
   e.verdict = shift ? Verdict::kParameterShift : Verdict::kFound;
   const Finding& first = e.found.front();
   const double fall =
@@ -185,7 +171,7 @@ bool judge_unknown(Explanation& e) {
   for (const Finding& finding : e.found) {
     e.advice.push_back(
         fmt::format("{} on {} explains a part, but stands for something else: do not add it",
-                    finding.what.effect, at_joint(finding.what.joint)));
+                    finding.what.name(), at_joint(finding.what.joint)));
   }
   e.found.clear();
   e.ambiguous.clear();
@@ -220,13 +206,13 @@ void judge_suspected(const Suspicion& one, Explanation& e) {
   e.words = fmt::format(
       "No effect stands out enough to be named, yet chance alone is unlikely (p = {:.2g} over the "
       "whole search): {} on {} would explain {:.0f} % of a joint's squared error.",
-      one.p_value, one.what.effect, at_joint(one.what.joint), 100 * one.share);
+      one.p_value, one.what.name(), at_joint(one.what.joint), 100 * one.share);
   e.advice.push_back(
       e.at_rest
           ? kMorePositions
           : fmt::format("`offnominal motion --robot {} --excite {}@{} -o motion.csv` writes a "
                         "motion that shows it if it is there; a longer recording helps too",
-                        e.robot_file, one.what.effect, one.what.joint + 1));
+                        e.robot_file, one.what.name(), one.what.joint + 1));
 }
 
 }  // namespace
@@ -253,12 +239,13 @@ bool holds_in_any(const std::vector<std::vector<EffectAt>>& classes, const Effec
 }
 
 std::string title_of(const Finding& finding) {
+  const ParameterInfo* order = info_of(finding.what.kind)->find(Quantity::kCyclesPerPosition);
   for (const Estimate& one : finding.parameters) {
-    if (finding.what.effect == "cogging_torque" && one.value.name == "order") {
-      return fmt::format("{} of order {:.4g}", finding.what.effect, one.value.value);
+    if (order != nullptr && one.value.name == order->name) {
+      return fmt::format("{} of {} {:.4g}", finding.what.name(), order->name, one.value.value);
     }
   }
-  return finding.what.effect;
+  return std::string(finding.what.name());
 }
 
 void judge_whole(Explanation& e) {

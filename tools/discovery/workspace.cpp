@@ -100,9 +100,9 @@ void Workspace::set_model(const RobotDescription& robot) {
   mass = mass_columns(*this);
 }
 
-bool Workspace::knows_coulomb_friction(Index joint) const {
+bool Workspace::knows_dry_friction(Index joint) const {
   return std::any_of(known_effects.begin(), known_effects.end(), [&](const RobotEffect& effect) {
-    return effect.joint == joint && effect.kind == EffectKind::kCoulombFriction;
+    return effect.joint == joint && info_of(effect.kind)->traits.is_dry;
   });
 }
 

@@ -44,8 +44,8 @@ struct Workspace {
   [[nodiscard]] double period_s() const { return 1 / plan.sample_rate_hz; }
   // Another model of the same robot: everything that follows from it.
   void set_model(const RobotDescription& robot);
-  // Whether the model has Coulomb friction on a joint.
-  [[nodiscard]] bool knows_coulomb_friction(Eigen::Index joint) const;
+  // Whether the model has dry friction of one level on a joint.
+  [[nodiscard]] bool knows_dry_friction(Eigen::Index joint) const;
   // Whether a joint came to rest from both sides, in the recordings that are fitted.
   [[nodiscard]] bool both_ways(Eigen::Index joint) const {
     return at_rest && came_both_ways[static_cast<std::size_t>(joint)] != 0;

@@ -35,8 +35,7 @@ const EffectCandidate& effect_named(const std::string& name, const std::string& 
 bool is_known(const RobotDescription& robot, const Contender& one) {
   if (one.effect->spectrum() != EffectCandidate::Spectrum::kNone) return false;
   return std::any_of(robot.effects.begin(), robot.effects.end(), [&](const RobotEffect& known) {
-    return known.joint == one.joint &&
-           std::string_view(info_of(known.kind)->name) == one.effect->name();
+    return known.joint == one.joint && known.kind == one.effect->kind();
   });
 }
 

@@ -100,7 +100,7 @@ MatrixXd adapting_basis(const Data& data, const VectorXd& weights) {
   for (Index i = 0; i < count; ++i) {
     const NuisanceTerm& term = terms[static_cast<std::size_t>(i)];
     if (term.kind == NuisanceTerm::Kind::kSignShape &&
-        !data.recordings[0].knows_coulomb_friction(term.joint)) {
+        !data.recordings[0].knows_dry_friction(term.joint)) {
       continue;
     }
     VectorXd column = VectorXd::Zero(rows + count);

@@ -25,8 +25,7 @@ std::optional<std::size_t> lightest_effect(const RobotDescription& robot) {
   std::optional<std::size_t> lightest;
   for (std::size_t i = 0; i < robot.effects.size(); ++i) {
     const RobotEffect& effect = robot.effects[i];
-    const bool is_mass =
-        effect.kind == EffectKind::kLinkMass || effect.kind == EffectKind::kTipPayload;
+    const bool is_mass = info_of(effect.kind)->action == EffectAction::kPointMass;
     if (!is_mass || effect.parameters[0] >= 0) continue;
     if (!lightest || effect.parameters[0] < robot.effects[*lightest].parameters[0]) lightest = i;
   }

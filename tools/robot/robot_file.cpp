@@ -65,7 +65,8 @@ std::vector<RobotEffect> read_effects(const TomlTable& root,
     double& of_joint = friction_per_load[effects.back().joint];
     of_joint += most_friction_per_load<double>(effects.back());
     if (of_joint <= kMost) continue;
-    table.refuse("factor", "factors of this joint that add up to " + shortest(of_joint),
+    table.refuse(info_of(effects.back().kind)->find(Quantity::kRatio)->name,
+                 "friction by the load of this joint that adds up to " + shortest(of_joint),
                  "at most " + shortest(kMost) + " per joint", "make one effect of them");
   }
   return effects;

@@ -151,6 +151,37 @@ TEST(TorquePath, ToldPerLoadIsTheSlopeOfTheInverseDynamics) {
   }
 }
 
+// Whatever friction takes of either direction of power, as long as some of the load is left.
+TEST(TorquePath, FrictionByTheDirectionOfPowerIsTakenBackExactly) {
+  std::mt19937_64 generator = seeded_generator();
+  RigidBodyModel<2, double> model;
+  model.has_torque_path = true;
+  for (int sample = 0; sample < 300; ++sample) {
+    model.told_per_given = Eigen::Vector2d(uniform(generator, 0.3, 3), uniform(generator, 0.3, 3));
+    JointEffects<2, double> effects;
+    effects.torque = random_vector<2, double>(generator, 5.0);
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      effects.friction_by_load[i] = uniform(generator, -0.5, 1.5);
+      const double most = 0.95 * (1 + effects.friction_by_load[i]);
+      effects.friction_by_size[i] = uniform(generator, -most, most);
+    }
+    const auto load = random_vector<2, double>(generator, 10.0);
+    const Eigen::Vector2d told = drive_torque<2, double>(model, effects, load);
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      const double friction =
+          effects.friction_by_size[i] * std::fabs(load[i]) + effects.friction_by_load[i] * load[i];
+      EXPECT_NEAR(told[i], model.told_per_given[i] * (load[i] + friction + effects.torque[i]),
+                  1e-12 * (1 + std::fabs(told[i])));
+    }
+    EXPECT_LE(deviation(load_torque<2, double>(model, effects, told), load), 1e-11);
+    // The slope is that of the side of zero where the load lies.
+    const Eigen::Vector2d more = 1e-6 * load;
+    const Eigen::Vector2d slope =
+        (drive_torque<2, double>(model, effects, load + more) - told).cwiseQuotient(more);
+    EXPECT_LE(deviation(told_per_load<2, double>(model, effects, load), slope), 1e-6);
+  }
+}
+
 TEST(TorquePath, WithoutSuchEffectsNothingIsScaled) {
   std::mt19937_64 generator = seeded_generator();
   Chain<2, double> chain = random_chain<2, double>(generator);

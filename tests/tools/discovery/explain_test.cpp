@@ -58,7 +58,7 @@ TEST_P(EachEffect, IsNamedFirstOnItsJoint) {
   const Explanation result = explain_case(made, quick());
   ASSERT_FALSE(result.found.empty()) << result.words;
   const hidden::TrueEffect& truth = made.truth.effects[0];
-  EXPECT_EQ(result.found[0].what.effect, hidden::name(truth.effect));
+  EXPECT_EQ(result.found[0].what.name(), hidden::name(truth.effect));
   EXPECT_EQ(result.found[0].what.joint, truth.joint);
   EXPECT_LE(result.found[0].p_value, 0.01);
   EXPECT_LE(result.found[0].p_replay, 0.05);
@@ -76,7 +76,7 @@ TEST(Explain, GIVEN_a_payload_THEN_its_mass_and_place_are_not_taken_for_the_link
   const hidden::Case made = case_of(2699507522, {hidden::HiddenEffect::kTipPayload});
   const Explanation result = explain_case(made, quick());
   ASSERT_THAT(result.found, SizeIs(1)) << result.words;
-  EXPECT_EQ(result.found[0].what.effect, "tip_payload");
+  EXPECT_EQ(result.found[0].what.name(), "tip_payload");
   int compared = 0;
   for (const hidden::TrueParameter& truth : made.truth.effects[0].parameters) {
     const Estimate* found = estimate_of(truth.name, result.found[0]);
@@ -92,7 +92,7 @@ TEST(Explain, GIVEN_a_disturbance_at_the_filters_edge_THEN_it_is_named) {
   const hidden::Case made = case_of(1174567011, {hidden::HiddenEffect::kPeriodicDisturbance});
   const Explanation result = explain_case(made, quick());
   ASSERT_THAT(result.found, SizeIs(1)) << result.words;
-  EXPECT_EQ(result.found[0].what.effect, "periodic_disturbance");
+  EXPECT_EQ(result.found[0].what.name(), "periodic_disturbance");
   EXPECT_EQ(result.found[0].what.joint, made.truth.effects[0].joint);
   const Estimate* frequency = estimate_of("frequency", result.found[0]);
   ASSERT_NE(frequency, nullptr);
@@ -112,7 +112,7 @@ TEST(Explain, GIVEN_an_effect_on_one_joint_THEN_what_is_left_on_another_does_not
   const Explanation result =
       explain(to_robot(made.nominal), {pushed}, {to_log(made.holdout)}, quick());
   ASSERT_THAT(result.found, SizeIs(1)) << result.words;
-  EXPECT_EQ(result.found[0].what, (EffectAt{"viscous_friction", 0}));
+  EXPECT_EQ(result.found[0].what, (EffectAt{EffectKind::kViscousFriction, 0}));
   EXPECT_THAT(result.advice, Contains(HasSubstr("joint 2: what is left")));
 }
 
@@ -150,7 +150,8 @@ TEST(Explain, GIVEN_an_effect_that_noise_hides_THEN_it_is_neither_named_nor_deni
   EXPECT_EQ(result.verdict, Verdict::kNotExcited) << result.words;
   EXPECT_THAT(result.found, IsEmpty());
   ASSERT_TRUE(result.suspected);
-  EXPECT_EQ(result.suspected->what, (EffectAt{"time_delay", made.truth.effects[0].joint}));
+  EXPECT_EQ(result.suspected->what,
+            (EffectAt{EffectKind::kTimeDelay, made.truth.effects[0].joint}));
   EXPECT_LT(result.suspected->p_value, 0.05);
   const auto json = to_json(result, {});
   EXPECT_EQ(json["suspected"]["effect"], "time_delay");
@@ -215,7 +216,7 @@ TEST(Explain, GIVEN_a_poor_motion_that_shows_an_effect_THEN_it_says_what_it_coul
     EXPECT_EQ(result.verdict, Verdict::kAmbiguous) << result.words;
     EXPECT_THAT(result.found, IsEmpty());
     ASSERT_THAT(result.ambiguous, SizeIs(1));
-    const EffectAt truth{std::string(hidden::name(shown.effect)), made.truth.effects[0].joint};
+    const EffectAt truth{info_named(hidden::name(shown.effect))->kind, made.truth.effects[0].joint};
     EXPECT_THAT(result.ambiguous[0], Contains(truth)) << result.words;
     EXPECT_THAT(result.advice, Contains(HasSubstr("--separate")));
     request.effects.clear();
@@ -231,8 +232,8 @@ TEST(Explain, FindsTwoEffectsAtOnce) {
   const Explanation result = explain_case(made, quick());
   ASSERT_THAT(result.found, SizeIs(2)) << result.words;
   for (const hidden::TrueEffect& truth : made.truth.effects) {
-    const EffectAt what{std::string(hidden::name(truth.effect)), truth.joint};
-    EXPECT_TRUE(result.found[0].what == what || result.found[1].what == what) << what.effect;
+    const EffectAt what{info_named(hidden::name(truth.effect))->kind, truth.joint};
+    EXPECT_TRUE(result.found[0].what == what || result.found[1].what == what) << what.name();
   }
 }
 
@@ -271,7 +272,7 @@ TEST(Explain, WithoutHoldOutBlocksOfTimeAreHeldOut) {
   const Explanation result = explain(to_robot(made.nominal), {to_log(made.recording)}, {}, quick());
   EXPECT_FALSE(result.holdout_is_apart);
   ASSERT_THAT(result.found, SizeIs(1));
-  EXPECT_EQ(result.found[0].what.effect, "viscous_friction");
+  EXPECT_EQ(result.found[0].what.name(), "viscous_friction");
 }
 
 TEST(Explain, RefusesARecordingOfAnotherRobot) {
@@ -338,8 +339,8 @@ TEST(Report, ThePageHasEveryClass) {
   Explanation result = explain_case(case_of(5, {hidden::HiddenEffect::kViscousFriction}), quick());
   const auto text = [&] { return report::to_json(page_of(result, {})).dump(); };
   EXPECT_THAT(text(), Not(HasSubstr("cannot tell apart")));
-  result.ambiguous = {{{"viscous_friction", 0}, {"time_delay", 1}},
-                      {{"hysteresis", 1}, {"joint_elasticity", 1}}};
+  result.ambiguous = {{{EffectKind::kViscousFriction, 0}, {EffectKind::kTimeDelay, 1}},
+                      {{EffectKind::kHysteresis, 1}, {EffectKind::kJointElasticity, 1}}};
   EXPECT_THAT(text(), HasSubstr(R"([2.0,"joint_elasticity",2.0])"));
   EXPECT_THAT(text(), HasSubstr(R"([1.0,"time_delay",2.0])"));
 }

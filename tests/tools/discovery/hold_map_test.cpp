@@ -36,7 +36,7 @@ double order_of(const Finding& finding) {
   for (const Estimate& one : finding.parameters) {
     if (one.value.name == "order") return one.value.value;
   }
-  ADD_FAILURE() << finding.what.effect << " has no order";
+  ADD_FAILURE() << finding.what.name() << " has no order";
   return 0;
 }
 

@@ -75,8 +75,8 @@ TEST(ImprovedRobot, GIVEN_a_torque_scale_THEN_what_stands_beside_it_is_not_scale
   made.holdout.tau.col(truth.joint) *= kWrongGain;
   const Explanation result = explained(made, test::to_robot(made.nominal));
   ASSERT_EQ(result.found.size(), 2U) << result.words;
-  ASSERT_EQ(result.found[0].what.effect, "torque_scale");
-  ASSERT_EQ(result.found[1].what.effect, "joint_stiffness");
+  ASSERT_EQ(result.found[0].what.name(), "torque_scale");
+  ASSERT_EQ(result.found[1].what.name(), "joint_stiffness");
   const double stiffness = truth.parameters[0].value;
   EXPECT_NEAR(result.found[0].parameters[0].value.value, kWrongGain - 1, 0.01);
   EXPECT_NEAR(result.found[1].parameters[0].value.value, stiffness, 0.02 * stiffness);

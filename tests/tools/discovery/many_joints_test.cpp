@@ -49,7 +49,7 @@ void expect_intervals_or_words(const Explanation& told) {
   for (const Finding& finding : told.found) {
     for (const Estimate& one : finding.parameters) {
       EXPECT_NE(one.ci95.has_value(), !one.why_no_interval.empty())
-          << finding.what.effect << '.' << one.value.name;
+          << finding.what.name() << '.' << one.value.name;
     }
   }
 }
@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ManyJoints, GIVEN_six_joints_and_blocks_enough_on_the_joint_THEN_its_numbers_have_intervals) {
   const Explanation told = explained(6, 9, 2);
   ASSERT_THAT(told.found, Not(IsEmpty())) << told.words;
-  EXPECT_EQ(told.found[0].what, (EffectAt{"joint_stiffness", 5}));
+  EXPECT_EQ(told.found[0].what, (EffectAt{EffectKind::kJointStiffness, 5}));
   const Estimate& stiffness = told.found[0].parameters.at(0);
   ASSERT_TRUE(stiffness.ci95) << stiffness.why_no_interval;
   EXPECT_LT((*stiffness.ci95)[0], 6);

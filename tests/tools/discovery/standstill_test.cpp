@@ -29,7 +29,7 @@ ExplainOptions few_draws() {
 
 bool names(const std::vector<EffectAt>& same, const std::string& effect) {
   return std::any_of(same.begin(), same.end(),
-                     [&](const EffectAt& one) { return one.effect == effect; });
+                     [&](const EffectAt& one) { return one.name() == effect; });
 }
 
 // 100 Hz, 1000 counts per rad: moves for 2 s, then as `rest` says, then moves for 2 s again.
@@ -103,7 +103,7 @@ TEST(Standstill, LoadDependentFrictionIsNamedThoughItHoldsTheJointMostOfTheTime)
     const Explanation e = explain(robot, {log}, {}, few_draws());
     ASSERT_EQ(e.verdict, Verdict::kFound) << e.words;
     ASSERT_EQ(e.found.size(), 1U);
-    EXPECT_EQ(e.found[0].what.effect, "load_dependent_friction");
+    EXPECT_EQ(e.found[0].what.name(), "load_dependent_friction");
     EXPECT_NEAR(e.found[0].parameters[0].value.value, 0.3, 0.015);
   }
 }
@@ -112,7 +112,7 @@ TEST(Standstill, CoulombFrictionIsNotTakenForIt) {
   const Log log = test::recording_of({.load_factor = 0, .dry_nm = 0.06});
   const Explanation e = explain(test::pendulum(), {log}, {}, few_draws());
   ASSERT_FALSE(e.found.empty()) << e.words;
-  EXPECT_EQ(e.found[0].what.effect, "coulomb_friction");
+  EXPECT_EQ(e.found[0].what.name(), "coulomb_friction");
 }
 
 TEST(Standstill, NothingIsFoundWhereNothingIsMissing) {
@@ -157,8 +157,8 @@ TEST_F(BamXl330, LoadDependentFrictionComesFirst) {
   const Explanation e = explain(robot_, logs_, {}, few_draws());
   ASSERT_EQ(e.verdict, Verdict::kAmbiguous) << e.words;
   ASSERT_FALSE(e.found.empty());
-  EXPECT_EQ(e.found[0].what.effect, "load_dependent_friction");
-  for (const Finding& one : e.found) EXPECT_NE(one.what.effect, "coulomb_friction");
+  EXPECT_EQ(e.found[0].what.name(), "load_dependent_friction");
+  for (const Finding& one : e.found) EXPECT_NE(one.what.name(), "coulomb_friction");
   EXPECT_THAT(e.words, ::testing::HasSubstr("load_dependent_friction"));
   EXPECT_LT(e.joints[0].holdout_after, 0.5 * e.joints[0].holdout_before);
 }
@@ -170,7 +170,7 @@ TEST_F(BamXl330, BesideItCoulombFrictionIsDropped) {
   EXPECT_EQ(e.verdict, Verdict::kExplained) << e.words;
   EXPECT_LT(e.joints[0].rms_after, 1.2 * e.joints[0].noise_floor);
   const auto coulomb = std::find_if(e.rejected.begin(), e.rejected.end(), [](const Rejection& one) {
-    return one.what.effect == "coulomb_friction";
+    return one.what.name() == "coulomb_friction";
   });
   ASSERT_NE(coulomb, e.rejected.end());
   EXPECT_GT(coulomb->p_value, 0.05);
@@ -182,7 +182,7 @@ TEST_F(BamXl330, NoChoiceOfRecordingsGivesBareCoulombFriction) {
     for (std::size_t i = motion; i < logs_.size(); i += 3) chosen.push_back(logs_[i]);
     const Explanation e = explain(robot_, chosen, {}, few_draws());
     for (const Finding& one : e.found) {
-      if (one.what.effect != "coulomb_friction") continue;
+      if (one.what.name() != "coulomb_friction") continue;
       ASSERT_FALSE(e.ambiguous.empty()) << e.words;
       EXPECT_TRUE(names(e.ambiguous[0], "load_dependent_friction")) << e.words;
     }

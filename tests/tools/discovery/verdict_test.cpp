@@ -25,7 +25,7 @@ Explanation nothing_found(double left_to_noise) {
   e.excitation.resize(1);
   e.excitation[0].sufficient = true;
   Rejection rejected;
-  rejected.what = {"time_delay", 0};
+  rejected.what = {EffectKind::kTimeDelay, 0};
   rejected.smallest_detectable = 0.05;
   e.rejected.push_back(rejected);
   return e;
@@ -34,7 +34,7 @@ Explanation nothing_found(double left_to_noise) {
 // The same with a delay that is likely more than chance.
 Explanation suspicious(double left_to_noise) {
   Explanation e = nothing_found(left_to_noise);
-  e.suspected = {{"time_delay", 0}, 0.003, 0.04};
+  e.suspected = {{EffectKind::kTimeDelay, 0}, 0.003, 0.04};
   return e;
 }
 

@@ -61,7 +61,7 @@ Explanation explain_designed(const hidden::Request& request, const RobotDescript
 
 void expect_found(const Explanation& e, const hidden::TrueEffect& truth) {
   ASSERT_FALSE(e.found.empty()) << e.words;
-  EXPECT_EQ(e.found[0].what.effect, hidden::name(truth.effect));
+  EXPECT_EQ(e.found[0].what.name(), hidden::name(truth.effect));
   EXPECT_EQ(e.found[0].what.joint, truth.joint);
 }
 

@@ -78,6 +78,19 @@ TEST(RobotFileDocument, HasEveryEffectWithItsFormulaAndParameters) {
   }
 }
 
+TEST(ExplainDocument, HasARowForEveryEffectAndNoOther) {
+  std::string rows;
+  const auto add = [&](const EffectInfo& info) {
+    rows +=
+        std::string("| `") + info.name + "` | " + info.words + " | " + info.motion_hint + " |\n";
+  };
+  for (const EffectInfo& info : kAllEffectInfos) add(info);
+  for (const EffectInfo& info : kInfosOutsideChains) add(info);
+  EXPECT_THAT(document("explain.md"),
+              HasSubstr("| effect | what it is | the motion that shows it best |\n|---|---|---|\n" +
+                        rows + "\n"));
+}
+
 TEST(RobotFileDocument, HasEveryKey) {
   const std::string text = document("robot-file.md");
   for (const auto& keys :

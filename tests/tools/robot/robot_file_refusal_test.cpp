@@ -232,7 +232,7 @@ const std::vector<Mistake> kMistakes{
     {"FrictionsThatLockTogether", "kind = \"viscous_friction\"\njoint = 2\ncoefficient = 12",
      "kind = \"load_dependent_friction\"\njoint = 2\nfactor = 0.5\n\n[[effect]]\n"
      "kind = \"load_dependent_friction\"\njoint = 2\nfactor = 0.75",
-     "factor = 0.75", "effect[3].factor", "factors of this joint that add up to 1.25",
+     "factor = 0.75", "effect[3].factor", "friction by the load of this joint that adds up to 1.25",
      "at most 0.95 per joint", "make one effect of them"},
     // Bound.
     {"UnknownBound", "\"table\"", "\"tables\"", "tables", "uncertainty_bound.kind",

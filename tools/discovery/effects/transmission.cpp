@@ -66,27 +66,24 @@ VectorXd transmitted_torque(const Workspace& at, Index joint) {
   }
 }
 
+// Linear in the compliance.
 class Elasticity final : public EffectCandidate {
  public:
-  const char* name() const override { return "joint_elasticity"; }
-  const char* formula() const override { return "link at q - (transmitted torque) / stiffness"; }
-  const char* words() const override { return "a transmission that gives way under torque"; }
-  const char* motion_hint() const override { return "accelerate hard at several frequencies"; }
-  std::vector<LinearParameter> linear_parameters(JointType type) const override {
-    return {{"compliance", type == JointType::kRevolute ? "rad/(N m)" : "m/N"}};
+  Elasticity() : EffectCandidate(EffectKind::kJointElasticity) {}
+  std::vector<ShapeRange> shapes(const std::vector<Workspace>& /*at*/,
+                                 Index /*joint*/) const override {
+    return {};
   }
   std::vector<Regressor> regressors(const Workspace& at, Index joint,
                                     std::span<const double> /*shape*/) const override {
     return {of_displacement(at, joint, derivatives_of(at, transmitted_torque(at, joint)), 1e-5)};
   }
-  std::vector<NamedValue> parameters(JointType type, const VectorXd& coefficients,
-                                     const ShapePoint& /*shape*/,
-                                     const std::vector<ShapeRange>& /*ranges*/) const override {
-    return {{"stiffness", 1 / coefficients[0],
-             offnominal::unit_of(Quantity::kEffortPerPosition, type)}};
+  Parameters found_parameters(const VectorXd& coefficients,
+                              std::span<const double> /*shape*/) const override {
+    return {1 / coefficients[0]};
   }
   bool is_physical(const VectorXd& c) const override { return c[0] > 0; }
-  bool has_memory() const override { return true; }
+  bool is_only_screened() const override { return true; }
 };
 
 // Displacement of motor against link while the motor moves as measured: at one side of the play the
@@ -112,25 +109,10 @@ VectorXd play_displacement(const Workspace& at, Index joint, double width) {
   return x;
 }
 
+// Its size is in its width: the coefficient is a share of it, near 1.
 class Backlash final : public EffectCandidate {
  public:
-  const char* name() const override { return "backlash"; }
-  const char* formula() const override {
-    return "link free within width behind the motor, without rebound";
-  }
-  const char* words() const override { return "play in the transmission"; }
-  const char* motion_hint() const override {
-    return "let the transmitted torque change its sign slowly and often";
-  }
-  std::vector<LinearParameter> linear_parameters(JointType /*type*/) const override {
-    return {{"share", "1"}};
-  }
-  std::vector<ShapeRange> shapes(const std::vector<Workspace>& at, Index joint) const override {
-    const double range = range_moved(at, joint);
-    const JointType type = at[0].joint_type(joint);
-    return {{"width", offnominal::unit_of(Quantity::kPosition, type),
-             logarithmic_grid(0.0005 * range, 0.05 * range), ShapeRange::Kind::kLogarithmic}};
-  }
+  Backlash() : EffectCandidate(EffectKind::kBacklash) {}
   std::vector<Regressor> regressors(const Workspace& at, Index joint,
                                     std::span<const double> shape) const override {
     return {of_displacement(
@@ -139,15 +121,16 @@ class Backlash final : public EffectCandidate {
                        zero_phase_low_pass(play_displacement(at, joint, shape[0]),
                                            at.plan.position_cutoff_hz, at.plan.sample_rate_hz)))};
   }
-  bool is_physical(const Eigen::VectorXd& c) const override { return is_near_one(c[0]); }
-  bool has_memory() const override { return true; }
+  bool is_physical(const VectorXd& c) const override { return is_near_one(c[0]); }
+  bool is_only_screened() const override { return true; }
 };
 
 }  // namespace
 
-void add_transmission_effects(Candidates& all) {
-  all.push_back(std::make_unique<Elasticity>());
-  all.push_back(std::make_unique<Backlash>());
+Candidate transmission_candidate(EffectKind kind) {
+  if (kind == EffectKind::kJointElasticity) return std::make_unique<Elasticity>();
+  if (kind == EffectKind::kBacklash) return std::make_unique<Backlash>();
+  return nullptr;
 }
 
 }  // namespace offnominal::tools::discovery

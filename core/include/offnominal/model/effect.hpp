@@ -40,12 +40,21 @@ enum class EffectKind : std::uint8_t {
   kTorqueScale = 15,
   kHysteresis = 16,
   kTimeDelay = 17,
+  kJointElasticity = 18,
+  kBacklash = 19,
 };
 
 // How a parameter enters the effect's torque.
 enum class ParameterRole : std::uint8_t {
   kLinear,  // the torque is proportional to it: least squares can find it
   kShape,   // it sits inside a nonlinearity: it is searched for, or left as given
+};
+
+// Where a search looks for a shape parameter, as shares of what the motion shows of its quantity:
+// of the top speed (kVelocity), the range moved (kDistance) or the duration (kTime).
+struct SearchedShare {
+  double from = 0;
+  double to = 0;  // 0: not searched in this way
 };
 
 struct ParameterInfo {
@@ -57,6 +66,40 @@ struct ParameterInfo {
   bool required;
   double default_value;  // where it is not required
   const char* meaning;
+  SearchedShare searched = {};
+};
+
+// How an effect acts: what its struct has.
+enum class EffectAction : std::uint8_t {
+  kTorque,            // torque(): by the motion and the time
+  kReflectedInertia,  // reflected_inertia(): on the joint's own acceleration
+  kPointMass,         // point_mass(): part of the rigid body
+  kFrictionPerLoad,   // friction_per_load(): by what passes from drive to load
+  kToldPerGiven,      // told_per_given(): a scale on all that the drive gives
+  kTorqueOfState,     // torque_of_state(): by the way that the joint went
+  kDelay,             // delay_s(): by when it acts
+  kDisplacement,      // none of these: the link is not where the motor is
+};
+
+// The sign that the linear parameters of an effect may have.
+enum class CoefficientSign : std::uint8_t {
+  kEither,
+  // Friction beyond other friction: below zero only where enough of that stands beside it.
+  kMostlyPositive,
+  kPositive,  // the torque is against the motion at every instant
+};
+
+// What an effect is, beside its formula.
+struct EffectTraits {
+  // Takes energy out of its own joint, together with the joint's other friction. What tells two
+  // directions apart is none, since no recording tells that from a constant torque; nor is what
+  // another joint's motion causes.
+  bool is_friction = false;
+  bool is_dry = false;           // friction of one level, whose shape at a reversal nobody knows
+  bool acts_at_rest = false;     // where nothing moves
+  bool counts_time = false;      // by the time since the run began
+  bool needs_no_motion = false;  // a joint that never moves shows it
+  CoefficientSign sign = CoefficientSign::kEither;
 };
 
 // One effect with its values. `joint` counts from 0; `parameters` in the order of the effect's

@@ -25,13 +25,9 @@ inline constexpr int kMaxDelayTicks = 128;
 namespace detail {
 
 template <typename E>
-inline constexpr bool kHasState = requires(std::array<double, kMaxEffectParameters> p) {
-  E::torque_of_state(p, 0.0);
-};
+inline constexpr bool kHasState = action_of<E>() == EffectAction::kTorqueOfState;
 template <typename E>
-inline constexpr bool kHasDelay = requires(std::array<double, kMaxEffectParameters> p) {
-  E::delay_s(p);
-};
+inline constexpr bool kHasDelay = action_of<E>() == EffectAction::kDelay;
 
 }  // namespace detail
 

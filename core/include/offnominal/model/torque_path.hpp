@@ -4,15 +4,15 @@
 #include <offnominal/model/rigid_body_model.hpp>
 
 // The way of the torque from the drive to the load. Per joint,
-//   tau = told_per_given (load + friction_per_load |load| + torque)
+//   tau = told_per_given (load + by_size |load| + by_load load + torque)
 // with tau: what the drive is told to give and what a log says; torque: sum of the effects that do
 // not depend on the load; load: M ddq + V dq + G, what the joint passes on to all that has inertia
 // or weight. Reflected inertia counts as load, whichever side of the gear it sits on: only then
 // does each joint's equation close by itself, so that the acceleration follows from the torque
-// without an iteration. What that is off where a rotor sits before the gear is friction_per_load
-// times the torque that accelerates the rotor.
+// without an iteration. What that is off where a rotor sits before the gear is the friction per
+// load times the torque that accelerates the rotor.
 //
-// |friction_per_load| < 1, hence load has the sign of what is left for it, and the equation has
+// |by_size| < 1 + by_load, hence load has the sign of what is left for it, and the equation has
 // exactly one solution in either direction: drive_torque() and load_torque() are each other's
 // inverse. Non-finite input gives non-finite output.
 
@@ -21,8 +21,10 @@ namespace offnominal {
 // What the effects of every joint are at one instant, whatever the torque.
 template <int N, typename Scalar>
 struct JointEffects {
-  Vector<N, Scalar> torque = Vector<N, Scalar>::Zero();             // N m or N
-  Vector<N, Scalar> friction_per_load = Vector<N, Scalar>::Zero();  // signed by the direction
+  Vector<N, Scalar> torque = Vector<N, Scalar>::Zero();  // N m or N
+  // effects::LoadFriction, of all effects together; by_size is signed by the direction.
+  Vector<N, Scalar> friction_by_size = Vector<N, Scalar>::Zero();
+  Vector<N, Scalar> friction_by_load = Vector<N, Scalar>::Zero();
 };
 
 // time_s: since the run's origin.
@@ -39,7 +41,9 @@ template <int N, typename Scalar>
       if constexpr (requires { E::torque(effect.parameters, instant); }) {
         sum.torque[joint] += E::torque(effect.parameters, instant);
       } else if constexpr (requires { E::friction_per_load(effect.parameters, instant); }) {
-        sum.friction_per_load[joint] += E::friction_per_load(effect.parameters, instant);
+        const auto friction = E::friction_per_load(effect.parameters, instant);
+        sum.friction_by_size[joint] += friction.by_size;
+        sum.friction_by_load[joint] += friction.by_load;
       }
     });
   }
@@ -61,15 +65,16 @@ template <int N, typename Scalar>
                                              const Vector<N, Scalar>& load) {
   if (!model.has_torque_path) return load + effects.torque;
   return model.told_per_given.cwiseProduct(
-      load + effects.friction_per_load.cwiseProduct(load.cwiseAbs()) + effects.torque);
+      load + effects.friction_by_size.cwiseProduct(load.cwiseAbs()) +
+      effects.friction_by_load.cwiseProduct(load) + effects.torque);
 }
 
 namespace detail {
 
 // d (given torque) / d (load) on the side of zero where `load` lies.
 template <typename Scalar>
-[[nodiscard]] inline Scalar given_per_load(Scalar friction_per_load, Scalar load) {
-  return Scalar(1) + (load < Scalar(0) ? -friction_per_load : friction_per_load);
+[[nodiscard]] inline Scalar given_per_load(Scalar by_size, Scalar by_load, Scalar load) {
+  return Scalar(1) + by_load + (load < Scalar(0) ? -by_size : by_size);
 }
 
 }  // namespace detail
@@ -82,7 +87,8 @@ template <int N, typename Scalar>
   if (!model.has_torque_path) return tau - effects.torque;
   Vector<N, Scalar> load = tau.cwiseQuotient(model.told_per_given) - effects.torque;
   for (Eigen::Index i = 0; i < N; ++i) {
-    load[i] /= detail::given_per_load(effects.friction_per_load[i], load[i]);
+    load[i] /=
+        detail::given_per_load(effects.friction_by_size[i], effects.friction_by_load[i], load[i]);
   }
   return load;
 }
@@ -95,7 +101,8 @@ template <int N, typename Scalar>
   Vector<N, Scalar> per_load = model.told_per_given;
   if (!model.has_torque_path) return per_load;
   for (Eigen::Index i = 0; i < N; ++i) {
-    per_load[i] *= detail::given_per_load(effects.friction_per_load[i], load[i]);
+    per_load[i] *=
+        detail::given_per_load(effects.friction_by_size[i], effects.friction_by_load[i], load[i]);
   }
   return per_load;
 }

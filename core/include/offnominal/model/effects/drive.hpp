@@ -15,6 +15,9 @@ struct TorqueOffset {
   static constexpr EffectKind kKind = EffectKind::kTorqueOffset;
   static constexpr const char* kName = "torque_offset";
   static constexpr const char* kFormula = "level";
+  static constexpr const char* kWords = "a constant torque";
+  static constexpr const char* kMotionHint = "rest at several positions";
+  static constexpr EffectTraits kTraits{.acts_at_rest = true, .needs_no_motion = true};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "constant torque, such as a bias of the torque measurement"},
@@ -30,6 +33,9 @@ struct JointStiffness {
   static constexpr EffectKind kKind = EffectKind::kJointStiffness;
   static constexpr const char* kName = "joint_stiffness";
   static constexpr const char* kFormula = "stiffness * (q - rest_position)";
+  static constexpr const char* kWords = "a spring or cable that pulls to a rest position";
+  static constexpr const char* kMotionHint = "move over the whole range, slowly";
+  static constexpr EffectTraits kTraits{.acts_at_rest = true};
   static constexpr std::array<ParameterInfo, 2> kParameters{{
       {"stiffness", Quantity::kEffortPerPosition, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "torque per displacement from the rest position"},
@@ -49,6 +55,9 @@ struct CoggingTorque {
   static constexpr const char* kName = "cogging_torque";
   static constexpr const char* kFormula =
       "sine * sin(k q) + cosine * cos(k q), k = order (revolute) or 2 pi order (prismatic)";
+  static constexpr const char* kWords = "a torque ripple that repeats with position";
+  static constexpr const char* kMotionHint = "move slowly over several periods";
+  static constexpr EffectTraits kTraits{.acts_at_rest = true};
   static constexpr std::array<ParameterInfo, 3> kParameters{{
       {"sine", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0, "sine amplitude"},
       {"cosine", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
@@ -74,6 +83,10 @@ struct PeriodicDisturbance {
   static constexpr EffectKind kKind = EffectKind::kPeriodicDisturbance;
   static constexpr const char* kName = "periodic_disturbance";
   static constexpr const char* kFormula = "sine * sin(frequency t) + cosine * cos(frequency t)";
+  static constexpr const char* kWords = "a disturbance that repeats in time";
+  static constexpr const char* kMotionHint = "record for longer";
+  static constexpr EffectTraits kTraits{
+      .acts_at_rest = true, .counts_time = true, .needs_no_motion = true};
   static constexpr std::array<ParameterInfo, 3> kParameters{{
       {"sine", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0, "sine amplitude"},
       {"cosine", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,

@@ -21,10 +21,19 @@ inline constexpr ParameterInfo kSmoothing{"smoothing",
                                           0.01,
                                           "velocity over which the sign is smoothed"};
 
+// The same parameter, looked for between these shares of what the motion shows.
+[[nodiscard]] constexpr ParameterInfo searched(ParameterInfo parameter, double from, double to) {
+  parameter.searched = {from, to};
+  return parameter;
+}
+
 struct ViscousFriction {
   static constexpr EffectKind kKind = EffectKind::kViscousFriction;
   static constexpr const char* kName = "viscous_friction";
   static constexpr const char* kFormula = "coefficient * dq";
+  static constexpr const char* kWords = "friction proportional to speed";
+  static constexpr const char* kMotionHint = "move at several constant speeds";
+  static constexpr EffectTraits kTraits{.is_friction = true, .sign = CoefficientSign::kPositive};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"coefficient", Quantity::kEffortPerVelocity, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "torque per velocity"},
@@ -40,10 +49,14 @@ struct CoulombFriction {
   static constexpr EffectKind kKind = EffectKind::kCoulombFriction;
   static constexpr const char* kName = "coulomb_friction";
   static constexpr const char* kFormula = "level * tanh(dq / smoothing)";
+  static constexpr const char* kWords = "dry friction, independent of speed";
+  static constexpr const char* kMotionHint = "reverse often at moderate speed";
+  static constexpr EffectTraits kTraits{
+      .is_friction = true, .is_dry = true, .sign = CoefficientSign::kPositive};
   static constexpr std::array<ParameterInfo, 2> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "torque against the motion, whatever its speed"},
-      kSmoothing,
+      searched(kSmoothing, 0.001, 0.05),
   }};
   template <typename Scalar>
   static Scalar torque(const std::array<Scalar, kMaxEffectParameters>& p,
@@ -60,6 +73,10 @@ struct FrictionAsymmetry {
   static constexpr const char* kName = "friction_asymmetry";
   static constexpr const char* kFormula =
       "level * s^2 + coefficient * dq * s, s = tanh(dq / smoothing)";
+  static constexpr const char* kWords = "friction that differs between the two directions";
+  static constexpr const char* kMotionHint =
+      "move at several speeds in both directions, with rests in between";
+  static constexpr EffectTraits kTraits{};
   static constexpr std::array<ParameterInfo, 3> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "half the difference of the Coulomb levels of the two directions"},
@@ -82,11 +99,24 @@ struct StribeckFriction {
   static constexpr const char* kName = "stribeck_friction";
   static constexpr const char* kFormula =
       "level * exp(-(dq / stribeck_velocity)^2) * tanh(dq / smoothing)";
+  static constexpr const char* kWords =
+      "extra dry friction near standstill that fades as the joint speeds up";
+  static constexpr const char* kMotionHint =
+      "hold at least four low speeds between a third and three times the Stribeck velocity";
+  static constexpr EffectTraits kTraits{.is_friction = true,
+                                        .sign = CoefficientSign::kMostlyPositive};
   static constexpr std::array<ParameterInfo, 3> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "static friction minus Coulomb friction"},
-      {"stribeck_velocity", Quantity::kVelocity, ParameterRole::kShape, 1e-9, kAny, true, 0,
-       "velocity at which the excess has fallen to 1/e"},
+      {"stribeck_velocity",
+       Quantity::kVelocity,
+       ParameterRole::kShape,
+       1e-9,
+       kAny,
+       true,
+       0,
+       "velocity at which the excess has fallen to 1/e",
+       {0.015, 0.4}},
       kSmoothing,
   }};
   template <typename Scalar>
@@ -101,6 +131,9 @@ struct QuadraticFriction {
   static constexpr EffectKind kKind = EffectKind::kQuadraticFriction;
   static constexpr const char* kName = "quadratic_friction";
   static constexpr const char* kFormula = "coefficient * dq * |dq|";
+  static constexpr const char* kWords = "drag that grows with the square of speed";
+  static constexpr const char* kMotionHint = "use a speed range of more than 3 to 1";
+  static constexpr EffectTraits kTraits{.is_friction = true};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"coefficient", Quantity::kEffortPerVelocitySquared, ParameterRole::kLinear, -kAny, kAny,
        true, 0, "torque per squared velocity, against the motion"},
@@ -118,13 +151,26 @@ struct TemperatureDrift {
   static constexpr const char* kName = "temperature_drift";
   static constexpr const char* kFormula =
       "exp(-t / time_constant) * (level * tanh(dq / smoothing) + coefficient * dq)";
+  static constexpr const char* kWords = "friction that changes while the joint warms up";
+  static constexpr const char* kMotionHint =
+      "repeat the same motion from a cold start for several time constants";
+  static constexpr EffectTraits kTraits{.is_friction = true, .counts_time = true};
   static constexpr std::array<ParameterInfo, 4> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "excess of the Coulomb level at the start"},
       {"coefficient", Quantity::kEffortPerVelocity, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "excess of the viscous slope at the start"},
-      {"time_constant", Quantity::kTime, ParameterRole::kShape, 1e-9, kAny, true, 0,
-       "time after which the excess has fallen to 1/e"},
+      // What has not faded by the end of a recording is friction that stays: longer, this effect
+      // would stand for Coulomb and viscous friction at once.
+      {"time_constant",
+       Quantity::kTime,
+       ParameterRole::kShape,
+       1e-9,
+       kAny,
+       true,
+       0,
+       "time after which the excess has fallen to 1/e",
+       {1.0 / 12, 0.75}},
       kSmoothing,
   }};
   template <typename Scalar>
@@ -141,6 +187,9 @@ struct JointCoupling {
   static constexpr const char* kName = "joint_coupling";
   static constexpr const char* kFormula =
       "coefficient * dq_k + level * tanh(dq_k / smoothing), k = source_joint";
+  static constexpr const char* kWords = "friction from the motion of another joint";
+  static constexpr const char* kMotionHint = "move one joint at a time";
+  static constexpr EffectTraits kTraits{};
   static constexpr std::array<ParameterInfo, 4> kParameters{{
       {"coefficient", Quantity::kEffortPerVelocity, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "torque per velocity of the other joint"},

@@ -19,6 +19,9 @@ struct RotorInertia {
   static constexpr EffectKind kKind = EffectKind::kRotorInertia;
   static constexpr const char* kName = "rotor_inertia";
   static constexpr const char* kFormula = "inertia * ddq";
+  static constexpr const char* kWords = "the inertia of rotor and gear";
+  static constexpr const char* kMotionHint = "accelerate hard, link by link";
+  static constexpr EffectTraits kTraits{};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"inertia", Quantity::kReflectedInertia, ParameterRole::kLinear, 0, kAny, true, 0,
        "inertia of rotor and gear as seen at the joint"},
@@ -34,6 +37,9 @@ struct TipPayload {
   static constexpr EffectKind kKind = EffectKind::kTipPayload;
   static constexpr const char* kName = "tip_payload";
   static constexpr const char* kFormula = "inverse dynamics of a point mass at (x, y, z)";
+  static constexpr const char* kWords = "a payload at the tip";
+  static constexpr const char* kMotionHint = "hold several poses under gravity";
+  static constexpr EffectTraits kTraits{.acts_at_rest = true};
   static constexpr std::array<ParameterInfo, 4> kParameters{{
       {"mass", Quantity::kMass, ParameterRole::kLinear, -kAny, kAny, true, 0, "carried mass"},
       {"x", Quantity::kLength, ParameterRole::kShape, -kAny, kAny, false, 0, "in the link's frame"},
@@ -52,6 +58,9 @@ struct LinkMass {
   static constexpr EffectKind kKind = EffectKind::kLinkMass;
   static constexpr const char* kName = "link_mass";
   static constexpr const char* kFormula = "inverse dynamics of a point mass at the centre of mass";
+  static constexpr const char* kWords = "a link of another mass";
+  static constexpr const char* kMotionHint = "hold several poses under gravity";
+  static constexpr EffectTraits kTraits{.acts_at_rest = true};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"mass", Quantity::kMass, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "mass added to the link"},

@@ -16,11 +16,22 @@ struct Hysteresis {
   static constexpr EffectKind kKind = EffectKind::kHysteresis;
   static constexpr const char* kName = "hysteresis";
   static constexpr const char* kFormula = "level * z, dz/dq = (1 - z sgn(dq)) / width";
+  static constexpr const char* kWords =
+      "friction that builds up over a distance after each reversal";
+  static constexpr const char* kMotionHint = "make many small reversals";
+  static constexpr EffectTraits kTraits{.is_friction = true, .sign = CoefficientSign::kPositive};
   static constexpr std::array<ParameterInfo, 2> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "torque against the motion, far from a reversal"},
-      {"width", Quantity::kDistance, ParameterRole::kShape, 1e-9, kAny, true, 0,
-       "way in which the distance to that torque falls to 1/e"},
+      {"width",
+       Quantity::kDistance,
+       ParameterRole::kShape,
+       1e-9,
+       kAny,
+       true,
+       0,
+       "way in which the distance to that torque falls to 1/e",
+       {0.006, 0.3}},
   }};
   // z after a way without a reversal, exactly. A run starts with z = 0.
   template <typename Scalar>
@@ -41,6 +52,10 @@ struct TimeDelay {
   static constexpr EffectKind kKind = EffectKind::kTimeDelay;
   static constexpr const char* kName = "time_delay";
   static constexpr const char* kFormula = "torque(t) is logged `delay` before it acts";
+  static constexpr const char* kWords = "a drive that executes its torque late";
+  static constexpr const char* kMotionHint =
+      "accelerate at two frequencies at least, the higher the better";
+  static constexpr EffectTraits kTraits{};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"delay", Quantity::kTime, ParameterRole::kLinear, 0, kAny, true, 0,
        "time from the logged torque to the one that acts"},

@@ -9,6 +9,15 @@
 
 namespace offnominal::effects {
 
+// What a drive supplies beside the load: by_size |load| + by_load load. The first is friction of
+// either direction of power, the second what it is more where the drive moves the load than where
+// the load moves the drive.
+template <typename Scalar>
+struct LoadFriction {
+  Scalar by_size{};
+  Scalar by_load{};
+};
+
 // Friction of a gear whose teeth are pressed together by what they transmit.
 // Source: P. Hamon, M. Gautier, P. Garrec, IROS 2010 (dry friction that depends on load and
 // velocity), with the reflected inertia counted as load, as torque_path.hpp explains.
@@ -16,6 +25,9 @@ struct LoadDependentFriction {
   static constexpr EffectKind kKind = EffectKind::kLoadDependentFriction;
   static constexpr const char* kName = "load_dependent_friction";
   static constexpr const char* kFormula = "factor * |load torque| * tanh(dq / smoothing)";
+  static constexpr const char* kWords = "friction that grows with the torque transmitted";
+  static constexpr const char* kMotionHint = "reverse at poses with little and with much load";
+  static constexpr EffectTraits kTraits{.is_friction = true, .sign = CoefficientSign::kPositive};
   // At 1 a joint that its load drives would lock, and no acceleration would follow from the torque.
   static constexpr double kMostFactor = 0.95;
   static constexpr std::array<ParameterInfo, 2> kParameters{{
@@ -23,13 +35,12 @@ struct LoadDependentFriction {
        "friction per torque that passes through the gear"},
       kSmoothing,
   }};
-  // Signed by the direction: the drive supplies this times |load torque| beside the load.
   template <typename Scalar>
-  static Scalar friction_per_load(const std::array<Scalar, kMaxEffectParameters>& p,
-                                  const JointInstant<Scalar>& at) {
-    return p[0] * smooth_sign(at.dq, p[1]);
+  static LoadFriction<Scalar> friction_per_load(const std::array<Scalar, kMaxEffectParameters>& p,
+                                                const JointInstant<Scalar>& at) {
+    return {p[0] * smooth_sign(at.dq, p[1]), Scalar(0)};
   }
-  // What its magnitude never exceeds.
+  // What it never exceeds where the load moves the drive.
   template <typename Scalar>
   static Scalar most_friction_per_load(const std::array<Scalar, kMaxEffectParameters>& p) {
     return p[0];
@@ -43,6 +54,9 @@ struct TorqueScale {
   static constexpr EffectKind kKind = EffectKind::kTorqueScale;
   static constexpr const char* kName = "torque_scale";
   static constexpr const char* kFormula = "error * (torque of the model)";
+  static constexpr const char* kWords = "a wrong torque constant";
+  static constexpr const char* kMotionHint = "move with a payload of known mass";
+  static constexpr EffectTraits kTraits{.acts_at_rest = true};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"error", Quantity::kRatio, ParameterRole::kLinear, -0.9, 9, true, 0,
        "logged torque per torque that acts, less 1"},
