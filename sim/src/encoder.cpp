@@ -8,8 +8,8 @@
 namespace offnominal::sim {
 namespace {
 
-Eigen::Vector2d quantise(const Eigen::Vector2d& value, double step) {
-  return {sim::quantise(value[0], step), sim::quantise(value[1], step)};
+JointVector quantise(const JointVector& value, double step) {
+  return value.unaryExpr([step](double one) { return sim::quantise(one, step); });
 }
 
 }  // namespace
@@ -45,11 +45,13 @@ JointState Encoders::measure(const JointState& truth, double period_s) {
   if (config_.velocity == VelocitySource::kQuantised) {
     measured.dq = quantise(truth.dq, config_.velocity_step_rad_s);
   } else if (config_.velocity == VelocitySource::kBackwardDifference) {
-    measured.dq = has_last_ ? Eigen::Vector2d((measured.q - last_q_) / period_s)
-                            : quantise(truth.dq, count / period_s);
+    if (last_q_.size() > 0) {
+      measured.dq = (measured.q - last_q_) / period_s;
+    } else {
+      measured.dq = quantise(truth.dq, count / period_s);
+    }
   }
   last_q_ = measured.q;
-  has_last_ = true;
   return measured;
 }
 

@@ -42,7 +42,7 @@ TwoLinkParameters faulty_arm(const TwoLinkParameters& healthy, const Fault& faul
   return arm;
 }
 
-Eigen::Vector2d nonlinear_fault(const JointState& state) {
+Eigen::Vector2d nonlinear_fault(const TwoLinkState& state) {
   const double q1 = state.q[0], q2 = state.q[1], dq2 = state.dq[1];
   return {7.5 * q1 * q1 + 10.0 * q1 * q1 * dq2 * dq2 + 7.0 * q2 + 17.0, 50.0 * q1 * q2 + 12.5};
 }

@@ -15,7 +15,7 @@ Eigen::Matrix2d mass_matrix(const TwoLinkParameters& arm, const Eigen::Vector2d&
   return m;
 }
 
-Eigen::Vector2d velocity_torque(const TwoLinkParameters& arm, const JointState& state) {
+Eigen::Vector2d velocity_torque(const TwoLinkParameters& arm, const TwoLinkState& state) {
   const double h = arm.mass2_kg * arm.length1_m * arm.length2_m * std::sin(state.q[1]);
   const double dq1 = state.dq[0], dq2 = state.dq[1];
   return {-h * (2.0 * dq1 * dq2 + dq2 * dq2), h * dq1 * dq1};
@@ -27,7 +27,7 @@ Eigen::Vector2d gravity_torque(const TwoLinkParameters& arm, const Eigen::Vector
   return {(arm.mass1_kg + arm.mass2_kg) * g * arm.length1_m * std::cos(q[0]) + g2, g2};
 }
 
-Eigen::Vector2d forward_acceleration(const TwoLinkParameters& arm, const JointState& state,
+Eigen::Vector2d forward_acceleration(const TwoLinkParameters& arm, const TwoLinkState& state,
                                      const Eigen::Vector2d& tau) {
   const Eigen::Matrix2d m = mass_matrix(arm, state.q);
   const Eigen::Vector2d b = tau - velocity_torque(arm, state) - gravity_torque(arm, state.q);
@@ -35,7 +35,7 @@ Eigen::Vector2d forward_acceleration(const TwoLinkParameters& arm, const JointSt
   return {(m(1, 1) * b[0] - m(0, 1) * b[1]) / det, (m(0, 0) * b[1] - m(1, 0) * b[0]) / det};
 }
 
-double kinetic_energy(const TwoLinkParameters& arm, const JointState& state) {
+double kinetic_energy(const TwoLinkParameters& arm, const TwoLinkState& state) {
   return 0.5 * state.dq.dot(mass_matrix(arm, state.q) * state.dq);
 }
 

@@ -32,7 +32,7 @@ TwoLinkPlant::TwoLinkPlant(const TwoLinkParameters& arm, const Fault& fault,
   if (!uncertainty_) throw std::invalid_argument("two-link plant: the uncertainty is empty");
 }
 
-Eigen::Vector2d TwoLinkPlant::acceleration(double t_s, const JointState& state,
+Eigen::Vector2d TwoLinkPlant::acceleration(double t_s, const TwoLinkState& state,
                                            const Eigen::Vector2d& tau) const {
   const Eigen::Vector2d net = tau - uncertainty_(t_s, state);
   Eigen::Vector2d ddq = forward_acceleration(faulty_arm(arm_, fault_, t_s), state, net);
@@ -42,7 +42,7 @@ Eigen::Vector2d TwoLinkPlant::acceleration(double t_s, const JointState& state,
   return ddq;
 }
 
-Eigen::Vector2d TwoLinkPlant::fault_function(double t_s, const JointState& state,
+Eigen::Vector2d TwoLinkPlant::fault_function(double t_s, const TwoLinkState& state,
                                              const Eigen::Vector2d& tau) const {
   switch (fault_.kind) {
     case FaultKind::kNone:
@@ -60,20 +60,21 @@ Eigen::Vector2d TwoLinkPlant::fault_function(double t_s, const JointState& state
   return Eigen::Vector2d::Zero();
 }
 
-Eigen::Vector2d TwoLinkPlant::uncertainty_acceleration(double t_s, const JointState& state) const {
+Eigen::Vector2d TwoLinkPlant::uncertainty_acceleration(double t_s,
+                                                       const TwoLinkState& state) const {
   const Eigen::Vector2d bias = velocity_torque(arm_, state) + gravity_torque(arm_, state.q);
   return forward_acceleration(arm_, state, bias - uncertainty_(t_s, state));
 }
 
-JointState TwoLinkPlant::step(double t_s, const JointState& state, const Eigen::Vector2d& tau,
-                              double period_s, int substeps) const {
+TwoLinkState TwoLinkPlant::step(double t_s, const TwoLinkState& state, const Eigen::Vector2d& tau,
+                                double period_s, int substeps) const {
   if (!(period_s > 0.0) || substeps < 1) {
     throw std::invalid_argument("two-link plant step: period_s " + std::to_string(period_s) +
                                 ", substeps " + std::to_string(substeps) +
                                 "; allowed is period_s above 0 and substeps at least 1");
   }
   const auto derivative = [&](double t, const Eigen::Vector4d& x) -> Eigen::Vector4d {
-    const JointState s{x.head<2>(), x.tail<2>()};
+    const TwoLinkState s{x.head<2>(), x.tail<2>()};
     Eigen::Vector4d dx;
     dx << s.dq, acceleration(t, s, tau);
     return dx;

@@ -14,13 +14,13 @@ Eigen::Vector2d paper_disturbance(double t_s) {
 }
 
 Uncertainty paper_uncertainty() {
-  return [](double t_s, const JointState& state) -> Eigen::Vector2d {
+  return [](double t_s, const TwoLinkState& state) -> Eigen::Vector2d {
     return paper_friction(state.dq) + paper_disturbance(t_s);
   };
 }
 
 Uncertainty no_uncertainty() {
-  return [](double, const JointState&) -> Eigen::Vector2d { return Eigen::Vector2d::Zero(); };
+  return [](double, const TwoLinkState&) -> Eigen::Vector2d { return Eigen::Vector2d::Zero(); };
 }
 
 }  // namespace offnominal::sim

@@ -80,7 +80,7 @@ void check_odrives(const Frame& frame, Microseconds now_us, Odrives& drives) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr SourceConfig kSource{};
   ProtectedDrives<7> controller(kSource, kSource, FrameFormat::kFd);
-  offnominal::sim::JointDrives<7> drives({}, FrameFormat::kFd);
+  offnominal::sim::JointDrives drives(7, {}, FrameFormat::kFd);
   Odrives odrives({.torque_interval_us = 1000},
                   {{{0, 1.0F, CanSimpleFirmware::k05, 0.05F}, {1, -0.1F}}});
   Microseconds now_us = 0;

@@ -39,7 +39,7 @@ TEST(Quantiser, OneTurnHasTwoToTheBitsCounts) {
 
 TEST(Encoders, IdealSensorsReportTheTruth) {
   Encoders encoders({});
-  const JointState truth{{0.123, -0.456}, {1.5, -2.5}};
+  const JointState truth{Eigen::Vector3d(0.123, -0.456, 0.789), Eigen::Vector3d(1.5, -2.5, 3.5)};
   const JointState measured = encoders.measure(truth, 0.001);
   EXPECT_EQ(measured.q, truth.q);
   EXPECT_EQ(measured.dq, truth.dq);
@@ -50,7 +50,8 @@ TEST(Encoders, QuantisedVelocityIsWithinHalfAStep) {
   config.velocity = VelocitySource::kQuantised;
   config.velocity_step_rad_s = 0.01;
   Encoders encoders(config);
-  const JointState measured = encoders.measure({{0.1, 0.2}, {0.1234, -0.4567}}, 0.001);
+  const JointState measured =
+      encoders.measure({Eigen::Vector2d(0.1, 0.2), Eigen::Vector2d(0.1234, -0.4567)}, 0.001);
   EXPECT_NEAR(measured.dq[0], 0.12, 1e-12);
   EXPECT_NEAR(measured.dq[1], -0.46, 1e-12);
 }

@@ -51,7 +51,7 @@ TEST(Fault, ProfileStartsAtZeroRisesAndStaysBelowOne) {
 TEST(Fault, HealthyPlantHasNoProfile) { EXPECT_EQ(time_profile({}, 15.0), 0.0); }
 
 TEST(Fault, NonlinearFaultIsEquationThirty) {
-  const JointState s{{0.1, -0.2}, {9.0, 0.5}};
+  const TwoLinkState s{{0.1, -0.2}, {9.0, 0.5}};
   const Eigen::Vector2d psi = nonlinear_fault(s);
   EXPECT_NEAR(psi[0], 0.075 + 10.0 * 0.01 * 0.25 - 1.4 + 17.0, 1e-14);
   EXPECT_NEAR(psi[1], -1.0 + 12.5, 1e-14);

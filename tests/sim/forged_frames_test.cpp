@@ -33,7 +33,7 @@ class HealthyBus {
     std::array<Frame, 8> frames;
     const std::array<std::optional<hal::EncoderReading>, kArms> readings = {
         hal::EncoderReading{0.1F, 0.2F, true}, hal::EncoderReading{-0.3F, 0.4F, true}};
-    std::size_t count = drives_.frames(readings, {1.0, 2.0}, frames);
+    std::size_t count = drives_.frames(readings, std::array{1.0, 2.0}, frames);
     for (std::size_t i = 0; i < count; ++i) carry(frames[i]);
     const std::array<hal::TorqueCommand, kArms> commands = {
         {{hal::DriveMode::kTorque, 1.0F}, {hal::DriveMode::kTorque, 2.0F}}};
@@ -93,7 +93,7 @@ class HealthyBus {
   }
 
   hal::ProtectedDrives<kArms> controller_{kSource, kSource, hal::FrameFormat::kClassic};
-  sim::JointDrives<kArms> drives_{{.commands = kCommands}, hal::FrameFormat::kClassic};
+  sim::JointDrives drives_{kArms, {.commands = kCommands}, hal::FrameFormat::kClassic};
   hal::Microseconds now_us_ = 0;
   std::map<std::uint32_t, std::uint8_t> last_counter_;
   std::deque<Frame> history_;

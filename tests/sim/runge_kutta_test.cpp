@@ -30,8 +30,8 @@ TEST(RungeKutta, HalvingTheStepDividesTheErrorBySixteen) {
 }
 
 // Swings freely under a smooth uncertainty; sgn(dq1) of the paper's friction is not smooth.
-JointState swing(int substeps) {
-  const Uncertainty smooth = [](double t, const JointState& s) -> Eigen::Vector2d {
+TwoLinkState swing(int substeps) {
+  const Uncertainty smooth = [](double t, const TwoLinkState& s) -> Eigen::Vector2d {
     return 0.3 * s.dq + Eigen::Vector2d::Constant(0.5 * std::sin(5.0 * t));
   };
   const TwoLinkPlant plant({}, {}, smooth);
@@ -39,10 +39,10 @@ JointState swing(int substeps) {
 }
 
 TEST(RungeKutta, PlantStepIsOfOrderFour) {
-  const auto distance = [](const JointState& a, const JointState& b) {
+  const auto distance = [](const TwoLinkState& a, const TwoLinkState& b) {
     return std::hypot((a.q - b.q).norm(), (a.dq - b.dq).norm());
   };
-  const JointState reference = swing(12800);
+  const TwoLinkState reference = swing(12800);
   for (const int substeps : {100, 200, 400}) {
     const double ratio =
         distance(swing(substeps), reference) / distance(swing(2 * substeps), reference);

@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 
 struct RandomArm {
   TwoLinkParameters arm;
-  JointState state;
+  TwoLinkState state;
 };
 
 RandomArm random_arm(std::mt19937_64& generator) {
@@ -40,7 +40,7 @@ double lagrangian(const TwoLinkParameters& arm, const Vector2d& q, const Vector2
 }
 
 // d/dt dL/ddq - dL/dq by central differences of the Lagrangian, the acceleration being given.
-Vector2d euler_lagrange_torque(const TwoLinkParameters& arm, const JointState& s,
+Vector2d euler_lagrange_torque(const TwoLinkParameters& arm, const TwoLinkState& s,
                                const Vector2d& ddq) {
   const double h = 2e-4;
   const auto momentum = [&](const Vector2d& q, const Vector2d& dq) {

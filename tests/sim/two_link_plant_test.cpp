@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-JointState random_state(std::mt19937_64& generator) {
+TwoLinkState random_state(std::mt19937_64& generator) {
   std::uniform_real_distribution<double> angle(-1.0, 1.0), speed(-2.0, 2.0);
   return {{angle(generator), angle(generator)}, {speed(generator), speed(generator)}};
 }
@@ -23,7 +23,7 @@ JointState random_state(std::mt19937_64& generator) {
 TEST(TwoLinkPlant, EnergyIsConservedWithoutFriction) {
   const TwoLinkParameters arm;
   const TwoLinkPlant plant(arm, {}, no_uncertainty());
-  JointState state{{0.4, -0.7}, {0.5, -1.0}};
+  TwoLinkState state{{0.4, -0.7}, {0.5, -1.0}};
   const auto energy = [&] { return kinetic_energy(arm, state) + potential_energy(arm, state.q); };
   const double start = energy();
   double largest_kinetic = 0.0;
@@ -38,8 +38,8 @@ TEST(TwoLinkPlant, EnergyIsConservedWithoutFriction) {
 TEST(TwoLinkPlant, FrictionTakesEnergy) {
   const TwoLinkParameters arm;
   const TwoLinkPlant plant(
-      arm, {}, [](double, const JointState& s) -> Vector2d { return paper_friction(s.dq); });
-  JointState state{{0.4, -0.7}, {0.5, -1.0}};
+      arm, {}, [](double, const TwoLinkState& s) -> Vector2d { return paper_friction(s.dq); });
+  TwoLinkState state{{0.4, -0.7}, {0.5, -1.0}};
   double last = kinetic_energy(arm, state) + potential_energy(arm, state.q);
   for (int k = 0; k < 2000; ++k) {
     state = plant.step(k * 1e-3, state, Vector2d::Zero(), 1e-3);
@@ -55,7 +55,7 @@ TEST(TwoLinkPlant, UncertaintyHasThePaperNorm) {
   const TwoLinkPlant plant({}, {}, paper_uncertainty());
   std::uniform_real_distribution<double> time(0.0, 20.0);
   for (int i = 0; i < 200; ++i) {
-    const JointState s = random_state(generator);
+    const TwoLinkState s = random_state(generator);
     const double t = time(generator), c = std::cos(s.q[1]), noise = std::sin(30.0 * t);
     const double f1 = std::copysign(1.0, s.dq[0]) + 4.0 * s.dq[0] + noise;
     const double f2 = std::sin(s.dq[1]) + 4.0 * s.dq[1] + noise;
@@ -76,7 +76,7 @@ TEST_P(FaultFunction, IsTheDifferenceOfTheFaultyAndTheHealthyPlant) {
   const TwoLinkPlant healthy({}, {}, paper_uncertainty());
   std::uniform_real_distribution<double> time(0.0, 20.0), torque(-40.0, 40.0);
   for (int i = 0; i < 500; ++i) {
-    const JointState s = random_state(generator);
+    const TwoLinkState s = random_state(generator);
     const double t = time(generator);
     const Vector2d tau(torque(generator), torque(generator));
     const Vector2d psi = faulty.fault_function(t, s, tau);
@@ -104,7 +104,7 @@ TEST(TwoLinkPlant, MassLossChangesInertiaCoriolisAndGravityAsALighterArmWould) {
   lighter.mass1_kg = 0.125;
   const TwoLinkPlant light(lighter, {}, paper_uncertainty());
   for (int i = 0; i < 50; ++i) {
-    const JointState s = random_state(generator);
+    const TwoLinkState s = random_state(generator);
     EXPECT_EQ(faulty.acceleration(10.0, s, {30.0, 10.0}),
               light.acceleration(10.0, s, {30.0, 10.0}));
   }
@@ -112,9 +112,9 @@ TEST(TwoLinkPlant, MassLossChangesInertiaCoriolisAndGravityAsALighterArmWould) {
 
 TEST(TwoLinkPlant, TorqueIsHeldOverTheStep) {
   const TwoLinkPlant plant({}, {}, paper_uncertainty());
-  const JointState start{{0.1, 0.2}, {0.4, -0.3}};
-  const JointState once = plant.step(1.0, start, {30.0, 12.0}, 0.01, 10);
-  JointState stepwise = start;
+  const TwoLinkState start{{0.1, 0.2}, {0.4, -0.3}};
+  const TwoLinkState once = plant.step(1.0, start, {30.0, 12.0}, 0.01, 10);
+  TwoLinkState stepwise = start;
   for (int i = 0; i < 10; ++i) {
     stepwise = plant.step(1.0 + i * 0.001, stepwise, {30.0, 12.0}, 0.001);
   }

@@ -9,11 +9,20 @@
 #include <offnominal/hal/protected_drives.hpp>
 
 #include "offnominal/sim/bus/plant_node.hpp"
+#include "offnominal/sim/plants/paper_arm.hpp"
 #include "offnominal/sim/trajectory.hpp"
 #include "paper/two_link_robot.hpp"
 #include "robot/monitor_config_of.hpp"
 
 namespace offnominal::test {
+
+/// The paper's arm, with its uncertainty.
+inline std::unique_ptr<sim::Plant> paper_arm(
+    const sim::Fault& fault = {},
+    const sim::JointState& start = sim::on_trajectory(sim::paper_trajectory(0.0))) {
+  return std::make_unique<sim::PaperArm>(sim::TwoLinkPlant({}, fault, sim::paper_uncertainty()),
+                                         start);
+}
 
 class ArmOnBus {
  public:
@@ -29,8 +38,7 @@ class ArmOnBus {
   ArmOnBus(const sim::Fault& fault, const Controller::Config& config,
            const sim::PlantNodeConfig& plant,
            const sim::JointState& start = sim::on_trajectory(sim::paper_trajectory(0.0)))
-      : drives_(kSource, kSource, plant.format),
-        plant_(sim::TwoLinkPlant({}, fault, sim::paper_uncertainty()), start, plant) {
+      : drives_(kSource, kSource, plant.format), plant_(paper_arm(fault, start), plant) {
     if (Controller::create(config, controller) != Status::kOk) throw std::logic_error("refused");
   }
 

@@ -41,9 +41,8 @@ TEST(ControlLoop, ArmsOnlyWhenAskedTo) {
 // it says why not and ends, and does not wait for somebody to move the arm there.
 TEST(ControlLoop, EndsWhereArmingIsRefused) {
   LoopOnBus loop;
-  sim::JointState elsewhere;
-  elsewhere.q = {0.5, 0.0};
-  loop.plant = sim::PlantNode(sim::TwoLinkPlant({}, {}, sim::paper_uncertainty()), elsewhere, {});
+  const sim::JointState elsewhere{Eigen::Vector2d(0.5, 0.0), Eigen::Vector2d::Zero()};
+  loop.plant = sim::PlantNode(paper_arm({}, elsewhere), {});
   loop.timer.before_tick = [&](int tick) { loop.panel.end.store(tick == 500); };
   const realtime::LoopReport report = loop.run({.arm_when_passive = true});
   EXPECT_EQ(report.refusal, Fault::kReferenceFarFromArm);
@@ -192,12 +191,12 @@ TEST(ControlLoop, AFaultEndsTheWishToArmByItself) {
 
 TEST(ControlLoop, AFaultIsClearedAndArmedAgainOnlyWhenAskedTo) {
   LoopOnBus loop;
-  const sim::PlantNode at_the_beginning = loop.plant;
   std::vector<ControllerState> states;
   loop.timer.before_tick = [&](int tick) {
     loop.timer.plant_runs = tick < 100 || tick > 200;
     if (tick % 100 == 0) states.push_back(loop.panel.state.load());
-    if (tick == 250) loop.plant = at_the_beginning;  // somebody brings it back: it has fallen
+    // Somebody brings it back: it has fallen.
+    if (tick == 250) loop.plant = sim::PlantNode(paper_arm(), {});
     if (tick == 300) loop.panel.clear.store(true);
     if (tick == 400) loop.panel.arm.store(true);
     if (tick == 500) loop.panel.end.store(true);

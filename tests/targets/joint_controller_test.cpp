@@ -198,7 +198,7 @@ TEST(JointController, ObservesVelocitiesThatNobodySends) {
   config.monitor.bound.velocity_error = velocity_error_bound(
       config.velocity_observer, most_acceleration, 0.5F * hal::kPositionPerCount);
   ArmOnBus arm({.kind = sim::FaultKind::kNonlinear, .time_s = 4.0}, config,
-               {.sends_velocity = false}, sim::JointState{});
+               {.sends_velocity = false}, {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()});
   ASSERT_TRUE(arm.start());
   arm.run(4.0);
   EXPECT_EQ(arm.data->state, ControllerState::kArmed);

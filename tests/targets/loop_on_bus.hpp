@@ -71,9 +71,7 @@ class LoopOnBus {
   hal::InProcessNet<2> net_;
 
  public:
-  sim::PlantNode plant{sim::TwoLinkPlant({}, {}, sim::paper_uncertainty()),
-                       sim::on_trajectory(sim::paper_trajectory(0.0)),
-                       {}};
+  sim::PlantNode plant{paper_arm(), {}};
   ScriptedTimer timer{net_, plant};
   realtime::Recorder recorder;
   realtime::LoopPanel panel;

@@ -141,7 +141,7 @@ class OdriveArm {
   Net::Port controller_port_ = net_.port(0);
   Net::Port plant_port_ = net_.port(1);
   sim::TwoLinkPlant plant_;
-  sim::JointState state_ = sim::on_trajectory(sim::paper_trajectory(0.0));
+  sim::TwoLinkState state_{sim::paper_trajectory(0.0).q, sim::paper_trajectory(0.0).dq};
   hal::CanSimpleDrives<kJoints> drives_;
   hal::Microseconds now_us_ = 0;
   std::int64_t moves_ = 0;

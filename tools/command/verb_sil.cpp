@@ -13,6 +13,7 @@
 #include "common/output_file.hpp"
 #include "log/candump_text.hpp"
 #include "log/csv_text.hpp"
+#include "loop/motion_at.hpp"
 #include "paper/recording.hpp"
 #include "paper/two_link_robot.hpp"
 #include "robot/robot_file.hpp"
@@ -31,6 +32,8 @@ struct SilOptions {
   std::string bus = sil::kInProcess;
   std::string scalar = "float";
   std::optional<std::string> robot;
+  std::optional<std::string> plant;
+  std::optional<std::string> motion;
   std::optional<double> duration;
   bool real_time = false;
   bool lock_step = false;
@@ -40,14 +43,23 @@ struct SilOptions {
   AnswerOptions answer;
 };
 
-sil::Scenario scenario_of(const SilOptions& options) {
+constexpr const char* kPaper = "paper";
+
+// The robot file of the plant; none for the paper's arm.
+std::optional<std::string> plant_file(const SilOptions& options, const RobotDescription& robot) {
+  if (options.plant) return *options.plant == kPaper ? std::nullopt : options.plant;
+  return paper::is_two_link_arm(robot) ? std::nullopt : options.robot;
+}
+
+sil::Scenario scenario_of(const SilOptions& options, const RobotDescription& robot) {
   sil::Scenario scenario;
+  if (const auto file = plant_file(options, robot)) scenario.plant = read_robot_file(*file);
   if (options.scenario) {
     if (options.fault) {
       refuse_option("sil", "--fault", "together with --scenario", "one of the two",
                     "write the fault into the scenario's file");
     }
-    scenario = sil::read_scenario(*options.scenario);
+    scenario = sil::read_scenario(*options.scenario, scenario.plant);
   } else if (options.fault == "mass_loss") {
     // Section 5.1 of the paper.
     scenario.faults.push_back(
@@ -56,12 +68,12 @@ sil::Scenario scenario_of(const SilOptions& options) {
     scenario.faults.push_back(
         {.kind = sim::FaultEventKind::kNonlinear, .begin_s = 10.0, .rate_per_s = 0.5});
   }
-  paper::Experiment& experiment = scenario.experiment;
-  if (options.accommodate) experiment.accommodate = true;
+  if (options.motion) scenario.motion = motion_named(*options.motion, robot);
+  if (options.accommodate) scenario.accommodate = true;
   if (options.fd) scenario.format = hal::FrameFormat::kFd;
-  if (options.duration) experiment.duration_s = *options.duration;
-  experiment.precision = precision_of(options.scalar);
-  experiment.record = options.answer.report.has_value() || options.log.has_value();
+  if (options.duration) scenario.duration_s = *options.duration;
+  scenario.precision = precision_of(options.scalar);
+  scenario.record = options.answer.report.has_value() || options.log.has_value();
   return scenario;
 }
 
@@ -79,6 +91,8 @@ sil::SilResult real_time(const SilOptions& options, const RobotDescription& robo
   return sil::run_in_real_time(robot, scenario,
                                {.interface = options.bus,
                                 .robot_file = options.robot,
+                                .plant_file = plant_file(options, robot),
+                                .motion = options.motion.value_or(scenario.plant ? "sway" : kPaper),
                                 .candump = options.candump,
                                 .replace_candump = options.answer.force});
 }
@@ -87,7 +101,7 @@ sil::SilResult lock_step(const SilOptions& options, const RobotDescription& robo
                          const sil::Scenario& scenario) {
   const std::unique_ptr<sil::Wire> wire = wire_of(options.bus);
   std::string frames;
-  sil::TappedPort::OnFrame on_frame;
+  TappedPort::OnFrame on_frame;
   if (options.candump) {
     const std::string interface = options.bus == sil::kInProcess ? "vcan0" : options.bus;
     on_frame = [&frames, interface](const hal::Frame& frame, hal::Microseconds time_us) {
@@ -105,7 +119,7 @@ void run(const SilOptions& options, const std::string& command_line) {
   const RobotDescription robot =
       options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
   if (options.robot) require_bound(robot, *options.robot);
-  const sil::Scenario scenario = scenario_of(options);
+  const sil::Scenario scenario = scenario_of(options, robot);
   hal::VirtualCan made;
   sil::make_if_missing(options.bus, made);
   Progress progress;
@@ -115,7 +129,7 @@ void run(const SilOptions& options, const std::string& command_line) {
   progress.end();
   if (options.log) {
     write_file_atomically(*options.log,
-                          csv_text(recording_of(robot, scenario.experiment, result.run)),
+                          csv_text(paper::seen_recording_of(robot, result.run.series)),
                           options.answer.existing());
   }
   write_report(options.answer, [&] { return page_of(result, command_line); });
@@ -129,7 +143,7 @@ void run(const SilOptions& options, const std::string& command_line) {
 
 std::string footer() {
   return "In lock-step every run repeats exactly; in real time none does, and the table says how "
-         "the controller kept its time. The controller knows of the arm what comes over the bus, "
+         "the controller kept its time. The controller knows of the plant what comes over the bus, "
          "the drives know what it sends.\n"
          "Faults of a scenario's file (docs/sil.md has its keys; all have begin_s):\n" +
          sil::fault_kinds_text();
@@ -153,12 +167,20 @@ void set_up_sil(CLI::App& verb, ExitCode& /*exit_code*/) {
                 "Both ends as programs of their own, offnominal-plant and offnominal-controller, "
                 "on the machine's clock")
       ->excludes(lock_step);
-  verb.add_flag("--fd", options->fd, "CAN FD: one frame for all joints");
-  verb.add_option("--scalar", options->scalar, "Arithmetic of the controller")
+  verb.add_flag("--fd", options->fd,
+                "CAN FD: one frame for all joints; by default where classic CAN is too narrow");
+  verb.add_option("--scalar", options->scalar,
+                  "Arithmetic of the controller; double for two joints")
       ->check(CLI::IsMember({"float", "double"}))
       ->capture_default_str();
   verb.add_option("--robot", options->robot,
-                  "Robot file of the controller, two joints; by default the paper's arm");
+                  "Robot file of the controller; by default the paper's arm");
+  verb.add_option("--plant", options->plant,
+                  "Robot file of the plant, its rigid body and effects, or paper; by default the "
+                  "paper's arm for a robot of its links, and else the controller's robot");
+  verb.add_option("--motion", options->motion,
+                  "paper, sway (every joint a little to and fro), or a CSV as offnominal motion "
+                  "writes it; by default paper for the paper's arm, and else sway");
   verb.add_option("--duration", options->duration, "Length of the run, s [20]");
   verb.add_option("--log", options->log,
                   "Write the run as the controller saw it, and beside it what was true, CSV")

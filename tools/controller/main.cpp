@@ -19,14 +19,15 @@
 #include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "common/program.hpp"
-#include "controller/joint_program.hpp"
 #include "controller/outcome.hpp"
 #include "controller/timers.hpp"
+#include "loop/frame_format.hpp"
+#include "loop/joint_program.hpp"
+#include "loop/motion_at.hpp"
 #include "paper/two_link_robot.hpp"
 #include "robot/robot_file.hpp"
 #include "sil/open_bus.hpp"
 #include "sil/open_recorder.hpp"
-#include "sil/plant_of.hpp"
 #include "sil/sil_report.hpp"
 
 namespace offnominal::tools {
@@ -63,7 +64,7 @@ struct Options {
 void add_options(CLI::App& app, Options& options) {
   app.add_option("--bus", options.bus, "CAN interface: can0, vcan0")->required();
   app.add_option("--robot", options.robot,
-                 "Robot file of 1, 2, 3, 6 or 7 joints, with a bound; by default the paper's arm");
+                 "Robot file of up to 8 joints, with a bound; by default the paper's arm");
   app.add_option("--rate", options.rate_hz,
                  "Ticks a second, 10 to 10000; by default 1 over the "
                  "robot file's period_s, which is 1000 unless it says "
@@ -79,8 +80,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_flag("--arm", options.arm,
                "Arm once, as soon as every joint is heard; end where that is refused");
   app.add_option("--motion", options.motion,
-                 "Where the joints should be from arming on: hold, paper, or a CSV as offnominal "
-                 "motion writes it")
+                 "Where the joints should be from arming on: hold, paper, sway, or a CSV as "
+                 "offnominal motion writes it")
       ->capture_default_str();
   app.add_flag("--accommodate", options.accommodate, "Add the compensating torque");
   app.add_flag("--stop-at-detection", options.stop_at_detection,
@@ -89,7 +90,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--safe-mode", options.safe_mode, "What drives are told in the safe state")
       ->check(CLI::IsMember({"off", "damping"}))
       ->capture_default_str();
-  app.add_flag("--fd", options.fd, "CAN FD: one frame for all joints");
+  app.add_flag("--fd", options.fd,
+               "CAN FD: one frame for all joints; by default where classic CAN is too narrow");
   app.add_option("--observe-velocity", options.max_acceleration,
                  "Drives send positions alone; no joint accelerates faster, rad/s^2 or m/s^2")
       ->check(CLI::PositiveNumber);
@@ -124,20 +126,8 @@ RobotDescription robot_of(const Options& options) {
   return robot;
 }
 
-ReferenceChoice reference_of(const Options& options, int joints) {
-  if (options.motion == "hold") return {};
-  if (options.motion != "paper") {
-    return {std::make_shared<paper::RecordedMotion>(
-                paper::RecordedMotion::read(options.motion, joints)),
-            false};
-  }
-  if (joints == 2) return {nullptr, true};
-  throw InputError({kProgram, "--motion", "paper, for " + std::to_string(joints) + " joints",
-                    "hold, or a CSV file", "the paper's motion is one of two joints"});
-}
-
-sil::ControllerSettings settings_of(const Options& options) {
-  sil::ControllerSettings settings;
+ControllerSettings settings_of(const Options& options) {
+  ControllerSettings settings;
   settings.accommodate = options.accommodate;
   settings.stop_at_detection = options.stop_at_detection;
   settings.safe_mode = options.safe_mode == "off" ? hal::DriveMode::kOff : hal::DriveMode::kDamping;
@@ -206,7 +196,7 @@ int run(const Options& options) {
                  .transmit = sil::kFromController,
                  .may_restart_interface = !options.no_restart},
                 socket);
-  sil::BusPortOf<hal::SocketCan&> bus(socket);
+  BusPortOf<hal::SocketCan&> bus(socket);
   realtime::Recorder recorder;
   sil::open_recorder({.candump = options.candump.value_or(""),
                       .interface = options.bus,
@@ -214,22 +204,23 @@ int run(const Options& options) {
                       .columns = realtime::loop_columns(joints),
                       .replace = options.force},
                      recorder);
-  const Microseconds period_us = sil::period_us_of(robot.estimator.period_s);
+  const Microseconds period_us = period_us_of(robot.estimator.period_s);
   RealTimeTimer timer(period_us, std::llround(options.phase * static_cast<double>(period_us)));
   realtime::LoopPanel panel;
-  const auto program =
-      make_joint_program({.robot = robot,
-                          .settings = settings_of(options),
-                          .format = options.fd ? hal::FrameFormat::kFd : hal::FrameFormat::kClassic,
-                          .loop = {.arm_when_passive = options.arm,
-                                   .duration_us = microseconds(options.duration_s.value_or(0)),
-                                   .end_at_fault = options.end_at_fault},
-                          .wish = {.priority = options.priority, .lock_memory = !options.no_lock},
-                          .reference = reference_of(options, joints),
-                          .bus = bus,
-                          .timer = timer,
-                          .recorder = recorder,
-                          .panel = panel});
+  const auto program = make_joint_program(
+      {.robot = robot,
+       .settings = settings_of(options),
+       .format = format_for(joints, robot.estimator.period_s,
+                            options.fd ? std::optional(hal::FrameFormat::kFd) : std::nullopt),
+       .loop = {.arm_when_passive = options.arm,
+                .duration_us = microseconds(options.duration_s.value_or(0)),
+                .end_at_fault = options.end_at_fault},
+       .wish = {.priority = options.priority, .lock_memory = !options.no_lock},
+       .motion = options.motion == "hold" ? MotionAt{} : motion_named(options.motion, robot),
+       .bus = bus,
+       .timer = timer,
+       .recorder = recorder,
+       .panel = panel});
   std::atomic<bool> over{false};
   std::exception_ptr refused;
   std::thread loop([&] {

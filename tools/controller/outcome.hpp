@@ -5,7 +5,7 @@
 #include <offnominal/hal/bus.hpp>
 #include <string>
 
-#include "controller/joint_program.hpp"
+#include "loop/joint_program.hpp"
 
 namespace offnominal::tools {
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "controller/joint_program.hpp"
+#include "loop/joint_program.hpp"
 
 namespace offnominal::tools {
 

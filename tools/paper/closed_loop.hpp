@@ -1,16 +1,14 @@
 // Plant, controller and monitor in one loop, tick by tick.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <offnominal/control/computed_torque.hpp>
 #include <offnominal/monitor.hpp>
-#include <optional>
 
 #include "offnominal/sim/trajectory.hpp"
 #include "offnominal/sim/two_link_plant.hpp"
-#include "paper/bus_tick.hpp"
+#include "paper/run_observer.hpp"
 
 namespace offnominal::tools::paper {
 
@@ -28,24 +26,6 @@ struct LoopTiming {
 
 /// What the arm shall do at a time of the run.
 using DesiredAt = std::function<sim::DesiredMotion(double time_s)>;
-
-/// The loop at the end of a tick. The torque that was applied over the tick has already acted.
-struct TickRecord {
-  std::int64_t tick = 0;
-  double time_s = 0.0;
-  sim::JointState state;
-  Eigen::Vector2d q_desired = Eigen::Vector2d::Zero();
-  Eigen::Vector2d tau = Eigen::Vector2d::Zero();  // applied over the tick
-  Eigen::Vector2d psi = Eigen::Vector2d::Zero();  // true fault function at this state and torque
-  Eigen::Vector2d psi_hat = Eigen::Vector2d::Zero();
-  double error_norm = 0.0;
-  double threshold = 0.0;
-  double weight_norm = 0.0;
-  bool detected = false;  // latched
-  std::optional<BusTick> bus;
-};
-
-using TickObserver = std::function<void(const TickRecord&)>;
 
 /// Runs the loop from a start on the desired motion and shows every tick to `observe`. Throws
 /// InputError when the monitor refuses its settings or a sample. Capacity is the number of hidden

@@ -26,7 +26,7 @@ template <typename Scalar>
 [[nodiscard]] Vector<2, Scalar> drive_torque(const ControllerSetup<Scalar>& setup,
                                              const RigidBodyModel<2, Scalar>& model, double time_s,
                                              const sim::DesiredMotion& desired,
-                                             const sim::JointState& state,
+                                             const sim::TwoLinkState& state,
                                              const Vector<2, Scalar>& beside) {
   const Reference<2, Scalar> reference{desired.q.cast<Scalar>(), desired.dq.cast<Scalar>(),
                                        desired.ddq.cast<Scalar>()};
@@ -53,7 +53,7 @@ void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPla
                      "correct the setting that the status names");
   detail::require_ok(validate(setup.gains), "control gains", "give kp and kd of at least 0");
 
-  sim::JointState state = sim::on_trajectory(desired_at(0.0));
+  sim::TwoLinkState state{desired_at(0.0).q, desired_at(0.0).dq};
   Vector<2, Scalar> tau = detail::drive_torque(setup, monitor.model(), 0.0, desired_at(0.0), state,
                                                Vector<2, Scalar>::Zero().eval());
   const auto monitor_state = std::make_unique<typename LoopMonitor::State>();
@@ -75,7 +75,7 @@ void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPla
         "closed loop after " + std::to_string(tick) + " ticks",
         "the arm has left the range that the robot file gives it: take a shorter step, a "
         "smaller fault or wider joint limits");
-    record.state = state;
+    record.state = {state.q, state.dq};
     const sim::DesiredMotion desired = desired_at(record.time_s);
     record.q_desired = desired.q;
     record.psi = plant.fault_function(record.time_s, state, record.tau);

@@ -35,40 +35,50 @@ sim::DesiredMotion Experiment::desired_at(double time_s) const {
   return motion ? motion->at(at_s) : sim::paper_trajectory(at_s);
 }
 
-void check_experiment(const RobotDescription& robot, const Experiment& experiment,
-                      const std::string& verb) {
-  const auto refuse = [&verb](const std::string& place, const std::string& found,
-                              const std::string& allowed) {
-    throw InputError({.file = "offnominal " + verb,
-                      .place = place,
-                      .found = found,
-                      .allowed = allowed,
-                      .mend = ""});
-  };
+namespace {
+
+[[noreturn]] void refuse(const std::string& verb, const std::string& place,
+                         const std::string& found, const std::string& allowed) {
+  throw InputError({.file = "offnominal " + verb,
+                    .place = place,
+                    .found = found,
+                    .allowed = allowed,
+                    .mend = ""});
+}
+
+}  // namespace
+
+void check_run(const RobotDescription& robot, const RunSettings& settings,
+               const std::string& verb) {
   const double period = robot.estimator.period_s;
-  if (robot.joint_count() != 2) {
-    refuse("--robot", std::to_string(robot.joint_count()) + " joint(s)",
-           "2, as the paper's arm has");
-  }
   require_bound(robot, "robot " + robot.name);
   if (!(period >= kMinPeriod && period <= kMaxPeriod)) {
-    refuse("step", shortest(period) + " s", "1e-5 to 0.02 s");
+    refuse(verb, "step", shortest(period) + " s", "1e-5 to 0.02 s");
   }
   const int hidden = robot.estimator.hidden_units;
   if (hidden < 1 || hidden > kMaxHiddenUnits) {
-    refuse("hidden units", std::to_string(hidden), "1 to " + std::to_string(kMaxHiddenUnits));
+    refuse(verb, "hidden units", std::to_string(hidden), "1 to " + std::to_string(kMaxHiddenUnits));
   }
-  if (!(experiment.duration_s >= period && experiment.duration_s <= kLongestRunS)) {
-    refuse("--duration", shortest(experiment.duration_s) + " s",
+  if (!(settings.duration_s >= period && settings.duration_s <= kLongestRunS)) {
+    refuse(verb, "--duration", shortest(settings.duration_s) + " s",
            "one step to " + shortest(kLongestRunS) + " s");
   }
+}
+
+void check_experiment(const RobotDescription& robot, const Experiment& experiment,
+                      const std::string& verb) {
+  if (robot.joint_count() != 2) {
+    refuse(verb, "--robot", std::to_string(robot.joint_count()) + " joint(s)",
+           "2, as the paper's arm has");
+  }
+  check_run(robot, experiment, verb);
   if (experiment.fault.kind != sim::FaultKind::kNone &&
       !(experiment.fault.time_s < experiment.duration_s)) {
-    refuse("--duration", shortest(experiment.duration_s) + " s",
+    refuse(verb, "--duration", shortest(experiment.duration_s) + " s",
            "more than " + shortest(experiment.fault.time_s) + " s, when the fault begins");
   }
   if (!(std::abs(experiment.motion_start_s) <= 1e5)) {
-    refuse("--start", shortest(experiment.motion_start_s) + " s", "-1e5 to 1e5 s");
+    refuse(verb, "--start", shortest(experiment.motion_start_s) + " s", "-1e5 to 1e5 s");
   }
 }
 
@@ -97,6 +107,7 @@ ExperimentResult run_experiment(const RobotDescription& robot, const Experiment&
     run_with<double>(robot, experiment, plant, timing, observe);
   }
   ExperimentResult result = observer.finish();
+  result.fault = experiment.fault.kind;
   if (!healthy) result.fault_time_s = experiment.fault.time_s;
   return result;
 }

@@ -61,7 +61,7 @@ report::Axis axis(const std::string& name, const std::string& unit) {
 }
 
 void add_joint_angles(report::Section& section, const ExperimentResult& run, int number) {
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < run.series.q.size(); ++i) {
     Chart chart = time_chart(run, titled(number, fmt::format("angle of joint {}", i + 1)),
                              axis("angle", "rad"));
     chart.series = {
@@ -73,7 +73,7 @@ void add_joint_angles(report::Section& section, const ExperimentResult& run, int
 }
 
 void add_fault_functions(report::Section& section, const ExperimentResult& run, int number) {
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < run.series.q.size(); ++i) {
     Chart chart =
         time_chart(run, titled(number, fmt::format("fault and network output, joint {}", i + 1)),
                    axis("acceleration", "rad/s^2"));

@@ -70,9 +70,15 @@ RecordedMotion::Joint RecordedMotion::at(double t_s, int joint) const {
 }
 
 sim::DesiredMotion RecordedMotion::at(double t_s) const {
-  const Joint first = at(t_s, 0);
-  const Joint second = at(t_s, 1);
-  return {{first.q, second.q}, {first.dq, second.dq}, {first.ddq, second.ddq}};
+  sim::DesiredMotion desired;
+  for (sim::JointVector* all : {&desired.q, &desired.dq, &desired.ddq}) all->resize(q_.cols());
+  for (Index i = 0; i < q_.cols(); ++i) {
+    const Joint joint = at(t_s, static_cast<int>(i));
+    desired.q[i] = joint.q;
+    desired.dq[i] = joint.dq;
+    desired.ddq[i] = joint.ddq;
+  }
+  return desired;
 }
 
 }  // namespace offnominal::tools::paper

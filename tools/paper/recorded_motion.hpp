@@ -24,7 +24,7 @@ class RecordedMotion {
   /// Between rows a cubic through positions and velocities, the acceleration on straight lines.
   /// Joint from 0. No heap.
   [[nodiscard]] Joint at(double t_s, int joint) const;
-  /// Of the first two joints.
+  /// Of all joints.
   [[nodiscard]] sim::DesiredMotion at(double t_s) const;
 
  private:

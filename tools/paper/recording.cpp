@@ -5,10 +5,10 @@
 #include <vector>
 
 namespace offnominal::tools::paper {
-namespace {
 
-// What the controller saw, and beside it what was true.
-Log seen_recording(const TimeSeries& series, double period_s) {
+Log seen_recording_of(const RobotDescription& robot, const TimeSeries& series) {
+  if (series.time_s.empty()) throw std::invalid_argument("the run was not recorded");
+  const Eigen::Index joints = robot.joint_count();
   std::vector<std::size_t> fresh;
   for (std::size_t i = 0; i < series.bus.size(); ++i) {
     if (series.bus[i].fresh) fresh.push_back(i);
@@ -16,9 +16,9 @@ Log seen_recording(const TimeSeries& series, double period_s) {
   const auto rows = static_cast<Eigen::Index>(fresh.size());
   Log log;
   log.file = "sil";
-  log.period_s = period_s;
+  log.period_s = robot.estimator.period_s;
   log.t_s.resize(rows);
-  for (Eigen::MatrixXd* columns : {&log.q, &log.dq, &log.tau}) columns->resize(rows, 2);
+  for (Eigen::MatrixXd* columns : {&log.q, &log.dq, &log.tau}) columns->resize(rows, joints);
   for (Eigen::Index row = 0; row < rows; ++row) {
     const std::size_t tick = fresh[static_cast<std::size_t>(row)];
     const BusTick& bus = series.bus[tick];
@@ -27,7 +27,7 @@ Log seen_recording(const TimeSeries& series, double period_s) {
     log.dq.row(row) = bus.seen.dq;
     log.tau.row(row) = bus.seen_tau;
   }
-  for (Eigen::Index joint = 0; joint < 2; ++joint) {
+  for (Eigen::Index joint = 0; joint < joints; ++joint) {
     const auto put = [&](const char* name, const auto& truth_at) {
       Eigen::VectorXd& column = log.extra[name + std::to_string(joint + 1)];
       column.resize(rows);
@@ -35,21 +35,20 @@ Log seen_recording(const TimeSeries& series, double period_s) {
         column[row] = truth_at(fresh[static_cast<std::size_t>(row)]);
       }
     };
-    put("q_true", [&](std::size_t tick) { return series.q[joint][tick]; });
-    put("dq_true", [&](std::size_t tick) { return series.dq[joint][tick]; });
+    put("q_true",
+        [&](std::size_t tick) { return series.q[static_cast<std::size_t>(joint)][tick]; });
+    put("dq_true",
+        [&](std::size_t tick) { return series.dq[static_cast<std::size_t>(joint)][tick]; });
     put("tau_true", [&](std::size_t tick) { return series.bus[tick].acting_tau[joint]; });
   }
-  log.dq_derived = {false, false};
+  log.dq_derived.assign(robot.joints.size(), false);
   return log;
 }
-
-}  // namespace
 
 Log recording_of(const RobotDescription& robot, const Experiment& experiment,
                  const ExperimentResult& run) {
   const TimeSeries& series = run.series;
   if (series.time_s.empty()) throw std::invalid_argument("the run was not recorded");
-  if (!series.bus.empty()) return seen_recording(series, robot.estimator.period_s);
   const auto ticks = static_cast<Eigen::Index>(series.time_s.size());
   const sim::DesiredMotion start = experiment.desired_at(0);
   Log log;
@@ -64,9 +63,10 @@ Log recording_of(const RobotDescription& robot, const Experiment& experiment,
       columns(0, joint) = first;
       columns.col(joint).tail(ticks) = Eigen::Map<const Eigen::VectorXd>(rest.data(), ticks);
     };
-    put(log.q, start.q[joint], series.q[joint]);
-    put(log.dq, start.dq[joint], series.dq[joint]);
-    put(log.tau, series.tau[joint].front(), series.tau[joint]);
+    const auto j = static_cast<std::size_t>(joint);
+    put(log.q, start.q[joint], series.q[j]);
+    put(log.dq, start.dq[joint], series.dq[j]);
+    put(log.tau, series.tau[j].front(), series.tau[j]);
   }
   log.dq_derived = {false, false};
   return log;

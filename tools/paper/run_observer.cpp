@@ -5,16 +5,24 @@
 
 namespace offnominal::tools::paper {
 
-RunObserver::RunObserver(const RobotDescription& robot, const Experiment& experiment,
+RunObserver::RunObserver(const RobotDescription& robot, const RunSettings& settings,
                          double fault_time_s)
     : robot_(robot),
-      experiment_(experiment),
+      settings_(settings),
       decay_(std::exp(-robot.estimator.alpha * robot.estimator.period_s)),
       input_gain_(-std::expm1(-robot.estimator.alpha * robot.estimator.period_s) /
                   robot.estimator.alpha),
-      healthy_until_(std::min(fault_time_s, experiment.duration_s)),
-      window_start_(0.75 * experiment.duration_s),
-      tolerance_(1e-6 * robot.estimator.period_s) {}
+      healthy_until_(std::min(fault_time_s, settings.duration_s)),
+      window_start_(0.75 * settings.duration_s),
+      tolerance_(1e-6 * robot.estimator.period_s),
+      eta_(sim::JointVector::Zero(robot.joint_count())),
+      last_psi_(eta_) {
+  TimeSeries& series = result_.series;
+  for (auto* per_joint :
+       {&series.q, &series.dq, &series.tau, &series.q_desired, &series.psi, &series.psi_hat}) {
+    per_joint->resize(robot.joints.size());
+  }
+}
 
 void RunObserver::operator()(const TickRecord& tick) {
   // W_alpha over one tick, its input taken at the tick's mean value.
@@ -22,7 +30,7 @@ void RunObserver::operator()(const TickRecord& tick) {
   last_psi_ = tick.psi;
   judge(tick);
   if (tick.time_s >= window_start_ - tolerance_) add_to_window(tick);
-  if (experiment_.record) keep(tick);
+  if (settings_.record) keep(tick);
 }
 
 ExperimentResult RunObserver::finish() {
@@ -31,9 +39,8 @@ ExperimentResult RunObserver::finish() {
   if (window_.psi > 0.0) {
     result_.fault_estimate_relative_error = std::sqrt(window_.mismatch / window_.psi);
   }
-  result_.fault = experiment_.fault.kind;
-  result_.accommodate = experiment_.accommodate;
-  result_.precision = experiment_.precision;
+  result_.accommodate = settings_.accommodate;
+  result_.precision = settings_.precision;
   result_.seed = robot_.estimator.seed;
   return std::move(result_);
 }
@@ -63,14 +70,18 @@ void RunObserver::add_to_window(const TickRecord& tick) {
 void RunObserver::keep(const TickRecord& tick) {
   TimeSeries& series = result_.series;
   series.time_s.push_back(tick.time_s);
-  for (int i = 0; i < 2; ++i) {
-    series.q[i].push_back(tick.state.q[i]);
-    series.dq[i].push_back(tick.state.dq[i]);
-    series.tau[i].push_back(tick.tau[i]);
-    series.q_desired[i].push_back(tick.q_desired[i]);
-    series.psi[i].push_back(tick.psi[i]);
-    series.psi_hat[i].push_back(tick.psi_hat[i]);
-  }
+  const auto keep_all = [](std::vector<std::vector<double>>& series_of,
+                           const sim::JointVector& values) {
+    for (std::size_t j = 0; j < series_of.size(); ++j) {
+      series_of[j].push_back(values[static_cast<Eigen::Index>(j)]);
+    }
+  };
+  keep_all(series.q, tick.state.q);
+  keep_all(series.dq, tick.state.dq);
+  keep_all(series.tau, tick.tau);
+  keep_all(series.q_desired, tick.q_desired);
+  keep_all(series.psi, tick.psi);
+  keep_all(series.psi_hat, tick.psi_hat);
   series.error_norm.push_back(tick.error_norm);
   series.threshold.push_back(tick.threshold);
   series.filtered_fault.push_back(eta_.norm());

@@ -1,4 +1,4 @@
-// offnominal-plant: the paper's arm with drives and encoders at its end of a CAN bus, with faults.
+// offnominal-plant: a plant with drives and encoders at its end of a CAN bus, with faults.
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
@@ -16,7 +16,10 @@
 #include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "common/program.hpp"
+#include "loop/controller_settings.hpp"
+#include "paper/two_link_robot.hpp"
 #include "plant/plant_loop.hpp"
+#include "robot/robot_file.hpp"
 #include "sil/open_bus.hpp"
 #include "sil/open_recorder.hpp"
 #include "sil/plant_of.hpp"
@@ -29,6 +32,8 @@ constexpr const char* kProgram = "offnominal-plant";
 
 struct Options {
   std::string bus;
+  std::optional<std::string> robot;
+  std::optional<std::string> motion;
   std::optional<std::string> scenario;
   double rate_hz = 1000;
   double phase = 0.5;
@@ -42,9 +47,14 @@ struct Options {
 
 void add_options(CLI::App& app, Options& options) {
   app.add_option("--bus", options.bus, "CAN interface: vcan0")->required();
+  app.add_option("--robot", options.robot,
+                 "Robot file of the plant: its rigid body and effects; by default the paper's arm");
+  app.add_option("--motion", options.motion,
+                 "The controller's: where this begins, brakes hold the joints. paper, sway or a "
+                 "CSV; by default paper for the paper's arm, sway for a robot file");
   app.add_option("--scenario", options.scenario,
                  "Faults and settings of the run, TOML; without it nothing is wrong");
-  app.add_option("--rate", options.rate_hz, "Ticks a second: readings, steps of the arm")
+  app.add_option("--rate", options.rate_hz, "Ticks a second: readings, steps of the plant")
       ->check(CLI::Range(10.0, 10000.0))
       ->capture_default_str();
   app.add_option("--phase", options.phase,
@@ -53,24 +63,34 @@ void add_options(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--duration", options.duration_s, "End after so many seconds")
       ->check(CLI::PositiveNumber);
-  app.add_flag("--fd", options.fd, "CAN FD: one frame for both joints");
+  app.add_flag("--fd", options.fd,
+               "CAN FD: one frame for all joints; by default where classic CAN is too narrow");
   app.add_option("--priority", options.priority, "Of SCHED_FIFO; 0: do not ask for it")
       ->check(CLI::Range(0, 99))
       ->capture_default_str();
-  app.add_option("--log", options.log, "Record the arm's true motion, CSV")->type_name(kNewFile);
+  app.add_option("--log", options.log, "Record the true motion, CSV")->type_name(kNewFile);
   app.add_flag("--force", options.force, "Replace the file of --log");
   app.add_flag("--json", options.json, "Print one JSON object and nothing else");
   app.footer(
-      "Until every drive is first told to give torque, brakes hold the arm; the faults' times "
+      "Until every drive is first told to give torque, brakes hold the joints; the faults' times "
       "count from there. SIGINT and SIGTERM end it. docs/sil.md has the rest.");
 }
 
+RobotDescription robot_of(const sil::Scenario& scenario) {
+  return scenario.plant ? *scenario.plant : paper::two_link_robot();
+}
+
 sil::Scenario scenario_of(const Options& options) {
+  std::optional<RobotDescription> plant;
+  if (options.robot) plant = read_robot_file(*options.robot);
   sil::Scenario scenario;
-  if (options.scenario) scenario = sil::read_scenario(*options.scenario);
+  scenario.plant = plant;
+  if (options.scenario) scenario = sil::read_scenario(*options.scenario, plant);
   if (options.fd) scenario.format = hal::FrameFormat::kFd;
+  if (options.motion) scenario.motion = motion_named(*options.motion, robot_of(scenario));
   sil::check_real_time(scenario);
-  return sil::with_arm_faults(scenario);
+  sil::check_plant(scenario);
+  return scenario;
 }
 
 void print(const Options& options, const PlantReport& report, std::uint64_t recording_lost,
@@ -105,13 +125,14 @@ int run(const Options& options) {
   sil::open_bus(options.bus,
                 {.in_kernel = hal::SocketCanConfig::kMostInKernel, .may_restart_interface = false},
                 socket);
-  sil::BusPortOf<hal::SocketCan&> port(socket);
+  BusPortOf<hal::SocketCan&> port(socket);
   realtime::Recorder recorder;
-  sil::open_recorder(
-      {.csv = options.log.value_or(""), .columns = plant_columns(), .replace = options.force},
-      recorder);
+  sil::open_recorder({.csv = options.log.value_or(""),
+                      .columns = plant_columns(sil::joint_count_of(scenario)),
+                      .replace = options.force},
+                     recorder);
   const double period_s = 1 / options.rate_hz;
-  const hal::Microseconds period_us = sil::period_us_of(period_s);
+  const hal::Microseconds period_us = period_us_of(period_s);
   sim::PlantNode plant = sil::plant_of(scenario, period_s);
   realtime::CycleTimer timer(period_us,
                              std::llround(options.phase * static_cast<double>(period_us)));
@@ -145,6 +166,6 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   using namespace offnominal::tools;
   return run_program<Options>(kProgram,
-                              "The paper's arm, its drives and encoders, on a CAN bus in real time",
-                              argc, argv, add_options, run);
+                              "A plant, its drives and encoders, on a CAN bus in real time", argc,
+                              argv, add_options, run);
 }

@@ -6,34 +6,38 @@ namespace offnominal::tools {
 namespace {
 
 realtime::Row row_of(const sim::PlantNode& plant, realtime::Microseconds time_us) {
-  const Eigen::Vector2d tau(plant.applied_nm()[0], plant.applied_nm()[1]);
-  const Eigen::Vector2d psi = plant.plant().fault_function(plant.time_s(), plant.state(), tau);
+  const sim::JointVector& tau = plant.applied_nm();
+  const sim::JointVector psi = plant.plant().fault_function(plant.time_s(), tau);
   realtime::Row row;
   row.time_us = time_us;
   std::size_t next = 0;
-  for (const Eigen::Vector2d& pair :
-       {plant.state().q, plant.state().dq, tau, psi, plant.acting_nm()}) {
-    for (const double value : pair) row.values[next++] = value;
+  for (const sim::JointVector* all :
+       {&plant.state().q, &plant.state().dq, &tau, &psi, &plant.acting_nm()}) {
+    for (const double value : *all) row.values[next++] = value;
   }
   row.values[next] = plant.time_s();
-  row.digit = plant.drives().mode(0) == hal::DriveMode::kTorque ||
-                      plant.drives().mode(1) == hal::DriveMode::kTorque
-                  ? 1
-                  : 0;
+  row.digit = plant.drives().any_in_torque_mode() ? 1 : 0;
   return row;
 }
 
 }  // namespace
 
-std::vector<std::string> plant_columns() {
-  return {"q1",   "q2",   "dq1",     "dq2",     "tau1",  "tau2",
-          "psi1", "psi2", "acting1", "acting2", "arm_t", "torque_mode"};
+std::vector<std::string> plant_columns(int joints) {
+  std::vector<std::string> columns;
+  for (const char* quantity : {"q", "dq", "tau", "psi", "acting"}) {
+    for (int joint = 1; joint <= joints; ++joint) {
+      columns.push_back(quantity + std::to_string(joint));
+    }
+  }
+  columns.insert(columns.end(), {"arm_t", "torque_mode"});
+  return columns;
 }
 
 PlantReport run_plant(sim::PlantNode& plant, const sil::Scenario& scenario,
-                      realtime::CycleTimer& timer, sil::BusPort& port, realtime::Recorder& recorder,
+                      realtime::CycleTimer& timer, BusPort& port, realtime::Recorder& recorder,
                       const std::atomic<bool>& end) {
-  sim::FaultyBus<sil::BusPort> bus(port, sim::BusEnd::kPlant, scenario.faults, scenario.seed);
+  sim::FaultyBus<BusPort> bus(port, sim::BusEnd::kPlant, static_cast<int>(plant.drives().joints()),
+                              scenario.faults, scenario.seed);
   PlantReport report;
   while (!end.load(std::memory_order_relaxed)) {
     const realtime::Tick tick = timer.wait();
@@ -45,9 +49,8 @@ PlantReport run_plant(sim::PlantNode& plant, const sil::Scenario& scenario,
     if (plant.started()) recorder.keep(row_of(plant, tick.begin_us - tick.latency_us));
   }
   report.arm_time_s = plant.time_s();
-  for (std::size_t j = 0; j < sim::PlantNode::kJoints; ++j) {
-    report.in_torque_mode =
-        report.in_torque_mode || plant.drives().mode(j) == hal::DriveMode::kTorque;
+  report.in_torque_mode = plant.drives().any_in_torque_mode();
+  for (std::size_t j = 0; j < plant.drives().joints(); ++j) {
     report.lost += plant.drives().source(j).lost;
     report.rejected +=
         std::uint64_t{plant.drives().source(j).rejected} + plant.drives().source(j).repeated;

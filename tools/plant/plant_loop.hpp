@@ -1,4 +1,4 @@
-// The arm at its end of the bus in real time: what the thread of the plant program runs.
+// A plant at its end of the bus in real time: what the thread of the plant program runs.
 #pragma once
 
 #include <atomic>
@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "loop/bus_port.hpp"
 #include "offnominal/sim/bus/faulty_bus.hpp"
 #include "offnominal/sim/bus/plant_node.hpp"
-#include "sil/bus_port.hpp"
 #include "sil/sil.hpp"
 
 namespace offnominal::tools {
@@ -28,11 +28,11 @@ struct PlantReport {
 
 /// The columns of the rows that are recorded, for RecorderConfig::columns. A row stands for the end
 /// of a tick: the torques, mean over it, have acted.
-[[nodiscard]] std::vector<std::string> plant_columns();
+[[nodiscard]] std::vector<std::string> plant_columns(int joints);
 
-/// Ticks until `end`. Ticks that were missed move the arm all the same, as time does not wait.
+/// Ticks until `end`. Ticks that were missed move the joints all the same, as time does not wait.
 [[nodiscard]] PlantReport run_plant(sim::PlantNode& plant, const sil::Scenario& scenario,
-                                    realtime::CycleTimer& timer, sil::BusPort& port,
+                                    realtime::CycleTimer& timer, BusPort& port,
                                     realtime::Recorder& recorder, const std::atomic<bool>& end);
 
 }  // namespace offnominal::tools

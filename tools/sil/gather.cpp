@@ -1,6 +1,9 @@
 #include "sil/gather.hpp"
 
+#include <map>
 #include <offnominal/hal/wire_time.hpp>
+#include <string>
+#include <vector>
 
 #include "log/csv_log.hpp"
 #include "paper/run_observer.hpp"
@@ -14,18 +17,22 @@ using Eigen::Index;
 // A table of which every column is there, by name.
 class Table {
  public:
-  explicit Table(const std::filesystem::path& file)
-      : columns_(read_csv(file, [](const std::string&) { return Need::kRequired; }).columns) {}
+  Table(const std::filesystem::path& file, int joints)
+      : columns_(read_csv(file, [](const std::string&) { return Need::kRequired; }).columns),
+        joints_(joints) {}
   [[nodiscard]] double at(const std::string& column, Index row) const {
     return columns_.at(column)[row];
   }
-  [[nodiscard]] Eigen::Vector2d pair(const std::string& quantity, Index row) const {
-    return {at(quantity + "1", row), at(quantity + "2", row)};
+  [[nodiscard]] sim::JointVector all(const std::string& quantity, Index row) const {
+    sim::JointVector values(joints_);
+    for (Index i = 0; i < joints_; ++i) values[i] = at(quantity + std::to_string(i + 1), row);
+    return values;
   }
   [[nodiscard]] Index rows() const { return columns_.at("t").size(); }
 
  private:
   std::map<std::string, Eigen::VectorXd> columns_;
+  Index joints_;
 };
 
 // The controller's tick that used the readings of a tick of the plant: the first one after it.
@@ -54,21 +61,23 @@ paper::TickRecord record_of(const Table& plant, Index row, const Table& controll
   paper::TickRecord record;
   record.time_s = plant.at("arm_t", row);
   record.tick = std::llround(record.time_s / period_s);
-  record.state.q = plant.pair("q", row);
-  record.state.dq = plant.pair("dq", row);
-  record.q_desired = scenario.experiment.desired_at(record.time_s).q;
-  record.tau = plant.pair("tau", row);
-  record.psi = plant.pair("psi", row);
-  record.psi_hat = controller.pair("psi_hat", partner);
+  record.state.q = plant.all("q", row);
+  record.state.dq = plant.all("dq", row);
+  record.q_desired = motion_of(scenario)(judging_time_s(scenario, record.time_s,
+                                                        controller.at("motion_t", partner)))
+                         .q;
+  record.tau = plant.all("tau", row);
+  record.psi = plant.all("psi", row);
+  record.psi_hat = controller.all("psi_hat", partner);
   record.error_norm = controller.at("error", partner);
   record.threshold = controller.at("threshold", partner);
   record.weight_norm = controller.at("weights", partner);
   record.detected = controller.at("detected", partner) != 0;
   // The controller's rows are those of its fresh ticks.
   record.bus = {true,
-                {controller.pair("q", partner), controller.pair("dq", partner)},
-                controller.pair("tau", partner),
-                plant.pair("acting", row)};
+                {controller.all("q", partner), controller.all("dq", partner)},
+                controller.all("tau", partner),
+                plant.all("acting", row)};
   return record;
 }
 
@@ -91,7 +100,7 @@ hal::ControllerState state_named(const std::string& name) {
 }
 
 BusReport bus_of(const nlohmann::json& controller, const nlohmann::json& plant,
-                 hal::FrameFormat format, double run_time_s) {
+                 hal::FrameFormat format, int joints, double run_time_s) {
   const auto sum = [&](const char* key) {
     return controller.at(key).get<std::uint64_t>() + plant.at(key).get<std::uint64_t>();
   };
@@ -101,11 +110,11 @@ BusReport bus_of(const nlohmann::json& controller, const nlohmann::json& plant,
   bus.rejected = sum("rejected");
   bus.late = sum("late");
   bus.stale = controller.at("stale").get<std::uint64_t>();
-  // Frames of one record each, or of both joints' two.
-  hal::Frame frame;
-  frame.fd = format == hal::FrameFormat::kFd;
-  frame.length = frame.fd ? 2 * hal::kRecordLength : hal::kRecordLength;
-  bus.load = static_cast<double>(bus.frames) * hal::longest_wire_time_s(frame) / run_time_s;
+  // Frames of one record each, or of every joint's.
+  std::vector<hal::Frame> frames(static_cast<std::size_t>(joints));
+  const std::vector<hal::Record> records(frames.size());
+  static_cast<void>(pack(hal::MessageKind::kEncoder, records, format, frames));
+  bus.load = static_cast<double>(bus.frames) * hal::longest_wire_time_s(frames[0]) / run_time_s;
   return bus;
 }
 
@@ -127,13 +136,12 @@ RealTimeReport time_of(const nlohmann::json& controller, const nlohmann::json& p
 
 SilResult gather(const RobotDescription& robot, const Scenario& scenario,
                  const std::string& bus_name, const Recordings& recordings) {
-  const Scenario complete = with_arm_faults(scenario);
   const double period_s = robot.estimator.period_s;
-  const double duration_s = scenario.experiment.duration_s;
+  const double duration_s = scenario.duration_s;
   const std::optional<double> first_s = first_begin_s(scenario.faults);
-  const Table plant(recordings.plant_csv);
-  const Table controller(recordings.controller_csv);
-  paper::RunObserver observer(robot, complete.experiment, first_s.value_or(duration_s));
+  const Table plant(recordings.plant_csv, robot.joint_count());
+  const Table controller(recordings.controller_csv, robot.joint_count());
+  paper::RunObserver observer(robot, scenario, first_s.value_or(duration_s));
   Partner partner(controller, period_s);
   for (Index row = 0; row < plant.rows(); ++row) {
     if (plant.at("arm_t", row) > duration_s + 0.5 * period_s) break;
@@ -150,8 +158,8 @@ SilResult gather(const RobotDescription& robot, const Scenario& scenario,
   result.overruns = recordings.controller.at("overruns");
   result.real_time = time_of(recordings.controller, recordings.plant);
   result.run_time_s = static_cast<double>(result.real_time->ticks) * period_s;
-  result.bus = bus_of(recordings.controller.at("bus"), recordings.plant.at("bus"), scenario.format,
-                      result.run_time_s);
+  result.bus = bus_of(recordings.controller.at("bus"), recordings.plant.at("bus"),
+                      format_of(scenario, period_s), robot.joint_count(), result.run_time_s);
   // At the motion's end the controller lets go of its own accord.
   if (result.fault != controller::Fault::kNone) {
     result.ended_early_s = safe_since_s(plant);

@@ -9,19 +9,32 @@
 
 namespace offnominal::tools::sil {
 
-/// The scenario with what its faults do to the arm entered into its experiment. Throws InputError
-/// for more than one of those that develop.
-[[nodiscard]] Scenario with_arm_faults(const Scenario& scenario);
+/// Throws InputError for a fault, a hidden effect or an encoder that the scenario's plant cannot
+/// have.
+void check_plant(const Scenario& scenario);
 
 /// Throws InputError for a fault that only a run in lock-step can have: those of the controller's
 /// own node.
 void check_real_time(const Scenario& scenario);
 
-/// Arm, drives and encoders of a scenario that has gone through with_arm_faults(). The drives'
-/// watch-dogs let go after 5 periods without a command.
-[[nodiscard]] sim::PlantNode plant_of(const Scenario& complete, double period_s);
+/// Plant, drives and encoders of a scenario that check_plant() takes. The drives' watch-dogs let go
+/// after 5 periods without a command.
+[[nodiscard]] sim::PlantNode plant_of(const Scenario& scenario, double period_s);
 
-[[nodiscard]] hal::Microseconds period_us_of(double period_s);
+/// Joints of the scenario's plant.
+[[nodiscard]] int joint_count_of(const Scenario& scenario);
+
+/// The motion of a run: the scenario's, or else the paper's for its arm and a sway for another.
+[[nodiscard]] MotionAt motion_of(const Scenario& scenario);
+
+/// Time of the motion by which a run is judged: the controller's, which begins when it holds the
+/// joints. The paper's arm is judged by the time since its brakes opened, as its runs without a bus
+/// are.
+[[nodiscard]] double judging_time_s(const Scenario& scenario, double plants_s,
+                                    double controllers_s);
+
+/// The frames of a run: the scenario's, or else classic ones where they fit into the period.
+[[nodiscard]] hal::FrameFormat format_of(const Scenario& scenario, double period_s);
 
 /// When the first fault begins, s; none where there is none.
 [[nodiscard]] std::optional<double> first_begin_s(const std::vector<sim::FaultEvent>& faults);

@@ -50,18 +50,21 @@ class Folder {
 
 std::vector<std::string> plant_arguments(const Folder& folder, const RealTimeOptions& options,
                                          double rate_hz) {
-  return {"--bus",  options.interface, "--scenario", (folder / "scenario.toml").string(),
-          "--rate", shortest(rate_hz), "--log",      (folder / "plant.csv").string(),
-          "--json"};
+  std::vector<std::string> arguments = {
+      "--bus",    options.interface, "--scenario", (folder / "scenario.toml").string(),
+      "--rate",   shortest(rate_hz), "--log",      (folder / "plant.csv").string(),
+      "--motion", options.motion,    "--json"};
+  if (options.plant_file) arguments.insert(arguments.end(), {"--robot", *options.plant_file});
+  return arguments;
 }
 
 std::vector<std::string> controller_arguments(const Folder& folder, const Scenario& scenario,
                                               const RealTimeOptions& options, double rate_hz) {
   std::vector<std::string> arguments = {"--bus",        options.interface,
                                         "--rate",       shortest(rate_hz),
-                                        "--motion",     "paper",
+                                        "--motion",     options.motion,
                                         "--arm",        "--end-at-fault",
-                                        "--duration",   shortest(scenario.experiment.duration_s),
+                                        "--duration",   shortest(scenario.duration_s),
                                         "--log",        (folder / "controller.csv").string(),
                                         "--no-restart", "--json"};
   const auto add = [&](std::initializer_list<std::string> words) {
@@ -70,9 +73,9 @@ std::vector<std::string> controller_arguments(const Folder& folder, const Scenar
   if (options.robot_file) add({"--robot", *options.robot_file});
   if (options.candump) add({"--candump", *options.candump});
   if (options.replace_candump) add({"--force"});
-  if (scenario.experiment.accommodate) add({"--accommodate"});
+  if (scenario.accommodate) add({"--accommodate"});
   if (scenario.stop_at_detection) add({"--stop-at-detection"});
-  if (scenario.format == hal::FrameFormat::kFd) add({"--fd"});
+  if (format_of(scenario, 1 / rate_hz) == hal::FrameFormat::kFd) add({"--fd"});
   if (!scenario.sends_velocity) {
     add({"--observe-velocity", shortest(scenario.max_acceleration)});
     if (scenario.encoder_bits_per_turn > 0) {
@@ -117,18 +120,20 @@ SilResult run_in_real_time(const RobotDescription& robot, const Scenario& scenar
                            const RealTimeOptions& options) {
   check_scenario(robot, scenario);
   check_real_time(scenario);
-  if (scenario.experiment.precision != Precision::kFloat) {
+  if (scenario.precision != Precision::kFloat) {
     throw InputError({"sil", "precision", "double", "float, in real time", ""});
   }
   const Folder folder;
-  write_file_atomically(folder / "scenario.toml", scenario_text(scenario));
   const double rate_hz = 1 / robot.estimator.period_s;
+  Scenario complete = scenario;
+  complete.format = format_of(scenario, robot.estimator.period_s);
+  write_file_atomically(folder / "scenario.toml", scenario_text(complete));
   ChildProgram plant("offnominal-plant", plant_arguments(folder, options, rate_hz),
                      folder / "plant.json", folder / "plant.err");
   ChildProgram controller("offnominal-controller",
                           controller_arguments(folder, scenario, options, rate_hz),
                           folder / "controller.json", folder / "controller.err");
-  wait_for_end(controller, plant, folder, scenario.experiment.duration_s);
+  wait_for_end(controller, plant, folder, scenario.duration_s);
   constexpr double kPatience = 10;
   if (const int code = plant.wait(true, kPatience); code != 0) {
     ended_early("offnominal-plant", fmt::format("exit code {}", code), folder / "plant.err");

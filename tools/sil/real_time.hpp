@@ -10,7 +10,9 @@ namespace offnominal::tools::sil {
 
 struct RealTimeOptions {
   std::string interface;                  // of the kernel, up
-  std::optional<std::string> robot_file;  // none: the paper's arm
+  std::optional<std::string> robot_file;  // of the controller; none: the paper's arm
+  std::optional<std::string> plant_file;  // that of Scenario::plant; none: the paper's arm
+  std::string motion = "paper";           // that of Scenario::motion: paper, sway or a file
   std::optional<std::string> candump;     // every frame that the controller saw
   bool replace_candump = false;
 };

@@ -8,6 +8,9 @@
 #include "common/file.hpp"
 #include "common/number.hpp"
 #include "common/toml_table.hpp"
+#include "robot/effect_text.hpp"
+#include "robot/read_effect.hpp"
+#include "sil/plant_of.hpp"
 
 namespace offnominal::tools::sil {
 namespace {
@@ -20,7 +23,7 @@ std::vector<std::string> kind_names() {
   return names;
 }
 
-sim::FaultEvent read_fault(const TomlTable& table) {
+sim::FaultEvent read_fault(const TomlTable& table, int joints) {
   const sim::FaultEventInfo& info = sim::kFaultEventInfos[table.choice("kind", kind_names())];
   const auto refuse_key = [&](const char* key, const std::string& allowed) {
     if (table.has(key)) {
@@ -38,10 +41,10 @@ sim::FaultEvent read_fault(const TomlTable& table) {
     refuse_key("rate_per_s", "kind, begin_s, end_s, joint and size: it is there at once");
     if (table.has("end_s")) fault.end_s = table.number("end_s", positive("s"));
   }
-  if (info.on_joint) {
-    fault.joint = static_cast<int>(table.integer("joint", 1, 2)) - 1;
-  } else {
+  if (info.of_joint == sim::OfJoint::kNever) {
     refuse_key("joint", "no joint: it concerns them all");
+  } else if (info.of_joint == sim::OfJoint::kAlways || table.has("joint")) {
+    fault.joint = static_cast<int>(table.integer("joint", 1, joints)) - 1;
   }
   if (info.unit.empty()) {
     refuse_key("size", "no size: it is there or not");
@@ -57,23 +60,24 @@ sim::FaultEvent read_fault(const TomlTable& table) {
 
 }  // namespace
 
-Scenario read_scenario(const std::filesystem::path& path) {
+Scenario read_scenario(const std::filesystem::path& path,
+                       const std::optional<RobotDescription>& plant) {
   const std::string file = path.string();
   const toml::table document = parse_toml(read_text_file(path), file);
   const TomlTable root(
       file, "", document,
       {"format", "duration_s", "accommodate", "stop_at_detection", "frames", "velocity",
-       "max_acceleration_rad_s2", "encoder_bits_per_turn", "seed", "fault"});
+       "max_acceleration_rad_s2", "encoder_bits_per_turn", "seed", "fault", "hidden"});
   if (root.integer("format", 1, 1'000'000) != kScenarioFormat) {
     root.refuse("format", "a format that this version does not know",
                 std::to_string(kScenarioFormat), "use the version of offnominal that wrote it");
   }
   Scenario scenario;
+  scenario.plant = plant;
   NumberRule duration = positive("s");
   duration.max = paper::kLongestRunS;
-  scenario.experiment.duration_s =
-      root.number("duration_s", duration, scenario.experiment.duration_s);
-  scenario.experiment.accommodate = root.boolean("accommodate", false);
+  scenario.duration_s = root.number("duration_s", duration, scenario.duration_s);
+  scenario.accommodate = root.boolean("accommodate", false);
   scenario.stop_at_detection = root.boolean("stop_at_detection", false);
   if (root.has("frames")) {
     const bool fd = root.choice("frames", {"classic", "fd"}) == 1;
@@ -90,20 +94,30 @@ Scenario read_scenario(const std::filesystem::path& path) {
       root.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
   const std::vector<std::string> keys = {"kind", "begin_s", "end_s", "joint", "size", "rate_per_s"};
   for (const TomlTable& table : root.tables("fault", keys)) {
-    scenario.faults.push_back(read_fault(table));
+    scenario.faults.push_back(read_fault(table, joint_count_of(scenario)));
+  }
+  for (const TomlTable& table : root.tables("hidden", effect_keys())) {
+    if (!plant) {
+      table.refuse("", "an effect hidden in the paper's arm",
+                   "none: its friction and disturbance are the paper's",
+                   "hide it in the plant of a robot file: --plant FILE");
+    }
+    scenario.hidden.push_back(read_effect(table, plant->joints));
   }
   return scenario;
 }
 
 std::string scenario_text(const Scenario& scenario) {
-  const bool fd = scenario.format == hal::FrameFormat::kFd;
   std::string text = fmt::format(
-      "format = {}\nduration_s = {}\naccommodate = {}\nstop_at_detection = {}\nframes = \"{}\"\n"
+      "format = {}\nduration_s = {}\naccommodate = {}\nstop_at_detection = {}\n"
       "velocity = \"{}\"\nmax_acceleration_rad_s2 = {}\nseed = {}\n",
-      kScenarioFormat, shortest_real(scenario.experiment.duration_s),
-      scenario.experiment.accommodate, scenario.stop_at_detection, fd ? "fd" : "classic",
-      scenario.sends_velocity ? "sent" : "observed", shortest_real(scenario.max_acceleration),
-      scenario.seed);
+      kScenarioFormat, shortest_real(scenario.duration_s), scenario.accommodate,
+      scenario.stop_at_detection, scenario.sends_velocity ? "sent" : "observed",
+      shortest_real(scenario.max_acceleration), scenario.seed);
+  if (scenario.format) {
+    const bool fd = *scenario.format == hal::FrameFormat::kFd;
+    text += fmt::format("frames = \"{}\"\n", fd ? "fd" : "classic");
+  }
   if (scenario.encoder_bits_per_turn > 0) {
     text += fmt::format("encoder_bits_per_turn = {}\n", scenario.encoder_bits_per_turn);
   }
@@ -116,8 +130,12 @@ std::string scenario_text(const Scenario& scenario) {
     };
     if (std::isfinite(fault.end_s)) add("end_s", fault.end_s);
     if (std::isfinite(fault.rate_per_s)) add("rate_per_s", fault.rate_per_s);
-    if (info.on_joint) text += fmt::format("joint = {}\n", fault.joint + 1);
+    if (fault.joint >= 0) text += fmt::format("joint = {}\n", fault.joint + 1);
     if (!info.unit.empty()) add("size", fault.size);
+  }
+  for (const RobotEffect& effect : scenario.hidden) {
+    const std::string as_effect = effect_text(effect);
+    text += "\n[[hidden]]" + as_effect.substr(as_effect.find('\n'));
   }
   return text;
 }
@@ -125,7 +143,9 @@ std::string scenario_text(const Scenario& scenario) {
 std::string fault_kinds_text() {
   std::string text;
   for (const sim::FaultEventInfo& info : sim::kFaultEventInfos) {
-    std::string keys = info.on_joint ? "joint" : "";
+    std::string keys = info.of_joint == sim::OfJoint::kNever    ? ""
+                       : info.of_joint == sim::OfJoint::kAlways ? "joint"
+                                                                : "(joint)";
     if (!info.unit.empty()) {
       keys += fmt::format("{}size [{}]", keys.empty() ? "" : ", ", info.unit);
     }

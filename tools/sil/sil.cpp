@@ -7,6 +7,7 @@
 #include <offnominal/hal/wire_time.hpp>
 
 #include "common/error.hpp"
+#include "loop/controller_settings.hpp"
 #include "paper/run_observer.hpp"
 #include "sil/lock_step.hpp"
 #include "sil/plant_of.hpp"
@@ -20,15 +21,17 @@ namespace {
       {.file = "offnominal sil", .place = place, .found = found, .allowed = allowed, .mend = ""});
 }
 
-void check_fault(const sim::FaultEvent& fault, double duration_s) {
+void check_fault(const sim::FaultEvent& fault, int joints, double duration_s) {
   const sim::FaultEventInfo& info = info_of(fault.kind);
   const std::string name(info.name);
   if (!info.unit.empty() && !(fault.size >= info.least && fault.size <= info.most)) {
     refuse(name + ", size", fmt::format("{:g}", fault.size),
            fmt::format("{:g} to {:g} {}", info.least, info.most, info.unit));
   }
-  if (info.on_joint && (fault.joint < 0 || fault.joint > 1)) {
-    refuse(name + ", joint", std::to_string(fault.joint + 1), "1 or 2");
+  const bool said = fault.joint >= 0 || info.of_joint == sim::OfJoint::kAlways;
+  const bool has_joint = info.of_joint != sim::OfJoint::kNever;
+  if (said && has_joint && (fault.joint < 0 || fault.joint >= joints)) {
+    refuse(name + ", joint", std::to_string(fault.joint + 1), "1 to " + std::to_string(joints));
   }
   if (!(fault.begin_s >= 0 && fault.begin_s <= duration_s)) {
     refuse(name + ", begin", fmt::format("{:g} s", fault.begin_s),
@@ -45,10 +48,18 @@ void check_fault(const sim::FaultEvent& fault, double duration_s) {
 }  // namespace
 
 void check_scenario(const RobotDescription& robot, const Scenario& scenario) {
-  paper::check_experiment(robot, scenario.experiment, "sil");
-  constexpr int kMostHidden = 128;
-  if (robot.estimator.hidden_units > kMostHidden) {
-    refuse("hidden units", std::to_string(robot.estimator.hidden_units), "1 to 128");
+  paper::check_run(robot, scenario, "sil");
+  if (robot.estimator.hidden_units > kControllerCapacity) {
+    refuse("hidden units", std::to_string(robot.estimator.hidden_units),
+           "1 to " + std::to_string(kControllerCapacity));
+  }
+  const int joints = joint_count_of(scenario);
+  if (robot.joint_count() != joints) {
+    refuse("plant", std::to_string(joints) + " joint(s)",
+           std::to_string(robot.joint_count()) + ", as many as robot " + robot.name + " has");
+  }
+  if (const auto wanted = motion_of(scenario)(0.0).q.size(); wanted != joints) {
+    refuse("motion", std::to_string(wanted) + " joint(s)", std::to_string(joints));
   }
   if (scenario.encoder_bits_per_turn < 0 || scenario.encoder_bits_per_turn > 32) {
     refuse("encoder bits per turn", std::to_string(scenario.encoder_bits_per_turn), "0 to 32");
@@ -58,37 +69,26 @@ void check_scenario(const RobotDescription& robot, const Scenario& scenario) {
            "above 0");
   }
   for (const sim::FaultEvent& fault : scenario.faults) {
-    check_fault(fault, scenario.experiment.duration_s);
+    check_fault(fault, joints, scenario.duration_s);
   }
-  static_cast<void>(with_arm_faults(scenario));
+  check_plant(scenario);
 }
 
 SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenario, Wire& wire,
                            const std::string& bus_name, const TappedPort::OnFrame& on_frame) {
   check_scenario(robot, scenario);
-  const Scenario complete = with_arm_faults(scenario);
-  const double period_s = robot.estimator.period_s;
-  const double duration_s = scenario.experiment.duration_s;
-  LoopSetup setup;
-  setup.period_us = period_us_of(period_s);
-  setup.ticks = std::llround(duration_s / period_s);
   SilResult result;
   result.bus_name = bus_name;
   result.faults = scenario.faults;
   const std::optional<double> first_s = first_begin_s(scenario.faults);
-  setup.first_fault_s = first_s.value_or(0.0);
-  paper::RunObserver observer(robot, complete.experiment, first_s.value_or(duration_s));
+  paper::RunObserver observer(robot, scenario, first_s.value_or(scenario.duration_s));
   const auto observe = [&](const paper::TickRecord& tick) { observer(tick); };
   double busy_s = 0;
   const auto see = [&](const hal::Frame& frame, hal::Microseconds time_us) {
     busy_s += hal::longest_wire_time_s(frame);
     if (on_frame) on_frame(frame, time_us);
   };
-  if (scenario.experiment.precision == Precision::kFloat) {
-    run_loop<float>(robot, complete, setup, wire, see, observe, result);
-  } else {
-    run_loop<double>(robot, complete, setup, wire, see, observe, result);
-  }
+  run_loop(robot, scenario, wire, see, observe, result);
   result.run = observer.finish();
   if (result.run_time_s > 0) result.bus.load = busy_s / result.run_time_s;
   result.run.fault_time_s = first_s;
@@ -102,7 +102,7 @@ std::string words_of(const std::vector<sim::FaultEvent>& faults) {
     const sim::FaultEventInfo& info = info_of(fault.kind);
     if (!words.empty()) words += ", ";
     words += info.name;
-    if (info.on_joint) words += fmt::format(" on joint {}", fault.joint + 1);
+    if (fault.joint >= 0) words += fmt::format(" on joint {}", fault.joint + 1);
     if (!info.unit.empty() && info.unit != "1") {
       words += fmt::format(" of {:g} {}", fault.size, info.unit);
     } else if (!info.unit.empty()) {

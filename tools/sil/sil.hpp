@@ -1,4 +1,4 @@
-// Software-in-the-loop: the joint controller and the paper's arm at the two ends of a bus.
+// Software-in-the-loop: the joint controller of a robot and a plant at the two ends of a bus.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,23 @@
 #include <string>
 #include <vector>
 
+#include "loop/motion_at.hpp"
 #include "offnominal/sim/bus/fault_event.hpp"
-#include "paper/experiment.hpp"
+#include "paper/run_result.hpp"
+#include "robot/robot.hpp"
 #include "sil/wire.hpp"
 
 namespace offnominal::tools::sil {
 
-struct Scenario {
-  /// Motion, precision, accommodation and length of the run. Its fault is taken from `faults`.
-  paper::Experiment experiment;
+struct Scenario : paper::RunSettings {
+  /// What stands at the other end: the rigid body and the effects of a robot file; none: the
+  /// paper's arm with its uncertainty.
+  std::optional<RobotDescription> plant;
+  std::vector<RobotEffect> hidden;  // in the plant alone, beside the effects of its file
+  MotionAt motion;                  // none: the paper's for its arm, sway_of() for another
   std::vector<sim::FaultEvent> faults;
-  hal::FrameFormat format = hal::FrameFormat::kClassic;
-  int encoder_bits_per_turn = 0;  // on top of what a frame resolves; 0: none
+  std::optional<hal::FrameFormat> format;  // none: classic where it is wide enough, else CAN FD
+  int encoder_bits_per_turn = 0;           // on top of what a frame resolves; 0: none
   bool sends_velocity = true;
   double max_acceleration = 20;  // rad/s^2; bounds the velocity observer's error
   bool stop_at_detection = false;
@@ -65,8 +70,8 @@ struct SilResult {
   std::optional<RealTimeReport> real_time;  // none for a run in lock-step
 };
 
-/// Refuses, with InputError, a scenario that cannot be run: as paper::check_experiment(), and a
-/// fault out of its range.
+/// Refuses, with InputError, a scenario that cannot be run: as paper::check_run() and
+/// check_plant(), robots of different joints, and a fault out of its range.
 void check_scenario(const RobotDescription& robot, const Scenario& scenario);
 
 /// Runs it tick by tick, both ends in turn. The same scenario gives the same result on any wire. A

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "sil/bus_port.hpp"
+#include "loop/bus_port.hpp"
 
 namespace offnominal::tools::sil {
 

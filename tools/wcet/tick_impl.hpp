@@ -8,8 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sil/controller_settings.hpp"
-#include "sil/plant_of.hpp"
+#include "loop/controller_settings.hpp"
 #include "wcet/tick.hpp"
 #include "wcet/tick_bus.hpp"
 
@@ -27,10 +26,10 @@ class TickOf final : public Tick {
   TickOf(const RobotDescription& robot, hal::FrameFormat format)
       : format_(format),
         used_units_(robot.estimator.hidden_units),
-        period_us_(sil::period_us_of(robot.estimator.period_s)) {
-    sil::ControllerSettings settings;
+        period_us_(period_us_of(robot.estimator.period_s)) {
+    ControllerSettings settings;
     settings.accommodate = true;
-    sil::create_controller(ready_to_arm(robot), settings, work_.controller);
+    create_controller(ready_to_arm(robot), settings, work_.controller);
   }
 
   void prepare(const TickInput& input) override {

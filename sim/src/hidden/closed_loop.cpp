@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
-#include <string>
 
 #include "offnominal/sim/encoder.hpp"
+#include "offnominal/sim/plants/hidden_robot.hpp"
 
 namespace offnominal::sim::hidden {
 namespace {
@@ -14,7 +13,6 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr double kMaxSubstepS = 1e-4;
 constexpr double kLoopRadS = 18.0;  // natural frequency of the position loop
 constexpr double kLoopDamping = 0.8;
 constexpr double kDifferencePoleRadS = 2.0 * std::numbers::pi * 12.0;
@@ -80,15 +78,6 @@ class Controller {
   bool started_ = false;
 };
 
-// What the motor gives at time t_s of the torques that were commanded each period.
-double given_torque(const JointDrive& drive, const Eigen::MatrixXd& commanded, Index joint,
-                    double t_s, double period_s) {
-  const double late = std::floor((t_s - drive.delay_s) / period_s);
-  const double tau = commanded(late > 0.0 ? static_cast<Index>(late) : 0, joint);
-  const double beyond = std::max(0.0, std::abs(tau) - drive.saturation_onset_nm);
-  return drive.scale * (tau - std::copysign((1.0 - drive.saturation_slope) * beyond, tau));
-}
-
 Trace empty_trace(Index n) {
   Trace trace;
   trace.t_s.resize(n);
@@ -117,39 +106,21 @@ Trace run_closed_loop(const Robot& robot, const Nominal& nominal, const Motion& 
                       const std::vector<Contact>& contacts, const LoopSettings& settings) {
   const double period_s = 1.0 / settings.sample_rate_hz;
   const auto n = static_cast<Index>(std::llround(settings.duration_s * settings.sample_rate_hz));
-  const int substeps = static_cast<int>(std::ceil(period_s / kMaxSubstepS - 1e-9));
-  const double h_s = period_s / substeps;
   const double count_rad = position_step_rad({settings.encoder_bits});
-  const Plant plant(robot, contacts);
   Controller controller(nominal, period_s);
-  const DesiredMotion first = motion(0.0);
-  PlantState state = plant.start(first.q, first.dq, first.ddq);
+  HiddenRobot plant(robot, contacts, motion(0.0));
   Trace trace = empty_trace(n);
   for (Index k = 0; k < n; ++k) {
     const double t_s = static_cast<double>(k) * period_s;
     const DesiredMotion desired = motion(t_s);
-    const Vector2d measured(quantise(state.motor_q[0], count_rad),
-                            quantise(state.motor_q[1], count_rad));
+    const Vector2d measured(quantise(plant.state().q[0], count_rad),
+                            quantise(plant.state().q[1], count_rad));
     trace.t_s[k] = t_s;
     trace.encoder_q.row(k) = measured.transpose();
     trace.commanded_nm.row(k) = controller.command(desired, measured).transpose();
-    note_state(state, desired, k, trace);
-    Vector2d sum = Vector2d::Zero();
-    for (int i = 0; i < substeps; ++i) {
-      const double step_t_s = t_s + i * h_s;
-      Vector2d given;
-      for (int j = 0; j < 2; ++j) {
-        given[j] = given_torque(robot.joints[static_cast<std::size_t>(j)].drive, trace.commanded_nm,
-                                j, step_t_s + 0.5 * h_s, period_s);
-      }
-      plant.step(state, step_t_s, given, h_s);
-      sum += given;
-    }
-    trace.given_nm.row(k) = sum.transpose() / substeps;
-    if (!(state.motor_q.cwiseAbs().maxCoeff() < 100.0)) {
-      throw std::runtime_error("hidden robot: its motion ran away at t = " + std::to_string(t_s) +
-                               " s");
-    }
+    note_state(plant.inner_state(), desired, k, trace);
+    plant.step(t_s, trace.commanded_nm.row(k).transpose(), period_s);
+    trace.given_nm.row(k) = plant.given_nm().transpose();
   }
   return trace;
 }

@@ -1,4 +1,6 @@
 // The controller program's loop with one joint at the other end of an in-process bus.
+#include "loop/joint_program.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -8,7 +10,6 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "controller/joint_program_impl.hpp"
 #include "offnominal/sim/bus/joint_drives.hpp"
 #include "robot/robot_file.hpp"
 #include "support/places.hpp"
@@ -51,7 +52,7 @@ class Pendulum final : public TickTimer {
     const std::array<std::optional<hal::EncoderReading>, 1> readings{
         hal::EncoderReading{static_cast<float>(q), static_cast<float>(dq), true}};
     std::array<hal::Frame, 4> frames;
-    const std::size_t made = drives_.frames(readings, {drives_.torque_nm(0, dq)}, frames);
+    const std::size_t made = drives_.frames(readings, std::array{drives_.torque_nm(0, dq)}, frames);
     for (std::size_t i = 0; i < made; ++i) static_cast<void>(port_.send(frames[i], now_us_));
     return {now_us_, 0, 0};
   }
@@ -76,34 +77,34 @@ class Pendulum final : public TickTimer {
 
   Net& net_;
   Net::Port port_;
-  sim::JointDrives<1> drives_{{}, hal::FrameFormat::kClassic};
+  sim::JointDrives drives_{1, {}, hal::FrameFormat::kClassic};
   hal::Microseconds now_us_ = 0;
   bool started_ = false;
 };
 
 struct Bench {
-  explicit Bench(RobotDescription of, ReferenceChoice reference = {})
-      : robot(std::move(of)), reference_choice(std::move(reference)) {}
+  explicit Bench(RobotDescription of, MotionAt wanted = {})
+      : robot(std::move(of)), motion(std::move(wanted)) {}
 
   realtime::LoopReport run(const realtime::LoopConfig& loop) {
-    const auto program = detail::make_program_of<1>({.robot = robot,
-                                                     .settings = {},
-                                                     .loop = loop,
-                                                     .wish = {.priority = 0, .lock_memory = false},
-                                                     .reference = reference_choice,
-                                                     .bus = bus,
-                                                     .timer = pendulum,
-                                                     .recorder = recorder,
-                                                     .panel = panel});
+    const auto program = make_joint_program({.robot = robot,
+                                             .settings = {},
+                                             .loop = loop,
+                                             .wish = {.priority = 0, .lock_memory = false},
+                                             .motion = motion,
+                                             .bus = bus,
+                                             .timer = pendulum,
+                                             .recorder = recorder,
+                                             .panel = panel});
     program->run();
     return program->report().loop;
   }
 
   RobotDescription robot;
-  ReferenceChoice reference_choice;
+  MotionAt motion;
   hal::InProcessNet<2> net;
   Pendulum pendulum{net};
-  sil::BusPortOf<hal::InProcessNet<2>::Port> bus{net.port(0)};
+  BusPortOf<hal::InProcessNet<2>::Port> bus{net.port(0)};
   realtime::Recorder recorder;
   realtime::LoopPanel panel;
 };
@@ -151,13 +152,14 @@ TEST(JointProgram, AMotionThatBeginsOnTheMoveIsOne) {
     rows += std::to_string(t) + ',' + std::to_string(0.5 * t) + ",0.5,0\n";
   }
   test::put(file, rows);
-  const auto motion = std::make_shared<paper::RecordedMotion>(paper::RecordedMotion::read(file, 1));
-  Bench resting(robot("[-3.0, 3.0]", ""), {motion, false});
+  const MotionAt motion =
+      motion_of(std::make_shared<paper::RecordedMotion>(paper::RecordedMotion::read(file, 1)));
+  Bench resting(robot("[-3.0, 3.0]", ""), motion);
   resting.pendulum.before_tick = [&](int tick) { resting.panel.end.store(tick > 200); };
   const auto refused = resting.run({.arm_when_passive = true});
   EXPECT_EQ(refused.refusal, Fault::kReferenceMoving);
   EXPECT_FALSE(resting.pendulum.gives_torque());
-  Bench allowed(robot("[-3.0, 3.0]", "speed = [0.6]\n"), {motion, false});
+  Bench allowed(robot("[-3.0, 3.0]", "speed = [0.6]\n"), motion);
   const auto report = allowed.run({.arm_when_passive = true, .duration_us = 100'000});
   EXPECT_EQ(report.refusal, Fault::kNone);
 }

@@ -63,15 +63,15 @@ TEST(CandumpLine, OfAnotherFormIsNone) {
 class SilLog : public testing::Test {
  protected:
   void record(hal::FrameFormat format) {
-    scenario.experiment.duration_s = 1.0;
-    scenario.experiment.record = true;
+    scenario.duration_s = 1.0;
+    scenario.record = true;
     scenario.format = format;
     const auto wire = sil::make_in_process_wire();
     const auto result = run_in_lock_step(robot, scenario, *wire, sil::kInProcess,
                                          [&](const hal::Frame& frame, hal::Microseconds time_us) {
                                            text += candump_line(frame, time_us, "vcan0");
                                          });
-    as_csv = recording_of(robot, scenario.experiment, result.run);
+    as_csv = paper::seen_recording_of(robot, result.run.series);
   }
   Log read() const {
     const test::TemporaryFolder folder;

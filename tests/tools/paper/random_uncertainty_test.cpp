@@ -48,7 +48,7 @@ class RandomUncertainty {
     weight_ = {4.0 * unit(generator) - 2.0, 4.0 * unit(generator) - 2.0};
   }
 
-  Vector2d operator()(double t, const sim::JointState& state) const {
+  Vector2d operator()(double t, const sim::TwoLinkState& state) const {
     const double size = kShareOfBound * size_share(t) * bound(state.dq);
     const double angle = direction(t, state);
     return -(sim::mass_matrix({}, state.q) * (size * Vector2d(std::cos(angle), std::sin(angle))));
@@ -62,7 +62,7 @@ class RandomUncertainty {
     return at_the_bound ? 1.0 : std::abs(std::sin(size_rad_s_ * t + size_phase_));
   }
 
-  [[nodiscard]] double direction(double t, const sim::JointState& state) const {
+  [[nodiscard]] double direction(double t, const sim::TwoLinkState& state) const {
     const double pi = std::numbers::pi;
     switch (kind_) {
       case 1:  // turning
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(Scalars, Robustness,
 TEST(Robustness, ConstantUncertaintyBeyondTheBoundRaisesAnAlarm) {
   Experiment experiment;
   experiment.duration_s = 1.0;
-  experiment.uncertainty = [](double, const sim::JointState& state) -> Vector2d {
+  experiment.uncertainty = [](double, const sim::TwoLinkState& state) -> Vector2d {
     return -(sim::mass_matrix({}, state.q) * (1.05 * bound(state.dq) * Vector2d(0.6, 0.8)));
   };
   EXPECT_TRUE(run_experiment(two_link_robot(), experiment).detection_time_s);

@@ -105,10 +105,7 @@ class Arm {
   // Somebody brings it back to where its motion begins, and closes its brakes.
   void put_back() { plant_ = plant_of({}, kTickSeconds); }
   [[nodiscard]] const sim::PlantNode& plant() const { return plant_; }
-  [[nodiscard]] bool gives_torque() const {
-    return plant_.drives().mode(0) == hal::DriveMode::kTorque ||
-           plant_.drives().mode(1) == hal::DriveMode::kTorque;
-  }
+  [[nodiscard]] bool gives_torque() const { return plant_.drives().any_in_torque_mode(); }
 
  private:
   sim::PlantNode plant_;

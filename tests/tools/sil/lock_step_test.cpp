@@ -20,7 +20,7 @@ using sim::FaultEventKind;
 Scenario scenario_with(std::vector<FaultEvent> faults, double duration_s = 4.0) {
   Scenario scenario;
   scenario.faults = std::move(faults);
-  scenario.experiment.duration_s = duration_s;
+  scenario.duration_s = duration_s;
   return scenario;
 }
 
@@ -41,7 +41,7 @@ TEST(LockStep, OverTheBusIsThePaperRunButForWhatFramesResolve) {
   paper::Experiment experiment;
   experiment.fault.kind = sim::FaultKind::kMassLoss;
   for (const bool accommodate : {false, true}) {
-    scenario.experiment.accommodate = accommodate;
+    scenario.accommodate = accommodate;
     experiment.accommodate = accommodate;
     const SilResult over_bus = run(scenario);
     const auto alone = run_experiment(paper::two_link_robot(), experiment);
@@ -84,11 +84,11 @@ TEST(LockStep, SeesWhatChangesTheMotion) {
 TEST(LockStep, RecordsWhatTheControllerSawAndTheTruthBesideIt) {
   const auto recording_with = [](const std::vector<FaultEvent>& faults) {
     Scenario scenario = scenario_with(faults);
-    scenario.experiment.record = true;
+    scenario.record = true;
     const RobotDescription robot = paper::two_link_robot();
     const auto wire = make_in_process_wire();
     const SilResult result = run_in_lock_step(robot, scenario, *wire, kInProcess);
-    return recording_of(robot, scenario.experiment, result.run);
+    return paper::seen_recording_of(robot, result.run.series);
   };
   const auto tail = [](const Log& log, const Eigen::VectorXd& column) {
     return column.tail(log.sample_count() / 4).eval();

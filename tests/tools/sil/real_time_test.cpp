@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/places.hpp"
+#include "tools/sil/serial_robot.hpp"
 #include "tools/support/run_command.hpp"
 
 namespace offnominal::tools::sil {
@@ -72,6 +73,26 @@ TEST_F(RealTime, AnEncoderThatDropsOutLeadsToTheSafeState) {
   EXPECT_GT(run.at("time_to_safe_state_s").get<double>(), 0.0);
   EXPECT_LT(run.at("time_to_safe_state_s").get<double>(), 0.05);
   EXPECT_LT(run.at("ended_early_s").get<double>(), 1.0);
+}
+
+// A robot file of six joints at both ends: CAN FD without being asked for it.
+TEST_F(RealTime, RunsARobotFileOfSixJoints) {
+  // In the machine of ./dev vcan a tick of six joints is worth several milliseconds.
+  const std::string text = test::serial_robot_text(6);
+  const std::string period = "period_s = 0.001";
+  put(folder_ / "six.toml",
+      std::string(text).replace(text.find(period), period.size(), "period_s = 0.01"));
+  const auto result = run("[[fault]]\nkind = \"silent_node\"\nbegin_s = 1.5\njoint = 6\n",
+                          {"--robot", folder_ / "six.toml", "--duration", "2", "--candump",
+                           folder_ / "run.log", "--force"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json run = json::parse(result.out);
+  EXPECT_EQ(run.at("controller_fault"), "EncoderSilent") << run.dump(2);
+  EXPECT_TRUE(run.at("detection_time_s").is_null());
+  EXPECT_GT(run.at("ended_early_s").get<double>(), 1.4);
+  EXPECT_LT(run.at("max_error_to_threshold_before_fault").get<double>(), 0.9);
+  // Readings of six joints in one frame of 48 bytes; candump writes CAN FD with "##".
+  EXPECT_THAT(content_of(folder_ / "run.log"), HasSubstr("1A0##"));
 }
 
 TEST_F(RealTime, MakesAVirtualBusAndRemovesIt) {

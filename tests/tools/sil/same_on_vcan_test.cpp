@@ -8,6 +8,7 @@
 #include "paper/two_link_robot.hpp"
 #include "sil/sil.hpp"
 #include "sil/sil_report.hpp"
+#include "tools/sil/serial_robot.hpp"
 
 namespace offnominal::tools::sil {
 namespace {
@@ -18,19 +19,18 @@ struct Outcome {
 };
 
 Outcome outcome(Scenario scenario, Wire& wire) {
-  scenario.experiment.record = true;
-  SilResult result = run_in_lock_step(paper::two_link_robot(), scenario, wire, "either");
+  scenario.record = true;
+  const RobotDescription robot = scenario.plant ? *scenario.plant : paper::two_link_robot();
+  SilResult result = run_in_lock_step(robot, scenario, wire, "either");
   Outcome outcome{to_json(result), std::move(result.run.series)};
   return outcome;
 }
 
 void expect_same(const Outcome& on_bus, const Outcome& alone) {
   EXPECT_EQ(on_bus.json, alone.json);
-  for (int i = 0; i < 2; ++i) {
-    EXPECT_EQ(on_bus.series.q[i], alone.series.q[i]);
-    EXPECT_EQ(on_bus.series.tau[i], alone.series.tau[i]);
-    EXPECT_EQ(on_bus.series.psi_hat[i], alone.series.psi_hat[i]);
-  }
+  EXPECT_EQ(on_bus.series.q, alone.series.q);
+  EXPECT_EQ(on_bus.series.tau, alone.series.tau);
+  EXPECT_EQ(on_bus.series.psi_hat, alone.series.psi_hat);
   EXPECT_EQ(on_bus.series.error_norm, alone.series.error_norm);
 }
 
@@ -47,7 +47,7 @@ TEST_P(PaperFaults, GiveTheSameRunOnVcan) {
   scenario.faults = {{.kind = GetParam(), .begin_s = 10, .size = 0.75, .rate_per_s = 0.5}};
   auto watching = std::async(std::launch::async, [&] { expect_same(scenario, "vcan0"); });
   Scenario accommodated = scenario;
-  accommodated.experiment.accommodate = true;
+  accommodated.accommodate = true;
   expect_same(accommodated, "vcan1");
   watching.get();
 }
@@ -58,11 +58,25 @@ INSTANTIATE_TEST_SUITE_P(Vcan, PaperFaults,
 
 TEST(SameOnVcan, WithFaultsOfTheBusAndCanFd) {
   Scenario scenario;
-  scenario.experiment.duration_s = 1.0;
+  scenario.duration_s = 1.0;
   scenario.format = hal::FrameFormat::kFd;
   scenario.faults = {{.kind = sim::FaultEventKind::kFrameLoss, .begin_s = 0.3, .size = 0.05},
                      {.kind = sim::FaultEventKind::kBabblingNode, .begin_s = 0.5, .size = 4}};
   expect_same(scenario, "vcan0");
+}
+
+// One joint in classic frames, more in CAN FD, and a fault of the last one.
+TEST(SameOnVcan, WithOneFourSixAndSevenJoints) {
+  for (const int joints : {1, 4, 6, 7}) {
+    Scenario scenario;
+    scenario.duration_s = 0.5;
+    scenario.plant = test::serial_robot(joints);
+    scenario.faults = {{.kind = sim::FaultEventKind::kDisturbanceTorque,
+                        .begin_s = 0.25,
+                        .joint = joints - 1,
+                        .size = 5}};
+    expect_same(scenario, "vcan0");
+  }
 }
 
 }  // namespace

@@ -4,19 +4,22 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "common/error.hpp"
 #include "common/file.hpp"
+#include "tools/sil/serial_robot.hpp"
 #include "tools/support/temporary_folder.hpp"
 
 namespace offnominal::tools::sil {
 namespace {
 
-Scenario read(const std::string& text) {
+Scenario read(const std::string& text,
+              const std::optional<RobotDescription>& plant = std::nullopt) {
   const test::TemporaryFolder folder;
   write_file_atomically(folder / "s.toml", text);
-  return read_scenario(folder / "s.toml");
+  return read_scenario(folder / "s.toml", plant);
 }
 
 std::string refusal(const std::string& text) {
@@ -48,8 +51,8 @@ begin_s = 5.0
 size = 0.5
 rate_per_s = 0.25
 )");
-  EXPECT_EQ(scenario.experiment.duration_s, 12.5);
-  EXPECT_TRUE(scenario.experiment.accommodate);
+  EXPECT_EQ(scenario.duration_s, 12.5);
+  EXPECT_TRUE(scenario.accommodate);
   EXPECT_EQ(scenario.format, hal::FrameFormat::kFd);
   EXPECT_FALSE(scenario.sends_velocity);
   EXPECT_EQ(scenario.encoder_bits_per_turn, 19);
@@ -61,6 +64,45 @@ rate_per_s = 0.25
   EXPECT_EQ(scenario.faults[0].end_s, 4.0);
   EXPECT_EQ(scenario.faults[1].rate_per_s, 0.25);
   EXPECT_TRUE(std::isinf(scenario.faults[1].end_s));
+}
+
+// GIVEN a plant with six joints THEN faults and hidden effects may be of the sixth, and what is
+// written is read as the same.
+TEST(ScenarioFile, IsForTheJointsOfItsPlant) {
+  const RobotDescription plant = test::serial_robot(6);
+  const std::string text = R"(format = 1
+[[fault]]
+kind = "disturbance_torque"
+begin_s = 3.0
+joint = 6
+size = -2.5
+[[fault]]
+kind = "mass_loss"
+begin_s = 4.0
+joint = 5
+size = 0.5
+[[hidden]]
+kind = "joint_stiffness"
+joint = 6
+stiffness = 2.5
+)";
+  Scenario scenario = read(text, plant);
+  for (int pass = 0; pass < 2; ++pass) {
+    ASSERT_EQ(scenario.faults.size(), 2U);
+    EXPECT_EQ(scenario.faults[0].kind, sim::FaultEventKind::kDisturbanceTorque);
+    EXPECT_EQ(scenario.faults[0].joint, 5);
+    EXPECT_EQ(scenario.faults[0].size, -2.5);
+    EXPECT_EQ(scenario.faults[1].joint, 4);
+    ASSERT_EQ(scenario.hidden.size(), 1U);
+    EXPECT_EQ(scenario.hidden[0].kind, EffectKind::kJointStiffness);
+    EXPECT_EQ(scenario.hidden[0].joint, 5);
+    EXPECT_EQ(scenario.hidden[0].parameters[0], 2.5);
+    EXPECT_FALSE(scenario.format.has_value());
+    scenario = read(scenario_text(scenario), plant);
+  }
+  EXPECT_THAT(refusal(text), testing::HasSubstr("line 5"));
+  const std::string hidden = text.substr(text.find("[[hidden]]"));
+  EXPECT_THAT(refusal("format = 1\n" + hidden), testing::HasSubstr("--plant FILE"));
 }
 
 TEST(ScenarioFile, SaysWhereItIsWrong) {

@@ -1,9 +1,7 @@
 // Joint encoders: what a controller is given instead of the true state.
 #pragma once
 
-#include <Eigen/Core>
-
-#include "offnominal/sim/two_link_arm.hpp"
+#include "offnominal/sim/joint_state.hpp"
 
 namespace offnominal::sim {
 
@@ -31,14 +29,14 @@ class Encoders {
   /// Throws std::invalid_argument naming the field, what was found and what is allowed.
   explicit Encoders(const EncoderConfig& config);
 
-  /// Measured state, period_s > 0 after the last sample. The first backward difference has no
-  /// predecessor and gives the true velocity, rounded to one count per period.
+  /// Measured state of as many joints as ever, period_s > 0 after the last sample. The first
+  /// backward difference has no predecessor and gives the true velocity, rounded to one count per
+  /// period.
   JointState measure(const JointState& truth, double period_s);
 
  private:
   EncoderConfig config_;
-  Eigen::Vector2d last_q_ = Eigen::Vector2d::Zero();
-  bool has_last_ = false;
+  JointVector last_q_;  // empty before the first sample
 };
 
 }  // namespace offnominal::sim

@@ -39,6 +39,6 @@ TwoLinkParameters faulty_arm(const TwoLinkParameters& healthy, const Fault& faul
 
 /// Equation (30) without its time profile, rad/s^2:
 /// [7.5 q1^2 + 10 q1^2 dq2^2 + 7 q2 + 17, 50 q1 q2 + 12.5].
-Eigen::Vector2d nonlinear_fault(const JointState& state);
+Eigen::Vector2d nonlinear_fault(const TwoLinkState& state);
 
 }  // namespace offnominal::sim

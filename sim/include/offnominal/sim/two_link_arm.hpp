@@ -18,7 +18,7 @@ struct TwoLinkParameters {
 
 /// Positions and velocities of both joints. q[0] is the angle of link 1 from the horizontal,
 /// q[1] the angle of link 2 from link 1, both counter-clockwise.
-struct JointState {
+struct TwoLinkState {
   Eigen::Vector2d q = Eigen::Vector2d::Zero();   ///< rad
   Eigen::Vector2d dq = Eigen::Vector2d::Zero();  ///< rad/s
 };
@@ -27,18 +27,18 @@ struct JointState {
 Eigen::Matrix2d mass_matrix(const TwoLinkParameters& arm, const Eigen::Vector2d& q);
 
 /// V(q, dq) dq, the centripetal and Coriolis torque, N m.
-Eigen::Vector2d velocity_torque(const TwoLinkParameters& arm, const JointState& state);
+Eigen::Vector2d velocity_torque(const TwoLinkParameters& arm, const TwoLinkState& state);
 
 /// G(q), the torque that holds the arm against gravity, N m.
 Eigen::Vector2d gravity_torque(const TwoLinkParameters& arm, const Eigen::Vector2d& q);
 
 /// M^-1 (tau - V dq - G), rad/s^2, for the net joint torque tau in N m. Not finite where M is
 /// singular, which positive masses and lengths exclude.
-Eigen::Vector2d forward_acceleration(const TwoLinkParameters& arm, const JointState& state,
+Eigen::Vector2d forward_acceleration(const TwoLinkParameters& arm, const TwoLinkState& state,
                                      const Eigen::Vector2d& tau);
 
 /// 1/2 dq' M dq, J.
-double kinetic_energy(const TwoLinkParameters& arm, const JointState& state);
+double kinetic_energy(const TwoLinkParameters& arm, const TwoLinkState& state);
 
 /// Energy of both masses in the field of gravity, zero at the height of joint 1, J.
 double potential_energy(const TwoLinkParameters& arm, const Eigen::Vector2d& q);

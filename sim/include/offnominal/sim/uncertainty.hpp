@@ -11,7 +11,7 @@ namespace offnominal::sim {
 /// Joint torque that opposes the drive, F + tau_d in N m, at time t_s in this state. It is
 /// subtracted from the drive torque. A function of state and time alone, so that an integrator may
 /// ask for it at any stage.
-using Uncertainty = std::function<Eigen::Vector2d(double t_s, const JointState& state)>;
+using Uncertainty = std::function<Eigen::Vector2d(double t_s, const TwoLinkState& state)>;
 
 /// F(dq) of section 5: [0.5 sgn(dq1) + 2 dq1, 0.5 sin(dq2) + 2 dq2], sgn(0) = 0.
 Eigen::Vector2d paper_friction(const Eigen::Vector2d& dq);

@@ -23,8 +23,10 @@ enum class BusEnd : std::uint8_t { kController, kPlant };
 template <hal::Bus Inner>
 class FaultyBus {
  public:
-  FaultyBus(Inner& inner, BusEnd end, const std::vector<FaultEvent>& events, std::uint64_t seed)
-      : inner_(inner), random_(seed) {
+  /// joints: of the plant, 1 or more; forged frames are of one of them.
+  FaultyBus(Inner& inner, BusEnd end, int joints, const std::vector<FaultEvent>& events,
+            std::uint64_t seed)
+      : inner_(inner), random_(seed), node_(0, joints - 1) {
     for (const FaultEvent& event : events) {
       const bool controllers =
           event.kind == FaultEventKind::kBlockedBus || event.kind == FaultEventKind::kBusOff;
@@ -181,8 +183,7 @@ class FaultyBus {
     hal::Record record{};
     std::uniform_int_distribution<int> byte(0, 255);
     for (auto& value : record) value = static_cast<std::uint8_t>(byte(random_));
-    const int node = std::uniform_int_distribution<int>(0, 1)(random_);
-    return frame_of(kind, static_cast<std::uint8_t>(node), record);
+    return frame_of(kind, static_cast<std::uint8_t>(node_(random_)), record);
   }
 
   hal::Status hold(const hal::Frame& frame, hal::Microseconds deadline_us) {
@@ -210,6 +211,7 @@ class FaultyBus {
 
   Inner& inner_;
   std::mt19937_64 random_;
+  std::uniform_int_distribution<int> node_;
   std::vector<FaultEvent> events_;
   double time_s_ = 0.0;
   std::vector<Held> held_;

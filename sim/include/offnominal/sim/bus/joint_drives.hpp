@@ -11,26 +11,34 @@
 #include <offnominal/hal/source.hpp>
 #include <optional>
 #include <span>
+#include <stdexcept>
+#include <string>
+
+#include "offnominal/sim/joint_state.hpp"
 
 namespace offnominal::sim {
 
 /// How a drive treats what it is told.
 struct DriveConfig {
   hal::SourceConfig commands{.max_age_us = 5000, .sequence_needed = 1};
-  double max_torque_nm = 1000.0;
-  double damping_nm_s = 1.0;  ///< N m s/rad, in DriveMode::kDamping
+  double max_torque_nm = 1000.0;  ///< N on a joint that slides
+  double damping_nm_s = 1.0;      ///< N m s/rad, in DriveMode::kDamping
   /// What it does by itself when commands stay away: kOff or kDamping.
   hal::DriveMode fallback = hal::DriveMode::kOff;
 };
 
-/// N drives with offnominal's own frames. Each has a watch-dog: without a valid command for
-/// commands.max_age_us it falls back, says so in its status, and obeys again with the next valid
-/// command that is not kTorque: a torque has to be asked for anew.
-template <std::size_t N>
+/// Drives with offnominal's own frames, one a joint. Each has a watch-dog: without a valid command
+/// for commands.max_age_us it falls back, says so in its status, and obeys again with the next
+/// valid command that is not kTorque: a torque has to be asked for anew.
 class JointDrives {
  public:
-  JointDrives(const DriveConfig& config, hal::FrameFormat format)
-      : config_(config), format_(format) {}
+  /// Of 1 to kMaxJoints joints; throws std::invalid_argument for others.
+  JointDrives(std::size_t joints, const DriveConfig& config, hal::FrameFormat format)
+      : joints_(joints), config_(config), format_(format) {
+    if (joints >= 1 && joints <= kMost) return;
+    throw std::invalid_argument("drives: found " + std::to_string(joints) +
+                                " joints, allowed is 1 to " + std::to_string(kMost));
+  }
 
   /// Whether the frame was a torque command of one of these drives, or of several, all valid.
   bool take(const hal::ReceivedFrame& received) {
@@ -39,7 +47,7 @@ class JointDrives {
     if (address.kind == hal::MessageKind::kEmergencyStop) stop_at(address, received.frame);
     if (address.kind != hal::MessageKind::kTorqueCommand) return false;
     bool valid = true;
-    for (std::size_t i = 0; i < address.count && address.first_node + i < N; ++i) {
+    for (std::size_t i = 0; i < address.count && address.first_node + i < joints_; ++i) {
       const std::size_t joint = address.first_node + i;
       const bool good =
           commands_.take(config_.commands, address.kind, joint, record_in(received.frame, i),
@@ -52,7 +60,7 @@ class JointDrives {
 
   /// Watch-dog: to be called every tick.
   void check_age(hal::Microseconds now_us) {
-    for (std::size_t j = 0; j < N; ++j) {
+    for (std::size_t j = 0; j < joints_; ++j) {
       const hal::SourceState state = state_of(config_.commands, commands_.source(j), now_us);
       if (state == hal::SourceState::kStale || state == hal::SourceState::kError) fall_back(j);
     }
@@ -74,23 +82,30 @@ class JointDrives {
 
   [[nodiscard]] hal::DriveMode mode(std::size_t joint) const { return drives_[joint].mode; }
   [[nodiscard]] bool all_in_torque_mode() const {
-    for (const Drive& drive : drives_) {
-      if (drive.mode != hal::DriveMode::kTorque) return false;
+    for (std::size_t j = 0; j < joints_; ++j) {
+      if (drives_[j].mode != hal::DriveMode::kTorque) return false;
     }
     return true;
   }
+  [[nodiscard]] bool any_in_torque_mode() const {
+    for (std::size_t j = 0; j < joints_; ++j) {
+      if (drives_[j].mode == hal::DriveMode::kTorque) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] std::size_t joints() const { return joints_; }
   [[nodiscard]] const hal::Source& source(std::size_t joint) const {
     return commands_.source(joint);
   }
 
-  /// Frames of one tick, at most 2 N: readings, then statuses with the torque that was applied. A
-  /// joint without a reading has an encoder that has failed: its frame is missing, or in a group
-  /// its record is zero.
-  std::size_t frames(const std::array<std::optional<hal::EncoderReading>, N>& readings,
-                     const std::array<double, N>& applied_nm, std::span<hal::Frame> into) {
-    std::array<hal::Record, N> encoders{};
-    std::array<hal::Record, N> statuses{};
-    for (std::size_t j = 0; j < N; ++j) {
+  /// Frames of one tick, at most two a joint: readings, then statuses with the torque that was
+  /// applied; `readings` and `applied_nm` have one entry a joint. A joint without a reading has an
+  /// encoder that has failed: its frame is missing, or in a group its record is zero.
+  std::size_t frames(std::span<const std::optional<hal::EncoderReading>> readings,
+                     std::span<const double> applied_nm, std::span<hal::Frame> into) {
+    std::array<hal::Record, kMost> encoders{};
+    std::array<hal::Record, kMost> statuses{};
+    for (std::size_t j = 0; j < joints_; ++j) {
       Drive& drive = drives_[j];
       const auto node = static_cast<std::uint8_t>(j);
       std::uint8_t flags = drive.fell_back ? hal::kCommandMissing : 0;
@@ -107,11 +122,17 @@ class JointDrives {
           hal::DriveStatus{drive.mode, flags, static_cast<float>(applied_nm[j])},
           drive.status_counter++, data_id_of(hal::MessageKind::kDriveStatus, node), statuses[j]));
     }
-    const std::size_t count = pack(hal::MessageKind::kEncoder, encoders, format_, into);
-    return count + pack(hal::MessageKind::kDriveStatus, statuses, format_, into.subspan(count));
+    const auto of_all = [&](const std::array<hal::Record, kMost>& records) {
+      return std::span<const hal::Record>(records).first(joints_);
+    };
+    const std::size_t count = pack(hal::MessageKind::kEncoder, of_all(encoders), format_, into);
+    return count +
+           pack(hal::MessageKind::kDriveStatus, of_all(statuses), format_, into.subspan(count));
   }
 
  private:
+  static constexpr auto kMost = static_cast<std::size_t>(kMaxJoints);
+
   struct Drive {
     hal::DriveMode mode = hal::DriveMode::kOff;
     bool fell_back = false;
@@ -137,17 +158,18 @@ class JointDrives {
     std::uint8_t counter = 0;
     const std::uint16_t id = data_id_of(address.kind, address.first_node);
     if (decode(record_in(frame, 0), id, stop, counter) != hal::Status::kOk) return;
-    for (std::size_t j = 0; j < N; ++j) fall_back(j);
+    for (std::size_t j = 0; j < joints_; ++j) fall_back(j);
   }
   void fall_back(std::size_t joint) {
     Drive& drive = drives_[joint];
     drive.fell_back = true;
     drive.mode = config_.fallback;
   }
+  std::size_t joints_;
   DriveConfig config_;
   hal::FrameFormat format_;
-  hal::Inbox<hal::TorqueCommand, N> commands_;
-  std::array<Drive, N> drives_{};
+  hal::Inbox<hal::TorqueCommand, kMost> commands_;
+  std::array<Drive, kMost> drives_{};
 };
 
 }  // namespace offnominal::sim

@@ -1,43 +1,46 @@
-// The other end of the bus: arm, drives and encoders.
+// The other end of the bus: a plant, its drives and its encoders.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <offnominal/hal/bus.hpp>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "offnominal/sim/bus/joint_drives.hpp"
 #include "offnominal/sim/bus/joint_sensors.hpp"
-#include "offnominal/sim/two_link_plant.hpp"
+#include "offnominal/sim/plant.hpp"
 
 namespace offnominal::sim {
 
 struct PlantNodeConfig {
   double period_s = 0.001;
-  int substeps = 1;  ///< Runge-Kutta steps of the plant in one tick
   EncoderConfig encoders{};
   DriveConfig drives{};
   hal::FrameFormat format = hal::FrameFormat::kClassic;
   bool sends_velocity = true;
-  /// Faults of drives and encoders; others have no effect here.
+  /// Faults of drives and encoders, and pushes; others have no effect here.
   std::vector<FaultEvent> faults{};
+  std::vector<bool> turns_on{};  ///< as JointSensors
 };
 
-/// The paper's arm behind two drives. Until every drive is first in torque mode, brakes hold the
-/// arm at its start and its time stands at 0; they do not close again.
+/// A plant behind one drive a joint. Until every drive is first in torque mode, brakes hold the
+/// joints at their start and their time stands at 0; they do not close again.
 class PlantNode {
  public:
-  static constexpr std::size_t kJoints = 2;
-  using Applied = std::array<double, kJoints>;
-
-  PlantNode(const TwoLinkPlant& plant, const JointState& start, const PlantNodeConfig& config)
-      : plant_(plant),
+  /// Throws std::invalid_argument without a plant, and for a fault on a joint that it has not.
+  PlantNode(std::unique_ptr<Plant> plant, const PlantNodeConfig& config)
+      : plant_(checked(std::move(plant), config)),
         config_(config),
-        drives_(config.drives, config.format),
-        sensors_(config.encoders, config.faults),
-        state_(start) {}
+        drives_(static_cast<std::size_t>(plant_->joint_count()), config.drives, config.format),
+        sensors_(config.encoders, config.faults, config.turns_on),
+        applied_(JointVector::Zero(plant_->joint_count())),
+        acting_(applied_) {}
 
   /// One tick: obeys what has come, moves on by one period, sends what is measured. A frame that
   /// does not go out until `deadline_us` never does.
@@ -49,8 +52,8 @@ class PlantNode {
     publish(deadline_us, bus);
   }
 
-  /// So many periods in which it neither heard nor measured: the arm goes on under the torques that
-  /// it has.
+  /// So many periods in which it neither heard nor measured: the joints go on under the torques
+  /// that they have.
   void miss(std::uint32_t periods) {
     for (; periods > 0; --periods) move();
   }
@@ -64,60 +67,79 @@ class PlantNode {
       for (std::size_t i = 0; i < count; ++i) drives_.take(frames[i]);
       if (count < frames.size()) break;
     }
-    for (std::size_t j = 0; j < kJoints; ++j) {
+    for (std::size_t j = 0; j < drives_.joints(); ++j) {
       if (drives_.source(j).accepted == accepted_at_move_[j]) return false;
     }
     return true;
   }
 
-  [[nodiscard]] const JointState& state() const { return state_; }
-  /// As the drives have it, and say it.
-  [[nodiscard]] const Applied& applied_nm() const { return applied_; }
-  /// That really acted on the joints over the last move: less where a drive loses some.
-  [[nodiscard]] const Eigen::Vector2d& acting_nm() const { return acting_; }
-  [[nodiscard]] const JointDrives<kJoints>& drives() const { return drives_; }
-  [[nodiscard]] const TwoLinkPlant& plant() const { return plant_; }
+  [[nodiscard]] const JointState& state() const { return plant_->state(); }
+  /// Per joint, N m or N, as the drives have it, and say it.
+  [[nodiscard]] const JointVector& applied_nm() const { return applied_; }
+  /// That really acted on the joints over the last move: less where a drive loses some, with what
+  /// pushes them.
+  [[nodiscard]] const JointVector& acting_nm() const { return acting_; }
+  [[nodiscard]] const JointDrives& drives() const { return drives_; }
+  [[nodiscard]] const Plant& plant() const { return *plant_; }
   [[nodiscard]] bool started() const { return started_; }
-  /// Of the arm, since the brakes opened.
+  /// Of the plant, since the brakes opened.
   [[nodiscard]] double time_s() const { return static_cast<double>(moves_) * config_.period_s; }
 
  private:
+  static std::unique_ptr<Plant> checked(std::unique_ptr<Plant> plant,
+                                        const PlantNodeConfig& config) {
+    if (!plant) throw std::invalid_argument("plant node: no plant");
+    for (const FaultEvent& fault : config.faults) {
+      if (fault.joint < plant->joint_count()) continue;
+      throw std::invalid_argument(std::string(info_of(fault.kind).name) + ": found joint " +
+                                  std::to_string(fault.joint + 1) + ", allowed is 1 to " +
+                                  std::to_string(plant->joint_count()));
+    }
+    return plant;
+  }
+
   void move() {
-    for (std::size_t j = 0; j < kJoints; ++j) {
+    for (std::size_t j = 0; j < drives_.joints(); ++j) {
+      const auto i = static_cast<Eigen::Index>(j);
       accepted_at_move_[j] = drives_.source(j).accepted;
-      applied_[j] = drives_.torque_nm(j, state_.dq[static_cast<Eigen::Index>(j)]);
+      applied_[i] = drives_.torque_nm(j, state().dq[i]);
     }
     started_ = started_ || drives_.all_in_torque_mode();
     if (!started_) return;
-    acting_ = {applied_[0], applied_[1]};
+    acting_ = applied_;
     for (const FaultEvent& fault : config_.faults) {
-      const bool lost = fault.kind == FaultEventKind::kTorqueLoss && fault.is_active(time_s());
+      if (!fault.is_active(time_s())) continue;
       // The drive does not know: its status says what it means to give.
-      if (lost) acting_[fault.joint] *= 1.0 - fault.size;
+      if (fault.kind == FaultEventKind::kTorqueLoss) acting_[fault.joint] *= 1.0 - fault.size;
     }
-    state_ = plant_.step(time_s(), state_, acting_, config_.period_s, config_.substeps);
+    for (const FaultEvent& fault : config_.faults) {
+      const bool pushes = fault.kind == FaultEventKind::kDisturbanceTorque;
+      if (pushes && fault.is_active(time_s())) acting_[fault.joint] += fault.size;
+    }
+    plant_->step(time_s(), acting_, config_.period_s);
     ++moves_;
   }
 
   template <hal::Bus Bus>
   void publish(hal::Microseconds deadline_us, Bus& bus) {
-    const auto readings = sensors_.read(state_, time_s(), config_.period_s, config_.sends_velocity);
-    std::array<hal::Frame, 2 * kJoints> frames;
-    const std::size_t count = drives_.frames(readings, applied_, frames);
+    const auto readings =
+        sensors_.read(state(), time_s(), config_.period_s, config_.sends_velocity);
+    std::array<hal::Frame, 2 * static_cast<std::size_t>(kMaxJoints)> frames;
+    const std::span<const double> applied(applied_.data(), readings.size());
+    const std::size_t count = drives_.frames(readings, applied, frames);
     for (std::size_t i = 0; i < count; ++i) {
       // What does not go out is seen by its absence, at the other end.
       static_cast<void>(bus.send(frames[i], deadline_us));
     }
   }
 
-  TwoLinkPlant plant_;
+  std::unique_ptr<Plant> plant_;
   PlantNodeConfig config_;
-  JointDrives<kJoints> drives_;
+  JointDrives drives_;
   JointSensors sensors_;
-  JointState state_;
-  Applied applied_{};
-  Eigen::Vector2d acting_ = Eigen::Vector2d::Zero();
-  std::array<std::uint32_t, kJoints> accepted_at_move_{};
+  JointVector applied_;
+  JointVector acting_;
+  std::array<std::uint32_t, static_cast<std::size_t>(kMaxJoints)> accepted_at_move_{};
   std::int64_t moves_ = 0;
   bool started_ = false;
 };

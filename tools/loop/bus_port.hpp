@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-namespace offnominal::tools::sil {
+namespace offnominal::tools {
 
 class BusPort {
  public:
@@ -58,4 +58,4 @@ class TappedPort final : public BusPort {
   OnFrame on_frame_;
 };
 
-}  // namespace offnominal::tools::sil
+}  // namespace offnominal::tools

@@ -6,22 +6,14 @@
 #include <offnominal/hal/protected_drives.hpp>
 #include <offnominal/realtime/control_loop.hpp>
 #include <offnominal/realtime/privileges.hpp>
-#include <optional>
 #include <string>
 
-#include "paper/recorded_motion.hpp"
+#include "loop/bus_port.hpp"
+#include "loop/controller_settings.hpp"
+#include "loop/motion_at.hpp"
 #include "robot/robot.hpp"
-#include "sil/bus_port.hpp"
-#include "sil/controller_settings.hpp"
 
 namespace offnominal::tools {
-
-/// Where the joints should be: as `motion` has it; else, with `paper`, the paper's motion of two
-/// joints; else where they are when the controller is armed.
-struct ReferenceChoice {
-  std::shared_ptr<const paper::RecordedMotion> motion;
-  bool paper = false;
-};
 
 /// What waits for the next tick.
 class TickTimer {
@@ -34,12 +26,12 @@ class TickTimer {
 /// All that is referred to has to outlive the program.
 struct JointProgramSetup {
   const RobotDescription& robot;
-  sil::ControllerSettings settings;
+  ControllerSettings settings;
   hal::FrameFormat format = hal::FrameFormat::kClassic;
   realtime::LoopConfig loop;
   realtime::Wish wish;
-  ReferenceChoice reference;
-  sil::BusPort& bus;
+  MotionAt motion;  // none: the joints stay where they are when the controller is armed
+  BusPort& bus;
   TickTimer& timer;
   realtime::Recorder& recorder;
   realtime::LoopPanel& panel;
@@ -62,8 +54,7 @@ class JointProgram {
   [[nodiscard]] virtual const JointProgramReport& report() const = 0;
 };
 
-/// For a robot of 1, 2, 3, 6 or 7 joints. Throws InputError for others, and where the controller
-/// refuses the robot.
+/// For a robot of 1 to kMaxJoints joints. Throws InputError where the controller refuses the robot.
 [[nodiscard]] std::unique_ptr<JointProgram> make_joint_program(const JointProgramSetup& setup);
 
 namespace detail {

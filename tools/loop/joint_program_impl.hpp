@@ -3,21 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <memory>
 #include <offnominal/hal/in_process_bus.hpp>
 #include <offnominal/realtime/recorded_bus.hpp>
 #include <optional>
 
 #include "common/error.hpp"
-#include "controller/joint_program.hpp"
+#include "loop/joint_program.hpp"
 #include "offnominal/sim/bus/joint_drives.hpp"
-#include "offnominal/sim/trajectory.hpp"
 
 namespace offnominal::tools::detail {
-
-// Fewer hidden units are exactly a smaller network.
-inline constexpr int kControllerCapacity = 128;
 
 // Healthy drives at the other end of an in-process bus, whose ticks take no time.
 template <int N>
@@ -33,7 +28,7 @@ class RehearsalTimer final : public TickTimer {
         port_(net.port(1)),
         period_us_(period_us),
         positions_(positions),
-        drives_({}, format) {}
+        drives_(kJoints, {}, format) {}
   realtime::Tick wait() override {
     constexpr int kMostTicks = 1000;
     if (++ticks_ == kMostTicks) panel_.end.store(true);
@@ -47,7 +42,7 @@ class RehearsalTimer final : public TickTimer {
       readings[j] = hal::EncoderReading{positions_[static_cast<Eigen::Index>(j)], 0, true};
     }
     std::array<hal::Frame, 2 * kJoints> frames;
-    const std::size_t made = drives_.frames(readings, {}, frames);
+    const std::size_t made = drives_.frames(readings, std::array<double, kJoints>{}, frames);
     for (std::size_t i = 0; i < made; ++i) static_cast<void>(port_.send(frames[i], now_us_));
     return {now_us_, 0, 0};
   }
@@ -60,7 +55,7 @@ class RehearsalTimer final : public TickTimer {
   Net::Port port_;
   realtime::Microseconds period_us_;
   Positions positions_;
-  sim::JointDrives<kJoints> drives_;
+  sim::JointDrives drives_;
   realtime::Microseconds now_us_ = 0;
   int ticks_ = 0;
 };
@@ -77,7 +72,7 @@ class JointProgramOf final : public JointProgram {
         source_(controller::source_config(setup.timer.period_us())),
         drives_(source_, source_, setup.format),
         bus_(setup.bus, setup.recorder) {
-    sil::create_controller(setup.robot, setup.settings, controller_);
+    create_controller(setup.robot, setup.settings, controller_);
   }
 
   void run() override {
@@ -99,7 +94,7 @@ class JointProgramOf final : public JointProgram {
   [[nodiscard]] const JointProgramReport& report() const override { return report_; }
 
  private:
-  using Bus = realtime::RecordedBus<sil::BusPort>;
+  using Bus = realtime::RecordedBus<BusPort>;
   using Data = typename Controller::Data;
 
   template <typename ReferenceAt>
@@ -127,7 +122,7 @@ class JointProgramOf final : public JointProgram {
   void rehearse() {
     const auto net = std::make_unique<hal::InProcessNet<2>>();
     const auto data = std::make_unique<Data>();
-    sil::BusPortOf<hal::InProcessNet<2>::Port> port(net->port(0));
+    BusPortOf<hal::InProcessNet<2>::Port> port(net->port(0));
     realtime::Recorder nobody;
     Bus bus(port, nobody);
     Drives drives(source_, source_, setup_.format);
@@ -155,25 +150,8 @@ class JointProgramOf final : public JointProgram {
   }
 
   Reference<N, Scalar> reference(double time_s, const Data& data) {
+    if (setup_.motion) return reference_of<N, Scalar>(setup_.motion(time_s));
     Reference<N, Scalar> wanted;
-    if (setup_.reference.motion) {
-      // As it begins and not as it stands before: it may begin on the move.
-      time_s = std::max(time_s, std::numeric_limits<double>::min());
-      for (int i = 0; i < N; ++i) {
-        const paper::RecordedMotion::Joint joint = setup_.reference.motion->at(time_s, i);
-        wanted.q[i] = static_cast<Scalar>(joint.q);
-        wanted.dq[i] = static_cast<Scalar>(joint.dq);
-        wanted.ddq[i] = static_cast<Scalar>(joint.ddq);
-      }
-      return wanted;
-    }
-    if constexpr (N == 2) {
-      if (setup_.reference.paper) {
-        const sim::DesiredMotion desired = sim::paper_trajectory(time_s);
-        return {desired.q.template cast<Scalar>(), desired.dq.template cast<Scalar>(),
-                desired.ddq.template cast<Scalar>()};
-      }
-    }
     if (data.state != hal::ControllerState::kArmed) held_ = data.sample.q;
     wanted.q = held_;
     return wanted;

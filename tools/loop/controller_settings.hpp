@@ -1,6 +1,8 @@
 // The joint controller of a robot file, as software-in-the-loop and the controller program run it.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <offnominal/controller/joint_controller.hpp>
 #include <offnominal/diagnosis/velocity_observer.hpp>
 #include <optional>
@@ -10,9 +12,8 @@
 #include "common/number.hpp"
 #include "offnominal/sim/encoder.hpp"
 #include "robot/monitor_config_of.hpp"
-#include "sil/sil.hpp"
 
-namespace offnominal::tools::sil {
+namespace offnominal::tools {
 
 /// What a robot file does not say.
 struct ControllerSettings {
@@ -25,14 +26,13 @@ struct ControllerSettings {
   int encoder_bits_per_turn = 0;  // on top of what a frame resolves; 0: none
 };
 
-[[nodiscard]] inline ControllerSettings settings_of(const Scenario& scenario) {
-  ControllerSettings settings;
-  settings.accommodate = scenario.experiment.accommodate;
-  settings.stop_at_detection = scenario.stop_at_detection;
-  if (!scenario.sends_velocity) settings.max_acceleration = scenario.max_acceleration;
-  settings.encoder_bits_per_turn = scenario.encoder_bits_per_turn;
-  return settings;
+[[nodiscard]] inline hal::Microseconds period_us_of(double period_s) {
+  return std::max<hal::Microseconds>(1, std::llround(1e6 * period_s));
 }
+
+/// Of every controller that is compiled for a number of joints here; fewer hidden units are exactly
+/// a smaller network.
+inline constexpr int kControllerCapacity = 128;
 
 template <int N, typename Scalar>
 [[nodiscard]] controller::ControllerConfig<N, Scalar> controller_config_of(
@@ -77,4 +77,4 @@ void create_controller(const RobotDescription& robot, const ControllerSettings& 
                     .mend = "docs/troubleshooting.md says what each status asks for"});
 }
 
-}  // namespace offnominal::tools::sil
+}  // namespace offnominal::tools
