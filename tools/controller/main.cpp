@@ -50,6 +50,7 @@ struct Options {
   bool end_at_fault = false;
   std::string safe_mode = "off";
   bool fd = false;
+  bool classic = false;
   std::optional<double> max_acceleration;
   int encoder_bits_per_turn = 0;
   int priority = 80;
@@ -90,8 +91,10 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--safe-mode", options.safe_mode, "What drives are told in the safe state")
       ->check(CLI::IsMember({"off", "damping"}))
       ->capture_default_str();
-  app.add_flag("--fd", options.fd,
-               "CAN FD: one frame for all joints; by default where classic CAN is too narrow");
+  auto* fd = app.add_flag("--fd", options.fd, "CAN FD: one frame for all joints");
+  app.add_flag("--classic", options.classic,
+               "Classic CAN; without either what fits into a tick, classic CAN first")
+      ->excludes(fd);
   app.add_option("--observe-velocity", options.max_acceleration,
                  "Drives send positions alone; no joint accelerates faster, rad/s^2 or m/s^2")
       ->check(CLI::PositiveNumber);
@@ -210,8 +213,8 @@ int run(const Options& options) {
   const auto program = make_joint_program(
       {.robot = robot,
        .settings = settings_of(options),
-       .format = format_for(joints, robot.estimator.period_s,
-                            options.fd ? std::optional(hal::FrameFormat::kFd) : std::nullopt),
+       .format =
+           format_for(joints, robot.estimator.period_s, wished_format(options.fd, options.classic)),
        .loop = {.arm_when_passive = options.arm,
                 .duration_us = microseconds(options.duration_s.value_or(0)),
                 .end_at_fault = options.end_at_fault},

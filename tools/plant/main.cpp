@@ -17,6 +17,7 @@
 #include "common/output_file.hpp"
 #include "common/program.hpp"
 #include "loop/controller_settings.hpp"
+#include "loop/frame_format.hpp"
 #include "paper/two_link_robot.hpp"
 #include "plant/plant_loop.hpp"
 #include "robot/robot_file.hpp"
@@ -39,6 +40,7 @@ struct Options {
   double phase = 0.5;
   std::optional<double> duration_s;
   bool fd = false;
+  bool classic = false;
   int priority = 80;
   std::optional<std::string> log;
   bool force = false;
@@ -63,8 +65,10 @@ void add_options(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--duration", options.duration_s, "End after so many seconds")
       ->check(CLI::PositiveNumber);
-  app.add_flag("--fd", options.fd,
-               "CAN FD: one frame for all joints; by default where classic CAN is too narrow");
+  auto* fd = app.add_flag("--fd", options.fd, "CAN FD: one frame for all joints");
+  app.add_flag("--classic", options.classic,
+               "Classic CAN; without either what fits into a tick, classic CAN first")
+      ->excludes(fd);
   app.add_option("--priority", options.priority, "Of SCHED_FIFO; 0: do not ask for it")
       ->check(CLI::Range(0, 99))
       ->capture_default_str();
@@ -86,7 +90,9 @@ sil::Scenario scenario_of(const Options& options) {
   sil::Scenario scenario;
   scenario.plant = plant;
   if (options.scenario) scenario = sil::read_scenario(*options.scenario, plant);
-  if (options.fd) scenario.format = hal::FrameFormat::kFd;
+  if (options.fd || options.classic) {
+    scenario.format = wished_format(options.fd, options.classic);
+  }
   if (options.motion) scenario.motion = motion_named(*options.motion, robot_of(scenario));
   sil::check_real_time(scenario);
   sil::check_plant(scenario);

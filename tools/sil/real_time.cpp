@@ -75,7 +75,8 @@ std::vector<std::string> controller_arguments(const Folder& folder, const Scenar
   if (options.replace_candump) add({"--force"});
   if (scenario.accommodate) add({"--accommodate"});
   if (scenario.stop_at_detection) add({"--stop-at-detection"});
-  if (format_of(scenario, 1 / rate_hz) == hal::FrameFormat::kFd) add({"--fd"});
+  const bool fd = format_of(scenario, 1 / rate_hz) == hal::FrameFormat::kFd;
+  add({fd ? "--fd" : "--classic"});
   if (!scenario.sends_velocity) {
     add({"--observe-velocity", shortest(scenario.max_acceleration)});
     if (scenario.encoder_bits_per_turn > 0) {

@@ -13,6 +13,7 @@
 #include "offnominal/sim/bus/joint_drives.hpp"
 #include "robot/robot_file.hpp"
 #include "support/places.hpp"
+#include "tools/sil/serial_robot.hpp"
 #include "tools/support/temporary_folder.hpp"
 
 namespace offnominal::tools {
@@ -162,6 +163,17 @@ TEST(JointProgram, AMotionThatBeginsOnTheMoveIsOne) {
   Bench allowed(robot("[-3.0, 3.0]", "speed = [0.6]\n"), motion);
   const auto report = allowed.run({.arm_when_passive = true, .duration_us = 100'000});
   EXPECT_EQ(report.refusal, Fault::kNone);
+}
+
+// A number of joints that is not compiled in would be known by its first robot.
+TEST(JointProgram, IsThereForEveryNumberOfJoints) {
+  for (int joints = 1; joints <= kMaxJoints; ++joints) {
+    Bench bench(test::serial_robot(joints));
+    bench.panel.end.store(true);
+    const auto report = bench.run({});
+    EXPECT_GT(report.ticks, 0U) << joints;
+    EXPECT_EQ(report.state, ControllerState::kInit) << "nobody speaks for all of them";
+  }
 }
 
 // In fewer than ten periods a ramp is a jump.

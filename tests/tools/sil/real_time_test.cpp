@@ -77,11 +77,11 @@ TEST_F(RealTime, AnEncoderThatDropsOutLeadsToTheSafeState) {
 
 // A robot file of six joints at both ends: CAN FD without being asked for it.
 TEST_F(RealTime, RunsARobotFileOfSixJoints) {
-  // In the machine of ./dev vcan a tick of six joints is worth several milliseconds.
+  // Too much for classic CAN, and not too much for the machine of ./dev vcan.
   const std::string text = test::serial_robot_text(6);
   const std::string period = "period_s = 0.001";
   put(folder_ / "six.toml",
-      std::string(text).replace(text.find(period), period.size(), "period_s = 0.01"));
+      std::string(text).replace(text.find(period), period.size(), "period_s = 0.002"));
   const auto result = run("[[fault]]\nkind = \"silent_node\"\nbegin_s = 1.5\njoint = 6\n",
                           {"--robot", folder_ / "six.toml", "--duration", "2", "--candump",
                            folder_ / "run.log", "--force"});
@@ -92,7 +92,7 @@ TEST_F(RealTime, RunsARobotFileOfSixJoints) {
   EXPECT_GT(run.at("ended_early_s").get<double>(), 1.4);
   EXPECT_LT(run.at("max_error_to_threshold_before_fault").get<double>(), 0.9);
   // Readings of six joints in one frame of 48 bytes; candump writes CAN FD with "##".
-  EXPECT_THAT(content_of(folder_ / "run.log"), HasSubstr("1A0##"));
+  EXPECT_NE(content_of(folder_ / "run.log").find("1A0##"), std::string::npos);
 }
 
 TEST_F(RealTime, MakesAVirtualBusAndRemovesIt) {
