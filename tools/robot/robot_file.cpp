@@ -7,6 +7,7 @@
 #include <offnominal/diagnosis/network.hpp>
 #include <offnominal/model/effect_memory.hpp>
 #include <set>
+#include <sstream>
 #include <vector>
 
 #include "common/error.hpp"
@@ -18,6 +19,7 @@
 #include "robot/read_effect.hpp"
 #include "robot/read_joint.hpp"
 #include "robot/read_settings.hpp"
+#include "robot/text_lines.hpp"
 #include "robot/text_with_bound.hpp"
 #include "robot/text_with_effects.hpp"
 
@@ -107,14 +109,36 @@ void check_delays(const TomlTable& root, const RobotDescription& robot) {
   }
 }
 
-// The text that `robot` was read from with what has changed since; none where it cannot be cut.
-std::optional<std::string> text_with_changes(const RobotDescription& robot) {
+// `text` with the path of the robot's DBC file as it is seen from `file`, where that is in another
+// folder than the file that the text comes from. The key has to have a line of its own.
+std::string with_dbc(const std::string& text, const RobotDescription& robot,
+                     const std::string& file) {
+  if (!robot.channels || robot.channels->dbc.empty()) return text;
+  if (parse_robot(text, file).channels->dbc == robot.channels->dbc) return text;
+  const toml::table document = parse_toml(text, file);
+  const std::size_t line = document["channels"]["dbc"].node()->source().begin.line;
+  const Lines lines = lines_of(text);
+  if (!trimmed(lines.at(line - 1)).starts_with("dbc")) return text;
+  std::ostringstream key;
+  key << toml::table{{"dbc", std::filesystem::absolute(robot.channels->dbc).string()}};
+  std::string result;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    result += (i + 1 == line ? key.str() : lines[i]) + "\n";
+  }
+  return result;
+}
+
+// The text that `robot` was read from with what has changed since, for `file`; none where it cannot
+// be cut.
+std::optional<std::string> text_with_changes(const RobotDescription& robot,
+                                             const std::string& file) {
   if (robot.file_text == nullptr) return std::nullopt;
+  const std::string old_text = with_dbc(*robot.file_text, robot, file);
   RobotDescription effects_only = robot;
-  effects_only.bound = parse_robot(*robot.file_text, "").bound;
-  auto text = text_with_effects(*robot.file_text, effects_only);
+  effects_only.bound = parse_robot(old_text, file).bound;
+  auto text = text_with_effects(old_text, effects_only, file);
   if (!text || !robot.bound) return robot.bound ? std::nullopt : text;
-  return text_with_bound(*text, robot);
+  return text_with_bound(*text, robot, file);
 }
 
 }  // namespace
@@ -171,7 +195,7 @@ void write_robot_file(const RobotDescription& robot, const std::filesystem::path
                       Existing existing) {
   const std::string plain = robot_text(robot);
   static_cast<void>(parse_robot(plain, path.string() + " (to be written)"));
-  const auto as_it_was = text_with_changes(robot);
+  const auto as_it_was = text_with_changes(robot, path.string());
   write_file_atomically(path, as_it_was.value_or(plain), existing);
 }
 

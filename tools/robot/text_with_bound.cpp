@@ -38,10 +38,10 @@ std::string with_block(const Lines& lines, std::size_t header, const std::string
 }  // namespace
 
 std::optional<std::string> text_with_bound(const std::string& old_text,
-                                           const RobotDescription& robot) {
+                                           const RobotDescription& robot, const std::string& file) {
   if (!robot.bound) return std::nullopt;
   try {
-    const RobotDescription old = parse_robot(old_text, "");
+    const RobotDescription old = parse_robot(old_text, file);
     const std::string block = bound_text(*robot.bound);
     if (old.bound && bound_text(*old.bound) == block) {
       return robot_text(old) == robot_text(robot) ? std::optional(old_text) : std::nullopt;
@@ -51,7 +51,7 @@ std::optional<std::string> text_with_bound(const std::string& old_text,
     if (!header) return std::nullopt;
     std::string text = with_block(lines, *header, block);
     // Catches everything at once: other changes than the bound, cuts in the wrong place.
-    if (robot_text(parse_robot(text, "")) != robot_text(robot)) return std::nullopt;
+    if (robot_text(parse_robot(text, file)) != robot_text(robot)) return std::nullopt;
     return text;
   } catch (const InputError&) {
     return std::nullopt;

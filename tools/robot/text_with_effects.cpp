@@ -73,15 +73,16 @@ std::string compose(const Lines& lines, const std::vector<Block>& blocks,
 }  // namespace
 
 std::optional<std::string> text_with_effects(const std::string& old_text,
-                                             const RobotDescription& robot) {
+                                             const RobotDescription& robot,
+                                             const std::string& file) {
   try {
-    const RobotDescription old = parse_robot(old_text, "");
+    const RobotDescription old = parse_robot(old_text, file);
     const Lines lines = lines_of(old_text);
     const auto blocks = effect_blocks(old_text, lines);
     if (!blocks) return std::nullopt;
     const std::string text = compose(lines, *blocks, old, robot);
     // Catches everything at once: other changes than effects, cuts in the wrong place.
-    if (robot_text(parse_robot(text, "")) != robot_text(robot)) return std::nullopt;
+    if (robot_text(parse_robot(text, file)) != robot_text(robot)) return std::nullopt;
     return text;
   } catch (const InputError&) {
     return std::nullopt;

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <limits>
 #include <string>
 
@@ -47,6 +48,25 @@ TEST(WriteRobotFile, WritesANewFileAndNeverOverAnother) {
   EXPECT_EQ(read_robot_file(folder / "r.toml").name, "sample");
   write_robot_file(robot, folder / "r.toml", Existing::kReplace);
   EXPECT_EQ(read_robot_file(folder / "r.toml").name, "another");
+}
+
+TEST(WriteRobotFile, KeepsTheDbcFileWhereverItWrites) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "there");
+  const std::string text = test::changed(test::kSampleRobot, "[channels]\n",
+                                         "# kept\n[channels]\ndbc = \"drive.dbc\"\n");
+  test::put(folder / "r.toml", text);
+  RobotDescription robot = read_robot_file(folder / "r.toml");
+  const std::string dbc = (folder / "drive.dbc").string();
+  EXPECT_EQ(robot.channels->dbc, dbc);
+  write_robot_file(robot, folder / "beside.toml");
+  EXPECT_EQ(test::content_of(folder / "beside.toml"), text);
+  write_robot_file(robot, folder / "there" / "r.toml");
+  EXPECT_EQ(read_robot_file(folder / "there" / "r.toml").channels->dbc, dbc);
+  EXPECT_THAT(test::content_of(folder / "there" / "r.toml"), HasSubstr("# kept"));
+  robot.file_text = nullptr;
+  write_robot_file(robot, folder / "there" / "anew.toml");
+  EXPECT_EQ(read_robot_file(folder / "there" / "anew.toml").channels->dbc, dbc);
 }
 
 TEST(WriteRobotFile, WritesNoRobotThatCouldNotBeReadAgain) {
