@@ -27,11 +27,8 @@ std::vector<std::string> objections_to(const Explanation& e) {
   }
   // A number that is held against the recordings says more of the same joint's friction.
   if (objections.empty()) objections = e.unphysical;
-  if (!e.not_in_robot_files.empty()) {
-    objections.push_back(fmt::format(
-        "robot files and controllers do not know {} yet, and what else was found is fitted beside "
-        "it",
-        list_of(e.not_in_robot_files)));
+  for (const std::string& why : e.unwritable) {
+    objections.push_back(why + "; what else was found is fitted beside it");
   }
   return objections;
 }

@@ -83,7 +83,7 @@ class Explainer {
     ImprovedRobot improved =
         improved_robot(file_, robot_, *data_, nuisance_, fitted, options_.source);
     result.improved = std::move(improved.robot);
-    result.not_in_robot_files = std::move(improved.not_in_robot_files);
+    result.unwritable = std::move(improved.unwritable);
     result.held = std::move(improved.held);
     result.unphysical = std::move(improved.unphysical);
     judge_whole(result);

@@ -145,7 +145,7 @@ struct Explanation {
   std::vector<Eigen::VectorXd> waterfall;
   // The robot with what was found and with the numbers fitted beside it; improved_robot.hpp.
   RobotDescription improved;
-  std::vector<std::string> not_in_robot_files;
+  std::vector<std::string> unwritable;  // what of the findings is not in it, and why
   std::vector<HeldNumber> held;         // of `improved`
   std::vector<std::string> unphysical;  // what physics forbids of it
 };

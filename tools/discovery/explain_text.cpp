@@ -112,7 +112,8 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
     text += fmt::format("the file's {} is off by {:+.0f} %\n", shift.name, 100 * shift.share);
   }
   for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
-  if (is_to_write(e.verdict) && !e.found.empty() && e.not_in_robot_files.empty()) {
+  for (const std::string& why : e.unwritable) text += "cannot be written: " + why + "\n";
+  if (is_to_write(e.verdict) && !e.found.empty() && e.unwritable.empty()) {
     text += command_to_add(names);
   }
   return text;

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 #include <utility>
 
 #include "analysis/friction_power.hpp"
 #include "analysis/physical_range.hpp"
+#include "common/error.hpp"
 #include "discovery/torque_scale.hpp"
+#include "robot/robot_file.hpp"
 
 namespace offnominal::tools::discovery {
 
@@ -18,12 +19,25 @@ using Eigen::Index;
 
 namespace {
 
-// None where a robot file cannot say it.
-std::optional<RobotEffect> robot_effect(const Term& term, const Eigen::VectorXd& coefficients,
-                                        const Eigen::VectorXd& sign_width) {
-  RobotEffect effect{term.effect->effect(term.joint, coefficients, term.shape, sign_width)};
-  effect.fitted = true;
-  return parameters_valid(effect) ? std::optional(std::move(effect)) : std::nullopt;
+// Why no robot file can have it; empty where one can.
+std::string why_unwritable(const Effect<double>& effect, JointType type) {
+  const EffectInfo& info = *info_of(effect.kind);
+  if (!chain_may_have(effect.kind)) {
+    return fmt::format("robot files and controllers do not know {} yet", info.name);
+  }
+  for (std::size_t i = 0; i < info.parameters.size(); ++i) {
+    const ParameterInfo& parameter = info.parameters[i];
+    const double value = effect.parameters[i];
+    if (value >= parameter.min && value <= parameter.max) continue;
+    const std::string unit = unit_of(parameter.quantity, type);
+    const bool low = value < parameter.min;
+    return fmt::format(
+        "{} of joint {}: {} = {:.4g}{}, and {} {:g} is possible; look at the units "
+        "that [channels] gives the torque",
+        info.name, effect.joint + 1, parameter.name, value, unit == "1" ? "" : " " + unit,
+        low ? "at least" : "at most", low ? parameter.min : parameter.max);
+  }
+  return {};
 }
 
 // `column`: of the nuisance; `beyond`: how far the number would be outside of its range.
@@ -177,16 +191,25 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
     const Term& term = last.terms[i];
     const double factor =
         factor_beside_torque_scale(last.terms, last.fit, term.joint, term.effect->kind());
-    std::optional<RobotEffect> effect =
-        robot_effect(term, factor * last.fit.coefficients[i], data.recordings[0].sign_width);
-    if (!effect) {
-      improved.not_in_robot_files.emplace_back(term.effect->name());
+    RobotEffect effect{term.effect->effect(term.joint, factor * last.fit.coefficients[i],
+                                           term.shape, data.recordings[0].sign_width)};
+    std::string why =
+        why_unwritable(effect, file.joints[static_cast<std::size_t>(term.joint)].joint.type);
+    if (!why.empty()) {
+      improved.unwritable.push_back(std::move(why));
       continue;
     }
-    effect->source = source;
-    improved.robot.effects.push_back(std::move(*effect));
+    effect.fitted = true;
+    effect.source = source;
+    improved.robot.effects.push_back(std::move(effect));
   }
   improved.unphysical = unphysical(last, improved.robot);
+  // As whoever reads it will judge it: a mass that is taken away may leave none.
+  try {
+    static_cast<void>(parse_robot(robot_text(improved.robot), "the robot with it"));
+  } catch (const InputError& error) {
+    improved.unwritable.emplace_back(error.what());
+  }
   return improved;
 }
 

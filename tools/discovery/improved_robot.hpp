@@ -15,7 +15,7 @@ namespace offnominal::tools::discovery {
 struct ImprovedRobot {
   RobotDescription robot;
   // Found, but not among the effects that a robot file can say; the rest is then of no use alone.
-  std::vector<std::string> not_in_robot_files;
+  std::vector<std::string> unwritable;
   std::vector<HeldNumber> held;
   std::vector<std::string> unphysical;  // why it must not be used; empty: it may
 };

@@ -10,6 +10,7 @@
 #include "analysis/before_after.hpp"
 #include "analysis/measurement.hpp"
 #include "discovery/explain.hpp"
+#include "discovery/explain_report.hpp"
 #include "hidden_case.hpp"
 #include "robot/robot_file.hpp"
 
@@ -37,7 +38,7 @@ TEST_P(ImprovedRobotOf, HasTheEffectAndPredictsWhatNoFitHasSeen) {
   const RobotDescription file = test::to_robot(made.nominal);
   const Explanation result = explained(made, file);
   ASSERT_EQ(result.found.size(), 1U) << result.words;
-  EXPECT_THAT(result.not_in_robot_files, IsEmpty());
+  EXPECT_THAT(result.unwritable, IsEmpty());
   const RobotDescription& improved = result.improved;
   ASSERT_EQ(improved.effects.size(), file.effects.size() + 1);
   const RobotEffect& added = improved.effects.back();
@@ -108,7 +109,8 @@ TEST(ImprovedRobot, SaysWhichEffectsNoRobotFileHas) {
   const hidden::Case made = case_of(5, {hidden::HiddenEffect::kBacklash});
   const Explanation result = explained(made, test::to_robot(made.nominal));
   ASSERT_FALSE(result.found.empty()) << result.words;
-  EXPECT_THAT(result.not_in_robot_files, ::testing::Contains("backlash"));
+  EXPECT_THAT(result.unwritable, ::testing::Contains(HasSubstr("do not know backlash")));
+  EXPECT_THAT(text_of(result, {}), HasSubstr("cannot be written: robot files"));
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ TEST_P(FoundEffect, FitsIntoTheRobotFileAndIsKnownThereafter) {
   const Explanation before = explained();
   ASSERT_FALSE(before.found.empty()) << before.words;
   ASSERT_EQ(before.found[0].what.name(), hidden::name(GetParam()));
-  ASSERT_THAT(before.not_in_robot_files, ::testing::IsEmpty());
+  ASSERT_THAT(before.unwritable, ::testing::IsEmpty());
   robot = before.improved;
   const Explanation after = explained();
   for (const Finding& again : after.found) {
