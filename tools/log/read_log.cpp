@@ -11,11 +11,11 @@
 #include "common/error.hpp"
 #include "common/input_name.hpp"
 #include "common/nearest.hpp"
-#include "robot/channels.hpp"
 #include "log/hold_map.hpp"
 #include "log/log_format.hpp"
 #include "log/recording_file.hpp"
 #include "log/sampling.hpp"
+#include "robot/channels.hpp"
 
 namespace offnominal::tools {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "robot/channels.hpp"
 #include "log/read_log.hpp"
+#include "robot/channels.hpp"
 #include "tools/support/temporary_file.hpp"
 
 namespace {
