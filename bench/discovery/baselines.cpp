@@ -29,7 +29,7 @@ Effects largest_first(std::vector<Contribution> contributions) {
       contributions.begin(), contributions.end(),
       [](const Contribution& a, const Contribution& b) { return a.energy > b.energy; });
   Effects effects;
-  for (Contribution& one : contributions) effects.push_back(std::move(one.what));
+  for (const Contribution& one : contributions) effects.push_back(one.what);
   return effects;
 }
 

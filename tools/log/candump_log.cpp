@@ -163,7 +163,7 @@ class CandumpReader {
   // clock that was set back and a second recording behind the first one would be left out whole,
   // and of two buses whoever comes first would be taken.
   bool is_next(Track& track, const CandumpFrame& frame, std::size_t line) const {
-    constexpr double kMostBack_s = 0.01;
+    constexpr double kMostBackS = 0.01;
     if (track.t_s.empty()) {
       track.interface = frame.interface;
       return true;
@@ -175,7 +175,7 @@ class CandumpReader {
            "every signal on one interface",
            "keep the lines of one, as grep ' " + track.interface + " ' does"});
     }
-    if (frame.time_s < track.t_s.back() - kMostBack_s) {
+    if (frame.time_s < track.t_s.back() - kMostBackS) {
       throw InputError({file_, fmt::format("line {}", line),
                         fmt::format("a time {:.6g} s before that of {} before it",
                                     track.t_s.back() - frame.time_s, track.name),
