@@ -148,7 +148,7 @@ BaselineSelections select_by_baselines(const tools::RobotDescription& robot,
   namespace discovery = tools::discovery;
   const std::vector<tools::Log> logs{recording};
   tools::RobotDescription prepared = robot;
-  const auto plan = discovery::discovery_filter(logs, prepared);
+  const auto plan = tools::plan_filter(logs, prepared);
   const VectorXd widths = discovery::set_sign_widths(prepared, logs, plan);
   std::vector<discovery::Workspace> workspaces;
   workspaces.push_back(discovery::make_workspace(recording, prepared, plan, widths));

@@ -16,9 +16,11 @@ double percent_of(double part, double whole) {
   return whole > 0 ? 100 * part / whole : std::numeric_limits<double>::quiet_NaN();
 }
 
-JointComparison compare_joint(const Comparison& all, const RobotDescription& robot, Index joint) {
-  const VectorXd measured = all.measured.col(joint);
-  const VectorXd error = measured - all.model.col(joint);
+JointComparison compare_joint(const Comparison& all, const Measurement& of,
+                              const RobotDescription& robot, Index joint) {
+  const auto while_moving = [&](const auto& values) { return of.while_moving(values, joint); };
+  const VectorXd measured = while_moving(all.measured.col(joint));
+  const VectorXd error = measured - while_moving(all.model.col(joint));
   const double root_n = std::sqrt(static_cast<double>(measured.size()));
   JointComparison result;
   result.joint = static_cast<std::size_t>(joint);
@@ -30,10 +32,11 @@ JointComparison compare_joint(const Comparison& all, const RobotDescription& rob
   // Rounding makes the spread of a constant a little more than 0.
   const bool constant = spread <= 1e-12 * measured.norm();
   result.fit_percent = 100 - percent_of(error.norm(), constant ? 0 : spread);
-  result.where = {{"position", share_explained(all.q.col(joint), error)},
-                  {"velocity", share_explained(all.dq.col(joint), error)},
-                  {"acceleration", share_explained(all.ddq.col(joint), error)},
-                  {"time", share_explained(all.t_s, error)}};
+  result.left_out = 1 - static_cast<double>(measured.size()) / static_cast<double>(all.t_s.size());
+  result.where = {{"position", share_explained(while_moving(all.q.col(joint)), error)},
+                  {"velocity", share_explained(while_moving(all.dq.col(joint)), error)},
+                  {"acceleration", share_explained(while_moving(all.ddq.col(joint)), error)},
+                  {"time", share_explained(while_moving(all.t_s), error)}};
   std::stable_sort(result.where.begin(), result.where.end(),
                    [](const ErrorShare& a, const ErrorShare& b) { return a.share > b.share; });
   return result;
@@ -59,7 +62,7 @@ Comparison compare(const RobotDescription& robot, const Measurement& measured) {
   result.dq = kept(measured.motion.dq);
   result.ddq = kept(measured.motion.ddq);
   for (Index joint = 0; joint < result.measured.cols(); ++joint) {
-    result.joints.push_back(compare_joint(result, robot, joint));
+    result.joints.push_back(compare_joint(result, measured, robot, joint));
   }
   return result;
 }

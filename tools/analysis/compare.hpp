@@ -23,7 +23,10 @@ struct JointComparison {
   double rms_torque = 0;              // of tau
   double relative_error_percent = 0;  // 100 |tau - tau_m| / |tau|; NaN where tau is 0
   double fit_percent = 0;             // 100 (1 - |tau - tau_m| / |tau - mean|); NaN where constant
-  std::vector<ErrorShare> where;      // largest share first
+  // Of the samples, 0..1: those in which the joint stands still, where friction may take any part
+  // of the torque. None of the numbers above is of them.
+  double left_out = 0;
+  std::vector<ErrorShare> where;  // largest share first
 };
 
 struct Comparison {
@@ -40,7 +43,7 @@ struct Comparison {
   [[nodiscard]] Eigen::MatrixXd residual() const { return measured - model; }
 };
 
-// Throws std::invalid_argument when recording and robot differ in their number of joints.
+// `robot` has as many joints as the recording.
 Comparison compare(const RobotDescription& robot, const Measurement& measured);
 
 // Share of the energy of `values` (about their mean) that their means over `bins` equally filled

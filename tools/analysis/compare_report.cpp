@@ -45,6 +45,14 @@ std::string sentence(const JointComparison& joint) {
     words +=
         fmt::format(" {:.0f} % of the error follows the {}.", 100 * first.share, first.variable);
   }
+  constexpr double kWorthMention = 0.01;
+  if (joint.left_out >= kWorthMention) {
+    words += fmt::format(
+        " {:.0f} % of the samples do not count: the joint stands still there, and friction may "
+        "hold "
+        "it.",
+        100 * joint.left_out);
+  }
   return words;
 }
 
@@ -172,7 +180,8 @@ nlohmann::ordered_json to_json(const Comparison& comparison, const CompareNames&
                               {"rms_error", joint.rms_error},
                               {"rms_torque", joint.rms_torque},
                               {"relative_error_percent", joint.relative_error_percent},
-                              {"fit_percent", joint.fit_percent}});
+                              {"fit_percent", joint.fit_percent},
+                              {"left_out_percent", 100 * joint.left_out}});
     for (const ErrorShare& where : joint.where) {
       json["where"].push_back({{"joint", joint.joint + 1},
                                {"variable", where.variable},

@@ -23,7 +23,8 @@ struct CompareNames {
 std::string verdict_of(const Comparison& comparison, const Comparison* against = nullptr);
 report::Level level_of(const Comparison& comparison);
 
-// {log, robot, joints: [{joint, unit, rms_error, rms_torque, relative_error_percent, fit_percent}],
+// {log, robot, joints: [{joint, unit, rms_error, rms_torque, relative_error_percent, fit_percent,
+// left_out_percent}],
 //  where: [{joint, variable, share_of_residual}], filter: {...}, remarks, verdict}.
 // Joints count from 1. A percentage that does not exist (no torque at all) is null. With an older
 // model also against: {robot, joints: [{joint, unit, rms_error, relative_error_percent,

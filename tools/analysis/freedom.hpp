@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 
 namespace offnominal::tools {
+
+using Interval = std::array<double, 2>;  // both ends
 
 // What one joint's share of a recording leaves to judge a number by: groups of samples that are
 // independent of each other and say something of this joint, and the numbers that they alone have

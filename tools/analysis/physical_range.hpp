@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "analysis/fit.hpp"
+#include "analysis/freedom.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::tools {

@@ -58,30 +58,12 @@ std::vector<Unknown> unknowns_of_effect(const RobotDescription& robot, std::size
   return unknowns;
 }
 
-std::vector<Unknown> link_scales(const RobotDescription& robot, double deviation) {
-  std::vector<Unknown> unknowns;
-  for (std::size_t link = 0; link < robot.joints.size(); ++link) {
-    Unknown unknown;
-    unknown.kind = Unknown::Kind::kLinkScale;
-    unknown.joint = link;
-    unknown.prior_deviation = deviation;
-    unknowns.push_back(unknown);
-  }
-  return unknowns;
-}
-
 std::string name_of(const RobotDescription& robot, const Unknown& unknown) {
   if (unknown.kind == Unknown::Kind::kLinkScale) {
     return fmt::format("mass and inertia of link {}", unknown.joint + 1);
   }
   return fmt::format("{}.{} of joint {}", info_of(robot.effects[unknown.effect].kind)->name,
                      info_of_parameter(robot, unknown).name, unknown.joint + 1);
-}
-
-std::string unit_of(const RobotDescription& robot, const Unknown& unknown) {
-  if (unknown.kind == Unknown::Kind::kLinkScale) return "1";
-  return offnominal::unit_of(info_of_parameter(robot, unknown).quantity,
-                             robot.joints[unknown.joint].joint.type);
 }
 
 std::vector<JointColumn> regressor_before_path(const RobotDescription& robot,
@@ -143,22 +125,6 @@ std::vector<std::size_t> joints_of(const RobotDescription& robot, const Unknown&
   std::vector<std::size_t> joints;
   for (std::size_t joint = 0; joint <= unknown.joint; ++joint) joints.push_back(joint);
   return joints;
-}
-
-RobotDescription with_values(RobotDescription robot, const std::vector<Unknown>& unknowns,
-                             const Eigen::VectorXd& values) {
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    const Unknown& unknown = unknowns[i];
-    const double value = values[static_cast<Eigen::Index>(i)];
-    if (unknown.kind == Unknown::Kind::kEffectParameter) {
-      robot.effects[unknown.effect].parameters[unknown.parameter] = value;
-      continue;
-    }
-    Joint<double>& joint = robot.joints[unknown.joint].joint;
-    joint.mass_kg *= 1 + value;
-    for (double& inertia : joint.inertia_kg_m2) inertia *= 1 + value;
-  }
-  return robot;
 }
 
 }  // namespace offnominal::tools

@@ -20,24 +20,17 @@ struct Unknown {
   Kind kind = Kind::kEffectParameter;
   std::size_t effect = 0;
   std::size_t parameter = 0;
-  std::size_t joint = 0;       // from 0; the effect's joint, or the link behind that joint
-  double start = 0;            // what the description has now
-  double prior_deviation = 0;  // standard deviation of the prior around start; 0: no prior
-  bool is_new = false;         // gives way first where the data cannot tell it from others
+  std::size_t joint = 0;  // from 0; the effect's joint, or the link behind that joint
+  double start = 0;       // what the description has now
+  bool is_new = false;    // gives way first where the data cannot tell it from others
 };
 
 // The linear parameters of one effect of the robot.
 std::vector<Unknown> unknowns_of_effect(const RobotDescription& robot, std::size_t effect,
                                         bool is_new);
 
-// Every link's scale, with a prior of `deviation` (0.05: 5 %) around what the robot has.
-std::vector<Unknown> link_scales(const RobotDescription& robot, double deviation);
-
 // "coulomb_friction.level of joint 1", "mass and inertia of link 2"
 std::string name_of(const RobotDescription& robot, const Unknown& unknown);
-
-// Unit of the unknown, "N m s/rad"; "1" for a link's scale.
-std::string unit_of(const RobotDescription& robot, const Unknown& unknown);
 
 // One joint's column of a regressor, a value per sample of the motion.
 struct JointColumn {
@@ -64,9 +57,5 @@ void pass_path(const RobotDescription& robot, const Unknown& unknown, const Told
 
 // The joints that regressor() has columns for.
 std::vector<std::size_t> joints_of(const RobotDescription& robot, const Unknown& unknown);
-
-// The description with the unknowns set to `values`.
-RobotDescription with_values(RobotDescription robot, const std::vector<Unknown>& unknowns,
-                             const Eigen::VectorXd& values);
 
 }  // namespace offnominal::tools

@@ -17,10 +17,12 @@ namespace offnominal::tools {
 inline void add_filter_options(CLI::App& verb, FilterRequest& request) {
   verb.add_option(
       "--cutoff", request.cutoff_hz,
-      "Cut-off of the low-pass, Hz. Default: 100, or a quarter of a sampling rate below "
-      "400 Hz");
+      "Cut-off of the positions' low-pass, Hz; the torques' is the same, or what --decimate lets "
+      "pass. Default, as of every verb: torques at 8 to 12 Hz by the encoders, positions at 2.5 "
+      "times that");
   verb.add_option("--decimate", request.decimate,
-                  "Keep one sample of so many. Default: about 100 samples a second are left");
+                  "Keep one sample of so many. Default: 2.5 times the torques' cut-off are left a "
+                  "second, or 100 where --cutoff is given");
 }
 
 /// --channels; `whose`: "recording's" or "recordings'".

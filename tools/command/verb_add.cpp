@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/add_report.hpp"
 #include "command/answer.hpp"
 #include "command/command_line.hpp"
 #include "command/doctor.hpp"
@@ -20,12 +19,18 @@
 #include "common/nearest.hpp"
 #include "common/output_file.hpp"
 #include "discovery/add_found.hpp"
+#include "discovery/add_report.hpp"
 #include "log/log_format.hpp"
 #include "log/read_log.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::tools {
 namespace {
+
+using discovery::add;
+using discovery::AddNames;
+using discovery::AddRequest;
+using discovery::AddResult;
 
 struct AddOptions {
   std::vector<std::string> effects;
@@ -121,15 +126,12 @@ void add_named(const AddOptions& options, const std::string& command_line, ExitC
   std::optional<std::string> holdout_file;
   if (!options.files.holdout.empty()) holdout_file = options.files.holdout[0];
   Progress progress;
-  FitData data = read_fit_data("add", "--log", options.files, read_log, progress);
+  const FitData data = read_fit_data("add", "--log", options.files, read_log, progress);
   const auto faults =
       examined({data.logs, data.holdout}, data.robot, progress, discovery::RestsOn::kTorque);
-  const Measurement log = measure(std::move(data.logs[0]), options.filter);
-  std::optional<Measurement> holdout;
-  if (holdout_file) holdout = measure(std::move(data.holdout[0]), options.filter);
-  progress.begin("fitting");
-  const AddResult result = add(data.robot, request, log, holdout ? &*holdout : nullptr,
-                               [&progress] { progress.step(); });
+  const AddResult result =
+      add(data.robot, request, data.logs[0], holdout_file ? &data.holdout[0] : nullptr,
+          options.filter, [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
   const AddNames names{options.files.logs[0], holdout_file, options.files.robot,
                        options.output,        command_line, options.answer.force};

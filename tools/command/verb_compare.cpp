@@ -46,7 +46,7 @@ void run(const CompareOptions& options, const std::string& command_line) {
   Log log = read_log(options.log, robot, options.channels);
   const auto faults = examined({std::span(&log, 1)}, robot, progress);
   progress.begin("filtering");
-  const Measurement measured = measure(std::move(log), options.filter);
+  const Measurement measured = measure(std::move(log), robot, options.filter);
   progress.begin("computing the model's torque");
   const Comparison comparison = compare(robot, measured);
   std::optional<Comparison> before;

@@ -110,13 +110,14 @@ AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& l
   added.explanation = explain(robot, logs, holdout, options, on_progress);
   added.objections = objections_to(added.explanation);
   if (!added.objections.empty()) return added;
+  const FilterPlan plan = plan_filter(logs, robot);
   const auto compare_on = [&](const Log& log, bool held_out) {
     if (on_progress) on_progress("comparing both models on " + log.file);
     if (log.at_rest) {
       added.gains.push_back({log.file, held_out, at_rest(robot, added.explanation.improved, log)});
       return;
     }
-    const Measurement measured = measure(log, {});
+    const Measurement measured = measure(log, robot, plan);
     added.gains.push_back(
         {log.file, held_out,
          before_after(compare(robot, measured), compare(added.explanation.improved, measured))});

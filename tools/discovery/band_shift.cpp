@@ -16,7 +16,7 @@ constexpr std::array<double, 2> kBands{0.7, 0.45};  // of the band that was fitt
 std::vector<NamedValue> numbers_of(const Data& data, const std::vector<Term>& terms,
                                    const ModelFit& fit, std::size_t i) {
   const Term& term = terms[i];
-  const double factor = factor_beside_torque_scale(terms, fit, term.joint, term.effect->kind());
+  const double factor = factor_of_term(data, terms, fit, i);
   return term.effect->parameters(data.recordings[0].joint_type(term.joint),
                                  factor * fit.coefficients[i], term.shape);
 }

@@ -32,22 +32,24 @@ void describe_joints(const SearchResult& from, Explanation& to) {
   const VectorXd held_floor = noise_floor_of(from.hold_out.data(), from.found.held_out.back());
   for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
     to.joints.push_back({joint, effort_unit(from.robot, joint), torque[joint], before[joint],
-                         fitted[joint], after[joint], held_before[joint], held_after[joint],
-                         floor[joint], held_floor[joint]});
+                         after[joint], fitted[joint], after[joint], held_before[joint],
+                         held_after[joint], floor[joint], held_floor[joint]});
   }
 }
 
 bool is_positive(const Term& term, const std::string& parameter) {
   return std::any_of(term.ranges.begin(), term.ranges.end(), [&](const ShapeRange& range) {
-    return range.is_positive() && range.name == parameter;
+    return range.name == parameter &&
+           (range.is_positive() || range.name == effects::kSmoothing.name);
   });
 }
 
 // Intervals that hold noise, and what the model's simplifications do: as far as a number moves in
 // narrower bands counts as one standard deviation of that.
-std::vector<std::vector<Estimate>> estimates_with_discrepancy(const Relinearised& fitted) {
+std::vector<std::vector<Estimate>> estimates_with_discrepancy(const ImprovedRobot& improved) {
   constexpr double kTwoSided95 = 1.96;
-  auto estimates = estimates_of(Regression(*fitted.data), fitted.terms, fitted.fit);
+  const Relinearised& fitted = improved.last;
+  auto estimates = estimates_of(improved).terms;
   const auto shifts = largest_shifts_in_narrower_bands(fitted);
   for (std::size_t i = 0; i < estimates.size(); ++i) {
     for (std::size_t p = 0; p < estimates[i].size(); ++p) {
@@ -67,7 +69,7 @@ std::vector<std::vector<Estimate>> estimates_with_discrepancy(const Relinearised
 void describe_findings(const SearchResult& from, Explanation& to) {
   const Data& data = from.regression.data();
   if (from.found.accepted.empty()) return;
-  const auto estimates = estimates_with_discrepancy(from.fitted);
+  const auto estimates = estimates_with_discrepancy(from.improved);
   const VectorXd simulated_after = simulated_position_error(data, from.found.fit.residual);
   const VectorXd held_after = from.hold_out.rms(from.found.held_out.back());
   for (std::size_t i = 0; i < from.found.accepted.size(); ++i) {

@@ -2,7 +2,7 @@
 
 #include "discovery/explain.hpp"
 #include "discovery/find_model.hpp"
-#include "discovery/relinearise.hpp"
+#include "discovery/improved_robot.hpp"
 
 namespace offnominal::tools::discovery {
 
@@ -13,7 +13,7 @@ struct SearchResult {
   const Search& search;
   const HoldOut& hold_out;
   const FoundModel& found;
-  const Relinearised& fitted;  // the found model with its final numbers
+  const ImprovedRobot& improved;  // with the found model's final numbers
 };
 
 // Fills in all that an explanation says in numbers: errors per joint, findings, rejections, what

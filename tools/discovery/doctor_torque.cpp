@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/standstill.hpp"
 #include "discovery/doctor_checks.hpp"
-#include "discovery/standstill.hpp"
 
 namespace offnominal::tools::discovery {
 namespace {

@@ -45,7 +45,8 @@ bool is_sign_width(const ParameterInfo& parameter) {
   return std::string_view(parameter.name) == effects::kSmoothing.name;
 }
 
-// The effect's own torque over the recording.
+}  // namespace
+
 Regressor torque_of(const Workspace& at, const Effect<double>& effect) {
   const auto joint = static_cast<Index>(effect.joint);
   switch (info_of(effect.kind)->action) {
@@ -66,8 +67,6 @@ Regressor torque_of(const Workspace& at, const Effect<double>& effect) {
       throw std::logic_error("an effect without a torque of its own needs a class in effects/");
   }
 }
-
-}  // namespace
 
 std::vector<ShapePoint> product_grid(const std::vector<ShapeRange>& ranges) {
   std::vector<ShapePoint> points{{}};
@@ -195,12 +194,11 @@ Effect<double> EffectCandidate::effect(Index joint, const VectorXd& coefficients
       moved = static_cast<Index>(made.parameters[i]) - 1;
     }
     if (finds(parameter)) continue;
-    made.parameters[i] = is_sign_width(parameter) ? sign_width[moved] : parameter.default_value;
+    made.parameters[i] =
+        is_sign_width(parameter) ? sign_width[moved] : given_[i].value_or(parameter.default_value);
   }
   return made;
 }
-
-namespace {
 
 Candidate candidate_of(EffectKind kind) {
   for (const auto family :
@@ -209,8 +207,6 @@ Candidate candidate_of(EffectKind kind) {
   }
   return std::make_unique<EffectCandidate>(kind);
 }
-
-}  // namespace
 
 const std::vector<std::unique_ptr<const EffectCandidate>>& all_candidates() {
   static const auto candidates = [] {

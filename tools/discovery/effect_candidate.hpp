@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,6 +48,9 @@ struct NamedValue {
   double value = 0;
   std::string unit;
 };
+
+// An effect's own torque over a recording, of what acts by itself and not on the whole drive.
+Regressor torque_of(const Workspace& at, const Effect<double>& effect);
 
 // A physical effect that may be missing from a model, on one joint: core's struct of it as a search
 // sees it. Regressors follow the sign of offnominal/model/effect.hpp: what the drive has to supply.
@@ -94,6 +98,11 @@ class EffectCandidate {
   enum class Spectrum { kNone, kPosition, kTime };
   [[nodiscard]] Spectrum spectrum() const;
 
+  // Whether a shape parameter of the struct comes out of the coefficients here.
+  [[nodiscard]] virtual bool shape_is_coefficient(std::size_t /*parameter*/) const { return false; }
+  // A value for a parameter that the search does not find, instead of the struct's default.
+  void give(std::size_t parameter, double value) { given_[parameter] = value; }
+
   // What the user reads: the parameters that the search finds.
   [[nodiscard]] std::vector<NamedValue> parameters(JointType type,
                                                    const Eigen::VectorXd& coefficients,
@@ -116,7 +125,13 @@ class EffectCandidate {
 
  private:
   const EffectInfo& info_;
+  std::array<std::optional<double>, kMaxEffectParameters> given_{};
 };
+
+using Candidate = std::unique_ptr<EffectCandidate>;
+
+// An effect as a search sees it, with the class that it has in effects/.
+Candidate candidate_of(EffectKind kind);
 
 // Every effect that the analysis knows, in core's order.
 const std::vector<std::unique_ptr<const EffectCandidate>>& all_candidates();

@@ -6,6 +6,7 @@
 
 #include "analysis/freedom.hpp"
 #include "discovery/regimes.hpp"
+#include "discovery/sign_width.hpp"
 #include "discovery/torque_scale.hpp"
 
 namespace offnominal::tools::discovery {
@@ -133,23 +134,30 @@ struct Linearised {
   std::vector<VectorXd> columns;
   std::vector<Prior> priors;
   std::vector<Place> places;
+  std::vector<Index> nuisance;  // column of every nuisance term; -1: not in the model
+  std::vector<Index> widths;
 };
 
-Linearised linearise(const Regression& regression, const std::vector<Term>& terms,
-                     const ModelFit& fit) {
+Linearised linearise(const Regression& regression, const RobotDescription& robot,
+                     const std::vector<Term>& terms, const ModelFit& fit,
+                     const std::vector<Index>& widths) {
   const Regression::Design design = regression.design(terms);
   Linearised model;
   const auto add = [&](VectorXd column, const Prior& prior) {
     model.columns.push_back(std::move(column));
     model.priors.push_back(prior);
   };
+  model.nuisance.assign(regression.data().nuisance.terms.size(), -1);
   for (Index c = 0; c < design.first[0]; ++c) {
     add(design.columns.col(c), design.priors[static_cast<std::size_t>(c)]);
+    model.nuisance[static_cast<std::size_t>(design.kept[static_cast<std::size_t>(c)])] = c;
   }
   for (std::size_t i = 0; i < terms.size(); ++i) {
     Place place{
         static_cast<Index>(model.columns.size()), design.first[i + 1] - design.first[i], {}, 0};
-    for (Index c = design.first[i]; c < design.first[i + 1]; ++c) add(design.columns.col(c), {});
+    for (Index c = design.first[i]; c < design.first[i + 1]; ++c) {
+      add(design.columns.col(c), design.priors[static_cast<std::size_t>(c)]);
+    }
     for (std::size_t axis = 0; axis < terms[i].ranges.size(); ++axis) {
       const bool searched = terms[i].ranges[axis].is_searched();
       place.shape.push_back(searched ? static_cast<Index>(model.columns.size()) : -1);
@@ -158,7 +166,16 @@ Linearised linearise(const Regression& regression, const std::vector<Term>& term
     }
     model.places.push_back(std::move(place));
   }
+  for (const Index joint : widths) {
+    model.widths.push_back(static_cast<Index>(model.columns.size()));
+    add(width_derivative(regression.data(), robot, terms, fit, joint), {});
+  }
   return model;
+}
+
+// Given, not fitted.
+bool is_held(const Prior& prior) {
+  return !prior.is_informative() && std::isfinite(prior.low) && std::isfinite(prior.high);
 }
 
 // Weighted columns with the rows of the priors below them, each scaled to length 1.
@@ -178,6 +195,7 @@ ScaledColumns weighted_columns(const Linearised& model, const RowLayout& layout,
     column[layout.rows() + c] = fit.prior_weight / model.priors[at].deviation;  // 0: no prior
     // A column that does not act has no interval; it must not take the others' along.
     if (!std::isfinite(column.norm()) || !(column.norm() > 0)) column.setZero();
+    if (is_held(model.priors[at])) column.setZero();
     scaled.length[c] = column.norm() > 0 ? column.norm() : 1;
     column /= scaled.length[c];
   }
@@ -255,21 +273,47 @@ Index joint_shown_on(const RowLayout& layout, const ScaledColumns& scaled, const
 
 }  // namespace
 
-std::vector<std::vector<Estimate>> estimates_of(const Regression& regression,
-                                                const std::vector<Term>& terms,
-                                                const ModelFit& fit) {
-  if (terms.empty()) return {};
+Estimates estimates_of(const Regression& regression, const RobotDescription& robot,
+                       const std::vector<Term>& terms, const ModelFit& fit,
+                       const std::vector<Index>& widths) {
   const Data& data = regression.data();
-  Linearised model = linearise(regression, terms, fit);
+  Linearised model = linearise(regression, robot, terms, fit, widths);
+  if (model.columns.empty()) return {};
   const ScaledColumns scaled = weighted_columns(model, data.layout, fit);
   for (Place& place : model.places) place.joint = joint_shown_on(data.layout, scaled, place);
   const std::vector<Covariance> covariances = covariances_of(model, scaled, data, fit);
-  std::vector<std::vector<Estimate>> all;
+  Estimates all;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    const double factor =
-        factor_beside_torque_scale(terms, fit, terms[i].joint, terms[i].effect->kind());
-    all.push_back(
+    const double factor = factor_of_term(data, terms, fit, i);
+    all.terms.push_back(
         of_term(data, terms[i], fit.coefficients[i], factor, covariances, model.places[i]));
+  }
+  const auto of_column = [&](Index column, double value, Index joint) {
+    Estimate estimate{{"", value, ""}, std::nullopt};
+    const Index unknowns = scaled.columns.cols();
+    if (column >= 0) {
+      set_interval(VectorXd::Unit(unknowns, column), covariances, joint, estimate);
+    }
+    return estimate;
+  };
+  for (std::size_t i = 0; i < data.nuisance.terms.size(); ++i) {
+    all.nuisance.push_back(of_column(model.nuisance[i], fit.nuisance[static_cast<Index>(i)],
+                                     data.nuisance.terms[i].joint));
+  }
+  for (std::size_t i = 0; i < widths.size(); ++i) {
+    all.widths.push_back(
+        of_column(model.widths[i], data.recordings[0].sign_width[widths[i]], widths[i]));
+  }
+  // One width per joint: the same number of every term that follows it.
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    for (Estimate& one : all.terms[i]) {
+      if (one.value.name != effects::kSmoothing.name) continue;
+      for (std::size_t w = 0; w < widths.size(); ++w) {
+        if (followed_joint(terms[i]) != widths[w]) continue;
+        one.ci95 = all.widths[w].ci95;
+        one.why_no_interval = all.widths[w].why_no_interval;
+      }
+    }
   }
   return all;
 }

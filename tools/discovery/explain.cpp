@@ -13,6 +13,7 @@
 #include "common/shell_word.hpp"
 #include "discovery/alternatives.hpp"
 #include "discovery/describe.hpp"
+#include "discovery/file_errors.hpp"
 #include "discovery/find_model.hpp"
 #include "discovery/improved_robot.hpp"
 #include "discovery/stretches.hpp"
@@ -31,12 +32,13 @@ class Explainer {
   Explainer(const RobotDescription& robot, const std::vector<Log>& logs,
             const std::vector<Log>& holdout, const ExplainOptions& options,
             const OnProgress& on_progress)
-      : file_(robot), robot_(robot), options_(options), on_progress_(on_progress) {
+      : file_(robot), robot_(robot), logs_(logs), options_(options), on_progress_(on_progress) {
     check_joints(logs);
     check_joints(holdout);
     check_kind(logs, logs.front().at_rest);
     check_kind(holdout, logs.front().at_rest);
-    const FilterPlan plan = discovery_filter(logs, robot_);
+    plan_ = plan_filter(logs, robot_);
+    const FilterPlan& plan = plan_;
     constexpr Index kFewest = 200;
     check(logs, plan, kFewest);
     check(holdout, plan, kMinFilteredSamples);
@@ -78,14 +80,17 @@ class Explainer {
       result.ambiguous = undecided(*search_, *regression_, found.baseline, result.excitation);
     }
     tell("fitting the numbers");
-    const Relinearised fitted = relinearise(robot_, *data_, nuisance_, found.terms(), found.fit);
-    describe({robot_, *regression_, *search_, hold_out, found, fitted}, result);
-    ImprovedRobot improved =
-        improved_robot(file_, robot_, *data_, nuisance_, fitted, options_.source);
+    ImprovedRobot improved = improved_robot(
+        file_, robot_, *data_, {nuisance_, fitted_effects(file_), {}, options_.source},
+        relinearise(robot_, *data_, nuisance_, found.terms(), found.fit));
+    describe({robot_, *regression_, *search_, hold_out, found, improved}, result);
     result.improved = std::move(improved.robot);
     result.unwritable = std::move(improved.unwritable);
     result.held = std::move(improved.held);
-    result.unphysical = std::move(improved.unphysical);
+    result.unphysical = std::move(improved.of_other_sign);
+    result.unphysical.insert(result.unphysical.end(), improved.unphysical.begin(),
+                             improved.unphysical.end());
+    tell_errors_of_files(result);
     judge_whole(result);
     if (!result.found.empty()) {
       result.advice.insert(result.advice.end(), result.unphysical.begin(), result.unphysical.end());
@@ -100,6 +105,19 @@ class Explainer {
  private:
   void tell(const std::string& doing) const {
     if (on_progress_) on_progress_(doing);
+  }
+
+  // Readings at rest have no filter, and their friction by the direction of approach no file.
+  void tell_errors_of_files(Explanation& result) const {
+    if (result.at_rest) return;
+    tell("comparing the models before and after");
+    const FileErrors before = file_errors(file_, logs_, plan_);
+    const FileErrors after = file_errors(result.improved, logs_, plan_);
+    for (std::size_t joint = 0; joint < result.joints.size(); ++joint) {
+      result.joints[joint].rms_torque = before.rms_torque[joint];
+      result.joints[joint].rms_before = before.rms_error[joint];
+      result.joints[joint].rms_improved = after.rms_error[joint];
+    }
   }
 
   // A hold map may show one order after the other: as many as robot files have room for.
@@ -199,6 +217,8 @@ class Explainer {
 
   const RobotDescription& file_;
   RobotDescription robot_;  // the same with signs as wide as the motion can resolve
+  const std::vector<Log>& logs_;
+  FilterPlan plan_;  // of all of them
   ExplainOptions options_;
   NuisanceOptions nuisance_;
   const OnProgress& on_progress_;

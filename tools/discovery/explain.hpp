@@ -84,9 +84,10 @@ struct JointErrors {
   Eigen::Index joint = 0;
   std::string unit;
   double rms_torque = 0;
-  double rms_before = 0;         // of the file's model as it is
+  double rms_before = 0;         // of the file's model as it is, as compare() has it
+  double rms_improved = 0;       // the same of the robot with what was found
   double rms_fitted_before = 0;  // with its numbers fitted within what they may be off
-  double rms_after = 0;
+  double rms_after = 0;          // of the regression, with what is the recordings' own
   double holdout_before = 0;
   double holdout_after = 0;
   double noise_floor = 0;  // of the fitted recordings

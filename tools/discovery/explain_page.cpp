@@ -54,7 +54,7 @@ report::Table error_table(const Explanation& e) {
                    {"held out, noise floor", "", ".4g"}};
   for (const JointErrors& joint : e.joints) {
     table.rows.push_back({static_cast<double>(joint.joint + 1), joint.unit, joint.rms_torque,
-                          joint.rms_before, joint.rms_after, joint.noise_floor,
+                          joint.rms_before, joint.rms_improved, joint.noise_floor,
                           joint.holdout_before, joint.holdout_after, joint.holdout_noise_floor});
   }
   table.note = e.holdout_is_apart ? "Held out: recordings that no fit has seen."

@@ -35,7 +35,7 @@ std::string text_of_joints(const Explanation& e) {
       return fmt::format("{:.4g} {}", value, joint.unit);
     };
     text += table.row(joint.joint + 1, with_unit(joint.rms_torque), with_unit(joint.rms_before),
-                      with_unit(joint.rms_after), with_unit(joint.noise_floor),
+                      with_unit(joint.rms_improved), with_unit(joint.noise_floor),
                       with_unit(joint.holdout_before), with_unit(joint.holdout_after),
                       with_unit(joint.holdout_noise_floor));
   }

@@ -14,6 +14,12 @@ struct Prior {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
+  // Held there, but for rounding.
+  static Prior at(double value) {
+    const double wide = 1e-9 * (value < 0 ? -value : value) + 1e-12;
+    return {value, std::numeric_limits<double>::infinity(), value - wide, value + wide};
+  }
+
   [[nodiscard]] bool is_informative() const {
     return deviation < std::numeric_limits<double>::infinity();
   }

@@ -18,6 +18,9 @@ class HoldOut {
   [[nodiscard]] bool is_apart() const { return apart_ != nullptr; }
   // Stacked as the held-out data are; `fit`: of the terms to all fitted recordings.
   [[nodiscard]] Eigen::VectorXd residual(const std::vector<Term>& terms, const ModelFit& fit) const;
+  // Of contiguous parts, also where recordings are kept apart: each part predicted by a fit of the
+  // others in which the shapes of the terms are fitted anew.
+  [[nodiscard]] Eigen::VectorXd cross_validated_with_shapes(const std::vector<Term>& terms) const;
   // Root mean square per joint of such a residual.
   [[nodiscard]] Eigen::VectorXd rms(const Eigen::VectorXd& residual) const;
   // What such a residual is of.
@@ -26,7 +29,8 @@ class HoldOut {
   }
 
  private:
-  [[nodiscard]] Eigen::VectorXd cross_validated(const std::vector<Term>& terms) const;
+  [[nodiscard]] Eigen::VectorXd cross_validated(const std::vector<Term>& terms,
+                                                bool with_shapes) const;
 
   const Regression& regression_;
   const Data* apart_;

@@ -10,12 +10,14 @@
 #include "analysis/friction_power.hpp"
 #include "analysis/physical_range.hpp"
 #include "common/error.hpp"
+#include "discovery/sign_width.hpp"
 #include "discovery/torque_scale.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::tools::discovery {
 
 using Eigen::Index;
+using Eigen::VectorXd;
 
 namespace {
 
@@ -75,7 +77,7 @@ std::vector<Moved> moved_numbers(const Relinearised& found, const RobotDescripti
     const RobotEffect& effect = robot.effects[term.effect];
     if (!effect.fitted) continue;
     Moved moved{term.effect, term.parameter, physical_range(effect.kind, term.parameter)};
-    moved.factor = factor_beside_torque_scale(found.terms, found.fit, term.joint, effect.kind);
+    moved.factor = factor_of_known(*found.data, found.terms, found.fit, i);
     moved.asked = effect.parameters[term.parameter] +
                   moved.factor * found.fit.nuisance[static_cast<Index>(i)];
     all.push_back(moved);
@@ -93,33 +95,105 @@ Index column_of(const Relinearised& found, const Moved& moved) {
   return static_cast<Index>(at - terms.begin());
 }
 
-// The last fit: numbers of the file that would be beyond what is possible are held at the end of
-// it, and all else is fitted beside them.
-Relinearised fitted_within(const RobotDescription& file, const RobotDescription& robot,
-                           const Data& data, NuisanceOptions options,
-                           const std::vector<Term>& terms, std::vector<HeldNumber>& held) {
-  constexpr double kRounding = 1e-9;
-  for (;;) {
-    const Data plain(data.recordings, robot, options);
-    Relinearised last = relinearise(robot, plain, options, terms, Regression(plain).fit(terms));
-    const std::size_t held_before = options.known.size();
-    for (const Moved& moved : moved_numbers(last, file)) {
-      const bool is_held =
-          std::any_of(options.known.begin(), options.known.end(), [&](const KnownNumber& one) {
-            return one.effect == moved.effect && one.parameter == moved.parameter;
-          });
-      if (is_held || moved.range.holds(moved.asked)) continue;
-      const double end = moved.range.nearest(moved.asked);
-      const double beyond = (moved.asked - end) / moved.factor;
-      held.push_back(held_number(last, column_of(last, moved), moved.asked, beyond, moved.range));
-      const double start = file.effects[moved.effect].parameters[moved.parameter];
-      const double at_end = (end - start) / moved.factor;
-      const double wide = kRounding * std::max(std::abs(at_end), std::abs(beyond));
-      options.known.push_back({moved.effect, moved.parameter, at_end - wide, at_end + wide});
+// The last fit and what it is made of.
+struct FileFit {
+  Relinearised last;
+  RobotDescription made_with;
+  std::vector<Index> widths;
+};
+
+class FileFitter {
+ public:
+  FileFitter(const RobotDescription& file, RobotDescription robot, const Data& data,
+             NuisanceOptions nuisance, const FileFitOptions& options, std::vector<Term> terms)
+      : file_(file),
+        robot_(std::move(robot)),
+        recordings_(data.recordings),
+        nuisance_(std::move(nuisance)),
+        terms_(std::move(terms)) {
+    nuisance_.sign_shapes = false;
+    if (recordings_[0].at_rest) return;
+    VectorXd settled = settled_sign_widths(file, options.refitted);
+    for (Index joint = 0; joint < options.given_widths.size(); ++joint) {
+      if (options.given_widths[joint] > 0) settled[joint] = options.given_widths[joint];
     }
-    if (options.known.size() == held_before) return last;
+    for (Index joint = 0; joint < settled.size(); ++joint) {
+      if (settled[joint] > 0) set_width(joint, settled[joint]);
+    }
+    widths_ = joints_with_free_width(file, options.refitted, terms_, settled);
+    for (const Index joint : widths_) {
+      const double found = searched_sign_width(terms_, joint);
+      if (found > 0) set_width(joint, found);
+    }
+    set_model();
   }
-}
+
+  FileFit run(std::vector<HeldNumber>& held) {
+    fit_widths();
+    return {fitted_within(held), robot_, widths_};
+  }
+
+ private:
+  void set_width(Index joint, double width) {
+    set_sign_width(robot_, joint, width);
+    for (Workspace& at : recordings_) at.sign_width[joint] = width;
+    for (Term& term : terms_) hold_sign_width(term, joint, width);
+  }
+  void set_model() {
+    for (Workspace& at : recordings_) at.set_model(robot_);
+  }
+
+  // A width and what else is fitted depend on each other: in turn.
+  void fit_widths() {
+    constexpr int kTurns = 2;
+    for (int turn = 0; turn < kTurns && !widths_.empty(); ++turn) {
+      const Data data(recordings_, robot_, nuisance_);
+      const Regression regression(data);
+      for (std::size_t i = 0; turn > 0 && i < terms_.size(); ++i) regression.refine(terms_, i);
+      const ModelFit fit = regression.fit(terms_);
+      std::vector<double> best;
+      for (const Index joint : widths_) {
+        best.push_back(best_sign_width(data, robot_, terms_, fit, joint));
+      }
+      for (std::size_t i = 0; i < widths_.size(); ++i) set_width(widths_[i], best[i]);
+      set_model();
+    }
+  }
+
+  // Numbers of the file that would be beyond what is possible are held at the end of it, and all
+  // else is fitted beside them.
+  Relinearised fitted_within(std::vector<HeldNumber>& held) {
+    constexpr double kRounding = 1e-9;
+    for (;;) {
+      const Data plain(recordings_, robot_, nuisance_);
+      Relinearised last =
+          relinearise(robot_, plain, nuisance_, terms_, Regression(plain).fit(terms_));
+      const std::size_t held_before = nuisance_.known.size();
+      for (const Moved& moved : moved_numbers(last, file_)) {
+        const bool is_held = std::any_of(
+            nuisance_.known.begin(), nuisance_.known.end(), [&](const KnownNumber& one) {
+              return one.effect == moved.effect && one.parameter == moved.parameter;
+            });
+        if (is_held || moved.range.holds(moved.asked)) continue;
+        const double end = moved.range.nearest(moved.asked);
+        const double beyond = (moved.asked - end) / moved.factor;
+        held.push_back(held_number(last, column_of(last, moved), moved.asked, beyond, moved.range));
+        const double start = file_.effects[moved.effect].parameters[moved.parameter];
+        const double at_end = (end - start) / moved.factor;
+        const double wide = kRounding * std::max(std::abs(at_end), std::abs(beyond));
+        nuisance_.known.push_back({moved.effect, moved.parameter, at_end - wide, at_end + wide});
+      }
+      if (nuisance_.known.size() == held_before) return last;
+    }
+  }
+
+  const RobotDescription& file_;
+  RobotDescription robot_;
+  std::vector<Workspace> recordings_;
+  NuisanceOptions nuisance_;
+  std::vector<Term> terms_;
+  std::vector<Index> widths_;
+};
 
 void move_fitted_effects(const Relinearised& found, const std::string& source,
                          RobotDescription& robot) {
@@ -131,18 +205,28 @@ void move_fitted_effects(const Relinearised& found, const std::string& source,
   }
 }
 
-// What physics forbids of the numbers that come out of the last fit, whatever the search saw.
+std::vector<std::string> of_other_sign(const Relinearised& last) {
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < last.terms.size(); ++i) {
+    const Term& term = last.terms[i];
+    if (!chain_may_have(term.effect->kind()) ||
+        term.effect->is_physical(last.fit.coefficients[i])) {
+      continue;
+    }
+    all.push_back(fmt::format(
+        "{} of joint {} came out as {:.4g}, which cannot be, once all was fitted together",
+        term.effect->name(), term.joint + 1, last.fit.coefficients[i][0]));
+  }
+  return all;
+}
+
+// Friction that all together gives energy, whatever the search saw.
 std::vector<std::string> unphysical(const Relinearised& last, const RobotDescription& improved) {
   std::vector<std::string> objections;
   std::set<Index> joints;
-  for (std::size_t i = 0; i < last.terms.size(); ++i) {
-    const Term& term = last.terms[i];
-    if (!chain_may_have(term.effect->kind())) continue;
-    if (is_friction(term.effect->kind())) joints.insert(term.joint);
-    if (term.effect->is_physical(last.fit.coefficients[i])) continue;
-    objections.push_back(fmt::format(
-        "{} of joint {} came out as {:.4g}, which cannot be, once all was fitted together",
-        term.effect->name(), term.joint + 1, last.fit.coefficients[i][0]));
+  for (const Term& term : last.terms) {
+    const EffectKind kind = term.effect->kind();
+    if (chain_may_have(kind) && is_friction(kind)) joints.insert(term.joint);
   }
   for (const Moved& moved : moved_numbers(last, improved)) {
     const RobotEffect& effect = improved.effects[moved.effect];
@@ -161,6 +245,17 @@ std::vector<std::string> unphysical(const Relinearised& last, const RobotDescrip
   return objections;
 }
 
+void set_fitted_width(RobotDescription& robot, const std::vector<std::size_t>& refitted,
+                      Index joint, double width) {
+  for (const std::size_t i : refitted) {
+    RobotEffect& effect = robot.effects[i];
+    const std::size_t at = width_of(effect.kind);
+    if (at < info_of(effect.kind)->parameters.size() && followed_joint(effect) == joint) {
+      effect.parameters[at] = width;
+    }
+  }
+}
+
 void scale_links(const Relinearised& found, const std::string& source, RobotDescription& robot) {
   robot = with_link_factors(std::move(robot), found.link_factors);
   for (std::size_t link = 0; link < found.link_factors.size(); ++link) {
@@ -173,37 +268,57 @@ void scale_links(const Relinearised& found, const std::string& source, RobotDesc
 
 }  // namespace
 
+std::vector<std::size_t> fitted_effects(const RobotDescription& robot) {
+  std::vector<std::size_t> fitted;
+  for (std::size_t i = 0; i < robot.effects.size(); ++i) {
+    if (robot.effects[i].fitted) fitted.push_back(i);
+  }
+  return fitted;
+}
+
 ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescription& robot,
-                             const Data& data, const NuisanceOptions& options,
-                             const Relinearised& found, const std::string& source) {
-  // What is the recordings' own, their skew and how friction builds up at a reversal, is fitted
-  // beside it: left out, it would stand in the numbers that are written.
-  NuisanceOptions of_links = options;
+                             const Data& data, const FileFitOptions& options, Relinearised found) {
+  // What is the recordings' own, their skew, is fitted beside it: left out, it would stand in the
+  // numbers that are written.
+  NuisanceOptions nuisance = options.nuisance;
   if (std::all_of(found.link_factors.begin(), found.link_factors.end(),
                   [](double factor) { return std::abs(factor - 1) < kWorthWriting; })) {
-    of_links.link_share = 0;
+    nuisance.link_share = 0;
   }
-  ImprovedRobot improved{file, {}, {}, {}};
-  const Relinearised last = fitted_within(file, robot, data, of_links, found.terms, improved.held);
-  scale_links(last, source, improved.robot);
-  move_fitted_effects(last, source, improved.robot);
+  ImprovedRobot improved;
+  improved.robot = file;
+  FileFitter fitter(file, robot, data, std::move(nuisance), options, found.terms);
+  FileFit file_fit = fitter.run(improved.held);
+  improved.made_with = std::move(file_fit.made_with);
+  improved.widths = std::move(file_fit.widths);
+  improved.last = std::move(file_fit.last);
+  const Relinearised& last = improved.last;
+  const VectorXd& sign_width = last.data->recordings[0].sign_width;
+  scale_links(last, options.source, improved.robot);
+  move_fitted_effects(last, options.source, improved.robot);
+  for (const Index joint : improved.widths) {
+    set_fitted_width(improved.robot, options.refitted, joint, sign_width[joint]);
+  }
   for (std::size_t i = 0; i < last.terms.size(); ++i) {
     const Term& term = last.terms[i];
-    const double factor =
-        factor_beside_torque_scale(last.terms, last.fit, term.joint, term.effect->kind());
-    RobotEffect effect{term.effect->effect(term.joint, factor * last.fit.coefficients[i],
-                                           term.shape, data.recordings[0].sign_width)};
+    const double factor = factor_of_term(*last.data, last.terms, last.fit, i);
+    RobotEffect effect{
+        term.effect->effect(term.joint, factor * last.fit.coefficients[i], term.shape, sign_width)};
     std::string why =
         why_unwritable(effect, file.joints[static_cast<std::size_t>(term.joint)].joint.type);
     if (!why.empty()) {
       improved.unwritable.push_back(std::move(why));
+      improved.added.push_back(kUnwritten);
       continue;
     }
+    improved.added.push_back(improved.robot.effects.size());
     effect.fitted = true;
-    effect.source = source;
+    effect.source = options.source;
     improved.robot.effects.push_back(std::move(effect));
   }
   improved.unphysical = unphysical(last, improved.robot);
+  improved.of_other_sign = of_other_sign(last);
+  improved.found = std::move(found);
   // As whoever reads it will judge it: a mass that is taken away may leave none.
   try {
     static_cast<void>(parse_robot(robot_text(improved.robot), "the robot with it"));
@@ -211,6 +326,25 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
     improved.unwritable.emplace_back(error.what());
   }
   return improved;
+}
+
+Estimates estimates_of(const ImprovedRobot& improved) {
+  const Relinearised& last = improved.last;
+  Estimates estimates = estimates_of(Regression(*last.data), improved.made_with, last.terms,
+                                     last.fit, improved.widths);
+  const Relinearised& found = improved.found;
+  const Estimates beside =
+      estimates_of(Regression(*found.data), improved.made_with, found.terms, found.fit);
+  for (std::size_t i = 0; i < estimates.terms.size(); ++i) {
+    for (std::size_t p = 0; p < estimates.terms[i].size(); ++p) {
+      Estimate& one = estimates.terms[i][p];
+      const auto& other = beside.terms[i][p].ci95;
+      if (!one.ci95 || !other) continue;
+      const double half = std::max((*one.ci95)[1] - (*one.ci95)[0], (*other)[1] - (*other)[0]) / 2;
+      one.ci95 = {one.value.value - half, one.value.value + half};
+    }
+  }
+  return estimates;
 }
 
 }  // namespace offnominal::tools::discovery

@@ -39,12 +39,14 @@ class Builder {
     for (Index link = 0; options_.link_share > 0 && link < layout_.joint_count(); ++link) {
       add_link(link);
     }
-    for (std::size_t effect = 0; effect < robot_.effects.size(); ++effect) add_effect(effect);
+    for (std::size_t effect = 0; effect < robot_.effects.size(); ++effect) {
+      if (is_free(effect)) add_effect(effect);
+    }
     if (recordings_[0].at_rest) add_approach();
     const bool moves = !recordings_[0].at_rest;
     for (Index joint = 0; moves && joint < layout_.joint_count(); ++joint) {
-      add_sign_shapes(joint);
-      add_skew(joint);
+      if (options_.sign_shapes) add_sign_shapes(joint);
+      if (options_.skew_samples > 0) add_skew(joint);
     }
     Nuisance nuisance;
     nuisance.terms = std::move(terms_);
@@ -78,6 +80,11 @@ class Builder {
           }
           return regressor;
         });
+  }
+
+  [[nodiscard]] bool is_free(std::size_t effect) const {
+    const auto& free = options_.free_effects;
+    return !free || std::find(free->begin(), free->end(), effect) != free->end();
   }
 
   [[nodiscard]] Prior prior_of(std::size_t effect, std::size_t parameter) const {

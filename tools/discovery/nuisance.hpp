@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,11 +46,15 @@ struct KnownNumber {
 struct NuisanceOptions {
   // As far as these may be off, two standard deviations of what is believed:
   double link_share = 0.05;   // mass and inertia of a link, as a share; 0: they are right
-  double skew_samples = 1.0;  // torque against position
+  double skew_samples = 1.0;  // torque against position; 0: they are of one time
   // Factor by which mass and inertia of each link of the robot differ from what the prior is about;
   // empty: by none.
   std::vector<double> link_factors = {};
   std::vector<KnownNumber> known = {};  // what is left out is free
+  // Effects of the robot, as indices, whose linear numbers are fitted; none: those of all.
+  std::optional<std::vector<std::size_t>> free_effects = {};
+  // Beside dry friction, ways to build up at a reversal that no robot file can say.
+  bool sign_shapes = true;
 };
 
 Nuisance make_nuisance(const RobotDescription& robot, const std::vector<Workspace>& recordings,

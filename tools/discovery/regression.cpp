@@ -4,7 +4,7 @@
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 
-#include "analysis/fit_problem.hpp"
+#include "signal/correlation.hpp"
 
 namespace offnominal::tools::discovery {
 
@@ -121,6 +121,12 @@ Regression::Design Regression::design(const std::vector<Term>& terms) const {
     at += of_term.cols();
   }
   made.priors.resize(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    for (std::size_t c = 0; c < terms[i].given.size(); ++c) {
+      if (!terms[i].given[c]) continue;
+      made.priors[static_cast<std::size_t>(made.first[i]) + c] = Prior::at(*terms[i].given[c]);
+    }
+  }
   return made;
 }
 
@@ -158,6 +164,9 @@ ModelFit Regression::fit(const std::vector<Term>& terms, const std::vector<char>
   for (std::size_t i = 0; i < terms.size(); ++i) {
     result.coefficients.push_back(
         fitted.x.segment(made.first[i], made.first[i + 1] - made.first[i]));
+    for (std::size_t c = 0; c < terms[i].given.size(); ++c) {
+      if (terms[i].given[c]) result.coefficients[i][static_cast<Index>(c)] = *terms[i].given[c];
+    }
   }
   Remainder& remainder = result.remainder;
   remainder.layout = &layout;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "discovery/data.hpp"
@@ -16,6 +17,8 @@ struct Term {
   Eigen::Index joint = 0;
   ShapePoint shape{};
   std::vector<ShapeRange> ranges{};
+  // Coefficients that are given, not fitted; empty: none of them.
+  std::vector<std::optional<double>> given{};
 };
 
 // Whether a term takes the place of an unknown of the nuisance once it is in the model.

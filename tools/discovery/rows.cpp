@@ -32,6 +32,13 @@ RowLayout::RowLayout(const std::vector<Workspace>& recordings) {
   }
 }
 
+void RowLayout::leave_out(const std::vector<char>& rows) {
+  if (moving_.size() == 0) moving_ = VectorXd::Ones(rows_);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i] == 0) moving_[static_cast<Index>(i)] = 0;
+  }
+}
+
 VectorXd RowLayout::while_moving(const VectorXd& values) const {
   return moving_.size() == 0 ? values : values.cwiseProduct(moving_).eval();
 }

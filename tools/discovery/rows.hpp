@@ -8,9 +8,6 @@
 
 namespace offnominal::tools::discovery {
 
-// Blocks of time that errors are taken as independent between are at least this long.
-inline constexpr double kShortestBlockS = 0.3;
-
 // How the filtered samples of every joint of every recording are stacked into one long vector, and
 // which block of time each row belongs to. Blocks never span two recordings; the rows of one
 // instant, joint by joint, are in one block.
@@ -47,6 +44,8 @@ class RowLayout {
   [[nodiscard]] Eigen::VectorXd stack_all(
       const std::vector<Workspace>& recordings,
       const std::vector<const Eigen::MatrixXd*>& per_recording) const;
+  // Rows with a 0 here say nothing from now on, as those of a joint that stands still.
+  void leave_out(const std::vector<char>& rows);
   // Each row as it is, or 0 where its joint stands still (standstill.hpp) and says nothing.
   [[nodiscard]] Eigen::VectorXd while_moving(const Eigen::VectorXd& values) const;
   // How many samples of a joint in a recording are not left out so.

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "analysis/fit_problem.hpp"
-#include "analysis/shape_grid.hpp"
 #include "discovery/parallel.hpp"
-#include "signal/periodogram.hpp"
+#include "discovery/shape_search.hpp"
+#include "signal/correlation.hpp"
 
 namespace offnominal::tools::discovery {
 
@@ -72,33 +70,6 @@ std::vector<ShapePoint> Search::grid_of(const Term& term) {
   return product_grid(term.ranges);
 }
 
-std::vector<ShapePoint> Search::spectral_peaks(const Slot& slot, const Remainder& at) const {
-  constexpr std::size_t kPeaks = 6;
-  const RowLayout& layout = data_.layout;
-  const std::vector<double>& grid = slot.term.ranges[0].grid;
-  const bool position = slot.term.effect->spectrum() == EffectCandidate::Spectrum::kPosition;
-  // Orders count periods of the position.
-  const double unit = position
-                          ? 2 * std::numbers::pi /
-                                first_order_period(data_.recordings[0].joint_type(slot.term.joint))
-                          : 1.0;
-  VectorXd power = VectorXd::Zero(static_cast<Index>(grid.size()));
-  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
-    const Workspace& workspace = data_.recordings[r];
-    const VectorXd variable = position ? VectorXd(workspace.motion.q.col(slot.term.joint))
-                                       : VectorXd(workspace.motion.t_s.array() - workspace.start_s);
-    const VectorXd phase = unit * kept_samples(workspace.plan, variable);
-    const std::vector<double> own = periodogram(
-        phase, at.residual.segment(layout.begin(r, slot.term.joint), layout.samples(r)), grid);
-    power += Eigen::Map<const VectorXd>(own.data(), power.size());
-  }
-  std::vector<ShapePoint> points;
-  for (const double value : highest_peaks(grid, {power.begin(), power.end()}, kPeaks)) {
-    points.push_back({value});
-  }
-  return points;
-}
-
 void Search::finish(Screened& screened, const Remainder& at) const {
   const Evidence& evidence = screened.evidence;
   const double parameters = static_cast<double>(evidence.coefficients.size()) +
@@ -116,7 +87,8 @@ Screened Search::judge_slot(const Slot& slot, const Remainder& at,
   best.term = slot.term;
   best.score = -std::numeric_limits<double>::infinity();
   const bool spectral = slot.term.effect->spectrum() != EffectCandidate::Spectrum::kNone;
-  const std::vector<ShapePoint> points = spectral ? spectral_peaks(slot, at) : slot.grid;
+  const std::vector<ShapePoint> points =
+      spectral ? spectral_peaks(data_, slot.term, at) : slot.grid;
   std::vector<MatrixXd> of_peaks;
   for (std::size_t g = 0; spectral && g < points.size(); ++g) {
     Term peak = slot.term;

@@ -75,7 +75,6 @@ class Search {
   [[nodiscard]] bool is_known(const EffectCandidate& effect, Eigen::Index joint) const;
   [[nodiscard]] Screened judge_slot(const Slot& slot, const Remainder& at,
                                     std::vector<Evidence>& all) const;
-  [[nodiscard]] std::vector<ShapePoint> spectral_peaks(const Slot& slot, const Remainder& at) const;
   void finish(Screened& screened, const Remainder& at) const;
 
   const Regression& regression_;

@@ -1,14 +1,20 @@
 #pragma once
 
+#include <cstddef>
+
 #include "discovery/regression.hpp"
 
 namespace offnominal::tools::discovery {
 
-// A robot file's torque scale multiplies all that acts on its joint; in a regression it stands
-// beside the other terms. What the coefficients of `effect` on `joint` are multiplied with to be
-// those of a file: 1 / (1 + error). 1 where no torque scale is among the terms, and for effects
-// that act on the sum of a joint's torques themselves.
-double factor_beside_torque_scale(const std::vector<Term>& terms, const ModelFit& fit,
-                                  Eigen::Index joint, EffectKind effect);
+// A torque constant that is off scales all that the drive is told, and so every coefficient that a
+// regression finds beside it. What the numbers of a robot file are of a regression's:
+
+// of the coefficients of term `i`;
+double factor_of_term(const Data& data, const std::vector<Term>& terms, const ModelFit& fit,
+                      std::size_t i);
+
+// of the change of the file's number that is nuisance term `i`.
+double factor_of_known(const Data& data, const std::vector<Term>& terms, const ModelFit& fit,
+                       std::size_t i);
 
 }  // namespace offnominal::tools::discovery

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "analysis/inverse_model.hpp"
+#include "analysis/standstill.hpp"
 #include "discovery/data.hpp"
-#include "discovery/standstill.hpp"
 #include "signal/decimate.hpp"
 #include "signal/quantile.hpp"
 #include "signal/zero_phase.hpp"
@@ -127,12 +127,7 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
     if (stride > 1) torque.col(joint) = smooth;
   }
   at.torque = every_nth_row(torque, stride);
-  MatrixXd moving(log.sample_count(), log.q.cols());
-  for (Index joint = 0; joint < log.q.cols(); ++joint) {
-    moving.col(joint) = moving_samples(
-        log, joint, robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit);
-  }
-  moving = every_nth_row(moving, stride);
+  MatrixXd moving = every_nth_row(samples_that_tell(log, robot, full), stride);
   at.start_s = log.t_s[0];
   at.at_rest = log.at_rest;
   at.approach = log.approach;
@@ -145,10 +140,6 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
     if (!(at.sign_width[joint] > 0)) {
       constexpr double kStill = 1e-9;
       at.sign_width[joint] = std::max(0.01 * at.top_speed[joint], kStill);
-    }
-    if (!at.at_rest) {
-      leave_out_sticking(at.motion.dq.col(joint), at.top_speed[joint], at.period_s(),
-                         moving.col(joint));
     }
   }
   if (moving.minCoeff() < 1) at.moving = std::move(moving);

@@ -11,9 +11,6 @@
 
 namespace offnominal::tools::discovery {
 
-// The share of the samples that are not faster than a joint's top speed.
-inline constexpr double kTopSpeedShare = 0.99;
-
 // One recording with everything that regressors are made from, at a sampling rate that the low-pass
 // of the plan leaves room for. Rows: samples, columns: joints.
 struct Workspace {

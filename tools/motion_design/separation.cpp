@@ -193,7 +193,7 @@ SeparationTable table_of(const Data& data, const std::vector<Contender>& contend
                          const std::vector<MotionJudge::Role>& roles, std::size_t truth_count,
                          const VectorXd& weights) {
   const MatrixXd basis = adapting_basis(data, weights);
-  const RowLayout::Blocks blocks = data.layout.blocks(discovery::kShortestBlockS);
+  const RowLayout::Blocks blocks = data.layout.blocks(kShortestBlockS);
   std::vector<std::vector<MatrixXd>> rivals(contenders.size());
   std::vector<std::vector<Truth>> truths(truth_count);
   for (std::size_t i = 0; i < contenders.size(); ++i) {
@@ -235,7 +235,7 @@ MotionJudge::MotionJudge(const RobotDescription& robot, const FittedMotion& refe
       contenders_(std::move(contenders)),
       truths_(truths),
       expectation_(expectation),
-      plan_(discovery::discovery_filter({log_of(reference, design_rate_hz)}, robot)) {
+      plan_(plan_filter({log_of(reference, design_rate_hz)}, robot)) {
   const VectorXd needed = rms_per_joint(reference.torque);
   // A joint that needs no torque on the reference motion still has noise.
   const VectorXd scale = needed.cwiseMax(1e-3 * needed.maxCoeff());
@@ -268,8 +268,8 @@ SeparationTable MotionJudge::judge(const FittedMotion& motion) const {
 }
 
 SeparationTable MotionJudge::judge(const std::vector<Log>& recordings) const {
-  return table_of(data_of(robot_, recordings, discovery::discovery_filter(recordings, robot_)),
-                  contenders_, roles_, truths_, noise_rms_.cwiseInverse());
+  return table_of(data_of(robot_, recordings, plan_filter(recordings, robot_)), contenders_, roles_,
+                  truths_, noise_rms_.cwiseInverse());
 }
 
 }  // namespace offnominal::tools::motion_design

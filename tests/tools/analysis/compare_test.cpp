@@ -20,7 +20,8 @@ using namespace offnominal::tools;
 using ::testing::HasSubstr;
 
 TEST(Compare, GivenTheTrueModelThenTheErrorIsTheFiltersOnly) {
-  const Comparison comparison = compare(arm_description(), measure(record_arm({}), {}));
+  const Comparison comparison =
+      compare(arm_description(), measure(record_arm({}), arm_description()));
   ASSERT_EQ(comparison.joints.size(), 2U);
   for (const JointComparison& joint : comparison.joints) {
     EXPECT_LT(joint.relative_error_percent, 0.05);
@@ -32,7 +33,7 @@ TEST(Compare, GivenTheTrueModelThenTheErrorIsTheFiltersOnly) {
 
 TEST(Compare, GivenHiddenViscousFrictionThenTheErrorIsItsSizeAndFollowsTheVelocity) {
   const Log log = record_arm({}, [](const ArmInstant& at) { return Vector2d(0, 1.5 * at.dq[1]); });
-  const Comparison comparison = compare(arm_description(), measure(log, {}));
+  const Comparison comparison = compare(arm_description(), measure(log, arm_description()));
   const JointComparison& second = comparison.joints[1];
   const VectorXd dq = comparison.dq.col(1);
   EXPECT_NEAR(second.rms_error, 1.5 * std::sqrt(dq.squaredNorm() / static_cast<double>(dq.size())),
@@ -47,7 +48,7 @@ TEST(Compare, GivenHiddenViscousFrictionThenTheErrorIsItsSizeAndFollowsTheVeloci
 TEST(Compare, GivenNoTorqueAtAllThenThereIsNoPercentage) {
   Log log = record_arm({});
   log.tau.col(0).setZero();
-  const Comparison comparison = compare(arm_description(), measure(log, {}));
+  const Comparison comparison = compare(arm_description(), measure(log, arm_description()));
   EXPECT_TRUE(std::isnan(comparison.joints[0].relative_error_percent));
   EXPECT_TRUE(std::isnan(comparison.joints[0].fit_percent));
   EXPECT_THAT(verdict_of(comparison), HasSubstr("0 throughout"));
@@ -59,13 +60,14 @@ TEST(Compare, GivenNoTorqueAtAllThenThereIsNoPercentage) {
 TEST(Compare, GivenAConstantTorqueThenTheFitDoesNotExist) {
   Log log = record_arm({});
   log.tau.col(0).setConstant(3);
-  const Comparison comparison = compare(arm_description(), measure(log, {}));
+  const Comparison comparison = compare(arm_description(), measure(log, arm_description()));
   EXPECT_TRUE(std::isnan(comparison.joints[0].fit_percent));
   EXPECT_FALSE(std::isnan(comparison.joints[0].relative_error_percent));
 }
 
 TEST(Compare, JsonHasTheFieldsOfTheCommand) {
-  const Comparison comparison = compare(arm_description(), measure(record_arm({}), {}));
+  const Comparison comparison =
+      compare(arm_description(), measure(record_arm({}), arm_description()));
   const auto json = to_json(comparison, {"arm.csv", "arm.toml", ""});
   ASSERT_EQ(json.at("joints").size(), 2U);
   const auto& joint = json.at("joints").at(1);
@@ -74,12 +76,13 @@ TEST(Compare, JsonHasTheFieldsOfTheCommand) {
   for (const char* name : {"rms_error", "rms_torque", "relative_error_percent", "fit_percent"}) {
     EXPECT_TRUE(joint.at(name).is_number()) << name;
   }
-  EXPECT_EQ(json.at("filter").at("decimation"), 10);
+  EXPECT_EQ(json.at("filter").at("decimation"), 33);
   EXPECT_EQ(json.at("where").size(), 8U);
 }
 
 TEST(Compare, PageCanBeRendered) {
-  const Comparison comparison = compare(arm_description(), measure(record_arm({}), {}));
+  const Comparison comparison =
+      compare(arm_description(), measure(record_arm({}), arm_description()));
   const report::Page page = page_of(comparison, {"arm.csv", "arm.toml", "offnominal compare"});
   EXPECT_THAT(report::render(page), HasSubstr("arm.csv against arm.toml"));
   EXPECT_EQ(page.sections.size(), 3U);

@@ -21,7 +21,7 @@ std::vector<Workspace> some_recording() {
   const sim::hidden::Case made = sim::hidden::make_case(request);
   const RobotDescription robot = test::to_robot(made.nominal);
   const Log log = test::to_log(made.recording);
-  const FilterPlan plan = discovery_filter({log}, robot);
+  const FilterPlan plan = plan_filter({log}, robot);
   std::vector<Workspace> recordings;
   recordings.push_back(make_workspace(log, robot, plan, Eigen::VectorXd::Zero(2)));
   return recordings;

@@ -52,7 +52,7 @@ TEST_P(ImprovedRobotOf, HasTheEffectAndPredictsWhatNoFitHasSeen) {
   // A robot file can be made of it.
   EXPECT_EQ(robot_text(parse_robot(robot_text(improved), "")), robot_text(improved));
 
-  const Measurement unseen = measure(test::to_log(made.holdout), {});
+  const Measurement unseen = measure(test::to_log(made.holdout), file);
   const auto gain = before_after(compare(file, unseen), compare(improved, unseen));
   EXPECT_GT(gain[static_cast<std::size_t>(truth.joint)].fall(), 0.5);
   // Explained again with it, nothing is missing.

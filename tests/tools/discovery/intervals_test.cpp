@@ -48,17 +48,5 @@ TEST(Intervals, HoldTheTruthWhereARegressorSimplifiesToo) {
   }
 }
 
-// How friction turns over at a reversal: finer than a motion with few reversals shows.
-TEST(Intervals, OfAWidthEndAtZero) {
-  const hidden::Case made = test::case_of(3703471377, {hidden::HiddenEffect::kCoulombFriction});
-  const Explanation told = told_of(made);
-  ASSERT_EQ(told.found.size(), 1U) << told.words;
-  const Estimate& width = told.found[0].parameters.at(1);
-  ASSERT_EQ(width.value.name, "smoothing");
-  ASSERT_TRUE(width.ci95);
-  EXPECT_EQ((*width.ci95)[0], 0);
-  EXPECT_GT((*width.ci95)[1], 2 * width.value.value) << "it must reach below zero by itself";
-}
-
 }  // namespace
 }  // namespace offnominal::tools::discovery

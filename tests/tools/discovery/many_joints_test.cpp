@@ -82,7 +82,7 @@ TEST(ManyJoints, GIVEN_six_joints_and_blocks_enough_on_the_joint_THEN_its_number
 // Nine ripples of the file are eighteen numbers more on the joint.
 TEST(ManyJoints, GIVEN_more_numbers_on_the_joint_than_blocks_THEN_it_says_so_in_words) {
   RobotDescription robot = test::serial_arm(3);
-  for (int i = 0; i < 9; ++i) {
+  for (int i = 0; i < 13; ++i) {
     robot.effects.push_back(
         test::effect_of(EffectKind::kCoggingTorque, 2, {0.1, 0.05, 7.0 + 3 * i}, true));
   }
@@ -141,7 +141,7 @@ TEST(ManyJoints, GIVEN_a_number_that_is_held_THEN_all_else_is_fitted_beside_it) 
   const AddedFindings added = add_found(robot, {log}, {}, quick(2), {});
   const RobotDescription& improved = added.explanation.improved;
   ASSERT_EQ(improved.effects.at(3).parameters[0], 0);
-  const Measurement measured = measure(log, {});
+  const Measurement measured = measure(log, robot);
   const auto error = [&](double of_viscous) {
     RobotDescription other = improved;
     other.effects.at(2).parameters[0] += of_viscous;

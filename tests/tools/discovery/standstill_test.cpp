@@ -1,6 +1,6 @@
 // A joint that dry friction holds shows nothing of the model: such stretches must not count.
 
-#include "discovery/standstill.hpp"
+#include "analysis/standstill.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -43,6 +43,7 @@ class Stiffness final : public EffectCandidate {
                               std::span<const double> /*shape*/) const override {
     return {coefficients[0], -coefficients[1] / coefficients[0]};
   }
+  bool shape_is_coefficient(std::size_t parameter) const override { return parameter == 1; }
 
  protected:
   bool finds(const ParameterInfo& /*parameter*/) const override { return true; }

@@ -7,8 +7,6 @@
 
 namespace offnominal::tools::discovery {
 
-using Candidate = std::unique_ptr<const EffectCandidate>;
-
 Candidate drive_candidate(EffectKind kind);         // torque constant, delay, springs
 Candidate payload_candidate(EffectKind kind);       // what is carried
 Candidate ripple_candidate(EffectKind kind);        // what repeats with position or time

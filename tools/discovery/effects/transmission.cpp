@@ -82,6 +82,7 @@ class Elasticity final : public EffectCandidate {
                               std::span<const double> /*shape*/) const override {
     return {1 / coefficients[0]};
   }
+  bool shape_is_coefficient(std::size_t parameter) const override { return parameter == 0; }
   bool is_physical(const VectorXd& c) const override { return c[0] > 0; }
   bool is_only_screened() const override { return true; }
 };

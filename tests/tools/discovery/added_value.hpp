@@ -5,13 +5,14 @@
 #include <cmath>
 #include <string>
 
-#include "analysis/add.hpp"
+#include "discovery/add.hpp"
 #include "tools/support/effect_parameter.hpp"
 
 namespace offnominal::test {
 
 // A parameter of the first effect of that kind in the robot that add() made.
-inline double value_of(const tools::AddResult& result, EffectKind kind, const std::string& name) {
+inline double value_of(const tools::discovery::AddResult& result, EffectKind kind,
+                       const std::string& name) {
   for (const tools::RobotEffect& effect : result.robot.effects) {
     if (effect.kind == kind) return parameter_of(effect, name);
   }

@@ -1,11 +1,14 @@
-#include "discovery/standstill.hpp"
+#include "analysis/standstill.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace offnominal::tools::discovery {
+#include "signal/quantile.hpp"
+
+namespace offnominal::tools {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
@@ -70,4 +73,17 @@ void leave_out_sticking(const VectorXd& speed, double top_speed, double period_s
   if (left.mean() >= kFewest) moving = left;
 }
 
-}  // namespace offnominal::tools::discovery
+MatrixXd samples_that_tell(const Log& log, const RobotDescription& robot, const Motion& motion) {
+  MatrixXd tell(log.sample_count(), log.q.cols());
+  for (Index joint = 0; joint < log.q.cols(); ++joint) {
+    tell.col(joint) = moving_samples(
+        log, joint, robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit);
+    if (log.at_rest) continue;
+    const VectorXd speed = motion.dq.col(joint);
+    leave_out_sticking(speed, quantile(speed.cwiseAbs(), kTopSpeedShare), log.period_s,
+                       tell.col(joint));
+  }
+  return tell;
+}
+
+}  // namespace offnominal::tools

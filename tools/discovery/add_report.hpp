@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "analysis/add.hpp"
+#include "discovery/add.hpp"
 #include "report/page.hpp"
 
-namespace offnominal::tools {
+namespace offnominal::tools::discovery {
 
 // What was fitted, as the user named it.
 struct AddNames {
@@ -38,4 +38,4 @@ std::string text_of(const AddResult& result, const AddRequest& request, const Ad
 
 report::Page page_of(const AddResult& result, const AddRequest& request, const AddNames& names);
 
-}  // namespace offnominal::tools
+}  // namespace offnominal::tools::discovery

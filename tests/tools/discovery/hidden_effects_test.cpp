@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/add.hpp"
+#include "discovery/add.hpp"
 #include "replay/replay.hpp"
 #include "robot/robot_file.hpp"
 #include "support/repetitions.hpp"
@@ -26,6 +26,7 @@ using offnominal::kAllEffectInfos;
 using offnominal::test::to_log;
 using offnominal::test::to_robot;
 using namespace offnominal::tools;
+using namespace offnominal::tools::discovery;
 
 EffectKind kind_named(const std::string& name) {
   for (const auto& info : kAllEffectInfos) {
@@ -72,7 +73,7 @@ class HiddenEffectInFile : public ::testing::TestWithParam<Tried> {
     add_request.effects = {kind_named(std::string(hidden::name(GetParam().effect)))};
     add_request.joint = static_cast<std::size_t>(made_.truth.effects[0].joint);
     if (GetParam().refit_inertia) add_request.inertia_deviation = 0.05;
-    result_ = add(nominal_, add_request, measure(to_log(made_.recording), {12.0, {}}), nullptr);
+    result_ = add(nominal_, add_request, to_log(made_.recording), nullptr, FilterRequest{12.0, {}});
     // What was written is what is read.
     improved_ = parse_robot(robot_text(result_.robot), "improved.toml");
   }

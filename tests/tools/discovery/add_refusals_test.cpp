@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "analysis/add.hpp"
-#include "analysis/add_report.hpp"
-#include "recorded_arm.hpp"
+#include "discovery/add.hpp"
+#include "discovery/add_report.hpp"
+#include "tools/analysis/recorded_arm.hpp"
 
 namespace {
 
@@ -22,6 +22,7 @@ using offnominal::test::effect_of;
 using offnominal::test::HiddenTorque;
 using offnominal::test::record_arm;
 using namespace offnominal::tools;
+using namespace offnominal::tools::discovery;
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
@@ -41,7 +42,7 @@ AddRequest on_joint_2(EffectKind kind) {
 
 AddResult fitted(const RobotDescription& robot, EffectKind kind, const HiddenTorque& hidden,
                  const ArmRecording& settings = kUsualArm) {
-  return add(robot, on_joint_2(kind), measure(record_arm(settings, hidden), {}), nullptr);
+  return add(robot, on_joint_2(kind), record_arm(settings, hidden), nullptr);
 }
 
 HiddenTorque viscous(double coefficient) {
@@ -128,8 +129,7 @@ TEST(AddRefuses, GIVEN_a_difference_between_the_directions_THEN_it_is_not_taken_
 
 TEST(AddRefuses, GIVEN_an_error_that_does_not_fall_THEN_only_force_writes_it) {
   const AddRequest request = on_joint_2(EffectKind::kCoggingTorque);
-  const AddResult result =
-      add(arm_description(), request, measure(record_arm(kUsualArm), {}), nullptr);
+  const AddResult result = add(arm_description(), request, record_arm(kUsualArm), nullptr);
   ASSERT_FALSE(result.held_out.at(0).fall() > 0) << "nothing is hidden in this recording";
   EXPECT_THAT(result.objections, IsEmpty());
   EXPECT_THAT(result.doubts, Contains(HasSubstr("the error of joint 2 does not fall")));
@@ -161,7 +161,7 @@ TEST(AddSays, WhyThereIsNoInterval) {
   robot.effects = {effect_of(EffectKind::kViscousFriction, 1, {0.3}, true),
                    effect_of(EffectKind::kCoulombFriction, 1, {0.2, 0.01}, true)};
   ArmRecording brief = kUsualArm;
-  brief.duration_s = 6;
+  brief.duration_s = 2;
   const AddRequest request = on_joint_2(EffectKind::kTorqueOffset);
   const AddResult result = fitted(
       robot, EffectKind::kTorqueOffset,
@@ -189,12 +189,10 @@ TEST(AddSays, ThatAJointIsChosenAndNotMeasured) {
   RobotDescription robot = arm_description();
   AddRequest request = on_joint_2(EffectKind::kJointCoupling);
   request.set = {{"source_joint", 1.0}};
-  const AddResult result = add(
-      robot, request,
-      measure(
+  const AddResult result =
+      add(robot, request,
           record_arm(kUsualArm, [](const ArmInstant& at) { return Vector2d(0, 0.8 * at.dq[0]); }),
-          {}),
-      nullptr);
+          nullptr);
   EXPECT_THAT(text_of(result, request, kNames), Not(HasSubstr("factor of 7")));
 }
 

@@ -2,9 +2,11 @@
 
 #include <Eigen/Core>
 
+#include "analysis/motion.hpp"
 #include "log/log.hpp"
+#include "robot/robot.hpp"
 
-namespace offnominal::tools::discovery {
+namespace offnominal::tools {
 
 // Per sample 1, or 0 where the joint has stood still for kStandstillS or more: dry friction may
 // hold it there, and then any torque within the friction does. All 1 where the encoder's resolution
@@ -22,4 +24,11 @@ inline constexpr double kStandstillS = 0.5;
 void leave_out_sticking(const Eigen::VectorXd& speed, double top_speed, double period_s,
                         Eigen::Ref<Eigen::VectorXd> moving);
 
-}  // namespace offnominal::tools::discovery
+// The share of the samples that are not faster than a joint's top speed.
+inline constexpr double kTopSpeedShare = 0.99;
+
+// Both, of every joint of a recording and its motion. Rows: samples, columns: joints; 1 or 0.
+Eigen::MatrixXd samples_that_tell(const Log& log, const RobotDescription& robot,
+                                  const Motion& motion);
+
+}  // namespace offnominal::tools

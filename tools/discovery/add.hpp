@@ -7,11 +7,13 @@
 
 #include "analysis/before_after.hpp"
 #include "analysis/compare.hpp"
-#include "analysis/fit.hpp"
-#include "analysis/measurement.hpp"
+#include "analysis/freedom.hpp"
+#include "analysis/unknown.hpp"
+#include "discovery/on_progress.hpp"
+#include "log/log.hpp"
 #include "robot/robot.hpp"
 
-namespace offnominal::tools {
+namespace offnominal::tools::discovery {
 
 struct AddRequest {
   std::vector<EffectKind> effects;    // to add, one or more
@@ -24,10 +26,39 @@ struct AddRequest {
   std::string source;  // what the written effects say of where their numbers come from
 };
 
+// One parameter of an effect after a fit.
+struct FittedParameter {
+  std::size_t effect = 0;  // index into the robot's effects
+  std::size_t parameter = 0;
+  double value = 0;
+  std::optional<Interval> ci95;
+  std::string why_no_interval = {};  // where it was fitted and has none, in words
+  bool fitted = false;               // false: given, or left where it was
+};
+
+// Mass and inertia of one link after a fit, as a factor on what they were.
+struct FittedLink {
+  std::size_t link = 0;
+  double factor = 1;
+  std::optional<Interval> ci95;
+};
+
+// Numbers that the recording cannot tell apart; `fixed` was left at its start for it.
+struct Indistinct {
+  Unknown fixed;
+  std::vector<Unknown> others;  // empty: the recording does not excite it at all
+};
+
+struct AddedNumbers {
+  std::vector<FittedParameter> parameters;
+  std::vector<FittedLink> links;
+  std::vector<Indistinct> indistinct;
+};
+
 struct AddResult {
   RobotDescription robot;          // with the effects, fitted
   std::vector<std::size_t> added;  // indices into robot.effects
-  Fit fit;
+  AddedNumbers fit;
   std::vector<BeforeAfter> fitted_log;  // per joint of the robot
   std::vector<BeforeAfter> held_out;    // per joint that the fit touched
   bool cross_validated = false;         // held_out is from parts of the fitted log
@@ -45,10 +76,12 @@ struct AddResult {
 
 // Fits new effects together with the effects of `robot` that are marked fitted and act on the same
 // joints, and judges the fit on data that it has not seen: `holdout`, or where that is null parts
-// of the recording itself (every part predicted by a fit of the others). Throws InputError when a
-// joint or parameter does not exist, a given value is out of range, an effect is there already, or
-// the robot has no room for it.
-AddResult add(const RobotDescription& robot, const AddRequest& request, const Measurement& log,
-              const Measurement* holdout, const OnStep& on_step = {});
+// of the recording itself (every part predicted by a fit of the others, shapes included). The
+// regression is that of explain(). Throws InputError when a joint or parameter does not exist, a
+// given value is out of range, an effect is there already, the robot has no room for it, or as
+// plan_filter().
+AddResult add(const RobotDescription& robot, const AddRequest& request, const Log& log,
+              const Log* holdout, const FilterRequest& filter = {},
+              const OnProgress& on_progress = {});
 
-}  // namespace offnominal::tools
+}  // namespace offnominal::tools::discovery

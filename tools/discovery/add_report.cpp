@@ -1,4 +1,4 @@
-#include "analysis/add_report.hpp"
+#include "discovery/add_report.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include "common/nearest.hpp"
 #include "common/text_table.hpp"
 
-namespace offnominal::tools {
+namespace offnominal::tools::discovery {
 namespace {
 
 using nlohmann::ordered_json;
@@ -334,4 +334,4 @@ report::Page page_of(const AddResult& result, const AddRequest& request, const A
   return page;
 }
 
-}  // namespace offnominal::tools
+}  // namespace offnominal::tools::discovery

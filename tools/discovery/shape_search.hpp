@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "discovery/on_progress.hpp"
+#include "discovery/regression.hpp"
+
+namespace offnominal::tools::discovery {
+
+// Where a term whose grid is a spectrum may be: the highest peaks of what a model leaves.
+std::vector<ShapePoint> spectral_peaks(const Data& data, const Term& term, const Remainder& at);
+
+// Moves the shapes of all terms to where the model fits best (variable projection, G. H. Golub, V.
+// Pereyra, SIAM J. Numer. Anal. 10(2), 1973): each over its whole grid, spectra at their peaks,
+// then between the grid's points; one after the other until none moves. A term without a shape yet
+// counts from when it has been its turn.
+void fit_shapes(const Regression& regression, std::vector<Term>& terms,
+                const OnProgress& on_progress = {});
+
+}  // namespace offnominal::tools::discovery
