@@ -41,7 +41,7 @@ VectorXd HoldOut::cross_validated(const std::vector<Term>& terms, bool with_shap
     if (with_shapes && has_shapes) {
       Data others = regression_.data();
       others.layout.leave_out(rows);
-      fit_shapes(Regression(others), shaped);
+      fit_shapes_again(Regression(others), shaped);
     }
     const VectorXd whole = regression_.fit(shaped, rows).residual;
     for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -216,8 +216,10 @@ void Regression::refine(std::vector<Term>& terms, std::size_t which, const Model
   const auto gain = [&](const Term& trial) {
     return -profile.energy_with(weights.asDiagonal() * columns_of(data_, trial));
   };
-  // Which point of the grid it came from was judged without it, too.
-  jump(terms[which], gain);
+  // Which point of the grid it came from was judged without it, too. A spectrum has thousands of
+  // them, and one that is not the peak is none.
+  const bool spectral = terms[which].effect->spectrum() != EffectCandidate::Spectrum::kNone;
+  if (!spectral) jump(terms[which], gain);
   climb(terms[which], gain);
 }
 

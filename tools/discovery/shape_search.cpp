@@ -45,6 +45,15 @@ bool is_spectral(const Term& term) {
   return term.effect->spectrum() != EffectCandidate::Spectrum::kNone;
 }
 
+std::ptrdiff_t shaped(const std::vector<Term>& terms) {
+  return std::count_if(terms.begin(), terms.end(),
+                       [](const Term& term) { return !term.ranges.empty(); });
+}
+
+double energy_left(const Regression& regression, const std::vector<Term>& terms) {
+  return regression.data().layout.energy(regression.fit(terms).residual).sum();
+}
+
 std::vector<Term> without(const std::vector<Term>& terms, std::size_t which) {
   std::vector<Term> others = terms;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
@@ -94,20 +103,26 @@ void fit_shapes(const Regression& regression, std::vector<Term>& terms,
     terms[i] = so_far[i];
   }
   constexpr int kMostTurns = 4;
-  constexpr double kUnchanged = 1e-4;
-  for (int turn = 0; turn < kMostTurns && terms.size() > 1; ++turn) {
-    bool moved = false;
+  constexpr double kWorthAnotherTurn = 1e-3;  // of what is left
+  double left = energy_left(regression, terms);
+  for (int turn = 0; turn < kMostTurns && shaped(terms) > 1; ++turn) {
+    tell();
     for (std::size_t i = 0; i < terms.size(); ++i) {
-      tell();
-      const ShapePoint before = terms[i].shape;
+      if (terms[i].ranges.empty()) continue;
       if (!is_spectral(terms[i])) scan(regression, without(terms, i), terms[i]);
       regression.refine(terms, i);
-      for (std::size_t axis = 0; axis < before.size(); ++axis) {
-        const double change = std::abs(terms[i].shape[axis] - before[axis]);
-        moved = moved || change > kUnchanged * std::abs(before[axis]);
-      }
     }
-    if (!moved) break;
+    const double now = energy_left(regression, terms);
+    if (!(now < (1 - kWorthAnotherTurn) * left)) break;
+    left = now;
+  }
+}
+
+void fit_shapes_again(const Regression& regression, std::vector<Term>& terms) {
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (terms[i].ranges.empty()) continue;
+    if (is_spectral(terms[i])) scan(regression, without(terms, i), terms[i]);
+    regression.refine(terms, i);
   }
 }
 

@@ -17,4 +17,8 @@ std::vector<ShapePoint> spectral_peaks(const Data& data, const Term& term, const
 void fit_shapes(const Regression& regression, std::vector<Term>& terms,
                 const OnProgress& on_progress = {});
 
+// The same of terms that have been fitted to nearly the same recordings: a spectrum as a whole,
+// other shapes from where they are.
+void fit_shapes_again(const Regression& regression, std::vector<Term>& terms);
+
 }  // namespace offnominal::tools::discovery
