@@ -71,7 +71,7 @@ class LoopOnBus {
   hal::InProcessNet<2> net_;
 
  public:
-  sim::PlantNode plant{paper_arm(), {}};
+  sim::PlantNode plant{paper_arm(), two_drives(), {}};
   ScriptedTimer timer{net_, plant};
   realtime::Recorder recorder;
   realtime::LoopPanel panel;

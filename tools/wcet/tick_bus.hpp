@@ -108,6 +108,7 @@ class MarkedDrives {
   [[nodiscard]] hal::Microseconds drive_max_age_us() const { return drives_.drive_max_age_us(); }
   [[nodiscard]] bool stop_seen() const { return drives_.stop_seen(); }
   void clear_stop() { drives_.clear_stop(); }
+  [[nodiscard]] hal::DriveCounts counts() const { return drives_.counts(); }
 
  private:
   hal::ProtectedDrives<Joints> drives_;

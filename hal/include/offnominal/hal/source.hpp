@@ -23,6 +23,11 @@ struct SourceConfig {
   std::uint8_t max_bad_in_a_row = 3;  // more records that do not open are an error; >= 1
 };
 
+// A source with a record in every period is stale at the third without one.
+[[nodiscard]] constexpr SourceConfig source_config(Microseconds period_us) {
+  return {.max_age_us = period_us * 5 / 2};
+}
+
 // Plain data. Counters wrap.
 struct Source {
   bool seen = false;  // a valid record, ever
