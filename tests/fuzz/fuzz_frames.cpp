@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <offnominal/hal/can_simple.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/protocols/can_simple/can_simple.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 
 #include "hal/bitwise_crc.hpp"
 #include "offnominal/sim/bus/joint_drives.hpp"

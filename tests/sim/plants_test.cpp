@@ -3,8 +3,8 @@
 
 #include <array>
 #include <memory>
-#include <offnominal/hal/in_process_bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <set>
 #include <stdexcept>
 

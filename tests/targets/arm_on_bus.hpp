@@ -5,8 +5,8 @@
 #include <functional>
 #include <memory>
 #include <offnominal/controller/joint_controller.hpp>
-#include <offnominal/hal/in_process_bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 
 #include "offnominal/sim/bus/joint_drives.hpp"
 #include "offnominal/sim/bus/plant_node.hpp"

@@ -4,8 +4,8 @@
 
 #include <functional>
 #include <memory>
-#include <offnominal/hal/in_process_bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <offnominal/realtime/control_loop.hpp>
 #include <offnominal/realtime/recorded_bus.hpp>
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 #include <offnominal/controller/joint_firmware.hpp>
-#include <offnominal/hal/in_process_bus.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
 #include <optional>
 #include <type_traits>
 

@@ -9,7 +9,7 @@
 #include <exception>
 #include <iostream>
 #include <limits>
-#include <offnominal/hal/socketcan.hpp>
+#include <offnominal/hal/bus/socketcan.hpp>
 #include <offnominal/realtime/signals.hpp>
 #include <optional>
 #include <string>

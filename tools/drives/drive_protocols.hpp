@@ -2,8 +2,8 @@
 // drive_table.hpp.
 #pragma once
 
-#include <offnominal/hal/can_simple.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/protocols/can_simple/can_simple.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <tuple>
 
 #include "offnominal/sim/bus/joint_drives.hpp"

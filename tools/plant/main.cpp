@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <offnominal/hal/socketcan.hpp>
+#include <offnominal/hal/bus/socketcan.hpp>
 #include <offnominal/realtime/privileges.hpp>
 #include <offnominal/realtime/signals.hpp>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "sil/gather.hpp"
 
 #include <map>
-#include <offnominal/hal/wire_time.hpp>
+#include <offnominal/hal/bus/wire_time.hpp>
 #include <string>
 #include <vector>
 

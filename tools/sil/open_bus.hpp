@@ -1,8 +1,8 @@
 // A CAN interface of the kernel for one end of a run.
 #pragma once
 
-#include <offnominal/hal/socketcan.hpp>
-#include <offnominal/hal/virtual_can.hpp>
+#include <offnominal/hal/bus/socketcan.hpp>
+#include <offnominal/hal/bus/virtual_can.hpp>
 #include <string>
 
 namespace offnominal::tools::sil {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <offnominal/hal/wire_time.hpp>
+#include <offnominal/hal/bus/wire_time.hpp>
 
 #include "common/error.hpp"
 #include "loop/controller_settings.hpp"

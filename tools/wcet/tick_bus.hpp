@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <offnominal/hal/bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/bus/bus.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <span>
 #include <vector>
 

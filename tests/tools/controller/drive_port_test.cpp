@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <offnominal/hal/in_process_bus.hpp>
-#include <offnominal/hal/wire_time.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
+#include <offnominal/hal/bus/wire_time.hpp>
 #include <string>
 #include <vector>
 

@@ -5,7 +5,7 @@
 
 #include <array>
 #include <functional>
-#include <offnominal/hal/in_process_bus.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
 #include <optional>
 #include <string>
 

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 #include <span>
 
 // How a drive protocol describes itself to robot files and to the programs that read them. Beside

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <limits>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 #include <offnominal/hal/status.hpp>
 
 // What a receiver knows of one sender of one message.

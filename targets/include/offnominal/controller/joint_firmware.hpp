@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <offnominal/controller/joint_controller.hpp>
-#include <offnominal/hal/bus.hpp>
+#include <offnominal/hal/bus/bus.hpp>
 #include <offnominal/hal/drive_description.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <robot_model.hpp>
 
 // What a model says whose robot file has no [drives]: found only where the model itself has no

@@ -5,9 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <offnominal/hal/address.hpp>
 #include <offnominal/hal/messages.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/protocols/protected/address.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <offnominal/hal/source.hpp>
 #include <span>
 

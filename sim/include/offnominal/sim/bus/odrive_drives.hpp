@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <offnominal/hal/can_simple.hpp>
+#include <offnominal/hal/protocols/can_simple/can_simple.hpp>
 #include <span>
 #include <stdexcept>
 #include <vector>

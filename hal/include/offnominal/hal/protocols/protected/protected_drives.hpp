@@ -4,12 +4,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <offnominal/hal/address.hpp>
+#include <offnominal/hal/bus/wire_time.hpp>
 #include <offnominal/hal/drive_description.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/hal/messages.hpp>
+#include <offnominal/hal/protocols/protected/address.hpp>
 #include <offnominal/hal/source.hpp>
-#include <offnominal/hal/wire_time.hpp>
 #include <span>
 
 namespace offnominal::hal {
@@ -180,7 +180,7 @@ static_assert(DriveProtocol<ProtectedDrives<2>>);
 // Programs choose them by this (drive_description.hpp).
 struct Protected {
   static constexpr const char* kName = "protected";
-  static constexpr const char* kHeader = "offnominal/hal/protected_drives.hpp";
+  static constexpr const char* kHeader = "offnominal/hal/protocols/protected/protected_drives.hpp";
   static constexpr const char* kType = "offnominal::hal::Protected";
   static constexpr std::array<DriveKey, 0> kKeys{};
   static constexpr std::array<DriveKey, 0> kJointKeys{};

@@ -7,11 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <offnominal/hal/bus/wire_time.hpp>
 #include <offnominal/hal/drive_description.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/hal/finite.hpp>
 #include <offnominal/hal/record.hpp>
-#include <offnominal/hal/wire_time.hpp>
 #include <span>
 
 // ODrive's CANSimple protocol, as far as a torque controller needs it (docs/can-simple.md): ODrive
@@ -286,7 +286,7 @@ static_assert(DriveProtocol<CanSimpleDrives<2>>);
 // Programs choose them by this (drive_description.hpp).
 struct CanSimple {
   static constexpr const char* kName = "can_simple";
-  static constexpr const char* kHeader = "offnominal/hal/can_simple.hpp";
+  static constexpr const char* kHeader = "offnominal/hal/protocols/can_simple/can_simple.hpp";
   static constexpr const char* kType = "offnominal::hal::CanSimple";
   static constexpr bool kHasFd = false;
   static constexpr bool kHasPositionsAlone = false;

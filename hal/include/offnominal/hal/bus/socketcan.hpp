@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <offnominal/hal/bus.hpp>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/bus.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 #include <offnominal/hal/status.hpp>
 #include <span>
 
