@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <offnominal/hal/in_process_bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 
 #include "heap_counter.hpp"
 #include "ratio_table.hpp"

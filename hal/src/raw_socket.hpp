@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <offnominal/hal/frame.hpp>
-#include <offnominal/hal/socketcan.hpp>
+#include <offnominal/hal/bus/frame.hpp>
+#include <offnominal/hal/bus/socketcan.hpp>
 #include <offnominal/hal/status.hpp>
 
 namespace offnominal::hal {

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <ctime>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 
 namespace offnominal::hal {
 

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <ctime>
 #include <new>
-#include <offnominal/hal/socketcan.hpp>
+#include <offnominal/hal/bus/socketcan.hpp>
 
 #include "interface_restart.hpp"
 #include "raw_socket.hpp"

@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <offnominal/hal/virtual_can.hpp>
+#include <offnominal/hal/bus/virtual_can.hpp>
 
 #include "raw_socket.hpp"
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <offnominal/hal/can_simple.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/protocols/can_simple/can_simple.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 
 #include "hal/bitwise_crc.hpp"
 #include "offnominal/sim/bus/joint_drives.hpp"
@@ -97,7 +97,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Status status = controller.take({frame, now_us});
     for (std::size_t j = 0; j < 7; ++j) after += controller.encoder_source(j).accepted;
     drives.take({frame, now_us});
-    drives.check_age(now_us);
+    drives.tick(now_us);
     check_odrives(frame, now_us, odrives);
     Address address;
     const bool ours = address_of(frame, address) == Status::kOk;

@@ -6,8 +6,8 @@
 #include <limits>
 #include <offnominal/control/computed_torque.hpp>
 #include <offnominal/controller/controller_config.hpp>
-#include <offnominal/hal/can_simple.hpp>
 #include <offnominal/hal/messages.hpp>
+#include <offnominal/hal/protocols/can_simple/can_simple.hpp>
 #include <offnominal/monitor.hpp>
 #include <type_traits>
 

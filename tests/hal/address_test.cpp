@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <offnominal/hal/address.hpp>
+#include <offnominal/hal/protocols/protected/address.hpp>
 #include <set>
 #include <vector>
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <offnominal/hal/blank_bus.hpp>
+#include <offnominal/hal/bus/blank_bus.hpp>
 
 namespace offnominal::hal {
 namespace {

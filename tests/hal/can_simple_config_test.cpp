@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <offnominal/hal/can_simple.hpp>
+#include <offnominal/hal/protocols/can_simple/can_simple.hpp>
 #include <vector>
 
 namespace offnominal::hal {

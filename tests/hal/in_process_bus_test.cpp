@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <offnominal/hal/in_process_bus.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
 #include <vector>
 
 namespace offnominal::hal {

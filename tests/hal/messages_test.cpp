@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <limits>
-#include <offnominal/hal/address.hpp>
 #include <offnominal/hal/messages.hpp>
+#include <offnominal/hal/protocols/protected/address.hpp>
 #include <random>
 
 #include "support/seed.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <vector>
 
 namespace offnominal::hal {

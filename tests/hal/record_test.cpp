@@ -3,7 +3,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <offnominal/hal/address.hpp>
+#include <offnominal/hal/protocols/protected/address.hpp>
 #include <offnominal/hal/record.hpp>
 #include <set>
 

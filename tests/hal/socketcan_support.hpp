@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <offnominal/hal/socketcan.hpp>
+#include <offnominal/hal/bus/socketcan.hpp>
 #include <string>
 #include <thread>
 #include <vector>

@@ -1,6 +1,6 @@
 #include <net/if.h>
 
-#include <offnominal/hal/virtual_can.hpp>
+#include <offnominal/hal/bus/virtual_can.hpp>
 
 #include "socketcan_support.hpp"
 

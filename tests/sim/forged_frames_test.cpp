@@ -6,7 +6,7 @@
 #include <deque>
 #include <iostream>
 #include <map>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <random>
 #include <utility>
 #include <vector>

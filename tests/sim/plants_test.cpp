@@ -3,12 +3,13 @@
 
 #include <array>
 #include <memory>
-#include <offnominal/hal/in_process_bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <set>
 #include <stdexcept>
 
 #include "offnominal/sim/bus/faulty_bus.hpp"
+#include "offnominal/sim/bus/joint_drives.hpp"
 #include "offnominal/sim/bus/plant_node.hpp"
 #include "offnominal/sim/plants/hidden_robot.hpp"
 #include "offnominal/sim/plants/paper_arm.hpp"
@@ -93,9 +94,11 @@ class Straw final : public Plant {
 // The plant's end of a bus with as many joints as there may be, and a controller's frames.
 template <std::size_t Joints>
 struct Bench {
-  explicit Bench(const PlantNodeConfig& config)
-      : node(std::make_unique<Straw>(static_cast<Eigen::Index>(Joints)), config),
-        drives({}, {}, config.format) {}
+  explicit Bench(const PlantNodeConfig& config,
+                 hal::FrameFormat format = hal::FrameFormat::kClassic)
+      : node(std::make_unique<Straw>(static_cast<Eigen::Index>(Joints)),
+             std::make_unique<JointDrives>(Joints, DriveConfig{}, format), config),
+        drives({}, {}, format) {}
 
   void tick() {
     now_us += 1000;
@@ -126,7 +129,7 @@ struct Bench {
 TEST(PlantNode, SpeaksForAsManyJointsAsThereMayBe) {
   constexpr auto kMost = static_cast<std::size_t>(kMaxJoints);
   for (const auto format : {hal::FrameFormat::kClassic, hal::FrameFormat::kFd}) {
-    Bench<kMost> bench({.format = format});
+    Bench<kMost> bench({}, format);
     for (int i = 0; i < 5; ++i) bench.tick();
     EXPECT_TRUE(bench.node.started());
     for (std::size_t j = 0; j < kMost; ++j) {
@@ -164,8 +167,15 @@ TEST(PlantNode, CarriesThePositionOfAJointThatTurnsOnAndOn) {
 TEST(PlantNode, RefusesAFaultOfAJointThatItHasNot) {
   const PlantNodeConfig config{
       .faults = {{.kind = FaultEventKind::kEncoderStuck, .begin_s = 0, .joint = 3}}};
-  EXPECT_THROW(PlantNode(std::make_unique<Straw>(3), config), std::invalid_argument);
-  EXPECT_THROW(PlantNode(nullptr, {}), std::invalid_argument);
+  const auto drives = [](std::size_t joints) {
+    return std::make_unique<JointDrives>(joints, DriveConfig{}, hal::FrameFormat::kClassic);
+  };
+  const auto straw = [] { return std::make_unique<Straw>(3); };
+  EXPECT_THROW(PlantNode(straw(), drives(3), config), std::invalid_argument);
+  EXPECT_THROW(PlantNode(nullptr, drives(3), {}), std::invalid_argument);
+  EXPECT_THROW(PlantNode(straw(), nullptr, {}), std::invalid_argument);
+  EXPECT_THROW(PlantNode(straw(), drives(2), {}), std::invalid_argument);
+  EXPECT_NO_THROW(PlantNode(straw(), drives(3), {}));
 }
 
 TEST(JointDrives, AreOfOneToTwelveJoints) {
@@ -179,7 +189,8 @@ TEST(FaultyBus, ForgesFramesOfEveryJoint) {
   hal::InProcessNet<2> net;
   auto inner = net.port(1);
   auto listener = net.port(0);
-  FaultyBus bus(inner, BusEnd::kPlant, 6,
+  const JointDrives drives(6, {}, hal::FrameFormat::kClassic);
+  FaultyBus bus(inner, BusEnd::kPlant, drives,
                 {{.kind = FaultEventKind::kForgedFrames, .begin_s = 0, .size = 64}}, 1);
   bus.set_time(0.5);
   std::array<hal::ReceivedFrame, 64> frames;

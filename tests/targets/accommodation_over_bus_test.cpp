@@ -16,7 +16,7 @@ struct BusRun {
 };
 
 BusRun run_over_bus(sim::FaultKind kind, bool accommodate, hal::FrameFormat format) {
-  ArmOnBus arm({.kind = kind}, accommodate, {.format = format});
+  ArmOnBus arm({.kind = kind}, accommodate, format);
   BusRun run;
   if (!arm.start()) return run;
   arm.tick();  // the arming sample: time 0

@@ -5,9 +5,10 @@
 #include <functional>
 #include <memory>
 #include <offnominal/controller/joint_controller.hpp>
-#include <offnominal/hal/in_process_bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 
+#include "offnominal/sim/bus/joint_drives.hpp"
 #include "offnominal/sim/bus/plant_node.hpp"
 #include "offnominal/sim/plants/paper_arm.hpp"
 #include "offnominal/sim/trajectory.hpp"
@@ -24,6 +25,12 @@ inline std::unique_ptr<sim::Plant> paper_arm(
                                          start);
 }
 
+/// Drives with offnominal's own frames, in their default configuration.
+inline std::unique_ptr<sim::Drives> two_drives(
+    hal::FrameFormat format = hal::FrameFormat::kClassic) {
+  return std::make_unique<sim::JointDrives>(2, sim::DriveConfig{}, format);
+}
+
 class ArmOnBus {
  public:
   using Scalar = float;
@@ -32,13 +39,16 @@ class ArmOnBus {
   static constexpr hal::Microseconds kPeriodUs = 1000;
 
   explicit ArmOnBus(const sim::Fault& fault = {}, bool accommodate = false,
-                    const sim::PlantNodeConfig& plant = {})
-      : ArmOnBus(fault, config(accommodate), plant) {}
+                    hal::FrameFormat format = hal::FrameFormat::kClassic)
+      : ArmOnBus(fault, config(accommodate), {}, sim::on_trajectory(sim::paper_trajectory(0.0)),
+                 format) {}
 
   ArmOnBus(const sim::Fault& fault, const Controller::Config& config,
            const sim::PlantNodeConfig& plant,
-           const sim::JointState& start = sim::on_trajectory(sim::paper_trajectory(0.0)))
-      : drives_(kSource, kSource, plant.format), plant_(paper_arm(fault, start), plant) {
+           const sim::JointState& start = sim::on_trajectory(sim::paper_trajectory(0.0)),
+           hal::FrameFormat format = hal::FrameFormat::kClassic)
+      : drives_(kSource, kSource, format),
+        plant_(paper_arm(fault, start), two_drives(format), plant) {
     if (Controller::create(config, controller) != Status::kOk) throw std::logic_error("refused");
   }
 

@@ -42,7 +42,7 @@ TEST(ControlLoop, ArmsOnlyWhenAskedTo) {
 TEST(ControlLoop, EndsWhereArmingIsRefused) {
   LoopOnBus loop;
   const sim::JointState elsewhere{Eigen::Vector2d(0.5, 0.0), Eigen::Vector2d::Zero()};
-  loop.plant = sim::PlantNode(paper_arm({}, elsewhere), {});
+  loop.plant = sim::PlantNode(paper_arm({}, elsewhere), two_drives(), {});
   loop.timer.before_tick = [&](int tick) { loop.panel.end.store(tick == 500); };
   const realtime::LoopReport report = loop.run({.arm_when_passive = true});
   EXPECT_EQ(report.refusal, Fault::kReferenceFarFromArm);
@@ -196,7 +196,7 @@ TEST(ControlLoop, AFaultIsClearedAndArmedAgainOnlyWhenAskedTo) {
     loop.timer.plant_runs = tick < 100 || tick > 200;
     if (tick % 100 == 0) states.push_back(loop.panel.state.load());
     // Somebody brings it back: it has fallen.
-    if (tick == 250) loop.plant = sim::PlantNode(paper_arm(), {});
+    if (tick == 250) loop.plant = sim::PlantNode(paper_arm(), two_drives(), {});
     if (tick == 300) loop.panel.clear.store(true);
     if (tick == 400) loop.panel.arm.store(true);
     if (tick == 500) loop.panel.end.store(true);

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <offnominal/hal/in_process_bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <vector>
 
 #include "joint_on_desk.hpp"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <offnominal/controller/joint_firmware.hpp>
 #include <offnominal/controller/static_object.hpp>
-#include <offnominal/hal/in_process_bus.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
 
 namespace offnominal::test {
 namespace {

@@ -46,6 +46,7 @@ struct OneDrive {
   [[nodiscard]] static hal::Microseconds drive_max_age_us() { return 2500; }
   [[nodiscard]] bool stop_seen() const { return false; }
   void clear_stop() {}
+  [[nodiscard]] hal::DriveCounts counts() const { return {}; }
 };
 
 // The joint turns about an upright axis, without friction: what moves it is its torque alone.

@@ -4,8 +4,8 @@
 
 #include <functional>
 #include <memory>
-#include <offnominal/hal/in_process_bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <offnominal/realtime/control_loop.hpp>
 #include <offnominal/realtime/recorded_bus.hpp>
 
@@ -71,7 +71,7 @@ class LoopOnBus {
   hal::InProcessNet<2> net_;
 
  public:
-  sim::PlantNode plant{paper_arm(), {}};
+  sim::PlantNode plant{paper_arm(), two_drives(), {}};
   ScriptedTimer timer{net_, plant};
   realtime::Recorder recorder;
   realtime::LoopPanel panel;

@@ -6,8 +6,8 @@
 #include <memory>
 #include <numbers>
 #include <offnominal/controller/joint_controller.hpp>
-#include <offnominal/hal/can_simple.hpp>
-#include <offnominal/hal/in_process_bus.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
+#include <offnominal/hal/protocols/can_simple/can_simple.hpp>
 
 #include "arm_on_bus.hpp"
 #include "offnominal/sim/bus/odrive_axis.hpp"

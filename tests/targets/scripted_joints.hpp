@@ -80,6 +80,7 @@ class ScriptedDrives {
   [[nodiscard]] hal::Microseconds drive_max_age_us() const { return max_age_us; }
   [[nodiscard]] bool stop_seen() const { return stop; }
   void clear_stop() { stop = false; }
+  [[nodiscard]] hal::DriveCounts counts() const { return {}; }
 };
 
 // Two slides at right angles without weight: of the first one the drive moves 5 kg, of the second

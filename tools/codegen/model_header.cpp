@@ -22,6 +22,8 @@
 #include "codegen/cpp_text.hpp"
 #include "common/error.hpp"
 #include "common/nearest.hpp"
+#include "common/number.hpp"
+#include "drives/drive_table.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/monitor_config_of.hpp"
 #include "robot/robot_file.hpp"
@@ -234,6 +236,50 @@ std::string units_remark(const RobotDescription& robot) {
   return text + ".";
 }
 
+std::string drive_includes(const DriveProtocol& protocol) {
+  return fmt::format("#include <offnominal/hal/drive_description.hpp>\n#include <{}>\n",
+                     protocol.header);
+}
+
+// What stands in a list of values, in its order: "node, joint_per_turn in rad or m".
+std::string keys_remark(std::span<const hal::DriveKey> keys) {
+  return list_of(keys, [](const hal::DriveKey& key) {
+    const std::string_view unit = key.unit;
+    return fmt::format("{}{}{}", key.name, unit.empty() ? "" : " in ", unit);
+  });
+}
+
+std::string drive_numbers(std::string_view name, const std::vector<double>& values,
+                          std::size_t per_line) {
+  std::string text =
+      fmt::format("inline constexpr std::array<double, {}> {}{{", values.size(), name);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text += fmt::format("{}{}",
+                        i == 0              ? ""
+                        : i % per_line == 0 ? ",\n    "
+                                            : ", ",
+                        shortest_real(values[i]));
+  }
+  return text + "};\n";
+}
+
+// Doubles, whatever the scalar: what a driver makes of them it makes before the first tick.
+std::string drives_text(const DriveSettings& settings) {
+  const DriveProtocol& protocol = protocol_of(settings);
+  std::string text = "// How the drives are spoken to.\n" + cpp_text::comment(settings.source);
+  text += fmt::format("using DriveProtocol = {};\n", protocol.type);
+  if (protocol.keys.empty() && protocol.joint_keys.empty()) {
+    return text + "inline constexpr offnominal::hal::DriveValues kDriveValues{};\n\n";
+  }
+  text += cpp_text::comment(keys_remark(protocol.keys));
+  text += drive_numbers("kDriveSettings", settings.shared, protocol.keys.size());
+  text += cpp_text::comment("Joint by joint: " + keys_remark(protocol.joint_keys));
+  text += drive_numbers("kDriveSettingsOfJoints", settings.of_joints, protocol.joint_keys.size());
+  return text +
+         "inline constexpr offnominal::hal::DriveValues kDriveValues{kDriveSettings,\n"
+         "                                                           kDriveSettingsOfJoints};\n\n";
+}
+
 std::string head_text(const RobotDescription& robot, const ModelHeaderOptions& options,
                       const ModelHeader& header) {
   const std::string file = std::filesystem::path(options.robot_file).filename().string();
@@ -247,7 +293,10 @@ std::string head_text(const RobotDescription& robot, const ModelHeaderOptions& o
       "#pragma once\n\n#include <algorithm>\n#include <array>\n#include <concepts>\n"
       "#include <limits>\n#include <offnominal/control/arming.hpp>\n"
       "#include <offnominal/control/computed_torque.hpp>\n"
-      "#include <offnominal/monitor.hpp>\n#include <offnominal/version.hpp>\n\n";
+      "#include <offnominal/monitor.hpp>\n#include <offnominal/version.hpp>\n";
+  // Without [drives] the core's headers are all that it takes.
+  if (robot.drives) text += drive_includes(protocol_of(*robot.drives));
+  text += "\n";
   text += fmt::format(
       "static_assert(offnominal::kVersionMajor == {} && offnominal::kVersionMinor == {},\n"
       "              \"the headers of offnominal are of another version than this model: write it "
@@ -331,6 +380,7 @@ ModelHeader write(const RobotDescription& robot, const ModelHeaderOptions& optio
                    header);
   text += constant("offnominal::ArmingConfig<kJoints, Scalar>", "kArmingConfig",
                    arming_constant(arming_of<N, double>(robot), robot), header);
+  if (robot.drives) text += drives_text(*robot.drives);
   header.text =
       text + encoder_text(robot, header) + fmt::format("}}  // namespace {}\n", options.name_space);
   return header;

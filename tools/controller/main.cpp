@@ -9,7 +9,7 @@
 #include <exception>
 #include <iostream>
 #include <limits>
-#include <offnominal/hal/socketcan.hpp>
+#include <offnominal/hal/bus/socketcan.hpp>
 #include <offnominal/realtime/signals.hpp>
 #include <optional>
 #include <string>
@@ -21,6 +21,7 @@
 #include "common/program.hpp"
 #include "controller/outcome.hpp"
 #include "controller/timers.hpp"
+#include "drives/drive_table.hpp"
 #include "loop/frame_format.hpp"
 #include "loop/joint_program.hpp"
 #include "loop/motion_at.hpp"
@@ -191,14 +192,17 @@ void attend(const realtime::Signals& signals, const realtime::Recorder& recorder
 int run(const Options& options) {
   const RobotDescription robot = robot_of(options);
   const int joints = static_cast<int>(robot.joints.size());
+  const DriveSettings drives = robot.drive_settings();
+  if (options.max_acceleration) require_positions_alone(drives);
   // Before there is any other thread.
   const realtime::Signals signals;
   hal::SocketCan socket;
-  sil::open_bus(options.bus,
-                {.receive = sil::kFromDrives,
-                 .transmit = sil::kFromController,
-                 .may_restart_interface = !options.no_restart},
-                socket);
+  const auto receive = from_drives(drives);
+  const auto transmit = from_controller(drives);
+  sil::open_bus(
+      options.bus,
+      {.receive = receive, .transmit = transmit, .may_restart_interface = !options.no_restart},
+      socket);
   BusPortOf<hal::SocketCan&> bus(socket);
   realtime::Recorder recorder;
   sil::open_recorder({.candump = options.candump.value_or(""),
@@ -213,8 +217,8 @@ int run(const Options& options) {
   const auto program = make_joint_program(
       {.robot = robot,
        .settings = settings_of(options),
-       .format =
-           format_for(joints, robot.estimator.period_s, wished_format(options.fd, options.classic)),
+       .format = format_for(drives, joints, robot.estimator.period_s,
+                            wished_format(options.fd, options.classic)),
        .loop = {.arm_when_passive = options.arm,
                 .duration_us = microseconds(options.duration_s.value_or(0)),
                 .end_at_fault = options.end_at_fault},

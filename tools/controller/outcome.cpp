@@ -26,8 +26,8 @@ nlohmann::ordered_json to_json(const ControllerOutcome& outcome) {
   json["bus"] = {{"name", outcome.bus_name},
                  {"sent", outcome.bus.sent},
                  {"received", outcome.bus.received},
-                 {"lost", outcome.report.lost},
-                 {"rejected", outcome.report.rejected},
+                 {"lost", outcome.report.counts.lost},
+                 {"rejected", outcome.report.counts.rejected},
                  {"stale", loop.missed_samples},
                  {"late", outcome.bus.late},
                  {"not_taken", loop.unsent_frames},
@@ -66,8 +66,8 @@ std::string text_of(const ControllerOutcome& outcome) {
       outcome.can_take_back ? "taken back by restarting the interface" : "cannot be taken back");
   row("bus", outcome.bus_name);
   row("frames sent, received", fmt::format("{}, {}", bus.sent, bus.received));
-  row("lost, by their counters", std::to_string(outcome.report.lost));
-  row("rejected (CRC, counter, value)", std::to_string(outcome.report.rejected));
+  row("lost, by their counters", std::to_string(outcome.report.counts.lost));
+  row("rejected (CRC, counter, value)", std::to_string(outcome.report.counts.rejected));
   row("ticks without a fresh reading", std::to_string(loop.missed_samples));
   row("not sent for lateness", std::to_string(bus.late));
   row("entries that the recording lost", std::to_string(outcome.recording_lost));

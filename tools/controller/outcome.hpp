@@ -2,7 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <offnominal/hal/bus.hpp>
+#include <offnominal/hal/bus/bus.hpp>
 #include <string>
 
 #include "loop/joint_program.hpp"

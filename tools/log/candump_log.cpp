@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <offnominal/hal/address.hpp>
 #include <offnominal/hal/messages.hpp>
+#include <offnominal/hal/protocols/protected/address.hpp>
 
 #include "common/error.hpp"
 #include "log/dbc.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 #include <optional>
 #include <string>
 #include <string_view>

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 #include <functional>
-#include <offnominal/hal/bus.hpp>
+#include <offnominal/hal/bus/bus.hpp>
 #include <span>
 #include <utility>
 

@@ -1,14 +1,12 @@
 // Classic CAN where it is wide enough, CAN FD where it is not.
 #pragma once
 
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/drive_description.hpp>
 #include <optional>
 
-namespace offnominal::tools {
+#include "drives/drive_settings.hpp"
 
-/// Share of a bus's time that reading, status and command of every joint take at most, at
-/// hal::BitRates and this period.
-[[nodiscard]] double largest_load(int joints, double period_s, hal::FrameFormat format);
+namespace offnominal::tools {
 
 /// Of the options --fd and --classic, of which one at most is given.
 [[nodiscard]] inline std::optional<hal::FrameFormat> wished_format(bool fd, bool classic) {
@@ -16,9 +14,13 @@ namespace offnominal::tools {
   return classic ? std::optional(hal::FrameFormat::kClassic) : std::nullopt;
 }
 
-/// The wished format, or else the first of classic CAN and CAN FD that leaves room on the bus.
-/// Throws InputError for a wish, or a robot, that takes more time than there is.
-[[nodiscard]] hal::FrameFormat format_for(int joints, double period_s,
+/// The wished format, or else the first of classic CAN and CAN FD that leaves room on the bus for
+/// what the drives' protocol sends, at hal::BitRates. Throws InputError for a wish, or a robot,
+/// that takes more time than there is, and for CAN FD where the protocol has none.
+[[nodiscard]] hal::FrameFormat format_for(const DriveSettings& drives, int joints, double period_s,
                                           std::optional<hal::FrameFormat> wished);
+
+/// Throws InputError where the protocol's drives always send velocities.
+void require_positions_alone(const DriveSettings& drives);
 
 }  // namespace offnominal::tools

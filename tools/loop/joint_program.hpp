@@ -3,7 +3,8 @@
 
 #include <cstdint>
 #include <memory>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/drive_description.hpp>
+#include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/realtime/control_loop.hpp>
 #include <offnominal/realtime/privileges.hpp>
 #include <string>
@@ -40,8 +41,7 @@ struct JointProgramSetup {
 struct JointProgramReport {
   realtime::LoopReport loop;
   realtime::Grant grant;
-  std::uint64_t lost = 0;      // frames, by the counters of accepted records
-  std::uint64_t rejected = 0;  // records: wrong CRC, value or counter
+  hal::DriveCounts counts;
 };
 
 class JointProgram {

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <offnominal/hal/in_process_bus.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
 #include <offnominal/realtime/recorded_bus.hpp>
 #include <optional>
 
 #include "common/error.hpp"
+#include "drives/drive_table.hpp"
+#include "loop/drive_port.hpp"
 #include "loop/joint_program.hpp"
-#include "offnominal/sim/bus/joint_drives.hpp"
 
 namespace offnominal::tools::detail {
 
@@ -22,13 +23,13 @@ class RehearsalTimer final : public TickTimer {
   using Positions = Vector<N, float>;
   // Ends what is not over by itself.
   RehearsalTimer(Net& net, realtime::LoopPanel& panel, realtime::Microseconds period_us,
-                 hal::FrameFormat format, const Positions& positions)
+                 std::unique_ptr<sim::Drives> drives, const Positions& positions)
       : net_(net),
         panel_(panel),
         port_(net.port(1)),
         period_us_(period_us),
         positions_(positions),
-        drives_(kJoints, {}, format) {}
+        drives_(std::move(drives)) {}
   realtime::Tick wait() override {
     constexpr int kMostTicks = 1000;
     if (++ticks_ == kMostTicks) panel_.end.store(true);
@@ -36,13 +37,14 @@ class RehearsalTimer final : public TickTimer {
     net_.set_time(now_us_);
     std::array<hal::ReceivedFrame, 2 * kJoints> come;
     const std::size_t count = port_.receive(come);
-    for (std::size_t i = 0; i < count; ++i) drives_.take(come[i]);
+    for (std::size_t i = 0; i < count; ++i) drives_->take(come[i]);
+    drives_->tick(now_us_);
     std::array<std::optional<hal::EncoderReading>, kJoints> readings;
     for (std::size_t j = 0; j < kJoints; ++j) {
       readings[j] = hal::EncoderReading{positions_[static_cast<Eigen::Index>(j)], 0, true};
     }
-    std::array<hal::Frame, 2 * kJoints> frames;
-    const std::size_t made = drives_.frames(readings, std::array<double, kJoints>{}, frames);
+    std::array<hal::Frame, sim::Drives::kMostFrames> frames;
+    const std::size_t made = drives_->frames(readings, std::array<double, kJoints>{}, frames);
     for (std::size_t i = 0; i < made; ++i) static_cast<void>(port_.send(frames[i], now_us_));
     return {now_us_, 0, 0};
   }
@@ -55,7 +57,7 @@ class RehearsalTimer final : public TickTimer {
   Net::Port port_;
   realtime::Microseconds period_us_;
   Positions positions_;
-  sim::JointDrives drives_;
+  std::unique_ptr<sim::Drives> drives_;
   realtime::Microseconds now_us_ = 0;
   int ticks_ = 0;
 };
@@ -65,12 +67,13 @@ class JointProgramOf final : public JointProgram {
  public:
   using Scalar = float;
   using Controller = controller::JointController<N, kControllerCapacity, Scalar, WithMemory>;
-  using Drives = hal::ProtectedDrives<static_cast<std::size_t>(N)>;
+  using Drives = DrivePort<static_cast<std::size_t>(N)>;
 
   explicit JointProgramOf(const JointProgramSetup& setup)
       : setup_(setup),
-        source_(controller::source_config(setup.timer.period_us())),
-        drives_(source_, source_, setup.format),
+        link_{.period_us = setup.timer.period_us(), .format = setup.format},
+        drive_settings_(setup.robot.drive_settings()),
+        drives_(make_drives()),
         bus_(setup.bus, setup.recorder) {
     create_controller(setup.robot, setup.settings, controller_);
   }
@@ -80,15 +83,10 @@ class JointProgramOf final : public JointProgram {
     rehearse();
     const auto reference_at = [this](double time_s) { return reference(time_s, *data_); };
     report_.loop = Loop<decltype(reference_at)>(
-                       setup_.loop, {controller_, setup_.timer, bus_, drives_, reference_at,
+                       setup_.loop, {controller_, setup_.timer, bus_, *drives_, reference_at,
                                      setup_.recorder, setup_.panel, *data_})
                        .run();
-    for (std::size_t j = 0; j < static_cast<std::size_t>(N); ++j) {
-      for (const hal::Source* source : {&drives_.encoder_source(j), &drives_.drive_source(j)}) {
-        report_.lost += source->lost;
-        report_.rejected += std::uint64_t{source->rejected} + source->repeated;
-      }
-    }
+    report_.counts = drives_->counts();
   }
 
   [[nodiscard]] const JointProgramReport& report() const override { return report_; }
@@ -96,6 +94,10 @@ class JointProgramOf final : public JointProgram {
  private:
   using Bus = realtime::RecordedBus<BusPort>;
   using Data = typename Controller::Data;
+
+  [[nodiscard]] std::unique_ptr<Drives> make_drives() const {
+    return make_drive_port<static_cast<std::size_t>(N)>(drive_settings_, link_);
+  }
 
   template <typename ReferenceAt>
   using Loop =
@@ -125,9 +127,12 @@ class JointProgramOf final : public JointProgram {
     BusPortOf<hal::InProcessNet<2>::Port> port(net->port(0));
     realtime::Recorder nobody;
     Bus bus(port, nobody);
-    Drives drives(source_, source_, setup_.format);
+    const std::unique_ptr<Drives> drives = make_drives();
     realtime::LoopPanel panel;
-    RehearsalTimer<N> timer(*net, panel, setup_.timer.period_us(), setup_.format, a_position());
+    RehearsalTimer<N> timer(
+        *net, panel, link_.period_us,
+        emulated_drives(drive_settings_, {.joints = static_cast<std::size_t>(N), .link = link_}),
+        a_position());
     // Wherever the motion is, these joints are asked to stay.
     const auto reference_at = [&](double time_s) {
       Reference<N, Scalar> wanted = reference(time_s, *data);
@@ -140,7 +145,7 @@ class JointProgramOf final : public JointProgram {
                                       .duration_us = kTicks * timer.period_us()};
     const realtime::LoopReport report =
         Loop<decltype(reference_at)>(
-            config, {controller_, timer, bus, drives, reference_at, nobody, panel, *data})
+            config, {controller_, timer, bus, *drives, reference_at, nobody, panel, *data})
             .run();
     if (report.state != hal::ControllerState::kInit) return;
     throw InputError({"robot " + setup_.robot.name, "joint limits",
@@ -158,8 +163,9 @@ class JointProgramOf final : public JointProgram {
   }
 
   JointProgramSetup setup_;
-  hal::SourceConfig source_;
-  Drives drives_;
+  hal::DriveLink link_;
+  DriveSettings drive_settings_;
+  std::unique_ptr<Drives> drives_;
   Bus bus_;
   Controller controller_;
   // On the heap: 128 hidden units do not belong on a stack.

@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <memory>
 #include <offnominal/controller/fault.hpp>
+#include <offnominal/hal/drive_description.hpp>
+#include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/hal/messages.hpp>
-#include <offnominal/hal/protected_drives.hpp>
 
 #include "common/precision.hpp"
 #include "loop/bus_port.hpp"
@@ -34,8 +35,7 @@ struct ControllerView {
 struct ControllerTotals {
   std::uint64_t overruns = 0;
   std::uint64_t missed_samples = 0;  // ticks without a fresh reading of every joint
-  std::uint64_t lost = 0;            // frames, by the counters of accepted records
-  std::uint64_t rejected = 0;        // records: wrong CRC, value or counter
+  hal::DriveCounts counts;
 };
 
 class SteppedController {
@@ -54,8 +54,7 @@ class SteppedController {
 struct SteppedSetup {
   const RobotDescription& robot;
   ControllerSettings settings;
-  hal::FrameFormat format = hal::FrameFormat::kClassic;
-  hal::Microseconds period_us = 1000;
+  hal::DriveLink link{};
   MotionAt motion;
 };
 

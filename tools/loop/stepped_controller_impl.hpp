@@ -6,6 +6,7 @@
 #include <memory>
 #include <offnominal/controller/joint_controller.hpp>
 
+#include "loop/drive_port.hpp"
 #include "loop/stepped_controller.hpp"
 
 namespace offnominal::tools::detail {
@@ -14,17 +15,15 @@ template <int N, typename Scalar>
 class SteppedControllerOf final : public SteppedController {
  public:
   using Controller = controller::JointController<N, kControllerCapacity, Scalar, WithMemory>;
-  using Drives = hal::ProtectedDrives<static_cast<std::size_t>(N)>;
-
   explicit SteppedControllerOf(const SteppedSetup& setup)
       : motion_(setup.motion),
-        source_(controller::source_config(setup.period_us)),
-        drives_(source_, source_, setup.format) {
+        drives_(make_drive_port<static_cast<std::size_t>(N)>(setup.robot.drive_settings(),
+                                                             setup.link)) {
     create_controller(setup.robot, setup.settings, controller_);
   }
 
   void step(hal::Microseconds begin_us, BusPort& bus) override {
-    controller_.step(begin_us, 0, reference(), bus, drives_, *data_);
+    controller_.step(begin_us, 0, reference(), bus, *drives_, *data_);
   }
   [[nodiscard]] controller::Fault arm() override { return controller_.arm(reference(), *data_); }
   [[nodiscard]] hal::ControllerState state() const override { return data_->state; }
@@ -53,12 +52,7 @@ class SteppedControllerOf final : public SteppedController {
     ControllerTotals totals;
     totals.overruns = data_->overruns;
     totals.missed_samples = data_->missed_samples;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(N); ++j) {
-      for (const hal::Source* source : {&drives_.encoder_source(j), &drives_.drive_source(j)}) {
-        totals.lost += source->lost;
-        totals.rejected += std::uint64_t{source->rejected} + source->repeated;
-      }
-    }
+    totals.counts = drives_->counts();
     return totals;
   }
 
@@ -68,8 +62,7 @@ class SteppedControllerOf final : public SteppedController {
   }
 
   MotionAt motion_;
-  hal::SourceConfig source_;
-  Drives drives_;
+  std::unique_ptr<DrivePort<static_cast<std::size_t>(N)>> drives_;
   Controller controller_;
   // On the heap: 128 hidden units do not belong on a stack.
   std::unique_ptr<typename Controller::Data> data_ = std::make_unique<typename Controller::Data>();

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <offnominal/hal/socketcan.hpp>
+#include <offnominal/hal/bus/socketcan.hpp>
 #include <offnominal/realtime/privileges.hpp>
 #include <offnominal/realtime/signals.hpp>
 #include <optional>
@@ -16,6 +16,7 @@
 #include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "common/program.hpp"
+#include "drives/drive_settings.hpp"
 #include "loop/controller_settings.hpp"
 #include "loop/frame_format.hpp"
 #include "paper/two_link_robot.hpp"
@@ -34,6 +35,7 @@ constexpr const char* kProgram = "offnominal-plant";
 struct Options {
   std::string bus;
   std::optional<std::string> robot;
+  std::optional<std::string> drives;
   std::optional<std::string> motion;
   std::optional<std::string> scenario;
   double rate_hz = 1000;
@@ -51,6 +53,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--bus", options.bus, "CAN interface: vcan0")->required();
   app.add_option("--robot", options.robot,
                  "Robot file of the plant: its rigid body and effects; by default the paper's arm");
+  app.add_option("--drives", options.drives,
+                 "Robot file whose [drives] are here; by default those of --robot");
   app.add_option("--motion", options.motion,
                  "The controller's: where this begins, brakes hold the joints. paper, sway or a "
                  "CSV; by default paper for the paper's arm, sway for a robot file");
@@ -84,6 +88,14 @@ RobotDescription robot_of(const sil::Scenario& scenario) {
   return scenario.plant ? *scenario.plant : paper::two_link_robot();
 }
 
+DriveSettings drives_of(const Options& options, const sil::Scenario& scenario) {
+  if (!options.drives) return robot_of(scenario).drive_settings();
+  const RobotDescription robot = read_robot_file(*options.drives);
+  if (robot.joint_count() == sil::joint_count_of(scenario)) return robot.drive_settings();
+  throw InputError({*options.drives, "drives", std::to_string(robot.joint_count()) + " joint(s)",
+                    std::to_string(sil::joint_count_of(scenario)) + ", as the plant", ""});
+}
+
 sil::Scenario scenario_of(const Options& options) {
   std::optional<RobotDescription> plant;
   if (options.robot) plant = read_robot_file(*options.robot);
@@ -110,8 +122,8 @@ void print(const Options& options, const PlantReport& report, std::uint64_t reco
                                          {"sent", report.bus.sent},
                                          {"received", report.bus.received},
                                          {"late", report.bus.late},
-                                         {"lost", report.lost},
-                                         {"rejected", report.rejected}}},
+                                         {"lost", report.counts.lost},
+                                         {"rejected", report.counts.rejected}}},
                                        {"recording_lost", recording_lost}};
   if (options.json) {
     std::cout << json_text(json);
@@ -126,6 +138,9 @@ void print(const Options& options, const PlantReport& report, std::uint64_t reco
 
 int run(const Options& options) {
   const sil::Scenario scenario = scenario_of(options);
+  const double period_s = 1 / options.rate_hz;
+  const DriveSettings drives = drives_of(options, scenario);
+  sil::check_drives(scenario, drives, period_s);
   const realtime::Signals signals;
   hal::SocketCan socket;
   sil::open_bus(options.bus,
@@ -137,9 +152,8 @@ int run(const Options& options) {
                       .columns = plant_columns(sil::joint_count_of(scenario)),
                       .replace = options.force},
                      recorder);
-  const double period_s = 1 / options.rate_hz;
   const hal::Microseconds period_us = period_us_of(period_s);
-  sim::PlantNode plant = sil::plant_of(scenario, period_s);
+  sim::PlantNode plant = sil::plant_of(scenario, drives, period_s);
   realtime::CycleTimer timer(period_us,
                              std::llround(options.phase * static_cast<double>(period_us)));
   std::atomic<bool> end{false};

@@ -36,8 +36,8 @@ std::vector<std::string> plant_columns(int joints) {
 PlantReport run_plant(sim::PlantNode& plant, const sil::Scenario& scenario,
                       realtime::CycleTimer& timer, BusPort& port, realtime::Recorder& recorder,
                       const std::atomic<bool>& end) {
-  sim::FaultyBus<BusPort> bus(port, sim::BusEnd::kPlant, static_cast<int>(plant.drives().joints()),
-                              scenario.faults, scenario.seed);
+  sim::FaultyBus<BusPort> bus(port, sim::BusEnd::kPlant, plant.drives(), scenario.faults,
+                              scenario.seed);
   PlantReport report;
   while (!end.load(std::memory_order_relaxed)) {
     const realtime::Tick tick = timer.wait();
@@ -50,11 +50,7 @@ PlantReport run_plant(sim::PlantNode& plant, const sil::Scenario& scenario,
   }
   report.arm_time_s = plant.time_s();
   report.in_torque_mode = plant.drives().any_in_torque_mode();
-  for (std::size_t j = 0; j < plant.drives().joints(); ++j) {
-    report.lost += plant.drives().source(j).lost;
-    report.rejected +=
-        std::uint64_t{plant.drives().source(j).rejected} + plant.drives().source(j).repeated;
-  }
+  report.counts = plant.drives().counts();
   report.bus = bus.state();
   return report;
 }

@@ -21,8 +21,7 @@ struct PlantReport {
   std::uint64_t overruns = 0;   // ticks that began a period or more too late
   double arm_time_s = 0;        // since the brakes opened; 0: they never did
   bool in_torque_mode = false;  // any drive, at the end
-  std::uint64_t lost = 0;       // commands, by the counters of accepted ones
-  std::uint64_t rejected = 0;   // wrong CRC, value or counter
+  hal::DriveCounts counts;      // of commands
   hal::BusState bus;
 };
 

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "drives/drive_settings.hpp"
+
 // One robot as the host tools hold it: any number of joints, everything in SI units. It is what a
 // robot file says and nothing else; chain_of() turns it into the fixed-size chain of the core.
 
@@ -111,12 +113,14 @@ struct RobotDescription {
   EstimatorSettings estimator;
   ArmingSettings arming;
   std::optional<BoundSettings> bound;
+  std::optional<DriveSettings> drives;  // none: drive_settings()
   std::optional<ChannelMap> channels;
   // The text it was read from, so that writing keeps comments and order; null: none. Copies, of
   // which a fit makes thousands, share it.
   std::shared_ptr<const std::string> file_text = nullptr;
 
   [[nodiscard]] int joint_count() const { return static_cast<int>(joints.size()); }
+  [[nodiscard]] DriveSettings drive_settings() const { return drives.value_or(DriveSettings{}); }
 };
 
 }  // namespace offnominal::tools

@@ -16,6 +16,7 @@
 #include "robot/chain_of.hpp"
 #include "robot/channels.hpp"
 #include "robot/check_mass_matrix.hpp"
+#include "robot/read_drives.hpp"
 #include "robot/read_effect.hpp"
 #include "robot/read_joint.hpp"
 #include "robot/read_settings.hpp"
@@ -26,9 +27,10 @@
 namespace offnominal::tools {
 namespace {
 
-const std::vector<std::string> kRootKeys{
-    "format", "name",      "source", "gravity_m_s2",      "joint",
-    "effect", "estimator", "arming", "uncertainty_bound", "channels"};
+const std::vector<std::string> kRootKeys{"format",       "name",    "source",
+                                         "gravity_m_s2", "joint",   "effect",
+                                         "estimator",    "arming",  "uncertainty_bound",
+                                         "drives",       "channels"};
 
 std::vector<RobotJoint> read_joints(const TomlTable& root) {
   const std::vector<TomlTable> tables = root.tables("joint", joint_keys());
@@ -179,6 +181,9 @@ RobotDescription parse_robot(std::string_view text, const std::string& file) {
   check_delays(root, robot);
   if (const auto table = root.optional_table("uncertainty_bound", bound_keys())) {
     robot.bound = read_bound(*table, robot.joint_count());
+  }
+  if (const toml::table* table = root.raw_table("drives")) {
+    robot.drives = read_drives(*table, file, robot.joint_count(), robot.estimator.period_s);
   }
   if (const toml::table* table = root.raw_table("channels")) {
     robot.channels = parse_channels(*table, file, robot.joint_count());

@@ -6,6 +6,7 @@
 
 #include "common/nearest.hpp"
 #include "common/number.hpp"
+#include "drives/drive_table.hpp"
 #include "robot/bound_text.hpp"
 #include "robot/channel_text.hpp"
 #include "robot/effect_text.hpp"
@@ -196,6 +197,30 @@ void write_bound(Writer& out, const BoundSettings& bound) {
   out.text_if_any("source", bound.source);
 }
 
+std::string drive_value(const hal::DriveKey& key, double value) {
+  if (!key.words.empty()) return quoted(key.words[static_cast<std::size_t>(value)]);
+  return key.whole ? shortest(value) : shortest_real(value);
+}
+
+void write_drives(Writer& out, const DriveSettings& settings) {
+  const DriveProtocol& protocol = protocol_of(settings);
+  out.table("[drives]");
+  out.value("protocol", quoted(protocol.name));
+  for (std::size_t k = 0; k < protocol.keys.size(); ++k) {
+    out.value(protocol.keys[k].name, drive_value(protocol.keys[k], settings.shared[k]));
+  }
+  for (std::size_t k = 0; k < protocol.joint_keys.size(); ++k) {
+    const hal::DriveKey& key = protocol.joint_keys[k];
+    std::vector<double> values;
+    for (std::size_t i = k; i < settings.of_joints.size(); i += protocol.joint_keys.size()) {
+      values.push_back(settings.of_joints[i]);
+    }
+    out.value(key.name,
+              "[" + list_of(values, [&](double value) { return drive_value(key, value); }) + "]");
+  }
+  out.text_if_any("source", settings.source);
+}
+
 std::string channel_text(const Channel& channel) {
   std::string text = "{source = " + quoted(channel.source);
   if (channel.scale != 1) text += ", scale = " + shortest_real(channel.scale);
@@ -278,6 +303,7 @@ std::string robot_text(const RobotDescription& robot) {
   write_estimator(out, robot.estimator);
   write_arming(out, robot.arming);
   if (robot.bound) out.block(bound_text(*robot.bound));
+  if (robot.drives) write_drives(out, *robot.drives);
   if (robot.channels) write_channels(out, *robot.channels);
   return out.text();
 }

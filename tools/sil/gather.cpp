@@ -1,10 +1,11 @@
 #include "sil/gather.hpp"
 
 #include <map>
-#include <offnominal/hal/wire_time.hpp>
+#include <offnominal/hal/bus/wire_time.hpp>
 #include <string>
 #include <vector>
 
+#include "drives/drive_table.hpp"
 #include "log/csv_log.hpp"
 #include "paper/run_observer.hpp"
 #include "sil/plant_of.hpp"
@@ -100,7 +101,7 @@ hal::ControllerState state_named(const std::string& name) {
 }
 
 BusReport bus_of(const nlohmann::json& controller, const nlohmann::json& plant,
-                 hal::FrameFormat format, int joints, double run_time_s) {
+                 const hal::Frame& frame, double run_time_s) {
   const auto sum = [&](const char* key) {
     return controller.at(key).get<std::uint64_t>() + plant.at(key).get<std::uint64_t>();
   };
@@ -110,11 +111,7 @@ BusReport bus_of(const nlohmann::json& controller, const nlohmann::json& plant,
   bus.rejected = sum("rejected");
   bus.late = sum("late");
   bus.stale = controller.at("stale").get<std::uint64_t>();
-  // Frames of one record each, or of every joint's.
-  std::vector<hal::Frame> frames(static_cast<std::size_t>(joints));
-  const std::vector<hal::Record> records(frames.size());
-  static_cast<void>(pack(hal::MessageKind::kEncoder, records, format, frames));
-  bus.load = static_cast<double>(bus.frames) * hal::longest_wire_time_s(frames[0]) / run_time_s;
+  bus.load = static_cast<double>(bus.frames) * hal::longest_wire_time_s(frame) / run_time_s;
   return bus;
 }
 
@@ -158,8 +155,12 @@ SilResult gather(const RobotDescription& robot, const Scenario& scenario,
   result.overruns = recordings.controller.at("overruns");
   result.real_time = time_of(recordings.controller, recordings.plant);
   result.run_time_s = static_cast<double>(result.real_time->ticks) * period_s;
-  result.bus = bus_of(recordings.controller.at("bus"), recordings.plant.at("bus"),
-                      format_of(scenario, period_s), robot.joint_count(), result.run_time_s);
+  const DriveSettings drives = robot.drive_settings();
+  // Most frames are as long.
+  const hal::Frame frame = protocol_of(drives).reading_frame(
+      static_cast<std::size_t>(robot.joint_count()), format_of(scenario, drives, period_s));
+  result.bus =
+      bus_of(recordings.controller.at("bus"), recordings.plant.at("bus"), frame, result.run_time_s);
   // At the motion's end the controller lets go of its own accord.
   if (result.fault != controller::Fault::kNone) {
     result.ended_early_s = safe_since_s(plant);

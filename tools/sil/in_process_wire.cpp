@@ -1,4 +1,4 @@
-#include <offnominal/hal/in_process_bus.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
 
 #include "sil/wire.hpp"
 

@@ -33,17 +33,17 @@ class LockStepLoop {
         wire_(wire),
         controller_tap_(wire.controller(), on_frame),
         plant_tap_(wire.plant(), on_frame),
-        controller_bus_(controller_tap_, sim::BusEnd::kController, robot.joint_count(),
-                        scenario.faults, scenario.seed),
-        plant_bus_(plant_tap_, sim::BusEnd::kPlant, robot.joint_count(), scenario.faults,
+        plant_(plant_of(scenario, robot.drive_settings(), period_s_)),
+        controller_bus_(controller_tap_, sim::BusEnd::kController, plant_.drives(), scenario.faults,
+                        scenario.seed),
+        plant_bus_(plant_tap_, sim::BusEnd::kPlant, plant_.drives(), scenario.faults,
                    scenario.seed),
-        plant_(plant_of(scenario, period_s_)),
-        controller_(make_stepped_controller({.robot = robot,
-                                             .settings = settings_of(scenario),
-                                             .format = format_of(scenario, period_s_),
-                                             .period_us = period_us_,
-                                             .motion = motion_},
-                                            scenario.precision)) {}
+        controller_(make_stepped_controller(
+            {.robot = robot,
+             .settings = settings_of(scenario),
+             .link = {period_us_, format_of(scenario, robot.drive_settings(), period_s_)},
+             .motion = motion_},
+            scenario.precision)) {}
 
   void run(const paper::TickObserver& observe, SilResult& result) {
     start();
@@ -130,13 +130,9 @@ class LockStepLoop {
     result.bus.late = std::uint64_t{at_controller.late} + at_plant.late;
     const ControllerTotals totals = controller_->totals();
     result.bus.stale = totals.missed_samples;
-    result.bus.lost = totals.lost;
-    result.bus.rejected = totals.rejected;
-    for (std::size_t j = 0; j < plant_.drives().joints(); ++j) {
-      const hal::Source& source = plant_.drives().source(j);
-      result.bus.lost += source.lost;
-      result.bus.rejected += std::uint64_t{source.rejected} + source.repeated;
-    }
+    const hal::DriveCounts of_commands = plant_.drives().counts();
+    result.bus.lost = totals.counts.lost + of_commands.lost;
+    result.bus.rejected = totals.counts.rejected + of_commands.rejected;
     result.state = controller_->state();
     result.fault = controller_->fault();
     result.overruns = totals.overruns;
@@ -152,10 +148,10 @@ class LockStepLoop {
   Wire& wire_;
   TappedPort controller_tap_;
   TappedPort plant_tap_;
+  sim::PlantNode plant_;
   Bus controller_bus_;
   Bus plant_bus_;
   BusPortOf<Bus&> controller_port_{controller_bus_};
-  sim::PlantNode plant_;
   std::unique_ptr<SteppedController> controller_;
   hal::Microseconds now_us_ = 0;
 };

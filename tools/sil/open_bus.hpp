@@ -1,19 +1,11 @@
 // A CAN interface of the kernel for one end of a run.
 #pragma once
 
-#include <array>
-#include <offnominal/hal/address.hpp>
-#include <offnominal/hal/socketcan.hpp>
-#include <offnominal/hal/virtual_can.hpp>
+#include <offnominal/hal/bus/socketcan.hpp>
+#include <offnominal/hal/bus/virtual_can.hpp>
 #include <string>
 
 namespace offnominal::tools::sil {
-
-/// What drives send, and what a controller does; docs/sil.md has the identifiers.
-inline constexpr std::array<hal::IdFilter, 3> kFromDrives{
-    {{.id = 0x020, .mask = 0x7E0}, {.id = 0x180, .mask = 0x7C0}, {.id = 0x200, .mask = 0x7C0}}};
-inline constexpr std::array<hal::IdFilter, 2> kFromController{
-    {{.id = 0x100, .mask = 0x7C0}, {.id = 0x700, .mask = 0x7E0}}};
 
 /// Makes the interface where its name begins with "vcan" and there is none; `made` removes it
 /// again. Throws InputError where this kernel cannot, or this user may not.

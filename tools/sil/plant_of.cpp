@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "drives/drive_table.hpp"
 #include "loop/controller_settings.hpp"
 #include "loop/frame_format.hpp"
 #include "offnominal/sim/plants/paper_arm.hpp"
@@ -130,25 +131,33 @@ void check_real_time(const Scenario& scenario) {
   }
 }
 
-sim::PlantNode plant_of(const Scenario& scenario, double period_s) {
+void check_drives(const Scenario& scenario, const DriveSettings& drives, double period_s) {
+  if (!scenario.sends_velocity) require_positions_alone(drives);
+  static_cast<void>(format_of(scenario, drives, period_s));
+}
+
+sim::PlantNode plant_of(const Scenario& scenario, const DriveSettings& drives, double period_s) {
   sim::PlantNodeConfig config;
   config.period_s = period_s;
   config.encoders.bits_per_turn = scenario.encoder_bits_per_turn;
-  config.format = format_of(scenario, period_s);
   config.sends_velocity = scenario.sends_velocity;
   config.faults = scenario.faults;
-  config.drives.commands.max_age_us = 5 * period_us_of(period_s);
   sim::JointState start = sim::on_trajectory(motion_of(scenario)(0.0));
   // The brakes hold it where it is until the drives come. Released on the move it would have an
   // acceleration that no bound of an observer covers.
   if (!scenario.sends_velocity) start.dq.setZero();
-  if (!scenario.plant) return {paper_arm(scenario.faults, start), config};
+  sim::DriveSetup setup;
+  setup.joints = static_cast<std::size_t>(joint_count_of(scenario));
+  setup.link = {period_us_of(period_s), format_of(scenario, drives, period_s)};
+  if (!scenario.plant) {
+    return {paper_arm(scenario.faults, start), emulated_drives(drives, setup), config};
+  }
   // Nobody commands more than the file allows.
-  config.drives.max_torque_nm = std::numeric_limits<double>::infinity();
+  setup.max_torque_nm = std::numeric_limits<double>::infinity();
   for (const RobotJoint& joint : scenario.plant->joints) {
     config.turns_on.push_back(turns_on(joint.joint));
   }
-  return {robot_plant(scenario, start, period_s), config};
+  return {robot_plant(scenario, start, period_s), emulated_drives(drives, setup), config};
 }
 
 int joint_count_of(const Scenario& scenario) {
@@ -164,8 +173,8 @@ double judging_time_s(const Scenario& scenario, double plants_s, double controll
   return scenario.plant ? controllers_s : plants_s;
 }
 
-hal::FrameFormat format_of(const Scenario& scenario, double period_s) {
-  return format_for(joint_count_of(scenario), period_s, scenario.format);
+hal::FrameFormat format_of(const Scenario& scenario, const DriveSettings& drives, double period_s) {
+  return format_for(drives, joint_count_of(scenario), period_s, scenario.format);
 }
 
 std::optional<double> first_begin_s(const std::vector<sim::FaultEvent>& faults) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "drives/drive_settings.hpp"
 #include "offnominal/sim/bus/plant_node.hpp"
 #include "sil/sil.hpp"
 
@@ -17,9 +18,12 @@ void check_plant(const Scenario& scenario);
 /// own node.
 void check_real_time(const Scenario& scenario);
 
-/// Plant, drives and encoders of a scenario that check_plant() takes. The drives' watch-dogs let go
-/// after 5 periods without a command.
-[[nodiscard]] sim::PlantNode plant_of(const Scenario& scenario, double period_s);
+/// Throws InputError for frames or velocities of a scenario that the drives do not send.
+void check_drives(const Scenario& scenario, const DriveSettings& drives, double period_s);
+
+/// Plant, drives and encoders of a scenario that check_plant() and check_drives() take.
+[[nodiscard]] sim::PlantNode plant_of(const Scenario& scenario, const DriveSettings& drives,
+                                      double period_s);
 
 /// Joints of the scenario's plant.
 [[nodiscard]] int joint_count_of(const Scenario& scenario);
@@ -34,7 +38,8 @@ void check_real_time(const Scenario& scenario);
                                     double controllers_s);
 
 /// The frames of a run: the scenario's, or else classic ones where they fit into the period.
-[[nodiscard]] hal::FrameFormat format_of(const Scenario& scenario, double period_s);
+[[nodiscard]] hal::FrameFormat format_of(const Scenario& scenario, const DriveSettings& drives,
+                                         double period_s);
 
 /// When the first fault begins, s; none where there is none.
 [[nodiscard]] std::optional<double> first_begin_s(const std::vector<sim::FaultEvent>& faults);

@@ -55,11 +55,13 @@ std::vector<std::string> plant_arguments(const Folder& folder, const RealTimeOpt
       "--rate",   shortest(rate_hz), "--log",      (folder / "plant.csv").string(),
       "--motion", options.motion,    "--json"};
   if (options.plant_file) arguments.insert(arguments.end(), {"--robot", *options.plant_file});
+  if (options.robot_file) arguments.insert(arguments.end(), {"--drives", *options.robot_file});
   return arguments;
 }
 
 std::vector<std::string> controller_arguments(const Folder& folder, const Scenario& scenario,
-                                              const RealTimeOptions& options, double rate_hz) {
+                                              const RealTimeOptions& options, double rate_hz,
+                                              hal::FrameFormat format) {
   std::vector<std::string> arguments = {"--bus",        options.interface,
                                         "--rate",       shortest(rate_hz),
                                         "--motion",     options.motion,
@@ -75,8 +77,7 @@ std::vector<std::string> controller_arguments(const Folder& folder, const Scenar
   if (options.replace_candump) add({"--force"});
   if (scenario.accommodate) add({"--accommodate"});
   if (scenario.stop_at_detection) add({"--stop-at-detection"});
-  const bool fd = format_of(scenario, 1 / rate_hz) == hal::FrameFormat::kFd;
-  add({fd ? "--fd" : "--classic"});
+  add({format == hal::FrameFormat::kFd ? "--fd" : "--classic"});
   if (!scenario.sends_velocity) {
     add({"--observe-velocity", shortest(scenario.max_acceleration)});
     if (scenario.encoder_bits_per_turn > 0) {
@@ -127,13 +128,14 @@ SilResult run_in_real_time(const RobotDescription& robot, const Scenario& scenar
   const Folder folder;
   const double rate_hz = 1 / robot.estimator.period_s;
   Scenario complete = scenario;
-  complete.format = format_of(scenario, robot.estimator.period_s);
+  complete.format = format_of(scenario, robot.drive_settings(), robot.estimator.period_s);
   write_file_atomically(folder / "scenario.toml", scenario_text(complete));
   ChildProgram plant("offnominal-plant", plant_arguments(folder, options, rate_hz),
                      folder / "plant.json", folder / "plant.err");
-  ChildProgram controller("offnominal-controller",
-                          controller_arguments(folder, scenario, options, rate_hz),
-                          folder / "controller.json", folder / "controller.err");
+  ChildProgram controller(
+      "offnominal-controller",
+      controller_arguments(folder, scenario, options, rate_hz, *complete.format),
+      folder / "controller.json", folder / "controller.err");
   wait_for_end(controller, plant, folder, scenario.duration_s);
   constexpr double kPatience = 10;
   if (const int code = plant.wait(true, kPatience); code != 0) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <offnominal/hal/wire_time.hpp>
+#include <offnominal/hal/bus/wire_time.hpp>
 
 #include "common/error.hpp"
 #include "loop/controller_settings.hpp"
@@ -72,6 +72,7 @@ void check_scenario(const RobotDescription& robot, const Scenario& scenario) {
     check_fault(fault, joints, scenario.duration_s);
   }
   check_plant(scenario);
+  check_drives(scenario, robot.drive_settings(), robot.estimator.period_s);
 }
 
 SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenario, Wire& wire,

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <offnominal/controller/fault.hpp>
+#include <offnominal/hal/drive_description.hpp>
 #include <offnominal/hal/messages.hpp>
-#include <offnominal/hal/protected_drives.hpp>
 #include <optional>
 #include <string>
 #include <vector>

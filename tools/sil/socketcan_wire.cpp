@@ -1,7 +1,7 @@
 #include <array>
 #include <cstring>
 #include <deque>
-#include <offnominal/hal/socketcan.hpp>
+#include <offnominal/hal/bus/socketcan.hpp>
 
 #include "common/error.hpp"
 #include "sil/open_bus.hpp"

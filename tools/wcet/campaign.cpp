@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "common/error.hpp"
+#include "drives/drive_table.hpp"
 #include "wcet/cache.hpp"
 #include "wcet/tick_bus.hpp"
 
@@ -249,6 +251,13 @@ class Campaign {
 
 WcetResult measure_wcet(const RobotDescription& robot, const WcetSettings& settings,
                         const OnWcetProgress& on_progress) {
+  const DriveProtocol& measured = drive_protocols().front();
+  const DriveProtocol& spoken = protocol_of(robot.drive_settings());
+  if (&spoken != &measured) {
+    throw InputError({"robot " + robot.name, "drives.protocol", spoken.name, measured.name,
+                      "the frames of a measured tick are offnominal's own: measure a copy of the "
+                      "file without [drives]"});
+  }
   return Campaign(robot, settings, on_progress).run();
 }
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <span>
 #include <vector>
 

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <offnominal/hal/bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/bus/bus.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <span>
 #include <vector>
 
@@ -108,6 +108,7 @@ class MarkedDrives {
   [[nodiscard]] hal::Microseconds drive_max_age_us() const { return drives_.drive_max_age_us(); }
   [[nodiscard]] bool stop_seen() const { return drives_.stop_seen(); }
   void clear_stop() { drives_.clear_stop(); }
+  [[nodiscard]] hal::DriveCounts counts() const { return drives_.counts(); }
 
  private:
   hal::ProtectedDrives<Joints> drives_;

@@ -202,7 +202,7 @@ class TickOf final : public Tick {
   // From the start to a controller that is armed and whose monitor runs.
   void arm(const TickInput& input) {
     work_.data = Data{};
-    work_.drives = Drives(controller::source_config(period_us_), format_, marks_);
+    work_.drives = Drives(hal::source_config(period_us_), format_, marks_);
     constexpr int kTicksToStart = 12;
     const auto reference_at = [&](double /*time_s*/) { return reference_; };
     controller::Fault refusal = controller::Fault::kNone;
@@ -284,7 +284,7 @@ class TickOf final : public Tick {
   ForwardDynamics<N, Scalar> nominal_;
   std::vector<hal::ReceivedFrame> frames_;
   std::size_t own_frames_ = 0;
-  Work work_{controller::source_config(period_us_), format_, marks_};
+  Work work_{hal::source_config(period_us_), format_, marks_};
   Data prepared_data_;
   Drives prepared_drives_ = work_.drives;
 };

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <offnominal/controller/joint_controller.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <robot_model.hpp>
 #include <span>
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <offnominal/controller/joint_firmware.hpp>
 #include <offnominal/controller/static_object.hpp>
-#include <offnominal/hal/blank_bus.hpp>
+#include <offnominal/hal/bus/blank_bus.hpp>
 
 #include "offnominal/cortex_m/semihosting.hpp"
 #include "offnominal/cortex_m/systick.hpp"

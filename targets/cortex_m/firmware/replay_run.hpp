@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <offnominal/controller/joint_firmware.hpp>
-#include <offnominal/hal/bus.hpp>
+#include <offnominal/hal/bus/bus.hpp>
 #include <span>
 #include <type_traits>
 

@@ -1,7 +1,7 @@
 #include <cstdint>
 #include <offnominal/controller/joint_firmware.hpp>
 #include <offnominal/controller/static_object.hpp>
-#include <offnominal/hal/blank_bus.hpp>
+#include <offnominal/hal/bus/blank_bus.hpp>
 
 // A joint controller without an operating system. Its bus is the blank one of the package, whose
 // copy would drive the chip's CAN controller.

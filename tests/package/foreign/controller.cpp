@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 #include <offnominal/controller/joint_controller.hpp>
-#include <offnominal/hal/in_process_bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 
 #include "robot_model.hpp"
 

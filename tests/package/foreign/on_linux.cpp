@@ -1,6 +1,6 @@
 #include <cstdio>
-#include <offnominal/hal/socketcan.hpp>
-#include <offnominal/hal/virtual_can.hpp>
+#include <offnominal/hal/bus/socketcan.hpp>
+#include <offnominal/hal/bus/virtual_can.hpp>
 #include <offnominal/realtime/cycle_timer.hpp>
 #include <offnominal/realtime/privileges.hpp>
 #include <offnominal/realtime/recorder.hpp>

@@ -5,12 +5,12 @@
 
 #include <array>
 #include <functional>
-#include <offnominal/hal/in_process_bus.hpp>
+#include <offnominal/hal/bus/in_process_bus.hpp>
 #include <optional>
 #include <string>
 
 #include "common/error.hpp"
-#include "offnominal/sim/bus/joint_drives.hpp"
+#include "drives/drive_table.hpp"
 #include "robot/robot_file.hpp"
 #include "support/places.hpp"
 #include "tools/sil/serial_robot.hpp"
@@ -41,24 +41,27 @@ class Pendulum final : public TickTimer {
  public:
   using Net = hal::InProcessNet<2>;
 
-  explicit Pendulum(Net& net) : net_(net), port_(net.port(1)) {}
+  Pendulum(Net& net, const DriveSettings& drives)
+      : net_(net), port_(net.port(1)), drives_(emulated_drives(drives, {.joints = 1})) {}
   realtime::Tick wait() override {
     before_tick(++ticks);
     now_us_ += period_us();
     net_.set_time(now_us_);
     std::array<hal::ReceivedFrame, 4> come;
     const std::size_t count = port_.receive(come);
-    for (std::size_t i = 0; i < count; ++i) drives_.take(come[i]);
+    for (std::size_t i = 0; i < count; ++i) drives_->take(come[i]);
+    drives_->tick(now_us_);
     move();
     const std::array<std::optional<hal::EncoderReading>, 1> readings{
         hal::EncoderReading{static_cast<float>(q), static_cast<float>(dq), true}};
     std::array<hal::Frame, 4> frames;
-    const std::size_t made = drives_.frames(readings, std::array{drives_.torque_nm(0, dq)}, frames);
+    const std::size_t made =
+        drives_->frames(readings, std::array{drives_->torque_nm(0, dq)}, frames);
     for (std::size_t i = 0; i < made; ++i) static_cast<void>(port_.send(frames[i], now_us_));
     return {now_us_, 0, 0};
   }
   [[nodiscard]] realtime::Microseconds period_us() const override { return 1000; }
-  [[nodiscard]] bool gives_torque() const { return drives_.mode(0) == hal::DriveMode::kTorque; }
+  [[nodiscard]] bool gives_torque() const { return drives_->mode(0) == hal::DriveMode::kTorque; }
 
   std::function<void(int tick)> before_tick = [](int) {};
   int ticks = 0;
@@ -71,14 +74,14 @@ class Pendulum final : public TickTimer {
   void move() {
     started_ = started_ || gives_torque();
     if (!started_) return;
-    dq += 1e-3 * (drives_.torque_nm(0, dq) - 2 * 9.81 * std::cos(q)) / 2;
+    dq += 1e-3 * (drives_->torque_nm(0, dq) - 2 * 9.81 * std::cos(q)) / 2;
     q += 1e-3 * dq;
     lowest = std::min(lowest, q);
   }
 
   Net& net_;
   Net::Port port_;
-  sim::JointDrives drives_{1, {}, hal::FrameFormat::kClassic};
+  std::unique_ptr<sim::Drives> drives_;
   hal::Microseconds now_us_ = 0;
   bool started_ = false;
 };
@@ -104,7 +107,7 @@ struct Bench {
   RobotDescription robot;
   MotionAt motion;
   hal::InProcessNet<2> net;
-  Pendulum pendulum{net};
+  Pendulum pendulum{net, robot.drive_settings()};
   BusPortOf<hal::InProcessNet<2>::Port> bus{net.port(0)};
   realtime::Recorder recorder;
   realtime::LoopPanel panel;
@@ -121,6 +124,24 @@ TEST(JointProgram, StartsWhereZeroIsOutsideOfTheLimits) {
     EXPECT_EQ(report.refusal, Fault::kNone) << limits;
     EXPECT_EQ(report.fault, Fault::kNone) << limits << ' ' << name_of(report.fault);
     EXPECT_EQ(report.state, ControllerState::kArmed) << limits;
+  }
+}
+
+// GIVEN a file whose drive is an ODrive WHEN the program runs THEN it arms over that protocol, and
+// holds the arm, in either firmware.
+TEST(JointProgram, SpeaksToTheDrivesOfTheFile) {
+  for (const char* firmware : {"0.5", "0.6"}) {
+    RobotDescription of = robot("[-3.0, 3.0]", "torque_rate = [500.0]\n");
+    const std::string text = robot_text(of) +
+                             "[drives]\nprotocol = \"can_simple\"\nnode = [7]\n"
+                             "joint_per_turn = [-0.5]\nfirmware = \"" +
+                             firmware + "\"\n";
+    Bench bench(parse_robot(text, "odrive.toml"));
+    const auto report = bench.run({.arm_when_passive = true, .duration_us = 2'000'000});
+    EXPECT_EQ(report.fault, Fault::kNone) << firmware << ' ' << name_of(report.fault);
+    EXPECT_EQ(report.state, ControllerState::kArmed) << firmware;
+    EXPECT_LT(bench.pendulum.lowest, -0.003) << "it did sink";
+    EXPECT_NEAR(bench.pendulum.q, 0, 5e-3) << firmware;
   }
 }
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <numbers>
-#include <offnominal/hal/can_simple.hpp>
+#include <offnominal/hal/protocols/can_simple/can_simple.hpp>
 
 #include "log/dbc.hpp"
 #include "support/recordings.hpp"

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <offnominal/hal/address.hpp>
 #include <offnominal/hal/messages.hpp>
+#include <offnominal/hal/protocols/protected/address.hpp>
 
 #include "common/error.hpp"
 #include "common/file.hpp"

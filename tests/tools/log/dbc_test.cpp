@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
-#include <offnominal/hal/address.hpp>
 #include <offnominal/hal/messages.hpp>
+#include <offnominal/hal/protocols/protected/address.hpp>
 #include <set>
 
 #include "common/error.hpp"

@@ -89,6 +89,13 @@ inline void expect_same(const tools::BoundSettings& a, const tools::BoundSetting
   expect_same(a.table.value, b.table.value);
 }
 
+inline void expect_same(const tools::DriveSettings& a, const tools::DriveSettings& b) {
+  EXPECT_EQ(a.protocol, b.protocol);
+  expect_same(a.shared, b.shared);
+  expect_same(a.of_joints, b.of_joints);
+  EXPECT_EQ(a.source, b.source);
+}
+
 inline void expect_same(const tools::Channel& a, const tools::Channel& b) {
   EXPECT_EQ(a.source, b.source);
   EXPECT_EQ(a.scale, b.scale);
@@ -125,6 +132,8 @@ inline void expect_same(const tools::RobotDescription& a, const tools::RobotDesc
   expect_same(a.arming, b.arming);
   ASSERT_EQ(a.bound.has_value(), b.bound.has_value());
   if (a.bound) expect_same(*a.bound, *b.bound);
+  ASSERT_EQ(a.drives.has_value(), b.drives.has_value());
+  if (a.drives) expect_same(*a.drives, *b.drives);
   ASSERT_EQ(a.channels.has_value(), b.channels.has_value());
   if (a.channels) expect_same(*a.channels, *b.channels);
 }

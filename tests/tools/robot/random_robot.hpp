@@ -29,6 +29,7 @@ class RandomRobot {
     robot.estimator = estimator();
     robot.arming = arming(joints);
     if (coin()) robot.bound = bound(joints);
+    if (coin()) robot.drives = drives(joints, robot.estimator.period_s);
     if (coin()) robot.channels = channels(joints);
     return robot;
   }
@@ -194,6 +195,22 @@ class RandomRobot {
       }
     }
     return result;
+  }
+
+  // ODrives where ticks are long enough for them.
+  tools::DriveSettings drives(int joints, double period_s) {
+    tools::DriveSettings settings;
+    settings.source = any_text();
+    if (coin() || period_s < 0.001) return settings;
+    settings.protocol = 1;
+    settings.shared = {1.0 * whole(0, 1), 0.001, 0.001 * whole(1, 100), 0.001 * whole(0, 100)};
+    const int first = whole(0, 63 - joints);
+    for (int i = 0; i < joints; ++i) {
+      const double per_turn =
+          (coin() ? 1 : -1) * std::ldexp(1 + std::fabs(uniform()), whole(-9, 8));
+      settings.of_joints.insert(settings.of_joints.end(), {1.0 * (first + i), per_turn, per_turn});
+    }
+    return settings;
   }
 
   tools::Channel channel() {

@@ -80,6 +80,11 @@ joint = 2
 at = [0.0, 10.0]
 value = [1.0, 2.5]
 
+[drives]
+protocol = "can_simple"  # as odrivetool says
+node = [3, 44]
+joint_per_turn = [6.25, -0.5]
+
 [channels]
 position = ["a", "b"]
 torque = [{source = "i1", scale = 0.5, unit = "A"}, "f2"]

@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "common/error.hpp"
 #include "paper/recording.hpp"
-#include "sil/sil.hpp"
 #include "support/repetitions.hpp"
+#include "tools/sil/run_of_robot.hpp"
 #include "tools/sil/serial_robot.hpp"
 
 namespace offnominal::tools::sil {
@@ -19,29 +18,6 @@ using sim::FaultEvent;
 using sim::FaultEventKind;
 using test::serial_robot;
 using testing::HasSubstr;
-
-Scenario scenario_of(const RobotDescription& robot, std::vector<FaultEvent> faults = {}) {
-  Scenario scenario;
-  scenario.plant = robot;
-  scenario.faults = std::move(faults);
-  scenario.duration_s = 2.0;
-  return scenario;
-}
-
-SilResult run(const RobotDescription& robot, const Scenario& scenario,
-              const TappedPort::OnFrame& on_frame = {}) {
-  const auto wire = make_in_process_wire();
-  return run_in_lock_step(robot, scenario, *wire, kInProcess, on_frame);
-}
-
-std::string refusal(const RobotDescription& robot, const Scenario& scenario) {
-  try {
-    static_cast<void>(run(robot, scenario));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing was refused";
-}
 
 class AnyRobot : public testing::TestWithParam<int> {};
 

@@ -83,7 +83,7 @@ class ControllerProcess {
 template <hal::Bus Bus>
 class Arm {
  public:
-  explicit Arm(Bus& bus) : plant_(plant_of({}, kTickSeconds)), bus_(bus) {
+  explicit Arm(Bus& bus) : plant_(plant_of({}, {}, kTickSeconds)), bus_(bus) {
     static_cast<void>(realtime::ask_for({.priority = 80, .lock_memory = false}));
   }
   void tick() {
@@ -103,7 +103,7 @@ class Arm {
     return false;
   }
   // Somebody brings it back to where its motion begins, and closes its brakes.
-  void put_back() { plant_ = plant_of({}, kTickSeconds); }
+  void put_back() { plant_ = plant_of({}, {}, kTickSeconds); }
   [[nodiscard]] const sim::PlantNode& plant() const { return plant_; }
   [[nodiscard]] bool gives_torque() const { return plant_.drives().any_in_torque_mode(); }
 

@@ -37,6 +37,21 @@ class RealTime : public testing::Test {
     return run_command(test::command_file(), words);
   }
 
+  // With a robot file whose joint falls silent at 1.5 s of 2.
+  void run_until_silent(const std::string& robot, int joint) {
+    put(folder_ / "robot.toml", robot);
+    const auto result = run(
+        "[[fault]]\nkind = \"silent_node\"\nbegin_s = 1.5\njoint = " + std::to_string(joint) + "\n",
+        {"--robot", folder_ / "robot.toml", "--duration", "2", "--candump", folder_ / "run.log",
+         "--force"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const json run = json::parse(result.out);
+    EXPECT_EQ(run.at("controller_fault"), "EncoderSilent") << run.dump(2);
+    EXPECT_TRUE(run.at("detection_time_s").is_null());
+    EXPECT_GT(run.at("ended_early_s").get<double>(), 1.4);
+    EXPECT_LT(run.at("max_error_to_threshold_before_fault").get<double>(), 0.9);
+  }
+
   TemporaryFolder folder_;
 };
 
@@ -80,19 +95,19 @@ TEST_F(RealTime, RunsARobotFileOfSixJoints) {
   // Too much for classic CAN, and not too much for the machine of ./dev vcan.
   const std::string text = test::serial_robot_text(6);
   const std::string period = "period_s = 0.001";
-  put(folder_ / "six.toml",
-      std::string(text).replace(text.find(period), period.size(), "period_s = 0.002"));
-  const auto result = run("[[fault]]\nkind = \"silent_node\"\nbegin_s = 1.5\njoint = 6\n",
-                          {"--robot", folder_ / "six.toml", "--duration", "2", "--candump",
-                           folder_ / "run.log", "--force"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const json run = json::parse(result.out);
-  EXPECT_EQ(run.at("controller_fault"), "EncoderSilent") << run.dump(2);
-  EXPECT_TRUE(run.at("detection_time_s").is_null());
-  EXPECT_GT(run.at("ended_early_s").get<double>(), 1.4);
-  EXPECT_LT(run.at("max_error_to_threshold_before_fault").get<double>(), 0.9);
+  run_until_silent(std::string(text).replace(text.find(period), period.size(), "period_s = 0.002"),
+                   6);
   // Readings of six joints in one frame of 48 bytes; candump writes CAN FD with "##".
   EXPECT_NE(content_of(folder_ / "run.log").find("1A0##"), std::string::npos);
+}
+
+// Both programs take the drives' protocol from the robot's file.
+TEST_F(RealTime, RunsARobotFileWithOdrives) {
+  run_until_silent(test::odrive_robot_text(2, 2, "0.6"), 2);
+  // Node 60: Get_Encoder_Estimates, and Set_Input_Torque.
+  const std::string frames = content_of(folder_ / "run.log");
+  EXPECT_NE(frames.find(" 789#"), std::string::npos);
+  EXPECT_NE(frames.find(" 78E#"), std::string::npos);
 }
 
 TEST_F(RealTime, MakesAVirtualBusAndRemovesIt) {

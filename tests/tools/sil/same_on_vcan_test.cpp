@@ -79,5 +79,14 @@ TEST(SameOnVcan, WithOneFourSixAndSevenJoints) {
   }
 }
 
+TEST(SameOnVcan, WithTwoAndSevenOdrives) {
+  for (const int joints : {2, 7}) {
+    Scenario scenario;
+    scenario.duration_s = 0.5;
+    scenario.plant = test::odrive_robot(joints, joints == 2 ? 1 : 5, "0.6");
+    expect_same(scenario, "vcan0");
+  }
+}
+
 }  // namespace
 }  // namespace offnominal::tools::sil

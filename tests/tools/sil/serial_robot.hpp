@@ -43,4 +43,31 @@ inline tools::RobotDescription serial_robot(int joints) {
   return tools::parse_robot(serial_robot_text(joints), "serial.toml");
 }
 
+/// The same behind ODrives that tell their torque, every second one turning against its joint; a
+/// tick and a reading every period_ms.
+inline std::string odrive_robot_text(int joints, int period_ms, const std::string& firmware) {
+  std::string text = serial_robot_text(joints);
+  const std::string period = "period_s = 0.001";
+  const std::string wanted = fmt::format("{:.3f}", 1e-3 * period_ms);
+  text.replace(text.find(period), period.size(), "period_s = " + wanted);
+  std::string nodes;
+  std::string turns;
+  std::string constants;
+  for (int i = 0; i < joints; ++i) {
+    nodes += fmt::format("{}{}", i == 0 ? "" : ", ", 60 - 7 * i);
+    turns += fmt::format("{}{}", i == 0 ? "" : ", ", i % 2 == 0 ? "0.62832" : "-0.31416");
+    constants += fmt::format("{}{}", i == 0 ? "" : ", ", i % 2 == 0 ? "0.04" : "-0.08");
+  }
+  return text + fmt::format(
+                    "[drives]\nprotocol = \"can_simple\"\nfirmware = \"{}\"\n"
+                    "encoder_interval_s = {}\ntorque_interval_s = {}\nnode = [{}]\n"
+                    "joint_per_turn = [{}]\nmotor_nm_per_ampere = [{}]\n",
+                    firmware, wanted, wanted, nodes, turns, constants);
+}
+
+inline tools::RobotDescription odrive_robot(int joints, int period_ms,
+                                            const std::string& firmware) {
+  return tools::parse_robot(odrive_robot_text(joints, period_ms, firmware), "odrives.toml");
+}
+
 }  // namespace offnominal::test

@@ -3,7 +3,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 #include <offnominal/hal/messages.hpp>
 #include <offnominal/hal/source.hpp>
 #include <offnominal/hal/status.hpp>
@@ -20,6 +20,12 @@ struct JointFeedback {
   DriveStatus status;
 };
 
+// Of what has come in since the start, as far as a protocol can tell; they wrap.
+struct DriveCounts {
+  std::uint64_t lost = 0;      // by the counters of accepted records
+  std::uint64_t rejected = 0;  // wrong CRC, value or counter
+};
+
 // How drives speak on the bus, as the controller sees it. Nothing blocks, allocates or throws.
 //
 // take(f)                  A frame that has come. kOk: used. kUnknownId: none of this protocol's.
@@ -32,6 +38,7 @@ struct JointFeedback {
 //                          stays unseen no longer.
 // stop_seen(), clear_stop()  Whether somebody has asked for an emergency stop; latched until
 //                          cleared.
+// counts()                 For reports; zero where frames carry neither counter nor CRC.
 template <typename P>
 concept DriveProtocol = requires(P& drives, const P& seen, const ReceivedFrame& received,
                                  std::size_t joint, Microseconds now_us,
@@ -45,6 +52,7 @@ concept DriveProtocol = requires(P& drives, const P& seen, const ReceivedFrame& 
   { seen.drive_max_age_us() } -> std::same_as<Microseconds>;
   { seen.stop_seen() } -> std::same_as<bool>;
   { drives.clear_stop() } -> std::same_as<void>;
+  { seen.counts() } -> std::same_as<DriveCounts>;
 };
 
 // A heartbeat goes out every so many ticks; where their 32 bits wrap, once in 49 days at 1 kHz, one

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <limits>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 #include <offnominal/hal/status.hpp>
 
 // What a receiver knows of one sender of one message.
@@ -22,6 +22,11 @@ struct SourceConfig {
   std::uint8_t sequence_needed = 3;   // records in sequence before the first one is used; >= 1
   std::uint8_t max_bad_in_a_row = 3;  // more records that do not open are an error; >= 1
 };
+
+// A source with a record in every period is stale at the third without one.
+[[nodiscard]] constexpr SourceConfig source_config(Microseconds period_us) {
+  return {.max_age_us = period_us * 5 / 2};
+}
 
 // Plain data. Counters wrap.
 struct Source {

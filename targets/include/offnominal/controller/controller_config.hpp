@@ -9,7 +9,6 @@
 #include <offnominal/diagnosis/velocity_observer.hpp>
 #include <offnominal/finite.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
-#include <offnominal/hal/source.hpp>
 #include <offnominal/monitor.hpp>
 
 namespace offnominal::controller {
@@ -64,11 +63,6 @@ template <int N, typename Scalar>
 [[nodiscard]] ControllerConfig<N, Scalar> controller_config(
     const MonitorConfig<N, Scalar>& monitor, const ComputedTorqueGains<N, Scalar>& gains) {
   return controller_config(monitor, gains, default_arming(monitor.chain));
-}
-
-// A reading is stale at the third tick without a new one.
-[[nodiscard]] constexpr hal::SourceConfig source_config(Microseconds period_us) {
-  return {.max_age_us = period_us * 5 / 2};
 }
 
 // The velocity observer as it runs.

@@ -14,7 +14,7 @@
 #include <offnominal/controller/sample_taker.hpp>
 #include <offnominal/controller/takeover.hpp>
 #include <offnominal/controller/torque_limiter.hpp>
-#include <offnominal/hal/bus.hpp>
+#include <offnominal/hal/bus/bus.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/monitor.hpp>
 #include <span>

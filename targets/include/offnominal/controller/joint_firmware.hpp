@@ -6,9 +6,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <offnominal/controller/joint_controller.hpp>
-#include <offnominal/hal/bus.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/bus/bus.hpp>
+#include <offnominal/hal/drive_description.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <robot_model.hpp>
+
+// What a model says whose robot file has no [drives]: found only where the model itself has no
+// such name.
+namespace offnominal::controller::without_drives {
+using DriveProtocol = hal::Protected;
+inline constexpr hal::DriveValues kDriveValues{};
+}  // namespace offnominal::controller::without_drives
+namespace robot_model {
+using namespace offnominal::controller::without_drives;
+}
 
 namespace offnominal::controller {
 
@@ -18,14 +29,15 @@ class JointFirmware {
   static constexpr int kJoints = robot_model::kJoints;
   static constexpr auto kPeriodUs =
       static_cast<hal::Microseconds>(robot_model::kEstimatorConfig<double>.period_s * 1e6 + 0.5);
-  using Drives = hal::ProtectedDrives<static_cast<std::size_t>(kJoints)>;
+  using Drives = robot_model::DriveProtocol::Drives<static_cast<std::size_t>(kJoints)>;
   using Controller =
       JointController<kJoints, robot_model::kHiddenUnits, Scalar, robot_model::Memory>;
   using Data = typename Controller::Data;
 
   explicit JointFirmware(Bus& bus)
       : bus_(bus),
-        drives_(source_config(kPeriodUs), source_config(kPeriodUs), hal::FrameFormat::kClassic) {}
+        drives_(robot_model::DriveProtocol::drives<static_cast<std::size_t>(kJoints)>(
+            robot_model::kDriveValues, {.period_us = kPeriodUs})) {}
 
   // What Controller::create() says of the robot's constants. Without kOk there must be no tick.
   [[nodiscard]] Status start() {

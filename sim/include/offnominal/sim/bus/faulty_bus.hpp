@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <offnominal/hal/address.hpp>
-#include <offnominal/hal/bus.hpp>
+#include <offnominal/hal/bus/bus.hpp>
 #include <random>
 #include <span>
 #include <vector>
 
+#include "offnominal/sim/bus/drives.hpp"
 #include "offnominal/sim/bus/fault_event.hpp"
 
 namespace offnominal::sim {
@@ -23,10 +23,13 @@ enum class BusEnd : std::uint8_t { kController, kPlant };
 template <hal::Bus Inner>
 class FaultyBus {
  public:
-  /// joints: of the plant, 1 or more; forged frames are of one of them.
-  FaultyBus(Inner& inner, BusEnd end, int joints, const std::vector<FaultEvent>& events,
+  /// drives: of the plant, which have to outlive it; forged frames are of one of them.
+  FaultyBus(Inner& inner, BusEnd end, const Drives& drives, const std::vector<FaultEvent>& events,
             std::uint64_t seed)
-      : inner_(inner), random_(seed), node_(0, joints - 1) {
+      : inner_(inner),
+        drives_(drives),
+        random_(seed),
+        node_(0, static_cast<int>(drives.joints()) - 1) {
     for (const FaultEvent& event : events) {
       const bool controllers =
           event.kind == FaultEventKind::kBlockedBus || event.kind == FaultEventKind::kBusOff;
@@ -53,9 +56,9 @@ class FaultyBus {
       }
     }
     if (const FaultEvent* forge = active(FaultEventKind::kForgedFrames)) {
-      send_many(*forge, [&] { return forged(hal::MessageKind::kEncoder); });
+      send_many(*forge, [&] { return forged(&Drives::reading_id); });
       for (int i = 0; i < count_of(*forge); ++i) {
-        forged_in_.push_back({forged(hal::MessageKind::kTorqueCommand), inner_.now()});
+        forged_in_.push_back({forged(&Drives::command_id), inner_.now()});
       }
     }
   }
@@ -155,11 +158,8 @@ class FaultyBus {
 
   [[nodiscard]] bool is_silent(const hal::Frame& frame) const {
     const FaultEvent* silent = active(FaultEventKind::kSilentNode);
-    hal::Address address;
-    if (silent == nullptr || address_of(frame, address) != hal::Status::kOk) return false;
-    // A group of CAN FD is sent by one node for all.
-    const int first = address.first_node;
-    return silent->joint >= first && silent->joint < first + address.count;
+    return silent != nullptr && silent->joint >= 0 &&
+           drives_.concerns(frame, static_cast<std::size_t>(silent->joint));
   }
 
   void remember(const hal::Frame& frame) {
@@ -179,11 +179,15 @@ class FaultyBus {
     }
   }
 
-  hal::Frame forged(hal::MessageKind kind) {
-    hal::Record record{};
+  hal::Frame forged(std::uint32_t (Drives::*id_of)(std::size_t) const) {
+    hal::Frame frame;
+    frame.length = hal::kMaxClassicLength;
     std::uniform_int_distribution<int> byte(0, 255);
-    for (auto& value : record) value = static_cast<std::uint8_t>(byte(random_));
-    return frame_of(kind, static_cast<std::uint8_t>(node_(random_)), record);
+    for (std::size_t i = 0; i < hal::kMaxClassicLength; ++i) {
+      frame.data[i] = static_cast<std::uint8_t>(byte(random_));
+    }
+    frame.id = (drives_.*id_of)(static_cast<std::size_t>(node_(random_)));
+    return frame;
   }
 
   hal::Status hold(const hal::Frame& frame, hal::Microseconds deadline_us) {
@@ -210,6 +214,7 @@ class FaultyBus {
   }
 
   Inner& inner_;
+  const Drives& drives_;
   std::mt19937_64 random_;
   std::uniform_int_distribution<int> node_;
   std::vector<FaultEvent> events_;

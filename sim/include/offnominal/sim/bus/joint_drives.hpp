@@ -5,16 +5,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <offnominal/hal/address.hpp>
 #include <offnominal/hal/messages.hpp>
-#include <offnominal/hal/protected_drives.hpp>
+#include <offnominal/hal/protocols/protected/address.hpp>
+#include <offnominal/hal/protocols/protected/protected_drives.hpp>
 #include <offnominal/hal/source.hpp>
-#include <optional>
 #include <span>
-#include <stdexcept>
-#include <string>
 
-#include "offnominal/sim/joint_state.hpp"
+#include "offnominal/sim/bus/drives.hpp"
 
 namespace offnominal::sim {
 
@@ -30,18 +27,20 @@ struct DriveConfig {
 /// Drives with offnominal's own frames, one a joint. Each has a watch-dog: without a valid command
 /// for commands.max_age_us it falls back, says so in its status, and obeys again with the next
 /// valid command that is not kTorque: a torque has to be asked for anew.
-class JointDrives {
+class JointDrives final : public Drives {
  public:
   /// Of 1 to kMaxJoints joints; throws std::invalid_argument for others.
   JointDrives(std::size_t joints, const DriveConfig& config, hal::FrameFormat format)
-      : joints_(joints), config_(config), format_(format) {
-    if (joints >= 1 && joints <= kMost) return;
-    throw std::invalid_argument("drives: found " + std::to_string(joints) +
-                                " joints, allowed is 1 to " + std::to_string(kMost));
-  }
+      : joints_(checked_joints(joints)), config_(config), format_(format) {}
 
-  /// Whether the frame was a torque command of one of these drives, or of several, all valid.
-  bool take(const hal::ReceivedFrame& received) {
+  /// As programs make them: watch-dogs let go after 5 periods without a command.
+  JointDrives(const hal::DriveValues& /*values*/, const DriveSetup& setup)
+      : JointDrives(setup.joints,
+                    {.commands = {.max_age_us = 5 * setup.link.period_us, .sequence_needed = 1},
+                     .max_torque_nm = setup.max_torque_nm},
+                    setup.link.format) {}
+
+  bool take(const hal::ReceivedFrame& received) override {
     hal::Address address;
     if (address_of(received.frame, address) != hal::Status::kOk) return false;
     if (address.kind == hal::MessageKind::kEmergencyStop) stop_at(address, received.frame);
@@ -58,16 +57,14 @@ class JointDrives {
     return valid;
   }
 
-  /// Watch-dog: to be called every tick.
-  void check_age(hal::Microseconds now_us) {
+  void tick(hal::Microseconds now_us) override {
     for (std::size_t j = 0; j < joints_; ++j) {
       const hal::SourceState state = state_of(config_.commands, commands_.source(j), now_us);
       if (state == hal::SourceState::kStale || state == hal::SourceState::kError) fall_back(j);
     }
   }
 
-  /// Torque at the joint's speed (rad/s), N m, as it is really given.
-  [[nodiscard]] double torque_nm(std::size_t joint, double speed_rad_s) const {
+  [[nodiscard]] double torque_nm(std::size_t joint, double speed_rad_s) const override {
     const Drive& drive = drives_[joint];
     switch (drive.mode) {
       case hal::DriveMode::kTorque:
@@ -80,29 +77,30 @@ class JointDrives {
     return 0.0;
   }
 
-  [[nodiscard]] hal::DriveMode mode(std::size_t joint) const { return drives_[joint].mode; }
-  [[nodiscard]] bool all_in_torque_mode() const {
-    for (std::size_t j = 0; j < joints_; ++j) {
-      if (drives_[j].mode != hal::DriveMode::kTorque) return false;
-    }
-    return true;
+  [[nodiscard]] hal::DriveMode mode(std::size_t joint) const override {
+    return drives_[joint].mode;
   }
-  [[nodiscard]] bool any_in_torque_mode() const {
-    for (std::size_t j = 0; j < joints_; ++j) {
-      if (drives_[j].mode == hal::DriveMode::kTorque) return true;
-    }
-    return false;
+  [[nodiscard]] std::size_t joints() const override { return joints_; }
+  [[nodiscard]] std::uint32_t commands(std::size_t joint) const override {
+    return source(joint).accepted;
   }
-  [[nodiscard]] std::size_t joints() const { return joints_; }
   [[nodiscard]] const hal::Source& source(std::size_t joint) const {
     return commands_.source(joint);
   }
 
-  /// Frames of one tick, at most two a joint: readings, then statuses with the torque that was
-  /// applied; `readings` and `applied_nm` have one entry a joint. A joint without a reading has an
-  /// encoder that has failed: its frame is missing, or in a group its record is zero.
-  std::size_t frames(std::span<const std::optional<hal::EncoderReading>> readings,
-                     std::span<const double> applied_nm, std::span<hal::Frame> into) {
+  [[nodiscard]] hal::DriveCounts counts() const override {
+    hal::DriveCounts counts;
+    for (std::size_t j = 0; j < joints_; ++j) {
+      counts.lost += source(j).lost;
+      counts.rejected += std::uint64_t{source(j).rejected} + source(j).repeated;
+    }
+    return counts;
+  }
+
+  /// Readings, then statuses with the torque that was applied. A joint without a reading: its frame
+  /// is missing, or in a group its record is zero.
+  std::size_t frames(std::span<const Reading> readings, std::span<const double> applied_nm,
+                     std::span<hal::Frame> into) override {
     std::array<hal::Record, kMost> encoders{};
     std::array<hal::Record, kMost> statuses{};
     for (std::size_t j = 0; j < joints_; ++j) {
@@ -128,6 +126,19 @@ class JointDrives {
     const std::size_t count = pack(hal::MessageKind::kEncoder, of_all(encoders), format_, into);
     return count +
            pack(hal::MessageKind::kDriveStatus, of_all(statuses), format_, into.subspan(count));
+  }
+
+  /// A group of CAN FD is sent by one node for all.
+  [[nodiscard]] bool concerns(const hal::Frame& frame, std::size_t joint) const override {
+    hal::Address address;
+    if (address_of(frame, address) != hal::Status::kOk) return false;
+    return joint >= address.first_node && joint < std::size_t{address.first_node} + address.count;
+  }
+  [[nodiscard]] std::uint32_t reading_id(std::size_t joint) const override {
+    return id_of(hal::MessageKind::kEncoder, static_cast<std::uint8_t>(joint));
+  }
+  [[nodiscard]] std::uint32_t command_id(std::size_t joint) const override {
+    return id_of(hal::MessageKind::kTorqueCommand, static_cast<std::uint8_t>(joint));
   }
 
  private:
@@ -165,6 +176,7 @@ class JointDrives {
     drive.fell_back = true;
     drive.mode = config_.fallback;
   }
+
   std::size_t joints_;
   DriveConfig config_;
   hal::FrameFormat format_;

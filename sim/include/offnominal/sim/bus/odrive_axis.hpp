@@ -8,7 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 #include <utility>
 #include <vector>
 
@@ -33,8 +33,9 @@ class OdriveAxis {
   enum State : std::uint8_t { kIdle = 1, kClosedLoop = 8 };
   /// Bits of Axis_Error that both firmwares have in one way or another.
   enum Error : std::uint32_t {
-    kInvalidState = 0x1,  // 0.6: INITIALIZING
-    kMotorFailed = 0x40,  // 0.6: MISSING_INPUT
+    kInvalidState = 0x1,     // 0.6: INITIALIZING
+    kMotorFailed = 0x40,     // 0.6: MISSING_INPUT
+    kEncoderFailed = 0x100,  // 0.6: another number, an error all the same
     kEstopRequested = 0x4000,
     kWatchdogExpired = 0x800,
   };
@@ -73,15 +74,19 @@ class OdriveAxis {
     torque_nm_ = state_ == kClosedLoop ? torque_nm_ + share * (wanted - torque_nm_) : 0.0;
   }
 
-  /// The cyclic messages that are due, for a motor at so many turns and turns a second.
+  /// The cyclic messages that have become due since the last call, one of each at most, for a motor
+  /// at so many turns and turns a second.
   [[nodiscard]] std::vector<hal::Frame> frames(double turns, double turns_per_s) {
     std::vector<hal::Frame> due;
     if (!silent_heartbeat && is_due(config_.heartbeat_ms)) due.push_back(heartbeat());
     if (is_due(config_.encoder_ms)) due.push_back(floats(kGetEncoderEstimates, turns, turns_per_s));
-    if (silent_torque || !is_due(config_.torque_ms)) return due;
-    const double scale = config_.firmware_06 ? 1.0 : config_.torque_constant;
-    const std::uint32_t command = config_.firmware_06 ? kGetTorques : kGetIq;
-    due.push_back(floats(command, static_cast<double>(input_torque_) / scale, torque_nm_ / scale));
+    if (!silent_torque && is_due(config_.torque_ms)) {
+      const double scale = config_.firmware_06 ? 1.0 : config_.torque_constant;
+      const std::uint32_t command = config_.firmware_06 ? kGetTorques : kGetIq;
+      due.push_back(
+          floats(command, static_cast<double>(input_torque_) / scale, torque_nm_ / scale));
+    }
+    told_ms_ = now_ms_;
     return due;
   }
 
@@ -130,7 +135,8 @@ class OdriveAxis {
   }
 
   [[nodiscard]] bool is_due(int interval_ms) const {
-    return interval_ms > 0 && (now_ms_ + config_.node) % interval_ms == 0;
+    const auto count_at = [&](std::int64_t ms) { return (ms + config_.node) / interval_ms; };
+    return interval_ms > 0 && count_at(now_ms_) != count_at(told_ms_);
   }
 
   static std::uint32_t word(const hal::Frame& frame) {
@@ -164,6 +170,7 @@ class OdriveAxis {
       frame.data[6] = 1;  // trajectory done
     } else {
       frame.data[5] = (error_ & kMotorFailed) != 0 ? 1 : 0;
+      frame.data[6] = (error_ & kEncoderFailed) != 0 ? 1 : 0;
       frame.data[7] = 0x80;  // trajectory done
     }
     return frame;
@@ -177,6 +184,7 @@ class OdriveAxis {
   int fed_ms_ = 0;
   int requests_ = 0;
   std::int64_t now_ms_ = 0;
+  std::int64_t told_ms_ = 0;  // when frames() was last asked
   float input_torque_ = 0;
   double torque_nm_ = 0;
 };

@@ -5,14 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <offnominal/hal/bus.hpp>
+#include <offnominal/hal/bus/bus.hpp>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "offnominal/sim/bus/joint_drives.hpp"
+#include "offnominal/sim/bus/drives.hpp"
 #include "offnominal/sim/bus/joint_sensors.hpp"
 #include "offnominal/sim/plant.hpp"
 
@@ -21,8 +21,6 @@ namespace offnominal::sim {
 struct PlantNodeConfig {
   double period_s = 0.001;
   EncoderConfig encoders{};
-  DriveConfig drives{};
-  hal::FrameFormat format = hal::FrameFormat::kClassic;
   bool sends_velocity = true;
   /// Faults of drives and encoders, and pushes; others have no effect here.
   std::vector<FaultEvent> faults{};
@@ -33,11 +31,13 @@ struct PlantNodeConfig {
 /// joints at their start and their time stands at 0; they do not close again.
 class PlantNode {
  public:
-  /// Throws std::invalid_argument without a plant, and for a fault on a joint that it has not.
-  PlantNode(std::unique_ptr<Plant> plant, const PlantNodeConfig& config)
+  /// Throws std::invalid_argument without a plant, without a drive for each of its joints, and for
+  /// a fault on a joint that it has not.
+  PlantNode(std::unique_ptr<Plant> plant, std::unique_ptr<Drives> drives,
+            const PlantNodeConfig& config)
       : plant_(checked(std::move(plant), config)),
         config_(config),
-        drives_(static_cast<std::size_t>(plant_->joint_count()), config.drives, config.format),
+        drives_(checked(std::move(drives), *plant_)),
         sensors_(config.encoders, config.faults, config.turns_on),
         applied_(JointVector::Zero(plant_->joint_count())),
         acting_(applied_) {}
@@ -47,7 +47,7 @@ class PlantNode {
   template <hal::Bus Bus>
   void tick(hal::Microseconds deadline_us, Bus& bus) {
     receive(bus);
-    drives_.check_age(bus.now());
+    drives_->tick(bus.now());
     move();
     publish(deadline_us, bus);
   }
@@ -64,11 +64,11 @@ class PlantNode {
   bool receive(Bus& bus) {
     std::array<hal::ReceivedFrame, 16> frames;
     for (std::size_t count = bus.receive(frames); count > 0; count = bus.receive(frames)) {
-      for (std::size_t i = 0; i < count; ++i) drives_.take(frames[i]);
+      for (std::size_t i = 0; i < count; ++i) drives_->take(frames[i]);
       if (count < frames.size()) break;
     }
-    for (std::size_t j = 0; j < drives_.joints(); ++j) {
-      if (drives_.source(j).accepted == accepted_at_move_[j]) return false;
+    for (std::size_t j = 0; j < drives_->joints(); ++j) {
+      if (drives_->commands(j) == accepted_at_move_[j]) return false;
     }
     return true;
   }
@@ -79,7 +79,7 @@ class PlantNode {
   /// That really acted on the joints over the last move: less where a drive loses some, with what
   /// pushes them.
   [[nodiscard]] const JointVector& acting_nm() const { return acting_; }
-  [[nodiscard]] const JointDrives& drives() const { return drives_; }
+  [[nodiscard]] const Drives& drives() const { return *drives_; }
   [[nodiscard]] const Plant& plant() const { return *plant_; }
   [[nodiscard]] bool started() const { return started_; }
   /// Of the plant, since the brakes opened.
@@ -97,14 +97,21 @@ class PlantNode {
     }
     return plant;
   }
+  static std::unique_ptr<Drives> checked(std::unique_ptr<Drives> drives, const Plant& plant) {
+    const auto joints = static_cast<std::size_t>(plant.joint_count());
+    if (drives && drives->joints() == joints) return drives;
+    throw std::invalid_argument("plant node: found " +
+                                std::to_string(drives ? drives->joints() : 0) +
+                                " drives, allowed is " + std::to_string(joints));
+  }
 
   void move() {
-    for (std::size_t j = 0; j < drives_.joints(); ++j) {
+    for (std::size_t j = 0; j < drives_->joints(); ++j) {
       const auto i = static_cast<Eigen::Index>(j);
-      accepted_at_move_[j] = drives_.source(j).accepted;
-      applied_[i] = drives_.torque_nm(j, state().dq[i]);
+      accepted_at_move_[j] = drives_->commands(j);
+      applied_[i] = drives_->torque_nm(j, state().dq[i]);
     }
-    started_ = started_ || drives_.all_in_torque_mode();
+    started_ = started_ || drives_->all_in_torque_mode();
     if (!started_) return;
     acting_ = applied_;
     for (const FaultEvent& fault : config_.faults) {
@@ -124,9 +131,9 @@ class PlantNode {
   void publish(hal::Microseconds deadline_us, Bus& bus) {
     const auto readings =
         sensors_.read(state(), time_s(), config_.period_s, config_.sends_velocity);
-    std::array<hal::Frame, 2 * static_cast<std::size_t>(kMaxJoints)> frames;
+    std::array<hal::Frame, Drives::kMostFrames> frames;
     const std::span<const double> applied(applied_.data(), readings.size());
-    const std::size_t count = drives_.frames(readings, applied, frames);
+    const std::size_t count = drives_->frames(readings, applied, frames);
     for (std::size_t i = 0; i < count; ++i) {
       // What does not go out is seen by its absence, at the other end.
       static_cast<void>(bus.send(frames[i], deadline_us));
@@ -135,7 +142,7 @@ class PlantNode {
 
   std::unique_ptr<Plant> plant_;
   PlantNodeConfig config_;
-  JointDrives drives_;
+  std::unique_ptr<Drives> drives_;
   JointSensors sensors_;
   JointVector applied_;
   JointVector acting_;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 
 namespace offnominal::realtime {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <offnominal/hal/bus.hpp>
+#include <offnominal/hal/bus/bus.hpp>
 #include <offnominal/realtime/recorder.hpp>
 #include <span>
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 #include <offnominal/realtime/spsc_ring.hpp>
 #include <string>
 #include <thread>

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <offnominal/hal/bus.hpp>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/bus.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 #include <offnominal/hal/status.hpp>
 #include <span>
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstddef>
-#include <offnominal/hal/bus.hpp>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/bus.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 #include <offnominal/hal/status.hpp>
 #include <span>
 

@@ -4,18 +4,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <offnominal/hal/address.hpp>
+#include <offnominal/hal/bus/wire_time.hpp>
+#include <offnominal/hal/drive_description.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/hal/messages.hpp>
+#include <offnominal/hal/protocols/protected/address.hpp>
 #include <offnominal/hal/source.hpp>
 #include <span>
 
 namespace offnominal::hal {
-
-enum class FrameFormat : std::uint8_t {
-  kClassic = 0,  // one frame per joint and message
-  kFd = 1,       // up to 8 joints in one frame
-};
 
 // Records of joints 1, 2, ... in as many frames as the format takes, into the front of `into`;
 // returns how many: one a joint, or one for every 8.
@@ -124,7 +121,16 @@ class ProtectedDrives {
   [[nodiscard]] bool stop_seen() const { return stop_seen_; }
   void clear_stop() { stop_seen_ = false; }
 
-  // Of what has come in: for reports.
+  [[nodiscard]] DriveCounts counts() const {
+    DriveCounts counts;
+    for (std::size_t joint = 0; joint < Joints; ++joint) {
+      for (const Source* source : {&encoders_.source(joint), &drives_.source(joint)}) {
+        counts.lost += source->lost;
+        counts.rejected += std::uint64_t{source->rejected} + source->repeated;
+      }
+    }
+    return counts;
+  }
   [[nodiscard]] const Source& encoder_source(std::size_t joint) const {
     return encoders_.source(joint);
   }
@@ -170,5 +176,70 @@ class ProtectedDrives {
 };
 
 static_assert(DriveProtocol<ProtectedDrives<2>>);
+
+// Programs choose them by this (drive_description.hpp).
+struct Protected {
+  static constexpr const char* kName = "protected";
+  static constexpr const char* kHeader = "offnominal/hal/protocols/protected/protected_drives.hpp";
+  static constexpr const char* kType = "offnominal::hal::Protected";
+  static constexpr std::array<DriveKey, 0> kKeys{};
+  static constexpr std::array<DriveKey, 0> kJointKeys{};
+  static constexpr bool kHasFd = true;
+  static constexpr bool kHasPositionsAlone = true;
+
+  template <std::size_t Joints>
+  using Drives = ProtectedDrives<Joints>;
+
+  template <std::size_t Joints>
+  [[nodiscard]] static Drives<Joints> drives(const DriveValues& /*values*/, const DriveLink& link) {
+    const SourceConfig source = source_config(link.period_us);
+    return Drives<Joints>(source, source, link.format);
+  }
+
+  [[nodiscard]] static DriveFault fault_of(const DriveValues& /*values*/, double /*period_s*/) {
+    return {};
+  }
+
+  // Reading, status and command of every joint.
+  [[nodiscard]] static double busy_share(const DriveValues& /*values*/, std::size_t joints,
+                                         FrameFormat format, double period_s) {
+    double busy_s = 0;
+    for (const MessageKind kind :
+         {MessageKind::kEncoder, MessageKind::kDriveStatus, MessageKind::kTorqueCommand}) {
+      std::array<Frame, kMaxNodes> frames;
+      const std::size_t count = packed(kind, joints, format, frames);
+      for (std::size_t i = 0; i < count; ++i) busy_s += longest_wire_time_s(frames[i]);
+    }
+    return busy_s / period_s;
+  }
+
+  [[nodiscard]] static Frame reading_frame(std::size_t joints, FrameFormat format) {
+    std::array<Frame, kMaxNodes> frames;
+    static_cast<void>(packed(MessageKind::kEncoder, joints, format, frames));
+    return frames[0];
+  }
+
+  // Stops, readings, statuses; torque commands and heartbeats.
+  [[nodiscard]] static std::size_t from_drives(const DriveValues& /*values*/,
+                                               std::span<IdFilter> into) {
+    into[0] = {.id = 0x020, .mask = 0x7E0};
+    into[1] = {.id = 0x180, .mask = 0x7C0};
+    into[2] = {.id = 0x200, .mask = 0x7C0};
+    return 3;
+  }
+  [[nodiscard]] static std::size_t from_controller(const DriveValues& /*values*/,
+                                                   std::span<IdFilter> into) {
+    into[0] = {.id = 0x100, .mask = 0x7C0};
+    into[1] = {.id = 0x700, .mask = 0x7E0};
+    return 2;
+  }
+
+ private:
+  static std::size_t packed(MessageKind kind, std::size_t joints, FrameFormat format,
+                            std::span<Frame> into) {
+    const std::array<Record, kMaxNodes> records{};
+    return pack(kind, std::span<const Record>(records).first(joints), format, into);
+  }
+};
 
 }  // namespace offnominal::hal

@@ -41,4 +41,15 @@ struct ReceivedFrame {
   return false;
 }
 
+// Identifiers that agree with `id` in every bit of `mask`, of the one length of identifier.
+struct IdFilter {
+  std::uint32_t id = 0;
+  std::uint32_t mask = kMaxExtendedId;
+  bool extended = false;
+};
+
+[[nodiscard]] constexpr bool passes(const IdFilter& filter, const Frame& frame) {
+  return filter.extended == frame.extended && ((filter.id ^ frame.id) & filter.mask) == 0;
+}
+
 }  // namespace offnominal::hal

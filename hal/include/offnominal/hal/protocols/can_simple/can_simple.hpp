@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <offnominal/hal/bus/wire_time.hpp>
+#include <offnominal/hal/drive_description.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/hal/finite.hpp>
 #include <offnominal/hal/record.hpp>
@@ -143,6 +145,7 @@ class CanSimpleDrives {
   // Nobody asks for an emergency stop in this protocol; an axis that stopped says so by its error.
   [[nodiscard]] bool stop_seen() const { return false; }
   void clear_stop() {}
+  [[nodiscard]] DriveCounts counts() const { return {}; }
 
   // From being asked for a state until an axis is in it, and its heartbeat has gone out.
   static constexpr Microseconds kStateTimeUs = 15000;
@@ -279,5 +282,152 @@ class CanSimpleDrives {
 };
 
 static_assert(DriveProtocol<CanSimpleDrives<2>>);
+
+// Programs choose them by this (drive_description.hpp).
+struct CanSimple {
+  static constexpr const char* kName = "can_simple";
+  static constexpr const char* kHeader = "offnominal/hal/protocols/can_simple/can_simple.hpp";
+  static constexpr const char* kType = "offnominal::hal::CanSimple";
+  static constexpr bool kHasFd = false;
+  static constexpr bool kHasPositionsAlone = false;
+
+  // CanSimpleFirmware in their order.
+  static constexpr std::array<const char*, 2> kFirmwares{"0.5", "0.6"};
+  enum Key : std::uint8_t { kFirmware, kEncoderInterval, kHeartbeatInterval, kTorqueInterval };
+  static constexpr std::array<DriveKey, 4> kKeys{{
+      {.name = "firmware",
+       .meaning = "of every axis",
+       .most = 1,
+       .otherwise = 1,
+       .words = kFirmwares},
+      {.name = "encoder_interval_s",
+       .unit = "s",
+       .meaning = "of Get_Encoder_Estimates, whole ms, at most `estimator.period_s`",
+       .least = 0.001,
+       .most = 0.1,
+       .otherwise = 0.001},
+      {.name = "heartbeat_interval_s",
+       .unit = "s",
+       .meaning = "of Heartbeat, whole ms",
+       .least = 0.001,
+       .most = 0.1,
+       .otherwise = 0.1},
+      {.name = "torque_interval_s",
+       .unit = "s",
+       .meaning = "of Get_Torques (0.6) or Get_Iq (0.5), whole ms; 0: not sent, the commanded "
+                  "torque is taken for the one applied",
+       .least = 0,
+       .most = 0.1,
+       .otherwise = 0},
+  }};
+  enum JointKey : std::uint8_t { kNode, kJointPerTurn, kMotorNmPerAmpere };
+  static constexpr std::array<DriveKey, 3> kJointKeys{{
+      {.name = "node",
+       .meaning = "axis node id, another of every joint",
+       .most = 63,
+       .required = true,
+       .whole = true,
+       .differs = true},
+      {.name = "joint_per_turn",
+       .unit = "rad or m",
+       .meaning = "of the joint, per turn of the motor; negative where they turn against each "
+                  "other, not 0",
+       .least = -1000,
+       .most = 1000,
+       .required = true},
+      {.name = "motor_nm_per_ampere",
+       .unit = "N m/A",
+       .meaning = "the motor's `torque_constant`, negative where its direction is -1; needed by "
+                  "firmware 0.5 with `torque_interval_s` above 0",
+       .least = -1000,
+       .most = 1000},
+  }};
+
+  template <std::size_t Joints>
+  using Drives = CanSimpleDrives<Joints>;
+
+  template <std::size_t Joints>
+  [[nodiscard]] static Drives<Joints> drives(const DriveValues& values, const DriveLink& /*link*/) {
+    std::array<CanSimpleAxis, Joints> axes;
+    for (std::size_t j = 0; j < Joints; ++j) axes[j] = axis_of(values, j);
+    return Drives<Joints>(config_of(values), axes);
+  }
+
+  [[nodiscard]] static constexpr CanSimpleConfig config_of(const DriveValues& values) {
+    return {.encoder_interval_us = microseconds(values.shared[kEncoderInterval]),
+            .heartbeat_interval_us = microseconds(values.shared[kHeartbeatInterval]),
+            .torque_interval_us = microseconds(values.shared[kTorqueInterval])};
+  }
+  [[nodiscard]] static constexpr CanSimpleAxis axis_of(const DriveValues& values,
+                                                       std::size_t joint) {
+    const auto of_joint = values.of_joints.subspan(joint * kJointKeys.size(), kJointKeys.size());
+    const bool old = values.shared[kFirmware] == 0;
+    return {.node = static_cast<std::uint8_t>(of_joint[kNode]),
+            .joint_per_turn = static_cast<float>(of_joint[kJointPerTurn]),
+            .firmware = old ? CanSimpleFirmware::k05 : CanSimpleFirmware::k06,
+            .motor_nm_per_ampere = static_cast<float>(of_joint[kMotorNmPerAmpere])};
+  }
+
+  [[nodiscard]] static DriveFault fault_of(const DriveValues& values, double period_s) {
+    for (const Key key : {kEncoderInterval, kHeartbeatInterval, kTorqueInterval}) {
+      const double interval_ms = 1e3 * values.shared[key];
+      if (std::fabs(interval_ms - std::round(interval_ms)) < 1e-6) continue;
+      return {kKeys[key].name, "a part of a millisecond", "whole milliseconds"};
+    }
+    if (values.shared[kEncoderInterval] > period_s * (1 + 1e-6)) {
+      return {kKeys[kEncoderInterval].name, "ticks without a reading",
+              "at most estimator.period_s: every tick needs a reading"};
+    }
+    const CanSimpleConfig config = config_of(values);
+    for (std::size_t j = 0; j < values.of_joints.size() / kJointKeys.size(); ++j) {
+      const CanSimpleAxis axis = axis_of(values, j);
+      if (axis.joint_per_turn == 0) {
+        return {kJointKeys[kJointPerTurn].name, "0", "another number: the gear and its sign"};
+      }
+      const bool tells_current =
+          axis.firmware == CanSimpleFirmware::k05 && config.torque_interval_us > 0;
+      if (!tells_current || axis.motor_nm_per_ampere != 0) continue;
+      return {kJointKeys[kMotorNmPerAmpere].name, "none, with firmware 0.5 that tells its current",
+              "the motor's torque_constant for every joint"};
+    }
+    return {};
+  }
+
+  // All of them are as long as frames of classic CAN are.
+  [[nodiscard]] static double busy_share(const DriveValues& values, std::size_t joints,
+                                         FrameFormat format, double period_s) {
+    double frames_per_s = 1 / period_s;
+    for (const Key key : {kEncoderInterval, kHeartbeatInterval, kTorqueInterval}) {
+      if (values.shared[key] > 0) frames_per_s += 1 / values.shared[key];
+    }
+    return static_cast<double>(joints) * frames_per_s *
+           longest_wire_time_s(reading_frame(joints, format));
+  }
+
+  [[nodiscard]] static Frame reading_frame(std::size_t /*joints*/, FrameFormat /*format*/) {
+    Frame frame;
+    frame.length = kMaxClassicLength;
+    return frame;
+  }
+
+  // All that an axis and a controller say to each other has the axis' node in it.
+  [[nodiscard]] static std::size_t from_drives(const DriveValues& values,
+                                               std::span<IdFilter> into) {
+    const std::size_t joints = values.of_joints.size() / kJointKeys.size();
+    for (std::size_t j = 0; j < joints; ++j) {
+      into[j] = {.id = std::uint32_t{axis_of(values, j).node} << 5U, .mask = 0x7E0};
+    }
+    return joints;
+  }
+  [[nodiscard]] static std::size_t from_controller(const DriveValues& values,
+                                                   std::span<IdFilter> into) {
+    return from_drives(values, into);
+  }
+
+ private:
+  static constexpr Microseconds microseconds(double seconds) {
+    return static_cast<Microseconds>(1e6 * seconds + 0.5);
+  }
+};
 
 }  // namespace offnominal::hal

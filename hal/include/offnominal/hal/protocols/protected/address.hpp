@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 #include <offnominal/hal/record.hpp>
 #include <offnominal/hal/status.hpp>
 #include <span>

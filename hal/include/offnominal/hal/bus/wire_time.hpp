@@ -1,6 +1,6 @@
 #pragma once
 
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 
 // How long frames keep a bus busy: for the load of a bus that is being planned.
 

@@ -3,23 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <offnominal/hal/bus.hpp>
-#include <offnominal/hal/frame.hpp>
+#include <offnominal/hal/bus/bus.hpp>
+#include <offnominal/hal/bus/frame.hpp>
 #include <offnominal/hal/status.hpp>
 #include <span>
 
 namespace offnominal::hal {
-
-// Identifiers that agree with `id` in every bit of `mask`, of the one length of identifier.
-struct IdFilter {
-  std::uint32_t id = 0;
-  std::uint32_t mask = kMaxExtendedId;
-  bool extended = false;
-};
-
-[[nodiscard]] constexpr bool passes(const IdFilter& filter, const Frame& frame) {
-  return filter.extended == frame.extended && ((filter.id ^ frame.id) & filter.mask) == 0;
-}
 
 struct SocketCanConfig {
   static constexpr std::size_t kMostInKernel = 16;
