@@ -111,7 +111,9 @@ class FileFitter {
         recordings_(data.recordings),
         nuisance_(std::move(nuisance)),
         terms_(std::move(terms)) {
+    // As the file will be used: a monitor knows no skew either.
     nuisance_.sign_shapes = false;
+    nuisance_.skew_samples = 0;
     if (recordings_[0].at_rest) return;
     VectorXd settled = settled_sign_widths(file, options.refitted);
     for (Index joint = 0; joint < options.given_widths.size(); ++joint) {
@@ -278,8 +280,6 @@ std::vector<std::size_t> fitted_effects(const RobotDescription& robot) {
 
 ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescription& robot,
                              const Data& data, const FileFitOptions& options, Relinearised found) {
-  // What is the recordings' own, their skew, is fitted beside it: left out, it would stand in the
-  // numbers that are written.
   NuisanceOptions nuisance = options.nuisance;
   if (std::all_of(found.link_factors.begin(), found.link_factors.end(),
                   [](double factor) { return std::abs(factor - 1) < kWorthWriting; })) {
@@ -338,9 +338,11 @@ Estimates estimates_of(const ImprovedRobot& improved) {
   for (std::size_t i = 0; i < estimates.terms.size(); ++i) {
     for (std::size_t p = 0; p < estimates.terms[i].size(); ++p) {
       Estimate& one = estimates.terms[i][p];
-      const auto& other = beside.terms[i][p].ci95;
-      if (!one.ci95 || !other) continue;
-      const double half = std::max((*one.ci95)[1] - (*one.ci95)[0], (*other)[1] - (*other)[0]) / 2;
+      const Estimate& other = beside.terms[i][p];
+      if (!one.ci95 || !other.ci95) continue;
+      const double noise =
+          std::max((*one.ci95)[1] - (*one.ci95)[0], (*other.ci95)[1] - (*other.ci95)[0]) / 2;
+      const double half = std::hypot(noise, one.value.value - other.value.value);
       one.ci95 = {one.value.value - half, one.value.value + half};
     }
   }

@@ -16,8 +16,8 @@ namespace offnominal::tools::discovery {
 struct ImprovedRobot {
   RobotDescription robot;
   std::vector<std::size_t> added;  // per term: its effect in `robot`, or kUnwritten
-  // The last fit, which all numbers are from: within what physics lets them be, without shapes of
-  // the sign that no robot file can say, and with widths of the sign that the file will have.
+  // The last fit, which all numbers are from: within what physics lets them be, without what no
+  // robot file can say, and with widths of the sign that the file will have.
   Relinearised last;
   Relinearised found;          // the same terms beside what no robot file can say: for intervals
   RobotDescription made_with;  // what the data of `last` were made with
@@ -48,8 +48,8 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
                              const Data& data, const FileFitOptions& options, Relinearised found);
 
 // Numbers of the last fit. An interval of a term is the wider one of the last fit's and of the
-// model's that has the recordings' own beside it, a skew and other ways to build up at a reversal:
-// what a file leaves out makes no number surer.
+// model's that has the recordings' own beside it, a skew and other ways to build up at a reversal,
+// and as much more as the two values are apart: what a file leaves out makes no number surer.
 Estimates estimates_of(const ImprovedRobot& improved);
 
 inline constexpr double kWorthWriting = 0.005;  // share of a link's mass
