@@ -1,4 +1,4 @@
-// Every hidden effect shows in the torque with about the size that draw_robot.hpp documents.
+// Every hidden effect shows in the torque with about the size that effect_table.hpp documents.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -113,7 +113,7 @@ TEST_P(OutsideSize, ShowsAtItsJointOnly) {
   EXPECT_LT(other, 0.006);
 }
 
-INSTANTIATE_TEST_SUITE_P(HiddenRobots, OutsideSize, testing::ValuesIn(kAllOutsideEffects),
+INSTANTIATE_TEST_SUITE_P(HiddenRobots, OutsideSize, testing::ValuesIn(all_outside_effects()),
                          [](const auto& given) { return std::string(name(given.param)); });
 
 }  // namespace
