@@ -32,6 +32,7 @@ enum class HiddenEffect {
   kPeriodicDisturbance,
   kJointCoupling,
   kTemperatureDrift,
+  kGearLoss,
 };
 
 /// Effects that the analysis has no candidate for.
@@ -72,6 +73,8 @@ struct JointFriction {
   double coulomb_asymmetry_nm = 0.0;  ///< half the difference of the directions, + less -
   double viscous_asymmetry_nm_s_rad = 0.0;
   double per_load = 0.0;               ///< friction per magnitude of the torque through the gear
+  double driving_loss = 0.0;           ///< per gear load, where the drive moves the load
+  double driven_loss = 0.0;            ///< per gear load, where the load moves the drive
   double cold_coulomb_nm = 0.0;        ///< excess at the start of a run
   double cold_viscous_nm_s_rad = 0.0;  ///< excess at the start of a run
   double warming_s = 10.0;             ///< time constant of its decay
@@ -101,6 +104,8 @@ struct JointFriction {
     }
     // By the bristle's side, not the velocity's: the torque stays continuous where the joint
     // sticks.
+    level += std::abs(at.gear_load_nm) *
+             (at.gear_load_nm * at.stretch > 0.0 ? driving_loss : driven_loss);
     level += std::copysign(coulomb_asymmetry_nm, coulomb_asymmetry_nm * at.stretch);
     return std::max(0.0, level);
   }
