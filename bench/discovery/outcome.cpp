@@ -68,7 +68,7 @@ bool is_unknown(Verdict verdict) {
 void judge_outside(const hidden::TrueOutsideEffect& outside, const Explanation& e,
                    Outcome& outcome) {
   outcome.right_verdict = is_unknown(e.verdict);
-  const std::string variable(hidden::variable(outside.effect));
+  const std::string variable(hidden::row_of(outside.effect).variable);
   if (!outcome.right_verdict || variable == "time") {
     outcome.right_detail = e.verdict == Verdict::kUnknownExternal && variable == "time";
     return;

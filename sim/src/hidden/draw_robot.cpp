@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "offnominal/sim/hidden/closed_loop.hpp"
 
@@ -105,17 +107,31 @@ int drawn_joint(HiddenEffect effect, const std::vector<TrueEffect>& earlier, Dra
   return joint;
 }
 
+template <typename Row>
+std::vector<TrueParameter> hide(const Row& row, const HidingPlace& place) {
+  const std::vector<double> values = row.hide(place, row.drawn);
+  std::vector<TrueParameter> parameters;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    parameters.push_back({std::string(row.parameters.at(i).name), values[i],
+                          std::string(row.parameters.at(i).unit)});
+  }
+  return parameters;
+}
+
 void hide_all(const Request& request, const Survey& survey, DrawnRobot& drawn) {
   std::vector<TrueEffect> hidden;
-  for (const HiddenEffect effect : kAllHiddenEffects) {
+  for (const HiddenEffectRow& row : hidden_effect_table()) {
+    const HiddenEffect effect = row.effect;
     if (std::find(request.effects.begin(), request.effects.end(), effect) ==
         request.effects.end()) {
       continue;
     }
     Draws draws(request.seed, Stream::kEffects, static_cast<std::uint64_t>(effect));
     const int joint = drawn_joint(effect, hidden, draws);
-    hidden.push_back(hide_effect(
-        effect, {joint, request.effect_size, survey, draws, drawn.robot, drawn.nominal}));
+    hidden.push_back(
+        {effect, joint,
+         hide(row, {joint, request.effect_size, survey, draws, drawn.robot, drawn.nominal})});
   }
   for (const HiddenEffect effect : request.effects) {
     drawn.truth.effects.push_back(
@@ -125,8 +141,9 @@ void hide_all(const Request& request, const Survey& survey, DrawnRobot& drawn) {
   if (request.outside == OutsideEffect::kNone) return;
   Draws draws(request.seed, Stream::kOutside, static_cast<std::uint64_t>(request.outside));
   const int joint = draws.below(2);
-  drawn.truth.outside = hide_outside_effect(
-      request.outside, {joint, request.effect_size, survey, draws, drawn.robot, drawn.nominal});
+  drawn.truth.outside = {request.outside, joint,
+                         hide(row_of(request.outside), {joint, request.effect_size, survey, draws,
+                                                        drawn.robot, drawn.nominal})};
 }
 
 }  // namespace

@@ -28,6 +28,11 @@ double Draws::log_uniform(double low, double high) {
   return std::exp(uniform(std::log(low), std::log(high)));
 }
 
+double Draws::from(const DrawnNumber& number) {
+  return number.per_octave ? log_uniform(number.low, number.high)
+                           : uniform(number.low, number.high);
+}
+
 double Draws::sign() { return (generator_() >> 63U) != 0U ? 1.0 : -1.0; }
 
 int Draws::below(int count) { return static_cast<int>(uniform(0.0, static_cast<double>(count))); }

@@ -12,12 +12,6 @@ using Eigen::Vector2d;
 
 constexpr double kBristleDampingRatio = 0.3;
 
-// 1 at the centre, 1/e at the half width.
-double bump(double x, double centre, double half_width) {
-  const double d = (x - centre) / half_width;
-  return std::exp(-d * d);
-}
-
 double push(const std::vector<Contact>& contacts, int joint, double t_s) {
   double torque = 0.0;
   for (const Contact& c : contacts) {
@@ -73,61 +67,33 @@ double Plant::transmitted_torque(int joint, const PlantState& state) const {
   return side * std::max(0.0, t.stiffness_nm_rad * pressed + t.damping_nm_s_rad * side * rate);
 }
 
-double Plant::sliding_level(const JointFriction& f, double position_rad, double velocity_rad_s,
-                            double gear_load_nm, double cold) const {
-  double level = f.coulomb_nm + f.per_load * std::abs(gear_load_nm) + cold * f.cold_coulomb_nm;
-  if (f.stribeck_nm != 0.0) {
-    level += f.stribeck_nm * bump(velocity_rad_s, 0.0, f.stribeck_velocity_rad_s);
-  }
-  if (f.worn_nm != 0.0) {
-    level += f.worn_nm * bump(position_rad, f.worn_position_rad, f.worn_half_width_rad);
-  }
-  if (f.band_nm != 0.0) {
-    level +=
-        f.band_nm * bump(std::abs(velocity_rad_s), f.band_speed_rad_s, f.band_half_width_rad_s);
-  }
-  return level;
+MotorSide Plant::motor_side(int joint, const PlantState& state, double t_s) {
+  return {state.motor_q[joint],
+          state.motor_dq[joint],
+          state.motor_dq[1 - joint],
+          state.stretch[joint],
+          state.belt_stretch[joint],
+          state.gear_load_nm[joint],
+          t_s};
 }
 
 double Plant::friction_torque(int joint, const PlantState& state, double t_s) const {
   const auto j = static_cast<std::size_t>(joint);
-  const JointFriction& f = robot_.joints[j].friction;
-  const double v = state.motor_dq[joint], stretch = state.stretch[joint];
-  const bool warms = f.cold_coulomb_nm != 0.0 || f.cold_viscous_nm_s_rad != 0.0;
-  const double cold = warms ? std::exp(-t_s / f.warming_s) : 0.0;
-  double level = sliding_level(f, state.motor_q[joint], v, state.gear_load_nm[joint], cold);
-  // By the bristle's side, not the velocity's: the torque stays continuous where the joint sticks.
-  level += std::copysign(f.coulomb_asymmetry_nm, f.coulomb_asymmetry_nm * stretch);
-  const double viscous = f.viscous_nm_s_rad + cold * f.cold_viscous_nm_s_rad +
-                         (v > 0.0 ? 1.0 : -1.0) * f.viscous_asymmetry_nm_s_rad;
-  return bristles_[j].torque(stretch, v, std::max(0.0, level)) +
-         f.soft_level_nm * state.soft_stretch[joint] + viscous * v +
-         f.quadratic_nm_s2_rad2 * v * std::abs(v);
+  const JointFriction& friction = robot_.joints[j].friction;
+  const MotorSide at = motor_side(joint, state, t_s);
+  return bristles_[j].torque(at.stretch, at.dq, friction.sliding_level(at)) +
+         friction.soft_level_nm * state.soft_stretch[joint] + friction.viscous_torque(at);
 }
 
 double Plant::motor_load(int joint, const PlantState& state, double t_s) const {
-  const auto j = static_cast<std::size_t>(joint);
-  const JointLoads& loads = robot_.joints[j].loads;
-  double torque = friction_torque(joint, state, t_s) + loads.offset_nm +
-                  loads.coupling_nm_s_rad * state.motor_dq[1 - joint] +
-                  loads.belt_nm * state.belt_stretch[joint];
-  if (loads.cogging_nm != 0.0) {
-    torque += loads.cogging_nm *
-              std::sin(loads.cogging_order * state.motor_q[joint] + loads.cogging_phase_rad);
-  }
-  return torque;
+  return friction_torque(joint, state, t_s) +
+         robot_.joints[static_cast<std::size_t>(joint)].loads.on_motor(
+             motor_side(joint, state, t_s));
 }
 
 double Plant::link_load(int joint, const PlantState& state, double t_s) const {
-  const JointLoads& loads = robot_.joints[static_cast<std::size_t>(joint)].loads;
-  const double q = state.link_q[joint];
-  double torque = loads.spring_nm_rad * (q - loads.spring_rest_rad);
-  if (loads.periodic_nm != 0.0) {
-    torque += loads.periodic_nm * std::sin(loads.periodic_rad_s * t_s + loads.periodic_phase_rad);
-  }
-  const double beyond = loads.stop_side * (q - loads.stop_position_rad);
-  if (beyond > 0.0) torque += loads.stop_side * loads.stop_nm_rad * beyond;
-  return torque + push(contacts_, joint, t_s);
+  return robot_.joints[static_cast<std::size_t>(joint)].loads.on_link(state.link_q[joint], t_s) +
+         push(contacts_, joint, t_s);
 }
 
 Plant::Rates Plant::rates(const PlantState& state, double t_s,

@@ -34,70 +34,6 @@ void validate(const Request& r) {
   }
 }
 
-std::string_view name(HiddenEffect effect) {
-  switch (effect) {
-    case HiddenEffect::kCoulombFriction:
-      return "coulomb_friction";
-    case HiddenEffect::kViscousFriction:
-      return "viscous_friction";
-    case HiddenEffect::kQuadraticFriction:
-      return "quadratic_friction";
-    case HiddenEffect::kStribeckFriction:
-      return "stribeck_friction";
-    case HiddenEffect::kFrictionAsymmetry:
-      return "friction_asymmetry";
-    case HiddenEffect::kLoadDependentFriction:
-      return "load_dependent_friction";
-    case HiddenEffect::kHysteresis:
-      return "hysteresis";
-    case HiddenEffect::kTorqueOffset:
-      return "torque_offset";
-    case HiddenEffect::kTorqueScale:
-      return "torque_scale";
-    case HiddenEffect::kRotorInertia:
-      return "rotor_inertia";
-    case HiddenEffect::kLinkMass:
-      return "link_mass";
-    case HiddenEffect::kTipPayload:
-      return "tip_payload";
-    case HiddenEffect::kCoggingTorque:
-      return "cogging_torque";
-    case HiddenEffect::kJointStiffness:
-      return "joint_stiffness";
-    case HiddenEffect::kJointElasticity:
-      return "joint_elasticity";
-    case HiddenEffect::kBacklash:
-      return "backlash";
-    case HiddenEffect::kTimeDelay:
-      return "time_delay";
-    case HiddenEffect::kPeriodicDisturbance:
-      return "periodic_disturbance";
-    case HiddenEffect::kJointCoupling:
-      return "joint_coupling";
-    case HiddenEffect::kTemperatureDrift:
-      return "temperature_drift";
-  }
-  return "";
-}
-
-std::string_view name(OutsideEffect effect) {
-  switch (effect) {
-    case OutsideEffect::kNone:
-      return "none";
-    case OutsideEffect::kEndStop:
-      return "end_stop";
-    case OutsideEffect::kWornSpot:
-      return "worn_spot";
-    case OutsideEffect::kDragBand:
-      return "drag_band";
-    case OutsideEffect::kMagneticSaturation:
-      return "magnetic_saturation";
-    case OutsideEffect::kTransientContact:
-      return "transient_contact";
-  }
-  return "";
-}
-
 std::string_view name(DataFault fault) {
   switch (fault) {
     case DataFault::kNone:
@@ -110,25 +46,6 @@ std::string_view name(DataFault fault) {
       return "stale_samples";
     case DataFault::kClockSkew:
       return "clock_skew";
-  }
-  return "";
-}
-
-std::string_view variable(OutsideEffect effect) {
-  switch (effect) {
-    case OutsideEffect::kNone:
-      return "";
-    case OutsideEffect::kEndStop:
-      return "position";
-    // Friction: of either sign at that place, so that position alone says nothing on average.
-    case OutsideEffect::kWornSpot:
-      return "position and velocity";
-    case OutsideEffect::kDragBand:
-      return "velocity";
-    case OutsideEffect::kMagneticSaturation:
-      return "load";
-    case OutsideEffect::kTransientContact:
-      return "time";
   }
   return "";
 }

@@ -26,8 +26,13 @@ Chain<N, Scalar> chain_with_path(std::mt19937_64& generator) {
     };
     add(EffectKind::kRotorInertia, uniform(generator, 0.01, 0.3), 0);
     add(EffectKind::kCoulombFriction, uniform(generator, 0, 2), 0.1);
-    add(EffectKind::kLoadDependentFriction, uniform(generator, 0, 0.8), 0.05);
-    add(EffectKind::kLoadDependentFriction, uniform(generator, 0, 0.15), 0.4);
+    add(EffectKind::kLoadDependentFriction, uniform(generator, 0, 0.3), 0.05);
+    EXPECT_TRUE(chain.effects.add(
+        {EffectKind::kGearLoss,
+         joint,
+         {static_cast<Scalar>(uniform(generator, 0, 0.55)),
+          static_cast<Scalar>(uniform(generator, 0, 1.2)), static_cast<Scalar>(0.1)}}));
+    add(EffectKind::kLoadDependentFriction, uniform(generator, 0, 0.05), 0.4);
     add(EffectKind::kTorqueScale, uniform(generator, -0.4, 0.4), 0);
     add(EffectKind::kTorqueScale, uniform(generator, -0.4, 0.4), 0);
   }
@@ -118,6 +123,7 @@ TEST(TorquePath, FrictionByTheLoadNeverGivesEnergyAndNeedsMotion) {
     const auto bare = make_model(chain);
     for (const std::uint8_t joint : {std::uint8_t{0}, std::uint8_t{1}}) {
       ASSERT_TRUE(chain.effects.add({EffectKind::kLoadDependentFriction, joint, {0.4, 0.05}}));
+      ASSERT_TRUE(chain.effects.add({EffectKind::kGearLoss, joint, {0.1, 0.9, 0.2}}));
     }
     const auto model = make_model(chain);
     const auto q = random_vector<2, double>(generator, 3.0);
@@ -179,6 +185,74 @@ TEST(TorquePath, FrictionByTheDirectionOfPowerIsTakenBackExactly) {
     const Eigen::Vector2d slope =
         (drive_torque<2, double>(model, effects, load + more) - told).cwiseQuotient(more);
     EXPECT_LE(deviation(told_per_load<2, double>(model, effects, load), slope), 1e-6);
+  }
+}
+
+// Far from standstill a gear is its two efficiencies.
+TEST(TorquePath, AGearHasItsOwnEfficiencyInEitherDirectionOfPower) {
+  const double driving = 0.8;
+  const double driven = 0.7;
+  Chain<1, double> chain;
+  chain.joints[0].centre_of_mass_m = {1, 0, 0};
+  chain.gravity_m_s2 = {0, -10, 0};
+  const auto bare = make_model(chain);
+  ASSERT_TRUE(chain.effects.add({EffectKind::kGearLoss, 0, {1 - driven, 1 / driving - 1, 0.01}}));
+  ASSERT_EQ(validate(chain), Status::kOk);
+  const auto model = make_model(chain);
+  int driving_seen = 0;
+  int driven_seen = 0;
+  for (const double q : {-2.0, -0.4, 0.3, 2.9}) {
+    for (const double dq : {-1.0, 1.0}) {
+      using V = Vector<1, double>;
+      const V none = V::Zero();
+      const double load = inverse_dynamics<1, double>(bare, V(q), V(dq), none, 0)[0];
+      const double told = inverse_dynamics<1, double>(model, V(q), V(dq), none, 0)[0];
+      const bool drives = load * dq > 0;
+      EXPECT_NEAR(told, drives ? load / driving : load * driven, 1e-12);
+      ++(drives ? driving_seen : driven_seen);
+      // Nothing is lost at rest, and nothing jumps where the load passes zero.
+      EXPECT_EQ((inverse_dynamics<1, double>(model, V(q), none, none, 0)[0]),
+                (inverse_dynamics<1, double>(bare, V(q), none, none, 0)[0]));
+    }
+  }
+  EXPECT_EQ(driving_seen, 4);
+  EXPECT_EQ(driven_seen, 4);
+}
+
+TEST(TorquePath, AGearWithEqualLossesIsFrictionByTheLoad) {
+  std::mt19937_64 generator = seeded_generator();
+  Chain<2, double> gear = random_chain<2, double>(generator);
+  Chain<2, double> friction = gear;
+  ASSERT_TRUE(gear.effects.add({EffectKind::kGearLoss, 1, {0.4, 0.4, 0.2}}));
+  ASSERT_TRUE(friction.effects.add({EffectKind::kLoadDependentFriction, 1, {0.4, 0.2}}));
+  for (int sample = 0; sample < 100; ++sample) {
+    const auto q = random_vector<2, double>(generator, 3.0);
+    const auto dq = random_vector<2, double>(generator, 0.4);
+    const auto ddq = random_vector<2, double>(generator, 5.0);
+    EXPECT_LE(deviation(inverse_dynamics(make_model(gear), q, dq, ddq, 0.0),
+                        inverse_dynamics(make_model(friction), q, dq, ddq, 0.0)),
+              1e-12);
+  }
+}
+
+// The most that a gear takes where the load drives it is what keeps the inverse single-valued: no
+// velocity may take more.
+TEST(TorquePath, AGearTakesNoMoreOfALoadThatDrivesItThanItSays) {
+  std::mt19937_64 generator = seeded_generator();
+  for (int sample = 0; sample < 200; ++sample) {
+    const std::array<double, kMaxEffectParameters> p{
+        uniform(generator, 0, 0.95), uniform(generator, 0, effects::GearLoss::kMostDrivingLoss),
+        0.1};
+    const double most = effects::GearLoss::most_friction_per_load(p);
+    double seen = 0;
+    for (double dq = 0; dq < 1; dq += 1e-3) {
+      const auto at = effects::GearLoss::friction_per_load(p, JointInstant<double>{0, dq, 0});
+      seen = std::max(seen, at.by_size - at.by_load);
+      EXPECT_GE(at.by_size, std::abs(at.by_load));  // against the motion, whatever the load
+    }
+    EXPECT_LE(seen, most + 1e-12);
+    EXPECT_GT(seen, most - 1e-4);
+    EXPECT_LT(most, 1);
   }
 }
 

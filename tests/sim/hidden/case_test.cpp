@@ -3,14 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "offnominal/sim/hidden/data_fault.hpp"
 #include "offnominal/sim/hidden/draw_robot.hpp"
+#include "support/places.hpp"
 #include "unexplained.hpp"
 
 namespace offnominal::sim::hidden {
@@ -61,7 +65,7 @@ TEST(HiddenCase, HidingSomethingLeavesArmAndMotion) {
 
 TEST(HiddenCase, EveryEffectIsNamedWithItsParametersAndUnits) {
   std::set<std::string> names;
-  for (const HiddenEffect effect : kAllHiddenEffects) {
+  for (const HiddenEffect effect : all_hidden_effects()) {
     const DrawnRobot drawn = draw_robot(short_request(2, {effect}));
     ASSERT_EQ(drawn.truth.effects.size(), 1U);
     const TrueEffect& hidden = drawn.truth.effects[0];
@@ -70,8 +74,40 @@ TEST(HiddenCase, EveryEffectIsNamedWithItsParametersAndUnits) {
     for (const TrueParameter& p : hidden.parameters) EXPECT_TRUE(std::isfinite(p.value));
     names.insert(std::string(name(effect)));
   }
-  EXPECT_EQ(names.size(), kAllHiddenEffects.size());
+  EXPECT_EQ(names.size(), hidden_effect_table().size());
   EXPECT_EQ(names.count(""), 0U);
+}
+
+template <typename Row>
+std::string document_row(const Row& row) {
+  std::ostringstream sizes;
+  for (const DrawnNumber& drawn : row.drawn) {
+    if (sizes.tellp() > 0) sizes << ", ";
+    sizes << drawn.of << ' ' << drawn.low << " to " << drawn.high;
+    if (!drawn.unit.empty()) sizes << ' ' << drawn.unit;
+  }
+  if (!row.note.empty()) sizes << ", " << row.note;
+  return "| `" + std::string(row.name) + "` | " + sizes.str() + " |\n";
+}
+
+TEST(HiddenCase, TheBenchmarksPageHasTheSizesOfTheTables) {
+  std::string rows = "| effect | drawn |\n|---|---|\n";
+  for (const HiddenEffectRow& row : hidden_effect_table()) rows += document_row(row);
+  for (const OutsideEffectRow& row : outside_effect_table()) {
+    if (row.effect != OutsideEffect::kNone) rows += document_row(row);
+  }
+  std::ifstream file(offnominal::test::source_dir() / "docs" / "discovery-benchmark.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(page.find("\n" + rows + "\n"), std::string::npos) << "the page needs\n" << rows;
+}
+
+TEST(HiddenCase, TheTablesAreInTheOrderOfTheirEnumerations) {
+  for (const HiddenEffectRow& row : hidden_effect_table()) {
+    EXPECT_EQ(&row_of(row.effect), &row) << row.name;
+  }
+  for (const OutsideEffectRow& row : outside_effect_table()) {
+    EXPECT_EQ(&row_of(row.effect), &row) << row.name;
+  }
 }
 
 TEST(HiddenCase, TruthKeepsTheOrderOfTheRequest) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <vector>
 
 #include "unexplained.hpp"
 
@@ -18,8 +19,9 @@ Motion at_rest(const Eigen::Vector2d& q) {
 }
 
 TEST(HiddenLoop, StaysWithinLimitsAndTracksWithAnyEffect) {
-  for (std::size_t i = 0; i < kAllHiddenEffects.size(); ++i) {
-    Request request{100 + i, {kAllHiddenEffects[i], kAllHiddenEffects[(i + 7) % 20]}};
+  const std::vector<HiddenEffect> all = all_hidden_effects();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Request request{100 + i, {all[i], all[(i + 7) % all.size()]}};
     request.duration_s = 5.0;
     request.encoder_bits = i % 2 == 0 ? 19 : 13;
     const DrawnRobot drawn = draw_robot(request);

@@ -1,4 +1,4 @@
-// Every hidden effect shows in the torque with about the size that draw_robot.hpp documents.
+// Every hidden effect shows in the torque with about the size that effect_table.hpp documents.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,7 +68,8 @@ INSTANTIATE_TEST_SUITE_P(HiddenRobots, EffectSize,
                                          Bounds{HiddenEffect::kTimeDelay, 0.007, 0.03},
                                          Bounds{HiddenEffect::kPeriodicDisturbance, 0.04, 0.1},
                                          Bounds{HiddenEffect::kJointCoupling, 0.05, 0.13},
-                                         Bounds{HiddenEffect::kTemperatureDrift, 0.08, 0.2}),
+                                         Bounds{HiddenEffect::kTemperatureDrift, 0.08, 0.2},
+                                         Bounds{HiddenEffect::kGearLoss, 0.1, 0.3}),
                          [](const auto& given) { return std::string(name(given.param.effect)); });
 
 TEST(EffectSize, NothingHiddenLeavesNothingUnexplained) {
@@ -113,7 +114,7 @@ TEST_P(OutsideSize, ShowsAtItsJointOnly) {
   EXPECT_LT(other, 0.006);
 }
 
-INSTANTIATE_TEST_SUITE_P(HiddenRobots, OutsideSize, testing::ValuesIn(kAllOutsideEffects),
+INSTANTIATE_TEST_SUITE_P(HiddenRobots, OutsideSize, testing::ValuesIn(all_outside_effects()),
                          [](const auto& given) { return std::string(name(given.param)); });
 
 }  // namespace

@@ -91,6 +91,12 @@ ArrayXd friction_formula(const TrueEffect& h, const Robot& base, const Signals& 
       return get("level") + get("coefficient") * s.v.abs();
     case HiddenEffect::kLoadDependentFriction:
       return get("coefficient") * gear_load(base, s, h.joint).abs() * sign;
+    case HiddenEffect::kGearLoss: {
+      const ArrayXd load = gear_load(base, s, h.joint);
+      return (load * sign > 0)
+                 .select(get("driving_loss"), ArrayXd::Constant(load.size(), get("driven_loss"))) *
+             load.abs() * sign;
+    }
     case HiddenEffect::kTemperatureDrift:
       return (-s.t / get("time_constant")).exp() * (get("level") * sign + get("coefficient") * s.v);
     case HiddenEffect::kHysteresis: {
@@ -165,7 +171,8 @@ INSTANTIATE_TEST_SUITE_P(
                     HiddenEffect::kLinkMass, HiddenEffect::kTipPayload,
                     HiddenEffect::kCoggingTorque, HiddenEffect::kJointStiffness,
                     HiddenEffect::kTimeDelay, HiddenEffect::kPeriodicDisturbance,
-                    HiddenEffect::kJointCoupling, HiddenEffect::kTemperatureDrift),
+                    HiddenEffect::kJointCoupling, HiddenEffect::kTemperatureDrift,
+                    HiddenEffect::kGearLoss),
     [](const auto& given) { return std::string(name(given.param)); });
 
 // Added masses are those of the truth, in kg.

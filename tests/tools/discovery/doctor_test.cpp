@@ -121,7 +121,7 @@ TEST(Doctor, FindsNothingInCleanRecordings) {
 }
 
 TEST(Doctor, TakesNoHiddenEffectForAFault) {
-  for (const auto effect : test::every_nth(hidden::kAllHiddenEffects, 5)) {
+  for (const auto effect : test::every_nth(hidden::all_hidden_effects(), 5)) {
     for (const bool noisy : {false, true}) {
       hidden::Request request = request_of(11, noisy);
       request.effects = {effect};

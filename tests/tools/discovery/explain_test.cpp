@@ -66,7 +66,7 @@ TEST_P(EachEffect, IsNamedFirstOnItsJoint) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Hidden, EachEffect,
-                         ::testing::ValuesIn(test::every_nth(hidden::kAllHiddenEffects, 4)),
+                         ::testing::ValuesIn(test::every_nth(hidden::all_hidden_effects(), 4)),
                          [](const auto& parameter) {
                            return std::string(hidden::name(parameter.param));
                          });
@@ -159,7 +159,7 @@ TEST(Explain, GIVEN_an_effect_that_noise_hides_THEN_it_is_neither_named_nor_deni
 }
 
 TEST(Explain, GIVEN_an_effect_outside_of_the_list_THEN_it_is_unknown_and_nothing_is_found) {
-  for (const auto outside : test::every_nth(hidden::kAllOutsideEffects, 4)) {
+  for (const auto outside : test::every_nth(hidden::all_outside_effects(), 4)) {
     hidden::Request request;
     request.seed = 2;
     request.outside = outside;

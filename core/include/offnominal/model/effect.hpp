@@ -42,6 +42,7 @@ enum class EffectKind : std::uint8_t {
   kTimeDelay = 17,
   kJointElasticity = 18,
   kBacklash = 19,
+  kGearLoss = 20,
 };
 
 // How a parameter enters the effect's torque.

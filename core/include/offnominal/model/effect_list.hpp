@@ -27,7 +27,7 @@ using AllEffects =
                 effects::RotorInertia, effects::TipPayload, effects::LinkMass,
                 effects::JointStiffness, effects::CoggingTorque, effects::PeriodicDisturbance,
                 effects::TemperatureDrift, effects::JointCoupling, effects::LoadDependentFriction,
-                effects::TorqueScale, effects::Hysteresis, effects::TimeDelay>;
+                effects::TorqueScale, effects::Hysteresis, effects::TimeDelay, effects::GearLoss>;
 
 // Those that recordings are searched for and that no chain can have.
 using EffectsOutsideChains = EffectTypes<effects::JointElasticity, effects::Backlash>;

@@ -47,6 +47,49 @@ struct LoadDependentFriction {
   }
 };
 
+// A gear that loses a share of what it transmits, another one where the drive moves the load than
+// where the load moves the drive. Of a gear with the efficiencies eta and eta_driven the drive
+// supplies load / eta or eta_driven load: driving_loss = 1 / eta - 1, driven_loss = 1 - eta_driven.
+// Equal losses are LoadDependentFriction. Nothing is lost at standstill or without load; between
+// the two directions of a moving joint's power the slope over the load has a kink, and only so does
+// the load follow from the torque in closed form. Source: A. Wang, S. Kim, Directional efficiency
+// in geared transmissions, ICRA 2015; smooth in the velocity by this file's own w.
+struct GearLoss {
+  static constexpr EffectKind kKind = EffectKind::kGearLoss;
+  static constexpr const char* kName = "gear_loss";
+  static constexpr const char* kFormula =
+      "|load torque| * s * (driving_loss * (1 + w) + driven_loss * (1 - w)) / 2, "
+      "w = s * sgn(load torque), s = tanh(dq / smoothing)";
+  static constexpr const char* kWords =
+      "a gear whose loss depends on whether it drives or is driven back";
+  static constexpr const char* kMotionHint =
+      "raise and lower a load at several poses, as often with the load as against it";
+  static constexpr EffectTraits kTraits{.is_friction = true, .sign = CoefficientSign::kPositive};
+  static constexpr double kMostDrivingLoss = 2;
+  static constexpr std::array<ParameterInfo, 3> kParameters{{
+      {"driven_loss", Quantity::kRatio, ParameterRole::kLinear, 0,
+       LoadDependentFriction::kMostFactor, true, 0,
+       "share of the load torque that is lost where the load moves the drive"},
+      {"driving_loss", Quantity::kRatio, ParameterRole::kLinear, 0, kMostDrivingLoss, true, 0,
+       "what the drive supplies above the load torque where it moves the load, per load torque"},
+      kSmoothing,
+  }};
+  template <typename Scalar>
+  static LoadFriction<Scalar> friction_per_load(const std::array<Scalar, kMaxEffectParameters>& p,
+                                                const JointInstant<Scalar>& at) {
+    const Scalar sign = smooth_sign(at.dq, p[2]);
+    return {sign * (p[1] + p[0]) / 2, sign * sign * (p[1] - p[0]) / 2};
+  }
+  // by_size - by_load, which is s (sum - s difference) / 2, over s from 0 to 1: it rises to the end
+  // unless driving loses more than three times what being driven does.
+  template <typename Scalar>
+  static Scalar most_friction_per_load(const std::array<Scalar, kMaxEffectParameters>& p) {
+    if (!(p[1] > 3 * p[0])) return p[0];
+    const Scalar sum = p[1] + p[0];
+    return sum * sum / (8 * (p[1] - p[0]));
+  }
+};
+
 // A wrong torque constant: (1 + error) times the torque that acts is what the drive is told to
 // give, and what a log says. A drive that gives (1 + share) times what it is told has error = 1 /
 // (1 + share) - 1.

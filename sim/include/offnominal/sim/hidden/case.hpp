@@ -47,33 +47,8 @@ struct TrueParameter {
   std::string unit;
 };
 
-/// A hidden effect. Its torque is what the drive has to supply for it.
-///
-/// | effect | parameters |
-/// |---|---|
-/// | coulomb_friction | level N m |
-/// | viscous_friction | coefficient N m s/rad |
-/// | quadratic_friction | coefficient N m s^2/rad^2 |
-/// | stribeck_friction | level N m (static less Coulomb), stribeck_velocity rad/s |
-/// | friction_asymmetry | level N m, coefficient N m s/rad: half the differences, + less - |
-/// | load_dependent_friction | coefficient, friction per gear load, no unit |
-/// | hysteresis | level N m, width rad (distance over which 63 % of a reversal is done) |
-/// | torque_offset | level N m |
-/// | torque_scale | share: the drive gives (1 + share) times what is logged |
-/// | rotor_inertia | inertia kg m^2 |
-/// | link_mass | mass kg, added at the centre of mass of link `joint` |
-/// | tip_payload | mass kg, x m in the frame of link 2 |
-/// | cogging_torque | sine, cosine N m, order 1/turn: sine sin(order q) + cosine cos(order q) |
-/// | joint_stiffness | stiffness N m/rad, rest_position rad |
-/// | joint_elasticity | stiffness N m/rad, damping N m s/rad |
-/// | backlash | gap rad, full width |
-/// | time_delay | delay s: the drive executes the logged torque this late |
-/// | periodic_disturbance | sine, cosine N m, frequency rad/s; t = 0 starts the log |
-/// | joint_coupling | coefficient N m s/rad times the other joint's velocity, or level N m |
-/// | temperature_drift | level N m, coefficient N m s/rad, time_constant s |
-///
-/// The level of joint_coupling goes with the other joint's direction. Those of temperature_drift
-/// are the excess of Coulomb and viscous friction at the start of each log, which then decays.
+/// A hidden effect with the parameters of its row in effect_table.hpp. Its torque is what the drive
+/// has to supply for it.
 struct TrueEffect {
   HiddenEffect effect = HiddenEffect::kCoulombFriction;
   int joint = 0;

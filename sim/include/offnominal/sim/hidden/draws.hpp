@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <random>
+#include <string_view>
 
 namespace offnominal::sim::hidden {
 
@@ -21,6 +22,15 @@ enum class Stream : std::uint64_t {
   kDataFault,
 };
 
+/// A number that the seed draws: uniformly, or with equal chances per octave.
+struct DrawnNumber {
+  std::string_view of;
+  double low = 0.0;
+  double high = 0.0;
+  std::string_view unit = "";
+  bool per_octave = false;
+};
+
 class Draws {
  public:
   /// `index` tells draws for the same purpose apart: the effect, or the run.
@@ -29,6 +39,7 @@ class Draws {
   double uniform(double low, double high);
   /// Equal chances per octave; 0 < low < high.
   double log_uniform(double low, double high);
+  double from(const DrawnNumber& number);
   /// -1 or 1.
   double sign();
   /// 0 to count - 1; count > 0.

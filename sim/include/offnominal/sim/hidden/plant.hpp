@@ -50,8 +50,7 @@ class Plant {
   };
   [[nodiscard]] Rates rates(const PlantState& state, double t_s,
                             const Eigen::Vector2d& motor_torque_nm) const;
-  [[nodiscard]] double sliding_level(const JointFriction& friction, double position_rad,
-                                     double velocity_rad_s, double gear_load_nm, double cold) const;
+  [[nodiscard]] static MotorSide motor_side(int joint, const PlantState& state, double t_s);
   [[nodiscard]] double motor_load(int joint, const PlantState& state, double t_s) const;
   [[nodiscard]] double link_load(int joint, const PlantState& state, double t_s) const;
   void advance_bristles(PlantState& state, const Eigen::Vector2d& velocity, double h_s) const;

@@ -2,63 +2,13 @@
 // is wrong with its log, how it moves. Everything else is drawn from the seed.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
+#include "offnominal/sim/hidden/effect_table.hpp"
+
 namespace offnominal::sim::hidden {
-
-/// Effects that the analysis has a candidate for; see effect_sizes.hpp for how large each is drawn.
-enum class HiddenEffect {
-  kCoulombFriction,
-  kViscousFriction,
-  kQuadraticFriction,
-  kStribeckFriction,
-  kFrictionAsymmetry,
-  kLoadDependentFriction,
-  kHysteresis,
-  kTorqueOffset,
-  kTorqueScale,
-  kRotorInertia,
-  kLinkMass,
-  kTipPayload,
-  kCoggingTorque,
-  kJointStiffness,
-  kJointElasticity,
-  kBacklash,
-  kTimeDelay,
-  kPeriodicDisturbance,
-  kJointCoupling,
-  kTemperatureDrift,
-};
-
-inline constexpr std::array<HiddenEffect, 20> kAllHiddenEffects = {
-    HiddenEffect::kCoulombFriction,   HiddenEffect::kViscousFriction,
-    HiddenEffect::kQuadraticFriction, HiddenEffect::kStribeckFriction,
-    HiddenEffect::kFrictionAsymmetry, HiddenEffect::kLoadDependentFriction,
-    HiddenEffect::kHysteresis,        HiddenEffect::kTorqueOffset,
-    HiddenEffect::kTorqueScale,       HiddenEffect::kRotorInertia,
-    HiddenEffect::kLinkMass,          HiddenEffect::kTipPayload,
-    HiddenEffect::kCoggingTorque,     HiddenEffect::kJointStiffness,
-    HiddenEffect::kJointElasticity,   HiddenEffect::kBacklash,
-    HiddenEffect::kTimeDelay,         HiddenEffect::kPeriodicDisturbance,
-    HiddenEffect::kJointCoupling,     HiddenEffect::kTemperatureDrift,
-};
-
-/// Effects that the analysis has no candidate for.
-enum class OutsideEffect {
-  kNone,
-  kEndStop,   ///< one-sided spring beyond an angle that the motion reaches
-  kWornSpot,  ///< more friction in a narrow range of positions
-  kDragBand,  ///< more friction in a narrow band of speeds, a rubbing fan or a howling belt
-  kMagneticSaturation,  ///< the drive gives less than it logs beyond a torque
-  kTransientContact,    ///< someone pushes, for a moment
-};
-
-inline constexpr std::array<OutsideEffect, 5> kAllOutsideEffects = {
-    OutsideEffect::kEndStop, OutsideEffect::kWornSpot, OutsideEffect::kDragBand,
-    OutsideEffect::kMagneticSaturation, OutsideEffect::kTransientContact};
 
 /// What is wrong with the log. The robot moves the same; every log of this robot has the fault.
 enum class DataFault {
@@ -90,13 +40,6 @@ struct Request {
 /// Throws std::invalid_argument naming the field, what was found and what is allowed.
 void validate(const Request& request);
 
-/// Names as in robot files: "coulomb_friction", ...
-std::string_view name(HiddenEffect effect);
-std::string_view name(OutsideEffect effect);
 std::string_view name(DataFault fault);
-
-/// What the torque of an outside effect is a function of: "position", "velocity", "load" or "time";
-/// "" for kNone.
-std::string_view variable(OutsideEffect effect);
 
 }  // namespace offnominal::sim::hidden
