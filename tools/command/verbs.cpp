@@ -5,7 +5,7 @@
 namespace offnominal::tools {
 namespace {
 
-constexpr std::array<Verb, 12> kVerbs = {{
+constexpr std::array<Verb, 13> kVerbs = {{
     {"add", "Fit an effect to a recording and write the robot file that has it", set_up_add},
     {"calibrate", "Find the uncertainty bound from recordings of the healthy robot",
      set_up_calibrate},
@@ -21,6 +21,8 @@ constexpr std::array<Verb, 12> kVerbs = {{
     {"import-urdf", "Write a robot file from a URDF's chain of links", set_up_import_urdf},
     {"motion", "Write a motion that tells effects apart, or shows what recordings did not",
      set_up_motion},
+    {"new", "Write a robot file with the geometry of a DH table, and blanks for the rest",
+     set_up_new},
     {"paper", "Run the paper's experiment: faults of a two-link arm, detected and accommodated",
      set_up_paper},
     {"replay", "Run the on-board monitor over a recording: residual, threshold, alarms",

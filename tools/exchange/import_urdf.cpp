@@ -272,7 +272,7 @@ class Importer {
     Joint<double>& joint = to.joint;
     joint.type = turns(from) ? JointType::kRevolute : JointType::kPrismatic;
     put_axis(from, joint);
-    put_place(place, joint);
+    put_placement(place, joint);
     put_limits(from, joint);
 
     const bool last = index + 1 == chain_.moving.size();
@@ -331,15 +331,6 @@ class Importer {
     note(Kind::kAssumed, line_of(from),
          fmt::format("the axis 1 0 0 of joint `{}`: the URDF gives none", from.name),
          !document_.joint(from.name).has_axis);
-  }
-
-  static void put_place(const Isometry3d& place, Joint<double>& joint) {
-    for (int i = 0; i < 3; ++i) {
-      joint.origin_m[static_cast<std::size_t>(i)] = place.translation()[i] + 0.0;
-      for (int j = 0; j < 3; ++j) {
-        joint.rotation[static_cast<std::size_t>(3 * i + j)] = place.linear()(i, j) + 0.0;
-      }
-    }
   }
 
   void put_limits(const urdf::Joint& from, Joint<double>& joint) {

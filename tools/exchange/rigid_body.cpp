@@ -44,4 +44,13 @@ void put_body(const RigidBody& body, Joint<double>& joint) {
                          tensor(0, 1) + 0.0, tensor(0, 2) + 0.0, tensor(1, 2) + 0.0};
 }
 
+void put_placement(const Eigen::Isometry3d& placement, Joint<double>& joint) {
+  for (int i = 0; i < 3; ++i) {
+    joint.origin_m[static_cast<std::size_t>(i)] = placement.translation()[i] + 0.0;
+    for (int j = 0; j < 3; ++j) {
+      joint.rotation[static_cast<std::size_t>(3 * i + j)] = placement.linear()(i, j) + 0.0;
+    }
+  }
+}
+
 }  // namespace offnominal::tools::exchange

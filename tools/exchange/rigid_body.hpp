@@ -25,4 +25,7 @@ struct RigidBody {
 [[nodiscard]] RigidBody body_of(const Joint<double>& joint);
 void put_body(const RigidBody& body, Joint<double>& joint);
 
+/// The joint's frame in the frame before it.
+void put_placement(const Eigen::Isometry3d& placement, Joint<double>& joint);
+
 }  // namespace offnominal::tools::exchange

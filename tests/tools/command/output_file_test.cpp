@@ -50,6 +50,7 @@ class OutputFile : public testing::Test {
         {"export-urdf", {{"export-urdf", path("r.toml")}, {"-o"}}},
         {"import-urdf", {{"import-urdf", path("r.toml")}, {"-o"}}},
         {"motion", {with({"motion"}, robot), {"-o", "--report"}}},
+        {"new", {{"new", "--dh", path("r.toml")}, {"-o"}}},
         {"paper", {with({"paper", "--fault", "none"}, robot), {"--log", "--report"}}},
         {"replay", {with({"replay", path("a.csv")}, robot), {"--report"}}},
         {"sil", {with({"sil"}, robot), {"--log", "--candump", "--report"}}},

@@ -59,6 +59,29 @@ TEST(ImportUrdfVerb, WritesNothingWhereItHasToAsk) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST(NewVerb, WritesTheGeometryOfATableAndBlanks) {
+  const TemporaryFolder folder;
+  put(folder / "table.csv", "a_m,alpha_deg,d_m,theta_deg\n0,90,0.4,0\n0.3,0,0,0\n");
+  const std::string out = (folder / "arm.toml").string();
+  const std::vector<std::string> words{"new", "--dh", (folder / "table.csv").string(), "-o", out};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    return run(all);
+  };
+  EXPECT_THAT(with({}).err,
+              HasSubstr("no word on whether the table is a standard or a modified one"));
+  EXPECT_THAT(with({"--convention", "standard", "--joints", "6"}).err,
+              testing::StartsWith("offnominal new: --joints: found 6; allowed: 2, the rows of "));
+  EXPECT_FALSE(std::filesystem::exists(out));
+  const CommandResult done = with({"--convention", "standard", "--joints", "2"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("arm: 2 joints of a standard DH table\n"));
+  const CommandResult used = run({"export-urdf", out, "-o", (folder / "arm.urdf").string()});
+  EXPECT_EQ(used.exit_code, 2);
+  EXPECT_THAT(used.err, HasSubstr("joint[1].link.mass_kg: found nothing"));
+}
+
 TEST(ExportVerbs, WriteBothFormatsAndListWhatIsNotCarried) {
   const TemporaryFolder folder;
   for (const std::string format : {"mjcf", "urdf"}) {
