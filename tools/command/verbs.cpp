@@ -5,7 +5,7 @@
 namespace offnominal::tools {
 namespace {
 
-constexpr std::array<Verb, 9> kVerbs = {{
+constexpr std::array<Verb, 13> kVerbs = {{
     {"add", "Fit an effect to a recording and write the robot file that has it", set_up_add},
     {"calibrate", "Find the uncertainty bound from recordings of the healthy robot",
      set_up_calibrate},
@@ -14,8 +14,15 @@ constexpr std::array<Verb, 9> kVerbs = {{
      set_up_compare},
     {"explain", "Say which physical effect a model lacks, by recordings, with the evidence",
      set_up_explain},
+    {"export-mjcf", "Write a robot file as MJCF, for MuJoCo, with the friction that was found",
+     set_up_export_mjcf},
+    {"export-urdf", "Write a robot file as URDF, with the friction that was found",
+     set_up_export_urdf},
+    {"import-urdf", "Write a robot file from a URDF's chain of links", set_up_import_urdf},
     {"motion", "Write a motion that tells effects apart, or shows what recordings did not",
      set_up_motion},
+    {"new", "Write a robot file with the geometry of a DH table, and blanks for the rest",
+     set_up_new},
     {"paper", "Run the paper's experiment: faults of a two-link arm, detected and accommodated",
      set_up_paper},
     {"replay", "Run the on-board monitor over a recording: residual, threshold, alarms",

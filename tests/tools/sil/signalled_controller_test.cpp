@@ -5,6 +5,7 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
+#include "offnominal/hal/protocols/protected/address.hpp"
 #include "sil/open_bus.hpp"
 #include "tools/sil/controller_on_vcan.hpp"
 
