@@ -5,7 +5,7 @@
 namespace offnominal::tools {
 namespace {
 
-constexpr std::array<Verb, 9> kVerbs = {{
+constexpr std::array<Verb, 10> kVerbs = {{
     {"add", "Fit an effect to a recording and write the robot file that has it", set_up_add},
     {"calibrate", "Find the uncertainty bound from recordings of the healthy robot",
      set_up_calibrate},
@@ -14,6 +14,7 @@ constexpr std::array<Verb, 9> kVerbs = {{
      set_up_compare},
     {"explain", "Say which physical effect a model lacks, by recordings, with the evidence",
      set_up_explain},
+    {"look", "Show what a recording holds, and the [channels] that would read it", set_up_look},
     {"motion", "Write a motion that tells effects apart, or shows what recordings did not",
      set_up_motion},
     {"paper", "Run the paper's experiment: faults of a two-link arm, detected and accommodated",
