@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "analysis/filter_plan.hpp"
+#include "log/read_log.hpp"
 
 // Options that several verbs have, the same for each.
 
@@ -25,12 +26,15 @@ inline void add_filter_options(CLI::App& verb, FilterRequest& request) {
                   "second, or 100 where --cutoff is given");
 }
 
-/// --channels; `whose`: "recording's" or "recordings'".
-inline void add_channels_option(CLI::App& verb, std::optional<std::filesystem::path>& channels,
+/// --channels and --period; `whose`: "recording's" or "recordings'".
+inline void add_channels_option(CLI::App& verb, ChannelOptions& channels,
                                 const std::string& whose) {
   verb.add_option(
-      "--channels", channels,
+      "--channels", channels.file,
       "TOML file that maps the " + whose + " columns, instead of the robot file's [channels]");
+  verb.add_option("--period", channels.period_s,
+                  "Time between two samples, s, instead of a column of time")
+      ->check(CLI::PositiveNumber);
 }
 
 /// --threads, by default as many as the machine has.

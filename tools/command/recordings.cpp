@@ -58,8 +58,7 @@ void check_all_differ(const std::string& verb, const std::string& option,
 }  // namespace
 
 std::vector<Log> read_recordings(const std::vector<std::string>& files,
-                                 const RobotDescription& robot,
-                                 const std::optional<std::filesystem::path>& channels,
+                                 const RobotDescription& robot, const ChannelOptions& channels,
                                  ReadOne* read_one, Progress& progress) {
   std::vector<Log> logs;
   for (const std::string& file : files) {

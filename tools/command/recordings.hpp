@@ -1,24 +1,23 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "command/progress.hpp"
 #include "log/log.hpp"
+#include "log/read_log.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::tools {
 
 // One recording: read_log, or read_log_or_hold_map where hold maps will do as well.
 using ReadOne = Log(const std::filesystem::path& path, const RobotDescription& robot,
-                    const std::optional<std::filesystem::path>& channels);
+                    const ChannelOptions& channels);
 
 // Every file as `read_one` reads it, each announced to `progress`.
 std::vector<Log> read_recordings(const std::vector<std::string>& files,
-                                 const RobotDescription& robot,
-                                 const std::optional<std::filesystem::path>& channels,
+                                 const RobotDescription& robot, const ChannelOptions& channels,
                                  ReadOne* read_one, Progress& progress);
 
 // What a verb is given that fits to recordings and judges the fit on others.
@@ -26,7 +25,7 @@ struct FitFiles {
   std::string robot;
   std::vector<std::string> logs;
   std::vector<std::string> holdout;
-  std::optional<std::filesystem::path> channels;
+  ChannelOptions channels;
 };
 struct FitData {
   RobotDescription robot;

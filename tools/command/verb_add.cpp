@@ -167,7 +167,7 @@ void add_all_found(const AddOptions& options, const std::string& command_line,
                            [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
   const discovery::ExplainNames names{files.logs, files.holdout, files.robot, command_line,
-                                      files.channels ? files.channels->string() : ""};
+                                      files.channels.file ? files.channels.file->string() : ""};
   write_report(options.answer, [&] { return page_of(added.explanation, names); });
   std::vector<std::string> written;
   if (added.may_be_written(force)) {

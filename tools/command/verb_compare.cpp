@@ -27,7 +27,7 @@ struct CompareOptions {
   std::string log;
   std::string robot;
   std::optional<std::string> against;
-  std::optional<std::filesystem::path> channels;
+  ChannelOptions channels;
   FilterRequest filter;
   AnswerOptions answer;
 };

@@ -35,7 +35,7 @@ void run(const ExplainOptions& options, const std::string& command_line) {
                          [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
   const discovery::ExplainNames names{files.logs, files.holdout, files.robot, command_line,
-                                      files.channels ? files.channels->string() : ""};
+                                      files.channels.file ? files.channels.file->string() : ""};
   write_report(options.answer, [&] { return page_of(explanation, names); });
   print_answer(
       options.answer, [&] { return to_json(explanation, names); },

@@ -32,7 +32,7 @@ struct MotionOptions {
   std::vector<std::string> separate;
   std::optional<std::string> excite;
   std::vector<std::string> logs;
-  std::optional<std::filesystem::path> channels;
+  ChannelOptions channels;
   std::string output;
   double margin_percent = 10;
   double effect_percent = 5;

@@ -29,7 +29,7 @@ constexpr std::size_t kPrintedAlarms = 10;
 struct ReplayOptions {
   std::string log;
   std::string robot;
-  std::optional<std::filesystem::path> channels;
+  ChannelOptions channels;
   bool check = false;
   AnswerOptions answer;
 };

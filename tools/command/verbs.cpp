@@ -5,7 +5,7 @@
 namespace offnominal::tools {
 namespace {
 
-constexpr std::array<Verb, 13> kVerbs = {{
+constexpr std::array<Verb, 14> kVerbs = {{
     {"add", "Fit an effect to a recording and write the robot file that has it", set_up_add},
     {"calibrate", "Find the uncertainty bound from recordings of the healthy robot",
      set_up_calibrate},
@@ -19,6 +19,7 @@ constexpr std::array<Verb, 13> kVerbs = {{
     {"export-urdf", "Write a robot file as URDF, with the friction that was found",
      set_up_export_urdf},
     {"import-urdf", "Write a robot file from a URDF's chain of links", set_up_import_urdf},
+    {"look", "Show what a recording holds, and the [channels] that would read it", set_up_look},
     {"motion", "Write a motion that tells effects apart, or shows what recordings did not",
      set_up_motion},
     {"new", "Write a robot file with the geometry of a DH table, and blanks for the rest",

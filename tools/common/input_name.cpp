@@ -1,6 +1,7 @@
 #include "common/input_name.hpp"
 
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 namespace offnominal::tools {
@@ -21,6 +22,24 @@ std::string shown_name(const std::filesystem::path& file) {
   return names_standard_input(file) ? kStandardInput : file.string();
 }
 
+std::vector<std::filesystem::path> recording_files(const std::filesystem::path& recording) {
+  const std::string name = recording.string();
+  std::error_code failure;
+  if (name.find('+') == std::string::npos || std::filesystem::exists(recording, failure)) {
+    return {recording};
+  }
+  std::vector<std::filesystem::path> files;
+  std::string_view left = name;
+  for (;;) {
+    const std::size_t plus = left.find('+');
+    const std::string_view file = left.substr(0, plus);
+    if (file.empty()) return {recording};
+    files.emplace_back(file);
+    if (plus == std::string_view::npos) return files;
+    left.remove_prefix(plus + 1);
+  }
+}
+
 bool is_stream(const std::string& file) {
   if (is_standard_input(file)) return true;
   if (file.starts_with("/dev/fd/") || file.starts_with("/proc/self/fd/")) return true;
@@ -31,6 +50,11 @@ bool is_stream(const std::string& file) {
 std::string input_name(const std::string& file) {
   if (is_standard_input(file)) return kStandardInput;
   if (is_stream(file)) return "a pipe";
+  if (const auto files = recording_files(file); files.size() > 1) {
+    std::string names;
+    for (const auto& one : files) names += (names.empty() ? "" : "+") + input_name(one.string());
+    return names;
+  }
   return std::filesystem::path(file).filename().string();
 }
 

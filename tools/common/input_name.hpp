@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace offnominal::tools {
 
@@ -12,10 +13,15 @@ bool is_stream(const std::string& file);
 // "-": standard input, where a recording is asked for.
 bool names_standard_input(const std::filesystem::path& file);
 
+// The files of a recording that "positions.csv+currents.csv" names; where a file has that whole
+// name, or there is no '+', the one.
+std::vector<std::filesystem::path> recording_files(const std::filesystem::path& recording);
+
 // A recording as messages name it: its path, or "standard input" for "-".
 std::string shown_name(const std::filesystem::path& file);
 
-// An input's name without its folder, in words that outlive the run: "standard input", "a pipe".
+// An input's name without its folder, in words that outlive the run: "standard input", "a pipe",
+// "positions.csv+currents.csv".
 std::string input_name(const std::string& file);
 
 }  // namespace offnominal::tools

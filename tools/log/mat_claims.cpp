@@ -196,6 +196,8 @@ class VariableWalk {
     }
     if (is_container(array_class)) {
       for (auto i = static_cast<std::uint64_t>(elements); i > 0; --i) element(left, depth);
+    } else if (holds_numbers(array_class)) {
+      numbers(elements, left);
     }
     skip(left, left);
   }
@@ -213,7 +215,7 @@ class VariableWalk {
 
   // As many as the dimensions say: where there are fewer, matio says nothing, and what it has
   // allocated keeps what was in that memory before.
-  void numbers(double elements, std::uint64_t left) {
+  void numbers(double elements, std::uint64_t& left) {
     if (elements == 0) return;
     const Tag data = tag(left);
     const bool is_small = data.type >> 16U != 0;  // in the tag itself

@@ -10,10 +10,11 @@ namespace offnominal::tools {
 bool is_mat_file(const RecordingFile& file);
 
 // The numeric variables of a MATLAB .mat file: a row or column vector is a column, a single number
-// a scalar, and the columns of a matrix M are "M(:,1)", "M(:,2)" ... Variables of other kinds
-// (structures, cells, text, complex numbers) are named but not read. Throws InputError where the
-// file cannot be read, is damaged, or a required variable is not of those kinds. `channels` say
-// nothing that it has to know.
+// a scalar, and so is each value of a short vector, "u(3)". The columns of a matrix M are "M(:,1)",
+// "M(:,2)" ..., its rows "M(1,:)" ...; what a structure s holds is "s.field", at any depth, and
+// "s(2).field" where there are several. Variables of other kinds (cells, text, complex numbers,
+// objects) are named but not read. Throws InputError where the file cannot be read, is damaged, or
+// a required variable is not of those kinds. `channels` say nothing that it has to know.
 NamedColumns read_mat(RecordingFile& file, const ChannelMap* channels, const NeedOf& need_of);
 
 }  // namespace offnominal::tools

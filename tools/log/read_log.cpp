@@ -2,48 +2,35 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <map>
 #include <new>
+#include <numbers>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/error.hpp"
 #include "common/input_name.hpp"
 #include "common/nearest.hpp"
+#include "log/channel_needs.hpp"
+#include "log/column_values.hpp"
 #include "log/hold_map.hpp"
+#include "log/joined_files.hpp"
 #include "log/log_format.hpp"
 #include "log/recording_file.hpp"
 #include "log/sampling.hpp"
+#include "log/time_of.hpp"
 #include "robot/channels.hpp"
+#include "robot/units.hpp"
+#include "signal/fold.hpp"
 
 namespace offnominal::tools {
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-constexpr const char* kMendNames =
-    "map the names with [channels] in the robot's file, or with --channels FILE.toml";
-
-// The joint's number when `name` is `prefix` and a number from 1, else 0.
-int joint_of(const std::string& name, const std::string& prefix) {
-  if (!name.starts_with(prefix) || name.size() == prefix.size() ||
-      name.size() > prefix.size() + 3) {
-    return 0;
-  }
-  int joint = 0;
-  for (const char digit : name.substr(prefix.size())) {
-    if (digit < '0' || digit > '9') return 0;
-    joint = 10 * joint + (digit - '0');
-  }
-  return joint;
-}
-
-bool is_common_name(const std::string& name) {
-  return name == "t" || joint_of(name, "q") > 0 || joint_of(name, "dq") > 0 ||
-         joint_of(name, "tau") > 0;
-}
 
 Channel named(std::string source) {
   Channel channel;
@@ -53,16 +40,23 @@ Channel named(std::string source) {
 
 class Assembler {
  public:
-  Assembler(NamedColumns columns, int joint_count)
-      : columns_(std::move(columns)), joints_(joint_count) {
+  Assembler(TimedColumns recording, int joint_count)
+      : columns_(std::move(recording.columns)),
+        t_s_(std::move(recording.time.t_s)),
+        joints_(joint_count) {
     log_.file = columns_.file;
-    log_.remarks = columns_.remarks;
+    if (recording.time.origin_s != 0) {
+      columns_.remarks.push_back(
+          fmt::format("t = 0 s is {:.9g} s of the file's own clock", recording.time.origin_s));
+    }
   }
 
-  Log with_common_header() {
+  // `period_s`: where no column is the time.
+  Log with_common_header(double period_s) {
     for (const char* prefix : {"q", "tau"}) check_joint_count(prefix);
     ChannelMap map;
     map.time = named("t");
+    map.period_s = period_s;
     for (int joint = 1; joint <= joints_; ++joint) {
       const std::string number = std::to_string(joint);
       const std::string velocity = "dq" + number;
@@ -71,55 +65,62 @@ class Assembler {
       map.velocity.emplace_back();
       if (columns_.columns.contains(velocity)) map.velocity.back() = named(velocity);
     }
-    const auto time = columns_.columns.find("t");
-    const Index samples = time == columns_.columns.end() ? 0 : time->second.size();
     for (const auto& [name, values] : columns_.columns) {
-      if (is_common_name(name) || values.size() != samples) continue;
+      if (is_common_name(name) || values.size() != t_s_.size()) continue;
+      if (std::find(columns_.names.begin(), columns_.names.end(), name) == columns_.names.end()) {
+        continue;
+      }
       if (values.allFinite()) {
         map.extra[name] = named(name);
       } else {
-        log_.remarks.push_back("column " + name + " has values that are not finite: left out");
+        columns_.remarks.push_back("column " + name + " has values that are not finite: left out");
       }
     }
     log_.common_header = true;
     return with(map);
   }
 
-  Log with(const ChannelMap& map) {
+  Log with(ChannelMap map) {
     if (map.position.size() != static_cast<std::size_t>(joints_)) {
       fail("channels", fmt::format("positions of {} joints", map.position.size()),
            fmt::format("{}, as many as the robot has", joints_));
     }
-    log_.channels = map;
+    take_units_of_file(map);
+    count_uses(map);
     if (map.at_rest) {
-      log_.t_s = values_of(map.position[0], "position of joint 1");
+      t_s_ = values_of(map.position[0], "position of joint 1");
       check_readings();
     } else {
-      log_.t_s = values_of(map.time, kTime);
-      check_time();
+      check_sample_count();
     }
+    log_.t_s = std::move(t_s_);
+    // Written to column by column, while the columns that were read go.
     const Index samples = log_.t_s.size();
     log_.q.resize(samples, joints_);
-    log_.dq = Eigen::MatrixXd::Zero(samples, joints_);
+    log_.dq.resize(samples, joints_);
     log_.tau.resize(samples, joints_);
     for (Index i = 0; i < joints_; ++i) {
       const auto joint = static_cast<std::size_t>(i);
-      log_.q.col(i) = sampled(map.position[joint], fmt::format("position of joint {}", i + 1));
+      log_.q.col(i) = position(map, i);
       log_.tau.col(i) = sampled(map.torque[joint], fmt::format("torque of joint {}", i + 1));
       const bool measured = joint < map.velocity.size() && map.velocity[joint].has_value();
       log_.dq_derived.push_back(!measured);
-      if (!measured) continue;
-      log_.dq.col(i) = sampled(*map.velocity[joint], fmt::format("velocity of joint {}", i + 1));
-    }
-    if (map.at_rest) {
-      make_hold_map(log_);
-      remark_constants();
-      return std::move(log_);
+      if (measured) {
+        log_.dq.col(i) = sampled(*map.velocity[joint], fmt::format("velocity of joint {}", i + 1));
+      } else {
+        log_.dq.col(i).setZero();
+      }
     }
     for (const auto& [name, channel] : map.extra) log_.extra[name] = sampled(channel, name);
-    make_even(log_);
-    derive_velocities(log_);
-    check_derived();
+    log_.channels = std::move(map);
+    log_.remarks = std::move(columns_.remarks);
+    if (log_.channels.at_rest) {
+      make_hold_map(log_);
+    } else {
+      make_even(log_);
+      derive_velocities(log_);
+      check_derived();
+    }
     remark_constants();
     return std::move(log_);
   }
@@ -139,16 +140,6 @@ class Assembler {
     throw InputError({columns_.file, place, found, allowed, mend});
   }
 
-  std::string names_found() const {
-    constexpr std::size_t kMost = 40;
-    std::vector<std::string> names = columns_.names;
-    if (names.size() > kMost) {
-      names.resize(kMost);
-      names.push_back("...");
-    }
-    return list_of(names);
-  }
-
   // "tau1 to tau7", "tau2 only", or each where some are missing.
   static std::string words_of_joints(const std::string& prefix, const std::set<int>& joints) {
     if (joints.size() == 1) return fmt::format("{}{} only", prefix, *joints.begin());
@@ -163,9 +154,16 @@ class Assembler {
     for (const std::string& name : columns_.names) {
       if (const int joint = joint_of(name, prefix); joint > 0) joints.insert(joint);
     }
+    if (joints.empty() && !columns_.has_names) {
+      fail("line 1", fmt::format("numbers in {} columns", columns_.names.size()),
+           fmt::format("a header line that names them: t, q1..q{0}, dq1..dq{0}, tau1..tau{0}",
+                       joints_),
+           "put one before them, or say the columns' numbers: [channels] with time = 1, position = "
+           "[2], torque = [3] in the robot's file, or in one for --channels");
+    }
     if (joints.empty()) {
-      fail("columns", names_found(), fmt::format("t, q1..q{0}, dq1..dq{0}, tau1..tau{0}", joints_),
-           kMendNames);
+      fail("columns", names_found(columns_),
+           fmt::format("t, q1..q{0}, dq1..dq{0}, tau1..tau{0}", joints_), kMendNames);
     }
     if (static_cast<int>(joints.size()) != joints_ || *joints.rbegin() != joints_) {
       fail("columns", words_of_joints(prefix, joints),
@@ -175,62 +173,43 @@ class Assembler {
     }
   }
 
-  // No measurement is larger; squares and sums of it stay within what numbers can hold.
-  static constexpr double kLargest = 1e15;
-  static constexpr const char* kTime = "time";
-
-  // Values in SI units; a scalar variable serves where every sample has the same value.
-  VectorXd values_of(const Channel& channel, const std::string& what) const {
-    const auto column = columns_.columns.find(channel.source);
-    if (column == columns_.columns.end()) {
-      if (columns_.scalars.contains(channel.source)) {
-        fail("variable " + channel.source, "a single number",
-             "one value per sample, for the " + what);
+  void take_units_of_file(ChannelMap& map) {
+    const auto take = [&](Channel& channel, ChannelQuantity quantity, const char* what, Index i) {
+      take_unit_of_file(columns_, channel, quantity, fmt::format("{} of joint {}", what, i + 1));
+    };
+    for (Index i = 0; i < joints_; ++i) {
+      const auto joint = static_cast<std::size_t>(i);
+      take(map.position[joint], ChannelQuantity::kPosition, "position", i);
+      take(map.torque[joint], ChannelQuantity::kTorque, "torque", i);
+      if (joint < map.velocity.size() && map.velocity[joint]) {
+        take(*map.velocity[joint], ChannelQuantity::kVelocity, "velocity", i);
       }
-      fail("columns", names_found(), "a column \"" + channel.source + "\" for the " + what,
-           kMendNames);
     }
-    double scale = channel.scale;
-    if (!channel.scale_source.empty()) scale *= scalar(channel.scale_source, what);
-    VectorXd values = (scale * column->second).array() + channel.offset;
-    for (Index row = 0; row < values.size(); ++row) {
-      if (std::abs(values[row]) <= kLargest) continue;
-      refuse_value(values[row], columns_.place_of(row) + ", " + channel.source, what);
-    }
-    return values;
   }
 
-  [[noreturn]] void refuse_value(double value, const std::string& place,
-                                 const std::string& what) const {
-    const std::string allowed = fmt::format("a finite number up to {:g}", kLargest);
-    if (!std::isfinite(value)) {
-      fail(place, std::isnan(value) ? "NaN" : "an infinite number", allowed,
-           "cut the recording, or fill the gap where it is made");
+  void count_uses(const ChannelMap& map) {
+    const auto count = [&](const Channel& channel) {
+      const auto one = [&](const Channel& term) {
+        ++uses_[term.source];
+        if (!term.scale_source.empty()) ++uses_[term.scale_source];
+      };
+      one(channel);
+      for (const Channel& term : channel.sum) one(term);
+    };
+    for (const Channel& channel : map.position) count(channel);
+    for (const Channel& channel : map.torque) count(channel);
+    for (const auto& channel : map.velocity) {
+      if (channel) count(*channel);
     }
-    fail(place, fmt::format("{:g}", value), allowed,
-         what == kTime ? "say its unit, scale = 1e-9 under [channels.time] for nanoseconds, 1e-6 "
-                         "for microseconds"
-                       : "say its unit with scale under [channels], or mend the number where it "
-                         "is made");
+    for (const auto& [name, channel] : map.extra) count(channel);
+    if (map.at_rest) ++uses_[map.position[0].source];  // read for its length as well
   }
 
-  double scalar(const std::string& name, const std::string& what) const {
-    if (const auto found = columns_.scalars.find(name); found != columns_.scalars.end()) {
-      if (std::isfinite(found->second) && found->second != 0) return found->second;
-      fail("variable " + name, fmt::format("{}", found->second), "a finite number other than 0");
-    }
-    const auto column = columns_.columns.find(name);
-    if (column == columns_.columns.end()) {
-      fail("columns", names_found(), "a number \"" + name + "\" that scales the " + what);
-    }
-    const VectorXd& values = column->second;
-    if (values.size() == 0 || (values.array() != values[0]).any() || !std::isfinite(values[0])) {
-      fail("variable " + name, "values that change", "one finite number that scales the " + what);
-    }
-    return values[0];
+  VectorXd values_of(const Channel& channel, const std::string& what) {
+    return take_values(columns_, channel, what, --uses_[channel.source] == 0);
   }
 
-  VectorXd sampled(const Channel& channel, const std::string& what) const {
+  VectorXd sampled(const Channel& channel, const std::string& what) {
     VectorXd values = values_of(channel, what);
     if (values.size() != log_.t_s.size()) {
       fail("variable " + channel.source, fmt::format("{} values", values.size()),
@@ -239,23 +218,30 @@ class Assembler {
     return values;
   }
 
-  void check_time() const {
-    const VectorXd& t = log_.t_s;
-    // First, because nothing is read beyond it.
-    for (Index row = 1; row < t.size(); ++row) {
-      if (t[row] > t[row - 1]) continue;
-      fail(columns_.place_of(row) + ", time",
-           fmt::format("{:.9g} s after {:.9g} s", t[row], t[row - 1]),
-           "time that ascends from sample to sample");
-    }
-    if (t.size() < kMinSamples) {
-      fail("", fmt::format("{} samples", t.size()), fmt::format("{} samples or more", kMinSamples));
-    }
+  VectorXd position(const ChannelMap& map, Index joint) {
+    constexpr double kTurn = 2 * std::numbers::pi;
+    VectorXd q = sampled(map.position[static_cast<std::size_t>(joint)],
+                         fmt::format("position of joint {}", joint + 1));
+    if (map.at_rest) return q;
+    const std::vector<Index> folds = folds_of(q, kTurn);
+    if (folds.empty()) return q;
+    unfold(q, kTurn, folds);
+    columns_.remarks.push_back(fmt::format(
+        "the position of joint {} is folded into a turn: it jumps by 2 pi {} time{}, "
+        "first at t = {:.6g} s, and was unfolded",
+        joint + 1, folds.size(), folds.size() == 1 ? "" : "s", log_.t_s[folds.front()]));
+    return q;
+  }
+
+  void check_sample_count() const {
+    if (t_s_.size() >= kMinSamples) return;
+    fail("", fmt::format("{} samples", t_s_.size()),
+         fmt::format("{} samples or more", kMinSamples));
   }
 
   void check_readings() const {
-    if (log_.t_s.size() >= kMinReadings) return;
-    fail("", fmt::format("{} readings", log_.t_s.size()),
+    if (t_s_.size() >= kMinReadings) return;
+    fail("", fmt::format("{} readings", t_s_.size()),
          fmt::format("{} readings or more", kMinReadings), "hold the joint at more positions");
   }
 
@@ -274,49 +260,59 @@ class Assembler {
   }
 
   NamedColumns columns_;
+  VectorXd t_s_;
   Index joints_;
+  std::map<std::string, int> uses_;  // of each column, that are still to come
   Log log_;
 };
 
-NeedOf needs_of(const std::optional<ChannelMap>& channels) {
-  if (!channels) {
-    return [](const std::string& name) {
-      if (name == "t") return Need::kAscending;
-      return is_common_name(name) ? Need::kRequired : Need::kWelcome;
-    };
+TimedColumns read_file(const std::filesystem::path& path, const std::optional<ChannelMap>& channels,
+                       double period_s, std::size_t file, std::size_t files) {
+  const NeedOf need_of = needs_of(channels, file, files);
+  RecordingFile recording(path);
+  TimedColumns read;
+  read.columns = log_format_of(recording).read(recording, channels ? &*channels : nullptr, need_of);
+  if (channels && channels->at_rest) return read;
+  // Without any of the names this would be the least of what is wrong.
+  if (!channels && !read.columns.columns.contains("t") && period_s == 0 && files == 1) {
+    const auto is_common = [](const std::string& name) { return is_common_name(name); };
+    const auto& names = read.columns.names;
+    if (std::none_of(names.begin(), names.end(), is_common)) return read;
   }
-  std::set<std::string> wanted;
-  const auto want = [&wanted](const Channel& channel) {
-    wanted.insert(channel.source);
-    if (!channel.scale_source.empty()) wanted.insert(channel.scale_source);
-  };
-  if (!channels->at_rest) want(channels->time);
-  for (const Channel& channel : channels->position) want(channel);
-  for (const auto& channel : channels->velocity) {
-    if (channel) want(*channel);
+  const Channel time = channels ? time_channel(*channels, file) : named("t");
+  read.time = time_of(read.columns, time, period_s);
+  return read;
+}
+
+TimedColumns read_files(const std::filesystem::path& path,
+                        const std::optional<ChannelMap>& channels, double period_s) {
+  const std::vector<std::filesystem::path> paths = recording_files(path);
+  if (paths.size() == 1) return read_file(path, channels, period_s, 0, 1);
+  if (channels && channels->at_rest) {
+    throw InputError({path.string(), "", fmt::format("{} files", paths.size()),
+                      "one, as the channels' at_rest = true says", "join them before"});
   }
-  for (const Channel& channel : channels->torque) want(channel);
-  for (const auto& [name, channel] : channels->extra) want(channel);
-  // Scaled by a negative number time ascends where its column descends.
-  const bool ascends =
-      !channels->at_rest && channels->time.scale > 0 && channels->time.scale_source.empty();
-  const std::string time = ascends ? channels->time.source : std::string();
-  return [wanted = std::move(wanted), time](const std::string& name) {
-    if (!wanted.contains(name)) return Need::kNone;
-    return name == time ? Need::kAscending : Need::kRequired;
-  };
+  std::vector<TimedColumns> files;
+  for (std::size_t file = 0; file < paths.size(); ++file) {
+    files.push_back(read_file(paths[file], channels, period_s, file, paths.size()));
+    if (files.back().time.t_s.size() >= 2) continue;
+    throw InputError({files.back().columns.file, "",
+                      fmt::format("{} samples", files.back().time.t_s.size()),
+                      "2 samples or more in each file of a recording", ""});
+  }
+  return joined_files(std::move(files), kMinSamples, kMaxGap);
 }
 
 }  // namespace
 
 Log read_log(const std::filesystem::path& path, int joint_count,
-             const std::optional<ChannelMap>& channels) {
+             const std::optional<ChannelMap>& channels, std::optional<double> period_s) {
   try {
-    const NeedOf need_of = needs_of(channels);
-    RecordingFile file(path);
-    const ChannelMap* map = channels ? &*channels : nullptr;
-    Assembler assembler(log_format_of(file).read(file, map, need_of), joint_count);
-    return channels ? assembler.with(*channels) : assembler.with_common_header();
+    std::optional<ChannelMap> map = channels;
+    if (map && period_s && !map->at_rest) map->period_s = *period_s;
+    const double period = map ? map->period_s : period_s.value_or(0);
+    Assembler assembler(read_files(path, map, period), joint_count);
+    return map ? assembler.with(*std::move(map)) : assembler.with_common_header(period);
   } catch (const std::bad_alloc&) {
     throw InputError({shown_name(path), "", "more than this machine has memory for",
                       "a recording that fits into it",
@@ -325,15 +321,17 @@ Log read_log(const std::filesystem::path& path, int joint_count,
 }
 
 Log read_log_or_hold_map(const std::filesystem::path& path, const RobotDescription& robot,
-                         const std::optional<std::filesystem::path>& channels_file) {
-  if (!channels_file) return read_log(path, robot.joint_count(), robot.channels);
-  return read_log(path, robot.joint_count(),
-                  read_channels_file(*channels_file, robot.joint_count()));
+                         const ChannelOptions& options) {
+  if (!options.file) {
+    return read_log(path, robot.joint_count(), robot.channels, options.period_s);
+  }
+  return read_log(path, robot.joint_count(), read_channels_file(*options.file, robot.joint_count()),
+                  options.period_s);
 }
 
 Log read_log(const std::filesystem::path& path, const RobotDescription& robot,
-             const std::optional<std::filesystem::path>& channels_file) {
-  Log log = read_log_or_hold_map(path, robot, channels_file);
+             const ChannelOptions& options) {
+  Log log = read_log_or_hold_map(path, robot, options);
   if (log.at_rest) {
     throw InputError(
         {log.file, "", "a hold map, as the channels' at_rest = true says", "a recording in time",

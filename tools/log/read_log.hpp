@@ -23,17 +23,29 @@ namespace offnominal::tools {
 // that are there), is not numeric, or differs in length from the time; when the number of joints is
 // not joint_count; when a value is not finite; when time does not ascend; when there are fewer than
 // kMinSamples samples, or a gap of more than kMaxGap median steps.
+//
+// "a.csv+b.csv" are two files of one recording (joined_files.hpp). Units that a file says of its
+// columns are taken where the channels say neither unit nor scale, positions that jump by 2 pi as
+// an angle folded into a turn does are unfolded, both with a remark. `period_s` takes the place of
+// the channels' time.
 Log read_log(const std::filesystem::path& path, int joint_count,
-             const std::optional<ChannelMap>& channels);
+             const std::optional<ChannelMap>& channels,
+             std::optional<double> period_s = std::nullopt);
 
-// The recording as the robot's file maps it, unless `channels_file` names a file that does. Throws
-// InputError where that says that it is a hold map.
+// What a command line says of a recording's columns.
+struct ChannelOptions {
+  std::optional<std::filesystem::path> file;  // with [channels], instead of the robot file's
+  std::optional<double> period_s;             // instead of a time, s
+};
+
+// The recording as the robot's file maps it, unless the options say otherwise. Throws InputError
+// where that says that it is a hold map.
 Log read_log(const std::filesystem::path& path, const RobotDescription& robot,
-             const std::optional<std::filesystem::path>& channels_file = std::nullopt);
+             const ChannelOptions& options = {});
 
 // The same for a recording in time or a hold map (hold_map.hpp), as the channels say.
 Log read_log_or_hold_map(const std::filesystem::path& path, const RobotDescription& robot,
-                         const std::optional<std::filesystem::path>& channels_file);
+                         const ChannelOptions& options);
 
 inline constexpr int kMinReadings = 200;  // of a hold map
 inline constexpr double kSamplingJitter = 0.01;

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <system_error>
+#include <utility>
 
 #include "common/error.hpp"
 #include "common/input_name.hpp"
@@ -18,14 +20,6 @@ namespace {
 constexpr std::size_t kBlock = std::size_t{1} << 18;
 
 std::string allowed() { return "a recording: " + log_format_names(); }
-
-// As many bytes as there are, up to `size`; negative at an error.
-ssize_t read_some(int file, char* to, std::size_t size) {
-  for (;;) {
-    const ssize_t count = ::read(file, to, size);
-    if (count >= 0 || errno != EINTR) return count;
-  }
-}
 
 bool write_all(int file, std::string_view content) {
   while (!content.empty()) {
@@ -40,34 +34,30 @@ bool write_all(int file, std::string_view content) {
 }  // namespace
 
 RecordingFile::RecordingFile(const std::filesystem::path& path)
-    : path_(path),
-      name_(shown_name(path)),
-      file_(names_standard_input(path) ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
-                                       : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    : path_(path), name_(shown_name(path)) {
+  const int file = names_standard_input(path) ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                                              : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const int error = errno;
-  if (file_ < 0 && error == ENOENT) fail("", "no such file", allowed());
-  if (file_ < 0) {
+  if (file < 0 && error == ENOENT) fail("", "no such file", allowed());
+  if (file < 0) {
     fail("", "a file that cannot be opened (" + std::generic_category().message(error) + ")",
          allowed());
   }
+  stream_ = stream_of(file);
   struct stat status {};
-  if (::fstat(file_, &status) == 0 && S_ISDIR(status.st_mode)) {
-    ::close(file_);
-    fail("", "a folder", allowed());
-  }
+  if (::fstat(file, &status) == 0 && S_ISDIR(status.st_mode)) fail("", "a folder", allowed());
   try {
-    // A pipe gives less than was asked for, and more later.
-    while (buffer_.size() < kBeginning && fill()) {
-    }
-  } catch (...) {
-    ::close(file_);
-    throw;
+    stream_ = plain_stream(std::move(stream_), is_as_stored_);
+  } catch (const StreamError& problem) {
+    fail("", problem.what(), allowed(), problem.mend);
   }
-  beginning_ = buffer_.substr(0, kBeginning);
+  // A pipe gives less than was asked for, and more later.
+  while (size_ < kBeginning && fill()) {
+  }
+  beginning_ = std::string(buffer_.get(), std::min(size_, kBeginning));
 }
 
 RecordingFile::~RecordingFile() {
-  if (file_ >= 0) ::close(file_);
   if (copy_ >= 0) ::close(copy_);
 }
 
@@ -76,34 +66,49 @@ void RecordingFile::fail(const std::string& place, const std::string& found,
   throw InputError({name_, place, found, allowed, mend});
 }
 
+// What is left of the buffer moves to its beginning; where that fills it, it grows.
 bool RecordingFile::fill() {
-  if (used_ > 0) buffer_.erase(0, used_);
-  used_ = 0;
-  const std::size_t kept = buffer_.size();
-  buffer_.resize(kept + kBlock);
-  const ssize_t count = read_some(file_, buffer_.data() + kept, kBlock);
-  const int error = errno;
-  buffer_.resize(kept + static_cast<std::size_t>(count < 0 ? 0 : count));
-  if (count < 0) {
-    fail("", "a file that cannot be read (" + std::generic_category().message(error) + ")",
-         allowed());
+  const std::size_t left = size_ - used_;
+  if (room_ < left + kBlock) {
+    const std::size_t room = std::max(2 * room_, left + kBlock);
+    std::unique_ptr<char[]> larger(new char[room]);
+    if (left > 0) std::memcpy(larger.get(), buffer_.get() + used_, left);
+    buffer_ = std::move(larger);
+    room_ = room;
+  } else if (left > 0) {
+    std::memmove(buffer_.get(), buffer_.get() + used_, left);
   }
-  return count > 0;
+  used_ = 0;
+  size_ = left;
+  try {
+    const std::size_t count = stream_->read(buffer_.get() + size_, kBlock);
+    size_ += count;
+    return count > 0;
+  } catch (const StreamError& problem) {
+    fail("", problem.what(), allowed(), problem.mend);
+  }
 }
 
-bool RecordingFile::next_line(std::string& line) {
+bool RecordingFile::next_line(std::string_view& line) {
   std::size_t looked_at = 0;  // of what is not used
-  std::size_t end = std::string::npos;
-  while ((end = buffer_.find('\n', used_ + looked_at)) == std::string::npos) {
-    looked_at = buffer_.size() - used_;
+  const void* end = nullptr;
+  const auto look = [&] {
+    const char* const from = buffer_.get() + used_ + looked_at;
+    end = std::memchr(from, '\n', size_ - used_ - looked_at);
+    return end != nullptr;
+  };
+  while (!look()) {
+    looked_at = size_ - used_;
     if (looked_at > kLongestLine) break;
     if (!fill()) break;
   }
-  line_ended_ = end != std::string::npos;
-  const std::size_t length = (line_ended_ ? end : buffer_.size()) - used_;
+  line_ended_ = end != nullptr;
+  const char* const begin = buffer_.get() + used_;
+  const std::size_t length =
+      line_ended_ ? static_cast<std::size_t>(static_cast<const char*>(end) - begin) : size_ - used_;
   if (length == 0 && !line_ended_) return false;
-  line.assign(buffer_, used_, std::min(length, kLongestLine + 1));
-  if (line.find('\0') != std::string::npos) {
+  line = std::string_view(begin, length);
+  if (line.find('\0') != std::string_view::npos) {
     fail(line_place(), "bytes that are no text", allowed(), "save it as text in UTF-8");
   }
   if (length > kLongestLine) {
@@ -114,6 +119,13 @@ bool RecordingFile::next_line(std::string& line) {
   ++lines_;
   taken_ += length;
   if (taken_ > kMostLines) refuse_size(kMostLines, "cut it into parts");
+  return true;
+}
+
+bool RecordingFile::next_line(std::string& line) {
+  std::string_view view;
+  if (!next_line(view)) return false;
+  line = view;
   return true;
 }
 
@@ -144,17 +156,19 @@ void RecordingFile::copy_to(int file) {
   };
   std::size_t size = 0;
   do {
-    written(std::string_view(buffer_).substr(used_));
-    size += buffer_.size() - used_;
-    used_ = buffer_.size();
+    written(std::string_view(buffer_.get() + used_, size_ - used_));
+    size += size_ - used_;
+    used_ = size_;
     if (size > kMostCopied) refuse_size(kMostCopied, "save it as a file and name that");
   } while (fill());
 }
 
 std::filesystem::path RecordingFile::seekable() {
   std::error_code ignored;
-  if (!names_standard_input(path_) && std::filesystem::is_regular_file(path_, ignored))
+  if (is_as_stored_ && !names_standard_input(path_) &&
+      std::filesystem::is_regular_file(path_, ignored)) {
     return path_;
+  }
   if (copy_ < 0) {
     copy_ = nameless_file();
     copy_to(copy_);

@@ -10,7 +10,9 @@
 // How the columns of a recording become t, q, dq and tau of the joints.
 //
 //   [channels]
-//   time = "t"                             # a string stands for {source = "..."}; default "t"
+//   time = "t"                             # a string stands for {source = "..."}; default "t".
+//                                          # A list: one for each file that a recording has
+//   # period_s = 0.001                     # instead of time, where no column has it
 //   position = [{source = "qm"}]           # one entry per joint, in the joints' order
 //   velocity = [{source = "vm"}]           # absent, or "" for one joint: derived from the position
 //   torque = [{source = "vir", scale_source = "gtau", unit = "V"}]
@@ -21,9 +23,12 @@
 //
 // Hold maps (hold_map.hpp) have at_rest = true, a position and a torque, and nothing else.
 //
-// A channel's SI value is scale * scale_source * source + offset: scale is 1, offset 0 and
-// scale_source absent unless given. Where there is one joint the list's brackets may be left out.
-// `unit` is the unit of the source; one that is not SI needs a scale, an offset or a scale_source.
+// A channel's SI value is scale * scale_source * unit * source + offset: scale is 1, offset 0 and
+// scale_source absent unless given; `unit` is the factor of the source's unit where units.hpp knows
+// it, else 1. A unit that is none of the quantity's own (A where a torque is wanted) needs a scale,
+// an offset or a scale_source. Where there is one joint the list's brackets may be left out.
+// A source is a name, or the number of a column from 1. sum = [channel, channel, ...] takes the
+// place of source: its terms have a source, scale, scale_source and unit each.
 
 namespace offnominal::tools {
 

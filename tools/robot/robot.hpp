@@ -77,18 +77,23 @@ struct BoundSettings {
   std::string source = {};    // where the numbers come from, free text; empty: not said
 };
 
-// Where one quantity of a log comes from: SI value = scale * source + offset. `scale_source` names
-// a scalar variable of the log (a drive gain in a .mat file, say) that multiplies scale.
+// Where one quantity of a log comes from: SI value = scale * unit * source + offset, `unit` as
+// units.hpp knows it, 1 where it does not. `scale_source` names a scalar variable of the log (a
+// drive gain in a .mat file, say) that multiplies scale. Where there is a `sum`, its terms take the
+// source's place; they have no offset and no sum of their own.
 struct Channel {
-  std::string source;
+  std::string source;  // a name, or the number of a column from 1; empty where there is a sum
   double scale = 1;
   double offset = 0;
   std::string scale_source;  // empty: none
-  std::string unit;          // unit of the source, for messages; empty: SI
+  std::string unit;          // of the source; empty: SI
+  std::vector<Channel> sum = {};
 };
 
 struct ChannelMap {
-  Channel time;                                  // t, s
+  Channel time;                                  // t, s; not read where there is a period_s
+  std::vector<Channel> more_times = {};          // of the second file of a recording, and so on
+  double period_s = 0;                           // between two samples; 0: as the time says
   std::vector<Channel> position;                 // per joint
   std::vector<std::optional<Channel>> velocity;  // none: derived from the position
   std::vector<Channel> torque;                   // per joint

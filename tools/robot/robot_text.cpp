@@ -222,7 +222,8 @@ void write_drives(Writer& out, const DriveSettings& settings) {
 }
 
 std::string channel_text(const Channel& channel) {
-  std::string text = "{source = " + quoted(channel.source);
+  std::string text = channel.sum.empty() ? "{source = " + quoted(channel.source)
+                                         : "{sum = [" + list_of(channel.sum, channel_text) + "]";
   if (channel.scale != 1) text += ", scale = " + shortest_real(channel.scale);
   if (!channel.scale_source.empty()) text += ", scale_source = " + quoted(channel.scale_source);
   if (channel.offset != 0) text += ", offset = " + shortest_real(channel.offset);
@@ -231,7 +232,11 @@ std::string channel_text(const Channel& channel) {
 }
 
 std::string channels_value(const ChannelMap& channels, std::string_view key) {
-  if (key == "time") return channel_text(channels.time);
+  if (key == "time") {
+    if (channels.more_times.empty()) return channel_text(channels.time);
+    return "[" + channel_text(channels.time) + ", " + list_of(channels.more_times, channel_text) +
+           "]";
+  }
   if (key == "position") return "[" + list_of(channels.position, channel_text) + "]";
   if (key == "torque") return "[" + list_of(channels.torque, channel_text) + "]";
   const auto text = [](const auto& channel) {
@@ -245,6 +250,8 @@ void write_channels(Writer& out, const ChannelMap& channels) {
   out.table("[channels]");
   if (channels.at_rest) {
     out.value("at_rest", "true");
+  } else if (channels.period_s > 0) {
+    out.value("period_s", shortest_real(channels.period_s));
   } else {
     write("time");
   }

@@ -120,7 +120,7 @@ class HoldMapOfMn4004 : public ::testing::Test {
       GTEST_SKIP() << "no recording at " << file << "; OFFNOMINAL_DATA names its folder";
     }
     robot_ = read_robot_file(test::kRobots / "mn4004.toml");
-    log_ = read_log_or_hold_map(file, robot_, std::nullopt);
+    log_ = read_log_or_hold_map(file, robot_, {});
   }
 
   RobotDescription robot_;

@@ -102,12 +102,15 @@ inline void expect_same(const tools::Channel& a, const tools::Channel& b) {
   EXPECT_EQ(a.offset, b.offset);
   EXPECT_EQ(a.scale_source, b.scale_source);
   EXPECT_EQ(a.unit, b.unit);
+  expect_same(a.sum, b.sum);
 }
 
 inline void expect_same(const tools::ChannelMap& a, const tools::ChannelMap& b) {
   EXPECT_EQ(a.at_rest, b.at_rest);
   EXPECT_EQ(a.dbc, b.dbc);
   expect_same(a.time, b.time);
+  expect_same(a.more_times, b.more_times);
+  expect_same(a.period_s, b.period_s);
   expect_same(a.position, b.position);
   ASSERT_EQ(a.velocity.size(), b.velocity.size());
   for (std::size_t i = 0; i < a.velocity.size(); ++i) {

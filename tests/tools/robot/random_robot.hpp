@@ -213,15 +213,23 @@ class RandomRobot {
     return settings;
   }
 
-  tools::Channel channel() {
+  tools::Channel term() {
     tools::Channel result;
     result.source = "c" + any_text();
     if (coin()) {
       result.scale = positive();
       result.unit = "u" + any_text();
     }
-    if (coin()) result.offset = number();
     if (coin()) result.scale_source = "g" + any_text();
+    return result;
+  }
+
+  tools::Channel channel() {
+    tools::Channel result = term();
+    if (coin()) result.offset = number();
+    if (whole(0, 3) > 0) return result;
+    result.source.clear();
+    for (int i = whole(2, 4); i > 0; --i) result.sum.push_back(term());
     return result;
   }
 
@@ -232,6 +240,14 @@ class RandomRobot {
     if (map.at_rest) {  // none is read
       map.time = tools::Channel();
       map.time.source = "t";
+    } else if (coin()) {
+      map.more_times = {channel()};
+    }
+    if (!map.at_rest && whole(0, 3) == 0) {
+      map.period_s = positive();
+      map.time = tools::Channel();
+      map.time.source = "t";
+      map.more_times.clear();
     }
     for (int i = 0; i < joints; ++i) {
       map.position.push_back(channel());
