@@ -41,6 +41,7 @@ struct AddOptions {
   std::vector<std::string> set;
   std::optional<double> refit_inertia_percent;
   bool keep = false;
+  bool no_skew = false;
   FilterRequest filter;
   std::optional<double> link_share;
   int threads = 1;
@@ -88,6 +89,7 @@ AddRequest request_of(const AddOptions& options) {
     request.inertia_deviation = percent / 100;
   }
   request.keep = options.keep;
+  request.fit_skew = !options.no_skew;
   request.source = "Fitted to " + file_names({options.files.logs[0]}) + " by offnominal add.";
   return request;
 }
@@ -112,6 +114,7 @@ void check_kind(const AddOptions& options) {
   if (options.joint != 0) refuse_option("add", "--joint", std::to_string(options.joint), alone);
   if (!options.set.empty()) refuse_option("add", "--set", "\"" + options.set[0] + "\"", alone);
   if (options.keep) refuse_option("add", "--keep", "given", alone);
+  if (options.no_skew) refuse_option("add", "--no-skew", "given", alone);
   if (options.refit_inertia_percent) {
     refuse_option("add", "--refit-inertia", "given", alone, "say --link-share, as for explain");
   }
@@ -243,6 +246,9 @@ void set_up_add(CLI::App& verb, ExitCode& exit_code) {
       ->take_all()
       ->allow_extra_args(false);
   verb.add_flag("--keep", options->keep, "Leave effects that were fitted before as they are");
+  verb.add_flag("--no-skew", options->no_skew,
+                "Torque and position are of one time: fit no skew between them beside the effects. "
+                "For a model whose bound is calibrated on recordings of the same drives");
   verb.add_option("--refit-inertia", options->refit_inertia_percent,
                   "Fit mass and inertia of every link as well, believed to be right to within so "
                   "many percent (one standard deviation)");

@@ -133,6 +133,7 @@ class Adder {
     // What is believed of a link is two standard deviations wide.
     nuisance_.link_share = 2 * request.inertia_deviation.value_or(0);
     nuisance_.free_effects = setup_.refitted;
+    if (!request.fit_skew) nuisance_.skew_samples = 0;
     widths_ = set_sign_widths(robot_, {log}, plan_);
     data_ = data_of(log_, nuisance_);
     regression_ = std::make_unique<Regression>(*data_);

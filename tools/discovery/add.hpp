@@ -22,6 +22,9 @@ struct AddRequest {
   // Standard deviation of the prior on every link's mass and inertia, 0.05 for 5 %; none: the
   // rigid-body numbers stay.
   std::optional<double> inertia_deviation;
+  // Beside all else a time skew between torque and position, which is the recording's own. Without
+  // it the numbers make up for one: right for a monitor that will have the same.
+  bool fit_skew = true;
   bool keep = false;   // leave effects that were fitted before as they are
   std::string source;  // what the written effects say of where their numbers come from
 };

@@ -111,9 +111,7 @@ class FileFitter {
         recordings_(data.recordings),
         nuisance_(std::move(nuisance)),
         terms_(std::move(terms)) {
-    // As the file will be used: a monitor knows no skew either.
     nuisance_.sign_shapes = false;
-    nuisance_.skew_samples = 0;
     if (recordings_[0].at_rest) return;
     VectorXd settled = settled_sign_widths(file, options.refitted);
     for (Index joint = 0; joint < options.given_widths.size(); ++joint) {
