@@ -141,7 +141,7 @@ TEST_F(SilLog, ReadsItsOwnFramesThroughANamedDbcAsWithout) {
     test::put(folder / "common.toml", dbc +
                                           "time = \"t\"\nposition = [\"q1\", \"q2\"]\n"
                                           "torque = [\"tau1\", \"tau2\"]\n");
-    const Log log = read_log(folder / "run.log", robot, folder / "common.toml");
+    const Log log = read_log(folder / "run.log", robot, {folder / "common.toml", {}});
     // With the damaged record left out.
     EXPECT_EQ(log.q, expected.q);
     EXPECT_EQ(log.tau, expected.tau);
@@ -152,7 +152,7 @@ TEST_F(SilLog, ReadsItsOwnFramesThroughANamedDbcAsWithout) {
                   "velocity = [\"encoder_1.velocity\", \"encoder_2.velocity\"]\n"
                   "torque = [\"tau1\", \"tau2\"]\n");
     try {
-      const Log marked = read_log(folder / "run.log", robot, folder / "velocity.toml");
+      const Log marked = read_log(folder / "run.log", robot, {folder / "velocity.toml", {}});
       FAIL() << "read a velocity of " << marked.dq(0, 0) << " that nobody sent";
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr("encoder_1.velocity"));
@@ -280,7 +280,7 @@ TEST(CandumpLog, OfAnotherProtocolIsReadThroughItsDbcFile) {
   write_file_atomically(folder / "drive.log", text);
   RobotDescription robot;
   robot.joints.resize(1);
-  const Log log = read_log(folder / "drive.log", robot, folder / "channels.toml");
+  const Log log = read_log(folder / "drive.log", robot, {folder / "channels.toml", {}});
   ASSERT_EQ(log.sample_count(), 20);
   EXPECT_NEAR(log.period_s, 0.01, 1e-6);
   EXPECT_EQ(log.q(19, 0), 9.5);
