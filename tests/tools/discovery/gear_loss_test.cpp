@@ -52,7 +52,7 @@ TEST(GearLoss, IsFoundAndWrittenWithBothItsLosses) {
   EXPECT_EQ(told.improved.effects.back().kind, EffectKind::kGearLoss);
   // The file that is written needs the torque that was recorded, but for its noise and for a sign
   // that is as wide as the recording resolves.
-  const Measurement measured = measure(log, {});
+  const Measurement measured = measure(log, real);
   EXPECT_LT(compare(told.improved, measured).joints.at(1).rms_error,
             1.2 * compare(real, measured).joints.at(1).rms_error);
 }
