@@ -6,6 +6,8 @@
 #include "discovery/band_shift.hpp"
 #include "discovery/confirm.hpp"
 #include "discovery/estimates.hpp"
+#include "discovery/parallel.hpp"
+#include "discovery/remainder.hpp"
 
 namespace offnominal::tools::discovery {
 
@@ -26,10 +28,10 @@ void describe_joints(const SearchResult& from, Explanation& to) {
   const VectorXd before = data.layout.rms(data.target);
   const VectorXd fitted = data.layout.rms(from.found.baseline.residual);
   const VectorXd after = data.layout.rms(from.found.fit.residual);
-  const VectorXd held_before = from.hold_out.rms(from.found.held_out.front());
-  const VectorXd held_after = from.hold_out.rms(from.found.held_out.back());
+  const VectorXd held_before = from.hold_out.rms(from.found.held_out_before);
+  const VectorXd held_after = from.hold_out.rms(from.found.held_out_after);
   const VectorXd floor = noise_floor_of(data, from.found.fit.residual);
-  const VectorXd held_floor = noise_floor_of(from.hold_out.data(), from.found.held_out.back());
+  const VectorXd held_floor = noise_floor_of(from.hold_out.data(), from.found.held_out_after);
   for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
     to.joints.push_back({joint, effort_unit(from.robot, joint), torque[joint], before[joint],
                          after[joint], fitted[joint], after[joint], held_before[joint],
@@ -71,14 +73,15 @@ void describe_findings(const SearchResult& from, Explanation& to) {
   if (from.found.accepted.empty()) return;
   const auto estimates = estimates_with_discrepancy(from.improved);
   const VectorXd simulated_after = simulated_position_error(data, from.found.fit.residual);
-  const VectorXd held_after = from.hold_out.rms(from.found.held_out.back());
-  for (std::size_t i = 0; i < from.found.accepted.size(); ++i) {
+  const VectorXd held_after = from.hold_out.rms(from.found.held_out_after);
+  std::vector<Finding> findings(from.found.accepted.size());
+  parallel_for(findings.size(), from.search.options().threads, [&](std::size_t i) {
     const Accepted& accepted = from.found.accepted[i];
     const EffectCandidate& effect = *accepted.term.effect;
     const Index joint = accepted.term.joint;
     const std::vector<Term> without = from.found.terms_without(i);
     const ModelFit fit = from.regression.fit(without);
-    Finding finding;
+    Finding& finding = findings[i];
     finding.what = {effect.kind(), joint};
     finding.words = effect.info().words;
     finding.formula = effect.info().formula;
@@ -89,8 +92,8 @@ void describe_findings(const SearchResult& from, Explanation& to) {
     finding.holdout_after = held_after[joint];
     finding.simulated_before = simulated_position_error(data, fit.residual)[joint];
     finding.simulated_after = simulated_after[joint];
-    to.found.push_back(std::move(finding));
-  }
+  });
+  to.found = std::move(findings);
 }
 
 void describe_suspicion(const SearchResult& from, Explanation& to) {
@@ -129,8 +132,29 @@ void describe_shifts(const SearchResult& from, Explanation& to) {
     const double rms =
         std::abs(by) * data.layout.rms(data.nuisance.columns.col(column))[term.joint];
     if (std::abs(by) > kShifted * std::abs(file) && rms > kMatters * torque[term.joint]) {
-      to.shifts.push_back({term.name, file != 0 ? by / file : 1.0});
+      to.shifts.push_back({term.joint, term.name, file != 0 ? by / file : 1.0});
     }
+  }
+}
+
+// Where the loudest stretches of what is left are, per joint.
+void describe_loud(const SearchResult& from, Explanation& to) {
+  const Data& data = from.regression.data();
+  if (data.recordings[0].at_rest) return;
+  for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
+    for (const LoudWindow& one : loud_windows(data, from.found.fit.residual, joint)) {
+      to.loud.push_back({joint, one.recording, one.from_s, one.to_s});
+    }
+  }
+}
+
+void describe_friction_of_file(const SearchResult& from, Explanation& to) {
+  for (Index joint = 0; joint < from.regression.data().layout.joint_count(); ++joint) {
+    const auto& known = from.robot.effects;
+    const bool has = std::any_of(known.begin(), known.end(), [&](const RobotEffect& one) {
+      return one.joint == joint && info_of(one.kind)->traits.is_friction;
+    });
+    if (!has) to.without_friction.push_back(joint);
   }
 }
 
@@ -175,11 +199,11 @@ void describe(const SearchResult& result, Explanation& to) {
   describe_rejections(result, to);
   describe_shifts(result, to);
   describe_hold_friction(result, to);
+  describe_loud(result, to);
+  describe_friction_of_file(result, to);
   describe_series(result, to);
   to.where = structure_of(result.regression.data(), result.found.fit.residual);
-  for (const VectorXd& residual : result.found.held_out) {
-    to.waterfall.push_back(result.hold_out.rms(residual));
-  }
+  to.waterfall = result.found.waterfall;
 }
 
 }  // namespace offnominal::tools::discovery

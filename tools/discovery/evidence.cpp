@@ -1,13 +1,15 @@
 #include "discovery/evidence.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <random>
-#include <utility>
+
+#include "discovery/parallel.hpp"
 
 namespace offnominal::tools::discovery {
 
@@ -31,56 +33,11 @@ MatrixXd Remainder::beside_basis(MatrixXd columns) const {
 
 namespace {
 
-// Block of a row; those of the priors come last, in one.
-int block_of(const Remainder& remainder, Index row) {
-  const auto at = static_cast<std::size_t>(row);
-  return at < remainder.blocks.of_row.size() ? remainder.blocks.of_row[at] : remainder.blocks.count;
-}
+constexpr double kNothingNew = 1e-3;  // sine of the angle to what is fitted already
 
-MatrixXd scores_of(const Remainder& remainder, const MatrixXd& columns) {
-  MatrixXd scores = MatrixXd::Zero(remainder.blocks.count + 1, columns.cols());
-  for (Index row = 0; row < columns.rows(); ++row) {
-    scores.row(block_of(remainder, row)) += remainder.residual[row] * columns.row(row);
-  }
-  return scores;
-}
-
-// The d x d products of the columns, block by block, flattened.
-MatrixXd moments_of(const Remainder& remainder, const MatrixXd& columns) {
-  const Index d = columns.cols();
-  MatrixXd moments = MatrixXd::Zero(remainder.blocks.count + 1, d * d);
-  for (Index row = 0; row < columns.rows(); ++row) {
-    const int block = block_of(remainder, row);
-    for (Index i = 0; i < d; ++i) {
-      for (Index j = 0; j < d; ++j) moments(block, i * d + j) += columns(row, i) * columns(row, j);
-    }
-  }
-  return moments;
-}
-
-// The bounded Wald statistic, the blocks' scores times `signs`. What a block of a recording
-// contributes varies as it is seen to, what the priors contribute as they say.
-double statistic_of(const Evidence& group, const MatrixXd& whole_inverse, const VectorXd& signs) {
-  const MatrixXd& scores = group.block_scores;
-  const MatrixXd& moments = group.block_moments;
-  const Index d = scores.cols();
-  const Index blocks = scores.rows() - 1;
-  const VectorXd solution = whole_inverse * (scores.transpose() * signs);
-  MatrixXd after(blocks, d);
-  for (Index k = 0; k < blocks; ++k) {
-    for (Index i = 0; i < d; ++i) {
-      double fitted = 0;
-      for (Index j = 0; j < d; ++j) fitted += moments(k, i * d + j) * solution[j];
-      after(k, i) = signs[k] * scores(k, i) - fitted;
-    }
-  }
-  const VectorXd of_priors = group.prior_variance * moments.row(blocks).transpose();
-  const MatrixXd variance =
-      after.transpose() * after + Eigen::Map<const MatrixXd>(of_priors.data(), d, d);
-  const double wald =
-      solution.dot((whole_inverse * variance * whole_inverse).ldlt().solve(solution));
-  const auto count = static_cast<double>(blocks);
-  return std::isfinite(wald) && wald >= 0 ? count * wald / (count + wald) : 0;
+// The bounded Wald statistic of K blocks.
+double bounded(double wald, double blocks) {
+  return std::isfinite(wald) && wald >= 0 ? blocks * wald / (blocks + wald) : 0;
 }
 
 MatrixXd inverse_of_sum(const MatrixXd& moments, Index d) {
@@ -88,6 +45,72 @@ MatrixXd inverse_of_sum(const MatrixXd& moments, Index d) {
   const Eigen::Map<const MatrixXd> whole(sum.data(), d, d);
   return whole.ldlt().solve(MatrixXd::Identity(d, d));
 }
+
+// The statistic of one group under any signs of its blocks. What a block of a recording contributes
+// varies as it is seen to, what the priors contribute as they say. With signs e_k, scores s_k and
+// moments M_k the solution is x = W sum e_k s_k, and the scatter of the blocks about it
+//   sum (e_k s_k - M_k x) (e_k s_k - M_k x)^T
+// needs nothing of the signs but the sums of e_k s_k and of e_k s_k,j M_k,il: `features` are those
+// that are multiplied with the signs, the rest is computed once.
+class StatisticOfSigns {
+ public:
+  explicit StatisticOfSigns(const Evidence& group) : d_(group.block_scores.cols()) {
+    const MatrixXd& scores = group.block_scores;
+    const MatrixXd& moments = group.block_moments;
+    const Index blocks = scores.rows() - 1;
+    count_ = static_cast<double>(blocks);
+    inverse_ = inverse_of_sum(moments, d_);
+    features_ = MatrixXd::Zero(blocks + 1, d_ + d_ * d_ * d_);
+    features_.leftCols(d_) = scores;
+    for (Index j = 0; j < d_; ++j) {
+      features_.middleCols(d_ + j * d_ * d_, d_ * d_).topRows(blocks) =
+          moments.topRows(blocks).array().colwise() * scores.col(j).head(blocks).array();
+    }
+    const auto of_scores = scores.topRows(blocks);
+    constant_ = of_scores.transpose() * of_scores;
+    const VectorXd priors = group.prior_variance * moments.row(blocks).transpose();
+    constant_ += Eigen::Map<const MatrixXd>(priors.data(), d_, d_);
+    moments_by_moments_ = moments.topRows(blocks).transpose() * moments.topRows(blocks);
+  }
+
+  [[nodiscard]] const MatrixXd& features() const { return features_; }
+
+  // `sums`: the features, each summed with the signs of its blocks.
+  template <typename Sums>
+  [[nodiscard]] double operator()(const Sums& sums) const {
+    if (d_ == 1) {
+      const double x = inverse_(0, 0) * sums[0];
+      const double scatter = constant_(0, 0) - 2 * x * sums[1] + x * x * moments_by_moments_(0, 0);
+      const double variance = inverse_(0, 0) * inverse_(0, 0) * scatter;
+      return bounded(x * x / variance, count_);
+    }
+    VectorXd x = VectorXd::Zero(d_);
+    for (Index i = 0; i < d_; ++i) {
+      for (Index j = 0; j < d_; ++j) x[i] += inverse_(i, j) * sums[j];
+    }
+    MatrixXd scatter = constant_;
+    for (Index i = 0; i < d_; ++i) {
+      for (Index j = 0; j < d_; ++j) {
+        for (Index l = 0; l < d_; ++l) {
+          scatter(i, j) -=
+              x[l] * (sums[d_ + j * d_ * d_ + i * d_ + l] + sums[d_ + i * d_ * d_ + j * d_ + l]);
+          for (Index m = 0; m < d_; ++m) {
+            scatter(i, j) += x[l] * x[m] * moments_by_moments_(i * d_ + l, j * d_ + m);
+          }
+        }
+      }
+    }
+    return bounded(x.dot((inverse_ * scatter * inverse_).ldlt().solve(x)), count_);
+  }
+
+ private:
+  Index d_;
+  double count_ = 0;
+  MatrixXd inverse_;             // of the sum of all moments
+  MatrixXd features_;            // rows: blocks, the priors' last
+  MatrixXd constant_;            // sum s_k s_k^T, and what the priors say
+  MatrixXd moments_by_moments_;  // of the flattened moments
+};
 
 // -log10 p over statistics from 0 to the number of blocks, for quick look-up.
 class EvidenceScale {
@@ -112,79 +135,223 @@ class EvidenceScale {
   std::array<double, kSteps + 1> values_{};
 };
 
-// `own`: weighted columns beside the basis; `before`: their lengths with what it takes.
-Evidence judge_beside(const Remainder& remainder, const Eigen::Ref<const MatrixXd>& own,
-                      const Eigen::Ref<const VectorXd>& before) {
-  constexpr double kNothingNew = 1e-3;  // sine of the angle to what is fitted already
-  Evidence evidence;
-  const RowLayout& layout = *remainder.layout;
-  MatrixXd scaled = own;
-  for (Index c = 0; c < own.cols(); ++c) {
-    const double length = own.col(c).norm();
-    if (!(length > kNothingNew * before[c]) || !(length > 0)) return evidence;
-    scaled.col(c) /= length;
+// The joint and the rows of every part of the layout, in its order.
+std::vector<ActingColumns::Span> parts_of(const RowLayout& layout) {
+  std::vector<ActingColumns::Span> parts;
+  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+    for (Index joint = 0; joint < layout.joint_count(); ++joint) {
+      parts.push_back({joint, layout.begin(r, joint), layout.samples(r)});
+    }
   }
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(scaled);
-  if (qr.rank() < own.cols() ||
-      std::abs(qr.matrixR()(own.cols() - 1, own.cols() - 1)) < kNothingNew) {
-    return evidence;
+  return parts;
+}
+
+// Share of the energy that goes on the joint where most does.
+double largest_share(const VectorXd& before, const VectorXd& after) {
+  double most = 0;
+  for (Index joint = 0; joint < before.size(); ++joint) {
+    if (after[joint] > 0 && before[joint] > 0)
+      most = std::max(most, 1 - after[joint] / before[joint]);
   }
-  const VectorXd solution = qr.solve(remainder.residual);
-  evidence.coefficients = solution.array() / own.colwise().norm().transpose().array();
-  const VectorXd left = remainder.residual - scaled * solution;
-  const VectorXd energy = layout.energy(left);
-  evidence.gain = 1 - energy.sum() / remainder.energy.sum();
-  for (Index joint = 0; joint < energy.size(); ++joint) {
-    if (!(energy[joint] > 0) || !(remainder.energy[joint] > 0)) continue;
-    evidence.joint_gain =
-        std::max(evidence.joint_gain, 1 - energy[joint] / remainder.energy[joint]);
-    evidence.log_likelihood += 0.5 * remainder.independent_samples[joint] *
-                               std::log(remainder.energy[joint] / energy[joint]);
-  }
-  evidence.block_scores = scores_of(remainder, scaled);
-  evidence.block_moments = moments_of(remainder, scaled);
-  evidence.prior_variance = remainder.prior_weight * remainder.prior_weight;
-  evidence.statistic = statistic_of(evidence, inverse_of_sum(evidence.block_moments, own.cols()),
-                                    VectorXd::Ones(remainder.blocks.count + 1));
-  evidence.usable = std::isfinite(evidence.statistic);
-  return evidence;
+  return most;
 }
 
 }  // namespace
 
 double explained_share(double before, double left) { return 1 - std::pow(left / before, 2); }
 
-Evidence judge(const Remainder& remainder, const MatrixXd& columns) {
-  return std::move(judge_each(remainder, std::span(&columns, 1)).front());
+ActingColumns::ActingColumns(const RowLayout& layout, const MatrixXd& columns) {
+  Index rows = 0;
+  for (const Span& part : parts_of(layout)) {
+    if (columns.middleRows(part.begin, part.count).isZero(0)) continue;
+    spans_.push_back(part);
+    rows += part.count;
+  }
+  values_.resize(rows, columns.cols());
+  Index at = 0;
+  for (const Span& span : spans_) {
+    values_.middleRows(at, span.count) = columns.middleRows(span.begin, span.count);
+    at += span.count;
+  }
 }
 
-std::vector<Evidence> judge_each(const Remainder& remainder, std::span<const MatrixXd> groups) {
-  // Several groups at once go past the basis, which is large, as one matrix.
-  constexpr Index kColumnsAtOnce = 16;
-  std::vector<Evidence> judged;
-  while (!groups.empty()) {
-    std::size_t taken = 0;
-    Index count = 0;
-    while (taken < groups.size() &&
-           (taken == 0 || count + groups[taken].cols() <= kColumnsAtOnce)) {
-      count += groups[taken++].cols();
-    }
-    MatrixXd together(remainder.residual.size(), count);
-    Index at = 0;
-    for (const MatrixXd& group : groups.first(taken)) {
-      for (const auto& column : group.colwise()) together.col(at++) = remainder.weighted(column);
-    }
-    const VectorXd before = together.colwise().norm().transpose();
-    const MatrixXd own = remainder.beside_basis(std::move(together));
-    at = 0;
-    for (const MatrixXd& group : groups.first(taken)) {
-      judged.push_back(judge_beside(remainder, own.middleCols(at, group.cols()),
-                                    before.segment(at, group.cols())));
-      at += group.cols();
-    }
-    groups = groups.subspan(taken);
+Judge::Judge(const Remainder& remainder) : remainder_(remainder) {
+  const RowLayout& layout = *remainder.layout;
+  const Index width = remainder.basis.cols();
+  row_weights_ = layout.weighted(VectorXd::Ones(layout.rows()), remainder.joint_weights);
+  auto products = std::make_shared<std::vector<MatrixXd>>(
+      static_cast<std::size_t>(layout.joint_count()), MatrixXd::Zero(width, width));
+  for (const ActingColumns::Span& part : parts_of(layout)) {
+    const auto basis = remainder.basis.middleRows(part.begin, part.count);
+    (*products)[static_cast<std::size_t>(part.joint)].noalias() += basis.transpose() * basis;
   }
-  return judged;
+  basis_by_basis_ = std::move(products);
+  take_residual();
+}
+
+Judge::Judge(const Remainder& remainder, const Judge& like)
+    : remainder_(remainder),
+      row_weights_(like.row_weights_),
+      basis_by_basis_(like.basis_by_basis_) {
+  take_residual();
+}
+
+void Judge::take_residual() {
+  const RowLayout& layout = *remainder_.layout;
+  const Index width = remainder_.basis.cols();
+  basis_by_residual_.assign(static_cast<std::size_t>(layout.joint_count()), VectorXd::Zero(width));
+  for (const ActingColumns::Span& part : parts_of(layout)) {
+    basis_by_residual_[static_cast<std::size_t>(part.joint)] +=
+        remainder_.basis.middleRows(part.begin, part.count).transpose() *
+        remainder_.residual.segment(part.begin, part.count);
+  }
+  block_basis_by_residual_ = MatrixXd::Zero(remainder_.blocks.count, width);
+  for (Index column = 0; column < width; ++column) {
+    for (Index row = 0; row < layout.rows(); ++row) {
+      block_basis_by_residual_(remainder_.blocks.of_row[static_cast<std::size_t>(row)], column) +=
+          remainder_.basis(row, column) * remainder_.residual[row];
+    }
+  }
+}
+
+// The least squares of columns beside the basis, from their own rows.
+struct Judge::Fitted {
+  bool usable = false;
+  MatrixXd weighted;  // own rows, columns of length 1 beside the basis
+  MatrixXd along;     // of these, in the basis
+  VectorXd length;    // that they had
+  MatrixXd products;  // of the columns beside the basis
+  VectorXd solution;
+  VectorXd energy;  // per joint, of what is left
+};
+
+Judge::Fitted Judge::fit(const ActingColumns& columns) const {
+  Fitted fitted;
+  const Index d = columns.values().cols();
+  if (columns.spans().empty() || d == 0) return fitted;
+  MatrixXd& weighted = fitted.weighted;
+  weighted.resizeLike(columns.values());
+  MatrixXd& along = fitted.along;
+  along = MatrixXd::Zero(remainder_.basis.cols(), d);
+  VectorXd by_residual = VectorXd::Zero(d);
+  Index at = 0;
+  for (const ActingColumns::Span& span : columns.spans()) {
+    auto part = weighted.middleRows(at, span.count);
+    part = row_weights_.segment(span.begin, span.count).asDiagonal() *
+           columns.values().middleRows(at, span.count);
+    along.noalias() += remainder_.basis.middleRows(span.begin, span.count).transpose() * part;
+    by_residual += part.transpose() * remainder_.residual.segment(span.begin, span.count);
+    at += span.count;
+  }
+  const MatrixXd own = weighted.transpose() * weighted;
+  MatrixXd products = own - along.transpose() * along;
+  fitted.length.resize(d);
+  for (Index c = 0; c < d; ++c) {
+    const double length = std::sqrt(std::max(0.0, products(c, c)));
+    if (!(length > kNothingNew * std::sqrt(own(c, c))) || !(length > 0)) return fitted;
+    fitted.length[c] = length;
+  }
+  const VectorXd shorter = fitted.length.cwiseInverse();
+  weighted = weighted * shorter.asDiagonal();
+  along = along * shorter.asDiagonal();
+  by_residual = by_residual.cwiseProduct(shorter);
+  products = shorter.asDiagonal() * products * shorter.asDiagonal();
+  const Eigen::LDLT<MatrixXd> solver(products);
+  // Pivots are squared sines of the angle to the columns before.
+  if (!(solver.vectorD().minCoeff() > kNothingNew * kNothingNew)) return fitted;
+  fitted.solution = solver.solve(by_residual);
+  fitted.products = products;
+  // What is left of a joint: residual - columns * x + basis * z with z = along * x.
+  const VectorXd z = along * fitted.solution;
+  fitted.energy = remainder_.energy;
+  for (Index joint = 0; joint < fitted.energy.size(); ++joint) {
+    const auto which = static_cast<std::size_t>(joint);
+    fitted.energy[joint] +=
+        2 * basis_by_residual_[which].dot(z) + z.dot((*basis_by_basis_)[which] * z);
+  }
+  at = 0;
+  for (const ActingColumns::Span& span : columns.spans()) {
+    const VectorXd taken = weighted.middleRows(at, span.count) * fitted.solution;
+    const auto residual = remainder_.residual.segment(span.begin, span.count);
+    const VectorXd back = remainder_.basis.middleRows(span.begin, span.count) * z;
+    fitted.energy[span.joint] +=
+        taken.squaredNorm() - 2 * taken.dot(residual) - 2 * taken.dot(back);
+    at += span.count;
+  }
+  fitted.energy = fitted.energy.cwiseMax(0.0);
+  fitted.usable = true;
+  return fitted;
+}
+
+double Judge::gain(const MatrixXd& columns) const {
+  const Fitted fitted = fit(ActingColumns(*remainder_.layout, columns));
+  return fitted.usable ? 1 - fitted.energy.sum() / remainder_.energy.sum() : -1;
+}
+
+double Judge::joint_gain(const ActingColumns& columns) const {
+  const Fitted fitted = fit(columns);
+  return fitted.usable ? largest_share(remainder_.energy, fitted.energy) : -1;
+}
+
+Evidence Judge::evidence(const MatrixXd& columns) const {
+  return evidence(ActingColumns(*remainder_.layout, columns));
+}
+
+Evidence Judge::evidence(const ActingColumns& columns) const {
+  Evidence evidence;
+  const Fitted fitted = fit(columns);
+  if (!fitted.usable) return evidence;
+  const Index d = fitted.solution.size();
+  const int blocks = remainder_.blocks.count;
+  evidence.coefficients = fitted.solution.cwiseQuotient(fitted.length);
+  evidence.gain = 1 - fitted.energy.sum() / remainder_.energy.sum();
+  evidence.joint_gain = largest_share(remainder_.energy, fitted.energy);
+  for (Index joint = 0; joint < fitted.energy.size(); ++joint) {
+    const double before = remainder_.energy[joint];
+    const double after = fitted.energy[joint];
+    if (!(after > 0) || !(before > 0)) continue;
+    evidence.log_likelihood +=
+        0.5 * remainder_.independent_samples[joint] * std::log(before / after);
+  }
+  // The scores of all rows: those of the columns, less those of what the basis takes of them.
+  evidence.block_scores = MatrixXd::Zero(blocks + 1, d);
+  evidence.block_scores.topRows(blocks) = -block_basis_by_residual_ * fitted.along;
+  MatrixXd moments = MatrixXd::Zero(blocks + 1, d * d);
+  Index at = 0;
+  for (const ActingColumns::Span& span : columns.spans()) {
+    const MatrixXd own = fitted.weighted.middleRows(at, span.count) -
+                         remainder_.basis.middleRows(span.begin, span.count) * fitted.along;
+    for (Index i = 0; i < span.count; ++i) {
+      const Index row = span.begin + i;
+      const int block = remainder_.blocks.of_row[static_cast<std::size_t>(row)];
+      for (Index a = 0; a < d; ++a) {
+        evidence.block_scores(block, a) += remainder_.residual[row] * fitted.weighted(at + i, a);
+        for (Index b = 0; b < d; ++b) moments(block, a * d + b) += own(i, a) * own(i, b);
+      }
+    }
+    at += span.count;
+  }
+  const Index rows = remainder_.layout->rows();
+  const MatrixXd of_priors = -remainder_.basis.bottomRows(remainder_.prior_rows()) * fitted.along;
+  evidence.block_scores.row(blocks) =
+      remainder_.residual.tail(remainder_.residual.size() - rows).transpose() * of_priors;
+  const MatrixXd prior_products = of_priors.transpose() * of_priors;
+  moments.row(blocks) = Eigen::Map<const Eigen::RowVectorXd>(prior_products.data(), d * d);
+  // What the columns move on other joints, by way of what these have in common, is little: it is
+  // spread evenly.
+  const Eigen::RowVectorXd elsewhere =
+      Eigen::Map<const Eigen::RowVectorXd>(fitted.products.data(), d * d) - moments.colwise().sum();
+  moments.topRows(blocks).rowwise() += elsewhere / blocks;
+  evidence.block_moments = std::move(moments);
+  evidence.prior_variance = remainder_.prior_weight * remainder_.prior_weight;
+  const StatisticOfSigns statistic(evidence);
+  evidence.statistic = statistic(statistic.features().colwise().sum().eval());
+  evidence.usable = std::isfinite(evidence.statistic);
+  return evidence;
+}
+
+Evidence judge(const Remainder& remainder, const MatrixXd& columns) {
+  return Judge(remainder).evidence(columns);
 }
 
 double p_of_statistic(double statistic, Index dimension, int blocks) {
@@ -197,7 +364,7 @@ double p_of_statistic(double statistic, Index dimension, int blocks) {
 }
 
 std::vector<double> largest_without_effect(const std::vector<Evidence>& groups, int blocks,
-                                           int draws, std::uint64_t seed) {
+                                           int draws, std::uint64_t seed, int threads) {
   std::map<Index, EvidenceScale> scales;
   for (const Evidence& group : groups) {
     const Index d = group.block_scores.cols();
@@ -218,19 +385,28 @@ std::vector<double> largest_without_effect(const std::vector<Evidence>& groups, 
       --left;
     }
   }
-  std::vector<double> largest(static_cast<std::size_t>(draws), 0.0);
-  for (const Evidence& group : groups) {
-    if (!group.usable) continue;
-    const Index d = group.block_scores.cols();
-    const EvidenceScale& scale = scales.at(d);
-    const MatrixXd inverse = inverse_of_sum(group.block_moments, d);
-    for (Index draw = 0; draw < draws; ++draw) {
-      const double statistic = statistic_of(group, inverse, signs.row(draw).transpose());
-      double& at = largest[static_cast<std::size_t>(draw)];
-      at = std::max(at, scale(statistic));
+  // Parts of the groups, each with its own maxima: the largest of them does not depend on order.
+  constexpr std::size_t kGroupsAtOnce = 32;
+  std::vector<std::vector<double>> parts((groups.size() + kGroupsAtOnce - 1) / kGroupsAtOnce);
+  parallel_for(parts.size(), threads, [&](std::size_t part) {
+    std::vector<double>& at = parts[part];
+    at.assign(static_cast<std::size_t>(draws), 0.0);
+    const std::size_t end = std::min(groups.size(), (part + 1) * kGroupsAtOnce);
+    for (std::size_t g = part * kGroupsAtOnce; g < end; ++g) {
+      if (!groups[g].usable) continue;
+      const StatisticOfSigns statistic(groups[g]);
+      const EvidenceScale& scale = scales.at(groups[g].block_scores.cols());
+      const MatrixXd sums = signs * statistic.features();
+      for (Index draw = 0; draw < draws; ++draw) {
+        double& most = at[static_cast<std::size_t>(draw)];
+        most = std::max(most, scale(statistic(sums.row(draw))));
+      }
     }
+  });
+  std::vector<double> largest(static_cast<std::size_t>(draws), 0.0);
+  for (const std::vector<double>& part : parts) {
+    for (std::size_t i = 0; i < part.size(); ++i) largest[i] = std::max(largest[i], part[i]);
   }
-  std::sort(largest.begin(), largest.end());
   return largest;
 }
 

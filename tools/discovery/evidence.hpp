@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <span>
+#include <memory>
 #include <vector>
 
 #include "discovery/rows.hpp"
@@ -47,11 +47,56 @@ struct Evidence {
 // Share of an error's energy that goes with what is left of it, both rms; negative where it grows.
 double explained_share(double before, double left);
 
+// Stacked, unweighted columns of a candidate, only those rows where it acts: an effect of one joint
+// of seven has a seventh of them.
+class ActingColumns {
+ public:
+  ActingColumns() = default;
+  ActingColumns(const RowLayout& layout, const Eigen::MatrixXd& columns);
+
+  // Consecutive rows of one joint of one recording.
+  struct Span {
+    Eigen::Index joint = 0;
+    Eigen::Index begin = 0;  // in the layout
+    Eigen::Index count = 0;
+  };
+  [[nodiscard]] const std::vector<Span>& spans() const { return spans_; }
+  // The spans' rows, one span after the other.
+  [[nodiscard]] const Eigen::MatrixXd& values() const { return values_; }
+
+ private:
+  std::vector<Span> spans_;
+  Eigen::MatrixXd values_;
+};
+
+// Judges columns beside one remainder, which has to outlive it: what does not depend on the columns
+// is computed once.
+class Judge {
+ public:
+  explicit Judge(const Remainder& remainder);
+  // The same basis with another residual.
+  Judge(const Remainder& remainder, const Judge& like);
+
+  [[nodiscard]] Evidence evidence(const ActingColumns& columns) const;
+  [[nodiscard]] Evidence evidence(const Eigen::MatrixXd& columns) const;
+  // Evidence::gain and joint_gain alone; negative where the columns add nothing.
+  [[nodiscard]] double gain(const Eigen::MatrixXd& columns) const;
+  [[nodiscard]] double joint_gain(const ActingColumns& columns) const;
+
+ private:
+  struct Fitted;
+  [[nodiscard]] Fitted fit(const ActingColumns& columns) const;
+  void take_residual();
+
+  const Remainder& remainder_;
+  Eigen::VectorXd row_weights_;
+  std::vector<Eigen::VectorXd> basis_by_residual_;  // per joint: basis^T residual
+  std::shared_ptr<const std::vector<Eigen::MatrixXd>> basis_by_basis_;  // per joint
+  Eigen::MatrixXd block_basis_by_residual_;  // blocks x basis: of all joints
+};
+
 // `columns`: stacked, unweighted.
 Evidence judge(const Remainder& remainder, const Eigen::MatrixXd& columns);
-// The same of one group after the other, each by itself.
-std::vector<Evidence> judge_each(const Remainder& remainder,
-                                 std::span<const Eigen::MatrixXd> groups);
 
 // Probability of a statistic at least this large without the effect, for one group of columns:
 // blocks - dimension over dimension times t / (blocks - t) is about F(dimension, blocks -
@@ -62,8 +107,10 @@ double p_of_statistic(double statistic, Eigen::Index dimension, int blocks);
 // effect gives over all the groups: the remainder of every block keeps its size and gets a random
 // sign (wild block bootstrap with Rademacher weights; the statistic is computed anew each time, as
 // in A. C. Cameron, J. B. Gelbach, D. L. Miller, Review of Economics and Statistics 90(3), 2008).
+// One per draw, in their order, on `threads` threads: the same draws of other groups of the same
+// recordings may be put beside them.
 std::vector<double> largest_without_effect(const std::vector<Evidence>& groups, int blocks,
-                                           int draws, std::uint64_t seed);
+                                           int draws, std::uint64_t seed, int threads = 1);
 
 // Share of `null` that reaches `value`, at least 1 / (1 + its size).
 double p_among(const std::vector<double>& null, double value);

@@ -15,7 +15,10 @@
 #include "discovery/describe.hpp"
 #include "discovery/file_errors.hpp"
 #include "discovery/find_model.hpp"
+#include "discovery/free_function.hpp"
+#include "discovery/friction_family.hpp"
 #include "discovery/improved_robot.hpp"
+#include "discovery/parallel.hpp"
 #include "discovery/stretches.hpp"
 #include "discovery/undecided.hpp"
 #include "discovery/verdict.hpp"
@@ -39,7 +42,7 @@ class Explainer {
     check_kind(holdout, logs.front().at_rest);
     plan_ = plan_filter(logs, robot_);
     const FilterPlan& plan = plan_;
-    constexpr Index kFewest = 200;
+    constexpr Index kFewest = 80;
     check(logs, plan, kFewest);
     check(holdout, plan, kMinFilteredSamples);
     const VectorXd widths = set_sign_widths(robot_, logs, plan);
@@ -75,9 +78,12 @@ class Explainer {
     FoundModel found = find_model(
         *search_, *regression_, hold_out, result.excitation,
         {.most_effects = search ? most_effects() : 0, .replays = options_.replays}, on_progress_);
+    result.over_variable = leave_out_stand_ins(*regression_, hold_out, options_.threads, found);
     result.ambiguous = classes_of(found, hold_out);
-    if (search && found.accepted.empty()) {
-      result.ambiguous = undecided(*search_, *regression_, found.baseline, result.excitation);
+    if (search) {
+      for (auto& one : undecided(*search_, *regression_, found, result.excitation)) {
+        result.ambiguous.push_back(std::move(one));
+      }
     }
     tell("fitting the numbers");
     ImprovedRobot improved = improved_robot(
@@ -184,30 +190,49 @@ class Explainer {
                                                               const HoldOut& hold_out) const {
     constexpr std::size_t kMostAlike = 4;
     std::vector<std::vector<EffectAt>> classes;
+    std::vector<std::vector<EffectAt>> same = all_alike(found);
     for (std::size_t i = found.accepted.size(); i-- > 0;) {
-      std::vector<EffectAt> same = alike(found, i);
-      if (i > 0 && same.size() > kMostAlike) {
-        leave_out(i, *regression_, hold_out, found);
-      } else if (same.size() > 1) {
-        classes.insert(classes.begin(), std::move(same));
+      if (i > 0 && same[i].size() > kMostAlike) {
+        found.accepted.erase(found.accepted.begin() + static_cast<std::ptrdiff_t>(i));
+        order_and_hold_out(*regression_, hold_out, options_.threads, found);
+        // Another order, and other companions: all are asked anew.
+        classes.clear();
+        i = found.accepted.size();
+        same = all_alike(found);
+      } else if (same[i].size() > 1) {
+        classes.insert(classes.begin(), std::move(same[i]));
       }
     }
     return classes;
   }
 
+  // What each of them could just as well be.
+  [[nodiscard]] std::vector<std::vector<EffectAt>> all_alike(const FoundModel& found) const {
+    tell("looking for what else the effects could be");
+    std::vector<std::vector<EffectAt>> same(found.accepted.size());
+    parallel_for(same.size(), options_.threads, [&](std::size_t i) { same[i] = alike(found, i); });
+    return same;
+  }
+
   // An effect that was found, and what describes the recordings as well in its place.
   [[nodiscard]] std::vector<EffectAt> alike(const FoundModel& found, std::size_t i) const {
-    tell(fmt::format("looking for what else could be effect {}", i + 1));
     const Term& mine = found.accepted[i].term;
     const std::vector<Term> others = found.terms_without(i);
     const ModelFit beside = regression_->fit(others);
-    const Screening screening = search_->screen(others, beside);
+    Screening screening = search_->screen(others, beside);
+    // What takes far less than the best does not come as close as noise would let it.
+    constexpr double kNear = 0.25;
+    double most = 0;
+    for (const Screened& one : screening.candidates) most = std::max(most, one.evidence.gain);
+    std::erase_if(screening.candidates,
+                  [&](const Screened& one) { return one.evidence.gain < kNear * most; });
     std::vector<EffectAt> same{{mine.effect->kind(), mine.joint}};
     for (const Proposal& other : search_->propose(others, beside, screening)) {
       const Term& term = other.terms.back();
       const EffectAt name{term.effect->kind(), term.joint};
       if (name == same[0] || !as_good(*data_, found.fit, other.fit) ||
-          is_nested(*data_, found.baseline, mine, term)) {
+          is_nested(*data_, found.baseline, mine, term) ||
+          is_refuted_by_simpler(*data_, mine, found.fit, term, other.fit)) {
         continue;
       }
       same.push_back(name);

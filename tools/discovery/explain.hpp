@@ -66,6 +66,26 @@ struct Finding {
 // "coulomb_friction"; "cogging_torque of order 72" where there may be several of it.
 std::string title_of(const Finding& finding);
 
+// A torque that the joint's error has over a variable, of a shape that no named effect has.
+struct OverVariable {
+  Eigen::Index joint = 0;
+  std::string variable;  // "position", "velocity" or "load"
+  // The effects that looked like it, and what they take of what a free function of it takes, 0
+  // to 1.
+  std::vector<EffectAt> stand_ins;
+  double share = 0;
+  // Its map: middles of equally filled bins of the variable, and the mean error there, N m or N.
+  std::vector<double> at, torque;
+};
+
+// A stretch of time in which a joint's error stands out.
+struct LoudSpan {
+  Eigen::Index joint = 0;
+  std::size_t recording = 0;  // from 0
+  double from_s = 0;          // by the recording's own time stamps
+  double to_s = 0;
+};
+
 // An effect that noise may hide: likely more than chance, and too unsure or too small to be named.
 struct Suspicion {
   EffectAt what;
@@ -97,6 +117,7 @@ struct JointErrors {
 
 // A known number of the robot file that the recordings contradict.
 struct Shift {
+  Eigen::Index joint = 0;
   std::string name;
   double share = 0;  // of the file's value
 };
@@ -118,12 +139,37 @@ struct HeldNumber {
   bool contradicted = false;
 };
 
+// What is left of a joint's error.
+struct Remains {
+  double rms = 0;                   // N m or N
+  double share_of_torque = 0;       // rms over rms torque
+  double times_noise = 0;           // rms over the noise floor
+  std::string follows = {};         // the variable that it follows most, or "time"; empty: nothing
+  double share = 0;                 // of its energy that follows it
+  std::vector<LoudSpan> when = {};  // where it follows time
+};
+
+// What is said of one joint; the joint counts from 0.
+struct JointAnswer {
+  Eigen::Index joint = 0;
+  Verdict verdict = Verdict::kExplained;
+  std::string words;
+  std::vector<EffectAt> found;
+  std::vector<std::vector<EffectAt>> ambiguous;
+  Remains left;
+};
+
 struct Explanation {
   Verdict verdict = Verdict::kExplained;
   std::string words;
   bool holdout_is_apart = false;  // hold-out recordings, not blocks of time
   std::vector<JointErrors> joints;
-  std::vector<Finding> found;  // in the order of discovery
+  std::vector<JointAnswer> answers;  // per joint, the one that matters most first
+  std::vector<Finding> found;        // what matters most first
+  std::vector<OverVariable> over_variable;
+  std::vector<LoudSpan> loud;
+  // Joints whose model has neither Coulomb nor viscous friction.
+  std::vector<Eigen::Index> without_friction;
   std::vector<std::vector<EffectAt>> ambiguous;
   std::optional<Suspicion> suspected;  // only where it makes the verdict
   std::vector<Rejection> rejected;
@@ -157,7 +203,7 @@ struct ExplainOptions {
   int bootstrap_draws = 1999;
   int replays = 19;  // 0: none
   double link_share = 0.05;
-  int most_effects = 6;
+  int most_effects = 6;         // of one joint
   std::string source = {};      // what `improved` says of where its numbers come from
   std::string robot_file = {};  // as the user named it, for commands in the advice; empty: "ROBOT"
 };

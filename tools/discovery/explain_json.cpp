@@ -53,11 +53,45 @@ ordered_json json_of(const JointErrors& joint) {
           {"holdout_noise_floor", joint.holdout_noise_floor}};
 }
 
+ordered_json json_of(const Remains& left) {
+  ordered_json json{{"rms", left.rms},
+                    {"share_of_torque", left.share_of_torque},
+                    {"times_noise", left.times_noise},
+                    {"follows", nullptr},
+                    {"share_of_residual", left.share},
+                    {"when", ordered_json::array()}};
+  if (!left.follows.empty()) json["follows"] = left.follows;
+  for (const LoudSpan& one : left.when) {
+    json["when"].push_back(
+        {{"recording", one.recording + 1}, {"from_s", one.from_s}, {"to_s", one.to_s}});
+  }
+  return json;
+}
+
 template <typename Item, typename Make>
 ordered_json array_of(const std::vector<Item>& items, const Make& make) {
   ordered_json array = ordered_json::array();
   for (const Item& item : items) array.push_back(make(item));
   return array;
+}
+
+ordered_json json_of(const JointAnswer& one) {
+  return {{"joint", one.joint + 1},
+          {"verdict", name_of(one.verdict)},
+          {"words", one.words},
+          {"found", array_of(one.found, effect_at)},
+          {"ambiguous",
+           array_of(one.ambiguous, [](const auto& same) { return array_of(same, effect_at); })},
+          {"left", json_of(one.left)}};
+}
+
+ordered_json json_of(const OverVariable& one) {
+  return {{"joint", one.joint + 1},
+          {"variable", one.variable},
+          {"stand_ins", array_of(one.stand_ins, effect_at)},
+          {"share", one.share},
+          {"at", one.at},
+          {"torque", one.torque}};
 }
 
 }  // namespace
@@ -72,6 +106,9 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
   json["noise_floor"] =
       array_of(e.joints, [](const JointErrors& joint) { return ordered_json(joint.noise_floor); });
   json["joints"] = array_of(e.joints, [](const JointErrors& joint) { return json_of(joint); });
+  json["answers"] = array_of(e.answers, [](const JointAnswer& one) { return json_of(one); });
+  json["over_variable"] =
+      array_of(e.over_variable, [](const OverVariable& one) { return json_of(one); });
   json["found"] = array_of(e.found, [](const Finding& finding) { return json_of(finding); });
   json["waterfall"] = ordered_json::array();
   for (std::size_t i = 0; i < e.waterfall.size(); ++i) {
@@ -101,7 +138,9 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
                         {"share_of_residual", share.share}};
   });
   json["shifts"] = array_of(e.shifts, [](const Shift& shift) {
-    return ordered_json{{"parameter", shift.name}, {"share_of_file_value", shift.share}};
+    return ordered_json{{"joint", shift.joint + 1},
+                        {"parameter", shift.name},
+                        {"share_of_file_value", shift.share}};
   });
   json["data_faults"] = to_json(e.data_faults);
   json["data_hints"] = to_json(e.data_hints);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -68,6 +67,22 @@ report::Table error_table(const Explanation& e) {
     }
     table.note += ".";
   }
+  return table;
+}
+
+report::Table answer_table(const Explanation& e) {
+  report::Table table;
+  table.caption = "Every joint's answer";
+  table.columns = {
+      {"joint", "", "d"},     {"verdict", "", ".4g"},        {"left", "", ".3g"},
+      {"unit", "", ".4g"},    {"of the torque", "%", ".2g"}, {"times the noise", "", ".1f"},
+      {"in words", "", ".4g"}};
+  for (const JointAnswer& one : e.answers) {
+    table.rows.push_back({static_cast<double>(one.joint + 1), std::string(name_of(one.verdict)),
+                          one.left.rms, joint_of(e, one.joint).unit, 100 * one.left.share_of_torque,
+                          one.left.times_noise, one.words});
+  }
+  table.note = "The joint whose model lacked the largest share of its torque stands first.";
   return table;
 }
 
@@ -147,7 +162,9 @@ report::Waterfall waterfall_of(const Explanation& e, Index joint) {
   waterfall.title = fmt::format("Held-out error of joint {}, effect by effect", joint + 1);
   waterfall.value_axis = {fmt::format("rms {} error", effort_name(errors.unit)), errors.unit};
   for (std::size_t i = 0; i < e.waterfall.size(); ++i) {
-    const std::string label = i == 0 ? "model as it is" : "+ " + title_of(e.found[i - 1]);
+    const std::string label = i == 0 ? "model as it is"
+                                     : fmt::format("+ {} on joint {}", title_of(e.found[i - 1]),
+                                                   e.found[i - 1].what.joint + 1);
     waterfall.steps.push_back({label, e.waterfall[i][joint]});
   }
   waterfall.levels.push_back({errors.holdout_noise_floor, "noise floor"});
@@ -314,6 +331,7 @@ report::Page page_of(const Explanation& e, const ExplainNames& names) {
   for (const DataFault& fault : e.data_faults) {
     overview.blocks.emplace_back(report::Note{fault.words + ". " + fault.mend, Level::kBad});
   }
+  if (!e.answers.empty()) overview.blocks.emplace_back(answer_table(e));
   if (!e.found.empty()) overview.blocks.emplace_back(finding_table(e));
   if (!e.ambiguous.empty()) overview.blocks.emplace_back(class_table(e));
   overview.blocks.emplace_back(error_table(e));

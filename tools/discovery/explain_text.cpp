@@ -42,6 +42,14 @@ std::string text_of_joints(const Explanation& e) {
   return text;
 }
 
+std::string text_of_answers(const Explanation& e) {
+  std::string text = e.answers.empty() ? "" : "\n";
+  for (const JointAnswer& one : e.answers) {
+    text += fmt::format("joint {}: {}: {}\n", one.joint + 1, name_of(one.verdict), one.words);
+  }
+  return text;
+}
+
 std::string text_of_findings(const Explanation& e) {
   std::string text;
   for (std::size_t i = 0; i < e.found.size(); ++i) {
@@ -96,6 +104,7 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
                                          : "blocks of time");
   for (const DataFault& fault : e.data_faults) text += "data fault: " + fault.words + "\n";
   text += text_of_joints(e);
+  text += text_of_answers(e);
   text += text_of_findings(e);
   if (!e.where.empty()) {
     const StructureShare& first = e.where.front();

@@ -31,29 +31,34 @@ inline constexpr double kRelevantShare = 0.08;
 inline constexpr double kRelevantTorque = 0.001;
 
 struct FoundModel {
-  std::vector<Accepted> accepted;      // largest first
+  std::vector<Accepted> accepted;      // those that matter most first
   std::optional<Suspected> suspected;  // only where nothing was accepted
   ModelFit baseline;                   // nuisance alone
   ModelFit fit;                        // with all that was accepted
-  // Residuals on held-out data with 0, 1, ... of the accepted.
-  std::vector<Eigen::VectorXd> held_out;
+  // Residuals on held-out data without any and with all of the accepted.
+  Eigen::VectorXd held_out_before;
+  Eigen::VectorXd held_out_after;
+  // Held-out error, rms per joint, with the first 0, 1, ... of the accepted.
+  std::vector<Eigen::VectorXd> waterfall;
 
   [[nodiscard]] std::vector<Term> terms() const;
   [[nodiscard]] std::vector<Term> terms_without(std::size_t left_out) const;
 };
 
-// Takes one of the accepted out again and fits the rest.
-void leave_out(std::size_t which, const Regression& regression, const HoldOut& hold_out,
-               FoundModel& found);
+// Puts the accepted in order, those that matter most first, and judges them anew on what is held
+// out.
+void order_and_hold_out(const Regression& regression, const HoldOut& hold_out, int threads,
+                        FoundModel& found);
 
 struct FindOptions {
-  int most_effects = 6;
-  int replays = 19;  // 0: none
+  int most_effects = 6;  // of one joint
+  int replays = 19;      // 0: none
 };
 
-// Adds effects one by one as long as one passes significance over the whole search, relevance,
-// hold-out, replay and, where it remembers, simulation; then tries to do without each again
-// (shared method: S4 to S8). `excitation`: per joint.
+// Adds effects in rounds, in each the best one of every joint that passes significance over the
+// whole search, relevance, hold-out, replay and, where it remembers, simulation. What fails is set
+// aside and the joint's next one is tried; no joint waits for another. Then each effect has to be
+// needed beside all others (shared method: S4 to S8). `excitation`: per joint.
 FoundModel find_model(const Search& search, const Regression& regression, const HoldOut& hold_out,
                       const std::vector<Excitation>& excitation, const FindOptions& options,
                       const OnProgress& on_progress);

@@ -181,9 +181,11 @@ ModelFit Regression::fit(const std::vector<Term>& terms, const std::vector<char>
 }
 
 void Regression::refine(std::vector<Term>& terms, std::size_t which) const {
+  if (!terms[which].is_searched()) return;
   std::vector<Term> others = terms;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
-  refine(terms, which, fit(others));
+  const ModelFit beside = fit(others);
+  refine(terms, which, beside, Judge(beside.remainder));
 }
 
 bool Regression::holds_an_end(const ModelFit& fit) const {
@@ -195,12 +197,11 @@ bool Regression::holds_an_end(const ModelFit& fit) const {
   return false;
 }
 
-void Regression::refine(std::vector<Term>& terms, std::size_t which, const ModelFit& beside) const {
+void Regression::refine(std::vector<Term>& terms, std::size_t which, const ModelFit& beside,
+                        const Judge& judge) const {
+  if (!terms[which].is_searched()) return;
   if (!holds_an_end(beside)) {
-    climb(terms[which], [&](const Term& trial) {
-      const Evidence evidence = judge(beside.remainder, columns_of(data_, trial));
-      return evidence.usable ? evidence.gain : -1.0;
-    });
+    climb(terms[which], [&](const Term& trial) { return judge.gain(columns_of(data_, trial)); });
     return;
   }
   // Without the term a nuisance may stand at an end where it does not belong with it: a payload

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,12 @@ struct Term {
   std::vector<ShapeRange> ranges{};
   // Coefficients that are given, not fitted; empty: none of them.
   std::vector<std::optional<double>> given{};
+
+  // Whether it has a shape that has to be looked for.
+  [[nodiscard]] bool is_searched() const {
+    return std::any_of(ranges.begin(), ranges.end(),
+                       [](const ShapeRange& range) { return range.is_searched(); });
+  }
 };
 
 // Whether a term takes the place of an unknown of the nuisance once it is in the model.
@@ -56,8 +63,9 @@ class Regression {
   [[nodiscard]] Design design(const std::vector<Term>& terms) const;
   // Moves a term's shape to where the model fits best, the other terms as they are.
   void refine(std::vector<Term>& terms, std::size_t which) const;
-  // The same where fit() of the other terms is known.
-  void refine(std::vector<Term>& terms, std::size_t which, const ModelFit& beside) const;
+  // The same where fit() of the other terms is known, and what judges beside it.
+  void refine(std::vector<Term>& terms, std::size_t which, const ModelFit& beside,
+              const Judge& judge) const;
 
  private:
   // An unknown of the nuisance stands at one of its ends: free of it, it might not.

@@ -207,4 +207,67 @@ std::vector<StructureShare> structure_of(const Data& data, const VectorXd& left)
   return shares;
 }
 
+MapOver map_over(const Data& data, const VectorXd& left, Index joint, const std::string& variable) {
+  const JointSeries series = series_of(data, data.layout.while_moving(left), joint);
+  const VectorXd& over = variable == "velocity" ? series.dq
+                         : variable == "load"   ? series.load
+                                                : series.q;
+  const std::vector<Index> bin = equally_filled(over, kBins);
+  std::vector<double> count(static_cast<std::size_t>(kBins), 0);
+  MapOver map{std::vector<double>(count.size(), 0), std::vector<double>(count.size(), 0)};
+  for (Index i = 0; i < over.size(); ++i) {
+    const auto to = static_cast<std::size_t>(bin[static_cast<std::size_t>(i)]);
+    count[to] += 1;
+    map.at[to] += over[i];
+    map.mean[to] += series.residual[i];
+  }
+  for (std::size_t i = 0; i < count.size(); ++i) {
+    map.at[i] /= std::max(1.0, count[i]);
+    map.mean[i] /= std::max(1.0, count[i]);
+  }
+  return map;
+}
+
+std::vector<LoudWindow> loud_windows(const Data& data, const VectorXd& left, Index joint) {
+  constexpr double kWindowS = 0.5;
+  constexpr double kLoudest = 0.1;
+  constexpr double kAboveMedian = 4;
+  const RowLayout& layout = data.layout;
+  const VectorXd residual = layout.while_moving(left);
+  struct Window {
+    LoudWindow where;
+    double power = 0;
+  };
+  std::vector<Window> windows;
+  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+    const VectorXd t_s = kept_samples(data.recordings[r].plan, data.recordings[r].motion.t_s);
+    const auto length = std::max<Index>(1, std::lround(kWindowS / layout.period_s(r)));
+    for (Index first = 0; first < t_s.size(); first += length) {
+      const Index count = std::min(length, t_s.size() - first);
+      const auto part = residual.segment(layout.begin(r, joint) + first, count);
+      windows.push_back({{r, t_s[first], t_s[first + count - 1]},
+                         part.squaredNorm() / static_cast<double>(count)});
+    }
+  }
+  std::vector<double> powers;
+  for (const Window& one : windows) powers.push_back(one.power);
+  std::sort(powers.begin(), powers.end());
+  const auto at = [&](double share) {
+    return powers[static_cast<std::size_t>(share * static_cast<double>(powers.size() - 1))];
+  };
+  const double least = std::max(at(1 - kLoudest), kAboveMedian * at(0.5));
+  std::vector<LoudWindow> loud;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    if (!(windows[i].power >= least) || !(windows[i].power > 0)) continue;
+    const bool joins = i > 0 && !loud.empty() && windows[i - 1].power >= least &&
+                       loud.back().recording == windows[i].where.recording;
+    if (joins) {
+      loud.back().to_s = windows[i].where.to_s;
+    } else {
+      loud.push_back(windows[i].where);
+    }
+  }
+  return loud;
+}
+
 }  // namespace offnominal::tools::discovery

@@ -22,4 +22,22 @@ struct StructureShare {
 };
 std::vector<StructureShare> structure_of(const Data& data, const Eigen::VectorXd& residual);
 
+// Mean of a joint's residual over equally filled bins of one of the variables "position",
+// "velocity" and "load".
+struct MapOver {
+  std::vector<double> at, mean;
+};
+MapOver map_over(const Data& data, const Eigen::VectorXd& residual, Eigen::Index joint,
+                 const std::string& variable);
+
+// Where in time the energy of a joint's residual is concentrated: half-second windows, next to each
+// other as one, of the loudest tenth and more than four times the median.
+struct LoudWindow {
+  std::size_t recording = 0;
+  double from_s = 0;
+  double to_s = 0;
+};
+std::vector<LoudWindow> loud_windows(const Data& data, const Eigen::VectorXd& residual,
+                                     Eigen::Index joint);
+
 }  // namespace offnominal::tools::discovery

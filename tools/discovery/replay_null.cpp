@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <span>
 
 #include "discovery/parallel.hpp"
 
 namespace offnominal::tools::discovery {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
@@ -47,11 +47,9 @@ VectorXd shuffled(const RowLayout& layout, const VectorXd& noise, std::mt19937_6
   return played;
 }
 
-double best_gain(const Remainder& remainder, const std::vector<MatrixXd>& columns) {
+double best_gain(const Judge& judge, std::span<const ActingColumns> columns) {
   double best = 0;
-  for (const Evidence& evidence : judge_each(remainder, columns)) {
-    if (evidence.usable) best = std::max(best, evidence.joint_gain);
-  }
+  for (const ActingColumns& one : columns) best = std::max(best, judge.joint_gain(one));
   return best;
 }
 
@@ -60,20 +58,21 @@ double best_gain(const Remainder& remainder, const std::vector<MatrixXd>& column
 double replay_p(const Data& data, const ModelFit& fit, const VectorXd& noise, const Term& term,
                 int replays, std::uint64_t seed, int threads) {
   const std::vector<ShapePoint> points = Search::grid_of(term);
-  std::vector<MatrixXd> columns(points.size() + 1);
+  std::vector<ActingColumns> columns(points.size() + 1);
   parallel_for(columns.size(), threads, [&](std::size_t i) {
     Term at = term;
     if (i < points.size()) at.shape = points[i];
-    columns[i] = columns_of(data, at);
+    columns[i] = ActingColumns(data.layout, columns_of(data, at));
   });
-  const double measured = best_gain(fit.remainder, {columns.back()});
+  const Judge judge(fit.remainder);
+  const double measured = best_gain(judge, std::span(columns).last(1));
   std::vector<char> reached(static_cast<std::size_t>(replays));
   parallel_for(reached.size(), threads, [&](std::size_t i) {
     std::mt19937_64 generator(seed + 7919 * (i + 1));
     Remainder played = fit.remainder;
     played.residual = played.beside_basis(played.weighted(shuffled(data.layout, noise, generator)));
     played.energy = data.layout.energy(played.residual);
-    reached[i] = static_cast<char>(best_gain(played, columns) >= measured);
+    reached[i] = static_cast<char>(best_gain(Judge(played, judge), columns) >= measured);
   });
   const auto count = static_cast<double>(std::count(reached.begin(), reached.end(), 1));
   return (1 + count) / (1 + static_cast<double>(replays));

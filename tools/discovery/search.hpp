@@ -22,18 +22,25 @@ struct Screened {
 
 struct Screening {
   std::vector<Screened> candidates;
-  std::vector<Evidence> groups;  // every point of every grid, spectra left out
-  int blocks = 0;
-  double spectral_points = 0;  // of all spectra together
 };
 
-// A model with one more term, fitted anew as a whole.
+// A model with one more term, or a few of one family, fitted anew as a whole.
 struct Proposal {
-  Screened candidate;
-  std::vector<Term> terms;  // the new one last
+  std::vector<Term> terms;  // the new ones last
+  std::size_t added = 1;    // how many are new
   ModelFit fit;
-  double score = 0;  // log-likelihood less the price of the new term's parameters
+  double score = 0;  // log-likelihood less the price of the new terms' parameters
   bool physical = false;
+};
+
+// How much evidence for anything a search shows where there is nothing more to find.
+struct NullOfSearch {
+  std::vector<double> largest;  // -log10 p, sorted, one per draw
+  // The same of Coulomb and viscous friction alone, where the file has neither on a joint: a
+  // question asked first has an error of its own. Empty: there is no such joint.
+  std::vector<double> of_friction;
+  std::vector<RowLayout::Blocks> blocks;  // per joint: what its errors are independent between
+  double spectral_points = 0;             // of all spectra together
 };
 
 struct SearchOptions {
@@ -58,8 +65,24 @@ class Search {
   [[nodiscard]] std::vector<Proposal> propose(const std::vector<Term>& terms, const ModelFit& at,
                                               const Screening& screening,
                                               std::size_t most = kShortlist) const;
+  // The same for every joint by itself; what does not come near the best of its joint is left out.
+  [[nodiscard]] std::vector<std::vector<Proposal>> propose_per_joint(
+      const std::vector<Term>& terms, const ModelFit& at, const Screening& screening,
+      const std::vector<char>& joints) const;
+  // A proposal of these terms, those from `first_new` on being new.
+  [[nodiscard]] Proposal proposal_of(std::vector<Term> terms, std::size_t first_new) const;
+  // Sets the proposals' scores, all by the same number of independent samples: that of the model
+  // that leaves the least. Best first.
+  void rank(std::vector<Proposal>& proposals) const;
+  // What a search shows beside a model that lacks nothing: what it leaves is taken for the noise.
+  // `at`: the model before the last of the terms were added.
+  [[nodiscard]] NullOfSearch null_of(const std::vector<Term>& terms, const ModelFit& fit,
+                                     const ModelFit& at) const;
   // Probability that a search as this one shows as much evidence for anything where there is
-  // nothing: what the proposal leaves is taken for the noise. `at`: the model without it.
+  // nothing. `at`: the model without the term.
+  [[nodiscard]] double family_p(const Term& term, const ModelFit& at,
+                                const NullOfSearch& null) const;
+  // The same of a proposal of one term, what it leaves being taken for the noise.
   [[nodiscard]] double family_p(const Proposal& proposal, const ModelFit& at) const;
   // Where a term's shape is looked for; for a spectrum the peaks are not among them.
   [[nodiscard]] static std::vector<ShapePoint> grid_of(const Term& term);
@@ -68,13 +91,16 @@ class Search {
   struct Slot {
     Term term;
     std::vector<ShapePoint> grid;
-    std::vector<Eigen::MatrixXd> columns;  // at the grid's points; empty for spectra
+    std::vector<ActingColumns> columns;  // at the grid's points; empty for spectra
   };
-  void rank(std::vector<Proposal>& proposals) const;
   [[nodiscard]] bool is_worth_a_name(const Term& term, const Eigen::VectorXd& coefficients) const;
   [[nodiscard]] bool is_known(const EffectCandidate& effect, Eigen::Index joint) const;
+  [[nodiscard]] bool is_asked_first(const Term& term) const;
+  [[nodiscard]] bool is_open(const Slot& slot, const std::vector<Term>& terms) const;
   [[nodiscard]] Screened judge_slot(const Slot& slot, const Remainder& at,
-                                    std::vector<Evidence>& all) const;
+                                    const Judge& judge) const;
+  [[nodiscard]] std::vector<Proposal> fitted(const std::vector<Term>& terms, const ModelFit& at,
+                                             const std::vector<const Screened*>& shortlist) const;
   void finish(Screened& screened, const Remainder& at) const;
 
   const Regression& regression_;

@@ -26,7 +26,7 @@ struct Possible {
 
 // What is left beside the nuisance where joints that do not move have no say: friction holds them
 // at any torque within it, and the links' masses would follow that.
-VectorXd left_of_moving_joints(const Regression& regression,
+VectorXd left_of_moving_joints(const Regression& regression, const std::vector<Term>& terms,
                                const std::vector<Excitation>& excitation) {
   const RowLayout& layout = regression.data().layout;
   std::vector<char> rows(static_cast<std::size_t>(layout.rows()), 1);
@@ -36,20 +36,22 @@ VectorXd left_of_moving_joints(const Regression& regression,
       std::fill_n(rows.begin() + layout.begin(r, joint), layout.samples(r), 0);
     }
   }
-  return regression.fit({}, rows).residual;
+  return regression.fit(terms, rows).residual;
 }
 
 // Joints that move too poorly and whose error stands out all the same, by how far.
-std::vector<Index> joints_that_show(const Regression& regression,
+std::vector<Index> joints_that_show(const Regression& regression, const std::vector<Term>& terms,
                                     const std::vector<Excitation>& excitation) {
   std::vector<Index> shows;
   for (Index joint = 0; joint < regression.data().layout.joint_count(); ++joint) {
     const Excitation& motion = excitation[static_cast<std::size_t>(joint)];
-    if (!motion.sufficient && motion.moves) shows.push_back(joint);
+    const bool answered = std::any_of(terms.begin(), terms.end(),
+                                      [&](const Term& term) { return term.joint == joint; });
+    if (!motion.sufficient && motion.moves && !answered) shows.push_back(joint);
   }
   if (shows.empty()) return shows;
   const Data& data = regression.data();
-  const VectorXd left = left_of_moving_joints(regression, excitation);
+  const VectorXd left = left_of_moving_joints(regression, terms, excitation);
   const VectorXd fitted = data.layout.rms(left);
   const VectorXd torque = data.layout.rms(data.torque);
   const VectorXd above = fitted.cwiseQuotient(noise_floor_of(data, left));
@@ -63,8 +65,8 @@ std::vector<Index> joints_that_show(const Regression& regression,
 
 // Candidates of a spectrum are searched from two periods per range on; a torque that repeats over
 // more than the range is a curve of the position.
-std::vector<Possible> slow_ripples(const Regression& regression, const VectorXd& before,
-                                   Index joint) {
+std::vector<Possible> slow_ripples(const Regression& regression, const std::vector<Term>& found,
+                                   const VectorXd& before, Index joint) {
   constexpr double kPeriodsInRange = 0.5;
   const Data& data = regression.data();
   const double range = range_moved(data.recordings, joint);
@@ -74,7 +76,9 @@ std::vector<Possible> slow_ripples(const Regression& regression, const VectorXd&
     if (effect->spectrum() != EffectCandidate::Spectrum::kPosition) continue;
     if (!effect->applies(data.recordings[0], joint)) continue;
     const Term term{effect.get(), joint, {kPeriodsInRange * period / range}};
-    const VectorXd left = data.layout.rms(regression.fit({term}).residual);
+    std::vector<Term> terms = found;
+    terms.push_back(term);
+    const VectorXd left = data.layout.rms(regression.fit(terms).residual);
     possible.push_back({{effect->kind(), joint}, explained_share(before[joint], left[joint])});
   }
   return possible;
@@ -82,8 +86,9 @@ std::vector<Possible> slow_ripples(const Regression& regression, const VectorXd&
 
 // What every proposal and every slow ripple explains on a joint, the most first.
 std::vector<Possible> explained_on(Index joint, const Regression& regression,
-                                   const VectorXd& before, const std::vector<Proposal>& proposals) {
-  std::vector<Possible> possible = slow_ripples(regression, before, joint);
+                                   const std::vector<Term>& found, const VectorXd& before,
+                                   const std::vector<Proposal>& proposals) {
+  std::vector<Possible> possible = slow_ripples(regression, found, before, joint);
   for (const Proposal& one : proposals) {
     const Term& term = one.terms.back();
     const EffectAt what{term.effect->kind(), term.joint};
@@ -121,21 +126,23 @@ bool share_an_effect(const std::vector<EffectAt>& a, const std::vector<EffectAt>
 }  // namespace
 
 std::vector<std::vector<EffectAt>> undecided(const Search& search, const Regression& regression,
-                                             const ModelFit& baseline,
+                                             const FoundModel& found,
                                              const std::vector<Excitation>& excitation) {
   constexpr std::size_t kMostProposals = 24;
-  const std::vector<Index> joints = joints_that_show(regression, excitation);
+  const std::vector<Term> terms = found.terms();
+  const std::vector<Index> joints = joints_that_show(regression, terms, excitation);
   if (joints.empty()) return {};
-  const VectorXd before = regression.data().layout.rms(baseline.residual);
+  const VectorXd before = regression.data().layout.rms(found.fit.residual);
   const std::vector<Proposal> proposals =
-      search.propose({}, baseline, search.screen({}, baseline), kMostProposals);
+      search.propose(terms, found.fit, search.screen(terms, found.fit), kMostProposals);
   if (proposals.empty() ||
-      search.family_p(proposals.front(), baseline) > search.options().family_error) {
+      search.family_p(proposals.front(), found.fit) > search.options().family_error) {
     return {};
   }
   std::vector<std::vector<EffectAt>> classes;
   for (const Index joint : joints) {
-    std::vector<EffectAt> names = class_of(explained_on(joint, regression, before, proposals));
+    std::vector<EffectAt> names =
+        class_of(explained_on(joint, regression, terms, before, proposals));
     // One effect may show on several joints.
     const bool told = std::any_of(classes.begin(), classes.end(), [&](const auto& earlier) {
       return share_an_effect(earlier, names);

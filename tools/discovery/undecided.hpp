@@ -13,9 +13,9 @@ namespace offnominal::tools::discovery {
 // stands clearly above their noise all the same: per such joint every effect that explains a good
 // part of what the best one does, best first; the joint that stands out most first. Empty where no
 // joint shows anything, or where no effect explains it.
-// `baseline`: what is left of a model in which nothing was found.
+// Joints on which something was found have their answer: `found` is asked of the others.
 std::vector<std::vector<EffectAt>> undecided(const Search& search, const Regression& regression,
-                                             const ModelFit& baseline,
+                                             const FoundModel& found,
                                              const std::vector<Excitation>& excitation);
 
 }  // namespace offnominal::tools::discovery

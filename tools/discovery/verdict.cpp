@@ -19,6 +19,9 @@ namespace {
 constexpr double kAboveNoise = 1.5;
 // ... and this share of it follows a variable on time that was not fitted.
 constexpr double kStructured = 0.15;
+// What stands above its noise and is more than this share of the torque is not explained, whatever
+// it follows.
+constexpr double kShareOfTorque = 0.02;
 // A push or another event: this share of the energy is in a tenth of the time.
 constexpr double kConcentrated = 0.5;
 // ... unless this much follows a variable of the joint.
@@ -54,34 +57,93 @@ std::string words_of(const Finding& finding) {
   return fmt::format("{} on {}", title_of(finding), at_joint(finding.what.joint));
 }
 
+// What is left stands above the noise floor, and is worth a word.
+bool stands_out(const JointErrors& joint) {
+  return joint.rms_after > kAboveNoise * joint.noise_floor &&
+         joint.rms_after >= kRelevantTorque * joint.rms_torque;
+}
+
 // The joint where what is left stands furthest above the noise floor, and is worth a name; null
 // where none does.
 const JointErrors* above_noise(const Explanation& e) {
   const JointErrors* loudest = nullptr;
-  double worst = kAboveNoise;
+  double worst = 0;
   for (const JointErrors& joint : e.joints) {
-    if (!(joint.rms_after > worst * joint.noise_floor)) continue;
-    if (joint.rms_after < kRelevantTorque * joint.rms_torque) continue;
+    if (!stands_out(joint) || !(joint.rms_after > worst * joint.noise_floor)) continue;
     worst = joint.rms_after / joint.noise_floor;
     loudest = &joint;
   }
   return loudest;
 }
 
-// The variable that what is left follows on the joint where it stands out most; null for noise.
-const StructureShare* remaining_structure(const Explanation& e) {
+// The variable that what is left of a joint follows; null for noise.
+const StructureShare* structure_on(const Explanation& e, const JointErrors& joint) {
   const StructureShare* state = nullptr;
   const StructureShare* time = nullptr;
-  const JointErrors* loudest = above_noise(e);
-  if (loudest == nullptr) return nullptr;
+  if (!stands_out(joint)) return nullptr;
   for (const StructureShare& share : e.where) {  // largest first
-    if (share.joint != loudest->joint) continue;
+    if (share.joint != joint.joint) continue;
     const bool of_time = share.variable == "time";
     if (of_time && share.share >= kConcentrated) time = &share;
     if (!of_time && share.share >= kStructured && state == nullptr) state = &share;
   }
   if (time != nullptr && (state == nullptr || state->share < kFollowsState)) return time;
   return state;
+}
+
+const JointErrors& errors_of(const Explanation& e, Eigen::Index joint) {
+  return *std::find_if(e.joints.begin(), e.joints.end(),
+                       [&](const JointErrors& one) { return one.joint == joint; });
+}
+
+Remains remains_of(const Explanation& e, const JointErrors& joint) {
+  Remains left;
+  left.rms = joint.rms_after;
+  left.share_of_torque = joint.rms_torque > 0 ? joint.rms_after / joint.rms_torque : 0;
+  left.times_noise = joint.noise_floor > 0 ? joint.rms_after / joint.noise_floor : 0;
+  const StructureShare* follows = structure_on(e, joint);
+  if (follows == nullptr) return left;
+  left.follows = follows->variable;
+  left.share = follows->share;
+  if (left.follows != "time") return left;
+  std::copy_if(e.loud.begin(), e.loud.end(), std::back_inserter(left.when),
+               [&](const LoudSpan& one) { return one.joint == joint.joint; });
+  return left;
+}
+
+// "in recording 1 from 3.2 to 4.1 s"; the first few.
+std::string words_of_times(const std::vector<LoudSpan>& when) {
+  constexpr std::size_t kMost = 4;
+  std::vector<std::string> spans;
+  for (std::size_t i = 0; i < std::min(kMost, when.size()); ++i) {
+    spans.push_back(fmt::format("{:.1f} to {:.1f} s of recording {}", when[i].from_s, when[i].to_s,
+                                when[i].recording + 1));
+  }
+  std::string words = fmt::format("{}", fmt::join(spans, ", "));
+  if (when.size() > kMost) words += fmt::format(" and {} more", when.size() - kMost);
+  return words;
+}
+
+std::string words_of(const Remains& left, const std::string& unit) {
+  std::string words = fmt::format("{:.3g} {}, {:.2g} % of the torque and {:.1f} times the noise",
+                                  left.rms, unit, 100 * left.share_of_torque, left.times_noise);
+  if (left.follows.empty()) return words + ", follows nothing that was looked at";
+  if (left.follows != "time") {
+    return words + fmt::format(", follows its {} by {:.0f} %", left.follows, 100 * left.share);
+  }
+  words += ", comes in a few stretches of time";
+  return left.when.empty() ? words : words + ": " + words_of_times(left.when);
+}
+
+// "a torque over position of a shape that no known effect has; joint_stiffness is 60 % of it".
+std::string words_of(const OverVariable& shape) {
+  std::vector<std::string> names;
+  for (const EffectAt& one : shape.stand_ins) names.emplace_back(one.name());
+  return fmt::format(
+      "a torque over {} of a shape that no known effect has; {} {} {:.0f} % of what such a torque "
+      "takes",
+      shape.variable, fmt::join(names, " and "), names.size() == 1 ? "is" : "are",
+      100 * std::max(0.0, shape.share));
 }
 
 void advise_on_classes(Explanation& e) {
@@ -129,56 +191,44 @@ void judge_found(Explanation& e) {
                         first.words, fall);
   if (e.found.size() == 1) return;
   std::vector<std::string> others;
-  std::transform(e.found.begin() + 1, e.found.end(), std::back_inserter(others), words_of);
+  std::transform(e.found.begin() + 1, e.found.end(), std::back_inserter(others),
+                 [](const Finding& one) { return words_of(one); });
   e.words += fmt::format(" Also: {}.", fmt::join(others, ", "));
 }
 
-// What was found on a joint explains nearly all that there was to explain there.
-bool is_nearly_all(const JointErrors& joint) {
-  constexpr double kLeft = 0.35;
-  return joint.rms_after < kLeft * joint.rms_fitted_before;
+// The joint whose unknown part matters most; null where there is none.
+const JointAnswer* worst_unknown(const Explanation& e) {
+  const auto worst = std::find_if(e.answers.begin(), e.answers.end(), [](const JointAnswer& one) {
+    return one.verdict == Verdict::kUnknownExternal ||
+           one.verdict == Verdict::kUnknownStateDependent;
+  });
+  return worst == e.answers.end() ? nullptr : &*worst;
 }
 
-// What was found stands by itself, whatever else is left: it explains nearly all of its
-// own joints, and what acts on another one is another matter.
-bool stands_beside_rest(const Explanation& e) {
-  return !e.found.empty() && std::all_of(e.found.begin(), e.found.end(), [&](const Finding& f) {
-    return is_nearly_all(e.joints[static_cast<std::size_t>(f.what.joint)]);
-  });
-}
-
-bool judge_unknown(Explanation& e) {
-  const StructureShare* left = remaining_structure(e);
-  if (left == nullptr) return false;
-  const JointErrors& joint = e.joints[static_cast<std::size_t>(left->joint)];
-  const bool external = left->variable == "time";
-  const bool found_there = std::any_of(e.found.begin(), e.found.end(), [&](const Finding& f) {
-    return f.what.joint == joint.joint;
-  });
-  if ((found_there && is_nearly_all(joint)) || stands_beside_rest(e)) {
-    e.advice.push_back(fmt::format(
-        "joint {}: what is left, {:.3g} {}, {}: none of the known effects", joint.joint + 1,
-        joint.rms_after, joint.unit,
-        external ? "comes in a few stretches of time" : "still follows its " + left->variable));
-    return false;
-  }
-  e.verdict = external ? Verdict::kUnknownExternal : Verdict::kUnknownStateDependent;
+void judge_unknown(const JointAnswer& worst, Explanation& e) {
+  e.verdict = worst.verdict;
+  const bool external = worst.verdict == Verdict::kUnknownExternal;
+  const std::string does =
+      external && worst.left.follows == "time"
+          ? "comes in a few stretches of time" +
+                (worst.left.when.empty() ? std::string()
+                                         : " (" + words_of_times(worst.left.when) + ")")
+      : worst.left.follows.empty() ? "follows nothing that was looked at"
+                                   : "follows its " + worst.left.follows;
   e.words = fmt::format(
       "Something acts on {} that is none of the known effects: the error stands {:.1f} times above "
       "the noise and {}.",
-      at_joint(left->joint), joint.rms_after / joint.noise_floor,
-      external ? "comes in a few stretches of time" : "follows its " + left->variable);
-  for (const Finding& finding : e.found) {
-    e.advice.push_back(
-        fmt::format("{} on {} explains a part, but stands for something else: do not add it",
-                    finding.what.name(), at_joint(finding.what.joint)));
+      at_joint(worst.joint), worst.left.times_noise, does);
+  const auto shape =
+      std::find_if(e.over_variable.begin(), e.over_variable.end(),
+                   [&](const OverVariable& one) { return one.joint == worst.joint; });
+  if (shape != e.over_variable.end()) {
+    e.words += fmt::format(" It is {}.", words_of(*shape));
   }
-  e.found.clear();
-  e.ambiguous.clear();
-  e.waterfall.resize(1);
   e.advice.push_back(external ? "look at the recording at these times: contact, a cable, a person"
-                              : "see the map of the error over " + left->variable);
-  return true;
+                              : "see the map of the error over " + (shape != e.over_variable.end()
+                                                                        ? shape->variable
+                                                                        : worst.left.follows));
 }
 
 // How small an effect cannot be named, beyond what the model's own numbers take up: a sentence.
@@ -201,7 +251,6 @@ std::string words_of_detectable(const Explanation& e) {
 // Something is there, and what it is cannot be said: noise, or an effect that this motion shows
 // weakly.
 void judge_suspected(const Suspicion& one, Explanation& e) {
-  e.suspected = one;
   e.verdict = Verdict::kNotExcited;
   e.words = fmt::format(
       "No effect stands out enough to be named, yet chance alone is unlikely (p = {:.2g} over the "
@@ -248,40 +297,159 @@ std::string title_of(const Finding& finding) {
   return std::string(finding.what.name());
 }
 
+namespace {
+
+std::vector<std::string> names_of(const std::vector<EffectAt>& effects) {
+  std::vector<std::string> names;
+  std::transform(effects.begin(), effects.end(), std::back_inserter(names),
+                 [](const EffectAt& one) { return std::string(one.name()); });
+  return names;
+}
+
+// How much of the torque the model explains before and after.
+std::string words_of_gain(const JointErrors& errors) {
+  if (!(errors.rms_torque > 0)) return "";
+  const double before = 100 * errors.rms_before / errors.rms_torque;
+  const double after = 100 * errors.rms_after / errors.rms_torque;
+  return fmt::format(" The error falls from {:.3g} to {:.3g} {}, {:.2g} to {:.2g} % of the torque.",
+                     errors.rms_before, errors.rms_after, errors.unit, before, after);
+}
+
+JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
+  JointAnswer answer;
+  answer.joint = errors.joint;
+  answer.left = remains_of(e, errors);
+  for (const Finding& one : e.found) {
+    if (one.what.joint == errors.joint) answer.found.push_back(one.what);
+  }
+  for (const auto& same : e.ambiguous) {
+    if (same.front().joint == errors.joint) answer.ambiguous.push_back(same);
+  }
+  const auto which = static_cast<std::size_t>(errors.joint);
+  const bool poor = which < e.excitation.size() && !e.excitation[which].sufficient;
+  std::vector<std::string> shapes;
+  for (const OverVariable& one : e.over_variable) {
+    if (one.joint == errors.joint) shapes.push_back(words_of(one));
+  }
+  const auto shift = std::find_if(e.shifts.begin(), e.shifts.end(),
+                                  [&](const Shift& one) { return one.joint == errors.joint; });
+  const bool known = std::all_of(answer.found.begin(), answer.found.end(), [](const EffectAt& one) {
+    return info_of(one.kind)->is_known_quantity();
+  });
+  std::vector<EffectAt> sure = answer.found;
+  std::erase_if(sure, [&](const EffectAt& one) { return holds_in_any(answer.ambiguous, one); });
+  const bool far = stands_out(errors) && errors.rms_after > kShareOfTorque * errors.rms_torque;
+  const bool unknown = !answer.left.follows.empty() || far || !shapes.empty();
+  if (!answer.ambiguous.empty() || !answer.found.empty()) {
+    answer.verdict = !answer.ambiguous.empty() ? Verdict::kAmbiguous
+                     : known                   ? Verdict::kParameterShift
+                                               : Verdict::kFound;
+    if (!sure.empty()) answer.words = fmt::format("{}.", fmt::join(names_of(sure), ", "));
+    for (const auto& same : answer.ambiguous) {
+      answer.words += fmt::format("{}{} cannot be told apart.", answer.words.empty() ? "" : " ",
+                                  fmt::join(names_of(same), " or "));
+    }
+    answer.words += words_of_gain(errors);
+  } else if (unknown && !poor) {
+    const bool state = !answer.left.follows.empty() && answer.left.follows != "time";
+    answer.verdict =
+        state || !shapes.empty() ? Verdict::kUnknownStateDependent : Verdict::kUnknownExternal;
+    answer.words = "none of the known effects.";
+  } else if (shift != e.shifts.end() && !poor) {
+    answer.verdict = Verdict::kParameterShift;
+    answer.words = fmt::format("{} is off by {:+.0f} %.", shift->name, 100 * shift->share);
+  } else if (poor) {
+    answer.verdict = Verdict::kNotExcited;
+    answer.words = e.excitation[which].lack + ".";
+  } else if (e.suspected && e.suspected->what.joint == errors.joint) {
+    answer.verdict = Verdict::kNotExcited;
+    answer.words = fmt::format("{} may hide in the noise.", e.suspected->what.name());
+  } else {
+    answer.words = "no known effect is missing.";
+  }
+  for (const std::string& shape : shapes) answer.words += fmt::format(" It has {}.", shape);
+  const char* left = stands_out(errors) ? " What is left: " : "";
+  if (*left != '\0') answer.words += left + words_of(answer.left, errors.unit) + ".";
+  return answer;
+}
+
+// Those that matter most first: by the share of their torque that was missing.
+void judge_joints(Explanation& e) {
+  e.answers.clear();
+  for (const JointErrors& joint : e.joints) e.answers.push_back(judge_joint(e, joint));
+  const auto share = [&](const JointAnswer& one) {
+    const JointErrors& errors = errors_of(e, one.joint);
+    return errors.rms_torque > 0 ? errors.rms_before / errors.rms_torque : 0;
+  };
+  std::stable_sort(e.answers.begin(), e.answers.end(),
+                   [&](const JointAnswer& a, const JointAnswer& b) { return share(a) > share(b); });
+}
+
+// A file without any friction on a joint, in one sentence.
+void advise_on_friction(Explanation& e) {
+  if (e.without_friction.empty() || e.at_rest) return;
+  std::vector<std::string> joints;
+  for (const Eigen::Index joint : e.without_friction) joints.push_back(std::to_string(joint + 1));
+  e.advice.push_back(fmt::format(
+      "the robot file has no friction on joint {}, and every drive has some: `[[effect]]` with "
+      "kind = \"coulomb_friction\" and one with kind = \"viscous_friction\" per joint, `fitted = "
+      "true`, is where to begin",
+      fmt::join(joints, ", ")));
+}
+
+// What is left beside what was found.
+void advise_on_rest(Explanation& e) {
+  for (const JointAnswer& one : e.answers) {
+    const JointErrors& errors = errors_of(e, one.joint);
+    const bool answered =
+        one.verdict == Verdict::kUnknownExternal || one.verdict == Verdict::kUnknownStateDependent;
+    if ((e.verdict == one.verdict && answered) || !stands_out(errors)) continue;
+    if (one.left.follows.empty()) continue;
+    e.advice.push_back(
+        fmt::format("joint {}: what is left, {}", one.joint + 1, words_of(one.left, errors.unit)));
+  }
+}
+
+}  // namespace
+
 void judge_whole(Explanation& e) {
   e.advice.clear();
-  const std::optional<Suspicion> suspected = std::exchange(e.suspected, std::nullopt);
+  e.answers.clear();
+  std::optional<Suspicion> suspected = std::exchange(e.suspected, std::nullopt);
   for (std::size_t joint = 0; joint < e.excitation.size(); ++joint) {
     const Excitation& one = e.excitation[joint];
     if (one.sufficient) continue;
     e.advice.push_back(fmt::format("joint {}: {}", joint + 1, one.lack));
   }
-  const bool poor = !all_sufficient(e.excitation);
   if (!e.data_faults.empty()) {
     e.verdict = Verdict::kDataFault;
     e.words = "The recording itself is at fault: " + e.data_faults[0].words + ".";
     for (const DataFault& fault : e.data_faults) e.advice.push_back(fault.mend);
     e.found.clear();
     e.ambiguous.clear();
+    e.over_variable.clear();
     e.waterfall.resize(std::min<std::size_t>(1, e.waterfall.size()));
     return;
   }
-  if (!poor && judge_unknown(e)) return;
+  const bool poor = !all_sufficient(e.excitation);
+  // What stands above the noise without following anything is told as such.
+  if (suspected && !poor && above_noise(e) == nullptr) e.suspected = suspected;
+  judge_joints(e);
+  advise_on_friction(e);
+  const JointAnswer* unknown = worst_unknown(e);
+  const auto shift = std::find_if(e.answers.begin(), e.answers.end(), [](const JointAnswer& one) {
+    return one.verdict == Verdict::kParameterShift;
+  });
   if (!e.ambiguous.empty()) {
     judge_ambiguous(e);
-    return;
-  }
-  if (!e.found.empty()) {
+  } else if (!e.found.empty()) {
     judge_found(e);
-    return;
-  }
-  if (!e.shifts.empty() && !poor) {
+  } else if (unknown != nullptr) {
+    judge_unknown(*unknown, e);
+  } else if (shift != e.answers.end()) {
     e.verdict = Verdict::kParameterShift;
-    e.words = fmt::format("A known quantity has another value: {} is off by {:+.0f} %.",
-                          e.shifts[0].name, 100 * e.shifts[0].share);
-    return;
-  }
-  if (poor) {
+    e.words = "A known quantity has another value: " + shift->words;
+  } else if (poor) {
     e.verdict = Verdict::kNotExcited;
     e.words = "These motions excite too little to judge the model by them.";
     e.advice.emplace_back(
@@ -289,24 +457,22 @@ void judge_whole(Explanation& e) {
                   : fmt::format("`offnominal motion --robot {} -o motion.csv` writes a motion that "
                                 "excites what the robot may have",
                                 e.robot_file));
-    return;
+  } else if (e.suspected) {
+    judge_suspected(*e.suspected, e);
+  } else {
+    const JointErrors* loudest = above_noise(e);
+    e.verdict = Verdict::kExplained;
+    e.words =
+        loudest == nullptr
+            ? "The model explains these recordings: what is left is noise, or less than a "
+              "thousandth of the torque, and no known effect is missing." +
+                  words_of_detectable(e)
+            : fmt::format(
+                  "No known effect stands out. What is left on {} stands {:.1f} times above the "
+                  "noise, and follows nothing that was looked at.",
+                  at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
   }
-  const JointErrors* loudest = above_noise(e);
-  // What stands above the noise without following anything is told as such.
-  if (suspected && loudest == nullptr) {
-    judge_suspected(*suspected, e);
-    return;
-  }
-  e.verdict = Verdict::kExplained;
-  e.words =
-      loudest == nullptr
-          ? "The model explains these recordings: what is left is noise, or less than a thousandth "
-            "of the torque, and no known effect is missing." +
-                words_of_detectable(e)
-          : fmt::format(
-                "No known effect stands out. What is left on {} stands {:.1f} times above the "
-                "noise, and follows nothing that was looked at.",
-                at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
+  advise_on_rest(e);
 }
 
 }  // namespace offnominal::tools::discovery

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -63,6 +64,71 @@ TEST(LeastSquaresWithPriors, EqualColumnsDoNotSpoilTheSolution) {
   const PriorFit fit = least_squares_with_priors(columns, target, std::vector<Prior>(2), 1);
   EXPECT_LT(fit.residual.norm(), 1e-10);
   EXPECT_EQ(fit.basis.cols(), 1);
+}
+
+// Two joints of one recording, 40 samples each, and a basis that they share.
+class TwoJoints : public ::testing::Test {
+ protected:
+  TwoJoints() {
+    Workspace at;
+    at.plan.sample_rate_hz = 10;
+    at.motion.t_s = VectorXd::LinSpaced(40, 0, 3.9);
+    at.motion.q = MatrixXd::Zero(40, 2);
+    layout_ = std::make_unique<RowLayout>(std::vector<Workspace>{at});
+    auto generator = test::seeded_generator();
+    std::normal_distribution<double> normal;
+    const auto noise = [&] { return normal(generator); };
+    common_ = MatrixXd::NullaryExpr(80, 3, noise);
+    const VectorXd target = VectorXd::NullaryExpr(80, noise);
+    const PriorFit fit = least_squares_with_priors(common_, target, std::vector<Prior>(3), 1);
+    remainder_.layout = layout_.get();
+    remainder_.blocks = layout_->blocks(0.5);
+    remainder_.joint_weights = VectorXd::Ones(2);
+    remainder_.residual = fit.residual;
+    remainder_.basis = fit.basis;
+    remainder_.energy = layout_->energy(fit.residual);
+    remainder_.independent_samples = VectorXd::Constant(2, 40);
+    column_ = MatrixXd::Zero(80, 2);
+    column_.bottomRows(40) = MatrixXd::NullaryExpr(40, 2, noise);
+  }
+
+  std::unique_ptr<RowLayout> layout_;
+  MatrixXd common_, column_;
+  Remainder remainder_;
+};
+
+// Only the rows where a column acts are looked at; what comes out is that of the whole regression.
+TEST_F(TwoJoints, EvidenceOfAColumnOnOneJointIsThatOfTheWholeRegression) {
+  MatrixXd both(80, 5);
+  both << common_, column_;
+  const VectorXd left =
+      least_squares_with_priors(both, remainder_.residual, std::vector<Prior>(5), 1).residual;
+  const ActingColumns acting(*layout_, column_);
+  ASSERT_EQ(acting.spans().size(), 1U);
+  EXPECT_EQ(acting.spans()[0].joint, 1);
+  const Judge judge(remainder_);
+  const Evidence evidence = judge.evidence(acting);
+  ASSERT_TRUE(evidence.usable);
+  const VectorXd energy = layout_->energy(left);
+  EXPECT_NEAR(evidence.gain, 1 - left.squaredNorm() / remainder_.residual.squaredNorm(), 1e-10);
+  EXPECT_NEAR(judge.gain(column_), evidence.gain, 1e-12);
+  EXPECT_NEAR(evidence.joint_gain, (1 - energy.cwiseQuotient(remainder_.energy).array()).maxCoeff(),
+              1e-10);
+  EXPECT_NEAR(judge.joint_gain(acting), evidence.joint_gain, 1e-12);
+}
+
+TEST_F(TwoJoints, AColumnThatTheBasisHasSaysNothing) {
+  const Judge judge(remainder_);
+  EXPECT_FALSE(judge.evidence(common_.leftCols(1).eval()).usable);
+  EXPECT_LT(judge.gain(common_.leftCols(1)), 0);
+}
+
+TEST_F(TwoJoints, TheNullOfASearchIsThatOfAnyNumberOfThreads) {
+  const Judge judge(remainder_);
+  const std::vector<Evidence> groups(70, judge.evidence(column_));
+  const int blocks = remainder_.blocks.count;
+  EXPECT_EQ(largest_without_effect(groups, blocks, 99, 3, 1),
+            largest_without_effect(groups, blocks, 99, 3, 4));
 }
 
 TEST(Evidence, PFallsWithTheStatisticAndIsOneWithoutAny) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -26,10 +27,11 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
+using ::testing::UnorderedElementsAre;
 
 ExplainOptions quick(int threads) {
   ExplainOptions options;
-  options.bootstrap_draws = 199;
+  options.bootstrap_draws = 499;
   options.replays = 0;
   options.threads = threads;
   return options;
@@ -150,6 +152,49 @@ TEST(ManyJoints, GIVEN_a_number_that_is_held_THEN_all_else_is_fitted_beside_it) 
   const double step = 0.02 * std::abs(improved.effects.at(2).parameters[0]);
   EXPECT_LT(error(0), error(step));
   EXPECT_LT(error(0), error(-step));
+}
+
+// An owner's file without any friction, on an arm that has Coulomb and viscous friction everywhere:
+// no joint waits for another, and nothing larger than the two is named.
+TEST(ManyJoints, GIVEN_a_file_without_friction_THEN_every_joint_gets_both_and_nothing_else) {
+  constexpr std::size_t kJoints = 6;
+  const RobotDescription real = test::serial_arm(kJoints);
+  RobotDescription robot = real;
+  robot.effects.clear();
+  const Explanation told = explain(robot, {test::record(real, {.duration_s = 30})},
+                                   {test::record(real, {.duration_s = 12, .seed = 2})}, quick(2));
+  ASSERT_EQ(told.answers.size(), kJoints);
+  for (const JointAnswer& one : told.answers) {
+    EXPECT_EQ(one.verdict, Verdict::kFound) << one.joint + 1 << ": " << one.words;
+    EXPECT_THAT(one.found, UnorderedElementsAre(EffectAt{EffectKind::kCoulombFriction, one.joint},
+                                                EffectAt{EffectKind::kViscousFriction, one.joint}))
+        << one.joint + 1 << ": " << one.words;
+  }
+  EXPECT_EQ(told.found.size(), 2 * kJoints);
+  EXPECT_THAT(told.advice, Contains(HasSubstr("no friction on joint 1, 2, 3, 4, 5, 6")));
+  ASSERT_EQ(told.waterfall.size(), told.found.size() + 1);
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const auto joint = static_cast<Eigen::Index>(i);
+    EXPECT_LT(told.waterfall.back()[joint], 0.2 * told.waterfall.front()[joint]);
+  }
+}
+
+// The width of the sign that fits Coulomb friction alone is not the one beside viscous friction:
+// left where it was it makes a Stribeck effect that is not there.
+TEST(ManyJoints, GIVEN_coulomb_and_viscous_friction_THEN_no_larger_member_of_the_family_is_named) {
+  const RobotDescription real = test::serial_arm(1);
+  RobotDescription robot = real;
+  robot.effects.clear();
+  for (const std::uint64_t seed : test::every_nth(std::vector<std::uint64_t>{11, 12, 13, 14}, 4)) {
+    const Explanation told = explain(
+        robot, {test::record(real, {.duration_s = 30, .torque_noise_nm = 0.005, .seed = seed})}, {},
+        quick(2));
+    std::vector<EffectAt> names;
+    for (const Finding& one : told.found) names.push_back(one.what);
+    EXPECT_THAT(names, UnorderedElementsAre(EffectAt{EffectKind::kCoulombFriction, 0},
+                                            EffectAt{EffectKind::kViscousFriction, 0}))
+        << seed << ": " << told.words;
+  }
 }
 
 TEST(ManyJoints, TheNumberOfThreadsChangesNothing) {
