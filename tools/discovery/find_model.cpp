@@ -183,10 +183,14 @@ class Finder {
     return best_fall(layout.rms(before.residual), layout.rms(after.residual));
   }
 
-  // Whether it is more than nothing to the joint's torque.
+  // Whether it is more than nothing to the joint's torque, and more than what effects that were
+  // found before leave of themselves: each of them is a simplification of something.
   [[nodiscard]] bool matters(const Fall& fall) const {
+    constexpr double kLeftOfItself = 0.06;  // of the error that the joint had at first
     const Data& data = regression_.data();
-    return fall.rms >= kRelevantTorque * data.layout.rms(data.torque)[fall.joint];
+    const RowLayout& layout = data.layout;
+    return fall.rms >= kRelevantTorque * layout.rms(data.torque)[fall.joint] &&
+           fall.rms >= kLeftOfItself * layout.rms(found_.baseline.residual)[fall.joint];
   }
 
   [[nodiscard]] bool relevant(const ModelFit& before, const ModelFit& after) const {

@@ -1,8 +1,17 @@
 #include "log/channel_needs.hpp"
 
+#include <algorithm>
 #include <set>
 
 namespace offnominal::tools {
+
+namespace {
+
+bool is_number(const std::string& name) {
+  return std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+}  // namespace
 
 int joint_of(const std::string& name, const std::string& prefix) {
   if (!name.starts_with(prefix) || name.size() == prefix.size() ||
@@ -35,7 +44,9 @@ NeedOf needs_of(const std::optional<ChannelMap>& channels, std::size_t file, std
   if (!channels) {
     return [](const std::string& name) {
       if (name == "t") return Need::kAscending;
-      return is_common_name(name) ? Need::kRequired : Need::kWelcome;
+      if (is_common_name(name)) return Need::kRequired;
+      // A column without a name is nobody's extra: what has no header is refused before it is read.
+      return is_number(name) ? Need::kNone : Need::kWelcome;
     };
   }
   std::set<std::string> wanted;

@@ -9,6 +9,7 @@
 #include <offnominal/model/inverse_dynamics.hpp>
 #include <offnominal/monitor.hpp>
 #include <random>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -262,12 +263,12 @@ TYPED_TEST(GeneratedModel, TakesTheHostsSteps) {
 
 // The robot of this test is worth its name.
 TEST(GeneratedModelOfEveryEffect, HasEveryEffect) {
-  std::vector<bool> found(kAllEffectInfos.size(), false);
+  std::set<EffectKind> found;
   for (const auto& effect : models::every_effect::kChain<float>.effects.view()) {
-    found.at(static_cast<std::size_t>(effect.kind)) = true;
+    found.insert(effect.kind);
   }
-  for (std::size_t i = 0; i < found.size(); ++i)
-    EXPECT_TRUE(found[i]) << kAllEffectInfos.at(i).name;
+  for (const EffectInfo& info : kAllEffectInfos)
+    EXPECT_TRUE(found.contains(info.kind)) << info.name;
 }
 
 }  // namespace

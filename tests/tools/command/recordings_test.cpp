@@ -140,7 +140,7 @@ TEST_F(RecordingsOfVerbs, ThatNeverEndOrAreNoTextAreRefused) {
   expect_refusal(run({"compare", path("none.csv")}), "none.csv: found no such file");
   expect_refusal(run({"compare", "-"}), "standard input: found an empty file");
   expect_refusal(piped("tr '\\0' x < /dev/zero", "-"), "found a line longer than 1048576 bytes");
-  expect_refusal(piped("yes 1", "-"), "line 1, column 1: found the number 1");
+  expect_refusal(piped("yes 1", "-"), "line 1: found numbers in 1 columns");
   expect_refusal(piped("yes a,b", "-"), "columns: found a, b");
   // Before a copy of it fills the folder for temporary files.
   expect_refusal(piped("(printf MATLAB; cat /dev/zero)", "-"), "readable .mat file");

@@ -168,7 +168,12 @@ TEST_F(BamXl330, BesideItCoulombFrictionIsDropped) {
   know(EffectKind::kLoadDependentFriction, 0.3);
   const std::vector<Log> gentle(logs_.begin(), logs_.begin() + 6);
   const Explanation e = explain(robot_, gentle, {}, few_draws());
-  EXPECT_EQ(e.verdict, Verdict::kExplained) << e.words;
+  // At most the doubt that the loss depends on which way power flows (the authors' model M5).
+  if (e.verdict != Verdict::kExplained) {
+    ASSERT_TRUE(e.suspected) << e.words;
+    EXPECT_EQ(e.suspected->what.name(), "gear_loss") << e.words;
+  }
+  EXPECT_THAT(e.found, ::testing::IsEmpty()) << e.words;
   EXPECT_LT(e.joints[0].rms_after, 1.2 * e.joints[0].noise_floor);
   const auto coulomb = std::find_if(e.rejected.begin(), e.rejected.end(), [](const Rejection& one) {
     return one.what.name() == "coulomb_friction";
