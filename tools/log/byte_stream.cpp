@@ -146,8 +146,8 @@ class Utf8Bytes final : public ByteStream {
     }
     const std::size_t bytes = count + odd_;
     for (std::size_t i = 0; i + 1 < bytes; i += 2) {
-      const auto first = static_cast<std::uint8_t>(chunk[i]);
-      const auto second = static_cast<std::uint8_t>(chunk[i + 1]);
+      const std::uint32_t first = static_cast<std::uint8_t>(chunk[i]);
+      const std::uint32_t second = static_cast<std::uint8_t>(chunk[i + 1]);
       take(big_endian_ ? first << 8U | second : second << 8U | first);
     }
     odd_ = bytes % 2;

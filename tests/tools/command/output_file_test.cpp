@@ -49,7 +49,7 @@ class OutputFile : public testing::Test {
         {"export-mjcf", {{"export-mjcf", path("r.toml")}, {"-o"}}},
         {"export-urdf", {{"export-urdf", path("r.toml")}, {"-o"}}},
         {"import-urdf", {{"import-urdf", path("r.toml")}, {"-o"}}},
-        {"look", {{"look", path("a.csv")}, {"--report"}}},
+        {"look", {{"look", path("r.toml")}, {"--report"}}},
         {"motion", {with({"motion"}, robot), {"-o", "--report"}}},
         {"new", {{"new", "--dh", path("r.toml")}, {"-o"}}},
         {"paper", {with({"paper", "--fault", "none"}, robot), {"--log", "--report"}}},

@@ -118,14 +118,13 @@ INSTANTIATE_TEST_SUITE_P(Effects, PoorMotion, ::testing::ValuesIn(test::every_nt
 TEST(Ambiguous, BecomesFoundOnTheMotionThatTheAdviceNames) {
   constexpr int kWanted = test::repetitions(2);
   int seen = 0;
-  for (const auto& [effect, seed] : {std::pair{hidden::HiddenEffect::kBacklash, 2},
-                                     {hidden::HiddenEffect::kBacklash, 1},
-                                     {hidden::HiddenEffect::kViscousFriction, 2},
-                                     {hidden::HiddenEffect::kStribeckFriction, 1}}) {
-    if (seen == kWanted) break;
+  constexpr std::array kEffects{
+      hidden::HiddenEffect::kBacklash, hidden::HiddenEffect::kViscousFriction,
+      hidden::HiddenEffect::kTorqueScale, hidden::HiddenEffect::kLoadDependentFriction};
+  for (std::size_t i = 0; i < 8 * kEffects.size() && seen < kWanted; ++i) {
     hidden::Request request;
-    request.seed = static_cast<std::uint64_t>(seed);
-    request.effects = {effect};
+    request.seed = 1 + i / kEffects.size();
+    request.effects = {kEffects.at(i % kEffects.size())};
     const hidden::DrawnRobot drawn = hidden::draw_robot(request);
     const RobotDescription robot = to_robot(drawn.nominal);
     const Explanation first =
