@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Effects, PoorMotion, ::testing::ValuesIn(test::every_nt
                          [](const auto& one) { return std::string(name(one.param.effect)); });
 
 TEST(Ambiguous, BecomesFoundOnTheMotionThatTheAdviceNames) {
-  constexpr int kWanted = 1;  // of 24 robots two or three are left in a class
+  constexpr int kWanted = 1;  // of 24 robots one or two are left in a class
   int seen = 0;
   constexpr std::array kEffects{hidden::HiddenEffect::kBacklash,
                                 hidden::HiddenEffect::kViscousFriction,
