@@ -78,14 +78,17 @@ class WidthModel {
     VectorXd torque = VectorXd::Zero(data_.layout.rows());
     for (const RobotEffect& effect : robot_.effects) {
       if (!follows(effect, joint_)) continue;
-      torque += stacked([&](const Workspace& at) { return torque_of(at, with(effect, width)); });
+      torque += stacked([&](const Workspace& at) {
+        return torque_of(at, with(static_cast<const Effect<double>&>(effect), width));
+      });
     }
     return torque;
   }
 
   // The column of a nuisance term; it follows the joint.
   [[nodiscard]] VectorXd known_column(const NuisanceTerm& term, double width) {
-    Effect<double> unit = with(robot_.effects[term.effect], width);
+    Effect<double> unit =
+        with(static_cast<const Effect<double>&>(robot_.effects[term.effect]), width);
     const auto parameters = info_of(unit.kind)->parameters;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       if (parameters[i].role == ParameterRole::kLinear) unit.parameters[i] = i == term.parameter;

@@ -150,18 +150,18 @@ const char* name_of(DhConvention convention) {
 }
 
 DhTable read_dh_table(const std::filesystem::path& path, std::optional<DhConvention> convention) {
-  const DhTable table =
+  DhTable table =
       path.extension() == ".csv" ? read_csv_table(path, convention) : read_toml(path, convention);
   if (table.rows.empty() || table.rows.size() > static_cast<std::size_t>(kMaxJoints)) {
     refuse(path, "", fmt::format("{} joints", table.rows.size()),
            fmt::format("1 to {}, a row each", kMaxJoints), "leave out what no drive moves");
   }
   // Further out no robot file takes a length.
-  constexpr double kFarthest_m = 1e5;
+  constexpr double kFarthestM = 1e5;
   for (const DhRow& row : table.rows) {
     for (const double value : {row.a_m, row.d_m, row.alpha_rad, row.theta_rad}) {
-      if (std::fabs(value) <= kFarthest_m) continue;
-      refuse(path, row.name, shortest(value), fmt::format("at most {}", shortest(kFarthest_m)),
+      if (std::fabs(value) <= kFarthestM) continue;
+      refuse(path, row.name, shortest(value), fmt::format("at most {}", shortest(kFarthestM)),
              "check the unit");
     }
   }

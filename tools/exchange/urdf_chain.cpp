@@ -62,10 +62,11 @@ std::vector<Link> links_below(const Link& base) {
 std::vector<Link> ends_of_chains(const Link& base) {
   const std::vector<Link> links = links_below(base);
   std::map<const urdf::Link*, int> branches;  // with a moving joint in each
-  for (auto link = links.rbegin(); link != links.rend(); ++link) {
-    if (*link == base) continue;
-    const bool any = moves(*(*link)->parent_joint) || branches[link->get()] > 0;
-    if (any) ++branches[(*link)->getParent().get()];
+  for (std::size_t i = links.size(); i-- > 0;) {
+    const Link& link = links[i];
+    if (link == base) continue;
+    const bool any = moves(*link->parent_joint) || branches[link.get()] > 0;
+    if (any) ++branches[link->getParent().get()];
   }
   std::vector<Link> ends;
   for (const Link& link : links) {

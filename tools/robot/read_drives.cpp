@@ -57,7 +57,7 @@ double read_shared(const TomlTable& table, const hal::DriveKey& key) {
 std::vector<double> read_per_joint(const TomlTable& table, const hal::DriveKey& key,
                                    std::size_t joints) {
   if (!key.required && !table.has(key.name)) return std::vector<double>(joints, key.otherwise);
-  const std::vector<double> values = table.numbers(key.name, rule_of(key), joints, joints);
+  std::vector<double> values = table.numbers(key.name, rule_of(key), joints, joints);
   for (std::size_t j = 0; j < joints; ++j) {
     if (key.whole && values[j] != std::round(values[j])) {
       table.refuse(key.name, shortest(values[j]),

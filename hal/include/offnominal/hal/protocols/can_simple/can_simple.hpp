@@ -426,7 +426,9 @@ struct CanSimple {
 
  private:
   static constexpr Microseconds microseconds(double seconds) {
-    return static_cast<Microseconds>(1e6 * seconds + 0.5);
+    constexpr double kHalf = 0.5;
+    const double whole = 1e6 * seconds + kHalf;
+    return static_cast<Microseconds>(whole);
   }
 };
 
