@@ -96,13 +96,6 @@ std::string value_words(const AddResult& result, const FittedParameter& paramete
   return words;
 }
 
-// A fitted number that physics does not let be what fits best.
-struct Beyond {
-  FittedParameter parameter;
-  PhysicalRange range;
-  bool contradicted = false;  // by the recording; else the end of the range fits as well
-};
-
 // On data that the fit has not seen: the joint that was asked for must gain, no other may lose more
 // than what a twentieth is.
 void doubt_what_held_out_data_say(const AddRequest& request, AddResult& result) {
@@ -135,7 +128,10 @@ class Adder {
     nuisance_.free_effects = setup_.refitted;
     if (!request.fit_skew) nuisance_.skew_samples = 0;
     widths_ = set_sign_widths(robot_, {log}, plan_);
-    data_ = data_of(log_, nuisance_);
+    const std::vector<Log> logs{log_};  // stretches point into it
+    data_ = std::make_unique<Data>(
+        searched_workspaces(stretches_of(logs, robot_, plan_), robot_, plan_, widths_), robot_,
+        nuisance_);
     regression_ = std::make_unique<Regression>(*data_);
     terms_ = terms_of(setup_, request.joint, *data_);
   }
@@ -152,14 +148,6 @@ class Adder {
   }
 
  private:
-  [[nodiscard]] std::unique_ptr<Data> data_of(const Log& log,
-                                              const NuisanceOptions& options) const {
-    const std::vector<Log> logs{log};
-    const auto stretches = stretches_of(logs, robot_, plan_);
-    return std::make_unique<Data>(searched_workspaces(stretches, robot_, plan_, widths_), robot_,
-                                  options);
-  }
-
   [[nodiscard]] Unknown unknown_of(const ModelNumber& number) const {
     Unknown unknown;
     if (number.of == ModelNumber::Of::kTerm) {
@@ -246,9 +234,9 @@ class Adder {
   }
 
   // An interval of what is added to a number as one of the number.
-  static std::optional<Interval> counted_from(double value, double factor, const Estimate& by) {
+  static std::optional<Interval> counted_from(double value, const Estimate& by) {
     if (!by.ci95) return std::nullopt;
-    const double half = factor * ((*by.ci95)[1] - (*by.ci95)[0]) / 2;
+    const double half = ((*by.ci95)[1] - (*by.ci95)[0]) / 2;
     return Interval{value - half, value + half};
   }
 
@@ -278,23 +266,18 @@ class Adder {
     if (term.kind == NuisanceTerm::Kind::kLink) {
       const auto link = static_cast<std::size_t>(term.joint);
       const double factor = last.link_factors[link];
-      result_.fit.links.push_back({link, factor, counted_from(factor, 1, by)});
+      result_.fit.links.push_back({link, factor, counted_from(factor, by)});
       return;
     }
     if (term.kind != NuisanceTerm::Kind::kKnownEffect) return;
     const double value = value_of(term.effect, term.parameter);
-    const bool fitted = !is_indistinct(term.effect, term.parameter) && !is_held(i);
+    const bool fitted = !is_indistinct(term.effect, term.parameter) && !term.prior.is_held();
     FittedParameter parameter{term.effect, term.parameter, value, std::nullopt, {}, fitted};
     if (fitted) {
-      parameter.ci95 = counted_from(value, 1, by);
+      parameter.ci95 = counted_from(value, by);
       parameter.why_no_interval = by.why_no_interval;
     }
     result_.fit.parameters.push_back(std::move(parameter));
-  }
-
-  [[nodiscard]] bool is_held(std::size_t nuisance) const {
-    const Prior& prior = improved_.last.data->nuisance.terms[nuisance].prior;
-    return !prior.is_informative() && std::isfinite(prior.low) && std::isfinite(prior.high);
   }
 
   void take_term(std::size_t i, const std::vector<Estimate>& estimates) {

@@ -173,11 +173,6 @@ Linearised linearise(const Regression& regression, const RobotDescription& robot
   return model;
 }
 
-// Given, not fitted.
-bool is_held(const Prior& prior) {
-  return !prior.is_informative() && std::isfinite(prior.low) && std::isfinite(prior.high);
-}
-
 // Weighted columns with the rows of the priors below them, each scaled to length 1.
 struct ScaledColumns {
   MatrixXd columns;
@@ -195,7 +190,7 @@ ScaledColumns weighted_columns(const Linearised& model, const RowLayout& layout,
     column[layout.rows() + c] = fit.prior_weight / model.priors[at].deviation;  // 0: no prior
     // A column that does not act has no interval; it must not take the others' along.
     if (!std::isfinite(column.norm()) || !(column.norm() > 0)) column.setZero();
-    if (is_held(model.priors[at])) column.setZero();
+    if (model.priors[at].is_held()) column.setZero();
     scaled.length[c] = column.norm() > 0 ? column.norm() : 1;
     column /= scaled.length[c];
   }

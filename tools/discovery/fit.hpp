@@ -23,6 +23,11 @@ struct Prior {
   [[nodiscard]] bool is_informative() const {
     return deviation < std::numeric_limits<double>::infinity();
   }
+  // Nothing is believed, and nothing is free: as at() has it.
+  [[nodiscard]] bool is_held() const {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    return !is_informative() && low > -kNone && high < kNone;
+  }
 };
 
 // Weighted least squares target = columns * x + error beside what is believed of x.

@@ -11,16 +11,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-// The columns of a fit that are free, weighted, with a row per prior below, and whose they are.
-struct Columns {
-  MatrixXd scaled;
-  std::vector<ModelNumber> numbers;
-};
-
-bool is_held(const Prior& prior) {
-  return !prior.is_informative() && std::isfinite(prior.low) && std::isfinite(prior.high);
-}
-
 std::vector<ModelNumber> numbers_of(const Regression::Design& design) {
   std::vector<ModelNumber> numbers;
   for (const Index kept : design.kept) {
@@ -48,7 +38,7 @@ std::vector<IndistinctNumber> first_indistinct(const Regression& regression,
   const auto count = static_cast<Index>(all.size());
   for (Index c = 0; c < count; ++c) {
     const Prior& prior = design.priors[static_cast<std::size_t>(c)];
-    if (is_held(prior)) continue;
+    if (prior.is_held()) continue;
     const ModelNumber& number = all[static_cast<std::size_t>(c)];
     const VectorXd column = layout.weighted(design.columns.col(c), fit.joint_weights);
     const double own = fit.prior_weight / prior.deviation;  // 0: no prior
