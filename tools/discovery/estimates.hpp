@@ -1,11 +1,21 @@
 #pragma once
 
+#include <array>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "discovery/explain.hpp"
+#include "discovery/effect_candidate.hpp"
 #include "discovery/regression.hpp"
 
 namespace offnominal::tools::discovery {
+
+// A number with its 95 % interval; where the data give none, why, in words.
+struct Estimate {
+  NamedValue value;
+  std::optional<std::array<double, 2>> ci95;
+  std::string why_no_interval = {};
+};
 
 // Numbers of a fitted model with 95 % intervals: a covariance that is robust to errors correlated
 // within a block of time (K.-Y. Liang, S. L. Zeger, Biometrika 73(1), 1986), shapes linearised

@@ -9,7 +9,9 @@
 
 #include "discovery/doctor.hpp"
 #include "discovery/effect_candidate.hpp"
+#include "discovery/estimates.hpp"
 #include "discovery/excitation.hpp"
+#include "discovery/improved_robot.hpp"
 #include "discovery/on_progress.hpp"
 #include "discovery/remainder.hpp"
 #include "log/log.hpp"
@@ -32,13 +34,6 @@ const char* name_of(Verdict verdict);
 bool is_to_write(Verdict verdict);
 // The names of all, in the order of the enumeration.
 std::vector<std::string> verdict_names();
-
-// A number with its 95 % interval; where the data give none, why, in words.
-struct Estimate {
-  NamedValue value;
-  std::optional<std::array<double, 2>> ci95;
-  std::string why_no_interval = {};
-};
 
 // An effect on a joint; the joint counts from 0.
 struct EffectAt {
@@ -128,15 +123,6 @@ struct HoldFriction {
   Eigen::Index joint = 0;
   double level = 0;  // N m or N
   std::string unit;
-};
-
-// A number of the file that fitted best where physics does not let it be: it was held at the end of
-// what is possible.
-struct HeldNumber {
-  std::string words;
-  // What it asked for beyond the end is more than nothing to the joint's torque: the recordings
-  // contradict the end.
-  bool contradicted = false;
 };
 
 // What is left of a joint's error.

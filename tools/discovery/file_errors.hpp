@@ -2,7 +2,9 @@
 
 #include <vector>
 
-#include "discovery/explain.hpp"
+#include "analysis/filter_plan.hpp"
+#include "log/log.hpp"
+#include "robot/robot.hpp"
 
 namespace offnominal::tools::discovery {
 

@@ -4,11 +4,19 @@
 #include <vector>
 
 #include "discovery/estimates.hpp"
-#include "discovery/explain.hpp"
 #include "discovery/relinearise.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::tools::discovery {
+
+// A number of the file that fitted best where physics does not let it be: it was held at the end of
+// what is possible.
+struct HeldNumber {
+  std::string words;
+  // What it asked for beyond the end is more than nothing to the joint's torque: the recordings
+  // contradict the end.
+  bool contradicted = false;
+};
 
 // The robot as it was read, with what was found: the effects, marked fitted; the numbers of the
 // effects that were fitted before; mass and inertia of the links. Fitted together, they belong
