@@ -83,7 +83,7 @@ double peak_memory_bytes() {
 void read_csv_recording(benchmark::State& state, const Recording& recording, double before_bytes) {
   Eigen::Index samples = 0;
   for (auto _ : state) {
-    const tools::Log log = tools::read_log(recording.path(), kJoints, std::nullopt);
+    const desk::Log log = desk::read_log(recording.path(), kJoints, std::nullopt);
     samples = log.sample_count();
     benchmark::DoNotOptimize(log.q.data());
   }

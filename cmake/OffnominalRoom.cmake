@@ -15,12 +15,12 @@ function(offnominal_room)
   foreach(room IN LISTS arg_USES)
     if(NOT TARGET desk_${room})
       message(FATAL_ERROR "offnominal_room(${arg_NAME}): uses ${room}, which is not below it; "
-                          "the order of tools/CMakeLists.txt is from the ground up")
+                          "the order of desk/CMakeLists.txt is from the ground up")
     endif()
     list(APPEND used desk_${room})
   endforeach()
   add_library(desk_${arg_NAME} STATIC ${arg_SOURCES})
-  target_include_directories(desk_${arg_NAME} PUBLIC "${PROJECT_SOURCE_DIR}/tools")
+  target_include_directories(desk_${arg_NAME} PUBLIC "${PROJECT_SOURCE_DIR}/desk")
   target_link_libraries(
     desk_${arg_NAME}
     PUBLIC offnominal::core ${used} ${arg_PUBLIC}

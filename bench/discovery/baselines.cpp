@@ -7,15 +7,15 @@
 #include <utility>
 
 #include "candidate_columns.hpp"
-#include "discovery/data.hpp"
+#include "identify/data.hpp"
 
 namespace offnominal::bench {
 
+using desk::Data;
+using desk::EffectAt;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using tools::discovery::Data;
-using tools::discovery::EffectAt;
 
 namespace {
 
@@ -143,15 +143,14 @@ Effects thresholded(const std::vector<CandidateColumns>& candidates, const Vecto
 
 }  // namespace
 
-BaselineSelections select_by_baselines(const tools::RobotDescription& robot,
-                                       const tools::Log& recording) {
-  namespace discovery = tools::discovery;
-  const std::vector<tools::Log> logs{recording};
-  tools::RobotDescription prepared = robot;
-  const auto plan = tools::plan_filter(logs, prepared);
-  const VectorXd widths = discovery::set_sign_widths(prepared, logs, plan);
-  std::vector<discovery::Workspace> workspaces;
-  workspaces.push_back(discovery::make_workspace(recording, prepared, plan, widths));
+BaselineSelections select_by_baselines(const desk::RobotDescription& robot,
+                                       const desk::Log& recording) {
+  const std::vector<desk::Log> logs{recording};
+  desk::RobotDescription prepared = robot;
+  const auto plan = desk::plan_filter(logs, prepared);
+  const VectorXd widths = desk::set_sign_widths(prepared, logs, plan);
+  std::vector<desk::Workspace> workspaces;
+  workspaces.push_back(desk::make_workspace(recording, prepared, plan, widths));
   const Data data(std::move(workspaces), prepared, {});
   const NuisanceFit fit = fit_nuisance(data);
   const std::vector<CandidateColumns> candidates = candidate_columns(data, fit);

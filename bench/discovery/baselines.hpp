@@ -16,7 +16,7 @@ struct BaselineSelections {
                         // J. N. Kutz, PNAS 113(15), 2016)
 };
 
-BaselineSelections select_by_baselines(const tools::RobotDescription& robot,
-                                       const tools::Log& recording);
+BaselineSelections select_by_baselines(const desk::RobotDescription& robot,
+                                       const desk::Log& recording);
 
 }  // namespace offnominal::bench

@@ -5,23 +5,23 @@
 #include <string_view>
 #include <utility>
 
-#include "discovery/fit.hpp"
-#include "discovery/search.hpp"
+#include "explain/search.hpp"
+#include "identify/fit.hpp"
 
 namespace offnominal::bench {
 
+using desk::Data;
+using desk::EffectCandidate;
+using desk::NuisanceTerm;
+using desk::Prior;
+using desk::Regressor;
+using desk::Search;
+using desk::ShapePoint;
+using desk::Term;
 using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using tools::discovery::Data;
-using tools::discovery::EffectCandidate;
-using tools::discovery::NuisanceTerm;
-using tools::discovery::Prior;
-using tools::discovery::Regressor;
-using tools::discovery::Search;
-using tools::discovery::ShapePoint;
-using tools::discovery::Term;
 
 namespace {
 
@@ -74,7 +74,7 @@ std::vector<ShapePoint> highest_peak(const Data& data, const NuisanceFit& fit, c
 
 bool knows(const Data& data, EffectKind kind, Index joint) {
   const auto& known = data.recordings[0].known_effects;
-  return std::any_of(known.begin(), known.end(), [&](const tools::RobotEffect& one) {
+  return std::any_of(known.begin(), known.end(), [&](const desk::RobotEffect& one) {
     return one.joint == joint && one.kind == kind;
   });
 }
@@ -99,7 +99,7 @@ NuisanceFit fit_nuisance(const Data& data) {
   for (int pass = 0; pass < 2; ++pass) {
     fit.joint_weights = spread.cwiseInverse();
     const VectorXd weights = data.layout.weighted(ones, fit.joint_weights);
-    const auto fitted = tools::discovery::least_squares_with_priors(
+    const auto fitted = desk::least_squares_with_priors(
         weights.asDiagonal() * columns, weights.cwiseProduct(data.target), priors, 1);
     fit.residual = fitted.residual;
     fit.basis = fitted.basis;
@@ -111,7 +111,7 @@ NuisanceFit fit_nuisance(const Data& data) {
 
 std::vector<CandidateColumns> candidate_columns(const Data& data, const NuisanceFit& fit) {
   std::vector<CandidateColumns> all;
-  for (const auto& effect : tools::discovery::all_candidates()) {
+  for (const auto& effect : desk::all_candidates()) {
     const bool spectral = effect->spectrum() != EffectCandidate::Spectrum::kNone;
     for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
       if (!effect->applies(data.recordings[0], joint)) continue;
@@ -120,7 +120,7 @@ std::vector<CandidateColumns> candidate_columns(const Data& data, const Nuisance
       for (const ShapePoint& shape :
            spectral ? highest_peak(data, fit, term) : few_of(Search::grid_of(term))) {
         term.shape = shape;
-        MatrixXd columns = tools::discovery::columns_of(data, term);
+        MatrixXd columns = desk::columns_of(data, term);
         for (Index c = 0; c < columns.cols(); ++c) {
           columns.col(c) = data.layout.weighted(columns.col(c), fit.joint_weights);
         }

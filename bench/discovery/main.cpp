@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "case_groups.hpp"
-#include "discovery/parallel.hpp"
+#include "identify/parallel.hpp"
 #include "outcome.hpp"
 #include "scale.hpp"
 #include "tables.hpp"
@@ -72,7 +72,7 @@ Results run(const Options& options) {
   std::size_t done = 0;
   for (std::size_t g = 0; g < results.groups.size(); ++g) {
     const CaseGroup& group = results.groups[g];
-    tools::discovery::parallel_for(group.requests.size(), options.threads, [&](std::size_t i) {
+    desk::parallel_for(group.requests.size(), options.threads, [&](std::size_t i) {
       results.outcomes[g][i] = run_case(group, group.requests[i]);
       const std::lock_guard lock(output);
       ++done;

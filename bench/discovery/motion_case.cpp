@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "first_motion.hpp"
-#include "motion_design/design.hpp"
+#include "motion/design.hpp"
 #include "offnominal/sim/hidden/draw_robot.hpp"
 #include "recorded_case.hpp"
 #include "wall_clock.hpp"
@@ -14,15 +14,15 @@
 namespace offnominal::bench {
 
 namespace hidden = sim::hidden;
-using tools::discovery::Explanation;
-using tools::discovery::Verdict;
+using desk::Explanation;
+using desk::Verdict;
 
 namespace {
 
 constexpr int kAttempts = 8;
 
 struct FirstRecording {
-  tools::Log log;
+  desk::Log log;
   Explanation explanation;
 };
 
@@ -39,13 +39,13 @@ using FirstMotion = DesiredPositions (*)(const hidden::Nominal&, std::uint64_t, 
 std::optional<FirstRecording> undecided(const hidden::Request& request,
                                         const hidden::Nominal& nominal, const Effects& truth,
                                         FirstMotion draw) {
-  const tools::RobotDescription robot = robot_of(nominal);
+  const desk::RobotDescription robot = robot_of(nominal);
   std::optional<FirstRecording> not_excited;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const DesiredPositions motion = draw(nominal, request.seed, attempt);
     FirstRecording first;
     first.log = log_of(hidden::record_motion(request, motion.t_s, motion.q));
-    first.explanation = tools::discovery::explain(robot, {first.log}, {}, {});
+    first.explanation = desk::explain(robot, {first.log}, {}, {});
     const Verdict verdict = first.explanation.verdict;
     if (verdict == Verdict::kAmbiguous && score_against(truth, first.explanation).in_class) {
       return first;
@@ -56,32 +56,30 @@ std::optional<FirstRecording> undecided(const hidden::Request& request,
 }
 
 // What explain's advice says to run, as the command would.
-tools::motion_design::DesignRequest request_for(const Explanation& e,
-                                                const tools::RobotDescription& robot,
-                                                std::uint64_t seed) {
-  tools::motion_design::DesignRequest request;
+desk::motion::DesignRequest request_for(const Explanation& e, const desk::RobotDescription& robot,
+                                        std::uint64_t seed) {
+  desk::motion::DesignRequest request;
   request.seed = seed;
   if (e.verdict != Verdict::kAmbiguous) return request;
   for (const auto& effect : e.ambiguous[0]) {
-    request.effects.push_back(
-        tools::motion_design::contender_of(text_of(effect), robot, "--separate"));
+    request.effects.push_back(desk::motion::contender_of(text_of(effect), robot, "--separate"));
   }
   return request;
 }
 
 void play_and_judge(const hidden::Request& request, const hidden::Nominal& nominal,
                     const FirstRecording& first, Outcome& outcome) {
-  const tools::RobotDescription robot = robot_of(nominal);
-  outcome.before = tools::discovery::name_of(first.explanation.verdict);
+  const desk::RobotDescription robot = robot_of(nominal);
+  outcome.before = desk::name_of(first.explanation.verdict);
   if (!first.explanation.ambiguous.empty()) {
     outcome.before += " " + text_of(first.explanation.ambiguous[0]);
   }
-  const auto design = tools::motion_design::design_motion(
-      robot, request_for(first.explanation, robot, request.seed));
+  const auto design =
+      desk::motion::design_motion(robot, request_for(first.explanation, robot, request.seed));
   const auto& motion = design.fitted.motion;
-  const tools::Log log = log_of(hidden::record_motion(request, motion.t_s, motion.q, 1));
+  const desk::Log log = log_of(hidden::record_motion(request, motion.t_s, motion.q, 1));
   const double start_s = now_s();
-  const Explanation e = tools::discovery::explain(robot, {log}, {}, {});
+  const Explanation e = desk::explain(robot, {log}, {}, {});
   outcome.time_s = now_s() - start_s;
   take_verdict(e, outcome);
 }

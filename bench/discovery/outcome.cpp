@@ -16,9 +16,9 @@
 namespace offnominal::bench {
 
 namespace hidden = sim::hidden;
-using tools::discovery::EffectAt;
-using tools::discovery::Explanation;
-using tools::discovery::Verdict;
+using desk::EffectAt;
+using desk::Explanation;
+using desk::Verdict;
 
 namespace {
 
@@ -36,7 +36,7 @@ std::string words_for(const hidden::Truth& truth, const Effects& effects) {
   return text_at(hidden::name(truth.outside.effect), truth.outside.joint);
 }
 
-ParameterCheck check(const ExpectedParameter& expected, const tools::discovery::Estimate& found) {
+ParameterCheck check(const ExpectedParameter& expected, const desk::Estimate& found) {
   constexpr double kTenth = 0.1;
   ParameterCheck result{expected.name, expected.value, found.value.value, false, std::nullopt};
   result.within_tenth = std::abs(result.estimate - result.truth) <= kTenth * expected.scale;
@@ -81,8 +81,8 @@ void judge_outside(const hidden::TrueOutsideEffect& outside, const Explanation& 
   }
 }
 
-std::optional<tools::discovery::DataFaultKind> kind_of(hidden::DataFault fault) {
-  using tools::discovery::DataFaultKind;
+std::optional<desk::DataFaultKind> kind_of(hidden::DataFault fault) {
+  using desk::DataFaultKind;
   switch (fault) {
     case hidden::DataFault::kDegrees:
       return DataFaultKind::kDegrees;
@@ -123,7 +123,7 @@ void judge(const CaseGroup& group, const hidden::Case& made, const Explanation& 
 }  // namespace
 
 void take_verdict(const Explanation& e, Outcome& outcome) {
-  outcome.verdict = tools::discovery::name_of(e.verdict);
+  outcome.verdict = desk::name_of(e.verdict);
   for (const auto& finding : e.found) outcome.named.push_back(finding.what);
   outcome.classes = e.ambiguous;
   if (e.suspected) outcome.suspected = {e.suspected->what};
@@ -143,11 +143,11 @@ Outcome run_case(const CaseGroup& group, const hidden::Request& request) {
   }
   for (const auto& effect : made.truth.effects) outcome.truth.push_back(place_of(effect));
   outcome.hidden = words_for(made.truth, outcome.truth);
-  const tools::RobotDescription robot = robot_of(made.nominal);
-  const tools::Log recording = log_of(made.recording);
+  const desk::RobotDescription robot = robot_of(made.nominal);
+  const desk::Log recording = log_of(made.recording);
   try {
     const double start_s = now_s();
-    const Explanation e = tools::discovery::explain(robot, {recording}, {log_of(made.holdout)}, {});
+    const Explanation e = desk::explain(robot, {recording}, {log_of(made.holdout)}, {});
     outcome.time_s = now_s() - start_s;
     judge(group, made, e, outcome);
     if (group.with_baselines) outcome.baselines = select_by_baselines(robot, recording);

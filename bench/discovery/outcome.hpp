@@ -6,7 +6,7 @@
 
 #include "baselines.hpp"
 #include "case_groups.hpp"
-#include "discovery/explain.hpp"
+#include "explain/explain.hpp"
 #include "score.hpp"
 
 namespace offnominal::bench {
@@ -42,13 +42,13 @@ struct Outcome {
 };
 
 // What explain() names, classes and suspects, and its score against outcome.truth.
-void take_verdict(const tools::discovery::Explanation& explanation, Outcome& outcome);
+void take_verdict(const desk::Explanation& explanation, Outcome& outcome);
 
 // Simulates one case and lets the analysis, on one thread, say what is hidden.
 Outcome run_case(const CaseGroup& group, const sim::hidden::Request& request);
 
 // "coulomb_friction@2", joints from 1.
-std::string text_of(const tools::discovery::EffectAt& effect);
+std::string text_of(const desk::EffectAt& effect);
 std::string text_of(const Effects& effects);
 
 }  // namespace offnominal::bench

@@ -9,8 +9,8 @@ using sim::hidden::Nominal;
 using sim::hidden::NominalJoint;
 using sim::hidden::NominalLink;
 
-tools::Log log_of(const sim::hidden::Recording& recording) {
-  tools::Log log;
+desk::Log log_of(const sim::hidden::Recording& recording) {
+  desk::Log log;
   log.file = "simulated";
   log.period_s = recording.t_s[1] - recording.t_s[0];
   log.t_s = recording.t_s;
@@ -24,10 +24,10 @@ tools::Log log_of(const sim::hidden::Recording& recording) {
 namespace {
 
 void add_known_effects(const NominalJoint& known, std::uint8_t joint,
-                       tools::RobotDescription& robot) {
+                       desk::RobotDescription& robot) {
   const auto add = [&](EffectKind kind, std::array<double, 4> parameters) {
     if (parameters[0] == 0) return;  // this is what is hidden
-    tools::RobotEffect effect;
+    desk::RobotEffect effect;
     effect.kind = kind;
     effect.joint = joint;
     effect.parameters = parameters;
@@ -40,8 +40,8 @@ void add_known_effects(const NominalJoint& known, std::uint8_t joint,
   add(EffectKind::kRotorInertia, {known.rotor_inertia_kg_m2});
 }
 
-tools::RobotJoint joint_of(const NominalLink& link, const NominalJoint& known, int encoder_bits) {
-  tools::RobotJoint joint;
+desk::RobotJoint joint_of(const NominalLink& link, const NominalJoint& known, int encoder_bits) {
+  desk::RobotJoint joint;
   joint.joint.mass_kg = link.mass_kg;
   joint.joint.centre_of_mass_m = {link.centre_of_mass_m, 0, 0};
   // The arm is planar: only the last axis matters, the others keep the tensor physical.
@@ -57,8 +57,8 @@ tools::RobotJoint joint_of(const NominalLink& link, const NominalJoint& known, i
 
 }  // namespace
 
-tools::RobotDescription robot_of(const Nominal& nominal) {
-  tools::RobotDescription robot;
+desk::RobotDescription robot_of(const Nominal& nominal) {
+  desk::RobotDescription robot;
   robot.gravity_m_s2 = {0, -nominal.gravity_m_s2, 0};
   for (std::size_t i = 0; i < nominal.links.size(); ++i) {
     robot.joints.push_back(joint_of(nominal.links[i], nominal.joints[i], nominal.encoder_bits));

@@ -7,10 +7,10 @@
 namespace offnominal::bench {
 
 // A simulated recording as the analysis gets it: positions and torques, no velocities.
-tools::Log log_of(const sim::hidden::Recording& recording);
+desk::Log log_of(const sim::hidden::Recording& recording);
 
 // What the robot's owner knows, as a robot file would hold it. The friction's numbers are fitted
 // ones, as in the files that `offnominal add` writes.
-tools::RobotDescription robot_of(const sim::hidden::Nominal& nominal);
+desk::RobotDescription robot_of(const sim::hidden::Nominal& nominal);
 
 }  // namespace offnominal::bench

@@ -11,11 +11,11 @@
 #include <random>
 #include <system_error>
 
-#include "analysis/inverse_model.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
-#include "discovery/explain.hpp"
-#include "discovery/explain_report.hpp"
+#include "compare/inverse_model.hpp"
+#include "explain/explain.hpp"
+#include "explain/explain_report.hpp"
 #include "log/csv_text.hpp"
 #include "log/sampling.hpp"
 #include "robot/robot_file.hpp"
@@ -32,12 +32,12 @@ namespace {
 constexpr double kPeriodS = 0.001;
 constexpr double kNoiseShare = 0.002;
 
-tools::RobotDescription with_hidden(tools::RobotDescription robot) {
-  tools::RobotEffect coulomb;
+desk::RobotDescription with_hidden(desk::RobotDescription robot) {
+  desk::RobotEffect coulomb;
   coulomb.kind = EffectKind::kCoulombFriction;
   coulomb.joint = 3;
   coulomb.parameters = {3.0, 0.01};
-  tools::RobotEffect ripple;
+  desk::RobotEffect ripple;
   ripple.kind = EffectKind::kCoggingTorque;
   ripple.joint = 1;
   ripple.parameters = {1.2, 0.4, 11.0};
@@ -73,10 +73,10 @@ std::array<MotionWave, 6> waves_of(const Joint<double>& joint, std::mt19937_64& 
   return waves;
 }
 
-tools::Motion motion_of(const tools::RobotDescription& robot, Index samples,
-                        std::mt19937_64& generator) {
+desk::Motion motion_of(const desk::RobotDescription& robot, Index samples,
+                       std::mt19937_64& generator) {
   const Index joints = robot.joint_count();
-  tools::Motion motion;
+  desk::Motion motion;
   motion.t_s = VectorXd::LinSpaced(samples, 0, kPeriodS * static_cast<double>(samples - 1));
   motion.q.resize(samples, joints);
   motion.dq.setZero(samples, joints);
@@ -111,21 +111,21 @@ double peak_gib() {
 
 }  // namespace
 
-tools::RobotDescription scale_robot() { return tools::read_robot_file(OFFNOMINAL_SCALE_ROBOT); }
+desk::RobotDescription scale_robot() { return desk::read_robot_file(OFFNOMINAL_SCALE_ROBOT); }
 
-tools::Log scale_recording(const tools::RobotDescription& robot, const ScaleRequest& request) {
+desk::Log scale_recording(const desk::RobotDescription& robot, const ScaleRequest& request) {
   std::mt19937_64 generator(request.seed);
-  tools::Motion motion = motion_of(robot, request.samples, generator);
-  tools::Log log;
+  desk::Motion motion = motion_of(robot, request.samples, generator);
+  desk::Log log;
   log.file = "simulated";
   log.period_s = kPeriodS;
-  log.tau = tools::model_torque(with_hidden(robot), motion);
+  log.tau = desk::model_torque(with_hidden(robot), motion);
   log.t_s = std::move(motion.t_s);
   log.q = std::move(motion.q);
   log.dq = std::move(motion.dq);
   log.dq_derived.assign(robot.joints.size(), true);
   for (Index j = 0; j < log.q.cols(); ++j) {
-    const tools::RobotJoint& joint = robot.joints[static_cast<std::size_t>(j)];
+    const desk::RobotJoint& joint = robot.joints[static_cast<std::size_t>(j)];
     const double counts = joint.encoder.counts_per_unit;
     log.q.col(j) = (log.q.col(j).array() * counts).round() / counts;
     std::normal_distribution<double> noise(0, kNoiseShare * joint.joint.max_torque);
@@ -135,20 +135,19 @@ tools::Log scale_recording(const tools::RobotDescription& robot, const ScaleRequ
 }
 
 ScaleOutcome run_scale(const ScaleRequest& request) {
-  const tools::RobotDescription robot = scale_robot();
-  const std::vector<tools::Log> logs{scale_recording(robot, request)};
-  tools::discovery::ExplainOptions options;
+  const desk::RobotDescription robot = scale_robot();
+  const std::vector<desk::Log> logs{scale_recording(robot, request)};
+  desk::ExplainOptions options;
   options.threads = request.threads;
   const double start_s = now_s();
   const double start_cpu_s = cpu_s();
-  const tools::discovery::Explanation told =
-      tools::discovery::explain(robot, logs, {}, options, {});
+  const desk::Explanation told = desk::explain(robot, logs, {}, options, {});
   ScaleOutcome outcome;
   outcome.wall_s = now_s() - start_s;
   outcome.cpu_s = cpu_s() - start_cpu_s;
   outcome.peak_gib = peak_gib();
   const nlohmann::ordered_json json =
-      to_json(told, tools::discovery::ExplainNames{{"simulated"}, {}, "seven_joint_arm.toml", ""});
+      to_json(told, desk::ExplainNames{{"simulated"}, {}, "seven_joint_arm.toml", ""});
   outcome.verdict = json.at("verdict").get<std::string>();
   for (const nlohmann::ordered_json& one : json.at("found")) {
     outcome.found.push_back(fmt::format("{} of joint {}", one.at("effect").get<std::string>(),
@@ -181,15 +180,15 @@ nlohmann::ordered_json json_of(const ScaleRequest& request, const ScaleOutcome& 
 void write_scale(const ScaleRequest& request, const std::filesystem::path& folder) {
   std::error_code failed;
   if (!std::filesystem::create_directories(folder, failed) || failed) {
-    throw tools::InputError({folder.string(), "",
-                             failed ? failed.message() : "a folder that is there already",
-                             "a new folder", "name another one with --write"});
+    throw desk::InputError({folder.string(), "",
+                            failed ? failed.message() : "a folder that is there already",
+                            "a new folder", "name another one with --write"});
   }
-  const tools::RobotDescription robot = scale_robot();
-  tools::Log log = scale_recording(robot, request);
-  tools::write_robot_file(robot, folder / "robot.toml");
-  tools::derive_velocities(log);
-  tools::write_file_atomically(folder / "recording.csv", csv_text(log));
+  const desk::RobotDescription robot = scale_robot();
+  desk::Log log = scale_recording(robot, request);
+  desk::write_robot_file(robot, folder / "robot.toml");
+  desk::derive_velocities(log);
+  desk::write_file_atomically(folder / "recording.csv", csv_text(log));
 }
 
 }  // namespace offnominal::bench

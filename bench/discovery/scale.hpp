@@ -19,12 +19,12 @@ struct ScaleRequest {
 };
 
 // The arm of seven_joint_arm.toml as the analysis is given it.
-tools::RobotDescription scale_robot();
+desk::RobotDescription scale_robot();
 
 // It moves along sums of sines, six of every joint, and hides Coulomb friction on joint 4 and a
 // ripple of 11 periods per turn on joint 2. Torques are the core's inverse dynamics, plus noise of
 // 0.2 % of each joint's largest; positions are rounded to the encoder's counts.
-tools::Log scale_recording(const tools::RobotDescription& robot, const ScaleRequest& request);
+desk::Log scale_recording(const desk::RobotDescription& robot, const ScaleRequest& request);
 
 struct ScaleOutcome {
   std::string verdict;

@@ -4,9 +4,9 @@
 
 namespace offnominal::bench {
 
-using tools::discovery::EffectAt;
-using tools::discovery::holds;
-using tools::discovery::holds_in_any;
+using desk::EffectAt;
+using desk::holds;
+using desk::holds_in_any;
 
 namespace {
 

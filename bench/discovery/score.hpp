@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "discovery/explain.hpp"
+#include "explain/explain.hpp"
 
 namespace offnominal::bench {
 
-using Effects = std::vector<tools::discovery::EffectAt>;
+using Effects = std::vector<desk::EffectAt>;
 
 // A verdict against the truth.
 struct Score {

@@ -40,9 +40,9 @@ ordered_json json_of_truth(const sim::hidden::Request& request, const sim::hidde
   return json;
 }
 
-tools::Log whole(const sim::hidden::Recording& recording) {
-  tools::Log log = log_of(recording);
-  tools::derive_velocities(log);
+desk::Log whole(const sim::hidden::Recording& recording) {
+  desk::Log log = log_of(recording);
+  desk::derive_velocities(log);
   return log;
 }
 
@@ -57,20 +57,20 @@ std::vector<std::filesystem::path> write_cases(const std::vector<CaseGroup>& gro
       std::error_code failed;
       const bool is_new = std::filesystem::create_directories(own, failed);
       if (failed || !is_new) {
-        throw tools::InputError({own.string(), "",
-                                 failed ? failed.message() : "a folder that is there already",
-                                 "a new folder", "name another one with --write"});
+        throw desk::InputError({own.string(), "",
+                                failed ? failed.message() : "a folder that is there already",
+                                "a new folder", "name another one with --write"});
       }
       const sim::hidden::Case made = make_case(group.requests[i]);
-      tools::RobotDescription robot = robot_of(made.nominal);
+      desk::RobotDescription robot = robot_of(made.nominal);
       robot.name = fmt::format("{}-{:03}", group.name, i);
       robot.source =
           "Drawn by the simulator of ./dev bench discovery; truth.json has what it hides.";
-      tools::write_robot_file(robot, own / "robot.toml");
-      tools::write_file_atomically(own / "recording.csv", csv_text(whole(made.recording)));
-      tools::write_file_atomically(own / "holdout.csv", csv_text(whole(made.holdout)));
-      tools::write_file_atomically(own / "truth.json",
-                                   json_of_truth(group.requests[i], made.truth).dump(2) + "\n");
+      desk::write_robot_file(robot, own / "robot.toml");
+      desk::write_file_atomically(own / "recording.csv", csv_text(whole(made.recording)));
+      desk::write_file_atomically(own / "holdout.csv", csv_text(whole(made.holdout)));
+      desk::write_file_atomically(own / "truth.json",
+                                  json_of_truth(group.requests[i], made.truth).dump(2) + "\n");
       written.push_back(own);
     }
   }

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "desk/support/run_command.hpp"
 #include "support/places.hpp"
-#include "tools/support/run_command.hpp"
 
 namespace offnominal::test {
 

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "desk/support/temporary_folder.hpp"
 #include "offnominal/sim/fault.hpp"
 #include "paper/experiment.hpp"
 #include "paper/two_link_robot.hpp"
 #include "qemu.hpp"
 #include "recorded_run.hpp"
-#include "tools/support/temporary_folder.hpp"
 
 namespace offnominal::test {
 namespace {
@@ -133,9 +133,9 @@ TEST_P(Firmware, GivesTheHostsResultsOnThePapersRun) {
   EXPECT_LE(off.torque, std::fmax(tolerance, 1.2e-7));
 
   // Without a fault nothing is detected, otherwise when the run without a bus detects it.
-  tools::paper::Experiment experiment;
+  desk::paper::Experiment experiment;
   experiment.fault.kind = fault;
-  const auto paper = run_experiment(tools::paper::two_link_robot(), experiment);
+  const auto paper = run_experiment(desk::paper::two_link_robot(), experiment);
   const std::uint32_t detected = target.back().detection_tick;
   ASSERT_EQ(paper.detection_time_s.has_value(), fault != sim::FaultKind::kNone);
   if (!paper.detection_time_s) {
@@ -159,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Runs, Firmware,
                          [](const auto& run) {
                            std::string name = std::string(run.param.board.preset) + "_" +
                                               run.param.scalar + "_" +
-                                              tools::paper::name_of(run.param.fault);
+                                              desk::paper::name_of(run.param.fault);
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });

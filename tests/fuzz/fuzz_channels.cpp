@@ -8,8 +8,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace offnominal;
   const auto path = fuzz::input_file(data, size, ".toml");
   try {
-    static_cast<void>(tools::read_channels_file(path, 2));
-  } catch (const tools::InputError&) {
+    static_cast<void>(desk::read_channels_file(path, 2));
+  } catch (const desk::InputError&) {
   }
   return 0;
 }

@@ -9,7 +9,7 @@
 #include "log/dbc.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace offnominal::tools;
+  using namespace offnominal::desk;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
     const Dbc dbc = parse_dbc(text, "input");

@@ -11,12 +11,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace offnominal;
   const auto path = fuzz::input_file(data, size, OFFNOMINAL_EXTENSION);
   try {
-    const tools::Log log = tools::read_log(path, 2, std::nullopt);
+    const desk::Log log = desk::read_log(path, 2, std::nullopt);
     const bool whole = log.q.rows() == log.sample_count() && log.dq.rows() == log.sample_count() &&
                        log.tau.rows() == log.sample_count() && log.joint_count() == 2 &&
                        log.q.allFinite() && log.dq.allFinite() && log.tau.allFinite();
     if (!whole) std::abort();
-  } catch (const tools::InputError&) {
+  } catch (const desk::InputError&) {
   }
   return 0;
 }

@@ -11,13 +11,13 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace offnominal;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  tools::RobotDescription robot;
+  desk::RobotDescription robot;
   try {
-    robot = tools::parse_robot(text, "fuzz.toml");
-  } catch (const tools::InputError&) {
+    robot = desk::parse_robot(text, "fuzz.toml");
+  } catch (const desk::InputError&) {
     return 0;
   }
-  const std::string written = tools::robot_text(robot);
-  if (tools::robot_text(tools::parse_robot(written, "written.toml")) != written) std::abort();
+  const std::string written = desk::robot_text(robot);
+  if (desk::robot_text(desk::parse_robot(written, "written.toml")) != written) std::abort();
   return 0;
 }

@@ -9,7 +9,7 @@
 
 namespace {
 
-using namespace offnominal::tools::report;
+using namespace offnominal::desk::report;
 
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
@@ -301,7 +301,7 @@ int main(int argc, char** argv) try {
     std::cerr << "usage: sample_page FILE.html\n";
     return 2;
   }
-  write_page(argv[1], sample(), offnominal::tools::Existing::kReplace);
+  write_page(argv[1], sample(), offnominal::desk::Existing::kReplace);
   return 0;
 } catch (const std::exception& error) {
   std::cerr << error.what() << '\n';

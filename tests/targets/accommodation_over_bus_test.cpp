@@ -44,9 +44,9 @@ class OverTheBus : public testing::TestWithParam<std::tuple<sim::FaultKind, hal:
 
 TEST_P(OverTheBus, DetectsAndAccommodatesAsThePaperRunDoes) {
   const auto [kind, format] = GetParam();
-  tools::paper::Experiment experiment;
+  desk::paper::Experiment experiment;
   experiment.fault.kind = kind;
-  const auto paper = run_experiment(tools::paper::two_link_robot(), experiment);
+  const auto paper = run_experiment(desk::paper::two_link_robot(), experiment);
   const BusRun watched = run_over_bus(kind, false, format);
   if (kind == sim::FaultKind::kNone) {
     EXPECT_FALSE(watched.detection_time_s.has_value());
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      sim::FaultKind::kNonlinear),
                      testing::Values(hal::FrameFormat::kClassic, hal::FrameFormat::kFd)),
     [](const auto& fault) {
-      return tools::paper::name_of(std::get<0>(fault.param)) +
+      return desk::paper::name_of(std::get<0>(fault.param)) +
              (std::get<1>(fault.param) == hal::FrameFormat::kFd ? "_fd" : "_classic");
     });
 

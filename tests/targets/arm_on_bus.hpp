@@ -53,10 +53,10 @@ class ArmOnBus {
   }
 
   static Controller::Config config(bool accommodate) {
-    const tools::RobotDescription robot = tools::paper::two_link_robot();
+    const desk::RobotDescription robot = desk::paper::two_link_robot();
     Controller::Config config = controller::controller_config(
-        tools::monitor_config_of<2, Scalar>(robot), tools::gains_of<2, Scalar>(robot),
-        tools::arming_of<2, Scalar>(robot));
+        desk::monitor_config_of<2, Scalar>(robot), desk::gains_of<2, Scalar>(robot),
+        desk::arming_of<2, Scalar>(robot));
     if (!accommodate) config.monitor.max_compensation = {};
     return config;
   }

@@ -1,9 +1,9 @@
 // The loop's tick, with everything in it, and the heap.
 #include <gtest/gtest.h>
 
+#include "desk/support/temporary_folder.hpp"
 #include "heap_counter.hpp"
 #include "loop_on_bus.hpp"
-#include "tools/support/temporary_folder.hpp"
 
 namespace offnominal::test {
 namespace {

@@ -4,9 +4,9 @@
 #include <cerrno>
 #include <offnominal/realtime/recorder.hpp>
 
+#include "desk/support/temporary_folder.hpp"
 #include "log/candump_text.hpp"
 #include "log/csv_log.hpp"
-#include "tools/support/temporary_folder.hpp"
 
 namespace offnominal::realtime {
 namespace {
@@ -33,7 +33,7 @@ TEST(Recorder, WritesFramesAsTheDesksWriterDoes) {
     Microseconds time_us = 999'999;
     for (const hal::Frame& frame : frames) {
       recorder.keep(FrameEntry{frame, time_us});
-      expected += tools::candump_line(frame, time_us, "can1");
+      expected += desk::candump_line(frame, time_us, "can1");
       time_us += 1'000'006;
     }
     recorder.close();
@@ -56,8 +56,8 @@ TEST(Recorder, WritesRowsThatReadBackAsTheSameNumbers) {
     recorder.keep(row);
   }
   recorder.close();
-  const auto columns = tools::read_csv(folder / "run.csv", [](const std::string&) {
-                         return tools::Need::kRequired;
+  const auto columns = desk::read_csv(folder / "run.csv", [](const std::string&) {
+                         return desk::Need::kRequired;
                        }).columns;
   ASSERT_EQ(columns.at("t").size(), static_cast<Eigen::Index>(values.size()));
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "compare/filter_plan.hpp"
+#include "log/read_log.hpp"
+
+// Options that several verbs have, the same for each.
+
+namespace offnominal::desk {
+
+/// --cutoff and --decimate, of every verb that filters a recording.
+inline void add_filter_options(CLI::App& verb, FilterRequest& request) {
+  verb.add_option(
+      "--cutoff", request.cutoff_hz,
+      "Cut-off of the positions' low-pass, Hz; the torques' is the same, or what --decimate lets "
+      "pass. Default, as of every verb: torques at 8 to 12 Hz by the encoders, positions at 2.5 "
+      "times that");
+  verb.add_option("--decimate", request.decimate,
+                  "Keep one sample of so many. Default: 2.5 times the torques' cut-off are left a "
+                  "second, or 100 where --cutoff is given");
+}
+
+/// --channels and --period; `whose`: "recording's" or "recordings'".
+inline void add_channels_option(CLI::App& verb, ChannelOptions& channels,
+                                const std::string& whose) {
+  verb.add_option(
+      "--channels", channels.file,
+      "TOML file that maps the " + whose + " columns, instead of the robot file's [channels]");
+  verb.add_option("--period", channels.period_s,
+                  "Time between two samples, s, instead of a column of time")
+      ->check(CLI::PositiveNumber);
+}
+
+/// --threads, by default as many as the machine has.
+inline void add_threads_option(CLI::App& verb, int& threads, const std::string& words = "Threads") {
+  threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  verb.add_option("--threads", threads, words + "; the result does not depend on their number")
+      ->check(CLI::Range(1, 256));
+}
+
+}  // namespace offnominal::desk

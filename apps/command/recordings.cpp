@@ -1,0 +1,85 @@
+#include "command/recordings.hpp"
+
+#include <cmath>
+
+#include "command/refuse_option.hpp"
+#include "common/input_name.hpp"
+#include "common/json_text.hpp"
+#include "common/nearest.hpp"
+#include "common/output_file.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::desk {
+
+namespace {
+
+bool same_recording(const std::string& a, const std::string& b) { return same_file(a, b); }
+
+// Another origin of time rounds anew what was written in digits, by less than half a period.
+bool same_but_for_start(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  if (a.size() != b.size()) return false;
+  if (a.size() < 2) return true;
+  const Eigen::Index last = a.size() - 1;
+  const double period = (a[last] - a[0]) / static_cast<double>(last);
+  const auto moved = ((a.array() - a[0]) - (b.array() - b[0])).abs();
+  return moved.maxCoeff() <= 0.5 * std::abs(period);
+}
+
+bool same_recording(const Log& a, const Log& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.rows() == y.rows() && x.cols() == y.cols() && (x.array() == y.array()).all();
+  };
+  return same(a.q, b.q) && same(a.tau, b.tau) && same_but_for_start(a.t_s, b.t_s);
+}
+
+const std::string& name_of(const std::string& file) { return file; }
+const std::string& name_of(const Log& log) { return log.file; }
+
+template <typename Recording>
+void check_all_differ(const std::string& verb, const std::string& option,
+                      const std::vector<Recording>& logs, const std::vector<Recording>& holdout) {
+  std::vector<const Recording*> seen;
+  const auto check = [&](const Recording& one, const std::string& of, const std::string& mend) {
+    for (const Recording* other : seen) {
+      if (!same_recording(one, *other)) continue;
+      refuse_option(verb, of, name_of(one) + ", the same as " + name_of(*other),
+                    "recordings that differ", mend);
+    }
+    seen.push_back(&one);
+  };
+  for (const Recording& log : logs) check(log, option, "leave one of the two out");
+  for (const Recording& log : holdout) {
+    check(log, "--holdout",
+          "give a recording that is not fitted, or leave --holdout out: parts of the recordings "
+          "are then held out");
+  }
+}
+
+}  // namespace
+
+std::vector<Log> read_recordings(const std::vector<std::string>& files,
+                                 const RobotDescription& robot, const ChannelOptions& channels,
+                                 ReadOne* read_one, Progress& progress) {
+  std::vector<Log> logs;
+  for (const std::string& file : files) {
+    progress.begin("reading " + file);
+    logs.push_back(read_one(file, robot, channels));
+  }
+  return logs;
+}
+
+FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
+                      ReadOne* read_one, Progress& progress) {
+  check_all_differ(verb, option, files.logs, files.holdout);
+  FitData data{read_robot_file(files.robot), {}, {}};
+  data.logs = read_recordings(files.logs, data.robot, files.channels, read_one, progress);
+  data.holdout = read_recordings(files.holdout, data.robot, files.channels, read_one, progress);
+  check_all_differ(verb, option, data.logs, data.holdout);
+  return data;
+}
+
+std::string file_names(const std::vector<std::string>& files) {
+  return as_utf8(list_of(files, input_name));
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "command/progress.hpp"
+#include "log/log.hpp"
+#include "log/read_log.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::desk {
+
+// One recording: read_log, or read_log_or_hold_map where hold maps will do as well.
+using ReadOne = Log(const std::filesystem::path& path, const RobotDescription& robot,
+                    const ChannelOptions& channels);
+
+// Every file as `read_one` reads it, each announced to `progress`.
+std::vector<Log> read_recordings(const std::vector<std::string>& files,
+                                 const RobotDescription& robot, const ChannelOptions& channels,
+                                 ReadOne* read_one, Progress& progress);
+
+// What a verb is given that fits to recordings and judges the fit on others.
+struct FitFiles {
+  std::string robot;
+  std::vector<std::string> logs;
+  std::vector<std::string> holdout;
+  ChannelOptions channels;
+};
+struct FitData {
+  RobotDescription robot;
+  std::vector<Log> logs;
+  std::vector<Log> holdout;
+};
+
+// Reads it. Throws InputError, in the name of `verb`, where a recording is there twice: as the same
+// file by whatever name, or as a copy of it. What is fitted must not judge the fit. `option`: of
+// the logs.
+FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
+                      ReadOne* read_one, Progress& progress);
+
+// "a.csv, b.csv", "standard input": as input_name() has them, for a robot file's word on its
+// source.
+std::string file_names(const std::vector<std::string>& files);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrate/calibrate.hpp"
+#include "calibrate/calibrate_report.hpp"
+#include "command/answer.hpp"
+#include "command/command_line.hpp"
+#include "command/doctor.hpp"
+#include "command/input_options.hpp"
+#include "command/progress.hpp"
+#include "command/recordings.hpp"
+#include "command/refuse_option.hpp"
+#include "command/verbs.hpp"
+#include "common/output_file.hpp"
+#include "log/log_format.hpp"
+#include "log/read_log.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+struct CalibrateOptions {
+  FitFiles files;
+  std::string output;
+  double alarms_per_hour = 0.1;
+  std::optional<double> velocity_error;
+  AnswerOptions answer;
+};
+
+void check_numbers(const CalibrateOptions& options) {
+  if (!(options.alarms_per_hour >= 1e-6 && options.alarms_per_hour <= 60)) {
+    refuse_option("calibrate", "--alarms-per-hour", fmt::format("{:g}", options.alarms_per_hour),
+                  "1e-6 to 60");
+  }
+  const double error = options.velocity_error.value_or(0);
+  if (!(error >= 0 && std::isfinite(error))) {
+    refuse_option("calibrate", "--velocity-error", fmt::format("{:g}", error),
+                  "at least 0, rad/s or m/s");
+  }
+}
+
+void run(const CalibrateOptions& options, const std::string& command_line, ExitCode& exit_code) {
+  check_numbers(options);
+  Progress progress;
+  const FitData data = read_fit_data("calibrate", "LOG", options.files, read_log, progress);
+  const auto faults =
+      examined({data.logs, data.holdout}, data.robot, progress, RestsOn::kVelocityToo);
+  progress.begin("shapes of the bound");
+  const CalibrateRequest request{
+      options.alarms_per_hour, options.velocity_error,
+      "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + "."};
+  const Calibration result =
+      calibrate(data.robot, request, data.logs, data.holdout, [&progress] { progress.step(); });
+  progress.end();
+  const CalibrateNames names{options.files.robot, options.output, command_line};
+  write_report(options.answer, [&] { return with_faults(page_of(result, names), faults); });
+  std::vector<std::string> written;
+  if (result.objections.empty()) {
+    write_robot_file(result.robot, options.output, options.answer.existing());
+    written.push_back(options.output);
+  } else {
+    exit_code = ExitCode::kCheckFailed;
+  }
+  const auto text = [&] {
+    std::string notes;
+    for (const auto* group : {&data.logs, &data.holdout}) {
+      for (const Log& log : *group) {
+        for (const std::string& remark : log.remarks) {
+          notes += fmt::format("note: {}: {}\n", log.file, remark);
+        }
+      }
+    }
+    return notes + text_of(result, names);
+  };
+  print_answer(
+      options.answer, [&] { return with_faults(to_json(result, names), faults); }, text, written);
+}
+
+constexpr const char* kHowItCalibrates =
+    "The recordings must be free of faults: what they hold is what the monitor will tolerate. The "
+    "threshold mu is the bound after the monitor's own filter, and it is mu, not the bound at an "
+    "instant, that |e| is held against.\n"
+    "Constant, scaled-norm and table bounds are tried; the tightest that keeps the level on parts "
+    "it has not seen is taken. Without --holdout the last of several recordings is held out, or "
+    "the last fifth of a single one.\n"
+    "Exit code 1, and nothing written, when the hold-out data raise more alarms than the level "
+    "allows, or when one part's error is so unlike the others' that it may hold a fault.";
+
+}  // namespace
+
+void set_up_calibrate(CLI::App& verb, ExitCode& exit_code) {
+  const auto options = std::make_shared<CalibrateOptions>();
+  verb.add_option("LOG", options->files.logs, "Fault-free recordings, " + log_format_names())
+      ->required();
+  verb.add_option("--robot", options->files.robot, "Robot file to start from")->required();
+  verb.add_option("--holdout", options->files.holdout, "Fault-free recordings to count alarms on");
+  verb.add_option("-o,--output", options->output, "Robot file to write")
+      ->type_name(kNewRobotFile)
+      ->required();
+  add_force_option(verb, options->answer,
+                   "Replace files that are there, for -o be it the robot file that is read");
+  verb.add_option("--alarms-per-hour", options->alarms_per_hour,
+                  "False alarms per hour to aim at, by extrapolation")
+      ->capture_default_str();
+  verb.add_option("--velocity-error", options->velocity_error,
+                  "Largest error of the measured velocity, rad/s or m/s, where it is known; "
+                  "without it, it is found with the bound");
+  add_channels_option(verb, options->files.channels, "recordings'");
+  add_report_option(verb, options->answer);
+  add_json_option(verb, options->answer);
+  verb.footer(kHowItCalibrates);
+  verb.callback([&verb, options, &exit_code] { run(*options, command_line_of(verb), exit_code); });
+}
+
+}  // namespace offnominal::desk

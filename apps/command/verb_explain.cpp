@@ -1,0 +1,71 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command/answer.hpp"
+#include "command/command_line.hpp"
+#include "command/input_options.hpp"
+#include "command/progress.hpp"
+#include "command/recordings.hpp"
+#include "command/verbs.hpp"
+#include "common/nearest.hpp"
+#include "explain/explain_report.hpp"
+#include "log/log_format.hpp"
+#include "log/read_log.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+struct ExplainArguments {
+  FitFiles files;
+  ExplainOptions explain;
+  AnswerOptions answer;
+};
+
+void run(const ExplainArguments& options, const std::string& command_line) {
+  const FitFiles& files = options.files;
+  Progress progress;
+  const FitData data = read_fit_data("explain", "LOG", files, read_log_or_hold_map, progress);
+  ExplainOptions settings = options.explain;
+  settings.robot_file = files.robot;
+  const Explanation explanation = explain(data.robot, data.logs, data.holdout, settings,
+                                          [&](const std::string& doing) { progress.begin(doing); });
+  progress.end();
+  const ExplainNames names{files.logs, files.holdout, files.robot, command_line,
+                           files.channels.file ? files.channels.file->string() : ""};
+  write_report(options.answer, [&] { return page_of(explanation, names); });
+  print_answer(
+      options.answer, [&] { return to_json(explanation, names); },
+      [&] { return text_of(explanation, names); });
+}
+
+}  // namespace
+
+void set_up_explain(CLI::App& verb, ExitCode& /*exit_code*/) {
+  const auto options = std::make_shared<ExplainArguments>();
+  verb.add_option("LOG", options->files.logs, "Recordings, " + log_format_names())->required();
+  verb.add_option("--robot", options->files.robot, "Robot file")->required();
+  verb.add_option("--holdout", options->files.holdout,
+                  "Recordings that no fit may see. Without any, blocks of time are held out");
+  add_channels_option(verb, options->files.channels, "recordings'");
+  verb.add_option("--link-share", options->explain.link_share,
+                  "How far mass and inertia of a link may be off the file, as a share")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb.add_option("--replays", options->explain.replays,
+                  "How often each finding is checked against the model without it; 0: never")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  verb.add_option("--seed", options->explain.seed, "Seed of the bootstrap and of the replays")
+      ->capture_default_str();
+  add_threads_option(verb, options->explain.threads);
+  add_page_options(verb, options->answer);
+  add_json_option(verb, options->answer);
+  verb.footer("Verdicts: " + list_of(verdict_names()) +
+              ". A diagnostic aid: it does not replace a look at the recordings.");
+  verb.callback([&verb, options] { run(*options, command_line_of(verb)); });
+}
+
+}  // namespace offnominal::desk

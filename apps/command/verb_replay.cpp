@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "command/answer.hpp"
+#include "command/command_line.hpp"
+#include "command/doctor.hpp"
+#include "command/input_options.hpp"
+#include "command/progress.hpp"
+#include "command/verbs.hpp"
+#include "common/text_table.hpp"
+#include "log/log_format.hpp"
+#include "log/read_log.hpp"
+#include "replay/replay.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+constexpr std::size_t kPrintedAlarms = 10;
+
+struct ReplayOptions {
+  std::string log;
+  std::string robot;
+  ChannelOptions channels;
+  bool check = false;
+  AnswerOptions answer;
+};
+
+std::string text_of(const Replay& replay) {
+  const TextTable table({{"", -28}, {"", 0}}, "  ");
+  std::string text = fmt::format("{} on {}: {} samples, tick {:g} ms, {} hidden units, seed {}\n",
+                                 replay.robot, replay.log, replay.samples(), 1000 * replay.period_s,
+                                 replay.hidden_units, replay.seed);
+  const auto row = [&](const std::string& name, const std::string& value) {
+    text += table.row(name, value);
+  };
+  row("largest |e|", fmt::format("{:.4g} {}", replay.error_norm.maxCoeff(), replay.unit));
+  row("largest threshold mu", fmt::format("{:.4g} {}", replay.threshold.maxCoeff(), replay.unit));
+  row("largest |e| / mu", fmt::format("{:.4g}", replay.max_error_to_threshold));
+  for (Eigen::Index joint = 0; joint < replay.psi_hat.cols(); ++joint) {
+    const auto index = static_cast<std::size_t>(joint);
+    row("largest |psi_hat|, " + replay.joint_names[index],
+        fmt::format("{:.4g} {}", replay.psi_hat.col(joint).cwiseAbs().maxCoeff(),
+                    replay.acceleration_units[index]));
+  }
+  for (std::size_t i = 0; i < replay.alarms.size() && i < kPrintedAlarms; ++i) {
+    const Alarm& alarm = replay.alarms[i];
+    row(i == 0 ? "alarms" : "",
+        fmt::format("{:.3f} to {:.3f} s, |e| up to {:.3g} mu", alarm.start_s, alarm.end_s,
+                    alarm.max_error_to_threshold));
+  }
+  if (replay.alarms.size() > kPrintedAlarms) {
+    row("", fmt::format("and {} more (--json)", replay.alarms.size() - kPrintedAlarms));
+  }
+  return text + words_of(replay) + "\n";
+}
+
+void run(const ReplayOptions& options, const std::string& command_line, ExitCode& exit_code) {
+  const RobotDescription robot = read_robot_file(options.robot);
+  require_bound(robot, options.robot);
+  const Log log = read_log(options.log, robot, options.channels);
+  Progress progress;
+  const auto faults = examined({std::span(&log, 1)}, robot, progress);
+  const Replay result = replay(robot, log);
+  write_report(options.answer, [&] { return with_faults(page_of(result, command_line), faults); });
+  std::string notes;
+  for (const std::string& remark : log.remarks) notes += "note: " + remark + "\n";
+  print_answer(
+      options.answer, [&] { return with_faults(to_json(result), faults); },
+      [&] { return notes + text_of(result); });
+  if (options.check && (result.detection_time_s || result.is_blind()))
+    exit_code = ExitCode::kCheckFailed;
+}
+
+}  // namespace
+
+void set_up_replay(CLI::App& verb, ExitCode& exit_code) {
+  const auto options = std::make_shared<ReplayOptions>();
+  verb.add_option("LOG", options->log, "Recording, " + log_format_names())->required();
+  verb.add_option("--robot", options->robot, "Robot file; its uncertainty bound sets the threshold")
+      ->required();
+  add_channels_option(verb, options->channels, "recording's");
+  add_page_options(verb, options->answer, "figures");
+  verb.add_flag(
+      "--check", options->check,
+      "Exit with 1 when there is an alarm, or samples were refused that one could hide in");
+  add_json_option(verb, options->answer);
+  verb.footer(
+      "The tick is the recording's sampling period. The recording's torque has to be the torque "
+      "that was really applied, not the commanded one. Samples that the monitor refuses are not "
+      "judged: more than two in a row, or one in a hundred, and the verdict is \"Blind\".");
+  verb.callback([&verb, options, &exit_code] { run(*options, command_line_of(verb), exit_code); });
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "calibrate/recorded_error.hpp"
+#include "robot/robot.hpp"
+
+// A bound mu_bar that is linear in numbers to be found: mu_bar = sum of c_k phi_k(q, dq, tau), each
+// phi_k >= 0. After the filter the threshold is mu = sum of c_k W_alpha[phi_k] + 2 v, linear in the
+// c_k and in the velocity error v.
+
+namespace offnominal::desk {
+
+struct BoundShape {
+  BoundSettings settings;  // kind, matrix, variable and points; its numbers mean nothing
+  int size = 1;            // how many c_k: constant 1, scaled_norm 2, table one per point
+  std::string words;       // "scaled_norm, matrix [[2, -6]]"
+};
+
+/// The bound with these c_k and this v, every number rounded up to four digits, so that it is
+/// nowhere below what was asked for. c_k > 0.
+[[nodiscard]] BoundSettings bound_with(const BoundShape& shape, const Eigen::VectorXd& coefficients,
+                                       double velocity_error);
+
+/// Shapes to choose from: constant; scaled norms of all velocities, of the accelerations that equal
+/// friction on every joint would cause at the recordings' mean position, of each joint's velocity,
+/// and of the robot file's own matrix; tables over position, speed and torque of each joint, with
+/// points where the recordings have samples.
+[[nodiscard]] std::vector<BoundShape> bound_shapes(const RobotDescription& robot,
+                                                   const std::vector<RecordedError>& recordings);
+
+/// What the unknown numbers of a shape contribute to the threshold: columns c_1.., then v. Rows:
+/// samples of the recording, row 0 (the start) is not judged.
+struct FilteredBasis {
+  Eigen::MatrixXd along;       // in the run that the recording is
+  Eigen::MatrixXd first_tick;  // after the first tick of a run that starts one sample earlier
+};
+[[nodiscard]] FilteredBasis filtered_basis(const RobotDescription& robot, const BoundShape& shape,
+                                           const RecordedError& recording);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "calibrate/calibrate.hpp"
+#include "report/page.hpp"
+
+namespace offnominal::desk {
+
+/// How the robot file and the result are called in what is shown.
+struct CalibrateNames {
+  std::string robot;
+  std::string output;
+  std::string command_line;
+};
+
+/// A bound in one line of words: "scaled_norm: 4.4 (|[[2, -6]] dq| + 1) rad/s^2".
+[[nodiscard]] std::string words_of(const BoundSettings& bound, const std::string& unit);
+
+/// The result in one sentence or two.
+[[nodiscard]] std::string verdict_of(const Calibration& calibration);
+
+[[nodiscard]] std::string text_of(const Calibration& calibration, const CalibrateNames& names);
+[[nodiscard]] nlohmann::ordered_json to_json(const Calibration& calibration,
+                                             const CalibrateNames& names);
+[[nodiscard]] report::Page page_of(const Calibration& calibration, const CalibrateNames& names);
+
+}  // namespace offnominal::desk

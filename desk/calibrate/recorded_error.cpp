@@ -1,0 +1,83 @@
+#include "calibrate/recorded_error.hpp"
+
+#include <fmt/format.h>
+
+#include "common/error.hpp"
+#include "replay/replay.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+// Without learning the network's output stays exactly zero, whatever its size; one unit is the
+// cheapest. A robot without a bound gets one, which e does not depend on.
+RobotDescription without_learning(RobotDescription robot) {
+  robot.estimator.learning_rate = 0;
+  robot.estimator.hidden_units = 1;
+  if (!robot.bound) robot.bound.emplace();
+  return robot;
+}
+
+void require_all_accepted(const Replay& replay) {
+  if (replay.refused.empty()) return;
+  const auto& [status, refusals] = *replay.refused.begin();
+  throw InputError(
+      {.file = replay.log,
+       .place = fmt::format("time {:.3f} s", refusals.first_s),
+       .found = fmt::format("{} sample(s) refused with status {}", refusals.count, status),
+       .allowed = "a recording of which the monitor accepts every sample",
+       .mend = "check the units, [channels] and [joint.limits]; leave out a recording "
+               "in which something went wrong"});
+}
+
+Eigen::VectorXd first_ticks(const Eigen::MatrixXd& error, double keep) {
+  const Eigen::Index ticks = error.rows() - 1;
+  Eigen::VectorXd norms = Eigen::VectorXd::Zero(error.rows());
+  norms.tail(ticks) = (error.bottomRows(ticks) - keep * error.topRows(ticks)).rowwise().norm();
+  return norms;
+}
+
+Eigen::VectorXi loudest_joints(const Eigen::MatrixXd& error) {
+  Eigen::VectorXi loudest(error.rows());
+  for (Eigen::Index i = 0; i < error.rows(); ++i) {
+    Eigen::Index joint = 0;
+    error.row(i).cwiseAbs().maxCoeff(&joint);
+    loudest[i] = static_cast<int>(joint);
+  }
+  return loudest;
+}
+
+}  // namespace
+
+TickFilter tick_filter(double alpha_per_s, double period_s) {
+  const auto step = [&](double y, double x_begin, double x_end) {
+    const double h = period_s;
+    const double x_middle = 0.5 * (x_begin + x_end);
+    const double k1 = x_begin - alpha_per_s * y;
+    const double k2 = x_middle - alpha_per_s * (y + 0.5 * h * k1);
+    const double k3 = x_middle - alpha_per_s * (y + 0.5 * h * k2);
+    const double k4 = x_end - alpha_per_s * (y + h * k3);
+    return y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  };
+  return {step(1, 0, 0), step(0, 1, 0), step(0, 0, 1)};
+}
+
+RecordedError recorded_error(const RobotDescription& robot, const Log& log) {
+  const Replay run = replay(without_learning(robot), log);
+  require_all_accepted(run);
+  RecordedError recorded;
+  recorded.file = log.file;
+  recorded.unit = run.unit;
+  recorded.period_s = log.period_s;
+  recorded.t_s = run.t_s;
+  recorded.error_norm = run.error_norm;
+  recorded.first_tick =
+      first_ticks(run.error, tick_filter(robot.estimator.alpha, log.period_s).keep);
+  recorded.loudest_joint = loudest_joints(run.error);
+  if (robot.bound) recorded.old_threshold = run.threshold;
+  recorded.q = log.q;
+  recorded.dq = log.dq;
+  recorded.tau = log.tau;
+  return recorded;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "calibrate/recorded_error.hpp"
+
+namespace offnominal::desk {
+
+/// Samples begin to end - 1 of one recording.
+struct Stretch {
+  std::size_t recording = 0;
+  Eigen::Index begin = 0;
+  Eigen::Index end = 0;
+};
+
+struct Split {
+  std::vector<Stretch> folds;     // to calibrate on; each takes its turn at being unseen
+  std::vector<Stretch> always;    // calibrated on, never unseen: the only start of a run there is
+  std::vector<Stretch> held_out;  // to count alarms on
+};
+
+/// `given` recordings come first in `recordings`; those behind them are for hold-out. Where there
+/// are none, the last of several given ones is held out, or the last fifth of the only one. Folds
+/// are whole recordings, or fifths of the one that is left: there the first `settling_s`, in which
+/// the filter forgets its start, cannot be told from the other fifths and are always calibrated on.
+[[nodiscard]] Split split(const std::vector<RecordedError>& recordings, std::size_t given,
+                          double settling_s);
+
+}  // namespace offnominal::desk

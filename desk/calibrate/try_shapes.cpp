@@ -1,0 +1,143 @@
+#include "calibrate/try_shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace offnominal::desk {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// A simpler kind is kept unless another one's threshold is lower by this share: numbers beyond what
+// the machine's physics asks for fit the recordings and not the next motion.
+constexpr double kWorthwhile = 0.15;
+// No c_k falls below this share of the constant bound: where the recordings say little, a table
+// would otherwise fall to nothing.
+constexpr double kLowestShare = 0.1;
+// What a transient that was taken out asks for, and a little more: the next one like it is no
+// smaller. How much larger it may be, one event does not say.
+constexpr double kAboveTransient = 1.05;
+// One event decides the bound where the bound without it is narrower by this factor.
+constexpr double kDecides = 2;
+
+// Of the blocks that are judged whole.
+std::vector<double> judged_maxima(const VectorXd& ratio, std::int64_t length) {
+  const std::vector<double> largest = block_maxima(ratio, length);
+  const std::vector<double> smallest = block_maxima(-ratio, length);
+  std::vector<double> judged;
+  for (std::size_t block = 0; block < largest.size(); ++block) {
+    if (smallest[block] < -ShapeFit::kApart) judged.push_back(largest[block]);
+  }
+  return judged;
+}
+
+Tried judged(const BoundShape& shape, ShapeFit fit, const CalibrationData& data,
+             const CalibrateRequest& request) {
+  Tried tried{shape, std::move(fit), {}, {}, 0, 1, 0};
+  for (std::size_t i = 0; i < data.split.folds.size(); ++i) {
+    const RecordedError& recording = data.recordings[data.split.folds[i].recording];
+    const auto maxima = judged_maxima(tried.fit.unseen_ratio[i], data.block_samples(recording));
+    tried.maxima.insert(tried.maxima.end(), maxima.begin(), maxima.end());
+    tried.largest = std::max(tried.largest, tried.fit.unseen_ratio[i].maxCoeff());
+  }
+  tried.law = extreme_law_of(tried.maxima);
+  const double per_block = -std::expm1(-request.alarms_per_hour / 3600 * data.block_s);
+  tried.widening = std::max({1.0, tried.largest, kAboveTransient * tried.fit.apart_ratio,
+                             exceeded_with(tried.law, per_block)});
+  tried.mean_threshold =
+      tried.widening * tried.fit.mean_threshold + 2 * request.velocity_error.value_or(0);
+  return tried;
+}
+
+// The largest unseen |e|, and a block on either side of it: there the filter still remembers it.
+Stretch loudest_event(const Tried& tried, const CalibrationData& data) {
+  Stretch event;
+  double largest = ShapeFit::kApart;
+  for (std::size_t i = 0; i < data.split.folds.size(); ++i) {
+    const Stretch& fold = data.split.folds[i];
+    const RecordedError& recording = data.recordings[fold.recording];
+    Index at = 0;
+    const double of_fold = tried.fit.unseen_ratio[i].maxCoeff(&at);
+    if (of_fold <= largest) continue;
+    largest = of_fold;
+    at += fold.begin;
+    const Index length = data.block_samples(recording);
+    event = {fold.recording, std::max<Index>(0, at - length),
+             std::min(recording.samples(), at + length + 1)};
+  }
+  return event;
+}
+
+Transient transient_of(const CalibrationData& data, const Stretch& event, const Tried& with,
+                       const Tried& without) {
+  const RecordedError& recording = data.recordings[event.recording];
+  Index at = 0;
+  Transient transient;
+  transient.error_norm =
+      recording.error_norm.segment(event.begin, event.end - event.begin).maxCoeff(&at);
+  at += event.begin;
+  transient.file = recording.file;
+  transient.time_s = recording.t_s[at];
+  transient.joint = recording.loudest_joint[at];
+  transient.ratio = without.fit.apart_ratio;
+  transient.mean_threshold_with = with.mean_threshold;
+  transient.mean_threshold_without = without.mean_threshold;
+  return transient;
+}
+
+}  // namespace
+
+// The constant bound first: it shows whether one event would decide everything.
+Tries try_shapes(const RobotDescription& robot, const CalibrationData& data,
+                 const CalibrateRequest& request, const std::function<void()>& on_step) {
+  constexpr std::size_t kBlocksOfAnEvent = 3;
+  std::vector<RecordedError> fitted;
+  for (std::size_t i = 0; i <= data.split.folds.back().recording; ++i) {
+    fitted.push_back(data.recordings[i]);
+  }
+  double lowest = 0;
+  std::optional<Stretch> apart;
+  const auto try_shape = [&](const BoundShape& shape) {
+    Tried tried = judged(
+        shape,
+        fit_shape(robot, shape, data.recordings, data.split, lowest, request.velocity_error, apart),
+        data, request);
+    if (on_step) on_step();
+    return tried;
+  };
+  const std::vector<BoundShape> shapes = bound_shapes(robot, fitted);
+  Tries tries;
+  Tried constant = try_shape(shapes.front());
+  if (constant.maxima.size() >= static_cast<std::size_t>(kFewestBlocks) + kBlocksOfAnEvent) {
+    apart = loudest_event(constant, data);
+    Tried without = try_shape(shapes.front());
+    if (constant.mean_threshold > kDecides * without.mean_threshold) {
+      tries.transient = transient_of(data, *apart, constant, without);
+      constant = std::move(without);
+    } else {
+      apart.reset();
+    }
+  }
+  lowest = kLowestShare * constant.fit.coefficients[0];
+  tries.shapes.push_back(std::move(constant));
+  for (std::size_t i = 1; i < shapes.size(); ++i) tries.shapes.push_back(try_shape(shapes[i]));
+  return tries;
+}
+
+std::size_t choice_among(const std::vector<Tried>& tried) {
+  const auto kind_of = [&](std::size_t i) { return tried[i].shape.settings.kind; };
+  std::size_t choice = 0;
+  for (const auto kind : {BoundSettings::Kind::kScaledNorm, BoundSettings::Kind::kTable}) {
+    double best = (1 - kWorthwhile) * tried[choice].mean_threshold;
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+      if (kind_of(i) != kind || tried[i].mean_threshold >= best) continue;
+      best = tried[i].mean_threshold;
+      choice = i;
+    }
+  }
+  return choice;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace offnominal::desk {
+
+// Whether what a command line names as an input is gone once it was read: standard input, which "-"
+// names too, a pipe, or a shell's <(...). No command can read it again.
+bool is_stream(const std::string& file);
+
+// "-": standard input, where a recording is asked for.
+bool names_standard_input(const std::filesystem::path& file);
+
+// The files of a recording that "positions.csv+currents.csv" names; where a file has that whole
+// name, or there is no '+', the one.
+std::vector<std::filesystem::path> recording_files(const std::filesystem::path& recording);
+
+// A recording as messages name it: its path, or "standard input" for "-".
+std::string shown_name(const std::filesystem::path& file);
+
+// An input's name without its folder, in words that outlive the run: "standard input", "a pipe",
+// "positions.csv+currents.csv".
+std::string input_name(const std::string& file);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "compare/compare.hpp"
+
+namespace offnominal::desk {
+
+// Error of one joint with the old model and with the new one, on the same samples.
+struct BeforeAfter {
+  std::size_t joint = 0;
+  std::string unit;
+  double before_percent = 0;  // 100 |tau - tau_m| / |tau|
+  double after_percent = 0;
+  double before_rms = 0;  // N m or N
+  double after_rms = 0;
+
+  // Share of the rms error that is gone: 1 all of it, below 0 where the error has grown.
+  [[nodiscard]] double fall() const { return 1 - after_rms / before_rms; }
+};
+
+// Joint by joint, of two models on one recording.
+std::vector<BeforeAfter> before_after(const Comparison& before, const Comparison& after);
+
+// A table of them, a line per joint: relative and rms error before and after, and the fall.
+std::string text_of(const std::vector<BeforeAfter>& joints);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "compare/measurement.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::desk {
+
+// A variable of one joint that the error may follow.
+struct ErrorShare {
+  std::string variable;  // "position", "velocity", "acceleration", "time"
+  double share = 0;      // of the error's energy, 0..1, that the mean over bins of it explains
+};
+
+// How well the model's torque tau_m meets the measured torque tau at one joint, both filtered.
+struct JointComparison {
+  std::size_t joint = 0;              // from 0
+  std::string unit;                   // "N m" or "N"
+  double rms_error = 0;               // of tau - tau_m
+  double rms_torque = 0;              // of tau
+  double relative_error_percent = 0;  // 100 |tau - tau_m| / |tau|; NaN where tau is 0
+  double fit_percent = 0;             // 100 (1 - |tau - tau_m| / |tau - mean|); NaN where constant
+  // Of the samples, 0..1: those in which the joint stands still, where friction may take any part
+  // of the torque. None of the numbers above is of them.
+  double left_out = 0;
+  std::vector<ErrorShare> where;  // largest share first
+};
+
+struct Comparison {
+  FilterPlan plan;
+  Eigen::VectorXd t_s;       // of the kept samples
+  Eigen::MatrixXd measured;  // filtered torque; rows: kept samples, columns: joints
+  Eigen::MatrixXd model;
+  Eigen::MatrixXd q;  // low-passed motion at the kept samples
+  Eigen::MatrixXd dq;
+  Eigen::MatrixXd ddq;
+  std::vector<JointComparison> joints;
+  std::vector<std::string> remarks;  // the recording's
+
+  [[nodiscard]] Eigen::MatrixXd residual() const { return measured - model; }
+};
+
+// `robot` has as many joints as the recording.
+Comparison compare(const RobotDescription& robot, const Measurement& measured);
+
+// Share of the energy of `values` (about their mean) that their means over `bins` equally filled
+// bins of `variable` explain: 0 none, 1 all of it. 0 where the variable or the values are constant.
+double share_explained(const Eigen::Ref<const Eigen::VectorXd>& variable,
+                       const Eigen::Ref<const Eigen::VectorXd>& values, int bins = 40);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "compare/compare.hpp"
+#include "report/page.hpp"
+
+namespace offnominal::desk {
+
+// What was compared, as the user named it.
+struct CompareNames {
+  std::string log;
+  std::string robot_file;
+  std::string command_line;
+  std::string against_file = {};  // the older robot file; empty: none
+};
+
+// In the following `against` is an older model on the same recording, null where none was asked
+// for: then the fall of the error from it stands beside the error.
+
+// One sentence per joint: how much of the torque the model misses, and what the error follows.
+std::string verdict_of(const Comparison& comparison, const Comparison* against = nullptr);
+report::Level level_of(const Comparison& comparison);
+
+// {log, robot, joints: [{joint, unit, rms_error, rms_torque, relative_error_percent, fit_percent,
+// left_out_percent}],
+//  where: [{joint, variable, share_of_residual}], filter: {...}, remarks, verdict}.
+// Joints count from 1. A percentage that does not exist (no torque at all) is null. With an older
+// model also against: {robot, joints: [{joint, unit, rms_error, relative_error_percent,
+// fall_percent}]}, the fall being that of the rms error.
+nlohmann::ordered_json to_json(const Comparison& comparison, const CompareNames& names,
+                               const Comparison* against = nullptr);
+nlohmann::ordered_json to_json(const FilterPlan& plan);
+
+// The same for people, with a line break at its end.
+std::string text_of(const Comparison& comparison, const CompareNames& names,
+                    const Comparison* against = nullptr);
+
+// "position low-pass 100 Hz, torque low-pass 40 Hz, every 10th sample of 1000 Hz"
+std::string words_of(const FilterPlan& plan);
+
+// Measured against model torque over time; the residual over time, position, velocity and
+// acceleration.
+report::Page page_of(const Comparison& comparison, const CompareNames& names,
+                     const Comparison* against = nullptr);
+
+}  // namespace offnominal::desk

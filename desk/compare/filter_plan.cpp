@@ -1,0 +1,169 @@
+#include "compare/filter_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "common/error.hpp"
+#include "compare/motion.hpp"
+#include "signal/decimate.hpp"
+#include "signal/zero_phase.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kPositionPerTorque = 2.5;  // of the cut-offs
+constexpr double kSamplesPerCutoff = 2.5;   // that are left per second and hertz
+constexpr double kMostOfRate = 0.45;        // that a cut-off may be
+
+// Up to which frequency an encoder's step, uniformly distributed, twice differentiated and
+// low-passed, makes an acceleration error of at most this share of the motion's own.
+double highest_cutoff_hz(const Log& log, Index joint, double counts_per_unit, double lowest_hz) {
+  constexpr double kShare = 0.02;
+  FilterPlan coarse;
+  coarse.sample_rate_hz = log.sample_rate_hz();
+  coarse.position_cutoff_hz = std::min(lowest_hz, kMostOfRate * coarse.sample_rate_hz);
+  const VectorXd ddq = motion_of(log, coarse).ddq.col(joint);
+  const double moves = std::sqrt(ddq.squaredNorm() / static_cast<double>(ddq.size()));
+  const double noise = 1 / counts_per_unit / std::sqrt(12.0);
+  // Power of white noise over f, differentiated twice: (2 pi)^4 f^5 / 5 per rate / 2.
+  const double f5 = 5 * coarse.sample_rate_hz / 2 * std::pow(kShare * moves / noise, 2) /
+                    std::pow(2 * std::numbers::pi, 4);
+  return std::pow(f5, 0.2);
+}
+
+double usual_cutoff_hz(const std::vector<Log>& logs, const RobotDescription& robot) {
+  constexpr double kHighestHz = 12;
+  constexpr double kLowestHz = 8;
+  constexpr double kOfRate = 0.2;
+  double cutoff_hz = kHighestHz;
+  for (const Log& log : logs) {
+    cutoff_hz = std::min(cutoff_hz, kOfRate * log.sample_rate_hz());
+    const Index joints = std::min<Index>(log.q.cols(), robot.joint_count());
+    for (Index joint = 0; joint < joints; ++joint) {
+      const double counts = robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit;
+      if (!(counts > 0)) continue;
+      const double highest = highest_cutoff_hz(log, joint, counts, kLowestHz);
+      if (highest > 0) cutoff_hz = std::min(cutoff_hz, std::max(highest, kLowestHz));
+    }
+  }
+  return cutoff_hz;
+}
+
+void set_edges(FilterPlan& plan) {
+  plan.edge_samples =
+      static_cast<Index>(std::ceil(2 * plan.sample_rate_hz / plan.torque_cutoff_hz));
+}
+
+// Any number of them, before it is an index.
+void check_length(const Log& log, const FilterPlan& plan) {
+  const double edge_samples = std::ceil(2 * plan.sample_rate_hz / plan.torque_cutoff_hz);
+  constexpr auto kFewest = static_cast<double>(kMinFilteredSamples);
+  const auto samples = static_cast<double>(log.sample_count());
+  const auto decimation = static_cast<double>(plan.decimation);
+  if (samples - 2 * edge_samples >= kFewest * decimation) return;
+  const double asked = 2 * edge_samples + (kFewest + 1) * decimation;
+  const bool by_cutoff = 2 * edge_samples >= kFewest * decimation;
+  throw InputError(
+      {log.file, "",
+       fmt::format("{:.4g} s at {:g} Hz", log.period_s * samples, plan.sample_rate_hz),
+       fmt::format("a recording of {:.4g} s or more, with this filter", asked * log.period_s),
+       by_cutoff ? "record for longer, or choose a larger --cutoff"
+                 : "record for longer, or choose a smaller --decimate"});
+}
+
+// As the user has it: a cut-off for the position, and every so many-th sample.
+FilterPlan requested(const Log& log, const FilterRequest& request, const FilterPlan& usual) {
+  constexpr double kUsualRateHz = 100;
+  FilterPlan plan;
+  plan.sample_rate_hz = usual.sample_rate_hz;
+  const double half_rate_hz = plan.sample_rate_hz / 2;
+  plan.position_cutoff_hz = request.cutoff_hz.value_or(usual.position_cutoff_hz);
+  if (!(plan.position_cutoff_hz > 0) || !(plan.position_cutoff_hz < half_rate_hz)) {
+    throw InputError({"--cutoff", "", fmt::format("{:g} Hz", plan.position_cutoff_hz),
+                      fmt::format("more than 0 and less than {:g} Hz, half the sampling rate of {}",
+                                  half_rate_hz, log.file),
+                      ""});
+  }
+  const int by_rate =
+      std::max(1, static_cast<int>(std::lround(plan.sample_rate_hz / kUsualRateHz)));
+  plan.decimation = request.decimate.value_or(by_rate);
+  if (plan.decimation < 1) {
+    throw InputError({"--decimate", "", std::to_string(plan.decimation), "a number from 1", ""});
+  }
+  plan.torque_cutoff_hz = request.cutoff_hz ? plan.position_cutoff_hz : usual.torque_cutoff_hz;
+  if (plan.decimation > 1) {
+    const double band_hz = kDecimationBand * half_rate_hz / static_cast<double>(plan.decimation);
+    plan.torque_cutoff_hz = std::min(plan.torque_cutoff_hz, band_hz);
+  }
+  return plan;
+}
+
+}  // namespace
+
+double sample_rate_of(const Log& log) {
+  constexpr double kBlocks = 300;
+  constexpr double kFewestReadings = 5;
+  if (!log.at_rest) return log.sample_rate_hz();
+  const auto readings = static_cast<double>(log.sample_count());
+  return std::max(kFewestReadings, readings / kBlocks) / kShortestBlockS;
+}
+
+FilterPlan plan_filter(const std::vector<Log>& logs, const RobotDescription& robot,
+                       const FilterRequest& request) {
+  const Log& first = logs.front();
+  FilterPlan plan;
+  plan.sample_rate_hz = sample_rate_of(first);
+  if (first.at_rest) {
+    plan.position_cutoff_hz = std::numeric_limits<double>::infinity();
+    plan.torque_cutoff_hz = std::numeric_limits<double>::infinity();
+    return plan;
+  }
+  plan.torque_cutoff_hz = usual_cutoff_hz(logs, robot);
+  plan.position_cutoff_hz =
+      std::min(kPositionPerTorque * plan.torque_cutoff_hz, kMostOfRate * plan.sample_rate_hz);
+  plan.decimation = std::max<Index>(
+      1, static_cast<Index>(
+             std::floor(plan.sample_rate_hz / (kSamplesPerCutoff * plan.torque_cutoff_hz))));
+  if (request.cutoff_hz || request.decimate) plan = requested(first, request, plan);
+  check_length(first, plan);
+  set_edges(plan);
+  return plan;
+}
+
+FilterPlan plan_for(const Log& log, const FilterPlan& plan) {
+  FilterPlan own = plan;
+  own.sample_rate_hz = sample_rate_of(log);
+  if (log.at_rest || own.sample_rate_hz == plan.sample_rate_hz) {
+    if (!log.at_rest) check_length(log, own);
+    return own;
+  }
+  const double rates = own.sample_rate_hz / plan.sample_rate_hz;
+  own.position_cutoff_hz = std::min(plan.position_cutoff_hz, kMostOfRate * own.sample_rate_hz);
+  own.torque_cutoff_hz = std::min(plan.torque_cutoff_hz, own.position_cutoff_hz);
+  own.decimation = std::max<Index>(
+      1, static_cast<Index>(std::floor(static_cast<double>(plan.decimation) * rates)));
+  check_length(log, own);
+  set_edges(own);
+  return own;
+}
+
+VectorXd kept_samples(const FilterPlan& plan, const Eigen::Ref<const VectorXd>& signal) {
+  const Index inner = signal.size() - 2 * plan.edge_samples;
+  return every_nth(signal.segment(plan.edge_samples, inner), plan.decimation);
+}
+
+VectorXd filtered(const FilterPlan& plan, const Eigen::Ref<const VectorXd>& signal) {
+  if (std::isinf(plan.torque_cutoff_hz)) return kept_samples(plan, signal);
+  return kept_samples(plan,
+                      zero_phase_low_pass(signal, plan.torque_cutoff_hz, plan.sample_rate_hz));
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,179 @@
+#include "compare/inverse_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <offnominal/model/effect_memory.hpp>
+#include <offnominal/model/inverse_dynamics.hpp>
+#include <stdexcept>
+
+#include "robot/chain_of.hpp"
+#include "signal/shift.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+// Of an effect with a state, along the way that its joint goes; the state is 0 where the way
+// begins.
+template <typename E>
+VectorXd torque_along(const std::array<double, kMaxEffectParameters>& parameters,
+                      const Eigen::Ref<const VectorXd>& q) {
+  VectorXd torque(q.size());
+  double z = 0;
+  for (Index i = 0; i < q.size(); ++i) {
+    if (i > 0) z = E::next_state(parameters, z, q[i] - q[i - 1]);
+    torque[i] = E::torque_of_state(parameters, z);
+  }
+  return torque;
+}
+
+// Per joint, how many samples later than it is logged its torque acts.
+template <int N>
+VectorXd delays_in_samples(const Chain<N, double>& chain, const Motion& motion) {
+  VectorXd samples = VectorXd::Zero(N);
+  if (motion.sample_count() < 2) return samples;
+  for (Index joint = 0; joint < N; ++joint) {
+    samples[joint] = delay_of_joint(chain, static_cast<std::size_t>(joint)) / motion.period_s();
+  }
+  return samples;
+}
+
+}  // namespace
+
+MatrixXd model_torque(const RobotDescription& robot, const Motion& motion) {
+  if (motion.q.cols() != robot.joint_count()) {
+    throw std::invalid_argument("the motion has another number of joints than the robot");
+  }
+  return with_joint_count(robot.joint_count(), [&]<int N>() {
+    const Chain<N, double> chain = chain_of<N, double>(robot);
+    const auto model = make_model(chain);
+    MatrixXd torque(motion.sample_count(), N);
+    for (Index i = 0; i < motion.sample_count(); ++i) {
+      const Vector<N, double> q = motion.q.row(i);
+      const Vector<N, double> dq = motion.dq.row(i);
+      const Vector<N, double> ddq = motion.ddq.row(i);
+      torque.row(i) = inverse_dynamics(model, q, dq, ddq, motion.t_s[i] - motion.t_s[0]);
+    }
+    for (const RobotEffect& effect : robot.effects) {
+      if (!remembers(effect.kind) || !is_torque_effect(effect.kind)) continue;
+      const JointType type = robot.joints[effect.joint].joint.type;
+      torque.col(effect.joint) +=
+          model.told_per_given[effect.joint] * torque_of_effect(effect, type, motion);
+    }
+    const VectorXd delays = delays_in_samples(chain, motion);
+    for (Index joint = 0; joint < N; ++joint) {
+      if (delays[joint] != 0) torque.col(joint) = ahead_by(torque.col(joint), delays[joint]);
+    }
+    return torque;
+  });
+}
+
+MatrixXd link_torque(const RobotDescription& robot, std::size_t link, const Motion& motion) {
+  RobotDescription only = robot;
+  only.effects.clear();
+  for (std::size_t i = 0; i < only.joints.size(); ++i) {
+    if (i == link) continue;
+    only.joints[i].joint.mass_kg = 0;
+    only.joints[i].joint.inertia_kg_m2 = {};
+  }
+  return model_torque(only, motion);
+}
+
+bool is_torque_effect(EffectKind kind) {
+  const EffectAction action = info_of(kind)->action;
+  return action == EffectAction::kTorque || action == EffectAction::kTorqueOfState;
+}
+
+bool is_path_effect(EffectKind kind) {
+  const EffectInfo& info = *info_of(kind);
+  return info.acts_on_whole_drive() || info.action == EffectAction::kFrictionPerLoad;
+}
+
+bool has_path_effect(const RobotDescription& robot) {
+  return std::any_of(robot.effects.begin(), robot.effects.end(),
+                     [](const RobotEffect& effect) { return is_path_effect(effect.kind); });
+}
+
+ToldTorque told_torque(const RobotDescription& robot, const Motion& motion) {
+  return with_joint_count(robot.joint_count(), [&]<int N>() {
+    const Chain<N, double> chain = chain_of<N, double>(robot);
+    const auto model = make_model(chain);
+    ToldTorque told{model.told_per_given, MatrixXd(motion.sample_count(), N),
+                    delays_in_samples(chain, motion)};
+    for (Index i = 0; i < motion.sample_count(); ++i) {
+      const Vector<N, double> q = motion.q.row(i);
+      const Vector<N, double> dq = motion.dq.row(i);
+      const Vector<N, double> ddq = motion.ddq.row(i);
+      const auto effects = joint_effects(model, q, dq, motion.t_s[i] - motion.t_s[0]);
+      const Vector<N, double> load = rigid_body_torque(model, joint_transforms(model, q), dq, ddq);
+      told.per_load.row(i) = told_per_load(model, effects, load);
+    }
+    return told;
+  });
+}
+
+VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Motion& motion,
+                          double start_s) {
+  const auto joint = static_cast<Index>(effect.joint);
+  VectorXd torque = VectorXd::Zero(motion.sample_count());
+  if (!source_joint_valid(effect, static_cast<int>(motion.q.cols()))) return torque;
+  visit_effect(effect.kind, [&]<typename E>() {
+    auto parameters = effect.parameters;
+    if constexpr (requires { E::prepare(parameters, type); }) E::prepare(parameters, type);
+    if constexpr (offnominal::detail::kHasState<E>) {
+      torque = torque_along<E>(parameters, motion.q.col(joint));
+    } else if constexpr (requires(JointInstant<double> at) { E::torque(parameters, at); }) {
+      for (Index i = 0; i < motion.sample_count(); ++i) {
+        JointInstant<double> at{motion.q(i, joint), motion.dq(i, joint), motion.t_s[i] - start_s};
+        if constexpr (kHasSource<E>) at.source_dq = motion.dq(i, source_joint<E>(parameters));
+        torque[i] = E::torque(parameters, at);
+      }
+    }
+  });
+  return torque;
+}
+
+VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Motion& motion) {
+  return torque_of_effect(effect, type, motion, motion.sample_count() > 0 ? motion.t_s[0] : 0);
+}
+
+VectorXd friction_of_load(const Effect<double>& effect, const Motion& motion,
+                          const Eigen::Ref<const VectorXd>& load) {
+  const auto joint = static_cast<Index>(effect.joint);
+  VectorXd friction = VectorXd::Zero(motion.sample_count());
+  visit_effect(effect.kind, [&]<typename E>() {
+    if constexpr (offnominal::detail::action_of<E>() == EffectAction::kFrictionPerLoad) {
+      for (Index i = 0; i < motion.sample_count(); ++i) {
+        const JointInstant<double> at{motion.q(i, joint), motion.dq(i, joint), 0};
+        const auto per_load = E::friction_per_load(effect.parameters, at);
+        friction[i] = per_load.by_size * std::abs(load[i]) + per_load.by_load * load[i];
+      }
+    }
+  });
+  return friction;
+}
+
+double reflected_inertia_of(const Effect<double>& effect) {
+  double inertia = 0;
+  visit_effect(effect.kind, [&]<typename E>() {
+    if constexpr (offnominal::detail::action_of<E>() == EffectAction::kReflectedInertia) {
+      inertia = E::reflected_inertia(effect.parameters);
+    }
+  });
+  return inertia;
+}
+
+MatrixXd torque_of_inertial_effect(const RobotDescription& robot, const Effect<double>& effect,
+                                   const Motion& motion) {
+  RobotDescription without = robot;
+  without.effects.clear();
+  RobotDescription with = without;
+  with.effects.push_back({effect});
+  return model_torque(with, motion) - model_torque(without, motion);
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "compare/filter_plan.hpp"
+#include "compare/motion.hpp"
+#include "log/log.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::desk {
+
+// A recording made ready for comparison and regression: everything that does not depend on the
+// model's torque is filtered once.
+struct Measurement {
+  Log log;
+  FilterPlan plan;
+  Motion motion;           // full rate
+  Eigen::VectorXd t_s;     // of the samples that are kept
+  Eigen::MatrixXd torque;  // filtered; rows: kept samples, columns: joints
+  // Kept samples: 1, or 0 where the joint stands still and friction may hold it (standstill.hpp).
+  Eigen::MatrixXd moving;
+
+  // The samples of a joint that tell of the model, of something per kept sample.
+  [[nodiscard]] Eigen::VectorXd while_moving(const Eigen::Ref<const Eigen::VectorXd>& values,
+                                             Eigen::Index joint) const;
+};
+
+// `plan`: of plan_filter() for this recording and those that it is analysed with. Throws InputError
+// as plan_for(), and where the robot has another number of joints.
+Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& plan);
+// With the plan of this recording alone.
+Measurement measure(Log log, const RobotDescription& robot, const FilterRequest& request = {});
+
+// model_torque() of a robot, filtered as the measured torque is.
+Eigen::MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement& measured);
+
+}  // namespace offnominal::desk

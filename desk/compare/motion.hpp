@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "compare/filter_plan.hpp"
+#include "log/log.hpp"
+
+namespace offnominal::desk {
+
+// The motion of a recording at its full sampling rate. Rows: samples, columns: joints.
+struct Motion {
+  Eigen::VectorXd t_s;  // as recorded
+  Eigen::MatrixXd q;    // low-passed position, rad or m
+  Eigen::MatrixXd dq;   // central differences of q
+  Eigen::MatrixXd ddq;  // central differences of dq
+
+  [[nodiscard]] Eigen::Index sample_count() const { return t_s.size(); }
+  // On average, of two samples or more.
+  [[nodiscard]] double period_s() const {
+    const Eigen::Index last = sample_count() - 1;
+    return (t_s[last] - t_s[0]) / static_cast<double>(last);
+  }
+};
+
+// Velocity and acceleration both come from the low-passed position, whatever velocity the log has:
+// then all three belong together, and none of them lags. Of a hold map: its positions, at rest.
+Motion motion_of(const Log& log, const FilterPlan& plan);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,171 @@
+#include "exchange/dh_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "common/error.hpp"
+#include "common/file.hpp"
+#include "common/nearest.hpp"
+#include "common/number.hpp"
+#include "common/toml_table.hpp"
+#include "log/csv_log.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::desk::exchange {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+const std::vector<std::string> kConventions{"standard", "modified"};
+const std::vector<std::string> kParameters{"a_m", "alpha_rad", "alpha_deg",
+                                           "d_m", "theta_rad", "theta_deg"};
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& place,
+                         const std::string& found, const std::string& allowed,
+                         const std::string& mend) {
+  throw InputError({path.string(), place, found, allowed, mend});
+}
+
+// The key of an angle that is there: "alpha_rad" or "alpha_deg", one of them.
+template <typename Has, typename Refuse>
+std::string angle_key(const std::string& angle, const Has& has, const Refuse& refuse_it) {
+  const std::string rad = angle + "_rad";
+  const std::string deg = angle + "_deg";
+  if (has(rad) == has(deg)) {
+    refuse_it(has(rad) ? fmt::format("both {} and {}", rad, deg)
+                       : fmt::format("neither {} nor {}", rad, deg),
+              "one of them", has(rad) ? "remove one" : fmt::format("add {} or {}", rad, deg));
+  }
+  return has(rad) ? rad : deg;
+}
+
+double in_radians(double value, const std::string& key) {
+  return key.ends_with("_deg") ? value * kDegree : value;
+}
+
+DhConvention settled(const std::filesystem::path& path, std::optional<DhConvention> in_file,
+                     std::optional<DhConvention> asked) {
+  if (in_file && asked && *in_file != *asked) {
+    refuse(path, "convention",
+           fmt::format("{}, and --convention {}", name_of(*in_file), name_of(*asked)),
+           "one convention", "correct one of them");
+  }
+  if (in_file) return *in_file;
+  if (asked) return *asked;
+  refuse(path, "", "no word on whether the table is a standard or a modified one",
+         choice_of(kConventions),
+         "add --convention modified where joint i turns about z of frame i (Craig), --convention "
+         "standard where about z of frame i-1");
+}
+
+DhRow row_of(const TomlTable& table, std::size_t index) {
+  DhRow row;
+  row.name = table.has("name") ? table.text("name") : fmt::format("joint{}", index + 1);
+  const bool slides = table.has("type") && table.choice("type", {"revolute", "prismatic"}) == 1;
+  row.type = slides ? JointType::kPrismatic : JointType::kRevolute;
+  row.a_m = table.number("a_m", physical(any_number("m")));
+  row.d_m = table.number("d_m", physical(any_number("m")));
+  const auto angle = [&](const char* name) {
+    const std::string key = angle_key(
+        name, [&](const std::string& one) { return table.has(one); },
+        [&](const auto&... words) { table.refuse("", words...); });
+    return in_radians(table.number(key, any_number("")), key);
+  };
+  row.alpha_rad = angle("alpha");
+  row.theta_rad = angle("theta");
+  return row;
+}
+
+DhTable read_toml(const std::filesystem::path& path, std::optional<DhConvention> convention) {
+  const toml::table document = parse_toml(read_text_file(path), path.string());
+  const TomlTable root(path.string(), "", document, {"convention", "joint"});
+  std::optional<DhConvention> in_file;
+  if (root.has("convention")) {
+    in_file = static_cast<DhConvention>(root.choice("convention", kConventions));
+  }
+  std::vector<std::string> keys{"name", "type"};
+  keys.insert(keys.end(), kParameters.begin(), kParameters.end());
+  DhTable table{settled(path, in_file, convention), {}};
+  std::set<std::string> names;
+  for (const TomlTable& joint : root.tables("joint", keys)) {
+    table.rows.push_back(row_of(joint, table.rows.size()));
+    if (names.insert(table.rows.back().name).second) continue;
+    joint.refuse("name", fmt::format("the name \"{}\" a second time", table.rows.back().name),
+                 "names that differ", "give this joint another name");
+  }
+  return table;
+}
+
+DhTable read_csv_table(const std::filesystem::path& path, std::optional<DhConvention> convention) {
+  std::vector<std::string> known = kParameters;
+  known.insert(known.end(), {"prismatic"});
+  const NamedColumns read = read_csv(path, [&](const std::string& name) {
+    const bool is_known = std::find(known.begin(), known.end(), name) != known.end();
+    return is_known ? Need::kRequired : Need::kNone;
+  });
+  for (const std::string& name : read.names) {
+    // A count of the joints, as tables have it.
+    if (read.columns.contains(name) || name == "joint") continue;
+    const std::string meant = nearest(name, known);
+    refuse(path, "column " + name, "a column that is none of a DH table", list_of(known),
+           meant.empty() ? "remove it" : fmt::format("name it {}", meant));
+  }
+  const auto has = [&](const std::string& name) { return read.columns.contains(name); };
+  for (const char* name : {"a_m", "d_m"}) {
+    if (!has(name)) refuse(path, "", fmt::format("no column {}", name), "one", "add it, in metres");
+  }
+  const auto key_of = [&](const char* angle) {
+    return angle_key(angle, has, [&](const auto&... words) { refuse(path, "", words...); });
+  };
+  const std::string alpha = key_of("alpha");
+  const std::string theta = key_of("theta");
+  DhTable table{settled(path, std::nullopt, convention), {}};
+  for (Eigen::Index i = 0; i < read.columns.at("a_m").size(); ++i) {
+    const auto cell = [&](const std::string& name) { return read.columns.at(name)[i]; };
+    DhRow row;
+    row.name = fmt::format("joint{}", i + 1);
+    if (has("prismatic") && cell("prismatic") != 0) {
+      if (cell("prismatic") != 1) {
+        refuse(path, fmt::format("{}, column prismatic", read.place_of(i)),
+               shortest(cell("prismatic")), "0 or 1", "write 1 where the joint slides, else 0");
+      }
+      row.type = JointType::kPrismatic;
+    }
+    row.a_m = cell("a_m");
+    row.d_m = cell("d_m");
+    row.alpha_rad = in_radians(cell(alpha), alpha);
+    row.theta_rad = in_radians(cell(theta), theta);
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+}  // namespace
+
+const char* name_of(DhConvention convention) {
+  return convention == DhConvention::kStandard ? "standard" : "modified";
+}
+
+DhTable read_dh_table(const std::filesystem::path& path, std::optional<DhConvention> convention) {
+  DhTable table =
+      path.extension() == ".csv" ? read_csv_table(path, convention) : read_toml(path, convention);
+  if (table.rows.empty() || table.rows.size() > static_cast<std::size_t>(kMaxJoints)) {
+    refuse(path, "", fmt::format("{} joints", table.rows.size()),
+           fmt::format("1 to {}, a row each", kMaxJoints), "leave out what no drive moves");
+  }
+  // Further out no robot file takes a length.
+  constexpr double kFarthestM = 1e5;
+  for (const DhRow& row : table.rows) {
+    for (const double value : {row.a_m, row.d_m, row.alpha_rad, row.theta_rad}) {
+      if (std::fabs(value) <= kFarthestM) continue;
+      refuse(path, row.name, shortest(value), fmt::format("at most {}", shortest(kFarthestM)),
+             "check the unit");
+    }
+  }
+  return table;
+}
+
+}  // namespace offnominal::desk::exchange

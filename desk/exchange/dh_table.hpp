@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <offnominal/model/quantity.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+// A table of Denavit-Hartenberg parameters: the geometry of an arm as data sheets give it.
+
+namespace offnominal::desk::exchange {
+
+/// Which transformation a row stands for.
+enum class DhConvention : std::uint8_t {
+  kStandard,  // Rz(theta) Tz(d) Tx(a) Rx(alpha): joint i turns about z of the frame before (distal)
+  kModified,  // Rx(alpha) Tx(a) Rz(theta) Tz(d): joint i turns about its own z (proximal; Craig)
+};
+
+[[nodiscard]] const char* name_of(DhConvention convention);  // "standard", "modified"
+
+/// One joint. Its position adds to theta where it is revolute, to d where it is prismatic.
+struct DhRow {
+  std::string name;
+  JointType type = JointType::kRevolute;
+  double a_m = 0;
+  double alpha_rad = 0;
+  double d_m = 0;
+  double theta_rad = 0;
+};
+
+struct DhTable {
+  DhConvention convention = DhConvention::kStandard;
+  std::vector<DhRow> rows;  // 1 to kMaxJoints, from the base outwards
+};
+
+/// A CSV file with the columns a_m, alpha_rad or alpha_deg, d_m, theta_rad or theta_deg and, if any
+/// joint slides, prismatic (0 or 1); or a TOML file with a [[joint]] of the same keys each, beside
+/// them name and type, and the key convention. No two tables are told apart by their numbers: the
+/// convention is said in the file or by `convention`, never assumed. Throws InputError where it is
+/// not, where both differ, and as readers of TOML and CSV do.
+[[nodiscard]] DhTable read_dh_table(const std::filesystem::path& path,
+                                    std::optional<DhConvention> convention);
+
+}  // namespace offnominal::desk::exchange

@@ -1,0 +1,181 @@
+#include "explain/add_found.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/nearest.hpp"
+#include "compare/inverse_model.hpp"
+#include "compare/measurement.hpp"
+
+namespace offnominal::desk {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+std::vector<std::string> objections_to(const Explanation& e) {
+  if (!is_to_write(e.verdict)) {
+    return {fmt::format("the verdict is {}: {}", name_of(e.verdict), e.words)};
+  }
+  if (e.found.empty()) return {"no effect is missing: fit the one that is there again with add"};
+  std::vector<std::string> objections;
+  for (const HeldNumber& held : e.held) {
+    if (held.contradicted) objections.push_back(held.words);
+  }
+  // A number that is held against the recordings says more of the same joint's friction.
+  if (objections.empty()) objections = e.unphysical;
+  for (const std::string& why : e.unwritable) {
+    objections.push_back(why + "; what else was found is fitted beside it");
+  }
+  return objections;
+}
+
+// Mean square of a joint's error on data that no fit has seen, before and after.
+struct HeldOutSquares {
+  double before = 0;
+  double after = 0;
+};
+
+HeldOutSquares held_out_squares(const AddedFindings& added, std::size_t joint) {
+  const JointErrors& of_parts = added.explanation.joints[joint];
+  HeldOutSquares squares;
+  bool apart = false;
+  for (const Gain& gain : added.gains) {
+    if (!gain.held_out) continue;
+    apart = true;
+    squares.before += std::pow(gain.joints[joint].before_rms, 2);
+    squares.after += std::pow(gain.joints[joint].after_rms, 2);
+  }
+  if (apart) return squares;
+  return {std::pow(of_parts.holdout_before, 2), std::pow(of_parts.holdout_after, 2)};
+}
+
+// A joint with a finding must gain, no other may lose more than what a twentieth is.
+std::vector<std::string> doubts_of(const AddedFindings& added) {
+  constexpr double kRelevant = 0.05;
+  std::vector<std::string> doubts;
+  const Explanation& e = added.explanation;
+  for (std::size_t joint = 0; joint < e.joints.size(); ++joint) {
+    const HeldOutSquares squares = held_out_squares(added, joint);
+    const double fall = 1 - std::sqrt(squares.after / squares.before);
+    const bool asked = std::any_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
+      return one.what.joint == static_cast<Eigen::Index>(joint);
+    });
+    if (asked ? fall > 0 : !(fall < -kRelevant)) continue;
+    doubts.push_back(
+        fmt::format("on data not used for the fit the error of joint {} {}, by {:.1f} %: these "
+                    "data do not support what was found",
+                    joint + 1, asked ? "does not fall but rises" : "rises", -100 * fall));
+  }
+  return doubts;
+}
+
+// Of the readings of a hold map, less the friction that holds by the direction of approach.
+std::vector<BeforeAfter> at_rest(const RobotDescription& before, const RobotDescription& after,
+                                 const Log& log) {
+  const Motion held = motion_of(log, {});
+  const auto error_of = [&](const RobotDescription& robot) {
+    Eigen::MatrixXd error = log.tau - model_torque(robot, held);
+    for (Eigen::Index joint = 0; joint < error.cols(); ++joint) {
+      const auto approach = log.approach.col(joint);
+      const double readings = approach.squaredNorm();
+      if (!(readings > 0)) continue;
+      error.col(joint) -= approach * (approach.dot(error.col(joint)) / readings);
+    }
+    return error;
+  };
+  const Eigen::MatrixXd was = error_of(before);
+  const Eigen::MatrixXd is = error_of(after);
+  const double root = std::sqrt(static_cast<double>(log.sample_count()));
+  std::vector<BeforeAfter> joints;
+  for (Eigen::Index i = 0; i < log.tau.cols(); ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    const double torque = log.tau.col(i).norm();
+    joints.push_back({joint, unit_of(Quantity::kEffort, before.joints[joint].joint.type),
+                      100 * was.col(i).norm() / torque, 100 * is.col(i).norm() / torque,
+                      was.col(i).norm() / root, is.col(i).norm() / root});
+  }
+  return joints;
+}
+
+}  // namespace
+
+AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& logs,
+                        const std::vector<Log>& holdout, const ExplainOptions& options,
+                        const OnProgress& on_progress) {
+  AddedFindings added;
+  added.explanation = explain(robot, logs, holdout, options, on_progress);
+  added.objections = objections_to(added.explanation);
+  if (!added.objections.empty()) return added;
+  const FilterPlan plan = plan_filter(logs, robot);
+  const auto compare_on = [&](const Log& log, bool held_out) {
+    if (on_progress) on_progress("comparing both models on " + log.file);
+    if (log.at_rest) {
+      added.gains.push_back({log.file, held_out, at_rest(robot, added.explanation.improved, log)});
+      return;
+    }
+    const Measurement measured = measure(log, robot, plan);
+    added.gains.push_back(
+        {log.file, held_out,
+         before_after(compare(robot, measured), compare(added.explanation.improved, measured))});
+  };
+  for (const Log& log : logs) compare_on(log, false);
+  for (const Log& log : holdout) compare_on(log, true);
+  added.doubts = doubts_of(added);
+  return added;
+}
+
+ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
+                     const std::string& output_file, bool force) {
+  const ordered_json explained = to_json(added.explanation, names);
+  ordered_json json;
+  for (const char* key : {"logs", "holdout", "robot", "verdict", "words", "found", "data_faults",
+                          "data_hints", "advice"}) {
+    json[key] = explained[key];
+  }
+  json["recordings"] = ordered_json::array();
+  for (const Gain& gain : added.gains) {
+    ordered_json joints = ordered_json::array();
+    for (const BeforeAfter& error : gain.joints) {
+      joints.push_back({{"joint", error.joint + 1},
+                        {"unit", error.unit},
+                        {"rms_error_before", error.before_rms},
+                        {"rms_error_after", error.after_rms},
+                        {"relative_error_before_percent", error.before_percent},
+                        {"relative_error_after_percent", error.after_percent}});
+    }
+    json["recordings"].push_back(
+        {{"log", gain.log}, {"held_out", gain.held_out}, {"joints", std::move(joints)}});
+  }
+  json["objections"] = added.objections;
+  json["doubts"] = added.doubts;
+  json["held"] = ordered_json::array();
+  for (const HeldNumber& held : added.explanation.held) json["held"].push_back(held.words);
+  json["written"] = added.may_be_written(force) ? ordered_json(output_file) : ordered_json();
+  return json;
+}
+
+std::string text_of(const AddedFindings& added, const ExplainNames& names, bool force) {
+  std::string text = text_of(added.explanation, names);
+  for (const Gain& gain : added.gains) {
+    text += fmt::format("\n{}{}\n{}", gain.log, gain.held_out ? ", not used for the fit" : "",
+                        text_of(gain.joints));
+  }
+  for (const std::string& objection : added.objections) {
+    text += "\nNothing was written: " + objection + "\n";
+  }
+  for (const HeldNumber& held : added.explanation.held) {
+    if (!held.contradicted) text += "\nnote: " + held.words + "\n";
+  }
+  for (const std::string& doubt : added.doubts) {
+    text += fmt::format("\n{}: {}{}\n",
+                        force ? "Written all the same, as --force says" : "Nothing was written",
+                        doubt, force ? "" : "; --force writes it all the same");
+  }
+  return text;
+}
+
+}  // namespace offnominal::desk

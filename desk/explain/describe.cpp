@@ -1,0 +1,209 @@
+#include "explain/describe.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "explain/band_shift.hpp"
+#include "explain/confirm.hpp"
+#include "explain/remainder.hpp"
+#include "identify/estimates.hpp"
+#include "identify/parallel.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+const char* effort_unit(const RobotDescription& robot, Index joint) {
+  return offnominal::unit_of(Quantity::kEffort,
+                             robot.joints[static_cast<std::size_t>(joint)].joint.type);
+}
+
+void describe_joints(const SearchResult& from, Explanation& to) {
+  const Data& data = from.regression.data();
+  const VectorXd torque = data.layout.rms(data.torque);
+  const VectorXd before = data.layout.rms(data.target);
+  const VectorXd fitted = data.layout.rms(from.found.baseline.residual);
+  const VectorXd after = data.layout.rms(from.found.fit.residual);
+  const VectorXd held_before = from.hold_out.rms(from.found.held_out_before);
+  const VectorXd held_after = from.hold_out.rms(from.found.held_out_after);
+  const VectorXd floor = noise_floor_of(data, from.found.fit.residual);
+  const VectorXd held_floor = noise_floor_of(from.hold_out.data(), from.found.held_out_after);
+  for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
+    to.joints.push_back({joint, effort_unit(from.robot, joint), torque[joint], before[joint],
+                         after[joint], fitted[joint], after[joint], held_before[joint],
+                         held_after[joint], floor[joint], held_floor[joint]});
+  }
+}
+
+bool is_positive(const Term& term, const std::string& parameter) {
+  return std::any_of(term.ranges.begin(), term.ranges.end(), [&](const ShapeRange& range) {
+    return range.name == parameter &&
+           (range.is_positive() || range.name == effects::kSmoothing.name);
+  });
+}
+
+// Intervals that hold noise, and what the model's simplifications do: as far as a number moves in
+// narrower bands counts as one standard deviation of that.
+std::vector<std::vector<Estimate>> estimates_with_discrepancy(const ImprovedRobot& improved) {
+  constexpr double kTwoSided95 = 1.96;
+  const Relinearised& fitted = improved.last;
+  auto estimates = estimates_of(improved).terms;
+  const auto shifts = largest_shifts_in_narrower_bands(fitted);
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    for (std::size_t p = 0; p < estimates[i].size(); ++p) {
+      Estimate& one = estimates[i][p];
+      if (!one.ci95) continue;
+      const double noise = ((*one.ci95)[1] - (*one.ci95)[0]) / 2;
+      const double half = std::hypot(noise, kTwoSided95 * shifts[i][p]);
+      one.ci95 = {one.value.value - half, one.value.value + half};
+      if (is_positive(fitted.terms[i], one.value.name)) {
+        (*one.ci95)[0] = std::max(0.0, (*one.ci95)[0]);
+      }
+    }
+  }
+  return estimates;
+}
+
+void describe_findings(const SearchResult& from, Explanation& to) {
+  const Data& data = from.regression.data();
+  if (from.found.accepted.empty()) return;
+  const auto estimates = estimates_with_discrepancy(from.improved);
+  const VectorXd simulated_after = simulated_position_error(data, from.found.fit.residual);
+  const VectorXd held_after = from.hold_out.rms(from.found.held_out_after);
+  std::vector<Finding> findings(from.found.accepted.size());
+  parallel_for(findings.size(), from.search.options().threads, [&](std::size_t i) {
+    const Accepted& accepted = from.found.accepted[i];
+    const EffectCandidate& effect = *accepted.term.effect;
+    const Index joint = accepted.term.joint;
+    const std::vector<Term> without = from.found.terms_without(i);
+    const ModelFit fit = from.regression.fit(without);
+    Finding& finding = findings[i];
+    finding.what = {effect.kind(), joint};
+    finding.words = effect.info().words;
+    finding.formula = effect.info().formula;
+    finding.parameters = estimates[i];
+    finding.p_value = accepted.p;
+    finding.p_replay = accepted.p_replay;
+    finding.holdout_before = from.hold_out.rms(from.hold_out.residual(without, fit))[joint];
+    finding.holdout_after = held_after[joint];
+    finding.simulated_before = simulated_position_error(data, fit.residual)[joint];
+    finding.simulated_after = simulated_after[joint];
+  });
+  to.found = std::move(findings);
+}
+
+void describe_suspicion(const SearchResult& from, Explanation& to) {
+  const auto& suspected = from.found.suspected;
+  if (!suspected) return;
+  const Term& term = suspected->term;
+  to.suspected = {{term.effect->kind(), term.joint}, suspected->p, suspected->share};
+}
+
+void describe_rejections(const SearchResult& from, Explanation& to) {
+  const Screening screening = from.search.screen(from.found.terms(), from.found.fit);
+  const Data& data = from.regression.data();
+  const VectorXd detectable = (std::sqrt(kRelevantShare) * data.layout.rms(from.found.fit.residual))
+                                  .cwiseMax(kRelevantTorque * data.layout.rms(data.torque));
+  for (const Screened& one : screening.candidates) {
+    const Index joint = one.term.joint;
+    const double p = std::min(
+        1.0, std::pow(10.0, -one.log10_p) * static_cast<double>(screening.candidates.size()));
+    to.rejected.push_back(
+        {{one.term.effect->kind(), joint}, p, detectable[joint], effort_unit(from.robot, joint)});
+  }
+}
+
+// Numbers of the file's effects that came out far from what the file says, where it matters.
+void describe_shifts(const SearchResult& from, Explanation& to) {
+  constexpr double kShifted = 0.3;
+  constexpr double kMatters = 0.02;  // of the joint's rms torque
+  const Data& data = from.regression.data();
+  const VectorXd torque = data.layout.rms(data.torque);
+  for (std::size_t i = 0; i < data.nuisance.terms.size(); ++i) {
+    const NuisanceTerm& term = data.nuisance.terms[i];
+    if (term.kind != NuisanceTerm::Kind::kKnownEffect) continue;
+    const auto column = static_cast<Index>(i);
+    const double file = from.robot.effects[term.effect].parameters[term.parameter];
+    const double by = from.found.fit.nuisance[column];
+    const double rms =
+        std::abs(by) * data.layout.rms(data.nuisance.columns.col(column))[term.joint];
+    if (std::abs(by) > kShifted * std::abs(file) && rms > kMatters * torque[term.joint]) {
+      to.shifts.push_back({term.joint, term.name, file != 0 ? by / file : 1.0});
+    }
+  }
+}
+
+// Where the loudest stretches of what is left are, per joint.
+void describe_loud(const SearchResult& from, Explanation& to) {
+  const Data& data = from.regression.data();
+  if (data.recordings[0].at_rest) return;
+  for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
+    for (const LoudWindow& one : loud_windows(data, from.found.fit.residual, joint)) {
+      to.loud.push_back({joint, one.recording, one.from_s, one.to_s});
+    }
+  }
+}
+
+void describe_friction_of_file(const SearchResult& from, Explanation& to) {
+  for (Index joint = 0; joint < from.regression.data().layout.joint_count(); ++joint) {
+    const auto& known = from.robot.effects;
+    const bool has = std::any_of(known.begin(), known.end(), [&](const RobotEffect& one) {
+      return one.joint == joint && info_of(one.kind)->traits.is_friction;
+    });
+    if (!has) to.without_friction.push_back(joint);
+  }
+}
+
+void describe_hold_friction(const SearchResult& from, Explanation& to) {
+  const Data& data = from.regression.data();
+  for (std::size_t i = 0; i < data.nuisance.terms.size(); ++i) {
+    const NuisanceTerm& term = data.nuisance.terms[i];
+    if (term.kind != NuisanceTerm::Kind::kApproach) continue;
+    to.hold_friction.push_back({term.joint, from.found.fit.nuisance[static_cast<Index>(i)],
+                                effort_unit(from.robot, term.joint)});
+  }
+}
+
+void describe_series(const SearchResult& from, Explanation& to) {
+  const Data& data = from.regression.data();
+  const Workspace& at = data.recordings[0];
+  const Index n = data.layout.samples(0);
+  Explanation::Series& series = to.series;
+  series.t_s = kept_samples(at.plan, at.motion.t_s);
+  for (MatrixXd* matrix : {&series.measured, &series.model_before, &series.model_after, &series.q,
+                           &series.dq, &series.load}) {
+    matrix->resize(n, data.layout.joint_count());
+  }
+  for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
+    const Index begin = data.layout.begin(0, joint);
+    const VectorXd measured = data.torque.segment(begin, n);
+    series.measured.col(joint) = measured;
+    series.model_before.col(joint) = measured - data.target.segment(begin, n);
+    series.model_after.col(joint) = measured - from.found.fit.residual.segment(begin, n);
+    series.q.col(joint) = kept_samples(at.plan, at.motion.q.col(joint));
+    series.dq.col(joint) = kept_samples(at.plan, at.motion.dq.col(joint));
+    series.load.col(joint) = kept_samples(at.plan, at.load_torque.col(joint));
+  }
+}
+
+}  // namespace
+
+void describe(const SearchResult& result, Explanation& to) {
+  describe_joints(result, to);
+  describe_findings(result, to);
+  describe_suspicion(result, to);
+  describe_rejections(result, to);
+  describe_shifts(result, to);
+  describe_hold_friction(result, to);
+  describe_loud(result, to);
+  describe_friction_of_file(result, to);
+  describe_series(result, to);
+  to.where = structure_of(result.regression.data(), result.found.fit.residual);
+  to.waterfall = result.found.waterfall;
+}
+
+}  // namespace offnominal::desk

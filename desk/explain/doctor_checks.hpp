@@ -1,0 +1,93 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "explain/data_fault.hpp"
+#include "log/log.hpp"
+#include "robot/robot.hpp"
+
+// The doctor's checks one by one; doctor.hpp puts them in order.
+
+namespace offnominal::desk {
+
+// Measured and model torque of a recording, low-passed alike and thinned out. Rows: samples,
+// columns: joints.
+struct TorquePair {
+  double period_s = 0;
+  double cutoff_hz = 0;
+  Eigen::VectorXd t_s;
+  Eigen::MatrixXd q;
+  Eigen::MatrixXd dq;
+  Eigen::MatrixXd ddq;
+  Eigen::MatrixXd measured;
+  Eigen::MatrixXd model;               // of the robot with its effects
+  Eigen::MatrixXd load;                // of the robot without effects
+  std::vector<Eigen::MatrixXd> links;  // share of each link in `load`
+};
+
+// Low-passed at that share of the sampling rate, or for 0 at 5 Hz or what a slow log has. None
+// where the recording is too short for a low-pass, or its model torque is not finite.
+std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& robot,
+                                      double cutoff_of_rate = 0);
+
+// Whether the model fits the torque better with the time in s or in a unit of which a second has
+// `per_second`; angles may be in degrees and torques of the wrong sign either way.
+enum class TimeByTorque { kSeconds, kUnit, kUnknown };
+TimeByTorque time_by_torque(const Log& log, const RobotDescription& robot, double per_second);
+
+void find_gaps(const Log& log, std::vector<DataFault>& faults);
+void find_stale_samples(const Log& log, std::vector<DataFault>& faults);
+void find_stuck_encoders(const Log& log, const RobotDescription& robot,
+                         std::vector<DataFault>& faults);
+void find_saturation(const Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
+void find_torque_sign(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
+void find_clock_skew(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
+
+// These mend what they name in `log`, so that what is looked at after them is seen.
+void mend_wrapped(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
+void mend_time(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
+void mend_degrees(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
+// Velocities of another joint, of another time, or none at all.
+void mend_strange_velocities(Log& log, const RobotDescription& robot,
+                             std::vector<DataFault>& faults);
+void mend_velocities(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
+
+// Drives filter the velocity and print it coarsely: real ones differ from the derivative of the
+// position by a factor of up to 1.09. Another unit, or another shaft, is further off than the
+// second.
+inline constexpr double kNearUnit = 1.12;
+inline constexpr double kSameUnit = 1.5;
+
+// The measured velocity over the derivative of the position, negative where they oppose each other;
+// none where the velocity was derived, where the joint stands, or where they have nothing in
+// common.
+std::optional<double> velocity_ratio(const Log& log, Eigen::Index joint);
+
+// Adds the lines of [channels] that `mended` has to the fault and to its advice; those of `keys`,
+// or all that must be there where the recording was read by its common header.
+void propose_channels(const Log& log, const ChannelMap& mended, std::vector<std::string> keys,
+                      DataFault& fault);
+
+// The smallest change from one sample to the next, an encoder's step; infinity where there is none.
+// Rounding of a log that was scaled or printed does not pass for one.
+double smallest_step(const Eigen::VectorXd& x);
+
+// "joint 2", or "all joints" for -1.
+std::string joint_words(Eigen::Index joint);
+
+// Lag of the torque behind the positions on some rows of one joint.
+struct LagEstimate {
+  double lag_s = 0;         // torque late where positive
+  double likelihood = 0;    // log-likelihood gained over the best lag within honest_s
+  double independence = 0;  // share of the torque's rate that nothing else beside it can be
+  bool at_end = false;      // best at the end of the range that was looked at
+};
+// Everything that the model may lack and that does not depend on time is fitted beside it. The
+// model is right within a few percent.
+LagEstimate estimate_lag(const TorquePair& pair, Eigen::Index joint, Eigen::Index first,
+                         Eigen::Index count, double honest_s);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,355 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/standstill.hpp"
+#include "explain/doctor_checks.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kRadPerDegree = std::numbers::pi / 180;
+// A model that misses more of the torque than this takes the positions for something else: missing
+// effects make up 15 %.
+constexpr double kBadFit = 0.6;
+// Of two misfits, noise aside.
+constexpr double kClearlyBetter = 0.9;
+
+// Error of the model on a joint as a share of its torque, whatever the torque's sign: both faults
+// may be there at once.
+double misfit(const TorquePair& pair, Index joint) {
+  const double torque = pair.measured.col(joint).norm();
+  if (!(torque > 0)) return 0;
+  return std::min((pair.measured.col(joint) - pair.model.col(joint)).norm(),
+                  (pair.measured.col(joint) + pair.model.col(joint)).norm()) /
+         torque;
+}
+
+double misfit(const TorquePair& pair) {
+  double sum = 0;
+  for (Index joint = 0; joint < pair.measured.cols(); ++joint) {
+    sum += std::pow(misfit(pair, joint), 2);
+  }
+  return std::sqrt(sum / static_cast<double>(pair.measured.cols()));
+}
+
+// Whether the velocity of a joint was measured, and fits its position as it stands: then it is in
+// degrees as well.
+bool velocity_in_degrees(const Log& log, Index joint) {
+  const auto ratio = velocity_ratio(log, joint);
+  return ratio && *ratio > 1 / kSameUnit && *ratio < kSameUnit;
+}
+
+// Converts one joint, or all revolute ones for -1, in the recording and in where it comes from.
+void to_radians(Log& log, const RobotDescription& robot, Index joint) {
+  for (Index j = 0; j < log.q.cols(); ++j) {
+    const auto index = static_cast<std::size_t>(j);
+    if (joint >= 0 && j != joint) continue;
+    if (robot.joints[index].joint.type != JointType::kRevolute) continue;
+    const bool with_velocity = log.dq_derived[index] || velocity_in_degrees(log, j);
+    log.q.col(j) *= kRadPerDegree;
+    if (index < log.channels.position.size()) log.channels.position[index].scale *= kRadPerDegree;
+    if (!with_velocity) continue;
+    log.dq.col(j) *= kRadPerDegree;
+    if (index >= log.channels.velocity.size() || !log.channels.velocity[index]) continue;
+    log.channels.velocity[index]->scale *= kRadPerDegree;
+  }
+}
+
+Log in_radians(const Log& log, const RobotDescription& robot, Index joint) {
+  Log scaled = log;
+  to_radians(scaled, robot, joint);
+  return scaled;
+}
+
+bool leaves_limits(const Log& log, const RobotDescription& robot, Index joint) {
+  // A joint may overshoot its limits, but not by as much as they are apart.
+  constexpr double kBeyond = 1;
+  const auto& limits = robot.joints[static_cast<std::size_t>(joint)].joint;
+  const double width = limits.max_position - limits.min_position;
+  if (!(width < std::numeric_limits<double>::max())) return false;
+  return log.q.col(joint).maxCoeff() > limits.max_position + kBeyond * width ||
+         log.q.col(joint).minCoeff() < limits.min_position - kBeyond * width;
+}
+
+bool inside_limits(const Log& log, const RobotDescription& robot, Index joint) {
+  const auto& limits = robot.joints[static_cast<std::size_t>(joint)].joint;
+  return log.q.col(joint).maxCoeff() * kRadPerDegree <= limits.max_position &&
+         log.q.col(joint).minCoeff() * kRadPerDegree >= limits.min_position;
+}
+
+// The joint whose positions are in degrees, -1 for all, and how that shows.
+struct Degrees {
+  Index joint = -1;
+  std::string reason;
+};
+
+std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription& robot,
+                                         const std::vector<Index>& revolute) {
+  // As degrees it must fit, although effects are missing or a clock is off.
+  constexpr double kGoodFit = 0.5;
+  // And fit far better.
+  constexpr double kBetter = 3;
+  const auto as_is = torque_pair(log, robot);
+  if (!as_is || !(misfit(*as_is) > kBadFit)) return std::nullopt;
+  std::vector<Index> choices{-1};
+  if (revolute.size() > 1) choices.insert(choices.end(), revolute.begin(), revolute.end());
+  std::optional<Degrees> found;
+  double best = std::min(kGoodFit, misfit(*as_is) / kBetter);
+  for (const Index joint : choices) {
+    const auto scaled = torque_pair(in_radians(log, robot, joint), robot);
+    if (!scaled || !(misfit(*scaled) < best)) continue;
+    best = misfit(*scaled);
+    found = Degrees{
+        joint,
+        fmt::format("the model misses {:.0f} % of the torque with the positions as they are, "
+                    "{:.0f} % with the positions times pi/180",
+                    std::min(100 * misfit(*as_is), 1e4), 100 * best)};
+  }
+  return found;
+}
+
+// Velocities in rad/s beside positions that then cannot be in rad.
+std::optional<Degrees> degrees_by_velocity(const Log& log, const std::vector<Index>& revolute) {
+  std::optional<Degrees> found;
+  Index told = 0;
+  Index alike = 0;
+  for (const Index joint : revolute) {
+    const auto ratio = velocity_ratio(log, joint);
+    if (!ratio) continue;
+    ++told;
+    if (!(*ratio > kRadPerDegree / kNearUnit && *ratio < kRadPerDegree * kNearUnit)) continue;
+    ++alike;
+    if (found) continue;
+    found = Degrees{joint, fmt::format("the velocity of joint {} is {:.4g} times their derivative",
+                                       joint + 1, *ratio)};
+  }
+  if (found && alike == told && told > 1) found->joint = -1;
+  return found;
+}
+
+// Positions that jump by 2 pi are in radians, however far they go unfolded.
+bool is_folded_into_radians(const std::vector<DataFault>& faults, Index joint) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  return std::any_of(faults.begin(), faults.end(), [joint](const DataFault& fault) {
+    return fault.kind == DataFaultKind::kWrapped && fault.joint == joint &&
+           std::abs(fault.size / kTurn - 1) < 1e-6;
+  });
+}
+
+std::optional<Degrees> degrees_by_limits(const Log& log, const RobotDescription& robot,
+                                         const std::vector<Index>& revolute,
+                                         const std::vector<DataFault>& faults) {
+  std::vector<Index> beyond;
+  for (const Index joint : revolute) {
+    if (leaves_limits(log, robot, joint) && inside_limits(log, robot, joint) &&
+        !is_folded_into_radians(faults, joint)) {
+      beyond.push_back(joint);
+    }
+  }
+  if (beyond.empty()) return std::nullopt;
+  // Limits of a turn stand beside a joint that turns on and on; its torque knows better.
+  const auto as_is = torque_pair(log, robot);
+  std::erase_if(beyond, [&](Index joint) {
+    if (!as_is || !(as_is->measured.col(joint).norm() > 0)) return false;
+    const auto scaled = torque_pair(in_radians(log, robot, joint), robot);
+    if (!scaled) return false;
+    const double radians = misfit(*as_is, joint);
+    const double degrees = misfit(*scaled, joint);
+    return radians < kClearlyBetter * degrees || (radians <= kBadFit && radians <= degrees);
+  });
+  if (beyond.empty()) return std::nullopt;
+  return Degrees{
+      beyond.size() == 1 && revolute.size() > 1 ? beyond.front() : -1,
+      fmt::format("positions of joint {} go from {:.4g} to {:.4g}, far beyond its limits",
+                  beyond.front() + 1, log.q.col(beyond.front()).minCoeff(),
+                  log.q.col(beyond.front()).maxCoeff())};
+}
+
+}  // namespace
+
+TimeByTorque time_by_torque(const Log& log, const RobotDescription& robot, double per_second) {
+  constexpr double kHz = 5;
+  constexpr double kOfRate = 0.1;
+  constexpr double kFewestPeriods = 20;  // of the cut-off in the recording
+  const auto rows = static_cast<double>(log.sample_count());
+  Log scaled = log;
+  scaled.t_s /= per_second;
+  scaled.period_s /= per_second;
+  scaled.dq *= per_second;
+  // Filtered over as many samples either way: else the one that smooths more has less noise.
+  const double share = std::min(kOfRate, std::max(kHz * scaled.period_s, kFewestPeriods / rows));
+  const auto best_misfit = [&](const Log& one) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const bool degrees : {false, true}) {
+      const auto pair = torque_pair(degrees ? in_radians(one, robot, -1) : one, robot, share);
+      if (pair) best = std::min(best, misfit(*pair));
+    }
+    return best;
+  };
+  const double seconds = best_misfit(log);
+  const double other = best_misfit(scaled);
+  if (seconds < kBadFit && seconds < kClearlyBetter * other) return TimeByTorque::kSeconds;
+  if (other < kBadFit && other < kClearlyBetter * seconds) return TimeByTorque::kUnit;
+  return TimeByTorque::kUnknown;
+}
+
+void mend_degrees(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults) {
+  std::vector<Index> revolute;
+  for (Index j = 0; j < log.q.cols(); ++j) {
+    if (robot.joints[static_cast<std::size_t>(j)].joint.type == JointType::kRevolute) {
+      revolute.push_back(j);
+    }
+  }
+  if (revolute.empty()) return;
+  auto found = degrees_by_torque(log, robot, revolute);
+  if (!found) found = degrees_by_velocity(log, revolute);
+  if (!found) found = degrees_by_limits(log, robot, revolute, faults);
+  if (!found) return;
+  DataFault fault;
+  fault.kind = DataFaultKind::kDegrees;
+  fault.joint = found->joint;
+  fault.size = 1 / kRadPerDegree;
+  fault.words = fmt::format("the positions of {} are in degrees: {}", joint_words(found->joint),
+                            found->reason);
+  fault.mend = "log radians, or scale the positions by 0.0174533";
+  std::vector<std::string> keys{"position"};
+  for (const Index joint : revolute) {
+    if ((found->joint >= 0 && joint != found->joint) || !velocity_in_degrees(log, joint)) continue;
+    fault.words += fmt::format("; so is the velocity of joint {}", joint + 1);
+    if (keys.size() == 1) keys.emplace_back("velocity");
+  }
+  to_radians(log, robot, found->joint);
+  propose_channels(log, log.channels, keys, fault);
+  faults.push_back(std::move(fault));
+}
+
+void find_torque_sign(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults) {
+  // The model with the opposite sign must fit: missing effects and a clock that is off leave less.
+  constexpr double kGoodFit = 0.6;
+  // Where the model explains less than this share of the torque it has nothing to say about the
+  // sign, and friction has: its power is never negative.
+  constexpr double kSilentModel = 0.3;
+  // Correlation of what the model does not explain with the velocity; friction of any kind has
+  // +0.8.
+  constexpr double kClearBraking = -0.6;
+  const Index joints = pair.measured.cols();
+  std::vector<DataFault> found;
+  std::vector<Index> turned_channels;
+  for (Index joint = 0; joint < joints; ++joint) {
+    const VectorXd tau = pair.measured.col(joint);
+    const VectorXd model = pair.model.col(joint);
+    const double size = tau.norm();
+    if (!(size > 0)) continue;
+    DataFault fault;
+    fault.kind = DataFaultKind::kTorqueSign;
+    fault.joint = joint;
+    if (model.norm() > kSilentModel * size) {
+      const double turned = (tau + model).norm() / size;
+      if (!(turned < kGoodFit) || !((tau - model).norm() > size)) continue;
+      fault.size = tau.dot(model) / model.squaredNorm();
+      fault.words = fmt::format(
+          "the torque of joint {} has the wrong sign: measured against model torque has slope "
+          "{:.2f}, and the opposite sign leaves {:.0f} % of it unexplained instead of {:.0f} %",
+          joint + 1, fault.size, 100 * turned, 100 * (tau - model).norm() / size);
+    } else {
+      const VectorXd rest = tau - pair.load.col(joint);
+      const VectorXd speed = pair.dq.col(joint);
+      const double product = rest.norm() * speed.norm();
+      if (!(product > 0) || !(rest.dot(speed) / product < kClearBraking)) continue;
+      fault.size = rest.dot(speed) / speed.squaredNorm();
+      fault.words = fmt::format(
+          "the torque of joint {} has the wrong sign: it acts against the motion (correlation with "
+          "the velocity {:.2f}), as if friction gave power",
+          joint + 1, rest.dot(speed) / product);
+    }
+    fault.mend = fmt::format(
+        "turn the sign of the torque of joint {} (scale = -1), or its position's; or gravity in "
+        "the "
+        "robot file points the wrong way",
+        joint + 1);
+    turned_channels.push_back(joint);
+    found.push_back(std::move(fault));
+  }
+  ChannelMap mended = log.channels;
+  for (const Index joint : turned_channels) {
+    const auto index = static_cast<std::size_t>(joint);
+    if (index < mended.torque.size()) mended.torque[index].scale *= -1;
+  }
+  for (DataFault& fault : found) {
+    propose_channels(log, mended, {"torque"}, fault);
+    faults.push_back(std::move(fault));
+  }
+}
+
+namespace {
+
+// Of a joint that stands still friction holds a part: its torque stays what it is, at no limit.
+VectorXd while_moving(const Log& log, const RobotDescription& robot, Index joint) {
+  const VectorXd moving = moving_samples(
+      log, joint, robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit);
+  std::vector<double> kept;
+  for (Index i = 0; i < moving.size(); ++i) {
+    if (moving[i] > 0) kept.push_back(log.tau(i, joint));
+  }
+  return Eigen::Map<const VectorXd>(kept.data(), static_cast<Index>(kept.size()));
+}
+
+}  // namespace
+
+void find_saturation(const Log& log, const RobotDescription& robot,
+                     std::vector<DataFault>& faults) {
+  // An extreme value counts as reached within this share of the torque's range.
+  constexpr double kNearExtreme = 1e-3;
+  // A sine spends 2 % of its time so near to its peaks, but a third as much just below.
+  constexpr double kSmallestShareAtExtreme = 0.01;
+  constexpr double kAgainstNext = 5;
+  // Where torque is at its extremes most of the time, it switches between two levels: dry friction.
+  constexpr double kLargestShareAtExtreme = 0.5;
+  constexpr double kAtLimit = 0.98;
+  // A drive's limits are not that far apart: a joint that waits where little is asked of it stays
+  // near zero, and that is the lowest value where all of its torques have one sign.
+  constexpr double kSmallestOfLargest = 0.3;
+  for (Index joint = 0; joint < log.tau.cols(); ++joint) {
+    const VectorXd tau = while_moving(log, robot, joint);
+    const double low = tau.minCoeff();
+    const double high = tau.maxCoeff();
+    const double near = kNearExtreme * (high - low);
+    if (!(near > 0)) continue;
+    const double limit = robot.joints[static_cast<std::size_t>(joint)].joint.max_torque;
+    const auto rows = static_cast<double>(tau.size());
+    double share = 0;
+    double at = 0;
+    bool at_limit = false;
+    for (const double end : {low, high}) {
+      if (std::abs(end) < kSmallestOfLargest * std::max(std::abs(low), std::abs(high))) continue;
+      const auto distance = (tau.array() - end).abs();
+      const auto reached = static_cast<double>((distance <= near).count());
+      const auto next = static_cast<double>((distance <= 2 * near).count()) - reached;
+      if (reached < kSmallestShareAtExtreme * rows || reached < kAgainstNext * (next + 1)) continue;
+      if (reached > share * rows) at = end;
+      share += reached / rows;
+      at_limit = at_limit || std::abs(end) >= kAtLimit * limit;
+    }
+    if (!(share > 0) || (share > kLargestShareAtExtreme && !at_limit)) continue;
+    DataFault fault;
+    fault.kind = DataFaultKind::kSaturation;
+    fault.joint = joint;
+    fault.size = share;
+    fault.words = fmt::format("the torque of joint {} stays at {:.4g} in {:.1f} % of the samples",
+                              joint + 1, at, 100 * share);
+    fault.mend = "move more gently, or leave the samples out in which the drive is at its limit";
+    faults.push_back(std::move(fault));
+  }
+}
+
+}  // namespace offnominal::desk

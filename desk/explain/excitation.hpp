@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "identify/effect_candidate.hpp"
+#include "identify/workspace.hpp"
+
+namespace offnominal::desk {
+
+// What the motion of one joint lets one see.
+struct Excitation {
+  double range = 0;      // rad or m, between the extreme positions
+  double top_speed = 0;  // rad/s or m/s, 99 % quantile
+  // Smallest singular value of [1, q, dq, ddq, sgn dq, dq |dq|], each of length 1: how far the
+  // motion is from one on which two of them are the same. About 0.15 for a rich motion, 0.03 for
+  // one sine.
+  double separation = 0;
+  bool moves = false;
+  bool wide = false;  // over a good part of the range that the robot file allows
+  bool sufficient = false;
+  std::string lack;  // in words, what a better motion would have; empty where sufficient
+};
+
+// 1, q, dq, ddq, sgn dq and dq |dq| of a joint: what any motion should tell apart.
+std::vector<Regressor> standard_regressors(const Workspace& at, Eigen::Index joint);
+
+std::vector<Excitation> excitation_of(const std::vector<Workspace>& recordings);
+
+// Whether the motion of every joint tells effects apart.
+bool all_sufficient(const std::vector<Excitation>& joints);
+
+}  // namespace offnominal::desk

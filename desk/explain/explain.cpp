@@ -1,0 +1,290 @@
+#include "explain/explain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <offnominal/model/effect_memory.hpp>
+#include <string>
+#include <utility>
+
+#include "common/error.hpp"
+#include "common/input_name.hpp"
+#include "common/shell_word.hpp"
+#include "explain/alternatives.hpp"
+#include "explain/describe.hpp"
+#include "explain/find_model.hpp"
+#include "explain/free_function.hpp"
+#include "explain/friction_family.hpp"
+#include "explain/undecided.hpp"
+#include "explain/verdict.hpp"
+#include "identify/file_errors.hpp"
+#include "identify/improved_robot.hpp"
+#include "identify/parallel.hpp"
+#include "identify/stretches.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+class Explainer {
+ public:
+  Explainer(const RobotDescription& robot, const std::vector<Log>& logs,
+            const std::vector<Log>& holdout, const ExplainOptions& options,
+            const OnProgress& on_progress)
+      : file_(robot), robot_(robot), logs_(logs), options_(options), on_progress_(on_progress) {
+    check_joints(logs);
+    check_joints(holdout);
+    check_kind(logs, logs.front().at_rest);
+    check_kind(holdout, logs.front().at_rest);
+    plan_ = plan_filter(logs, robot_);
+    const FilterPlan& plan = plan_;
+    constexpr Index kFewest = 80;
+    check(logs, plan, kFewest);
+    check(holdout, plan, kMinFilteredSamples);
+    const VectorXd widths = set_sign_widths(robot_, logs, plan);
+    nuisance_.link_share = options.link_share;
+    both_ways_ = came_both_ways(logs);
+    const auto data_of = [&](const std::vector<Stretch>& some) {
+      auto made = searched_workspaces(some, robot_, plan, widths);
+      for (Workspace& at : made) at.came_both_ways = both_ways_;
+      return std::make_unique<Data>(std::move(made), robot_, nuisance_);
+    };
+    const std::vector<Stretch> searched = stretches_of(logs, robot_, plan);
+    data_ = data_of(searched);
+    left_out_ = words_of(searched, logs);
+    if (!holdout.empty()) held_out_ = data_of(stretches_of(holdout, robot_, plan));
+    regression_ = std::make_unique<Regression>(*data_);
+    tell("preparing the candidates' regressors");
+    search_ = std::make_unique<Search>(*regression_,
+                                       SearchOptions{.bootstrap_draws = options.bootstrap_draws,
+                                                     .seed = options.seed,
+                                                     .threads = options.threads});
+  }
+
+  // A recording at fault tells nothing of effects: then there is no search, and what the model
+  // leaves of the recording is still shown.
+  Explanation run(bool search) {
+    const HoldOut hold_out(*regression_, held_out_.get());
+    Explanation result;
+    if (!options_.robot_file.empty() && !is_stream(options_.robot_file))
+      result.robot_file = shell_word(options_.robot_file);
+    result.at_rest = data_->recordings[0].at_rest;
+    result.holdout_is_apart = hold_out.is_apart();
+    result.excitation = excitation_of(data_->recordings);
+    FoundModel found = find_model(
+        *search_, *regression_, hold_out, result.excitation,
+        {.most_effects = search ? most_effects() : 0, .replays = options_.replays}, on_progress_);
+    result.over_variable = leave_out_stand_ins(*regression_, hold_out, options_.threads, found);
+    result.ambiguous = classes_of(found, hold_out);
+    if (search) {
+      for (auto& one : undecided(*search_, *regression_, found, result.excitation)) {
+        result.ambiguous.push_back(std::move(one));
+      }
+    }
+    tell("fitting the numbers");
+    ImprovedRobot improved = improved_robot(
+        file_, robot_, *data_, {nuisance_, fitted_effects(file_), {}, options_.source},
+        relinearise(robot_, *data_, nuisance_, found.terms(), found.fit));
+    describe({robot_, *regression_, *search_, hold_out, found, improved}, result);
+    result.improved = std::move(improved.robot);
+    result.unwritable = std::move(improved.unwritable);
+    result.held = std::move(improved.held);
+    result.unphysical = std::move(improved.of_other_sign);
+    result.unphysical.insert(result.unphysical.end(), improved.unphysical.begin(),
+                             improved.unphysical.end());
+    tell_errors_of_files(result);
+    judge_whole(result);
+    if (!result.found.empty()) {
+      result.advice.insert(result.advice.end(), result.unphysical.begin(), result.unphysical.end());
+    }
+    return result;
+  }
+
+  void say_what_was_left_out(Explanation& result) const {
+    if (!left_out_.empty()) result.advice.push_back(left_out_);
+  }
+
+ private:
+  void tell(const std::string& doing) const {
+    if (on_progress_) on_progress_(doing);
+  }
+
+  // Readings at rest have no filter, and their friction by the direction of approach no file.
+  void tell_errors_of_files(Explanation& result) const {
+    if (result.at_rest) return;
+    tell("comparing the models before and after");
+    const FileErrors before = file_errors(file_, logs_, plan_);
+    const FileErrors after = file_errors(result.improved, logs_, plan_);
+    for (std::size_t joint = 0; joint < result.joints.size(); ++joint) {
+      result.joints[joint].rms_torque = before.rms_torque[joint];
+      result.joints[joint].rms_before = before.rms_error[joint];
+      result.joints[joint].rms_improved = after.rms_error[joint];
+    }
+  }
+
+  // A hold map may show one order after the other: as many as robot files have room for.
+  [[nodiscard]] int most_effects() const {
+    if (!data_->recordings[0].at_rest) return options_.most_effects;
+    return std::max(1, kEffectsPerJoint * static_cast<int>(robot_.joints.size()) -
+                           static_cast<int>(robot_.effects.size()));
+  }
+
+  void check_joints(const std::vector<Log>& logs) const {
+    for (const Log& log : logs) {
+      if (log.joint_count() != robot_.joint_count()) {
+        throw InputError({log.file, "", fmt::format("{} joints", log.joint_count()),
+                          fmt::format("{}, as the robot has", robot_.joint_count()),
+                          "give the robot file that belongs to this recording, or [channels]"});
+      }
+    }
+  }
+
+  // What is held is not what moves, and a model of what happens at rest knows neither time nor what
+  // friction did on the way: readings are no path.
+  void check_kind(const std::vector<Log>& logs, bool at_rest) const {
+    for (const Log& log : logs) {
+      if (log.at_rest != at_rest) {
+        throw InputError({log.file, "", log.at_rest ? "a hold map" : "a recording in time",
+                          "recordings of one kind", "explain hold maps by themselves"});
+      }
+    }
+    for (const RobotEffect& effect : robot_.effects) {
+      const EffectTraits& traits = info_of(effect.kind)->traits;
+      const bool of_instant =
+          !(traits.acts_at_rest && traits.counts_time) && !remembers(effect.kind);
+      if (!at_rest || of_instant) continue;
+      throw InputError(
+          {logs.front().file, "", "a hold map",
+           "a model without effects in time and without effects that have a memory",
+           fmt::format("leave {} out of the robot file for it", info_of(effect.kind)->name)});
+    }
+  }
+
+  void check(const std::vector<Log>& logs, const FilterPlan& plan, Index fewest) const {
+    Index whole = 0;
+    for (const Log& log : logs) {
+      const Index left = (log.sample_count() - 2 * plan.edge_samples) / plan.decimation;
+      if (left < kMinFilteredSamples) {
+        throw InputError(
+            {log.file, "", fmt::format("{} samples", log.sample_count()),
+             fmt::format("{} or more with this filter",
+                         kMinFilteredSamples * plan.decimation + 2 * plan.edge_samples),
+             "record for longer"});
+      }
+      whole += left;
+    }
+    if (!logs.empty() && whole < fewest) {
+      throw InputError({logs[0].file, "", fmt::format("{} samples after the filter", whole),
+                        fmt::format("{} or more, of all recordings together", fewest),
+                        "record for longer, or give more recordings"});
+    }
+  }
+
+  // What each effect that was found could just as well be. A later, smaller one that as many others
+  // explain as well has no name: it is left to the remainder.
+  [[nodiscard]] std::vector<std::vector<EffectAt>> classes_of(FoundModel& found,
+                                                              const HoldOut& hold_out) const {
+    constexpr std::size_t kMostAlike = 4;
+    std::vector<std::vector<EffectAt>> classes;
+    std::vector<std::vector<EffectAt>> same = all_alike(found);
+    for (std::size_t i = found.accepted.size(); i-- > 0;) {
+      if (i > 0 && same[i].size() > kMostAlike) {
+        found.accepted.erase(found.accepted.begin() + static_cast<std::ptrdiff_t>(i));
+        order_and_hold_out(*regression_, hold_out, options_.threads, found);
+        // Another order, and other companions: all are asked anew.
+        classes.clear();
+        i = found.accepted.size();
+        same = all_alike(found);
+      } else if (same[i].size() > 1) {
+        classes.insert(classes.begin(), std::move(same[i]));
+      }
+    }
+    return classes;
+  }
+
+  // What each of them could just as well be.
+  [[nodiscard]] std::vector<std::vector<EffectAt>> all_alike(const FoundModel& found) const {
+    tell("looking for what else the effects could be");
+    std::vector<std::vector<EffectAt>> same(found.accepted.size());
+    parallel_for(same.size(), options_.threads, [&](std::size_t i) { same[i] = alike(found, i); });
+    return same;
+  }
+
+  // An effect that was found, and what describes the recordings as well in its place.
+  [[nodiscard]] std::vector<EffectAt> alike(const FoundModel& found, std::size_t i) const {
+    const Term& mine = found.accepted[i].term;
+    const std::vector<Term> others = found.terms_without(i);
+    const ModelFit beside = regression_->fit(others);
+    Screening screening = search_->screen(others, beside);
+    // What takes far less than the best does not come as close as noise would let it.
+    constexpr double kNear = 0.25;
+    double most = 0;
+    for (const Screened& one : screening.candidates) most = std::max(most, one.evidence.gain);
+    std::erase_if(screening.candidates,
+                  [&](const Screened& one) { return one.evidence.gain < kNear * most; });
+    std::vector<EffectAt> same{{mine.effect->kind(), mine.joint}};
+    for (const Proposal& other : search_->propose(others, beside, screening)) {
+      const Term& term = other.terms.back();
+      const EffectAt name{term.effect->kind(), term.joint};
+      if (name == same[0] || !as_good(*data_, found.fit, other.fit) ||
+          is_nested(*data_, found.baseline, mine, term) ||
+          is_refuted_by_simpler(*data_, mine, found.fit, term, other.fit)) {
+        continue;
+      }
+      same.push_back(name);
+    }
+    return same;
+  }
+
+  const RobotDescription& file_;
+  RobotDescription robot_;  // the same with signs as wide as the motion can resolve
+  const std::vector<Log>& logs_;
+  FilterPlan plan_;  // of all of them
+  ExplainOptions options_;
+  NuisanceOptions nuisance_;
+  const OnProgress& on_progress_;
+  std::vector<char> both_ways_;
+  std::string left_out_;
+  std::unique_ptr<Data> data_;
+  std::unique_ptr<Data> held_out_;
+  std::unique_ptr<Regression> regression_;
+  std::unique_ptr<Search> search_;
+};
+
+}  // namespace
+
+Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
+                    const std::vector<Log>& holdout, const ExplainOptions& options,
+                    const OnProgress& on_progress) {
+  Explainer explainer(robot, logs, holdout, options, on_progress);
+  if (on_progress) on_progress("examining the recordings");
+  std::vector<DataFault> faults;
+  std::vector<DataFault> hints;
+  for (const std::vector<Log>* group : {&logs, &holdout}) {
+    for (const Log& log : *group) {
+      if (log.at_rest) continue;  // every check there is needs time
+      for (DataFault& fault : examine(log, robot)) {
+        // Velocities come from the positions here: what was recorded of them spoils nothing.
+        const bool hint = fault.kind == DataFaultKind::kVelocity;
+        (hint ? hints : faults).push_back(std::move(fault));
+      }
+    }
+  }
+  Explanation result = explainer.run(faults.empty());
+  if (!faults.empty()) {
+    result.data_faults = std::move(faults);
+    judge_whole(result);
+  }
+  for (const DataFault& hint : hints) {
+    result.advice.push_back(hint.words + ", which changes nothing here; to mend: " + hint.mend);
+  }
+  result.data_hints = std::move(hints);
+  explainer.say_what_was_left_out(result);
+  return result;
+}
+
+}  // namespace offnominal::desk

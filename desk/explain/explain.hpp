@@ -1,0 +1,204 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "explain/doctor.hpp"
+#include "explain/excitation.hpp"
+#include "explain/remainder.hpp"
+#include "identify/effect_candidate.hpp"
+#include "identify/estimates.hpp"
+#include "identify/improved_robot.hpp"
+#include "identify/on_progress.hpp"
+#include "log/log.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::desk {
+
+enum class Verdict {
+  kExplained,
+  kFound,
+  kAmbiguous,
+  kParameterShift,
+  kUnknownStateDependent,
+  kUnknownExternal,
+  kNotExcited,
+  kDataFault
+};
+const char* name_of(Verdict verdict);
+// Whether what was found is to be written to the robot file.
+bool is_to_write(Verdict verdict);
+// The names of all, in the order of the enumeration.
+std::vector<std::string> verdict_names();
+
+// An effect on a joint; the joint counts from 0.
+struct EffectAt {
+  EffectKind kind = EffectKind::kViscousFriction;
+  Eigen::Index joint = 0;
+  [[nodiscard]] std::string_view name() const { return info_of(kind)->name; }
+  friend bool operator==(const EffectAt&, const EffectAt&) = default;
+};
+bool holds(const std::vector<EffectAt>& effects, const EffectAt& one);
+bool holds_in_any(const std::vector<std::vector<EffectAt>>& classes, const EffectAt& one);
+
+struct Finding {
+  EffectAt what;
+  std::string words;
+  std::string formula;  // of its torque, in its parameters
+  std::vector<Estimate> parameters;
+  double p_value = 1;         // of the whole search, wild block bootstrap
+  double p_replay = 1;        // by playing the model without the effect, 1 where not asked for
+  double holdout_before = 0;  // rms torque error of its joint without it, N m or N
+  double holdout_after = 0;
+  double simulated_before = 0;  // rms position error of short forward simulations, rad or m
+  double simulated_after = 0;
+};
+
+// "coulomb_friction"; "cogging_torque of order 72" where there may be several of it.
+std::string title_of(const Finding& finding);
+
+// A torque that the joint's error has over a variable, of a shape that no named effect has.
+struct OverVariable {
+  Eigen::Index joint = 0;
+  std::string variable;  // "position", "velocity" or "load"
+  // The effects that looked like it, and what they take of what a free function of it takes, 0
+  // to 1.
+  std::vector<EffectAt> stand_ins;
+  double share = 0;
+  // Its map: middles of equally filled bins of the variable, and the mean error there, N m or N.
+  std::vector<double> at, torque;
+};
+
+// A stretch of time in which a joint's error stands out.
+struct LoudSpan {
+  Eigen::Index joint = 0;
+  std::size_t recording = 0;  // from 0
+  double from_s = 0;          // by the recording's own time stamps
+  double to_s = 0;
+};
+
+// An effect that noise may hide: likely more than chance, and too unsure or too small to be named.
+struct Suspicion {
+  EffectAt what;
+  double p_value = 1;  // of the whole search, wild block bootstrap
+  double share = 0;    // of the squared error that it takes away, on the joint where that is most
+};
+
+struct Rejection {
+  EffectAt what;
+  double p_value = 1;
+  double smallest_detectable = 0;  // rms torque that would have been seen
+  std::string unit;
+};
+
+struct JointErrors {
+  Eigen::Index joint = 0;
+  std::string unit;
+  double rms_torque = 0;
+  double rms_before = 0;         // of the file's model as it is, as compare() has it
+  double rms_improved = 0;       // the same of the robot with what was found
+  double rms_fitted_before = 0;  // with its numbers fitted within what they may be off
+  double rms_after = 0;          // of the regression, with what is the recordings' own
+  double holdout_before = 0;
+  double holdout_after = 0;
+  double noise_floor = 0;  // of the fitted recordings
+  double holdout_noise_floor =
+      0;  // of those that the held-out errors are of: another motion has another
+};
+
+// A known number of the robot file that the recordings contradict.
+struct Shift {
+  Eigen::Index joint = 0;
+  std::string name;
+  double share = 0;  // of the file's value
+};
+
+// What holds a joint where it has come to rest, by the direction from which it came: fitted beside
+// everything else, never written. A hold map cannot say how much of it is Coulomb friction.
+struct HoldFriction {
+  Eigen::Index joint = 0;
+  double level = 0;  // N m or N
+  std::string unit;
+};
+
+// What is left of a joint's error.
+struct Remains {
+  double rms = 0;                   // N m or N
+  double share_of_torque = 0;       // rms over rms torque
+  double times_noise = 0;           // rms over the noise floor
+  std::string follows = {};         // the variable that it follows most, or "time"; empty: nothing
+  double share = 0;                 // of its energy that follows it
+  std::vector<LoudSpan> when = {};  // where it follows time
+};
+
+// What is said of one joint; the joint counts from 0.
+struct JointAnswer {
+  Eigen::Index joint = 0;
+  Verdict verdict = Verdict::kExplained;
+  std::string words;
+  std::vector<EffectAt> found;
+  std::vector<std::vector<EffectAt>> ambiguous;
+  Remains left;
+};
+
+struct Explanation {
+  Verdict verdict = Verdict::kExplained;
+  std::string words;
+  bool holdout_is_apart = false;  // hold-out recordings, not blocks of time
+  std::vector<JointErrors> joints;
+  std::vector<JointAnswer> answers;  // per joint, the one that matters most first
+  std::vector<Finding> found;        // what matters most first
+  std::vector<OverVariable> over_variable;
+  std::vector<LoudSpan> loud;
+  // Joints whose model has neither Coulomb nor viscous friction.
+  std::vector<Eigen::Index> without_friction;
+  std::vector<std::vector<EffectAt>> ambiguous;
+  std::optional<Suspicion> suspected;  // only where it makes the verdict
+  std::vector<Rejection> rejected;
+  std::vector<StructureShare> where;  // of what is left, largest first
+  std::vector<Shift> shifts;
+  std::vector<DataFault> data_faults;  // that make the verdict
+  std::vector<DataFault> data_hints;   // that leave the answer right
+  std::vector<Excitation> excitation;
+  std::vector<std::string> advice;
+  std::string robot_file = "ROBOT";         // as commands in the advice name it
+  bool at_rest = false;                     // by hold maps
+  std::vector<HoldFriction> hold_friction;  // of hold maps, per joint that came from both sides
+
+  // For pictures: one row per kept sample of the first recording, columns: joints.
+  struct Series {
+    Eigen::VectorXd t_s;
+    Eigen::MatrixXd measured, model_before, model_after, q, dq, load;
+  } series;
+  // Hold-out error of every joint with the findings so far, from none to all.
+  std::vector<Eigen::VectorXd> waterfall;
+  // The robot with what was found and with the numbers fitted beside it; improved_robot.hpp.
+  RobotDescription improved;
+  std::vector<std::string> unwritable;  // what of the findings is not in it, and why
+  std::vector<HeldNumber> held;         // of `improved`
+  std::vector<std::string> unphysical;  // what physics forbids of it
+};
+
+struct ExplainOptions {
+  int threads = 1;
+  std::uint64_t seed = 1;
+  int bootstrap_draws = 1999;
+  int replays = 19;  // 0: none
+  double link_share = 0.05;
+  int most_effects = 6;         // of one joint
+  std::string source = {};      // what `improved` says of where its numbers come from
+  std::string robot_file = {};  // as the user named it, for commands in the advice; empty: "ROBOT"
+};
+
+// Which effects the robot's model lacks, by recordings of it. `holdout` may be empty: then parts of
+// the recordings are held out in turn. Throws InputError where the recordings and the robot do not
+// fit together or are too short.
+Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
+                    const std::vector<Log>& holdout, const ExplainOptions& options,
+                    const OnProgress& on_progress = {});
+
+}  // namespace offnominal::desk

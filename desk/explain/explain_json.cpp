@@ -1,0 +1,160 @@
+#include <nlohmann/json.hpp>
+
+#include "explain/data_fault_report.hpp"
+#include "explain/explain_report.hpp"
+
+namespace offnominal::desk {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+ordered_json effect_at(const EffectAt& what) {
+  return {{"effect", what.name()}, {"joint", what.joint + 1}};
+}
+
+ordered_json parameters_of(const Finding& finding) {
+  ordered_json parameters = ordered_json::object();
+  for (const Estimate& one : finding.parameters) {
+    ordered_json value{{"value", one.value.value}, {"unit", one.value.unit}, {"ci95", nullptr}};
+    if (one.ci95) {
+      value["ci95"] = {(*one.ci95)[0], (*one.ci95)[1]};
+    } else {
+      value["why_no_ci95"] = one.why_no_interval;
+    }
+    parameters[one.value.name] = std::move(value);
+  }
+  return parameters;
+}
+
+ordered_json json_of(const Finding& finding) {
+  ordered_json json = effect_at(finding.what);
+  json["formula"] = finding.formula;
+  json["parameters"] = parameters_of(finding);
+  json["p_value"] = finding.p_value;
+  json["p_value_replay"] = finding.p_replay;
+  json["holdout_error_before"] = finding.holdout_before;
+  json["holdout_error_after"] = finding.holdout_after;
+  json["simulated_position_error_before"] = finding.simulated_before;
+  json["simulated_position_error_after"] = finding.simulated_after;
+  return json;
+}
+
+ordered_json json_of(const JointErrors& joint) {
+  return {{"joint", joint.joint + 1},
+          {"unit", joint.unit},
+          {"rms_torque", joint.rms_torque},
+          {"rms_error_before", joint.rms_before},
+          {"rms_error_after", joint.rms_improved},
+          {"rms_error_fitted", joint.rms_after},
+          {"holdout_before", joint.holdout_before},
+          {"holdout_after", joint.holdout_after},
+          {"noise_floor", joint.noise_floor},
+          {"holdout_noise_floor", joint.holdout_noise_floor}};
+}
+
+ordered_json json_of(const Remains& left) {
+  ordered_json json{{"rms", left.rms},
+                    {"share_of_torque", left.share_of_torque},
+                    {"times_noise", left.times_noise},
+                    {"follows", nullptr},
+                    {"share_of_residual", left.share},
+                    {"when", ordered_json::array()}};
+  if (!left.follows.empty()) json["follows"] = left.follows;
+  for (const LoudSpan& one : left.when) {
+    json["when"].push_back(
+        {{"recording", one.recording + 1}, {"from_s", one.from_s}, {"to_s", one.to_s}});
+  }
+  return json;
+}
+
+template <typename Item, typename Make>
+ordered_json array_of(const std::vector<Item>& items, const Make& make) {
+  ordered_json array = ordered_json::array();
+  for (const Item& item : items) array.push_back(make(item));
+  return array;
+}
+
+ordered_json json_of(const JointAnswer& one) {
+  return {{"joint", one.joint + 1},
+          {"verdict", name_of(one.verdict)},
+          {"words", one.words},
+          {"found", array_of(one.found, effect_at)},
+          {"ambiguous",
+           array_of(one.ambiguous, [](const auto& same) { return array_of(same, effect_at); })},
+          {"left", json_of(one.left)}};
+}
+
+ordered_json json_of(const OverVariable& one) {
+  return {{"joint", one.joint + 1},
+          {"variable", one.variable},
+          {"stand_ins", array_of(one.stand_ins, effect_at)},
+          {"share", one.share},
+          {"at", one.at},
+          {"torque", one.torque}};
+}
+
+}  // namespace
+
+ordered_json to_json(const Explanation& e, const ExplainNames& names) {
+  ordered_json json;
+  json["logs"] = names.logs;
+  json["holdout"] = names.holdout;
+  json["robot"] = names.robot_file;
+  json["verdict"] = name_of(e.verdict);
+  json["words"] = e.words;
+  json["noise_floor"] =
+      array_of(e.joints, [](const JointErrors& joint) { return ordered_json(joint.noise_floor); });
+  json["joints"] = array_of(e.joints, [](const JointErrors& joint) { return json_of(joint); });
+  json["answers"] = array_of(e.answers, [](const JointAnswer& one) { return json_of(one); });
+  json["over_variable"] =
+      array_of(e.over_variable, [](const OverVariable& one) { return json_of(one); });
+  json["found"] = array_of(e.found, [](const Finding& finding) { return json_of(finding); });
+  json["waterfall"] = ordered_json::array();
+  for (std::size_t i = 0; i < e.waterfall.size(); ++i) {
+    ordered_json step{{"added", nullptr}, {"holdout", ordered_json::array()}};
+    if (i > 0) step["added"] = effect_at(e.found[i - 1].what);
+    for (const double error : e.waterfall[i]) step["holdout"].push_back(error);
+    json["waterfall"].push_back(std::move(step));
+  }
+  json["ambiguous"] = array_of(
+      e.ambiguous, [](const std::vector<EffectAt>& same) { return array_of(same, effect_at); });
+  json["suspected"] = nullptr;
+  if (e.suspected) {
+    json["suspected"] = effect_at(e.suspected->what);
+    json["suspected"]["p_value"] = e.suspected->p_value;
+    json["suspected"]["share_of_squared_error"] = e.suspected->share;
+  }
+  json["rejected"] = array_of(e.rejected, [](const Rejection& one) {
+    ordered_json rejected = effect_at(one.what);
+    rejected["p_value"] = one.p_value;
+    rejected["smallest_detectable"] = one.smallest_detectable;
+    rejected["unit"] = one.unit;
+    return rejected;
+  });
+  json["where"] = array_of(e.where, [](const StructureShare& share) {
+    return ordered_json{{"joint", share.joint + 1},
+                        {"variable", share.variable},
+                        {"share_of_residual", share.share}};
+  });
+  json["shifts"] = array_of(e.shifts, [](const Shift& shift) {
+    return ordered_json{{"joint", shift.joint + 1},
+                        {"parameter", shift.name},
+                        {"share_of_file_value", shift.share}};
+  });
+  json["data_faults"] = to_json(e.data_faults);
+  json["data_hints"] = to_json(e.data_hints);
+  json["excitation"] = array_of(e.excitation, [](const Excitation& one) {
+    return ordered_json{{"range", one.range},
+                        {"top_speed", one.top_speed},
+                        {"separation", one.separation},
+                        {"sufficient", one.sufficient}};
+  });
+  json["hold_friction"] = array_of(e.hold_friction, [](const HoldFriction& one) {
+    return ordered_json{{"joint", one.joint + 1}, {"level", one.level}, {"unit", one.unit}};
+  });
+  json["advice"] = e.advice;
+  return json;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+
+#include "common/input_name.hpp"
+#include "common/shell_word.hpp"
+#include "common/text_table.hpp"
+#include "explain/explain_report.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+std::string words_of(const Estimate& one) {
+  std::string words = fmt::format("{} = {:.4g}", one.value.name, one.value.value);
+  if (one.ci95) words += fmt::format(" ({:.4g} .. {:.4g})", (*one.ci95)[0], (*one.ci95)[1]);
+  if (!one.value.unit.empty() && one.value.unit != "1") words += " " + one.value.unit;
+  if (!one.ci95) words += ", " + one.why_no_interval;
+  return words;
+}
+
+std::string unit_at(const Explanation& e, Eigen::Index joint) {
+  return e.joints[static_cast<std::size_t>(joint)].unit;
+}
+
+std::string text_of_joints(const Explanation& e) {
+  const TextTable table({{"joint", -6},
+                         {"rms torque", 12},
+                         {"error before", 14},
+                         {"error after", 14},
+                         {"noise floor", 12},
+                         {"held out, bef.", 14},
+                         {"held out, aft.", 14},
+                         {"held out, floor", 15}});
+  std::string text = "\n" + table.heading();
+  for (const JointErrors& joint : e.joints) {
+    const auto with_unit = [&](double value) {
+      return fmt::format("{:.4g} {}", value, joint.unit);
+    };
+    text += table.row(joint.joint + 1, with_unit(joint.rms_torque), with_unit(joint.rms_before),
+                      with_unit(joint.rms_improved), with_unit(joint.noise_floor),
+                      with_unit(joint.holdout_before), with_unit(joint.holdout_after),
+                      with_unit(joint.holdout_noise_floor));
+  }
+  return text;
+}
+
+std::string text_of_answers(const Explanation& e) {
+  std::string text = e.answers.empty() ? "" : "\n";
+  for (const JointAnswer& one : e.answers) {
+    text += fmt::format("joint {}: {}: {}\n", one.joint + 1, name_of(one.verdict), one.words);
+  }
+  return text;
+}
+
+std::string text_of_findings(const Explanation& e) {
+  std::string text;
+  for (std::size_t i = 0; i < e.found.size(); ++i) {
+    const Finding& finding = e.found[i];
+    const std::string unit = unit_at(e, finding.what.joint);
+    text += fmt::format("\n{}. {} on joint {}: {}\n", i + 1, title_of(finding),
+                        finding.what.joint + 1, finding.words);
+    text += "   torque: " + finding.formula + "\n";
+    for (const Estimate& one : finding.parameters) text += "   " + words_of(one) + "\n";
+    text += fmt::format(
+        "   held-out error without it {:.4g} {}, with it {:.4g} {}; p = {:.2g} over the whole "
+        "search, {:.2g} by replay\n",
+        finding.holdout_before, unit, finding.holdout_after, unit, finding.p_value,
+        finding.p_replay);
+  }
+  for (const auto& same : e.ambiguous) {
+    text += "\nnot told apart:";
+    for (const EffectAt& one : same) {
+      text += fmt::format(" {} on joint {};", one.name(), one.joint + 1);
+    }
+    text.back() = '\n';
+  }
+  return text;
+}
+
+// The command that writes what was found. What came through a pipe is gone: it is to be kept first.
+std::string command_to_add(const ExplainNames& names) {
+  bool kept = true;
+  const auto word = [&](const std::string& file, const char* instead) {
+    if (!is_stream(file)) return " " + shell_word(file);
+    kept = false;
+    return std::string(" ") + instead;
+  };
+  std::string command = "offnominal add --all-found --robot" + word(names.robot_file, "ROBOT");
+  command += " --log";
+  for (const std::string& log : names.logs) command += word(log, "LOG");
+  if (!names.holdout.empty()) command += " --holdout";
+  for (const std::string& log : names.holdout) command += word(log, "HOLDOUT");
+  if (!names.channels.empty()) command += " --channels" + word(names.channels, "CHANNELS");
+  return fmt::format("to write a robot file with it{}: {} -o FILE\n",
+                     kept ? "" : ", keep what came through a pipe in a file, and", command);
+}
+
+}  // namespace
+
+std::string text_of(const Explanation& e, const ExplainNames& names) {
+  std::string text = fmt::format("{}: {}\n", name_of(e.verdict), e.words);
+  text += fmt::format("model {}, {} recording{}, held out: {}\n", names.robot_file,
+                      names.logs.size(), names.logs.size() == 1 ? "" : "s",
+                      e.holdout_is_apart ? "other recordings"
+                      : e.at_rest        ? "stretches of readings"
+                                         : "blocks of time");
+  for (const DataFault& fault : e.data_faults) text += "data fault: " + fault.words + "\n";
+  text += text_of_joints(e);
+  text += text_of_answers(e);
+  text += text_of_findings(e);
+  if (!e.where.empty()) {
+    const StructureShare& first = e.where.front();
+    text += fmt::format("\nwhat is left follows the {} of joint {} by {:.0f} %\n", first.variable,
+                        first.joint + 1, 100 * first.share);
+  }
+  for (const HoldFriction& one : e.hold_friction) {
+    text += fmt::format(
+        "joint {} is held by friction, {:.4g} {} by the direction of approach: fitted beside, not "
+        "written\n",
+        one.joint + 1, one.level, one.unit);
+  }
+  for (const Shift& shift : e.shifts) {
+    text += fmt::format("the file's {} is off by {:+.0f} %\n", shift.name, 100 * shift.share);
+  }
+  for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
+  for (const std::string& why : e.unwritable) text += "cannot be written: " + why + "\n";
+  if (is_to_write(e.verdict) && !e.found.empty() && e.unwritable.empty()) {
+    text += command_to_add(names);
+  }
+  return text;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,464 @@
+#include "explain/find_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "explain/alternatives.hpp"
+#include "explain/confirm.hpp"
+#include "explain/friction_family.hpp"
+#include "explain/replay_null.hpp"
+#include "identify/parallel.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+std::vector<Term> FoundModel::terms() const {
+  std::vector<Term> terms;
+  for (const Accepted& one : accepted) terms.push_back(one.term);
+  return terms;
+}
+
+std::vector<Term> FoundModel::terms_without(std::size_t left_out) const {
+  std::vector<Term> others = terms();
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
+  return others;
+}
+
+namespace {
+
+// Share of the energy of what is held out that has to go.
+constexpr double kRelevantHeldOut = 0.05;
+
+// What goes of an error on the joint where the largest share of its energy goes.
+struct Fall {
+  Index joint = 0;
+  double share = -1;  // of the energy
+  double rms = 0;     // of what goes
+};
+
+Fall best_fall(const VectorXd& before, const VectorXd& after) {
+  Fall best;
+  for (Index joint = 0; joint < before.size(); ++joint) {
+    if (!(before[joint] > 0)) continue;
+    const double share = explained_share(before[joint], after[joint]);
+    if (share > best.share) best = {joint, share, before[joint] * std::sqrt(std::max(0.0, share))};
+  }
+  return best;
+}
+
+// The first so many effects of every joint, as indices into all, in the order of the joints' own.
+using OrderOfJoints = std::vector<std::vector<std::size_t>>;
+
+std::vector<Term> first_of_joints(const std::vector<Accepted>& all, const OrderOfJoints& order,
+                                  std::size_t depth) {
+  std::vector<Term> terms;
+  for (const auto& of_joint : order) {
+    for (std::size_t i = 0; i < std::min(depth, of_joint.size()); ++i) {
+      terms.push_back(all[of_joint[i]].term);
+    }
+  }
+  return terms;
+}
+
+}  // namespace
+
+void order_and_hold_out(const Regression& regression, const HoldOut& hold_out, int threads,
+                        FoundModel& found) {
+  const Data& data = regression.data();
+  const auto joints = static_cast<std::size_t>(data.layout.joint_count());
+  // Largest first on each joint: of what is left each time, the effect that takes most away. What
+  // one joint has hardly touches another, so all joints go one step deeper at once.
+  OrderOfJoints order(joints);
+  std::vector<std::size_t> open(found.accepted.size());
+  std::iota(open.begin(), open.end(), std::size_t{0});
+  std::vector<VectorXd> errors{data.layout.rms(found.baseline.residual)};
+  std::vector<VectorXd> held_out{hold_out.rms(found.held_out_before)};
+  found.fit = found.baseline;
+  found.held_out_after = found.held_out_before;
+  for (std::size_t depth = 1; !open.empty(); ++depth) {
+    std::vector<double> gains(open.size());
+    const Judge judge(found.fit.remainder);
+    parallel_for(open.size(), threads, [&](std::size_t i) {
+      gains[i] = judge.gain(columns_of(data, found.accepted[open[i]].term));
+    });
+    for (std::size_t joint = 0; joint < joints; ++joint) {
+      std::size_t best = open.size();
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        if (static_cast<std::size_t>(found.accepted[open[i]].term.joint) != joint) continue;
+        if (best == open.size() || gains[i] > gains[best]) best = i;
+      }
+      if (best == open.size()) continue;
+      order[joint].push_back(open[best]);
+      open.erase(open.begin() + static_cast<std::ptrdiff_t>(best));
+      gains.erase(gains.begin() + static_cast<std::ptrdiff_t>(best));
+    }
+    const std::vector<Term> terms = first_of_joints(found.accepted, order, depth);
+    found.fit = regression.fit(terms);
+    found.held_out_after = hold_out.residual(terms, found.fit);
+    errors.push_back(data.layout.rms(found.fit.residual));
+    held_out.push_back(hold_out.rms(found.held_out_after));
+  }
+  // Over all joints: by the share of a joint's torque that goes.
+  const VectorXd torque = data.layout.rms(data.torque);
+  std::vector<std::size_t> taken(joints, 0);
+  std::vector<Accepted> sorted;
+  found.waterfall = {held_out[0]};
+  while (sorted.size() < found.accepted.size()) {
+    std::size_t best = joints;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t joint = 0; joint < joints; ++joint) {
+      if (taken[joint] == order[joint].size()) continue;
+      const auto at = static_cast<Index>(joint);
+      const double before = errors[taken[joint]][at];
+      const double after = errors[taken[joint] + 1][at];
+      const double share =
+          (before * before - after * after) / std::max(torque[at] * torque[at], 1e-300);
+      if (share <= most) continue;
+      most = share;
+      best = joint;
+    }
+    sorted.push_back(found.accepted[order[best][taken[best]++]]);
+    VectorXd now = found.waterfall.back();
+    const std::size_t deepest = *std::max_element(taken.begin(), taken.end());
+    for (std::size_t joint = 0; joint < joints; ++joint) {
+      const auto at = static_cast<Index>(joint);
+      now[at] = held_out[order[joint].empty() ? deepest : taken[joint]][at];
+    }
+    found.waterfall.push_back(std::move(now));
+  }
+  found.accepted = std::move(sorted);
+  found.fit = regression.fit(found.terms());
+}
+
+namespace {
+
+class Finder {
+ public:
+  Finder(const Search& search, const Regression& regression, const HoldOut& hold_out,
+         const std::vector<Excitation>& excitation, const FindOptions& options,
+         const OnProgress& on_progress)
+      : search_(search),
+        regression_(regression),
+        hold_out_(hold_out),
+        excitation_(excitation),
+        options_(options),
+        on_progress_(on_progress),
+        joints_(excitation.size()) {}
+
+  FoundModel run() {
+    found_.baseline = regression_.fit({});
+    found_.fit = found_.baseline;
+    found_.held_out_before = hold_out_.residual({}, found_.baseline);
+    found_.held_out_after = found_.held_out_before;
+    while (options_.most_effects > 0 && round()) {
+    }
+    drop_what_is_not_needed();
+    order_and_hold_out(regression_, hold_out_, threads(), found_);
+    return std::move(found_);
+  }
+
+ private:
+  // How far the search has come on one joint.
+  struct OfJoint {
+    std::vector<std::vector<EffectKind>> failed;  // as the model now is
+    int effects = 0;
+    bool done = false;
+  };
+
+  void tell(const std::string& doing) const {
+    if (on_progress_) on_progress_(doing);
+  }
+
+  [[nodiscard]] int threads() const { return search_.options().threads; }
+
+  [[nodiscard]] Fall fall_of(const ModelFit& before, const ModelFit& after) const {
+    const RowLayout& layout = regression_.data().layout;
+    return best_fall(layout.rms(before.residual), layout.rms(after.residual));
+  }
+
+  // Whether it is more than nothing to the joint's torque, and more than what effects that were
+  // found before leave of themselves: each of them is a simplification of something.
+  [[nodiscard]] bool matters(const Fall& fall) const {
+    constexpr double kLeftOfItself = 0.06;  // of the error that the joint had at first
+    const Data& data = regression_.data();
+    const RowLayout& layout = data.layout;
+    return fall.rms >= kRelevantTorque * layout.rms(data.torque)[fall.joint] &&
+           fall.rms >= kLeftOfItself * layout.rms(found_.baseline.residual)[fall.joint];
+  }
+
+  [[nodiscard]] bool relevant(const ModelFit& before, const ModelFit& after) const {
+    const Fall fall = fall_of(before, after);
+    return fall.share >= kRelevantShare && matters(fall);
+  }
+
+  static std::vector<EffectKind> kinds_of(const Proposal& one) {
+    std::vector<EffectKind> kinds;
+    for (std::size_t i = one.terms.size() - one.added; i < one.terms.size(); ++i) {
+      kinds.push_back(one.terms[i].effect->kind());
+    }
+    return kinds;
+  }
+
+  static std::string words_of(const Proposal& one) {
+    std::string words;
+    for (std::size_t i = one.terms.size() - one.added; i < one.terms.size(); ++i) {
+      words += (words.empty() ? "" : " and ") + std::string(one.terms[i].effect->name());
+    }
+    return fmt::format("{} on joint {}", words, one.terms.back().joint + 1);
+  }
+
+  // An effect with a memory must bring the simulated motion closer too.
+  [[nodiscard]] bool simulates_better(const Proposal& proposal) const {
+    const Data& data = regression_.data();
+    const Index joint = proposal.terms.back().joint;
+    return simulated_position_error(data, proposal.fit.residual)[joint] <
+           simulated_position_error(data, found_.fit.residual)[joint];
+  }
+
+  // Where nothing gets a name, what comes closest is worth a word if it takes a few per cent of the
+  // error away, also of what is held out on the same joint. `p`: of the whole search, where known.
+  void suspect(const Proposal& one, std::optional<double> p) {
+    constexpr double kLikely = 0.05;
+    constexpr double kWorthAWord = 0.02;
+    // Regression only screens what remembers: its columns hold the noise that they explain.
+    if (!found_.accepted.empty() || one.terms.back().effect->is_only_screened()) return;
+    if (one.added > 1 || !excitation_[joint_of(one)].sufficient) return;
+    const Fall fall = fall_of(found_.fit, one.fit);
+    if (fall.share < kWorthAWord || !matters(fall)) return;
+    const double before = hold_out_.rms(found_.held_out_after)[fall.joint];
+    const double after = hold_out_.rms(hold_out_.residual(one.terms, one.fit))[fall.joint];
+    if (explained_share(before, after) < kWorthAWord) return;
+    if (!p) p = search_.family_p(one, found_.fit);
+    if (*p > kLikely || (found_.suspected && found_.suspected->p <= *p)) return;
+    found_.suspected = {one.terms.back(), *p, fall.share};
+  }
+
+  static std::size_t joint_of(const Proposal& one) {
+    return static_cast<std::size_t>(one.terms.back().joint);
+  }
+
+  // Every joint that is not done, with what it may lack, best first.
+  [[nodiscard]] std::vector<std::vector<Proposal>> proposals_of_joints() const {
+    std::vector<char> open(joints_.size(), 0);
+    for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+      open[joint] = static_cast<char>(!joints_[joint].done);
+    }
+    const std::vector<Term> terms = found_.terms();
+    const Screening screening = search_.screen(terms, found_.fit);
+    auto proposals = search_.propose_per_joint(terms, found_.fit, screening, open);
+    put_friction_first(search_, regression_, terms, open, proposals);
+    return proposals;
+  }
+
+  // The best of a joint that has not failed; null where there is none.
+  [[nodiscard]] const Proposal* best_of(std::size_t joint, const std::vector<Proposal>& list) {
+    for (const Proposal& one : list) {
+      const auto& failed = joints_[joint].failed;
+      if (std::find(failed.begin(), failed.end(), kinds_of(one)) != failed.end()) continue;
+      if (!relevant(found_.fit, one.fit)) continue;
+      if (!shows(regression_.data(), excitation_[joint], one.terms.back())) continue;
+      return &one;
+    }
+    return nullptr;
+  }
+
+  // Searches every joint that is not done; false where nothing more was found on any.
+  bool round() {
+    constexpr std::size_t kMostTries = 4;  // of one joint, one after the other
+    tell(fmt::format("searching, {} found so far", found_.accepted.size()));
+    const auto proposals = proposals_of_joints();
+    while (true) {
+      std::vector<const Proposal*> best;
+      for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+        OfJoint& of = joints_[joint];
+        if (of.done) continue;
+        const Proposal* one =
+            of.failed.size() < kMostTries ? best_of(joint, proposals[joint]) : nullptr;
+        if (one != nullptr) {
+          best.push_back(one);
+          continue;
+        }
+        of.done = true;
+        // What fell short of relevance may still be worth a word.
+        if (of.failed.empty() && !proposals[joint].empty()) {
+          suspect(proposals[joint].front(), std::nullopt);
+        }
+      }
+      if (best.empty()) return false;
+      if (accept_of(std::move(best))) return true;
+    }
+  }
+
+  // The terms of the model and of all of these.
+  [[nodiscard]] std::vector<Term> terms_with(const std::vector<const Proposal*>& more) const {
+    std::vector<Term> terms = found_.terms();
+    for (const Proposal* one : more) {
+      terms.insert(terms.end(), one->terms.end() - static_cast<std::ptrdiff_t>(one->added),
+                   one->terms.end());
+    }
+    return terms;
+  }
+
+  // Accepts those of the proposals, at most one per joint, that pass; the others are set aside.
+  bool accept_of(std::vector<const Proposal*> best) {
+    std::stable_sort(best.begin(), best.end(), [&](const Proposal* a, const Proposal* b) {
+      return fall_of(found_.fit, a->fit).share > fall_of(found_.fit, b->fit).share;
+    });
+    const std::vector<Term> all = terms_with(best);
+    const ModelFit fit_of_all = best.size() == 1 ? best[0]->fit : regression_.fit(all);
+    const NullOfSearch null = search_.null_of(all, fit_of_all, found_.fit);
+    const VectorXd held_before = hold_out_.rms(found_.held_out_after);
+    const VectorXd held_of_all = hold_out_.residual(all, fit_of_all);
+    bool accepted = false;
+    for (const Proposal* one : best) {
+      OfJoint& of = joints_[joint_of(*one)];
+      Proposal now = *one;
+      if (accepted) {
+        // What the ones before it have taken it need not bring again.
+        constexpr double kStill = 0.8;
+        const double alone = fall_of(found_.fit, now.fit).share;
+        now = search_.proposal_of(terms_with({one}), found_.accepted.size());
+        if (!now.physical || !relevant(found_.fit, now.fit) ||
+            fall_of(found_.fit, now.fit).share < kStill * alone) {
+          continue;
+        }
+      }
+      if (passes(now, null, held_before, held_of_all)) {
+        accepted = true;
+      } else {
+        of.failed.push_back(kinds_of(*one));
+      }
+    }
+    if (!accepted) return false;
+    refine_shapes();
+    const std::vector<Term> terms = found_.terms();
+    found_.fit = regression_.fit(terms);
+    found_.held_out_after = hold_out_.residual(terms, found_.fit);
+    return true;
+  }
+
+  bool passes(const Proposal& one, const NullOfSearch& null, const VectorXd& held_before,
+              const VectorXd& held_of_all) {
+    constexpr double kReplayError = 0.05;
+    const std::size_t first = one.terms.size() - one.added;
+    std::vector<Accepted> fresh;
+    for (std::size_t i = first; i < one.terms.size(); ++i) {
+      ModelFit beside;  // of several new ones each beside the others
+      if (one.added > 1) {
+        std::vector<Term> others = one.terms;
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+        beside = regression_.fit(others);
+        if (!relevant(beside, one.fit)) return false;
+      }
+      const ModelFit& without = one.added > 1 ? beside : found_.fit;
+      const double p = search_.family_p(one.terms[i], without, null);
+      if (p > search_.options().family_error) {
+        suspect(one, p);
+        return false;
+      }
+      fresh.push_back({one.terms[i], p, 1});
+    }
+    const auto joint = static_cast<Index>(joint_of(one));
+    const VectorXd held_after = hold_out_.rms(held_of_all);
+    if (explained_share(held_before[joint], held_after[joint]) < kRelevantHeldOut) {
+      // An effect may show on another joint than the one it acts from.
+      const VectorXd alone = hold_out_.rms(hold_out_.residual(one.terms, one.fit));
+      if (best_fall(held_before, alone).share < kRelevantHeldOut) {
+        suspect(one, fresh.back().p);
+        return false;
+      }
+    }
+    if (one.terms.back().effect->is_only_screened() && !simulates_better(one)) return false;
+    if (options_.replays > 0) {
+      tell("playing the model without " + words_of(one));
+      for (Accepted& term : fresh) {
+        term.p_replay = replay_p(regression_.data(), found_.fit, one.fit.residual, term.term,
+                                 options_.replays, search_.options().seed, threads());
+        if (term.p_replay > kReplayError) return false;
+      }
+    }
+    // The earlier shapes are as they were: only the new terms' were refined.
+    OfJoint& of = joints_[joint_of(one)];
+    for (Accepted& term : fresh) {
+      found_.accepted.push_back(std::move(term));
+      ++of.effects;
+    }
+    found_.fit = one.fit;
+    // What failed or was done may be right beside what is new.
+    for (OfJoint& joint_state : joints_) {
+      if (&joint_state == &of) joint_state.failed.clear();
+      joint_state.done = joint_state.effects >= options_.most_effects;
+    }
+    return true;
+  }
+
+  // Every shape anew beside all that is in the model now, over the whole of its range: which point
+  // of it was best beside fewer terms need not be now. Joints by themselves: what one has hardly
+  // touches another.
+  void refine_shapes() {
+    const std::vector<Term> before = found_.terms();
+    std::vector<std::vector<Term>> refined(joints_.size(), before);
+    parallel_for(joints_.size(), threads(), [&](std::size_t joint) {
+      std::vector<Term>& terms = refined[joint];
+      const auto here = [&](const Term& term) {
+        return static_cast<std::size_t>(term.joint) == joint;
+      };
+      if (std::count_if(terms.begin(), terms.end(), here) < 2) return;
+      for (std::size_t i = 0; i < terms.size(); ++i) {
+        if (here(terms[i])) refine_over_range(regression_, terms, i);
+      }
+    });
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      found_.accepted[i].term = refined[static_cast<std::size_t>(before[i].joint)][i];
+    }
+  }
+
+  // Every accepted effect must still be needed beside all others: the one that is needed least
+  // goes first.
+  void drop_what_is_not_needed() {
+    if (found_.accepted.size() < 2) return;
+    tell("trying to do without each effect again");
+    while (found_.accepted.size() > 1) {
+      std::vector<double> shares(found_.accepted.size());
+      std::vector<char> needed(shares.size());
+      parallel_for(shares.size(), threads(), [&](std::size_t i) {
+        const ModelFit without = regression_.fit(found_.terms_without(i));
+        shares[i] = fall_of(without, found_.fit).share;
+        needed[i] = static_cast<char>(relevant(without, found_.fit));
+      });
+      std::size_t least = shares.size();
+      for (std::size_t i = 0; i < shares.size(); ++i) {
+        if (needed[i] == 0 && (least == shares.size() || shares[i] < shares[least])) least = i;
+      }
+      if (least == shares.size()) return;
+      found_.accepted.erase(found_.accepted.begin() + static_cast<std::ptrdiff_t>(least));
+      found_.fit = regression_.fit(found_.terms());
+    }
+  }
+
+  const Search& search_;
+  const Regression& regression_;
+  const HoldOut& hold_out_;
+  const std::vector<Excitation>& excitation_;
+  const FindOptions& options_;
+  const OnProgress& on_progress_;
+  std::vector<OfJoint> joints_;
+  FoundModel found_;
+};
+
+}  // namespace
+
+FoundModel find_model(const Search& search, const Regression& regression, const HoldOut& hold_out,
+                      const std::vector<Excitation>& excitation, const FindOptions& options,
+                      const OnProgress& on_progress) {
+  return Finder(search, regression, hold_out, excitation, options, on_progress).run();
+}
+
+}  // namespace offnominal::desk

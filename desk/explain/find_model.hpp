@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "explain/excitation.hpp"
+#include "explain/search.hpp"
+#include "identify/holdout.hpp"
+#include "identify/on_progress.hpp"
+#include "identify/regression.hpp"
+
+namespace offnominal::desk {
+
+// An effect that passed every gate.
+struct Accepted {
+  Term term;
+  double p = 1;         // of the whole search, wild block bootstrap
+  double p_replay = 1;  // by playing the model without the effect, 1 where not asked for
+};
+
+// The effect that came closest to a name: likely more than chance, and too unsure or too small.
+struct Suspected {
+  Term term;
+  double p = 1;      // of the whole search, wild block bootstrap
+  double share = 0;  // of the residual energy that it takes away, on the joint where that is most
+};
+
+// Share of a joint's residual energy below which an effect is not worth a name.
+inline constexpr double kRelevantShare = 0.08;
+// The same of the joint's rms torque, for an effect and for what is left of the error.
+inline constexpr double kRelevantTorque = 0.001;
+
+struct FoundModel {
+  std::vector<Accepted> accepted;      // those that matter most first
+  std::optional<Suspected> suspected;  // only where nothing was accepted
+  ModelFit baseline;                   // nuisance alone
+  ModelFit fit;                        // with all that was accepted
+  // Residuals on held-out data without any and with all of the accepted.
+  Eigen::VectorXd held_out_before;
+  Eigen::VectorXd held_out_after;
+  // Held-out error, rms per joint, with the first 0, 1, ... of the accepted.
+  std::vector<Eigen::VectorXd> waterfall;
+
+  [[nodiscard]] std::vector<Term> terms() const;
+  [[nodiscard]] std::vector<Term> terms_without(std::size_t left_out) const;
+};
+
+// Puts the accepted in order, those that matter most first, and judges them anew on what is held
+// out.
+void order_and_hold_out(const Regression& regression, const HoldOut& hold_out, int threads,
+                        FoundModel& found);
+
+struct FindOptions {
+  int most_effects = 6;  // of one joint
+  int replays = 19;      // 0: none
+};
+
+// Adds effects in rounds, in each the best one of every joint that passes significance over the
+// whole search, relevance, hold-out, replay and, where it remembers, simulation. What fails is set
+// aside and the joint's next one is tried; no joint waits for another. Then each effect has to be
+// needed beside all others (shared method: S4 to S8). `excitation`: per joint.
+FoundModel find_model(const Search& search, const Regression& regression, const HoldOut& hold_out,
+                      const std::vector<Excitation>& excitation, const FindOptions& options,
+                      const OnProgress& on_progress);
+
+}  // namespace offnominal::desk

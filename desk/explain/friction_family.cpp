@@ -1,0 +1,152 @@
+#include "explain/friction_family.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "identify/parallel.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+
+namespace {
+
+// How much more likely, in log-likelihood, a larger member has to make the recordings.
+constexpr double kBeats = 3;
+
+// Friction that is there beside Coulomb and viscous friction: by itself it may look like them.
+bool is_larger_member(EffectKind kind) {
+  constexpr std::array kLarger{
+      EffectKind::kStribeckFriction, EffectKind::kQuadraticFriction,
+      EffectKind::kTemperatureDrift, EffectKind::kFrictionAsymmetry,
+      EffectKind::kHysteresis,       EffectKind::kLoadDependentFriction,
+      EffectKind::kJointCoupling,
+  };
+  return std::find(kLarger.begin(), kLarger.end(), kind) != kLarger.end();
+}
+
+bool is_member(EffectKind kind) {
+  return kind == EffectKind::kViscousFriction || kind == EffectKind::kCoulombFriction;
+}
+
+// What of Coulomb and viscous friction neither the file nor the model has on a joint.
+std::vector<EffectKind> lacking(const Data& data, const std::vector<Term>& terms, Index joint) {
+  std::vector<EffectKind> missing;
+  for (const EffectKind kind : {EffectKind::kViscousFriction, EffectKind::kCoulombFriction}) {
+    const auto& known = data.recordings[0].known_effects;
+    const bool has = std::any_of(known.begin(), known.end(),
+                                 [&](const RobotEffect& one) {
+                                   return one.joint == joint && one.kind == kind;
+                                 }) ||
+                     std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
+                       return term.joint == joint && term.effect->kind() == kind;
+                     });
+    if (!has) missing.push_back(kind);
+  }
+  return missing;
+}
+
+Term term_of(const Data& data, EffectKind kind, Index joint) {
+  const auto& all = all_candidates();
+  const auto effect =
+      std::find_if(all.begin(), all.end(), [&](const auto& one) { return one->kind() == kind; });
+  Term term{effect->get(), joint, {}, (*effect)->shapes(data.recordings, joint)};
+  for (const ShapeRange& range : term.ranges) term.shape.push_back(range.grid.front());
+  return term;
+}
+
+bool brings(const Proposal& one, EffectKind kind) {
+  return std::any_of(one.terms.end() - static_cast<std::ptrdiff_t>(one.added), one.terms.end(),
+                     [&](const Term& term) { return term.effect->kind() == kind; });
+}
+
+}  // namespace
+
+bool is_refuted_by_simpler(const Data& data, const Term& simpler, const ModelFit& with_simpler,
+                           const Term& other, const ModelFit& with_other) {
+  if (!is_member(simpler.effect->kind()) || !is_larger_member(other.effect->kind())) return false;
+  const Index joint = simpler.joint;
+  if (other.joint != joint) return false;
+  return data.layout.rms(with_other.residual)[joint] >=
+         data.layout.rms(with_simpler.residual)[joint];
+}
+
+void refine_over_range(const Regression& regression, std::vector<Term>& terms, std::size_t which) {
+  if (!terms[which].is_searched()) return;
+  std::vector<Term> others = terms;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
+  const ModelFit beside = regression.fit(others);
+  const Judge judge(beside.remainder);
+  Term& term = terms[which];
+  double most = judge.gain(columns_of(regression.data(), term));
+  for (std::size_t axis = 0; axis < term.ranges.size(); ++axis) {
+    if (!term.ranges[axis].is_searched()) continue;
+    Term trial = term;
+    for (const double value : term.ranges[axis].grid) {
+      trial.shape[axis] = value;
+      const double gain = judge.gain(columns_of(regression.data(), trial));
+      if (gain <= most) continue;
+      most = gain;
+      term.shape[axis] = value;
+    }
+  }
+  regression.refine(terms, which, beside, judge);
+}
+
+void put_friction_first(const Search& search, const Regression& regression,
+                        const std::vector<Term>& terms, const std::vector<char>& open,
+                        std::vector<std::vector<Proposal>>& proposals) {
+  const Data& data = regression.data();
+  if (data.recordings[0].at_rest) return;
+  struct Member {
+    std::size_t joint = 0;
+    std::vector<EffectKind> kinds;
+    Proposal proposal;
+  };
+  std::vector<Member> members;
+  for (std::size_t joint = 0; joint < proposals.size(); ++joint) {
+    const auto at = static_cast<Index>(joint);
+    if (open[joint] == 0 || !(data.recordings[0].top_speed[at] > 0)) continue;
+    const std::vector<EffectKind> missing = lacking(data, terms, at);
+    for (const EffectKind kind : missing) members.push_back({joint, {kind}, {}});
+    if (missing.size() > 1) members.push_back({joint, missing, {}});
+  }
+  parallel_for(members.size(), search.options().threads, [&](std::size_t i) {
+    Member& member = members[i];
+    std::vector<Term> longer = terms;
+    for (const EffectKind kind : member.kinds) {
+      longer.push_back(term_of(data, kind, static_cast<Index>(member.joint)));
+    }
+    refine_over_range(regression, longer, longer.size() - 1);
+    member.proposal = search.proposal_of(std::move(longer), terms.size());
+  });
+  for (std::size_t joint = 0; joint < proposals.size(); ++joint) {
+    std::vector<Proposal>& list = proposals[joint];
+    bool has_family = false;
+    for (Member& member : members) {
+      if (member.joint != joint || !member.proposal.physical) continue;
+      if (member.kinds.size() == 1) {
+        std::erase_if(list, [&](const Proposal& one) { return brings(one, member.kinds[0]); });
+      }
+      list.push_back(std::move(member.proposal));
+      has_family = true;
+    }
+    // What changes has to be there: a drift beside no friction at all stands for the friction.
+    if (lacking(data, terms, static_cast<Index>(joint)).size() > 1) {
+      std::erase_if(list,
+                    [](const Proposal& one) { return brings(one, EffectKind::kTemperatureDrift); });
+    }
+    if (!has_family) continue;
+    search.rank(list);
+    double best = -std::numeric_limits<double>::infinity();
+    for (const Proposal& one : list) {
+      if (is_member(one.terms.back().effect->kind())) best = std::max(best, one.score);
+    }
+    std::erase_if(list, [&](const Proposal& one) {
+      return is_larger_member(one.terms.back().effect->kind()) && one.score < best + kBeats;
+    });
+  }
+}
+
+}  // namespace offnominal::desk

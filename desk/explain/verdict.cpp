@@ -1,0 +1,478 @@
+#include "explain/verdict.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "explain/explain_report.hpp"
+#include "explain/find_model.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+// What is left counts as structure where it stands this far above the noise floor ...
+constexpr double kAboveNoise = 1.5;
+// ... and this share of it follows a variable on time that was not fitted.
+constexpr double kStructured = 0.15;
+// What stands above its noise and is more than this share of the torque is not explained, whatever
+// it follows.
+constexpr double kShareOfTorque = 0.02;
+// A push or another event: this share of the energy is in a tenth of the time.
+constexpr double kConcentrated = 0.5;
+// ... unless this much follows a variable of the joint.
+constexpr double kFollowsState = 0.4;
+
+struct VerdictRow {
+  Verdict verdict;
+  const char* name;
+  report::Level level;  // of its page
+  bool to_write;
+};
+constexpr std::array<VerdictRow, 8> kVerdicts = {{
+    {Verdict::kExplained, "explained", report::Level::kGood, false},
+    {Verdict::kFound, "found", report::Level::kGood, true},
+    {Verdict::kAmbiguous, "ambiguous", report::Level::kWarn, false},
+    {Verdict::kParameterShift, "parameter_shift", report::Level::kWarn, true},
+    {Verdict::kUnknownStateDependent, "unknown_state_dependent", report::Level::kBad, false},
+    {Verdict::kUnknownExternal, "unknown_external", report::Level::kBad, false},
+    {Verdict::kNotExcited, "not_excited", report::Level::kWarn, false},
+    {Verdict::kDataFault, "data_fault", report::Level::kBad, false},
+}};
+
+const VerdictRow& row_of(Verdict verdict) {
+  return *std::find_if(kVerdicts.begin(), kVerdicts.end(),
+                       [&](const VerdictRow& row) { return row.verdict == verdict; });
+}
+
+constexpr const char* kMorePositions = "hold it at more positions, approached from both sides";
+
+std::string at_joint(Eigen::Index joint) { return fmt::format("joint {}", joint + 1); }
+
+std::string words_of(const Finding& finding) {
+  return fmt::format("{} on {}", title_of(finding), at_joint(finding.what.joint));
+}
+
+// What is left stands above the noise floor, and is worth a word.
+bool stands_out(const JointErrors& joint) {
+  return joint.rms_after > kAboveNoise * joint.noise_floor &&
+         joint.rms_after >= kRelevantTorque * joint.rms_torque;
+}
+
+// The joint where what is left stands furthest above the noise floor, and is worth a name; null
+// where none does.
+const JointErrors* above_noise(const Explanation& e) {
+  const JointErrors* loudest = nullptr;
+  double worst = 0;
+  for (const JointErrors& joint : e.joints) {
+    if (!stands_out(joint) || !(joint.rms_after > worst * joint.noise_floor)) continue;
+    worst = joint.rms_after / joint.noise_floor;
+    loudest = &joint;
+  }
+  return loudest;
+}
+
+// The variable that what is left of a joint follows; null for noise.
+const StructureShare* structure_on(const Explanation& e, const JointErrors& joint) {
+  const StructureShare* state = nullptr;
+  const StructureShare* time = nullptr;
+  if (!stands_out(joint)) return nullptr;
+  for (const StructureShare& share : e.where) {  // largest first
+    if (share.joint != joint.joint) continue;
+    const bool of_time = share.variable == "time";
+    if (of_time && share.share >= kConcentrated) time = &share;
+    if (!of_time && share.share >= kStructured && state == nullptr) state = &share;
+  }
+  if (time != nullptr && (state == nullptr || state->share < kFollowsState)) return time;
+  return state;
+}
+
+const JointErrors& errors_of(const Explanation& e, Eigen::Index joint) {
+  return *std::find_if(e.joints.begin(), e.joints.end(),
+                       [&](const JointErrors& one) { return one.joint == joint; });
+}
+
+Remains remains_of(const Explanation& e, const JointErrors& joint) {
+  Remains left;
+  left.rms = joint.rms_after;
+  left.share_of_torque = joint.rms_torque > 0 ? joint.rms_after / joint.rms_torque : 0;
+  left.times_noise = joint.noise_floor > 0 ? joint.rms_after / joint.noise_floor : 0;
+  const StructureShare* follows = structure_on(e, joint);
+  if (follows == nullptr) return left;
+  left.follows = follows->variable;
+  left.share = follows->share;
+  if (left.follows != "time") return left;
+  std::copy_if(e.loud.begin(), e.loud.end(), std::back_inserter(left.when),
+               [&](const LoudSpan& one) { return one.joint == joint.joint; });
+  return left;
+}
+
+// "in recording 1 from 3.2 to 4.1 s"; the first few.
+std::string words_of_times(const std::vector<LoudSpan>& when) {
+  constexpr std::size_t kMost = 4;
+  std::vector<std::string> spans;
+  for (std::size_t i = 0; i < std::min(kMost, when.size()); ++i) {
+    spans.push_back(fmt::format("{:.1f} to {:.1f} s of recording {}", when[i].from_s, when[i].to_s,
+                                when[i].recording + 1));
+  }
+  std::string words = fmt::format("{}", fmt::join(spans, ", "));
+  if (when.size() > kMost) words += fmt::format(" and {} more", when.size() - kMost);
+  return words;
+}
+
+std::string words_of(const Remains& left, const std::string& unit) {
+  std::string words = fmt::format("{:.3g} {}, {:.2g} % of the torque and {:.1f} times the noise",
+                                  left.rms, unit, 100 * left.share_of_torque, left.times_noise);
+  if (left.follows.empty()) return words + ", follows nothing that was looked at";
+  if (left.follows != "time") {
+    return words + fmt::format(", follows its {} by {:.0f} %", left.follows, 100 * left.share);
+  }
+  words += ", comes in a few stretches of time";
+  return left.when.empty() ? words : words + ": " + words_of_times(left.when);
+}
+
+// "a torque over position of a shape that no known effect has; joint_stiffness is 60 % of it".
+std::string words_of(const OverVariable& shape) {
+  std::vector<std::string> names;
+  for (const EffectAt& one : shape.stand_ins) names.emplace_back(one.name());
+  return fmt::format(
+      "a torque over {} of a shape that no known effect has; {} {} {:.0f} % of what such a torque "
+      "takes",
+      shape.variable, fmt::join(names, " and "), names.size() == 1 ? "is" : "are",
+      100 * std::max(0.0, shape.share));
+}
+
+void advise_on_classes(Explanation& e) {
+  for (const auto& same : e.ambiguous) {
+    std::vector<std::string> all;
+    for (const EffectAt& one : same) {
+      all.push_back(fmt::format("{}@{}", one.name(), one.joint + 1));
+    }
+    e.advice.push_back(fmt::format(
+        "to tell {} from {}: {}; `offnominal motion --robot {} --separate {} -o motion.csv` "
+        "writes such a motion",
+        same[0].name(), same[1].name(), info_of(same[0].kind)->motion_hint, e.robot_file,
+        fmt::join(all, ",")));
+  }
+}
+
+void judge_ambiguous(Explanation& e) {
+  e.verdict = Verdict::kAmbiguous;
+  std::vector<std::string> possible;
+  for (const EffectAt& one : e.ambiguous[0]) {
+    possible.push_back(fmt::format("{} on {}", one.name(), at_joint(one.joint)));
+  }
+  std::vector<std::string> sure;
+  for (const Finding& finding : e.found) {
+    if (!holds_in_any(e.ambiguous, finding.what)) sure.push_back(words_of(finding));
+  }
+  e.words = sure.empty()
+                ? "Something is missing"
+                : fmt::format("Missing: {}. Something else is missing too", fmt::join(sure, ", "));
+  e.words +=
+      fmt::format(", but these recordings cannot tell which: {}.", fmt::join(possible, ", or "));
+  advise_on_classes(e);
+}
+
+void judge_found(Explanation& e) {
+  const bool shift = std::all_of(e.found.begin(), e.found.end(), [](const Finding& f) {
+    return info_of(f.what.kind)->is_known_quantity();
+  });
+  e.verdict = shift ? Verdict::kParameterShift : Verdict::kFound;
+  const Finding& first = e.found.front();
+  const double fall =
+      first.holdout_before > 0 ? 100 * (1 - first.holdout_after / first.holdout_before) : 0;
+  e.words = fmt::format("{} {} ({}): the error on held-out data of that joint falls by {:.0f} %.",
+                        shift ? "Another value of a known quantity:" : "Missing:", words_of(first),
+                        first.words, fall);
+  if (e.found.size() == 1) return;
+  std::vector<std::string> others;
+  std::transform(e.found.begin() + 1, e.found.end(), std::back_inserter(others),
+                 [](const Finding& one) { return words_of(one); });
+  e.words += fmt::format(" Also: {}.", fmt::join(others, ", "));
+}
+
+// The joint whose unknown part matters most; null where there is none.
+const JointAnswer* worst_unknown(const Explanation& e) {
+  const auto worst = std::find_if(e.answers.begin(), e.answers.end(), [](const JointAnswer& one) {
+    return one.verdict == Verdict::kUnknownExternal ||
+           one.verdict == Verdict::kUnknownStateDependent;
+  });
+  return worst == e.answers.end() ? nullptr : &*worst;
+}
+
+void judge_unknown(const JointAnswer& worst, Explanation& e) {
+  e.verdict = worst.verdict;
+  const bool external = worst.verdict == Verdict::kUnknownExternal;
+  const std::string does =
+      external && worst.left.follows == "time"
+          ? "comes in a few stretches of time" +
+                (worst.left.when.empty() ? std::string()
+                                         : " (" + words_of_times(worst.left.when) + ")")
+      : worst.left.follows.empty() ? "follows nothing that was looked at"
+                                   : "follows its " + worst.left.follows;
+  e.words = fmt::format(
+      "Something acts on {} that is none of the known effects: the error stands {:.1f} times above "
+      "the noise and {}.",
+      at_joint(worst.joint), worst.left.times_noise, does);
+  const auto shape =
+      std::find_if(e.over_variable.begin(), e.over_variable.end(),
+                   [&](const OverVariable& one) { return one.joint == worst.joint; });
+  if (shape != e.over_variable.end()) {
+    e.words += fmt::format(" It is {}.", words_of(*shape));
+  }
+  e.advice.push_back(external ? "look at the recording at these times: contact, a cable, a person"
+                              : "see the map of the error over " + (shape != e.over_variable.end()
+                                                                        ? shape->variable
+                                                                        : worst.left.follows));
+}
+
+// How small an effect cannot be named, beyond what the model's own numbers take up: a sentence.
+std::string words_of_detectable(const Explanation& e) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (const Rejection& one : e.rejected) {
+    const double torque = e.joints[static_cast<std::size_t>(one.what.joint)].rms_torque;
+    if (!(torque > 0)) continue;
+    least = std::min(least, 100 * one.smallest_detectable / torque);
+    most = std::max(most, 100 * one.smallest_detectable / torque);
+  }
+  if (!(most > 0)) return "";
+  const std::string low = fmt::format("{:.2g}", least);
+  const std::string high = fmt::format("{:.2g}", most);
+  return fmt::format(" No effect below {} % of a joint's torque can be named by them.",
+                     low == high ? low : low + " to " + high);
+}
+
+// Something is there, and what it is cannot be said: noise, or an effect that this motion shows
+// weakly.
+void judge_suspected(const Suspicion& one, Explanation& e) {
+  e.verdict = Verdict::kNotExcited;
+  e.words = fmt::format(
+      "No effect stands out enough to be named, yet chance alone is unlikely (p = {:.2g} over the "
+      "whole search): {} on {} would explain {:.0f} % of a joint's squared error.",
+      one.p_value, one.what.name(), at_joint(one.what.joint), 100 * one.share);
+  e.advice.push_back(
+      e.at_rest
+          ? kMorePositions
+          : fmt::format("`offnominal motion --robot {} --excite {}@{} -o motion.csv` writes a "
+                        "motion that shows it if it is there; a longer recording helps too",
+                        e.robot_file, one.what.name(), one.what.joint + 1));
+}
+
+}  // namespace
+
+const char* name_of(Verdict verdict) { return row_of(verdict).name; }
+
+bool is_to_write(Verdict verdict) { return row_of(verdict).to_write; }
+
+report::Level level_of(Verdict verdict) { return row_of(verdict).level; }
+
+std::vector<std::string> verdict_names() {
+  std::vector<std::string> names;
+  for (const VerdictRow& row : kVerdicts) names.emplace_back(row.name);
+  return names;
+}
+
+bool holds(const std::vector<EffectAt>& effects, const EffectAt& one) {
+  return std::find(effects.begin(), effects.end(), one) != effects.end();
+}
+
+bool holds_in_any(const std::vector<std::vector<EffectAt>>& classes, const EffectAt& one) {
+  return std::any_of(classes.begin(), classes.end(),
+                     [&](const auto& same) { return holds(same, one); });
+}
+
+std::string title_of(const Finding& finding) {
+  const ParameterInfo* order = info_of(finding.what.kind)->find(Quantity::kCyclesPerPosition);
+  for (const Estimate& one : finding.parameters) {
+    if (order != nullptr && one.value.name == order->name) {
+      return fmt::format("{} of {} {:.4g}", finding.what.name(), order->name, one.value.value);
+    }
+  }
+  return std::string(finding.what.name());
+}
+
+namespace {
+
+std::vector<std::string> names_of(const std::vector<EffectAt>& effects) {
+  std::vector<std::string> names;
+  std::transform(effects.begin(), effects.end(), std::back_inserter(names),
+                 [](const EffectAt& one) { return std::string(one.name()); });
+  return names;
+}
+
+// How much of the torque the model explains before and after.
+std::string words_of_gain(const JointErrors& errors) {
+  if (!(errors.rms_torque > 0)) return "";
+  const double before = 100 * errors.rms_before / errors.rms_torque;
+  const double after = 100 * errors.rms_after / errors.rms_torque;
+  return fmt::format(" The error falls from {:.3g} to {:.3g} {}, {:.2g} to {:.2g} % of the torque.",
+                     errors.rms_before, errors.rms_after, errors.unit, before, after);
+}
+
+JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
+  JointAnswer answer;
+  answer.joint = errors.joint;
+  answer.left = remains_of(e, errors);
+  for (const Finding& one : e.found) {
+    if (one.what.joint == errors.joint) answer.found.push_back(one.what);
+  }
+  for (const auto& same : e.ambiguous) {
+    if (same.front().joint == errors.joint) answer.ambiguous.push_back(same);
+  }
+  const auto which = static_cast<std::size_t>(errors.joint);
+  const bool poor = which < e.excitation.size() && !e.excitation[which].sufficient;
+  std::vector<std::string> shapes;
+  for (const OverVariable& one : e.over_variable) {
+    if (one.joint == errors.joint) shapes.push_back(words_of(one));
+  }
+  const auto shift = std::find_if(e.shifts.begin(), e.shifts.end(),
+                                  [&](const Shift& one) { return one.joint == errors.joint; });
+  const bool known = std::all_of(answer.found.begin(), answer.found.end(), [](const EffectAt& one) {
+    return info_of(one.kind)->is_known_quantity();
+  });
+  std::vector<EffectAt> sure = answer.found;
+  std::erase_if(sure, [&](const EffectAt& one) { return holds_in_any(answer.ambiguous, one); });
+  const bool far = stands_out(errors) && errors.rms_after > kShareOfTorque * errors.rms_torque;
+  const bool unknown = !answer.left.follows.empty() || far || !shapes.empty();
+  if (!answer.ambiguous.empty() || !answer.found.empty()) {
+    answer.verdict = !answer.ambiguous.empty() ? Verdict::kAmbiguous
+                     : known                   ? Verdict::kParameterShift
+                                               : Verdict::kFound;
+    if (!sure.empty()) answer.words = fmt::format("{}.", fmt::join(names_of(sure), ", "));
+    for (const auto& same : answer.ambiguous) {
+      answer.words += fmt::format("{}{} cannot be told apart.", answer.words.empty() ? "" : " ",
+                                  fmt::join(names_of(same), " or "));
+    }
+    answer.words += words_of_gain(errors);
+  } else if (unknown && !poor) {
+    const bool state = !answer.left.follows.empty() && answer.left.follows != "time";
+    answer.verdict =
+        state || !shapes.empty() ? Verdict::kUnknownStateDependent : Verdict::kUnknownExternal;
+    answer.words = "none of the known effects.";
+  } else if (shift != e.shifts.end() && !poor) {
+    answer.verdict = Verdict::kParameterShift;
+    answer.words = fmt::format("{} is off by {:+.0f} %.", shift->name, 100 * shift->share);
+  } else if (poor) {
+    answer.verdict = Verdict::kNotExcited;
+    answer.words = e.excitation[which].lack + ".";
+  } else if (e.suspected && e.suspected->what.joint == errors.joint) {
+    answer.verdict = Verdict::kNotExcited;
+    answer.words = fmt::format("{} may hide in the noise.", e.suspected->what.name());
+  } else {
+    answer.words = "no known effect is missing.";
+  }
+  for (const std::string& shape : shapes) answer.words += fmt::format(" It has {}.", shape);
+  const char* left = stands_out(errors) ? " What is left: " : "";
+  if (*left != '\0') answer.words += left + words_of(answer.left, errors.unit) + ".";
+  return answer;
+}
+
+// Those that matter most first: by the share of their torque that was missing.
+void judge_joints(Explanation& e) {
+  e.answers.clear();
+  for (const JointErrors& joint : e.joints) e.answers.push_back(judge_joint(e, joint));
+  const auto share = [&](const JointAnswer& one) {
+    const JointErrors& errors = errors_of(e, one.joint);
+    return errors.rms_torque > 0 ? errors.rms_before / errors.rms_torque : 0;
+  };
+  std::stable_sort(e.answers.begin(), e.answers.end(),
+                   [&](const JointAnswer& a, const JointAnswer& b) { return share(a) > share(b); });
+}
+
+// A file without any friction on a joint, in one sentence.
+void advise_on_friction(Explanation& e) {
+  if (e.without_friction.empty() || e.at_rest) return;
+  std::vector<std::string> joints;
+  for (const Eigen::Index joint : e.without_friction) joints.push_back(std::to_string(joint + 1));
+  e.advice.push_back(fmt::format(
+      "the robot file has no friction on joint {}, and every drive has some: `[[effect]]` with "
+      "kind = \"coulomb_friction\" and one with kind = \"viscous_friction\" per joint, `fitted = "
+      "true`, is where to begin",
+      fmt::join(joints, ", ")));
+}
+
+// What is left beside what was found.
+void advise_on_rest(Explanation& e) {
+  for (const JointAnswer& one : e.answers) {
+    const JointErrors& errors = errors_of(e, one.joint);
+    const bool answered =
+        one.verdict == Verdict::kUnknownExternal || one.verdict == Verdict::kUnknownStateDependent;
+    if ((e.verdict == one.verdict && answered) || !stands_out(errors)) continue;
+    if (one.left.follows.empty()) continue;
+    e.advice.push_back(
+        fmt::format("joint {}: what is left, {}", one.joint + 1, words_of(one.left, errors.unit)));
+  }
+}
+
+}  // namespace
+
+void judge_whole(Explanation& e) {
+  e.advice.clear();
+  e.answers.clear();
+  std::optional<Suspicion> suspected = std::exchange(e.suspected, std::nullopt);
+  for (std::size_t joint = 0; joint < e.excitation.size(); ++joint) {
+    const Excitation& one = e.excitation[joint];
+    if (one.sufficient) continue;
+    e.advice.push_back(fmt::format("joint {}: {}", joint + 1, one.lack));
+  }
+  if (!e.data_faults.empty()) {
+    e.verdict = Verdict::kDataFault;
+    e.words = "The recording itself is at fault: " + e.data_faults[0].words + ".";
+    for (const DataFault& fault : e.data_faults) e.advice.push_back(fault.mend);
+    e.found.clear();
+    e.ambiguous.clear();
+    e.over_variable.clear();
+    e.waterfall.resize(std::min<std::size_t>(1, e.waterfall.size()));
+    return;
+  }
+  const bool poor = !all_sufficient(e.excitation);
+  // What stands above the noise without following anything is told as such.
+  if (suspected && !poor && above_noise(e) == nullptr) e.suspected = suspected;
+  judge_joints(e);
+  advise_on_friction(e);
+  const JointAnswer* unknown = worst_unknown(e);
+  const auto shift = std::find_if(e.answers.begin(), e.answers.end(), [](const JointAnswer& one) {
+    return one.verdict == Verdict::kParameterShift;
+  });
+  if (!e.ambiguous.empty()) {
+    judge_ambiguous(e);
+  } else if (!e.found.empty()) {
+    judge_found(e);
+  } else if (unknown != nullptr) {
+    judge_unknown(*unknown, e);
+  } else if (shift != e.answers.end()) {
+    e.verdict = Verdict::kParameterShift;
+    e.words = "A known quantity has another value: " + shift->words;
+  } else if (poor) {
+    e.verdict = Verdict::kNotExcited;
+    e.words = "These motions excite too little to judge the model by them.";
+    e.advice.emplace_back(
+        e.at_rest ? kMorePositions
+                  : fmt::format("`offnominal motion --robot {} -o motion.csv` writes a motion that "
+                                "excites what the robot may have",
+                                e.robot_file));
+  } else if (e.suspected) {
+    judge_suspected(*e.suspected, e);
+  } else {
+    const JointErrors* loudest = above_noise(e);
+    e.verdict = Verdict::kExplained;
+    e.words =
+        loudest == nullptr
+            ? "The model explains these recordings: what is left is noise, or less than a "
+              "thousandth of the torque, and no known effect is missing." +
+                  words_of_detectable(e)
+            : fmt::format(
+                  "No known effect stands out. What is left on {} stands {:.1f} times above the "
+                  "noise, and follows nothing that was looked at.",
+                  at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
+  }
+  advise_on_rest(e);
+}
+
+}  // namespace offnominal::desk

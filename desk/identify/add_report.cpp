@@ -1,0 +1,337 @@
+#include "identify/add_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "common/effort_name.hpp"
+#include "common/nearest.hpp"
+#include "common/text_table.hpp"
+#include "compare/compare_report.hpp"
+#include "compare/torque_charts.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+using nlohmann::ordered_json;
+using report::Level;
+
+const BeforeAfter& of_joint(const std::vector<BeforeAfter>& all, std::size_t joint) {
+  return *std::find_if(all.begin(), all.end(),
+                       [&](const BeforeAfter& entry) { return entry.joint == joint; });
+}
+
+std::string effect_name(const AddResult& result, std::size_t effect) {
+  return info_of(result.robot.effects[effect].kind)->name;
+}
+
+std::string names_of_added(const AddResult& result) {
+  std::vector<std::string> names;
+  for (const std::size_t effect : result.added) names.push_back(effect_name(result, effect));
+  return list_of(names);
+}
+
+// One parameter as it stands in the new robot, with what the fit says of it.
+struct ParameterLine {
+  std::string name;
+  std::string unit;
+  double value = 0;
+  std::optional<Interval> ci95 = {};
+  std::string why_no_interval = {};
+  bool fitted = false;
+};
+
+std::vector<ParameterLine> lines_of(const AddResult& result, std::size_t effect) {
+  std::vector<ParameterLine> lines;
+  const RobotEffect& of = result.robot.effects[effect];
+  const auto parameters = info_of(of.kind)->parameters;
+  const JointType type = result.robot.joints[of.joint].joint.type;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    ParameterLine line{parameters[i].name, unit_of(parameters[i].quantity, type), of.parameters[i]};
+    for (const FittedParameter& fitted : result.fit.parameters) {
+      if (fitted.effect != effect || fitted.parameter != i) continue;
+      line.ci95 = fitted.ci95;
+      line.why_no_interval = fitted.why_no_interval;
+      line.fitted = fitted.fitted;
+    }
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+// Effects that were in the model and have been fitted again.
+std::vector<std::size_t> refitted(const AddResult& result) {
+  std::vector<std::size_t> effects;
+  for (const FittedParameter& parameter : result.fit.parameters) {
+    if (parameter.effect < result.added.front()) effects.push_back(parameter.effect);
+  }
+  std::sort(effects.begin(), effects.end());
+  effects.erase(std::unique(effects.begin(), effects.end()), effects.end());
+  return effects;
+}
+
+ordered_json interval_json(const std::optional<Interval>& ci95) {
+  if (!ci95) return nullptr;
+  return ordered_json::array({(*ci95)[0], (*ci95)[1]});
+}
+
+ordered_json effect_json(const AddResult& result, std::size_t effect) {
+  ordered_json json;
+  json["effect"] = effect_name(result, effect);
+  json["joint"] = result.robot.effects[effect].joint + 1;
+  json["parameters"] = ordered_json::object();
+  for (const ParameterLine& line : lines_of(result, effect)) {
+    json["parameters"][line.name] = {{"value", line.value},
+                                     {"unit", line.unit},
+                                     {"ci95", interval_json(line.ci95)},
+                                     {"fitted", line.fitted}};
+    if (line.fitted && !line.ci95)
+      json["parameters"][line.name]["why_no_ci95"] = line.why_no_interval;
+  }
+  return json;
+}
+
+ordered_json error_json(double relative_percent, double rms) {
+  return {{"relative_error_percent", relative_percent}, {"rms_error", rms}};
+}
+
+std::string value_text(const ParameterLine& line) {
+  std::string text = fmt::format("{:.6g} {}", line.value, line.unit);
+  if (line.ci95) {
+    text += fmt::format(", 95 % between {:.6g} and {:.6g}", (*line.ci95)[0], (*line.ci95)[1]);
+  } else if (!line.fitted) {
+    text += ", not fitted";
+  } else {
+    text += ", " + line.why_no_interval;
+  }
+  return text;
+}
+
+std::string held_out_words(const AddResult& result) {
+  return result.cross_validated
+             ? fmt::format("each fifth of the recording predicted by a fit of the others")
+             : std::string("hold-out recording");
+}
+
+report::Table parameter_table(const AddResult& result) {
+  report::Table table;
+  table.caption = "Parameters";
+  table.columns = {{"effect", "", ".4g"}, {"joint", "", "d"},       {"parameter", "", ".4g"},
+                   {"value", "", ".6g"},  {"95 % from", "", ".6g"}, {"to", "", ".6g"},
+                   {"unit", "", ".4g"},   {"fit", "", ".4g"}};
+  std::vector<std::size_t> effects = result.added;
+  const std::vector<std::size_t> again = refitted(result);
+  effects.insert(effects.end(), again.begin(), again.end());
+  for (const std::size_t effect : effects) {
+    for (const ParameterLine& line : lines_of(result, effect)) {
+      const bool is_new = effect >= result.added.front();
+      report::Cell low;
+      report::Cell high;
+      if (line.ci95) {
+        low = (*line.ci95)[0];
+        high = (*line.ci95)[1];
+      }
+      table.rows.push_back({effect_name(result, effect),
+                            static_cast<double>(result.robot.effects[effect].joint + 1), line.name,
+                            line.value, low, high, line.unit,
+                            std::string(!line.fitted ? "not fitted"
+                                        : is_new     ? "new"
+                                                     : "again")});
+    }
+  }
+  table.note =
+      "Intervals hold for errors that are correlated in time: they come from blocks of the "
+      "recording, not from its samples.";
+  return table;
+}
+
+report::Table error_table(const AddResult& result, const AddNames& names) {
+  report::Table table;
+  table.caption = "Error before and after";
+  table.columns = {{"data", "", ".4g"},           {"joint", "", "d"},
+                   {"rms before", "", ".4g"},     {"rms after", "", ".4g"},
+                   {"unit", "", ".4g"},           {"relative before", "%", ".2f"},
+                   {"relative after", "%", ".2f"}};
+  const auto rows = [&](const std::string& what, const std::vector<BeforeAfter>& errors) {
+    for (const BeforeAfter& error : errors) {
+      table.rows.push_back({what, static_cast<double>(error.joint + 1), error.before_rms,
+                            error.after_rms, error.unit, error.before_percent,
+                            error.after_percent});
+    }
+  };
+  rows("fitted: " + names.log, result.fitted_log);
+  rows(names.holdout ? "not used for the fit: " + *names.holdout : held_out_words(result),
+       result.held_out);
+  table.note = words_of(result.before.plan) + ".";
+  return table;
+}
+
+report::KeyFigures key_figures(const AddResult& result, const AddRequest& request) {
+  const BeforeAfter& error = of_joint(result.held_out, request.joint);
+  report::KeyFigures keys;
+  for (const bool after : {false, true}) {
+    report::KeyFigure figure;
+    figure.label = after ? "error after" : "error before";
+    figure.value = after ? error.after_percent : error.before_percent;
+    figure.unit = "%";
+    figure.format = ".2f";
+    figure.level = after ? level_of(result, request) : Level::kNeutral;
+    figure.note = fmt::format("{:.4g} {} rms, {}", after ? error.after_rms : error.before_rms,
+                              error.unit, held_out_words(result));
+    keys.figures.push_back(figure);
+  }
+  return keys;
+}
+
+}  // namespace
+
+std::string verdict_of(const AddResult& result, const AddRequest& request, bool force) {
+  const std::string names = names_of_added(result);
+  if (!result.objections.empty()) {
+    std::string words = fmt::format("Nothing was written: {}", result.objections.front());
+    for (std::size_t i = 1; i < result.objections.size(); ++i) {
+      words += "; " + result.objections[i];
+    }
+    return words + ".";
+  }
+  const BeforeAfter& error = of_joint(result.held_out, request.joint);
+  const std::string numbers =
+      fmt::format("from {:.2f} % to {:.2f} % of the {} of joint {} ({:.4g} to {:.4g} {} rms)",
+                  error.before_percent, error.after_percent, effort_name(error.unit),
+                  error.joint + 1, error.before_rms, error.after_rms, error.unit);
+  if (!result.doubts.empty()) {
+    std::string words = error.fall() > 0
+                            ? fmt::format(
+                                  "With {} the error of joint {} on data not used for the "
+                                  "fit falls {}, but {}.",
+                                  names, error.joint + 1, numbers, result.doubts.front())
+                            : fmt::format(
+                                  "With {} the error on data not used for the fit does not "
+                                  "fall: it goes {}. These data do not support the effect.",
+                                  names, numbers);
+    return words + (force ? " Written all the same, as --force says."
+                          : " Nothing was written; --force writes it all the same.");
+  }
+  return fmt::format("With {} the error on data not used for the fit falls {}.", names, numbers);
+}
+
+Level level_of(const AddResult& result, const AddRequest& request) {
+  // A twentieth of the error is what an effect has to take away to be worth its place.
+  constexpr double kRelevant = 0.05;
+  if (!result.objections.empty()) return Level::kBad;
+  const double fall = of_joint(result.held_out, request.joint).fall();
+  if (!result.doubts.empty()) return Level::kBad;
+  return fall < kRelevant ? Level::kWarn : Level::kGood;
+}
+
+ordered_json to_json(const AddResult& result, const AddRequest& request, const AddNames& names) {
+  ordered_json json = effect_json(result, result.added.front());
+  json["also"] = ordered_json::array();
+  for (std::size_t i = 1; i < result.added.size(); ++i) {
+    json["also"].push_back(effect_json(result, result.added[i]));
+  }
+  const BeforeAfter& fitted = of_joint(result.fitted_log, request.joint);
+  const BeforeAfter& held_out = of_joint(result.held_out, request.joint);
+  json["before"] = {{"fit", error_json(fitted.before_percent, fitted.before_rms)},
+                    {"holdout", error_json(held_out.before_percent, held_out.before_rms)}};
+  json["after"] = {{"fit", error_json(fitted.after_percent, fitted.after_rms)},
+                   {"holdout", error_json(held_out.after_percent, held_out.after_rms)}};
+  json["unit"] = fitted.unit;
+  json["holdout"] = {{"kind", result.cross_validated ? "parts" : "recording"},
+                     {"log", names.holdout.value_or(names.log)}};
+  json["refitted"] = ordered_json::array();
+  for (const std::size_t effect : refitted(result)) {
+    json["refitted"].push_back(effect_json(result, effect));
+  }
+  json["links"] = ordered_json::array();
+  for (const FittedLink& link : result.fit.links) {
+    json["links"].push_back(
+        {{"link", link.link + 1}, {"factor", link.factor}, {"ci95", interval_json(link.ci95)}});
+  }
+  json["notes"] = result.notes;
+  json["objections"] = result.objections;
+  json["doubts"] = result.doubts;
+  json["written"] =
+      result.may_be_written(names.force) ? ordered_json(names.output_file) : ordered_json();
+  json["filter"] = to_json(result.before.plan);
+  json["verdict"] = verdict_of(result, request, names.force);
+  return json;
+}
+
+std::string text_of(const AddResult& result, const AddRequest& request, const AddNames& names) {
+  std::string text = fmt::format("{} on joint {} of {}, fitted to {}\n", names_of_added(result),
+                                 request.joint + 1, names.robot_file, names.log);
+  const TextTable parameters({{"", -38}, {"", 0}}, "  ");
+  const auto describe = [&](std::size_t effect, bool is_new) {
+    for (const ParameterLine& line : lines_of(result, effect)) {
+      const std::string mark =
+          is_new ? ""
+                 : fmt::format(" ({}joint {})", line.fitted ? "fitted again, " : "",
+                               result.robot.effects[effect].joint + 1);
+      text +=
+          parameters.row(effect_name(result, effect) + "." + line.name, value_text(line) + mark);
+    }
+  };
+  for (const std::size_t effect : result.added) describe(effect, true);
+  for (const std::size_t effect : refitted(result)) describe(effect, false);
+  for (const FittedLink& link : result.fit.links) {
+    text +=
+        fmt::format("  mass and inertia of link {}: times {:.6g}\n", link.link + 1, link.factor);
+  }
+  for (const std::string& remark : result.before.remarks) text += "note: " + remark + "\n";
+  for (const std::string& note : result.notes) text += "note: " + note + "\n";
+  const TextTable table({{"relative error", -48}, {"before", 12}, {"after", 12}});
+  text += table.heading();
+  const auto errors = [&](const std::string& what, const std::vector<BeforeAfter>& all) {
+    for (const BeforeAfter& error : all) {
+      text += table.row(fmt::format("joint {}, {}", error.joint + 1, what),
+                        fmt::format("{:.2f} %", error.before_percent),
+                        fmt::format("{:.2f} %", error.after_percent));
+    }
+  };
+  errors("fitted recording", result.fitted_log);
+  errors(result.cross_validated ? "held-out parts" : "hold-out recording", result.held_out);
+  return text + verdict_of(result, request, names.force) + "\n";
+}
+
+report::Page page_of(const AddResult& result, const AddRequest& request, const AddNames& names) {
+  report::Page page;
+  page.title = "Adding " + names_of_added(result);
+  page.subtitle =
+      fmt::format("joint {} of {}, fitted to {}", request.joint + 1, names.robot_file, names.log);
+  page.verdict = {verdict_of(result, request, names.force), level_of(result, request)};
+  page.command_line = names.command_line;
+
+  report::Section numbers;
+  numbers.heading = "Error and parameters";
+  numbers.blocks.emplace_back(key_figures(result, request));
+  numbers.blocks.emplace_back(error_table(result, names));
+  numbers.blocks.emplace_back(parameter_table(result));
+  for (const std::string& note : result.notes) {
+    numbers.blocks.emplace_back(report::Note{note, Level::kNeutral});
+  }
+  for (const std::string& remark : result.before.remarks) {
+    numbers.blocks.emplace_back(report::Note{remark, Level::kWarn});
+  }
+  page.sections.push_back(std::move(numbers));
+
+  report::Section pictures;
+  pictures.heading = names.holdout ? "Hold-out recording" : "Fitted recording";
+  pictures.text = names.holdout.value_or(names.log);
+  const std::vector<NamedComparison> models{{"before", &result.before, report::Tone::kFaint},
+                                            {"after", &result.after, report::Tone::kModel}};
+  pictures.blocks.emplace_back(torque_over_time(models, request.joint));
+  pictures.blocks.emplace_back(residual_over_time(models, request.joint));
+  for (const MotionVariable variable :
+       {MotionVariable::kVelocity, MotionVariable::kPosition, MotionVariable::kAcceleration}) {
+    pictures.blocks.emplace_back(residual_over(models, request.joint, variable));
+  }
+  page.sections.push_back(std::move(pictures));
+  return page;
+}
+
+}  // namespace offnominal::desk

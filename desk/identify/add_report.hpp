@@ -1,0 +1,41 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "identify/add.hpp"
+#include "report/page.hpp"
+
+namespace offnominal::desk {
+
+// What was fitted, as the user named it.
+struct AddNames {
+  std::string log;
+  std::optional<std::string> holdout;  // none: parts of the log itself
+  std::string robot_file;
+  std::string output_file;
+  std::string command_line;
+  bool force = false;  // doubts are overruled
+};
+
+// What became of the error on data that the fit has not seen, in a sentence or two; why the result
+// is not written, where it is not.
+std::string verdict_of(const AddResult& result, const AddRequest& request, bool force = false);
+report::Level level_of(const AddResult& result, const AddRequest& request);
+
+// {effect, joint, parameters: {name: {value, unit, ci95, fitted}}, also: [{effect, joint,
+//  parameters}], before: {fit: {relative_error_percent, rms_error}, holdout: {...}}, after: {...},
+//  unit, holdout: {kind, log}, refitted: [{effect, joint, parameters}], links: [{link, factor,
+//  ci95}], notes, objections, doubts, written, filter, verdict}. ci95 is [low, high], null where
+// there is none, and why_no_ci95 then says why; before and after are of the joint that was asked
+// for; written is null where nothing was.
+nlohmann::ordered_json to_json(const AddResult& result, const AddRequest& request,
+                               const AddNames& names);
+
+// The same for people, with a line break at its end.
+std::string text_of(const AddResult& result, const AddRequest& request, const AddNames& names);
+
+report::Page page_of(const AddResult& result, const AddRequest& request, const AddNames& names);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "identify/nuisance.hpp"
+#include "identify/rows.hpp"
+#include "identify/workspace.hpp"
+#include "log/log.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::desk {
+
+// Recordings of one robot as a regression: target = nuisance.columns * x + missing effects + noise.
+struct Data {
+  std::vector<Workspace> recordings;
+  RowLayout layout;
+  Nuisance nuisance;
+  Eigen::VectorXd torque;  // measured, filtered, stacked
+  Eigen::VectorXd target;  // measured minus model torque
+
+  Data(std::vector<Workspace> made, const RobotDescription& robot, const NuisanceOptions& options);
+};
+
+// Sets the width of the smoothed sign of every effect that has one to what the motion can resolve,
+// and returns it per joint. The shape of the build-up at a reversal is a nuisance.
+Eigen::VectorXd set_sign_widths(RobotDescription& robot, const std::vector<Log>& logs,
+                                const FilterPlan& plan);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,221 @@
+#include "identify/effect_candidate.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string_view>
+
+#include "compare/inverse_model.hpp"
+#include "identify/effects/effects.hpp"
+#include "identify/shape_grid.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+// What a share of the motion is a share of.
+double scale_of(Quantity quantity, const std::vector<Workspace>& at, Index joint) {
+  switch (quantity) {
+    case Quantity::kVelocity: {
+      double speed = 0;
+      for (const Workspace& one : at) speed = std::max(speed, one.top_speed[joint]);
+      return speed;
+    }
+    case Quantity::kDistance:
+      return range_moved(at, joint);
+    case Quantity::kTime:
+      return longest_duration_s(at);
+    default:
+      throw std::logic_error("a search knows no share of that quantity");
+  }
+}
+
+// The other joints that move, counted from 1.
+std::vector<double> other_joints(const Workspace& at, Index joint) {
+  std::vector<double> others;
+  for (Index k = 0; k < at.joint_count(); ++k) {
+    if (k != joint && at.top_speed[k] > 0) others.push_back(static_cast<double>(k + 1));
+  }
+  return others;
+}
+
+bool is_sign_width(const ParameterInfo& parameter) {
+  return std::string_view(parameter.name) == effects::kSmoothing.name;
+}
+
+}  // namespace
+
+Regressor torque_of(const Workspace& at, const Effect<double>& effect) {
+  const auto joint = static_cast<Index>(effect.joint);
+  switch (info_of(effect.kind)->action) {
+    case EffectAction::kTorque:
+    case EffectAction::kTorqueOfState:
+      return {{joint, torque_of_effect(effect, at.joint_type(joint), at.motion, at.start_s)}};
+    case EffectAction::kFrictionPerLoad:
+      return {{joint, friction_of_load(effect, at.motion, at.load_torque.col(joint))}};
+    case EffectAction::kReflectedInertia:
+      return {{joint, reflected_inertia_of(effect) * at.motion.ddq.col(joint)}};
+    case EffectAction::kPointMass: {
+      const Eigen::MatrixXd torque = torque_of_inertial_effect(at.rigid, effect, at.motion);
+      Regressor regressor;
+      for (Index j = 0; j <= joint; ++j) regressor.push_back({j, torque.col(j)});
+      return regressor;
+    }
+    default:
+      throw std::logic_error("an effect without a torque of its own needs a class in effects/");
+  }
+}
+
+std::vector<ShapePoint> product_grid(const std::vector<ShapeRange>& ranges) {
+  std::vector<ShapePoint> points{{}};
+  for (const ShapeRange& range : ranges) {
+    std::vector<ShapePoint> longer;
+    for (const ShapePoint& point : points) {
+      for (const double value : range.grid) {
+        longer.push_back(point);
+        longer.back().push_back(value);
+      }
+    }
+    points = std::move(longer);
+  }
+  return points;
+}
+
+bool EffectCandidate::finds(const ParameterInfo& parameter) const {
+  return parameter.required || parameter.searched.to > 0;
+}
+
+Index EffectCandidate::linear_count() const {
+  return std::count_if(
+      info_.parameters.begin(), info_.parameters.end(),
+      [](const ParameterInfo& parameter) { return parameter.role == ParameterRole::kLinear; });
+}
+
+ShapeRange EffectCandidate::range_of(std::size_t parameter, JointType type) const {
+  const ParameterInfo& info = info_.parameters[parameter];
+  return {info.name, unit_of(info.quantity, type), {}};
+}
+
+std::vector<ShapeRange> EffectCandidate::shapes(const std::vector<Workspace>& at,
+                                                Index joint) const {
+  std::vector<ShapeRange> ranges;
+  for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+    const ParameterInfo& info = info_.parameters[i];
+    if (info.role != ParameterRole::kShape || !finds(info)) continue;
+    ShapeRange range = range_of(i, at[0].joint_type(joint));
+    if (info.quantity == Quantity::kJointNumber) {
+      range.kind = ShapeRange::Kind::kDiscrete;
+      range.grid = other_joints(at[0], joint);
+    } else {
+      range.kind = ShapeRange::Kind::kLogarithmic;
+      const double scale = scale_of(info.quantity, at, joint);
+      range.grid = logarithmic_grid(info.searched.from * scale, info.searched.to * scale);
+    }
+    ranges.push_back(std::move(range));
+  }
+  return ranges;
+}
+
+std::vector<Regressor> EffectCandidate::regressors(const Workspace& at, Index joint,
+                                                   std::span<const double> shape) const {
+  std::vector<Regressor> columns;
+  const Index count = linear_count();
+  for (Index i = 0; i < count; ++i) {
+    columns.push_back(torque_of(at, effect(joint, VectorXd::Unit(count, i), shape, at.sign_width)));
+  }
+  return columns;
+}
+
+EffectCandidate::Parameters EffectCandidate::found_parameters(const VectorXd& coefficients,
+                                                              std::span<const double> shape) const {
+  Parameters values{};
+  Index linear = 0;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+    const ParameterInfo& parameter = info_.parameters[i];
+    if (parameter.role == ParameterRole::kLinear) {
+      values[i] = coefficients[linear++];
+    } else if (finds(parameter)) {
+      values[i] = shape[next++];
+    }
+  }
+  return values;
+}
+
+bool EffectCandidate::is_physical(const VectorXd& coefficients) const {
+  Index linear = 0;
+  for (const ParameterInfo& parameter : info_.parameters) {
+    if (parameter.role != ParameterRole::kLinear) continue;
+    const bool is_positive = info_.traits.sign != CoefficientSign::kEither || parameter.min >= 0;
+    if (is_positive && !(coefficients[linear] > 0)) return false;
+    ++linear;
+  }
+  return true;
+}
+
+bool EffectCandidate::applies(const Workspace& at, Index joint) const {
+  if (info_.find(Quantity::kJointNumber) != nullptr) return at.joint_count() > 1;
+  return info_.traits.needs_no_motion || at.top_speed[joint] > 0;
+}
+
+bool EffectCandidate::acts_at_rest(const Workspace& /*at*/, Index /*joint*/) const {
+  return info_.traits.acts_at_rest && !info_.traits.counts_time;
+}
+
+EffectCandidate::Spectrum EffectCandidate::spectrum() const {
+  if (info_.is_periodic_in_time()) return Spectrum::kTime;
+  return info_.find(Quantity::kCyclesPerPosition) != nullptr ? Spectrum::kPosition
+                                                             : Spectrum::kNone;
+}
+
+std::vector<NamedValue> EffectCandidate::parameters(JointType type, const VectorXd& coefficients,
+                                                    std::span<const double> shape) const {
+  const Parameters values = found_parameters(coefficients, shape);
+  std::vector<NamedValue> named;
+  for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+    const ParameterInfo& parameter = info_.parameters[i];
+    if (!finds(parameter)) continue;
+    named.push_back({parameter.name, values[i], unit_of(parameter.quantity, type)});
+  }
+  return named;
+}
+
+Effect<double> EffectCandidate::effect(Index joint, const VectorXd& coefficients,
+                                       std::span<const double> shape,
+                                       const VectorXd& sign_width) const {
+  Effect<double> made{info_.kind, static_cast<std::uint8_t>(joint),
+                      found_parameters(coefficients, shape)};
+  Index moved = joint;
+  for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+    const ParameterInfo& parameter = info_.parameters[i];
+    if (parameter.quantity == Quantity::kJointNumber) {
+      moved = static_cast<Index>(made.parameters[i]) - 1;
+    }
+    if (finds(parameter)) continue;
+    made.parameters[i] =
+        is_sign_width(parameter) ? sign_width[moved] : given_[i].value_or(parameter.default_value);
+  }
+  return made;
+}
+
+Candidate candidate_of(EffectKind kind) {
+  for (const auto family :
+       {drive_candidate, payload_candidate, ripple_candidate, transmission_candidate}) {
+    if (Candidate own = family(kind)) return own;
+  }
+  return std::make_unique<EffectCandidate>(kind);
+}
+
+const std::vector<std::unique_ptr<const EffectCandidate>>& all_candidates() {
+  static const auto candidates = [] {
+    std::vector<std::unique_ptr<const EffectCandidate>> all;
+    for (const EffectInfo& info : kAllEffectInfos) all.push_back(candidate_of(info.kind));
+    for (const EffectInfo& info : kInfosOutsideChains) all.push_back(candidate_of(info.kind));
+    return all;
+  }();
+  return candidates;
+}
+
+}  // namespace offnominal::desk

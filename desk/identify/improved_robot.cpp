@@ -1,0 +1,350 @@
+#include "identify/improved_robot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "common/error.hpp"
+#include "identify/friction_power.hpp"
+#include "identify/physical_range.hpp"
+#include "identify/sign_width.hpp"
+#include "identify/torque_scale.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+// Why no robot file can have it; empty where one can.
+std::string why_unwritable(const Effect<double>& effect, JointType type) {
+  const EffectInfo& info = *info_of(effect.kind);
+  if (!chain_may_have(effect.kind)) {
+    return fmt::format("robot files and controllers do not know {} yet", info.name);
+  }
+  for (std::size_t i = 0; i < info.parameters.size(); ++i) {
+    const ParameterInfo& parameter = info.parameters[i];
+    const double value = effect.parameters[i];
+    if (value >= parameter.min && value <= parameter.max) continue;
+    const std::string unit = unit_of(parameter.quantity, type);
+    const bool low = value < parameter.min;
+    return fmt::format(
+        "{} of joint {}: {} = {:.4g}{}, and {} {:g} is possible; look at the units "
+        "that [channels] gives the torque",
+        info.name, effect.joint + 1, parameter.name, value, unit == "1" ? "" : " " + unit,
+        low ? "at least" : "at most", low ? parameter.min : parameter.max);
+  }
+  return {};
+}
+
+// `column`: of the nuisance; `beyond`: how far the number would be outside of its range.
+HeldNumber held_number(const Relinearised& found, Index column, double asked, double beyond,
+                       const PhysicalRange& range) {
+  const Data& data = *found.data;
+  const NuisanceTerm& term = data.nuisance.terms[static_cast<std::size_t>(column)];
+  const double rms =
+      std::abs(beyond) * data.layout.rms(data.nuisance.columns.col(column))[term.joint];
+  HeldNumber held;
+  // What is fitted beside the findings has no interval of its own.
+  held.contradicted =
+      contradicts(range, std::nullopt, rms / data.layout.rms(data.torque)[term.joint]);
+  held.words = fmt::format(
+      "{} was held at {:g}, as {} is possible; free it would be {:.4g}: {}", term.name,
+      range.nearest(asked), range.words_at(asked), asked,
+      held.contradicted ? range.usual_cause() : "as good as the end for these recordings");
+  return held;
+}
+
+// A number of the file that is fitted beside the findings.
+struct Moved {
+  std::size_t effect = 0;
+  std::size_t parameter = 0;
+  PhysicalRange range;
+  double factor = 1;  // of the regression's numbers
+  double asked = 0;
+};
+
+std::vector<Moved> moved_numbers(const Relinearised& found, const RobotDescription& robot) {
+  std::vector<Moved> all;
+  for (std::size_t i = 0; i < found.data->nuisance.terms.size(); ++i) {
+    const NuisanceTerm& term = found.data->nuisance.terms[i];
+    if (term.kind != NuisanceTerm::Kind::kKnownEffect) continue;
+    const RobotEffect& effect = robot.effects[term.effect];
+    if (!effect.fitted) continue;
+    Moved moved{term.effect, term.parameter, physical_range(effect.kind, term.parameter)};
+    moved.factor = factor_of_known(*found.data, found.terms, found.fit, i);
+    moved.asked = effect.parameters[term.parameter] +
+                  moved.factor * found.fit.nuisance[static_cast<Index>(i)];
+    all.push_back(moved);
+  }
+  return all;
+}
+
+// Column of a number of the file.
+Index column_of(const Relinearised& found, const Moved& moved) {
+  const auto& terms = found.data->nuisance.terms;
+  const auto at = std::find_if(terms.begin(), terms.end(), [&](const NuisanceTerm& term) {
+    return term.kind == NuisanceTerm::Kind::kKnownEffect && term.effect == moved.effect &&
+           term.parameter == moved.parameter;
+  });
+  return static_cast<Index>(at - terms.begin());
+}
+
+// The last fit and what it is made of.
+struct FileFit {
+  Relinearised last;
+  RobotDescription made_with;
+  std::vector<Index> widths;
+};
+
+class FileFitter {
+ public:
+  FileFitter(const RobotDescription& file, RobotDescription robot, const Data& data,
+             NuisanceOptions nuisance, const FileFitOptions& options, std::vector<Term> terms)
+      : file_(file),
+        robot_(std::move(robot)),
+        recordings_(data.recordings),
+        nuisance_(std::move(nuisance)),
+        terms_(std::move(terms)) {
+    nuisance_.sign_shapes = false;
+    if (recordings_[0].at_rest) return;
+    VectorXd settled = settled_sign_widths(file, options.refitted);
+    for (Index joint = 0; joint < options.given_widths.size(); ++joint) {
+      if (options.given_widths[joint] > 0) settled[joint] = options.given_widths[joint];
+    }
+    for (Index joint = 0; joint < settled.size(); ++joint) {
+      if (settled[joint] > 0) set_width(joint, settled[joint]);
+    }
+    widths_ = joints_with_free_width(file, options.refitted, terms_, settled);
+    for (const Index joint : widths_) {
+      const double found = searched_sign_width(terms_, joint);
+      if (found > 0) set_width(joint, found);
+    }
+    set_model();
+  }
+
+  FileFit run(std::vector<HeldNumber>& held) {
+    fit_widths();
+    return {fitted_within(held), robot_, widths_};
+  }
+
+ private:
+  void set_width(Index joint, double width) {
+    set_sign_width(robot_, joint, width);
+    for (Workspace& at : recordings_) at.sign_width[joint] = width;
+    for (Term& term : terms_) hold_sign_width(term, joint, width);
+  }
+  void set_model() {
+    for (Workspace& at : recordings_) at.set_model(robot_);
+  }
+
+  // A width and what else is fitted depend on each other: in turn.
+  void fit_widths() {
+    constexpr int kTurns = 2;
+    for (int turn = 0; turn < kTurns && !widths_.empty(); ++turn) {
+      const Data data(recordings_, robot_, nuisance_);
+      const Regression regression(data);
+      for (std::size_t i = 0; turn > 0 && i < terms_.size(); ++i) regression.refine(terms_, i);
+      const ModelFit fit = regression.fit(terms_);
+      std::vector<double> best;
+      for (const Index joint : widths_) {
+        best.push_back(best_sign_width(data, robot_, terms_, fit, joint));
+      }
+      for (std::size_t i = 0; i < widths_.size(); ++i) set_width(widths_[i], best[i]);
+      set_model();
+    }
+  }
+
+  // Numbers of the file that would be beyond what is possible are held at the end of it, and all
+  // else is fitted beside them.
+  Relinearised fitted_within(std::vector<HeldNumber>& held) {
+    constexpr double kRounding = 1e-9;
+    for (;;) {
+      const Data plain(recordings_, robot_, nuisance_);
+      Relinearised last =
+          relinearise(robot_, plain, nuisance_, terms_, Regression(plain).fit(terms_));
+      const std::size_t held_before = nuisance_.known.size();
+      for (const Moved& moved : moved_numbers(last, file_)) {
+        const bool is_held = std::any_of(
+            nuisance_.known.begin(), nuisance_.known.end(), [&](const KnownNumber& one) {
+              return one.effect == moved.effect && one.parameter == moved.parameter;
+            });
+        if (is_held || moved.range.holds(moved.asked)) continue;
+        const double end = moved.range.nearest(moved.asked);
+        const double beyond = (moved.asked - end) / moved.factor;
+        held.push_back(held_number(last, column_of(last, moved), moved.asked, beyond, moved.range));
+        const double start = file_.effects[moved.effect].parameters[moved.parameter];
+        const double at_end = (end - start) / moved.factor;
+        const double wide = kRounding * std::max(std::abs(at_end), std::abs(beyond));
+        nuisance_.known.push_back({moved.effect, moved.parameter, at_end - wide, at_end + wide});
+      }
+      if (nuisance_.known.size() == held_before) return last;
+    }
+  }
+
+  const RobotDescription& file_;
+  RobotDescription robot_;
+  std::vector<Workspace> recordings_;
+  NuisanceOptions nuisance_;
+  std::vector<Term> terms_;
+  std::vector<Index> widths_;
+};
+
+void move_fitted_effects(const Relinearised& found, const std::string& source,
+                         RobotDescription& robot) {
+  for (const Moved& moved : moved_numbers(found, robot)) {
+    RobotEffect& effect = robot.effects[moved.effect];
+    // Held ones are at their end but for rounding, and for what the torque scale still moved.
+    effect.parameters[moved.parameter] = std::clamp(moved.asked, moved.range.min, moved.range.max);
+    effect.source = source;
+  }
+}
+
+std::vector<std::string> of_other_sign(const Relinearised& last) {
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < last.terms.size(); ++i) {
+    const Term& term = last.terms[i];
+    if (!chain_may_have(term.effect->kind()) ||
+        term.effect->is_physical(last.fit.coefficients[i])) {
+      continue;
+    }
+    all.push_back(fmt::format(
+        "{} of joint {} came out as {:.4g}, which cannot be, once all was fitted together",
+        term.effect->name(), term.joint + 1, last.fit.coefficients[i][0]));
+  }
+  return all;
+}
+
+// Friction that all together gives energy, whatever the search saw.
+std::vector<std::string> unphysical(const Relinearised& last, const RobotDescription& improved) {
+  std::vector<std::string> objections;
+  std::set<Index> joints;
+  for (const Term& term : last.terms) {
+    const EffectKind kind = term.effect->kind();
+    if (chain_may_have(kind) && is_friction(kind)) joints.insert(term.joint);
+  }
+  for (const Moved& moved : moved_numbers(last, improved)) {
+    const RobotEffect& effect = improved.effects[moved.effect];
+    if (is_friction(effect.kind)) joints.insert(effect.joint);
+  }
+  const Eigen::VectorXd rms = last.data->layout.rms(last.data->torque);
+  for (const Index joint : joints) {
+    for (const Workspace& at : last.data->recordings) {
+      const auto drives =
+          friction_that_drives(improved, static_cast<std::size_t>(joint), at.motion, rms[joint]);
+      if (!drives) continue;
+      objections.push_back(drives->words(improved));
+      break;
+    }
+  }
+  return objections;
+}
+
+void set_fitted_width(RobotDescription& robot, const std::vector<std::size_t>& refitted,
+                      Index joint, double width) {
+  for (const std::size_t i : refitted) {
+    RobotEffect& effect = robot.effects[i];
+    const std::size_t at = width_of(effect.kind);
+    if (at < info_of(effect.kind)->parameters.size() && followed_joint(effect) == joint) {
+      effect.parameters[at] = width;
+    }
+  }
+}
+
+void scale_links(const Relinearised& found, const std::string& source, RobotDescription& robot) {
+  robot = with_link_factors(std::move(robot), found.link_factors);
+  for (std::size_t link = 0; link < found.link_factors.size(); ++link) {
+    if (found.link_factors[link] == 1) continue;
+    std::string& of_link = robot.joints[link].source;
+    if (!of_link.empty()) of_link += " ";
+    of_link += fmt::format("Mass and inertia times {:.6g}: {}", found.link_factors[link], source);
+  }
+}
+
+}  // namespace
+
+std::vector<std::size_t> fitted_effects(const RobotDescription& robot) {
+  std::vector<std::size_t> fitted;
+  for (std::size_t i = 0; i < robot.effects.size(); ++i) {
+    if (robot.effects[i].fitted) fitted.push_back(i);
+  }
+  return fitted;
+}
+
+ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescription& robot,
+                             const Data& data, const FileFitOptions& options, Relinearised found) {
+  NuisanceOptions nuisance = options.nuisance;
+  if (std::all_of(found.link_factors.begin(), found.link_factors.end(),
+                  [](double factor) { return std::abs(factor - 1) < kWorthWriting; })) {
+    nuisance.link_share = 0;
+  }
+  ImprovedRobot improved;
+  improved.robot = file;
+  FileFitter fitter(file, robot, data, std::move(nuisance), options, found.terms);
+  FileFit file_fit = fitter.run(improved.held);
+  improved.made_with = std::move(file_fit.made_with);
+  improved.widths = std::move(file_fit.widths);
+  improved.last = std::move(file_fit.last);
+  const Relinearised& last = improved.last;
+  const VectorXd& sign_width = last.data->recordings[0].sign_width;
+  scale_links(last, options.source, improved.robot);
+  move_fitted_effects(last, options.source, improved.robot);
+  for (const Index joint : improved.widths) {
+    set_fitted_width(improved.robot, options.refitted, joint, sign_width[joint]);
+  }
+  for (std::size_t i = 0; i < last.terms.size(); ++i) {
+    const Term& term = last.terms[i];
+    const double factor = factor_of_term(*last.data, last.terms, last.fit, i);
+    RobotEffect effect{
+        term.effect->effect(term.joint, factor * last.fit.coefficients[i], term.shape, sign_width)};
+    std::string why =
+        why_unwritable(effect, file.joints[static_cast<std::size_t>(term.joint)].joint.type);
+    if (!why.empty()) {
+      improved.unwritable.push_back(std::move(why));
+      improved.added.push_back(kUnwritten);
+      continue;
+    }
+    improved.added.push_back(improved.robot.effects.size());
+    effect.fitted = true;
+    effect.source = options.source;
+    improved.robot.effects.push_back(std::move(effect));
+  }
+  improved.unphysical = unphysical(last, improved.robot);
+  improved.of_other_sign = of_other_sign(last);
+  improved.found = std::move(found);
+  // As whoever reads it will judge it: a mass that is taken away may leave none.
+  try {
+    static_cast<void>(parse_robot(robot_text(improved.robot), "the robot with it"));
+  } catch (const InputError& error) {
+    improved.unwritable.emplace_back(error.what());
+  }
+  return improved;
+}
+
+Estimates estimates_of(const ImprovedRobot& improved) {
+  const Relinearised& last = improved.last;
+  Estimates estimates = estimates_of(Regression(*last.data), improved.made_with, last.terms,
+                                     last.fit, improved.widths);
+  const Relinearised& found = improved.found;
+  const Estimates beside =
+      estimates_of(Regression(*found.data), improved.made_with, found.terms, found.fit);
+  for (std::size_t i = 0; i < estimates.terms.size(); ++i) {
+    for (std::size_t p = 0; p < estimates.terms[i].size(); ++p) {
+      Estimate& one = estimates.terms[i][p];
+      const Estimate& other = beside.terms[i][p];
+      if (!one.ci95 || !other.ci95) continue;
+      const double noise =
+          std::max((*one.ci95)[1] - (*one.ci95)[0], (*other.ci95)[1] - (*other.ci95)[0]) / 2;
+      const double half = std::hypot(noise, one.value.value - other.value.value);
+      one.ci95 = {one.value.value - half, one.value.value + half};
+    }
+  }
+  return estimates;
+}
+
+}  // namespace offnominal::desk

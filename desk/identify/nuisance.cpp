@@ -1,0 +1,182 @@
+#include "identify/nuisance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "compare/inverse_model.hpp"
+#include "identify/unknown.hpp"
+#include "signal/differentiate.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr std::array<double, 3> kPreslidingShares{0.0002, 0.0006, 0.002};
+
+// Not beyond +-most, which is two standard deviations.
+Prior within(double most) { return {0, most / 2, -most, most}; }
+
+// The same for an unknown that is counted from another value: `factor` times (1 + unknown) is 1 +
+// what the prior is about.
+Prior counted_from(const Prior& prior, double factor) {
+  const auto moved = [&](double value) { return (1 + value) / factor - 1; };
+  return {moved(prior.mean), prior.deviation / factor, moved(prior.low), moved(prior.high)};
+}
+
+class Builder {
+ public:
+  Builder(const RobotDescription& robot, const std::vector<Workspace>& recordings,
+          const RowLayout& layout, const NuisanceOptions& options)
+      : robot_(robot), recordings_(recordings), layout_(layout), options_(options) {}
+
+  Nuisance build() {
+    for (Index link = 0; options_.link_share > 0 && link < layout_.joint_count(); ++link) {
+      add_link(link);
+    }
+    for (std::size_t effect = 0; effect < robot_.effects.size(); ++effect) {
+      if (is_free(effect)) add_effect(effect);
+    }
+    if (recordings_[0].at_rest) add_approach();
+    const bool moves = !recordings_[0].at_rest;
+    for (Index joint = 0; moves && joint < layout_.joint_count(); ++joint) {
+      if (options_.sign_shapes) add_sign_shapes(joint);
+      if (options_.skew_samples > 0) add_skew(joint);
+    }
+    Nuisance nuisance;
+    nuisance.terms = std::move(terms_);
+    nuisance.columns.resize(layout_.rows(), static_cast<Index>(columns_.size()));
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      nuisance.columns.col(static_cast<Index>(i)) = columns_[i];
+    }
+    return nuisance;
+  }
+
+ private:
+  template <typename MakeRegressor>
+  void add(NuisanceTerm term, const MakeRegressor& make) {
+    std::vector<Regressor> regressors;
+    for (const Workspace& at : recordings_) regressors.push_back(make(at));
+    VectorXd column = layout_.stack(recordings_, regressors);
+    terms_.push_back(std::move(term));
+    columns_.push_back(std::move(column));
+  }
+
+  void add_link(Index link) {
+    const auto which = static_cast<std::size_t>(link);
+    const double factor = options_.link_factors.empty() ? 1 : options_.link_factors[which];
+    add({NuisanceTerm::Kind::kLink, link, 0, 0, counted_from(within(options_.link_share), factor),
+         fmt::format("mass and inertia of link {}", link + 1)},
+        [&](const Workspace& at) {
+          const MatrixXd torque = link_torque(at.rigid, which, at.motion);
+          Regressor regressor;
+          for (Index joint = 0; joint <= link; ++joint) {
+            regressor.push_back({joint, torque.col(joint)});
+          }
+          return regressor;
+        });
+  }
+
+  [[nodiscard]] bool is_free(std::size_t effect) const {
+    const auto& free = options_.free_effects;
+    return !free || std::find(free->begin(), free->end(), effect) != free->end();
+  }
+
+  [[nodiscard]] Prior prior_of(std::size_t effect, std::size_t parameter) const {
+    Prior prior;
+    for (const KnownNumber& one : options_.known) {
+      if (one.effect != effect || one.parameter != parameter) continue;
+      prior.low = one.low;
+      prior.high = one.high;
+    }
+    return prior;
+  }
+
+  void add_effect(std::size_t effect) {
+    for (const Unknown& unknown : unknowns_of_effect(robot_, effect, false)) {
+      add({NuisanceTerm::Kind::kKnownEffect, static_cast<Index>(unknown.joint), effect,
+           unknown.parameter, prior_of(effect, unknown.parameter), name_of(robot_, unknown)},
+          [&](const Workspace& at) {
+            Regressor columns;
+            for (JointColumn& column : regressor(robot_, unknown, at.motion)) {
+              columns.push_back({static_cast<Index>(column.joint), std::move(column.values)});
+            }
+            return columns;
+          });
+    }
+  }
+
+  // How dry friction builds up at a reversal is never quite the file's smoothed sign: a wider one,
+  // and a Dahl operator of several widths, each a share of the range moved.
+  void add_sign_shapes(Index joint) {
+    const auto add_shape = [&](const std::string& name, const auto& shape) {
+      add({NuisanceTerm::Kind::kSignShape,
+           joint,
+           0,
+           0,
+           {},
+           fmt::format("{} of joint {}", name, joint + 1)},
+          [&](const Workspace& at) -> Regressor {
+            return {{joint, shape(at)}};
+          });
+    };
+    add_shape("wider sign", [&](const Workspace& at) -> VectorXd {
+      return (at.motion.dq.col(joint).array() / (4 * at.sign_width[joint])).tanh() - at.sign(joint);
+    });
+    const double range = range_moved(recordings_, joint);
+    if (!(range > 0)) return;  // a stuck encoder: nothing builds up over no way
+    for (const double share : kPreslidingShares) {
+      add_shape(fmt::format("pre-sliding over {:.2g}", share * range),
+                [&](const Workspace& at) -> VectorXd {
+                  return at.dahl_state(joint, share * range).array() - at.sign(joint);
+                });
+    }
+  }
+
+  void add_approach() {
+    for (Index joint = 0; joint < layout_.joint_count(); ++joint) {
+      if (!recordings_[0].both_ways(joint)) continue;
+      add({NuisanceTerm::Kind::kApproach,
+           joint,
+           0,
+           0,
+           {},
+           fmt::format("friction by direction of approach of joint {}", joint + 1)},
+          [&](const Workspace& at) -> Regressor {
+            return {{joint, at.approach.col(joint)}};
+          });
+    }
+  }
+
+  void add_skew(Index joint) {
+    double period_s = 0;
+    for (const Workspace& at : recordings_) period_s = std::max(period_s, at.skew_s);
+    const double most = options_.skew_samples * period_s;
+    add({NuisanceTerm::Kind::kSkew, joint, 0, 0, within(most),
+         fmt::format("time skew of joint {}", joint + 1)},
+        [&](const Workspace& at) -> Regressor {
+          return {{joint, central_difference(at.torque.col(joint), at.period_s())}};
+        });
+  }
+
+  const RobotDescription& robot_;
+  const std::vector<Workspace>& recordings_;
+  const RowLayout& layout_;
+  const NuisanceOptions& options_;
+  std::vector<NuisanceTerm> terms_;
+  std::vector<VectorXd> columns_;
+};
+
+}  // namespace
+
+Nuisance make_nuisance(const RobotDescription& robot, const std::vector<Workspace>& recordings,
+                       const RowLayout& layout, const NuisanceOptions& options) {
+  return Builder(robot, recordings, layout, options).build();
+}
+
+}  // namespace offnominal::desk

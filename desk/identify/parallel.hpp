@@ -1,0 +1,38 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace offnominal::desk {
+
+// Calls work(i) for i = 0 .. count-1 on `threads` threads. Every call writes to its own place, so
+// that results do not depend on the number of threads. The first exception is thrown again.
+template <typename Work>
+void parallel_for(std::size_t count, int threads, const Work& work) {
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr error;
+  std::mutex error_mutex;
+  const auto run = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        work(i);
+      } catch (...) {
+        const std::lock_guard lock(error_mutex);
+        if (!error) error = std::current_exception();
+      }
+    }
+  };
+  const auto helpers = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
+  std::vector<std::jthread> others;
+  for (std::size_t i = 1; i < helpers; ++i) others.emplace_back(run);
+  run();
+  others.clear();
+  if (error) std::rethrow_exception(error);
+}
+
+}  // namespace offnominal::desk

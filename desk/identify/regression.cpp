@@ -1,0 +1,227 @@
+#include "identify/regression.hpp"
+
+#include <algorithm>
+#include <boost/math/tools/minima.hpp>
+#include <cmath>
+
+#include "signal/correlation.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+VectorXd independent_samples_of(const RowLayout& layout, const VectorXd& residual) {
+  VectorXd samples = VectorXd::Zero(layout.joint_count());
+  const VectorXd moving = layout.while_moving(residual);
+  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+    for (Index joint = 0; joint < layout.joint_count(); ++joint) {
+      const auto part = moving.segment(layout.begin(r, joint), layout.samples(r));
+      samples[joint] += layout.moving_count(r, joint) / correlation_samples(part);
+    }
+  }
+  return samples;
+}
+
+// Moves a term's shape, one number after the other, to where gain(term) is largest on its grid.
+template <typename Gain>
+void jump(Term& term, const Gain& gain) {
+  for (std::size_t axis = 0; axis < term.ranges.size(); ++axis) {
+    if (!term.ranges[axis].is_searched()) continue;
+    double most = gain(term);
+    Term trial = term;
+    for (const double value : term.ranges[axis].grid) {
+      trial.shape[axis] = value;
+      const double found = gain(trial);
+      if (found <= most) continue;
+      most = found;
+      term.shape[axis] = value;
+    }
+  }
+}
+
+// Moves a term's shape, one number after the other, within the neighbouring points of its grid to
+// where gain(term) is largest.
+template <typename Gain>
+void climb(Term& term, const Gain& gain) {
+  for (std::size_t axis = 0; axis < term.ranges.size(); ++axis) {
+    const ShapeRange& range = term.ranges[axis];
+    if (!range.is_searched()) continue;
+    const bool logarithmic = range.kind == ShapeRange::Kind::kLogarithmic;
+    const auto coordinate = [&](double value) { return logarithmic ? std::log(value) : value; };
+    const auto value_at = [&](double x) { return logarithmic ? std::exp(x) : x; };
+    const auto above = std::upper_bound(range.grid.begin(), range.grid.end(), term.shape[axis]);
+    const auto place =
+        static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, (above - range.grid.begin()) - 1));
+    const double low = coordinate(range.grid[place > 0 ? place - 1 : 0]);
+    const double high = coordinate(range.grid[std::min(place + 1, range.grid.size() - 1)]);
+    const auto gain_at = [&](double x) {
+      Term trial = term;
+      trial.shape[axis] = value_at(x);
+      return gain(trial);
+    };
+    constexpr int kBits = 22;
+    std::uintmax_t most = 40;
+    const auto [found, loss] = boost::math::tools::brent_find_minima(
+        [&](double x) { return -gain_at(x); }, low, high, kBits, most);
+    if (-loss > gain_at(coordinate(term.shape[axis]))) term.shape[axis] = value_at(found);
+  }
+}
+
+}  // namespace
+
+bool Regression::has_dry_friction(const std::vector<Term>& terms, Index joint) const {
+  return data_.recordings[0].knows_dry_friction(joint) ||
+         std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
+           return term.joint == joint && term.effect->info().traits.is_dry;
+         });
+}
+
+bool takes_place_of(const Term& term, const NuisanceTerm& nuisance) {
+  return nuisance.kind == NuisanceTerm::Kind::kSkew && term.joint == nuisance.joint &&
+         term.effect->replaces_skew();
+}
+
+MatrixXd columns_of(const Data& data, const Term& term) {
+  return stacked_columns(data.layout, data.recordings, *term.effect, term.joint, term.shape);
+}
+
+Regression::Design Regression::design(const std::vector<Term>& terms) const {
+  Design made;
+  for (std::size_t i = 0; i < data_.nuisance.terms.size(); ++i) {
+    const NuisanceTerm& nuisance = data_.nuisance.terms[i];
+    if (nuisance.kind == NuisanceTerm::Kind::kSignShape &&
+        !has_dry_friction(terms, nuisance.joint)) {
+      continue;
+    }
+    const bool replaced = std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
+      return takes_place_of(term, nuisance);
+    });
+    if (!replaced) made.kept.push_back(static_cast<Index>(i));
+  }
+  std::vector<MatrixXd> of_terms;
+  Index count = static_cast<Index>(made.kept.size());
+  for (const Term& term : terms) {
+    of_terms.push_back(columns_of(data_, term));
+    made.first.push_back(count);
+    count += of_terms.back().cols();
+  }
+  made.first.push_back(count);
+  made.columns.resize(data_.layout.rows(), count);
+  Index at = 0;
+  for (const Index i : made.kept) {
+    made.columns.col(at++) = data_.nuisance.columns.col(i);
+    made.priors.push_back(data_.nuisance.terms[static_cast<std::size_t>(i)].prior);
+  }
+  for (const MatrixXd& of_term : of_terms) {
+    made.columns.middleCols(at, of_term.cols()) = of_term;
+    at += of_term.cols();
+  }
+  made.priors.resize(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    for (std::size_t c = 0; c < terms[i].given.size(); ++c) {
+      if (!terms[i].given[c]) continue;
+      made.priors[static_cast<std::size_t>(made.first[i]) + c] = Prior::at(*terms[i].given[c]);
+    }
+  }
+  return made;
+}
+
+ModelFit Regression::fit(const std::vector<Term>& terms, const std::vector<char>& rows) const {
+  const RowLayout& layout = data_.layout;
+  const Design made = design(terms);
+  const MatrixXd& columns = made.columns;
+  VectorXd mask = VectorXd::Ones(layout.rows());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i] == 0) mask[static_cast<Index>(i)] = 0;
+  }
+
+  ModelFit result;
+  PriorFit fitted;
+  VectorXd spread = layout.rms(data_.target);
+  VectorXd independent;
+  for (int pass = 0; pass < 2; ++pass) {
+    const double floor = 1e-9 * layout.rms(data_.torque).maxCoeff() + 1e-300;
+    result.joint_weights = spread.cwiseMax(floor).cwiseInverse();
+    if (pass > 0) {
+      result.prior_weight = std::sqrt(static_cast<double>(layout.rows()) / independent.sum());
+    }
+    VectorXd row_weights = layout.weighted(mask, result.joint_weights);
+    const MatrixXd weighted = row_weights.asDiagonal() * columns;
+    fitted = least_squares_with_priors(weighted, row_weights.cwiseProduct(data_.target),
+                                       made.priors, result.prior_weight);
+    result.residual = data_.target - columns * fitted.x;
+    spread = layout.rms(result.residual);
+    independent = independent_samples_of(layout, result.residual);
+  }
+  result.nuisance = VectorXd::Zero(data_.nuisance.columns.cols());
+  for (std::size_t i = 0; i < made.kept.size(); ++i) {
+    result.nuisance[made.kept[i]] = fitted.x[static_cast<Index>(i)];
+  }
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    result.coefficients.push_back(
+        fitted.x.segment(made.first[i], made.first[i + 1] - made.first[i]));
+    for (std::size_t c = 0; c < terms[i].given.size(); ++c) {
+      if (terms[i].given[c]) result.coefficients[i][static_cast<Index>(c)] = *terms[i].given[c];
+    }
+  }
+  Remainder& remainder = result.remainder;
+  remainder.layout = &layout;
+  remainder.independent_samples = independent;
+  remainder.joint_weights = result.joint_weights;
+  remainder.residual = fitted.residual;
+  remainder.blocks = layout.blocks(kShortestBlockS);
+  remainder.prior_weight = result.prior_weight;
+  remainder.basis = fitted.basis;
+  remainder.energy = layout.energy(fitted.residual);
+  return result;
+}
+
+void Regression::refine(std::vector<Term>& terms, std::size_t which) const {
+  if (!terms[which].is_searched()) return;
+  std::vector<Term> others = terms;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
+  const ModelFit beside = fit(others);
+  refine(terms, which, beside, Judge(beside.remainder));
+}
+
+bool Regression::holds_an_end(const ModelFit& fit) const {
+  for (std::size_t i = 0; i < data_.nuisance.terms.size(); ++i) {
+    const Prior& prior = data_.nuisance.terms[i].prior;
+    const double x = fit.nuisance[static_cast<Index>(i)];
+    if (prior.is_informative() && (x <= prior.low || x >= prior.high)) return true;
+  }
+  return false;
+}
+
+void Regression::refine(std::vector<Term>& terms, std::size_t which, const ModelFit& beside,
+                        const Judge& judge) const {
+  if (!terms[which].is_searched()) return;
+  if (!holds_an_end(beside)) {
+    climb(terms[which], [&](const Term& trial) { return judge.gain(columns_of(data_, trial)); });
+    return;
+  }
+  // Without the term a nuisance may stand at an end where it does not belong with it: a payload
+  // looks like a heavier link. With what the model leaves as it is now, everything else adapts.
+  std::vector<Term> others = terms;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
+  const ModelFit now = fit(terms);
+  const Design made = design(others);
+  const VectorXd weights =
+      data_.layout.weighted(VectorXd::Ones(data_.layout.rows()), now.joint_weights);
+  const ProfileFit profile(weights.asDiagonal() * made.columns, weights.cwiseProduct(data_.target),
+                           made.priors, now.prior_weight);
+  const auto gain = [&](const Term& trial) {
+    return -profile.energy_with(weights.asDiagonal() * columns_of(data_, trial));
+  };
+  // Which point of the grid it came from was judged without it, too. A spectrum has thousands of
+  // them, and one that is not the peak is none.
+  const bool spectral = terms[which].effect->spectrum() != EffectCandidate::Spectrum::kNone;
+  if (!spectral) jump(terms[which], gain);
+  climb(terms[which], gain);
+}
+
+}  // namespace offnominal::desk

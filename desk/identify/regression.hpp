@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "identify/data.hpp"
+#include "identify/effect_candidate.hpp"
+#include "identify/evidence.hpp"
+#include "identify/fit.hpp"
+
+namespace offnominal::desk {
+
+// An effect on a joint that may be in the model.
+struct Term {
+  const EffectCandidate* effect = nullptr;
+  Eigen::Index joint = 0;
+  ShapePoint shape{};
+  std::vector<ShapeRange> ranges{};
+  // Coefficients that are given, not fitted; empty: none of them.
+  std::vector<std::optional<double>> given{};
+
+  // Whether it has a shape that has to be looked for.
+  [[nodiscard]] bool is_searched() const {
+    return std::any_of(ranges.begin(), ranges.end(),
+                       [](const ShapeRange& range) { return range.is_searched(); });
+  }
+};
+
+// Whether a term takes the place of an unknown of the nuisance once it is in the model.
+bool takes_place_of(const Term& term, const NuisanceTerm& nuisance);
+
+// A model's fit to data: the nuisance and the terms.
+struct ModelFit {
+  Eigen::VectorXd nuisance;                   // one per nuisance term
+  std::vector<Eigen::VectorXd> coefficients;  // per term
+  Eigen::VectorXd residual;                   // unweighted, stacked
+  Eigen::VectorXd joint_weights;
+  Remainder remainder;
+  double prior_weight = 1;  // fit.hpp
+};
+
+// Columns of a term on any data of the same robot.
+Eigen::MatrixXd columns_of(const Data& data, const Term& term);
+
+// Fits models to data, which have to outlive it: the nuisance, and terms.
+class Regression {
+ public:
+  explicit Regression(const Data& data) : data_(data) {}
+
+  [[nodiscard]] const Data& data() const { return data_; }
+  // Fits nuisance and terms; `rows`: weights 0 or 1 per row, empty for all.
+  [[nodiscard]] ModelFit fit(const std::vector<Term>& terms,
+                             const std::vector<char>& rows = {}) const;
+  // What is fitted: nuisance that applies, then the terms' columns, not weighted.
+  struct Design {
+    Eigen::MatrixXd columns;
+    std::vector<Prior> priors;
+    std::vector<Eigen::Index> kept;   // nuisance terms
+    std::vector<Eigen::Index> first;  // first column of every term, and one past the last
+  };
+  [[nodiscard]] Design design(const std::vector<Term>& terms) const;
+  // Moves a term's shape to where the model fits best, the other terms as they are.
+  void refine(std::vector<Term>& terms, std::size_t which) const;
+  // The same where fit() of the other terms is known, and what judges beside it.
+  void refine(std::vector<Term>& terms, std::size_t which, const ModelFit& beside,
+              const Judge& judge) const;
+
+ private:
+  // An unknown of the nuisance stands at one of its ends: free of it, it might not.
+  [[nodiscard]] bool holds_an_end(const ModelFit& fit) const;
+  [[nodiscard]] bool has_dry_friction(const std::vector<Term>& terms, Eigen::Index joint) const;
+
+  const Data& data_;
+};
+
+}  // namespace offnominal::desk

@@ -1,0 +1,187 @@
+#include "identify/rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+RowLayout::RowLayout(const std::vector<Workspace>& recordings) {
+  joints_ = recordings.empty() ? 0 : recordings[0].joint_count();
+  for (const Workspace& at : recordings) {
+    const Index samples = kept_samples(at.plan, at.motion.t_s).size();
+    first_.push_back(rows_);
+    samples_.push_back(samples);
+    period_s_.push_back(at.plan.period_s());
+    rows_ += samples * joints_;
+  }
+  const bool some_rest = std::any_of(recordings.begin(), recordings.end(),
+                                     [](const Workspace& at) { return at.moving.size() > 0; });
+  if (!some_rest) return;
+  moving_ = VectorXd::Ones(rows_);
+  for (std::size_t r = 0; r < recordings.size(); ++r) {
+    if (recordings[r].moving.size() == 0) continue;
+    for (Index joint = 0; joint < joints_; ++joint) {
+      const VectorXd kept = kept_samples(recordings[r].plan, recordings[r].moving.col(joint));
+      // Where the filter keeps nothing of what moves, rest is all there is (as in standstill.cpp).
+      if (kept.sum() > 0) moving_.segment(begin(r, joint), samples_[r]) = kept;
+    }
+  }
+}
+
+void RowLayout::leave_out(const std::vector<char>& rows) {
+  if (moving_.size() == 0) moving_ = VectorXd::Ones(rows_);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i] == 0) moving_[static_cast<Index>(i)] = 0;
+  }
+}
+
+VectorXd RowLayout::while_moving(const VectorXd& values) const {
+  return moving_.size() == 0 ? values : values.cwiseProduct(moving_).eval();
+}
+
+double RowLayout::moving_count(std::size_t recording, Index joint) const {
+  const Index n = samples_[recording];
+  return moving_.size() == 0 ? static_cast<double>(n)
+                             : moving_.segment(begin(recording, joint), n).sum();
+}
+
+RowLayout::Blocks RowLayout::blocks(double block_s) const {
+  Blocks blocks;
+  blocks.of_row.resize(static_cast<std::size_t>(rows_));
+  for (std::size_t r = 0; r < samples_.size(); ++r) {
+    const auto length = std::max<Index>(1, std::lround(block_s / period_s_[r]));
+    const auto count = static_cast<int>(std::max<Index>(1, samples_[r] / length));
+    for (Index joint = 0; joint < joints_; ++joint) {
+      for (Index i = 0; i < samples_[r]; ++i) {
+        const int block = std::min(static_cast<int>(i / length), count - 1);
+        blocks.of_row[static_cast<std::size_t>(begin(r, joint) + i)] = blocks.count + block;
+      }
+    }
+    blocks.count += count;
+  }
+  leave_out_empty(blocks);
+  return blocks;
+}
+
+// What says nothing is no independent observation.
+void RowLayout::leave_out_empty(Blocks& blocks) const {
+  if (moving_.size() == 0) return;
+  std::vector<int> number(static_cast<std::size_t>(blocks.count), -1);
+  for (Index row = 0; row < rows_; ++row) {
+    if (moving_[row] > 0)
+      number[static_cast<std::size_t>(blocks.of_row[static_cast<std::size_t>(row)])] = 0;
+  }
+  int count = 0;
+  for (int& one : number) {
+    if (one == 0) one = count++;
+  }
+  blocks.count = count;
+  for (int& block : blocks.of_row) block = std::max(0, number[static_cast<std::size_t>(block)]);
+}
+
+std::vector<int> RowLayout::groups_of_joints(const Blocks& groups) const {
+  std::vector<int> counts;
+  for (Index joint = 0; joint < joints_; ++joint) {
+    std::vector<char> seen(static_cast<std::size_t>(groups.count), 0);
+    for (std::size_t r = 0; r < samples_.size(); ++r) {
+      for (Index row = begin(r, joint); row < begin(r, joint) + samples_[r]; ++row) {
+        if (moving_.size() > 0 && !(moving_[row] > 0)) continue;
+        seen[static_cast<std::size_t>(groups.of_row[static_cast<std::size_t>(row)])] = 1;
+      }
+    }
+    counts.push_back(static_cast<int>(std::count(seen.begin(), seen.end(), 1)));
+  }
+  return counts;
+}
+
+VectorXd RowLayout::stack(const std::vector<Workspace>& recordings,
+                          const std::vector<Regressor>& per_recording) const {
+  VectorXd column = VectorXd::Zero(rows_);
+  for (std::size_t r = 0; r < per_recording.size(); ++r) {
+    for (const JointTorque& torque : per_recording[r]) {
+      column.segment(begin(r, torque.joint), samples_[r]) =
+          filtered(recordings[r].plan, torque.values);
+    }
+  }
+  return column;
+}
+
+VectorXd RowLayout::stack_kept(const std::vector<Workspace>& recordings,
+                               const std::vector<Regressor>& per_recording) const {
+  VectorXd column = VectorXd::Zero(rows_);
+  for (std::size_t r = 0; r < per_recording.size(); ++r) {
+    for (const JointTorque& torque : per_recording[r]) {
+      column.segment(begin(r, torque.joint), samples_[r]) =
+          kept_samples(recordings[r].plan, torque.values);
+    }
+  }
+  return column;
+}
+
+VectorXd RowLayout::stack_all(const std::vector<Workspace>& recordings,
+                              const std::vector<const MatrixXd*>& per_recording) const {
+  VectorXd column(rows_);
+  for (std::size_t r = 0; r < per_recording.size(); ++r) {
+    for (Index joint = 0; joint < joints_; ++joint) {
+      column.segment(begin(r, joint), samples_[r]) =
+          filtered(recordings[r].plan, per_recording[r]->col(joint));
+    }
+  }
+  return column;
+}
+
+VectorXd RowLayout::weighted(const VectorXd& values, const VectorXd& joint_weights) const {
+  VectorXd result = while_moving(values);
+  for (std::size_t r = 0; r < samples_.size(); ++r) {
+    for (Index joint = 0; joint < joints_; ++joint) {
+      result.segment(begin(r, joint), samples_[r]) *= joint_weights[joint];
+    }
+  }
+  return result;
+}
+
+VectorXd RowLayout::energy(const VectorXd& values) const {
+  VectorXd energy = VectorXd::Zero(joints_);
+  for (std::size_t r = 0; r < samples_.size(); ++r) {
+    for (Index joint = 0; joint < joints_; ++joint) {
+      const Index first = begin(r, joint);
+      energy[joint] += moving_.size() == 0 ? values.segment(first, samples_[r]).squaredNorm()
+                                           : values.segment(first, samples_[r])
+                                                 .cwiseProduct(moving_.segment(first, samples_[r]))
+                                                 .squaredNorm();
+    }
+  }
+  return energy;
+}
+
+VectorXd RowLayout::rms(const VectorXd& values) const {
+  VectorXd mean = energy(values);
+  for (Index joint = 0; joint < joints_; ++joint) {
+    double count = 0;
+    for (std::size_t r = 0; r < samples_.size(); ++r) count += moving_count(r, joint);
+    mean[joint] /= std::max(1.0, count);
+  }
+  return mean.cwiseSqrt();
+}
+
+MatrixXd stacked_columns(const RowLayout& layout, const std::vector<Workspace>& recordings,
+                         const EffectCandidate& candidate, Index joint, const ShapePoint& shape) {
+  std::vector<std::vector<Regressor>> per_recording;
+  for (const Workspace& at : recordings) {
+    per_recording.push_back(candidate.regressors(at, joint, shape));
+  }
+  const std::size_t count = per_recording[0].size();
+  MatrixXd columns(layout.rows(), static_cast<Index>(count));
+  for (std::size_t c = 0; c < count; ++c) {
+    std::vector<Regressor> regressors;
+    for (auto& one : per_recording) regressors.push_back(std::move(one[c]));
+    columns.col(static_cast<Index>(c)) = layout.stack(recordings, regressors);
+  }
+  return columns;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,56 @@
+#include "identify/torque_scale.hpp"
+
+namespace offnominal::desk {
+
+namespace {
+
+using Eigen::Index;
+
+bool is_scale(EffectKind kind) { return info_of(kind)->action == EffectAction::kToldPerGiven; }
+
+// 1 + the error of a joint's torque constant: as the data's model has it, and as it was fitted.
+struct Scale {
+  double made_with = 1;
+  double fitted = 1;
+};
+
+Scale scale_of(const Data& data, const std::vector<Term>& terms, const ModelFit& fit, Index joint) {
+  Scale scale;
+  const auto& known = data.recordings[0].known_effects;
+  for (const RobotEffect& effect : known) {
+    if (effect.joint == joint && is_scale(effect.kind)) scale.made_with *= 1 + effect.parameters[0];
+  }
+  scale.fitted = scale.made_with;
+  for (std::size_t i = 0; i < data.nuisance.terms.size(); ++i) {
+    const NuisanceTerm& term = data.nuisance.terms[i];
+    if (term.kind == NuisanceTerm::Kind::kKnownEffect && term.joint == joint &&
+        is_scale(known[term.effect].kind)) {
+      scale.fitted += fit.nuisance[static_cast<Index>(i)];
+    }
+  }
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (terms[i].joint == joint && is_scale(terms[i].effect->kind())) {
+      scale.fitted *= 1 + fit.coefficients[i][0];
+    }
+  }
+  return scale;
+}
+
+}  // namespace
+
+double factor_of_term(const Data& data, const std::vector<Term>& terms, const ModelFit& fit,
+                      std::size_t i) {
+  const Term& term = terms[i];
+  if (term.effect->info().acts_on_whole_drive()) return 1;
+  return 1 / scale_of(data, terms, fit, term.joint).fitted;
+}
+
+double factor_of_known(const Data& data, const std::vector<Term>& terms, const ModelFit& fit,
+                       std::size_t i) {
+  const NuisanceTerm& term = data.nuisance.terms[i];
+  if (info_of(data.recordings[0].known_effects[term.effect].kind)->acts_on_whole_drive()) return 1;
+  const Scale scale = scale_of(data, terms, fit, term.joint);
+  return scale.made_with / scale.fitted;
+}
+
+}  // namespace offnominal::desk

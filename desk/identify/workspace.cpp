@@ -1,0 +1,158 @@
+#include "identify/workspace.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/inverse_model.hpp"
+#include "compare/standstill.hpp"
+#include "identify/data.hpp"
+#include "signal/decimate.hpp"
+#include "signal/quantile.hpp"
+#include "signal/zero_phase.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+// Everything that is left after the low-pass, at a rate that keeps it.
+FilterPlan thinned(const FilterPlan& plan, Index stride) {
+  FilterPlan thin = plan;
+  const auto by = static_cast<double>(stride);
+  thin.sample_rate_hz = plan.sample_rate_hz / by;
+  thin.decimation = std::max<Index>(1, std::lround(static_cast<double>(plan.decimation) / by));
+  thin.edge_samples = static_cast<Index>(std::ceil(static_cast<double>(plan.edge_samples) / by));
+  return thin;
+}
+
+std::vector<MatrixXd> mass_columns(const Workspace& at) {
+  std::vector<MatrixXd> columns;
+  for (Index joint = 0; joint < at.joint_count(); ++joint) {
+    Motion faster = at.motion;
+    faster.ddq.col(joint).array() += 1;
+    columns.emplace_back(desk::model_torque(at.rigid, faster) - at.load_torque);
+  }
+  return columns;
+}
+
+// From what a low-pass takes away, as if white; 0 where the low-pass takes nothing.
+double noise_density(const VectorXd& raw, const VectorXd& smooth, const FilterPlan& plan) {
+  const double band_hz = plan.sample_rate_hz / 2 - plan.position_cutoff_hz;
+  if (!(band_hz > 0)) return 0;
+  const VectorXd fast = raw - smooth;
+  return std::sqrt(fast.squaredNorm() / static_cast<double>(fast.size()) / band_hz);
+}
+
+}  // namespace
+
+Eigen::ArrayXd Workspace::sign(Index joint) const {
+  return (motion.dq.col(joint).array() / sign_width[joint]).tanh();
+}
+
+VectorXd Workspace::dahl_state(Index joint, double width) const {
+  const Effect<double> hysteresis{
+      EffectKind::kHysteresis, static_cast<std::uint8_t>(joint), {1, width}};
+  return torque_of_effect(hysteresis, joint_type(joint), motion);
+}
+
+std::vector<char> came_both_ways(const std::vector<Log>& logs) {
+  std::vector<char> both(static_cast<std::size_t>(logs.front().q.cols()), 0);
+  for (std::size_t joint = 0; joint < both.size(); ++joint) {
+    bool up = false;
+    bool down = false;
+    for (const Log& log : logs) {
+      if (!log.at_rest) continue;
+      const auto approach = log.approach.col(static_cast<Index>(joint));
+      up = up || approach.maxCoeff() > 0;
+      down = down || approach.minCoeff() < 0;
+    }
+    both[joint] = static_cast<char>(up && down);
+  }
+  return both;
+}
+
+double range_moved(const std::vector<Workspace>& recordings, Index joint) {
+  double range = 0;
+  for (const Workspace& at : recordings) {
+    const auto q = at.motion.q.col(joint);
+    range = std::max(range, q.maxCoeff() - q.minCoeff());
+  }
+  return range;
+}
+
+double longest_duration_s(const std::vector<Workspace>& recordings) {
+  double duration_s = 0;
+  for (const Workspace& at : recordings) {
+    duration_s = std::max(duration_s, static_cast<double>(at.sample_count()) * at.period_s());
+  }
+  return duration_s;
+}
+
+void Workspace::set_model(const RobotDescription& robot) {
+  rigid = robot;
+  known_effects = robot.effects;
+  rigid.effects.clear();
+  load_torque = desk::model_torque(rigid, motion);
+  model_torque = robot.effects.empty() ? load_torque : desk::model_torque(robot, motion);
+  mass = mass_columns(*this);
+}
+
+bool Workspace::knows_dry_friction(Index joint) const {
+  return std::any_of(known_effects.begin(), known_effects.end(), [&](const RobotEffect& effect) {
+    return effect.joint == joint && info_of(effect.kind)->traits.is_dry;
+  });
+}
+
+Workspace make_workspace(const Log& log, const RobotDescription& robot, const FilterPlan& plan,
+                         const VectorXd& sign_width) {
+  constexpr double kRatePerCutoff = 20;
+  const auto stride = std::max<Index>(
+      1, static_cast<Index>(plan.sample_rate_hz / (kRatePerCutoff * plan.torque_cutoff_hz)));
+  Workspace at;
+  at.plan = thinned(plan, stride);
+  const Motion full = motion_of(log, plan);
+  at.motion = {every_nth(full.t_s, stride), every_nth_row(full.q, stride),
+               every_nth_row(full.dq, stride), every_nth_row(full.ddq, stride)};
+  MatrixXd torque = log.tau;
+  at.torque_noise_density.resize(torque.cols());
+  for (Index joint = 0; joint < torque.cols(); ++joint) {
+    at.torque_noise_density[joint] = 0;
+    if (log.at_rest) continue;
+    const VectorXd raw = log.tau.col(joint);
+    const VectorXd smooth = zero_phase_low_pass(raw, plan.position_cutoff_hz, plan.sample_rate_hz);
+    at.torque_noise_density[joint] = noise_density(raw, smooth, plan);
+    if (stride > 1) torque.col(joint) = smooth;
+  }
+  at.torque = every_nth_row(torque, stride);
+  MatrixXd moving = every_nth_row(samples_that_tell(log, robot, full), stride);
+  at.start_s = log.t_s[0];
+  at.at_rest = log.at_rest;
+  at.approach = log.approach;
+  at.skew_s = log.period_s;
+  at.set_model(robot);
+  at.sign_width = sign_width;
+  at.top_speed = VectorXd::Zero(log.q.cols());
+  for (Index joint = 0; joint < log.q.cols(); ++joint) {
+    at.top_speed[joint] = quantile(at.motion.dq.col(joint).cwiseAbs(), kTopSpeedShare);
+    if (!(at.sign_width[joint] > 0)) {
+      constexpr double kStill = 1e-9;
+      at.sign_width[joint] = std::max(0.01 * at.top_speed[joint], kStill);
+    }
+  }
+  if (moving.minCoeff() < 1) at.moving = std::move(moving);
+  return at;
+}
+
+std::vector<Workspace> make_workspaces(const std::vector<Log>& logs, const RobotDescription& robot,
+                                       const FilterPlan& plan, const VectorXd& sign_width) {
+  std::vector<Workspace> made;
+  for (const Log& log : logs) {
+    made.push_back(make_workspace(log, robot, plan_for(log, plan), sign_width));
+  }
+  return made;
+}
+
+}  // namespace offnominal::desk

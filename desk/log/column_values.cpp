@@ -1,0 +1,156 @@
+#include "log/column_values.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "common/error.hpp"
+#include "common/nearest.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// No measurement is larger; squares and sums of it stay within what numbers can hold.
+constexpr double kLargest = 1e15;
+
+[[noreturn]] void refuse(const NamedColumns& columns, const std::string& place,
+                         const std::string& found, const std::string& allowed,
+                         const std::string& mend = {}) {
+  throw InputError({columns.file, place, found, allowed, mend});
+}
+
+[[noreturn]] void refuse_value(const NamedColumns& columns, double value, const std::string& place,
+                               const std::string& what) {
+  const std::string allowed = fmt::format("a finite number up to {:g}", kLargest);
+  if (!std::isfinite(value)) {
+    refuse(columns, place, std::isnan(value) ? "NaN" : "an infinite number", allowed,
+           "cut the recording, or fill the gap where it is made");
+  }
+  refuse(columns, place, fmt::format("{:g}", value), allowed,
+         what == kTimeWords
+             ? "say its unit, unit = \"ns\" under [channels.time] for nanoseconds"
+             : "say its unit with unit or scale under [channels], or mend the number where it is "
+               "made");
+}
+
+double scalar(const NamedColumns& columns, const std::string& name, const std::string& what) {
+  if (const auto found = columns.scalars.find(name); found != columns.scalars.end()) {
+    if (std::isfinite(found->second) && found->second != 0) return found->second;
+    refuse(columns, "variable " + name, fmt::format("{}", found->second),
+           "a finite number other than 0");
+  }
+  const auto column = columns.columns.find(name);
+  if (column == columns.columns.end()) {
+    refuse(columns, "columns", names_found(columns),
+           "a number \"" + name + "\" that scales the " + what);
+  }
+  const VectorXd& values = column->second;
+  if (values.size() == 0 || (values.array() != values[0]).any() || !std::isfinite(values[0])) {
+    refuse(columns, "variable " + name, "values that change",
+           "one finite number that scales the " + what);
+  }
+  return values[0];
+}
+
+// Of a channel that is no sum.
+VectorXd values_of_source(NamedColumns& columns, const Channel& channel, const std::string& what,
+                          bool last) {
+  const auto column = columns.columns.find(channel.source);
+  if (column == columns.columns.end()) {
+    if (columns.scalars.contains(channel.source)) {
+      refuse(columns, "variable " + channel.source, "a single number",
+             "one value per sample, for the " + what);
+    }
+    refuse(columns, "columns", names_found(columns),
+           "a column \"" + channel.source + "\" for the " + what, kMendNames);
+  }
+  double scale = channel.scale * unit_factor(channel.unit);
+  if (!channel.scale_source.empty()) scale *= scalar(columns, channel.scale_source, what);
+  VectorXd values;
+  if (last) {
+    values = std::move(column->second);
+    columns.columns.erase(column);
+  } else {
+    values = column->second;
+  }
+  if (scale != 1) values *= scale;
+  if (channel.offset != 0) values.array() += channel.offset;
+  for (Index row = 0; row < values.size(); ++row) {
+    if (std::abs(values[row]) <= kLargest) continue;
+    refuse_value(columns, values[row], columns.place_of(row) + ", " + channel.source, what);
+  }
+  return values;
+}
+
+}  // namespace
+
+std::string names_found(const NamedColumns& columns) {
+  constexpr std::size_t kMost = 40;
+  std::vector<std::string> names = columns.names;
+  if (names.size() > kMost) {
+    names.resize(kMost);
+    names.emplace_back("...");
+  }
+  return list_of(names);
+}
+
+VectorXd take_values(NamedColumns& columns, const Channel& channel, const std::string& what,
+                     bool last) {
+  if (channel.sum.empty()) return values_of_source(columns, channel, what, last);
+  VectorXd sum;
+  for (const Channel& term : channel.sum) {
+    const VectorXd values = values_of_source(columns, term, what, false);
+    if (sum.size() == 0) {
+      sum = values;
+    } else if (sum.size() == values.size()) {
+      sum += values;
+    } else {
+      refuse(columns, "variable " + term.source, fmt::format("{} values", values.size()),
+             fmt::format("{}, as many as the other terms of the {} have", sum.size(), what));
+    }
+  }
+  double scale = channel.scale * unit_factor(channel.unit);
+  if (!channel.scale_source.empty()) scale *= scalar(columns, channel.scale_source, what);
+  sum = (scale * sum).array() + channel.offset;
+  for (Index row = 0; row < sum.size(); ++row) {
+    if (std::abs(sum[row]) > kLargest) {
+      refuse_value(columns, sum[row], columns.place_of(row) + ", the sum", what);
+    }
+  }
+  return sum;
+}
+
+void take_unit_of_file(NamedColumns& columns, Channel& channel, ChannelQuantity quantity,
+                       const std::string& what) {
+  const auto said = columns.units.find(channel.source);
+  if (said == columns.units.end() || !channel.unit.empty() || channel.scale != 1 ||
+      !channel.scale_source.empty() || !channel.sum.empty()) {
+    return;
+  }
+  const SourceUnit* const unit = find_unit(said->second);
+  if (unit == nullptr) {
+    columns.remarks.push_back(
+        fmt::format("the file has {} in \"{}\", which is no unit that is known: taken as it stands",
+                    channel.source, said->second));
+    return;
+  }
+  if (!is_unit_of(*unit, quantity)) {
+    refuse(
+        columns, "column " + channel.source, "the unit " + said->second + ", as the file says",
+        fmt::format("{} for the {}; any other unit with its scale", units_of(quantity), what),
+        fmt::format("write {{source = \"{}\", unit = \"{}\", scale = ...}} under [channels], the "
+                    "scale being what one {} is in SI",
+                    channel.source, said->second, si_name(unit->dimension)));
+  }
+  if (unit->factor == 1) return;
+  channel.unit = said->second;
+  columns.remarks.push_back(fmt::format("the {} is read in {}, as the file says of {}", what,
+                                        said->second, channel.source));
+}
+
+}  // namespace offnominal::desk

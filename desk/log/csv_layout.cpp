@@ -1,0 +1,214 @@
+#include "log/csv_layout.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "common/error.hpp"
+#include "log/csv_line.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+std::string_view without_line_end(std::string_view line) {
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return line;
+}
+
+// "[rad/s]" and "(s)" as they are meant.
+std::string unit_in(std::string text) {
+  const bool in_brackets = text.size() > 2 && ((text.front() == '[' && text.back() == ']') ||
+                                               (text.front() == '(' && text.back() == ')'));
+  return in_brackets ? text.substr(1, text.size() - 2) : text;
+}
+
+bool any_text(const Cells& cells) {
+  return std::any_of(cells.begin(), cells.end(), [](const auto& cell) { return !cell.empty(); });
+}
+
+bool all_values(const Cells& cells) {
+  return any_text(cells) && std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
+           return cell.empty() || is_value(cell);
+         });
+}
+
+bool no_values(const Cells& cells) {
+  return any_text(cells) &&
+         std::none_of(cells.begin(), cells.end(), [](const auto& cell) { return is_value(cell); });
+}
+
+// 0, 1, 2 ... as pandas writes for columns without names, behind the empty one of its index.
+bool is_count_from_zero(const Cells& cells) {
+  const std::size_t first = !cells.empty() && cells[0].empty() ? 1 : 0;
+  if (first == 0 || cells.size() < 3) return false;
+  for (std::size_t i = first; i < cells.size(); ++i) {
+    if (cells[i] != std::to_string(i - first)) return false;
+  }
+  return true;
+}
+
+class LayoutReader {
+ public:
+  explicit LayoutReader(RecordingFile& file) : file_(file) {}
+
+  CsvLayout read() {
+    std::string line;
+    if (!next_content(line)) {
+      fail("", "an empty file", "a header line and one line per sample");
+    }
+    take_separator_line(line);
+    if (layout_.separator == 0) layout_.separator = separator_of(line);
+    CsvLineSplitter splitter(layout_.separator);
+    const Cells* const split = splitter.split(line);
+    if (split == nullptr) fail(place(), "an unfinished quote", "names, with both quotes or none");
+    const Cells cells = *split;
+    if (is_count_from_zero(cells)) {
+      name_by_number(cells.size());
+      layout_.remarks.push_back(
+          "the file numbers its columns from 0; here they count from 1, the unnamed one with them");
+      layout_.header_line = line_;
+      read_first(splitter);
+    } else if (all_values(cells)) {
+      take_first(line);
+      name_without_header(cells);
+    } else {
+      layout_.header_line = line_;
+      name_by(cells);
+      read_first(splitter);
+    }
+    return std::move(layout_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& place, const std::string& found,
+                         const std::string& allowed, const std::string& mend = {}) const {
+    throw InputError({file_.name(), place, found, allowed, mend});
+  }
+  std::string place() const { return "line " + std::to_string(line_); }
+
+  // The next line that is neither blank nor a comment.
+  bool next_content(std::string& line) {
+    std::string_view view;
+    while (file_.next_line(view)) {
+      ++line_;
+      view = without_line_end(view);
+      if (line_ == 1 && view.starts_with("\xEF\xBB\xBF")) view.remove_prefix(3);
+      if (is_blank_line(view)) continue;
+      if (is_comment(view)) {
+        comment_ = view.substr(view.find_first_of("#%") + 1);
+        comment_line_ = line_;
+        continue;
+      }
+      line = view;
+      return true;
+    }
+    return false;
+  }
+
+  // "sep=;", which tells a spreadsheet.
+  void take_separator_line(std::string& line) {
+    layout_.separator = 0;
+    if (line.size() != 5 || !line.starts_with("sep=")) return;
+    layout_.separator = line.back();
+    if (!next_content(line)) fail(place(), "a separator and nothing else", "a header line");
+  }
+
+  void take_first(const std::string& line) {
+    layout_.first = line;
+    layout_.first_line = line_;
+    layout_.first_ended = file_.line_ended();
+  }
+
+  void read_first(CsvLineSplitter& splitter) {
+    std::string line;
+    if (!next_content(line)) return;
+    const Cells* cells = splitter.split(line);
+    if (cells != nullptr && no_values(*cells) && cells->size() == layout_.cells() &&
+        layout_.units.empty() && layout_.has_names) {
+      for (std::size_t i = 0; i < cells->size(); ++i) {
+        if (!(*cells)[i].empty()) layout_.units[layout_.names[i]] = unit_in((*cells)[i]);
+      }
+      if (!next_content(line)) return;
+      cells = splitter.split(line);
+    }
+    take_first(line);
+    if (cells == nullptr || cells->size() != layout_.cells() + 1) return;
+    if (cells->back().empty()) {
+      layout_.has_trailing = true;
+    } else if (line.front() == '"') {
+      // As R writes them: a name for each row, and none for their column.
+      layout_.has_row_names = true;
+      layout_.names.insert(layout_.names.begin(), "");
+    }
+  }
+
+  void name_by_number(std::size_t count) {
+    layout_.has_names = false;
+    for (std::size_t i = 1; i <= count; ++i) layout_.names.push_back(std::to_string(i));
+  }
+
+  // A comment right before the samples may name them, as numpy writes it.
+  void name_without_header(const Cells& first) {
+    const std::size_t count = first.size() - (first.size() > 1 && first.back().empty() ? 1 : 0);
+    layout_.has_trailing = count < first.size();
+    if (!comment_.empty() && comment_line_ + 1 == layout_.first_line) {
+      for (const char separator : {layout_.separator, separator_of(comment_)}) {
+        CsvLineSplitter other(separator);
+        const Cells* cells = other.split(comment_);
+        if (cells == nullptr || cells->size() != count || !no_values(*cells)) continue;
+        const std::set<std::string> once(cells->begin(), cells->end());
+        if (once.size() != count || once.contains("")) continue;
+        layout_.names = *cells;
+        layout_.header_line = comment_line_;
+        return;
+      }
+    }
+    name_by_number(count);
+  }
+
+  void name_by(const Cells& cells) {
+    std::set<std::string> seen;
+    std::size_t count = cells.size();
+    if (count > 1 && cells.back().empty()) {
+      layout_.has_trailing = true;
+      --count;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::string& name = cells[i];
+      const std::string at = place() + ", column " + std::to_string(i + 1);
+      if (name.empty() && i > 0) fail(at, "no name", "a name per column");
+      if (is_value(name)) {
+        fail(at, "the number " + name, "a header line that names the columns",
+             "put the columns' names in the first line");
+      }
+      if (!name.empty() && !seen.insert(name).second) {
+        fail(place(), "column \"" + name + "\" twice", "one of each");
+      }
+      layout_.names.push_back(name);
+    }
+  }
+
+  RecordingFile& file_;
+  CsvLayout layout_;
+  std::size_t line_ = 0;
+  std::string comment_;
+  std::size_t comment_line_ = 0;
+};
+
+}  // namespace
+
+bool is_comment(std::string_view line) {
+  const std::size_t at = line.find_first_not_of(" \t");
+  return at != std::string_view::npos && (line[at] == '#' || line[at] == '%');
+}
+
+bool is_blank_line(std::string_view line) {
+  return line.find_first_not_of(" \t") == std::string_view::npos;
+}
+
+CsvLayout read_csv_layout(RecordingFile& file) { return LayoutReader(file).read(); }
+
+}  // namespace offnominal::desk

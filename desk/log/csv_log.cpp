@@ -1,0 +1,378 @@
+#include "log/csv_log.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/error.hpp"
+#include "log/csv_layout.hpp"
+#include "log/csv_line.hpp"
+#include "log/date_time.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+using Eigen::Index;
+
+// Whether it is none yet, and with more digits would be a number: "-", "1.2e-".
+bool is_begun(std::string_view text) {
+  return !number_in(text) && number_in(std::string(text) + "0");
+}
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+bool has_small_letter(const std::string& text) {
+  return std::any_of(text.begin(), text.end(), [](char c) { return c >= 'a' && c <= 'z'; });
+}
+
+std::string in_small_letters(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+// Up to this every whole number is a double.
+constexpr double kLargestWhole = 9007199254740992.0;
+
+std::optional<std::int64_t> whole_in(std::string_view text) {
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+class CsvReader {
+ public:
+  CsvReader(RecordingFile& file, const NeedOf& need_of) : file_(file), need_of_(need_of) {}
+
+  NamedColumns read() {
+    layout_ = read_csv_layout(file_);
+    name_columns();
+    if (!layout_.first.empty() && kept_ > 0) read_samples();
+    if (kept_ > 0 && rows_ == 0) {
+      fail("line " + std::to_string(layout_.header_line), "a header without samples",
+           "one line of numbers per sample");
+    }
+    return result();
+  }
+
+ private:
+  // What the cells of a column of time are.
+  enum class Form { kNumber, kLongNumber, kDate };
+
+  struct Column {
+    std::string name;  // that it is asked for by
+    Need need = Need::kNone;
+    Form form = Form::kNumber;
+    std::int64_t origin = 0;  // of what is no plain number
+    // Grows by doubling; what is not written to is not in memory.
+    Eigen::VectorXd values;
+  };
+
+  [[noreturn]] void fail(const std::string& place, const std::string& found,
+                         const std::string& allowed, const std::string& mend = {}) const {
+    throw InputError({file_.name(), place, found, allowed, mend});
+  }
+
+  std::string line_place() const { return "line " + std::to_string(line_number_); }
+
+  // By its name or, where nobody asks for that, by its number, or by its name in small letters
+  // where the header has none.
+  void name_columns() {
+    const auto& names = layout_.names;
+    const bool capitals =
+        layout_.has_names && std::none_of(names.begin(), names.end(), has_small_letter);
+    bool renamed = false;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      Column column;
+      column.name = names[i];
+      column.need = column.name.empty() ? Need::kNone : need_of_(column.name);
+      const auto also = [&](std::string name, bool& taken) {
+        const Need need = need_of_(name);
+        taken = !is_required(column.need) && is_required(need);
+        if (!taken) return;
+        column.name = std::move(name);
+        column.need = need;
+      };
+      bool by_number = false;
+      also(std::to_string(i + 1), by_number);
+      bool by_small = false;
+      if (capitals && !column.name.empty()) also(in_small_letters(names[i]), by_small);
+      renamed = renamed || by_small;
+      if (column.need != Need::kNone) ++kept_;
+      columns_.push_back(std::move(column));
+    }
+    if (renamed) remarks_.emplace_back("the file's names are in capitals: T is read as t");
+  }
+
+  void read_samples() {
+    CsvLineSplitter splitter(layout_.separator);
+    line_number_ = layout_.first_line;
+    unfinished_ = !layout_.first_ended;
+    // Before anything is known of its cells.
+    read_row_slowly(splitter, layout_.first);
+    std::string_view line;
+    while (kept_ > 0 && ascending_ && next(line)) {
+      make_room();
+      if (blank_line_ == 0 && !unfinished_ && read_row(line)) {
+        ++rows_;
+      } else {
+        read_row_slowly(splitter, line);
+      }
+      if (rows_ > most_rows()) {
+        fail(line_place(), "more than " + std::to_string(RecordingFile::kMostNumbers) + " numbers",
+             "a recording that ends", "cut it into parts, or leave samples or columns out");
+      }
+    }
+  }
+
+  std::size_t most_rows() const {
+    return RecordingFile::kMostNumbers / std::max<std::size_t>(1, kept_);
+  }
+
+  bool next(std::string_view& line) {
+    if (!file_.next_line(line)) return false;
+    ++line_number_;
+    unfinished_ = !file_.line_ended();
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    return true;
+  }
+
+  void make_room() {
+    if (rows_ < room_) return;
+    constexpr std::size_t kFirstRoom = 256;
+    room_ = std::max(kFirstRoom, 2 * room_);
+    for (Column& column : columns_) {
+      if (column.need != Need::kNone) column.values.conservativeResize(static_cast<Index>(room_));
+    }
+  }
+
+  // A line of plain numbers at once. False, and nothing done, for any other.
+  bool read_row(std::string_view line) {
+    if (decimal_comma_) {
+      pointed_ = line;
+      std::replace(pointed_.begin(), pointed_.end(), ',', '.');
+      line = pointed_;
+    }
+    const char separator = layout_.separator;
+    const auto is_gap = [separator](char c) { return is_blank(c) && c != separator; };
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    double time = last_time_;
+    if (is_comment(line)) return false;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      Column& column = columns_[i];
+      while (at != end && (separator == ' ' ? is_blank(*at) : is_gap(*at))) ++at;
+      if (column.need == Need::kNone) {
+        while (at != end && *at != separator && *at != '"' && !(separator == ' ' && *at == '\t')) {
+          ++at;
+        }
+        if (at != end && *at == '"') return false;
+      } else {
+        double value = 0;
+        const char* const stop = number_at(column, at, end, value);
+        if (stop == nullptr) return false;
+        at = stop;
+        if (column.need == Need::kAscending) time = value;
+        column.values[static_cast<Index>(rows_)] = value;
+      }
+      if (separator == ' ') {
+        if (at != end && !is_blank(*at)) return false;
+        continue;
+      }
+      while (at != end && is_gap(*at)) ++at;
+      const bool last = i + 1 == columns_.size();
+      if (last && at != end && *at == separator && layout_.has_trailing) ++at;
+      if (last) break;
+      if (at == end || *at != separator) return false;
+      ++at;
+    }
+    while (at != end && is_blank(*at)) ++at;
+    if (at != end) return false;
+    take_time(time);
+    return true;
+  }
+
+  // Where the number at `at` ends; null where there is none of the column's form.
+  static const char* number_at(const Column& column, const char* at, const char* end,
+                               double& value) {
+    if (column.form == Form::kDate) return nullptr;
+    if (at != end && *at == '+') ++at;
+    if (column.form == Form::kLongNumber) {
+      std::int64_t whole = 0;
+      const auto [stop, error] = std::from_chars(at, end, whole);
+      if (error != std::errc() || (stop != end && (*stop == '.' || *stop == 'e' || *stop == 'E'))) {
+        return nullptr;
+      }
+      value = difference(whole, column.origin);
+      return stop;
+    }
+    const auto [stop, error] = std::from_chars(at, end, value);
+    return error == std::errc() ? stop : nullptr;
+  }
+
+  // Without overflow, and exact as long as it is small.
+  static double difference(std::int64_t a, std::int64_t b) {
+    if ((a < 0) == (b < 0)) return static_cast<double>(a - b);
+    return static_cast<double>(a) - static_cast<double>(b);
+  }
+
+  void take_time(double time) {
+    if (rows_ > 0) ascending_ = ascending_ && (!has_time_ || time > last_time_);
+    last_time_ = time;
+  }
+
+  void read_row_slowly(CsvLineSplitter& splitter, std::string_view line) {
+    make_room();
+    if (is_blank_line(line)) {
+      blank_line_ = blank_line_ == 0 ? line_number_ : blank_line_;
+      return;
+    }
+    if (is_comment(line)) {
+      skipped_.push_back(line_number_);
+      return;
+    }
+    if (blank_line_ != 0) {
+      fail("line " + std::to_string(blank_line_), "a blank line", "samples without gaps");
+    }
+    const auto* cells = splitter.split(line);
+    // As a writer that was killed leaves it; of a number that ends early nobody can tell.
+    const bool is_short = cells == nullptr || cells->size() < columns_.size() ||
+                          cells->back().empty() || is_begun(cells->back());
+    if (unfinished_ && is_short && rows_ > 0) {
+      cut_off_ = true;
+      return;
+    }
+    if (cells == nullptr) fail(line_place(), "an unfinished quote", "numbers");
+    const bool trailing =
+        layout_.has_trailing && cells->size() == columns_.size() + 1 && cells->back().empty();
+    if (cells->size() != columns_.size() && !trailing) {
+      fail(line_place(),
+           std::to_string(cells->size()) + (cells->size() == 1 ? " value" : " values"),
+           std::to_string(columns_.size()) + ", as many as the " +
+               (layout_.has_names ? "header has names" : "first line has"));
+    }
+    double time = last_time_;
+    for (std::size_t i = 0; i < columns_.size(); ++i) read_cell(columns_[i], (*cells)[i], time);
+    take_time(time);
+    ++rows_;
+  }
+
+  void read_cell(Column& column, std::string_view text, double& time) {
+    if (column.need == Need::kNone) return;
+    const bool is_time = column.need == Need::kAscending;
+    if (is_time && rows_ == 0) begin_time(column, text);
+    std::optional<double> value =
+        is_time && column.form != Form::kNumber ? time_in(column, text) : number_in(text);
+    if (!value && layout_.separator != ',') {
+      value = number_with_comma(text);
+      decimal_comma_ = decimal_comma_ || value.has_value();
+    }
+    if (value) {
+      if (is_time) time = *value;
+      column.values[static_cast<Index>(rows_)] = *value;
+    } else if (column.need == Need::kWelcome) {
+      column.need = Need::kNone;
+      column.values.resize(0);
+      --kept_;
+    } else {
+      const std::string found =
+          text.empty() ? "nothing" : "\"" + std::string(text.substr(0, 40)) + "\"";
+      const bool is_date = is_time && column.form == Form::kDate;
+      fail(line_place() + ", column " + column.name, found,
+           is_date ? "a date as in the lines before, 2026-11-24T02:14:30.123"
+                   : "a number with a decimal point");
+    }
+  }
+
+  // What the first cell shows of a column of time.
+  void begin_time(Column& column, std::string_view text) {
+    has_time_ = true;
+    const auto whole = whole_in(text);
+    if (whole && std::abs(static_cast<double>(*whole)) >= kLargestWhole) {
+      column.form = Form::kLongNumber;
+      column.origin = *whole;
+    } else if (const auto date = date_time_ns(text)) {
+      column.form = Form::kDate;
+      column.origin = *date;
+      remarks_.push_back("the time of " + column.name + " is a date: t = 0 s is " +
+                         std::string(text));
+    }
+  }
+
+  static std::optional<double> time_in(const Column& column, std::string_view text) {
+    constexpr double kSecond = 1e9;
+    const auto cell = column.form == Form::kDate ? date_time_ns(text) : whole_in(text);
+    if (!cell) return std::nullopt;
+    const double passed = difference(*cell, column.origin);
+    return column.form == Form::kDate ? passed / kSecond : passed;
+  }
+
+  NamedColumns result() {
+    NamedColumns result;
+    result.file = file_.name();
+    result.has_names = layout_.has_names;
+    result.remarks = layout_.remarks;
+    result.remarks.insert(result.remarks.end(), remarks_.begin(), remarks_.end());
+    if (cut_off_) {
+      result.remarks.push_back("The file's last line is cut off and was left out.");
+    }
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      Column& column = columns_[i];
+      if (!column.name.empty()) result.names.push_back(column.name);
+      if (const auto unit = layout_.units.find(layout_.names[i]); unit != layout_.units.end()) {
+        result.units[column.name] = unit->second;
+      }
+      if (column.need == Need::kNone) continue;
+      column.values.conservativeResize(static_cast<Index>(rows_));
+      result.columns[column.name] = std::move(column.values);
+      if (column.form == Form::kNumber) continue;
+      const bool is_date = column.form == Form::kDate;
+      const double value = static_cast<double>(column.origin) * (is_date ? 1e-9 : 1);
+      result.origins[column.name] = {value, is_date};
+    }
+    result.place_of = [first = layout_.first_line, skipped = skipped_](Index row) {
+      std::size_t line = first + static_cast<std::size_t>(row);
+      for (const std::size_t other : skipped) line += other <= line ? 1 : 0;
+      return "line " + std::to_string(line);
+    };
+    return result;
+  }
+
+  RecordingFile& file_;
+  const NeedOf& need_of_;
+  CsvLayout layout_;
+  std::size_t line_number_ = 0;
+  std::size_t blank_line_ = 0;
+  std::size_t rows_ = 0;
+  std::size_t room_ = 0;              // rows that the columns have room for
+  std::size_t kept_ = 0;              // columns
+  std::vector<std::size_t> skipped_;  // comments between the samples, by line
+  bool has_time_ = false;
+  bool ascending_ = true;  // time, so far
+  double last_time_ = 0;
+  bool decimal_comma_ = false;
+  std::string pointed_;      // a line with points in place of its commas
+  bool unfinished_ = false;  // no line end after the newest line
+  bool cut_off_ = false;     // the last line was left out
+  std::vector<std::string> remarks_;
+  std::vector<Column> columns_;
+};
+
+}  // namespace
+
+NamedColumns read_csv(RecordingFile& file, const ChannelMap* /*channels*/, const NeedOf& need_of) {
+  return CsvReader(file, need_of).read();
+}
+
+NamedColumns read_csv(const std::filesystem::path& path, const NeedOf& need_of) {
+  RecordingFile file(path);
+  return read_csv(file, nullptr, need_of);
+}
+
+}  // namespace offnominal::desk

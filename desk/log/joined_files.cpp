@@ -1,0 +1,168 @@
+#include "log/joined_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "common/error.hpp"
+#include "common/nearest.hpp"
+#include "log/channel_needs.hpp"
+#include "signal/fold.hpp"
+#include "signal/resample.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// On the first file's clock.
+struct Span {
+  double first = 0;
+  double last = 0;
+};
+
+[[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& found,
+                       const std::string& allowed, const std::string& mend) {
+  throw InputError({file, place, found, allowed, mend});
+}
+
+void check_length(const TimedColumns& file) {
+  for (const auto& [name, values] : file.columns.columns) {
+    if (values.size() == file.time.t_s.size()) continue;
+    fail(file.columns.file, "variable " + name, fmt::format("{} values", values.size()),
+         fmt::format("{}, as many as the file's time has", file.time.t_s.size()),
+         "map a column of that length");
+  }
+}
+
+void check_gaps(const NamedColumns& columns, const VectorXd& t_s, const Span& shared,
+                double most_gap) {
+  const Index steps = t_s.size() - 1;
+  VectorXd step = t_s.tail(steps) - t_s.head(steps);
+  double* const middle = step.data() + steps / 2;
+  std::nth_element(step.data(), middle, step.data() + steps);
+  const double median = *middle;
+  for (Index i = 0; i < steps; ++i) {
+    const double gap = t_s[i + 1] - t_s[i];
+    if (gap <= most_gap * median || t_s[i + 1] <= shared.first || t_s[i] >= shared.last) continue;
+    fail(
+        columns.file, columns.place_of(i), fmt::format("a gap of {:.4g} s", gap),
+        fmt::format("gaps up to {:g} sampling periods, {:.4g} s here", most_gap, most_gap * median),
+        "cut both files at the gap");
+  }
+}
+
+// A straight line through the jump of an angle would be neither before nor behind it.
+VectorXd values_at(const VectorXd& t_s, VectorXd& values, const VectorXd& at_s,
+                   const std::string& name, std::vector<std::string>& remarks) {
+  for (const double turn : {2 * std::numbers::pi, 360.0}) {
+    const std::vector<Index> folds = folds_of(values, turn);
+    if (folds.empty()) continue;
+    unfold(values, turn, folds);
+    remarks.push_back(
+        fmt::format("{} is folded into a turn of {:.4g}, {} times: unfolded before it was joined",
+                    name, turn, folds.size()));
+    break;
+  }
+  return linear_at(t_s, values, at_s);
+}
+
+// Names that one file alone has, without their times.
+std::set<std::string> plain_names(const std::vector<TimedColumns>& files) {
+  std::set<std::string> once;
+  std::set<std::string> twice;
+  for (const TimedColumns& file : files) {
+    const auto count = [&](const auto& values) {
+      for (const auto& [name, value] : values) {
+        if (!once.insert(name).second) twice.insert(name);
+      }
+    };
+    count(file.columns.columns);
+    count(file.columns.scalars);
+  }
+  for (const std::string& name : twice) once.erase(name);
+  return once;
+}
+
+}  // namespace
+
+TimedColumns joined_files(std::vector<TimedColumns> files, Index fewest, double most_gap) {
+  TimedColumns& base = files.front();
+  const double origin_s = base.time.origin_s;
+  Span shared{base.time.t_s[0], base.time.t_s[base.time.t_s.size() - 1]};
+  std::vector<Span> spans;
+  for (TimedColumns& file : files) {
+    check_length(file);
+    file.time.t_s.array() += file.time.origin_s - origin_s;
+    const VectorXd& t_s = file.time.t_s;
+    spans.push_back({t_s[0], t_s[t_s.size() - 1]});
+    shared.first = std::max(shared.first, spans.back().first);
+    shared.last = std::min(shared.last, spans.back().last);
+  }
+  const VectorXd& clock = base.time.t_s;
+  const Index begin = std::lower_bound(clock.begin(), clock.end(), shared.first) - clock.begin();
+  const Index end = std::upper_bound(clock.begin(), clock.end(), shared.last) - clock.begin();
+  if (end - begin < fewest) {
+    std::vector<std::string> words;
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      words.push_back(fmt::format("{:.9g} to {:.9g} s in {}", spans[k].first + origin_s,
+                                  spans[k].last + origin_s, files[k].columns.file));
+    }
+    fail(base.columns.file, "",
+         "times of which too few samples lie in every file: " + list_of(words),
+         fmt::format("{} samples or more within each other's time", fewest),
+         "where the clocks differ, say by how much: [channels] with time = [\"t\", {source = "
+         "\"t\", offset = ... }], the offset of the second file in s");
+  }
+  const std::set<std::string> plain = plain_names(files);
+  TimedColumns joined;
+  NamedColumns& into = joined.columns;
+  into.file = list_of(files, [](const TimedColumns& file) { return file.columns.file; });
+  joined.time.origin_s = origin_s;
+  joined.time.t_s = clock.segment(begin, end - begin);
+  into.remarks.push_back(fmt::format(
+      "{} files joined on the samples of {}: {} of its {}, from {:.6g} to {:.6g} s; the others by "
+      "straight lines between theirs",
+      files.size(), base.columns.file, end - begin, clock.size(), joined.time.t_s[0],
+      joined.time.t_s[end - begin - 1]));
+  into.place_of = [place_of = base.columns.place_of, begin](Index row) {
+    return place_of(row + begin);
+  };
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    NamedColumns& from = files[k].columns;
+    if (k > 0) check_gaps(from, files[k].time.t_s, shared, most_gap);
+    into.has_names = into.has_names && from.has_names;
+    into.remarks.insert(into.remarks.end(), from.remarks.begin(), from.remarks.end());
+    for (const std::string& name : from.names) {
+      into.names.push_back(plain.contains(name) ? name : name_in_file(k, name));
+    }
+    const auto put = [&](auto& to, const std::string& name, const auto& value) {
+      to[name_in_file(k, name)] = value;
+      if (plain.contains(name)) to[name] = value;
+    };
+    for (const auto& [name, unit] : from.units) put(into.units, name, unit);
+    for (const auto& [name, value] : from.scalars) put(into.scalars, name, value);
+    for (auto& [name, values] : from.columns) {
+      for (Index row = 0; row < values.size(); ++row) {
+        if (std::isfinite(values[row])) continue;
+        fail(from.file, from.place_of(row) + ", " + name,
+             std::isnan(values[row]) ? "NaN" : "an infinite number", "a finite number",
+             "cut the recording, or fill the gap where it is made");
+      }
+      const VectorXd at = k == 0 ? VectorXd(values.segment(begin, end - begin))
+                                 : values_at(files[k].time.t_s, values, joined.time.t_s,
+                                             from.file + ": " + name, into.remarks);
+      put(into.columns, name, at);
+      values.resize(0);
+    }
+  }
+  return joined;
+}
+
+}  // namespace offnominal::desk

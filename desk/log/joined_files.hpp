@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "log/named_columns.hpp"
+#include "log/time_of.hpp"
+
+namespace offnominal::desk {
+
+// One file of a recording that has several, its time taken from its columns.
+struct TimedColumns {
+  NamedColumns columns;
+  FileTime time;
+};
+
+// All of them on the samples of the first, as far as the others' times reach: their columns by
+// straight lines, those that are folded into a turn unfolded before, with a remark. Columns keep
+// their names where one file alone has them, and are "2:name" besides, by the file's number from 1.
+// Throws InputError where two times share fewer than `fewest` samples of the first, where a file
+// has a gap of more than `most_gap` of its median steps there, and where a value is not finite.
+[[nodiscard]] TimedColumns joined_files(std::vector<TimedColumns> files, Eigen::Index fewest,
+                                        double most_gap);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "robot/robot.hpp"
+
+namespace offnominal::desk {
+
+// One recording in SI units, evenly sampled, time ascending, every number finite. Or a hold map
+// (hold_map.hpp), where at_rest.
+struct Log {
+  std::string file;              // as the user named it
+  double period_s = 0;           // sampling period
+  Eigen::VectorXd t_s;           // as recorded, or the even grid it was resampled to
+  Eigen::MatrixXd q;             // rows: samples, columns: joints; rad or m
+  Eigen::MatrixXd dq;            // rad/s or m/s
+  Eigen::MatrixXd tau;           // torque of the drive, N m or N
+  std::vector<bool> dq_derived;  // per joint: dq is the derivative of the low-passed q
+  std::map<std::string, Eigen::VectorXd> extra;  // further quantities, by name
+  bool at_rest = false;
+  Eigen::MatrixXd approach;          // where at_rest: 1 or -1, as q; else empty
+  std::vector<std::string> remarks;  // what a reader of results has to know, in words
+  ChannelMap channels;               // where the columns came from; empty: not read from a file
+  bool common_header = false;        // by their names alone, nobody gave the channels
+
+  [[nodiscard]] int joint_count() const { return static_cast<int>(q.cols()); }
+  [[nodiscard]] Eigen::Index sample_count() const { return t_s.size(); }
+  [[nodiscard]] double sample_rate_hz() const { return 1 / period_s; }
+};
+
+}  // namespace offnominal::desk

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "log/named_columns.hpp"
+#include "log/recording_file.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::desk {
+
+/// A kind of file that recordings come in. A new one is its reader, two files, and a row of the
+/// table in log_format.cpp; help texts and messages name what the table has.
+struct LogFormat {
+  const char* name;
+  /// Whether a file is of this kind, by its beginning or its extension; null: whatever is of no
+  /// other kind.
+  bool (*recognises)(const RecordingFile& file);
+  /// Reads what `need_of` wants of the file, under its own names or those that `channels`, where
+  /// they are not null, tell the reader to find. Throws InputError with the place in the file.
+  NamedColumns (*read)(RecordingFile& file, const ChannelMap* channels, const NeedOf& need_of);
+};
+
+[[nodiscard]] std::span<const LogFormat> log_formats();
+
+/// The first of the formats that recognises the file, else the one for all others.
+[[nodiscard]] const LogFormat& log_format_of(const RecordingFile& file);
+
+/// "CSV, MATLAB .mat or candump -l"
+[[nodiscard]] std::string log_format_names();
+
+}  // namespace offnominal::desk

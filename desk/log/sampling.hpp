@@ -1,0 +1,26 @@
+#pragma once
+
+#include "log/log.hpp"
+
+namespace offnominal::desk {
+
+// What the time stamps of a recording are like. t_s ascends strictly and has at least 2 samples.
+struct Sampling {
+  double mean_period_s = 0;
+  double median_period_s = 0;
+  double jitter = 0;  // largest |step / mean step - 1|
+  double largest_gap_s = 0;
+  double largest_gap_at_s = 0;  // time stamp before that gap
+};
+Sampling sampling_of(const Eigen::Ref<const Eigen::VectorXd>& t_s);
+
+// Sets period_s of a log whose steps are even to within kSamplingJitter (read_log.hpp); resamples
+// any other to its median step, with a remark; positions that are folded into a turn stay so.
+// Throws InputError for a gap of more than kMaxGap steps.
+void make_even(Log& log);
+
+// Fills dq of the joints marked dq_derived: q low-passed without phase at 100 Hz (a fifth of the
+// sampling rate where that is less), then central differences. Needs period_s.
+void derive_velocities(Log& log);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,80 @@
+// The joint controller of a robot file, as software-in-the-loop and the controller program run it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <offnominal/controller/joint_controller.hpp>
+#include <offnominal/diagnosis/velocity_observer.hpp>
+#include <optional>
+#include <string>
+
+#include "common/error.hpp"
+#include "common/number.hpp"
+#include "offnominal/sim/encoder.hpp"
+#include "robot/monitor_config_of.hpp"
+
+namespace offnominal::desk {
+
+/// What a robot file does not say.
+struct ControllerSettings {
+  bool accommodate = false;
+  bool stop_at_detection = false;
+  hal::DriveMode safe_mode = hal::DriveMode::kOff;
+  /// Largest acceleration of a joint, rad/s^2: the drives send positions alone, and it bounds the
+  /// velocity observer's error. None: they send velocities.
+  std::optional<double> max_acceleration;
+  int encoder_bits_per_turn = 0;  // on top of what a frame resolves; 0: none
+};
+
+[[nodiscard]] inline hal::Microseconds period_us_of(double period_s) {
+  return std::max<hal::Microseconds>(1, std::llround(1e6 * period_s));
+}
+
+/// Of every controller that is compiled for a number of joints here; fewer hidden units are exactly
+/// a smaller network.
+inline constexpr int kControllerCapacity = 128;
+
+template <int N, typename Scalar>
+[[nodiscard]] controller::ControllerConfig<N, Scalar> controller_config_of(
+    const RobotDescription& robot, const ControllerSettings& settings) {
+  controller::ControllerConfig<N, Scalar> config = controller::controller_config(
+      monitor_config_of<N, Scalar>(robot), gains_of<N, Scalar>(robot), arming_of<N, Scalar>(robot));
+  config.safe_mode = settings.safe_mode;
+  config.stop_at_detection = settings.stop_at_detection;
+  if (!settings.accommodate) config.monitor.max_compensation = {};
+  if (settings.max_acceleration) {
+    sim::EncoderConfig encoder;
+    encoder.bits_per_turn = settings.encoder_bits_per_turn;
+    const double half_count =
+        0.5 * (sim::position_step_rad(encoder) + static_cast<double>(hal::kPositionPerCount));
+    config.monitor.bound.velocity_error += velocity_error_bound(
+        config.velocity_observer, static_cast<Scalar>(*settings.max_acceleration),
+        static_cast<Scalar>(half_count));
+  }
+  return config;
+}
+
+/// Throws InputError where the controller refuses what the robot file says.
+template <int N, int L, typename Scalar, typename Memory>
+void create_controller(const RobotDescription& robot, const ControllerSettings& settings,
+                       controller::JointController<N, L, Scalar, Memory>& controller) {
+  using Controller = controller::JointController<N, L, Scalar, Memory>;
+  const double least_ramp_s = controller::kLeastRampPeriods * robot.estimator.period_s;
+  if (robot.arming.ramp_s + robot.estimator.period_s / 2 < least_ramp_s) {
+    throw InputError({.file = "robot " + robot.name,
+                      .place = "arming.ramp_s",
+                      .found = shortest(robot.arming.ramp_s) + " s",
+                      .allowed = shortest(least_ramp_s) + " s or more, ten periods",
+                      .mend = "in less, what is between reference and arm is a jump"});
+  }
+  const Status status =
+      Controller::create(controller_config_of<N, Scalar>(robot, settings), controller);
+  if (status == Status::kOk) return;
+  throw InputError({.file = "robot " + robot.name,
+                    .place = "controller",
+                    .found = std::string("status ") + name_of(status),
+                    .allowed = "",
+                    .mend = "docs/troubleshooting.md says what each status asks for"});
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,92 @@
+// The controller's side of any drive protocol, so that a controller is compiled once for all.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <offnominal/hal/drive_protocol.hpp>
+#include <span>
+#include <utility>
+
+#include "drives/drive_protocols.hpp"
+#include "drives/drive_table.hpp"
+
+namespace offnominal::desk {
+
+namespace detail {
+template <std::size_t Joints, typename... Rows>
+constexpr std::size_t most_outgoing(std::tuple<Rows...>* /*rows*/) {
+  return std::max({Rows::Protocol::template Drives<Joints>::kMaxOutgoing...});
+}
+}  // namespace detail
+
+template <std::size_t Joints>
+class DrivePort {
+ public:
+  static constexpr std::size_t kJoints = Joints;
+  static constexpr std::size_t kMaxOutgoing =
+      detail::most_outgoing<Joints>(static_cast<DriveProtocols*>(nullptr));
+
+  virtual ~DrivePort() = default;
+  virtual hal::Status take(const hal::ReceivedFrame& received) = 0;
+  [[nodiscard]] virtual hal::JointFeedback feedback(std::size_t joint,
+                                                    hal::Microseconds now_us) const = 0;
+  virtual std::size_t outgoing(std::span<const hal::TorqueCommand> commands,
+                               const hal::Heartbeat& heartbeat, std::span<hal::Frame> into) = 0;
+  [[nodiscard]] virtual hal::Microseconds drive_max_age_us() const = 0;
+  [[nodiscard]] virtual bool stop_seen() const = 0;
+  virtual void clear_stop() = 0;
+  [[nodiscard]] virtual hal::DriveCounts counts() const = 0;
+};
+static_assert(hal::DriveProtocol<DrivePort<2>>);
+
+template <hal::DriveProtocol Drives>
+class DrivePortOf final : public DrivePort<Drives::kJoints> {
+ public:
+  explicit DrivePortOf(Drives drives) : drives_(std::move(drives)) {}
+  hal::Status take(const hal::ReceivedFrame& received) override { return drives_.take(received); }
+  [[nodiscard]] hal::JointFeedback feedback(std::size_t joint,
+                                            hal::Microseconds now_us) const override {
+    return drives_.feedback(joint, now_us);
+  }
+  std::size_t outgoing(std::span<const hal::TorqueCommand> commands,
+                       const hal::Heartbeat& heartbeat, std::span<hal::Frame> into) override {
+    return drives_.outgoing(commands, heartbeat, into);
+  }
+  [[nodiscard]] hal::Microseconds drive_max_age_us() const override {
+    return drives_.drive_max_age_us();
+  }
+  [[nodiscard]] bool stop_seen() const override { return drives_.stop_seen(); }
+  void clear_stop() override { drives_.clear_stop(); }
+  [[nodiscard]] hal::DriveCounts counts() const override { return drives_.counts(); }
+
+ private:
+  Drives drives_;
+};
+
+namespace detail {
+template <std::size_t Joints, typename... Rows>
+std::unique_ptr<DrivePort<Joints>> make_drive_port(const DriveSettings& settings,
+                                                   const hal::DriveLink& link,
+                                                   std::tuple<Rows...>* /*rows*/) {
+  using Port = std::unique_ptr<DrivePort<Joints>>;
+  using Make = Port (*)(const hal::DriveValues& values, const hal::DriveLink& link);
+  constexpr std::array<Make, sizeof...(Rows)> kMakers{
+      [](const hal::DriveValues& values, const hal::DriveLink& of) -> Port {
+        using Protocol = typename Rows::Protocol;
+        return std::make_unique<DrivePortOf<typename Protocol::template Drives<Joints>>>(
+            Protocol::template drives<Joints>(values, of));
+      }...};
+  return kMakers.at(settings.protocol)(values_of(settings), link);
+}
+}  // namespace detail
+
+/// Of settings of as many joints.
+template <std::size_t Joints>
+[[nodiscard]] std::unique_ptr<DrivePort<Joints>> make_drive_port(const DriveSettings& settings,
+                                                                 const hal::DriveLink& link) {
+  return detail::make_drive_port<Joints>(settings, link, static_cast<DriveProtocols*>(nullptr));
+}
+
+}  // namespace offnominal::desk

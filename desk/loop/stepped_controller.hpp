@@ -1,0 +1,74 @@
+// The joint controller, tick by tick, for any number of joints behind one face.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <offnominal/controller/fault.hpp>
+#include <offnominal/hal/drive_description.hpp>
+#include <offnominal/hal/drive_protocol.hpp>
+#include <offnominal/hal/messages.hpp>
+
+#include "common/precision.hpp"
+#include "loop/bus_port.hpp"
+#include "loop/controller_settings.hpp"
+#include "loop/motion_at.hpp"
+#include "offnominal/sim/joint_state.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::desk {
+
+/// What the controller knows after a tick, one number per joint in every vector.
+struct ControllerView {
+  std::uint64_t run_ticks = 0;  // since time began
+  bool fresh = false;           // it had a reading of every joint
+  bool drives_follow = false;
+  sim::JointState seen;
+  sim::JointVector tau;  // N m or N, that the drives said they gave
+  sim::JointVector psi_hat;
+  double error_norm = 0;
+  double threshold = 0;
+  double weight_norm = 0;
+  bool detected = false;  // latched
+};
+
+/// Counted since the start.
+struct ControllerTotals {
+  std::uint64_t overruns = 0;
+  std::uint64_t missed_samples = 0;  // ticks without a fresh reading of every joint
+  hal::DriveCounts counts;
+};
+
+class SteppedController {
+ public:
+  virtual ~SteppedController() = default;
+  /// One tick that began at begin_us on the bus's clock.
+  virtual void step(hal::Microseconds begin_us, BusPort& bus) = 0;
+  /// As JointController::arm(), for the motion of the set-up.
+  [[nodiscard]] virtual controller::Fault arm() = 0;
+  [[nodiscard]] virtual hal::ControllerState state() const = 0;
+  [[nodiscard]] virtual controller::Fault fault() const = 0;
+  [[nodiscard]] virtual ControllerView view() const = 0;
+  [[nodiscard]] virtual ControllerTotals totals() const = 0;
+};
+
+struct SteppedSetup {
+  const RobotDescription& robot;
+  ControllerSettings settings;
+  hal::DriveLink link{};
+  MotionAt motion;
+};
+
+/// For a robot of 1 to kMaxJoints joints. The controller's numbers are those of firmware, floats;
+/// in double precision it is compiled for the two joints of the paper alone, whose results are
+/// compared in both. Throws InputError for other joints in double precision, and where the
+/// controller refuses the robot.
+[[nodiscard]] std::unique_ptr<SteppedController> make_stepped_controller(const SteppedSetup& setup,
+                                                                         Precision precision);
+
+namespace detail {
+
+template <int N, typename Scalar>
+std::unique_ptr<SteppedController> make_stepped_controller_of(const SteppedSetup& setup);
+
+}  // namespace detail
+}  // namespace offnominal::desk

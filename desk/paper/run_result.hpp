@@ -1,0 +1,66 @@
+// What was asked of a run, and what it showed, for any number of joints.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/precision.hpp"
+#include "offnominal/sim/fault.hpp"
+#include "paper/bus_tick.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::desk::paper {
+
+inline constexpr int kMaxHiddenUnits = 256;
+inline constexpr double kLongestRunS = 1e5;
+inline constexpr double kMinPeriod = 1e-5;  // s
+inline constexpr double kMaxPeriod = 0.02;  // s; the paper's gains bear little more
+
+struct RunSettings {
+  bool accommodate = false;  // add the compensating torque, eq. (31)
+  Precision precision = Precision::kFloat;
+  double duration_s = 20.0;
+  bool record = false;  // keep the time series
+};
+
+/// What happened at every tick, all of the same length; [joint] where there is one per joint.
+struct TimeSeries {
+  std::vector<double> time_s;
+  std::vector<std::vector<double>> q;          // rad
+  std::vector<std::vector<double>> dq;         // rad/s
+  std::vector<std::vector<double>> tau;        // applied over the tick, N m
+  std::vector<std::vector<double>> q_desired;  // rad
+  std::vector<std::vector<double>> psi;        // fault function beta psi, rad/s^2
+  std::vector<std::vector<double>> psi_hat;    // its estimate, rad/s^2
+  std::vector<double> error_norm;              // |e|, rad/s
+  std::vector<double> threshold;               // mu, the filtered uncertainty bound, rad/s
+  std::vector<double> filtered_fault;          // |eta|, eta = W_alpha[beta psi], rad/s
+  std::vector<BusTick> bus;                    // empty where there is none
+};
+
+struct ExperimentResult {
+  sim::FaultKind fault = sim::FaultKind::kNone;
+  bool accommodate = false;
+  Precision precision = Precision::kFloat;
+  std::uint32_t seed = 0;
+  std::int64_t steps = 0;
+  std::optional<double> fault_time_s;       // none without a fault
+  std::optional<double> detection_time_s;   // first |e| > mu; none where it never was
+  std::optional<double> guaranteed_time_s;  // first |eta| > 2 mu (Theorem 4.2)
+  // Largest over the ticks up to the fault; over the whole run without one.
+  double max_error_to_threshold_before_fault = 0.0;
+  double max_abs_psi_hat_before_fault = 0.0;  // over joints too, rad/s^2
+  // Over the last quarter of the run (15 to 20 s in the paper's runs):
+  double tracking_rms_rad = 0.0;                        // norm over joints
+  std::optional<double> fault_estimate_relative_error;  // ||psi - psi_hat|| / ||psi||
+  double max_weight_norm = 0.0;                         // |theta|
+  TimeSeries series;                                    // empty unless recorded
+};
+
+/// Throws InputError, before anything runs and in the name of `verb`, for a robot without a bound
+/// or with a step or a network that no run can have, and for a length that is none.
+void check_run(const RobotDescription& robot, const RunSettings& settings, const std::string& verb);
+
+}  // namespace offnominal::desk::paper

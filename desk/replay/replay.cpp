@@ -1,0 +1,118 @@
+#include "replay/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <numeric>
+#include <offnominal/diagnosis/estimator_config.hpp>
+#include <offnominal/model/quantity.hpp>
+
+#include "common/error.hpp"
+#include "common/number.hpp"
+#include "replay/replay_joints.hpp"
+#include "robot/chain_of.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+void check_settings(const RobotDescription& robot, const Log& log) {
+  if (log.q.cols() != robot.joint_count()) {
+    throw InputError(
+        {.file = log.file,
+         .place = "columns",
+         .found = std::to_string(log.q.cols()) + " joints",
+         .allowed = std::to_string(robot.joint_count()) + ", as robot " + robot.name + " has",
+         .mend = "give the recording's own robot file"});
+  }
+  require_bound(robot, "robot " + robot.name);
+  const double pole = robot.estimator.alpha * log.period_s;
+  if (pole > kMaxPolePerTick) {
+    throw InputError(
+        {.file = log.file,
+         .place = "sampling period " + shortest(log.period_s) + " s",
+         .found = "alpha_per_s * period = " + shortest(pole),
+         .allowed = "at most " + shortest(kMaxPolePerTick),
+         .mend = "lower alpha_per_s in the robot file, or take a recording with faster sampling"});
+  }
+  if (robot.estimator.hidden_units > detail::kReplayCapacity) {
+    throw InputError({.file = "robot " + robot.name,
+                      .place = "estimator.hidden_units",
+                      .found = std::to_string(robot.estimator.hidden_units),
+                      .allowed = "at most " + std::to_string(detail::kReplayCapacity),
+                      .mend = "use fewer hidden units"});
+  }
+}
+
+std::string velocity_unit(const RobotDescription& robot) {
+  const JointType first = robot.joints.front().joint.type;
+  for (const RobotJoint& joint : robot.joints) {
+    if (joint.joint.type != first) return "1";
+  }
+  return unit_of(Quantity::kVelocity, first);
+}
+
+}  // namespace
+
+std::int64_t Replay::samples() const {
+  return std::accumulate(
+      refused.begin(), refused.end(), static_cast<std::int64_t>(t_s.size()),
+      [](std::int64_t sum, const auto& item) { return sum + item.second.count; });
+}
+
+Replay replay(const RobotDescription& robot, const Log& log) {
+  check_settings(robot, log);
+  Replay result;
+  result.robot = robot.name;
+  result.log = log.file;
+  result.unit = velocity_unit(robot);
+  result.period_s = log.period_s;
+  result.hidden_units = robot.estimator.hidden_units;
+  result.seed = robot.estimator.seed;
+  for (const RobotJoint& joint : robot.joints) {
+    result.joint_names.push_back(joint.name);
+    result.acceleration_units.emplace_back(joint.joint.type == JointType::kRevolute ? "rad/s^2"
+                                                                                    : "m/s^2");
+  }
+  with_joint_count(robot.joint_count(),
+                   [&]<int N>() { detail::replay_joints<N>(robot, log, result); });
+  if (result.t_s.size() == 0) {
+    const auto& [status, refusals] = *result.refused.begin();
+    throw InputError({.file = log.file,
+                      .place = fmt::format("all {} samples", refusals.count),
+                      .found = "refused with status " + status,
+                      .allowed = "samples inside the joint limits of the robot file",
+                      .mend = "check the units of the recording, [channels] and [joint.limits]"});
+  }
+  return result;
+}
+
+bool Replay::is_blind() const {
+  constexpr std::int64_t kBorneInARow = 2;
+  constexpr std::int64_t kBorneOneIn = 100;
+  return longest_refused > kBorneInARow || (samples() - judged()) * kBorneOneIn > samples();
+}
+
+std::string words_of(const Replay& replay) {
+  std::string words;
+  if (replay.detection_time_s) {
+    words = fmt::format(
+        "Off nominal: the residual crosses its threshold at {:.3f} s, in {} stretch{}.",
+        *replay.detection_time_s, replay.alarms.size(), replay.alarms.size() == 1 ? "" : "es");
+  } else if (replay.is_blind()) {
+    words = fmt::format(
+        "Blind: {} of {} samples were judged, at most {} in a row were not; in those that were the "
+        "residual is at most {:.1f} % of its threshold.",
+        replay.judged(), replay.samples(), replay.longest_refused,
+        100 * replay.max_error_to_threshold);
+  } else {
+    words = fmt::format("Nominal: the residual stays below its threshold, at most {:.1f} % of it.",
+                        100 * replay.max_error_to_threshold);
+  }
+  for (const auto& [status, refusals] : replay.refused) {
+    words += fmt::format(" {} sample{} refused ({}, first at {:.3f} s).", refusals.count,
+                         refusals.count == 1 ? "" : "s", status, refusals.first_s);
+  }
+  return words;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+
+#include "replay/replay.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+using namespace report;  // a page is written in its own words
+
+constexpr std::size_t kMarkedAlarms = 20;
+
+std::vector<double> values(const Eigen::Ref<const Eigen::VectorXd>& vector) {
+  return {vector.begin(), vector.end()};
+}
+
+std::vector<EventMark> alarm_marks(const Replay& replay) {
+  std::vector<EventMark> marks;
+  if (replay.detection_time_s) marks.push_back({*replay.detection_time_s, "detected", Level::kBad});
+  return marks;
+}
+
+Chart residual_chart(const Replay& replay) {
+  Chart chart;
+  chart.title = "Residual against its threshold";
+  chart.x = {.name = "time", .unit = "s"};
+  chart.y = {{.name = "velocity", .unit = replay.unit}};
+  chart.series = {{.name = "|e|",
+                   .x = values(replay.t_s),
+                   .y = values(replay.error_norm),
+                   .tone = Tone::kResidual},
+                  {.name = "threshold mu",
+                   .x = values(replay.t_s),
+                   .y = values(replay.threshold),
+                   .tone = Tone::kThreshold}};
+  chart.events = alarm_marks(replay);
+  chart.zoom_group = "time";
+  chart.slider = true;
+  return chart;
+}
+
+Chart estimate_chart(const Replay& replay, Eigen::Index joint) {
+  const auto index = static_cast<std::size_t>(joint);
+  Chart chart;
+  chart.title = "Fault estimate psi_hat, " + replay.joint_names[index];
+  chart.x = {.name = "time", .unit = "s"};
+  chart.y = {{.name = "acceleration", .unit = replay.acceleration_units[index]}};
+  chart.series = {{.name = "psi_hat",
+                   .x = values(replay.t_s),
+                   .y = values(replay.psi_hat.col(joint)),
+                   .tone = Tone::kModel}};
+  chart.events = alarm_marks(replay);
+  chart.zoom_group = "time";
+  return chart;
+}
+
+Table alarm_table(const Replay& replay) {
+  Table table;
+  table.caption = "Stretches with the residual above its threshold";
+  table.columns = {{"from", "s", ".3f"}, {"to", "s", ".3f"}, {"largest |e| / mu", "1", ".3g"}};
+  for (const Alarm& alarm : replay.alarms) {
+    if (table.rows.size() == kMarkedAlarms) {
+      table.note = fmt::format("The first {} of {}; `--json` has them all.", kMarkedAlarms,
+                               replay.alarms.size());
+      break;
+    }
+    table.rows.push_back({alarm.start_s, alarm.end_s, alarm.max_error_to_threshold});
+  }
+  return table;
+}
+
+// Nothing is good that nobody saw.
+Level level_of(const Replay& replay) {
+  if (replay.detection_time_s) return Level::kBad;
+  return replay.is_blind() ? Level::kWarn : Level::kGood;
+}
+
+KeyFigures key_figures(const Replay& replay) {
+  KeyFigures figures;
+  KeyFigure detected{.label = "first alarm", .unit = "s", .format = ".3f"};
+  if (replay.detection_time_s) {
+    detected.value = *replay.detection_time_s;
+  } else {
+    detected.value = std::string("none");
+    detected.unit = "";
+  }
+  detected.level = level_of(replay);
+  figures.figures = {detected,
+                     {.label = "largest |e| / mu",
+                      .value = replay.max_error_to_threshold,
+                      .unit = "1",
+                      .format = ".3g"},
+                     {.label = "samples judged",
+                      .value = fmt::format("{} of {}", replay.judged(), replay.samples()),
+                      .unit = "",
+                      .level = replay.is_blind() ? Level::kWarn : Level::kNeutral},
+                     {.label = "tick", .value = 1000 * replay.period_s, .unit = "ms"}};
+  return figures;
+}
+
+}  // namespace
+
+report::Page page_of(const Replay& replay, const std::string& command_line) {
+  Page page;
+  page.title = "Replay of " + replay.log;
+  page.subtitle = "on-board monitor of robot " + replay.robot;
+  page.verdict = {words_of(replay), level_of(replay)};
+  page.command_line = command_line;
+  Section residual{.heading = "Residual", .text = "", .blocks = {}};
+  residual.text =
+      "e is the measured velocity minus the estimator's. The monitor is certain that the robot no "
+      "longer behaves as its model and its uncertainty bound say when |e| exceeds mu.";
+  residual.blocks.emplace_back(key_figures(replay));
+  residual.blocks.emplace_back(residual_chart(replay));
+  if (!replay.alarms.empty()) residual.blocks.emplace_back(alarm_table(replay));
+  page.sections.push_back(residual);
+  Section estimate{.heading = "What changed", .text = "", .blocks = {}};
+  estimate.text =
+      "The network's estimate of the acceleration that the model does not explain; exactly zero "
+      "until the first alarm.";
+  for (Eigen::Index joint = 0; joint < replay.psi_hat.cols(); ++joint) {
+    estimate.blocks.emplace_back(estimate_chart(replay, joint));
+  }
+  page.sections.push_back(estimate);
+  return page;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <offnominal/model/chain.hpp>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "robot/robot.hpp"
+
+// From a robot of any size to the fixed-size types of the core.
+
+namespace offnominal::desk {
+
+namespace detail {
+
+// A limit that is not set is the largest double, which a float cannot hold.
+template <typename Scalar>
+[[nodiscard]] Scalar scalar_of(double value) {
+  constexpr double kLargest = static_cast<double>(std::numeric_limits<Scalar>::max());
+  return static_cast<Scalar>(std::clamp(value, -kLargest, kLargest));
+}
+
+template <typename Scalar, std::size_t Size>
+[[nodiscard]] std::array<Scalar, Size> scalars_of(const std::array<double, Size>& values) {
+  std::array<Scalar, Size> result{};
+  for (std::size_t i = 0; i < Size; ++i) result[i] = scalar_of<Scalar>(values[i]);
+  return result;
+}
+
+template <typename Scalar>
+[[nodiscard]] Joint<Scalar> joint_of(const Joint<double>& from) {
+  Joint<Scalar> joint;
+  joint.type = from.type;
+  joint.axis = scalars_of<Scalar>(from.axis);
+  joint.origin_m = scalars_of<Scalar>(from.origin_m);
+  joint.rotation = scalars_of<Scalar>(from.rotation);
+  joint.mass_kg = scalar_of<Scalar>(from.mass_kg);
+  joint.centre_of_mass_m = scalars_of<Scalar>(from.centre_of_mass_m);
+  joint.inertia_kg_m2 = scalars_of<Scalar>(from.inertia_kg_m2);
+  joint.min_position = scalar_of<Scalar>(from.min_position);
+  joint.max_position = scalar_of<Scalar>(from.max_position);
+  joint.max_velocity = scalar_of<Scalar>(from.max_velocity);
+  joint.max_torque = scalar_of<Scalar>(from.max_torque);
+  return joint;
+}
+
+inline void require_joint_count(const RobotDescription& robot, int count) {
+  if (robot.joint_count() == count) return;
+  throw std::invalid_argument("robot " + robot.name + " has " +
+                              std::to_string(robot.joint_count()) + " joints, not " +
+                              std::to_string(count));
+}
+
+}  // namespace detail
+
+/// The chain that the core computes with, every number rounded to Scalar. Throws
+/// std::invalid_argument when the robot does not have N joints or has more effects than a chain of
+/// N joints holds.
+template <int N, typename Scalar>
+[[nodiscard]] Chain<N, Scalar> chain_of(const RobotDescription& robot) {
+  detail::require_joint_count(robot, N);
+  Chain<N, Scalar> chain;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+    chain.joints[i] = detail::joint_of<Scalar>(robot.joints[i].joint);
+  }
+  chain.gravity_m_s2 = detail::scalars_of<Scalar>(robot.gravity_m_s2);
+  for (const RobotEffect& effect : robot.effects) {
+    const Effect<Scalar> converted{effect.kind, effect.joint,
+                                   detail::scalars_of<Scalar>(effect.parameters)};
+    if (!chain.effects.add(converted)) {
+      throw std::invalid_argument("robot " + robot.name + " has " +
+                                  std::to_string(robot.effects.size()) + " effects, at most " +
+                                  std::to_string(kEffectsPerJoint * N) + " are allowed");
+    }
+  }
+  return chain;
+}
+
+/// Calls visitor.operator()<N>() with N = joint_count and hands back what it returns. Throws
+/// std::invalid_argument outside 1..kMaxJoints.
+template <int N = 1, typename Visitor>
+auto with_joint_count(int joint_count, Visitor&& visitor)
+    -> decltype(visitor.template operator()<1>()) {
+  if (joint_count == N) return visitor.template operator()<N>();
+  if constexpr (N < kMaxJoints) {
+    return with_joint_count<N + 1>(joint_count, std::forward<Visitor>(visitor));
+  } else {
+    throw std::invalid_argument(std::to_string(joint_count) + " joints; 1 to " +
+                                std::to_string(kMaxJoints) + " are allowed");
+  }
+}
+
+}  // namespace offnominal::desk

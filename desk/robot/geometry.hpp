@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace offnominal::desk {
+
+/// A vector whose length is 1 within 1e-6, made a unit vector; one that is a unit vector to the
+/// last bits stays as it is. None where its length is another.
+[[nodiscard]] std::optional<std::array<double, 3>> unit_vector(const std::array<double, 3>& vector);
+
+/// The rotation, row by row, of roll, pitch, yaw about the fixed x, y, z axes in this order (rad):
+/// Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
+[[nodiscard]] std::array<double, 9> rotation_of_rpy(const std::array<double, 3>& rpy_rad);
+
+/// A matrix, row by row, that is a rotation within 1e-6, made one exactly (the nearest one); one
+/// that is a rotation to the last bits stays as it is. None for any other matrix.
+[[nodiscard]] std::optional<std::array<double, 9>> nearest_rotation(
+    const std::array<double, 9>& matrix);
+
+/// What is impossible about an inertia tensor xx, yy, zz, xy, xz, yz, in words with its principal
+/// moments; empty where a body can have it.
+[[nodiscard]] std::string inertia_fault(const std::array<double, 6>& inertia_kg_m2);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <offnominal/control/arming.hpp>
+#include <offnominal/control/computed_torque.hpp>
+#include <offnominal/diagnosis/bound.hpp>
+#include <offnominal/diagnosis/estimator_config.hpp>
+#include <offnominal/monitor.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "robot/chain_of.hpp"
+#include "robot/robot.hpp"
+
+// A robot's settings as the core's configuration structs.
+
+namespace offnominal::desk {
+
+template <typename Scalar>
+[[nodiscard]] EstimatorConfig<Scalar> estimator_config_of(const EstimatorSettings& settings) {
+  EstimatorConfig<Scalar> config;
+  config.period_s = static_cast<Scalar>(settings.period_s);
+  config.alpha = static_cast<Scalar>(settings.alpha);
+  config.learning_rate = static_cast<Scalar>(settings.learning_rate);
+  config.weight_radius = static_cast<Scalar>(settings.weight_radius);
+  config.dead_zone = settings.dead_zone;
+  config.hidden_units = settings.hidden_units;
+  config.initial_weight_range = static_cast<Scalar>(settings.initial_weight_range);
+  config.seed = settings.seed;
+  return config;
+}
+
+namespace detail {
+
+template <int N, typename Scalar>
+void set_scaled_norm(const ScaledNormBoundSettings& settings, UncertaintyBound<N, Scalar>& bound) {
+  constexpr auto kJoints = static_cast<std::size_t>(N);
+  bound.kind = BoundKind::kScaledNorm;
+  bound.scale = static_cast<Scalar>(settings.scale);
+  bound.offset = static_cast<Scalar>(settings.offset);
+  if (settings.matrix.size() > kJoints) {
+    throw std::invalid_argument("the bound's matrix has more rows than the robot has joints");
+  }
+  for (std::size_t row = 0; row < settings.matrix.size(); ++row) {
+    if (settings.matrix[row].size() != kJoints) {
+      throw std::invalid_argument("a row of the bound's matrix has not one number per joint");
+    }
+    for (std::size_t column = 0; column < kJoints; ++column) {
+      bound.matrix[kJoints * row + column] = static_cast<Scalar>(settings.matrix[row][column]);
+    }
+  }
+}
+
+template <int N, typename Scalar>
+void set_table(const TableBoundSettings& settings, UncertaintyBound<N, Scalar>& bound) {
+  if (settings.at.size() != settings.value.size() || settings.at.size() > bound.at.size()) {
+    throw std::invalid_argument("the bound's table has too many points or not a value for each");
+  }
+  bound.kind = BoundKind::kTable;
+  bound.variable = settings.variable;
+  bound.joint = static_cast<std::uint8_t>(settings.joint);
+  bound.points = static_cast<std::uint8_t>(settings.at.size());
+  for (std::size_t i = 0; i < settings.at.size(); ++i) {
+    bound.at[i] = static_cast<Scalar>(settings.at[i]);
+    bound.value[i] = static_cast<Scalar>(settings.value[i]);
+  }
+}
+
+}  // namespace detail
+
+/// Throws std::invalid_argument where the settings do not fit a robot of N joints.
+template <int N, typename Scalar>
+[[nodiscard]] UncertaintyBound<N, Scalar> bound_of(const BoundSettings& settings) {
+  UncertaintyBound<N, Scalar> bound;
+  bound.velocity_error = static_cast<Scalar>(settings.velocity_error);
+  switch (settings.kind) {
+    case BoundSettings::Kind::kConstant:
+      bound.kind = BoundKind::kConstant;
+      bound.offset = static_cast<Scalar>(settings.constant.value);
+      break;
+    case BoundSettings::Kind::kScaledNorm:
+      detail::set_scaled_norm(settings.scaled_norm, bound);
+      break;
+    case BoundSettings::Kind::kTable:
+      detail::set_table(settings.table, bound);
+      break;
+  }
+  return bound;
+}
+
+template <int N, typename Scalar>
+[[nodiscard]] ComputedTorqueGains<N, Scalar> gains_of(const RobotDescription& robot) {
+  detail::require_joint_count(robot, N);
+  ComputedTorqueGains<N, Scalar> gains;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+    gains.kp[i] = static_cast<Scalar>(robot.joints[i].kp);
+    gains.kd[i] = static_cast<Scalar>(robot.joints[i].kd);
+  }
+  return gains;
+}
+
+/// Throws std::invalid_argument where the settings do not fit a robot of N joints.
+template <int N, typename Scalar>
+[[nodiscard]] ArmingConfig<N, Scalar> arming_of(const RobotDescription& robot) {
+  ArmingConfig<N, Scalar> config = default_arming(chain_of<N, Scalar>(robot));
+  const auto set = [](const std::vector<double>& from, auto& into) {
+    if (from.empty()) return;
+    if (from.size() != into.size()) {
+      throw std::invalid_argument("the settings of arming have not one number per joint");
+    }
+    for (std::size_t i = 0; i < into.size(); ++i) into[i] = static_cast<Scalar>(from[i]);
+  };
+  set(robot.arming.position_window, config.position_window);
+  set(robot.arming.speed, config.speed);
+  set(robot.arming.torque_rate, config.torque_rate);
+  config.ramp_s = static_cast<Scalar>(robot.arming.ramp_s);
+  return config;
+}
+
+/// Chain, estimator and bound in one. Compensation is limited to each joint's max_torque. Throws
+/// std::invalid_argument when the robot has no bound, or not N joints.
+template <int N, typename Scalar>
+[[nodiscard]] MonitorConfig<N, Scalar> monitor_config_of(const RobotDescription& robot) {
+  if (!robot.bound)
+    throw std::invalid_argument("robot " + robot.name + " has no uncertainty bound");
+  MonitorConfig<N, Scalar> config;
+  config.chain = chain_of<N, Scalar>(robot);
+  config.estimator = estimator_config_of<Scalar>(robot.estimator);
+  config.bound = bound_of<N, Scalar>(*robot.bound);
+  config.torque_signal = robot.estimator.torque_signal;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+    config.max_compensation[i] = config.chain.joints[i].max_torque;
+  }
+  return config;
+}
+
+}  // namespace offnominal::desk

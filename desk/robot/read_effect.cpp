@@ -1,0 +1,106 @@
+#include "robot/read_effect.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "common/nearest.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+const std::vector<std::string> kCommonKeys{"kind", "joint", "fitted", "source"};
+
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::vector<std::string> parameter_names(const EffectInfo& info) {
+  std::vector<std::string> names;
+  for (const ParameterInfo& parameter : info.parameters) names.emplace_back(parameter.name);
+  return names;
+}
+
+// The table was read with the keys of every kind; now the kind is known.
+void refuse_parameters_of_other_kinds(const TomlTable& table, const EffectInfo& info) {
+  const std::vector<std::string> own = parameter_names(info);
+  for (const std::string& key : effect_keys()) {
+    if (!table.has(key) || contains(own, key) || contains(kCommonKeys, key)) continue;
+    const std::string meant = nearest(key, own);
+    table.refuse(key, "a parameter that " + std::string(info.name) + " does not have", list_of(own),
+                 meant.empty() ? "remove it, or change kind" : "write `" + meant + "`");
+  }
+}
+
+NumberRule rule_of(const ParameterInfo& parameter, JointType type) {
+  NumberRule rule = physical(any_number(unit_of(parameter.quantity, type)));
+  if (parameter.min > -effects::kAny) rule.min = parameter.min;
+  if (parameter.max < effects::kAny) rule.max = parameter.max;
+  rule.mend = std::string("give the ") + parameter.meaning;
+  return rule;
+}
+
+double read_other_joint(const TomlTable& table, const ParameterInfo& parameter,
+                        const RobotEffect& effect, std::size_t joint_count) {
+  const std::string key = parameter.name;
+  const std::string own = std::to_string(effect.joint + 1);
+  if (joint_count < 2) {
+    table.refuse("kind", "an effect that follows another joint, on a robot of one joint",
+                 "a robot of two joints or more", "remove the effect");
+  }
+  const auto number = table.integer(key, 1, static_cast<std::int64_t>(joint_count));
+  if (number == effect.joint + 1) {
+    table.refuse(key, own + ", the effect's own joint", "another joint",
+                 "give " + std::string(parameter.meaning));
+  }
+  return static_cast<double>(number);
+}
+
+}  // namespace
+
+const std::vector<std::string>& effect_keys() {
+  static const std::vector<std::string> keys = [] {
+    std::vector<std::string> all = kCommonKeys;
+    for (const EffectInfo& info : kAllEffectInfos) {
+      for (const std::string& name : parameter_names(info)) {
+        if (!contains(all, name)) all.push_back(name);
+      }
+    }
+    return all;
+  }();
+  return keys;
+}
+
+const std::vector<std::string>& effect_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const EffectInfo& info : kAllEffectInfos) all.emplace_back(info.name);
+    return all;
+  }();
+  return names;
+}
+
+RobotEffect read_effect(const TomlTable& table, const std::vector<RobotJoint>& joints) {
+  const EffectInfo& info = kAllEffectInfos[table.choice("kind", effect_names())];
+  refuse_parameters_of_other_kinds(table, info);
+  RobotEffect effect;
+  effect.kind = info.kind;
+  const auto joint = table.integer("joint", 1, static_cast<std::int64_t>(joints.size()));
+  effect.joint = static_cast<std::uint8_t>(joint - 1);
+  effect.fitted = table.boolean("fitted", false);
+  effect.source = table.text_or_empty("source");
+  const JointType type = joints[effect.joint].joint.type;
+  for (std::size_t i = 0; i < info.parameters.size(); ++i) {
+    const ParameterInfo& parameter = info.parameters[i];
+    if (parameter.quantity == Quantity::kJointNumber) {
+      effect.parameters[i] = read_other_joint(table, parameter, effect, joints.size());
+      continue;
+    }
+    const NumberRule rule = rule_of(parameter, type);
+    effect.parameters[i] = parameter.required
+                               ? table.number(parameter.name, rule)
+                               : table.number(parameter.name, rule, parameter.default_value);
+  }
+  return effect;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/toml_table.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::desk {
+
+/// Every key that an [[effect]] of any kind can have.
+[[nodiscard]] const std::vector<std::string>& effect_keys();
+
+/// Every effect's name, in the order of the core's list.
+[[nodiscard]] const std::vector<std::string>& effect_names();
+
+/// One [[effect]] of a robot with these joints.
+[[nodiscard]] RobotEffect read_effect(const TomlTable& table,
+                                      const std::vector<RobotJoint>& joints);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,154 @@
+#include "robot/read_settings.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <offnominal/diagnosis/bound.hpp>
+#include <offnominal/diagnosis/estimator_config.hpp>
+
+#include "common/nearest.hpp"
+#include "common/number.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+// Refuses the keys that belong to another kind of bound.
+void refuse_keys_other_than(const TomlTable& table, const std::vector<std::string>& own,
+                            const std::string& kind) {
+  std::vector<std::string> allowed{"kind", "source", "velocity_error"};
+  allowed.insert(allowed.end(), own.begin(), own.end());
+  for (const std::string& key : bound_keys()) {
+    bool known = false;
+    for (const std::string& name : allowed) known = known || name == key;
+    if (table.has(key) && !known) {
+      table.refuse(key, "a key that a bound of kind " + kind + " does not have", list_of(allowed),
+                   "remove it, or change kind");
+    }
+  }
+}
+
+TableBoundSettings read_table_bound(const TomlTable& table, int joint_count) {
+  TableBoundSettings bound;
+  const std::size_t variable = table.choice("variable", {"position", "speed", "torque"});
+  bound.variable = static_cast<BoundVariable>(variable);
+  bound.joint = static_cast<int>(table.integer("joint", 1, joint_count)) - 1;
+  bound.at = table.numbers("at", any_number(""), 1, kMaxTablePoints);
+  for (std::size_t i = 1; i < bound.at.size(); ++i) {
+    if (bound.at[i] > bound.at[i - 1]) continue;
+    table.refuse("at", shortest(bound.at[i]) + " after " + shortest(bound.at[i - 1]),
+                 "strictly rising numbers", "sort the points, and their values with them");
+  }
+  bound.value =
+      table.numbers("value", positive("rad/s^2 or m/s^2"), bound.at.size(), bound.at.size());
+  return bound;
+}
+
+}  // namespace
+
+const std::vector<std::string>& estimator_keys() {
+  static const std::vector<std::string> keys{"period_s",      "alpha_per_s",
+                                             "hidden_units",  "learning_rate",
+                                             "weight_radius", "initial_weight_range",
+                                             "seed",          "dead_zone",
+                                             "torque_signal", "source"};
+  return keys;
+}
+
+const std::vector<std::string>& arming_keys() {
+  static const std::vector<std::string> keys{"position_window", "speed", "torque_rate", "ramp_s",
+                                             "source"};
+  return keys;
+}
+
+const std::vector<std::string>& bound_keys() {
+  static const std::vector<std::string> keys{"kind",   "source",        "value",    "scale",
+                                             "offset", "matrix",        "variable", "joint",
+                                             "at",     "velocity_error"};
+  return keys;
+}
+
+EstimatorSettings read_estimator(const TomlTable& table) {
+  EstimatorSettings settings;
+  settings.period_s = table.number(
+      "period_s", positive("s", "give the length of a control tick in s"), settings.period_s);
+  settings.alpha = table.number(
+      "alpha_per_s", positive("1/s", "give the pole of the filter 1/(s + alpha)"), settings.alpha);
+  const double pole_per_tick = settings.alpha * settings.period_s;
+  if (pole_per_tick > kMaxPolePerTick) {
+    table.refuse(table.has("alpha_per_s") ? "alpha_per_s" : "period_s",
+                 "alpha_per_s * period_s = " + shortest(pole_per_tick),
+                 "at most " + shortest(kMaxPolePerTick) +
+                     ", beyond it a step of period_s no longer follows the filter",
+                 "lower alpha_per_s to " + shortest(kMaxPolePerTick / settings.period_s) +
+                     ", or shorten period_s");
+  }
+  settings.hidden_units =
+      static_cast<int>(table.integer("hidden_units", 1, kMaxHiddenUnits, settings.hidden_units));
+  settings.learning_rate = table.number(
+      "learning_rate", not_negative("", "give the rate Gamma; 0 detects without learning"),
+      settings.learning_rate);
+  settings.weight_radius = table.number(
+      "weight_radius", positive("", "give the radius M of the ball that holds the weights"),
+      settings.weight_radius);
+  settings.initial_weight_range =
+      table.number("initial_weight_range", positive(""), settings.initial_weight_range);
+  settings.seed = static_cast<std::uint32_t>(table.integer(
+      "seed", 0, std::numeric_limits<std::uint32_t>::max(), std::int64_t{settings.seed}));
+  if (table.has("dead_zone")) {
+    settings.dead_zone = table.choice("dead_zone", {"continuous", "discontinuous"}) == 0
+                             ? DeadZone::kContinuous
+                             : DeadZone::kDiscontinuous;
+  }
+  if (table.has("torque_signal")) {
+    settings.torque_signal = table.choice("torque_signal", {"sampled", "held"}) == 0
+                                 ? TorqueSignal::kSampled
+                                 : TorqueSignal::kHeld;
+  }
+  settings.source = table.text_or_empty("source");
+  return settings;
+}
+
+ArmingSettings read_arming(const TomlTable& table, int joint_count) {
+  const auto joints = static_cast<std::size_t>(joint_count);
+  const auto per_joint = [&](const char* key, const char* unit) {
+    if (!table.has(key)) return std::vector<double>{};
+    return table.numbers(key, positive(unit), joints, joints);
+  };
+  ArmingSettings settings;
+  settings.position_window = per_joint("position_window", "rad or m");
+  settings.speed = per_joint("speed", "rad/s or m/s");
+  settings.torque_rate = per_joint("torque_rate", "N m/s or N/s");
+  settings.ramp_s = table.number("ramp_s", positive("s"), settings.ramp_s);
+  settings.source = table.text_or_empty("source");
+  return settings;
+}
+
+BoundSettings read_bound(const TomlTable& table, int joint_count) {
+  BoundSettings bound;
+  const auto joints = static_cast<std::size_t>(joint_count);
+  switch (table.choice("kind", {"constant", "scaled_norm", "table"})) {
+    case 0:
+      refuse_keys_other_than(table, {"value"}, "constant");
+      bound.kind = BoundSettings::Kind::kConstant;
+      bound.constant.value = table.number("value", positive("rad/s^2 or m/s^2"));
+      break;
+    case 1:
+      refuse_keys_other_than(table, {"scale", "offset", "matrix"}, "scaled_norm");
+      bound.kind = BoundSettings::Kind::kScaledNorm;
+      bound.scaled_norm.scale = table.number("scale", positive(""));
+      bound.scaled_norm.offset = table.number("offset", not_negative(""));
+      bound.scaled_norm.matrix = table.rows("matrix", any_number(""), 1, joints, joints);
+      break;
+    default:
+      refuse_keys_other_than(table, {"variable", "joint", "at", "value"}, "table");
+      bound.kind = BoundSettings::Kind::kTable;
+      bound.table = read_table_bound(table, joint_count);
+      break;
+  }
+  bound.velocity_error =
+      table.number("velocity_error", not_negative("rad/s or m/s"), bound.velocity_error);
+  bound.source = table.text_or_empty("source");
+  return bound;
+}
+
+}  // namespace offnominal::desk

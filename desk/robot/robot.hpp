@@ -1,0 +1,131 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <offnominal/diagnosis/bound.hpp>
+#include <offnominal/diagnosis/estimator_config.hpp>
+#include <offnominal/model/chain.hpp>
+#include <offnominal/model/effect_list.hpp>
+#include <offnominal/sample.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drives/drive_settings.hpp"
+
+// One robot as the host tools hold it: any number of joints, everything in SI units. It is what a
+// robot file says and nothing else; chain_of() turns it into the fixed-size chain of the core.
+
+namespace offnominal::desk {
+
+inline constexpr int kMaxJoints = 8;
+inline constexpr int kMaxHiddenUnits = 256;
+
+struct Encoder {
+  double counts_per_unit = 0;  // counts per rad or m; 0: no quantisation is known
+};
+
+struct RobotJoint {
+  std::string name;
+  Joint<double> joint;
+  Encoder encoder;
+  double kp = 0;            // 1/s^2, computed torque (paper eq. 29)
+  double kd = 0;            // 1/s
+  std::string source = {};  // where the numbers come from, free text; empty: not said
+};
+
+// Settings of the on-board estimator (paper section 3).
+struct EstimatorSettings : EstimatorConfig<double> {
+  TorqueSignal torque_signal = TorqueSignal::kSampled;
+  std::string source = {};  // where the numbers come from, free text; empty: not said
+};
+
+// How a controller takes hold of the arm. One number per joint, or none: default_arming().
+struct ArmingSettings {
+  std::vector<double> position_window;  // rad or m
+  std::vector<double> speed;            // rad/s or m/s
+  std::vector<double> torque_rate;      // N m/s or N/s
+  double ramp_s = 1;
+  std::string source = {};  // where the numbers come from, free text; empty: not said
+};
+
+// Bound mu_bar on |M^-1 (unmodelled torque)| (paper assumption 3.1), rad/s^2 or m/s^2.
+struct ConstantBoundSettings {
+  double value = 1;
+};
+// scale * (|matrix dq| + offset); every row of `matrix` has one number per joint.
+struct ScaledNormBoundSettings {
+  double scale = 1;
+  double offset = 1;
+  std::vector<std::vector<double>> matrix;
+};
+// Linear between points over q, |dq| or |tau| of one joint, constant beyond both ends.
+struct TableBoundSettings {
+  BoundVariable variable = BoundVariable::kSpeed;
+  int joint = 0;  // from 0
+  std::vector<double> at;
+  std::vector<double> value;
+};
+struct BoundSettings {
+  enum class Kind : std::uint8_t { kConstant, kScaledNorm, kTable } kind = Kind::kConstant;
+  ConstantBoundSettings constant;
+  ScaledNormBoundSettings scaled_norm;
+  TableBoundSettings table;
+  double velocity_error = 0;  // largest error of the measured velocity, rad/s or m/s
+  std::string source = {};    // where the numbers come from, free text; empty: not said
+};
+
+// Where one quantity of a log comes from: SI value = scale * unit * source + offset, `unit` as
+// units.hpp knows it, 1 where it does not. `scale_source` names a scalar variable of the log (a
+// drive gain in a .mat file, say) that multiplies scale. Where there is a `sum`, its terms take the
+// source's place; they have no offset and no sum of their own.
+struct Channel {
+  std::string source;  // a name, or the number of a column from 1; empty where there is a sum
+  double scale = 1;
+  double offset = 0;
+  std::string scale_source;  // empty: none
+  std::string unit;          // of the source; empty: SI
+  std::vector<Channel> sum = {};
+};
+
+struct ChannelMap {
+  Channel time;                                  // t, s; not read where there is a period_s
+  std::vector<Channel> more_times = {};          // of the second file of a recording, and so on
+  double period_s = 0;                           // between two samples; 0: as the time says
+  std::vector<Channel> position;                 // per joint
+  std::vector<std::optional<Channel>> velocity;  // none: derived from the position
+  std::vector<Channel> torque;                   // per joint
+  std::map<std::string, Channel> extra;          // name -> channel
+  std::string dbc = {};  // DBC file that decodes a candump log; empty: offnominal's own frames
+  bool at_rest = false;  // the recordings are hold maps (log/hold_map.hpp): time is not read
+};
+
+// An effect that the robot's file knows. `fitted`: its numbers come from a recording, `add` may fit
+// them again together with a new effect; otherwise they are given and stay.
+struct RobotEffect : Effect<double> {
+  bool fitted = false;
+  std::string source = {};  // where the numbers come from, free text; empty: not said
+};
+
+struct RobotDescription {
+  std::string name;
+  std::string source;  // where the numbers come from, free text
+  std::array<double, 3> gravity_m_s2{0, 0, -9.81};
+  std::vector<RobotJoint> joints;
+  std::vector<RobotEffect> effects;  // joint counts from 0
+  EstimatorSettings estimator;
+  ArmingSettings arming;
+  std::optional<BoundSettings> bound;
+  std::optional<DriveSettings> drives;  // none: drive_settings()
+  std::optional<ChannelMap> channels;
+  // The text it was read from, so that writing keeps comments and order; null: none. Copies, of
+  // which a fit makes thousands, share it.
+  std::shared_ptr<const std::string> file_text = nullptr;
+
+  [[nodiscard]] int joint_count() const { return static_cast<int>(joints.size()); }
+  [[nodiscard]] DriveSettings drive_settings() const { return drives.value_or(DriveSettings{}); }
+};
+
+}  // namespace offnominal::desk

@@ -1,0 +1,207 @@
+#include "robot/robot_file.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <offnominal/diagnosis/network.hpp>
+#include <offnominal/model/effect_memory.hpp>
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include "common/error.hpp"
+#include "common/number.hpp"
+#include "common/toml_table.hpp"
+#include "robot/chain_of.hpp"
+#include "robot/channels.hpp"
+#include "robot/check_mass_matrix.hpp"
+#include "robot/read_drives.hpp"
+#include "robot/read_effect.hpp"
+#include "robot/read_joint.hpp"
+#include "robot/read_settings.hpp"
+#include "robot/text_lines.hpp"
+#include "robot/text_with_bound.hpp"
+#include "robot/text_with_effects.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+const std::vector<std::string> kRootKeys{"format",       "name",    "source",
+                                         "gravity_m_s2", "joint",   "effect",
+                                         "estimator",    "arming",  "uncertainty_bound",
+                                         "drives",       "channels"};
+
+std::vector<RobotJoint> read_joints(const TomlTable& root) {
+  const std::vector<TomlTable> tables = root.tables("joint", joint_keys());
+  if (tables.empty() || tables.size() > static_cast<std::size_t>(kMaxJoints)) {
+    root.refuse("joint", std::to_string(tables.size()) + " joints",
+                "1 to " + std::to_string(kMaxJoints) + " joints",
+                "write one [[joint]] for each joint, from the base outwards");
+  }
+  std::vector<RobotJoint> joints;
+  std::set<std::string> names;
+  for (const TomlTable& table : tables) {
+    joints.push_back(read_joint(table));
+    const std::string& name = joints.back().name;
+    if (names.insert(name).second) continue;
+    table.refuse("name", "the name \"" + name + "\" a second time", "names that differ",
+                 "give this joint another name");
+  }
+  return joints;
+}
+
+std::vector<RobotEffect> read_effects(const TomlTable& root,
+                                      const std::vector<RobotJoint>& joints) {
+  const std::vector<TomlTable> tables = root.tables("effect", effect_keys());
+  const std::size_t most = kEffectsPerJoint * joints.size();
+  if (tables.size() > most) {
+    tables[most].refuse(
+        "", std::to_string(tables.size()) + " effects",
+        "at most " + std::to_string(most) + " (" + std::to_string(kEffectsPerJoint) + " per joint)",
+        "remove those that matter least");
+  }
+  std::vector<RobotEffect> effects;
+  std::vector<double> friction_per_load(joints.size());
+  constexpr double kMost = effects::LoadDependentFriction::kMostFactor;
+  for (const TomlTable& table : tables) {
+    effects.push_back(read_effect(table, joints));
+    double& of_joint = friction_per_load[effects.back().joint];
+    of_joint += most_friction_per_load<double>(effects.back());
+    if (of_joint <= kMost) continue;
+    table.refuse(info_of(effects.back().kind)->find(Quantity::kRatio)->name,
+                 "friction by the load of this joint that adds up to " + shortest(of_joint),
+                 "at most " + shortest(kMost) + " per joint", "make one effect of them");
+  }
+  return effects;
+}
+
+// The radius has to hold the weights that the estimator starts with, which depend on the number of
+// joints.
+void check_initial_weights(const TomlTable& root, const RobotDescription& robot) {
+  const EstimatorSettings& settings = robot.estimator;
+  const double norm = with_joint_count(robot.joint_count(), [&settings]<int N>() {
+    return std::sqrt(initial_squared_norm<N, kMaxHiddenUnits, double>(
+        settings.seed, settings.hidden_units, settings.initial_weight_range));
+  });
+  if (norm < settings.weight_radius) return;
+  root.refuse("estimator",
+              "initial weights of norm " + shortest(static_cast<double>(static_cast<float>(norm))) +
+                  " with a weight_radius of " + shortest(settings.weight_radius),
+              "initial weights inside the radius",
+              "lower estimator.initial_weight_range, or raise estimator.weight_radius");
+}
+
+void check_delays(const TomlTable& root, const RobotDescription& robot) {
+  const double most_s = kMaxDelayTicks * robot.estimator.period_s;
+  const auto delays_s = with_joint_count(robot.joint_count(), [&]<int N>() {
+    const Chain<N, double> chain = chain_of<N, double>(robot);
+    std::vector<double> of_joints;
+    for (std::size_t i = 0; i < chain.joints.size(); ++i) {
+      of_joints.push_back(delay_of_joint(chain, i));
+    }
+    return of_joints;
+  });
+  for (std::size_t i = 0; i < delays_s.size(); ++i) {
+    if (delays_s[i] <= most_s) continue;
+    root.refuse(
+        "effect", fmt::format("a delay of {:g} s on joint {}", delays_s[i], i + 1),
+        fmt::format("at most {:g} s, {} ticks of estimator.period_s", most_s, kMaxDelayTicks),
+        "correct the delay of time_delay, or estimator.period_s");
+  }
+}
+
+// `text` with the path of the robot's DBC file as it is seen from `file`, where that is in another
+// folder than the file that the text comes from. The key has to have a line of its own.
+std::string with_dbc(const std::string& text, const RobotDescription& robot,
+                     const std::string& file) {
+  if (!robot.channels || robot.channels->dbc.empty()) return text;
+  if (parse_robot(text, file).channels->dbc == robot.channels->dbc) return text;
+  const toml::table document = parse_toml(text, file);
+  const std::size_t line = document["channels"]["dbc"].node()->source().begin.line;
+  const Lines lines = lines_of(text);
+  if (!trimmed(lines.at(line - 1)).starts_with("dbc")) return text;
+  std::ostringstream key;
+  key << toml::table{{"dbc", std::filesystem::absolute(robot.channels->dbc).string()}};
+  std::string result;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    result += (i + 1 == line ? key.str() : lines[i]) + "\n";
+  }
+  return result;
+}
+
+// The text that `robot` was read from with what has changed since, for `file`; none where it cannot
+// be cut.
+std::optional<std::string> text_with_changes(const RobotDescription& robot,
+                                             const std::string& file) {
+  if (robot.file_text == nullptr) return std::nullopt;
+  const std::string old_text = with_dbc(*robot.file_text, robot, file);
+  RobotDescription effects_only = robot;
+  effects_only.bound = parse_robot(old_text, file).bound;
+  auto text = text_with_effects(old_text, effects_only, file);
+  if (!text || !robot.bound) return robot.bound ? std::nullopt : text;
+  return text_with_bound(*text, robot, file);
+}
+
+}  // namespace
+
+void require_bound(const RobotDescription& robot, const std::string& file) {
+  if (robot.bound) return;
+  throw InputError({.file = file,
+                    .place = "uncertainty_bound",
+                    .found = "nothing",
+                    .allowed = "a table [uncertainty_bound]",
+                    .mend = "add one (docs/robot-file.md), or let `offnominal calibrate` find it: "
+                            "without a bound there is no threshold"});
+}
+
+RobotDescription parse_robot(std::string_view text, const std::string& file) {
+  const toml::table document = parse_toml(text, file);
+  const TomlTable root(file, "", document, kRootKeys);
+  if (root.integer("format", 1, 1'000'000) != kRobotFileFormat) {
+    root.refuse("format", "a format that this version does not know",
+                std::to_string(kRobotFileFormat), "use the version of offnominal that wrote it");
+  }
+  RobotDescription robot;
+  robot.name = root.text("name");
+  robot.source = root.text_or_empty("source");
+  const std::vector<double> gravity =
+      root.numbers("gravity_m_s2", physical(any_number("m/s^2")), 3, 3);
+  robot.gravity_m_s2 = {gravity[0], gravity[1], gravity[2]};
+  robot.joints = read_joints(root);
+  robot.effects = read_effects(root, robot.joints);
+  check_mass_matrix(root, robot);
+  if (const auto table = root.optional_table("estimator", estimator_keys())) {
+    robot.estimator = read_estimator(*table);
+  }
+  if (const auto table = root.optional_table("arming", arming_keys())) {
+    robot.arming = read_arming(*table, robot.joint_count());
+  }
+  check_initial_weights(root, robot);
+  check_delays(root, robot);
+  if (const auto table = root.optional_table("uncertainty_bound", bound_keys())) {
+    robot.bound = read_bound(*table, robot.joint_count());
+  }
+  if (const toml::table* table = root.raw_table("drives")) {
+    robot.drives = read_drives(*table, file, robot.joint_count(), robot.estimator.period_s);
+  }
+  if (const toml::table* table = root.raw_table("channels")) {
+    robot.channels = parse_channels(*table, file, robot.joint_count());
+  }
+  robot.file_text = std::make_shared<const std::string>(text);
+  return robot;
+}
+
+RobotDescription read_robot_file(const std::filesystem::path& path) {
+  return parse_robot(read_text_file(path), path.string());
+}
+
+void write_robot_file(const RobotDescription& robot, const std::filesystem::path& path,
+                      Existing existing) {
+  const std::string plain = robot_text(robot);
+  static_cast<void>(parse_robot(plain, path.string() + " (to be written)"));
+  const auto as_it_was = text_with_changes(robot, path.string());
+  write_file_atomically(path, as_it_was.value_or(plain), existing);
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "common/file.hpp"
+#include "robot/robot.hpp"
+
+// A robot as a TOML file; docs/robot-file.md lists every key. Joints count from 1 in the file and
+// in messages, from 0 in a RobotDescription.
+
+namespace offnominal::desk {
+
+inline constexpr int kRobotFileFormat = 1;
+
+/// Reads a robot file. Throws InputError with file, line, key path, what was found, what is allowed
+/// and how to mend it at the first thing that is wrong; unknown keys are wrong. A description that
+/// comes back is accepted by the core's validate().
+[[nodiscard]] RobotDescription read_robot_file(const std::filesystem::path& path);
+
+/// The same for a text; `file` names it in messages.
+[[nodiscard]] RobotDescription parse_robot(std::string_view text, const std::string& file);
+
+/// Throws InputError, with `file` in it, where the robot has no uncertainty bound: without one
+/// there is no threshold.
+void require_bound(const RobotDescription& robot, const std::string& file);
+
+/// The text of a robot file. Numbers have as many digits as it takes to get them back to the bit:
+/// parse_robot(robot_text(robot)) == robot, for every robot that can be read.
+[[nodiscard]] std::string robot_text(const RobotDescription& robot);
+
+/// Writes a robot file, whole or not at all. Where only effects and the uncertainty
+/// bound were changed since `robot` was
+/// read, every other line stays as it was, comments and order included; otherwise robot_text() is
+/// written. Throws InputError, nothing written, when the text would not be read again (a robot that
+/// was changed into a wrong one), when `path` exists and `existing` refuses that, or when it cannot
+/// be written.
+void write_robot_file(const RobotDescription& robot, const std::filesystem::path& path,
+                      Existing existing = Existing::kRefuse);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace offnominal::desk {
+
+// Where a column that is folded into `range`, as an angle into a turn, passes from one end to the
+// other: the rows before it, in order. Each is a step by the range but for a few percent, or but
+// for what the column does between two samples elsewhere. None where the column spans more than
+// the range, or where other steps are so large that a fold cannot be told from them.
+std::vector<Eigen::Index> folds_of(const Eigen::Ref<const Eigen::VectorXd>& x, double range);
+
+// Takes a range off, or adds it, from each of these rows on.
+void unfold(Eigen::Ref<Eigen::VectorXd> x, double range, const std::vector<Eigen::Index>& folds);
+
+}  // namespace offnominal::desk

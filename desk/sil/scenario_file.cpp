@@ -1,0 +1,157 @@
+#include "sil/scenario_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/file.hpp"
+#include "common/number.hpp"
+#include "common/toml_table.hpp"
+#include "robot/effect_text.hpp"
+#include "robot/read_effect.hpp"
+#include "sil/plant_of.hpp"
+
+namespace offnominal::desk::sil {
+namespace {
+
+constexpr int kScenarioFormat = 1;
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for (const sim::FaultEventInfo& info : sim::kFaultEventInfos) names.emplace_back(info.name);
+  return names;
+}
+
+sim::FaultEvent read_fault(const TomlTable& table, int joints) {
+  const sim::FaultEventInfo& info = sim::kFaultEventInfos[table.choice("kind", kind_names())];
+  const auto refuse_key = [&](const char* key, const std::string& allowed) {
+    if (table.has(key)) {
+      table.refuse(key, "a key that " + std::string(info.name) + " does not have", allowed,
+                   "leave it out");
+    }
+  };
+  sim::FaultEvent fault;
+  fault.kind = info.kind;
+  fault.begin_s = table.number("begin_s", not_negative("s"));
+  if (info.develops) {
+    refuse_key("end_s", "kind, begin_s, size and rate_per_s: it stays");
+    if (table.has("rate_per_s")) fault.rate_per_s = table.number("rate_per_s", positive("1/s"));
+  } else {
+    refuse_key("rate_per_s", "kind, begin_s, end_s, joint and size: it is there at once");
+    if (table.has("end_s")) fault.end_s = table.number("end_s", positive("s"));
+  }
+  if (info.of_joint == sim::OfJoint::kNever) {
+    refuse_key("joint", "no joint: it concerns them all");
+  } else if (info.of_joint == sim::OfJoint::kAlways || table.has("joint")) {
+    fault.joint = static_cast<int>(table.integer("joint", 1, joints)) - 1;
+  }
+  if (info.unit.empty()) {
+    refuse_key("size", "no size: it is there or not");
+  } else {
+    NumberRule rule;
+    rule.min = info.least;
+    rule.max = info.most;
+    rule.unit = std::string(info.unit);
+    fault.size = table.number("size", rule);
+  }
+  return fault;
+}
+
+}  // namespace
+
+Scenario read_scenario(const std::filesystem::path& path,
+                       const std::optional<RobotDescription>& plant) {
+  const std::string file = path.string();
+  const toml::table document = parse_toml(read_text_file(path), file);
+  const TomlTable root(
+      file, "", document,
+      {"format", "duration_s", "accommodate", "stop_at_detection", "frames", "velocity",
+       "max_acceleration_rad_s2", "encoder_bits_per_turn", "seed", "fault", "hidden"});
+  if (root.integer("format", 1, 1'000'000) != kScenarioFormat) {
+    root.refuse("format", "a format that this version does not know",
+                std::to_string(kScenarioFormat), "use the version of offnominal that wrote it");
+  }
+  Scenario scenario;
+  scenario.plant = plant;
+  NumberRule duration = positive("s");
+  duration.max = paper::kLongestRunS;
+  scenario.duration_s = root.number("duration_s", duration, scenario.duration_s);
+  scenario.accommodate = root.boolean("accommodate", false);
+  scenario.stop_at_detection = root.boolean("stop_at_detection", false);
+  if (root.has("frames")) {
+    const bool fd = root.choice("frames", {"classic", "fd"}) == 1;
+    scenario.format = fd ? hal::FrameFormat::kFd : hal::FrameFormat::kClassic;
+  }
+  if (root.has("velocity")) {
+    scenario.sends_velocity = root.choice("velocity", {"sent", "observed"}) == 0;
+  }
+  scenario.max_acceleration =
+      root.number("max_acceleration_rad_s2", positive("rad/s^2"), scenario.max_acceleration);
+  scenario.encoder_bits_per_turn =
+      static_cast<int>(root.integer("encoder_bits_per_turn", 1, 32, 0));
+  scenario.seed = static_cast<std::uint64_t>(
+      root.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
+  const std::vector<std::string> keys = {"kind", "begin_s", "end_s", "joint", "size", "rate_per_s"};
+  for (const TomlTable& table : root.tables("fault", keys)) {
+    scenario.faults.push_back(read_fault(table, joint_count_of(scenario)));
+  }
+  for (const TomlTable& table : root.tables("hidden", effect_keys())) {
+    if (!plant) {
+      table.refuse("", "an effect hidden in the paper's arm",
+                   "none: its friction and disturbance are the paper's",
+                   "hide it in the plant of a robot file: --plant FILE");
+    }
+    scenario.hidden.push_back(read_effect(table, plant->joints));
+  }
+  return scenario;
+}
+
+std::string scenario_text(const Scenario& scenario) {
+  std::string text = fmt::format(
+      "format = {}\nduration_s = {}\naccommodate = {}\nstop_at_detection = {}\n"
+      "velocity = \"{}\"\nmax_acceleration_rad_s2 = {}\nseed = {}\n",
+      kScenarioFormat, shortest_real(scenario.duration_s), scenario.accommodate,
+      scenario.stop_at_detection, scenario.sends_velocity ? "sent" : "observed",
+      shortest_real(scenario.max_acceleration), scenario.seed);
+  if (scenario.format) {
+    const bool fd = *scenario.format == hal::FrameFormat::kFd;
+    text += fmt::format("frames = \"{}\"\n", fd ? "fd" : "classic");
+  }
+  if (scenario.encoder_bits_per_turn > 0) {
+    text += fmt::format("encoder_bits_per_turn = {}\n", scenario.encoder_bits_per_turn);
+  }
+  for (const sim::FaultEvent& fault : scenario.faults) {
+    const sim::FaultEventInfo& info = info_of(fault.kind);
+    text += fmt::format("\n[[fault]]\nkind = \"{}\"\nbegin_s = {}\n", info.name,
+                        shortest_real(fault.begin_s));
+    const auto add = [&](const char* key, double value) {
+      text += fmt::format("{} = {}\n", key, shortest_real(value));
+    };
+    if (std::isfinite(fault.end_s)) add("end_s", fault.end_s);
+    if (std::isfinite(fault.rate_per_s)) add("rate_per_s", fault.rate_per_s);
+    if (fault.joint >= 0) text += fmt::format("joint = {}\n", fault.joint + 1);
+    if (!info.unit.empty()) add("size", fault.size);
+  }
+  for (const RobotEffect& effect : scenario.hidden) {
+    const std::string as_effect = effect_text(effect);
+    text += "\n[[hidden]]" + as_effect.substr(as_effect.find('\n'));
+  }
+  return text;
+}
+
+std::string fault_kinds_text() {
+  std::string text;
+  for (const sim::FaultEventInfo& info : sim::kFaultEventInfos) {
+    std::string keys = info.of_joint == sim::OfJoint::kNever    ? ""
+                       : info.of_joint == sim::OfJoint::kAlways ? "joint"
+                                                                : "(joint)";
+    if (!info.unit.empty()) {
+      keys += fmt::format("{}size [{}]", keys.empty() ? "" : ", ", info.unit);
+    }
+    text += fmt::format("  {:<18} {:<30} {}\n", info.name, keys, info.words);
+  }
+  return text;
+}
+
+}  // namespace offnominal::desk::sil

@@ -1,0 +1,118 @@
+#include "sil/sil.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <offnominal/hal/bus/wire_time.hpp>
+
+#include "common/error.hpp"
+#include "loop/controller_settings.hpp"
+#include "paper/run_observer.hpp"
+#include "sil/lock_step.hpp"
+#include "sil/plant_of.hpp"
+
+namespace offnominal::desk::sil {
+namespace {
+
+[[noreturn]] void refuse(const std::string& place, const std::string& found,
+                         const std::string& allowed) {
+  throw InputError(
+      {.file = "offnominal sil", .place = place, .found = found, .allowed = allowed, .mend = ""});
+}
+
+void check_fault(const sim::FaultEvent& fault, int joints, double duration_s) {
+  const sim::FaultEventInfo& info = info_of(fault.kind);
+  const std::string name(info.name);
+  if (!info.unit.empty() && !(fault.size >= info.least && fault.size <= info.most)) {
+    refuse(name + ", size", fmt::format("{:g}", fault.size),
+           fmt::format("{:g} to {:g} {}", info.least, info.most, info.unit));
+  }
+  const bool said = fault.joint >= 0 || info.of_joint == sim::OfJoint::kAlways;
+  const bool has_joint = info.of_joint != sim::OfJoint::kNever;
+  if (said && has_joint && (fault.joint < 0 || fault.joint >= joints)) {
+    refuse(name + ", joint", std::to_string(fault.joint + 1), "1 to " + std::to_string(joints));
+  }
+  if (!(fault.begin_s >= 0 && fault.begin_s <= duration_s)) {
+    refuse(name + ", begin", fmt::format("{:g} s", fault.begin_s),
+           fmt::format("0 s to the run's end, {:g} s", duration_s));
+  }
+  if (!(fault.end_s > fault.begin_s)) {
+    refuse(name + ", end", fmt::format("{:g} s", fault.end_s), "after its begin");
+  }
+  if (!(fault.rate_per_s > 0)) {
+    refuse(name + ", rate", fmt::format("{:g} 1/s", fault.rate_per_s), "above 0");
+  }
+}
+
+}  // namespace
+
+void check_scenario(const RobotDescription& robot, const Scenario& scenario) {
+  paper::check_run(robot, scenario, "sil");
+  if (robot.estimator.hidden_units > kControllerCapacity) {
+    refuse("hidden units", std::to_string(robot.estimator.hidden_units),
+           "1 to " + std::to_string(kControllerCapacity));
+  }
+  const int joints = joint_count_of(scenario);
+  if (robot.joint_count() != joints) {
+    refuse("plant", std::to_string(joints) + " joint(s)",
+           std::to_string(robot.joint_count()) + ", as many as robot " + robot.name + " has");
+  }
+  if (const auto wanted = motion_of(scenario)(0.0).q.size(); wanted != joints) {
+    refuse("motion", std::to_string(wanted) + " joint(s)", std::to_string(joints));
+  }
+  if (scenario.encoder_bits_per_turn < 0 || scenario.encoder_bits_per_turn > 32) {
+    refuse("encoder bits per turn", std::to_string(scenario.encoder_bits_per_turn), "0 to 32");
+  }
+  if (!(scenario.max_acceleration > 0 && std::isfinite(scenario.max_acceleration))) {
+    refuse("largest acceleration", fmt::format("{:g} rad/s^2", scenario.max_acceleration),
+           "above 0");
+  }
+  for (const sim::FaultEvent& fault : scenario.faults) {
+    check_fault(fault, joints, scenario.duration_s);
+  }
+  check_plant(scenario);
+  check_drives(scenario, robot.drive_settings(), robot.estimator.period_s);
+}
+
+SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenario, Wire& wire,
+                           const std::string& bus_name, const TappedPort::OnFrame& on_frame) {
+  check_scenario(robot, scenario);
+  SilResult result;
+  result.bus_name = bus_name;
+  result.faults = scenario.faults;
+  const std::optional<double> first_s = first_begin_s(scenario.faults);
+  paper::RunObserver observer(robot, scenario, first_s.value_or(scenario.duration_s));
+  const auto observe = [&](const paper::TickRecord& tick) { observer(tick); };
+  double busy_s = 0;
+  const auto see = [&](const hal::Frame& frame, hal::Microseconds time_us) {
+    busy_s += hal::longest_wire_time_s(frame);
+    if (on_frame) on_frame(frame, time_us);
+  };
+  run_loop(robot, scenario, wire, see, observe, result);
+  result.run = observer.finish();
+  if (result.run_time_s > 0) result.bus.load = busy_s / result.run_time_s;
+  result.run.fault_time_s = first_s;
+  return result;
+}
+
+std::string words_of(const std::vector<sim::FaultEvent>& faults) {
+  if (faults.empty()) return "none";
+  std::string words;
+  for (const sim::FaultEvent& fault : faults) {
+    const sim::FaultEventInfo& info = info_of(fault.kind);
+    if (!words.empty()) words += ", ";
+    words += info.name;
+    if (fault.joint >= 0) words += fmt::format(" on joint {}", fault.joint + 1);
+    if (!info.unit.empty() && info.unit != "1") {
+      words += fmt::format(" of {:g} {}", fault.size, info.unit);
+    } else if (!info.unit.empty()) {
+      words += fmt::format(" of {:g} %", 100 * fault.size);
+    }
+    words += fmt::format(" at {:g} s", fault.begin_s);
+    if (std::isfinite(fault.end_s)) words += fmt::format(" until {:g} s", fault.end_s);
+  }
+  return words;
+}
+
+}  // namespace offnominal::desk::sil

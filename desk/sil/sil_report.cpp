@@ -1,0 +1,173 @@
+#include "sil/sil_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+#include "paper/figures.hpp"
+#include "paper/paper_json.hpp"
+
+namespace offnominal::desk::sil {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json nullable(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+struct Row {
+  std::string name;
+  std::string value;
+};
+
+std::string seconds(const std::optional<double>& value) {
+  return value ? fmt::format("{:.3f} s", *value) : "none";
+}
+
+// Nothing where the run ended before its last quarter.
+std::string tracking(const SilResult& result) {
+  const double rms = result.run.tracking_rms_rad;
+  return std::isfinite(rms) ? fmt::format("{:.4f} rad rms", rms) : "none: the run ended early";
+}
+
+void add_rows_of(const RealTimeReport& time, std::vector<Row>& rows) {
+  rows.push_back({"ticks of the controller", std::to_string(time.ticks)});
+  rows.push_back({"latest begin of a tick", fmt::format("{} us", time.worst_late_us)});
+  rows.push_back({"a tick's work, mean and longest",
+                  fmt::format("{:.0f} us, {} us", time.mean_step_us, time.worst_step_us)});
+  rows.push_back(
+      {"real time of the controller",
+       fmt::format("{}, {}",
+                   time.fifo_priority > 0 ? fmt::format("SCHED_FIFO {}", time.fifo_priority)
+                                          : std::string("ordinary scheduling"),
+                   time.memory_locked ? "memory locked" : "memory not locked")});
+  rows.push_back({"late ticks of the plant", std::to_string(time.plant_overruns)});
+  rows.push_back({"entries that the recordings lost", std::to_string(time.recording_lost)});
+}
+
+std::vector<Row> rows_of(const SilResult& result) {
+  const paper::ExperimentResult& run = result.run;
+  const BusReport& bus = result.bus;
+  std::vector<Row> rows = {
+      {"faults", words_of(result.faults)},
+      {"first fault begins", seconds(run.fault_time_s)},
+      {"detected", seconds(run.detection_time_s)},
+      {"before the fault: largest |e| / mu",
+       fmt::format("{:.4f}", run.max_error_to_threshold_before_fault)},
+      {"tracking error, last quarter", tracking(result)},
+      {"controller at the end",
+       result.fault == controller::Fault::kNone
+           ? name_of(result.state)
+           : fmt::format("{}: {} ({})", name_of(result.state), controller::name_of(result.fault),
+                         static_cast<int>(result.fault))},
+      {"time to safe state", seconds(result.time_to_safe_state_s)},
+      {"late ticks", std::to_string(result.overruns)},
+      {"bus", result.bus_name},
+      {"frames", std::to_string(bus.frames)},
+      {"lost, by their counters", std::to_string(bus.lost)},
+      {"rejected (CRC, counter, value)", std::to_string(bus.rejected)},
+      {"ticks without a fresh reading", std::to_string(bus.stale)},
+      {"not sent for lateness", std::to_string(bus.late)},
+      {"bus load at most, 1 Mbit/s (FD data 5 Mbit/s)", fmt::format("{:.1f} %", 100 * bus.load)},
+  };
+  if (result.real_time) add_rows_of(*result.real_time, rows);
+  return rows;
+}
+
+}  // namespace
+
+std::string name_of(hal::ControllerState state) {
+  switch (state) {
+    case hal::ControllerState::kInit:
+      return "init";
+    case hal::ControllerState::kPassive:
+      return "passive";
+    case hal::ControllerState::kArmed:
+      return "armed";
+    case hal::ControllerState::kFault:
+      return "fault";
+  }
+  return "unknown";
+}
+
+ordered_json to_json(const SilResult& result) {
+  ordered_json json = paper::to_json(result.run);
+  json["fault"] = words_of(result.faults);
+  json["bus"] = {{"name", result.bus_name},
+                 {"frames", result.bus.frames},
+                 {"lost", result.bus.lost},
+                 {"rejected", result.bus.rejected},
+                 {"stale", result.bus.stale},
+                 {"late", result.bus.late},
+                 {"load_percent", 100 * result.bus.load}};
+  json["time_to_safe_state_s"] = nullable(result.time_to_safe_state_s);
+  json["overruns"] = result.overruns;
+  json["controller_state"] = name_of(result.state);
+  json["controller_fault"] = controller::name_of(result.fault);
+  json["ended_early_s"] = nullable(result.ended_early_s);
+  if (!result.real_time) return json;
+  const RealTimeReport& time = *result.real_time;
+  json["real_time"] = {{"ticks", time.ticks},
+                       {"worst_late_us", time.worst_late_us},
+                       {"worst_step_us", time.worst_step_us},
+                       {"mean_step_us", time.mean_step_us},
+                       {"fifo_priority", time.fifo_priority},
+                       {"memory_locked", time.memory_locked},
+                       {"plant_overruns", time.plant_overruns},
+                       {"recording_lost", time.recording_lost}};
+  return json;
+}
+
+std::string sentence_of(const SilResult& result) {
+  const paper::ExperimentResult& run = result.run;
+  std::string words;
+  if (run.detection_time_s && run.fault_time_s && *run.detection_time_s >= *run.fault_time_s) {
+    words = fmt::format("The fault is detected {:.3f} s after it began.",
+                        *run.detection_time_s - *run.fault_time_s);
+  } else if (run.detection_time_s) {
+    words = "There is an alarm while nothing is wrong.";
+  } else if (run.fault_time_s) {
+    words = "The monitor sees nothing that the uncertainty could not do.";
+  } else {
+    words = "Nothing is wrong, and nothing is called a fault.";
+  }
+  if (result.state == hal::ControllerState::kFault) {
+    words += fmt::format(" The controller went to its safe state: {}.",
+                         controller::name_of(result.fault));
+  }
+  if (result.time_to_safe_state_s) {
+    words += fmt::format(" No drive gave torque {:.3f} s after the first fault.",
+                         *result.time_to_safe_state_s);
+  }
+  return words;
+}
+
+std::string text_of(const SilResult& result) {
+  std::string text;
+  for (const Row& row : rows_of(result)) text += fmt::format("{:<46} {}\n", row.name, row.value);
+  return text + sentence_of(result) + "\n";
+}
+
+report::Page page_of(const SilResult& result, const std::string& command_line) {
+  report::Page page = paper::page_of(result.run, command_line);
+  page.title = "Controller and arm on a CAN bus";
+  page.subtitle = fmt::format("faults: {}; bus: {}", words_of(result.faults), result.bus_name);
+  page.verdict.words = sentence_of(result);
+  report::Section bus;
+  bus.heading = "Bus and controller";
+  report::Table table;
+  table.caption = "What the run showed";
+  for (const char* name : {"what", "value"}) {
+    report::Column column;
+    column.name = name;
+    table.columns.push_back(column);
+  }
+  for (const Row& row : rows_of(result)) table.rows.push_back({row.name, row.value});
+  bus.blocks.emplace_back(std::move(table));
+  page.sections.insert(page.sections.begin(), std::move(bus));
+  return page;
+}
+
+}  // namespace offnominal::desk::sil

@@ -1,0 +1,103 @@
+#include "calibrate/tightest.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <random>
+
+#include "common/error.hpp"
+#include "support/repetitions.hpp"
+#include "support/seed.hpp"
+
+// The linear programme of the tightest threshold against every vertex there is.
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using namespace offnominal::desk;
+
+VectorXd cheapest(const std::vector<ThresholdRows>& parts, const VectorXd& lowest) {
+  return tightest(parts, lowest, VectorXd::Ones(lowest.size()));
+}
+
+TEST(Tightest, OfOneNumberIsTheLargestRatio) {
+  const MatrixXd rows = VectorXd::LinSpaced(1000, 1, 3);
+  const VectorXd error = (VectorXd::LinSpaced(1000, 0, 20).array().sin() + 1.5).matrix();
+  const VectorXd c = cheapest({{rows, error}}, VectorXd::Zero(rows.cols()));
+  const double largest = (error.array() / rows.col(0).array()).maxCoeff();
+  EXPECT_NEAR(c[0], largest, 1e-5 * largest);
+  EXPECT_GE(c[0], largest * (1 - 1e-12));
+}
+
+TEST(Tightest, StaysAtTheLowestWhereThatIsEnough) {
+  const MatrixXd rows = MatrixXd::Ones(10, 2);
+  const VectorXd lowest = VectorXd::Constant(2, 3);
+  EXPECT_EQ(cheapest({{rows, VectorXd::Ones(10)}}, lowest), lowest);
+  EXPECT_EQ(cheapest({{rows, VectorXd::Zero(10)}}, lowest), lowest);
+}
+
+// Least cost over all points where two of the constraints, rows or axes, meet.
+double best_vertex(const MatrixXd& rows, const VectorXd& error, const VectorXd& cost) {
+  MatrixXd all(rows.rows() + 2, 2);
+  all << rows, MatrixXd::Identity(2, 2);
+  VectorXd at_least = VectorXd::Zero(error.size() + 2);
+  at_least.head(error.size()) = error;
+  double best = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < all.rows(); ++i) {
+    for (Index j = 0; j < i; ++j) {
+      Eigen::Matrix2d pair;
+      pair << all.row(i), all.row(j);
+      if (std::abs(pair.determinant()) < 1e-12) continue;
+      const Eigen::Vector2d c = pair.inverse() * Eigen::Vector2d(at_least[i], at_least[j]);
+      if ((all * c - at_least).minCoeff() < -1e-9) continue;
+      best = std::min(best, cost.dot(c));
+    }
+  }
+  return best;
+}
+
+TEST(Tightest, OfTwoNumbersIsTheBestVertex) {
+  auto generator = offnominal::test::seeded_generator();
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int run = 0; run < offnominal::test::repetitions(50); ++run) {
+    const double unit = std::pow(10.0, 8 * uniform(generator) - 4);
+    const MatrixXd rows = MatrixXd::NullaryExpr(60, 2, [&] { return uniform(generator); });
+    const VectorXd error = unit * VectorXd::NullaryExpr(60, [&] { return uniform(generator); });
+    const VectorXd c = cheapest({{rows, error}}, VectorXd::Zero(rows.cols()));
+    EXPECT_GE((rows * c - error).minCoeff(), -1e-12 * unit) << run;
+    const VectorXd cost = rows.colwise().mean();
+    const double best = best_vertex(rows, error, cost);
+    EXPECT_NEAR(cost.dot(c), best, 3e-6 * best) << run;
+  }
+}
+
+TEST(Tightest, PartsThatDoNotCountAreCoveredAllTheSame) {
+  const Eigen::MatrixX2d rows = Eigen::RowVector2d(1, 0.5).replicate(5, 1);
+  const Eigen::MatrixX2d more = Eigen::RowVector2d(0, 1).replicate(5, 1);
+  const VectorXd c =
+      cheapest({{rows, VectorXd::Constant(5, 0.1), true}, {more, VectorXd::Ones(5), false}},
+               VectorXd::Zero(rows.cols()));
+  EXPECT_NEAR(c[0], 0, 1e-5);
+  EXPECT_NEAR(c[1], 1, 1e-5);
+}
+
+TEST(Tightest, OfTwoEqualColumnsTheCheaperIsUsed) {
+  const Eigen::MatrixX2d rows = Eigen::MatrixX2d::Ones(5, 2);
+  const VectorXd error = VectorXd::Ones(5);
+  const VectorXd c = tightest({{rows, error}}, VectorXd::Zero(2), Eigen::Vector2d(1.5, 1));
+  EXPECT_NEAR(c[0], 0, 1e-5);
+  EXPECT_NEAR(c[1], 1, 1e-5);
+}
+
+TEST(Tightest, RefusesAnErrorThatNothingReaches) {
+  MatrixXd rows = MatrixXd::Ones(3, 1);
+  rows(1, 0) = 0;
+  EXPECT_THROW(
+      static_cast<void>(cheapest({{rows, VectorXd::Ones(3)}}, VectorXd::Zero(rows.cols()))),
+      InputError);
+}
+
+}  // namespace

@@ -1,0 +1,135 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "desk/compare/recorded_arm.hpp"
+#include "desk/support/run_command.hpp"
+#include "log/csv_text.hpp"
+#include "robot/robot_file.hpp"
+#include "support/places.hpp"
+#include "support/robots.hpp"
+
+// `offnominal calibrate` as a user runs it.
+
+namespace {
+
+using namespace offnominal::desk;
+using nlohmann::json;
+using offnominal::test::arm_description;
+using offnominal::test::ArmInstant;
+using offnominal::test::CommandResult;
+using offnominal::test::content_of;
+using offnominal::test::record_arm;
+using testing::HasSubstr;
+
+class CalibrateVerb : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_log("a.csv", 1, 0);
+    write_log("b.csv", 2, 0);
+    write_log("broken.csv", 3, 20);
+    RobotDescription robot = arm_description();
+    robot.bound.emplace().constant.value = 50;
+    offnominal::test::put(folder_ / "arm.toml", "# a comment that stays\n" + robot_text(robot));
+  }
+
+  void write_log(const std::string& name, std::uint64_t seed, double fault_nm) {
+    const Log log =
+        record_arm({.duration_s = 20, .rate_hz = 200, .torque_noise = 0.5, .seed = seed},
+                   [fault_nm](const ArmInstant& at) -> Eigen::Vector2d {
+                     return {at.t_s > 10 ? fault_nm : 0, 0};
+                   });
+    offnominal::test::put(folder_ / name, csv_text(log));
+  }
+
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return (folder_ / name).string();
+  }
+
+  CommandResult calibrate(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "calibrate");
+    return offnominal::test::run_command(offnominal::test::command_file(), std::move(arguments));
+  }
+
+  offnominal::test::TemporaryFolder folder_;
+};
+
+TEST_F(CalibrateVerb, WritesARobotFileThatReplaysWithoutAlarm) {
+  const CommandResult result =
+      calibrate({path("a.csv"), "--holdout", path("b.csv"), "--robot", path("arm.toml"), "-o",
+                 path("new.toml"), "--report", path("page.html")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("0 alarm(s) in 20 s"));
+  EXPECT_THAT(result.out, HasSubstr("written: " + path("new.toml")));
+  const std::string text = content_of(path("new.toml"));
+  EXPECT_THAT(text, HasSubstr("# a comment that stays"));
+  EXPECT_THAT(text, HasSubstr("Calibrated by offnominal calibrate on a.csv."));
+  EXPECT_THAT(content_of(path("page.html")), HasSubstr("offnominal calibrate"));
+  const CommandResult replayed = offnominal::test::run_command(
+      offnominal::test::command_file(),
+      {"replay", path("b.csv"), "--robot", path("new.toml"), "--check"});
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.out;
+}
+
+TEST_F(CalibrateVerb, JsonIsOneObjectAndTheSameEveryTime) {
+  const std::vector<std::string> arguments{path("a.csv"),    path("b.csv"), "--robot",
+                                           path("arm.toml"), "-o",          path("new.toml"),
+                                           "--json",         "--force"};
+  const CommandResult first = calibrate(arguments);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const std::string file = content_of(path("new.toml"));
+  const CommandResult second = calibrate(arguments);
+  EXPECT_EQ(first.out, second.out);
+  EXPECT_EQ(content_of(path("new.toml")), file);
+  const json result = json::parse(first.out);
+  EXPECT_EQ(result["old_bound"]["value"], 50);
+  EXPECT_EQ(result["output"], path("new.toml"));
+  EXPECT_LT(result["mean_threshold_after"].get<double>(),
+            result["mean_threshold_before"].get<double>());
+  EXPECT_EQ(result["false_alarms"]["alarms_per_hour"], 0.1);
+}
+
+TEST_F(CalibrateVerb, AFaultInTheHoldOutEndsInOneAndNothingIsWritten) {
+  const CommandResult result = calibrate({path("a.csv"), "--holdout", path("broken.csv"), "--robot",
+                                          path("arm.toml"), "-o", path("new.toml")});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, HasSubstr("not written: "));
+  EXPECT_FALSE(std::filesystem::exists(path("new.toml")));
+}
+
+TEST_F(CalibrateVerb, RefusesWithOneLineAndExitTwo) {
+  offnominal::test::put(folder_ / "short.csv", "t,q1,q2,tau1,tau2\n0,1,2,3,4\n");
+  offnominal::test::put(folder_ / "there.toml", "");
+  const std::string out = path("new.toml");
+  const std::string robot = path("arm.toml");
+  struct Wrong {
+    std::vector<std::string> arguments;
+    std::string told;
+  };
+  const std::vector<Wrong> all{
+      {{path("a.csv"), "--robot", robot, "-o", path("there.toml")}, "there already"},
+      {{path("a.csv"), "--robot", robot, "-o", path("a.csv"), "--force"}, "which is that of LOG"},
+      {{path("a.csv"), path("a.csv"), "--robot", robot, "-o", out}, "the same as"},
+      {{path("a.csv"), "--holdout", path("a.csv"), "--robot", robot, "-o", out}, "the same as"},
+      {{path("short.csv"), "--robot", robot, "-o", out}, "short.csv"},
+      {{path("nowhere.csv"), "--robot", robot, "-o", out}, "nowhere.csv"},
+      {{path("a.csv"), "--robot", robot, "-o", out, "--alarms-per-hour", "0"}, "1e-6 to 60"},
+      {{path("a.csv"), "--robot", robot, "-o", out, "--velocity-error", "-1"}, "at least 0"},
+      {{path("a.csv"), "--robot", robot, "-o", "/nowhere/new.toml"}, "/nowhere/new.toml"},
+      {{path("a.csv"), "--robot", (offnominal::test::kRobots / "emps.toml").string(), "-o", out},
+       "a.csv"}};
+  for (const Wrong& wrong : all) {
+    const CommandResult result = calibrate(wrong.arguments);
+    EXPECT_EQ(result.exit_code, 2) << wrong.told;
+    EXPECT_EQ(result.out, "") << wrong.told;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(wrong.told));
+    EXPECT_FALSE(std::filesystem::exists(out)) << wrong.told;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,77 @@
+#include "codegen/model_header.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <offnominal/version.hpp>
+#include <string>
+
+#include "common/error.hpp"
+#include "desk/robot/sample_robot.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+using test::changed;
+using testing::HasSubstr;
+using testing::Not;
+
+ModelHeader header_of(const std::string& text, const ModelHeaderOptions& options = {}) {
+  return model_header(parse_robot(text, "sample.toml"), options);
+}
+
+TEST(ModelHeader, SaysWhereItComesFromAndInWhatUnits) {
+  const ModelHeader header = header_of(test::kSampleRobot, {.robot_file = "/some/where/arm.toml"});
+  EXPECT_THAT(header.text, HasSubstr("from arm.toml."));
+  EXPECT_THAT(header.text, Not(HasSubstr("/some")));
+  EXPECT_THAT(header.text,
+              HasSubstr("version " + std::to_string(kVersionMajor) + "." +
+                        std::to_string(kVersionMinor) + "." + std::to_string(kVersionPatch)));
+  EXPECT_THAT(header.text,
+              HasSubstr("joint 1 moves in rad and is driven in N m, joint 2 moves in m"));
+  EXPECT_THAT(header.text, HasSubstr(".max_velocity = Scalar(4.0),  // rad/s, magnitude\n"));
+  EXPECT_THAT(header.text, HasSubstr("coefficient in N s/m\n"));
+  EXPECT_THAT(header.text, HasSubstr("joint 1: turn; drawing 12"));
+  EXPECT_EQ(header.joints, 2);
+  EXPECT_EQ(header.effects, 2);
+  EXPECT_EQ(header.hidden_units, 12);
+  EXPECT_EQ(header.in_float, Status::kOk);
+}
+
+TEST(ModelHeader, RepeatsToTheLetter) {
+  EXPECT_EQ(header_of(test::kSampleRobot).text, header_of(test::kSampleRobot).text);
+}
+
+TEST(ModelHeader, OffersDoubleAloneWhereFloatWouldBeRefused) {
+  const ModelHeader header =
+      header_of(changed(test::kSampleRobot, "learning_rate = 0.5", "learning_rate = 1e60"));
+  EXPECT_EQ(header.in_float, Status::kInvalidLearningRate);
+  EXPECT_THAT(header.text, HasSubstr("For double only: rounded to float"));
+  EXPECT_THAT(header.text, HasSubstr("template <std::same_as<double> Scalar>"));
+  const ModelHeader gains =
+      header_of(changed(test::kSampleRobot, "kp_per_s2 = 100.0", "kp_per_s2 = 1e60"));
+  EXPECT_EQ(gains.in_float, Status::kInvalidGain);
+}
+
+std::string refusal_of(const std::string& text, const ModelHeaderOptions& options) {
+  try {
+    static_cast<void>(header_of(text, options));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ModelHeader, RefusesARobotWithoutABoundAndANamespaceThatIsNone) {
+  std::string without = test::kSampleRobot;
+  const auto begin = without.find("[uncertainty_bound]");
+  without.erase(begin, without.find("[channels]") - begin);
+  EXPECT_THAT(refusal_of(without, {.robot_file = "a.toml"}),
+              HasSubstr("a.toml: uncertainty_bound: found nothing; allowed: a table"));
+  EXPECT_THAT(refusal_of(test::kSampleRobot, {.name_space = "my-arm"}),
+              HasSubstr("--namespace: found my-arm; allowed: names of letters"));
+}
+
+}  // namespace
+}  // namespace offnominal::desk

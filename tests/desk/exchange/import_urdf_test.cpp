@@ -1,0 +1,165 @@
+#include "exchange/import_urdf.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "exchange/import_report.hpp"
+#include "robot/robot_file.hpp"
+#include "urdfs.hpp"
+
+namespace offnominal::test {
+namespace {
+
+using desk::exchange::import_urdf;
+using desk::exchange::ImportedRobot;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+std::vector<std::string> notes_of(const ImportedRobot& imported) {
+  std::vector<std::string> notes;
+  for (const auto& note : imported.notes) {
+    notes.push_back(std::string(name_of(note.kind)) + " " + std::to_string(note.line) + " " +
+                    note.text);
+  }
+  return notes;
+}
+
+ImportedRobot imported_arm() {
+  return import_urdf(sample_arm().text(), "arm.urdf", sample_arm().chain());
+}
+
+// Two balls of 1 kg on a bar: in the link itself at x = 1, in a link fixed to it at x = -1. By
+// hand: 2 kg, centre between them, 2 kg m^2 about y and z, nothing about x.
+TEST(ImportUrdf, MergesFixedLinksAsWorkedOutByHand) {
+  const ImportedRobot imported = import_urdf(R"(<robot name="bar">
+    <link name="ground"/>
+    <link name="bar"><inertial><origin xyz="1 0 0"/><mass value="1"/>
+      <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
+    <link name="ball"><inertial><origin xyz="0 0 0.5"/><mass value="1"/>
+      <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
+    <joint name="pin" type="continuous"><parent link="ground"/><child link="bar"/>
+      <axis xyz="0 0 1"/></joint>
+    <joint name="weld" type="fixed"><origin xyz="-0.5 0 0" rpy="0 -1.5707963267948966 0"/>
+      <parent link="bar"/><child link="ball"/></joint></robot>)",
+                                             "bar.urdf");
+  ASSERT_EQ(imported.robot.joint_count(), 1);
+  const Joint<double>& joint = imported.robot.joints[0].joint;
+  EXPECT_DOUBLE_EQ(joint.mass_kg, 2);
+  for (const double x : joint.centre_of_mass_m) EXPECT_NEAR(x, 0, 1e-15);
+  const double by_hand[]{0, 2, 2, 0, 0, 0};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(joint.inertia_kg_m2[i], by_hand[i], 1e-15) << i;
+}
+
+// A brick whose axes are turned by 90 degrees about z: xx and yy change places.
+TEST(ImportUrdf, TurnsAnInertiaIntoTheLinksFrame) {
+  const ImportedRobot imported = import_urdf(R"(<robot name="brick">
+    <link name="ground"/>
+    <link name="brick"><inertial><origin rpy="0 0 1.5707963267948966"/><mass value="1"/>
+      <inertia ixx="0.1" ixy="0.01" ixz="0" iyy="0.2" iyz="0" izz="0.25"/></inertial></link>
+    <joint name="pin" type="continuous"><parent link="ground"/><child link="brick"/>
+      <axis xyz="0 0 1"/></joint></robot>)",
+                                             "brick.urdf");
+  const double by_hand[]{0.2, 0.1, 0.25, -0.01, 0, 0};
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_NEAR(imported.robot.joints[0].joint.inertia_kg_m2[i], by_hand[i], 1e-15) << i;
+  }
+}
+
+TEST(ImportUrdf, KeepsLimitsAndTurnsDynamicsIntoEffects) {
+  const desk::RobotDescription robot = imported_arm().robot;
+  ASSERT_EQ(robot.joint_count(), 3);
+  const Joint<double>& shoulder = robot.joints[0].joint;
+  EXPECT_EQ(shoulder.min_position, -1.9);
+  EXPECT_EQ(shoulder.max_position, 2.1);
+  EXPECT_EQ(shoulder.max_velocity, 3.5);
+  EXPECT_EQ(shoulder.max_torque, 60);
+  EXPECT_EQ(robot.joints[1].joint.type, JointType::kPrismatic);
+  const Joint<double> unlimited;
+  const Joint<double>& wrist = robot.joints[2].joint;
+  EXPECT_EQ(wrist.max_position, unlimited.max_position);
+  EXPECT_EQ(wrist.max_velocity, unlimited.max_velocity);
+  EXPECT_EQ(wrist.max_torque, 12);
+  struct Expected {
+    EffectKind kind;
+    int joint;
+    double value;
+  };
+  const Expected expected[]{{EffectKind::kViscousFriction, 0, 0.7},
+                            {EffectKind::kCoulombFriction, 0, 1.25},
+                            {EffectKind::kCoulombFriction, 1, 9},
+                            {EffectKind::kViscousFriction, 2, 0.05}};
+  ASSERT_EQ(robot.effects.size(), std::size(expected));
+  for (std::size_t i = 0; i < std::size(expected); ++i) {
+    EXPECT_EQ(robot.effects[i].kind, expected[i].kind) << i;
+    EXPECT_EQ(robot.effects[i].joint, expected[i].joint) << i;
+    EXPECT_EQ(robot.effects[i].parameters[0], expected[i].value) << i;
+    EXPECT_FALSE(robot.effects[i].fitted);
+  }
+}
+
+TEST(ImportUrdf, SaysWhatItMergedHeldLeftOutAndAssumed) {
+  const std::vector<std::string> notes = notes_of(imported_arm());
+  for (const char* expected :
+       {"merged 34 link `cover` (0.4 kg) into `upper`",
+        "merged 61 link `motor` (0.9 kg) into `carriage`",
+        "held 94 joint `grip`, not in the chain, at 0.01 m", "left out 5 the 4 kg of base `world`",
+        "left out 12 <visual>", "left out 85 `K` of <dynamics>", "left out 116 <transmission>",
+        "assumed 0 gravity of 9.81 m/s^2 along -z of the root `world`",
+        "assumed 53 the axis of joint `slide`, of length 2",
+        "assumed 80 the axis 1 0 0 of joint `wrist`: the URDF gives none",
+        "assumed 80 no limit of velocity is known of joint `wrist`",
+        "assumed 87 a point mass: the inertia of link `finger` is zero",
+        "assumed 0 friction changes its sign over 0.01"}) {
+    EXPECT_THAT(notes, Contains(HasSubstr(expected)));
+  }
+  // Both ends were given.
+  EXPECT_THAT(notes, Not(Contains(HasSubstr("base `world`: the root"))));
+  EXPECT_THAT(notes, Not(Contains(HasSubstr("tip `"))));
+}
+
+TEST(ImportUrdf, TakesTheRootAndTheOnlyTipAndSaysSo) {
+  std::string text = sample_arm().text();
+  for (const char* grip : {"\"grip\" type=\"prismatic\"", "\"other_grip\" type=\"prismatic\""}) {
+    const auto at = text.find(grip);
+    ASSERT_NE(at, std::string::npos);
+    const std::string fixed =
+        std::string(grip).substr(0, std::string(grip).find(' ')) + " type=\"fixed\"";
+    text.replace(at, std::string(grip).size(), fixed);
+  }
+  const auto imported = import_urdf(text, "arm.urdf");
+  EXPECT_EQ(imported.base, "world");
+  EXPECT_EQ(imported.tip, "hand");
+  EXPECT_THAT(notes_of(imported), Contains("assumed 5 base `world`: the root"));
+  EXPECT_THAT(notes_of(imported),
+              Contains("assumed 73 tip `hand`: the only chain of moving joints ends in it"));
+}
+
+TEST(ImportUrdf, TurnsGravityIntoTheFrameOfABaseThatIsNotTheRoot) {
+  const auto imported = import_urdf(sample_arm().text(), "arm.urdf", {"base", "hand"});
+  // The base stands tilted by 0.3 rad about y.
+  EXPECT_NEAR(imported.robot.gravity_m_s2[0], 9.81 * std::sin(0.3), 1e-12);
+  EXPECT_NEAR(imported.robot.gravity_m_s2[1], 0, 1e-12);
+  EXPECT_NEAR(imported.robot.gravity_m_s2[2], -9.81 * std::cos(0.3), 1e-12);
+  EXPECT_THAT(notes_of(imported), Contains(HasSubstr("1 link between the root and the base")));
+}
+
+TEST(ImportUrdf, SaysThatWhatFollowsAJointOfTheChainIsHeldAllTheSame) {
+  const auto imported = import_urdf(sample_arm().text(), "arm.urdf", {"world", "finger"});
+  ASSERT_EQ(imported.robot.joint_count(), 4);
+  EXPECT_THAT(notes_of(imported), Contains(HasSubstr("it follows `grip`, which moves")));
+}
+
+TEST(ImportUrdf, WritesARobotFileThatIsReadAgainWithTheNotesAsComments) {
+  const ImportedRobot imported = imported_arm();
+  const std::string text = desk::exchange::robot_text_of(imported, "/somewhere/arm.urdf");
+  EXPECT_THAT(
+      text, testing::StartsWith("# Imported from the URDF arm.urdf by `offnominal import-urdf`."));
+  EXPECT_THAT(text, HasSubstr("\n# merged: link `cover` (0.4 kg) into `upper` (line 34)\n"));
+  const auto robot = desk::parse_robot(text, "arm.toml");
+  EXPECT_EQ(robot.joint_count(), 3);
+  EXPECT_EQ(robot.joints[0].source, "link upper with cover, rail");
+}
+
+}  // namespace
+}  // namespace offnominal::test

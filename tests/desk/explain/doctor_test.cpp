@@ -1,0 +1,246 @@
+#include "explain/doctor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "../compare/recorded_arm.hpp"
+#include "hidden_case.hpp"
+#include "support/repetitions.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+namespace hidden = sim::hidden;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Kinds that were found, each once, in words.
+std::string found_in(const std::vector<DataFault>& faults) {
+  std::string kinds;
+  for (const DataFault& fault : faults) {
+    const std::string kind = name_of(fault.kind);
+    if (kinds.find(kind) == std::string::npos) kinds += (kinds.empty() ? "" : " ") + kind;
+    EXPECT_FALSE(fault.words.empty());
+    EXPECT_FALSE(fault.mend.empty());
+  }
+  return kinds;
+}
+
+std::vector<DataFault> examine_case(const hidden::Request& request) {
+  const hidden::Case made = hidden::make_case(request);
+  return examine(test::to_log(made.recording), test::to_robot(made.nominal));
+}
+
+hidden::Request request_of(int seed, bool noisy) {
+  hidden::Request request;
+  request.seed = static_cast<std::uint64_t>(seed);
+  request.torque_noise_share = noisy ? 0.03 : 0.002;
+  request.encoder_bits = noisy ? 13 : 19;
+  return request;
+}
+
+constexpr int kSeeds = test::repetitions(3);
+
+void expect_fault(hidden::DataFault fault, const std::string& kind) {
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    for (const bool noisy : {false, true}) {
+      hidden::Request request = request_of(seed, noisy);
+      request.fault = fault;
+      EXPECT_EQ(found_in(examine_case(request)), kind) << "seed " << seed << " noisy " << noisy;
+    }
+  }
+}
+
+TEST(Doctor, NamesPositionsInDegrees) { expect_fault(hidden::DataFault::kDegrees, "degrees"); }
+
+TEST(Doctor, NamesTorqueOfTheWrongSign) {
+  expect_fault(hidden::DataFault::kSwappedTorqueSign, "torque_sign");
+}
+
+TEST(Doctor, NamesStaleSamples) { expect_fault(hidden::DataFault::kStaleSamples, "stale_samples"); }
+
+TEST(Doctor, NamesClocksThatDiffer) { expect_fault(hidden::DataFault::kClockSkew, "clock_skew"); }
+
+TEST(Doctor, NamesTheJointWhoseTorqueHasTheWrongSign) {
+  test::ArmRecording settings;
+  settings.torque_noise = 0.05;
+  Log log = test::record_arm(settings);
+  log.tau.col(1) *= -1;
+  const auto faults = examine(log, test::arm_description());
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0].kind, DataFaultKind::kTorqueSign);
+  EXPECT_EQ(faults[0].joint, 1);
+  EXPECT_NEAR(faults[0].size, -1, 0.05);
+}
+
+TEST(Doctor, KnowsTheJointInDegreesAndStillSeesAnotherFault) {
+  test::ArmRecording settings;
+  settings.torque_noise = 0.05;
+  Log log = test::record_arm(settings);
+  log.q.col(0) *= 180 / std::numbers::pi;
+  log.tau.col(0) *= -1;
+  const auto faults = examine(log, test::arm_description());
+  ASSERT_EQ(faults.size(), 2U);
+  EXPECT_EQ(faults[0].kind, DataFaultKind::kDegrees);
+  EXPECT_EQ(faults[0].joint, 0);
+  EXPECT_EQ(faults[1].kind, DataFaultKind::kTorqueSign);
+  EXPECT_EQ(faults[1].joint, 0);
+}
+
+TEST(Doctor, MeasuresTheShiftOfTheTorque) {
+  test::ArmRecording settings;
+  settings.torque_noise = 0.05;
+  for (const Index rows : {-25, 25}) {
+    Log log = test::record_arm(settings);
+    const MatrixXd tau = log.tau;
+    for (Index i = 0; i < tau.rows(); ++i) {
+      log.tau.row(i) = tau.row(std::clamp<Index>(i - rows, 0, tau.rows() - 1));
+    }
+    const auto faults = examine(log, test::arm_description());
+    ASSERT_EQ(found_in(faults), "clock_skew") << rows;
+    EXPECT_NEAR(faults[0].size, 1e-3 * static_cast<double>(rows), 1e-3);
+  }
+}
+
+TEST(Doctor, FindsNothingInCleanRecordings) {
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    for (const bool noisy : {false, true}) {
+      for (const auto excitation : {hidden::Excitation::kRich, hidden::Excitation::kPoor}) {
+        hidden::Request request = request_of(seed, noisy);
+        request.excitation = excitation;
+        EXPECT_EQ(found_in(examine_case(request)), "") << "seed " << seed << " noisy " << noisy;
+      }
+    }
+  }
+}
+
+TEST(Doctor, TakesNoHiddenEffectForAFault) {
+  for (const auto effect : test::every_nth(hidden::all_hidden_effects(), 5)) {
+    for (const bool noisy : {false, true}) {
+      hidden::Request request = request_of(11, noisy);
+      request.effects = {effect};
+      EXPECT_EQ(found_in(examine_case(request)), "") << hidden::name(effect);
+    }
+  }
+}
+
+// A slow joint with a 12-bit encoder: its reading repeats a hundred times between two steps.
+TEST(Doctor, ExcusesACoarseEncoderAtLowSpeed) {
+  test::ArmRecording settings;
+  settings.amplitude = 0.02;
+  settings.torque_noise = 0.02;
+  settings.encoder_step = 2 * std::numbers::pi / 4096;
+  EXPECT_EQ(found_in(examine(test::record_arm(settings), test::arm_description())), "");
+  settings.amplitude = 0.3;
+  EXPECT_EQ(found_in(examine(test::record_arm(settings), test::arm_description())), "");
+}
+
+TEST(Doctor, ExcusesADriveThatRoundsItsTorque) {
+  for (const double quantum : {0.05, 0.5}) {
+    for (const double noise : {0.0, 0.02, 0.2}) {
+      test::ArmRecording settings;
+      settings.torque_noise = noise;
+      Log log = test::record_arm(settings);
+      log.tau = quantum * (log.tau / quantum).array().round().matrix();
+      EXPECT_EQ(found_in(examine(log, test::arm_description())), "") << quantum << " " << noise;
+    }
+  }
+}
+
+TEST(Doctor, ExcusesSensorsThatAreReadFasterThanTheyAnswer) {
+  Log log = test::record_arm({});
+  for (Index i = 0; i < log.sample_count(); ++i) {
+    log.q.row(i) = log.q.row(i - i % 4);
+    log.tau.row(i) = log.tau.row(i - i % 5);
+  }
+  EXPECT_EQ(found_in(examine(log, test::arm_description())), "");
+}
+
+TEST(Doctor, FindsStaleSamplesBetweenTheStepsOfACoarseEncoder) {
+  test::ArmRecording settings;
+  settings.torque_noise = 0.02;
+  settings.encoder_step = 2 * std::numbers::pi / 4096;
+  Log log = test::record_arm(settings);
+  for (Index start = 500; start + 20 < log.sample_count(); start += 500) {
+    for (Index i = 1; i < 15; ++i) log.q.row(start + i) = log.q.row(start);
+  }
+  const auto faults = examine(log, test::arm_description());
+  ASSERT_EQ(found_in(faults), "stale_samples");
+  EXPECT_GT(faults[0].size, 0.01);
+  EXPECT_LT(faults[0].size, 0.04);
+}
+
+TEST(Doctor, SaysNothingAboutARobotThatStands) {
+  Log log = test::record_arm({});
+  log.q.rowwise() = log.q.row(0).eval();
+  log.dq.setZero();
+  MatrixXd tau = log.tau;
+  tau.rowwise() = log.tau.row(0).eval();
+  log.tau = tau;
+  EXPECT_EQ(found_in(examine(log, test::arm_description())), "");
+  log.tau.setZero();
+  EXPECT_EQ(found_in(examine(log, test::arm_description())), "");
+  log.q.setZero();
+  EXPECT_EQ(found_in(examine(log, test::arm_description())), "");
+}
+
+TEST(Doctor, SaysNothingAboutAFewSamples) {
+  const Log whole = test::record_arm({});
+  for (const Index rows : {1, 2, 3, 10, 11, 50, 200, 400, 1700}) {
+    Log log = whole;
+    log.t_s = whole.t_s.head(rows);
+    log.q = whole.q.topRows(rows);
+    log.dq = whole.dq.topRows(rows);
+    log.tau = whole.tau.topRows(rows);
+    EXPECT_EQ(found_in(examine(log, test::arm_description())), "") << rows;
+  }
+}
+
+TEST(Doctor, FindsADriveAtItsLimit) {
+  Log log = test::record_arm({});
+  const double limit = 0.8 * log.tau.col(0).maxCoeff();
+  log.tau.col(0) = log.tau.col(0).cwiseMin(limit);
+  const auto faults = examine(log, test::arm_description());
+  ASSERT_EQ(found_in(faults), "saturation");
+  EXPECT_EQ(faults[0].joint, 0);
+  EXPECT_NEAR(faults[0].size,
+              static_cast<double>((log.tau.col(0).array() == limit).count()) /
+                  static_cast<double>(log.sample_count()),
+              0.01);
+}
+
+TEST(Doctor, FindsGapsInTheTime) {
+  Log log = test::record_arm({});
+  EXPECT_EQ(found_in(examine(log, test::arm_description())), "");
+  log.t_s.tail(log.sample_count() - 7000).array() += 0.003;
+  const auto faults = examine(log, test::arm_description());
+  ASSERT_EQ(found_in(faults), "gaps");
+  EXPECT_NEAR(faults[0].size, 0.004, 1e-9);
+}
+
+// Nothing but friction, which the model lacks: only the power tells the sign.
+TEST(Doctor, KnowsTheSignOfTorqueFromItsPower) {
+  Log log = test::record_arm({});
+  RobotDescription robot = test::arm_description();
+  robot.gravity_m_s2 = {0, 0, 0};
+  for (RobotJoint& joint : robot.joints) joint.joint.mass_kg = 1e-6;
+  log.tau = 3 * log.dq.array().sign().matrix() + log.dq;
+  EXPECT_EQ(found_in(examine(log, robot)), "");
+  log.tau *= -1;
+  EXPECT_EQ(found_in(examine(log, robot)), "torque_sign");
+}
+
+TEST(Doctor, RefusesARobotWithAnotherNumberOfJoints) {
+  RobotDescription robot = test::arm_description();
+  robot.joints.pop_back();
+  EXPECT_THROW(static_cast<void>(examine(test::record_arm({}), robot)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace offnominal::desk

@@ -1,0 +1,206 @@
+// Recordings of arms of one to seven joints, down to the shortest that are taken: every joint adds
+// numbers to the fit, and a short recording has fewer independent blocks of time than the whole arm
+// has numbers. Run under the address sanitizer and, for its threads, under the thread sanitizer.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "compare/compare.hpp"
+#include "compare/measurement.hpp"
+#include "explain/add_found.hpp"
+#include "explain/explain.hpp"
+#include "explain/explain_report.hpp"
+#include "serial_arm.hpp"
+#include "support/repetitions.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::UnorderedElementsAre;
+
+ExplainOptions quick(int threads) {
+  ExplainOptions options;
+  options.bootstrap_draws = 499;
+  options.replays = 0;
+  options.threads = threads;
+  return options;
+}
+
+// A spring that the file does not know, on the arm's last joint.
+Explanation explained(std::size_t joints, double duration_s, int threads) {
+  const RobotDescription robot = test::serial_arm(joints);
+  RobotDescription real = robot;
+  real.effects.push_back(
+      test::effect_of(EffectKind::kJointStiffness, static_cast<int>(joints) - 1, {6, 0.1}, true));
+  return explain(robot, {test::record(real, {.duration_s = duration_s})}, {}, quick(threads));
+}
+
+// Every number that is told has an interval, or says why it has none.
+void expect_intervals_or_words(const Explanation& told) {
+  for (const Finding& finding : told.found) {
+    for (const Estimate& one : finding.parameters) {
+      EXPECT_NE(one.ci95.has_value(), !one.why_no_interval.empty())
+          << finding.what.name() << '.' << one.value.name;
+    }
+  }
+}
+
+class ManyJoints : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(ManyJoints, OfAShortRecordingHaveIntervalsOrWordsForWhyNot) {
+  const Explanation told = explained(GetParam(), 9, 2);
+  ASSERT_THAT(told.found, Not(IsEmpty())) << told.words;
+  expect_intervals_or_words(told);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OneToSeven, ManyJoints,
+    ::testing::ValuesIn(test::every_nth(std::vector<std::size_t>{6, 1, 2, 3, 4, 5, 7}, 6)),
+    [](const auto& parameter) { return std::to_string(parameter.param); });
+
+// What counts is how often the joint concerned has been seen, not how many joints there are.
+TEST(ManyJoints, GIVEN_six_joints_and_blocks_enough_on_the_joint_THEN_its_numbers_have_intervals) {
+  const Explanation told = explained(6, 9, 2);
+  ASSERT_THAT(told.found, Not(IsEmpty())) << told.words;
+  EXPECT_EQ(told.found[0].what, (EffectAt{EffectKind::kJointStiffness, 5}));
+  const Estimate& stiffness = told.found[0].parameters.at(0);
+  ASSERT_TRUE(stiffness.ci95) << stiffness.why_no_interval;
+  EXPECT_LT((*stiffness.ci95)[0], 6);
+  EXPECT_GT((*stiffness.ci95)[1], 6);
+  EXPECT_LT((*stiffness.ci95)[1] - (*stiffness.ci95)[0], 3);
+}
+
+// Nine ripples of the file are eighteen numbers more on the joint.
+TEST(ManyJoints, GIVEN_more_numbers_on_the_joint_than_blocks_THEN_it_says_so_in_words) {
+  RobotDescription robot = test::serial_arm(3);
+  for (int i = 0; i < 13; ++i) {
+    robot.effects.push_back(
+        test::effect_of(EffectKind::kCoggingTorque, 2, {0.1, 0.05, 7.0 + 3 * i}, true));
+  }
+  RobotDescription real = robot;
+  real.effects.push_back(test::effect_of(EffectKind::kJointStiffness, 2, {6, 0.1}, true));
+  const Explanation told = explain(robot, {test::record(real, {.duration_s = 8})}, {}, quick(2));
+  ASSERT_THAT(told.found, Not(IsEmpty())) << told.words;
+  const Estimate& stiffness = told.found[0].parameters.at(0);
+  EXPECT_FALSE(stiffness.ci95);
+  EXPECT_THAT(stiffness.why_no_interval,
+              AllOf(HasSubstr("fitted numbers of joint 3"), HasSubstr("record for longer")));
+  const ExplainNames names{{"log"}, {}, "robot", "explain"};
+  EXPECT_THAT(text_of(told, names), HasSubstr(stiffness.why_no_interval));
+  const nlohmann::ordered_json said =
+      to_json(told, names).at("found").at(0).at("parameters").at(stiffness.value.name);
+  EXPECT_TRUE(said.at("ci95").is_null());
+  EXPECT_EQ(said.at("why_no_ci95"), stiffness.why_no_interval);
+}
+
+// Coulomb friction that pushes: the file's number is fitted again beside the spring.
+TEST(ManyJoints, GIVEN_a_number_of_the_file_that_physics_forbids_THEN_all_found_is_not_written) {
+  const RobotDescription robot = test::serial_arm(2);
+  RobotDescription real = robot;
+  real.effects.at(3).parameters[0] = -0.3;
+  real.effects.push_back(test::effect_of(EffectKind::kJointStiffness, 1, {6, 0.1}, true));
+  const AddedFindings added =
+      add_found(robot, {test::record(real, {.duration_s = 20})}, {}, quick(2), {});
+  EXPECT_EQ(added.explanation.improved.effects.at(3).parameters[0], 0);
+  EXPECT_THAT(added.objections, Contains(AllOf(HasSubstr("level of joint 2 was held at 0"),
+                                               HasSubstr("sign of the torque"))));
+  EXPECT_FALSE(added.may_be_written(true));
+}
+
+// Coulomb friction that pushes is held at 0, and the viscous number is the one that fits beside it.
+// A joint without known friction that gains energy: whatever explain finds in its place.
+TEST(ManyJoints, GIVEN_friction_that_gives_energy_THEN_all_found_is_not_written) {
+  RobotDescription robot = test::serial_arm(1);
+  RobotDescription real = robot;
+  robot.effects.clear();
+  real.effects = {test::effect_of(EffectKind::kQuadraticFriction, 0, {-0.5}, true)};
+  const AddedFindings added =
+      add_found(robot, {test::record(real, {.duration_s = 20})}, {}, quick(2), {});
+  EXPECT_FALSE(added.may_be_written(true)) << added.explanation.words;
+  ASSERT_THAT(added.explanation.found, Not(IsEmpty())) << added.explanation.words;
+  EXPECT_THAT(added.objections,
+              Contains(HasSubstr("the friction of joint 1 all together would give energy")));
+  EXPECT_THAT(added.explanation.advice, Contains(HasSubstr("would give energy")));
+}
+
+TEST(ManyJoints, GIVEN_a_number_that_is_held_THEN_all_else_is_fitted_beside_it) {
+  const RobotDescription robot = test::serial_arm(2);
+  RobotDescription real = robot;
+  real.effects.at(3).parameters[0] = -0.3;
+  real.effects.push_back(test::effect_of(EffectKind::kJointStiffness, 1, {6, 0.1}, true));
+  const Log log = test::record(real, {.duration_s = 20});
+  const AddedFindings added = add_found(robot, {log}, {}, quick(2), {});
+  const RobotDescription& improved = added.explanation.improved;
+  ASSERT_EQ(improved.effects.at(3).parameters[0], 0);
+  const Measurement measured = measure(log, robot);
+  const auto error = [&](double of_viscous) {
+    RobotDescription other = improved;
+    other.effects.at(2).parameters[0] += of_viscous;
+    return compare(other, measured).joints.at(1).rms_error;
+  };
+  const double step = 0.02 * std::abs(improved.effects.at(2).parameters[0]);
+  EXPECT_LT(error(0), error(step));
+  EXPECT_LT(error(0), error(-step));
+}
+
+// An owner's file without any friction, on an arm that has Coulomb and viscous friction everywhere:
+// no joint waits for another, and nothing larger than the two is named.
+TEST(ManyJoints, GIVEN_a_file_without_friction_THEN_every_joint_gets_both_and_nothing_else) {
+  constexpr std::size_t kJoints = 6;
+  const RobotDescription real = test::serial_arm(kJoints);
+  RobotDescription robot = real;
+  robot.effects.clear();
+  const Explanation told = explain(robot, {test::record(real, {.duration_s = 30})},
+                                   {test::record(real, {.duration_s = 12, .seed = 2})}, quick(2));
+  ASSERT_EQ(told.answers.size(), kJoints);
+  for (const JointAnswer& one : told.answers) {
+    EXPECT_EQ(one.verdict, Verdict::kFound) << one.joint + 1 << ": " << one.words;
+    EXPECT_THAT(one.found, UnorderedElementsAre(EffectAt{EffectKind::kCoulombFriction, one.joint},
+                                                EffectAt{EffectKind::kViscousFriction, one.joint}))
+        << one.joint + 1 << ": " << one.words;
+  }
+  EXPECT_EQ(told.found.size(), 2 * kJoints);
+  EXPECT_THAT(told.advice, Contains(HasSubstr("no friction on joint 1, 2, 3, 4, 5, 6")));
+  ASSERT_EQ(told.waterfall.size(), told.found.size() + 1);
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const auto joint = static_cast<Eigen::Index>(i);
+    EXPECT_LT(told.waterfall.back()[joint], 0.2 * told.waterfall.front()[joint]);
+  }
+}
+
+// The width of the sign that fits Coulomb friction alone is not the one beside viscous friction:
+// left where it was it makes a Stribeck effect that is not there.
+TEST(ManyJoints, GIVEN_coulomb_and_viscous_friction_THEN_no_larger_member_of_the_family_is_named) {
+  const RobotDescription real = test::serial_arm(1);
+  RobotDescription robot = real;
+  robot.effects.clear();
+  for (const std::uint64_t seed : test::every_nth(std::vector<std::uint64_t>{11, 12, 13, 14}, 4)) {
+    const Explanation told = explain(
+        robot, {test::record(real, {.duration_s = 30, .torque_noise_nm = 0.005, .seed = seed})}, {},
+        quick(2));
+    std::vector<EffectAt> names;
+    for (const Finding& one : told.found) names.push_back(one.what);
+    EXPECT_THAT(names, UnorderedElementsAre(EffectAt{EffectKind::kCoulombFriction, 0},
+                                            EffectAt{EffectKind::kViscousFriction, 0}))
+        << seed << ": " << told.words;
+  }
+}
+
+TEST(ManyJoints, TheNumberOfThreadsChangesNothing) {
+  const ExplainNames names{{"log"}, {}, "robot", "explain"};
+  EXPECT_EQ(to_json(explained(6, 9, 1), names), to_json(explained(6, 9, 2), names));
+}
+
+}  // namespace
+}  // namespace offnominal::desk

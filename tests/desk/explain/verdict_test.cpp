@@ -1,0 +1,204 @@
+#include "explain/verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+// What a search came to, in one word: of explanations made by hand, where simulated recordings
+// would not tell the cases apart.
+
+namespace offnominal::desk {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// One joint on which nothing was found, and what is left of its error.
+Explanation nothing_found(double left_to_noise) {
+  Explanation e;
+  JointErrors joint;
+  joint.unit = "N m";
+  joint.rms_torque = 10;
+  joint.noise_floor = 0.2;
+  joint.rms_after = left_to_noise * joint.noise_floor;
+  e.joints = {joint};
+  e.excitation.resize(1);
+  e.excitation[0].sufficient = true;
+  Rejection rejected;
+  rejected.what = {EffectKind::kTimeDelay, 0};
+  rejected.smallest_detectable = 0.05;
+  e.rejected.push_back(rejected);
+  return e;
+}
+
+// The same with a delay that is likely more than chance.
+Explanation suspicious(double left_to_noise) {
+  Explanation e = nothing_found(left_to_noise);
+  e.suspected = {{EffectKind::kTimeDelay, 0}, 0.003, 0.04};
+  return e;
+}
+
+TEST(Verdict, OfNoiseAloneSaysWhatWouldNotHaveBeenSeen) {
+  Explanation e = nothing_found(1.1);
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kExplained);
+  EXPECT_THAT(e.words, HasSubstr("No effect below 0.5 % of a joint's torque can be named"));
+}
+
+TEST(Verdict, OfJointsThatShowMoreAndLessSaysBoth) {
+  Explanation e = nothing_found(1.1);
+  e.joints.push_back(e.joints[0]);
+  e.joints[1].joint = 1;
+  e.rejected.push_back(e.rejected[0]);
+  e.rejected[1].what.joint = 1;
+  e.rejected[1].smallest_detectable = 0.12;
+  judge_whole(e);
+  EXPECT_THAT(e.words, HasSubstr("No effect below 0.5 to 1.2 % of"));
+}
+
+TEST(Verdict, OfAJointWithoutTorqueSaysNoShareOfIt) {
+  Explanation e = nothing_found(1.1);
+  e.joints[0].rms_torque = 0;
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kExplained);
+  EXPECT_THAT(e.words, Not(HasSubstr("can be named")));
+}
+
+TEST(Verdict, OfNoiseThatIsUnlikelyIsUndecidedAndAdvisesTheMotion) {
+  Explanation e = suspicious(1.1);
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kNotExcited);
+  EXPECT_THAT(e.words, HasSubstr("time_delay on joint 1 would explain 4 %"));
+  EXPECT_THAT(e.words, HasSubstr("p = 0.003"));
+  EXPECT_THAT(e.advice, ElementsAre(HasSubstr("--excite time_delay@1")));
+  EXPECT_TRUE(e.suspected);
+}
+
+TEST(Verdict, OfAHoldMapAdvisesMorePositions) {
+  Explanation e = suspicious(1.1);
+  e.at_rest = true;
+  judge_whole(e);
+  EXPECT_THAT(e.advice, ElementsAre(HasSubstr("hold it at more positions")));
+}
+
+TEST(Verdict, OfAPoorMotionSuspectsNothing) {
+  Explanation e = suspicious(1.1);
+  e.excitation[0].sufficient = false;
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kNotExcited);
+  EXPECT_FALSE(e.suspected);
+}
+
+TEST(Verdict, OfARestThatStandsAboveTheNoiseSaysSoWhateverIsSuspected) {
+  Explanation e = suspicious(2);
+  e.joints[0].rms_torque = 100;
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kExplained);
+  EXPECT_THAT(e.words, HasSubstr("2.0 times above the noise"));
+  EXPECT_FALSE(e.suspected);
+}
+
+// Coulomb friction on the only joint, and what is left beside it.
+Explanation found_with_rest(double left_to_noise) {
+  Explanation e = nothing_found(left_to_noise);
+  e.joints[0].rms_before = 8;
+  e.joints[0].rms_fitted_before = 8;
+  Finding finding;
+  finding.what = {EffectKind::kCoulombFriction, 0};
+  finding.words = "dry friction";
+  finding.holdout_before = 8;
+  finding.holdout_after = 4;
+  e.found = {finding};
+  e.where = {{0, "position and velocity", 0.6}};
+  return e;
+}
+
+// On a real arm the rest is always far above the sensor's noise: it is told, and deletes nothing.
+TEST(Verdict, OfWhatWasFoundStaysFoundWhateverIsLeft) {
+  Explanation e = found_with_rest(20);
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kFound);
+  ASSERT_EQ(e.found.size(), 1U);
+  EXPECT_THAT(e.advice,
+              Contains(AllOf(HasSubstr("joint 1: what is left, 4 N m"),
+                             HasSubstr("40 % of the torque"), HasSubstr("20.0 times the noise"),
+                             HasSubstr("follows its position and velocity by 60 %"))));
+}
+
+TEST(Verdict, IsGivenForEveryJointTheWorstFirst) {
+  Explanation e = found_with_rest(1.1);
+  e.joints[0].rms_before = 1;
+  JointErrors other = e.joints[0];
+  other.joint = 1;
+  other.rms_before = 5;
+  other.rms_after = 3;
+  e.joints.push_back(other);
+  e.excitation.resize(2);
+  e.excitation[1].sufficient = true;
+  e.where = {{1, "velocity", 0.7}};
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kFound) << e.words;
+  ASSERT_EQ(e.answers.size(), 2U);
+  EXPECT_EQ(e.answers[0].joint, 1);
+  EXPECT_EQ(e.answers[0].verdict, Verdict::kUnknownStateDependent) << e.answers[0].words;
+  EXPECT_EQ(e.answers[0].left.follows, "velocity");
+  EXPECT_NEAR(e.answers[0].left.times_noise, 15, 1e-9);
+  EXPECT_EQ(e.answers[1].joint, 0);
+  EXPECT_EQ(e.answers[1].verdict, Verdict::kFound);
+  EXPECT_THAT(e.answers[1].found, ElementsAre(EffectAt{EffectKind::kCoulombFriction, 0}));
+}
+
+// A joint that tells nothing does not keep the others from their answer.
+TEST(Verdict, OfAJointIsNotThatOfAnotherThatStands) {
+  Explanation e = found_with_rest(1.1);
+  JointErrors standing = e.joints[0];
+  standing.joint = 1;
+  e.joints.push_back(standing);
+  e.excitation.resize(2);
+  e.excitation[1].lack = "the joint does not move";
+  e.where.clear();
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kFound);
+  for (const JointAnswer& one : e.answers) {
+    EXPECT_EQ(one.verdict, one.joint == 0 ? Verdict::kFound : Verdict::kNotExcited) << one.words;
+  }
+}
+
+TEST(Verdict, OfARestOfMoreThanTwoPerCentIsNotExplainedThoughItFollowsNothing) {
+  Explanation e = nothing_found(2);
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kUnknownExternal) << e.words;
+  EXPECT_THAT(e.words, HasSubstr("follows nothing that was looked at"));
+}
+
+TEST(Verdict, OfStretchesOfTimeSaysWhen) {
+  Explanation e = nothing_found(5);
+  e.where = {{0, "time", 0.8}};
+  e.loud = {{0, 0, 3.5, 4.5}, {1, 0, 7, 8}};
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kUnknownExternal);
+  EXPECT_THAT(e.words, HasSubstr("3.5 to 4.5 s of recording 1"));
+  EXPECT_THAT(e.words, Not(HasSubstr("7.0")));
+}
+
+TEST(Verdict, OfATorqueOverAVariableSaysHowMuchOfItAnEffectIs) {
+  Explanation e = nothing_found(5);
+  e.where = {{0, "position", 0.7}};
+  e.over_variable = {{0, "position", {{EffectKind::kJointStiffness, 0}}, 0.6, {}, {}}};
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kUnknownStateDependent);
+  EXPECT_THAT(e.words, HasSubstr("a torque over position"));
+  EXPECT_THAT(e.words, HasSubstr("joint_stiffness is 60 %"));
+}
+
+TEST(Verdict, SaysInOneSentenceThatAFileHasNoFriction) {
+  Explanation e = found_with_rest(1.1);
+  e.without_friction = {0, 2};
+  judge_whole(e);
+  EXPECT_THAT(e.advice, Contains(HasSubstr("no friction on joint 1, 3")));
+}
+
+}  // namespace
+}  // namespace offnominal::desk

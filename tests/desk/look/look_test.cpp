@@ -1,0 +1,146 @@
+#include "look/look.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+
+#include "desk/support/temporary_folder.hpp"
+#include "log/read_log.hpp"
+#include "look/look_report.hpp"
+#include "report/page.hpp"
+#include "robot/channels.hpp"
+#include "support/recordings.hpp"
+
+namespace {
+
+using offnominal::desk::Log;
+using offnominal::desk::Look;
+using offnominal::desk::look_at;
+using offnominal::desk::parse_channels;
+using offnominal::desk::read_log;
+using offnominal::test::put;
+using offnominal::test::recordings_dir;
+using offnominal::test::TemporaryFolder;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr int kSamples = 1000;
+constexpr double kPeriodS = 0.01;
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+struct Factors {
+  double time = 1;
+  double q = 1;
+  double dq = 1;
+};
+
+// q = sin(2 t) of two joints, the second with half the amplitude.
+std::string recording(const std::string& header, const Factors& factors) {
+  std::string text = header + "\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    const auto number = [](double value) { return "," + std::to_string(value); };
+    text += std::to_string(factors.time * t);
+    for (const double scale : {1.0, 0.5}) {
+      text += number(factors.q * scale * std::sin(2 * t)) +
+              number(factors.dq * scale * 2 * std::cos(2 * t)) + number(3 * scale * std::cos(t));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+const std::string kNames = "Time,pos_1,vel_1,torque_1,pos_2,vel_2,torque_2";
+
+class LookTest : public testing::Test {
+ protected:
+  Look look(const std::string& content) {
+    put(folder_ / "a.csv", content);
+    return look_at(folder_ / "a.csv", nullptr, std::nullopt);
+  }
+  // As whoever pastes what is proposed.
+  Log read_as(const Look& look) {
+    const toml::table whole = toml::parse(channels_text(look));
+    return read_log(folder_ / "a.csv", 2,
+                    parse_channels(*whole.get("channels")->as_table(), "pasted.toml", 2));
+  }
+  void expect_motion(const Log& log) {
+    ASSERT_EQ(log.sample_count(), kSamples);
+    EXPECT_NEAR(log.period_s, kPeriodS, 1e-6);
+    for (int i = 0; i < kSamples; i += 37) {
+      const double t = kPeriodS * i;
+      EXPECT_NEAR(log.q(i, 0), std::sin(2 * t), 1e-5);
+      EXPECT_NEAR(log.dq(i, 1), std::cos(2 * t), 1e-5);
+      EXPECT_NEAR(log.tau(i, 0), 3 * std::cos(t), 1e-5);
+    }
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(LookTest, TheChannelsThatItProposesReadTheRecording) {
+  const Look seen = look(recording(kNames, {}));
+  EXPECT_THAT(seen.missing, IsEmpty());
+  EXPECT_THAT(seen.notes, Contains(HasSubstr("vel_1 is 1 times the derivative of pos_1: their")));
+  ASSERT_TRUE(seen.sampling);
+  EXPECT_NEAR(seen.sampling->median_period_s, kPeriodS, 1e-9);
+  expect_motion(read_as(seen));
+}
+
+TEST_F(LookTest, UnitsThatTheDataShowAreProposedAndSaid) {
+  const Look degrees = look(recording(kNames, {1, kDegrees, 30 / std::numbers::pi}));
+  EXPECT_THAT(degrees.notes, Contains(HasSubstr("as rpm beside deg")));
+  expect_motion(read_as(degrees));
+  const Look rates = look(recording(kNames, {1, 1, kDegrees}));
+  EXPECT_THAT(rates.notes, Contains(HasSubstr("as deg/s beside rad")));
+  expect_motion(read_as(rates));
+  const Look milliseconds = look(recording(kNames, {1e3, 1, 1}));
+  EXPECT_THAT(milliseconds.notes, Contains(HasSubstr("as a time in ms")));
+  expect_motion(read_as(milliseconds));
+}
+
+TEST_F(LookTest, UnitsInNamesAndUnderThemAreTaken) {
+  expect_motion(
+      read_as(look(recording("t [ms],pos_deg_1,vel_rpm_1,torque_1,pos_deg_2,vel_rpm_2,torque_2",
+                             {1e3, kDegrees, 30 / std::numbers::pi}))));
+  expect_motion(read_as(look(
+      recording(kNames + "\nms,deg,rpm,Nm,deg,rpm,Nm", {1e3, kDegrees, 30 / std::numbers::pi}))));
+}
+
+TEST_F(LookTest, WhatCannotBeToldIsAskedFor) {
+  const Look nameless = look(recording("a,b,c,d,e,f,g", {}));
+  EXPECT_THAT(nameless.missing, Contains(HasSubstr("a column of time")));
+  EXPECT_THAT(nameless.missing, Contains(HasSubstr("positions")));
+  EXPECT_THAT(channels_text(nameless), HasSubstr("# still to be said: torques or currents"));
+  const Look currents = look(recording("t,q1,dq1,iq1,q2,dq2,iq2", {}));
+  EXPECT_THAT(currents.missing, Contains(HasSubstr("the scale of the currents")));
+}
+
+TEST_F(LookTest, ThePageHasEveryChannelAndTheAnswerInJsonEveryColumn) {
+  const Look seen = look(recording(kNames, {}));
+  const auto page = to_json(page_of(seen, "offnominal look a.csv"));
+  EXPECT_EQ(page.at("sections").at(1).at("blocks").size(), 7U);
+  const auto json = to_json(seen);
+  EXPECT_EQ(json.at("columns").size(), 7U);
+  EXPECT_EQ(json.at("columns").at(1).at("taken_for"), "position");
+  EXPECT_EQ(json.at("time").at("samples"), kSamples);
+  EXPECT_THAT(text_of(seen), HasSubstr("[channels]\ntime = {source = \"Time\"}"));
+}
+
+TEST_F(LookTest, AnIndustrialArmsStructuresAreFound) {
+  const auto file = recordings_dir() / "kuka_kr300" / "A.mat";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recording at " << file;
+  const Look seen = look_at(file, nullptr, std::nullopt);
+  ASSERT_EQ(seen.channels.position.size(), 6U);
+  EXPECT_THAT(seen.channels.position[2].source, HasSubstr("rec.act_pos"));
+  EXPECT_EQ(seen.channels.position[2].unit, "deg");
+  EXPECT_EQ(seen.channels.torque[5].source, "rec.act_torque_abs_nm(6,:)");
+  EXPECT_EQ(seen.channels.time.source, "rec.time_cont");
+}
+
+}  // namespace

@@ -1,0 +1,160 @@
+#include "replay/replay.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "common/error.hpp"
+#include "desk/compare/recorded_arm.hpp"
+
+// The on-board monitor over a recording of a simulated arm that is healthy, or not from some time
+// on.
+
+namespace {
+
+using Eigen::Vector2d;
+using offnominal::test::arm_description;
+using offnominal::test::ArmInstant;
+using offnominal::test::record_arm;
+using namespace offnominal::desk;
+using ::testing::HasSubstr;
+
+constexpr double kFaultTime = 6;
+constexpr double kBound = 2;  // rad/s^2
+
+RobotDescription watched_arm() {
+  RobotDescription robot = arm_description();
+  robot.bound = BoundSettings{};
+  robot.bound->constant.value = kBound;
+  return robot;
+}
+
+// From kFaultTime on, joint 2 needs a torque that accelerates it by `acceleration` in the model.
+Log faulty_recording(double acceleration) {
+  return record_arm({.duration_s = 10}, [acceleration](const ArmInstant& at) -> Vector2d {
+    if (at.t_s < kFaultTime) return Vector2d::Zero();
+    return offnominal::sim::mass_matrix({}, at.q) * Vector2d(0, acceleration);
+  });
+}
+
+TEST(Replay, GivenAHealthyRecordingThenThereIsNoAlarmAndNothingIsLearnt) {
+  const Replay healthy = replay(watched_arm(), record_arm({.duration_s = 10}));
+  EXPECT_EQ(healthy.samples(), 10001);
+  EXPECT_FALSE(healthy.detection_time_s);
+  EXPECT_TRUE(healthy.alarms.empty());
+  EXPECT_TRUE(healthy.refused.empty());
+  EXPECT_TRUE(healthy.psi_hat.isZero(0));
+  EXPECT_LT(healthy.max_error_to_threshold, 0.01);
+  EXPECT_THAT(words_of(healthy), HasSubstr("Nominal"));
+}
+
+// A constant disturbance d from T on: |e| = d (1 - exp(-alpha s)) / alpha passes mu = K / alpha at
+// s = ln(d / (d - K)) / alpha.
+TEST(Replay, GivenAHiddenTorqueThenTheAlarmComesWhenTheFilterSaysSo) {
+  const double acceleration = 3 * kBound;
+  const Replay faulty = replay(watched_arm(), faulty_recording(acceleration));
+  ASSERT_TRUE(faulty.detection_time_s);
+  const double delay = std::log(acceleration / (acceleration - kBound)) / 10;
+  EXPECT_NEAR(*faulty.detection_time_s, kFaultTime + delay, 0.0021);
+  ASSERT_FALSE(faulty.alarms.empty());
+  EXPECT_EQ(faulty.alarms.front().start_s, *faulty.detection_time_s);
+  EXPECT_GT(faulty.alarms.front().max_error_to_threshold, 1);
+  const auto before = std::lower_bound(faulty.t_s.begin(), faulty.t_s.end(), kFaultTime);
+  EXPECT_TRUE(faulty.psi_hat.topRows(before - faulty.t_s.begin()).isZero(0));
+  EXPECT_GT(faulty.psi_hat.cwiseAbs().maxCoeff(), 1);
+  EXPECT_THAT(words_of(faulty), HasSubstr("Off nominal"));
+}
+
+TEST(Replay, GivenAHiddenTorqueWithinTheBoundThenThereIsNoAlarm) {
+  const Replay tolerated = replay(watched_arm(), faulty_recording(0.9 * kBound));
+  EXPECT_FALSE(tolerated.detection_time_s);
+  EXPECT_NEAR(tolerated.max_error_to_threshold, 0.9, 0.01);
+}
+
+std::string refusal(const RobotDescription& robot, const Log& log) {
+  try {
+    static_cast<void>(replay(robot, log));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "replayed";
+}
+
+TEST(Replay, RefusesWhatItCannotReplay) {
+  const Log log = record_arm({.duration_s = 0.1});
+  RobotDescription robot = watched_arm();
+  robot.joints.pop_back();
+  EXPECT_THAT(refusal(robot, log), HasSubstr("found 2 joints; allowed: 1, as robot arm has"));
+  EXPECT_THAT(refusal(arm_description(), log), HasSubstr("uncertainty_bound"));
+  robot = watched_arm();
+  robot.estimator.alpha = 2000;
+  EXPECT_THAT(refusal(robot, log), HasSubstr("alpha_per_s * period = 2"));
+  robot = watched_arm();
+  robot.estimator.hidden_units = kMaxHiddenUnits;
+  EXPECT_THAT(refusal(robot, log), HasSubstr("estimator.hidden_units"));
+  robot = watched_arm();
+  robot.joints[1].joint.max_position = -5;
+  robot.joints[1].joint.min_position = -6;
+  EXPECT_THAT(refusal(robot, log), HasSubstr("all 101 samples"));
+}
+
+TEST(Replay, GivenSamplesThatAreRefusedThenTheyAreCountedByTheirStatus) {
+  Log log = record_arm({.duration_s = 1});
+  log.tau(500, 1) = std::numeric_limits<double>::quiet_NaN();
+  log.tau(501, 1) = std::numeric_limits<double>::quiet_NaN();
+  const Replay result = replay(watched_arm(), log);
+  ASSERT_EQ(result.refused.size(), 1U);
+  const auto& [status, refusals] = *result.refused.begin();
+  EXPECT_EQ(status, "NonFiniteTorque");
+  EXPECT_EQ(refusals.count, 2);
+  EXPECT_NEAR(refusals.first_s, 0.5, 1e-9);
+  EXPECT_EQ(result.t_s.size(), 999);
+  EXPECT_EQ(result.samples(), 1001);
+  EXPECT_EQ(result.judged(), 999);
+  EXPECT_FALSE(result.is_blind());
+  EXPECT_THAT(words_of(result), HasSubstr("Nominal"));
+}
+
+// GIVEN samples that nobody judged WHEN they are many THEN "no alarm" is no good news.
+TEST(Replay, GivenManySamplesThatAreRefusedThenItIsBlind) {
+  for (const int step : {1, 50}) {  // three in a row; one in fifty
+    Log log = record_arm({.duration_s = 1});
+    for (Eigen::Index row = 500; row < (step == 1 ? 503 : 1000); row += step) {
+      log.tau(row, 1) = std::numeric_limits<double>::quiet_NaN();
+    }
+    Replay result = replay(watched_arm(), log);
+    EXPECT_EQ(result.is_blind(), step == 1) << "10 of 1001 are one in a hundred";
+    log.tau(120, 0) = log.tau(125, 0) = std::numeric_limits<double>::quiet_NaN();
+    result = replay(watched_arm(), log);
+    EXPECT_TRUE(result.is_blind());
+    EXPECT_THAT(words_of(result), HasSubstr("Blind: "));
+    EXPECT_EQ(to_json(result)["blind"], true);
+    EXPECT_EQ(page_of(result, "").verdict.level, report::Level::kWarn);
+  }
+}
+
+TEST(Replay, TheJsonSaysWhatTheReplayDoes) {
+  const Replay faulty = replay(watched_arm(), faulty_recording(3 * kBound));
+  const nlohmann::json json = to_json(faulty);
+  EXPECT_EQ(json.at("robot"), "arm");
+  EXPECT_EQ(json.at("unit"), "rad/s");
+  EXPECT_EQ(json.at("scalar"), "double");
+  EXPECT_EQ(json.at("samples"), 10001);
+  EXPECT_EQ(json.at("detection_time_s"), *faulty.detection_time_s);
+  ASSERT_EQ(json.at("alarms").size(), faulty.alarms.size());
+  EXPECT_EQ(json.at("alarms").at(0).at("start_s"), faulty.alarms[0].start_s);
+  EXPECT_EQ(json.at("max_error_to_threshold"), faulty.max_error_to_threshold);
+  EXPECT_EQ(json.at("max_abs_psi_hat"), faulty.psi_hat.cwiseAbs().maxCoeff());
+  for (const char* key : {"log", "period_s", "hidden_units", "seed", "refused", "max_error",
+                          "max_threshold", "max_weight_norm"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  const nlohmann::json healthy = to_json(replay(watched_arm(), record_arm({.duration_s = 1})));
+  EXPECT_TRUE(healthy.at("detection_time_s").is_null());
+  EXPECT_TRUE(healthy.at("alarms").empty());
+}
+
+}  // namespace

@@ -1,0 +1,77 @@
+#include "robot/text_with_bound.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "desk/support/temporary_folder.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+const std::string kHead =
+    "# kept\nformat = 1\nname = \"r\" # kept too\ngravity_m_s2 = [0.0, 0.0, -9.81]\n\n[[joint]]\n"
+    "name = \"j\"\ntype = \"prismatic\"\naxis = [1.0, 0.0, 0.0]\n\n[joint.link]\nmass_kg = 2\n"
+    "centre_of_mass_m = [0.0, 0.0, 0.0]\n";
+const std::string kOldBound =
+    "\n# section 5: 4.4\n# found empirically\n[uncertainty_bound]\nkind = \"constant\" # old\n"
+    "value = 4.4\n";
+const std::string kTail =
+    "\n# the recording's names\n[channels]\nposition = \"x\"\ntorque = \"F\"\n";
+const std::string kNewBound =
+    "\n[uncertainty_bound]\nkind = \"constant\"\nvalue = 0.5\nvelocity_error = 0.25\n";
+
+RobotDescription with_new_bound(const std::string& text) {
+  RobotDescription robot = parse_robot(text, "r.toml");
+  robot.bound.emplace();
+  robot.bound->constant.value = 0.5;
+  robot.bound->velocity_error = 0.25;
+  return robot;
+}
+
+TEST(TextWithBound, TheOldBoundGoesWithTheCommentThatSpeaksOfIt) {
+  const std::string text = kHead + kOldBound + kTail;
+  EXPECT_EQ(text_with_bound(text, with_new_bound(text)), kHead + kNewBound + kTail);
+}
+
+TEST(TextWithBound, AFirstBoundFollowsTheLastLine) {
+  const std::string text = kHead + kTail;
+  EXPECT_EQ(text_with_bound(text, with_new_bound(text)), text + kNewBound);
+}
+
+TEST(TextWithBound, ChangesNothingWhereNothingChanged) {
+  const std::string text = kHead + kOldBound + kTail;
+  EXPECT_EQ(text_with_bound(text, parse_robot(text, "r.toml")), text);
+}
+
+TEST(TextWithBound, RefusesOtherChangesAndTextsThatItCannotCut) {
+  const std::string text = kHead + kOldBound + kTail;
+  RobotDescription robot = with_new_bound(text);
+  robot.name = "other";
+  EXPECT_FALSE(text_with_bound(text, robot));
+  robot = with_new_bound(text);
+  robot.bound.reset();
+  EXPECT_FALSE(text_with_bound(text, robot));
+  EXPECT_FALSE(text_with_bound("format = 1", with_new_bound(text)));
+}
+
+TEST(TextWithBound, WritingKeepsTheRestOfTheFileEvenWhereEffectsChangedToo) {
+  const test::TemporaryFolder folder;
+  const std::string text = kHead + kOldBound + kTail;
+  RobotDescription robot = with_new_bound(text);
+  RobotEffect effect;
+  effect.kind = EffectKind::kViscousFriction;
+  effect.parameters[0] = 3;
+  robot.effects.push_back(effect);
+  write_robot_file(robot, folder / "new.toml");
+  const std::string written = test::content_of(folder / "new.toml");
+  EXPECT_NE(written.find("# kept\n"), std::string::npos);
+  EXPECT_NE(written.find("# the recording's names\n"), std::string::npos);
+  EXPECT_NE(written.find("viscous_friction"), std::string::npos);
+  EXPECT_EQ(written.find("section 5"), std::string::npos);
+  EXPECT_EQ(robot_text(read_robot_file(folder / "new.toml")), robot_text(robot));
+}
+
+}  // namespace
+}  // namespace offnominal::desk
