@@ -35,7 +35,7 @@ CalibrationData data_of(const RobotDescription& robot, const std::vector<Log>& l
   std::int64_t blocks = 0;
   double largest = 0;
   double longest_s = 0;
-  for (const Stretch& fold : data.split.folds) {
+  for (const SampleRange& fold : data.split.folds) {
     const RecordedError& recording = data.recordings[fold.recording];
     blocks += (fold.end - fold.begin) / data.block_samples(recording);
     longest_s =
@@ -108,9 +108,9 @@ JudgedStretch judged_stretch(const RecordedError& recording, const VectorXd& thr
 }
 
 // Neighbouring folds of one recording are shown as one stretch.
-std::vector<Stretch> joined_stretches(const std::vector<Stretch>& folds) {
-  std::vector<Stretch> whole;
-  for (const Stretch& fold : folds) {
+std::vector<SampleRange> joined_stretches(const std::vector<SampleRange>& folds) {
+  std::vector<SampleRange> whole;
+  for (const SampleRange& fold : folds) {
     const bool continues = !whole.empty() && whole.back().recording == fold.recording;
     if (continues) {
       whole.back().end = fold.end;
@@ -127,15 +127,15 @@ void judge_all(const CalibrationData& data, const std::vector<Log>& logs,
   const auto log_of = [&](std::size_t i) -> const Log& {
     return i < logs.size() ? logs[i] : holdout[i - logs.size()];
   };
-  const auto add = [&](const std::vector<Stretch>& stretches, bool held_out) {
-    for (const Stretch& stretch : stretches) {
+  const auto add = [&](const std::vector<SampleRange>& stretches, bool held_out) {
+    for (const SampleRange& stretch : stretches) {
       const VectorXd threshold =
           recorded_error(result.robot, log_of(stretch.recording)).old_threshold;
       result.stretches.push_back(judged_stretch(data.recordings[stretch.recording], threshold,
                                                 stretch.begin, stretch.end, held_out));
     }
   };
-  std::vector<Stretch> calibrated = data.split.always;
+  std::vector<SampleRange> calibrated = data.split.always;
   calibrated.insert(calibrated.end(), data.split.folds.begin(), data.split.folds.end());
   add(joined_stretches(calibrated), false);
   add(data.split.held_out, true);
@@ -177,7 +177,7 @@ void look_for_strays(const CalibrationData& data, const Tried& constant, Calibra
     object_to_stray(one.file, one.time_s, one.joint, one.ratio, result);
   }
   for (std::size_t i = 0; i < data.split.folds.size(); ++i) {
-    const Stretch& fold = data.split.folds[i];
+    const SampleRange& fold = data.split.folds[i];
     const RecordedError& recording = data.recordings[fold.recording];
     Index at = 0;
     const double ratio = constant.fit.unseen_ratio[i].maxCoeff(&at);

@@ -25,7 +25,7 @@ struct FoldRows {
 };
 
 // What stands in these rows is no longer asked for.
-void take_apart(const Stretch& fold, const Stretch& apart, FoldRows& rows) {
+void take_apart(const SampleRange& fold, const SampleRange& apart, FoldRows& rows) {
   if (apart.recording != fold.recording) return;
   const Index begin = std::max(apart.begin, fold.begin);
   const Index end = std::min(apart.end, fold.end);
@@ -52,8 +52,8 @@ double largest_apart(const FoldRows& fold, const VectorXd& c) {
 
 // A velocity error that is given is no unknown: its 2 v is taken off the error that is left to
 // cover.
-FoldRows fold_rows(const FilteredBasis& basis, const RecordedError& recording, const Stretch& fold,
-                   const std::optional<double>& velocity_error) {
+FoldRows fold_rows(const FilteredBasis& basis, const RecordedError& recording,
+                   const SampleRange& fold, const std::optional<double>& velocity_error) {
   const Index rows = fold.end - fold.begin;
   const Index columns = basis.along.cols() - (velocity_error ? 1 : 0);
   const double allowance = 2 * velocity_error.value_or(0);
@@ -111,14 +111,14 @@ BoundSettings ShapeFit::widened(const BoundShape& shape, double widening,
 ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
                    const std::vector<RecordedError>& recordings, const Split& split, double lowest,
                    const std::optional<double>& velocity_error,
-                   const std::optional<Stretch>& apart) {
-  std::vector<Stretch> folds = split.folds;
+                   const std::optional<SampleRange>& apart) {
+  std::vector<SampleRange> folds = split.folds;
   folds.insert(folds.end(), split.always.begin(), split.always.end());
   std::vector<FoldRows> rows;
   {
     FilteredBasis basis;
     std::optional<std::size_t> held;
-    for (const Stretch& fold : folds) {
+    for (const SampleRange& fold : folds) {
       const RecordedError& recording = recordings[fold.recording];
       if (fold.recording != held) basis = filtered_basis(robot, shape, recording);
       held = fold.recording;

@@ -32,6 +32,6 @@ struct ShapeFit {
 [[nodiscard]] ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
                                  const std::vector<RecordedError>& recordings, const Split& split,
                                  double lowest, const std::optional<double>& velocity_error,
-                                 const std::optional<Stretch>& apart = {});
+                                 const std::optional<SampleRange>& apart = {});
 
 }  // namespace offnominal::desk

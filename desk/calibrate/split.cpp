@@ -11,14 +11,14 @@ constexpr Eigen::Index kFifths = 5;
 
 Split split(const std::vector<RecordedError>& recordings, std::size_t given, double settling_s) {
   Split result;
-  const auto whole = [&](std::size_t i) { return Stretch{i, 0, recordings[i].samples()}; };
+  const auto whole = [&](std::size_t i) { return SampleRange{i, 0, recordings[i].samples()}; };
   for (std::size_t i = given; i < recordings.size(); ++i) result.held_out.push_back(whole(i));
   const bool none = result.held_out.empty();
   const std::size_t fitted = none && given > 1 ? given - 1 : given;
   if (none && given > 1) result.held_out.push_back(whole(fitted));
   for (std::size_t i = 0; i < fitted; ++i) result.folds.push_back(whole(i));
   if (result.folds.size() > 1) return result;
-  Stretch only = result.folds.front();
+  SampleRange only = result.folds.front();
   if (result.held_out.empty()) {
     const Eigen::Index kept = only.end - only.end / kFifths;
     result.held_out.push_back({0, kept, only.end});

@@ -9,16 +9,16 @@
 namespace offnominal::desk {
 
 /// Samples begin to end - 1 of one recording.
-struct Stretch {
+struct SampleRange {
   std::size_t recording = 0;
   Eigen::Index begin = 0;
   Eigen::Index end = 0;
 };
 
 struct Split {
-  std::vector<Stretch> folds;     // to calibrate on; each takes its turn at being unseen
-  std::vector<Stretch> always;    // calibrated on, never unseen: the only start of a run there is
-  std::vector<Stretch> held_out;  // to count alarms on
+  std::vector<SampleRange> folds;   // to calibrate on; each takes its turn at being unseen
+  std::vector<SampleRange> always;  // calibrated on, never unseen: the only start of a run there is
+  std::vector<SampleRange> held_out;  // to count alarms on
 };
 
 /// `given` recordings come first in `recordings`; those behind them are for hold-out. Where there

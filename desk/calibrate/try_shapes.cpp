@@ -52,11 +52,11 @@ Tried judged(const BoundShape& shape, ShapeFit fit, const CalibrationData& data,
 }
 
 // The largest unseen |e|, and a block on either side of it: there the filter still remembers it.
-Stretch loudest_event(const Tried& tried, const CalibrationData& data) {
-  Stretch event;
+SampleRange loudest_event(const Tried& tried, const CalibrationData& data) {
+  SampleRange event;
   double largest = ShapeFit::kApart;
   for (std::size_t i = 0; i < data.split.folds.size(); ++i) {
-    const Stretch& fold = data.split.folds[i];
+    const SampleRange& fold = data.split.folds[i];
     const RecordedError& recording = data.recordings[fold.recording];
     Index at = 0;
     const double of_fold = tried.fit.unseen_ratio[i].maxCoeff(&at);
@@ -70,7 +70,7 @@ Stretch loudest_event(const Tried& tried, const CalibrationData& data) {
   return event;
 }
 
-Transient transient_of(const CalibrationData& data, const Stretch& event, const Tried& with,
+Transient transient_of(const CalibrationData& data, const SampleRange& event, const Tried& with,
                        const Tried& without) {
   const RecordedError& recording = data.recordings[event.recording];
   Index at = 0;
@@ -98,7 +98,7 @@ Tries try_shapes(const RobotDescription& robot, const CalibrationData& data,
     fitted.push_back(data.recordings[i]);
   }
   double lowest = 0;
-  std::optional<Stretch> apart;
+  std::optional<SampleRange> apart;
   const auto try_shape = [&](const BoundShape& shape) {
     Tried tried = judged(
         shape,
