@@ -4,6 +4,8 @@
 #include <string_view>
 #include <utility>
 
+#include "case_seed.hpp"
+
 namespace offnominal::bench {
 
 using sim::hidden::DataFault;
@@ -19,21 +21,6 @@ using Kind = CaseGroup::Kind;
 // is added at its end leaves every other case as it was.
 constexpr std::size_t kBlock = 20;
 constexpr int kNumbersOfABlock = 1'000'000;
-
-// G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
-std::uint64_t split_mix(std::uint64_t state) {
-  state += 0x9e3779b97f4a7c15U;
-  state = (state ^ (state >> 30U)) * 0xbf58476d1ce4e5b9U;
-  state = (state ^ (state >> 27U)) * 0x94d049bb133111ebU;
-  return state ^ (state >> 31U);
-}
-
-// Below 2^32: a seed is typed and read by people.
-std::uint64_t case_seed(std::uint64_t base, std::string_view group, int number) {
-  std::uint64_t seed = split_mix(base);
-  for (const char letter : group) seed = split_mix(seed ^ static_cast<unsigned char>(letter));
-  return split_mix(seed + static_cast<std::uint64_t>(number)) >> 32U;
-}
 
 std::vector<std::vector<HiddenEffect>> effect_blocks() {
   std::vector<std::vector<HiddenEffect>> blocks;

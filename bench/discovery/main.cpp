@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "arm_bench.hpp"
 #include "case_groups.hpp"
 #include "identify/parallel.hpp"
 #include "outcome.hpp"
@@ -28,6 +29,7 @@ struct Options {
   bool failures = false;
   std::string cases;  // empty: all
   std::string write;  // folder that gets the cases, in place of a run; empty: none
+  bool arm = false;
   bool scale = false;
   ScaleRequest scale_request;
   int most = 1000;  // cases of each group
@@ -135,6 +137,17 @@ void run_scale(const Options& options) {
   }
 }
 
+void run_arm(const Options& options) {
+  run_arm_bench({.quick = options.quick,
+                 .json = options.json,
+                 .failures = options.failures,
+                 .cases = options.cases,
+                 .write = options.write,
+                 .most = options.most,
+                 .seed = options.seed,
+                 .threads = options.threads});
+}
+
 int main_of(int argc, char** argv) {
   Options options;
   CLI::App app("Blind benchmark of the search for missing effects", "./dev bench discovery");
@@ -150,9 +163,12 @@ int main_of(int argc, char** argv) {
   app.add_option("--write", options.write,
                  "write the chosen cases as robot files and recordings into this folder, and what "
                  "they hide beside them; nothing is run");
+  CLI::Option* arm = app.add_flag("--arm", options.arm,
+                                  "arms of six and seven joints in MuJoCo, judged joint by joint");
   CLI::Option* scale = app.add_flag(
       "--scale", options.scale,
       "one long recording of a seven-joint arm in place of the cases: time and memory of explain");
+  scale->excludes(arm);
   app.add_option("--samples", options.scale_request.samples, "of that recording, at 1 kHz")
       ->check(CLI::Range(10'000, 10'000'000))
       ->capture_default_str()
@@ -163,6 +179,10 @@ int main_of(int argc, char** argv) {
     app.parse(argc, argv);
     if (options.scale) {
       run_scale(options);
+      return 0;
+    }
+    if (options.arm) {
+      run_arm(options);
       return 0;
     }
     if (!options.write.empty()) {

@@ -5,20 +5,9 @@
 #include <vector>
 
 #include "outcome.hpp"
+#include "rate.hpp"
 
 namespace offnominal::bench {
-
-// How many of how many.
-struct Rate {
-  int hits = 0;
-  int of = 0;
-
-  void count(bool hit) {
-    ++of;
-    if (hit) ++hits;
-  }
-  [[nodiscard]] double percent() const { return of > 0 ? 100.0 * hits / of : 0; }
-};
 
 // One line of the table: one method on one group.
 struct Summary {

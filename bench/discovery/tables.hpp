@@ -12,7 +12,6 @@ namespace offnominal::bench {
 // Markdown tables.
 std::string table_of(const std::vector<Summary>& lines);
 std::string table_of(const std::vector<EffectSummary>& effects);
-std::string table_of(const std::vector<Goal>& goals);
 // Every case that was not answered rightly: how to run it again and what was said.
 std::string failures_of(const CaseGroup& group, const std::vector<Outcome>& outcomes);
 
