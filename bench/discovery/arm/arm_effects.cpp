@@ -69,8 +69,8 @@ Numbers draw_other(EffectKind kind, const ArmJointScale& joint, double other_spe
       return wave_numbers(std::numbers::sqrt2 * joint.torque * share, "order", order, draws);
     }
     case EffectKind::kPeriodicDisturbance: {
-      const double hz = draws.log_uniform(1, 10);
-      return wave_numbers(std::numbers::sqrt2 * joint.torque * share, "frequency", hz, draws);
+      const double rad_s = 2 * std::numbers::pi * draws.log_uniform(1, 10);
+      return wave_numbers(std::numbers::sqrt2 * joint.torque * share, "frequency", rad_s, draws);
     }
     case EffectKind::kJointCoupling:
       return {{"coefficient", draws.sign() * joint.torque * share / other_speed},

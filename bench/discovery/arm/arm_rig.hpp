@@ -31,7 +31,7 @@ struct ArmRig {
 struct ArmRun {
   Eigen::VectorXd t_s;
   Eigen::MatrixXd q, dq;
-  Eigen::MatrixXd tau;  // told to the drives, the mean over the ticks before and after the sample
+  Eigen::MatrixXd tau;  // told to the drives, as it acts at the sample's time
   // Per effect of the rig, rms over the samples of what the drive of its joint had to supply for
   // it, N m. Of a tip_payload 0.
   std::vector<double> effect_rms;
