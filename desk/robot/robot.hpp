@@ -36,6 +36,15 @@ struct RobotJoint {
   std::string source = {};  // where the numbers come from, free text; empty: not said
 };
 
+// A number of a joint that its file leaves blank (docs/your-own-arm.md): what stands in its place
+// in the description means nothing.
+struct Blank {
+  std::size_t joint = 0;
+  std::string key;  // of its link: "mass_kg" or "centre_of_mass_m"
+
+  friend bool operator==(const Blank&, const Blank&) = default;
+};
+
 // Settings of the on-board estimator (paper section 3).
 struct EstimatorSettings : EstimatorConfig<double> {
   TorqueSignal torque_signal = TorqueSignal::kSampled;
@@ -120,6 +129,7 @@ struct RobotDescription {
   std::optional<BoundSettings> bound;
   std::optional<DriveSettings> drives;  // none: drive_settings()
   std::optional<ChannelMap> channels;
+  std::vector<Blank> blanks = {};  // none, but where they were allowed when it was read
   // The text it was read from, so that writing keeps comments and order; null: none. Copies, of
   // which a fit makes thousands, share it.
   std::shared_ptr<const std::string> file_text = nullptr;
