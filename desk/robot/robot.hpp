@@ -99,6 +99,18 @@ struct Channel {
   std::vector<Channel> sum = {};
 };
 
+// A known mass that the robot carries while it is recorded: a point in the last link's frame.
+struct Payload {
+  double mass_kg = 0;
+  std::array<double, 3> place_m{0, 0, 0};
+};
+
+// Which recording it is of: its file as the user names it, or that without its folder.
+struct RecordingPayload {
+  std::string recording;
+  Payload payload;
+};
+
 struct ChannelMap {
   Channel time;                                  // t, s; not read where there is a period_s
   std::vector<Channel> more_times = {};          // of the second file of a recording, and so on
@@ -109,6 +121,7 @@ struct ChannelMap {
   std::map<std::string, Channel> extra;          // name -> channel
   std::string dbc = {};  // DBC file that decodes a candump log; empty: offnominal's own frames
   bool at_rest = false;  // the recordings are hold maps (log/hold_map.hpp): time is not read
+  std::vector<RecordingPayload> payloads = {};  // of recordings that have a known payload
 };
 
 // An effect that the robot's file knows. `fitted`: its numbers come from a recording, `add` may fit
