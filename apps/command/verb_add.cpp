@@ -85,7 +85,7 @@ AddRequest request_of(const AddOptions& options) {
   }
   request.keep = options.keep;
   request.fit_skew = !options.no_skew;
-  request.source = "Fitted to " + file_names({options.files.logs[0]}) + " by offnominal add.";
+  request.source = "Fitted to " + file_names(options.files.logs) + " by offnominal add.";
   return request;
 }
 
@@ -96,10 +96,6 @@ void check_kind(const AddOptions& options) {
       refuse_option("add", "EFFECT", "none", "one or more effects, or --all-found",
                     "name an effect, or let --all-found search for what is missing");
     }
-    if (options.files.logs.size() != 1)
-      refuse_option("add", "--log", "several", "one, unless with --all-found");
-    if (options.files.holdout.size() > 1)
-      refuse_option("add", "--holdout", "several", "one, unless with --all-found");
     if (options.link_share) refuse_option("add", "--link-share", "given", "only with --all-found");
     return;
   }
@@ -121,17 +117,14 @@ void check_kind(const AddOptions& options) {
 
 void add_named(const AddOptions& options, const std::string& command_line, ExitCode& exit_code) {
   const AddRequest request = request_of(options);
-  std::optional<std::string> holdout_file;
-  if (!options.files.holdout.empty()) holdout_file = options.files.holdout[0];
   Progress progress;
   const FitData data = read_fit_data("add", "--log", options.files, read_log, progress);
   const auto faults = examined({data.logs, data.holdout}, data.robot, progress, RestsOn::kTorque);
-  const AddResult result =
-      add(data.robot, request, data.logs[0], holdout_file ? &data.holdout[0] : nullptr,
-          options.filter, [&](const std::string& doing) { progress.begin(doing); });
+  const AddResult result = add(data.robot, request, data.logs, data.holdout, options.filter,
+                               [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
-  const AddNames names{options.files.logs[0], holdout_file, options.files.robot,
-                       options.output,        command_line, options.answer.force};
+  const AddNames names{options.files.logs, options.files.holdout, options.files.robot,
+                       options.output,     command_line,          options.answer.force};
   write_report(options.answer,
                [&] { return with_faults(page_of(result, request, names), faults); });
   std::vector<std::string> written;
@@ -162,8 +155,12 @@ void add_all_found(const AddOptions& options, const std::string& command_line,
   const AddedFindings added = add_found(data.robot, data.logs, data.holdout, explain,
                                         [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
-  const ExplainNames names{files.logs, files.holdout, files.robot, command_line,
-                           files.channels.file ? files.channels.file->string() : ""};
+  const ExplainNames names{files.logs,
+                           files.holdout,
+                           files.robot,
+                           command_line,
+                           files.channels.file ? files.channels.file->string() : "",
+                           files.channels.payloads};
   write_report(options.answer, [&] { return page_of(added.explanation, names); });
   std::vector<std::string> written;
   if (added.may_be_written(force)) {
@@ -203,7 +200,7 @@ constexpr const char* kHowItFits =
     "uncertainty. Shape parameters that --set does not give are searched for; the widths of the "
     "smoothed sign of one joint have one common value.\n"
     "The error is judged on data that the fit has not seen: --holdout, or else every fifth of the "
-    "recording predicted by a fit of the others.\n"
+    "recordings predicted by a fit of the others.\n"
     "--all-found fits all that explain finds, together with the effects marked `fitted = true` and "
     "with mass and inertia of the links within --link-share. It writes nothing unless the verdict "
     "is "
@@ -223,10 +220,10 @@ void set_up_add(CLI::App& verb, ExitCode& exit_code) {
                 "Search for what is missing, as explain does, and add all of it");
   verb.add_option("--robot", options->files.robot, "Robot file to start from")->required();
   verb.add_option("--log", options->files.logs,
-                  "Recording to fit, " + log_format_names() + "; with --all-found one or more")
+                  "One recording to fit or several, " + log_format_names())
       ->required();
   verb.add_option("--holdout", options->files.holdout,
-                  "Recording to judge the fit on; with --all-found one or more");
+                  "Recordings to judge the fit on: no fit sees them");
   verb.add_option("-o,--output", options->output, "Robot file to write")
       ->type_name(kNewRobotFile)
       ->required();

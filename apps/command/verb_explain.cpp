@@ -33,8 +33,12 @@ void run(const ExplainArguments& options, const std::string& command_line) {
   const Explanation explanation = explain(data.robot, data.logs, data.holdout, settings,
                                           [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
-  const ExplainNames names{files.logs, files.holdout, files.robot, command_line,
-                           files.channels.file ? files.channels.file->string() : ""};
+  const ExplainNames names{files.logs,
+                           files.holdout,
+                           files.robot,
+                           command_line,
+                           files.channels.file ? files.channels.file->string() : "",
+                           files.channels.payloads};
   write_report(options.answer, [&] { return page_of(explanation, names); });
   print_answer(
       options.answer, [&] { return to_json(explanation, names); },

@@ -74,6 +74,7 @@ void run(const MotionOptions& options, const std::string& command_line, ExitCode
   request.expectation.effect_share = options.effect_percent / 100;
   request.expectation.noise_share = options.noise_percent / 100;
   Progress progress;
+  check_payloads("motion", options.channels, options.logs);
   request.recordings = read_recordings(options.logs, robot, options.channels, read_log, progress);
   const auto faults = examined({request.recordings}, robot, progress);
   const Design design = design_motion(

@@ -14,6 +14,7 @@
 #include "command/doctor.hpp"
 #include "command/input_options.hpp"
 #include "command/progress.hpp"
+#include "command/recordings.hpp"
 #include "command/verbs.hpp"
 #include "common/text_table.hpp"
 #include "log/log_format.hpp"
@@ -66,6 +67,7 @@ std::string text_of(const Replay& replay) {
 void run(const ReplayOptions& options, const std::string& command_line, ExitCode& exit_code) {
   const RobotDescription robot = read_robot_file(options.robot);
   require_bound(robot, options.robot);
+  check_payloads("replay", options.channels, {options.log});
   const Log log = read_log(options.log, robot, options.channels);
   Progress progress;
   const auto faults = examined({std::span(&log, 1)}, robot, progress);

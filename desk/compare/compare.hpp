@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace offnominal::desk {
 
 // A variable of one joint that the error may follow.
 struct ErrorShare {
-  std::string variable;  // "position", "velocity", "acceleration", "time"
+  std::string variable;  // "position", "velocity", "acceleration", "time", "recording"
   double share = 0;      // of the error's energy, 0..1, that the mean over bins of it explains
 };
 
@@ -30,6 +31,8 @@ struct JointComparison {
 };
 
 struct Comparison {
+  std::string file;                // the recording, as the user named it
+  std::optional<Payload> payload;  // that the robot carried in it
   FilterPlan plan;
   Eigen::VectorXd t_s;       // of the kept samples
   Eigen::MatrixXd measured;  // filtered torque; rows: kept samples, columns: joints
@@ -37,14 +40,25 @@ struct Comparison {
   Eigen::MatrixXd q;  // low-passed motion at the kept samples
   Eigen::MatrixXd dq;
   Eigen::MatrixXd ddq;
+  Eigen::MatrixXd moving;  // 1, or 0 where the joint stands still: Measurement
   std::vector<JointComparison> joints;
   std::vector<std::string> remarks;  // the recording's
 
   [[nodiscard]] Eigen::MatrixXd residual() const { return measured - model; }
 };
 
+// One robot file against several recordings: each of them, and all of them together.
+struct Comparisons {
+  std::vector<Comparison> recordings;   // one or more, of the same joints
+  std::vector<JointComparison> joints;  // of all their samples together
+};
+
 // `robot` has as many joints as the recording.
 Comparison compare(const RobotDescription& robot, const Measurement& measured);
+
+// The numbers of all samples together. Times are taken one recording after the other; where there
+// are several, the error may also follow the "recording": be one in this and another in that.
+Comparisons together(std::vector<Comparison> recordings);
 
 // Share of the energy of `values` (about their mean) that their means over `bins` equally filled
 // bins of `variable` explain: 0 none, 1 all of it. 0 where the variable or the values are constant.

@@ -5,6 +5,7 @@
 #include "common/error.hpp"
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
+#include "robot/payload.hpp"
 
 namespace offnominal::desk {
 
@@ -26,21 +27,15 @@ MatrixXd filtered_columns(const FilterPlan& plan, const MatrixXd& columns) {
 
 }  // namespace
 
-VectorXd Measurement::while_moving(const Eigen::Ref<const VectorXd>& values, Index joint) const {
-  VectorXd kept(values.size());
-  Index count = 0;
-  for (Index i = 0; i < values.size(); ++i) {
-    if (moving(i, joint) > 0) kept[count++] = values[i];
-  }
-  return kept.head(count);
+void require_joints(const Log& log, const RobotDescription& robot) {
+  if (log.joint_count() == robot.joint_count()) return;
+  throw InputError({log.file, "", fmt::format("{} joints", log.joint_count()),
+                    fmt::format("{}, as the robot has", robot.joint_count()),
+                    "give the robot file that belongs to this recording, or [channels]"});
 }
 
 Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& plan) {
-  if (log.joint_count() != robot.joint_count()) {
-    throw InputError({log.file, "", fmt::format("{} joints", log.joint_count()),
-                      fmt::format("{}, as the robot has", robot.joint_count()),
-                      "give the robot file that belongs to this recording, or [channels]"});
-  }
+  require_joints(log, robot);
   Measurement measured;
   measured.plan = plan_for(log, plan);
   measured.motion = motion_of(log, measured.plan);
@@ -61,7 +56,8 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterRequest&
 }
 
 MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement& measured) {
-  return filtered_columns(measured.plan, model_torque(robot, measured.motion));
+  return filtered_columns(measured.plan,
+                          model_torque(carrying(robot, measured.log.payload), measured.motion));
 }
 
 }  // namespace offnominal::desk

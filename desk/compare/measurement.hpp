@@ -19,11 +19,10 @@ struct Measurement {
   Eigen::MatrixXd torque;  // filtered; rows: kept samples, columns: joints
   // Kept samples: 1, or 0 where the joint stands still and friction may hold it (standstill.hpp).
   Eigen::MatrixXd moving;
-
-  // The samples of a joint that tell of the model, of something per kept sample.
-  [[nodiscard]] Eigen::VectorXd while_moving(const Eigen::Ref<const Eigen::VectorXd>& values,
-                                             Eigen::Index joint) const;
 };
+
+// Throws InputError where a recording has another number of joints than the robot.
+void require_joints(const Log& log, const RobotDescription& robot);
 
 // `plan`: of plan_filter() for this recording and those that it is analysed with. Throws InputError
 // as plan_for(), and where the robot has another number of joints.
@@ -31,7 +30,7 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& pl
 // With the plan of this recording alone.
 Measurement measure(Log log, const RobotDescription& robot, const FilterRequest& request = {});
 
-// model_torque() of a robot, filtered as the measured torque is.
+// model_torque() of a robot with the recording's payload, filtered as the measured torque is.
 Eigen::MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement& measured);
 
 }  // namespace offnominal::desk

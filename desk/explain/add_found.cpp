@@ -9,6 +9,7 @@
 #include "common/nearest.hpp"
 #include "compare/inverse_model.hpp"
 #include "compare/measurement.hpp"
+#include "robot/payload.hpp"
 
 namespace offnominal::desk {
 
@@ -78,7 +79,7 @@ std::vector<BeforeAfter> at_rest(const RobotDescription& before, const RobotDesc
                                  const Log& log) {
   const Motion held = motion_of(log, {});
   const auto error_of = [&](const RobotDescription& robot) {
-    Eigen::MatrixXd error = log.tau - model_torque(robot, held);
+    Eigen::MatrixXd error = log.tau - model_torque(carrying(robot, log.payload), held);
     for (Eigen::Index joint = 0; joint < error.cols(); ++joint) {
       const auto approach = log.approach.col(joint);
       const double readings = approach.squaredNorm();

@@ -1,7 +1,10 @@
 #include "explain/describe.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "explain/band_shift.hpp"
 #include "explain/confirm.hpp"
@@ -168,25 +171,50 @@ void describe_hold_friction(const SearchResult& from, Explanation& to) {
   }
 }
 
-void describe_series(const SearchResult& from, Explanation& to) {
-  const Data& data = from.regression.data();
-  const Workspace& at = data.recordings[0];
-  const Index n = data.layout.samples(0);
-  Explanation::Series& series = to.series;
+// "a.csv"; "a.csv, 30 to 64 s" where not all of it was searched.
+std::string name_of_recording(const Data& data, std::size_t recording) {
+  const Workspace& at = data.recordings[recording];
+  const auto of_file = std::count_if(data.recordings.begin(), data.recordings.end(),
+                                     [&](const Workspace& one) { return one.file == at.file; });
+  if (of_file == 1) return at.file;
+  const VectorXd& t_s = at.motion.t_s;
+  return fmt::format("{}, {:.4g} to {:.4g} s", at.file, t_s[0], t_s[t_s.size() - 1]);
+}
+
+Explanation::Series series_of(const Data& data, const VectorXd& residual, std::size_t recording) {
+  const Workspace& at = data.recordings[recording];
+  const Index n = data.layout.samples(recording);
+  Explanation::Series series;
+  series.name = name_of_recording(data, recording);
   series.t_s = kept_samples(at.plan, at.motion.t_s);
   for (MatrixXd* matrix : {&series.measured, &series.model_before, &series.model_after, &series.q,
                            &series.dq, &series.load}) {
     matrix->resize(n, data.layout.joint_count());
   }
   for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
-    const Index begin = data.layout.begin(0, joint);
+    const Index begin = data.layout.begin(recording, joint);
     const VectorXd measured = data.torque.segment(begin, n);
     series.measured.col(joint) = measured;
     series.model_before.col(joint) = measured - data.target.segment(begin, n);
-    series.model_after.col(joint) = measured - from.found.fit.residual.segment(begin, n);
+    series.model_after.col(joint) = measured - residual.segment(begin, n);
     series.q.col(joint) = kept_samples(at.plan, at.motion.q.col(joint));
     series.dq.col(joint) = kept_samples(at.plan, at.motion.dq.col(joint));
     series.load.col(joint) = kept_samples(at.plan, at.load_torque.col(joint));
+  }
+  return series;
+}
+
+void describe_series(const SearchResult& from, Explanation& to) {
+  const Data& fitted = from.regression.data();
+  for (std::size_t r = 0; r < fitted.recordings.size(); ++r) {
+    to.series.push_back(series_of(fitted, from.found.fit.residual, r));
+  }
+  if (!from.hold_out.is_apart()) return;
+  const Data& held_out = from.hold_out.data();
+  const VectorXd residual = from.hold_out.residual(from.found.terms(), from.found.fit);
+  for (std::size_t r = 0; r < held_out.recordings.size(); ++r) {
+    to.series.push_back(series_of(held_out, residual, r));
+    to.series.back().name += " (held out)";
   }
 }
 

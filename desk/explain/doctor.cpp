@@ -10,6 +10,7 @@
 #include "compare/motion.hpp"
 #include "explain/doctor_checks.hpp"
 #include "log/sampling.hpp"
+#include "robot/payload.hpp"
 #include "signal/decimate.hpp"
 #include "signal/zero_phase.hpp"
 
@@ -104,8 +105,9 @@ std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& ro
   }
   RobotDescription rigid = robot;
   rigid.effects.clear();
+  rigid = carrying(rigid, log.payload);
   pair.measured = smooth(every_nth_row(torque, stride));
-  pair.model = smooth(model_torque(robot, thin));
+  pair.model = smooth(model_torque(carrying(robot, log.payload), thin));
   pair.load = smooth(model_torque(rigid, thin));
   for (std::size_t link = 0; link < robot.joints.size(); ++link) {
     pair.links.push_back(smooth(link_torque(robot, link, thin)));

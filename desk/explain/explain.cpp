@@ -11,6 +11,7 @@
 #include "common/error.hpp"
 #include "common/input_name.hpp"
 #include "common/shell_word.hpp"
+#include "compare/measurement.hpp"
 #include "explain/alternatives.hpp"
 #include "explain/describe.hpp"
 #include "explain/find_model.hpp"
@@ -107,6 +108,13 @@ class Explainer {
   void say_what_was_left_out(Explanation& result) const {
     if (!left_out_.empty()) result.advice.push_back(left_out_);
   }
+  void say_what_was_carried(const std::vector<Log>& logs, Explanation& result) const {
+    for (const Log& log : logs) {
+      if (!log.payload) continue;
+      result.advice.push_back(fmt::format("{}: with a payload of {}, part of the model there",
+                                          log.file, words_of(*log.payload)));
+    }
+  }
 
  private:
   void tell(const std::string& doing) const {
@@ -134,13 +142,7 @@ class Explainer {
   }
 
   void check_joints(const std::vector<Log>& logs) const {
-    for (const Log& log : logs) {
-      if (log.joint_count() != robot_.joint_count()) {
-        throw InputError({log.file, "", fmt::format("{} joints", log.joint_count()),
-                          fmt::format("{}, as the robot has", robot_.joint_count()),
-                          "give the robot file that belongs to this recording, or [channels]"});
-      }
-    }
+    for (const Log& log : logs) require_joints(log, robot_);
   }
 
   // What is held is not what moves, and a model of what happens at rest knows neither time nor what
@@ -284,6 +286,8 @@ Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
   }
   result.data_hints = std::move(hints);
   explainer.say_what_was_left_out(result);
+  explainer.say_what_was_carried(logs, result);
+  explainer.say_what_was_carried(holdout, result);
   return result;
 }
 

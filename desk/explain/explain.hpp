@@ -169,11 +169,14 @@ struct Explanation {
   bool at_rest = false;                     // by hold maps
   std::vector<HoldFriction> hold_friction;  // of hold maps, per joint that came from both sides
 
-  // For pictures: one row per kept sample of the first recording, columns: joints.
+  // For pictures, of every recording that was searched or held out, or of every stretch of it: one
+  // row per kept sample, columns: joints.
   struct Series {
+    std::string name;  // of the recording, as the user named it, and which stretch of it
     Eigen::VectorXd t_s;
     Eigen::MatrixXd measured, model_before, model_after, q, dq, load;
-  } series;
+  };
+  std::vector<Series> series;
   // Hold-out error of every joint with the findings so far, from none to all.
   std::vector<Eigen::VectorXd> waterfall;
   // The robot with what was found and with the numbers fitted beside it; improved_robot.hpp.

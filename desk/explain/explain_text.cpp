@@ -4,6 +4,7 @@
 #include "common/shell_word.hpp"
 #include "common/text_table.hpp"
 #include "explain/explain_report.hpp"
+#include "robot/payload.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -89,6 +90,9 @@ std::string command_to_add(const ExplainNames& names) {
   if (!names.holdout.empty()) command += " --holdout";
   for (const std::string& log : names.holdout) command += word(log, "HOLDOUT");
   if (!names.channels.empty()) command += " --channels" + word(names.channels, "CHANNELS");
+  for (const RecordingPayload& one : names.payloads) {
+    command += " --payload " + shell_word(text_of(one));
+  }
   return fmt::format("to write a robot file with it{}: {} -o FILE\n",
                      kept ? "" : ", keep what came through a pipe in a file, and", command);
 }

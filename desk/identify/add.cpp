@@ -113,24 +113,23 @@ void doubt_what_held_out_data_say(const AddRequest& request, AddResult& result) 
 
 class Adder {
  public:
-  Adder(const RobotDescription& file, const AddRequest& request, const Log& log, const Log* holdout,
-        const FilterRequest& filter, const OnProgress& on_progress)
+  Adder(const RobotDescription& file, const AddRequest& request, const std::vector<Log>& logs,
+        const std::vector<Log>& holdout, const FilterRequest& filter, const OnProgress& on_progress)
       : file_(file),
         robot_(file),
         request_(request),
-        log_(log),
+        logs_(logs),
         holdout_(holdout),
         on_progress_(on_progress),
         setup_(set_up(file, request)),
-        plan_(plan_filter({log}, file, filter)) {
+        plan_(checked_plan(filter)) {
     // What is believed of a link is two standard deviations wide.
     nuisance_.link_share = 2 * request.inertia_deviation.value_or(0);
     nuisance_.free_effects = setup_.refitted;
     if (!request.fit_skew) nuisance_.skew_samples = 0;
-    widths_ = set_sign_widths(robot_, {log}, plan_);
-    const std::vector<Log> logs{log_};  // stretches point into it
+    widths_ = set_sign_widths(robot_, logs_, plan_);
     data_ = std::make_unique<Data>(
-        searched_workspaces(stretches_of(logs, robot_, plan_), robot_, plan_, widths_), robot_,
+        searched_workspaces(stretches_of(logs_, robot_, plan_), robot_, plan_, widths_), robot_,
         nuisance_);
     regression_ = std::make_unique<Regression>(*data_);
     terms_ = terms_of(setup_, request.joint, *data_);
@@ -148,6 +147,13 @@ class Adder {
   }
 
  private:
+  [[nodiscard]] FilterPlan checked_plan(const FilterRequest& filter) const {
+    for (const std::vector<Log>* some : {&logs_, &holdout_}) {
+      for (const Log& log : *some) require_joints(log, file_);
+    }
+    return plan_filter(logs_, file_, filter);
+  }
+
   [[nodiscard]] Unknown unknown_of(const ModelNumber& number) const {
     Unknown unknown;
     if (number.of == ModelNumber::Of::kTerm) {
@@ -338,7 +344,7 @@ class Adder {
     return {joints.begin(), joints.end()};
   }
 
-  // Parts of the recording, each predicted by a fit of the others, shapes included; before: by the
+  // Parts of the recordings, each predicted by a fit of the others, shapes included; before: by the
   // file as it is, but for what is the recording's own.
   [[nodiscard]] std::vector<BeforeAfter> parts_held_out() const {
     NuisanceOptions none = improved_.last.nuisance;
@@ -346,8 +352,7 @@ class Adder {
     none.link_share = 0;
     none.sign_shapes = false;
     RobotDescription as_it_is = file_;
-    const std::vector<Log> logs{log_};
-    const Data before(searched_workspaces(stretches_of(logs, file_, plan_), as_it_is, plan_,
+    const Data before(searched_workspaces(stretches_of(logs_, file_, plan_), as_it_is, plan_,
                                           improved_.last.data->recordings[0].sign_width),
                       as_it_is, none);
     const Regression nothing(before);
@@ -367,15 +372,23 @@ class Adder {
   }
 
   void judge() {
-    const auto both = [&](const Log& log) {
-      const Measurement measured = measure(log, file_, plan_);
-      result_.before = compare(file_, measured);
-      result_.after = compare(result_.robot, measured);
-      return before_after(result_.before, result_.after);
+    const auto both = [&](const std::vector<Log>& logs, bool held_out) {
+      std::vector<Comparison> before;
+      std::vector<Comparison> after;
+      for (const Log& log : logs) {
+        const Measurement measured = measure(log, file_, plan_);
+        before.push_back(compare(file_, measured));
+        after.push_back(compare(result_.robot, measured));
+        result_.recordings.push_back(
+            {log.file, held_out, before_after(before.back(), after.back()), log.remarks});
+      }
+      result_.before = together(std::move(before));
+      result_.after = together(std::move(after));
+      return before_after(result_.before.joints, result_.after.joints);
     };
-    result_.fitted_log = both(log_);
-    result_.cross_validated = holdout_ == nullptr;
-    result_.held_out = holdout_ != nullptr ? both(*holdout_) : parts_held_out();
+    result_.fitted_logs = both(logs_, false);
+    result_.cross_validated = holdout_.empty();
+    result_.held_out = holdout_.empty() ? parts_held_out() : both(holdout_, true);
   }
 
   // Share of the joint's rms torque that a number's change by `by` makes.
@@ -478,8 +491,8 @@ class Adder {
   const RobotDescription& file_;
   RobotDescription robot_;  // the same with signs as wide as the motion can resolve
   const AddRequest& request_;
-  const Log& log_;
-  const Log* holdout_;
+  const std::vector<Log>& logs_;
+  const std::vector<Log>& holdout_;
   const OnProgress& on_progress_;
   AddSetup setup_;
   FilterPlan plan_;
@@ -494,9 +507,10 @@ class Adder {
 
 }  // namespace
 
-AddResult add(const RobotDescription& robot, const AddRequest& request, const Log& log,
-              const Log* holdout, const FilterRequest& filter, const OnProgress& on_progress) {
-  return Adder(robot, request, log, holdout, filter, on_progress).run();
+AddResult add(const RobotDescription& robot, const AddRequest& request,
+              const std::vector<Log>& logs, const std::vector<Log>& holdout,
+              const FilterRequest& filter, const OnProgress& on_progress) {
+  return Adder(robot, request, logs, holdout, filter, on_progress).run();
 }
 
 }  // namespace offnominal::desk

@@ -235,8 +235,8 @@ std::vector<std::string> unphysical(const Relinearised& last, const RobotDescrip
   const Eigen::VectorXd rms = last.data->layout.rms(last.data->torque);
   for (const Index joint : joints) {
     for (const Workspace& at : last.data->recordings) {
-      const auto drives =
-          friction_that_drives(improved, static_cast<std::size_t>(joint), at.motion, rms[joint]);
+      const auto drives = friction_that_drives(
+          at.as_recorded(improved), static_cast<std::size_t>(joint), at.motion, rms[joint]);
       if (!drives) continue;
       objections.push_back(drives->words(improved));
       break;

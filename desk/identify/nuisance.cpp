@@ -103,7 +103,7 @@ class Builder {
            unknown.parameter, prior_of(effect, unknown.parameter), name_of(robot_, unknown)},
           [&](const Workspace& at) {
             Regressor columns;
-            for (JointColumn& column : regressor(robot_, unknown, at.motion)) {
+            for (JointColumn& column : regressor(at.as_recorded(robot_), unknown, at.motion)) {
               columns.push_back({static_cast<Index>(column.joint), std::move(column.values)});
             }
             return columns;

@@ -95,8 +95,10 @@ void Workspace::set_model(const RobotDescription& robot) {
   rigid = robot;
   known_effects = robot.effects;
   rigid.effects.clear();
+  rigid = as_recorded(rigid);
   load_torque = desk::model_torque(rigid, motion);
-  model_torque = robot.effects.empty() ? load_torque : desk::model_torque(robot, motion);
+  model_torque =
+      robot.effects.empty() ? load_torque : desk::model_torque(as_recorded(robot), motion);
   mass = mass_columns(*this);
 }
 
@@ -112,6 +114,8 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
   const auto stride = std::max<Index>(
       1, static_cast<Index>(plan.sample_rate_hz / (kRatePerCutoff * plan.torque_cutoff_hz)));
   Workspace at;
+  at.file = log.file;
+  at.payload = log.payload;
   at.plan = thinned(plan, stride);
   const Motion full = motion_of(log, plan);
   at.motion = {every_nth(full.t_s, stride), every_nth_row(full.q, stride),

@@ -2,11 +2,14 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "compare/filter_plan.hpp"
 #include "compare/motion.hpp"
 #include "log/log.hpp"
+#include "robot/payload.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::desk {
@@ -14,7 +17,9 @@ namespace offnominal::desk {
 // One recording with everything that regressors are made from, at a sampling rate that the low-pass
 // of the plan leaves room for. Rows: samples, columns: joints.
 struct Workspace {
-  RobotDescription rigid;  // the robot without effects
+  std::string file;                // of the recording
+  std::optional<Payload> payload;  // the recording's
+  RobotDescription rigid;          // the robot with the payload, without effects
   std::vector<RobotEffect> known_effects;
   FilterPlan plan;               // as of these samples
   Motion motion;                 // low-passed position and its derivatives
@@ -39,6 +44,10 @@ struct Workspace {
     return rigid.joints[static_cast<std::size_t>(joint)].joint.type;
   }
   [[nodiscard]] double period_s() const { return 1 / plan.sample_rate_hz; }
+  // A robot as it was in this recording, with its payload.
+  [[nodiscard]] RobotDescription as_recorded(const RobotDescription& robot) const {
+    return carrying(robot, payload);
+  }
   // Another model of the same robot: everything that follows from it.
   void set_model(const RobotDescription& robot);
   // Whether the model has dry friction of one level on a joint.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,11 @@ struct Log {
   std::vector<bool> dq_derived;  // per joint: dq is the derivative of the low-passed q
   std::map<std::string, Eigen::VectorXd> extra;  // further quantities, by name
   bool at_rest = false;
-  Eigen::MatrixXd approach;          // where at_rest: 1 or -1, as q; else empty
-  std::vector<std::string> remarks;  // what a reader of results has to know, in words
-  ChannelMap channels;               // where the columns came from; empty: not read from a file
-  bool common_header = false;        // by their names alone, nobody gave the channels
+  Eigen::MatrixXd approach;             // where at_rest: 1 or -1, as q; else empty
+  std::vector<std::string> remarks;     // what a reader of results has to know, in words
+  ChannelMap channels;                  // where the columns came from; empty: not read from a file
+  bool common_header = false;           // by their names alone, nobody gave the channels
+  std::optional<Payload> payload = {};  // that the robot carried (robot/payload.hpp)
 
   [[nodiscard]] int joint_count() const { return static_cast<int>(q.cols()); }
   [[nodiscard]] Eigen::Index sample_count() const { return t_s.size(); }

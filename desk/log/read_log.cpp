@@ -23,6 +23,7 @@
 #include "log/sampling.hpp"
 #include "log/time_of.hpp"
 #include "robot/channels.hpp"
+#include "robot/payload.hpp"
 #include "robot/units.hpp"
 #include "signal/fold.hpp"
 
@@ -322,11 +323,13 @@ Log read_log(const std::filesystem::path& path, int joint_count,
 
 Log read_log_or_hold_map(const std::filesystem::path& path, const RobotDescription& robot,
                          const ChannelOptions& options) {
-  if (!options.file) {
-    return read_log(path, robot.joint_count(), robot.channels, options.period_s);
-  }
-  return read_log(path, robot.joint_count(), read_channels_file(*options.file, robot.joint_count()),
-                  options.period_s);
+  std::optional<ChannelMap> channels = robot.channels;
+  if (options.file) channels = read_channels_file(*options.file, robot.joint_count());
+  const auto said = payload_of(options.payloads, path.string());
+  Log log = read_log(path, robot.joint_count(), channels, options.period_s);
+  log.payload = said || !channels ? said : payload_of(channels->payloads, path.string());
+  if (log.payload) log.remarks.push_back("with a payload of " + words_of(*log.payload));
+  return log;
 }
 
 Log read_log(const std::filesystem::path& path, const RobotDescription& robot,

@@ -10,6 +10,7 @@
 #include "common/number.hpp"
 #include "replay/replay_joints.hpp"
 #include "robot/chain_of.hpp"
+#include "robot/payload.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
@@ -73,8 +74,9 @@ Replay replay(const RobotDescription& robot, const Log& log) {
     result.acceleration_units.emplace_back(joint.joint.type == JointType::kRevolute ? "rad/s^2"
                                                                                     : "m/s^2");
   }
-  with_joint_count(robot.joint_count(),
-                   [&]<int N>() { detail::replay_joints<N>(robot, log, result); });
+  with_joint_count(robot.joint_count(), [&]<int N>() {
+    detail::replay_joints<N>(carrying(robot, log.payload), log, result);
+  });
   if (result.t_s.size() == 0) {
     const auto& [status, refusals] = *result.refused.begin();
     throw InputError({.file = log.file,

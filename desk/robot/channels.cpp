@@ -11,6 +11,7 @@
 #include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "common/toml_table.hpp"
+#include "robot/payload.hpp"
 #include "robot/units.hpp"
 
 namespace offnominal::desk {
@@ -46,7 +47,8 @@ class Parser {
 
   ChannelMap map(const toml::table& table) const {
     check_keys(table, "channels",
-               {"time", "period_s", "position", "velocity", "torque", "extra", "dbc", "at_rest"});
+               {"time", "period_s", "position", "velocity", "torque", "extra", "dbc", "at_rest",
+                "payload"});
     ChannelMap map;
     map.time.source = "t";
     map.at_rest = flag(table, "at_rest");
@@ -74,6 +76,7 @@ class Parser {
     }
     if (const toml::node* node = table.get("extra")) extra(*node, map);
     if (const toml::node* node = table.get("dbc")) map.dbc = path_of(*node, "channels.dbc");
+    if (const toml::node* node = table.get("payload")) read_payloads(*node, map);
     return map;
   }
 
@@ -283,6 +286,53 @@ class Parser {
     for (const auto& [key, value] : *table) {
       const std::string name(key.str());
       map.extra[name] = channel(value, "channels.extra." + name, std::nullopt);
+    }
+  }
+
+  void read_payloads(const toml::node& node, ChannelMap& map) const {
+    const toml::array* entries = node.as_array();
+    if (entries == nullptr) {
+      fail(node, "channels.payload", type_of(node), "a list of tables, one per recording");
+    }
+    for (std::size_t i = 0; i < entries->size(); ++i) {
+      const std::string place = "channels.payload[" + std::to_string(i + 1) + "]";
+      const toml::node& entry = *entries->get(i);
+      const toml::table* table = entry.as_table();
+      const char* const allowed = "{recording = \"FILE\", mass_kg = KG, place_m = [X, Y, Z]}";
+      if (table == nullptr) fail(entry, place, type_of(entry), allowed);
+      check_keys(*table, place, {"recording", "mass_kg", "place_m"});
+      for (const char* key : {"recording", "mass_kg", "place_m"}) {
+        if (table->get(key) == nullptr) {
+          fail(entry, place, std::string("no ") + key, allowed, "nothing of it is guessed");
+        }
+      }
+      RecordingPayload payload;
+      payload.recording = text_of(*table, place, "recording");
+      if (payload.recording.empty()) fail(entry, place, "no name", "the recording's file");
+      payload.payload.mass_kg = number_of(*table, place, "mass_kg", 0);
+      if (payload.payload.mass_kg < 0 || payload.payload.mass_kg > kMostPayloadKg) {
+        fail(*table->get("mass_kg"), place + ".mass_kg", shortest(payload.payload.mass_kg),
+             "0 to " + shortest(kMostPayloadKg) + " kg");
+      }
+      read_place(*table->get("place_m"), place + ".place_m", payload.payload);
+      map.payloads.push_back(std::move(payload));
+    }
+  }
+
+  void read_place(const toml::node& node, const std::string& place, Payload& payload) const {
+    const std::string allowed =
+        "[x, y, z] in the last link's frame, each within " + shortest(kFurthestPayloadM) + " m";
+    const toml::array* numbers = node.as_array();
+    if (numbers == nullptr) fail(node, place, type_of(node), allowed);
+    if (numbers->size() != 3)
+      fail(node, place, std::to_string(numbers->size()) + " numbers", allowed);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const toml::node& one = *numbers->get(i);
+      const auto value = one.value<double>();
+      if (!one.is_number() || !value || !(std::abs(*value) <= kFurthestPayloadM)) {
+        fail(one, place, one.is_number() ? "a number that is too large" : type_of(one), allowed);
+      }
+      payload.place_m[i] = *value;
     }
   }
 

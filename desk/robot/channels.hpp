@@ -21,6 +21,9 @@
 //   dbc = "drive.dbc"                      # in [channels]: for logs of candump, see
 //   candump_log.hpp
 //
+// payload = [{recording = "a.csv", mass_kg = 0.8, place_m = [0, 0, 0.1]}] says what the robot carried in
+// which recording (payload.hpp).
+//
 // Hold maps (hold_map.hpp) have at_rest = true, a position and a torque, and nothing else.
 //
 // A channel's SI value is scale * scale_source * unit * source + offset: scale is 1, offset 0 and

@@ -1,5 +1,7 @@
 #include "robot/read_joint.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -71,10 +73,22 @@ std::array<double, 6> inertia_of(const TomlTable& link) {
   return inertia;
 }
 
-void read_link(const TomlTable& table, Joint<double>& joint) {
-  const TomlTable link = table.table("link", {"mass_kg", "centre_of_mass_m", "inertia_kg_m2"});
-  joint.mass_kg = link.number("mass_kg", physical(positive("kg", "give the link's mass in kg")));
-  joint.centre_of_mass_m = vector_of(link, "centre_of_mass_m", physical(any_number("m")));
+TomlTable link_of(const TomlTable& joint) {
+  return joint.table("link", {"mass_kg", "centre_of_mass_m", "inertia_kg_m2"});
+}
+
+void read_link(const TomlTable& table, Joint<double>& joint, std::vector<std::string>& blanks) {
+  const TomlTable link = link_of(table);
+  if (link.has("mass_kg")) {
+    joint.mass_kg = link.number("mass_kg", physical(positive("kg", "give the link's mass in kg")));
+  } else {
+    blanks.emplace_back("mass_kg");
+  }
+  if (link.has("centre_of_mass_m")) {
+    joint.centre_of_mass_m = vector_of(link, "centre_of_mass_m", physical(any_number("m")));
+  } else {
+    blanks.emplace_back("centre_of_mass_m");
+  }
   joint.inertia_kg_m2 = inertia_of(link);
 }
 
@@ -129,7 +143,7 @@ const std::vector<std::string>& joint_keys() {
   return keys;
 }
 
-RobotJoint read_joint(const TomlTable& table) {
+RobotJoint read_joint(const TomlTable& table, std::vector<std::string>& blanks) {
   RobotJoint result;
   result.name = table.text("name");
   result.joint.type = table.choice("type", {"revolute", "prismatic"}) == 0 ? JointType::kRevolute
@@ -139,7 +153,7 @@ RobotJoint read_joint(const TomlTable& table) {
       table.has("origin_m") ? vector_of(table, "origin_m", physical(any_number("m"))) : kZero;
   result.joint.rotation = rotation_of(table);
   result.source = table.text_or_empty("source");
-  read_link(table, result.joint);
+  read_link(table, result.joint, blanks);
   read_limits(table, result.joint);
   result.encoder = encoder_of(table, result.joint.type);
   if (const auto control = table.optional_table("control", {"kp_per_s2", "kd_per_s"})) {
@@ -151,6 +165,19 @@ RobotJoint read_joint(const TomlTable& table) {
                  "a joint that validate() accepts", "see docs/troubleshooting.md");
   }
   return result;
+}
+
+void refuse_blank(const TomlTable& joint, const std::string& key, std::size_t others) {
+  const std::string more = others == 0 ? ""
+                                       : fmt::format(" (and {} more blank{} in this file)", others,
+                                                     others == 1 ? "" : "s");
+  link_of(joint).refuse(
+      key, "nothing: the key is missing" + more,
+      key == "mass_kg" ? "a finite number > 0, in kg" : "a list of 3 finite numbers, in m",
+      fmt::format(
+          "add `{}` to {}: from CAD, a data sheet or scales; or let `offnominal identify` find "
+          "the links' numbers in recordings",
+          key, joint.path_of("link")));
 }
 
 }  // namespace offnominal::desk

@@ -36,6 +36,15 @@ struct RobotJoint {
   std::string source = {};  // where the numbers come from, free text; empty: not said
 };
 
+// A number of a joint that its file leaves blank (docs/your-own-arm.md): what stands in its place
+// in the description means nothing.
+struct Blank {
+  std::size_t joint = 0;
+  std::string key;  // of its link: "mass_kg" or "centre_of_mass_m"
+
+  friend bool operator==(const Blank&, const Blank&) = default;
+};
+
 // Settings of the on-board estimator (paper section 3).
 struct EstimatorSettings : EstimatorConfig<double> {
   TorqueSignal torque_signal = TorqueSignal::kSampled;
@@ -90,6 +99,18 @@ struct Channel {
   std::vector<Channel> sum = {};
 };
 
+// A known mass that the robot carries while it is recorded: a point in the last link's frame.
+struct Payload {
+  double mass_kg = 0;
+  std::array<double, 3> place_m{0, 0, 0};
+};
+
+// Which recording it is of: its file as the user names it, or that without its folder.
+struct RecordingPayload {
+  std::string recording;
+  Payload payload;
+};
+
 struct ChannelMap {
   Channel time;                                  // t, s; not read where there is a period_s
   std::vector<Channel> more_times = {};          // of the second file of a recording, and so on
@@ -100,6 +121,7 @@ struct ChannelMap {
   std::map<std::string, Channel> extra;          // name -> channel
   std::string dbc = {};  // DBC file that decodes a candump log; empty: offnominal's own frames
   bool at_rest = false;  // the recordings are hold maps (log/hold_map.hpp): time is not read
+  std::vector<RecordingPayload> payloads = {};  // of recordings that have a known payload
 };
 
 // An effect that the robot's file knows. `fitted`: its numbers come from a recording, `add` may fit
@@ -120,6 +142,7 @@ struct RobotDescription {
   std::optional<BoundSettings> bound;
   std::optional<DriveSettings> drives;  // none: drive_settings()
   std::optional<ChannelMap> channels;
+  std::vector<Blank> blanks = {};  // none, but where they were allowed when it was read
   // The text it was read from, so that writing keeps comments and order; null: none. Copies, of
   // which a fit makes thousands, share it.
   std::shared_ptr<const std::string> file_text = nullptr;

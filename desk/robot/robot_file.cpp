@@ -32,7 +32,13 @@ const std::vector<std::string> kRootKeys{"format",       "name",    "source",
                                          "estimator",    "arming",  "uncertainty_bound",
                                          "drives",       "channels"};
 
-std::vector<RobotJoint> read_joints(const TomlTable& root) {
+void refuse_blanks(const std::vector<TomlTable>& joints, const std::vector<Blank>& blanks) {
+  if (blanks.empty()) return;
+  refuse_blank(joints[blanks.front().joint], blanks.front().key, blanks.size() - 1);
+}
+
+std::vector<RobotJoint> read_joints(const TomlTable& root, Blanks allowed,
+                                    std::vector<Blank>& blanks) {
   const std::vector<TomlTable> tables = root.tables("joint", joint_keys());
   if (tables.empty() || tables.size() > static_cast<std::size_t>(kMaxJoints)) {
     root.refuse("joint", std::to_string(tables.size()) + " joints",
@@ -42,12 +48,15 @@ std::vector<RobotJoint> read_joints(const TomlTable& root) {
   std::vector<RobotJoint> joints;
   std::set<std::string> names;
   for (const TomlTable& table : tables) {
-    joints.push_back(read_joint(table));
+    std::vector<std::string> keys;
+    joints.push_back(read_joint(table, keys));
+    for (std::string& key : keys) blanks.push_back({joints.size() - 1, std::move(key)});
     const std::string& name = joints.back().name;
     if (names.insert(name).second) continue;
     table.refuse("name", "the name \"" + name + "\" a second time", "names that differ",
                  "give this joint another name");
   }
+  if (allowed == Blanks::kRefused) refuse_blanks(tables, blanks);
   return joints;
 }
 
@@ -155,7 +164,7 @@ void require_bound(const RobotDescription& robot, const std::string& file) {
                             "without a bound there is no threshold"});
 }
 
-RobotDescription parse_robot(std::string_view text, const std::string& file) {
+RobotDescription parse_robot(std::string_view text, const std::string& file, Blanks blanks) {
   const toml::table document = parse_toml(text, file);
   const TomlTable root(file, "", document, kRootKeys);
   if (root.integer("format", 1, 1'000'000) != kRobotFileFormat) {
@@ -168,7 +177,7 @@ RobotDescription parse_robot(std::string_view text, const std::string& file) {
   const std::vector<double> gravity =
       root.numbers("gravity_m_s2", physical(any_number("m/s^2")), 3, 3);
   robot.gravity_m_s2 = {gravity[0], gravity[1], gravity[2]};
-  robot.joints = read_joints(root);
+  robot.joints = read_joints(root, blanks, robot.blanks);
   robot.effects = read_effects(root, robot.joints);
   check_mass_matrix(root, robot);
   if (const auto table = root.optional_table("estimator", estimator_keys())) {
@@ -192,12 +201,17 @@ RobotDescription parse_robot(std::string_view text, const std::string& file) {
   return robot;
 }
 
-RobotDescription read_robot_file(const std::filesystem::path& path) {
-  return parse_robot(read_text_file(path), path.string());
+RobotDescription read_robot_file(const std::filesystem::path& path, Blanks blanks) {
+  return parse_robot(read_text_file(path), path.string(), blanks);
 }
 
 void write_robot_file(const RobotDescription& robot, const std::filesystem::path& path,
                       Existing existing) {
+  if (!robot.blanks.empty()) {
+    throw InputError({path.string(), fmt::format("joint {}", robot.blanks[0].joint + 1),
+                      "a blank for link." + robot.blanks[0].key, "a number",
+                      "a robot with blanks is not written again: fill them in before"});
+  }
   const std::string plain = robot_text(robot);
   static_cast<void>(parse_robot(plain, path.string() + " (to be written)"));
   const auto as_it_was = text_with_changes(robot, path.string());

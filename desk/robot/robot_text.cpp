@@ -231,6 +231,13 @@ std::string channel_text(const Channel& channel) {
   return text + "}";
 }
 
+std::string payload_text(const RecordingPayload& one) {
+  const auto number = [](double value) { return shortest_real(value); };
+  return "{recording = " + quoted(one.recording) +
+         ", mass_kg = " + shortest_real(one.payload.mass_kg) + ", place_m = [" +
+         list_of(one.payload.place_m, number) + "]}";
+}
+
 std::string channels_value(const ChannelMap& channels, std::string_view key) {
   if (key == "time") {
     if (channels.more_times.empty()) return channel_text(channels.time);
@@ -263,6 +270,9 @@ void write_channels(Writer& out, const ChannelMap& channels) {
   // Read as relative to a file whose folder is not known here.
   if (!channels.dbc.empty()) {
     out.value("dbc", quoted(std::filesystem::absolute(channels.dbc).string()));
+  }
+  if (!channels.payloads.empty()) {
+    out.value("payload", "[" + list_of(channels.payloads, payload_text) + "]");
   }
   if (channels.extra.empty()) return;
   out.table("[channels.extra]");

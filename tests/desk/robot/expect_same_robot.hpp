@@ -118,6 +118,12 @@ inline void expect_same(const desk::ChannelMap& a, const desk::ChannelMap& b) {
     if (a.velocity[i]) expect_same(*a.velocity[i], *b.velocity[i]);
   }
   expect_same(a.torque, b.torque);
+  ASSERT_EQ(a.payloads.size(), b.payloads.size());
+  for (std::size_t i = 0; i < a.payloads.size(); ++i) {
+    EXPECT_EQ(a.payloads[i].recording, b.payloads[i].recording);
+    EXPECT_EQ(a.payloads[i].payload.mass_kg, b.payloads[i].payload.mass_kg);
+    EXPECT_EQ(a.payloads[i].payload.place_m, b.payloads[i].payload.place_m);
+  }
   ASSERT_EQ(a.extra.size(), b.extra.size());
   for (const auto& [name, channel] : a.extra) {
     ASSERT_TRUE(b.extra.contains(name)) << name;

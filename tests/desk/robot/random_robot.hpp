@@ -255,6 +255,9 @@ class RandomRobot {
       map.torque.push_back(channel());
     }
     if (coin()) map.dbc = "/" + word() + any_text();
+    for (int i = whole(0, 2); i > 0; --i) {
+      map.payloads.push_back({word() + any_text(), {50 * (1 + uniform()), {uniform(), 0, -1e-3}}});
+    }
     if (map.at_rest) return map;
     for (int i = whole(0, 3); i > 0; --i) map.extra[word() + any_text()] = channel();
     return map;
