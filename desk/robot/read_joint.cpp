@@ -1,5 +1,6 @@
 #include "robot/read_joint.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -71,8 +72,13 @@ std::array<double, 6> inertia_of(const TomlTable& link) {
   return inertia;
 }
 
+const std::vector<std::string>& link_keys() {
+  static const std::vector<std::string> keys{"mass_kg", "centre_of_mass_m", "inertia_kg_m2"};
+  return keys;
+}
+
 void read_link(const TomlTable& table, Joint<double>& joint) {
-  const TomlTable link = table.table("link", {"mass_kg", "centre_of_mass_m", "inertia_kg_m2"});
+  const TomlTable link = table.table("link", link_keys());
   joint.mass_kg = link.number("mass_kg", physical(positive("kg", "give the link's mass in kg")));
   joint.centre_of_mass_m = vector_of(link, "centre_of_mass_m", physical(any_number("m")));
   joint.inertia_kg_m2 = inertia_of(link);
@@ -129,7 +135,13 @@ const std::vector<std::string>& joint_keys() {
   return keys;
 }
 
-RobotJoint read_joint(const TomlTable& table) {
+bool is_blank_link(const TomlTable& table) {
+  const auto link = table.optional_table("link", link_keys());
+  return !link || std::none_of(link_keys().begin(), link_keys().end(),
+                               [&](const std::string& key) { return link->has(key); });
+}
+
+RobotJoint read_joint(const TomlTable& table, bool may_be_blank) {
   RobotJoint result;
   result.name = table.text("name");
   result.joint.type = table.choice("type", {"revolute", "prismatic"}) == 0 ? JointType::kRevolute
@@ -139,7 +151,7 @@ RobotJoint read_joint(const TomlTable& table) {
       table.has("origin_m") ? vector_of(table, "origin_m", physical(any_number("m"))) : kZero;
   result.joint.rotation = rotation_of(table);
   result.source = table.text_or_empty("source");
-  read_link(table, result.joint);
+  if (!may_be_blank || !is_blank_link(table)) read_link(table, result.joint);
   read_limits(table, result.joint);
   result.encoder = encoder_of(table, result.joint.type);
   if (const auto control = table.optional_table("control", {"kp_per_s2", "kd_per_s"})) {

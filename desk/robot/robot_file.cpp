@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "common/number.hpp"
 #include "common/toml_table.hpp"
+#include "robot/blank_links.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/channels.hpp"
 #include "robot/check_mass_matrix.hpp"
@@ -32,7 +33,7 @@ const std::vector<std::string> kRootKeys{"format",       "name",    "source",
                                          "estimator",    "arming",  "uncertainty_bound",
                                          "drives",       "channels"};
 
-std::vector<RobotJoint> read_joints(const TomlTable& root) {
+std::vector<RobotJoint> read_joints(const TomlTable& root, std::vector<char>* is_blank) {
   const std::vector<TomlTable> tables = root.tables("joint", joint_keys());
   if (tables.empty() || tables.size() > static_cast<std::size_t>(kMaxJoints)) {
     root.refuse("joint", std::to_string(tables.size()) + " joints",
@@ -42,7 +43,8 @@ std::vector<RobotJoint> read_joints(const TomlTable& root) {
   std::vector<RobotJoint> joints;
   std::set<std::string> names;
   for (const TomlTable& table : tables) {
-    joints.push_back(read_joint(table));
+    joints.push_back(read_joint(table, is_blank != nullptr));
+    if (is_blank != nullptr) is_blank->push_back(static_cast<char>(is_blank_link(table)));
     const std::string& name = joints.back().name;
     if (names.insert(name).second) continue;
     table.refuse("name", "the name \"" + name + "\" a second time", "names that differ",
@@ -111,6 +113,45 @@ void check_delays(const TomlTable& root, const RobotDescription& robot) {
   }
 }
 
+// `is_blank`: per joint, whether its link is a blank; null: none may be.
+RobotDescription parse(std::string_view text, const std::string& file,
+                       std::vector<char>* is_blank) {
+  const toml::table document = parse_toml(text, file);
+  const TomlTable root(file, "", document, kRootKeys);
+  if (root.integer("format", 1, 1'000'000) != kRobotFileFormat) {
+    root.refuse("format", "a format that this version does not know",
+                std::to_string(kRobotFileFormat), "use the version of offnominal that wrote it");
+  }
+  RobotDescription robot;
+  robot.name = root.text("name");
+  robot.source = root.text_or_empty("source");
+  const std::vector<double> gravity =
+      root.numbers("gravity_m_s2", physical(any_number("m/s^2")), 3, 3);
+  robot.gravity_m_s2 = {gravity[0], gravity[1], gravity[2]};
+  robot.joints = read_joints(root, is_blank);
+  robot.effects = read_effects(root, robot.joints);
+  check_mass_matrix(root, robot);
+  if (const auto table = root.optional_table("estimator", estimator_keys())) {
+    robot.estimator = read_estimator(*table);
+  }
+  if (const auto table = root.optional_table("arming", arming_keys())) {
+    robot.arming = read_arming(*table, robot.joint_count());
+  }
+  check_initial_weights(root, robot);
+  check_delays(root, robot);
+  if (const auto table = root.optional_table("uncertainty_bound", bound_keys())) {
+    robot.bound = read_bound(*table, robot.joint_count());
+  }
+  if (const toml::table* table = root.raw_table("drives")) {
+    robot.drives = read_drives(*table, file, robot.joint_count(), robot.estimator.period_s);
+  }
+  if (const toml::table* table = root.raw_table("channels")) {
+    robot.channels = parse_channels(*table, file, robot.joint_count());
+  }
+  robot.file_text = std::make_shared<const std::string>(text);
+  return robot;
+}
+
 // `text` with the path of the robot's DBC file as it is seen from `file`, where that is in another
 // folder than the file that the text comes from. The key has to have a line of its own.
 std::string with_dbc(const std::string& text, const RobotDescription& robot,
@@ -156,40 +197,17 @@ void require_bound(const RobotDescription& robot, const std::string& file) {
 }
 
 RobotDescription parse_robot(std::string_view text, const std::string& file) {
-  const toml::table document = parse_toml(text, file);
-  const TomlTable root(file, "", document, kRootKeys);
-  if (root.integer("format", 1, 1'000'000) != kRobotFileFormat) {
-    root.refuse("format", "a format that this version does not know",
-                std::to_string(kRobotFileFormat), "use the version of offnominal that wrote it");
-  }
-  RobotDescription robot;
-  robot.name = root.text("name");
-  robot.source = root.text_or_empty("source");
-  const std::vector<double> gravity =
-      root.numbers("gravity_m_s2", physical(any_number("m/s^2")), 3, 3);
-  robot.gravity_m_s2 = {gravity[0], gravity[1], gravity[2]};
-  robot.joints = read_joints(root);
-  robot.effects = read_effects(root, robot.joints);
-  check_mass_matrix(root, robot);
-  if (const auto table = root.optional_table("estimator", estimator_keys())) {
-    robot.estimator = read_estimator(*table);
-  }
-  if (const auto table = root.optional_table("arming", arming_keys())) {
-    robot.arming = read_arming(*table, robot.joint_count());
-  }
-  check_initial_weights(root, robot);
-  check_delays(root, robot);
-  if (const auto table = root.optional_table("uncertainty_bound", bound_keys())) {
-    robot.bound = read_bound(*table, robot.joint_count());
-  }
-  if (const toml::table* table = root.raw_table("drives")) {
-    robot.drives = read_drives(*table, file, robot.joint_count(), robot.estimator.period_s);
-  }
-  if (const toml::table* table = root.raw_table("channels")) {
-    robot.channels = parse_channels(*table, file, robot.joint_count());
-  }
-  robot.file_text = std::make_shared<const std::string>(text);
-  return robot;
+  return parse(text, file, nullptr);
+}
+
+RobotWithBlanks parse_robot_with_blanks(std::string_view text, const std::string& file) {
+  RobotWithBlanks read;
+  read.robot = parse(text, file, &read.is_blank);
+  return read;
+}
+
+RobotWithBlanks read_robot_with_blanks(const std::filesystem::path& path) {
+  return parse_robot_with_blanks(read_text_file(path), path.string());
 }
 
 RobotDescription read_robot_file(const std::filesystem::path& path) {
