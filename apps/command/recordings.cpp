@@ -1,6 +1,7 @@
 #include "command/recordings.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "command/refuse_option.hpp"
 #include "common/input_name.hpp"
@@ -106,16 +107,21 @@ std::vector<Log> read_recordings(const std::vector<std::string>& files,
 }
 
 FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
-                      ReadOne* read_one, Progress& progress) {
+                      RobotDescription robot, ReadOne* read_one, Progress& progress) {
   check_each_differs(verb, option, files.logs, files.holdout);
   std::vector<std::string> all = files.logs;
   all.insert(all.end(), files.holdout.begin(), files.holdout.end());
   check_payloads(verb, files.channels, all);
-  FitData data{read_robot_file(files.robot), {}, {}};
+  FitData data{std::move(robot), {}, {}};
   data.logs = read_recordings(files.logs, data.robot, files.channels, read_one, progress);
   data.holdout = read_recordings(files.holdout, data.robot, files.channels, read_one, progress);
   check_each_differs(verb, option, data.logs, data.holdout);
   return data;
+}
+
+FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
+                      ReadOne* read_one, Progress& progress) {
+  return read_fit_data(verb, option, files, read_robot_file(files.robot), read_one, progress);
 }
 
 std::string file_names(const std::vector<std::string>& files) {

@@ -54,6 +54,9 @@ struct FitData {
 // the logs.
 FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
                       ReadOne* read_one, Progress& progress);
+// The same of a robot that was read already.
+FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
+                      RobotDescription robot, ReadOne* read_one, Progress& progress);
 
 // "a.csv, b.csv", "standard input": as input_name() has them, for a robot file's word on its
 // source.

@@ -4,6 +4,7 @@
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 
+#include "identify/independent_samples.hpp"
 #include "signal/correlation.hpp"
 
 namespace offnominal::desk {
@@ -13,18 +14,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-VectorXd independent_samples_of(const RowLayout& layout, const VectorXd& residual) {
-  VectorXd samples = VectorXd::Zero(layout.joint_count());
-  const VectorXd moving = layout.while_moving(residual);
-  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
-    for (Index joint = 0; joint < layout.joint_count(); ++joint) {
-      const auto part = moving.segment(layout.begin(r, joint), layout.samples(r));
-      samples[joint] += layout.moving_count(r, joint) / correlation_samples(part);
-    }
-  }
-  return samples;
-}
 
 // Moves a term's shape, one number after the other, to where gain(term) is largest on its grid.
 template <typename Gain>
@@ -72,6 +61,18 @@ void climb(Term& term, const Gain& gain) {
 }
 
 }  // namespace
+
+VectorXd independent_samples_of(const RowLayout& layout, const VectorXd& residual) {
+  VectorXd samples = VectorXd::Zero(layout.joint_count());
+  const VectorXd moving = layout.while_moving(residual);
+  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+    for (Index joint = 0; joint < layout.joint_count(); ++joint) {
+      const auto part = moving.segment(layout.begin(r, joint), layout.samples(r));
+      samples[joint] += layout.moving_count(r, joint) / correlation_samples(part);
+    }
+  }
+  return samples;
+}
 
 bool Regression::has_dry_friction(const std::vector<Term>& terms, Index joint) const {
   return data_.recordings[0].knows_dry_friction(joint) ||

@@ -73,21 +73,30 @@ std::array<double, 6> inertia_of(const TomlTable& link) {
   return inertia;
 }
 
-TomlTable link_of(const TomlTable& joint) {
-  return joint.table("link", {"mass_kg", "centre_of_mass_m", "inertia_kg_m2"});
+constexpr const char* kMass = "mass_kg";
+constexpr const char* kCentreOfMass = "centre_of_mass_m";
+
+const std::vector<std::string>& link_keys() {
+  static const std::vector<std::string> keys{kMass, kCentreOfMass, "inertia_kg_m2"};
+  return keys;
 }
 
 void read_link(const TomlTable& table, Joint<double>& joint, std::vector<std::string>& blanks) {
-  const TomlTable link = link_of(table);
-  if (link.has("mass_kg")) {
-    joint.mass_kg = link.number("mass_kg", physical(positive("kg", "give the link's mass in kg")));
-  } else {
-    blanks.emplace_back("mass_kg");
+  const auto found = table.optional_table("link", link_keys());
+  if (!found) {
+    blanks.insert(blanks.end(), {kMass, kCentreOfMass});
+    return;
   }
-  if (link.has("centre_of_mass_m")) {
-    joint.centre_of_mass_m = vector_of(link, "centre_of_mass_m", physical(any_number("m")));
+  const TomlTable& link = *found;
+  if (link.has(kMass)) {
+    joint.mass_kg = link.number(kMass, physical(positive("kg", "give the link's mass in kg")));
   } else {
-    blanks.emplace_back("centre_of_mass_m");
+    blanks.emplace_back(kMass);
+  }
+  if (link.has(kCentreOfMass)) {
+    joint.centre_of_mass_m = vector_of(link, kCentreOfMass, physical(any_number("m")));
+  } else {
+    blanks.emplace_back(kCentreOfMass);
   }
   joint.inertia_kg_m2 = inertia_of(link);
 }
@@ -171,7 +180,7 @@ void refuse_blank(const TomlTable& joint, const std::string& key, std::size_t ot
   const std::string more = others == 0 ? ""
                                        : fmt::format(" (and {} more blank{} in this file)", others,
                                                      others == 1 ? "" : "s");
-  link_of(joint).refuse(
+  joint.table("link", link_keys()).refuse(
       key, "nothing: the key is missing" + more,
       key == "mass_kg" ? "a finite number > 0, in kg" : "a list of 3 finite numbers, in m",
       fmt::format(
