@@ -26,13 +26,7 @@ bool is_within_reach(const Data& data, const Term& term, const VectorXd& coeffic
   constexpr double kRangesAway = 10;
   constexpr double kNearEnd = 1.02;
   if (term.effect->kind() == EffectKind::kJointStiffness) {
-    const auto& at = data.recordings;
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (const Workspace& one : at) {
-      low = std::min(low, one.motion.q.col(term.joint).minCoeff());
-      high = std::max(high, one.motion.q.col(term.joint).maxCoeff());
-    }
+    const auto [low, high] = positions_seen(data.recordings, term.joint);
     const double rest = -coefficients[1] / coefficients[0];
     const double slack = kRangesAway * (high - low);
     return rest >= low - slack && rest <= high + slack;

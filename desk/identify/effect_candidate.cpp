@@ -105,7 +105,14 @@ std::vector<ShapeRange> EffectCandidate::shapes(const std::vector<Workspace>& at
     const ParameterInfo& info = info_.parameters[i];
     if (info.role != ParameterRole::kShape || !finds(info)) continue;
     ShapeRange range = range_of(i, at[0].joint_type(joint));
-    if (info.quantity == Quantity::kJointNumber) {
+    if (info.as_seen) {
+      const PositionSpan seen = positions_seen(at, joint);
+      range.kind = ShapeRange::Kind::kDiscrete;
+      if (info.quantity == Quantity::kPosition) range.grid = {seen.low};
+      if (info.quantity == Quantity::kDistance && seen.high - seen.low >= info.min) {
+        range.grid = {seen.high - seen.low};
+      }
+    } else if (info.quantity == Quantity::kJointNumber) {
       range.kind = ShapeRange::Kind::kDiscrete;
       range.grid = other_joints(at[0], joint);
     } else {

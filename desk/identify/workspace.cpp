@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
@@ -81,6 +82,16 @@ double range_moved(const std::vector<Workspace>& recordings, Index joint) {
     range = std::max(range, q.maxCoeff() - q.minCoeff());
   }
   return range;
+}
+
+PositionSpan positions_seen(const std::vector<Workspace>& recordings, Index joint) {
+  PositionSpan seen{std::numeric_limits<double>::infinity(),
+                    -std::numeric_limits<double>::infinity()};
+  for (const Workspace& at : recordings) {
+    seen.low = std::min(seen.low, at.motion.q.col(joint).minCoeff());
+    seen.high = std::max(seen.high, at.motion.q.col(joint).maxCoeff());
+  }
+  return seen;
 }
 
 double longest_duration_s(const std::vector<Workspace>& recordings) {

@@ -67,6 +67,13 @@ std::vector<char> came_both_ways(const std::vector<Log>& logs);
 // Largest range of positions that one recording covers, rad or m.
 double range_moved(const std::vector<Workspace>& recordings, Eigen::Index joint);
 
+// The positions that the recordings cover together, rad or m.
+struct PositionSpan {
+  double low = 0;
+  double high = 0;
+};
+PositionSpan positions_seen(const std::vector<Workspace>& recordings, Eigen::Index joint);
+
 double longest_duration_s(const std::vector<Workspace>& recordings);
 
 }  // namespace offnominal::desk

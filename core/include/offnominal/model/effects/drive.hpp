@@ -35,7 +35,7 @@ struct JointStiffness {
   static constexpr const char* kFormula = "stiffness * (q - rest_position)";
   static constexpr const char* kWords = "a spring or cable that pulls to a rest position";
   static constexpr const char* kMotionHint = "move over the whole range, slowly";
-  static constexpr EffectTraits kTraits{.acts_at_rest = true};
+  static constexpr EffectTraits kTraits{.acts_at_rest = true, .follows = EffectVariable::kPosition};
   static constexpr std::array<ParameterInfo, 2> kParameters{{
       {"stiffness", Quantity::kEffortPerPosition, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "torque per displacement from the rest position"},
@@ -57,7 +57,7 @@ struct CoggingTorque {
       "sine * sin(k q) + cosine * cos(k q), k = order (revolute) or 2 pi order (prismatic)";
   static constexpr const char* kWords = "a torque ripple that repeats with position";
   static constexpr const char* kMotionHint = "move slowly over several periods";
-  static constexpr EffectTraits kTraits{.acts_at_rest = true};
+  static constexpr EffectTraits kTraits{.acts_at_rest = true, .follows = EffectVariable::kPosition};
   static constexpr std::array<ParameterInfo, 3> kParameters{{
       {"sine", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0, "sine amplitude"},
       {"cosine", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
