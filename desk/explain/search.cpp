@@ -69,6 +69,7 @@ bool Search::is_known(const EffectCandidate& effect, Index joint) const {
 Search::Search(const Regression& regression, const SearchOptions& options)
     : regression_(regression), data_(regression.data()), options_(options) {
   for (const auto& effect : all_candidates()) {
+    if (effect->info().traits.has_any_shape) continue;  // any_shape.hpp
     for (Index joint = 0; joint < data_.layout.joint_count(); ++joint) {
       const Workspace& first = data_.recordings[0];
       const bool acts =
