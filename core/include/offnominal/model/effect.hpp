@@ -43,6 +43,7 @@ enum class EffectKind : std::uint8_t {
   kJointElasticity = 18,
   kBacklash = 19,
   kGearLoss = 20,
+  kPositionTorque = 21,
 };
 
 // How a parameter enters the effect's torque.
