@@ -31,7 +31,7 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& pl
 // With the plan of this recording alone.
 Measurement measure(Log log, const RobotDescription& robot, const FilterRequest& request = {});
 
-// model_torque() of a robot, filtered as the measured torque is.
+// model_torque() of a robot and its transmission_torque(), filtered as the measured torque is.
 Eigen::MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement& measured);
 
 }  // namespace offnominal::desk

@@ -7,6 +7,7 @@
 #include "compare/inverse_model.hpp"
 #include "identify/effects/effects.hpp"
 #include "identify/shape_grid.hpp"
+#include "robot/read_effect.hpp"
 
 namespace offnominal::desk {
 
@@ -218,8 +219,7 @@ Candidate candidate_of(EffectKind kind) {
 const std::vector<std::unique_ptr<const EffectCandidate>>& all_candidates() {
   static const auto candidates = [] {
     std::vector<std::unique_ptr<const EffectCandidate>> all;
-    for (const EffectInfo& info : kAllEffectInfos) all.push_back(candidate_of(info.kind));
-    for (const EffectInfo& info : kInfosOutsideChains) all.push_back(candidate_of(info.kind));
+    for (const EffectInfo* info : file_effects()) all.push_back(candidate_of(info->kind));
     return all;
   }();
   return candidates;

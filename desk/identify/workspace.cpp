@@ -6,6 +6,7 @@
 
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
+#include "compare/transmission.hpp"
 #include "identify/data.hpp"
 #include "signal/decimate.hpp"
 #include "signal/quantile.hpp"
@@ -37,14 +38,6 @@ std::vector<MatrixXd> mass_columns(const Workspace& at) {
     columns.emplace_back(desk::model_torque(at.rigid, faster) - at.load_torque);
   }
   return columns;
-}
-
-// From what a low-pass takes away, as if white; 0 where the low-pass takes nothing.
-double noise_density(const VectorXd& raw, const VectorXd& smooth, const FilterPlan& plan) {
-  const double band_hz = plan.sample_rate_hz / 2 - plan.position_cutoff_hz;
-  if (!(band_hz > 0)) return 0;
-  const VectorXd fast = raw - smooth;
-  return std::sqrt(fast.squaredNorm() / static_cast<double>(fast.size()) / band_hz);
 }
 
 }  // namespace
@@ -107,7 +100,12 @@ void Workspace::set_model(const RobotDescription& robot) {
   known_effects = robot.effects;
   rigid.effects.clear();
   load_torque = desk::model_torque(rigid, motion);
-  model_torque = robot.effects.empty() ? load_torque : desk::model_torque(robot, motion);
+  stiff_torque = robot.effects.empty() ? load_torque : desk::model_torque(robot, motion);
+  model_torque = stiff_torque;
+  if (has_transmission_effect(robot)) {
+    model_torque +=
+        transmission_torque(robot, motion, stiff_torque, torque, torque_noise_density, plan);
+  }
   mass = mass_columns(*this);
 }
 

@@ -20,7 +20,8 @@ struct Workspace {
   Motion motion;                 // low-passed position and its derivatives
   Eigen::MatrixXd torque;        // measured, N m or N
   Eigen::MatrixXd load_torque;   // rigid-body torque of the model without any effect
-  Eigen::MatrixXd model_torque;  // of the model with its effects
+  Eigen::MatrixXd stiff_torque;  // of the model with its effects, transmissions taken for rigid
+  Eigen::MatrixXd model_torque;  // of the model with all its effects
   // Column k of the mass matrix over time: what 1 rad/s^2 or m/s^2 of joint k asks of every joint.
   std::vector<Eigen::MatrixXd> mass;
   Eigen::VectorXd torque_noise_density;  // per joint, of the recording, N m or N per root hertz
