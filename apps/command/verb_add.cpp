@@ -22,6 +22,7 @@
 #include "identify/add_report.hpp"
 #include "log/log_format.hpp"
 #include "log/read_log.hpp"
+#include "robot/read_effect.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
@@ -45,9 +46,9 @@ struct AddOptions {
 
 EffectKind kind_of(const std::string& name) {
   std::vector<std::string> names;
-  for (const EffectInfo& info : kAllEffectInfos) {
-    if (name == info.name) return info.kind;
-    names.emplace_back(info.name);
+  for (const EffectInfo* info : file_effects()) {
+    if (name == info->name) return info->kind;
+    names.emplace_back(info->name);
   }
   const std::string meant = nearest(name, names);
   refuse_option("add", "EFFECT", "\"" + name + "\"", list_of(names),
@@ -182,9 +183,9 @@ void run(const AddOptions& options, const std::string& command_line, ExitCode& e
 
 std::string effects_text() {
   std::string text = "Effects, their formulas and parameters:\n";
-  for (const EffectInfo& info : kAllEffectInfos) {
-    text += fmt::format("  {:<22} {}\n", info.name, info.formula);
-    for (const ParameterInfo& parameter : info.parameters) {
+  for (const EffectInfo* info : file_effects()) {
+    text += fmt::format("  {:<22} {}\n", info->name, info->formula);
+    for (const ParameterInfo& parameter : info->parameters) {
       text +=
           fmt::format("  {:<22}   {}{}: {}\n", "", parameter.name,
                       parameter.role == ParameterRole::kShape ? " (shape)" : "", parameter.meaning);

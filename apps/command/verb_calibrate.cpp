@@ -55,6 +55,7 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
   const CalibrateRequest request{
       options.alarms_per_hour, options.velocity_error,
       "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + "."};
+  require_carried(data.robot, options.files.robot);
   const Calibration result =
       calibrate(data.robot, request, data.logs, data.holdout, [&progress] { progress.step(); });
   progress.end();

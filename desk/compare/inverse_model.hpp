@@ -13,7 +13,8 @@
 
 namespace offnominal::desk {
 
-// What the model needs for the motion, effects included.
+// What the model needs for the motion, effects included, with rigid transmissions: what acts
+// between motor and link is transmission_torque() (transmission.hpp).
 Eigen::MatrixXd model_torque(const RobotDescription& robot, const Motion& motion);
 
 // The share of one link's mass and inertia in it; linear in them.

@@ -5,7 +5,9 @@
 #include "common/error.hpp"
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
+#include "compare/transmission.hpp"
 #include "robot/payload.hpp"
+#include "signal/zero_phase.hpp"
 
 namespace offnominal::desk {
 
@@ -23,6 +25,19 @@ MatrixXd filtered_columns(const FilterPlan& plan, const MatrixXd& columns) {
     result.col(joint) = column;
   }
   return result;
+}
+
+// Of the measured torque, per joint.
+VectorXd noise_densities(const Measurement& measured) {
+  VectorXd densities(measured.log.tau.cols());
+  for (Index joint = 0; joint < densities.size(); ++joint) {
+    const VectorXd raw = measured.log.tau.col(joint);
+    densities[joint] = noise_density(
+        raw,
+        zero_phase_low_pass(raw, measured.plan.position_cutoff_hz, measured.plan.sample_rate_hz),
+        measured.plan);
+  }
+  return densities;
 }
 
 }  // namespace
@@ -56,8 +71,13 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterRequest&
 }
 
 MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement& measured) {
-  return filtered_columns(measured.plan,
-                          model_torque(carrying(robot, measured.log.payload), measured.motion));
+  const RobotDescription carried = carrying(robot, measured.log.payload);
+  MatrixXd torque = model_torque(carried, measured.motion);
+  if (has_transmission_effect(carried)) {
+    torque += transmission_torque(carried, measured.motion, torque, measured.log.tau,
+                                  noise_densities(measured), measured.plan);
+  }
+  return filtered_columns(measured.plan, torque);
 }
 
 }  // namespace offnominal::desk

@@ -30,7 +30,8 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& pl
 // With the plan of this recording alone.
 Measurement measure(Log log, const RobotDescription& robot, const FilterRequest& request = {});
 
-// model_torque() of a robot with the recording's payload, filtered as the measured torque is.
+// model_torque() of a robot with the recording's payload and its transmission_torque(), filtered as
+// the measured torque is.
 Eigen::MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement& measured);
 
 }  // namespace offnominal::desk

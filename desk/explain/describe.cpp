@@ -87,6 +87,7 @@ void describe_findings(const SearchResult& from, Explanation& to) {
     Finding& finding = findings[i];
     finding.what = {effect.kind(), joint};
     finding.words = effect.info().words;
+    if (!accepted.stands_for.empty()) finding.words += "; " + accepted.stands_for;
     finding.formula = effect.info().formula;
     finding.parameters = estimates[i];
     finding.p_value = accepted.p;

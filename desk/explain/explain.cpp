@@ -156,12 +156,12 @@ class Explainer {
     }
     for (const RobotEffect& effect : robot_.effects) {
       const EffectTraits& traits = info_of(effect.kind)->traits;
-      const bool of_instant =
-          !(traits.acts_at_rest && traits.counts_time) && !remembers(effect.kind);
+      const bool of_instant = !(traits.acts_at_rest && traits.counts_time) &&
+                              !remembers(effect.kind) && chain_may_have(effect.kind);
       if (!at_rest || of_instant) continue;
       throw InputError(
           {logs.front().file, "", "a hold map",
-           "a model without effects in time and without effects that have a memory",
+           "a model of rigid transmissions, without effects in time or with a memory",
            fmt::format("leave {} out of the robot file for it", info_of(effect.kind)->name)});
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "explain/excitation.hpp"
@@ -14,8 +15,9 @@ namespace offnominal::desk {
 // An effect that passed every gate.
 struct Accepted {
   Term term;
-  double p = 1;         // of the whole search, wild block bootstrap
-  double p_replay = 1;  // by playing the model without the effect, 1 where not asked for
+  double p = 1;                 // of the whole search, wild block bootstrap
+  double p_replay = 1;          // by playing the model without the effect, 1 where not asked for
+  std::string stands_for = {};  // what else it is, in words: any_shape.hpp
 };
 
 // The effect that came closest to a name: likely more than chance, and too unsure or too small.

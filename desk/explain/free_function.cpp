@@ -27,31 +27,7 @@ constexpr double kLeftStructured = 0.15;
 constexpr const char* kBoth = "position and velocity";
 
 // The variable that an effect is a function of; empty where it is one of several or of none.
-std::string variable_of(EffectKind kind) {
-  switch (kind) {
-    case EffectKind::kJointStiffness:
-    case EffectKind::kCoggingTorque:
-      return "position";
-    case EffectKind::kViscousFriction:
-    case EffectKind::kCoulombFriction:
-    case EffectKind::kFrictionAsymmetry:
-    case EffectKind::kStribeckFriction:
-    case EffectKind::kQuadraticFriction:
-      return "velocity";
-    case EffectKind::kTorqueScale:
-      return "load";
-    default:
-      return "";
-  }
-}
-
-double share_of(const std::vector<StructureShare>& shares, Index joint,
-                const std::string& variable) {
-  for (const StructureShare& one : shares) {
-    if (one.joint == joint && one.variable == variable) return one.share;
-  }
-  return 0;
-}
+std::string variable_of(EffectKind kind) { return name_of(info_of(kind)->traits.follows); }
 
 class Judgement {
  public:

@@ -182,6 +182,27 @@ VectorXd noise_floor_of(const Data& data, const VectorXd& left) {
   return power.cwiseQuotient(samples).cwiseSqrt();
 }
 
+const char* name_of(EffectVariable variable) {
+  switch (variable) {
+    case EffectVariable::kPosition:
+      return "position";
+    case EffectVariable::kVelocity:
+      return "velocity";
+    case EffectVariable::kLoad:
+      return "load";
+    case EffectVariable::kNone:
+      break;
+  }
+  return "";
+}
+
+double share_of(const std::vector<StructureShare>& shares, Index joint, std::string_view variable) {
+  for (const StructureShare& one : shares) {
+    if (one.joint == joint && one.variable == variable) return one.share;
+  }
+  return 0;
+}
+
 std::vector<StructureShare> structure_of(const Data& data, const VectorXd& left) {
   const VectorXd residual = data.layout.while_moving(left);
   std::vector<StructureShare> shares;

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "explain/any_shape.hpp"
 #include "explain/explain_report.hpp"
 #include "explain/find_model.hpp"
 
@@ -397,6 +398,22 @@ void advise_on_friction(Explanation& e) {
       fmt::join(joints, ", ")));
 }
 
+// A torque over a variable that no other effect describes can be in the model as a curve.
+void advise_on_shapes(Explanation& e) {
+  for (const JointAnswer& one : e.answers) {
+    std::string variable = one.left.follows;
+    for (const OverVariable& shape : e.over_variable) {
+      if (shape.joint == one.joint) variable = shape.variable;
+    }
+    const EffectInfo* curve = any_shape_over(variable);
+    if (curve == nullptr || holds(one.found, {curve->kind, one.joint})) continue;
+    e.advice.push_back(fmt::format(
+        "joint {}: `offnominal add {} --joint {} --robot {} --log LOG -o improved.toml` puts it "
+        "into the model as {}",
+        one.joint + 1, curve->name, one.joint + 1, e.robot_file, curve->words));
+  }
+}
+
 // What is left beside what was found.
 void advise_on_rest(Explanation& e) {
   for (const JointAnswer& one : e.answers) {
@@ -473,6 +490,7 @@ void judge_whole(Explanation& e) {
                   at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
   }
   advise_on_rest(e);
+  advise_on_shapes(e);
 }
 
 }  // namespace offnominal::desk

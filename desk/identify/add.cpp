@@ -193,7 +193,9 @@ class Adder {
       }
       result_.fit.indistinct.push_back(std::move(indistinct));
       if (one.fixed.of == ModelNumber::Of::kTerm) {
-        terms_[one.fixed.which].given[one.fixed.coefficient] = 0;
+        auto& given = terms_[one.fixed.which].given;
+        given.resize(std::max(given.size(), one.fixed.coefficient + 1));
+        given[one.fixed.coefficient] = 0;
         continue;
       }
       NuisanceTerm& term = data_->nuisance.terms[one.fixed.which];

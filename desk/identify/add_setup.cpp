@@ -120,8 +120,12 @@ class SetUp {
   bool leaves_something_to_fit() const {
     return std::any_of(setup_.added.begin(), setup_.added.end(), [](const auto& one) {
       const auto parameters = one.effect->info().parameters;
+      const auto is_linear = [](const ParameterInfo& parameter) {
+        return parameter.role == ParameterRole::kLinear;
+      };
+      const bool only_shapes = std::none_of(parameters.begin(), parameters.end(), is_linear);
       for (std::size_t i = 0; i < parameters.size(); ++i) {
-        if (parameters[i].role == ParameterRole::kLinear && !one.given[i]) return true;
+        if ((only_shapes || is_linear(parameters[i])) && !one.given[i]) return true;
       }
       return false;
     });

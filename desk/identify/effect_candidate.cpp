@@ -7,6 +7,7 @@
 #include "compare/inverse_model.hpp"
 #include "identify/effects/effects.hpp"
 #include "identify/shape_grid.hpp"
+#include "robot/read_effect.hpp"
 
 namespace offnominal::desk {
 
@@ -105,7 +106,14 @@ std::vector<ShapeRange> EffectCandidate::shapes(const std::vector<Workspace>& at
     const ParameterInfo& info = info_.parameters[i];
     if (info.role != ParameterRole::kShape || !finds(info)) continue;
     ShapeRange range = range_of(i, at[0].joint_type(joint));
-    if (info.quantity == Quantity::kJointNumber) {
+    if (info.as_seen) {
+      const PositionSpan seen = positions_seen(at, joint);
+      range.kind = ShapeRange::Kind::kDiscrete;
+      if (info.quantity == Quantity::kPosition) range.grid = {seen.low};
+      if (info.quantity == Quantity::kDistance && seen.high - seen.low >= info.min) {
+        range.grid = {seen.high - seen.low};
+      }
+    } else if (info.quantity == Quantity::kJointNumber) {
       range.kind = ShapeRange::Kind::kDiscrete;
       range.grid = other_joints(at[0], joint);
     } else {
@@ -211,8 +219,7 @@ Candidate candidate_of(EffectKind kind) {
 const std::vector<std::unique_ptr<const EffectCandidate>>& all_candidates() {
   static const auto candidates = [] {
     std::vector<std::unique_ptr<const EffectCandidate>> all;
-    for (const EffectInfo& info : kAllEffectInfos) all.push_back(candidate_of(info.kind));
-    for (const EffectInfo& info : kInfosOutsideChains) all.push_back(candidate_of(info.kind));
+    for (const EffectInfo* info : file_effects()) all.push_back(candidate_of(info->kind));
     return all;
   }();
   return candidates;

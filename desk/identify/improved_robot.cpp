@@ -24,9 +24,6 @@ namespace {
 // Why no robot file can have it; empty where one can.
 std::string why_unwritable(const Effect<double>& effect, JointType type) {
   const EffectInfo& info = *info_of(effect.kind);
-  if (!chain_may_have(effect.kind)) {
-    return fmt::format("robot files and controllers do not know {} yet", info.name);
-  }
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {
     const ParameterInfo& parameter = info.parameters[i];
     const double value = effect.parameters[i];
@@ -209,10 +206,7 @@ std::vector<std::string> of_other_sign(const Relinearised& last) {
   std::vector<std::string> all;
   for (std::size_t i = 0; i < last.terms.size(); ++i) {
     const Term& term = last.terms[i];
-    if (!chain_may_have(term.effect->kind()) ||
-        term.effect->is_physical(last.fit.coefficients[i])) {
-      continue;
-    }
+    if (term.effect->is_physical(last.fit.coefficients[i])) continue;
     all.push_back(fmt::format(
         "{} of joint {} came out as {:.4g}, which cannot be, once all was fitted together",
         term.effect->name(), term.joint + 1, last.fit.coefficients[i][0]));
@@ -226,7 +220,7 @@ std::vector<std::string> unphysical(const Relinearised& last, const RobotDescrip
   std::set<Index> joints;
   for (const Term& term : last.terms) {
     const EffectKind kind = term.effect->kind();
-    if (chain_may_have(kind) && is_friction(kind)) joints.insert(term.joint);
+    if (is_friction(kind)) joints.insert(term.joint);
   }
   for (const Moved& moved : moved_numbers(last, improved)) {
     const RobotEffect& effect = improved.effects[moved.effect];

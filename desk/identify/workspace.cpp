@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
+#include "compare/transmission.hpp"
 #include "identify/data.hpp"
 #include "signal/decimate.hpp"
 #include "signal/quantile.hpp"
@@ -36,14 +38,6 @@ std::vector<MatrixXd> mass_columns(const Workspace& at) {
     columns.emplace_back(desk::model_torque(at.rigid, faster) - at.load_torque);
   }
   return columns;
-}
-
-// From what a low-pass takes away, as if white; 0 where the low-pass takes nothing.
-double noise_density(const VectorXd& raw, const VectorXd& smooth, const FilterPlan& plan) {
-  const double band_hz = plan.sample_rate_hz / 2 - plan.position_cutoff_hz;
-  if (!(band_hz > 0)) return 0;
-  const VectorXd fast = raw - smooth;
-  return std::sqrt(fast.squaredNorm() / static_cast<double>(fast.size()) / band_hz);
 }
 
 }  // namespace
@@ -83,6 +77,16 @@ double range_moved(const std::vector<Workspace>& recordings, Index joint) {
   return range;
 }
 
+PositionSpan positions_seen(const std::vector<Workspace>& recordings, Index joint) {
+  PositionSpan seen{std::numeric_limits<double>::infinity(),
+                    -std::numeric_limits<double>::infinity()};
+  for (const Workspace& at : recordings) {
+    seen.low = std::min(seen.low, at.motion.q.col(joint).minCoeff());
+    seen.high = std::max(seen.high, at.motion.q.col(joint).maxCoeff());
+  }
+  return seen;
+}
+
 double longest_duration_s(const std::vector<Workspace>& recordings) {
   double duration_s = 0;
   for (const Workspace& at : recordings) {
@@ -97,8 +101,13 @@ void Workspace::set_model(const RobotDescription& robot) {
   rigid.effects.clear();
   rigid = as_recorded(rigid);
   load_torque = desk::model_torque(rigid, motion);
-  model_torque =
-      robot.effects.empty() ? load_torque : desk::model_torque(as_recorded(robot), motion);
+  const RobotDescription recorded = as_recorded(robot);
+  stiff_torque = robot.effects.empty() ? load_torque : desk::model_torque(recorded, motion);
+  model_torque = stiff_torque;
+  if (has_transmission_effect(recorded)) {
+    model_torque +=
+        transmission_torque(recorded, motion, stiff_torque, torque, torque_noise_density, plan);
+  }
   mass = mass_columns(*this);
 }
 

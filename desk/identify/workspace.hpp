@@ -25,7 +25,8 @@ struct Workspace {
   Motion motion;                 // low-passed position and its derivatives
   Eigen::MatrixXd torque;        // measured, N m or N
   Eigen::MatrixXd load_torque;   // rigid-body torque of the model without any effect
-  Eigen::MatrixXd model_torque;  // of the model with its effects
+  Eigen::MatrixXd stiff_torque;  // of the model with its effects, transmissions taken for rigid
+  Eigen::MatrixXd model_torque;  // of the model with all its effects
   // Column k of the mass matrix over time: what 1 rad/s^2 or m/s^2 of joint k asks of every joint.
   std::vector<Eigen::MatrixXd> mass;
   Eigen::VectorXd torque_noise_density;  // per joint, of the recording, N m or N per root hertz
@@ -75,6 +76,13 @@ std::vector<char> came_both_ways(const std::vector<Log>& logs);
 
 // Largest range of positions that one recording covers, rad or m.
 double range_moved(const std::vector<Workspace>& recordings, Eigen::Index joint);
+
+// The positions that the recordings cover together, rad or m.
+struct PositionSpan {
+  double low = 0;
+  double high = 0;
+};
+PositionSpan positions_seen(const std::vector<Workspace>& recordings, Eigen::Index joint);
 
 double longest_duration_s(const std::vector<Workspace>& recordings);
 

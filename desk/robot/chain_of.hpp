@@ -59,7 +59,8 @@ inline void require_joint_count(const RobotDescription& robot, int count) {
 
 }  // namespace detail
 
-/// The chain that the core computes with, every number rounded to Scalar. Throws
+/// The chain that the core computes with, every number rounded to Scalar; with rigid transmissions:
+/// effects that no chain can have are left out (require_carried() refuses them). Throws
 /// std::invalid_argument when the robot does not have N joints or has more effects than a chain of
 /// N joints holds.
 template <int N, typename Scalar>
@@ -71,6 +72,7 @@ template <int N, typename Scalar>
   }
   chain.gravity_m_s2 = detail::scalars_of<Scalar>(robot.gravity_m_s2);
   for (const RobotEffect& effect : robot.effects) {
+    if (!chain_may_have(effect.kind)) continue;
     const Effect<Scalar> converted{effect.kind, effect.joint,
                                    detail::scalars_of<Scalar>(effect.parameters)};
     if (!chain.effects.add(converted)) {

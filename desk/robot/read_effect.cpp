@@ -57,11 +57,21 @@ double read_other_joint(const TomlTable& table, const ParameterInfo& parameter,
 
 }  // namespace
 
+const std::vector<const EffectInfo*>& file_effects() {
+  static const std::vector<const EffectInfo*> effects = [] {
+    std::vector<const EffectInfo*> all;
+    for (const EffectInfo& info : kAllEffectInfos) all.push_back(&info);
+    for (const EffectInfo& info : kInfosOutsideChains) all.push_back(&info);
+    return all;
+  }();
+  return effects;
+}
+
 const std::vector<std::string>& effect_keys() {
   static const std::vector<std::string> keys = [] {
     std::vector<std::string> all = kCommonKeys;
-    for (const EffectInfo& info : kAllEffectInfos) {
-      for (const std::string& name : parameter_names(info)) {
+    for (const EffectInfo* info : file_effects()) {
+      for (const std::string& name : parameter_names(*info)) {
         if (!contains(all, name)) all.push_back(name);
       }
     }
@@ -73,14 +83,14 @@ const std::vector<std::string>& effect_keys() {
 const std::vector<std::string>& effect_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const EffectInfo& info : kAllEffectInfos) all.emplace_back(info.name);
+    for (const EffectInfo* info : file_effects()) all.emplace_back(info->name);
     return all;
   }();
   return names;
 }
 
 RobotEffect read_effect(const TomlTable& table, const std::vector<RobotJoint>& joints) {
-  const EffectInfo& info = kAllEffectInfos[table.choice("kind", effect_names())];
+  const EffectInfo& info = *file_effects()[table.choice("kind", effect_names())];
   refuse_parameters_of_other_kinds(table, info);
   RobotEffect effect;
   effect.kind = info.kind;

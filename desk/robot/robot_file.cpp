@@ -154,7 +154,23 @@ std::optional<std::string> text_with_changes(const RobotDescription& robot,
 
 }  // namespace
 
+void require_carried(const RobotDescription& robot, const std::string& file,
+                     const std::string& who) {
+  for (const RobotEffect& effect : robot.effects) {
+    if (chain_may_have(effect.kind)) continue;
+    throw InputError(
+        {.file = file,
+         .place = "effect",
+         .found = fmt::format("{} on joint {}, which {} cannot carry", info_of(effect.kind)->name,
+                              effect.joint + 1, who),
+         .allowed = "effects of rigid transmissions",
+         .mend = "remove it from this file, and keep it in the one that compare, add and explain "
+                 "are given"});
+  }
+}
+
 void require_bound(const RobotDescription& robot, const std::string& file) {
+  require_carried(robot, file);
   if (robot.bound) return;
   throw InputError({.file = file,
                     .place = "uncertainty_bound",

@@ -29,8 +29,14 @@ enum class Blanks { kRefused, kAllowed };
 [[nodiscard]] RobotDescription parse_robot(std::string_view text, const std::string& file,
                                            Blanks blanks = Blanks::kRefused);
 
-/// Throws InputError, with `file` in it, where the robot has no uncertainty bound: without one
-/// there is no threshold.
+/// Throws InputError, with `file` in it, where `who` ("the on-board monitor") would have to leave
+/// an effect of the file out: one that no chain of the core can have, of a transmission that is not
+/// rigid.
+void require_carried(const RobotDescription& robot, const std::string& file,
+                     const std::string& who = "the on-board monitor");
+
+/// Throws InputError, with `file` in it, where the robot has no uncertainty bound, without which
+/// there is no threshold, or as require_carried(): what runs the monitor needs both.
 void require_bound(const RobotDescription& robot, const std::string& file);
 
 /// The text of a robot file. Numbers have as many digits as it takes to get them back to the bit:

@@ -10,6 +10,7 @@
 
 #include "common/error.hpp"
 #include "robot/chain_of.hpp"
+#include "robot/robot_file.hpp"
 
 namespace offnominal::desk::sil {
 namespace {
@@ -26,6 +27,7 @@ using Model = RigidBodyModel<kJoints, double>;
 using RobotChain = Chain<kJoints, double>;
 
 RobotChain filled_chain(const RobotPlantSetup& setup) {
+  require_carried(setup.robot, "robot " + setup.robot.name, "the simulated plant");
   RobotDescription robot = setup.robot;
   robot.effects.insert(robot.effects.end(), setup.hidden.begin(), setup.hidden.end());
   robot.joints.resize(static_cast<std::size_t>(kJoints));

@@ -27,7 +27,8 @@ using AllEffects =
                 effects::RotorInertia, effects::TipPayload, effects::LinkMass,
                 effects::JointStiffness, effects::CoggingTorque, effects::PeriodicDisturbance,
                 effects::TemperatureDrift, effects::JointCoupling, effects::LoadDependentFriction,
-                effects::TorqueScale, effects::Hysteresis, effects::TimeDelay, effects::GearLoss>;
+                effects::TorqueScale, effects::Hysteresis, effects::TimeDelay, effects::GearLoss,
+                effects::PositionTorque>;
 
 // Those that recordings are searched for and that no chain can have.
 using EffectsOutsideChains = EffectTypes<effects::JointElasticity, effects::Backlash>;

@@ -99,7 +99,7 @@ struct TorqueScale {
   static constexpr const char* kFormula = "error * (torque of the model)";
   static constexpr const char* kWords = "a wrong torque constant";
   static constexpr const char* kMotionHint = "move with a payload of known mass";
-  static constexpr EffectTraits kTraits{.acts_at_rest = true};
+  static constexpr EffectTraits kTraits{.acts_at_rest = true, .follows = EffectVariable::kLoad};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"error", Quantity::kRatio, ParameterRole::kLinear, -0.9, 9, true, 0,
        "logged torque per torque that acts, less 1"},
