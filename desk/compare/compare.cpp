@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace offnominal::desk {
 namespace {
@@ -14,6 +15,21 @@ using Eigen::VectorXd;
 
 double percent_of(double part, double whole) {
   return whole > 0 ? 100 * part / whole : std::numeric_limits<double>::quiet_NaN();
+}
+
+// What `error`, of the samples that tell, follows: largest share first.
+std::vector<ErrorShare> followed(const Comparison& all, const Measurement& of, Index joint,
+                                 const VectorXd& error) {
+  const auto share = [&](const auto& variable) {
+    return share_explained(of.while_moving(variable, joint), error);
+  };
+  std::vector<ErrorShare> where{{"position", share(all.q.col(joint))},
+                                {"velocity", share(all.dq.col(joint))},
+                                {"acceleration", share(all.ddq.col(joint))},
+                                {"time", share(all.t_s)}};
+  std::stable_sort(where.begin(), where.end(),
+                   [](const ErrorShare& a, const ErrorShare& b) { return a.share > b.share; });
+  return where;
 }
 
 JointComparison compare_joint(const Comparison& all, const Measurement& of,
@@ -33,12 +49,15 @@ JointComparison compare_joint(const Comparison& all, const Measurement& of,
   const bool constant = spread <= 1e-12 * measured.norm();
   result.fit_percent = 100 - percent_of(error.norm(), constant ? 0 : spread);
   result.left_out = 1 - static_cast<double>(measured.size()) / static_cast<double>(all.t_s.size());
-  result.where = {{"position", share_explained(while_moving(all.q.col(joint)), error)},
-                  {"velocity", share_explained(while_moving(all.dq.col(joint)), error)},
-                  {"acceleration", share_explained(while_moving(all.ddq.col(joint)), error)},
-                  {"time", share_explained(while_moving(all.t_s), error)}};
-  std::stable_sort(result.where.begin(), result.where.end(),
-                   [](const ErrorShare& a, const ErrorShare& b) { return a.share > b.share; });
+  result.where = followed(all, of, joint, error);
+  if (of.log.has_both(result.joint)) {
+    const VectorXd gear = measured - while_moving(of.sensor_torque.col(joint));
+    std::vector<ErrorShare> follows = followed(all, of, joint, gear);
+    // Whatever is smooth follows the time; a gear is known by its motion.
+    std::erase_if(follows, [](const ErrorShare& one) { return one.variable == "time"; });
+    result.gear = GearTorque{gear.norm() / root_n, percent_of(gear.norm(), measured.norm()),
+                             std::move(follows.front())};
+  }
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include "common/error.hpp"
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
+#include "log/seen_by_sensor.hpp"
 
 namespace offnominal::desk {
 
@@ -46,6 +47,9 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& pl
   measured.motion = motion_of(log, measured.plan);
   measured.t_s = kept_samples(measured.plan, log.t_s);
   measured.torque = filtered_columns(measured.plan, log.tau);
+  if (log.sensor_tau.rows() > 0) {
+    measured.sensor_torque = filtered_columns(measured.plan, log.sensor_tau);
+  }
   const MatrixXd moving = samples_that_tell(log, robot, measured.motion);
   measured.moving.resize(measured.t_s.size(), moving.cols());
   for (Index joint = 0; joint < moving.cols(); ++joint) {
@@ -61,7 +65,8 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterRequest&
 }
 
 MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement& measured) {
-  return filtered_columns(measured.plan, model_torque(robot, measured.motion));
+  return filtered_columns(measured.plan,
+                          model_torque(seen_by_sensors(robot, measured.log), measured.motion));
 }
 
 }  // namespace offnominal::desk

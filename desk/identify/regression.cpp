@@ -76,7 +76,8 @@ void climb(Term& term, const Gain& gain) {
 bool Regression::has_dry_friction(const std::vector<Term>& terms, Index joint) const {
   return data_.recordings[0].knows_dry_friction(joint) ||
          std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
-           return term.joint == joint && term.effect->info().traits.is_dry;
+           return !term.effect->of_motor() && term.joint == joint &&
+                  term.effect->info().traits.is_dry;
          });
 }
 

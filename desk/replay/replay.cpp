@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/number.hpp"
+#include "log/seen_by_sensor.hpp"
 #include "replay/replay_joints.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/robot_file.hpp"
@@ -61,6 +62,7 @@ std::int64_t Replay::samples() const {
 
 Replay replay(const RobotDescription& robot, const Log& log) {
   check_settings(robot, log);
+  const RobotDescription seen = seen_by_sensors(robot, log);
   Replay result;
   result.robot = robot.name;
   result.log = log.file;
@@ -74,7 +76,7 @@ Replay replay(const RobotDescription& robot, const Log& log) {
                                                                                     : "m/s^2");
   }
   with_joint_count(robot.joint_count(),
-                   [&]<int N>() { detail::replay_joints<N>(robot, log, result); });
+                   [&]<int N>() { detail::replay_joints<N>(seen, log, result); });
   if (result.t_s.size() == 0) {
     const auto& [status, refusals] = *result.refused.begin();
     throw InputError({.file = log.file,
