@@ -31,6 +31,7 @@ namespace {
 struct AddOptions {
   std::vector<std::string> effects;
   int joint = 0;
+  int motor = 0;
   FitFiles files;
   bool all_found = false;
   std::string output;
@@ -72,10 +73,15 @@ void read_setting(const std::string& text, AddRequest& request) {
 AddRequest request_of(const AddOptions& options) {
   AddRequest request;
   for (const std::string& name : options.effects) request.effects.push_back(kind_of(name));
-  if (options.joint < 1)
-    refuse_option("add", "--joint", options.joint == 0 ? "none" : std::to_string(options.joint),
+  request.of_motor = options.motor != 0;
+  if (request.of_motor && options.joint != 0)
+    refuse_option("add", "--motor", "a motor beside --joint", "one of the two");
+  const int place = request.of_motor ? options.motor : options.joint;
+  if (place < 1)
+    refuse_option("add", request.of_motor ? "--motor" : "--joint",
+                  place == 0 ? "none" : std::to_string(place),
                   "the joint that the effects act on, from 1");
-  request.joint = static_cast<std::size_t>(options.joint - 1);
+  request.joint = static_cast<std::size_t>(place - 1);
   for (const std::string& setting : options.set) read_setting(setting, request);
   if (options.refit_inertia_percent) {
     const double percent = *options.refit_inertia_percent;
@@ -104,6 +110,7 @@ void check_kind(const AddOptions& options) {
   if (!options.effects.empty())
     refuse_option("add", "EFFECT", "\"" + options.effects[0] + "\"", alone);
   if (options.joint != 0) refuse_option("add", "--joint", std::to_string(options.joint), alone);
+  if (options.motor != 0) refuse_option("add", "--motor", std::to_string(options.motor), alone);
   if (!options.set.empty()) refuse_option("add", "--set", "\"" + options.set[0] + "\"", alone);
   if (options.keep) refuse_option("add", "--keep", "given", alone);
   if (options.no_skew) refuse_option("add", "--no-skew", "given", alone);
@@ -217,6 +224,8 @@ void set_up_add(CLI::App& verb, ExitCode& exit_code) {
   verb.add_option("EFFECT", options->effects,
                   "One or more effects, all on one joint; listed below");
   verb.add_option("--joint", options->joint, "The joint that they act on, from 1");
+  verb.add_option("--motor", options->motor,
+                  "Instead: the motor on whose shaft they act, of a robot with [transmission]");
   verb.add_flag("--all-found", options->all_found,
                 "Search for what is missing, as explain does, and add all of it");
   verb.add_option("--robot", options->files.robot, "Robot file to start from")->required();

@@ -120,12 +120,27 @@ std::string kind_text(EffectKind kind) {
 
 std::string effect_constant(const Effect<double>& effect, const RobotDescription& robot) {
   const EffectInfo& info = *info_of(effect.kind);
-  const JointType type = robot.joints[effect.joint].joint.type;
-  std::string text = cpp_text::comment(
-      fmt::format("{}: {}; {}", info.name, info.formula, parameter_remark(info, type)));
+  std::string text =
+      cpp_text::comment(fmt::format("{}{}: {}; {}", info.name, effect.of_motor ? " of a motor" : "",
+                                    info.formula, parameter_remark(info, robot.type_of(effect))));
   const std::span<const double> parameters(effect.parameters.data(), info.parameters.size());
-  return text + fmt::format("{{.kind = {}, .joint = {}, .parameters = {}}},\n",
-                            kind_text(effect.kind), effect.joint, cpp_text::numbers(parameters));
+  return text + fmt::format("{{.kind = {}, .joint = {}, .parameters = {}{}}},\n",
+                            kind_text(effect.kind), effect.joint, cpp_text::numbers(parameters),
+                            effect.of_motor ? ", .of_motor = true" : "");
+}
+
+// Nothing where no effect asks for it.
+template <int N>
+std::string transmission_text(const Chain<N, double>& chain) {
+  const auto effects = chain.effects.view();
+  const bool used = std::any_of(effects.begin(), effects.end(),
+                                [](const Effect<double>& effect) { return effect.of_motor; });
+  if (!used) return {};
+  std::string members =
+      member("motor_per_joint", cpp_text::numbers(chain.transmission.motor_per_joint),
+             "row by row, rad of the motor per rad or m");
+  members += member("motor_offset_rad", cpp_text::numbers(chain.transmission.motor_offset_rad));
+  return ".transmission =\n    {\n" + indented(members, "        ") + "    },\n";
 }
 
 template <int N>
@@ -144,8 +159,9 @@ std::string chain_text(const Chain<N, double>& chain, const RobotDescription& ro
   std::string text = ".joints = {{\n" + indented(joints, "    ") + "}},\n";
   text += member("gravity_m_s2", cpp_text::numbers(chain.gravity_m_s2), "m/s^2, base frame");
   if (effects.empty()) return text;
-  return text + ".effects =\n    {\n        .items = {{\n" + indented(effects, "            ") +
-         fmt::format("        }}}},\n        .size = {},\n    }},\n", chain.effects.size);
+  text += ".effects =\n    {\n        .items = {{\n" + indented(effects, "            ") +
+          fmt::format("        }}}},\n        .size = {},\n    }},\n", chain.effects.size);
+  return text + transmission_text(chain);
 }
 
 std::string estimator_constant(const EstimatorConfig<double>& config) {

@@ -26,6 +26,7 @@ struct JointSamples {
   VectorXd ddq;
   VectorXd t_s;
   VectorXd recording;  // which one, from 0
+  VectorXd gear;       // measured less what a sensor behind the gear says; empty: no such sensor
   Index of = 0;        // samples in all
 };
 
@@ -46,6 +47,9 @@ JointSamples samples_of(const Comparison& all, Index joint) {
   samples.dq = while_moving(all.dq.col(joint));
   samples.ddq = while_moving(all.ddq.col(joint));
   samples.t_s = while_moving(all.t_s);
+  if (all.sensor.cols() > 0 && all.has_both[static_cast<std::size_t>(joint)] != 0) {
+    samples.gear = samples.measured - while_moving(all.sensor.col(joint));
+  }
   samples.recording = VectorXd::Zero(samples.error.size());
   samples.of = all.t_s.size();
   return samples;
@@ -73,8 +77,11 @@ JointSamples samples_of(const std::vector<Comparison>& recordings, Index joint) 
     append(whole.ddq, part.ddq);
     append(whole.t_s, part.t_s);
     append(whole.recording, part.recording);
+    append(whole.gear, part.gear);
     whole.of += part.of;
   }
+  // Recordings with the sensor and without it: of the whole there is nothing to say.
+  if (whole.gear.size() != whole.measured.size()) whole.gear.resize(0);
   return whole;
 }
 
@@ -92,6 +99,25 @@ double share_of_recordings(const JointSamples& samples) {
     between += count * apart * apart;
   }
   return energy > 0 ? std::min(between / energy, 1.0) : 0;
+}
+
+// What `error`, of the samples that count, follows of the motion and the time.
+std::vector<ErrorShare> followed(const JointSamples& samples, const VectorXd& error) {
+  return {{"position", share_explained(samples.q, error)},
+          {"velocity", share_explained(samples.dq, error)},
+          {"acceleration", share_explained(samples.ddq, error)},
+          {"time", share_explained(samples.t_s, error)}};
+}
+
+// What gear and rotor take. Whatever is smooth follows the time; a gear is known by its motion.
+GearTorque gear_of(const JointSamples& samples) {
+  std::vector<ErrorShare> follows = followed(samples, samples.gear);
+  std::erase_if(follows, [](const ErrorShare& one) { return one.variable == "time"; });
+  const double root_n = std::sqrt(static_cast<double>(samples.gear.size()));
+  return {samples.gear.norm() / root_n, percent_of(samples.gear.norm(), samples.measured.norm()),
+          *std::max_element(
+              follows.begin(), follows.end(),
+              [](const ErrorShare& a, const ErrorShare& b) { return a.share < b.share; })};
 }
 
 JointComparison compare_joint(const JointSamples& samples, std::size_t joint,
@@ -118,15 +144,13 @@ JointComparison compare_joint(const JointSamples& samples, std::size_t joint,
   const bool constant = spread <= 1e-12 * measured.norm();
   result.fit_percent = 100 - percent_of(error.norm(), constant ? 0 : spread);
   result.left_out = 1 - static_cast<double>(measured.size()) / static_cast<double>(samples.of);
-  result.where = {{"position", share_explained(samples.q, error)},
-                  {"velocity", share_explained(samples.dq, error)},
-                  {"acceleration", share_explained(samples.ddq, error)},
-                  {"time", share_explained(samples.t_s, error)}};
+  result.where = followed(samples, error);
   if (samples.recording.size() > 0 && samples.recording.maxCoeff() > 0) {
     result.where.push_back({"recording", share_of_recordings(samples)});
   }
   std::stable_sort(result.where.begin(), result.where.end(),
                    [](const ErrorShare& a, const ErrorShare& b) { return a.share > b.share; });
+  if (samples.gear.size() > 0) result.gear = gear_of(samples);
   return result;
 }
 
@@ -152,6 +176,10 @@ Comparison compare(const RobotDescription& robot, const Measurement& measured) {
   result.dq = kept(measured.motion.dq);
   result.ddq = kept(measured.motion.ddq);
   result.moving = measured.moving;
+  result.sensor = measured.sensor_torque;
+  for (Index joint = 0; joint < result.measured.cols(); ++joint) {
+    result.has_both.push_back(measured.log.has_both(static_cast<std::size_t>(joint)) ? 1 : 0);
+  }
   for (Index joint = 0; joint < result.measured.cols(); ++joint) {
     const auto which = static_cast<std::size_t>(joint);
     result.joints.push_back(

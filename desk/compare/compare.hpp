@@ -16,6 +16,14 @@ struct ErrorShare {
   double share = 0;      // of the error's energy, 0..1, that the mean over bins of it explains
 };
 
+// What the drive gives and a sensor behind the gear does not get: all that gear and rotor take,
+// whatever the model says.
+struct GearTorque {
+  double rms = 0;      // of drive less sensor, both filtered; N m or N
+  double percent = 0;  // 100 |drive - sensor| / |drive|; NaN where the drive's is 0
+  ErrorShare follows;  // the variable of the motion that explains most of it
+};
+
 // How well the model's torque tau_m meets the measured torque tau at one joint, both filtered.
 struct JointComparison {
   std::size_t joint = 0;              // from 0
@@ -27,7 +35,8 @@ struct JointComparison {
   // Of the samples, 0..1: those in which the joint stands still, where friction may take any part
   // of the torque. None of the numbers above is of them.
   double left_out = 0;
-  std::vector<ErrorShare> where;  // largest share first
+  std::vector<ErrorShare> where;   // largest share first
+  std::optional<GearTorque> gear;  // where the recording has both torques
 };
 
 struct Comparison {
@@ -37,6 +46,9 @@ struct Comparison {
   Eigen::VectorXd t_s;       // of the kept samples
   Eigen::MatrixXd measured;  // filtered torque; rows: kept samples, columns: joints
   Eigen::MatrixXd model;
+  Eigen::MatrixXd sensor;  // the same of a sensor behind the gear; empty: none anywhere
+  std::vector<char>
+      has_both;       // per joint: 1 where `sensor` has a column of it that means something
   Eigen::MatrixXd q;  // low-passed motion at the kept samples
   Eigen::MatrixXd dq;
   Eigen::MatrixXd ddq;

@@ -16,6 +16,11 @@ nlohmann::ordered_json joints_json(const std::vector<JointComparison>& joints) {
                     {"relative_error_percent", joint.relative_error_percent},
                     {"fit_percent", joint.fit_percent},
                     {"left_out_percent", 100 * joint.left_out}});
+    if (!joint.gear) continue;
+    json.back()["gear"] = {{"rms", joint.gear->rms},
+                           {"percent_of_drive", joint.gear->percent},
+                           {"follows", joint.gear->follows.variable},
+                           {"share", joint.gear->follows.share}};
   }
   return json;
 }

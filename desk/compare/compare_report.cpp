@@ -27,6 +27,17 @@ std::string percent(double value) {
   return std::isfinite(value) ? fmt::format("{:.2f} %", value) : std::string("none");
 }
 
+std::string sentence(const GearTorque& gear, const std::string& unit) {
+  std::string words =
+      fmt::format("Drive less sensor, gear and rotor take {:.4g} {} rms ({} of the drive's {})",
+                  gear.rms, unit, percent(gear.percent), effort_name(unit));
+  if (gear.follows.share >= kWorthSaying) {
+    words += fmt::format(", {:.0f} % of it follows the {}", 100 * gear.follows.share,
+                         gear.follows.variable);
+  }
+  return words + ".";
+}
+
 std::string sentence(const JointComparison& joint) {
   const char* effort = effort_name(joint.unit);
   if (!std::isfinite(joint.relative_error_percent)) {
@@ -45,6 +56,7 @@ std::string sentence(const JointComparison& joint) {
     words +=
         fmt::format(" {:.0f} % of the error follows the {}.", 100 * first.share, first.variable);
   }
+  if (joint.gear) words += " " + sentence(*joint.gear, joint.unit);
   constexpr double kWorthMention = 0.01;
   if (joint.left_out >= kWorthMention) {
     words += fmt::format(

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "robot/chain_of.hpp"
+#include "robot/transmission.hpp"
 #include "signal/shift.hpp"
 
 namespace offnominal::desk {
@@ -114,6 +115,23 @@ ToldTorque told_torque(const RobotDescription& robot, const Motion& motion) {
     }
     return told;
   });
+}
+
+Motion motor_motion(const RobotDescription& robot, const Motion& motion) {
+  const MatrixXd to_motors = motor_per_joint(*robot.transmission).transpose();
+  Motion motors{motion.t_s, motion.q * to_motors, motion.dq * to_motors, motion.ddq * to_motors};
+  motors.q.rowwise() += motor_offset_rad(*robot.transmission).transpose();
+  return motors;
+}
+
+std::vector<MovedJoint> joints_of_motor(const RobotDescription& robot, std::size_t motor) {
+  const MatrixXd matrix = motor_per_joint(*robot.transmission);
+  std::vector<MovedJoint> joints;
+  for (Index joint = 0; joint < matrix.cols(); ++joint) {
+    const double per_joint = matrix(static_cast<Index>(motor), joint);
+    if (per_joint != 0) joints.push_back({joint, per_joint});
+  }
+  return joints;
 }
 
 VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Motion& motion,

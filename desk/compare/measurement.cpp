@@ -6,6 +6,7 @@
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
 #include "compare/transmission.hpp"
+#include "log/seen_by_sensor.hpp"
 #include "robot/payload.hpp"
 #include "signal/zero_phase.hpp"
 
@@ -56,6 +57,9 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& pl
   measured.motion = motion_of(log, measured.plan);
   measured.t_s = kept_samples(measured.plan, log.t_s);
   measured.torque = filtered_columns(measured.plan, log.tau);
+  if (log.sensor_tau.rows() > 0) {
+    measured.sensor_torque = filtered_columns(measured.plan, log.sensor_tau);
+  }
   const MatrixXd moving = samples_that_tell(log, robot, measured.motion);
   measured.moving.resize(measured.t_s.size(), moving.cols());
   for (Index joint = 0; joint < moving.cols(); ++joint) {
@@ -71,10 +75,11 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterRequest&
 }
 
 MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement& measured) {
-  const RobotDescription carried = carrying(robot, measured.log.payload);
-  MatrixXd torque = model_torque(carried, measured.motion);
-  if (has_transmission_effect(carried)) {
-    torque += transmission_torque(carried, measured.motion, torque, measured.log.tau,
+  const RobotDescription seen =
+      seen_by_sensors(carrying(robot, measured.log.payload), measured.log);
+  MatrixXd torque = model_torque(seen, measured.motion);
+  if (has_transmission_effect(seen)) {
+    torque += transmission_torque(seen, measured.motion, torque, measured.log.tau,
                                   noise_densities(measured), measured.plan);
   }
   return filtered_columns(measured.plan, torque);

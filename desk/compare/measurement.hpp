@@ -14,9 +14,10 @@ namespace offnominal::desk {
 struct Measurement {
   Log log;
   FilterPlan plan;
-  Motion motion;           // full rate
-  Eigen::VectorXd t_s;     // of the samples that are kept
-  Eigen::MatrixXd torque;  // filtered; rows: kept samples, columns: joints
+  Motion motion;                  // full rate
+  Eigen::VectorXd t_s;            // of the samples that are kept
+  Eigen::MatrixXd torque;         // filtered; rows: kept samples, columns: joints
+  Eigen::MatrixXd sensor_torque;  // the same of log.sensor_tau
   // Kept samples: 1, or 0 where the joint stands still and friction may hold it (standstill.hpp).
   Eigen::MatrixXd moving;
 };
@@ -30,8 +31,8 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& pl
 // With the plan of this recording alone.
 Measurement measure(Log log, const RobotDescription& robot, const FilterRequest& request = {});
 
-// model_torque() of a robot with the recording's payload and its transmission_torque(), filtered as
-// the measured torque is.
+// model_torque() of a robot with the recording's payload and its transmission_torque(), without
+// what the recording's torque sensors do not see, filtered as the measured torque is.
 Eigen::MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement& measured);
 
 }  // namespace offnominal::desk

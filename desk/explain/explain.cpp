@@ -23,6 +23,7 @@
 #include "identify/improved_robot.hpp"
 #include "identify/parallel.hpp"
 #include "identify/stretches.hpp"
+#include "log/seen_by_sensor.hpp"
 
 namespace offnominal::desk {
 
@@ -262,6 +263,9 @@ class Explainer {
 Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
                     const std::vector<Log>& holdout, const ExplainOptions& options,
                     const OnProgress& on_progress) {
+  for (const auto* recordings : {&logs, &holdout}) {
+    for (const Log& log : *recordings) refuse_hidden_from_sensors(robot, log);
+  }
   Explainer explainer(robot, logs, holdout, options, on_progress);
   if (on_progress) on_progress("examining the recordings");
   std::vector<DataFault> faults;

@@ -20,6 +20,8 @@
 #include "identify/shape_search.hpp"
 #include "identify/sign_width.hpp"
 #include "identify/stretches.hpp"
+#include "log/seen_by_sensor.hpp"
+#include "robot/effect_text.hpp"
 
 namespace offnominal::desk {
 
@@ -78,15 +80,15 @@ void object_to_indistinct(const std::vector<Unknown>& unknowns, AddResult& resul
 std::string name_of(const AddResult& result, const FittedParameter& parameter) {
   const RobotEffect& effect = result.robot.effects[parameter.effect];
   const EffectInfo& info = *info_of(effect.kind);
-  return fmt::format("{}.{} of joint {}", info.name, info.parameters[parameter.parameter].name,
-                     effect.joint + 1);
+  return fmt::format("{}.{} of {}", info.name, info.parameters[parameter.parameter].name,
+                     place_of(effect));
 }
 
 // "-10 N m s/rad, 95 % between -10.2 and -9.8"
 std::string value_words(const AddResult& result, const FittedParameter& parameter) {
   const RobotEffect& effect = result.robot.effects[parameter.effect];
   const ParameterInfo& info = info_of(effect.kind)->parameters[parameter.parameter];
-  const std::string unit = unit_of(info.quantity, result.robot.joints[effect.joint].joint.type);
+  const std::string unit = unit_of(info.quantity, result.robot.type_of(effect));
   std::string words =
       fmt::format("{:.6g}{}{}", parameter.value, unit == "1" ? "" : " ", unit == "1" ? "" : unit);
   if (parameter.ci95) {
@@ -314,7 +316,7 @@ class Adder {
       const RobotEffect& effect = result_.robot.effects[i];
       const std::size_t width = width_of(effect.kind);
       const bool has = width < info_of(effect.kind)->parameters.size();
-      if (!has || followed_joint(effect) != joint) continue;
+      if (!has || effect.of_motor || followed_joint(effect) != joint) continue;
       FittedParameter parameter{i,   width, effect.parameters[width], by.ci95, by.why_no_interval,
                                 true};
       if (parameter.ci95) (*parameter.ci95)[0] = std::max(0.0, (*parameter.ci95)[0]);
@@ -485,7 +487,7 @@ class Adder {
     std::vector<std::string> names;
     for (const std::size_t effect : setup_.refitted) {
       const RobotEffect& of = result_.robot.effects[effect];
-      names.push_back(fmt::format("{} on joint {}", info_of(of.kind)->name, of.joint + 1));
+      names.push_back(fmt::format("{} on {}", info_of(of.kind)->name, place_of(of)));
     }
     result_.notes.push_back("fitted again together with it: " + list_of(names));
   }
@@ -507,11 +509,29 @@ class Adder {
   AddResult result_;
 };
 
+// What a sensor behind the gear does not see cannot be fitted to its torques.
+void check_sensors(const RobotDescription& robot, const AddRequest& request, const Log& log) {
+  RobotDescription asked = robot;
+  const bool exists =
+      request.joint < robot.joints.size() && (!request.of_motor || robot.transmission);
+  for (const EffectKind kind : request.effects) {
+    if (!exists) break;  // which is said later
+    RobotEffect effect;
+    effect.kind = kind;
+    effect.joint = static_cast<std::uint8_t>(request.joint);
+    effect.of_motor = request.of_motor;
+    asked.effects.push_back(effect);
+  }
+  refuse_hidden_from_sensors(asked, log);
+}
+
 }  // namespace
 
 AddResult add(const RobotDescription& robot, const AddRequest& request,
               const std::vector<Log>& logs, const std::vector<Log>& holdout,
               const FilterRequest& filter, const OnProgress& on_progress) {
+  for (const Log& log : logs) check_sensors(robot, request, log);
+  for (const Log& log : holdout) check_sensors(robot, request, log);
   return Adder(robot, request, logs, holdout, filter, on_progress).run();
 }
 

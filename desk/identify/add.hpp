@@ -18,6 +18,7 @@ namespace offnominal::desk {
 struct AddRequest {
   std::vector<EffectKind> effects;    // to add, one or more
   std::size_t joint = 0;              // from 0, for all of them
+  bool of_motor = false;              // they act on the shaft of the motor of that number
   std::map<std::string, double> set;  // "smoothing" or "coulomb_friction.smoothing": given values
   // Standard deviation of the prior on every link's mass and inertia, 0.05 for 5 %; none: the
   // rigid-body numbers stay.

@@ -13,6 +13,7 @@
 #include "common/text_table.hpp"
 #include "compare/compare_report.hpp"
 #include "compare/torque_charts.hpp"
+#include "robot/effect_text.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -49,7 +50,7 @@ std::vector<ParameterLine> lines_of(const AddResult& result, std::size_t effect)
   std::vector<ParameterLine> lines;
   const RobotEffect& of = result.robot.effects[effect];
   const auto parameters = info_of(of.kind)->parameters;
-  const JointType type = result.robot.joints[of.joint].joint.type;
+  const JointType type = result.robot.type_of(of);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     ParameterLine line{parameters[i].name, unit_of(parameters[i].quantity, type), of.parameters[i]};
     for (const FittedParameter& fitted : result.fit.parameters) {
@@ -74,6 +75,10 @@ std::vector<std::size_t> refitted(const AddResult& result) {
   return effects;
 }
 
+std::string place_asked(const AddRequest& request) {
+  return fmt::format("{} {}", request.of_motor ? "motor" : "joint", request.joint + 1);
+}
+
 ordered_json interval_json(const std::optional<Interval>& ci95) {
   if (!ci95) return nullptr;
   return ordered_json::array({(*ci95)[0], (*ci95)[1]});
@@ -82,7 +87,8 @@ ordered_json interval_json(const std::optional<Interval>& ci95) {
 ordered_json effect_json(const AddResult& result, std::size_t effect) {
   ordered_json json;
   json["effect"] = effect_name(result, effect);
-  json["joint"] = result.robot.effects[effect].joint + 1;
+  const RobotEffect& of = result.robot.effects[effect];
+  json[of.of_motor ? "motor" : "joint"] = of.joint + 1;
   json["parameters"] = ordered_json::object();
   for (const ParameterLine& line : lines_of(result, effect)) {
     json["parameters"][line.name] = {{"value", line.value},
@@ -156,15 +162,17 @@ report::Table parameter_table(const AddResult& result) {
   for (const std::size_t effect : effects) {
     for (const ParameterLine& line : lines_of(result, effect)) {
       const bool is_new = effect >= result.added.front();
+      const RobotEffect& of = result.robot.effects[effect];
+      const report::Cell place = of.of_motor ? report::Cell(place_of(of))
+                                             : report::Cell(static_cast<double>(of.joint + 1));
       report::Cell low;
       report::Cell high;
       if (line.ci95) {
         low = (*line.ci95)[0];
         high = (*line.ci95)[1];
       }
-      table.rows.push_back({effect_name(result, effect),
-                            static_cast<double>(result.robot.effects[effect].joint + 1), line.name,
-                            line.value, low, high, line.unit,
+      table.rows.push_back({effect_name(result, effect), place, line.name, line.value, low, high,
+                            line.unit,
                             std::string(!line.fitted ? "not fitted"
                                         : is_new     ? "new"
                                                      : "again")});
@@ -321,15 +329,14 @@ ordered_json to_json(const AddResult& result, const AddRequest& request, const A
 }
 
 std::string text_of(const AddResult& result, const AddRequest& request, const AddNames& names) {
-  std::string text = fmt::format("{} on joint {} of {}, fitted to {}\n", names_of_added(result),
-                                 request.joint + 1, names.robot_file, list_of(names.logs));
+  std::string text = fmt::format("{} on {} of {}, fitted to {}\n", names_of_added(result),
+                                 place_asked(request), names.robot_file, list_of(names.logs));
   const TextTable parameters({{"", -38}, {"", 0}}, "  ");
   const auto describe = [&](std::size_t effect, bool is_new) {
     for (const ParameterLine& line : lines_of(result, effect)) {
-      const std::string mark =
-          is_new ? ""
-                 : fmt::format(" ({}joint {})", line.fitted ? "fitted again, " : "",
-                               result.robot.effects[effect].joint + 1);
+      const std::string mark = is_new ? ""
+                                      : fmt::format(" ({}{})", line.fitted ? "fitted again, " : "",
+                                                    place_of(result.robot.effects[effect]));
       text +=
           parameters.row(effect_name(result, effect) + "." + line.name, value_text(line) + mark);
     }
@@ -371,7 +378,7 @@ std::string text_of(const AddResult& result, const AddRequest& request, const Ad
 report::Page page_of(const AddResult& result, const AddRequest& request, const AddNames& names) {
   report::Page page;
   page.title = "Adding " + names_of_added(result);
-  page.subtitle = fmt::format("joint {} of {}, fitted to {}", request.joint + 1, names.robot_file,
+  page.subtitle = fmt::format("{} of {}, fitted to {}", place_asked(request), names.robot_file,
                               list_of(names.logs));
   page.verdict = {verdict_of(result, request, names.force), level_of(result, request)};
   page.command_line = names.command_line;

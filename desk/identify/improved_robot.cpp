@@ -12,6 +12,7 @@
 #include "identify/physical_range.hpp"
 #include "identify/sign_width.hpp"
 #include "identify/torque_scale.hpp"
+#include "robot/effect_text.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
@@ -31,9 +32,9 @@ std::string why_unwritable(const Effect<double>& effect, JointType type) {
     const std::string unit = unit_of(parameter.quantity, type);
     const bool low = value < parameter.min;
     return fmt::format(
-        "{} of joint {}: {} = {:.4g}{}, and {} {:g} is possible; look at the units "
+        "{} of {}: {} = {:.4g}{}, and {} {:g} is possible; look at the units "
         "that [channels] gives the torque",
-        info.name, effect.joint + 1, parameter.name, value, unit == "1" ? "" : " " + unit,
+        info.name, place_of(effect), parameter.name, value, unit == "1" ? "" : " " + unit,
         low ? "at least" : "at most", low ? parameter.min : parameter.max);
   }
   return {};
@@ -207,9 +208,10 @@ std::vector<std::string> of_other_sign(const Relinearised& last) {
   for (std::size_t i = 0; i < last.terms.size(); ++i) {
     const Term& term = last.terms[i];
     if (term.effect->is_physical(last.fit.coefficients[i])) continue;
-    all.push_back(fmt::format(
-        "{} of joint {} came out as {:.4g}, which cannot be, once all was fitted together",
-        term.effect->name(), term.joint + 1, last.fit.coefficients[i][0]));
+    all.push_back(
+        fmt::format("{} of {} {} came out as {:.4g}, which cannot be, once all was fitted together",
+                    term.effect->name(), term.effect->of_motor() ? "motor" : "joint",
+                    term.joint + 1, last.fit.coefficients[i][0]));
   }
   return all;
 }
@@ -220,11 +222,11 @@ std::vector<std::string> unphysical(const Relinearised& last, const RobotDescrip
   std::set<Index> joints;
   for (const Term& term : last.terms) {
     const EffectKind kind = term.effect->kind();
-    if (is_friction(kind)) joints.insert(term.joint);
+    if (!term.effect->of_motor() && is_friction(kind)) joints.insert(term.joint);
   }
   for (const Moved& moved : moved_numbers(last, improved)) {
     const RobotEffect& effect = improved.effects[moved.effect];
-    if (is_friction(effect.kind)) joints.insert(effect.joint);
+    if (!effect.of_motor && is_friction(effect.kind)) joints.insert(effect.joint);
   }
   const Eigen::VectorXd rms = last.data->layout.rms(last.data->torque);
   for (const Index joint : joints) {
@@ -296,8 +298,7 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
     const double factor = factor_of_term(*last.data, last.terms, last.fit, i);
     RobotEffect effect{
         term.effect->effect(term.joint, factor * last.fit.coefficients[i], term.shape, sign_width)};
-    std::string why =
-        why_unwritable(effect, file.joints[static_cast<std::size_t>(term.joint)].joint.type);
+    std::string why = why_unwritable(effect, file.type_of(effect));
     if (!why.empty()) {
       improved.unwritable.push_back(std::move(why));
       improved.added.push_back(kUnwritten);

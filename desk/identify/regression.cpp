@@ -77,7 +77,8 @@ VectorXd independent_samples_of(const RowLayout& layout, const VectorXd& residua
 bool Regression::has_dry_friction(const std::vector<Term>& terms, Index joint) const {
   return data_.recordings[0].knows_dry_friction(joint) ||
          std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
-           return term.joint == joint && term.effect->info().traits.is_dry;
+           return !term.effect->of_motor() && term.joint == joint &&
+                  term.effect->info().traits.is_dry;
          });
 }
 

@@ -32,6 +32,7 @@ Log Stretch::cut() const {
   part.tau = log->tau.middleRows(first, samples);
   part.dq_derived = log->dq_derived;
   part.remarks = log->remarks;
+  part.channels = log->channels;
   part.payload = log->payload;
   return part;
 }

@@ -40,6 +40,12 @@ std::vector<MatrixXd> mass_columns(const Workspace& at) {
   return columns;
 }
 
+// Whether the motor turns as that joint does, and with no other.
+bool moves_alone(const RobotDescription& robot, std::size_t motor, Index joint) {
+  const std::vector<MovedJoint> moved = joints_of_motor(robot, motor);
+  return moved.size() == 1 && moved[0].joint == joint;
+}
+
 }  // namespace
 
 Eigen::ArrayXd Workspace::sign(Index joint) const {
@@ -113,7 +119,9 @@ void Workspace::set_model(const RobotDescription& robot) {
 
 bool Workspace::knows_dry_friction(Index joint) const {
   return std::any_of(known_effects.begin(), known_effects.end(), [&](const RobotEffect& effect) {
-    return effect.joint == joint && info_of(effect.kind)->traits.is_dry;
+    const bool is_here = effect.of_motor ? moves_alone(rigid, effect.joint, joint)
+                                         : static_cast<Index>(effect.joint) == joint;
+    return is_here && info_of(effect.kind)->traits.is_dry;
   });
 }
 
@@ -145,6 +153,9 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
   at.at_rest = log.at_rest;
   at.approach = log.approach;
   at.skew_s = log.period_s;
+  for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
+    at.of_sensor.push_back(log.of_sensor(joint) ? 1 : 0);
+  }
   at.set_model(robot);
   at.sign_width = sign_width;
   at.top_speed = VectorXd::Zero(log.q.cols());

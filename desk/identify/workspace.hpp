@@ -38,6 +38,8 @@ struct Workspace {
   bool at_rest = false;                  // a hold map: log/hold_map.hpp
   Eigen::MatrixXd approach;              // where at_rest: direction of approach, 1 or -1
   std::vector<char> came_both_ways;      // where at_rest, per joint: both_ways()
+  // Per joint: its torque is that of a sensor behind the gear; empty: of none.
+  std::vector<char> of_sensor;
 
   [[nodiscard]] Eigen::Index sample_count() const { return motion.sample_count(); }
   [[nodiscard]] Eigen::Index joint_count() const { return motion.q.cols(); }
@@ -56,6 +58,9 @@ struct Workspace {
   // Whether a joint came to rest from both sides, in the recordings that are fitted.
   [[nodiscard]] bool both_ways(Eigen::Index joint) const {
     return at_rest && came_both_ways[static_cast<std::size_t>(joint)] != 0;
+  }
+  [[nodiscard]] bool sees_drive(Eigen::Index joint) const {
+    return of_sensor.empty() || of_sensor[static_cast<std::size_t>(joint)] == 0;
   }
   // tanh(dq / sign_width) of a joint.
   [[nodiscard]] Eigen::ArrayXd sign(Eigen::Index joint) const;

@@ -53,6 +53,7 @@ void resample(Log& log, double period_s) {
   resample_columns(log.q, position_at);
   resample_columns(log.dq, linear_at);
   resample_columns(log.tau, linear_at);
+  if (log.sensor_tau.rows() > 0) resample_columns(log.sensor_tau, linear_at);
   for (auto& [name, values] : log.extra) values = linear_at(recorded, values, even);
   log.t_s = std::move(even);
 }

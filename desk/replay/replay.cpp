@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/number.hpp"
+#include "log/seen_by_sensor.hpp"
 #include "replay/replay_joints.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/payload.hpp"
@@ -62,6 +63,7 @@ std::int64_t Replay::samples() const {
 
 Replay replay(const RobotDescription& robot, const Log& log) {
   check_settings(robot, log);
+  const RobotDescription seen = seen_by_sensors(robot, log);
   Replay result;
   result.robot = robot.name;
   result.log = log.file;
@@ -75,7 +77,7 @@ Replay replay(const RobotDescription& robot, const Log& log) {
                                                                                     : "m/s^2");
   }
   with_joint_count(robot.joint_count(), [&]<int N>() {
-    detail::replay_joints<N>(carrying(robot, log.payload), log, result);
+    detail::replay_joints<N>(carrying(seen, log.payload), log, result);
   });
   if (result.t_s.size() == 0) {
     const auto& [status, refusals] = *result.refused.begin();

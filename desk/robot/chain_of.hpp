@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "robot/robot.hpp"
+#include "robot/transmission.hpp"
 
 // From a robot of any size to the fixed-size types of the core.
 
@@ -50,6 +51,24 @@ template <typename Scalar>
   return joint;
 }
 
+// Joints beyond those of the transmission have a motor each.
+template <int N, typename Scalar>
+[[nodiscard]] Transmission<N, Scalar> transmission_of(const RobotDescription& robot) {
+  Transmission<N, Scalar> transmission;
+  const Eigen::MatrixXd matrix = motor_per_joint(*robot.transmission);
+  const Eigen::VectorXd offset = motor_offset_rad(*robot.transmission);
+  for (Eigen::Index motor = 0; motor < matrix.rows(); ++motor) {
+    const auto row = static_cast<std::size_t>(motor);
+    transmission.motor_offset_rad[row] = scalar_of<Scalar>(offset[motor]);
+    for (Eigen::Index joint = 0; joint < matrix.cols(); ++joint) {
+      transmission
+          .motor_per_joint[row * static_cast<std::size_t>(N) + static_cast<std::size_t>(joint)] =
+          scalar_of<Scalar>(matrix(motor, joint));
+    }
+  }
+  return transmission;
+}
+
 inline void require_joint_count(const RobotDescription& robot, int count) {
   if (robot.joint_count() == count) return;
   throw std::invalid_argument("robot " + robot.name + " has " +
@@ -71,10 +90,11 @@ template <int N, typename Scalar>
     chain.joints[i] = detail::joint_of<Scalar>(robot.joints[i].joint);
   }
   chain.gravity_m_s2 = detail::scalars_of<Scalar>(robot.gravity_m_s2);
+  if (robot.transmission) chain.transmission = detail::transmission_of<N, Scalar>(robot);
   for (const RobotEffect& effect : robot.effects) {
     if (!chain_may_have(effect.kind)) continue;
     const Effect<Scalar> converted{effect.kind, effect.joint,
-                                   detail::scalars_of<Scalar>(effect.parameters)};
+                                   detail::scalars_of<Scalar>(effect.parameters), effect.of_motor};
     if (!chain.effects.add(converted)) {
       throw std::invalid_argument("robot " + robot.name + " has " +
                                   std::to_string(robot.effects.size()) + " effects, at most " +

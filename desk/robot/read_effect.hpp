@@ -17,8 +17,8 @@ namespace offnominal::desk {
 /// The effects that a robot file may have, those that no on-board monitor can carry last.
 [[nodiscard]] const std::vector<const EffectInfo*>& file_effects();
 
-/// One [[effect]] of a robot with these joints.
-[[nodiscard]] RobotEffect read_effect(const TomlTable& table,
-                                      const std::vector<RobotJoint>& joints);
+/// One [[effect]] of a robot with these joints; of a motor only where it has a transmission.
+[[nodiscard]] RobotEffect read_effect(const TomlTable& table, const std::vector<RobotJoint>& joints,
+                                      bool has_transmission);
 
 }  // namespace offnominal::desk

@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "common/number.hpp"
 #include "common/toml_table.hpp"
+#include "drives/drive_table.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/channels.hpp"
 #include "robot/check_mass_matrix.hpp"
@@ -23,14 +24,15 @@
 #include "robot/text_lines.hpp"
 #include "robot/text_with_bound.hpp"
 #include "robot/text_with_effects.hpp"
+#include "robot/transmission.hpp"
 
 namespace offnominal::desk {
 namespace {
 
-const std::vector<std::string> kRootKeys{"format",       "name",    "source",
-                                         "gravity_m_s2", "joint",   "effect",
-                                         "estimator",    "arming",  "uncertainty_bound",
-                                         "drives",       "channels"};
+const std::vector<std::string> kRootKeys{"format",       "name",   "source",
+                                         "gravity_m_s2", "joint",  "effect",
+                                         "estimator",    "arming", "uncertainty_bound",
+                                         "transmission", "drives", "channels"};
 
 void refuse_blanks(const std::vector<TomlTable>& joints, const std::vector<Blank>& blanks) {
   if (blanks.empty()) return;
@@ -60,8 +62,8 @@ std::vector<RobotJoint> read_joints(const TomlTable& root, Blanks allowed,
   return joints;
 }
 
-std::vector<RobotEffect> read_effects(const TomlTable& root,
-                                      const std::vector<RobotJoint>& joints) {
+std::vector<RobotEffect> read_effects(const TomlTable& root, const std::vector<RobotJoint>& joints,
+                                      bool has_transmission) {
   const std::vector<TomlTable> tables = root.tables("effect", effect_keys());
   const std::size_t most = kEffectsPerJoint * joints.size();
   if (tables.size() > most) {
@@ -74,7 +76,7 @@ std::vector<RobotEffect> read_effects(const TomlTable& root,
   std::vector<double> friction_per_load(joints.size());
   constexpr double kMost = effects::LoadDependentFriction::kMostFactor;
   for (const TomlTable& table : tables) {
-    effects.push_back(read_effect(table, joints));
+    effects.push_back(read_effect(table, joints, has_transmission));
     double& of_joint = friction_per_load[effects.back().joint];
     of_joint += most_friction_per_load<double>(effects.back());
     if (of_joint <= kMost) continue;
@@ -117,6 +119,23 @@ void check_delays(const TomlTable& root, const RobotDescription& robot) {
         "effect", fmt::format("a delay of {:g} s on joint {}", delays_s[i], i + 1),
         fmt::format("at most {:g} s, {} ticks of estimator.period_s", most_s, kMaxDelayTicks),
         "correct the delay of time_delay, or estimator.period_s");
+  }
+}
+
+// A protocol that scales every axis by itself has no joint for the axes of motors that joints
+// share.
+void check_axes(const TomlTable& root, const RobotDescription& robot) {
+  if (!robot.transmission || protocol_of(*robot.drives).joint_keys.empty()) return;
+  const std::vector<std::size_t> groups = coupled_groups(*robot.transmission);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (groups[i] == i) continue;
+    root.refuse(
+        "drives",
+        fmt::format("{}, whose axes move one joint each, beside joints {} and {} that share "
+                    "motors",
+                    protocol_of(*robot.drives).name, groups[i] + 1, i + 1),
+        "drives whose frames are of joints, as `protected` has them",
+        "leave [drives] out where the file is for recordings only");
   }
 }
 
@@ -194,7 +213,10 @@ RobotDescription parse_robot(std::string_view text, const std::string& file, Bla
       root.numbers("gravity_m_s2", physical(any_number("m/s^2")), 3, 3);
   robot.gravity_m_s2 = {gravity[0], gravity[1], gravity[2]};
   robot.joints = read_joints(root, blanks, robot.blanks);
-  robot.effects = read_effects(root, robot.joints);
+  if (const auto table = root.optional_table("transmission", transmission_keys())) {
+    robot.transmission = read_transmission(*table, robot.joint_count());
+  }
+  robot.effects = read_effects(root, robot.joints, robot.transmission.has_value());
   check_mass_matrix(root, robot);
   if (const auto table = root.optional_table("estimator", estimator_keys())) {
     robot.estimator = read_estimator(*table);
@@ -209,9 +231,11 @@ RobotDescription parse_robot(std::string_view text, const std::string& file, Bla
   }
   if (const toml::table* table = root.raw_table("drives")) {
     robot.drives = read_drives(*table, file, robot.joint_count(), robot.estimator.period_s);
+    check_axes(root, robot);
   }
   if (const toml::table* table = root.raw_table("channels")) {
     robot.channels = parse_channels(*table, file, robot.joint_count());
+    check_sides(*robot.channels, robot.transmission, file);
   }
   robot.file_text = std::make_shared<const std::string>(text);
   return robot;

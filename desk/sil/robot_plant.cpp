@@ -1,5 +1,7 @@
 #include "sil/robot_plant.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,7 +12,9 @@
 
 #include "common/error.hpp"
 #include "robot/chain_of.hpp"
+#include "robot/effect_text.hpp"
 #include "robot/robot_file.hpp"
+#include "robot/transmission.hpp"
 
 namespace offnominal::desk::sil {
 namespace {
@@ -26,8 +30,25 @@ using Inertia = Matrix<kJoints, kJoints, double>;
 using Model = RigidBodyModel<kJoints, double>;
 using RobotChain = Chain<kJoints, double>;
 
+// The drag of advance() is of one joint each: friction of a motor that moves several would be stiff
+// in directions that it does not know.
+void refuse_shared_motors(const RobotDescription& robot) {
+  if (!robot.transmission) return;
+  const std::vector<std::size_t> groups = coupled_groups(*robot.transmission);
+  for (const RobotEffect& effect : robot.effects) {
+    const auto others = std::count(groups.begin(), groups.end(), groups[effect.joint]);
+    if (!effect.of_motor || others == 1) continue;
+    throw InputError({"robot " + robot.name, "effect",
+                      fmt::format("{} of {}, which moves several joints",
+                                  info_of(effect.kind)->name, place_of(effect)),
+                      "effects of joints, and of motors that move one joint each",
+                      "for the plant give a copy of the file with the effect at the joints"});
+  }
+}
+
 RobotChain filled_chain(const RobotPlantSetup& setup) {
   require_carried(setup.robot, "robot " + setup.robot.name, "the simulated plant");
+  refuse_shared_motors(setup.robot);
   RobotDescription robot = setup.robot;
   robot.effects.insert(robot.effects.end(), setup.hidden.begin(), setup.hidden.end());
   robot.joints.resize(static_cast<std::size_t>(kJoints));

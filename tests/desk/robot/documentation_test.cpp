@@ -15,6 +15,7 @@
 #include "robot/read_joint.hpp"
 #include "robot/read_settings.hpp"
 #include "robot/robot_file.hpp"
+#include "robot/transmission.hpp"
 #include "support/places.hpp"
 
 // The documents say what the code does: every status, effect, parameter and key has its place.
@@ -92,8 +93,8 @@ TEST(ExplainDocument, HasARowForEveryEffectAndNoOther) {
 
 TEST(RobotFileDocument, HasEveryKey) {
   const std::string text = document("robot-file.md");
-  for (const auto& keys :
-       {joint_keys(), effect_keys(), estimator_keys(), arming_keys(), bound_keys()}) {
+  for (const auto& keys : {joint_keys(), effect_keys(), estimator_keys(), arming_keys(),
+                           bound_keys(), transmission_keys()}) {
     for (const std::string& key : keys) {
       EXPECT_THAT(text, HasSubstr("\n| `" + key + "` |")) << key;
     }
@@ -115,7 +116,8 @@ TEST(EffectParameters, DoNotCollideWithTheOtherKeysOfAnEffect) {
   for (const EffectInfo* info : file_effects()) {
     for (const ParameterInfo& parameter : info->parameters) {
       const std::string name = parameter.name;
-      EXPECT_TRUE(name != "kind" && name != "joint" && name != "fitted" && name != "source")
+      EXPECT_TRUE(name != "kind" && name != "joint" && name != "motor" && name != "fitted" &&
+                  name != "source")
           << info->name << "." << name;
     }
   }

@@ -41,12 +41,28 @@ struct Joint {
   Scalar max_torque = std::numeric_limits<Scalar>::max();
 };
 
+// Between motors and joints: q_m = A q + offset, dq_m = A dq, tau = A^T tau_m. Only effects of
+// motors act by it; samples and torques are of the joints.
+template <int N, typename Scalar>
+struct Transmission {
+  // A, row by row: rad of the motor per rad or m of each joint.
+  std::array<Scalar, static_cast<std::size_t>(N* N)> motor_per_joint = [] {
+    std::array<Scalar, static_cast<std::size_t>(N * N)> identity{};
+    for (std::size_t i = 0; i < identity.size(); i += static_cast<std::size_t>(N) + 1) {
+      identity[i] = 1;
+    }
+    return identity;
+  }();
+  std::array<Scalar, static_cast<std::size_t>(N)> motor_offset_rad{};
+};
+
 template <int N, typename Scalar>
 struct Chain {
   static_assert(N >= 1, "a chain has at least one joint");
   std::array<Joint<Scalar>, static_cast<std::size_t>(N)> joints{};
   std::array<Scalar, 3> gravity_m_s2{0, 0, static_cast<Scalar>(-9.81)};  // base frame
   EffectList<Scalar, kEffectsPerJoint * N> effects{};
+  Transmission<N, Scalar> transmission{};
 };
 
 namespace detail {
@@ -118,7 +134,8 @@ template <typename Scalar>
 }
 
 // kOk where every joint, effect and the gravity vector are usable; otherwise the first fault found.
-// kTooManyEffects: the list's size is above its capacity.
+// kTooManyEffects: the list's size is above its capacity. A transmission with a number that is not
+// finite is kInvalidEffect, as it serves effects alone.
 template <int N, typename Scalar>
 [[nodiscard]] inline Status validate(const Chain<N, Scalar>& chain) {
   if (!all_finite(chain.gravity_m_s2)) return Status::kInvalidGravity;
@@ -127,11 +144,15 @@ template <int N, typename Scalar>
     if (status != Status::kOk) return status;
   }
   if (chain.effects.size > chain.effects.items.size()) return Status::kTooManyEffects;
+  if (!all_finite(chain.transmission.motor_per_joint) ||
+      !all_finite(chain.transmission.motor_offset_rad)) {
+    return Status::kInvalidEffect;
+  }
   std::array<Scalar, static_cast<std::size_t>(N)> friction_per_load{};
   for (const Effect<Scalar>& effect : chain.effects.view()) {
     const bool usable =
         effect.joint < N && parameters_valid(effect) && source_joint_valid(effect, N);
-    if (!usable) return Status::kInvalidEffect;
+    if (!usable || (effect.of_motor && !motor_may_have(effect.kind))) return Status::kInvalidEffect;
     Scalar& of_joint = friction_per_load[effect.joint];
     of_joint += most_friction_per_load(effect);
     const double most = effects::LoadDependentFriction::kMostFactor;

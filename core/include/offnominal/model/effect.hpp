@@ -107,6 +107,9 @@ struct EffectTraits {
   bool acts_at_rest = false;     // where nothing moves
   bool counts_time = false;      // by the time since the run began
   bool needs_no_motion = false;  // a joint that never moves shows it
+  // In rotor or gear, before a torque sensor that sits behind the gear: such a sensor does not see
+  // it. Friction is not, since bearings and seals behind the sensor rub too.
+  bool is_before_sensor = false;
   CoefficientSign sign = CoefficientSign::kEither;
   EffectVariable follows = EffectVariable::kNone;
   // A curve of any shape over that variable: it can stand for every other effect of it, and is
@@ -115,12 +118,15 @@ struct EffectTraits {
 };
 
 // One effect with its values. `joint` counts from 0; `parameters` in the order of the effect's
-// kParameters, the rest 0.
+// kParameters, the rest 0. With `of_motor` it acts on the shaft of the motor of that number
+// (Transmission, chain.hpp): by the motor's position and velocity, in rad, with a torque of the
+// motor. Not every effect can (motor_may_have(), effect_list.hpp).
 template <typename Scalar>
 struct Effect {
   EffectKind kind = EffectKind::kViscousFriction;
   std::uint8_t joint = 0;
   std::array<Scalar, kMaxEffectParameters> parameters{};
+  bool of_motor = false;
 };
 
 // What an effect may depend on at one joint at one instant.

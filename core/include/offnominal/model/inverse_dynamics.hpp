@@ -105,6 +105,9 @@ template <bool Accelerating, int N, typename Scalar>
       moment[i - 1] += rotated<Scalar>(at.rotation[i], moment[i]) + at.origin[i].cross(passed);
     }
   }
+  if constexpr (Accelerating) {
+    if (model.has_rotors) torque += model.rotors.lazyProduct(ddq);
+  }
   return torque;
 }
 

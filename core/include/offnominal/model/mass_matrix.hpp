@@ -96,6 +96,7 @@ template <int N, typename Scalar>
     m(0, 0) += detail::inertia_seen_by_parent(composite, at.rotation[1], at.origin[1], first.type,
                                               first.axis);
   }
+  if (model.has_rotors) m += model.rotors;
   return m;
 }
 

@@ -70,7 +70,41 @@ struct RigidBodyModel {
   // effects with a told_per_given().
   Vector<N, Scalar> told_per_given = Vector<N, Scalar>::Ones();
   bool has_torque_path = false;  // some effect scales what passes from drive to load
+  // Of Transmission; and what rotors of motors add to the mass matrix, kg m^2, kg m or kg.
+  bool has_rotors = false;
+  Matrix<N, N, Scalar> motor_per_joint = Matrix<N, N, Scalar>::Identity();
+  Vector<N, Scalar> motor_offset_rad = Vector<N, Scalar>::Zero();
+  Matrix<N, N, Scalar> rotors = Matrix<N, N, Scalar>::Zero();
 };
+
+namespace detail {
+
+template <int N, typename Scalar>
+void take_transmission(const Transmission<N, Scalar>& transmission,
+                       RigidBodyModel<N, Scalar>& model) {
+  std::size_t at = 0;
+  for (Eigen::Index motor = 0; motor < N; ++motor) {
+    model.motor_offset_rad[motor] = transmission.motor_offset_rad[static_cast<std::size_t>(motor)];
+    for (Eigen::Index joint = 0; joint < N; ++joint) {
+      model.motor_per_joint(motor, joint) = transmission.motor_per_joint[at++];
+    }
+  }
+}
+
+// A rotor turns with its motor, 2 T = inertia (row . dq)^2, with the motor's row of A.
+template <int N, typename Scalar>
+EIGEN_DONT_INLINE void add_rotor(Eigen::Index motor, Scalar inertia,
+                                 RigidBodyModel<N, Scalar>& model) {
+  model.has_rotors = true;
+  for (Eigen::Index i = 0; i < N; ++i) {
+    for (Eigen::Index k = 0; k < N; ++k) {
+      model.rotors(i, k) +=
+          inertia * model.motor_per_joint(motor, i) * model.motor_per_joint(motor, k);
+    }
+  }
+}
+
+}  // namespace detail
 
 // Makes the model of a chain that validate() has accepted; of any other the result is undefined
 // (no crash, no meaning). Effects with a memory are none of an instant: effect_memory.hpp has them.
@@ -110,16 +144,22 @@ template <int N, typename Scalar>
     about_centre << xx, xy, xz, xy, yy, yz, xz, yz, zz;
     body.link.inertia += about_centre;
   }
+  detail::take_transmission(chain.transmission, model);
   for (Effect<Scalar> effect : chain.effects.view()) {
     if (effect.joint >= N || !source_joint_valid(effect, N)) continue;
     const Joint<Scalar>& joint = chain.joints[effect.joint];
     auto& body = model.bodies[effect.joint];
     visit_effect(effect.kind, [&]<typename E>() {
       if constexpr (requires { E::prepare(effect.parameters, joint.type); }) {
-        E::prepare(effect.parameters, joint.type);
+        E::prepare(effect.parameters, effect.of_motor ? JointType::kRevolute : joint.type);
       }
       if constexpr (requires { E::reflected_inertia(effect.parameters); }) {
-        body.reflected_inertia += E::reflected_inertia(effect.parameters);
+        const Scalar inertia = E::reflected_inertia(effect.parameters);
+        if (effect.of_motor) {
+          detail::add_rotor(static_cast<Eigen::Index>(effect.joint), inertia, model);
+        } else {
+          body.reflected_inertia += inertia;
+        }
       } else if constexpr (requires { E::point_mass(effect.parameters, joint.centre_of_mass_m); }) {
         const auto added = E::point_mass(effect.parameters, joint.centre_of_mass_m);
         body.link.add_point_mass(
