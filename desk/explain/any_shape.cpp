@@ -27,9 +27,10 @@ constexpr double kMoreLikely = 3;
 
 bool has_kind(const Data& data, const std::vector<Term>& terms, EffectKind kind, Index joint) {
   const auto& known = data.recordings[0].known_effects;
-  return std::any_of(
-             known.begin(), known.end(),
-             [&](const RobotEffect& one) { return one.kind == kind && one.joint == joint; }) ||
+  return std::any_of(known.begin(), known.end(),
+                     [&](const RobotEffect& one) {
+                       return one.kind == kind && one.joint == joint && !one.of_motor;
+                     }) ||
          std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
            return term.effect->kind() == kind && term.joint == joint;
          });

@@ -27,7 +27,7 @@ bool may_be_refitted(const RobotEffect& effect) {
 
 bool has_effect(const RobotDescription& robot, EffectKind kind, std::size_t joint) {
   return std::any_of(robot.effects.begin(), robot.effects.end(), [&](const RobotEffect& one) {
-    return one.kind == kind && one.joint == joint;
+    return one.kind == kind && one.joint == joint && !one.of_motor;
   });
 }
 

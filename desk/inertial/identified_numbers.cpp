@@ -31,7 +31,7 @@ struct Told {
 double rotor_of(const RobotDescription& robot, std::size_t joint) {
   double inertia = 0;
   for (const RobotEffect& effect : robot.effects) {
-    if (effect.joint == joint) inertia += reflected_inertia_of(effect);
+    if (effect.joint == joint && !effect.of_motor) inertia += reflected_inertia_of(effect);
   }
   return inertia;
 }

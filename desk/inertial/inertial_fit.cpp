@@ -124,7 +124,7 @@ void InertialFit::choose_drives() {
       const bool is_apart = std::find(apart.begin(), apart.end(), joint) != apart.end();
       return !is_apart &&
              std::none_of(file_.effects.begin(), file_.effects.end(), [&](const RobotEffect& one) {
-               return one.joint == joint && one.kind == EffectKind::kRotorInertia;
+               return one.joint == joint && !one.of_motor && one.kind == EffectKind::kRotorInertia;
              });
     });
   }
