@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <offnominal/finite.hpp>
+#include <offnominal/joint_count.hpp>
 #include <offnominal/model/effect_list.hpp>
 #include <offnominal/model/quantity.hpp>
 #include <offnominal/status.hpp>
@@ -43,10 +44,10 @@ struct Joint {
 
 template <int N, typename Scalar>
 struct Chain {
-  static_assert(N >= 1, "a chain has at least one joint");
-  std::array<Joint<Scalar>, static_cast<std::size_t>(N)> joints{};
+  static_assert(N >= 1 || N == kRuntimeJoints, "a chain has at least one joint");
+  PerJoint<N, Joint<Scalar>> joints{};                                   // as many as the chain has
   std::array<Scalar, 3> gravity_m_s2{0, 0, static_cast<Scalar>(-9.81)};  // base frame
-  EffectList<Scalar, kEffectsPerJoint * N> effects{};
+  EffectList<Scalar, kEffectsPerJoint * kMostJoints<N>> effects{};
 };
 
 namespace detail {
@@ -118,19 +119,23 @@ template <typename Scalar>
 }
 
 // kOk where every joint, effect and the gravity vector are usable; otherwise the first fault found.
-// kTooManyEffects: the list's size is above its capacity.
+// kTooManyEffects: the list's size is above its capacity. kWrongJointCount: no joint.
 template <int N, typename Scalar>
 [[nodiscard]] inline Status validate(const Chain<N, Scalar>& chain) {
+  if constexpr (N == kRuntimeJoints) {
+    if (chain.joints.empty()) return Status::kWrongJointCount;
+  }
   if (!all_finite(chain.gravity_m_s2)) return Status::kInvalidGravity;
   for (const Joint<Scalar>& joint : chain.joints) {
     const Status status = validate(joint);
     if (status != Status::kOk) return status;
   }
   if (chain.effects.size > chain.effects.items.size()) return Status::kTooManyEffects;
-  std::array<Scalar, static_cast<std::size_t>(N)> friction_per_load{};
+  const auto joints = static_cast<int>(chain.joints.size());
+  std::array<Scalar, static_cast<std::size_t>(kMostJoints<N>)> friction_per_load{};
   for (const Effect<Scalar>& effect : chain.effects.view()) {
     const bool usable =
-        effect.joint < N && parameters_valid(effect) && source_joint_valid(effect, N);
+        effect.joint < joints && parameters_valid(effect) && source_joint_valid(effect, joints);
     if (!usable) return Status::kInvalidEffect;
     Scalar& of_joint = friction_per_load[effect.joint];
     of_joint += most_friction_per_load(effect);

@@ -4,13 +4,9 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <offnominal/model/chain.hpp>
+#include <offnominal/vector.hpp>
 
 namespace offnominal {
-
-template <int Rows, typename Scalar>
-using Vector = Eigen::Matrix<Scalar, Rows, 1>;
-template <int Rows, int Columns, typename Scalar>
-using Matrix = Eigen::Matrix<Scalar, Rows, Columns>;
 
 namespace detail {
 
@@ -62,13 +58,13 @@ struct RigidBodyModel {
     SpatialInertia<Scalar> link;
     Scalar reflected_inertia{};
   };
-  std::array<Body, static_cast<std::size_t>(N)> bodies{};
+  PerJoint<N, Body> bodies{};
   Vector<3, Scalar> gravity = Vector<3, Scalar>::Zero();
   // Those with a torque() or a friction_per_load() only.
-  EffectList<Scalar, kEffectsPerJoint * N> torque_effects{};
+  EffectList<Scalar, kEffectsPerJoint * kMostJoints<N>> torque_effects{};
   // Torque that the drive is told, and that a log says, per torque that it gives; product of the
   // effects with a told_per_given().
-  Vector<N, Scalar> told_per_given = Vector<N, Scalar>::Ones();
+  Vector<N, Scalar> told_per_given = ones<N, Scalar>();
   bool has_torque_path = false;  // some effect scales what passes from drive to load
 };
 
@@ -79,8 +75,13 @@ template <int N, typename Scalar>
   using Vec3 = Vector<3, Scalar>;
   using Mat3 = Matrix<3, 3, Scalar>;
   RigidBodyModel<N, Scalar> model;
+  const std::size_t count = chain.joints.size();
+  if constexpr (N == kRuntimeJoints) {
+    model.bodies.assign(count, {});
+    model.told_per_given.setOnes(static_cast<Eigen::Index>(count));
+  }
   model.gravity = Vec3(chain.gravity_m_s2[0], chain.gravity_m_s2[1], chain.gravity_m_s2[2]);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const Joint<Scalar>& joint = chain.joints[i];
     auto& body = model.bodies[i];
     body.type = joint.type;
@@ -111,7 +112,7 @@ template <int N, typename Scalar>
     body.link.inertia += about_centre;
   }
   for (Effect<Scalar> effect : chain.effects.view()) {
-    if (effect.joint >= N || !source_joint_valid(effect, N)) continue;
+    if (effect.joint >= count || !source_joint_valid(effect, static_cast<int>(count))) continue;
     const Joint<Scalar>& joint = chain.joints[effect.joint];
     auto& body = model.bodies[effect.joint];
     visit_effect(effect.kind, [&]<typename E>() {

@@ -21,10 +21,10 @@ namespace offnominal {
 // What the effects of every joint are at one instant, whatever the torque.
 template <int N, typename Scalar>
 struct JointEffects {
-  Vector<N, Scalar> torque = Vector<N, Scalar>::Zero();  // N m or N
+  Vector<N, Scalar> torque = zeros<N, Scalar>();  // N m or N
   // effects::LoadFriction, of all effects together; by_size is signed by the direction.
-  Vector<N, Scalar> friction_by_size = Vector<N, Scalar>::Zero();
-  Vector<N, Scalar> friction_by_load = Vector<N, Scalar>::Zero();
+  Vector<N, Scalar> friction_by_size = zeros<N, Scalar>();
+  Vector<N, Scalar> friction_by_load = zeros<N, Scalar>();
 };
 
 // time_s: since the run's origin.
@@ -33,6 +33,7 @@ template <int N, typename Scalar>
                                                     const Vector<N, Scalar>& q,
                                                     const Vector<N, Scalar>& dq, double time_s) {
   JointEffects<N, Scalar> sum;
+  size_for(model.bodies.size(), sum.torque, sum.friction_by_size, sum.friction_by_load);
   for (const Effect<Scalar>& effect : model.torque_effects.view()) {
     const auto joint = static_cast<Eigen::Index>(effect.joint);
     JointInstant<Scalar> instant{q[joint], dq[joint], time_s};
@@ -86,7 +87,7 @@ template <int N, typename Scalar>
                                             const Vector<N, Scalar>& tau) {
   if (!model.has_torque_path) return tau - effects.torque;
   Vector<N, Scalar> load = tau.cwiseQuotient(model.told_per_given) - effects.torque;
-  for (Eigen::Index i = 0; i < N; ++i) {
+  for (Eigen::Index i = 0; i < load.size(); ++i) {
     load[i] /=
         detail::given_per_load(effects.friction_by_size[i], effects.friction_by_load[i], load[i]);
   }
@@ -100,7 +101,7 @@ template <int N, typename Scalar>
                                               const Vector<N, Scalar>& load) {
   Vector<N, Scalar> per_load = model.told_per_given;
   if (!model.has_torque_path) return per_load;
-  for (Eigen::Index i = 0; i < N; ++i) {
+  for (Eigen::Index i = 0; i < load.size(); ++i) {
     per_load[i] *=
         detail::given_per_load(effects.friction_by_size[i], effects.friction_by_load[i], load[i]);
   }
