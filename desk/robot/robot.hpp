@@ -15,12 +15,11 @@
 
 #include "drives/drive_settings.hpp"
 
-// One robot as the host tools hold it: any number of joints, everything in SI units. It is what a
-// robot file says and nothing else; chain_of() turns it into the fixed-size chain of the core.
+// One robot as the host tools hold it: 1 to kMaxJoints joints, everything in SI units. It is what a
+// robot file says and nothing else; chain_of() turns it into the chain of the core.
 
 namespace offnominal::desk {
 
-inline constexpr int kMaxJoints = 8;
 inline constexpr int kMaxHiddenUnits = 256;
 
 struct Encoder {

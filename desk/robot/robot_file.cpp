@@ -91,10 +91,8 @@ std::vector<RobotEffect> read_effects(const TomlTable& root, const std::vector<R
 // joints.
 void check_initial_weights(const TomlTable& root, const RobotDescription& robot) {
   const EstimatorSettings& settings = robot.estimator;
-  const double norm = with_joint_count(robot.joint_count(), [&settings]<int N>() {
-    return std::sqrt(initial_squared_norm<N, kMaxHiddenUnits, double>(
-        settings.seed, settings.hidden_units, settings.initial_weight_range));
-  });
+  const double norm = std::sqrt(initial_squared_norm<kRuntimeJoints, kMaxHiddenUnits, double>(
+      settings.seed, settings.hidden_units, settings.initial_weight_range, robot.joint_count()));
   if (norm < settings.weight_radius) return;
   root.refuse("estimator",
               "initial weights of norm " + shortest(static_cast<double>(static_cast<float>(norm))) +
@@ -105,18 +103,12 @@ void check_initial_weights(const TomlTable& root, const RobotDescription& robot)
 
 void check_delays(const TomlTable& root, const RobotDescription& robot) {
   const double most_s = kMaxDelayTicks * robot.estimator.period_s;
-  const auto delays_s = with_joint_count(robot.joint_count(), [&]<int N>() {
-    const Chain<N, double> chain = chain_of<N, double>(robot);
-    std::vector<double> of_joints;
-    for (std::size_t i = 0; i < chain.joints.size(); ++i) {
-      of_joints.push_back(delay_of_joint(chain, i));
-    }
-    return of_joints;
-  });
-  for (std::size_t i = 0; i < delays_s.size(); ++i) {
-    if (delays_s[i] <= most_s) continue;
+  const auto chain = chain_of<kRuntimeJoints, double>(robot);
+  for (std::size_t i = 0; i < chain.joints.size(); ++i) {
+    const double delay_s = delay_of_joint(chain, i);
+    if (delay_s <= most_s) continue;
     root.refuse(
-        "effect", fmt::format("a delay of {:g} s on joint {}", delays_s[i], i + 1),
+        "effect", fmt::format("a delay of {:g} s on joint {}", delay_s, i + 1),
         fmt::format("at most {:g} s, {} ticks of estimator.period_s", most_s, kMaxDelayTicks),
         "correct the delay of time_delay, or estimator.period_s");
   }

@@ -23,7 +23,7 @@ class RandomRobot {
     robot.name = word();
     robot.source = any_text();
     robot.gravity_m_s2 = {length(), length(), length()};
-    const int joints = whole(1, desk::kMaxJoints);
+    const int joints = whole(1, kMaxJoints);
     for (int i = 0; i < joints; ++i) robot.joints.push_back(joint(i));
     if (coin()) robot.transmission = transmission(joints);
     const int effects = whole(0, kEffectsPerJoint * joints);
@@ -132,7 +132,7 @@ class RandomRobot {
       result.parameters[i] = value >= parameter.min ? value : positive(kLargestLength);
       // A small share of the range: those of one joint may have to add up to no more than its end.
       if (parameter.max < effects::kAny) {
-        constexpr double kMost = kEffectsPerJoint * desk::kMaxJoints;
+        constexpr double kMost = kEffectsPerJoint * kMaxJoints;
         result.parameters[i] =
             parameter.min + (parameter.max - parameter.min) * std::fabs(uniform()) / kMost;
       }

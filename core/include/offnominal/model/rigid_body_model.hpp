@@ -4,13 +4,9 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <offnominal/model/chain.hpp>
+#include <offnominal/vector.hpp>
 
 namespace offnominal {
-
-template <int Rows, typename Scalar>
-using Vector = Eigen::Matrix<Scalar, Rows, 1>;
-template <int Rows, int Columns, typename Scalar>
-using Matrix = Eigen::Matrix<Scalar, Rows, Columns>;
 
 namespace detail {
 
@@ -62,19 +58,19 @@ struct RigidBodyModel {
     SpatialInertia<Scalar> link;
     Scalar reflected_inertia{};
   };
-  std::array<Body, static_cast<std::size_t>(N)> bodies{};
+  PerJoint<N, Body> bodies{};
   Vector<3, Scalar> gravity = Vector<3, Scalar>::Zero();
   // Those with a torque() or a friction_per_load() only.
-  EffectList<Scalar, kEffectsPerJoint * N> torque_effects{};
+  EffectList<Scalar, kEffectsPerJoint * kMostJoints<N>> torque_effects{};
   // Torque that the drive is told, and that a log says, per torque that it gives; product of the
   // effects with a told_per_given().
-  Vector<N, Scalar> told_per_given = Vector<N, Scalar>::Ones();
+  Vector<N, Scalar> told_per_given = ones<N, Scalar>();
   bool has_torque_path = false;  // some effect scales what passes from drive to load
   // Of Transmission; and what rotors of motors add to the mass matrix, kg m^2, kg m or kg.
   bool has_rotors = false;
-  Matrix<N, N, Scalar> motor_per_joint = Matrix<N, N, Scalar>::Identity();
-  Vector<N, Scalar> motor_offset_rad = Vector<N, Scalar>::Zero();
-  Matrix<N, N, Scalar> rotors = Matrix<N, N, Scalar>::Zero();
+  Matrix<N, N, Scalar> motor_per_joint = no_values<Matrix<N, N, Scalar>>();
+  Vector<N, Scalar> motor_offset_rad = no_values<Vector<N, Scalar>>();
+  Matrix<N, N, Scalar> rotors = no_values<Matrix<N, N, Scalar>>();
 };
 
 namespace detail {
@@ -82,11 +78,18 @@ namespace detail {
 template <int N, typename Scalar>
 void take_transmission(const Transmission<N, Scalar>& transmission,
                        RigidBodyModel<N, Scalar>& model) {
-  std::size_t at = 0;
-  for (Eigen::Index motor = 0; motor < N; ++motor) {
-    model.motor_offset_rad[motor] = transmission.motor_offset_rad[static_cast<std::size_t>(motor)];
-    for (Eigen::Index joint = 0; joint < N; ++joint) {
-      model.motor_per_joint(motor, joint) = transmission.motor_per_joint[at++];
+  const auto count = static_cast<Eigen::Index>(model.bodies.size());
+  if constexpr (N == kRuntimeJoints) {
+    model.motor_per_joint.resize(count, count);
+    model.motor_offset_rad.resize(count);
+    model.rotors.setZero(count, count);
+  }
+  for (Eigen::Index motor = 0; motor < count; ++motor) {
+    const auto row = static_cast<std::size_t>(motor);
+    model.motor_offset_rad[motor] = transmission.motor_offset_rad[row];
+    for (Eigen::Index joint = 0; joint < count; ++joint) {
+      model.motor_per_joint(motor, joint) =
+          transmission.motor_per_joint[row * transmission.kMost + static_cast<std::size_t>(joint)];
     }
   }
 }
@@ -96,8 +99,8 @@ template <int N, typename Scalar>
 EIGEN_DONT_INLINE void add_rotor(Eigen::Index motor, Scalar inertia,
                                  RigidBodyModel<N, Scalar>& model) {
   model.has_rotors = true;
-  for (Eigen::Index i = 0; i < N; ++i) {
-    for (Eigen::Index k = 0; k < N; ++k) {
+  for (Eigen::Index i = 0; i < model.rotors.rows(); ++i) {
+    for (Eigen::Index k = 0; k < model.rotors.cols(); ++k) {
       model.rotors(i, k) +=
           inertia * model.motor_per_joint(motor, i) * model.motor_per_joint(motor, k);
     }
@@ -113,8 +116,13 @@ template <int N, typename Scalar>
   using Vec3 = Vector<3, Scalar>;
   using Mat3 = Matrix<3, 3, Scalar>;
   RigidBodyModel<N, Scalar> model;
+  const std::size_t count = chain.joints.size();
+  if constexpr (N == kRuntimeJoints) {
+    model.bodies.assign(count, {});
+    model.told_per_given.setOnes(static_cast<Eigen::Index>(count));
+  }
   model.gravity = Vec3(chain.gravity_m_s2[0], chain.gravity_m_s2[1], chain.gravity_m_s2[2]);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const Joint<Scalar>& joint = chain.joints[i];
     auto& body = model.bodies[i];
     body.type = joint.type;
@@ -146,7 +154,7 @@ template <int N, typename Scalar>
   }
   detail::take_transmission(chain.transmission, model);
   for (Effect<Scalar> effect : chain.effects.view()) {
-    if (effect.joint >= N || !source_joint_valid(effect, N)) continue;
+    if (effect.joint >= count || !source_joint_valid(effect, static_cast<int>(count))) continue;
     const Joint<Scalar>& joint = chain.joints[effect.joint];
     auto& body = model.bodies[effect.joint];
     visit_effect(effect.kind, [&]<typename E>() {
