@@ -73,24 +73,23 @@ std::vector<MatrixXd> inertial_regressor(const RobotDescription& robot, std::siz
   }
   RobotDescription rigid = robot;
   rigid.effects.clear();
-  return with_joint_count(robot.joint_count(), [&]<int N>() {
-    auto model = make_model(chain_of<N, double>(rigid));
-    for (auto& body : model.bodies) body.link = {};
-    std::vector<MatrixXd> torques(static_cast<std::size_t>(kInertialNumbers),
-                                  MatrixXd(motion.sample_count(), N));
-    for (Index i = 0; i < motion.sample_count(); ++i) {
-      const Vector<N, double> q = motion.q.row(i);
-      const Vector<N, double> dq = motion.dq.row(i);
-      const Vector<N, double> ddq = motion.ddq.row(i);
-      const auto transforms = joint_transforms(model, q);
-      for (Index number = 0; number < kInertialNumbers; ++number) {
-        model.bodies[link].link = unit_body(number);
-        torques[static_cast<std::size_t>(number)].row(i) =
-            rigid_body_torque(model, transforms, dq, ddq);
-      }
+  using Joints = Vector<kRuntimeJoints, double>;
+  auto model = make_model(chain_of<kRuntimeJoints, double>(rigid));
+  for (auto& body : model.bodies) body.link = {};
+  std::vector<MatrixXd> torques(static_cast<std::size_t>(kInertialNumbers),
+                                MatrixXd(motion.sample_count(), robot.joint_count()));
+  for (Index i = 0; i < motion.sample_count(); ++i) {
+    const Joints q = motion.q.row(i);
+    const Joints dq = motion.dq.row(i);
+    const Joints ddq = motion.ddq.row(i);
+    const auto transforms = joint_transforms(model, q);
+    for (Index number = 0; number < kInertialNumbers; ++number) {
+      model.bodies[link].link = unit_body(number);
+      torques[static_cast<std::size_t>(number)].row(i) =
+          rigid_body_torque(model, transforms, dq, ddq);
     }
-    return torques;
-  });
+  }
+  return torques;
 }
 
 }  // namespace offnominal::desk

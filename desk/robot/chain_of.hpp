@@ -107,8 +107,8 @@ template <int N, typename Scalar>
   for (const RobotEffect& effect : robot.effects) {
     if (!chain_may_have(effect.kind)) continue;
     static_cast<void>(
-        chain.effects.add({effect.kind, effect.joint,
-                           detail::scalars_of<Scalar>(effect.parameters), effect.of_motor}));
+        chain.effects.add({effect.kind, effect.joint, detail::scalars_of<Scalar>(effect.parameters),
+                           effect.of_motor}));
   }
   return chain;
 }

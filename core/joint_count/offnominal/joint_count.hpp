@@ -69,8 +69,7 @@ template <int N, typename T>
 using PerJoint = typename detail::ArrayOf<N, kMaxJoints, T>::Type;
 // One T per pair of joints.
 template <int N, typename T>
-using PerJointPair =
-    typename detail::ArrayOf<N == kRuntimeJoints ? kRuntimeJoints : N * N, kMaxJoints * kMaxJoints,
-                             T>::Type;
+using PerJointPair = typename detail::ArrayOf<N == kRuntimeJoints ? kRuntimeJoints : N * N,
+                                              kMaxJoints * kMaxJoints, T>::Type;
 
 }  // namespace offnominal

@@ -48,7 +48,7 @@ template <int N, typename Scalar>
 struct Transmission {
   static constexpr auto kMost = static_cast<std::size_t>(kMostJoints<N>);
   // A, row by row, kMost numbers each: rad of the motor per rad or m of each joint.
-  std::array<Scalar, kMost * kMost> motor_per_joint = [] {
+  std::array<Scalar, kMost* kMost> motor_per_joint = [] {
     std::array<Scalar, kMost * kMost> identity{};
     for (std::size_t i = 0; i < identity.size(); i += kMost + 1) identity[i] = 1;
     return identity;
@@ -134,8 +134,8 @@ template <typename Scalar>
 }
 
 // kOk where every joint, effect and the gravity vector are usable; otherwise the first fault found.
-// kTooManyEffects: the list's size is above its capacity. kWrongJointCount: no joint. A transmission
-// with a number that is not finite is kInvalidEffect, as it serves effects alone.
+// kTooManyEffects: the list's size is above its capacity. kWrongJointCount: no joint. A
+// transmission with a number that is not finite is kInvalidEffect, as it serves effects alone.
 template <int N, typename Scalar>
 [[nodiscard]] inline Status validate(const Chain<N, Scalar>& chain) {
   if constexpr (N == kRuntimeJoints) {
