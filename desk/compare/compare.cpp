@@ -25,8 +25,9 @@ struct JointSamples {
   VectorXd dq;
   VectorXd ddq;
   VectorXd t_s;
-  VectorXd recording;  // which one, from 0
-  Index of = 0;        // samples in all
+  VectorXd recording;   // which one, from 0
+  Index of = 0;         // samples in all
+  double at_fault = 0;  // of them, where the recording is
 };
 
 JointSamples samples_of(const Comparison& all, Index joint) {
@@ -48,6 +49,7 @@ JointSamples samples_of(const Comparison& all, Index joint) {
   samples.t_s = while_moving(all.t_s);
   samples.recording = VectorXd::Zero(samples.error.size());
   samples.of = all.t_s.size();
+  samples.at_fault = all.at_fault[joint] * static_cast<double>(samples.of);
   return samples;
 }
 
@@ -74,6 +76,7 @@ JointSamples samples_of(const std::vector<Comparison>& recordings, Index joint) 
     append(whole.t_s, part.t_s);
     append(whole.recording, part.recording);
     whole.of += part.of;
+    whole.at_fault += part.at_fault;
   }
   return whole;
 }
@@ -102,6 +105,8 @@ JointComparison compare_joint(const JointSamples& samples, std::size_t joint,
   JointComparison result;
   result.joint = joint;
   result.unit = unit;
+  result.samples = measured.size();
+  result.at_fault = samples.at_fault / static_cast<double>(samples.of);
   if (measured.size() == 0) {  // nothing of it counts
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     result.rms_error = result.rms_torque = kNone;
@@ -152,6 +157,7 @@ Comparison compare(const RobotDescription& robot, const Measurement& measured) {
   result.dq = kept(measured.motion.dq);
   result.ddq = kept(measured.motion.ddq);
   result.moving = measured.moving;
+  result.at_fault = measured.at_fault;
   for (Index joint = 0; joint < result.measured.cols(); ++joint) {
     const auto which = static_cast<std::size_t>(joint);
     result.joints.push_back(
