@@ -37,7 +37,8 @@ struct AddOptions {
   std::string output;
   std::vector<std::string> set;
   std::optional<double> refit_inertia_percent;
-  bool keep = false;
+  bool keep_effects = false;
+  std::vector<KeepFault> keep;
   bool no_skew = false;
   FilterRequest filter;
   std::optional<double> link_share;
@@ -90,7 +91,7 @@ AddRequest request_of(const AddOptions& options) {
     }
     request.inertia_deviation = percent / 100;
   }
-  request.keep = options.keep;
+  request.keep = options.keep_effects;
   request.fit_skew = !options.no_skew;
   request.source = "Fitted to " + file_names(options.files.logs) + " by offnominal add.";
   return request;
@@ -112,7 +113,7 @@ void check_kind(const AddOptions& options) {
   if (options.joint != 0) refuse_option("add", "--joint", std::to_string(options.joint), alone);
   if (options.motor != 0) refuse_option("add", "--motor", std::to_string(options.motor), alone);
   if (!options.set.empty()) refuse_option("add", "--set", "\"" + options.set[0] + "\"", alone);
-  if (options.keep) refuse_option("add", "--keep", "given", alone);
+  if (options.keep_effects) refuse_option("add", "--keep-effects", "given", alone);
   if (options.no_skew) refuse_option("add", "--no-skew", "given", alone);
   if (options.refit_inertia_percent) {
     refuse_option("add", "--refit-inertia", "given", alone, "say --link-share, as for explain");
@@ -126,8 +127,9 @@ void check_kind(const AddOptions& options) {
 void add_named(const AddOptions& options, const std::string& command_line, ExitCode& exit_code) {
   const AddRequest request = request_of(options);
   Progress progress;
-  const FitData data = read_fit_data("add", "--log", options.files, read_log, progress);
-  const auto faults = examined({data.logs, data.holdout}, data.robot, progress, RestsOn::kTorque);
+  FitData data = read_fit_data("add", "--log", options.files, read_log, progress);
+  const auto faults =
+      treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kTorque);
   const AddResult result = add(data.robot, request, data.logs, data.holdout, options.filter,
                                [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
@@ -154,14 +156,16 @@ void add_all_found(const AddOptions& options, const std::string& command_line,
   const FitFiles& files = options.files;
   const bool force = options.answer.force;
   Progress progress;
-  const FitData data = read_fit_data("add", "--log", files, read_log_or_hold_map, progress);
+  FitData data = read_fit_data("add", "--log", files, read_log_or_hold_map, progress);
   ExplainOptions explain;
   explain.threads = options.threads;
   explain.link_share = options.link_share.value_or(explain.link_share);
   explain.robot_file = files.robot;
+  explain.keep = options.keep;
   explain.source = "Fitted to " + file_names(files.logs) + " by offnominal add --all-found.";
-  const AddedFindings added = add_found(data.robot, data.logs, data.holdout, explain,
-                                        [&](const std::string& doing) { progress.begin(doing); });
+  const AddedFindings added =
+      add_found(data.robot, std::move(data.logs), std::move(data.holdout), explain,
+                [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
   const ExplainNames names{files.logs,
                            files.holdout,
@@ -203,7 +207,8 @@ std::string effects_text() {
 
 constexpr const char* kHowItFits =
     "The new effects are fitted together with those effects of the robot file that are marked "
-    "`fitted = true` and act on the same joints, because what was missing had biased them; --keep "
+    "`fitted = true` and act on the same joints, because what was missing had biased them; "
+    "--keep-effects "
     "leaves them alone. Masses and inertias stay as they are unless --refit-inertia gives their "
     "uncertainty. Shape parameters that --set does not give are searched for; the widths of the "
     "smoothed sign of one joint have one common value.\n"
@@ -245,7 +250,9 @@ void set_up_add(CLI::App& verb, ExitCode& exit_code) {
                   "not fitted; SI units")
       ->take_all()
       ->allow_extra_args(false);
-  verb.add_flag("--keep", options->keep, "Leave effects that were fitted before as they are");
+  verb.add_flag("--keep-effects", options->keep_effects,
+                "Leave effects that were fitted before as they are");
+  add_keep_option(verb, options->keep);
   verb.add_flag("--no-skew", options->no_skew,
                 "Torque and position are of one time: fit no skew between them beside the effects. "
                 "For a model whose bound is calibrated on recordings of the same drives");

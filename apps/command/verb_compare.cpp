@@ -30,6 +30,7 @@ struct CompareOptions {
   std::optional<std::string> against;
   ChannelOptions channels;
   FilterRequest filter;
+  std::vector<KeepFault> keep;
   AnswerOptions answer;
 };
 
@@ -52,7 +53,7 @@ void run(const CompareOptions& options, const std::string& command_line) {
   std::vector<Log> logs =
       read_recordings(options.logs, robot, options.channels, read_log, progress);
   check_all_differ("compare", "LOG", logs);
-  const auto faults = examined({logs}, robot, progress);
+  const auto faults = treated({logs}, robot, options.keep, progress);
   progress.begin("computing the model's torque");
   const FilterPlan plan = plan_filter(logs, robot, options.filter);
   std::vector<Comparison> now;
@@ -86,6 +87,7 @@ void set_up_compare(CLI::App& verb, ExitCode& /*exit_code*/) {
                   "An older file of the robot: prints how far the error has fallen from it");
   add_channels_option(verb, options->channels, "recordings'");
   add_filter_options(verb, options->filter);
+  add_keep_option(verb, options->keep);
   add_page_options(verb, options->answer);
   add_json_option(verb, options->answer);
   verb.footer(

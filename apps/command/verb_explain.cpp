@@ -2,10 +2,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command/answer.hpp"
 #include "command/command_line.hpp"
+#include "command/doctor.hpp"
 #include "command/input_options.hpp"
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
@@ -27,11 +29,12 @@ struct ExplainArguments {
 void run(const ExplainArguments& options, const std::string& command_line) {
   const FitFiles& files = options.files;
   Progress progress;
-  const FitData data = read_fit_data("explain", "LOG", files, read_log_or_hold_map, progress);
+  FitData data = read_fit_data("explain", "LOG", files, read_log_or_hold_map, progress);
   ExplainOptions settings = options.explain;
   settings.robot_file = files.robot;
-  const Explanation explanation = explain(data.robot, data.logs, data.holdout, settings,
-                                          [&](const std::string& doing) { progress.begin(doing); });
+  const Explanation explanation =
+      explain(data.robot, std::move(data.logs), std::move(data.holdout), settings,
+              [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
   const ExplainNames names{files.logs,
                            files.holdout,
@@ -54,6 +57,7 @@ void set_up_explain(CLI::App& verb, ExitCode& /*exit_code*/) {
   verb.add_option("--holdout", options->files.holdout,
                   "Recordings that no fit may see. Without any, blocks of time are held out");
   add_channels_option(verb, options->files.channels, "recordings'");
+  add_keep_option(verb, options->explain.keep);
   verb.add_option("--link-share", options->explain.link_share,
                   "How far mass and inertia of a link may be off the file, as a share")
       ->check(CLI::Range(0.0, 1.0))

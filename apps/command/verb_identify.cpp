@@ -28,6 +28,7 @@ struct IdentifyOptions {
   IdentifyRequest request;
   std::string output;
   FilterRequest filter;
+  std::vector<KeepFault> keep;
   AnswerOptions answer;
 };
 
@@ -51,9 +52,9 @@ void run(const IdentifyOptions& options, const std::string& command_line, ExitCo
   // A payload is told against a file that is whole.
   RobotDescription robot =
       read_robot_file(files.robot, request.payload ? Blanks::kRefused : Blanks::kAllowed);
-  const FitData data =
-      read_fit_data("identify", "LOG", files, std::move(robot), read_log, progress);
-  const auto faults = examined({data.logs, data.holdout}, data.robot, progress, RestsOn::kTorque);
+  FitData data = read_fit_data("identify", "LOG", files, std::move(robot), read_log, progress);
+  const auto faults =
+      treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kTorque);
   const Identification result =
       identify(data.robot, request, data.logs, data.holdout, options.filter,
                [&](const std::string& doing) { progress.begin(doing); });
@@ -108,6 +109,7 @@ void set_up_identify(CLI::App& verb, ExitCode& exit_code) {
                 "Believe nothing of the file's links but where their joints are");
   verb.add_flag("--keep", options->request.keep, "Leave the effects of the file as they are");
   add_channels_option(verb, options->files.channels, "recordings'");
+  add_keep_option(verb, options->keep);
   add_filter_options(verb, options->filter);
   add_force_option(verb, options->answer,
                    "Replace files that are there, for -o be it the robot file that is read, and "

@@ -25,9 +25,10 @@ struct JointSamples {
   VectorXd dq;
   VectorXd ddq;
   VectorXd t_s;
-  VectorXd recording;  // which one, from 0
-  VectorXd gear;       // measured less what a sensor behind the gear says; empty: no such sensor
-  Index of = 0;        // samples in all
+  VectorXd recording;   // which one, from 0
+  VectorXd gear;        // measured less what a sensor behind the gear says; empty: no such sensor
+  Index of = 0;         // samples in all
+  double at_fault = 0;  // of them, where the recording is
 };
 
 JointSamples samples_of(const Comparison& all, Index joint) {
@@ -52,6 +53,7 @@ JointSamples samples_of(const Comparison& all, Index joint) {
   }
   samples.recording = VectorXd::Zero(samples.error.size());
   samples.of = all.t_s.size();
+  samples.at_fault = all.at_fault[joint] * static_cast<double>(samples.of);
   return samples;
 }
 
@@ -79,6 +81,7 @@ JointSamples samples_of(const std::vector<Comparison>& recordings, Index joint) 
     append(whole.recording, part.recording);
     append(whole.gear, part.gear);
     whole.of += part.of;
+    whole.at_fault += part.at_fault;
   }
   // Recordings with the sensor and without it: of the whole there is nothing to say.
   if (whole.gear.size() != whole.measured.size()) whole.gear.resize(0);
@@ -128,6 +131,8 @@ JointComparison compare_joint(const JointSamples& samples, std::size_t joint,
   JointComparison result;
   result.joint = joint;
   result.unit = unit;
+  result.samples = measured.size();
+  result.at_fault = samples.at_fault / static_cast<double>(samples.of);
   if (measured.size() == 0) {  // nothing of it counts
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     result.rms_error = result.rms_torque = kNone;
@@ -180,6 +185,7 @@ Comparison compare(const RobotDescription& robot, const Measurement& measured) {
   for (Index joint = 0; joint < result.measured.cols(); ++joint) {
     result.has_both.push_back(measured.log.has_both(static_cast<std::size_t>(joint)) ? 1 : 0);
   }
+  result.at_fault = measured.at_fault;
   for (Index joint = 0; joint < result.measured.cols(); ++joint) {
     const auto which = static_cast<std::size_t>(joint);
     result.joints.push_back(

@@ -33,8 +33,10 @@ struct JointComparison {
   double relative_error_percent = 0;  // 100 |tau - tau_m| / |tau|; NaN where tau is 0
   double fit_percent = 0;             // 100 (1 - |tau - tau_m| / |tau - mean|); NaN where constant
   // Of the samples, 0..1: those in which the joint stands still, where friction may take any part
-  // of the torque. None of the numbers above is of them.
+  // of the torque, and those at fault. None of the numbers above is of them.
   double left_out = 0;
+  double at_fault = 0;             // of the samples, 0..1: those in which the recording is at fault
+  Eigen::Index samples = 0;        // that are left; the numbers above are NaN where none is
   std::vector<ErrorShare> where;   // largest share first
   std::optional<GearTorque> gear;  // where the recording has both torques
 };
@@ -52,7 +54,8 @@ struct Comparison {
   Eigen::MatrixXd q;  // low-passed motion at the kept samples
   Eigen::MatrixXd dq;
   Eigen::MatrixXd ddq;
-  Eigen::MatrixXd moving;  // 1, or 0 where the joint stands still: Measurement
+  Eigen::MatrixXd moving;    // 1, or 0 where the joint does not count: Measurement
+  Eigen::VectorXd at_fault;  // per joint, share of the samples: Measurement
   std::vector<JointComparison> joints;
   std::vector<std::string> remarks;  // the recording's
 

@@ -15,7 +15,9 @@ nlohmann::ordered_json joints_json(const std::vector<JointComparison>& joints) {
                     {"rms_torque", joint.rms_torque},
                     {"relative_error_percent", joint.relative_error_percent},
                     {"fit_percent", joint.fit_percent},
-                    {"left_out_percent", 100 * joint.left_out}});
+                    {"left_out_percent", 100 * joint.left_out},
+                    {"at_fault_percent", 100 * joint.at_fault},
+                    {"samples", joint.samples}});
     if (!joint.gear) continue;
     json.back()["gear"] = {{"rms", joint.gear->rms},
                            {"percent_of_drive", joint.gear->percent},

@@ -40,6 +40,10 @@ std::string sentence(const GearTorque& gear, const std::string& unit) {
 
 std::string sentence(const JointComparison& joint) {
   const char* effort = effort_name(joint.unit);
+  if (joint.samples == 0) {
+    return fmt::format("Joint {}: nothing is left of it that is free of faults of the recording.",
+                       joint.joint + 1);
+  }
   if (!std::isfinite(joint.relative_error_percent)) {
     return fmt::format("Joint {}: the recorded {} is 0 throughout, nothing to compare with.",
                        joint.joint + 1, effort);
@@ -58,12 +62,18 @@ std::string sentence(const JointComparison& joint) {
   }
   if (joint.gear) words += " " + sentence(*joint.gear, joint.unit);
   constexpr double kWorthMention = 0.01;
-  if (joint.left_out >= kWorthMention) {
+  const double at_rest = joint.left_out - joint.at_fault;
+  if (at_rest >= kWorthMention) {
     words += fmt::format(
         " {:.0f} % of the samples do not count: the joint stands still there, and friction may "
         "hold "
         "it.",
-        100 * joint.left_out);
+        100 * at_rest);
+  }
+  if (joint.at_fault > 0) {
+    words += fmt::format(
+        " {:.1f} % of the samples are left out for faults of the recording; {} are left.",
+        100 * joint.at_fault, joint.samples);
   }
   return words;
 }

@@ -6,6 +6,7 @@
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
 #include "compare/transmission.hpp"
+#include "compare/usable.hpp"
 #include "log/seen_by_sensor.hpp"
 #include "robot/payload.hpp"
 #include "signal/zero_phase.hpp"
@@ -31,14 +32,33 @@ MatrixXd filtered_columns(const FilterPlan& plan, const MatrixXd& columns) {
 // Of the measured torque, per joint.
 VectorXd noise_densities(const Measurement& measured) {
   VectorXd densities(measured.log.tau.cols());
+  const MatrixXd usable = usable_samples(measured.log, measured.plan);
   for (Index joint = 0; joint < densities.size(); ++joint) {
     const VectorXd raw = measured.log.tau.col(joint);
     densities[joint] = noise_density(
         raw,
         zero_phase_low_pass(raw, measured.plan.position_cutoff_hz, measured.plan.sample_rate_hz),
-        measured.plan);
+        usable.size() > 0 ? VectorXd(usable.col(joint)) : VectorXd(), measured.plan);
   }
   return densities;
+}
+
+void leave_out_faults(const Log& log, Measurement& measured) {
+  measured.at_fault = VectorXd::Zero(measured.moving.cols());
+  const MatrixXd usable = usable_samples(log, measured.plan);
+  if (usable.size() == 0) return;
+  for (Index joint = 0; joint < usable.cols(); ++joint) {
+    const VectorXd kept = kept_samples(measured.plan, usable.col(joint));
+    measured.at_fault[joint] = 1 - kept.mean();
+    measured.moving.col(joint).array() *= kept.array();
+    // Where all that is left stands still, rest is all there is (as in standstill.cpp).
+    if (!(measured.moving.col(joint).sum() > 0)) measured.moving.col(joint) = kept;
+  }
+  if (measured.moving.sum() > 0) return;
+  throw InputError({log.file, "",
+                    "nothing that is free of faults and of what a filter spreads of them",
+                    "a stretch of some seconds of one joint at least",
+                    "record anew, or overrule with --keep JOINT:REASON what is no fault"});
 }
 
 }  // namespace
@@ -65,6 +85,7 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& pl
   for (Index joint = 0; joint < moving.cols(); ++joint) {
     measured.moving.col(joint) = kept_samples(measured.plan, moving.col(joint));
   }
+  leave_out_faults(log, measured);
   measured.log = std::move(log);
   return measured;
 }

@@ -18,8 +18,10 @@ struct Measurement {
   Eigen::VectorXd t_s;            // of the samples that are kept
   Eigen::MatrixXd torque;         // filtered; rows: kept samples, columns: joints
   Eigen::MatrixXd sensor_torque;  // the same of log.sensor_tau
-  // Kept samples: 1, or 0 where the joint stands still and friction may hold it (standstill.hpp).
+  // Kept samples: 1, or 0 where the joint stands still and friction may hold it (standstill.hpp),
+  // or where the recording is at fault (usable.hpp).
   Eigen::MatrixXd moving;
+  Eigen::VectorXd at_fault;  // per joint: share of the kept samples in which the recording is, 0..1
 };
 
 // Throws InputError where a recording has another number of joints than the robot.

@@ -87,11 +87,17 @@ VectorXd play_displacement(const Eigen::Ref<const VectorXd>& load,
   return zero_phase_low_pass(x, plan.position_cutoff_hz, plan.sample_rate_hz);
 }
 
-double noise_density(const VectorXd& raw, const VectorXd& smooth, const FilterPlan& plan) {
+double noise_density(const VectorXd& raw, const VectorXd& smooth, const VectorXd& usable,
+                     const FilterPlan& plan) {
   const double band_hz = plan.sample_rate_hz / 2 - plan.position_cutoff_hz;
   if (!(band_hz > 0)) return 0;
-  const VectorXd fast = raw - smooth;
-  return std::sqrt(fast.squaredNorm() / static_cast<double>(fast.size()) / band_hz);
+  VectorXd fast = raw - smooth;
+  auto samples = static_cast<double>(fast.size());
+  if (usable.size() > 0 && usable.sum() > 0) {
+    fast.array() *= usable.array();
+    samples = usable.sum();
+  }
+  return std::sqrt(fast.squaredNorm() / samples / band_hz);
 }
 
 bool has_transmission_effect(const RobotDescription& robot) {

@@ -41,9 +41,9 @@ Eigen::VectorXd play_displacement(const Eigen::Ref<const Eigen::VectorXd>& load,
                                   const FilterPlan& plan);
 
 // Noise density of a signal from what a low-pass takes away, as if white, per root hertz; 0 where
-// the low-pass takes nothing.
+// the low-pass takes nothing. `usable`: 1 or 0 per sample, empty for all of them.
 double noise_density(const Eigen::VectorXd& raw, const Eigen::VectorXd& smooth,
-                     const FilterPlan& plan);
+                     const Eigen::VectorXd& usable, const FilterPlan& plan);
 
 // Some effect of the robot acts between motor and link.
 bool has_transmission_effect(const RobotDescription& robot);

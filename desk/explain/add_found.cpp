@@ -104,14 +104,16 @@ std::vector<BeforeAfter> at_rest(const RobotDescription& before, const RobotDesc
 
 }  // namespace
 
-AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& logs,
-                        const std::vector<Log>& holdout, const ExplainOptions& options,
+AddedFindings add_found(const RobotDescription& robot, std::vector<Log> logs,
+                        std::vector<Log> holdout, const ExplainOptions& options,
                         const OnProgress& on_progress) {
   AddedFindings added;
-  added.explanation = explain(robot, logs, holdout, options, on_progress);
+  if (on_progress) on_progress("examining the recordings");
+  const Treated recordings = treated(robot, std::move(logs), std::move(holdout), options.keep);
+  added.explanation = explain(robot, recordings, options, on_progress);
   added.objections = objections_to(added.explanation);
   if (!added.objections.empty()) return added;
-  const FilterPlan plan = plan_filter(logs, robot);
+  const FilterPlan plan = plan_filter(recordings.logs, robot);
   const auto compare_on = [&](const Log& log, bool held_out) {
     if (on_progress) on_progress("comparing both models on " + log.file);
     if (log.at_rest) {
@@ -123,8 +125,8 @@ AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& l
         {log.file, held_out,
          before_after(compare(robot, measured), compare(added.explanation.improved, measured))});
   };
-  for (const Log& log : logs) compare_on(log, false);
-  for (const Log& log : holdout) compare_on(log, true);
+  for (const Log& log : recordings.logs) compare_on(log, false);
+  for (const Log& log : recordings.holdout) compare_on(log, true);
   added.doubts = doubts_of(added);
   return added;
 }
@@ -133,8 +135,8 @@ ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
                      const std::string& output_file, bool force) {
   const ordered_json explained = to_json(added.explanation, names);
   ordered_json json;
-  for (const char* key : {"logs", "holdout", "robot", "verdict", "words", "found", "data_faults",
-                          "data_hints", "advice"}) {
+  for (const char* key : {"logs", "holdout", "robot", "verdict", "words", "found", "left_out",
+                          "data_faults", "data_hints", "advice"}) {
     json[key] = explained[key];
   }
   json["recordings"] = ordered_json::array();

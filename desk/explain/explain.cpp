@@ -32,14 +32,16 @@ using Eigen::VectorXd;
 
 namespace {
 
+void check_joints(const std::vector<Log>& logs, const RobotDescription& robot) {
+  for (const Log& log : logs) require_joints(log, robot);
+}
+
 class Explainer {
  public:
   Explainer(const RobotDescription& robot, const std::vector<Log>& logs,
             const std::vector<Log>& holdout, const ExplainOptions& options,
             const OnProgress& on_progress)
       : file_(robot), robot_(robot), logs_(logs), options_(options), on_progress_(on_progress) {
-    check_joints(logs);
-    check_joints(holdout);
     check_kind(logs, logs.front().at_rest);
     check_kind(holdout, logs.front().at_rest);
     plan_ = plan_filter(logs, robot_);
@@ -106,16 +108,8 @@ class Explainer {
     return result;
   }
 
-  void say_what_was_left_out(Explanation& result) const {
-    if (!left_out_.empty()) result.advice.push_back(left_out_);
-  }
-  void say_what_was_carried(const std::vector<Log>& logs, Explanation& result) const {
-    for (const Log& log : logs) {
-      if (!log.payload) continue;
-      result.advice.push_back(fmt::format("{}: with a payload of {}, part of the model there",
-                                          log.file, words_of(*log.payload)));
-    }
-  }
+  // What was not searched, in words; empty where all was.
+  [[nodiscard]] const std::string& left_out() const { return left_out_; }
 
  private:
   void tell(const std::string& doing) const {
@@ -140,10 +134,6 @@ class Explainer {
     if (!data_->recordings[0].at_rest) return options_.most_effects;
     return std::max(1, kEffectsPerJoint * static_cast<int>(robot_.joints.size()) -
                            static_cast<int>(robot_.effects.size()));
-  }
-
-  void check_joints(const std::vector<Log>& logs) const {
-    for (const Log& log : logs) require_joints(log, robot_);
   }
 
   // What is held is not what moves, and a model of what happens at rest knows neither time nor what
@@ -260,38 +250,90 @@ class Explainer {
 
 }  // namespace
 
-Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
-                    const std::vector<Log>& holdout, const ExplainOptions& options,
-                    const OnProgress& on_progress) {
+Treated treated(const RobotDescription& robot, std::vector<Log> logs, std::vector<Log> holdout,
+                const std::vector<KeepFault>& keep) {
+  check_joints(logs, robot);
+  check_joints(holdout, robot);
   for (const auto* recordings : {&logs, &holdout}) {
     for (const Log& log : *recordings) refuse_hidden_from_sensors(robot, log);
   }
-  Explainer explainer(robot, logs, holdout, options, on_progress);
+  Treated all{std::move(logs), std::move(holdout), {}};
+  for (std::vector<Log>* group : {&all.logs, &all.holdout}) {
+    for (DataFault& fault : treat(*group, robot, keep)) all.faults.push_back(std::move(fault));
+  }
+  return all;
+}
+
+Explanation explain(const RobotDescription& robot, std::vector<Log> logs, std::vector<Log> holdout,
+                    const ExplainOptions& options, const OnProgress& on_progress) {
   if (on_progress) on_progress("examining the recordings");
+  return explain(robot, treated(robot, std::move(logs), std::move(holdout), options.keep), options,
+                 on_progress);
+}
+
+namespace {
+
+void say_what_was_carried(const std::vector<Log>& logs, Explanation& result) {
+  for (const Log& log : logs) {
+    if (!log.payload) continue;
+    result.advice.push_back(fmt::format("{}: with a payload of {}, part of the model there",
+                                        log.file, words_of(*log.payload)));
+  }
+}
+
+// Of a recording of which nothing is left, what the model leaves of it as it is is still shown.
+Explanation explain_as_it_is(const RobotDescription& robot, Treated recordings,
+                             const ExplainOptions& options, const OnProgress& on_progress) {
+  for (std::vector<Log>* group : {&recordings.logs, &recordings.holdout}) {
+    for (Log& log : *group) log.left_out.clear();
+  }
+  return Explainer(robot, recordings.logs, recordings.holdout, options, on_progress).run(false);
+}
+
+}  // namespace
+
+Explanation explain(const RobotDescription& robot, const Treated& recordings,
+                    const ExplainOptions& options, const OnProgress& on_progress) {
   std::vector<DataFault> faults;
   std::vector<DataFault> hints;
-  for (const std::vector<Log>* group : {&logs, &holdout}) {
-    for (const Log& log : *group) {
-      if (log.at_rest) continue;  // every check there is needs time
-      for (DataFault& fault : examine(log, robot)) {
-        // Velocities come from the positions here: what was recorded of them spoils nothing.
-        const bool hint = fault.kind == DataFaultKind::kVelocity;
-        (hint ? hints : faults).push_back(std::move(fault));
-      }
-    }
+  std::vector<DataFault> left_out;
+  bool nothing_left = false;
+  for (const DataFault& fault : recordings.faults) {
+    const bool nothing = fault.kind == DataFaultKind::kNothingLeft;
+    nothing_left = nothing_left || (nothing && fault.certain);
+    // Velocities come from the positions here: what was recorded of them spoils nothing.
+    const bool hint =
+        fault.kind == DataFaultKind::kVelocity || fault.overruled || (nothing && !fault.certain);
+    auto& list = hint ? hints : !fault.left_out_of.empty() ? left_out : faults;
+    list.push_back(fault);
   }
-  Explanation result = explainer.run(faults.empty());
+  Explanation result;
+  std::string searched;
+  if (nothing_left) {
+    result = explain_as_it_is(robot, recordings, options, on_progress);
+  } else {
+    Explainer explainer(robot, recordings.logs, recordings.holdout, options, on_progress);
+    result = explainer.run(faults.empty());
+    searched = explainer.left_out();
+  }
   if (!faults.empty()) {
     result.data_faults = std::move(faults);
     judge_whole(result);
   }
   for (const DataFault& hint : hints) {
-    result.advice.push_back(hint.words + ", which changes nothing here; to mend: " + hint.mend);
+    const char* why = hint.overruled ? ", which --keep overrules"
+                      : hint.kind == DataFaultKind::kNothingLeft
+                          ? ", so that nothing is said of it"
+                          : ", which changes nothing here; to mend: ";
+    result.advice.push_back(
+        hint.words + why +
+        (hint.kind == DataFaultKind::kVelocity && !hint.overruled ? hint.mend : ""));
   }
   result.data_hints = std::move(hints);
-  explainer.say_what_was_left_out(result);
-  explainer.say_what_was_carried(logs, result);
-  explainer.say_what_was_carried(holdout, result);
+  result.left_out = std::move(left_out);
+  if (!searched.empty()) result.advice.push_back(std::move(searched));
+  say_what_was_carried(recordings.logs, result);
+  say_what_was_carried(recordings.holdout, result);
   return result;
 }
 

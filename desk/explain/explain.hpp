@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "explain/doctor.hpp"
 #include "explain/excitation.hpp"
 #include "explain/remainder.hpp"
+#include "explain/treatment.hpp"
 #include "identify/effect_candidate.hpp"
 #include "identify/estimates.hpp"
 #include "identify/improved_robot.hpp"
@@ -163,6 +163,7 @@ struct Explanation {
   std::vector<Shift> shifts;
   std::vector<DataFault> data_faults;  // that make the verdict
   std::vector<DataFault> data_hints;   // that leave the answer right
+  std::vector<DataFault> left_out;     // whose stretches are left out
   std::vector<Excitation> excitation;
   std::vector<std::string> advice;
   std::string robot_file = "ROBOT";         // as commands in the advice name it
@@ -195,13 +196,25 @@ struct ExplainOptions {
   int most_effects = 6;         // of one joint
   std::string source = {};      // what `improved` says of where its numbers come from
   std::string robot_file = {};  // as the user named it, for commands in the advice; empty: "ROBOT"
+  std::vector<KeepFault> keep = {};  // of the doctor's findings, that are no faults
 };
+
+// Recordings of which the doctor has left out what is at fault.
+struct Treated {
+  std::vector<Log> logs;
+  std::vector<Log> holdout;
+  std::vector<DataFault> faults;
+};
+// Throws InputError where the recordings and the robot do not fit together.
+Treated treated(const RobotDescription& robot, std::vector<Log> logs, std::vector<Log> holdout,
+                const std::vector<KeepFault>& keep);
 
 // Which effects the robot's model lacks, by recordings of it. `holdout` may be empty: then parts of
 // the recordings are held out in turn. Throws InputError where the recordings and the robot do not
 // fit together or are too short.
-Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
-                    const std::vector<Log>& holdout, const ExplainOptions& options,
-                    const OnProgress& on_progress = {});
+Explanation explain(const RobotDescription& robot, std::vector<Log> logs, std::vector<Log> holdout,
+                    const ExplainOptions& options, const OnProgress& on_progress = {});
+Explanation explain(const RobotDescription& robot, const Treated& recordings,
+                    const ExplainOptions& options, const OnProgress& on_progress = {});
 
 }  // namespace offnominal::desk

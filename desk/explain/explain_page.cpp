@@ -8,6 +8,7 @@
 
 #include "common/effort_name.hpp"
 #include "common/nearest.hpp"
+#include "explain/data_fault_report.hpp"
 #include "explain/explain_report.hpp"
 
 namespace offnominal::desk {
@@ -354,6 +355,7 @@ report::Page page_of(const Explanation& e, const ExplainNames& names) {
   for (const DataFault& fault : e.data_faults) {
     overview.blocks.emplace_back(report::Note{fault.words + ". " + fault.mend, Level::kBad});
   }
+  if (!e.left_out.empty()) overview.blocks.emplace_back(table_of_left_out(e.left_out));
   if (!e.answers.empty()) overview.blocks.emplace_back(answer_table(e));
   if (!e.found.empty()) overview.blocks.emplace_back(finding_table(e));
   if (!e.ambiguous.empty()) overview.blocks.emplace_back(class_table(e));

@@ -3,6 +3,7 @@
 #include "common/input_name.hpp"
 #include "common/shell_word.hpp"
 #include "common/text_table.hpp"
+#include "explain/data_fault_report.hpp"
 #include "explain/explain_report.hpp"
 #include "robot/payload.hpp"
 
@@ -107,6 +108,7 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
                       : e.at_rest        ? "stretches of readings"
                                          : "blocks of time");
   for (const DataFault& fault : e.data_faults) text += "data fault: " + fault.words + "\n";
+  for (const DataFault& fault : e.left_out) text += "left out: " + left_out_line(fault) + "\n";
   text += text_of_joints(e);
   text += text_of_answers(e);
   text += text_of_findings(e);

@@ -179,7 +179,7 @@ VectorXd noise_floor_of(const Data& data, const VectorXd& left) {
       samples[joint] += layout.moving_count(r, joint);
     }
   }
-  return power.cwiseQuotient(samples).cwiseSqrt();
+  return power.cwiseQuotient(samples.cwiseMax(1)).cwiseSqrt();
 }
 
 const char* name_of(EffectVariable variable) {

@@ -7,6 +7,7 @@
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
 #include "compare/transmission.hpp"
+#include "compare/usable.hpp"
 #include "identify/data.hpp"
 #include "signal/decimate.hpp"
 #include "signal/quantile.hpp"
@@ -137,6 +138,7 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
   const Motion full = motion_of(log, plan);
   at.motion = {every_nth(full.t_s, stride), every_nth_row(full.q, stride),
                every_nth_row(full.dq, stride), every_nth_row(full.ddq, stride)};
+  const MatrixXd usable = usable_samples(log, plan);
   MatrixXd torque = log.tau;
   at.torque_noise_density.resize(torque.cols());
   for (Index joint = 0; joint < torque.cols(); ++joint) {
@@ -144,7 +146,8 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
     if (log.at_rest) continue;
     const VectorXd raw = log.tau.col(joint);
     const VectorXd smooth = zero_phase_low_pass(raw, plan.position_cutoff_hz, plan.sample_rate_hz);
-    at.torque_noise_density[joint] = noise_density(raw, smooth, plan);
+    at.torque_noise_density[joint] = noise_density(
+        raw, smooth, usable.size() > 0 ? VectorXd(usable.col(joint)) : VectorXd(), plan);
     if (stride > 1) torque.col(joint) = smooth;
   }
   at.torque = every_nth_row(torque, stride);
@@ -167,6 +170,7 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
     }
   }
   if (moving.minCoeff() < 1) at.moving = std::move(moving);
+  if (usable.size() > 0) at.usable = every_nth_row(usable, stride);
   return at;
 }
 

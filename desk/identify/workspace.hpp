@@ -33,6 +33,7 @@ struct Workspace {
   Eigen::VectorXd sign_width;            // per joint: width of the smoothed sign, rad/s or m/s
   Eigen::VectorXd top_speed;             // per joint: 99 % quantile of |dq|
   Eigen::MatrixXd moving;                // standstill.hpp: 1 or 0; empty: 1 throughout
+  Eigen::MatrixXd usable;                // usable.hpp: 1 or 0; empty: 1 throughout
   double skew_s = 0;                     // sampling period of the recording itself
   double start_s = 0;                    // time stamp that effects in time count from
   bool at_rest = false;                  // a hold map: log/hold_map.hpp

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,6 +10,22 @@
 #include "robot/robot.hpp"
 
 namespace offnominal::desk {
+
+// Samples first to last, both included.
+struct RowSpan {
+  Eigen::Index first = 0;
+  Eigen::Index last = 0;
+
+  [[nodiscard]] Eigen::Index count() const { return last + 1 - first; }
+};
+
+// Samples of a joint that no analysis may use: a gap, or what the doctor found.
+struct LeftOut {
+  Eigen::Index joint = 0;
+  RowSpan rows;
+  // What a filter spreads of them on either side and goes with them, in periods of its cut-off.
+  double spread_periods = 0;
+};
 
 // One recording in SI units, evenly sampled, time ascending, every number finite. Or a hold map
 // (hold_map.hpp), where at_rest.
@@ -32,6 +49,10 @@ struct Log {
   ChannelMap channels;                  // where the columns came from; empty: not read from a file
   bool common_header = false;           // by their names alone, nobody gave the channels
   std::optional<Payload> payload = {};  // that the robot carried (robot/payload.hpp)
+  Eigen::VectorXd stamps_s;       // of the recorded rows, where t_s is another grid; else empty
+  std::vector<RowSpan> gaps;      // samples of the grid where none were recorded
+  std::vector<RowSpan> cut;       // recorded rows beyond a gap that is too long for one grid
+  std::vector<LeftOut> left_out;  // of `gaps` and of faults, in any order
 
   [[nodiscard]] bool of_sensor(std::size_t joint) const {
     return joint < channels.torque_of.size() && channels.torque_of[joint] == ChannelOf::kSensor;
@@ -42,6 +63,17 @@ struct Log {
   [[nodiscard]] int joint_count() const { return static_cast<int>(q.cols()); }
   [[nodiscard]] Eigen::Index sample_count() const { return t_s.size(); }
   [[nodiscard]] double sample_rate_hz() const { return 1 / period_s; }
+  // The recorded rows, from 0, that a span of samples comes from.
+  [[nodiscard]] RowSpan recorded_rows(const RowSpan& samples) const {
+    if (stamps_s.size() == 0) return samples;
+    const double slack = period_s / 2;
+    const auto row_at = [&](double t) {
+      const auto at = std::lower_bound(stamps_s.begin(), stamps_s.end(), t);
+      return std::min<Eigen::Index>(at - stamps_s.begin(), stamps_s.size() - 1);
+    };
+    const Eigen::Index first = row_at(t_s[samples.first] - slack);
+    return {first, std::max(first, row_at(t_s[samples.last] + slack) - 1)};
+  }
 };
 
 }  // namespace offnominal::desk
