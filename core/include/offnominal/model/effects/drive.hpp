@@ -58,7 +58,7 @@ struct CoggingTorque {
   static constexpr const char* kWords = "a torque ripple that repeats with position";
   static constexpr const char* kMotionHint = "move slowly over several periods";
   static constexpr EffectTraits kTraits{
-      .acts_at_rest = true, .follows = EffectVariable::kPosition, .is_before_sensor = true};
+      .acts_at_rest = true, .is_before_sensor = true, .follows = EffectVariable::kPosition};
   static constexpr std::array<ParameterInfo, 3> kParameters{{
       {"sine", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0, "sine amplitude"},
       {"cosine", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
