@@ -17,6 +17,7 @@
 #include "paper/recording.hpp"
 #include "paper/two_link_robot.hpp"
 #include "robot/robot_file.hpp"
+#include "sil/mujoco_plant_of.hpp"
 #include "sil/open_bus.hpp"
 #include "sil/real_time.hpp"
 #include "sil/scenario_file.hpp"
@@ -45,14 +46,24 @@ struct SilOptions {
 
 constexpr const char* kPaper = "paper";
 
-// The robot file of the plant; none for the paper's arm.
+std::optional<std::string> mujoco_file(const SilOptions& options) {
+  return options.plant ? sil::mujoco_file_named(*options.plant) : std::nullopt;
+}
+
+// The robot file of the plant; none for the paper's arm. Of a plant of MuJoCo it says the joints.
 std::optional<std::string> plant_file(const SilOptions& options, const RobotDescription& robot) {
+  if (mujoco_file(options)) return options.robot;
   if (options.plant) return *options.plant == kPaper ? std::nullopt : options.plant;
   return paper::is_two_link_arm(robot) ? std::nullopt : options.robot;
 }
 
 sil::Scenario scenario_of(const SilOptions& options, const RobotDescription& robot) {
   sil::Scenario scenario;
+  const auto mujoco = mujoco_file(options);
+  if (mujoco && !options.robot) {
+    refuse_option("sil", "--plant", *options.plant + " without --robot",
+                  "a robot file that says its joints", "give --robot FILE.toml");
+  }
   if (const auto file = plant_file(options, robot)) scenario.plant = read_robot_file(*file);
   if (options.scenario) {
     if (options.fault) {
@@ -68,6 +79,7 @@ sil::Scenario scenario_of(const SilOptions& options, const RobotDescription& rob
     scenario.faults.push_back(
         {.kind = sim::FaultEventKind::kNonlinear, .begin_s = 10.0, .rate_per_s = 0.5});
   }
+  scenario.mujoco = mujoco;
   if (options.motion) scenario.motion = motion_named(*options.motion, robot);
   if (options.accommodate) scenario.accommodate = true;
   if (options.fd) scenario.format = hal::FrameFormat::kFd;
@@ -174,9 +186,11 @@ void set_up_sil(CLI::App& verb, ExitCode& /*exit_code*/) {
       ->capture_default_str();
   verb.add_option("--robot", options->robot,
                   "Robot file of the controller; by default the paper's arm");
-  verb.add_option("--plant", options->plant,
-                  "Robot file of the plant, its rigid body and effects, or paper; by default the "
-                  "paper's arm for a robot of its links, and else the controller's robot");
+  verb.add_option(
+      "--plant", options->plant,
+      "Robot file of the plant, its rigid body and effects; mujoco:FILE, an MJCF or URDF "
+      "with the controller's joints; or paper. By default the paper's arm for a robot of "
+      "its links, and else the controller's robot");
   verb.add_option("--motion", options->motion,
                   "paper, sway (every joint a little to and fro), or a CSV as offnominal motion "
                   "writes it; by default paper for the paper's arm, and else sway");

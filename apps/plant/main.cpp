@@ -21,6 +21,7 @@
 #include "loop/frame_format.hpp"
 #include "paper/two_link_robot.hpp"
 #include "robot/robot_file.hpp"
+#include "sil/mujoco_plant_of.hpp"
 #include "sil/open_bus.hpp"
 #include "sil/open_recorder.hpp"
 #include "sil/plant_loop.hpp"
@@ -35,6 +36,7 @@ constexpr const char* kProgram = "offnominal-plant";
 struct Options {
   std::string bus;
   std::optional<std::string> robot;
+  std::optional<std::string> plant;
   std::optional<std::string> drives;
   std::optional<std::string> motion;
   std::optional<std::string> scenario;
@@ -53,6 +55,9 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--bus", options.bus, "CAN interface: vcan0")->required();
   app.add_option("--robot", options.robot,
                  "Robot file of the plant: its rigid body and effects; by default the paper's arm");
+  app.add_option("--plant", options.plant,
+                 "mujoco:FILE, an MJCF or URDF with the joints of --robot, whose dynamics take the "
+                 "place of the robot file's");
   app.add_option("--drives", options.drives,
                  "Robot file whose [drives] are here; by default those of --robot");
   app.add_option("--motion", options.motion,
@@ -96,12 +101,28 @@ DriveSettings drives_of(const Options& options, const sil::Scenario& scenario) {
                     std::to_string(sil::joint_count_of(scenario)) + ", as the plant", ""});
 }
 
+// The file of MuJoCo that --plant names.
+std::optional<std::string> mujoco_of(const Options& options) {
+  if (!options.plant) return std::nullopt;
+  const auto file = sil::mujoco_file_named(*options.plant);
+  if (!file) {
+    throw InputError({kProgram, "--plant", "`" + *options.plant + "`", "mujoco:FILE",
+                      "name a robot file by --robot"});
+  }
+  if (!options.robot) {
+    throw InputError({kProgram, "--plant", *options.plant + " without --robot",
+                      "a robot file that says its joints", "give --robot FILE.toml"});
+  }
+  return file;
+}
+
 sil::Scenario scenario_of(const Options& options) {
   std::optional<RobotDescription> plant;
   if (options.robot) plant = read_robot_file(*options.robot);
   sil::Scenario scenario;
   scenario.plant = plant;
   if (options.scenario) scenario = sil::read_scenario(*options.scenario, plant);
+  scenario.mujoco = mujoco_of(options);
   if (options.fd || options.classic) {
     scenario.format = wished_format(options.fd, options.classic);
   }

@@ -15,6 +15,7 @@
 #include "loop/frame_format.hpp"
 #include "offnominal/sim/plants/paper_arm.hpp"
 #include "offnominal/sim/uncertainty.hpp"
+#include "sil/mujoco_plant_of.hpp"
 #include "sil/robot_plant.hpp"
 
 namespace offnominal::desk::sil {
@@ -81,6 +82,7 @@ std::unique_ptr<sim::Plant> paper_arm(const std::vector<sim::FaultEvent>& faults
 
 std::unique_ptr<sim::Plant> robot_plant(const Scenario& scenario, const sim::JointState& start,
                                         double period_s) {
+  if (scenario.mujoco) return make_mujoco_plant(scenario, start);
   std::vector<sim::FaultEvent> faults = scenario.faults;
   for (sim::FaultEvent& fault : faults) {
     if (fault.kind == sim::FaultEventKind::kMassLoss) fault.joint = std::max(fault.joint, 0);
@@ -112,6 +114,7 @@ void check_plant(const Scenario& scenario) {
                       "a fault of the paper's arm, on robot " + scenario.plant->name,
                       "every other kind", ""});
   }
+  if (scenario.mujoco) check_mujoco_plant(scenario);
   for (const RobotJoint& joint : scenario.plant->joints) {
     if (joint.joint.type == JointType::kRevolute || scenario.encoder_bits_per_turn == 0) continue;
     throw InputError({"sil", "encoder_bits_per_turn", "joint " + joint.name + ", which slides",

@@ -15,6 +15,7 @@
 #include "common/number.hpp"
 #include "sil/child_program.hpp"
 #include "sil/gather.hpp"
+#include "sil/mujoco_plant_of.hpp"
 #include "sil/plant_of.hpp"
 #include "sil/scenario_file.hpp"
 
@@ -49,13 +50,14 @@ class Folder {
 };
 
 std::vector<std::string> plant_arguments(const Folder& folder, const RealTimeOptions& options,
-                                         double rate_hz) {
+                                         const std::optional<std::string>& mujoco, double rate_hz) {
   std::vector<std::string> arguments = {
       "--bus",    options.interface, "--scenario", (folder / "scenario.toml").string(),
       "--rate",   shortest(rate_hz), "--log",      (folder / "plant.csv").string(),
       "--motion", options.motion,    "--json"};
   if (options.plant_file) arguments.insert(arguments.end(), {"--robot", *options.plant_file});
   if (options.robot_file) arguments.insert(arguments.end(), {"--drives", *options.robot_file});
+  if (mujoco) arguments.insert(arguments.end(), {"--plant", kMujocoPrefix + *mujoco});
   return arguments;
 }
 
@@ -130,7 +132,7 @@ SilResult run_in_real_time(const RobotDescription& robot, const Scenario& scenar
   Scenario complete = scenario;
   complete.format = format_of(scenario, robot.drive_settings(), robot.estimator.period_s);
   write_file_atomically(folder / "scenario.toml", scenario_text(complete));
-  ChildProgram plant("offnominal-plant", plant_arguments(folder, options, rate_hz),
+  ChildProgram plant("offnominal-plant", plant_arguments(folder, options, scenario.mujoco, rate_hz),
                      folder / "plant.json", folder / "plant.err");
   ChildProgram controller(
       "offnominal-controller",

@@ -21,6 +21,9 @@ struct Scenario : paper::RunSettings {
   /// What stands at the other end: the rigid body and the effects of a robot file; none: the
   /// paper's arm with its uncertainty.
   std::optional<RobotDescription> plant;
+  /// An MJCF or URDF whose dynamics, friction and limits the plant has in place of those of
+  /// `plant`, which then says the joints alone.
+  std::optional<std::string> mujoco;
   std::vector<RobotEffect> hidden;  // in the plant alone, beside the effects of its file
   MotionAt motion;                  // none: the paper's for its arm, sway_of() for another
   std::vector<sim::FaultEvent> faults;

@@ -8,8 +8,8 @@
 
 #include "arm_rig.hpp"
 #include "arm_robot.hpp"
+#include "arm_sketch.hpp"
 #include "compare/inverse_model.hpp"
-#include "exchange/export_robot.hpp"
 #include "support/seed.hpp"
 
 namespace offnominal::test {
@@ -45,10 +45,6 @@ ArmMotion sines(Index joints) {
         {0.3 - 0.1 * number, {{0.4, 2.0 + 0.3 * number, number}, {0.2, 5.0, 2 * number}}, {}});
   }
   return motion;
-}
-
-sim::MujocoModel model_of(const desk::RobotDescription& robot) {
-  return sim::MujocoModel::from_text(desk::exchange::export_mjcf(robot, "").text);
 }
 
 // Rows well away from any reversal, where a tick tells no direction; before them the run's first,
@@ -100,7 +96,8 @@ Eigen::VectorXd error_of(const desk::RobotDescription& robot, const Away& away) 
 
 TEST(ArmRig, MovesAsOurModelOfTheSameArmSays) {
   const desk::RobotDescription robot = arm_with_friction();
-  const ArmRig rig{model_of(robot), {}, {}, std::vector<double>(robot.joints.size(), 1.0)};
+  const ArmRig rig{
+      bench::mujoco_model_of(robot), {}, {}, std::vector<double>(robot.joints.size(), 1.0)};
   const Away away = away_from_reversals(bench::run_arm(rig, sines(robot.joint_count()), 6, 1));
   ASSERT_GT(away.tau.rows(), 300);
   const Eigen::VectorXd error = error_of(robot, away);
@@ -150,7 +147,7 @@ TEST_P(HiddenInAnArm, IsTheEffectOfItsName) {
   desk::RobotDescription with = robot;
   with.effects.push_back(written(hidden));
   const bool in_model = GetParam() == EffectKind::kRotorInertia;
-  ArmRig rig{model_of(in_model ? with : robot),
+  ArmRig rig{bench::mujoco_model_of(in_model ? with : robot),
              {hidden},
              {},
              std::vector<double>(robot.joints.size(), 1.0)};

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <utility>
 
+#include "arm_recording.hpp"
 #include "arm_robot.hpp"
-#include "exchange/export_robot.hpp"
+#include "arm_sketch.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::bench {
@@ -20,42 +20,6 @@ using sim::hidden::Draws;
 using sim::hidden::Stream;
 
 namespace {
-
-template <typename Values>
-double rms_of(const Values& values) {
-  return std::sqrt(values.square().mean());
-}
-
-// Motion and rigid torque on a grid of 20 ms.
-struct Sketch {
-  Eigen::ArrayXXd q, dq, ddq, tau;  // columns: joints
-};
-
-Sketch sketch_of(const sim::MujocoPlant& plant, const ArmMotion& motion, double duration_s) {
-  constexpr double kGridS = 0.02;
-  const auto rows = static_cast<Index>(duration_s / kGridS);
-  Sketch sketch;
-  for (auto* columns : {&sketch.q, &sketch.dq, &sketch.ddq, &sketch.tau}) {
-    columns->resize(rows, static_cast<Index>(motion.joints.size()));
-  }
-  for (Index row = 0; row < rows; ++row) {
-    const sim::DesiredMotion at = motion.at(static_cast<double>(row) * kGridS);
-    sketch.q.row(row) = at.q;
-    sketch.dq.row(row) = at.dq;
-    sketch.ddq.row(row) = at.ddq;
-    sketch.tau.row(row) = plant.inverse_dynamics(at);
-  }
-  return sketch;
-}
-
-sim::MujocoModel model_of(const desk::RobotDescription& robot) {
-  return sim::MujocoModel::from_text(desk::exchange::export_mjcf(robot, "").text);
-}
-
-sim::MujocoPlant plant_of(const sim::MujocoModel& model) {
-  const auto count = static_cast<Index>(model.joints().size());
-  return {model, {.start = {sim::JointVector::Zero(count), sim::JointVector::Zero(count)}}};
-}
 
 class ArmDrawing {
  public:
@@ -86,13 +50,13 @@ class ArmDrawing {
 
   void draw_recording() {
     constexpr std::array<int, 6> kEvery{10, 8, 5, 4, 2, 1};  // ticks of 1 ms
-    every_ = kEvery[static_cast<std::size_t>(arm_.below(static_cast<int>(kEvery.size())))];
-    truth().rate_hz = 1000.0 / every_;
+    style_.every = kEvery[static_cast<std::size_t>(arm_.below(static_cast<int>(kEvery.size())))];
+    truth().rate_hz = 1000.0 / style_.every;
     truth().duration_s = std::round(arm_.uniform(20, 40));
-    has_five_digits_ = arm_.uniform(0, 1) < 0.35;
-    bits_ = 14 + arm_.below(7);
-    truth().positions = has_five_digits_ ? "5 digits" : fmt::format("{} bit", bits_);
-    logs_velocity_ = arm_.uniform(0, 1) < 0.4;
+    style_.has_five_digits = arm_.uniform(0, 1) < 0.35;
+    style_.bits = 14 + arm_.below(7);
+    truth().positions = style_.has_five_digits ? "5 digits" : fmt::format("{} bit", style_.bits);
+    style_.logs_velocity = arm_.uniform(0, 1) < 0.4;
     noise_share_ = arm_.log_uniform(0.001, 0.005);
   }
 
@@ -117,10 +81,10 @@ class ArmDrawing {
 
   // Rotor inertias and friction, and with them the scale by which effects are drawn.
   void draw_drives() {
-    const sim::MujocoModel model = model_of(rigid_robot_);
-    const sim::MujocoPlant plant = plant_of(model);
+    const sim::MujocoModel model = mujoco_model_of(rigid_robot_);
+    const sim::MujocoPlant plant = mujoco_plant_of(model);
     const Eigen::VectorXd inertias = joint_inertias(plant, motion_);
-    const Sketch sketch = sketch_of(plant, motion_, truth().duration_s);
+    const ArmSketch sketch = arm_sketch_of(plant, motion_, truth().duration_s);
     double largest = 0;
     for (Index j = 0; j < inertias.size(); ++j) {
       largest = std::max(largest, rms_of(sketch.tau.col(j)));
@@ -306,51 +270,21 @@ class ArmDrawing {
 
   void simulate() {
     put_drives();
-    ArmRig rig{model_of(simulated_robot()), rig_effects_, truth().pushes, {}};
+    ArmRig rig{mujoco_model_of(simulated_robot()), rig_effects_, truth().pushes, {}};
     for (const double error : truth().torque_constant_error) {
       rig.torque_constant.push_back(1 / (1 + error));
     }
-    run_ = run_arm(rig, motion_, truth().duration_s, every_);
+    run_ = run_arm(rig, motion_, truth().duration_s, style_.every);
     Draws noise(request_.seed, Stream::kNoise);
     for (Index j = 0; j < run_.tau.cols(); ++j) {
       truth().noise_nm.push_back(noise_share_ * run_.tau.col(j).cwiseAbs().maxCoeff());
     }
-    case_.recording = text_of(run_, noise);
+    case_.recording = recording_text(run_, style_, truth().noise_nm, noise);
     const bool steady = !hides(ArmHides::kChange) && !hides(ArmHides::kPush);
     if (steady && arm_.uniform(0, 1) < 0.4) {
-      case_.holdout = text_of(run_arm(rig, second_motion_, kSecondS, every_), noise);
+      case_.holdout = recording_text(run_arm(rig, second_motion_, kSecondS, style_.every), style_,
+                                     truth().noise_nm, noise);
     }
-  }
-
-  [[nodiscard]] std::string text_of(const ArmRun& run, Draws& noise) const {
-    const Index count = run.q.cols();
-    const double step = 2 * std::numbers::pi / std::exp2(bits_);
-    std::string text = "t";
-    for (const char* quantity : {"q", "dq", "tau"}) {
-      if (std::string_view(quantity) == "dq" && !logs_velocity_) continue;
-      for (Index j = 1; j <= count; ++j) text += fmt::format(",{}{}", quantity, j);
-    }
-    text += '\n';
-    const auto out = std::back_inserter(text);
-    for (Index row = 0; row < run.t_s.size(); ++row) {
-      fmt::format_to(out, "{:.3f}", run.t_s[row]);
-      for (Index j = 0; j < count; ++j) {
-        if (has_five_digits_) {
-          fmt::format_to(out, ",{:.5g}", run.q(row, j));
-        } else {
-          fmt::format_to(out, ",{:.8g}", std::round(run.q(row, j) / step) * step);
-        }
-      }
-      for (Index j = 0; logs_velocity_ && j < count; ++j) {
-        fmt::format_to(out, ",{:.5g}", run.dq(row, j));
-      }
-      for (Index j = 0; j < count; ++j) {
-        const double sigma = case_.truth.noise_nm[static_cast<std::size_t>(j)];
-        fmt::format_to(out, ",{:.5g}", run.tau(row, j) + sigma * noise.gaussian());
-      }
-      text += '\n';
-    }
-    return text;
   }
 
   void ask() {
@@ -380,12 +314,12 @@ class ArmDrawing {
 
   // The payload's torque on every joint, by the arm with and without it.
   void weigh(ArmTrueEffect& one) {
-    const sim::MujocoModel model = model_of(truth_robot_);
-    sim::MujocoPlant plant = plant_of(model);
-    const Sketch without = sketch_of(plant, motion_, truth().duration_s);
+    const sim::MujocoModel model = mujoco_model_of(truth_robot_);
+    sim::MujocoPlant plant = mujoco_plant_of(model);
+    const ArmSketch without = arm_sketch_of(plant, motion_, truth().duration_s);
     plant.set_payload(one.effect.joint, one.effect.number(0),
                       {one.effect.number(1), one.effect.number(2), one.effect.number(3)});
-    const Sketch with = sketch_of(plant, motion_, truth().duration_s);
+    const ArmSketch with = arm_sketch_of(plant, motion_, truth().duration_s);
     double largest = 0;
     for (Index j = 0; j < with.tau.cols(); ++j) {
       one.rms_nm = rms_of(with.tau.col(j) - without.tau.col(j));
@@ -435,11 +369,12 @@ class ArmDrawing {
       add_effect(known, effect.kind, effect.joint, {value, effect.parameters[1]});
     }
     const bool says_limits = knowledge_.uniform(0, 1) < 0.5;
-    const bool says_encoder = knowledge_.uniform(0, 1) < 0.5 && !has_five_digits_;
+    const bool says_encoder = knowledge_.uniform(0, 1) < 0.5 && !style_.has_five_digits;
     for (std::size_t i = 0; i < joints(); ++i) {
       const auto j = static_cast<Index>(i);
       desk::RobotJoint& joint = known.joints[i];
-      if (says_encoder) joint.encoder.counts_per_unit = std::exp2(bits_) / (2 * std::numbers::pi);
+      if (says_encoder)
+        joint.encoder.counts_per_unit = std::exp2(style_.bits) / (2 * std::numbers::pi);
       if (!says_limits) continue;
       joint.joint.min_position = -std::numbers::pi;
       joint.joint.max_position = std::numbers::pi;
@@ -456,10 +391,7 @@ class ArmDrawing {
   ArmRequest request_;
   Draws arm_, knowledge_, hidden_, contact_;
   ArmCase case_;
-  int every_ = 1;
-  int bits_ = 17;
-  bool has_five_digits_ = false;
-  bool logs_velocity_ = false;
+  ArmLogStyle style_;
   double noise_share_ = 0;
   desk::RobotDescription rigid_robot_;  // as it is, bodies alone
   desk::RobotDescription truth_robot_;  // with the friction and rotors that are not hidden

@@ -47,7 +47,7 @@ void write_case(const ArmCase& made, const std::filesystem::path& folder) {
   if (made.holdout) desk::write_file_atomically(folder / "holdout.csv", *made.holdout);
 }
 
-void explain_case(const ArmCase& made, ArmOutcome& outcome) {
+void explain_case(const ArmCase& made, const desk::ExplainOptions& options, ArmOutcome& outcome) {
   const CaseFolder folder;
   write_case(made, folder.path());
   const desk::RobotDescription robot = desk::read_robot_file(folder.path() / "robot.toml");
@@ -55,7 +55,7 @@ void explain_case(const ArmCase& made, ArmOutcome& outcome) {
   std::vector<desk::Log> holdout;
   if (made.holdout) holdout.push_back(desk::read_log(folder.path() / "holdout.csv", robot));
   const double start_s = now_s();
-  const desk::Explanation told = desk::explain(robot, logs, holdout, {});
+  const desk::Explanation told = desk::explain(robot, logs, holdout, options);
   outcome.time_s = now_s() - start_s;
   outcome.verdict = desk::name_of(told.verdict);
   for (const desk::Finding& one : told.found) outcome.named.push_back(one.what);
@@ -68,7 +68,7 @@ ArmScore score_of_failure(const ArmTruth& truth) { return arm_score_of(truth, {}
 
 }  // namespace
 
-ArmOutcome run_arm_case(const ArmRequest& request) {
+ArmOutcome run_arm_case(const ArmRequest& request, const desk::ExplainOptions& options) {
   ArmOutcome outcome;
   outcome.request = request;
   ArmCase made;
@@ -80,7 +80,7 @@ ArmOutcome run_arm_case(const ArmRequest& request) {
   }
   outcome.truth = made.truth;
   try {
-    explain_case(made, outcome);
+    explain_case(made, options, outcome);
   } catch (const std::exception& error) {
     outcome.failed = error.what();
     outcome.verdict = "error";

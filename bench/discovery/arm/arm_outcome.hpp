@@ -23,9 +23,9 @@ struct ArmOutcome {
   double time_s = 0;  // of explain() alone
 };
 
-// Simulates one case, reads its recordings as files are read, and lets the analysis, on one
-// thread, say what is hidden.
-ArmOutcome run_arm_case(const ArmRequest& request);
+// Simulates one case, reads its recordings as files are read, and lets the analysis say what is
+// hidden, on one thread unless the options say otherwise.
+ArmOutcome run_arm_case(const ArmRequest& request, const desk::ExplainOptions& options = {});
 
 // Writes every case as its owner would have it, into a new folder GROUP-NUMBER of `folder` each:
 // robot.toml, recording.csv, holdout.csv where there is one, and truth.json with what is hidden.
