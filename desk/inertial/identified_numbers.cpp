@@ -283,6 +283,11 @@ class FittedNumbers {
   }
 
   void estimate() {
+    const auto& moves = fit_.base_request().moves;
+    if (std::find(moves.begin(), moves.end(), char{1}) == moves.end()) {
+      for (const Told& one : told_) one.number->why_no_interval = "no interval: nothing moves";
+      return;
+    }
     LinearModel model;
     model.priors = priors_;
     const MatrixXd columns = fit_.columns() * slopes_;

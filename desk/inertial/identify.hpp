@@ -8,7 +8,7 @@
 
 #include "compare/before_after.hpp"
 #include "compare/compare.hpp"
-#include "identify/estimates.hpp"
+#include "identify/freedom.hpp"
 #include "identify/inertial_regressor.hpp"
 #include "identify/on_progress.hpp"
 #include "log/log.hpp"

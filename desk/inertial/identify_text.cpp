@@ -50,8 +50,7 @@ std::string links_text(const Identification& result) {
                          {"in the file", 11},
                          {"95 %", 19},
                          {"centre of mass m", 26},
-                         {"in the file", 26},
-                         {"", -12}});
+                         {"in the file", 26}});
   std::string text = table.heading();
   const auto place = [](const IdentifiedLink& link, double IdentifiedNumber::*which) {
     return fmt::format("{}, {}, {}", number_or_dash(link.centre[0].*which),
@@ -59,10 +58,10 @@ std::string links_text(const Identification& result) {
                        number_or_dash(link.centre[2].*which));
   };
   for (const IdentifiedLink& link : result.links) {
-    text += table.row(
-        link.link + 1, number_or_dash(link.mass.after), number_or_dash(link.mass.before),
-        link.mass.determined ? interval_of(link.mass) : "not determined",
-        place(link, &IdentifiedNumber::after), place(link, &IdentifiedNumber::before), "");
+    text +=
+        table.row(link.link + 1, number_or_dash(link.mass.after), number_or_dash(link.mass.before),
+                  link.mass.determined ? interval_of(link.mass) : "not determined",
+                  place(link, &IdentifiedNumber::after), place(link, &IdentifiedNumber::before));
   }
   return text;
 }

@@ -101,10 +101,17 @@ void InertialFit::scale_geometry() {
   priors.insert(priors.begin(), heavier);
   const PriorFit fit = least_squares_with_priors(of_rows.asDiagonal() * columns,
                                                  of_rows.cwiseProduct(data.target), priors, 1);
+  // Where the mass is in another place than the bars have it, their weight may fit to nothing, or
+  // worse. Then as much as makes torques of the size that was measured.
+  constexpr double kTooLight = 0.1;
+  const double size = columns.col(0).cwiseProduct(of_rows).norm();
+  const double measured = data.torque.cwiseProduct(of_rows).norm();
+  const double by_size = size > 0 ? std::clamp(measured / size, kLightest, kHeaviest) : 1;
+  const double heavier_by = std::max(1 + fit.x[0], kTooLight * by_size);
   for (const std::size_t link : unknown) {
     Joint<double>& joint = robot_.joints[link].joint;
-    joint.mass_kg *= 1 + fit.x[0];
-    for (double& inertia : joint.inertia_kg_m2) inertia *= 1 + fit.x[0];
+    joint.mass_kg *= heavier_by;
+    for (double& inertia : joint.inertia_kg_m2) inertia *= heavier_by;
   }
   for (Workspace& at : recordings_) at.set_model(robot_);
 }

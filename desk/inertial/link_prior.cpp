@@ -17,7 +17,7 @@ Vector3d reach_of(const RobotDescription& robot, std::size_t link) {
   return Vector3d(robot.joints[link + 1].joint.origin_m.data());
 }
 
-// Mean length of the links that have one, m; of an arm without any, 0.1.
+// Mean length of the links that have one, m; of an arm without any, 0.3.
 double mean_reach(const RobotDescription& robot) {
   double sum = 0;
   int count = 0;
@@ -26,7 +26,7 @@ double mean_reach(const RobotDescription& robot) {
     sum += length;
     count += length > 0;
   }
-  constexpr double kUnknown = 0.1;
+  constexpr double kUnknown = 0.3;
   return count > 0 ? sum / count : kUnknown;
 }
 
@@ -62,14 +62,15 @@ PseudoInertia believed_inertia(const RobotDescription& robot, std::size_t link) 
 
 std::vector<Joint<double>> joints_of_geometry(const RobotDescription& robot) {
   constexpr double kThickness = 0.25;
+  constexpr double kLast = 0.5;  // that of the last link: its mass may be anywhere about its joint
   const double mean = mean_reach(robot);
-  const double radius = kThickness * mean;
   std::vector<Joint<double>> joints;
   for (std::size_t link = 0; link < robot.joints.size(); ++link) {
     Joint<double> joint = robot.joints[link].joint;
     const Vector3d reach = reach_of(robot, link);
     const double mass = std::max(reach.norm(), mean / 2);  // 1 kg/m
     const Vector3d centre = reach / 2;
+    const double radius = (link + 1 < robot.joints.size() ? kThickness : kLast) * mean;
     const Matrix3d spread = reach * reach.transpose() / 12 + radius * radius * Matrix3d::Identity();
     PseudoInertia inertia;
     inertia.topLeftCorner<3, 3>() = mass * (spread + centre * centre.transpose());

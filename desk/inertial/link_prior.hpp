@@ -16,7 +16,8 @@ PseudoInertia believed_inertia(const RobotDescription& robot, std::size_t link);
 
 // Of an arm of which nothing but the geometry is known: each link a bar from its joint to the next,
 // as thick as a quarter of the arm's mean link, all of one weight per length, 1 kg/m: the data say
-// how much. The last link, of which nobody knows where it ends, is a ball about its joint.
+// how much. The last link, of which nobody knows where it ends, is a ball about its joint, of half
+// a link's radius of gyration.
 std::vector<Joint<double>> joints_of_geometry(const RobotDescription& robot);
 
 }  // namespace offnominal::desk

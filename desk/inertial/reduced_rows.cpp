@@ -63,7 +63,7 @@ ReducedRows::Equations ReducedRows::weighted(const VectorXd& joint_weights, int 
   const Index wide = pieces_.front().upper.cols();
   Index rows = 0;
   for (const Piece& one : pieces_) rows += one.upper.rows();
-  MatrixXd stacked = MatrixXd::Zero(rows, wide);
+  MatrixXd stacked = MatrixXd::Zero(std::max<Index>(rows, 1), wide);
   Index at = 0;
   for (Index joint = 0; joint < joints_; ++joint) {
     for (int part = 0; part < part_count_; ++part) {

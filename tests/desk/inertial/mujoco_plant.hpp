@@ -35,9 +35,9 @@ struct PlantDrive {
 
 struct PlantMotion {
   double duration_s = 20;
-  double rate_hz = 250;
+  double rate_hz = 500;
   double amplitude = 1;
-  double torque_noise = 0.02;
+  double torque_noise = 0.1;
   std::uint64_t seed = 1;
   std::vector<std::size_t> standing = {};  // joints that do not move
 };

@@ -63,7 +63,6 @@ TEST(Payload, OfSixJointsIsAMassWithAPlace) {
   MujocoPlant plant(carrying(file, 0.8, place), plain_drives(6));
   PlantMotion motion;
   motion.duration_s = 12;
-  motion.rate_hz = 200;
   const Identification result = payload_of(file, plant.record(motion));
   ASSERT_TRUE(result.payload.has_value());
   EXPECT_TRUE(result.objections.empty());
