@@ -28,7 +28,16 @@ VectorXd HoldOut::cross_validated(const std::vector<Term>& terms, bool with_shap
   constexpr int kParts = 5;
   constexpr double kBlockS = 2;
   const RowLayout& layout = regression_.data().layout;
-  const RowLayout::Blocks blocks = layout.blocks(kBlockS);
+  // Of a short recording every part needs some of it, and the others what it is predicted by.
+  double block_s = kBlockS;
+  if (!regression_.data().recordings[0].at_rest) {
+    double whole_s = 0;
+    for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+      whole_s += layout.period_s(r) * static_cast<double>(layout.samples(r));
+    }
+    block_s = std::min(kBlockS, whole_s / (2 * kParts));
+  }
+  const RowLayout::Blocks blocks = layout.blocks(block_s);
   const bool has_shapes = std::any_of(terms.begin(), terms.end(),
                                       [](const Term& term) { return !term.ranges.empty(); });
   VectorXd residual(layout.rows());
