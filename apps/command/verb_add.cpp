@@ -159,7 +159,7 @@ void add_all_found(const AddOptions& options, const std::string& command_line,
   FitData data = read_fit_data("add", "--log", files, read_log_or_hold_map, progress);
   ExplainOptions explain;
   explain.threads = options.threads;
-  explain.link_share = options.link_share.value_or(explain.link_share);
+  explain.link_share = options.link_share;
   explain.robot_file = files.robot;
   explain.keep = options.keep;
   explain.source = "Fitted to " + file_names(files.logs) + " by offnominal add --all-found.";
@@ -263,7 +263,7 @@ void set_up_add(CLI::App& verb, ExitCode& exit_code) {
   add_filter_options(verb, options->filter);
   verb.add_option("--link-share", options->link_share,
                   "With --all-found: how far mass and inertia of a link may be off the file, as a "
-                  "share [0.05]")
+                  "share [0.05, or more where the recordings ask for it]")
       ->check(CLI::Range(0.0, 1.0));
   add_threads_option(verb, options->threads, "With --all-found: threads");
   add_report_option(verb, options->answer);

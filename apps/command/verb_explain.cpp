@@ -59,9 +59,9 @@ void set_up_explain(CLI::App& verb, ExitCode& /*exit_code*/) {
   add_channels_option(verb, options->files.channels, "recordings'");
   add_keep_option(verb, options->explain.keep);
   verb.add_option("--link-share", options->explain.link_share,
-                  "How far mass and inertia of a link may be off the file, as a share")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+                  "How far mass and inertia of a link may be off the file, as a share; beyond 0.1 "
+                  "its centre of mass too [0.05, or more where the recordings ask for it]")
+      ->check(CLI::Range(0.0, 1.0));
   verb.add_option("--replays", options->explain.replays,
                   "How often each finding is checked against the model without it; 0: never")
       ->check(CLI::Range(0, 10000))

@@ -18,7 +18,11 @@ using nlohmann::ordered_json;
 namespace {
 
 std::vector<std::string> objections_to(const Explanation& e) {
-  if (!is_to_write(e.verdict)) {
+  const bool sure = std::any_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
+    return !holds_in_any(e.ambiguous, one.what);
+  });
+  // What one joint leaves open stops no other's.
+  if (!e.data_faults.empty() || (!is_to_write(e.verdict) && !sure)) {
     return {fmt::format("the verdict is {}: {}", name_of(e.verdict), e.words)};
   }
   if (e.found.empty()) return {"no effect is missing: fit the one that is there again with add"};
@@ -169,6 +173,12 @@ std::string text_of(const AddedFindings& added, const ExplainNames& names, bool 
   }
   for (const std::string& objection : added.objections) {
     text += "\nNothing was written: " + objection + "\n";
+  }
+  for (const Finding& one : added.explanation.found) {
+    if (!added.objections.empty() || !holds_in_any(added.explanation.ambiguous, one.what)) continue;
+    text += fmt::format(
+        "\nnote: {} of joint {} is not written: the recordings do not tell it from others\n",
+        one.what.name(), one.what.joint + 1);
   }
   for (const HeldNumber& held : added.explanation.held) {
     if (!held.contradicted) text += "\nnote: " + held.words + "\n";

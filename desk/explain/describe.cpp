@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
 #include "explain/band_shift.hpp"
 #include "explain/confirm.hpp"
+#include "explain/questions.hpp"
 #include "explain/remainder.hpp"
 #include "identify/estimates.hpp"
 #include "identify/parallel.hpp"
@@ -110,14 +112,39 @@ void describe_suspicion(const SearchResult& from, Explanation& to) {
 void describe_rejections(const SearchResult& from, Explanation& to) {
   const Screening screening = from.search.screen(from.found.terms(), from.found.fit);
   const Data& data = from.regression.data();
-  const VectorXd detectable = (std::sqrt(kRelevantShare) * data.layout.rms(from.found.fit.residual))
-                                  .cwiseMax(kRelevantTorque * data.layout.rms(data.torque));
   for (const Screened& one : screening.candidates) {
     const Index joint = one.term.joint;
+    // What may be there is not among what does not show.
+    if (holds_in_any(to.ambiguous, {one.term.effect->kind(), joint})) continue;
     const double p = std::min(
         1.0, std::pow(10.0, -one.log10_p) * static_cast<double>(screening.candidates.size()));
-    to.rejected.push_back(
-        {{one.term.effect->kind(), joint}, p, detectable[joint], effort_unit(from.robot, joint)});
+    to.rejected.push_back({{one.term.effect->kind(), joint},
+                           p,
+                           smallest_shown(data, from.found.fit, one),
+                           effort_unit(from.robot, joint)});
+  }
+}
+
+// Which joints' recordings would not show what any drive may have, and what of it.
+void ask_each_joint(const SearchResult& from, Explanation& to) {
+  constexpr std::array kAsked{EffectKind::kViscousFriction, EffectKind::kCoulombFriction,
+                              EffectKind::kTorqueOffset, EffectKind::kJointStiffness};
+  constexpr double kShareOfTorque = 0.1;  // an effect of this much should not stay unseen
+  const VectorXd torque = from.regression.data().layout.rms(from.regression.data().torque);
+  for (const Rejection& one : to.rejected) {
+    const auto joint = static_cast<std::size_t>(one.what.joint);
+    Excitation& of = to.excitation[joint];
+    if (to.at_rest || !of.moves) continue;
+    const bool asked = std::find(kAsked.begin(), kAsked.end(), one.what.kind) != kAsked.end();
+    if (!asked || one.smallest_detectable <= kShareOfTorque * torque[one.what.joint]) continue;
+    of.sufficient = false;
+    of.lack += fmt::format("{}{}", of.lack.empty() ? "" : ", ", one.what.name());
+    if (std::isfinite(one.smallest_detectable)) {
+      of.lack += fmt::format(" below {:.2g} {}", one.smallest_detectable, one.unit);
+    }
+  }
+  for (Excitation& one : to.excitation) {
+    if (one.moves && !one.sufficient) one.lack += " would not show in these recordings";
   }
 }
 
@@ -226,6 +253,7 @@ void describe(const SearchResult& result, Explanation& to) {
   describe_findings(result, to);
   describe_suspicion(result, to);
   describe_rejections(result, to);
+  ask_each_joint(result, to);
   describe_shifts(result, to);
   describe_hold_friction(result, to);
   describe_loud(result, to);

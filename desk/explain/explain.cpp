@@ -17,6 +17,8 @@
 #include "explain/find_model.hpp"
 #include "explain/free_function.hpp"
 #include "explain/friction_family.hpp"
+#include "explain/link_share.hpp"
+#include "explain/questions.hpp"
 #include "explain/undecided.hpp"
 #include "explain/verdict.hpp"
 #include "identify/file_errors.hpp"
@@ -50,7 +52,8 @@ class Explainer {
     check(logs, plan, kFewest);
     check(holdout, plan, kMinFilteredSamples);
     const VectorXd widths = set_sign_widths(robot_, logs, plan);
-    nuisance_.link_share = options.link_share;
+    nuisance_.link_share = options.link_share.value_or(kUsualLinkShare);
+    nuisance_.link_geometry = nuisance_.link_share > kCadShare;
     both_ways_ = came_both_ways(logs);
     const auto data_of = [&](const std::vector<Stretch>& some) {
       auto made = searched_workspaces(some, robot_, plan, widths);
@@ -58,30 +61,23 @@ class Explainer {
       return std::make_unique<Data>(std::move(made), robot_, nuisance_);
     };
     const std::vector<Stretch> searched = stretches_of(logs, robot_, plan);
-    data_ = data_of(searched);
     left_out_ = words_of(searched, logs);
-    if (!holdout.empty()) held_out_ = data_of(stretches_of(holdout, robot_, plan));
-    regression_ = std::make_unique<Regression>(*data_);
-    tell("preparing the candidates' regressors");
-    search_ = std::make_unique<Search>(*regression_,
-                                       SearchOptions{.bootstrap_draws = options.bootstrap_draws,
-                                                     .seed = options.seed,
-                                                     .threads = options.threads});
+    std::unique_ptr<Data> held_out;
+    if (!holdout.empty()) held_out = data_of(stretches_of(holdout, robot_, plan));
+    set_data(data_of(searched), std::move(held_out));
   }
 
   // A recording at fault tells nothing of effects: then there is no search, and what the model
   // leaves of the recording is still shown.
   Explanation run(bool search) {
-    const HoldOut hold_out(*regression_, held_out_.get());
     Explanation result;
     if (!options_.robot_file.empty() && !is_stream(options_.robot_file))
       result.robot_file = shell_word(options_.robot_file);
     result.at_rest = data_->recordings[0].at_rest;
-    result.holdout_is_apart = hold_out.is_apart();
+    result.holdout_is_apart = hold_out_->is_apart();
     result.excitation = excitation_of(data_->recordings);
-    FoundModel found = find_model(
-        *search_, *regression_, hold_out, result.excitation,
-        {.most_effects = search ? most_effects() : 0, .replays = options_.replays}, on_progress_);
+    FoundModel found = search_model(search, result);
+    const HoldOut& hold_out = *hold_out_;
     result.over_variable = leave_out_stand_ins(*regression_, hold_out, options_.threads, found);
     result.ambiguous = classes_of(found, hold_out);
     if (search) {
@@ -89,11 +85,15 @@ class Explainer {
         result.ambiguous.push_back(std::move(one));
       }
     }
+    for (std::size_t joint = 0; joint < found.unsure.size(); ++joint) {
+      if (found.unsure[joint] != 0) result.unsure.push_back(static_cast<Index>(joint));
+    }
     tell("fitting the numbers");
     ImprovedRobot improved = improved_robot(
         file_, robot_, *data_, {nuisance_, fitted_effects(file_), {}, options_.source},
         relinearise(robot_, *data_, nuisance_, found.terms(), found.fit));
     describe({robot_, *regression_, *search_, hold_out, found, improved}, result);
+    leave_out_undecided(found, result.ambiguous, improved);
     result.improved = std::move(improved.robot);
     result.unwritable = std::move(improved.unwritable);
     result.held = std::move(improved.held);
@@ -114,6 +114,76 @@ class Explainer {
  private:
   void tell(const std::string& doing) const {
     if (on_progress_) on_progress_(doing);
+  }
+
+  void set_data(std::unique_ptr<Data> data, std::unique_ptr<Data> held_out) {
+    data_ = std::move(data);
+    held_out_ = std::move(held_out);
+    regression_ = std::make_unique<Regression>(*data_);
+    hold_out_ = std::make_unique<HoldOut>(*regression_, held_out_.get());
+    tell("preparing the candidates' regressors");
+    search_ = std::make_unique<Search>(*regression_,
+                                       SearchOptions{.bootstrap_draws = options_.bootstrap_draws,
+                                                     .seed = options_.seed,
+                                                     .threads = options_.threads});
+  }
+
+  [[nodiscard]] FoundModel find(bool search, const Explanation& result) const {
+    return find_model(*search_, *regression_, *hold_out_, result.excitation,
+                      {.most_effects = search ? most_effects() : 0, .replays = options_.replays},
+                      on_progress_);
+  }
+
+  // With links as far off as the recordings ask for, where nobody has said how far that is.
+  FoundModel search_model(bool search, Explanation& result) {
+    result.link_share = nuisance_.link_share;
+    FoundModel usual = find(search, result);
+    if (!search || options_.link_share || result.at_rest) return usual;
+    tell("asking how far the links' numbers are off");
+    const auto share = wider_link_share(robot_, *data_, options_.threads);
+    if (!share) return usual;
+    // What the fits point to has to stay where it is until one of them is chosen.
+    const NuisanceOptions before = nuisance_;
+    auto data = std::move(data_);
+    auto held_out = std::move(held_out_);
+    auto regression = std::move(regression_);
+    auto hold_out = std::move(hold_out_);
+    auto search_of_usual = std::move(search_);
+    nuisance_.link_share = *share;
+    nuisance_.link_geometry = true;
+    set_data(std::make_unique<Data>(*data, robot_, nuisance_),
+             held_out ? std::make_unique<Data>(*held_out, robot_, nuisance_) : nullptr);
+    FoundModel wide = find(search, result);
+    if (is_clearly_better(*hold_out_, wide, usual)) {
+      result.link_share = *share;
+      result.link_share_judged = true;
+      return wide;
+    }
+    nuisance_ = before;
+    data_ = std::move(data);
+    held_out_ = std::move(held_out);
+    regression_ = std::move(regression);
+    hold_out_ = std::move(hold_out);
+    search_ = std::move(search_of_usual);
+    return usual;
+  }
+
+  // What could as well be something else is not written; its numbers were fitted beside it.
+  static void leave_out_undecided(const FoundModel& found,
+                                  const std::vector<std::vector<EffectAt>>& classes,
+                                  ImprovedRobot& improved) {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < found.accepted.size(); ++i) {
+      const Term& term = found.accepted[i].term;
+      if (improved.added[i] == kUnwritten) continue;
+      if (holds_in_any(classes, {term.effect->kind(), term.joint})) {
+        out.push_back(improved.added[i]);
+      }
+    }
+    std::sort(out.rbegin(), out.rend());
+    for (const std::size_t i : out) {
+      improved.robot.effects.erase(improved.robot.effects.begin() + static_cast<std::ptrdiff_t>(i));
+    }
   }
 
   // Readings at rest have no filter, and their friction by the direction of approach no file.
@@ -212,6 +282,8 @@ class Explainer {
     const Term& mine = found.accepted[i].term;
     const std::vector<Term> others = found.terms_without(i);
     const ModelFit beside = regression_->fit(others);
+    const double own =
+        weighted_energy(*data_, mine, found.fit.coefficients[i], found.fit.joint_weights);
     Screening screening = search_->screen(others, beside);
     // What takes far less than the best does not come as close as noise would let it.
     constexpr double kNear = 0.25;
@@ -223,7 +295,10 @@ class Explainer {
     for (const Proposal& other : search_->propose(others, beside, screening)) {
       const Term& term = other.terms.back();
       const EffectAt name{term.effect->kind(), term.joint};
-      if (name == same[0] || !as_good(*data_, found.fit, other.fit) ||
+      const double energy = std::max(
+          own,
+          weighted_energy(*data_, term, other.fit.coefficients.back(), found.fit.joint_weights));
+      if (name == same[0] || !as_good(*data_, found.fit, other.fit, energy) ||
           is_nested(*data_, found.baseline, mine, term) ||
           is_refuted_by_simpler(*data_, mine, found.fit, term, other.fit)) {
         continue;
@@ -245,6 +320,7 @@ class Explainer {
   std::unique_ptr<Data> data_;
   std::unique_ptr<Data> held_out_;
   std::unique_ptr<Regression> regression_;
+  std::unique_ptr<HoldOut> hold_out_;
   std::unique_ptr<Search> search_;
 };
 

@@ -91,7 +91,7 @@ struct Suspicion {
 struct Rejection {
   EffectAt what;
   double p_value = 1;
-  double smallest_detectable = 0;  // rms torque that would have been seen
+  double smallest_detectable = 0;  // rms torque that would have been seen; infinite: none would
   std::string unit;
 };
 
@@ -161,10 +161,16 @@ struct Explanation {
   std::vector<Rejection> rejected;
   std::vector<StructureShare> where;  // of what is left, largest first
   std::vector<Shift> shifts;
+  // How far the links' masses, centres of mass and inertias were let off the file, and whether the
+  // recordings said so.
+  double link_share = 0;
+  bool link_share_judged = false;
   std::vector<DataFault> data_faults;  // that make the verdict
   std::vector<DataFault> data_hints;   // that leave the answer right
   std::vector<DataFault> left_out;     // whose stretches are left out
   std::vector<Excitation> excitation;
+  // Joints on which something shows that these recordings do not tell from the model's own numbers.
+  std::vector<Eigen::Index> unsure;
   std::vector<std::string> advice;
   std::string robot_file = "ROBOT";         // as commands in the advice name it
   bool at_rest = false;                     // by hold maps
@@ -192,7 +198,9 @@ struct ExplainOptions {
   std::uint64_t seed = 1;
   int bootstrap_draws = 1999;
   int replays = 19;  // 0: none
-  double link_share = 0.05;
+  // How far the links' numbers may be off the file, two standard deviations as a share; none: what
+  // the recordings say of it (link_share.hpp).
+  std::optional<double> link_share = {};
   int most_effects = 6;         // of one joint
   std::string source = {};      // what `improved` says of where its numbers come from
   std::string robot_file = {};  // as the user named it, for commands in the advice; empty: "ROBOT"

@@ -162,11 +162,22 @@ report::Waterfall waterfall_of(const Explanation& e, Index joint) {
   const JointErrors& errors = joint_of(e, joint);
   waterfall.title = fmt::format("Held-out error of joint {}, effect by effect", joint + 1);
   waterfall.value_axis = {fmt::format("rms {} error", effort_name(errors.unit)), errors.unit};
+  // Of other joints' effects only those that show on this one.
+  constexpr double kShows = 0.01;
   for (std::size_t i = 0; i < e.waterfall.size(); ++i) {
-    const std::string label = i == 0 ? "model as it is"
-                                     : fmt::format("+ {} on joint {}", title_of(e.found[i - 1]),
-                                                   e.found[i - 1].what.joint + 1);
-    waterfall.steps.push_back({label, e.waterfall[i][joint]});
+    const double error = e.waterfall[i][joint];
+    if (i == 0) {
+      waterfall.steps.push_back({"model as it is", error});
+      continue;
+    }
+    const Finding& added = e.found[i - 1];
+    const bool elsewhere = added.what.joint != joint;
+    const double before = e.waterfall[i - 1][joint];
+    if (elsewhere && std::abs(error - before) <= kShows * before) continue;
+    waterfall.steps.push_back(
+        {elsewhere ? fmt::format("+ {} on joint {}", title_of(added), added.what.joint + 1)
+                   : "+ " + title_of(added),
+         error});
   }
   waterfall.levels.push_back({errors.holdout_noise_floor, "noise floor"});
   waterfall.width = report::Width::kHalf;

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "common/input_name.hpp"
 #include "common/shell_word.hpp"
 #include "common/text_table.hpp"
@@ -63,9 +65,9 @@ std::string text_of_findings(const Explanation& e) {
     for (const Estimate& one : finding.parameters) text += "   " + words_of(one) + "\n";
     text += fmt::format(
         "   held-out error without it {:.4g} {}, with it {:.4g} {}; p = {:.2g} over the whole "
-        "search, {:.2g} by replay\n",
+        "search{}\n",
         finding.holdout_before, unit, finding.holdout_after, unit, finding.p_value,
-        finding.p_replay);
+        finding.p_replay < 1 ? ", and replays of the model without it do not come as far" : "");
   }
   for (const auto& same : e.ambiguous) {
     text += "\nnot told apart:";
@@ -128,7 +130,10 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
   }
   for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
   for (const std::string& why : e.unwritable) text += "cannot be written: " + why + "\n";
-  if (is_to_write(e.verdict) && !e.found.empty() && e.unwritable.empty()) {
+  const bool sure = std::any_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
+    return !holds_in_any(e.ambiguous, one.what);
+  });
+  if (sure && e.data_faults.empty() && e.unwritable.empty()) {
     text += command_to_add(names);
   }
   return text;

@@ -8,10 +8,10 @@
 #include <numeric>
 #include <utility>
 
-#include "explain/alternatives.hpp"
 #include "explain/any_shape.hpp"
 #include "explain/confirm.hpp"
 #include "explain/friction_family.hpp"
+#include "explain/questions.hpp"
 #include "explain/replay_null.hpp"
 #include "identify/parallel.hpp"
 
@@ -156,6 +156,7 @@ class Finder {
   FoundModel run() {
     found_.baseline = regression_.fit({});
     found_.fit = found_.baseline;
+    found_.unsure.assign(joints_.size(), 0);
     found_.held_out_before = hold_out_.residual({}, found_.baseline);
     found_.held_out_after = found_.held_out_before;
     while (options_.most_effects > 0 && round()) {
@@ -191,7 +192,6 @@ class Finder {
   // Whether it is more than nothing to the joint's torque, and more than what effects that were
   // found before leave of themselves: each of them is a simplification of something.
   [[nodiscard]] bool matters(const Fall& fall) const {
-    constexpr double kLeftOfItself = 0.06;  // of the error that the joint had at first
     const Data& data = regression_.data();
     const RowLayout& layout = data.layout;
     return fall.rms >= kRelevantTorque * layout.rms(data.torque)[fall.joint] &&
@@ -234,7 +234,7 @@ class Finder {
     constexpr double kWorthAWord = 0.02;
     // Regression only screens what remembers: its columns hold the noise that they explain.
     if (!found_.accepted.empty() || one.terms.back().effect->is_only_screened()) return;
-    if (one.added > 1 || !excitation_[joint_of(one)].sufficient) return;
+    if (one.added > 1 || !excitation_[joint_of(one)].moves) return;
     const Fall fall = fall_of(found_.fit, one.fit);
     if (fall.share < kWorthAWord || !matters(fall)) return;
     const double before = hold_out_.rms(found_.held_out_after)[fall.joint];
@@ -277,7 +277,7 @@ class Finder {
       const auto& failed = joints_[joint].failed;
       if (std::find(failed.begin(), failed.end(), kinds_of(one)) != failed.end()) continue;
       if (!relevant(found_.fit, one.fit)) continue;
-      if (!shows(regression_.data(), excitation_[joint], one.terms.back())) continue;
+      if (!excitation_[joint].moves) continue;
       if (is_misfit_of_a_curve(one.terms.back())) continue;
       return &one;
     }
@@ -377,6 +377,10 @@ class Finder {
       const double p = search_.family_p(one.terms[i], without, null);
       if (p > search_.options().family_error) {
         suspect(one, p);
+        return false;
+      }
+      if (!shown(regression_.data(), one.terms, i, one.fit, without).is_enough()) {
+        found_.unsure[joint_of(one)] = 1;
         return false;
       }
       fresh.push_back({one.terms[i], p, 1});

@@ -40,6 +40,9 @@ struct FoundModel {
   // Residuals on held-out data without any and with all of the accepted.
   Eigen::VectorXd held_out_before;
   Eigen::VectorXd held_out_after;
+  // Per joint: whether something shows that its recordings do not tell from the model's own
+  // numbers.
+  std::vector<char> unsure;
   // Held-out error, rms per joint, with the first 0, 1, ... of the accepted.
   std::vector<Eigen::VectorXd> waterfall;
 

@@ -36,6 +36,9 @@ struct MapOver {
 MapOver map_over(const Data& data, const Eigen::VectorXd& residual, Eigen::Index joint,
                  const std::string& variable);
 
+// One column per bin of such a variable, stacked: 1 where the joint is in it, 0 elsewhere.
+Eigen::MatrixXd bins_over(const Data& data, Eigen::Index joint, const std::string& variable);
+
 // Where in time the energy of a joint's residual is concentrated: half-second windows, next to each
 // other as one, of the loudest tenth and more than four times the median.
 struct LoudWindow {

@@ -23,7 +23,7 @@ constexpr double kSmallestShare = 0.02;  // of the energy, for a closer look
 // of the range moved is a constant torque with a slope; a time constant as long as a recording is
 // friction that stays; a Stribeck velocity at the low end of its range is the width of the sign.
 bool is_within_reach(const Data& data, const Term& term, const VectorXd& coefficients) {
-  constexpr double kRangesAway = 10;
+  constexpr double kRangesAway = 3;
   constexpr double kNearEnd = 1.02;
   if (term.effect->kind() == EffectKind::kJointStiffness) {
     const auto [low, high] = positions_seen(data.recordings, term.joint);

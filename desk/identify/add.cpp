@@ -275,7 +275,7 @@ class Adder {
     const NuisanceTerm& term = last.data->nuisance.terms[i];
     if (term.kind == NuisanceTerm::Kind::kLink) {
       const auto link = static_cast<std::size_t>(term.joint);
-      const double factor = last.link_factors[link];
+      const double factor = last.links[link].factor;
       result_.fit.links.push_back({link, factor, counted_from(factor, by)});
       return;
     }

@@ -27,7 +27,7 @@ VectorXd HoldOut::cross_validated_with_shapes(const std::vector<Term>& terms) co
 
 VectorXd HoldOut::cross_validated(const std::vector<Term>& terms, bool with_shapes) const {
   const RowLayout& layout = regression_.data().layout;
-  const std::vector<int> parts = held_out_parts(layout);
+  const std::vector<int> parts = held_out_parts(layout, regression_.data().recordings[0].at_rest);
   const bool has_shapes = std::any_of(terms.begin(), terms.end(),
                                       [](const Term& term) { return !term.ranges.empty(); });
   VectorXd residual(layout.rows());

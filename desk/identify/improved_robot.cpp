@@ -253,12 +253,23 @@ void set_fitted_width(RobotDescription& robot, const std::vector<std::size_t>& r
 }
 
 void scale_links(const Relinearised& found, const std::string& source, RobotDescription& robot) {
-  robot = with_link_factors(std::move(robot), found.link_factors);
-  for (std::size_t link = 0; link < found.link_factors.size(); ++link) {
-    if (found.link_factors[link] == 1) continue;
+  const RobotDescription before = robot;
+  robot = with_link_changes(std::move(robot), found.links);
+  for (std::size_t link = 0; link < found.links.size(); ++link) {
+    const LinkChange& by = found.links[link];
+    if (by.largest(size_of_link(before, link)) == 0) continue;
+    std::string words = fmt::format("Mass and inertia times {:.6g}", by.factor);
+    if (by.inertia_factor != 1) {
+      words = fmt::format("Mass times {:.6g}, inertia times {:.6g}", by.factor,
+                          by.factor * by.inertia_factor);
+    }
+    const auto& c = by.centre_m;
+    if (c[0] != 0 || c[1] != 0 || c[2] != 0) {
+      words += fmt::format(", centre of mass moved by {:.4g}, {:.4g}, {:.4g} m", c[0], c[1], c[2]);
+    }
     std::string& of_link = robot.joints[link].source;
     if (!of_link.empty()) of_link += " ";
-    of_link += fmt::format("Mass and inertia times {:.6g}: {}", found.link_factors[link], source);
+    of_link += words + ": " + source;
   }
 }
 
@@ -275,10 +286,12 @@ std::vector<std::size_t> fitted_effects(const RobotDescription& robot) {
 ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescription& robot,
                              const Data& data, const FileFitOptions& options, Relinearised found) {
   NuisanceOptions nuisance = options.nuisance;
-  if (std::all_of(found.link_factors.begin(), found.link_factors.end(),
-                  [](double factor) { return std::abs(factor - 1) < kWorthWriting; })) {
-    nuisance.link_share = 0;
+  bool as_the_file = true;
+  for (std::size_t link = 0; link < found.links.size(); ++link) {
+    as_the_file =
+        as_the_file && found.links[link].largest(size_of_link(file, link)) < kWorthWriting;
   }
+  if (as_the_file) nuisance.link_share = 0;
   ImprovedRobot improved;
   improved.robot = file;
   FileFitter fitter(file, robot, data, std::move(nuisance), options, found.terms);

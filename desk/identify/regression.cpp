@@ -88,6 +88,15 @@ bool takes_place_of(const Term& term, const NuisanceTerm& nuisance) {
 }
 
 MatrixXd columns_of(const Data& data, const Term& term) {
+  const EffectAction action = term.effect->info().action;
+  const bool of_whole_arm = action == EffectAction::kPointMass || term.effect->is_only_screened();
+  const auto& all = all_candidates();
+  const bool is_common = std::any_of(all.begin(), all.end(), [&](const auto& one) {
+    return one.get() == term.effect;  // any other may have values of its own
+  });
+  if (of_whole_arm && is_common) {
+    return data.cache->columns(data.layout, data.recordings, *term.effect, term.joint, term.shape);
+  }
   return stacked_columns(data.layout, data.recordings, *term.effect, term.joint, term.shape);
 }
 

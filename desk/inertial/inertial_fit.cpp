@@ -221,8 +221,9 @@ void InertialFit::build() {
     first += kInertialNumbers;
   }
   add_linear_numbers(robot_, *data_, design_, terms_, model_);
-  reduced_ = std::make_unique<ReducedRows>(columns_, data_->target, layout, held_out_parts(layout),
-                                           kHeldOutParts);
+  reduced_ =
+      std::make_unique<ReducedRows>(columns_, data_->target, layout,
+                                    held_out_parts(layout, recordings_[0].at_rest), kHeldOutParts);
   if (point_.linear.size() != static_cast<Index>(model_.linear.size())) point_ = start_of(model_);
 }
 
