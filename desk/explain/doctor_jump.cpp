@@ -104,7 +104,7 @@ Breaks breaks_of(const VectorXd& q, const std::vector<RowSpan>& known) {
 std::vector<RowSpan> torque_spikes(const VectorXd& tau, const std::vector<RowSpan>& known) {
   constexpr Index kHalfWindow = 4;
   constexpr Index kLongestTorqueSpike = 3;
-  constexpr double kOfLargest = 0.7;
+  constexpr double kOfLargest = 1.2;
   constexpr double kUnlikeAny = 6;
   std::vector<RowSpan> spikes;
   const Index rows = tau.size();

@@ -104,6 +104,10 @@ Stale stale_of(const Log& log, const VectorXd& x, bool smooth) {
     if (jump < kJumpSteps * step) continue;
     const bool noisy = !smooth && is_noisy_around(x, burst);
     if (!noisy && jump < kJumpPerChange * usual_change(x, burst) + 2 * step) continue;
+    // What it missed is what it would have moved at that pace; a joint that stuck only starts anew.
+    constexpr double kOfMissed = 0.3;
+    const double missed = static_cast<double>(burst.length + 1) * usual_change(x, burst);
+    if (!noisy && jump < kOfMissed * missed) continue;
     if (!smooth && !noisy &&
         static_cast<double>(x.size()) *
                 std::pow(own_repeats(repeats_before, burst), static_cast<double>(burst.length)) >

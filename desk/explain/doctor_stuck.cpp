@@ -33,6 +33,9 @@ constexpr double kSeldom = 1e-3;
 class BurstEnds {
  public:
   explicit BurstEnds(const VectorXd& q) : q_(q), rounding_(q) {
+    constexpr double kNearlyTop = 0.99;
+    const Index steps = q.size() - 1;
+    top_pace_ = quantile((q.tail(steps) - q.head(steps)).cwiseAbs(), kNearlyTop);
     for (Index width = 1; width <= kWidest; width *= 2) {
       limits_.push_back(kUnusual * usual_change_of_pace(q, width, kEvents));
     }
@@ -43,6 +46,7 @@ class BurstEnds {
     constexpr Index kWhole = 4;  // widths
     constexpr double kPaceKept = 0.5;
     constexpr double kPaceBefore = 0.3;
+    constexpr double kOfTopPace = 0.3;
     std::size_t at = 0;
     for (Index width = 1; width <= kWidest && kWhole * width <= burst.length; width *= 2) {
       const double limit = limits_[at++] + kSensorSteps * rounding_.at(q_[burst.first]);
@@ -51,8 +55,10 @@ class BurstEnds {
       const double last = std::abs(q_[burst.first] - q_[burst.first - width]);
       const double whole = std::abs(q_[burst.first] - q_[from]) / kWhole;
       const double before = std::abs(q_[burst.first - width] - q_[from]) / (kWhole - 1);
-      // One jump is no pace.
-      if (last > limit && last > kPaceKept * whole && before > kPaceBefore * last) return true;
+      // One jump is no pace, and dry friction stops what is slow at once.
+      if (last > limit && last > kOfTopPace * top_pace_ * static_cast<double>(width) &&
+          last > kPaceKept * whole && before > kPaceBefore * last)
+        return true;
     }
     return false;
   }
@@ -63,7 +69,9 @@ class BurstEnds {
     if (end + 1 >= q_.size()) return false;
     const double jump = std::abs(q_[end + 1] - q_[end]);
     const double next = end + 2 < q_.size() ? std::abs(q_[end + 2] - q_[end + 1]) : 0;
-    return jump > limits_.front() + kSensorSteps * rounding_.at(q_[end + 1]) && jump > 2 * next;
+    constexpr double kOfTopPace = 2;
+    return jump > limits_.front() + kSensorSteps * rounding_.at(q_[end + 1]) &&
+           jump > kOfTopPace * top_pace_ && jump > 2 * next;
   }
 
   // A jump that is not more than what the joint can have moved meanwhile, by how it moves then.
@@ -83,6 +91,7 @@ class BurstEnds {
 
   const VectorXd& q_;
   Rounding rounding_;
+  double top_pace_ = 0;         // from one row to the next
   std::vector<double> limits_;  // per width: 1, 2, 4, ...
 };
 
@@ -94,6 +103,9 @@ bool velocity_moves(const Log& log, Index joint, const Burst& burst) {
   const VectorXd dq = log.dq.col(joint);
   const double usual = quantile(dq.cwiseAbs(), kOfTop);
   const VectorXd during = dq.segment(burst.first + 1, burst.length);
+  // Where it is filtered it only comes to rest later.
+  constexpr double kLateS = 0.15;
+  if (static_cast<double>(burst.length) * log.period_s < 2 * kLateS) return false;
   return during.minCoeff() < during.maxCoeff() && std::abs(during.mean()) > kOfUsual * usual &&
          during.cwiseAbs().mean() > kSensorSteps * smallest_step(dq);
 }
@@ -128,7 +140,7 @@ std::vector<Burst> stuck_positions(const Log& log, Index joint) {
     const bool at_start = burst.first == 0 && is_short(log, burst);
     if (ends.ends_in_jump(burst) && (at_start || ends.moves_on(burst))) return false;
     if (usual && !by_velocity) return true;
-    return !by_velocity && !ends.starts_abruptly(burst) && !is_noisy_around(q, burst);
+    return !by_velocity && !ends.starts_abruptly(burst);
   });
   return bursts;
 }
@@ -165,6 +177,7 @@ class ExpectedTorque {
 };
 
 std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorque& expected) {
+  constexpr double kShortestS = 0.1;
   constexpr double kTravel = 0.01;  // of the joint's range
   constexpr double kChange = 0.15;  // of the torque's range
   constexpr std::size_t kUsual = 4;
@@ -189,12 +202,16 @@ std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorq
         ends.ends_in_jump(burst)) {
       return false;
     }
-    if (burst.length < kFewestRepeats || !(range > 0)) return true;
+    if (static_cast<double>(burst.length) <
+            std::max<double>(kFewestRepeats, kShortestS / log.period_s) ||
+        !(range > 0)) {
+      return true;
+    }
     const auto during = q.segment(burst.first, burst.length + 1);
     if (during.maxCoeff() - during.minCoeff() < kTravel * range) return true;
     const double value = tau[burst.first];
-    // A drive at its limit: find_saturation(). One that gives nothing at all is at none.
-    if (value != 0 && (value <= low + near || value >= high - near)) return true;
+    // A drive that is off, or at its limit: find_saturation().
+    if (value == 0 || value <= low + near || value >= high - near) return true;
     if (is_noisy_around(tau, burst)) return false;
     const bool by_chance =
         static_cast<double>(tau.size()) *
