@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 constexpr Index kAroundRows = 8;
 constexpr Index kLongestSpike = 5;  // rows
-constexpr double kAlmostAll = 0.99;
+constexpr double kUsualShare = 0.99;
 constexpr double kNoiseDeviations = 12;  // standard deviations
 constexpr double kDeviationOfMedian = 1.4826;
 constexpr double kOfTopPace = 3;
@@ -65,7 +65,7 @@ Breaks breaks_of(const VectorXd& q, const std::vector<RowSpan>& known) {
   const Index steps = q.size() - 1;
   if (steps < 4 * kAroundRows) return jumps;
   const VectorXd change = q.tail(steps) - q.head(steps);
-  const double pace = quantile(change.cwiseAbs(), kAlmostAll);
+  const double pace = quantile(change.cwiseAbs(), kUsualShare);
   const double step = Rounding(q).at(q.cwiseAbs().maxCoeff());
   if (!std::isfinite(step)) return jumps;
   // Changes that cannot be jumps need no look at their surroundings.
@@ -109,7 +109,7 @@ std::vector<RowSpan> torque_spikes(const VectorXd& tau, const std::vector<RowSpa
   std::vector<RowSpan> spikes;
   const Index rows = tau.size();
   if (rows < 8 * kHalfWindow) return spikes;
-  const double large = kOfLargest * quantile(tau.cwiseAbs(), kAlmostAll);
+  const double large = kOfLargest * quantile(tau.cwiseAbs(), kUsualShare);
   const VectorXd change = (tau.tail(rows - 1) - tau.head(rows - 1)).cwiseAbs();
   if (!(change.maxCoeff() > large)) return spikes;
   VectorXd off(rows);
@@ -118,7 +118,7 @@ std::vector<RowSpan> torque_spikes(const VectorXd& tau, const std::vector<RowSpa
     off[i] = std::abs(tau[i] - median_of(tau.segment(first, 2 * kHalfWindow + 1)));
   }
   const double limit = std::max({large, kNoiseDeviations * kDeviationOfMedian * median_of(off),
-                                 kUnlikeAny * quantile(off, kAlmostAll)});
+                                 kUnlikeAny * quantile(off, kUsualShare)});
   for (Index i = 0; i < rows; ++i) {
     if (!(off[i] > limit)) continue;
     Index last = i;
