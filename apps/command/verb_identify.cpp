@@ -107,7 +107,8 @@ void set_up_identify(CLI::App& verb, ExitCode& exit_code) {
                 "Fit the last link alone, and say what it carries beyond the file");
   verb.add_flag("--from-geometry", options->request.from_geometry,
                 "Believe nothing of the file's links but where their joints are");
-  verb.add_flag("--keep", options->request.keep, "Leave the effects of the file as they are");
+  verb.add_flag("--keep-effects", options->request.keep,
+                "Leave the effects of the file as they are");
   add_channels_option(verb, options->files.channels, "recordings'");
   add_keep_option(verb, options->keep);
   add_filter_options(verb, options->filter);
