@@ -30,7 +30,7 @@ constexpr double kByChance = 1e-3;
 // Bursts that a recording needs to be called stale, and their share of its rows: a single late
 // packet does not spoil a fit.
 constexpr std::size_t kFewestBursts = 4;
-constexpr double kSmallestShare = 0.002;
+constexpr double kLeastShare = 0.002;
 
 // A channel that the log reads faster than it is updated holds every value for about as long.
 Index usual_hold(const std::vector<Burst>& bursts, Index rows) {
@@ -139,7 +139,7 @@ void find_stale_samples(const Log& log, std::vector<DataFault>& faults) {
       const VectorXd x = position ? log.q.col(joint) : log.tau.col(joint);
       const Stale stale = stale_of(log, x, position);
       const double share = static_cast<double>(stale.rows) / static_cast<double>(x.size());
-      if (stale.spans.size() < kFewestBursts || share < kSmallestShare) continue;
+      if (stale.spans.size() < kFewestBursts || share < kLeastShare) continue;
       DataFault fault;
       fault.kind = DataFaultKind::kStaleSamples;
       fault.joint = joint;
