@@ -29,10 +29,10 @@ using RobotChain = Chain<kRuntimeJoints, double>;
 
 // The drag of advance() is of one joint each: friction of a motor that moves several would be stiff
 // in directions that it does not know.
-void refuse_shared_motors(const RobotDescription& robot) {
+void refuse_shared_motors(const RobotDescription& robot, const std::vector<RobotEffect>& effects) {
   if (!robot.transmission) return;
   const std::vector<std::size_t> groups = coupled_groups(*robot.transmission);
-  for (const RobotEffect& effect : robot.effects) {
+  for (const RobotEffect& effect : effects) {
     const auto others = std::count(groups.begin(), groups.end(), groups[effect.joint]);
     if (!effect.of_motor || others == 1) continue;
     throw InputError({"robot " + robot.name, "effect",
@@ -45,7 +45,8 @@ void refuse_shared_motors(const RobotDescription& robot) {
 
 RobotChain whole_chain(const RobotPlantSetup& setup) {
   require_carried(setup.robot, "robot " + setup.robot.name, "the simulated plant");
-  refuse_shared_motors(setup.robot);
+  refuse_shared_motors(setup.robot, setup.robot.effects);
+  refuse_shared_motors(setup.robot, setup.hidden);
   RobotChain chain = chain_of<kRuntimeJoints, double>(setup.robot);
   Status status = Status::kOk;
   for (const RobotEffect& effect : setup.hidden) {
