@@ -35,10 +35,10 @@ struct IdentifyOptions {
 void check(const IdentifyOptions& options) {
   if (options.output.empty() && !options.request.payload) {
     refuse_option("identify", "-o", "nothing", "a robot file to write",
-                  "add -o, or ask with --payload for what the last link carries");
+                  "add -o, or ask with --find-payload for what the last link carries");
   }
   if (options.request.payload && options.request.from_geometry) {
-    refuse_option("identify", "--from-geometry", "given", "nothing of it with --payload",
+    refuse_option("identify", "--from-geometry", "given", "nothing of it with --find-payload",
                   "a payload is told against a file that is trusted");
   }
 }
@@ -84,7 +84,8 @@ constexpr const char* kHowItIdentifies =
     "and centre_of_mass_m are blanks). Every link that is written is a body that there can be.\n"
     "The error is judged on data that the fit has not seen: --holdout, or else every fifth of the "
     "recordings predicted by a fit of the others.\n"
-    "--payload trusts the file and fits what its last link carries beyond it: mass, place, and "
+    "--find-payload trusts the file and fits what its last link carries beyond it: mass, place, "
+    "and "
     "what "
     "these recordings cannot tell apart.\n"
     "Exit code 1, and nothing written, when the recordings determine nothing; so too when the "
@@ -103,7 +104,7 @@ void set_up_identify(CLI::App& verb, ExitCode& exit_code) {
   verb.add_option("-o,--output", options->output, "Robot file to write")->type_name(kNewRobotFile);
   verb.add_option("--holdout", options->files.holdout,
                   "Recordings that no fit may see. Without any, parts are held out");
-  verb.add_flag("--payload", options->request.payload,
+  verb.add_flag("--find-payload", options->request.payload,
                 "Fit the last link alone, and say what it carries beyond the file");
   verb.add_flag("--from-geometry", options->request.from_geometry,
                 "Believe nothing of the file's links but where their joints are");

@@ -119,7 +119,7 @@ TEST_F(IdentifyVerb, ReadsLinksThatAreBlanks) {
 }
 
 TEST_F(IdentifyVerb, AnswersWhatTheLastLinkCarriesWithoutAFileToWrite) {
-  const CommandResult result = identify_file("r.toml", {"--payload", "--json", "--force"});
+  const CommandResult result = identify_file("r.toml", {"--find-payload", "--json", "--force"});
   const json told = json::parse(result.out);
   EXPECT_TRUE(told["payload"]["mass"].is_object());
   EXPECT_EQ(told["payload"]["place"].size(), 3U);
@@ -134,7 +134,7 @@ TEST_F(IdentifyVerb, RefusesWhatDoesNotBelongTogetherInOneLine) {
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   };
   expect_refusal(identify_file("r.toml", {}), "add -o");
-  expect_refusal(identify_file("r.toml", {"--payload", "--from-geometry"}), "--from-geometry");
+  expect_refusal(identify_file("r.toml", {"--find-payload", "--from-geometry"}), "--from-geometry");
   put(folder_ / "there.toml", "somebody's work");
   expect_refusal(identify_file("r.toml", {"-o", path("there.toml")}), "which is there already");
   EXPECT_EQ(content_of(folder_ / "there.toml"), "somebody's work");
