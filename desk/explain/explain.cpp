@@ -48,9 +48,8 @@ class Explainer {
     check_kind(holdout, logs.front().at_rest);
     plan_ = plan_filter(logs, robot_);
     const FilterPlan& plan = plan_;
-    constexpr Index kFewest = 80;
-    check(logs, plan, kFewest);
-    check(holdout, plan, kMinFilteredSamples);
+    check(logs, plan);
+    check(holdout, plan);
     const VectorXd widths = set_sign_widths(robot_, logs, plan);
     nuisance_.link_share = options.link_share.value_or(kUsualLinkShare);
     nuisance_.link_geometry = nuisance_.link_share > kCadShare;
@@ -227,23 +226,14 @@ class Explainer {
     }
   }
 
-  void check(const std::vector<Log>& logs, const FilterPlan& plan, Index fewest) const {
-    Index whole = 0;
+  static void check(const std::vector<Log>& logs, const FilterPlan& plan) {
     for (const Log& log : logs) {
       const Index left = (log.sample_count() - 2 * plan.edge_samples) / plan.decimation;
-      if (left < kMinFilteredSamples) {
-        throw InputError(
-            {log.file, "", fmt::format("{} samples", log.sample_count()),
-             fmt::format("{} or more with this filter",
-                         kMinFilteredSamples * plan.decimation + 2 * plan.edge_samples),
-             "record for longer"});
-      }
-      whole += left;
-    }
-    if (!logs.empty() && whole < fewest) {
-      throw InputError({logs[0].file, "", fmt::format("{} samples after the filter", whole),
-                        fmt::format("{} or more, of all recordings together", fewest),
-                        "record for longer, or give more recordings"});
+      if (left >= kMinFilteredSamples) continue;
+      throw InputError({log.file, "", fmt::format("{} samples", log.sample_count()),
+                        fmt::format("{} or more with this filter",
+                                    kMinFilteredSamples * plan.decimation + 2 * plan.edge_samples),
+                        "record for longer"});
     }
   }
 
