@@ -68,7 +68,8 @@ MonitorConfig<N, Scalar> any_config(BoundKind bound, TorqueSignal signal,
                                     std::mt19937_64& generator) {
   MonitorConfig<N, Scalar> config;
   config.chain = random_chain<N, Scalar>(generator);
-  const auto add = [&](EffectKind kind, int joint, std::array<Scalar, 4> parameters) {
+  const auto add = [&](EffectKind kind, int joint,
+                       std::array<Scalar, kMaxEffectParameters> parameters) {
     EXPECT_TRUE(config.chain.effects.add({kind, static_cast<std::uint8_t>(joint), parameters}));
   };
   for (int i = 0; i < N; ++i) add(EffectKind::kViscousFriction, i, {Scalar(0.5)});

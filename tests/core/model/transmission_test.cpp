@@ -119,8 +119,8 @@ TEST(MotorEffects, OfOneGearEachAreThoseOfTheJointsReflected) {
   for (std::uint8_t i = 0; i < 2; ++i) {
     const double r = ratio[i];
     at_motors.transmission.motor_per_joint[3U * i] = r;
-    const auto add = [&](EffectKind kind, std::array<double, 4> motor,
-                         std::array<double, 4> joint) {
+    const auto add = [&](EffectKind kind, std::array<double, kMaxEffectParameters> motor,
+                         std::array<double, kMaxEffectParameters> joint) {
       ASSERT_TRUE(at_motors.effects.add(of_motor<double>(kind, i, motor)));
       ASSERT_TRUE(at_joints.effects.add({kind, i, joint}));
     };
