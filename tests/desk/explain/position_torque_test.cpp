@@ -73,7 +73,7 @@ TEST(PositionTorque, IsAddedWithTheRangeOfTheRecordingAndLowersTheHeldOutError) 
   request.joint = joint;
   const Log holdout = test::to_log(made.holdout);
   const Log log = test::to_log(made.recording);
-  const AddResult added = add(test::to_robot(made.nominal), request, log, &holdout);
+  const AddResult added = add(test::to_robot(made.nominal), request, {log}, {holdout});
   ASSERT_THAT(added.added, SizeIs(1));
   const RobotEffect& curve = added.robot.effects[added.added[0]];
   const auto q = log.q.col(static_cast<Eigen::Index>(joint));

@@ -105,7 +105,7 @@ TEST(Treatment, GivenOtherGarbageInAGapThenWhatIsLeftHardlyDiffers) {
 
 TEST(Treatment, WhatTheUserKeepsIsNotLeftOut) {
   const RobotDescription robot = test::arm_description();
-  for (const std::string& keep : {"1:saturation", "all:saturation"}) {
+  for (const char* keep : {"1:saturation", "all:saturation"}) {
     Log log = noisy_arm();
     const double limit = 0.8 * log.tau.col(0).maxCoeff();
     log.tau.col(0) = log.tau.col(0).cwiseMin(limit);

@@ -198,7 +198,7 @@ TEST(Add, GivenValuesAreNotFitted) {
       {record_arm(kUsual, [](const ArmInstant& at) { return Vector2d(2 * sign(at.dq[0]), 0); })},
       {});
   EXPECT_EQ(value_of(result, EffectKind::kCoulombFriction, "smoothing"), 0.02);
-  const auto json = to_json(result, request, {"a", {}, "b", "c", ""});
+  const auto json = to_json(result, request, {{"a"}, {}, "b", "c", ""});
   EXPECT_EQ(json.at("parameters").at("smoothing").at("fitted"), false);
   EXPECT_TRUE(json.at("parameters").at("smoothing").at("ci95").is_null());
   EXPECT_EQ(json.at("parameters").at("level").at("unit"), "N m");
@@ -234,7 +234,7 @@ TEST(Add, GivenTwoEffectsThatAreOneThenItObjects) {
   EXPECT_THAT(result.objections,
               Contains(HasSubstr("cannot tell tip_payload from link_mass.mass of joint 2")));
   EXPECT_THAT(verdict_of(result, request), HasSubstr("Nothing was written"));
-  EXPECT_TRUE(to_json(result, request, {"a", {}, "b", "c", ""}).at("written").is_null());
+  EXPECT_TRUE(to_json(result, request, {{"a"}, {}, "b", "c", ""}).at("written").is_null());
 }
 
 TEST(Add, GivenAJointThatDoesNotMoveThenItObjects) {
@@ -293,7 +293,7 @@ TEST(Add, SameInputGivesTheSameBytes) {
         {record_arm(kUsual,
                     [](const ArmInstant& at) { return Vector2d(2 * sign(at.dq[0]) + 0.4, 0); })},
         {});
-    return to_json(result, request, {"a", {}, "b", "c", ""}).dump();
+    return to_json(result, request, {{"a"}, {}, "b", "c", ""}).dump();
   };
   EXPECT_EQ(once(), once());
 }
@@ -360,7 +360,7 @@ TEST(Add, PageCanBeRendered) {
     return Vector2d(0, 0.8 * at.dq[1]);
   });
   const report::Page page =
-      page_of(result, request, {"arm.csv", {}, "arm.toml", "new.toml", "offnominal add"});
+      page_of(result, request, {{"arm.csv"}, {}, "arm.toml", "new.toml", "offnominal add"});
   EXPECT_THAT(report::render(page), HasSubstr("viscous_friction"));
 }
 

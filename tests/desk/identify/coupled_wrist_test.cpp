@@ -272,7 +272,7 @@ TEST_F(WristRecording, FrictionOfAMotorIsFoundOnItsShaft) {
   request.effects = {EffectKind::kViscousFriction};
   request.joint = 0;
   request.of_motor = true;
-  const desk::AddResult result = desk::add(robot, request, read(robot), nullptr);
+  const desk::AddResult result = desk::add(robot, request, {read(robot)}, {});
   EXPECT_TRUE(result.may_be_written(false))
       << ::testing::PrintToString(result.objections) << ::testing::PrintToString(result.doubts);
   ASSERT_EQ(result.robot.effects.size(), 2U);
@@ -288,7 +288,7 @@ TEST_F(WristRecording, FrictionOfTheOtherMotorIsFittedAgainWithIt) {
   desk::AddRequest request;
   request.effects = {EffectKind::kViscousFriction};
   request.of_motor = true;
-  const desk::AddResult result = desk::add(robot, request, read(robot), nullptr);
+  const desk::AddResult result = desk::add(robot, request, {read(robot)}, {});
   EXPECT_NEAR(result.robot.effects[0].parameters[0], kViscous[1], 0.03 * kViscous[1]);
   EXPECT_NEAR(result.robot.effects[1].parameters[0], kViscous[0], 0.03 * kViscous[0]);
   EXPECT_THAT(result.notes,
@@ -329,10 +329,10 @@ TEST_F(WristRecording, ASensorAloneSeesTheLinksAndNoFrictionOfMotors) {
   }
   desk::AddRequest request;
   request.effects = {EffectKind::kRotorInertia};
-  EXPECT_THAT(message_of<desk::InputError>([&] { desk::add(wrist(""), request, log, nullptr); }),
+  EXPECT_THAT(message_of<desk::InputError>([&] { desk::add(wrist(""), request, {log}, {}); }),
               ::testing::HasSubstr("does not see rotor_inertia of joint 1"));
   request.effects = {EffectKind::kViscousFriction};
-  EXPECT_THAT(message_of<desk::InputError>([&] { desk::add(robot, request, log, nullptr); }),
+  EXPECT_THAT(message_of<desk::InputError>([&] { desk::add(robot, request, {log}, {}); }),
               ::testing::HasSubstr("does not see viscous_friction of motor 1"));
 }
 
@@ -343,7 +343,7 @@ TEST(AddToAMotor, IsRefusedWhereThereIsNone) {
   request.effects = {EffectKind::kTorqueScale};
   request.of_motor = true;
   const auto refusal = [&](const RobotDescription& of) {
-    return message_of<desk::InputError>([&] { desk::add(of, request, log, nullptr); });
+    return message_of<desk::InputError>([&] { desk::add(of, request, {log}, {}); });
   };
   EXPECT_THAT(refusal(robot), ::testing::AllOf(::testing::HasSubstr("--motor: found torque_scale"),
                                                ::testing::HasSubstr("rotor_inertia")));
