@@ -130,16 +130,23 @@ std::string effect_constant(const Effect<double>& effect, const RobotDescription
 }
 
 // Nothing where no effect asks for it.
-template <int N>
-std::string transmission_text(const Chain<N, double>& chain) {
+std::string transmission_text(const Chain<kRuntimeJoints, double>& chain) {
   const auto effects = chain.effects.view();
   const bool used = std::any_of(effects.begin(), effects.end(),
                                 [](const Effect<double>& effect) { return effect.of_motor; });
   if (!used) return {};
-  std::string members =
-      member("motor_per_joint", cpp_text::numbers(chain.transmission.motor_per_joint),
-             "row by row, rad of the motor per rad or m");
-  members += member("motor_offset_rad", cpp_text::numbers(chain.transmission.motor_offset_rad));
+  // The chain of run time has room for more joints than there are.
+  const std::size_t joints = chain.joints.size();
+  std::vector<double> matrix;
+  for (std::size_t motor = 0; motor < joints; ++motor) {
+    const auto row = chain.transmission.motor_per_joint.begin() +
+                     static_cast<std::ptrdiff_t>(motor * chain.transmission.kMost);
+    matrix.insert(matrix.end(), row, row + static_cast<std::ptrdiff_t>(joints));
+  }
+  const std::span<const double> offset = chain.transmission.motor_offset_rad;
+  std::string members = member("motor_per_joint", cpp_text::numbers(matrix),
+                               "row by row, rad of the motor per rad or m");
+  members += member("motor_offset_rad", cpp_text::numbers(offset.first(joints)));
   return ".transmission =\n    {\n" + indented(members, "        ") + "    },\n";
 }
 
