@@ -90,6 +90,8 @@ void replay_monitor(const RobotDescription& robot, const Log& log, Replay& resul
   // On the heap: 128 hidden units of 12 joints do not belong on a stack.
   const auto state = std::make_unique<ReplayMonitor::State>();
   ReplayMonitor::Output output;
+  // Of the sample that a run starts with: no error yet.
+  size_for(robot.joints.size(), output.error, output.psi_hat);
   ReplayCollector collector(log.sample_count(), robot.joint_count(), result);
   bool started = false;
   for (Eigen::Index i = 0; i < log.sample_count(); ++i) {
