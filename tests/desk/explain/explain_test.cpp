@@ -302,7 +302,7 @@ TEST(Explain, RefusesARecordingOfAnotherRobot) {
 
 TEST(Explain, RefusesTooShortARecording) {
   hidden::Request request;
-  request.duration_s = 1;
+  request.duration_s = 0.2;
   const hidden::Case made = hidden::make_case(request);
   EXPECT_THROW(explain(to_robot(made.nominal), {to_log(made.recording)}, {}, quick()), InputError);
 }
