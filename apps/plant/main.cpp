@@ -104,7 +104,7 @@ DriveSettings drives_of(const Options& options, const sil::Scenario& scenario) {
 // The file of MuJoCo that --plant names.
 std::optional<std::string> mujoco_of(const Options& options) {
   if (!options.plant) return std::nullopt;
-  const auto file = sil::mujoco_file_named(*options.plant);
+  auto file = sil::mujoco_file_named(*options.plant);
   if (!file) {
     throw InputError({kProgram, "--plant", "`" + *options.plant + "`", "mujoco:FILE",
                       "name a robot file by --robot"});
