@@ -2,28 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <utility>
+#include "table_text.hpp"
 
 namespace offnominal::bench {
 
 namespace {
-
-std::string percent(const Rate& rate) {
-  return rate.of > 0 ? fmt::format("{:.1f}", rate.percent()) : "-";
-}
-
-// Most frequent first, then by name.
-std::string histogram(const std::map<std::string, int>& counts) {
-  std::vector<std::pair<std::string, int>> sorted(counts.begin(), counts.end());
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
-  std::string text;
-  for (const auto& [name, count] : sorted) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, count);
-  }
-  return text;
-}
 
 std::string line_of(const Summary& line) {
   const bool effects =

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <system_error>
 
-#include "common/error.hpp"
+#include "case_folder.hpp"
 #include "common/file.hpp"
 #include "log/csv_text.hpp"
 #include "log/sampling.hpp"
@@ -53,14 +52,7 @@ std::vector<std::filesystem::path> write_cases(const std::vector<CaseGroup>& gro
   std::vector<std::filesystem::path> written;
   for (const CaseGroup& group : groups) {
     for (std::size_t i = 0; i < group.requests.size(); ++i) {
-      const std::filesystem::path own = folder / fmt::format("{}-{:03}", group.name, i);
-      std::error_code failed;
-      const bool is_new = std::filesystem::create_directories(own, failed);
-      if (failed || !is_new) {
-        throw desk::InputError({own.string(), "",
-                                failed ? failed.message() : "a folder that is there already",
-                                "a new folder", "name another one with --write"});
-      }
+      const std::filesystem::path own = new_case_folder(folder, group.name, i);
       const sim::hidden::Case made = make_case(group.requests[i]);
       desk::RobotDescription robot = robot_of(made.nominal);
       robot.name = fmt::format("{}-{:03}", group.name, i);

@@ -9,9 +9,9 @@ namespace offnominal::bench {
 using desk::EffectAt;
 using nlohmann::ordered_json;
 
-namespace {
-
 std::string name_at(const EffectAt& one) { return fmt::format("{}@{}", one.name(), one.joint + 1); }
+
+namespace {
 
 ordered_json names_at(const std::vector<EffectAt>& effects) {
   ordered_json list = ordered_json::array();

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "case_folder.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "log/read_log.hpp"
@@ -94,14 +95,7 @@ std::vector<std::filesystem::path> write_arm_cases(const std::vector<ArmGroup>& 
   std::vector<std::filesystem::path> written;
   for (const ArmGroup& group : groups) {
     for (std::size_t i = 0; i < group.requests.size(); ++i) {
-      const std::filesystem::path own = folder / fmt::format("{}-{:03}", group.name, i);
-      std::error_code failed;
-      const bool is_new = std::filesystem::create_directories(own, failed);
-      if (failed || !is_new) {
-        throw desk::InputError({own.string(), "",
-                                failed ? failed.message() : "a folder that is there already",
-                                "a new folder", "name another one with --write"});
-      }
+      const std::filesystem::path own = new_case_folder(folder, group.name, i);
       const ArmCase made = make_arm_case(group.requests[i]);
       write_case(made, own);
       nlohmann::ordered_json json{{"seed", group.requests[i].seed},

@@ -37,6 +37,9 @@ std::vector<std::filesystem::path> write_arm_cases(const std::vector<ArmGroup>& 
 nlohmann::ordered_json json_of(const ArmTruth& truth);
 nlohmann::ordered_json json_of(const ArmGroup& group, const ArmOutcome& outcome);
 
+// "coulomb_friction@2": effect and joint, from 1.
+std::string name_at(const desk::EffectAt& one);
+
 // "coulomb_friction@2 6.1 %, push@5 at 12.31 s": what is hidden, in one line.
 std::string text_of(const ArmTruth& truth);
 

@@ -5,30 +5,17 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "table_text.hpp"
+
 namespace offnominal::bench {
 
 namespace {
-
-std::string percent(const Rate& rate) {
-  return rate.of > 0 ? fmt::format("{:.1f}", rate.percent()) : "-";
-}
 
 template <typename Value>
 Value median_of(std::vector<Value> values) {
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
-}
-
-std::string counts_text(const std::map<std::string, int>& counts) {
-  std::vector<std::pair<std::string, int>> sorted(counts.begin(), counts.end());
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
-  std::string text;
-  for (const auto& [name, count] : sorted) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, count);
-  }
-  return text;
 }
 
 void count_outcome(const ArmOutcome& one, ArmSummary& line) {
@@ -53,7 +40,7 @@ void count_outcome(const ArmOutcome& one, ArmSummary& line) {
 }
 
 std::string line_of(const ArmSummary& line) {
-  std::string verdicts = counts_text(line.verdicts);
+  std::string verdicts = histogram(line.verdicts);
   if (line.refused > 0) verdicts += fmt::format("; refused by the simulator {}", line.refused);
   const double worst =
       line.times_s.empty() ? 0 : *std::max_element(line.times_s.begin(), line.times_s.end());
@@ -74,7 +61,7 @@ bool is_right(const ArmOutcome& one) {
 std::string names_of(const std::vector<desk::EffectAt>& effects) {
   std::string text;
   for (const auto& one : effects) {
-    text += fmt::format("{}{}@{}", text.empty() ? "" : ", ", one.name(), one.joint + 1);
+    text += (text.empty() ? "" : ", ") + name_at(one);
   }
   return text.empty() ? "nothing" : text;
 }
@@ -180,7 +167,7 @@ std::string table_of(const std::vector<ArmEffectSummary>& effects) {
       "|---|---|---|---|---|\n";
   for (const ArmEffectSummary& one : effects) {
     text += fmt::format("| {} | {} | {} | {} | {} |\n", one.effect, one.named.of,
-                        percent(one.named), percent(one.in_class), counts_text(one.instead));
+                        percent(one.named), percent(one.in_class), histogram(one.instead));
   }
   return text;
 }
