@@ -6,7 +6,9 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
+#include "command/recordings.hpp"
 #include "compare/filter_plan.hpp"
 #include "log/read_log.hpp"
 
@@ -26,9 +28,20 @@ inline void add_filter_options(CLI::App& verb, FilterRequest& request) {
                   "second, or 100 where --cutoff is given");
 }
 
-/// --channels and --period; `whose`: "recording's" or "recordings'".
+/// --channels, --period and --payload; `whose`: "recording's" or "recordings'".
 inline void add_channels_option(CLI::App& verb, ChannelOptions& channels,
                                 const std::string& whose) {
+  verb.add_option_function<std::vector<std::string>>(
+          "--payload",
+          [&verb, &channels](const std::vector<std::string>& texts) {
+            channels.payloads = payloads_of(verb.get_name(), texts);
+          },
+          "LOG=KG@X,Y,Z: what the robot carried in a recording, a point mass in kg at that place "
+          "in "
+          "the last link's frame, m")
+      ->type_name("TEXT")
+      ->take_all()
+      ->allow_extra_args(false);
   verb.add_option(
       "--channels", channels.file,
       "TOML file that maps the " + whose + " columns, instead of the robot file's [channels]");

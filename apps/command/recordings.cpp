@@ -1,12 +1,14 @@
 #include "command/recordings.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "command/refuse_option.hpp"
 #include "common/input_name.hpp"
 #include "common/json_text.hpp"
 #include "common/nearest.hpp"
 #include "common/output_file.hpp"
+#include "robot/payload.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
@@ -36,8 +38,8 @@ const std::string& name_of(const std::string& file) { return file; }
 const std::string& name_of(const Log& log) { return log.file; }
 
 template <typename Recording>
-void check_all_differ(const std::string& verb, const std::string& option,
-                      const std::vector<Recording>& logs, const std::vector<Recording>& holdout) {
+void check_each_differs(const std::string& verb, const std::string& option,
+                        const std::vector<Recording>& logs, const std::vector<Recording>& holdout) {
   std::vector<const Recording*> seen;
   const auto check = [&](const Recording& one, const std::string& of, const std::string& mend) {
     for (const Recording* other : seen) {
@@ -57,6 +59,42 @@ void check_all_differ(const std::string& verb, const std::string& option,
 
 }  // namespace
 
+void check_all_differ(const std::string& verb, const std::string& option,
+                      const std::vector<std::string>& files) {
+  check_each_differs(verb, option, files, {});
+}
+
+void check_all_differ(const std::string& verb, const std::string& option,
+                      const std::vector<Log>& logs) {
+  check_each_differs(verb, option, logs, {});
+}
+
+std::vector<RecordingPayload> payloads_of(const std::string& verb,
+                                          const std::vector<std::string>& texts) {
+  std::vector<RecordingPayload> payloads;
+  for (const std::string& text : texts) {
+    const auto payload = payload_of_text(text);
+    if (!payload) {
+      refuse_option(verb, "--payload", "\"" + text + "\"",
+                    "LOG=KG@X,Y,Z with a mass of 0 kg or more and a place in m, such as "
+                    "run_2.csv=0.8@0,0,0.1");
+    }
+    payloads.push_back(*payload);
+  }
+  return payloads;
+}
+
+void check_payloads(const std::string& verb, const ChannelOptions& channels,
+                    const std::vector<std::string>& files) {
+  for (const RecordingPayload& payload : channels.payloads) {
+    const auto speaks_of = [&](const std::string& file) { return is_of(payload, file); };
+    if (std::any_of(files.begin(), files.end(), speaks_of)) continue;
+    refuse_option(verb, "--payload", "a payload of " + payload.recording,
+                  "one of the recordings: " + list_of(files),
+                  "name the recording as it is given, or its file without the folder");
+  }
+}
+
 std::vector<Log> read_recordings(const std::vector<std::string>& files,
                                  const RobotDescription& robot, const ChannelOptions& channels,
                                  ReadOne* read_one, Progress& progress) {
@@ -69,13 +107,21 @@ std::vector<Log> read_recordings(const std::vector<std::string>& files,
 }
 
 FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
-                      ReadOne* read_one, Progress& progress) {
-  check_all_differ(verb, option, files.logs, files.holdout);
-  FitData data{read_robot_file(files.robot), {}, {}};
+                      RobotDescription robot, ReadOne* read_one, Progress& progress) {
+  check_each_differs(verb, option, files.logs, files.holdout);
+  std::vector<std::string> all = files.logs;
+  all.insert(all.end(), files.holdout.begin(), files.holdout.end());
+  check_payloads(verb, files.channels, all);
+  FitData data{std::move(robot), {}, {}};
   data.logs = read_recordings(files.logs, data.robot, files.channels, read_one, progress);
   data.holdout = read_recordings(files.holdout, data.robot, files.channels, read_one, progress);
-  check_all_differ(verb, option, data.logs, data.holdout);
+  check_each_differs(verb, option, data.logs, data.holdout);
   return data;
+}
+
+FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
+                      ReadOne* read_one, Progress& progress) {
+  return read_fit_data(verb, option, files, read_robot_file(files.robot), read_one, progress);
 }
 
 std::string file_names(const std::vector<std::string>& files) {

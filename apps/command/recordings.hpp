@@ -20,6 +20,22 @@ std::vector<Log> read_recordings(const std::vector<std::string>& files,
                                  const RobotDescription& robot, const ChannelOptions& channels,
                                  ReadOne* read_one, Progress& progress);
 
+// The payloads that --payload says. Throws InputError, in the name of `verb`, for what is none.
+std::vector<RecordingPayload> payloads_of(const std::string& verb,
+                                          const std::vector<std::string>& texts);
+
+// Throws InputError, in the name of `verb`, where --payload speaks of a recording that is not
+// given.
+void check_payloads(const std::string& verb, const ChannelOptions& channels,
+                    const std::vector<std::string>& files);
+
+// Throws InputError, in the name of `verb`, where a recording is given twice under `option`: as the
+// same file by whatever name, or, once they are read, as a copy of it.
+void check_all_differ(const std::string& verb, const std::string& option,
+                      const std::vector<std::string>& files);
+void check_all_differ(const std::string& verb, const std::string& option,
+                      const std::vector<Log>& logs);
+
 // What a verb is given that fits to recordings and judges the fit on others.
 struct FitFiles {
   std::string robot;
@@ -38,6 +54,9 @@ struct FitData {
 // the logs.
 FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
                       ReadOne* read_one, Progress& progress);
+// The same of a robot that was read already.
+FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
+                      RobotDescription robot, ReadOne* read_one, Progress& progress);
 
 // "a.csv, b.csv", "standard input": as input_name() has them, for a robot file's word on its
 // source.

@@ -22,6 +22,7 @@
 #include "identify/add_report.hpp"
 #include "log/log_format.hpp"
 #include "log/read_log.hpp"
+#include "robot/read_effect.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
@@ -30,12 +31,14 @@ namespace {
 struct AddOptions {
   std::vector<std::string> effects;
   int joint = 0;
+  int motor = 0;
   FitFiles files;
   bool all_found = false;
   std::string output;
   std::vector<std::string> set;
   std::optional<double> refit_inertia_percent;
-  bool keep = false;
+  bool keep_effects = false;
+  std::vector<KeepFault> keep;
   bool no_skew = false;
   FilterRequest filter;
   std::optional<double> link_share;
@@ -45,9 +48,9 @@ struct AddOptions {
 
 EffectKind kind_of(const std::string& name) {
   std::vector<std::string> names;
-  for (const EffectInfo& info : kAllEffectInfos) {
-    if (name == info.name) return info.kind;
-    names.emplace_back(info.name);
+  for (const EffectInfo* info : file_effects()) {
+    if (name == info->name) return info->kind;
+    names.emplace_back(info->name);
   }
   const std::string meant = nearest(name, names);
   refuse_option("add", "EFFECT", "\"" + name + "\"", list_of(names),
@@ -71,10 +74,15 @@ void read_setting(const std::string& text, AddRequest& request) {
 AddRequest request_of(const AddOptions& options) {
   AddRequest request;
   for (const std::string& name : options.effects) request.effects.push_back(kind_of(name));
-  if (options.joint < 1)
-    refuse_option("add", "--joint", options.joint == 0 ? "none" : std::to_string(options.joint),
+  request.of_motor = options.motor != 0;
+  if (request.of_motor && options.joint != 0)
+    refuse_option("add", "--motor", "a motor beside --joint", "one of the two");
+  const int place = request.of_motor ? options.motor : options.joint;
+  if (place < 1)
+    refuse_option("add", request.of_motor ? "--motor" : "--joint",
+                  place == 0 ? "none" : std::to_string(place),
                   "the joint that the effects act on, from 1");
-  request.joint = static_cast<std::size_t>(options.joint - 1);
+  request.joint = static_cast<std::size_t>(place - 1);
   for (const std::string& setting : options.set) read_setting(setting, request);
   if (options.refit_inertia_percent) {
     const double percent = *options.refit_inertia_percent;
@@ -83,9 +91,9 @@ AddRequest request_of(const AddOptions& options) {
     }
     request.inertia_deviation = percent / 100;
   }
-  request.keep = options.keep;
+  request.keep = options.keep_effects;
   request.fit_skew = !options.no_skew;
-  request.source = "Fitted to " + file_names({options.files.logs[0]}) + " by offnominal add.";
+  request.source = "Fitted to " + file_names(options.files.logs) + " by offnominal add.";
   return request;
 }
 
@@ -96,10 +104,6 @@ void check_kind(const AddOptions& options) {
       refuse_option("add", "EFFECT", "none", "one or more effects, or --all-found",
                     "name an effect, or let --all-found search for what is missing");
     }
-    if (options.files.logs.size() != 1)
-      refuse_option("add", "--log", "several", "one, unless with --all-found");
-    if (options.files.holdout.size() > 1)
-      refuse_option("add", "--holdout", "several", "one, unless with --all-found");
     if (options.link_share) refuse_option("add", "--link-share", "given", "only with --all-found");
     return;
   }
@@ -107,8 +111,9 @@ void check_kind(const AddOptions& options) {
   if (!options.effects.empty())
     refuse_option("add", "EFFECT", "\"" + options.effects[0] + "\"", alone);
   if (options.joint != 0) refuse_option("add", "--joint", std::to_string(options.joint), alone);
+  if (options.motor != 0) refuse_option("add", "--motor", std::to_string(options.motor), alone);
   if (!options.set.empty()) refuse_option("add", "--set", "\"" + options.set[0] + "\"", alone);
-  if (options.keep) refuse_option("add", "--keep", "given", alone);
+  if (options.keep_effects) refuse_option("add", "--keep-effects", "given", alone);
   if (options.no_skew) refuse_option("add", "--no-skew", "given", alone);
   if (options.refit_inertia_percent) {
     refuse_option("add", "--refit-inertia", "given", alone, "say --link-share, as for explain");
@@ -121,17 +126,15 @@ void check_kind(const AddOptions& options) {
 
 void add_named(const AddOptions& options, const std::string& command_line, ExitCode& exit_code) {
   const AddRequest request = request_of(options);
-  std::optional<std::string> holdout_file;
-  if (!options.files.holdout.empty()) holdout_file = options.files.holdout[0];
   Progress progress;
-  const FitData data = read_fit_data("add", "--log", options.files, read_log, progress);
-  const auto faults = examined({data.logs, data.holdout}, data.robot, progress, RestsOn::kTorque);
-  const AddResult result =
-      add(data.robot, request, data.logs[0], holdout_file ? &data.holdout[0] : nullptr,
-          options.filter, [&](const std::string& doing) { progress.begin(doing); });
+  FitData data = read_fit_data("add", "--log", options.files, read_log, progress);
+  const auto faults =
+      treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kTorque);
+  const AddResult result = add(data.robot, request, data.logs, data.holdout, options.filter,
+                               [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
-  const AddNames names{options.files.logs[0], holdout_file, options.files.robot,
-                       options.output,        command_line, options.answer.force};
+  const AddNames names{options.files.logs, options.files.holdout, options.files.robot,
+                       options.output,     command_line,          options.answer.force};
   write_report(options.answer,
                [&] { return with_faults(page_of(result, request, names), faults); });
   std::vector<std::string> written;
@@ -153,17 +156,23 @@ void add_all_found(const AddOptions& options, const std::string& command_line,
   const FitFiles& files = options.files;
   const bool force = options.answer.force;
   Progress progress;
-  const FitData data = read_fit_data("add", "--log", files, read_log_or_hold_map, progress);
+  FitData data = read_fit_data("add", "--log", files, read_log_or_hold_map, progress);
   ExplainOptions explain;
   explain.threads = options.threads;
-  explain.link_share = options.link_share.value_or(explain.link_share);
+  explain.link_share = options.link_share;
   explain.robot_file = files.robot;
+  explain.keep = options.keep;
   explain.source = "Fitted to " + file_names(files.logs) + " by offnominal add --all-found.";
-  const AddedFindings added = add_found(data.robot, data.logs, data.holdout, explain,
-                                        [&](const std::string& doing) { progress.begin(doing); });
+  const AddedFindings added =
+      add_found(data.robot, std::move(data.logs), std::move(data.holdout), explain,
+                [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
-  const ExplainNames names{files.logs, files.holdout, files.robot, command_line,
-                           files.channels.file ? files.channels.file->string() : ""};
+  const ExplainNames names{files.logs,
+                           files.holdout,
+                           files.robot,
+                           command_line,
+                           files.channels.file ? files.channels.file->string() : "",
+                           files.channels.payloads};
   write_report(options.answer, [&] { return page_of(added.explanation, names); });
   std::vector<std::string> written;
   if (added.may_be_written(force)) {
@@ -185,9 +194,9 @@ void run(const AddOptions& options, const std::string& command_line, ExitCode& e
 
 std::string effects_text() {
   std::string text = "Effects, their formulas and parameters:\n";
-  for (const EffectInfo& info : kAllEffectInfos) {
-    text += fmt::format("  {:<22} {}\n", info.name, info.formula);
-    for (const ParameterInfo& parameter : info.parameters) {
+  for (const EffectInfo* info : file_effects()) {
+    text += fmt::format("  {:<22} {}\n", info->name, info->formula);
+    for (const ParameterInfo& parameter : info->parameters) {
       text +=
           fmt::format("  {:<22}   {}{}: {}\n", "", parameter.name,
                       parameter.role == ParameterRole::kShape ? " (shape)" : "", parameter.meaning);
@@ -198,12 +207,13 @@ std::string effects_text() {
 
 constexpr const char* kHowItFits =
     "The new effects are fitted together with those effects of the robot file that are marked "
-    "`fitted = true` and act on the same joints, because what was missing had biased them; --keep "
+    "`fitted = true` and act on the same joints, because what was missing had biased them; "
+    "--keep-effects "
     "leaves them alone. Masses and inertias stay as they are unless --refit-inertia gives their "
     "uncertainty. Shape parameters that --set does not give are searched for; the widths of the "
     "smoothed sign of one joint have one common value.\n"
     "The error is judged on data that the fit has not seen: --holdout, or else every fifth of the "
-    "recording predicted by a fit of the others.\n"
+    "recordings predicted by a fit of the others.\n"
     "--all-found fits all that explain finds, together with the effects marked `fitted = true` and "
     "with mass and inertia of the links within --link-share. It writes nothing unless the verdict "
     "is "
@@ -219,14 +229,16 @@ void set_up_add(CLI::App& verb, ExitCode& exit_code) {
   verb.add_option("EFFECT", options->effects,
                   "One or more effects, all on one joint; listed below");
   verb.add_option("--joint", options->joint, "The joint that they act on, from 1");
+  verb.add_option("--motor", options->motor,
+                  "Instead: the motor on whose shaft they act, of a robot with [transmission]");
   verb.add_flag("--all-found", options->all_found,
                 "Search for what is missing, as explain does, and add all of it");
   verb.add_option("--robot", options->files.robot, "Robot file to start from")->required();
   verb.add_option("--log", options->files.logs,
-                  "Recording to fit, " + log_format_names() + "; with --all-found one or more")
+                  "One recording to fit or several, " + log_format_names())
       ->required();
   verb.add_option("--holdout", options->files.holdout,
-                  "Recording to judge the fit on; with --all-found one or more");
+                  "Recordings to judge the fit on: no fit sees them");
   verb.add_option("-o,--output", options->output, "Robot file to write")
       ->type_name(kNewRobotFile)
       ->required();
@@ -238,7 +250,9 @@ void set_up_add(CLI::App& verb, ExitCode& exit_code) {
                   "not fitted; SI units")
       ->take_all()
       ->allow_extra_args(false);
-  verb.add_flag("--keep", options->keep, "Leave effects that were fitted before as they are");
+  verb.add_flag("--keep-effects", options->keep_effects,
+                "Leave effects that were fitted before as they are");
+  add_keep_option(verb, options->keep);
   verb.add_flag("--no-skew", options->no_skew,
                 "Torque and position are of one time: fit no skew between them beside the effects. "
                 "For a model whose bound is calibrated on recordings of the same drives");
@@ -249,7 +263,7 @@ void set_up_add(CLI::App& verb, ExitCode& exit_code) {
   add_filter_options(verb, options->filter);
   verb.add_option("--link-share", options->link_share,
                   "With --all-found: how far mass and inertia of a link may be off the file, as a "
-                  "share [0.05]")
+                  "share [0.05, or more where the recordings ask for it]")
       ->check(CLI::Range(0.0, 1.0));
   add_threads_option(verb, options->threads, "With --all-found: threads");
   add_report_option(verb, options->answer);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calibrate/calibrate.hpp"
@@ -17,8 +18,10 @@
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
+#include "common/error.hpp"
 #include "common/output_file.hpp"
 #include "log/log_format.hpp"
+#include "log/part_of.hpp"
 #include "log/read_log.hpp"
 #include "robot/robot_file.hpp"
 
@@ -30,6 +33,7 @@ struct CalibrateOptions {
   std::string output;
   double alarms_per_hour = 0.1;
   std::optional<double> velocity_error;
+  std::vector<KeepFault> keep;
   AnswerOptions answer;
 };
 
@@ -45,16 +49,32 @@ void check_numbers(const CalibrateOptions& options) {
   }
 }
 
+std::vector<Log> parts_left_of(const std::vector<Log>& logs) {
+  constexpr double kShortestS = 2;
+  std::vector<Log> parts;
+  for (const Log& log : logs) {
+    for (Log& part : untouched_parts(log, kShortestS)) parts.push_back(std::move(part));
+    if (!parts.empty() && parts.back().file == log.file) continue;
+    throw InputError({log.file, "", "no part without a fault of the recording",
+                      fmt::format("one of {:g} s or more", kShortestS),
+                      "record anew, or say with --keep JOINT:REASON what is no fault"});
+  }
+  return parts;
+}
+
 void run(const CalibrateOptions& options, const std::string& command_line, ExitCode& exit_code) {
   check_numbers(options);
   Progress progress;
-  const FitData data = read_fit_data("calibrate", "LOG", options.files, read_log, progress);
+  FitData data = read_fit_data("calibrate", "LOG", options.files, read_log, progress);
   const auto faults =
-      examined({data.logs, data.holdout}, data.robot, progress, RestsOn::kVelocityToo);
+      treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kVelocityToo);
+  // The monitor starts anew behind what is left out.
+  for (std::vector<Log>* group : {&data.logs, &data.holdout}) *group = parts_left_of(*group);
   progress.begin("shapes of the bound");
   const CalibrateRequest request{
       options.alarms_per_hour, options.velocity_error,
       "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + "."};
+  require_carried(data.robot, options.files.robot);
   const Calibration result =
       calibrate(data.robot, request, data.logs, data.holdout, [&progress] { progress.step(); });
   progress.end();
@@ -112,6 +132,7 @@ void set_up_calibrate(CLI::App& verb, ExitCode& exit_code) {
                   "Largest error of the measured velocity, rad/s or m/s, where it is known; "
                   "without it, it is found with the bound");
   add_channels_option(verb, options->files.channels, "recordings'");
+  add_keep_option(verb, options->keep);
   add_report_option(verb, options->answer);
   add_json_option(verb, options->answer);
   verb.footer(kHowItCalibrates);

@@ -2,10 +2,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command/answer.hpp"
 #include "command/command_line.hpp"
+#include "command/doctor.hpp"
 #include "command/input_options.hpp"
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
@@ -27,14 +29,19 @@ struct ExplainArguments {
 void run(const ExplainArguments& options, const std::string& command_line) {
   const FitFiles& files = options.files;
   Progress progress;
-  const FitData data = read_fit_data("explain", "LOG", files, read_log_or_hold_map, progress);
+  FitData data = read_fit_data("explain", "LOG", files, read_log_or_hold_map, progress);
   ExplainOptions settings = options.explain;
   settings.robot_file = files.robot;
-  const Explanation explanation = explain(data.robot, data.logs, data.holdout, settings,
-                                          [&](const std::string& doing) { progress.begin(doing); });
+  const Explanation explanation =
+      explain(data.robot, std::move(data.logs), std::move(data.holdout), settings,
+              [&](const std::string& doing) { progress.begin(doing); });
   progress.end();
-  const ExplainNames names{files.logs, files.holdout, files.robot, command_line,
-                           files.channels.file ? files.channels.file->string() : ""};
+  const ExplainNames names{files.logs,
+                           files.holdout,
+                           files.robot,
+                           command_line,
+                           files.channels.file ? files.channels.file->string() : "",
+                           files.channels.payloads};
   write_report(options.answer, [&] { return page_of(explanation, names); });
   print_answer(
       options.answer, [&] { return to_json(explanation, names); },
@@ -50,10 +57,11 @@ void set_up_explain(CLI::App& verb, ExitCode& /*exit_code*/) {
   verb.add_option("--holdout", options->files.holdout,
                   "Recordings that no fit may see. Without any, blocks of time are held out");
   add_channels_option(verb, options->files.channels, "recordings'");
+  add_keep_option(verb, options->explain.keep);
   verb.add_option("--link-share", options->explain.link_share,
-                  "How far mass and inertia of a link may be off the file, as a share")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+                  "How far mass and inertia of a link may be off the file, as a share; beyond 0.1 "
+                  "its centre of mass too [0.05, or more where the recordings ask for it]")
+      ->check(CLI::Range(0.0, 1.0));
   verb.add_option("--replays", options->explain.replays,
                   "How often each finding is checked against the model without it; 0: never")
       ->check(CLI::Range(0, 10000))

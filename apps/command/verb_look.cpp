@@ -25,7 +25,7 @@ struct LookOptions {
 void run(const LookOptions& options, const std::string& command_line) {
   Progress progress;
   std::optional<RobotDescription> robot;
-  if (options.robot) robot = read_robot_file(*options.robot);
+  if (options.robot) robot = read_robot_file(*options.robot, Blanks::kAllowed);
   progress.begin("reading " + options.recording);
   const Look look = look_at(options.recording, robot ? &*robot : nullptr, options.period_s);
   progress.end();

@@ -38,6 +38,7 @@ struct MotionOptions {
   double effect_percent = 5;
   double noise_percent = 1;
   motion::DesignRequest design;
+  std::vector<KeepFault> keep;
   AnswerOptions answer;
 };
 
@@ -74,8 +75,9 @@ void run(const MotionOptions& options, const std::string& command_line, ExitCode
   request.expectation.effect_share = options.effect_percent / 100;
   request.expectation.noise_share = options.noise_percent / 100;
   Progress progress;
+  check_payloads("motion", options.channels, options.logs);
   request.recordings = read_recordings(options.logs, robot, options.channels, read_log, progress);
-  const auto faults = examined({request.recordings}, robot, progress);
+  const auto faults = treated({request.recordings}, robot, options.keep, progress);
   const Design design = design_motion(
       robot, request,
       {[&](const std::string& doing) { progress.begin(doing); }, [&] { progress.step(); }});
@@ -124,6 +126,7 @@ void set_up_motion(CLI::App& verb, ExitCode& exit_code) {
   verb.add_option("--log", options->logs,
                   "Recordings that could not tell, to say how much better the motion is");
   add_channels_option(verb, options->channels, "recordings'");
+  add_keep_option(verb, options->keep);
   verb.add_option("--duration", options->design.duration_s, "Length of the motion, s")
       ->check(CLI::Range(8.0, 600.0))
       ->capture_default_str();

@@ -14,7 +14,9 @@
 #include "command/doctor.hpp"
 #include "command/input_options.hpp"
 #include "command/progress.hpp"
+#include "command/recordings.hpp"
 #include "command/verbs.hpp"
+#include "common/error.hpp"
 #include "common/text_table.hpp"
 #include "log/log_format.hpp"
 #include "log/read_log.hpp"
@@ -63,10 +65,21 @@ std::string text_of(const Replay& replay) {
   return text + words_of(replay) + "\n";
 }
 
+// The monitor on the controller has no gaps either.
+void require_whole(const Log& log) {
+  if (log.gaps.empty() && log.cut.empty()) return;
+  const double at_s = log.gaps.empty() ? log.t_s[log.t_s.size() - 1] : log.t_s[log.gaps[0].first];
+  throw InputError({log.file, fmt::format("t = {:.6g} s", at_s), "a gap",
+                    "a recording of every tick, as the monitor sees it",
+                    "cut the recording at the gap"});
+}
+
 void run(const ReplayOptions& options, const std::string& command_line, ExitCode& exit_code) {
   const RobotDescription robot = read_robot_file(options.robot);
   require_bound(robot, options.robot);
+  check_payloads("replay", options.channels, {options.log});
   const Log log = read_log(options.log, robot, options.channels);
+  require_whole(log);
   Progress progress;
   const auto faults = examined({std::span(&log, 1)}, robot, progress);
   const Replay result = replay(robot, log);

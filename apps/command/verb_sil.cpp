@@ -180,9 +180,8 @@ void set_up_sil(CLI::App& verb, ExitCode& /*exit_code*/) {
                 "on the machine's clock")
       ->excludes(lock_step);
   verb.add_flag("--fd", options->fd,
-                "CAN FD: one frame for all joints; by default where classic CAN is too narrow");
-  verb.add_option("--scalar", options->scalar,
-                  "Arithmetic of the controller; double for two joints")
+                "CAN FD: one frame for up to 8 joints; by default where classic CAN is too narrow");
+  verb.add_option("--scalar", options->scalar, "Arithmetic of the controller; firmware has float")
       ->check(CLI::IsMember({"float", "double"}))
       ->capture_default_str();
   verb.add_option("--robot", options->robot,

@@ -5,7 +5,7 @@
 namespace offnominal::desk {
 namespace {
 
-constexpr std::array<Verb, 14> kVerbs = {{
+constexpr std::array<Verb, 15> kVerbs = {{
     {"add", "Fit an effect to a recording and write the robot file that has it", set_up_add},
     {"calibrate", "Find the uncertainty bound from recordings of the healthy robot",
      set_up_calibrate},
@@ -18,6 +18,8 @@ constexpr std::array<Verb, 14> kVerbs = {{
      set_up_export_mjcf},
     {"export-urdf", "Write a robot file as URDF, with the friction that was found",
      set_up_export_urdf},
+    {"identify", "Find inertia of every link and friction of every drive in recordings",
+     set_up_identify},
     {"import-urdf", "Write a robot file from a URDF's chain of links", set_up_import_urdf},
     {"look", "Show what a recording holds, and the [channels] that would read it", set_up_look},
     {"motion", "Write a motion that tells effects apart, or shows what recordings did not",

@@ -66,7 +66,7 @@ struct Options {
 void add_options(CLI::App& app, Options& options) {
   app.add_option("--bus", options.bus, "CAN interface: can0, vcan0")->required();
   app.add_option("--robot", options.robot,
-                 "Robot file of up to 8 joints, with a bound; by default the paper's arm");
+                 "Robot file of up to 12 joints, with a bound; by default the paper's arm");
   app.add_option("--rate", options.rate_hz,
                  "Ticks a second, 10 to 10000; by default 1 over the "
                  "robot file's period_s, which is 1000 unless it says "
@@ -92,7 +92,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--safe-mode", options.safe_mode, "What drives are told in the safe state")
       ->check(CLI::IsMember({"off", "damping"}))
       ->capture_default_str();
-  auto* fd = app.add_flag("--fd", options.fd, "CAN FD: one frame for all joints");
+  auto* fd = app.add_flag("--fd", options.fd, "CAN FD: one frame for up to 8 joints");
   app.add_flag("--classic", options.classic,
                "Classic CAN; without either what fits into a tick, classic CAN first")
       ->excludes(fd);

@@ -74,7 +74,7 @@ void add_options(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--duration", options.duration_s, "End after so many seconds")
       ->check(CLI::PositiveNumber);
-  auto* fd = app.add_flag("--fd", options.fd, "CAN FD: one frame for all joints");
+  auto* fd = app.add_flag("--fd", options.fd, "CAN FD: one frame for up to 8 joints");
   app.add_flag("--classic", options.classic,
                "Classic CAN; without either what fits into a tick, classic CAN first")
       ->excludes(fd);

@@ -87,7 +87,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--scalar", options.scalar, "Arithmetic of the controller")
       ->check(CLI::IsMember({"float", "double"}))
       ->capture_default_str();
-  app.add_flag("--fd", options.fd, "CAN FD: one frame for all joints");
+  app.add_flag("--fd", options.fd, "CAN FD: one frame for up to 8 joints");
   add_measurement_options(app, options.settings);
   add_machine_options(app, options.settings);
   add_page_options(app, options.answer, "histograms");

@@ -99,10 +99,14 @@ std::optional<desk::DataFaultKind> kind_of(hidden::DataFault fault) {
 }
 
 void judge_fault(hidden::DataFault fault, const Explanation& e, Outcome& outcome) {
-  outcome.right_verdict = e.verdict == Verdict::kDataFault;
-  outcome.right_detail = outcome.right_verdict &&
-                         std::any_of(e.data_faults.begin(), e.data_faults.end(),
-                                     [&](const auto& one) { return one.kind == kind_of(fault); });
+  const auto has = [&](const std::vector<desk::DataFault>& faults) {
+    return std::any_of(faults.begin(), faults.end(),
+                       [&](const auto& one) { return one.kind == kind_of(fault); });
+  };
+  // What is left out is named as well, and no reason to stop.
+  const bool left_out = has(e.left_out);
+  outcome.right_verdict = e.verdict == Verdict::kDataFault || left_out;
+  outcome.right_detail = outcome.right_verdict && (left_out || has(e.data_faults));
 }
 
 void judge(const CaseGroup& group, const hidden::Case& made, const Explanation& e,

@@ -25,7 +25,7 @@ namespace {
 
 void add_known_effects(const NominalJoint& known, std::uint8_t joint,
                        desk::RobotDescription& robot) {
-  const auto add = [&](EffectKind kind, std::array<double, 4> parameters) {
+  const auto add = [&](EffectKind kind, std::array<double, kMaxEffectParameters> parameters) {
     if (parameters[0] == 0) return;  // this is what is hidden
     desk::RobotEffect effect;
     effect.kind = kind;

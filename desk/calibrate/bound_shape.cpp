@@ -61,15 +61,16 @@ bool follows_torque(const BoundShape& shape) {
          shape.settings.table.variable == BoundVariable::kTorque;
 }
 
+using Joints = Vector<kRuntimeJoints, double>;
+
 // phi_k at the samples' position and velocity, with the torque `shift` samples later.
-template <int N>
-Eigen::VectorXd basis_values(const UncertaintyBound<N, double>& bound,
+Eigen::VectorXd basis_values(const UncertaintyBound<kRuntimeJoints, double>& bound,
                              const RecordedError& recording, Index shift) {
   Eigen::VectorXd values(recording.samples());
   for (Index i = 0; i < recording.samples(); ++i) {
-    const Vector<N, double> q = recording.q.row(i);
-    const Vector<N, double> dq = recording.dq.row(i);
-    const Vector<N, double> tau = recording.tau.row(std::min(i + shift, recording.samples() - 1));
+    const Joints q = recording.q.row(i);
+    const Joints dq = recording.dq.row(i);
+    const Joints tau = recording.tau.row(std::min(i + shift, recording.samples() - 1));
     values[i] = evaluate(bound, q, dq, tau);
   }
   return values;
@@ -97,19 +98,19 @@ std::vector<std::vector<double>> mean_inverse_inertia(
   for (const RecordedError& recording : recordings) {
     mean += recording.q.colwise().mean().transpose() / static_cast<double>(recordings.size());
   }
-  return with_joint_count(robot.joint_count(), [&]<int N>() {
-    const auto model = make_model(chain_of<N, double>(robot));
-    const Vector<N, double> q = mean;
-    const Eigen::MatrixXd inertia = mass_matrix(model, q);
-    const Eigen::MatrixXd inverse =
-        inertia.ldlt().solve(Eigen::MatrixXd::Identity(inertia.rows(), inertia.cols()));
-    std::vector<std::vector<double>> rows;
-    for (Index i = 0; i < N; ++i) {
-      std::vector<double>& row = rows.emplace_back();
-      for (Index j = 0; j < N; ++j) row.push_back(std::stod(fmt::format("{:.2g}", inverse(i, j))));
+  const auto model = make_model(chain_of<kRuntimeJoints, double>(robot));
+  const Joints q = mean;
+  const Eigen::MatrixXd inertia = mass_matrix(model, q);
+  const Eigen::MatrixXd inverse =
+      inertia.ldlt().solve(Eigen::MatrixXd::Identity(inertia.rows(), inertia.cols()));
+  std::vector<std::vector<double>> rows;
+  for (Index i = 0; i < inverse.rows(); ++i) {
+    std::vector<double>& row = rows.emplace_back();
+    for (Index j = 0; j < inverse.cols(); ++j) {
+      row.push_back(std::stod(fmt::format("{:.2g}", inverse(i, j))));
     }
-    return rows;
-  });
+  }
+  return rows;
 }
 
 // Points at even shares of the samples, in three digits; none where they would not differ.
@@ -206,13 +207,9 @@ FilteredBasis filtered_basis(const RobotDescription& robot, const BoundShape& sh
   basis.first_tick = basis.along;
   for (int k = 0; k < shape.size; ++k) {
     const BoundSettings unit = unit_bound(shape, k);
-    Eigen::VectorXd begin;
-    Eigen::VectorXd end;
-    with_joint_count(robot.joint_count(), [&]<int N>() {
-      const auto bound = bound_of<N, double>(unit);
-      end = basis_values(bound, recording, 0);
-      begin = shift == 0 ? end : basis_values(bound, recording, shift);
-    });
+    const auto bound = bound_of<kRuntimeJoints, double>(unit, robot.joints.size());
+    const Eigen::VectorXd end = basis_values(bound, recording, 0);
+    const Eigen::VectorXd begin = shift == 0 ? end : basis_values(bound, recording, shift);
     for (Index i = 1; i < recording.samples(); ++i) {
       const double fresh = filter.begin * begin[i - 1] + filter.end * end[i];
       basis.first_tick(i, k) = fresh;

@@ -120,16 +120,37 @@ std::string kind_text(EffectKind kind) {
 
 std::string effect_constant(const Effect<double>& effect, const RobotDescription& robot) {
   const EffectInfo& info = *info_of(effect.kind);
-  const JointType type = robot.joints[effect.joint].joint.type;
-  std::string text = cpp_text::comment(
-      fmt::format("{}: {}; {}", info.name, info.formula, parameter_remark(info, type)));
+  std::string text =
+      cpp_text::comment(fmt::format("{}{}: {}; {}", info.name, effect.of_motor ? " of a motor" : "",
+                                    info.formula, parameter_remark(info, robot.type_of(effect))));
   const std::span<const double> parameters(effect.parameters.data(), info.parameters.size());
-  return text + fmt::format("{{.kind = {}, .joint = {}, .parameters = {}}},\n",
-                            kind_text(effect.kind), effect.joint, cpp_text::numbers(parameters));
+  return text + fmt::format("{{.kind = {}, .joint = {}, .parameters = {}{}}},\n",
+                            kind_text(effect.kind), effect.joint, cpp_text::numbers(parameters),
+                            effect.of_motor ? ", .of_motor = true" : "");
 }
 
-template <int N>
-std::string chain_text(const Chain<N, double>& chain, const RobotDescription& robot) {
+// Nothing where no effect asks for it.
+std::string transmission_text(const Chain<kRuntimeJoints, double>& chain) {
+  const auto effects = chain.effects.view();
+  const bool used = std::any_of(effects.begin(), effects.end(),
+                                [](const Effect<double>& effect) { return effect.of_motor; });
+  if (!used) return {};
+  // The chain of run time has room for more joints than there are.
+  const std::size_t joints = chain.joints.size();
+  std::vector<double> matrix;
+  for (std::size_t motor = 0; motor < joints; ++motor) {
+    const auto row = chain.transmission.motor_per_joint.begin() +
+                     static_cast<std::ptrdiff_t>(motor * chain.transmission.kMost);
+    matrix.insert(matrix.end(), row, row + static_cast<std::ptrdiff_t>(joints));
+  }
+  const std::span<const double> offset = chain.transmission.motor_offset_rad;
+  std::string members = member("motor_per_joint", cpp_text::numbers(matrix),
+                               "row by row, rad of the motor per rad or m");
+  members += member("motor_offset_rad", cpp_text::numbers(offset.first(joints)));
+  return ".transmission =\n    {\n" + indented(members, "        ") + "    },\n";
+}
+
+std::string chain_text(const Chain<kRuntimeJoints, double>& chain, const RobotDescription& robot) {
   std::string joints;
   for (std::size_t i = 0; i < chain.joints.size(); ++i) {
     const RobotJoint& from = robot.joints[i];
@@ -144,8 +165,9 @@ std::string chain_text(const Chain<N, double>& chain, const RobotDescription& ro
   std::string text = ".joints = {{\n" + indented(joints, "    ") + "}},\n";
   text += member("gravity_m_s2", cpp_text::numbers(chain.gravity_m_s2), "m/s^2, base frame");
   if (effects.empty()) return text;
-  return text + ".effects =\n    {\n        .items = {{\n" + indented(effects, "            ") +
-         fmt::format("        }}}},\n        .size = {},\n    }},\n", chain.effects.size);
+  text += ".effects =\n    {\n        .items = {{\n" + indented(effects, "            ") +
+          fmt::format("        }}}},\n        .size = {},\n    }},\n", chain.effects.size);
+  return text + transmission_text(chain);
 }
 
 std::string estimator_constant(const EstimatorConfig<double>& config) {
@@ -170,8 +192,8 @@ std::string norm_unit(const RobotDescription& robot, Quantity quantity) {
   return unit_of(quantity, first);
 }
 
-template <int N>
-std::string table_text(const UncertaintyBound<N, double>& bound, const RobotDescription& robot) {
+std::string table_text(const UncertaintyBound<kRuntimeJoints, double>& bound,
+                       const RobotDescription& robot) {
   constexpr std::array kVariables{"kPosition", "kSpeed", "kTorque"};
   constexpr std::array kQuantities{Quantity::kPosition, Quantity::kVelocity, Quantity::kEffort};
   const auto variable = static_cast<std::size_t>(bound.variable);
@@ -187,8 +209,7 @@ std::string table_text(const UncertaintyBound<N, double>& bound, const RobotDesc
   return text + member("value", in_use(bound.value), "mu_bar");
 }
 
-template <int N>
-std::string bound_constant(const UncertaintyBound<N, double>& bound,
+std::string bound_constant(const UncertaintyBound<kRuntimeJoints, double>& bound,
                            const RobotDescription& robot) {
   constexpr std::array kKinds{"kConstant", "kScaledNorm", "kTable"};
   std::string text = member("kind", fmt::format("offnominal::BoundKind::{}",
@@ -209,8 +230,8 @@ std::string bound_constant(const UncertaintyBound<N, double>& bound,
   return text;
 }
 
-template <int N>
-std::string arming_constant(const ArmingConfig<N, double>& config, const RobotDescription& robot) {
+std::string arming_constant(const ArmingConfig<kRuntimeJoints, double>& config,
+                            const RobotDescription& robot) {
   return cpp_text::comment(robot.arming.source) +
          member("position_window", cpp_text::numbers(config.position_window), "rad or m") +
          member("speed", cpp_text::numbers(config.speed), "rad/s or m/s") +
@@ -334,35 +355,35 @@ std::string encoder_text(const RobotDescription& robot, const ModelHeader& heade
                   list.substr(1, list.size() - 2) + ",\n", header);
 }
 
-template <int N>
 Status validity_in_float(const RobotDescription& robot) {
-  const MonitorConfig<N, float> config = monitor_config_of<N, float>(robot);
+  const MonitorConfig<kRuntimeJoints, float> config =
+      monitor_config_of<kRuntimeJoints, float>(robot);
   Status status = validate<kMaxHiddenUnits>(config);
   if (status != Status::kOk) return status;
-  status = EffectMemory<N, float>::validate(config.chain, config.estimator.period_s);
+  status = EffectMemory<kRuntimeJoints, float>::validate(config.chain, config.estimator.period_s);
   if (status != Status::kOk) return status;
-  status = validate(gains_of<N, float>(robot));
-  return status == Status::kOk ? validate(arming_of<N, float>(robot)) : status;
+  status = validate(gains_of<kRuntimeJoints, float>(robot));
+  return status == Status::kOk ? validate(arming_of<kRuntimeJoints, float>(robot)) : status;
 }
 
-template <int N>
 ModelHeader write(const RobotDescription& robot, const ModelHeaderOptions& options) {
-  const MonitorConfig<N, double> config = monitor_config_of<N, double>(robot);
-  const ComputedTorqueGains<N, double> gains = gains_of<N, double>(robot);
+  const MonitorConfig<kRuntimeJoints, double> config =
+      monitor_config_of<kRuntimeJoints, double>(robot);
+  const ComputedTorqueGains<kRuntimeJoints, double> gains = gains_of<kRuntimeJoints, double>(robot);
   ModelHeader header{.text = {},
-                     .joints = N,
+                     .joints = robot.joint_count(),
                      .hidden_units = config.estimator.hidden_units,
                      .effects = config.chain.effects.size,
-                     .in_float = validity_in_float<N>(robot)};
+                     .in_float = validity_in_float(robot)};
   std::string text = head_text(robot, options, header);
-  text += constant("offnominal::Chain<kJoints, Scalar>", "kChain",
-                   chain_text<N>(config.chain, robot), header);
+  text += constant("offnominal::Chain<kJoints, Scalar>", "kChain", chain_text(config.chain, robot),
+                   header);
   text += constant("offnominal::EstimatorConfig<Scalar>", "kEstimatorConfig",
                    cpp_text::comment(robot.estimator.source) + estimator_constant(config.estimator),
                    header);
   text += "// mu_bar, rad/s^2 (m/s^2): what |M^-1 (unmodelled torque)| does not exceed.\n" +
           constant("offnominal::UncertaintyBound<kJoints, Scalar>", "kBound",
-                   cpp_text::comment(robot.bound->source) + bound_constant<N>(config.bound, robot),
+                   cpp_text::comment(robot.bound->source) + bound_constant(config.bound, robot),
                    header);
   const bool held = config.torque_signal == TorqueSignal::kHeld;
   text +=
@@ -379,7 +400,7 @@ ModelHeader write(const RobotDescription& robot, const ModelHeaderOptions& optio
                        member("kd", cpp_text::numbers(gains.kd), "1/s"),
                    header);
   text += constant("offnominal::ArmingConfig<kJoints, Scalar>", "kArmingConfig",
-                   arming_constant(arming_of<N, double>(robot), robot), header);
+                   arming_constant(arming_of<kRuntimeJoints, double>(robot), robot), header);
   if (robot.drives) text += drives_text(*robot.drives);
   header.text =
       text + encoder_text(robot, header) + fmt::format("}}  // namespace {}\n", options.name_space);
@@ -398,7 +419,7 @@ ModelHeader model_header(const RobotDescription& robot, const ModelHeaderOptions
                       .mend = "choose another name"});
   }
   require_bound(robot, options.robot_file);
-  return with_joint_count(robot.joint_count(), [&]<int N>() { return write<N>(robot, options); });
+  return write(robot, options);
 }
 
 }  // namespace offnominal::desk

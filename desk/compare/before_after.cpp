@@ -6,15 +6,20 @@
 
 namespace offnominal::desk {
 
-std::vector<BeforeAfter> before_after(const Comparison& before, const Comparison& after) {
+std::vector<BeforeAfter> before_after(const std::vector<JointComparison>& before,
+                                      const std::vector<JointComparison>& after) {
   std::vector<BeforeAfter> result;
-  for (std::size_t i = 0; i < before.joints.size(); ++i) {
-    const JointComparison& old_one = before.joints[i];
-    const JointComparison& new_one = after.joints[i];
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const JointComparison& old_one = before[i];
+    const JointComparison& new_one = after[i];
     result.push_back({old_one.joint, old_one.unit, old_one.relative_error_percent,
                       new_one.relative_error_percent, old_one.rms_error, new_one.rms_error});
   }
   return result;
+}
+
+std::vector<BeforeAfter> before_after(const Comparison& before, const Comparison& after) {
+  return before_after(before.joints, after.joints);
 }
 
 std::string text_of(const std::vector<BeforeAfter>& joints) {

@@ -21,7 +21,10 @@ struct BeforeAfter {
   [[nodiscard]] double fall() const { return 1 - after_rms / before_rms; }
 };
 
-// Joint by joint, of two models on one recording.
+// Joint by joint, of two models on the same samples.
+std::vector<BeforeAfter> before_after(const std::vector<JointComparison>& before,
+                                      const std::vector<JointComparison>& after);
+// Of two models on one recording.
 std::vector<BeforeAfter> before_after(const Comparison& before, const Comparison& after);
 
 // A table of them, a line per joint: relative and rms error before and after, and the fall.

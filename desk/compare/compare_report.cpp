@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "common/effort_name.hpp"
+#include "common/nearest.hpp"
 #include "common/text_table.hpp"
 #include "compare/before_after.hpp"
 #include "compare/torque_charts.hpp"
@@ -27,8 +27,23 @@ std::string percent(double value) {
   return std::isfinite(value) ? fmt::format("{:.2f} %", value) : std::string("none");
 }
 
+std::string sentence(const GearTorque& gear, const std::string& unit) {
+  std::string words =
+      fmt::format("Drive less sensor, gear and rotor take {:.4g} {} rms ({} of the drive's {})",
+                  gear.rms, unit, percent(gear.percent), effort_name(unit));
+  if (gear.follows.share >= kWorthSaying) {
+    words += fmt::format(", {:.0f} % of it follows the {}", 100 * gear.follows.share,
+                         gear.follows.variable);
+  }
+  return words + ".";
+}
+
 std::string sentence(const JointComparison& joint) {
   const char* effort = effort_name(joint.unit);
+  if (joint.samples == 0) {
+    return fmt::format("Joint {}: nothing is left of it that is free of faults of the recording.",
+                       joint.joint + 1);
+  }
   if (!std::isfinite(joint.relative_error_percent)) {
     return fmt::format("Joint {}: the recorded {} is 0 throughout, nothing to compare with.",
                        joint.joint + 1, effort);
@@ -45,13 +60,20 @@ std::string sentence(const JointComparison& joint) {
     words +=
         fmt::format(" {:.0f} % of the error follows the {}.", 100 * first.share, first.variable);
   }
+  if (joint.gear) words += " " + sentence(*joint.gear, joint.unit);
   constexpr double kWorthMention = 0.01;
-  if (joint.left_out >= kWorthMention) {
+  const double at_rest = joint.left_out - joint.at_fault;
+  if (at_rest >= kWorthMention) {
     words += fmt::format(
         " {:.0f} % of the samples do not count: the joint stands still there, and friction may "
         "hold "
         "it.",
-        100 * joint.left_out);
+        100 * at_rest);
+  }
+  if (joint.at_fault > 0) {
+    words += fmt::format(
+        " {:.1f} % of the samples are left out for faults of the recording; {} are left.",
+        100 * joint.at_fault, joint.samples);
   }
   return words;
 }
@@ -61,9 +83,9 @@ Level level_of(const JointComparison& joint) {
   return joint.relative_error_percent <= kPoorPercent ? Level::kWarn : Level::kBad;
 }
 
-report::KeyFigures key_figures(const Comparison& comparison) {
+report::KeyFigures key_figures(const Comparisons& comparisons) {
   report::KeyFigures keys;
-  for (const JointComparison& joint : comparison.joints) {
+  for (const JointComparison& joint : comparisons.joints) {
     report::KeyFigure relative;
     relative.label = fmt::format("relative error, joint {}", joint.joint + 1);
     relative.value = joint.relative_error_percent;
@@ -81,23 +103,38 @@ report::KeyFigures key_figures(const Comparison& comparison) {
   return keys;
 }
 
-report::Table table_of(const Comparison& comparison) {
+bool are_several(const Comparisons& comparisons) { return comparisons.recordings.size() > 1; }
+
+std::string number_of(std::size_t recording) { return std::to_string(recording + 1); }
+
+report::Table table_of(const Comparisons& comparisons) {
   report::Table table;
   table.caption = "Error per joint";
   table.columns = {{"joint", "", "d"},  {"rms error", "", ".4g"},       {"rms torque", "", ".4g"},
                    {"unit", "", ".4g"}, {"relative error", "%", ".2f"}, {"fit", "%", ".2f"}};
-  for (const JointComparison& joint : comparison.joints) {
-    table.rows.push_back({static_cast<double>(joint.joint + 1), joint.rms_error, joint.rms_torque,
-                          joint.unit, joint.relative_error_percent, joint.fit_percent});
+  const bool several = are_several(comparisons);
+  if (several) table.columns.insert(table.columns.begin() + 1, {"recording", "", ".4g"});
+  const auto row = [&](const JointComparison& joint, const std::string& recording) {
+    std::vector<report::Cell> cells{
+        static_cast<double>(joint.joint + 1), joint.rms_error,  joint.rms_torque, joint.unit,
+        joint.relative_error_percent,         joint.fit_percent};
+    if (several) cells.insert(cells.begin() + 1, recording);
+    table.rows.push_back(std::move(cells));
+  };
+  for (std::size_t i = 0; i < comparisons.joints.size(); ++i) {
+    for (const Comparison& one : comparisons.recordings) {
+      if (several) row(one.joints[i], one.file);
+    }
+    row(comparisons.joints[i], "all together");
   }
   table.note =
       "Relative error: 100 |tau - tau_m| / |tau|. Fit: 100 (1 - |tau - tau_m| / |tau - mean|). "
       "Both over the filtered samples: " +
-      words_of(comparison.plan) + ".";
+      words_of(comparisons.recordings[0].plan) + (several ? ", the first recording." : ".");
   return table;
 }
 
-report::Table fall_table(const Comparison& comparison, const Comparison& against,
+report::Table fall_table(const Comparisons& comparisons, const Comparisons& against,
                          const CompareNames& names) {
   report::Table table;
   table.caption = "Fall of the error";
@@ -105,12 +142,13 @@ report::Table fall_table(const Comparison& comparison, const Comparison& against
       {"joint", "", "d"},  {"rms before", "", ".4g"},       {"rms after", "", ".4g"},
       {"unit", "", ".4g"}, {"relative before", "%", ".2f"}, {"relative after", "%", ".2f"},
       {"fall", "%", ".1f"}};
-  for (const BeforeAfter& error : before_after(against, comparison)) {
+  for (const BeforeAfter& error : before_after(against.joints, comparisons.joints)) {
     table.rows.push_back({static_cast<double>(error.joint + 1), error.before_rms, error.after_rms,
                           error.unit, error.before_percent, error.after_percent,
                           100 * error.fall()});
   }
   table.note = "Before: " + names.against_file + ". Fall of the rms error; negative: it has grown.";
+  if (are_several(comparisons)) table.note += " All recordings together.";
   return table;
 }
 
@@ -135,12 +173,63 @@ report::Section joint_section(const Comparison& comparison, const Comparison* ag
   return section;
 }
 
+// "../A.mat, 303 samples", a line each; what they are called in the table below.
+std::string list_of_recordings(const Comparisons& comparisons) {
+  std::string text;
+  for (std::size_t r = 0; r < comparisons.recordings.size(); ++r) {
+    const Comparison& one = comparisons.recordings[r];
+    text +=
+        fmt::format("recording {}: {}, {} samples left\n", number_of(r), one.file, one.t_s.size());
+    for (const std::string& remark : one.remarks) text += "  note: " + remark + "\n";
+  }
+  return text;
+}
+
+std::string words_of_filters(const Comparisons& comparisons) {
+  std::string text;
+  std::string last;
+  for (std::size_t r = 0; r < comparisons.recordings.size(); ++r) {
+    const std::string words = words_of(comparisons.recordings[r].plan);
+    if (words == last) continue;
+    text += (r == 0 ? "" : fmt::format("from recording {}: ", number_of(r))) + words + "\n";
+    last = words;
+  }
+  return text;
+}
+
+std::string error_table(const Comparisons& comparisons) {
+  const bool several = are_several(comparisons);
+  std::vector<TextColumn> columns{{"joint", -6}};
+  if (several) columns.push_back({"recording", -10});
+  for (const TextColumn& column : std::vector<TextColumn>{
+           {"rms error", 14}, {"rms torque", 14}, {"relative error", 15}, {"fit", 10}}) {
+    columns.push_back(column);
+  }
+  const TextTable table(columns);
+  std::string text = table.heading();
+  const auto row = [&](const JointComparison& joint, const std::string& recording) {
+    const std::string error = fmt::format("{:.4g} {}", joint.rms_error, joint.unit);
+    const std::string torque = fmt::format("{:.4g} {}", joint.rms_torque, joint.unit);
+    const std::string relative = percent(joint.relative_error_percent);
+    const std::string fit = percent(joint.fit_percent);
+    text += several ? table.row(joint.joint + 1, recording, error, torque, relative, fit)
+                    : table.row(joint.joint + 1, error, torque, relative, fit);
+  };
+  for (std::size_t i = 0; i < comparisons.joints.size(); ++i) {
+    for (std::size_t r = 0; several && r < comparisons.recordings.size(); ++r) {
+      row(comparisons.recordings[r].joints[i], number_of(r));
+    }
+    row(comparisons.joints[i], "all");
+  }
+  return text;
+}
+
 }  // namespace
 
-std::string verdict_of(const Comparison& comparison, const Comparison* against) {
+std::string verdict_of(const Comparisons& comparison, const Comparisons* against) {
   std::string words;
   if (against != nullptr) {
-    for (const BeforeAfter& error : before_after(*against, comparison)) {
+    for (const BeforeAfter& error : before_after(against->joints, comparison.joints)) {
       words += fmt::format("{}Joint {}: the error {} from {:.2f} % to {:.2f} %.",
                            words.empty() ? "" : " ", error.joint + 1,
                            error.fall() > 0 ? "falls" : "does not fall: it goes",
@@ -154,54 +243,10 @@ std::string verdict_of(const Comparison& comparison, const Comparison* against) 
   return words;
 }
 
-Level level_of(const Comparison& comparison) {
+Level level_of(const Comparisons& comparison) {
   Level worst = Level::kGood;
   for (const JointComparison& joint : comparison.joints) worst = std::max(worst, level_of(joint));
   return worst;
-}
-
-nlohmann::ordered_json to_json(const FilterPlan& plan) {
-  return {{"sample_rate_hz", plan.sample_rate_hz},
-          {"position_cutoff_hz", plan.position_cutoff_hz},
-          {"torque_cutoff_hz", plan.torque_cutoff_hz},
-          {"decimation", plan.decimation}};
-}
-
-nlohmann::ordered_json to_json(const Comparison& comparison, const CompareNames& names,
-                               const Comparison* against) {
-  nlohmann::ordered_json json;
-  json["log"] = names.log;
-  json["robot"] = names.robot_file;
-  json["joints"] = nlohmann::ordered_json::array();
-  json["where"] = nlohmann::ordered_json::array();
-  for (const JointComparison& joint : comparison.joints) {
-    json["joints"].push_back({{"joint", joint.joint + 1},
-                              {"unit", joint.unit},
-                              {"rms_error", joint.rms_error},
-                              {"rms_torque", joint.rms_torque},
-                              {"relative_error_percent", joint.relative_error_percent},
-                              {"fit_percent", joint.fit_percent},
-                              {"left_out_percent", 100 * joint.left_out}});
-    for (const ErrorShare& where : joint.where) {
-      json["where"].push_back({{"joint", joint.joint + 1},
-                               {"variable", where.variable},
-                               {"share_of_residual", where.share}});
-    }
-  }
-  json["samples"] = comparison.t_s.size();
-  json["filter"] = to_json(comparison.plan);
-  json["remarks"] = comparison.remarks;
-  json["verdict"] = verdict_of(comparison, against);
-  if (against == nullptr) return json;
-  json["against"] = {{"robot", names.against_file}, {"joints", nlohmann::ordered_json::array()}};
-  for (const BeforeAfter& error : before_after(*against, comparison)) {
-    json["against"]["joints"].push_back({{"joint", error.joint + 1},
-                                         {"unit", error.unit},
-                                         {"rms_error", error.before_rms},
-                                         {"relative_error_percent", error.before_percent},
-                                         {"fall_percent", 100 * error.fall()}});
-  }
-  return json;
 }
 
 std::string words_of(const FilterPlan& plan) {
@@ -211,45 +256,54 @@ std::string words_of(const FilterPlan& plan) {
   return words + fmt::format(" at {:.6g} Hz", plan.sample_rate_hz);
 }
 
-std::string text_of(const Comparison& comparison, const CompareNames& names,
-                    const Comparison* against) {
-  std::string text =
-      fmt::format("{} against {}\n{}, {} samples left\n", names.log, names.robot_file,
-                  words_of(comparison.plan), comparison.t_s.size());
-  for (const std::string& remark : comparison.remarks) text += "note: " + remark + "\n";
-  const TextTable table(
-      {{"joint", -6}, {"rms error", 14}, {"rms torque", 14}, {"relative error", 15}, {"fit", 10}});
-  text += table.heading();
-  for (const JointComparison& joint : comparison.joints) {
-    text += table.row(joint.joint + 1, fmt::format("{:.4g} {}", joint.rms_error, joint.unit),
-                      fmt::format("{:.4g} {}", joint.rms_torque, joint.unit),
-                      percent(joint.relative_error_percent), percent(joint.fit_percent));
+std::string text_of(const Comparisons& comparisons, const CompareNames& names,
+                    const Comparisons* against) {
+  std::string text;
+  const Comparison& first = comparisons.recordings[0];
+  if (are_several(comparisons)) {
+    text =
+        fmt::format("{} recordings against {}\n", comparisons.recordings.size(), names.robot_file) +
+        list_of_recordings(comparisons) + words_of_filters(comparisons);
+  } else {
+    text = fmt::format("{} against {}\n{}, {} samples left\n", names.logs[0], names.robot_file,
+                       words_of(first.plan), first.t_s.size());
+    for (const std::string& remark : first.remarks) text += "note: " + remark + "\n";
   }
+  text += error_table(comparisons);
   if (against != nullptr) {
-    text += text_of(before_after(*against, comparison));
+    text += text_of(before_after(against->joints, comparisons.joints));
     text += "before: " + names.against_file + "\n";
   }
-  return text + verdict_of(comparison, against) + "\n";
+  return text + verdict_of(comparisons, against) + "\n";
 }
 
-report::Page page_of(const Comparison& comparison, const CompareNames& names,
-                     const Comparison* against) {
+report::Page page_of(const Comparisons& comparisons, const CompareNames& names,
+                     const Comparisons* against) {
+  const bool several = are_several(comparisons);
   report::Page page;
   page.title = "Model against measurement";
-  page.subtitle = names.log + " against " + names.robot_file;
-  page.verdict = {verdict_of(comparison, against), level_of(comparison)};
+  page.subtitle = list_of(names.logs) + " against " + names.robot_file;
+  page.verdict = {verdict_of(comparisons, against), level_of(comparisons)};
   page.command_line = names.command_line;
   report::Section overview;
   overview.heading = "Error";
-  overview.blocks.emplace_back(key_figures(comparison));
-  overview.blocks.emplace_back(table_of(comparison));
-  if (against != nullptr) overview.blocks.emplace_back(fall_table(comparison, *against, names));
-  for (const std::string& remark : comparison.remarks) {
-    overview.blocks.emplace_back(report::Note{remark, Level::kWarn});
+  overview.blocks.emplace_back(key_figures(comparisons));
+  overview.blocks.emplace_back(table_of(comparisons));
+  if (against != nullptr) overview.blocks.emplace_back(fall_table(comparisons, *against, names));
+  for (const Comparison& one : comparisons.recordings) {
+    for (const std::string& remark : one.remarks) {
+      overview.blocks.emplace_back(
+          report::Note{several ? one.file + ": " + remark : remark, Level::kWarn});
+    }
   }
   page.sections.push_back(std::move(overview));
-  for (std::size_t joint = 0; joint < comparison.joints.size(); ++joint) {
-    page.sections.push_back(joint_section(comparison, against, joint));
+  for (std::size_t r = 0; r < comparisons.recordings.size(); ++r) {
+    const Comparison& one = comparisons.recordings[r];
+    for (std::size_t joint = 0; joint < one.joints.size(); ++joint) {
+      page.sections.push_back(
+          joint_section(one, against != nullptr ? &against->recordings[r] : nullptr, joint));
+      if (several) page.sections.back().recording = one.file;
+    }
   }
   return page;
 }

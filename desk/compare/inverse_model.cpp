@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "robot/chain_of.hpp"
+#include "robot/transmission.hpp"
 #include "signal/shift.hpp"
 
 namespace offnominal::desk {
@@ -31,12 +32,13 @@ VectorXd torque_along(const std::array<double, kMaxEffectParameters>& parameters
   return torque;
 }
 
+using Joints = Vector<kRuntimeJoints, double>;
+
 // Per joint, how many samples later than it is logged its torque acts.
-template <int N>
-VectorXd delays_in_samples(const Chain<N, double>& chain, const Motion& motion) {
-  VectorXd samples = VectorXd::Zero(N);
+VectorXd delays_in_samples(const Chain<kRuntimeJoints, double>& chain, const Motion& motion) {
+  VectorXd samples = VectorXd::Zero(static_cast<Index>(chain.joints.size()));
   if (motion.sample_count() < 2) return samples;
-  for (Index joint = 0; joint < N; ++joint) {
+  for (Index joint = 0; joint < samples.size(); ++joint) {
     samples[joint] = delay_of_joint(chain, static_cast<std::size_t>(joint)) / motion.period_s();
   }
   return samples;
@@ -48,28 +50,26 @@ MatrixXd model_torque(const RobotDescription& robot, const Motion& motion) {
   if (motion.q.cols() != robot.joint_count()) {
     throw std::invalid_argument("the motion has another number of joints than the robot");
   }
-  return with_joint_count(robot.joint_count(), [&]<int N>() {
-    const Chain<N, double> chain = chain_of<N, double>(robot);
-    const auto model = make_model(chain);
-    MatrixXd torque(motion.sample_count(), N);
-    for (Index i = 0; i < motion.sample_count(); ++i) {
-      const Vector<N, double> q = motion.q.row(i);
-      const Vector<N, double> dq = motion.dq.row(i);
-      const Vector<N, double> ddq = motion.ddq.row(i);
-      torque.row(i) = inverse_dynamics(model, q, dq, ddq, motion.t_s[i] - motion.t_s[0]);
-    }
-    for (const RobotEffect& effect : robot.effects) {
-      if (!remembers(effect.kind) || !is_torque_effect(effect.kind)) continue;
-      const JointType type = robot.joints[effect.joint].joint.type;
-      torque.col(effect.joint) +=
-          model.told_per_given[effect.joint] * torque_of_effect(effect, type, motion);
-    }
-    const VectorXd delays = delays_in_samples(chain, motion);
-    for (Index joint = 0; joint < N; ++joint) {
-      if (delays[joint] != 0) torque.col(joint) = ahead_by(torque.col(joint), delays[joint]);
-    }
-    return torque;
-  });
+  const auto chain = chain_of<kRuntimeJoints, double>(robot);
+  const auto model = make_model(chain);
+  MatrixXd torque(motion.sample_count(), robot.joint_count());
+  for (Index i = 0; i < motion.sample_count(); ++i) {
+    const Joints q = motion.q.row(i);
+    const Joints dq = motion.dq.row(i);
+    const Joints ddq = motion.ddq.row(i);
+    torque.row(i) = inverse_dynamics(model, q, dq, ddq, motion.t_s[i] - motion.t_s[0]);
+  }
+  for (const RobotEffect& effect : robot.effects) {
+    if (!remembers(effect.kind) || !is_torque_effect(effect.kind)) continue;
+    const JointType type = robot.joints[effect.joint].joint.type;
+    torque.col(effect.joint) +=
+        model.told_per_given[effect.joint] * torque_of_effect(effect, type, motion);
+  }
+  const VectorXd delays = delays_in_samples(chain, motion);
+  for (Index joint = 0; joint < delays.size(); ++joint) {
+    if (delays[joint] != 0) torque.col(joint) = ahead_by(torque.col(joint), delays[joint]);
+  }
+  return torque;
 }
 
 MatrixXd link_torque(const RobotDescription& robot, std::size_t link, const Motion& motion) {
@@ -99,21 +99,36 @@ bool has_path_effect(const RobotDescription& robot) {
 }
 
 ToldTorque told_torque(const RobotDescription& robot, const Motion& motion) {
-  return with_joint_count(robot.joint_count(), [&]<int N>() {
-    const Chain<N, double> chain = chain_of<N, double>(robot);
-    const auto model = make_model(chain);
-    ToldTorque told{model.told_per_given, MatrixXd(motion.sample_count(), N),
-                    delays_in_samples(chain, motion)};
-    for (Index i = 0; i < motion.sample_count(); ++i) {
-      const Vector<N, double> q = motion.q.row(i);
-      const Vector<N, double> dq = motion.dq.row(i);
-      const Vector<N, double> ddq = motion.ddq.row(i);
-      const auto effects = joint_effects(model, q, dq, motion.t_s[i] - motion.t_s[0]);
-      const Vector<N, double> load = rigid_body_torque(model, joint_transforms(model, q), dq, ddq);
-      told.per_load.row(i) = told_per_load(model, effects, load);
-    }
-    return told;
-  });
+  const auto chain = chain_of<kRuntimeJoints, double>(robot);
+  const auto model = make_model(chain);
+  ToldTorque told{model.told_per_given, MatrixXd(motion.sample_count(), robot.joint_count()),
+                  delays_in_samples(chain, motion)};
+  for (Index i = 0; i < motion.sample_count(); ++i) {
+    const Joints q = motion.q.row(i);
+    const Joints dq = motion.dq.row(i);
+    const Joints ddq = motion.ddq.row(i);
+    const auto effects = joint_effects(model, q, dq, motion.t_s[i] - motion.t_s[0]);
+    const Joints load = rigid_body_torque(model, joint_transforms(model, q), dq, ddq);
+    told.per_load.row(i) = told_per_load(model, effects, load);
+  }
+  return told;
+}
+
+Motion motor_motion(const RobotDescription& robot, const Motion& motion) {
+  const MatrixXd to_motors = motor_per_joint(*robot.transmission).transpose();
+  Motion motors{motion.t_s, motion.q * to_motors, motion.dq * to_motors, motion.ddq * to_motors};
+  motors.q.rowwise() += motor_offset_rad(*robot.transmission).transpose();
+  return motors;
+}
+
+std::vector<MovedJoint> joints_of_motor(const RobotDescription& robot, std::size_t motor) {
+  const MatrixXd matrix = motor_per_joint(*robot.transmission);
+  std::vector<MovedJoint> joints;
+  for (Index joint = 0; joint < matrix.cols(); ++joint) {
+    const double per_joint = matrix(static_cast<Index>(motor), joint);
+    if (per_joint != 0) joints.push_back({joint, per_joint});
+  }
+  return joints;
 }
 
 VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Motion& motion,

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <offnominal/model/effect.hpp>
+#include <vector>
 
 #include "compare/motion.hpp"
 #include "robot/robot.hpp"
@@ -13,7 +15,8 @@
 
 namespace offnominal::desk {
 
-// What the model needs for the motion, effects included.
+// What the model needs for the motion, effects included, with rigid transmissions: what acts
+// between motor and link is transmission_torque() (transmission.hpp).
 Eigen::MatrixXd model_torque(const RobotDescription& robot, const Motion& motion);
 
 // The share of one link's mass and inertia in it; linear in them.
@@ -38,7 +41,19 @@ struct ToldTorque {
 };
 ToldTorque told_torque(const RobotDescription& robot, const Motion& motion);
 
-// The torque of one torque effect on its own joint, of the given type. The run that its time counts
+// The motion of the motors, rad, in the columns of their numbers: of a robot with a transmission.
+Motion motor_motion(const RobotDescription& robot, const Motion& motion);
+
+// A joint that a motor moves, and how much the motor turns per rad or m of it: what a torque of the
+// motor has to be multiplied by to be the joint's.
+struct MovedJoint {
+  Eigen::Index joint = 0;
+  double motor_per_joint = 0;
+};
+std::vector<MovedJoint> joints_of_motor(const RobotDescription& robot, std::size_t motor);
+
+// The torque of one torque effect on its own joint, of the given type; for an effect of a motor
+// that of the motor, where the motion is the motors'. The run that its time counts
 // from began at `start_s`, on the motion's clock.
 Eigen::VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Motion& motion,
                                  double start_s);

@@ -14,16 +14,18 @@ namespace offnominal::desk {
 struct Measurement {
   Log log;
   FilterPlan plan;
-  Motion motion;           // full rate
-  Eigen::VectorXd t_s;     // of the samples that are kept
-  Eigen::MatrixXd torque;  // filtered; rows: kept samples, columns: joints
-  // Kept samples: 1, or 0 where the joint stands still and friction may hold it (standstill.hpp).
+  Motion motion;                  // full rate
+  Eigen::VectorXd t_s;            // of the samples that are kept
+  Eigen::MatrixXd torque;         // filtered; rows: kept samples, columns: joints
+  Eigen::MatrixXd sensor_torque;  // the same of log.sensor_tau
+  // Kept samples: 1, or 0 where the joint stands still and friction may hold it (standstill.hpp),
+  // or where the recording is at fault (usable.hpp).
   Eigen::MatrixXd moving;
-
-  // The samples of a joint that tell of the model, of something per kept sample.
-  [[nodiscard]] Eigen::VectorXd while_moving(const Eigen::Ref<const Eigen::VectorXd>& values,
-                                             Eigen::Index joint) const;
+  Eigen::VectorXd at_fault;  // per joint: share of the kept samples in which the recording is, 0..1
 };
+
+// Throws InputError where a recording has another number of joints than the robot.
+void require_joints(const Log& log, const RobotDescription& robot);
 
 // `plan`: of plan_filter() for this recording and those that it is analysed with. Throws InputError
 // as plan_for(), and where the robot has another number of joints.
@@ -31,7 +33,8 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& pl
 // With the plan of this recording alone.
 Measurement measure(Log log, const RobotDescription& robot, const FilterRequest& request = {});
 
-// model_torque() of a robot, filtered as the measured torque is.
+// model_torque() of a robot with the recording's payload and its transmission_torque(), without
+// what the recording's torque sensors do not see, filtered as the measured torque is.
 Eigen::MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement& measured);
 
 }  // namespace offnominal::desk

@@ -9,6 +9,7 @@
 #include "common/input_name.hpp"
 #include "common/json_text.hpp"
 #include "common/number.hpp"
+#include "robot/effect_text.hpp"
 #include "robot/geometry.hpp"
 
 namespace offnominal::desk::exchange {
@@ -20,15 +21,17 @@ std::string one_of(const std::set<std::string>& taken, const std::string& name) 
   return free;
 }
 
-std::string words_of(const RobotEffect& effect, const std::string& joint) {
+std::string words_of(const RobotEffect& effect, const std::string& place) {
   const EffectInfo& info = *info_of(effect.kind);
   std::string values;
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {
     values += fmt::format("{}{} = {}", i == 0 ? "" : ", ", info.parameters[i].name,
                           shortest(effect.parameters[i]));
   }
-  return fmt::format("{} of joint `{}` ({})", info.name, joint, values);
+  return fmt::format("{} of {} ({})", info.name, place, values);
 }
+
+std::string named(const ExportedJoint& joint) { return fmt::format("joint `{}`", joint.name); }
 
 class Exporter {
  public:
@@ -51,12 +54,17 @@ class Exporter {
     }
     if (robot_.bound) result_.not_carried.emplace_back("the uncertainty bound");
     result_.not_carried.emplace_back("the settings of estimator and arming");
+    if (robot_.transmission) result_.not_carried.emplace_back("the transmission");
     if (robot_.channels) result_.not_carried.emplace_back("the channels of recordings");
     return std::move(joints_);
   }
 
  private:
   void take(const RobotEffect& effect) {
+    if (effect.of_motor) {
+      result_.not_carried.push_back(words_of(effect, place_of(effect)));
+      return;
+    }
     ExportedJoint& joint = joints_[effect.joint];
     const double first = effect.parameters[0];
     switch (effect.kind) {
@@ -86,12 +94,12 @@ class Exporter {
       default:
         break;
     }
-    result_.not_carried.push_back(words_of(effect, joint.name));
+    result_.not_carried.push_back(words_of(effect, named(joint)));
   }
 
   void changed(const RobotEffect& effect, const std::string& how) {
     result_.changed.push_back(
-        fmt::format("{}: {}", words_of(effect, joints_[effect.joint].name), how));
+        fmt::format("{}: {}", words_of(effect, named(joints_[effect.joint])), how));
   }
 
   // False, and nothing added, where no body could be like what is left.

@@ -9,6 +9,7 @@
 #include "common/nearest.hpp"
 #include "compare/inverse_model.hpp"
 #include "compare/measurement.hpp"
+#include "robot/payload.hpp"
 
 namespace offnominal::desk {
 
@@ -17,7 +18,11 @@ using nlohmann::ordered_json;
 namespace {
 
 std::vector<std::string> objections_to(const Explanation& e) {
-  if (!is_to_write(e.verdict)) {
+  const bool sure = std::any_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
+    return !holds_in_any(e.ambiguous, one.what);
+  });
+  // What one joint leaves open stops no other's.
+  if (!e.data_faults.empty() || (!is_to_write(e.verdict) && !sure)) {
     return {fmt::format("the verdict is {}: {}", name_of(e.verdict), e.words)};
   }
   if (e.found.empty()) return {"no effect is missing: fit the one that is there again with add"};
@@ -78,7 +83,7 @@ std::vector<BeforeAfter> at_rest(const RobotDescription& before, const RobotDesc
                                  const Log& log) {
   const Motion held = motion_of(log, {});
   const auto error_of = [&](const RobotDescription& robot) {
-    Eigen::MatrixXd error = log.tau - model_torque(robot, held);
+    Eigen::MatrixXd error = log.tau - model_torque(carrying(robot, log.payload), held);
     for (Eigen::Index joint = 0; joint < error.cols(); ++joint) {
       const auto approach = log.approach.col(joint);
       const double readings = approach.squaredNorm();
@@ -103,14 +108,16 @@ std::vector<BeforeAfter> at_rest(const RobotDescription& before, const RobotDesc
 
 }  // namespace
 
-AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& logs,
-                        const std::vector<Log>& holdout, const ExplainOptions& options,
+AddedFindings add_found(const RobotDescription& robot, std::vector<Log> logs,
+                        std::vector<Log> holdout, const ExplainOptions& options,
                         const OnProgress& on_progress) {
   AddedFindings added;
-  added.explanation = explain(robot, logs, holdout, options, on_progress);
+  if (on_progress) on_progress("examining the recordings");
+  const Treated recordings = treated(robot, std::move(logs), std::move(holdout), options.keep);
+  added.explanation = explain(robot, recordings, options, on_progress);
   added.objections = objections_to(added.explanation);
   if (!added.objections.empty()) return added;
-  const FilterPlan plan = plan_filter(logs, robot);
+  const FilterPlan plan = plan_filter(recordings.logs, robot);
   const auto compare_on = [&](const Log& log, bool held_out) {
     if (on_progress) on_progress("comparing both models on " + log.file);
     if (log.at_rest) {
@@ -122,8 +129,8 @@ AddedFindings add_found(const RobotDescription& robot, const std::vector<Log>& l
         {log.file, held_out,
          before_after(compare(robot, measured), compare(added.explanation.improved, measured))});
   };
-  for (const Log& log : logs) compare_on(log, false);
-  for (const Log& log : holdout) compare_on(log, true);
+  for (const Log& log : recordings.logs) compare_on(log, false);
+  for (const Log& log : recordings.holdout) compare_on(log, true);
   added.doubts = doubts_of(added);
   return added;
 }
@@ -132,8 +139,8 @@ ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
                      const std::string& output_file, bool force) {
   const ordered_json explained = to_json(added.explanation, names);
   ordered_json json;
-  for (const char* key : {"logs", "holdout", "robot", "verdict", "words", "found", "data_faults",
-                          "data_hints", "advice"}) {
+  for (const char* key : {"logs", "holdout", "robot", "verdict", "words", "found", "left_out",
+                          "data_faults", "data_hints", "advice"}) {
     json[key] = explained[key];
   }
   json["recordings"] = ordered_json::array();
@@ -166,6 +173,12 @@ std::string text_of(const AddedFindings& added, const ExplainNames& names, bool 
   }
   for (const std::string& objection : added.objections) {
     text += "\nNothing was written: " + objection + "\n";
+  }
+  for (const Finding& one : added.explanation.found) {
+    if (!added.objections.empty() || !holds_in_any(added.explanation.ambiguous, one.what)) continue;
+    text += fmt::format(
+        "\nnote: {} of joint {} is not written: the recordings do not tell it from others\n",
+        one.what.name(), one.what.joint + 1);
   }
   for (const HeldNumber& held : added.explanation.held) {
     if (!held.contradicted) text += "\nnote: " + held.words + "\n";

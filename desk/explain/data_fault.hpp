@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "log/log.hpp"
+
 namespace offnominal::desk {
 
 enum class DataFaultKind {
@@ -17,11 +19,28 @@ enum class DataFaultKind {
   kTimeUnit,
   kVelocity,
   kWrapped,
+  kStuck,
+  kJump,
+  kStart,
+  kNothingLeft,
 };
 
 // "degrees", "torque_sign", "stale_samples", "clock_skew", "saturation", "gaps", "time_unit",
-// "velocity" or "wrapped_position".
+// "velocity", "wrapped_position", "stuck", "jump", "start" or "nothing_left".
 const char* name_of(DataFaultKind kind);
+
+// Which of a joint's signals a fault is of.
+enum class FaultySignal { kWhole, kPosition, kTorque };
+
+// A stretch of a recording: samples, the rows of the file that they come from, counted from 1
+// behind its header, and their times.
+struct FaultSpan {
+  RowSpan samples;
+  Eigen::Index first_row = 0;
+  Eigen::Index last_row = 0;
+  double from_s = 0;
+  double to_s = 0;
+};
 
 // What makes a recording useless for physics until it is mended.
 struct DataFault {
@@ -31,7 +50,7 @@ struct DataFault {
   // torque against velocity. kStaleSamples, kSaturation: share of the samples. kClockSkew: s, the
   // torque late where positive. kGaps: longest step of time, s. kTimeUnit: factor on the time.
   // kVelocity: the velocity over the derivative of the position, 0 where they have nothing in
-  // common. kWrapped: the jump, as recorded.
+  // common. kWrapped, kJump: the jump, as recorded. kStuck, kStart: share of the samples.
   double size = 0;
   std::string unit;                   // of size, empty: none
   std::string words;                  // what was found, with numbers
@@ -40,7 +59,20 @@ struct DataFault {
   std::string file = {};              // the recording
   std::optional<double> at_s = {};    // where in it first; none: throughout
   std::vector<std::string> channels;  // lines of [channels] that mend it; empty: none can
+  FaultySignal signal = FaultySignal::kWhole;
+  std::vector<FaultSpan> spans = {};           // where it is; empty: throughout
+  std::vector<Eigen::Index> left_out_of = {};  // joints that do without the spans; empty: none
+  bool overruled = false;                      // by a KeepFault
 };
+
+// What the user says is no fault: of a joint, or of all for -1.
+struct KeepFault {
+  Eigen::Index joint = -1;
+  DataFaultKind kind = DataFaultKind::kGaps;
+};
+
+// "2:saturation" or "all:gaps". Throws InputError in the name of --keep.
+KeepFault keep_fault_of(const std::string& text);
 
 // Whether an answer that rests on positions and torques, or on velocities as well, is wrong with
 // it: another unit, a wrong sign, positions that jump.

@@ -1,10 +1,15 @@
 #include "explain/describe.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
 
 #include "explain/band_shift.hpp"
 #include "explain/confirm.hpp"
+#include "explain/questions.hpp"
 #include "explain/remainder.hpp"
 #include "identify/estimates.hpp"
 #include "identify/parallel.hpp"
@@ -84,6 +89,7 @@ void describe_findings(const SearchResult& from, Explanation& to) {
     Finding& finding = findings[i];
     finding.what = {effect.kind(), joint};
     finding.words = effect.info().words;
+    if (!accepted.stands_for.empty()) finding.words += "; " + accepted.stands_for;
     finding.formula = effect.info().formula;
     finding.parameters = estimates[i];
     finding.p_value = accepted.p;
@@ -106,14 +112,39 @@ void describe_suspicion(const SearchResult& from, Explanation& to) {
 void describe_rejections(const SearchResult& from, Explanation& to) {
   const Screening screening = from.search.screen(from.found.terms(), from.found.fit);
   const Data& data = from.regression.data();
-  const VectorXd detectable = (std::sqrt(kRelevantShare) * data.layout.rms(from.found.fit.residual))
-                                  .cwiseMax(kRelevantTorque * data.layout.rms(data.torque));
   for (const Screened& one : screening.candidates) {
     const Index joint = one.term.joint;
+    // What may be there is not among what does not show.
+    if (holds_in_any(to.ambiguous, {one.term.effect->kind(), joint})) continue;
     const double p = std::min(
         1.0, std::pow(10.0, -one.log10_p) * static_cast<double>(screening.candidates.size()));
-    to.rejected.push_back(
-        {{one.term.effect->kind(), joint}, p, detectable[joint], effort_unit(from.robot, joint)});
+    to.rejected.push_back({{one.term.effect->kind(), joint},
+                           p,
+                           smallest_shown(data, from.found.fit, one),
+                           effort_unit(from.robot, joint)});
+  }
+}
+
+// Which joints' recordings would not show what any drive may have, and what of it.
+void ask_each_joint(const SearchResult& from, Explanation& to) {
+  constexpr std::array kAsked{EffectKind::kViscousFriction, EffectKind::kCoulombFriction,
+                              EffectKind::kTorqueOffset, EffectKind::kJointStiffness};
+  constexpr double kShareOfTorque = 0.1;  // an effect of this much should not stay unseen
+  const VectorXd torque = from.regression.data().layout.rms(from.regression.data().torque);
+  for (const Rejection& one : to.rejected) {
+    const auto joint = static_cast<std::size_t>(one.what.joint);
+    Excitation& of = to.excitation[joint];
+    if (to.at_rest || !of.moves) continue;
+    const bool asked = std::find(kAsked.begin(), kAsked.end(), one.what.kind) != kAsked.end();
+    if (!asked || one.smallest_detectable <= kShareOfTorque * torque[one.what.joint]) continue;
+    of.sufficient = false;
+    of.lack += fmt::format("{}{}", of.lack.empty() ? "" : ", ", one.what.name());
+    if (std::isfinite(one.smallest_detectable)) {
+      of.lack += fmt::format(" below {:.2g} {}", one.smallest_detectable, one.unit);
+    }
+  }
+  for (Excitation& one : to.excitation) {
+    if (one.moves && !one.sufficient) one.lack += " would not show in these recordings";
   }
 }
 
@@ -168,25 +199,50 @@ void describe_hold_friction(const SearchResult& from, Explanation& to) {
   }
 }
 
-void describe_series(const SearchResult& from, Explanation& to) {
-  const Data& data = from.regression.data();
-  const Workspace& at = data.recordings[0];
-  const Index n = data.layout.samples(0);
-  Explanation::Series& series = to.series;
+// "a.csv"; "a.csv, 30 to 64 s" where not all of it was searched.
+std::string name_of_recording(const Data& data, std::size_t recording) {
+  const Workspace& at = data.recordings[recording];
+  const auto of_file = std::count_if(data.recordings.begin(), data.recordings.end(),
+                                     [&](const Workspace& one) { return one.file == at.file; });
+  if (of_file == 1) return at.file;
+  const VectorXd& t_s = at.motion.t_s;
+  return fmt::format("{}, {:.4g} to {:.4g} s", at.file, t_s[0], t_s[t_s.size() - 1]);
+}
+
+Explanation::Series series_of(const Data& data, const VectorXd& residual, std::size_t recording) {
+  const Workspace& at = data.recordings[recording];
+  const Index n = data.layout.samples(recording);
+  Explanation::Series series;
+  series.name = name_of_recording(data, recording);
   series.t_s = kept_samples(at.plan, at.motion.t_s);
   for (MatrixXd* matrix : {&series.measured, &series.model_before, &series.model_after, &series.q,
                            &series.dq, &series.load}) {
     matrix->resize(n, data.layout.joint_count());
   }
   for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
-    const Index begin = data.layout.begin(0, joint);
+    const Index begin = data.layout.begin(recording, joint);
     const VectorXd measured = data.torque.segment(begin, n);
     series.measured.col(joint) = measured;
     series.model_before.col(joint) = measured - data.target.segment(begin, n);
-    series.model_after.col(joint) = measured - from.found.fit.residual.segment(begin, n);
+    series.model_after.col(joint) = measured - residual.segment(begin, n);
     series.q.col(joint) = kept_samples(at.plan, at.motion.q.col(joint));
     series.dq.col(joint) = kept_samples(at.plan, at.motion.dq.col(joint));
     series.load.col(joint) = kept_samples(at.plan, at.load_torque.col(joint));
+  }
+  return series;
+}
+
+void describe_series(const SearchResult& from, Explanation& to) {
+  const Data& fitted = from.regression.data();
+  for (std::size_t r = 0; r < fitted.recordings.size(); ++r) {
+    to.series.push_back(series_of(fitted, from.found.fit.residual, r));
+  }
+  if (!from.hold_out.is_apart()) return;
+  const Data& held_out = from.hold_out.data();
+  const VectorXd residual = from.hold_out.residual(from.found.terms(), from.found.fit);
+  for (std::size_t r = 0; r < held_out.recordings.size(); ++r) {
+    to.series.push_back(series_of(held_out, residual, r));
+    to.series.back().name += " (held out)";
   }
 }
 
@@ -197,6 +253,7 @@ void describe(const SearchResult& result, Explanation& to) {
   describe_findings(result, to);
   describe_suspicion(result, to);
   describe_rejections(result, to);
+  ask_each_joint(result, to);
   describe_shifts(result, to);
   describe_hold_friction(result, to);
   describe_loud(result, to);

@@ -9,7 +9,11 @@
 #include "compare/inverse_model.hpp"
 #include "compare/motion.hpp"
 #include "explain/doctor_checks.hpp"
+#include "explain/doctor_signal.hpp"
+#include "explain/treatment.hpp"
+#include "log/part_of.hpp"
 #include "log/sampling.hpp"
+#include "robot/payload.hpp"
 #include "signal/decimate.hpp"
 #include "signal/zero_phase.hpp"
 
@@ -39,13 +43,22 @@ const char* name_of(DataFaultKind kind) {
       return "velocity";
     case DataFaultKind::kWrapped:
       return "wrapped_position";
+    case DataFaultKind::kStuck:
+      return "stuck";
+    case DataFaultKind::kJump:
+      return "jump";
+    case DataFaultKind::kStart:
+      return "start";
+    case DataFaultKind::kNothingLeft:
+      return "nothing_left";
   }
   return "";
 }
 
 bool spoils(const DataFault& fault, RestsOn what) {
-  if (!fault.certain) return false;
+  if (!fault.certain || fault.overruled || !fault.left_out_of.empty()) return false;
   switch (fault.kind) {
+    case DataFaultKind::kNothingLeft:
     case DataFaultKind::kDegrees:
     case DataFaultKind::kTorqueSign:
     case DataFaultKind::kTimeUnit:
@@ -104,8 +117,9 @@ std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& ro
   }
   RobotDescription rigid = robot;
   rigid.effects.clear();
+  rigid = carrying(rigid, log.payload);
   pair.measured = smooth(every_nth_row(torque, stride));
-  pair.model = smooth(model_torque(robot, thin));
+  pair.model = smooth(model_torque(carrying(robot, log.payload), thin));
   pair.load = smooth(model_torque(rigid, thin));
   for (std::size_t link = 0; link < robot.joints.size(); ++link) {
     pair.links.push_back(smooth(link_torque(robot, link, thin)));
@@ -122,20 +136,102 @@ void find_gaps(const Log& log, std::vector<DataFault>& faults) {
   // One lost row makes a step of two periods; clocks of an ordinary computer stay below this.
   constexpr double kLongestStep = 1.5;
   const Sampling sampling = sampling_of(log.t_s);
-  const double steps = sampling.largest_gap_s / sampling.median_period_s;
-  if (!(steps > kLongestStep)) return;
   DataFault fault;
   fault.kind = DataFaultKind::kGaps;
-  fault.size = sampling.largest_gap_s;
   fault.unit = "s";
+  fault.mend = "record without losing samples";
+  std::vector<RowSpan> spans = log.gaps;
+  for (const RowSpan& gap : spans) {
+    fault.size = std::max(fault.size, static_cast<double>(gap.count() + 1) * log.period_s);
+  }
+  for (Index i = 0; i + 1 < log.t_s.size(); ++i) {
+    const double step = log.t_s[i + 1] - log.t_s[i];
+    if (!(step > kLongestStep * sampling.median_period_s)) continue;
+    spans.push_back({i, i + 1});
+    fault.size = std::max(fault.size, step);
+  }
+  if (!spans.empty()) {
+    set_spans(log, spans, fault);
+    fault.words =
+        fmt::format("rows are missing: {:.4g} s between samples mostly, but up to {:.4g} s: {}",
+                    sampling.median_period_s, fault.size, words_of_spans(fault));
+    faults.push_back(fault);
+  }
+  if (log.cut.empty()) return;
+  fault.spans.clear();
+  Index rows = 0;
+  for (const RowSpan& part : log.cut) {
+    fault.spans.push_back({{0, -1},
+                           part.first + 1,
+                           part.last + 1,
+                           log.stamps_s[part.first],
+                           log.stamps_s[part.last]});
+    rows += part.count();
+  }
+  fault.at_s = fault.spans.front().from_s;
+  fault.size = static_cast<double>(rows) / static_cast<double>(log.stamps_s.size());
+  fault.unit = "";
   fault.words = fmt::format(
-      "the time stamps are not even: {:.4g} s between samples mostly, but {:.4g} s after t = "
-      "{:.6g} "
-      "s",
-      sampling.median_period_s, sampling.largest_gap_s, sampling.largest_gap_at_s);
-  fault.mend = "record without losing samples, or cut the recording at its gaps";
+      "rows are missing for more than {:g} s; {:.1f} % of the rows lie beyond and are left out: {}",
+      kLongestGapS, 100 * fault.size, words_of(fault.spans.front()));
+  fault.mend = "give the parts as recordings of their own";
   faults.push_back(std::move(fault));
 }
+
+namespace {
+
+// The longest part of a recording that no fault touches for longer than a filter forgives; none
+// where that is nothing, the recording itself where it is all of it.
+Log longest_good_part(const Log& log, const std::vector<DataFault>& faults) {
+  constexpr double kForgivenS = 0.1;
+  std::vector<char> bad(static_cast<std::size_t>(log.sample_count()), 0);
+  for (const DataFault& fault : faults) {
+    if (fault.kind == DataFaultKind::kSaturation) continue;
+    for (const FaultSpan& span : fault.spans) {
+      if (static_cast<double>(span.samples.count()) * log.period_s < kForgivenS) continue;
+      for (Index i = span.samples.first; i <= span.samples.last; ++i)
+        bad[static_cast<std::size_t>(i)] = 1;
+    }
+  }
+  RowSpan best{0, -1};
+  for (Index i = 0; i < log.sample_count(); ++i) {
+    if (bad[static_cast<std::size_t>(i)] != 0) continue;
+    const Index first = i;
+    while (i + 1 < log.sample_count() && bad[static_cast<std::size_t>(i + 1)] == 0) ++i;
+    if (i + 1 - first > best.count()) best = {first, i};
+  }
+  if (best.count() == log.sample_count()) return log;
+  return part_of(log, best);
+}
+
+// Over a gap the last value stays: a straight line has steps that no sensor has.
+Log held_over_gaps(const Log& log) {
+  Log held = log;
+  for (const RowSpan& gap : log.gaps) {
+    const Index before = std::max<Index>(gap.first - 1, 0);
+    for (Index i = gap.first; i <= gap.last; ++i) {
+      held.q.row(i) = log.q.row(before);
+      held.tau.row(i) = log.tau.row(before);
+    }
+  }
+  return held;
+}
+
+// What is at fault for some stretches.
+std::vector<DataFault> local_faults(const Log& log, const RobotDescription& robot) {
+  std::vector<DataFault> faults;
+  const Log held = log.gaps.empty() ? Log{} : held_over_gaps(log);
+  const Log& as_recorded = log.gaps.empty() ? log : held;
+  find_gaps(log, faults);
+  find_stale_samples(as_recorded, faults);
+  find_stuck_values(as_recorded, robot, faults);
+  find_stuck_encoders(log, robot, faults);
+  find_jumps(log, faults);
+  find_saturation(as_recorded, robot, faults);
+  return faults;
+}
+
+}  // namespace
 
 std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
   if (log.q.cols() != robot.joint_count() || log.tau.cols() != robot.joint_count()) {
@@ -147,17 +243,28 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
   Log mended = log;
   mend_wrapped(mended, robot, faults);
   mend_time(mended, robot, faults);
-  find_gaps(mended, faults);
-  find_stale_samples(mended, faults);
-  find_stuck_encoders(mended, robot, faults);
-  find_saturation(mended, robot, faults);
-  mend_degrees(mended, robot, faults);
-  mend_strange_velocities(mended, robot, faults);
-  mend_velocities(mended, robot, faults);
-  if (const auto pair = torque_pair(mended, robot)) {
-    find_torque_sign(mended, *pair, faults);
-    find_clock_skew(mended, *pair, faults);
+  const std::size_t before = faults.size();
+  const Log whole = mended;
+  std::vector<DataFault> local = local_faults(mended, robot);
+  for (const DataFault& fault : local) bridge(fault, mended);
+  mended = longest_good_part(mended, local);
+  if (mended.sample_count() >= kFewestSamples) {
+    mend_degrees(mended, robot, faults);
+    if (faults.size() > before) {
+      // What was held against the model's torque is to be looked at anew.
+      Log radians = whole;
+      std::vector<DataFault> again;
+      mend_degrees(radians, robot, again);
+      if (!again.empty()) local = local_faults(radians, robot);
+    }
+    mend_strange_velocities(mended, robot, faults);
+    mend_velocities(mended, robot, faults);
+    if (const auto pair = torque_pair(mended, robot)) {
+      find_torque_sign(mended, *pair, faults);
+      find_clock_skew(mended, *pair, faults);
+    }
   }
+  faults.insert(faults.begin() + static_cast<std::ptrdiff_t>(before), local.begin(), local.end());
   for (DataFault& fault : faults) fault.file = log.file;
   return faults;
 }

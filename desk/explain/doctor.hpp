@@ -14,6 +14,7 @@ namespace offnominal::desk {
 // out to be others and positions that are folded into a turn are put right before the rest is
 // looked at. Throws std::invalid_argument where the robot has another number of joints than the
 // recording.
+// Faults with spans are of those stretches alone.
 std::vector<DataFault> examine(const Log& log, const RobotDescription& robot);
 
 }  // namespace offnominal::desk

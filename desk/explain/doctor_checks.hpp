@@ -40,6 +40,10 @@ TimeByTorque time_by_torque(const Log& log, const RobotDescription& robot, doubl
 
 void find_gaps(const Log& log, std::vector<DataFault>& faults);
 void find_stale_samples(const Log& log, std::vector<DataFault>& faults);
+void find_stuck_values(const Log& log, const RobotDescription& robot,
+                       std::vector<DataFault>& faults);
+// Needs the spans of what was found before.
+void find_jumps(const Log& log, std::vector<DataFault>& faults);
 void find_stuck_encoders(const Log& log, const RobotDescription& robot,
                          std::vector<DataFault>& faults);
 void find_saturation(const Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "explain/doctor_checks.hpp"
+#include "explain/doctor_signal.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -24,31 +25,12 @@ constexpr double kJumpSteps = 3;
 constexpr double kJumpPerChange = 2.5;
 // Samples on either side of a burst that the usual change is taken from.
 constexpr Index kNeighbours = 8;
-// Samples on either side that tell how often this channel repeats a value of its own accord.
-constexpr Index kSurroundings = 100;
 // Repeats that a coarse channel would show by chance less often than this in the whole recording.
 constexpr double kByChance = 1e-3;
 // Bursts that a recording needs to be called stale, and their share of its rows: a single late
 // packet does not spoil a fit.
 constexpr std::size_t kFewestBursts = 4;
-constexpr double kSmallestShare = 0.002;
-
-struct Burst {
-  Index first = 0;   // row that holds the value first
-  Index length = 0;  // rows that repeat it
-};
-
-std::vector<Burst> repeats_of(const VectorXd& x) {
-  std::vector<Burst> bursts;
-  for (Index i = 1; i < x.size(); ++i) {
-    if (x[i] != x[i - 1]) continue;
-    if (bursts.empty() || bursts.back().first + bursts.back().length != i - 1) {
-      bursts.push_back({i - 1, 0});
-    }
-    ++bursts.back().length;
-  }
-  return bursts;
-}
+constexpr double kLeastShare = 0.002;
 
 // A channel that the log reads faster than it is updated holds every value for about as long.
 Index usual_hold(const std::vector<Burst>& bursts, Index rows) {
@@ -66,20 +48,19 @@ Index usual_hold(const std::vector<Burst>& bursts, Index rows) {
   return *middle;
 }
 
-// Share of rows around a burst that repeat the row before them, at most: two standard errors up.
-double own_repeats(const std::vector<Index>& repeats_before, const Burst& burst) {
-  const auto rows = static_cast<Index>(repeats_before.size());
-  const Index end = burst.first + burst.length;
-  const Index low = std::max<Index>(burst.first - kSurroundings, 0);
-  const Index high = std::min(end + 1 + kSurroundings, rows - 1);
-  const auto count = [&](Index from, Index to) {
-    return static_cast<double>(repeats_before[static_cast<std::size_t>(to)] -
-                               repeats_before[static_cast<std::size_t>(from)]);
-  };
-  const auto around = static_cast<double>((burst.first - low) + (high - end));
-  if (around < 1) return 1;
-  const double share = (count(low, burst.first) + count(end, high)) / around;
-  return std::min(1.0, share + 2 * std::sqrt(share * (1 - share) / around) + 3 / around);
+// Median of the changes near a burst that are none; 0 where there is no change at all.
+double usual_step(const VectorXd& x, const Burst& burst) {
+  constexpr Index kNear = 100;
+  std::vector<double> changes;
+  const Index high = std::min(burst.end() + 1 + kNear, x.size() - 1);
+  for (Index i = std::max<Index>(burst.first - kNear, 0); i < high; ++i) {
+    if (i >= burst.first && i <= burst.end()) continue;
+    if (x[i + 1] != x[i]) changes.push_back(std::abs(x[i + 1] - x[i]));
+  }
+  if (changes.empty()) return 0;
+  const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
+  std::nth_element(changes.begin(), middle, changes.end());
+  return *middle;
 }
 
 // Median change per row on both sides of a burst, bursts left out.
@@ -94,42 +75,46 @@ double usual_change(const VectorXd& x, const Burst& burst) {
   if (changes.empty()) return std::numeric_limits<double>::infinity();
   const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
   std::nth_element(changes.begin(), middle, changes.end());
-  return *middle;
+  return *middle > 0 ? *middle : usual_step(x, burst);
 }
 
 struct Stale {
-  std::size_t bursts = 0;
+  std::vector<RowSpan> spans;  // of the rows that repeat
   Index rows = 0;
   Index longest = 0;
 };
 
 // `smooth`: the channel is free of noise beyond its steps, so that a jump must stand out.
-Stale stale_of(const VectorXd& x, bool smooth) {
-  const double step = smallest_step(x);
+Stale stale_of(const Log& log, const VectorXd& x, bool smooth) {
+  const Rounding rounding(x);
   const std::vector<Burst> bursts = repeats_of(x);
   const Index hold = usual_hold(bursts, x.size());
-  std::vector<Index> repeats_before(static_cast<std::size_t>(x.size()), 0);
-  for (Index i = 1; i < x.size(); ++i) {
-    repeats_before[static_cast<std::size_t>(i)] =
-        repeats_before[static_cast<std::size_t>(i - 1)] + (x[i] == x[i - 1] ? 1 : 0);
-  }
+  const std::vector<Index> repeats_before = repeats_before_of(x);
   const double low = x.minCoeff();
   const double high = x.maxCoeff();
   Stale stale;
   for (const Burst& burst : bursts) {
     const Index end = burst.first + burst.length;
     if (burst.length < kShortestBurst || burst.length <= 2 * hold || end + 1 >= x.size()) continue;
+    if (is_next_to_gap(log, burst)) continue;
     // A torque at its limit repeats honestly: find_saturation().
     if (!smooth && (x[end] == low || x[end] == high)) continue;
     const double jump = std::abs(x[end + 1] - x[end]);
+    const double step = rounding.at(x[end + 1]);
     if (jump < kJumpSteps * step) continue;
-    if (smooth && jump < kJumpPerChange * usual_change(x, burst) + 2 * step) continue;
-    if (!smooth && static_cast<double>(x.size()) * std::pow(own_repeats(repeats_before, burst),
-                                                            static_cast<double>(burst.length)) >
-                       kByChance) {
+    const bool noisy = !smooth && is_noisy_around(x, burst);
+    if (!noisy && jump < kJumpPerChange * usual_change(x, burst) + 2 * step) continue;
+    // What it missed is what it would have moved at that pace; a joint that stuck only starts anew.
+    constexpr double kOfMissed = 0.3;
+    const double missed = static_cast<double>(burst.length + 1) * usual_change(x, burst);
+    if (!noisy && jump < kOfMissed * missed) continue;
+    if (!smooth && !noisy &&
+        static_cast<double>(x.size()) *
+                std::pow(own_repeats(repeats_before, burst), static_cast<double>(burst.length)) >
+            kByChance) {
       continue;
     }
-    ++stale.bursts;
+    stale.spans.push_back({burst.first + 1, end});
     stale.rows += burst.length;
     stale.longest = std::max(stale.longest, burst.length);
   }
@@ -149,47 +134,27 @@ double smallest_step(const VectorXd& x) {
 }
 
 void find_stale_samples(const Log& log, std::vector<DataFault>& faults) {
-  struct Found {
-    Index joint;
-    bool position;
-    Stale stale;
-  };
-  std::vector<Found> found;
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     for (const bool position : {true, false}) {
       const VectorXd x = position ? log.q.col(joint) : log.tau.col(joint);
-      const Stale stale = stale_of(x, position);
-      if (stale.bursts < kFewestBursts ||
-          static_cast<double>(stale.rows) < kSmallestShare * static_cast<double>(x.size())) {
-        continue;
-      }
-      found.push_back({joint, position, stale});
+      const Stale stale = stale_of(log, x, position);
+      const double share = static_cast<double>(stale.rows) / static_cast<double>(x.size());
+      if (stale.spans.size() < kFewestBursts || share < kLeastShare) continue;
+      DataFault fault;
+      fault.kind = DataFaultKind::kStaleSamples;
+      fault.joint = joint;
+      fault.signal = position ? FaultySignal::kPosition : FaultySignal::kTorque;
+      fault.size = share;
+      set_spans(log, stale.spans, fault);
+      fault.words = fmt::format(
+          "values repeat exactly while the robot moves, then jump: {} of joint {}: {:.1f} % of the "
+          "rows in {} bursts; the longest burst has {} rows ({:.3g} s)",
+          position ? "position" : "torque", joint + 1, 100 * share, stale.spans.size(),
+          stale.longest, static_cast<double>(stale.longest) * log.period_s);
+      fault.mend = "log every sample anew (look for lost packets or a blocked reader)";
+      faults.push_back(std::move(fault));
     }
   }
-  if (found.empty()) return;
-  DataFault fault;
-  fault.kind = DataFaultKind::kStaleSamples;
-  fault.joint = found.front().joint;
-  std::string what;
-  Index longest = 0;
-  for (const Found& at : found) {
-    if (at.joint != fault.joint) fault.joint = -1;
-    const double share =
-        static_cast<double>(at.stale.rows) / static_cast<double>(log.sample_count());
-    fault.size = std::max(fault.size, share);
-    longest = std::max(longest, at.stale.longest);
-    what += fmt::format("{}{} of joint {}: {:.1f} % of the rows in {} bursts",
-                        what.empty() ? "" : "; ", at.position ? "position" : "torque", at.joint + 1,
-                        100 * share, at.stale.bursts);
-  }
-  fault.words = fmt::format(
-      "values repeat exactly while the robot moves, then jump: {}; the longest burst has {} rows "
-      "({:.3g} s)",
-      what, longest, static_cast<double>(longest) * log.period_s);
-  fault.mend =
-      "log every sample anew (look for lost packets or a blocked reader), or leave the repeated "
-      "rows out";
-  faults.push_back(std::move(fault));
 }
 
 void find_stuck_encoders(const Log& log, const RobotDescription& robot,
@@ -208,6 +173,8 @@ void find_stuck_encoders(const Log& log, const RobotDescription& robot,
     fault.kind = DataFaultKind::kStaleSamples;
     fault.joint = joint;
     fault.size = 1;
+    fault.signal = FaultySignal::kPosition;
+    set_spans(log, {{0, log.sample_count() - 1}}, fault);
     fault.words = fmt::format(
         "the position of {} never changes, while its velocity adds up to {:.3g} {} of travel",
         joint_words(joint), moved,

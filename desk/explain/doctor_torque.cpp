@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "compare/standstill.hpp"
 #include "explain/doctor_checks.hpp"
 
 namespace offnominal::desk {
@@ -287,67 +286,6 @@ void find_torque_sign(const Log& log, const TorquePair& pair, std::vector<DataFa
   }
   for (DataFault& fault : found) {
     propose_channels(log, mended, {"torque"}, fault);
-    faults.push_back(std::move(fault));
-  }
-}
-
-namespace {
-
-// Of a joint that stands still friction holds a part: its torque stays what it is, at no limit.
-VectorXd while_moving(const Log& log, const RobotDescription& robot, Index joint) {
-  const VectorXd moving = moving_samples(
-      log, joint, robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit);
-  std::vector<double> kept;
-  for (Index i = 0; i < moving.size(); ++i) {
-    if (moving[i] > 0) kept.push_back(log.tau(i, joint));
-  }
-  return Eigen::Map<const VectorXd>(kept.data(), static_cast<Index>(kept.size()));
-}
-
-}  // namespace
-
-void find_saturation(const Log& log, const RobotDescription& robot,
-                     std::vector<DataFault>& faults) {
-  // An extreme value counts as reached within this share of the torque's range.
-  constexpr double kNearExtreme = 1e-3;
-  // A sine spends 2 % of its time so near to its peaks, but a third as much just below.
-  constexpr double kSmallestShareAtExtreme = 0.01;
-  constexpr double kAgainstNext = 5;
-  // Where torque is at its extremes most of the time, it switches between two levels: dry friction.
-  constexpr double kLargestShareAtExtreme = 0.5;
-  constexpr double kAtLimit = 0.98;
-  // A drive's limits are not that far apart: a joint that waits where little is asked of it stays
-  // near zero, and that is the lowest value where all of its torques have one sign.
-  constexpr double kSmallestOfLargest = 0.3;
-  for (Index joint = 0; joint < log.tau.cols(); ++joint) {
-    const VectorXd tau = while_moving(log, robot, joint);
-    const double low = tau.minCoeff();
-    const double high = tau.maxCoeff();
-    const double near = kNearExtreme * (high - low);
-    if (!(near > 0)) continue;
-    const double limit = robot.joints[static_cast<std::size_t>(joint)].joint.max_torque;
-    const auto rows = static_cast<double>(tau.size());
-    double share = 0;
-    double at = 0;
-    bool at_limit = false;
-    for (const double end : {low, high}) {
-      if (std::abs(end) < kSmallestOfLargest * std::max(std::abs(low), std::abs(high))) continue;
-      const auto distance = (tau.array() - end).abs();
-      const auto reached = static_cast<double>((distance <= near).count());
-      const auto next = static_cast<double>((distance <= 2 * near).count()) - reached;
-      if (reached < kSmallestShareAtExtreme * rows || reached < kAgainstNext * (next + 1)) continue;
-      if (reached > share * rows) at = end;
-      share += reached / rows;
-      at_limit = at_limit || std::abs(end) >= kAtLimit * limit;
-    }
-    if (!(share > 0) || (share > kLargestShareAtExtreme && !at_limit)) continue;
-    DataFault fault;
-    fault.kind = DataFaultKind::kSaturation;
-    fault.joint = joint;
-    fault.size = share;
-    fault.words = fmt::format("the torque of joint {} stays at {:.4g} in {:.1f} % of the samples",
-                              joint + 1, at, 100 * share);
-    fault.mend = "move more gently, or leave the samples out in which the drive is at its limit";
     faults.push_back(std::move(fault));
   }
 }

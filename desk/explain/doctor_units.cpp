@@ -91,11 +91,19 @@ void propose_channels(const Log& log, const ChannelMap& mended, std::vector<std:
     }
   }
   std::string lines;
+  bool of_motors = false;
   for (const std::string& key : keys) {
-    fault.channels.push_back(channel_line(mended, key));
-    lines += (lines.empty() ? "`" : "; `") + fault.channels.back() + "`";
+    for (std::string& line : channel_lines(mended, key)) {
+      lines += (lines.empty() ? "`" : "; `") + line + "`";
+      of_motors = of_motors || line.starts_with("motor_");
+      fault.channels.push_back(std::move(line));
+    }
   }
   fault.mend += ": under [channels] of the robot file, or in a file for --channels, write " + lines;
+  // The lines change a motor's channel, and what is wrong was seen at a joint.
+  if (!of_motors) return;
+  fault.mend +=
+      "; where joints share motors look at [transmission] first: the sign of a number there";
 }
 
 namespace {

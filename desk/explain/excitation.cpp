@@ -12,11 +12,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-// One sine, one speed to and fro or a tiny range give at most 0.09, motions of several frequencies
-// and speeds 0.13 and more. A motion over a good part of the joint's range needs less.
-constexpr double kSmallestSeparation = 0.11;
-constexpr double kSmallestOverRange = 0.05;
-constexpr double kGoodPartOfRange = 0.3;
 // Below this a joint stands still: 1 degree, or 1 mm, and so many encoder counts.
 constexpr double kStillRad = 0.0175;
 constexpr double kStillM = 0.001;
@@ -81,22 +76,9 @@ std::vector<Excitation> excitation_of(const std::vector<Workspace>& recordings) 
     const double counts = of.encoder.counts_per_unit;
     const double still = of.joint.type == JointType::kRevolute ? kStillRad : kStillM;
     one.moves = one.range > still && (!(counts > 0) || one.range * counts > kFewestCounts);
-    const double limits = of.joint.max_position - of.joint.min_position;
-    one.wide = std::isfinite(limits) && one.range >= kGoodPartOfRange * limits;
-    one.sufficient = at_rest && one.moves;
-    if (at_rest) {
-      if (!one.moves) one.lack = "the joint was held at one position only";
-      all.push_back(one);
-      continue;
-    }
-    one.sufficient =
-        one.moves && one.separation >= (one.wide ? kSmallestOverRange : kSmallestSeparation);
+    one.sufficient = one.moves;
     if (!one.moves) {
-      one.lack = "the joint does not move";
-    } else if (!one.sufficient) {
-      one.lack =
-          "position, speed and acceleration follow one pattern: move at several speeds and "
-          "frequencies, over a larger range, with rests";
+      one.lack = at_rest ? "the joint was held at one position only" : "the joint does not move";
     }
     all.push_back(one);
   }

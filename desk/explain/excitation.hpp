@@ -9,7 +9,8 @@
 
 namespace offnominal::desk {
 
-// What the motion of one joint lets one see.
+// What the recordings let one see of one joint. How rich its motion is says little by itself: what
+// these recordings can tell is asked effect by effect (questions.hpp).
 struct Excitation {
   double range = 0;      // rad or m, between the extreme positions
   double top_speed = 0;  // rad/s or m/s, 99 % quantile
@@ -18,17 +19,17 @@ struct Excitation {
   // one sine.
   double separation = 0;
   bool moves = false;
-  bool wide = false;  // over a good part of the range that the robot file allows
+  // Whether every effect that any drive may have would show.
   bool sufficient = false;
-  std::string lack;  // in words, what a better motion would have; empty where sufficient
+  std::string lack;  // in words, what would not; empty where sufficient
 };
 
 // 1, q, dq, ddq, sgn dq and dq |dq| of a joint: what any motion should tell apart.
 std::vector<Regressor> standard_regressors(const Workspace& at, Eigen::Index joint);
 
+// Where no effect has been asked for yet, a joint that moves is sufficient.
 std::vector<Excitation> excitation_of(const std::vector<Workspace>& recordings);
 
-// Whether the motion of every joint tells effects apart.
 bool all_sufficient(const std::vector<Excitation>& joints);
 
 }  // namespace offnominal::desk

@@ -11,17 +11,21 @@
 #include "common/error.hpp"
 #include "common/input_name.hpp"
 #include "common/shell_word.hpp"
+#include "compare/measurement.hpp"
 #include "explain/alternatives.hpp"
 #include "explain/describe.hpp"
 #include "explain/find_model.hpp"
 #include "explain/free_function.hpp"
 #include "explain/friction_family.hpp"
+#include "explain/link_share.hpp"
+#include "explain/questions.hpp"
 #include "explain/undecided.hpp"
 #include "explain/verdict.hpp"
 #include "identify/file_errors.hpp"
 #include "identify/improved_robot.hpp"
 #include "identify/parallel.hpp"
 #include "identify/stretches.hpp"
+#include "log/seen_by_sensor.hpp"
 
 namespace offnominal::desk {
 
@@ -30,23 +34,25 @@ using Eigen::VectorXd;
 
 namespace {
 
+void check_joints(const std::vector<Log>& logs, const RobotDescription& robot) {
+  for (const Log& log : logs) require_joints(log, robot);
+}
+
 class Explainer {
  public:
   Explainer(const RobotDescription& robot, const std::vector<Log>& logs,
             const std::vector<Log>& holdout, const ExplainOptions& options,
             const OnProgress& on_progress)
       : file_(robot), robot_(robot), logs_(logs), options_(options), on_progress_(on_progress) {
-    check_joints(logs);
-    check_joints(holdout);
     check_kind(logs, logs.front().at_rest);
     check_kind(holdout, logs.front().at_rest);
     plan_ = plan_filter(logs, robot_);
     const FilterPlan& plan = plan_;
-    constexpr Index kFewest = 80;
-    check(logs, plan, kFewest);
-    check(holdout, plan, kMinFilteredSamples);
+    check(logs, plan);
+    check(holdout, plan);
     const VectorXd widths = set_sign_widths(robot_, logs, plan);
-    nuisance_.link_share = options.link_share;
+    nuisance_.link_share = options.link_share.value_or(kUsualLinkShare);
+    nuisance_.link_geometry = nuisance_.link_share > kCadShare;
     both_ways_ = came_both_ways(logs);
     const auto data_of = [&](const std::vector<Stretch>& some) {
       auto made = searched_workspaces(some, robot_, plan, widths);
@@ -54,30 +60,23 @@ class Explainer {
       return std::make_unique<Data>(std::move(made), robot_, nuisance_);
     };
     const std::vector<Stretch> searched = stretches_of(logs, robot_, plan);
-    data_ = data_of(searched);
     left_out_ = words_of(searched, logs);
-    if (!holdout.empty()) held_out_ = data_of(stretches_of(holdout, robot_, plan));
-    regression_ = std::make_unique<Regression>(*data_);
-    tell("preparing the candidates' regressors");
-    search_ = std::make_unique<Search>(*regression_,
-                                       SearchOptions{.bootstrap_draws = options.bootstrap_draws,
-                                                     .seed = options.seed,
-                                                     .threads = options.threads});
+    std::unique_ptr<Data> held_out;
+    if (!holdout.empty()) held_out = data_of(stretches_of(holdout, robot_, plan));
+    set_data(data_of(searched), std::move(held_out));
   }
 
   // A recording at fault tells nothing of effects: then there is no search, and what the model
   // leaves of the recording is still shown.
   Explanation run(bool search) {
-    const HoldOut hold_out(*regression_, held_out_.get());
     Explanation result;
     if (!options_.robot_file.empty() && !is_stream(options_.robot_file))
       result.robot_file = shell_word(options_.robot_file);
     result.at_rest = data_->recordings[0].at_rest;
-    result.holdout_is_apart = hold_out.is_apart();
+    result.holdout_is_apart = hold_out_->is_apart();
     result.excitation = excitation_of(data_->recordings);
-    FoundModel found = find_model(
-        *search_, *regression_, hold_out, result.excitation,
-        {.most_effects = search ? most_effects() : 0, .replays = options_.replays}, on_progress_);
+    FoundModel found = search_model(search, result);
+    const HoldOut& hold_out = *hold_out_;
     result.over_variable = leave_out_stand_ins(*regression_, hold_out, options_.threads, found);
     result.ambiguous = classes_of(found, hold_out);
     if (search) {
@@ -85,11 +84,15 @@ class Explainer {
         result.ambiguous.push_back(std::move(one));
       }
     }
+    for (std::size_t joint = 0; joint < found.unsure.size(); ++joint) {
+      if (found.unsure[joint] != 0) result.unsure.push_back(static_cast<Index>(joint));
+    }
     tell("fitting the numbers");
     ImprovedRobot improved = improved_robot(
         file_, robot_, *data_, {nuisance_, fitted_effects(file_), {}, options_.source},
         relinearise(robot_, *data_, nuisance_, found.terms(), found.fit));
     describe({robot_, *regression_, *search_, hold_out, found, improved}, result);
+    leave_out_undecided(found, result.ambiguous, improved);
     result.improved = std::move(improved.robot);
     result.unwritable = std::move(improved.unwritable);
     result.held = std::move(improved.held);
@@ -104,13 +107,82 @@ class Explainer {
     return result;
   }
 
-  void say_what_was_left_out(Explanation& result) const {
-    if (!left_out_.empty()) result.advice.push_back(left_out_);
-  }
+  // What was not searched, in words; empty where all was.
+  [[nodiscard]] const std::string& left_out() const { return left_out_; }
 
  private:
   void tell(const std::string& doing) const {
     if (on_progress_) on_progress_(doing);
+  }
+
+  void set_data(std::unique_ptr<Data> data, std::unique_ptr<Data> held_out) {
+    data_ = std::move(data);
+    held_out_ = std::move(held_out);
+    regression_ = std::make_unique<Regression>(*data_);
+    hold_out_ = std::make_unique<HoldOut>(*regression_, held_out_.get());
+    tell("preparing the candidates' regressors");
+    search_ = std::make_unique<Search>(*regression_,
+                                       SearchOptions{.bootstrap_draws = options_.bootstrap_draws,
+                                                     .seed = options_.seed,
+                                                     .threads = options_.threads});
+  }
+
+  [[nodiscard]] FoundModel find(bool search, const Explanation& result) const {
+    return find_model(*search_, *regression_, *hold_out_, result.excitation,
+                      {.most_effects = search ? most_effects() : 0, .replays = options_.replays},
+                      on_progress_);
+  }
+
+  // With links as far off as the recordings ask for, where nobody has said how far that is.
+  FoundModel search_model(bool search, Explanation& result) {
+    result.link_share = nuisance_.link_share;
+    FoundModel usual = find(search, result);
+    if (!search || options_.link_share || result.at_rest) return usual;
+    tell("asking how far the links' numbers are off");
+    const auto share = wider_link_share(robot_, *data_, options_.threads);
+    if (!share) return usual;
+    // What the fits point to has to stay where it is until one of them is chosen.
+    const NuisanceOptions before = nuisance_;
+    auto data = std::move(data_);
+    auto held_out = std::move(held_out_);
+    auto regression = std::move(regression_);
+    auto hold_out = std::move(hold_out_);
+    auto search_of_usual = std::move(search_);
+    nuisance_.link_share = *share;
+    nuisance_.link_geometry = true;
+    set_data(std::make_unique<Data>(*data, robot_, nuisance_),
+             held_out ? std::make_unique<Data>(*held_out, robot_, nuisance_) : nullptr);
+    FoundModel wide = find(search, result);
+    if (is_clearly_better(*hold_out_, wide, usual)) {
+      result.link_share = *share;
+      result.link_share_judged = true;
+      return wide;
+    }
+    nuisance_ = before;
+    data_ = std::move(data);
+    held_out_ = std::move(held_out);
+    regression_ = std::move(regression);
+    hold_out_ = std::move(hold_out);
+    search_ = std::move(search_of_usual);
+    return usual;
+  }
+
+  // What could as well be something else is not written; its numbers were fitted beside it.
+  static void leave_out_undecided(const FoundModel& found,
+                                  const std::vector<std::vector<EffectAt>>& classes,
+                                  ImprovedRobot& improved) {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < found.accepted.size(); ++i) {
+      const Term& term = found.accepted[i].term;
+      if (improved.added[i] == kUnwritten) continue;
+      if (holds_in_any(classes, {term.effect->kind(), term.joint})) {
+        out.push_back(improved.added[i]);
+      }
+    }
+    std::sort(out.rbegin(), out.rend());
+    for (const std::size_t i : out) {
+      improved.robot.effects.erase(improved.robot.effects.begin() + static_cast<std::ptrdiff_t>(i));
+    }
   }
 
   // Readings at rest have no filter, and their friction by the direction of approach no file.
@@ -133,16 +205,6 @@ class Explainer {
                            static_cast<int>(robot_.effects.size()));
   }
 
-  void check_joints(const std::vector<Log>& logs) const {
-    for (const Log& log : logs) {
-      if (log.joint_count() != robot_.joint_count()) {
-        throw InputError({log.file, "", fmt::format("{} joints", log.joint_count()),
-                          fmt::format("{}, as the robot has", robot_.joint_count()),
-                          "give the robot file that belongs to this recording, or [channels]"});
-      }
-    }
-  }
-
   // What is held is not what moves, and a model of what happens at rest knows neither time nor what
   // friction did on the way: readings are no path.
   void check_kind(const std::vector<Log>& logs, bool at_rest) const {
@@ -154,33 +216,24 @@ class Explainer {
     }
     for (const RobotEffect& effect : robot_.effects) {
       const EffectTraits& traits = info_of(effect.kind)->traits;
-      const bool of_instant =
-          !(traits.acts_at_rest && traits.counts_time) && !remembers(effect.kind);
+      const bool of_instant = !(traits.acts_at_rest && traits.counts_time) &&
+                              !remembers(effect.kind) && chain_may_have(effect.kind);
       if (!at_rest || of_instant) continue;
       throw InputError(
           {logs.front().file, "", "a hold map",
-           "a model without effects in time and without effects that have a memory",
+           "a model of rigid transmissions, without effects in time or with a memory",
            fmt::format("leave {} out of the robot file for it", info_of(effect.kind)->name)});
     }
   }
 
-  void check(const std::vector<Log>& logs, const FilterPlan& plan, Index fewest) const {
-    Index whole = 0;
+  static void check(const std::vector<Log>& logs, const FilterPlan& plan) {
     for (const Log& log : logs) {
       const Index left = (log.sample_count() - 2 * plan.edge_samples) / plan.decimation;
-      if (left < kMinFilteredSamples) {
-        throw InputError(
-            {log.file, "", fmt::format("{} samples", log.sample_count()),
-             fmt::format("{} or more with this filter",
-                         kMinFilteredSamples * plan.decimation + 2 * plan.edge_samples),
-             "record for longer"});
-      }
-      whole += left;
-    }
-    if (!logs.empty() && whole < fewest) {
-      throw InputError({logs[0].file, "", fmt::format("{} samples after the filter", whole),
-                        fmt::format("{} or more, of all recordings together", fewest),
-                        "record for longer, or give more recordings"});
+      if (left >= kMinFilteredSamples) continue;
+      throw InputError({log.file, "", fmt::format("{} samples", log.sample_count()),
+                        fmt::format("{} or more with this filter",
+                                    kMinFilteredSamples * plan.decimation + 2 * plan.edge_samples),
+                        "record for longer"});
     }
   }
 
@@ -219,6 +272,8 @@ class Explainer {
     const Term& mine = found.accepted[i].term;
     const std::vector<Term> others = found.terms_without(i);
     const ModelFit beside = regression_->fit(others);
+    const double own =
+        weighted_energy(*data_, mine, found.fit.coefficients[i], found.fit.joint_weights);
     Screening screening = search_->screen(others, beside);
     // What takes far less than the best does not come as close as noise would let it.
     constexpr double kNear = 0.25;
@@ -230,7 +285,10 @@ class Explainer {
     for (const Proposal& other : search_->propose(others, beside, screening)) {
       const Term& term = other.terms.back();
       const EffectAt name{term.effect->kind(), term.joint};
-      if (name == same[0] || !as_good(*data_, found.fit, other.fit) ||
+      const double energy = std::max(
+          own,
+          weighted_energy(*data_, term, other.fit.coefficients.back(), found.fit.joint_weights));
+      if (name == same[0] || !as_good(*data_, found.fit, other.fit, energy) ||
           is_nested(*data_, found.baseline, mine, term) ||
           is_refuted_by_simpler(*data_, mine, found.fit, term, other.fit)) {
         continue;
@@ -252,38 +310,96 @@ class Explainer {
   std::unique_ptr<Data> data_;
   std::unique_ptr<Data> held_out_;
   std::unique_ptr<Regression> regression_;
+  std::unique_ptr<HoldOut> hold_out_;
   std::unique_ptr<Search> search_;
 };
 
 }  // namespace
 
-Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
-                    const std::vector<Log>& holdout, const ExplainOptions& options,
-                    const OnProgress& on_progress) {
-  Explainer explainer(robot, logs, holdout, options, on_progress);
+Treated treated(const RobotDescription& robot, std::vector<Log> logs, std::vector<Log> holdout,
+                const std::vector<KeepFault>& keep) {
+  check_joints(logs, robot);
+  check_joints(holdout, robot);
+  for (const auto* recordings : {&logs, &holdout}) {
+    for (const Log& log : *recordings) refuse_hidden_from_sensors(robot, log);
+  }
+  Treated all{std::move(logs), std::move(holdout), {}};
+  for (std::vector<Log>* group : {&all.logs, &all.holdout}) {
+    for (DataFault& fault : treat(*group, robot, keep)) all.faults.push_back(std::move(fault));
+  }
+  return all;
+}
+
+Explanation explain(const RobotDescription& robot, std::vector<Log> logs, std::vector<Log> holdout,
+                    const ExplainOptions& options, const OnProgress& on_progress) {
   if (on_progress) on_progress("examining the recordings");
+  return explain(robot, treated(robot, std::move(logs), std::move(holdout), options.keep), options,
+                 on_progress);
+}
+
+namespace {
+
+void say_what_was_carried(const std::vector<Log>& logs, Explanation& result) {
+  for (const Log& log : logs) {
+    if (!log.payload) continue;
+    result.advice.push_back(fmt::format("{}: with a payload of {}, part of the model there",
+                                        log.file, words_of(*log.payload)));
+  }
+}
+
+// Of a recording of which nothing is left, what the model leaves of it as it is is still shown.
+Explanation explain_as_it_is(const RobotDescription& robot, Treated recordings,
+                             const ExplainOptions& options, const OnProgress& on_progress) {
+  for (std::vector<Log>* group : {&recordings.logs, &recordings.holdout}) {
+    for (Log& log : *group) log.left_out.clear();
+  }
+  return Explainer(robot, recordings.logs, recordings.holdout, options, on_progress).run(false);
+}
+
+}  // namespace
+
+Explanation explain(const RobotDescription& robot, const Treated& recordings,
+                    const ExplainOptions& options, const OnProgress& on_progress) {
   std::vector<DataFault> faults;
   std::vector<DataFault> hints;
-  for (const std::vector<Log>* group : {&logs, &holdout}) {
-    for (const Log& log : *group) {
-      if (log.at_rest) continue;  // every check there is needs time
-      for (DataFault& fault : examine(log, robot)) {
-        // Velocities come from the positions here: what was recorded of them spoils nothing.
-        const bool hint = fault.kind == DataFaultKind::kVelocity;
-        (hint ? hints : faults).push_back(std::move(fault));
-      }
-    }
+  std::vector<DataFault> left_out;
+  bool nothing_left = false;
+  for (const DataFault& fault : recordings.faults) {
+    const bool nothing = fault.kind == DataFaultKind::kNothingLeft;
+    nothing_left = nothing_left || (nothing && fault.certain);
+    // Velocities come from the positions here: what was recorded of them spoils nothing.
+    const bool hint =
+        fault.kind == DataFaultKind::kVelocity || fault.overruled || (nothing && !fault.certain);
+    auto& list = hint ? hints : !fault.left_out_of.empty() ? left_out : faults;
+    list.push_back(fault);
   }
-  Explanation result = explainer.run(faults.empty());
+  Explanation result;
+  std::string searched;
+  if (nothing_left) {
+    result = explain_as_it_is(robot, recordings, options, on_progress);
+  } else {
+    Explainer explainer(robot, recordings.logs, recordings.holdout, options, on_progress);
+    result = explainer.run(faults.empty());
+    searched = explainer.left_out();
+  }
   if (!faults.empty()) {
     result.data_faults = std::move(faults);
     judge_whole(result);
   }
   for (const DataFault& hint : hints) {
-    result.advice.push_back(hint.words + ", which changes nothing here; to mend: " + hint.mend);
+    const char* why = hint.overruled ? ", which --keep overrules"
+                      : hint.kind == DataFaultKind::kNothingLeft
+                          ? ", so that nothing is said of it"
+                          : ", which changes nothing here; to mend: ";
+    result.advice.push_back(
+        hint.words + why +
+        (hint.kind == DataFaultKind::kVelocity && !hint.overruled ? hint.mend : ""));
   }
   result.data_hints = std::move(hints);
-  explainer.say_what_was_left_out(result);
+  result.left_out = std::move(left_out);
+  if (!searched.empty()) result.advice.push_back(std::move(searched));
+  say_what_was_carried(recordings.logs, result);
+  say_what_was_carried(recordings.holdout, result);
   return result;
 }
 

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "explain/doctor.hpp"
 #include "explain/excitation.hpp"
 #include "explain/remainder.hpp"
+#include "explain/treatment.hpp"
 #include "identify/effect_candidate.hpp"
 #include "identify/estimates.hpp"
 #include "identify/improved_robot.hpp"
@@ -91,7 +91,7 @@ struct Suspicion {
 struct Rejection {
   EffectAt what;
   double p_value = 1;
-  double smallest_detectable = 0;  // rms torque that would have been seen
+  double smallest_detectable = 0;  // rms torque that would have been seen; infinite: none would
   std::string unit;
 };
 
@@ -161,19 +161,29 @@ struct Explanation {
   std::vector<Rejection> rejected;
   std::vector<StructureShare> where;  // of what is left, largest first
   std::vector<Shift> shifts;
+  // How far the links' masses, centres of mass and inertias were let off the file, and whether the
+  // recordings said so.
+  double link_share = 0;
+  bool link_share_judged = false;
   std::vector<DataFault> data_faults;  // that make the verdict
   std::vector<DataFault> data_hints;   // that leave the answer right
+  std::vector<DataFault> left_out;     // whose stretches are left out
   std::vector<Excitation> excitation;
+  // Joints on which something shows that these recordings do not tell from the model's own numbers.
+  std::vector<Eigen::Index> unsure;
   std::vector<std::string> advice;
   std::string robot_file = "ROBOT";         // as commands in the advice name it
   bool at_rest = false;                     // by hold maps
   std::vector<HoldFriction> hold_friction;  // of hold maps, per joint that came from both sides
 
-  // For pictures: one row per kept sample of the first recording, columns: joints.
+  // For pictures, of every recording that was searched or held out, or of every stretch of it: one
+  // row per kept sample, columns: joints.
   struct Series {
+    std::string name;  // of the recording, as the user named it, and which stretch of it
     Eigen::VectorXd t_s;
     Eigen::MatrixXd measured, model_before, model_after, q, dq, load;
-  } series;
+  };
+  std::vector<Series> series;
   // Hold-out error of every joint with the findings so far, from none to all.
   std::vector<Eigen::VectorXd> waterfall;
   // The robot with what was found and with the numbers fitted beside it; improved_robot.hpp.
@@ -188,17 +198,31 @@ struct ExplainOptions {
   std::uint64_t seed = 1;
   int bootstrap_draws = 1999;
   int replays = 19;  // 0: none
-  double link_share = 0.05;
+  // How far the links' numbers may be off the file, two standard deviations as a share; none: what
+  // the recordings say of it (link_share.hpp).
+  std::optional<double> link_share = {};
   int most_effects = 6;         // of one joint
   std::string source = {};      // what `improved` says of where its numbers come from
   std::string robot_file = {};  // as the user named it, for commands in the advice; empty: "ROBOT"
+  std::vector<KeepFault> keep = {};  // of the doctor's findings, that are no faults
 };
+
+// Recordings of which the doctor has left out what is at fault.
+struct Treated {
+  std::vector<Log> logs;
+  std::vector<Log> holdout;
+  std::vector<DataFault> faults;
+};
+// Throws InputError where the recordings and the robot do not fit together.
+Treated treated(const RobotDescription& robot, std::vector<Log> logs, std::vector<Log> holdout,
+                const std::vector<KeepFault>& keep);
 
 // Which effects the robot's model lacks, by recordings of it. `holdout` may be empty: then parts of
 // the recordings are held out in turn. Throws InputError where the recordings and the robot do not
 // fit together or are too short.
-Explanation explain(const RobotDescription& robot, const std::vector<Log>& logs,
-                    const std::vector<Log>& holdout, const ExplainOptions& options,
-                    const OnProgress& on_progress = {});
+Explanation explain(const RobotDescription& robot, std::vector<Log> logs, std::vector<Log> holdout,
+                    const ExplainOptions& options, const OnProgress& on_progress = {});
+Explanation explain(const RobotDescription& robot, const Treated& recordings,
+                    const ExplainOptions& options, const OnProgress& on_progress = {});
 
 }  // namespace offnominal::desk

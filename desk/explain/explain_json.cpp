@@ -142,8 +142,10 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
                         {"parameter", shift.name},
                         {"share_of_file_value", shift.share}};
   });
+  json["link_share"] = {{"value", e.link_share}, {"judged", e.link_share_judged}};
   json["data_faults"] = to_json(e.data_faults);
   json["data_hints"] = to_json(e.data_hints);
+  json["left_out"] = to_json(e.left_out);
   json["excitation"] = array_of(e.excitation, [](const Excitation& one) {
     return ordered_json{{"range", one.range},
                         {"top_speed", one.top_speed},

@@ -8,6 +8,7 @@
 
 #include "common/effort_name.hpp"
 #include "common/nearest.hpp"
+#include "explain/data_fault_report.hpp"
 #include "explain/explain_report.hpp"
 
 namespace offnominal::desk {
@@ -161,11 +162,22 @@ report::Waterfall waterfall_of(const Explanation& e, Index joint) {
   const JointErrors& errors = joint_of(e, joint);
   waterfall.title = fmt::format("Held-out error of joint {}, effect by effect", joint + 1);
   waterfall.value_axis = {fmt::format("rms {} error", effort_name(errors.unit)), errors.unit};
+  // Of other joints' effects only those that show on this one.
+  constexpr double kShows = 0.01;
   for (std::size_t i = 0; i < e.waterfall.size(); ++i) {
-    const std::string label = i == 0 ? "model as it is"
-                                     : fmt::format("+ {} on joint {}", title_of(e.found[i - 1]),
-                                                   e.found[i - 1].what.joint + 1);
-    waterfall.steps.push_back({label, e.waterfall[i][joint]});
+    const double error = e.waterfall[i][joint];
+    if (i == 0) {
+      waterfall.steps.push_back({"model as it is", error});
+      continue;
+    }
+    const Finding& added = e.found[i - 1];
+    const bool elsewhere = added.what.joint != joint;
+    const double before = e.waterfall[i - 1][joint];
+    if (elsewhere && std::abs(error - before) <= kShows * before) continue;
+    waterfall.steps.push_back(
+        {elsewhere ? fmt::format("+ {} on joint {}", title_of(added), added.what.joint + 1)
+                   : "+ " + title_of(added),
+         error});
   }
   waterfall.levels.push_back({errors.holdout_noise_floor, "noise floor"});
   waterfall.width = report::Width::kHalf;
@@ -183,8 +195,21 @@ report::Series series_of(const char* name, const VectorXd& x, const VectorXd& y,
   return series;
 }
 
+// One recording of an explanation.
+struct Pictured {
+  const Explanation& whole;
+  const Explanation::Series& series;
+  bool alone = true;  // it is the only one
+
+  [[nodiscard]] const JointErrors& errors(Index joint) const { return joint_of(whole, joint); }
+};
+
+bool has_waterfall(const Explanation& e) {
+  return !e.waterfall.empty() && e.waterfall.size() == e.found.size() + 1;
+}
+
 // Measured and model torque over x, of as many values as the recording.
-std::vector<report::Series> torques(const Explanation& e, Index joint, const VectorXd& x,
+std::vector<report::Series> torques(const Pictured& e, Index joint, const VectorXd& x,
                                     report::SeriesKind kind) {
   return {series_of("measured", x, e.series.measured.col(joint), report::Tone::kMeasured, kind),
           series_of("model with what was found", x, e.series.model_after.col(joint),
@@ -192,7 +217,7 @@ std::vector<report::Series> torques(const Explanation& e, Index joint, const Vec
 }
 
 // Measured torque less the model's over x, before and after.
-std::vector<report::Series> torque_errors(const Explanation& e, Index joint, const VectorXd& x,
+std::vector<report::Series> torque_errors(const Pictured& e, Index joint, const VectorXd& x,
                                           report::SeriesKind kind) {
   const VectorXd measured = e.series.measured.col(joint);
   return {series_of("model as it is", x, measured - e.series.model_before.col(joint),
@@ -201,8 +226,8 @@ std::vector<report::Series> torque_errors(const Explanation& e, Index joint, con
                     report::Tone::kResidual, kind)};
 }
 
-report::Chart torque_chart(const Explanation& e, Index joint) {
-  const JointErrors& errors = joint_of(e, joint);
+report::Chart torque_chart(const Pictured& e, Index joint) {
+  const JointErrors& errors = e.errors(joint);
   report::Chart chart;
   chart.title = fmt::format("{} of joint {}", titled(effort_name(errors.unit)), joint + 1);
   chart.x = {"time", "s"};
@@ -213,8 +238,8 @@ report::Chart torque_chart(const Explanation& e, Index joint) {
   return chart;
 }
 
-report::Chart residual_chart(const Explanation& e, Index joint) {
-  const JointErrors& errors = joint_of(e, joint);
+report::Chart residual_chart(const Pictured& e, Index joint) {
+  const JointErrors& errors = e.errors(joint);
   report::Chart chart;
   chart.title = fmt::format("{} error of joint {}", titled(effort_name(errors.unit)), joint + 1);
   chart.x = {"time", "s"};
@@ -225,9 +250,9 @@ report::Chart residual_chart(const Explanation& e, Index joint) {
 }
 
 // Mean error of the model as it is over two variables.
-report::Heatmap error_map(const Explanation& e, Index joint) {
+report::Heatmap error_map(const Pictured& e, Index joint) {
   constexpr Index kCells = 20;
-  const JointErrors& errors = joint_of(e, joint);
+  const JointErrors& errors = e.errors(joint);
   report::Heatmap map;
   map.title = fmt::format("Mean error of joint {}, model as it is", joint + 1);
   map.x = {"position", position_unit(errors)};
@@ -268,9 +293,9 @@ report::Heatmap error_map(const Explanation& e, Index joint) {
 }
 
 // The error over one variable, before and after.
-report::Chart error_over(const Explanation& e, Index joint, const char* variable, const char* unit,
+report::Chart error_over(const Pictured& e, Index joint, const char* variable, const char* unit,
                          const VectorXd& values) {
-  const JointErrors& errors = joint_of(e, joint);
+  const JointErrors& errors = e.errors(joint);
   report::Chart chart;
   chart.title = fmt::format("Error of joint {} over {}", joint + 1, variable);
   chart.x = {variable, unit};
@@ -281,8 +306,8 @@ report::Chart error_over(const Explanation& e, Index joint, const char* variable
 }
 
 // Measured and model torque over the position, of readings at rest.
-report::Chart torque_over_position(const Explanation& e, Index joint) {
-  const JointErrors& errors = joint_of(e, joint);
+report::Chart torque_over_position(const Pictured& e, Index joint) {
+  const JointErrors& errors = e.errors(joint);
   report::Chart chart;
   chart.title =
       fmt::format("{} of joint {} over position", titled(effort_name(errors.unit)), joint + 1);
@@ -293,14 +318,14 @@ report::Chart torque_over_position(const Explanation& e, Index joint) {
   return chart;
 }
 
-report::Section joint_section(const Explanation& e, Index joint) {
-  const JointErrors& errors = joint_of(e, joint);
+report::Section joint_section(const Pictured& e, Index joint) {
+  const JointErrors& errors = e.errors(joint);
   report::Section section;
   section.heading = fmt::format("Joint {}", joint + 1);
-  if (!e.waterfall.empty() && e.waterfall.size() == e.found.size() + 1) {
-    section.blocks.emplace_back(waterfall_of(e, joint));
+  if (e.alone && has_waterfall(e.whole)) {
+    section.blocks.emplace_back(waterfall_of(e.whole, joint));
   }
-  if (e.at_rest) {
+  if (e.whole.at_rest) {
     section.blocks.emplace_back(torque_over_position(e, joint));
     section.blocks.emplace_back(
         error_over(e, joint, "position", position_unit(errors), e.series.q.col(joint)));
@@ -318,6 +343,16 @@ report::Section joint_section(const Explanation& e, Index joint) {
   return section;
 }
 
+// Of all recordings together.
+report::Section waterfalls(const Explanation& e) {
+  report::Section section;
+  section.heading = "Effect by effect";
+  for (Index joint = 0; joint < static_cast<Index>(e.joints.size()); ++joint) {
+    section.blocks.emplace_back(waterfall_of(e, joint));
+  }
+  return section;
+}
+
 }  // namespace
 
 report::Page page_of(const Explanation& e, const ExplainNames& names) {
@@ -331,6 +366,7 @@ report::Page page_of(const Explanation& e, const ExplainNames& names) {
   for (const DataFault& fault : e.data_faults) {
     overview.blocks.emplace_back(report::Note{fault.words + ". " + fault.mend, Level::kBad});
   }
+  if (!e.left_out.empty()) overview.blocks.emplace_back(table_of_left_out(e.left_out));
   if (!e.answers.empty()) overview.blocks.emplace_back(answer_table(e));
   if (!e.found.empty()) overview.blocks.emplace_back(finding_table(e));
   if (!e.ambiguous.empty()) overview.blocks.emplace_back(class_table(e));
@@ -340,8 +376,14 @@ report::Page page_of(const Explanation& e, const ExplainNames& names) {
     overview.blocks.emplace_back(report::Note{advice, Level::kNeutral});
   }
   page.sections.push_back(std::move(overview));
-  for (Index joint = 0; joint < static_cast<Index>(e.joints.size()); ++joint) {
-    page.sections.push_back(joint_section(e, joint));
+  const bool alone = e.series.size() == 1;
+  if (!alone && has_waterfall(e)) page.sections.push_back(waterfalls(e));
+  for (const Explanation::Series& series : e.series) {
+    const Pictured pictured{e, series, alone};
+    for (Index joint = 0; joint < static_cast<Index>(e.joints.size()); ++joint) {
+      page.sections.push_back(joint_section(pictured, joint));
+      if (!alone) page.sections.back().recording = series.name;
+    }
   }
   report::Section rejected;
   rejected.heading = "What these recordings do not show";

@@ -15,7 +15,8 @@ struct ExplainNames {
   std::vector<std::string> holdout;
   std::string robot_file;
   std::string command_line;
-  std::string channels = {};  // file of --channels, empty: none
+  std::string channels = {};                    // file of --channels, empty: none
+  std::vector<RecordingPayload> payloads = {};  // of --payload
 };
 
 // How a page shows a verdict.

@@ -1,9 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "common/input_name.hpp"
 #include "common/shell_word.hpp"
 #include "common/text_table.hpp"
+#include "explain/data_fault_report.hpp"
 #include "explain/explain_report.hpp"
+#include "robot/payload.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -61,9 +65,9 @@ std::string text_of_findings(const Explanation& e) {
     for (const Estimate& one : finding.parameters) text += "   " + words_of(one) + "\n";
     text += fmt::format(
         "   held-out error without it {:.4g} {}, with it {:.4g} {}; p = {:.2g} over the whole "
-        "search, {:.2g} by replay\n",
+        "search{}\n",
         finding.holdout_before, unit, finding.holdout_after, unit, finding.p_value,
-        finding.p_replay);
+        finding.p_replay < 1 ? ", and replays of the model without it do not come as far" : "");
   }
   for (const auto& same : e.ambiguous) {
     text += "\nnot told apart:";
@@ -89,6 +93,9 @@ std::string command_to_add(const ExplainNames& names) {
   if (!names.holdout.empty()) command += " --holdout";
   for (const std::string& log : names.holdout) command += word(log, "HOLDOUT");
   if (!names.channels.empty()) command += " --channels" + word(names.channels, "CHANNELS");
+  for (const RecordingPayload& one : names.payloads) {
+    command += " --payload " + shell_word(text_of(one));
+  }
   return fmt::format("to write a robot file with it{}: {} -o FILE\n",
                      kept ? "" : ", keep what came through a pipe in a file, and", command);
 }
@@ -103,6 +110,7 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
                       : e.at_rest        ? "stretches of readings"
                                          : "blocks of time");
   for (const DataFault& fault : e.data_faults) text += "data fault: " + fault.words + "\n";
+  for (const DataFault& fault : e.left_out) text += "left out: " + left_out_line(fault) + "\n";
   text += text_of_joints(e);
   text += text_of_answers(e);
   text += text_of_findings(e);
@@ -122,7 +130,10 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
   }
   for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
   for (const std::string& why : e.unwritable) text += "cannot be written: " + why + "\n";
-  if (is_to_write(e.verdict) && !e.found.empty() && e.unwritable.empty()) {
+  const bool sure = std::any_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
+    return !holds_in_any(e.ambiguous, one.what);
+  });
+  if (sure && e.data_faults.empty() && e.unwritable.empty()) {
     text += command_to_add(names);
   }
   return text;

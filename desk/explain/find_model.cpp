@@ -8,9 +8,10 @@
 #include <numeric>
 #include <utility>
 
-#include "explain/alternatives.hpp"
+#include "explain/any_shape.hpp"
 #include "explain/confirm.hpp"
 #include "explain/friction_family.hpp"
+#include "explain/questions.hpp"
 #include "explain/replay_null.hpp"
 #include "identify/parallel.hpp"
 
@@ -155,9 +156,14 @@ class Finder {
   FoundModel run() {
     found_.baseline = regression_.fit({});
     found_.fit = found_.baseline;
+    found_.unsure.assign(joints_.size(), 0);
     found_.held_out_before = hold_out_.residual({}, found_.baseline);
     found_.held_out_after = found_.held_out_before;
     while (options_.most_effects > 0 && round()) {
+    }
+    if (options_.most_effects > 0 && add_any_shapes()) {
+      while (round()) {
+      }
     }
     drop_what_is_not_needed();
     order_and_hold_out(regression_, hold_out_, threads(), found_);
@@ -186,7 +192,6 @@ class Finder {
   // Whether it is more than nothing to the joint's torque, and more than what effects that were
   // found before leave of themselves: each of them is a simplification of something.
   [[nodiscard]] bool matters(const Fall& fall) const {
-    constexpr double kLeftOfItself = 0.06;  // of the error that the joint had at first
     const Data& data = regression_.data();
     const RowLayout& layout = data.layout;
     return fall.rms >= kRelevantTorque * layout.rms(data.torque)[fall.joint] &&
@@ -229,7 +234,7 @@ class Finder {
     constexpr double kWorthAWord = 0.02;
     // Regression only screens what remembers: its columns hold the noise that they explain.
     if (!found_.accepted.empty() || one.terms.back().effect->is_only_screened()) return;
-    if (one.added > 1 || !excitation_[joint_of(one)].sufficient) return;
+    if (one.added > 1 || !excitation_[joint_of(one)].moves) return;
     const Fall fall = fall_of(found_.fit, one.fit);
     if (fall.share < kWorthAWord || !matters(fall)) return;
     const double before = hold_out_.rms(found_.held_out_after)[fall.joint];
@@ -257,13 +262,23 @@ class Finder {
     return proposals;
   }
 
+  // What a curve of any shape leaves of its own variable is how far it is from the true shape.
+  [[nodiscard]] bool is_misfit_of_a_curve(const Term& term) const {
+    return std::any_of(found_.accepted.begin(), found_.accepted.end(), [&](const Accepted& one) {
+      const EffectTraits& traits = one.term.effect->info().traits;
+      return traits.has_any_shape && one.term.joint == term.joint &&
+             traits.follows == term.effect->info().traits.follows;
+    });
+  }
+
   // The best of a joint that has not failed; null where there is none.
   [[nodiscard]] const Proposal* best_of(std::size_t joint, const std::vector<Proposal>& list) {
     for (const Proposal& one : list) {
       const auto& failed = joints_[joint].failed;
       if (std::find(failed.begin(), failed.end(), kinds_of(one)) != failed.end()) continue;
       if (!relevant(found_.fit, one.fit)) continue;
-      if (!shows(regression_.data(), excitation_[joint], one.terms.back())) continue;
+      if (!excitation_[joint].moves) continue;
+      if (is_misfit_of_a_curve(one.terms.back())) continue;
       return &one;
     }
     return nullptr;
@@ -344,8 +359,9 @@ class Finder {
     return true;
   }
 
+  // `model`: what it is judged beside, where that is not what was found.
   bool passes(const Proposal& one, const NullOfSearch& null, const VectorXd& held_before,
-              const VectorXd& held_of_all) {
+              const VectorXd& held_of_all, const ModelFit* model = nullptr) {
     constexpr double kReplayError = 0.05;
     const std::size_t first = one.terms.size() - one.added;
     std::vector<Accepted> fresh;
@@ -357,10 +373,14 @@ class Finder {
         beside = regression_.fit(others);
         if (!relevant(beside, one.fit)) return false;
       }
-      const ModelFit& without = one.added > 1 ? beside : found_.fit;
+      const ModelFit& without = one.added > 1 ? beside : model != nullptr ? *model : found_.fit;
       const double p = search_.family_p(one.terms[i], without, null);
       if (p > search_.options().family_error) {
         suspect(one, p);
+        return false;
+      }
+      if (!shown(regression_.data(), one.terms, i, one.fit, without).is_enough()) {
+        found_.unsure[joint_of(one)] = 1;
         return false;
       }
       fresh.push_back({one.terms[i], p, 1});
@@ -379,8 +399,9 @@ class Finder {
     if (options_.replays > 0) {
       tell("playing the model without " + words_of(one));
       for (Accepted& term : fresh) {
-        term.p_replay = replay_p(regression_.data(), found_.fit, one.fit.residual, term.term,
-                                 options_.replays, search_.options().seed, threads());
+        term.p_replay =
+            replay_p(regression_.data(), model != nullptr ? *model : found_.fit, one.fit.residual,
+                     term.term, options_.replays, search_.options().seed, threads());
         if (term.p_replay > kReplayError) return false;
       }
     }
@@ -396,6 +417,39 @@ class Finder {
       if (&joint_state == &of) joint_state.failed.clear();
       joint_state.done = joint_state.effects >= options_.most_effects;
     }
+    return true;
+  }
+
+  // Curves that could stand for anything, once everything else has been tried; false where none is
+  // needed. What they make superfluous leaves the model.
+  bool add_any_shapes() {
+    bool added = false;
+    for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+      if (!excitation_[joint].sufficient || joints_[joint].effects >= options_.most_effects) {
+        continue;
+      }
+      auto curve = any_shape_on(static_cast<Index>(joint), search_, regression_, found_);
+      if (!curve || !relevant(found_.fit, curve->proposal.fit)) continue;
+      const Proposal& one = curve->proposal;
+      const std::size_t before = found_.accepted.size();
+      const VectorXd held_before = hold_out_.rms(found_.held_out_after);
+      const VectorXd held_with_it = hold_out_.residual(one.terms, one.fit);
+      const NullOfSearch null = search_.null_of(one.terms, one.fit, found_.fit);
+      if (!passes(one, null, held_before, held_with_it, &curve->without)) continue;
+      found_.accepted.at(before).stands_for = std::move(curve->words);
+      for (std::size_t i = curve->replaced.size(); i-- > 0;) {
+        found_.accepted.erase(found_.accepted.begin() +
+                              static_cast<std::ptrdiff_t>(curve->replaced[i]));
+      }
+      added = true;
+      found_.held_out_after = held_with_it;
+    }
+    if (!added) return false;
+    drop_what_is_not_needed();
+    refine_shapes();
+    const std::vector<Term> terms = found_.terms();
+    found_.fit = regression_.fit(terms);
+    found_.held_out_after = hold_out_.residual(terms, found_.fit);
     return true;
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "explain/excitation.hpp"
@@ -14,8 +15,9 @@ namespace offnominal::desk {
 // An effect that passed every gate.
 struct Accepted {
   Term term;
-  double p = 1;         // of the whole search, wild block bootstrap
-  double p_replay = 1;  // by playing the model without the effect, 1 where not asked for
+  double p = 1;                 // of the whole search, wild block bootstrap
+  double p_replay = 1;          // by playing the model without the effect, 1 where not asked for
+  std::string stands_for = {};  // what else it is, in words: any_shape.hpp
 };
 
 // The effect that came closest to a name: likely more than chance, and too unsure or too small.
@@ -38,6 +40,9 @@ struct FoundModel {
   // Residuals on held-out data without any and with all of the accepted.
   Eigen::VectorXd held_out_before;
   Eigen::VectorXd held_out_after;
+  // Per joint: whether something shows that its recordings do not tell from the model's own
+  // numbers.
+  std::vector<char> unsure;
   // Held-out error, rms per joint, with the first 0, 1, ... of the accepted.
   std::vector<Eigen::VectorXd> waterfall;
 

@@ -1,5 +1,6 @@
 #include "explain/free_function.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +11,7 @@
 namespace offnominal::desk {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
@@ -27,31 +29,7 @@ constexpr double kLeftStructured = 0.15;
 constexpr const char* kBoth = "position and velocity";
 
 // The variable that an effect is a function of; empty where it is one of several or of none.
-std::string variable_of(EffectKind kind) {
-  switch (kind) {
-    case EffectKind::kJointStiffness:
-    case EffectKind::kCoggingTorque:
-      return "position";
-    case EffectKind::kViscousFriction:
-    case EffectKind::kCoulombFriction:
-    case EffectKind::kFrictionAsymmetry:
-    case EffectKind::kStribeckFriction:
-    case EffectKind::kQuadraticFriction:
-      return "velocity";
-    case EffectKind::kTorqueScale:
-      return "load";
-    default:
-      return "";
-  }
-}
-
-double share_of(const std::vector<StructureShare>& shares, Index joint,
-                const std::string& variable) {
-  for (const StructureShare& one : shares) {
-    if (one.joint == joint && one.variable == variable) return one.share;
-  }
-  return 0;
-}
+std::string variable_of(EffectKind kind) { return name_of(info_of(kind)->traits.follows); }
 
 class Judgement {
  public:
@@ -122,11 +100,18 @@ class Judgement {
   [[nodiscard]] std::optional<OverVariable> of_all(Index joint,
                                                    const std::vector<EffectAt>& all) const {
     const double taken = explained_share(before_[joint], after_[joint]);
+    const auto shape = [&](const char* variable, double share) -> std::optional<OverVariable> {
+      const std::vector<EffectAt> stand_ins = not_needed_beside(joint, variable, all);
+      // Where every effect is needed beside it, the torque is one more that is missing.
+      const VectorXd& residual =
+          stand_ins.size() == all.size() ? found_.baseline.residual : found_.fit.residual;
+      return shape_of(joint, variable, stand_ins, share, residual);
+    };
     for (const char* variable : {"position", "velocity", "load"}) {
       const double free = share_of(at_first_, joint, variable);
       if (free < kLeftStructured || share_of(left_, joint, variable) < kLeftStructured) continue;
       if (taken < kTakes * free) {
-        return shape_of(joint, variable, all, taken / free, found_.baseline.residual);
+        return shape(variable, taken / free);
       }
     }
     const double free = share_of(at_first_, joint, kBoth);
@@ -136,9 +121,68 @@ class Judgement {
           share_of(at_first_, joint, "position") > share_of(at_first_, joint, "velocity")
               ? "position"
               : "velocity";
-      return shape_of(joint, variable, all, taken / free, found_.baseline.residual);
+      return shape(variable, taken / free);
     }
     return std::nullopt;
+  }
+
+  // Which of a joint's effects take next to nothing where a free function of the variable is in the
+  // model too: they were a part of it. What is needed all the same keeps its name.
+  [[nodiscard]] std::vector<EffectAt> not_needed_beside(Index joint, const char* variable,
+                                                        const std::vector<EffectAt>& all) const {
+    const RowLayout& layout = data_.layout;
+    const Remainder& at = found_.baseline.remainder;
+    const auto of_joint = [&](const MatrixXd& columns) {
+      Index rows = 0;
+      for (std::size_t r = 0; r < layout.recording_count(); ++r) rows += layout.samples(r);
+      MatrixXd own(rows, columns.cols());
+      Index to = 0;
+      for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+        own.middleRows(to, layout.samples(r)) =
+            columns.middleRows(layout.begin(r, joint), layout.samples(r));
+        to += layout.samples(r);
+      }
+      return own;
+    };
+    const auto beside = [&](const MatrixXd& columns) {
+      MatrixXd weighted(at.residual.size(), columns.cols());
+      for (Index c = 0; c < columns.cols(); ++c) weighted.col(c) = at.weighted(columns.col(c));
+      return of_joint(at.beside_basis(std::move(weighted)));
+    };
+    const VectorXd target = of_joint(at.residual);
+    const MatrixXd free = beside(bins_over(data_, joint, variable));
+    std::vector<MatrixXd> effects;
+    for (const EffectAt& one : all) {
+      for (const Accepted& accepted : found_.accepted) {
+        if (EffectAt{accepted.term.effect->kind(), accepted.term.joint} == one) {
+          effects.push_back(beside(columns_of(data_, accepted.term)));
+          break;
+        }
+      }
+    }
+    const auto left = [&](std::size_t without) {
+      Index width = free.cols();
+      for (std::size_t i = 0; i < effects.size(); ++i) {
+        if (i != without) width += effects[i].cols();
+      }
+      MatrixXd columns(free.rows(), width);
+      columns.leftCols(free.cols()) = free;
+      Index to = free.cols();
+      for (std::size_t i = 0; i < effects.size(); ++i) {
+        if (i == without) continue;
+        columns.middleCols(to, effects[i].cols()) = effects[i];
+        to += effects[i].cols();
+      }
+      const Eigen::ColPivHouseholderQR<MatrixXd> qr(columns);
+      return (target - columns * qr.solve(target)).squaredNorm();
+    };
+    constexpr double kNeeded = 0.25;  // of what is left without it
+    const double with_all = left(effects.size());
+    std::vector<EffectAt> stand_ins;
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+      if (!(with_all < (1 - kNeeded) * left(i))) stand_ins.push_back(all[i]);
+    }
+    return stand_ins;
   }
 
   // A joint's effects of one variable against a free function of it beside everything else.
@@ -179,7 +223,7 @@ std::vector<OverVariable> leave_out_stand_ins(const Regression& regression, cons
                                               int threads, FoundModel& found) {
   if (found.accepted.empty() || regression.data().recordings[0].at_rest) return {};
   Judgement::Result result = Judgement(regression, found).judge();
-  if (result.stand_ins.empty()) return {};
+  if (result.stand_ins.empty()) return std::move(result.shapes);
   std::erase_if(found.accepted, [&](const Accepted& one) {
     return holds(result.stand_ins, {one.term.effect->kind(), one.term.joint});
   });

@@ -63,6 +63,17 @@ bool brings(const Proposal& one, EffectKind kind) {
 
 }  // namespace
 
+std::vector<Term> standard_friction(const Data& data) {
+  std::vector<Term> terms;
+  for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
+    if (!(data.recordings[0].top_speed[joint] > 0)) continue;
+    for (const EffectKind kind : lacking(data, {}, joint)) {
+      terms.push_back(term_of(data, kind, joint));
+    }
+  }
+  return terms;
+}
+
 bool is_refuted_by_simpler(const Data& data, const Term& simpler, const ModelFit& with_simpler,
                            const Term& other, const ModelFit& with_other) {
   if (!is_member(simpler.effect->kind()) || !is_larger_member(other.effect->kind())) return false;

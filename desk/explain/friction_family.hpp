@@ -21,6 +21,9 @@ void put_friction_first(const Search& search, const Regression& regression,
 bool is_refuted_by_simpler(const Data& data, const Term& simpler, const ModelFit& with_simpler,
                            const Term& other, const ModelFit& with_other);
 
+// What of Coulomb and viscous friction the file lacks on joints that move.
+std::vector<Term> standard_friction(const Data& data);
+
 // Moves a term's shape to where the model fits best over the whole of its grid, the other terms as
 // they are: refine() stays near the point where it is.
 void refine_over_range(const Regression& regression, std::vector<Term>& terms, std::size_t which);

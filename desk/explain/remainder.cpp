@@ -179,7 +179,28 @@ VectorXd noise_floor_of(const Data& data, const VectorXd& left) {
       samples[joint] += layout.moving_count(r, joint);
     }
   }
-  return power.cwiseQuotient(samples).cwiseSqrt();
+  return power.cwiseQuotient(samples.cwiseMax(1)).cwiseSqrt();
+}
+
+const char* name_of(EffectVariable variable) {
+  switch (variable) {
+    case EffectVariable::kPosition:
+      return "position";
+    case EffectVariable::kVelocity:
+      return "velocity";
+    case EffectVariable::kLoad:
+      return "load";
+    case EffectVariable::kNone:
+      break;
+  }
+  return "";
+}
+
+double share_of(const std::vector<StructureShare>& shares, Index joint, std::string_view variable) {
+  for (const StructureShare& one : shares) {
+    if (one.joint == joint && one.variable == variable) return one.share;
+  }
+  return 0;
 }
 
 std::vector<StructureShare> structure_of(const Data& data, const VectorXd& left) {
@@ -207,11 +228,31 @@ std::vector<StructureShare> structure_of(const Data& data, const VectorXd& left)
   return shares;
 }
 
+namespace {
+
+const VectorXd& variable_of(const JointSeries& series, const std::string& variable) {
+  return variable == "velocity" ? series.dq : variable == "load" ? series.load : series.q;
+}
+
+}  // namespace
+
+Eigen::MatrixXd bins_over(const Data& data, Index joint, const std::string& variable) {
+  const RowLayout& layout = data.layout;
+  const JointSeries series = series_of(data, VectorXd::Zero(layout.rows()), joint);
+  const std::vector<Index> bin = equally_filled(variable_of(series, variable), kBins);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(layout.rows(), kBins);
+  std::size_t at = 0;
+  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+    for (Index i = 0; i < layout.samples(r); ++i) {
+      columns(layout.begin(r, joint) + i, bin[at++]) = 1;
+    }
+  }
+  return columns;
+}
+
 MapOver map_over(const Data& data, const VectorXd& left, Index joint, const std::string& variable) {
   const JointSeries series = series_of(data, data.layout.while_moving(left), joint);
-  const VectorXd& over = variable == "velocity" ? series.dq
-                         : variable == "load"   ? series.load
-                                                : series.q;
+  const VectorXd& over = variable_of(series, variable);
   const std::vector<Index> bin = equally_filled(over, kBins);
   std::vector<double> count(static_cast<std::size_t>(kBins), 0);
   MapOver map{std::vector<double>(count.size(), 0), std::vector<double>(count.size(), 0)};

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "identify/data.hpp"
@@ -20,6 +21,11 @@ struct StructureShare {
   std::string variable;  // "position", "velocity", "load", "position and velocity", "time"
   double share = 0;      // of the residual's energy, 0 to 1
 };
+// As above; empty for none.
+const char* name_of(EffectVariable variable);
+// Of one joint and variable; 0 where there is none.
+double share_of(const std::vector<StructureShare>& shares, Eigen::Index joint,
+                std::string_view variable);
 std::vector<StructureShare> structure_of(const Data& data, const Eigen::VectorXd& residual);
 
 // Mean of a joint's residual over equally filled bins of one of the variables "position",
@@ -29,6 +35,9 @@ struct MapOver {
 };
 MapOver map_over(const Data& data, const Eigen::VectorXd& residual, Eigen::Index joint,
                  const std::string& variable);
+
+// One column per bin of such a variable, stacked: 1 where the joint is in it, 0 elsewhere.
+Eigen::MatrixXd bins_over(const Data& data, Eigen::Index joint, const std::string& variable);
 
 // Where in time the energy of a joint's residual is concentrated: half-second windows, next to each
 // other as one, of the loudest tenth and more than four times the median.

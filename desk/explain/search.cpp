@@ -23,16 +23,10 @@ constexpr double kSmallestShare = 0.02;  // of the energy, for a closer look
 // of the range moved is a constant torque with a slope; a time constant as long as a recording is
 // friction that stays; a Stribeck velocity at the low end of its range is the width of the sign.
 bool is_within_reach(const Data& data, const Term& term, const VectorXd& coefficients) {
-  constexpr double kRangesAway = 10;
+  constexpr double kRangesAway = 3;
   constexpr double kNearEnd = 1.02;
   if (term.effect->kind() == EffectKind::kJointStiffness) {
-    const auto& at = data.recordings;
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (const Workspace& one : at) {
-      low = std::min(low, one.motion.q.col(term.joint).minCoeff());
-      high = std::max(high, one.motion.q.col(term.joint).maxCoeff());
-    }
+    const auto [low, high] = positions_seen(data.recordings, term.joint);
     const double rest = -coefficients[1] / coefficients[0];
     const double slack = kRangesAway * (high - low);
     return rest >= low - slack && rest <= high + slack;
@@ -75,6 +69,7 @@ bool Search::is_known(const EffectCandidate& effect, Index joint) const {
 Search::Search(const Regression& regression, const SearchOptions& options)
     : regression_(regression), data_(regression.data()), options_(options) {
   for (const auto& effect : all_candidates()) {
+    if (effect->info().traits.has_any_shape) continue;  // any_shape.hpp
     for (Index joint = 0; joint < data_.layout.joint_count(); ++joint) {
       const Workspace& first = data_.recordings[0];
       const bool acts =

@@ -58,6 +58,7 @@ class Search {
   static constexpr std::size_t kShortlist = 10;
 
   [[nodiscard]] const SearchOptions& options() const { return options_; }
+  [[nodiscard]] const Data& data() const { return data_; }
   // Every candidate that is not in `terms`, each at its best shape, best score first.
   [[nodiscard]] Screening screen(const std::vector<Term>& terms, const ModelFit& at) const;
   // The most promising candidates of a screening, `most` of them, each refined and fitted together

@@ -39,15 +39,18 @@ VectorXd left_of_moving_joints(const Regression& regression, const std::vector<T
   return regression.fit(terms, rows).residual;
 }
 
-// Joints that move too poorly and whose error stands out all the same, by how far.
+// Joints on which something shows that has no name, and whose error stands out, by how far.
 std::vector<Index> joints_that_show(const Regression& regression, const std::vector<Term>& terms,
+                                    const std::vector<char>& is_unsure,
                                     const std::vector<Excitation>& excitation) {
   std::vector<Index> shows;
   for (Index joint = 0; joint < regression.data().layout.joint_count(); ++joint) {
     const Excitation& motion = excitation[static_cast<std::size_t>(joint)];
     const bool answered = std::any_of(terms.begin(), terms.end(),
                                       [&](const Term& term) { return term.joint == joint; });
-    if (!motion.sufficient && motion.moves && !answered) shows.push_back(joint);
+    if (is_unsure[static_cast<std::size_t>(joint)] != 0 && motion.moves && !answered) {
+      shows.push_back(joint);
+    }
   }
   if (shows.empty()) return shows;
   const Data& data = regression.data();
@@ -130,7 +133,7 @@ std::vector<std::vector<EffectAt>> undecided(const Search& search, const Regress
                                              const std::vector<Excitation>& excitation) {
   constexpr std::size_t kMostProposals = 24;
   const std::vector<Term> terms = found.terms();
-  const std::vector<Index> joints = joints_that_show(regression, terms, excitation);
+  const std::vector<Index> joints = joints_that_show(regression, terms, found.unsure, excitation);
   if (joints.empty()) return {};
   const VectorXd before = regression.data().layout.rms(found.fit.residual);
   const std::vector<Proposal> proposals =

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "explain/any_shape.hpp"
 #include "explain/explain_report.hpp"
 #include "explain/find_model.hpp"
 
@@ -139,6 +140,10 @@ std::string words_of(const Remains& left, const std::string& unit) {
 std::string words_of(const OverVariable& shape) {
   std::vector<std::string> names;
   for (const EffectAt& one : shape.stand_ins) names.emplace_back(one.name());
+  if (names.empty()) {
+    return fmt::format("a torque over {} of a shape that no known effect has beside what was found",
+                       shape.variable);
+  }
   return fmt::format(
       "a torque over {} of a shape that no known effect has; {} {} {:.0f} % of what such a torque "
       "takes",
@@ -327,6 +332,8 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
   }
   const auto which = static_cast<std::size_t>(errors.joint);
   const bool poor = which < e.excitation.size() && !e.excitation[which].sufficient;
+  const bool unsure = std::find(e.unsure.begin(), e.unsure.end(), errors.joint) != e.unsure.end();
+  const bool stands = which < e.excitation.size() && !e.excitation[which].moves;
   std::vector<std::string> shapes;
   for (const OverVariable& one : e.over_variable) {
     if (one.joint == errors.joint) shapes.push_back(words_of(one));
@@ -350,12 +357,16 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
                                   fmt::join(names_of(same), " or "));
     }
     answer.words += words_of_gain(errors);
-  } else if (unknown && !poor) {
+  } else if (unsure) {
+    answer.verdict = Verdict::kNotExcited;
+    answer.words =
+        "something shows, and these recordings do not tell it from the model's own numbers.";
+  } else if (unknown && !stands) {
     const bool state = !answer.left.follows.empty() && answer.left.follows != "time";
     answer.verdict =
         state || !shapes.empty() ? Verdict::kUnknownStateDependent : Verdict::kUnknownExternal;
     answer.words = "none of the known effects.";
-  } else if (shift != e.shifts.end() && !poor) {
+  } else if (shift != e.shifts.end() && !stands) {
     answer.verdict = Verdict::kParameterShift;
     answer.words = fmt::format("{} is off by {:+.0f} %.", shift->name, 100 * shift->share);
   } else if (poor) {
@@ -385,6 +396,16 @@ void judge_joints(Explanation& e) {
                    [&](const JointAnswer& a, const JointAnswer& b) { return share(a) > share(b); });
 }
 
+// How far the links were let off the file, where the recordings said so.
+void advise_on_links(Explanation& e) {
+  if (!e.link_share_judged) return;
+  e.advice.push_back(fmt::format(
+      "the links' masses, centres of mass and inertias are off the file by more than CAD usually "
+      "is: they were fitted within {:.0f} % of it, which predicts time that was not fitted better; "
+      "`--link-share 0.05` holds them",
+      100 * e.link_share));
+}
+
 // A file without any friction on a joint, in one sentence.
 void advise_on_friction(Explanation& e) {
   if (e.without_friction.empty() || e.at_rest) return;
@@ -395,6 +416,22 @@ void advise_on_friction(Explanation& e) {
       "kind = \"coulomb_friction\" and one with kind = \"viscous_friction\" per joint, `fitted = "
       "true`, is where to begin",
       fmt::join(joints, ", ")));
+}
+
+// A torque over a variable that no other effect describes can be in the model as a curve.
+void advise_on_shapes(Explanation& e) {
+  for (const JointAnswer& one : e.answers) {
+    std::string variable = one.left.follows;
+    for (const OverVariable& shape : e.over_variable) {
+      if (shape.joint == one.joint) variable = shape.variable;
+    }
+    const EffectInfo* curve = any_shape_over(variable);
+    if (curve == nullptr || holds(one.found, {curve->kind, one.joint})) continue;
+    e.advice.push_back(fmt::format(
+        "joint {}: `offnominal add {} --joint {} --robot {} --log LOG -o improved.toml` puts it "
+        "into the model as {}",
+        one.joint + 1, curve->name, one.joint + 1, e.robot_file, curve->words));
+  }
 }
 
 // What is left beside what was found.
@@ -416,11 +453,6 @@ void judge_whole(Explanation& e) {
   e.advice.clear();
   e.answers.clear();
   std::optional<Suspicion> suspected = std::exchange(e.suspected, std::nullopt);
-  for (std::size_t joint = 0; joint < e.excitation.size(); ++joint) {
-    const Excitation& one = e.excitation[joint];
-    if (one.sufficient) continue;
-    e.advice.push_back(fmt::format("joint {}: {}", joint + 1, one.lack));
-  }
   if (!e.data_faults.empty()) {
     e.verdict = Verdict::kDataFault;
     e.words = "The recording itself is at fault: " + e.data_faults[0].words + ".";
@@ -431,10 +463,24 @@ void judge_whole(Explanation& e) {
     e.waterfall.resize(std::min<std::size_t>(1, e.waterfall.size()));
     return;
   }
-  const bool poor = !all_sufficient(e.excitation);
+  bool poor = !all_sufficient(e.excitation);
   // What stands above the noise without following anything is told as such.
   if (suspected && !poor && above_noise(e) == nullptr) e.suspected = suspected;
   judge_joints(e);
+  poor = std::any_of(e.answers.begin(), e.answers.end(), [&](const JointAnswer& one) {
+    return one.verdict == Verdict::kNotExcited &&
+           !(e.suspected && e.suspected->what.joint == one.joint);
+  });
+  for (std::size_t joint = 0; joint < e.excitation.size(); ++joint) {
+    const Excitation& one = e.excitation[joint];
+    const auto answer = std::find_if(
+        e.answers.begin(), e.answers.end(),
+        [&](const JointAnswer& of) { return of.joint == static_cast<Eigen::Index>(joint); });
+    const bool answered = answer != e.answers.end() && answer->verdict != Verdict::kNotExcited;
+    if (one.sufficient || answered) continue;
+    e.advice.push_back(fmt::format("joint {}: {}", joint + 1, one.lack));
+  }
+  advise_on_links(e);
   advise_on_friction(e);
   const JointAnswer* unknown = worst_unknown(e);
   const auto shift = std::find_if(e.answers.begin(), e.answers.end(), [](const JointAnswer& one) {
@@ -451,7 +497,12 @@ void judge_whole(Explanation& e) {
     e.words = "A known quantity has another value: " + shift->words;
   } else if (poor) {
     e.verdict = Verdict::kNotExcited;
-    e.words = "These motions excite too little to judge the model by them.";
+    e.words = e.unsure.empty()
+                  ? "These motions excite too little to judge the model by them."
+                  : fmt::format(
+                        "Something shows on {} that these recordings do not tell from the "
+                        "model's own numbers.",
+                        at_joint(e.unsure.front()));
     e.advice.emplace_back(
         e.at_rest ? kMorePositions
                   : fmt::format("`offnominal motion --robot {} -o motion.csv` writes a motion that "
@@ -473,6 +524,7 @@ void judge_whole(Explanation& e) {
                   at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
   }
   advise_on_rest(e);
+  advise_on_shapes(e);
 }
 
 }  // namespace offnominal::desk

@@ -20,6 +20,8 @@
 #include "identify/shape_search.hpp"
 #include "identify/sign_width.hpp"
 #include "identify/stretches.hpp"
+#include "log/seen_by_sensor.hpp"
+#include "robot/effect_text.hpp"
 
 namespace offnominal::desk {
 
@@ -78,15 +80,15 @@ void object_to_indistinct(const std::vector<Unknown>& unknowns, AddResult& resul
 std::string name_of(const AddResult& result, const FittedParameter& parameter) {
   const RobotEffect& effect = result.robot.effects[parameter.effect];
   const EffectInfo& info = *info_of(effect.kind);
-  return fmt::format("{}.{} of joint {}", info.name, info.parameters[parameter.parameter].name,
-                     effect.joint + 1);
+  return fmt::format("{}.{} of {}", info.name, info.parameters[parameter.parameter].name,
+                     place_of(effect));
 }
 
 // "-10 N m s/rad, 95 % between -10.2 and -9.8"
 std::string value_words(const AddResult& result, const FittedParameter& parameter) {
   const RobotEffect& effect = result.robot.effects[parameter.effect];
   const ParameterInfo& info = info_of(effect.kind)->parameters[parameter.parameter];
-  const std::string unit = unit_of(info.quantity, result.robot.joints[effect.joint].joint.type);
+  const std::string unit = unit_of(info.quantity, result.robot.type_of(effect));
   std::string words =
       fmt::format("{:.6g}{}{}", parameter.value, unit == "1" ? "" : " ", unit == "1" ? "" : unit);
   if (parameter.ci95) {
@@ -113,24 +115,23 @@ void doubt_what_held_out_data_say(const AddRequest& request, AddResult& result) 
 
 class Adder {
  public:
-  Adder(const RobotDescription& file, const AddRequest& request, const Log& log, const Log* holdout,
-        const FilterRequest& filter, const OnProgress& on_progress)
+  Adder(const RobotDescription& file, const AddRequest& request, const std::vector<Log>& logs,
+        const std::vector<Log>& holdout, const FilterRequest& filter, const OnProgress& on_progress)
       : file_(file),
         robot_(file),
         request_(request),
-        log_(log),
+        logs_(logs),
         holdout_(holdout),
         on_progress_(on_progress),
         setup_(set_up(file, request)),
-        plan_(plan_filter({log}, file, filter)) {
+        plan_(checked_plan(filter)) {
     // What is believed of a link is two standard deviations wide.
     nuisance_.link_share = 2 * request.inertia_deviation.value_or(0);
     nuisance_.free_effects = setup_.refitted;
     if (!request.fit_skew) nuisance_.skew_samples = 0;
-    widths_ = set_sign_widths(robot_, {log}, plan_);
-    const std::vector<Log> logs{log_};  // stretches point into it
+    widths_ = set_sign_widths(robot_, logs_, plan_);
     data_ = std::make_unique<Data>(
-        searched_workspaces(stretches_of(logs, robot_, plan_), robot_, plan_, widths_), robot_,
+        searched_workspaces(stretches_of(logs_, robot_, plan_), robot_, plan_, widths_), robot_,
         nuisance_);
     regression_ = std::make_unique<Regression>(*data_);
     terms_ = terms_of(setup_, request.joint, *data_);
@@ -148,6 +149,13 @@ class Adder {
   }
 
  private:
+  [[nodiscard]] FilterPlan checked_plan(const FilterRequest& filter) const {
+    for (const std::vector<Log>* some : {&logs_, &holdout_}) {
+      for (const Log& log : *some) require_joints(log, file_);
+    }
+    return plan_filter(logs_, file_, filter);
+  }
+
   [[nodiscard]] Unknown unknown_of(const ModelNumber& number) const {
     Unknown unknown;
     if (number.of == ModelNumber::Of::kTerm) {
@@ -187,7 +195,9 @@ class Adder {
       }
       result_.fit.indistinct.push_back(std::move(indistinct));
       if (one.fixed.of == ModelNumber::Of::kTerm) {
-        terms_[one.fixed.which].given[one.fixed.coefficient] = 0;
+        auto& given = terms_[one.fixed.which].given;
+        given.resize(std::max(given.size(), one.fixed.coefficient + 1));
+        given[one.fixed.coefficient] = 0;
         continue;
       }
       NuisanceTerm& term = data_->nuisance.terms[one.fixed.which];
@@ -265,7 +275,7 @@ class Adder {
     const NuisanceTerm& term = last.data->nuisance.terms[i];
     if (term.kind == NuisanceTerm::Kind::kLink) {
       const auto link = static_cast<std::size_t>(term.joint);
-      const double factor = last.link_factors[link];
+      const double factor = last.links[link].factor;
       result_.fit.links.push_back({link, factor, counted_from(factor, by)});
       return;
     }
@@ -306,7 +316,7 @@ class Adder {
       const RobotEffect& effect = result_.robot.effects[i];
       const std::size_t width = width_of(effect.kind);
       const bool has = width < info_of(effect.kind)->parameters.size();
-      if (!has || followed_joint(effect) != joint) continue;
+      if (!has || effect.of_motor || followed_joint(effect) != joint) continue;
       FittedParameter parameter{i,   width, effect.parameters[width], by.ci95, by.why_no_interval,
                                 true};
       if (parameter.ci95) (*parameter.ci95)[0] = std::max(0.0, (*parameter.ci95)[0]);
@@ -338,7 +348,7 @@ class Adder {
     return {joints.begin(), joints.end()};
   }
 
-  // Parts of the recording, each predicted by a fit of the others, shapes included; before: by the
+  // Parts of the recordings, each predicted by a fit of the others, shapes included; before: by the
   // file as it is, but for what is the recording's own.
   [[nodiscard]] std::vector<BeforeAfter> parts_held_out() const {
     NuisanceOptions none = improved_.last.nuisance;
@@ -346,8 +356,7 @@ class Adder {
     none.link_share = 0;
     none.sign_shapes = false;
     RobotDescription as_it_is = file_;
-    const std::vector<Log> logs{log_};
-    const Data before(searched_workspaces(stretches_of(logs, file_, plan_), as_it_is, plan_,
+    const Data before(searched_workspaces(stretches_of(logs_, file_, plan_), as_it_is, plan_,
                                           improved_.last.data->recordings[0].sign_width),
                       as_it_is, none);
     const Regression nothing(before);
@@ -367,15 +376,23 @@ class Adder {
   }
 
   void judge() {
-    const auto both = [&](const Log& log) {
-      const Measurement measured = measure(log, file_, plan_);
-      result_.before = compare(file_, measured);
-      result_.after = compare(result_.robot, measured);
-      return before_after(result_.before, result_.after);
+    const auto both = [&](const std::vector<Log>& logs, bool held_out) {
+      std::vector<Comparison> before;
+      std::vector<Comparison> after;
+      for (const Log& log : logs) {
+        const Measurement measured = measure(log, file_, plan_);
+        before.push_back(compare(file_, measured));
+        after.push_back(compare(result_.robot, measured));
+        result_.recordings.push_back(
+            {log.file, held_out, before_after(before.back(), after.back()), log.remarks});
+      }
+      result_.before = together(std::move(before));
+      result_.after = together(std::move(after));
+      return before_after(result_.before.joints, result_.after.joints);
     };
-    result_.fitted_log = both(log_);
-    result_.cross_validated = holdout_ == nullptr;
-    result_.held_out = holdout_ != nullptr ? both(*holdout_) : parts_held_out();
+    result_.fitted_logs = both(logs_, false);
+    result_.cross_validated = holdout_.empty();
+    result_.held_out = holdout_.empty() ? parts_held_out() : both(holdout_, true);
   }
 
   // Share of the joint's rms torque that a number's change by `by` makes.
@@ -470,7 +487,7 @@ class Adder {
     std::vector<std::string> names;
     for (const std::size_t effect : setup_.refitted) {
       const RobotEffect& of = result_.robot.effects[effect];
-      names.push_back(fmt::format("{} on joint {}", info_of(of.kind)->name, of.joint + 1));
+      names.push_back(fmt::format("{} on {}", info_of(of.kind)->name, place_of(of)));
     }
     result_.notes.push_back("fitted again together with it: " + list_of(names));
   }
@@ -478,8 +495,8 @@ class Adder {
   const RobotDescription& file_;
   RobotDescription robot_;  // the same with signs as wide as the motion can resolve
   const AddRequest& request_;
-  const Log& log_;
-  const Log* holdout_;
+  const std::vector<Log>& logs_;
+  const std::vector<Log>& holdout_;
   const OnProgress& on_progress_;
   AddSetup setup_;
   FilterPlan plan_;
@@ -492,11 +509,30 @@ class Adder {
   AddResult result_;
 };
 
+// What a sensor behind the gear does not see cannot be fitted to its torques.
+void check_sensors(const RobotDescription& robot, const AddRequest& request, const Log& log) {
+  RobotDescription asked = robot;
+  const bool exists =
+      request.joint < robot.joints.size() && (!request.of_motor || robot.transmission);
+  for (const EffectKind kind : request.effects) {
+    if (!exists) break;  // which is said later
+    RobotEffect effect;
+    effect.kind = kind;
+    effect.joint = static_cast<std::uint8_t>(request.joint);
+    effect.of_motor = request.of_motor;
+    asked.effects.push_back(effect);
+  }
+  refuse_hidden_from_sensors(asked, log);
+}
+
 }  // namespace
 
-AddResult add(const RobotDescription& robot, const AddRequest& request, const Log& log,
-              const Log* holdout, const FilterRequest& filter, const OnProgress& on_progress) {
-  return Adder(robot, request, log, holdout, filter, on_progress).run();
+AddResult add(const RobotDescription& robot, const AddRequest& request,
+              const std::vector<Log>& logs, const std::vector<Log>& holdout,
+              const FilterRequest& filter, const OnProgress& on_progress) {
+  for (const Log& log : logs) check_sensors(robot, request, log);
+  for (const Log& log : holdout) check_sensors(robot, request, log);
+  return Adder(robot, request, logs, holdout, filter, on_progress).run();
 }
 
 }  // namespace offnominal::desk

@@ -18,6 +18,7 @@ namespace offnominal::desk {
 struct AddRequest {
   std::vector<EffectKind> effects;    // to add, one or more
   std::size_t joint = 0;              // from 0, for all of them
+  bool of_motor = false;              // they act on the shaft of the motor of that number
   std::map<std::string, double> set;  // "smoothing" or "coulomb_friction.smoothing": given values
   // Standard deviation of the prior on every link's mass and inertia, 0.05 for 5 %; none: the
   // rigid-body numbers stay.
@@ -62,11 +63,20 @@ struct AddResult {
   RobotDescription robot;          // with the effects, fitted
   std::vector<std::size_t> added;  // indices into robot.effects
   AddedNumbers fit;
-  std::vector<BeforeAfter> fitted_log;  // per joint of the robot
-  std::vector<BeforeAfter> held_out;    // per joint that the fit touched
-  bool cross_validated = false;         // held_out is from parts of the fitted log
-  Comparison before;  // on the hold-out log, or on the fitted log where there is none
-  Comparison after;
+  std::vector<BeforeAfter>
+      fitted_logs;                    // per joint of the robot, of all fitted recordings together
+  std::vector<BeforeAfter> held_out;  // per joint that the fit touched
+  bool cross_validated = false;       // held_out is from parts of the fitted recordings
+  // Per joint of the robot in each recording, the fitted ones first.
+  struct OfRecording {
+    std::string file;
+    bool held_out = false;
+    std::vector<BeforeAfter> joints;
+    std::vector<std::string> remarks;  // the recording's
+  };
+  std::vector<OfRecording> recordings;
+  Comparisons before;  // on the hold-out recordings, or on the fitted ones where there are none
+  Comparisons after;
   std::vector<std::string> notes;       // what a reader of the numbers has to know
   std::vector<std::string> objections;  // why the result must not be used; empty: it may
   // Why it should not be, as far as data say that the fit has not seen: for the user to overrule.
@@ -78,13 +88,14 @@ struct AddResult {
 };
 
 // Fits new effects together with the effects of `robot` that are marked fitted and act on the same
-// joints, and judges the fit on data that it has not seen: `holdout`, or where that is null parts
-// of the recording itself (every part predicted by a fit of the others, shapes included). The
-// regression is that of explain(). Throws InputError when a joint or parameter does not exist, a
-// given value is out of range, an effect is there already, the robot has no room for it, or as
+// joints to one or more recordings, and judges the fit on data that it has not seen: `holdout`, or
+// where that is empty contiguous parts of the recordings themselves (every fifth of them predicted
+// by a fit of the others, shapes included). The regression is that of explain(). Throws InputError
+// when a joint or parameter does not exist, a given value is out of range, an effect is there
+// already, the robot has no room for it, a recording has other joints than the robot, or as
 // plan_filter().
-AddResult add(const RobotDescription& robot, const AddRequest& request, const Log& log,
-              const Log* holdout, const FilterRequest& filter = {},
-              const OnProgress& on_progress = {});
+AddResult add(const RobotDescription& robot, const AddRequest& request,
+              const std::vector<Log>& logs, const std::vector<Log>& holdout,
+              const FilterRequest& filter = {}, const OnProgress& on_progress = {});
 
 }  // namespace offnominal::desk

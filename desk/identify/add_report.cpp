@@ -13,6 +13,7 @@
 #include "common/text_table.hpp"
 #include "compare/compare_report.hpp"
 #include "compare/torque_charts.hpp"
+#include "robot/effect_text.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -49,7 +50,7 @@ std::vector<ParameterLine> lines_of(const AddResult& result, std::size_t effect)
   std::vector<ParameterLine> lines;
   const RobotEffect& of = result.robot.effects[effect];
   const auto parameters = info_of(of.kind)->parameters;
-  const JointType type = result.robot.joints[of.joint].joint.type;
+  const JointType type = result.robot.type_of(of);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     ParameterLine line{parameters[i].name, unit_of(parameters[i].quantity, type), of.parameters[i]};
     for (const FittedParameter& fitted : result.fit.parameters) {
@@ -74,6 +75,10 @@ std::vector<std::size_t> refitted(const AddResult& result) {
   return effects;
 }
 
+std::string place_asked(const AddRequest& request) {
+  return fmt::format("{} {}", request.of_motor ? "motor" : "joint", request.joint + 1);
+}
+
 ordered_json interval_json(const std::optional<Interval>& ci95) {
   if (!ci95) return nullptr;
   return ordered_json::array({(*ci95)[0], (*ci95)[1]});
@@ -82,7 +87,8 @@ ordered_json interval_json(const std::optional<Interval>& ci95) {
 ordered_json effect_json(const AddResult& result, std::size_t effect) {
   ordered_json json;
   json["effect"] = effect_name(result, effect);
-  json["joint"] = result.robot.effects[effect].joint + 1;
+  const RobotEffect& of = result.robot.effects[effect];
+  json[of.of_motor ? "motor" : "joint"] = of.joint + 1;
   json["parameters"] = ordered_json::object();
   for (const ParameterLine& line : lines_of(result, effect)) {
     json["parameters"][line.name] = {{"value", line.value},
@@ -99,6 +105,32 @@ ordered_json error_json(double relative_percent, double rms) {
   return {{"relative_error_percent", relative_percent}, {"rms_error", rms}};
 }
 
+ordered_json recordings_json(const AddResult& result) {
+  ordered_json json = ordered_json::array();
+  for (const AddResult::OfRecording& one : result.recordings) {
+    ordered_json joints = ordered_json::array();
+    for (const BeforeAfter& error : one.joints) {
+      joints.push_back({{"joint", error.joint + 1},
+                        {"unit", error.unit},
+                        {"before", error_json(error.before_percent, error.before_rms)},
+                        {"after", error_json(error.after_percent, error.after_rms)}});
+    }
+    json.push_back({{"log", one.file}, {"held_out", one.held_out}, {"joints", std::move(joints)}});
+  }
+  return json;
+}
+
+// With the recording's name, where there are several.
+std::vector<std::string> remarks_of(const AddResult& result) {
+  std::vector<std::string> remarks;
+  for (const AddResult::OfRecording& one : result.recordings) {
+    for (const std::string& remark : one.remarks) {
+      remarks.push_back(result.recordings.size() > 1 ? one.file + ": " + remark : remark);
+    }
+  }
+  return remarks;
+}
+
 std::string value_text(const ParameterLine& line) {
   std::string text = fmt::format("{:.6g} {}", line.value, line.unit);
   if (line.ci95) {
@@ -112,9 +144,10 @@ std::string value_text(const ParameterLine& line) {
 }
 
 std::string held_out_words(const AddResult& result) {
-  return result.cross_validated
-             ? fmt::format("each fifth of the recording predicted by a fit of the others")
-             : std::string("hold-out recording");
+  const bool several = result.before.recordings.size() > 1;
+  if (!result.cross_validated) return several ? "hold-out recordings" : "hold-out recording";
+  return fmt::format("each fifth of the recording{} predicted by a fit of the others",
+                     several ? "s" : "");
 }
 
 report::Table parameter_table(const AddResult& result) {
@@ -129,15 +162,17 @@ report::Table parameter_table(const AddResult& result) {
   for (const std::size_t effect : effects) {
     for (const ParameterLine& line : lines_of(result, effect)) {
       const bool is_new = effect >= result.added.front();
+      const RobotEffect& of = result.robot.effects[effect];
+      const report::Cell place = of.of_motor ? report::Cell(place_of(of))
+                                             : report::Cell(static_cast<double>(of.joint + 1));
       report::Cell low;
       report::Cell high;
       if (line.ci95) {
         low = (*line.ci95)[0];
         high = (*line.ci95)[1];
       }
-      table.rows.push_back({effect_name(result, effect),
-                            static_cast<double>(result.robot.effects[effect].joint + 1), line.name,
-                            line.value, low, high, line.unit,
+      table.rows.push_back({effect_name(result, effect), place, line.name, line.value, low, high,
+                            line.unit,
                             std::string(!line.fitted ? "not fitted"
                                         : is_new     ? "new"
                                                      : "again")});
@@ -163,10 +198,20 @@ report::Table error_table(const AddResult& result, const AddNames& names) {
                             error.after_percent});
     }
   };
-  rows("fitted: " + names.log, result.fitted_log);
-  rows(names.holdout ? "not used for the fit: " + *names.holdout : held_out_words(result),
+  // One recording of its kind is all of them.
+  const auto each = [&](bool held_out) {
+    for (const AddResult::OfRecording& one : result.recordings) {
+      if (one.held_out == held_out) rows(one.file, one.joints);
+    }
+  };
+  if (names.logs.size() > 1) each(false);
+  rows("fitted: " + (names.logs.size() > 1 ? "all together" : names.logs[0]), result.fitted_logs);
+  if (names.holdout.size() > 1) each(true);
+  rows(names.holdout.empty()       ? held_out_words(result)
+       : names.holdout.size() == 1 ? "not used for the fit: " + names.holdout[0]
+                                   : "not used for the fit: all together",
        result.held_out);
-  table.note = words_of(result.before.plan) + ".";
+  table.note = words_of(result.before.recordings[0].plan) + ".";
   return table;
 }
 
@@ -185,6 +230,24 @@ report::KeyFigures key_figures(const AddResult& result, const AddRequest& reques
     keys.figures.push_back(figure);
   }
   return keys;
+}
+
+report::Section pictures_of(const AddResult& result, const AddRequest& request,
+                            std::size_t recording) {
+  report::Section pictures;
+  const Comparison& before = result.before.recordings[recording];
+  pictures.text = before.file;
+  if (result.before.recordings.size() > 1) pictures.recording = before.file;
+  const std::vector<NamedComparison> models{
+      {"before", &before, report::Tone::kFaint},
+      {"after", &result.after.recordings[recording], report::Tone::kModel}};
+  pictures.blocks.emplace_back(torque_over_time(models, request.joint));
+  pictures.blocks.emplace_back(residual_over_time(models, request.joint));
+  for (const MotionVariable variable :
+       {MotionVariable::kVelocity, MotionVariable::kPosition, MotionVariable::kAcceleration}) {
+    pictures.blocks.emplace_back(residual_over(models, request.joint, variable));
+  }
+  return pictures;
 }
 
 }  // namespace
@@ -234,15 +297,18 @@ ordered_json to_json(const AddResult& result, const AddRequest& request, const A
   for (std::size_t i = 1; i < result.added.size(); ++i) {
     json["also"].push_back(effect_json(result, result.added[i]));
   }
-  const BeforeAfter& fitted = of_joint(result.fitted_log, request.joint);
+  const BeforeAfter& fitted = of_joint(result.fitted_logs, request.joint);
   const BeforeAfter& held_out = of_joint(result.held_out, request.joint);
   json["before"] = {{"fit", error_json(fitted.before_percent, fitted.before_rms)},
                     {"holdout", error_json(held_out.before_percent, held_out.before_rms)}};
   json["after"] = {{"fit", error_json(fitted.after_percent, fitted.after_rms)},
                    {"holdout", error_json(held_out.after_percent, held_out.after_rms)}};
   json["unit"] = fitted.unit;
+  const auto& held_out_logs = result.cross_validated ? names.logs : names.holdout;
   json["holdout"] = {{"kind", result.cross_validated ? "parts" : "recording"},
-                     {"log", names.holdout.value_or(names.log)}};
+                     {"logs", held_out_logs}};
+  if (held_out_logs.size() == 1) json["holdout"]["log"] = held_out_logs[0];
+  json["recordings"] = recordings_json(result);
   json["refitted"] = ordered_json::array();
   for (const std::size_t effect : refitted(result)) {
     json["refitted"].push_back(effect_json(result, effect));
@@ -257,21 +323,20 @@ ordered_json to_json(const AddResult& result, const AddRequest& request, const A
   json["doubts"] = result.doubts;
   json["written"] =
       result.may_be_written(names.force) ? ordered_json(names.output_file) : ordered_json();
-  json["filter"] = to_json(result.before.plan);
+  json["filter"] = to_json(result.before.recordings[0].plan);
   json["verdict"] = verdict_of(result, request, names.force);
   return json;
 }
 
 std::string text_of(const AddResult& result, const AddRequest& request, const AddNames& names) {
-  std::string text = fmt::format("{} on joint {} of {}, fitted to {}\n", names_of_added(result),
-                                 request.joint + 1, names.robot_file, names.log);
+  std::string text = fmt::format("{} on {} of {}, fitted to {}\n", names_of_added(result),
+                                 place_asked(request), names.robot_file, list_of(names.logs));
   const TextTable parameters({{"", -38}, {"", 0}}, "  ");
   const auto describe = [&](std::size_t effect, bool is_new) {
     for (const ParameterLine& line : lines_of(result, effect)) {
-      const std::string mark =
-          is_new ? ""
-                 : fmt::format(" ({}joint {})", line.fitted ? "fitted again, " : "",
-                               result.robot.effects[effect].joint + 1);
+      const std::string mark = is_new ? ""
+                                      : fmt::format(" ({}{})", line.fitted ? "fitted again, " : "",
+                                                    place_of(result.robot.effects[effect]));
       text +=
           parameters.row(effect_name(result, effect) + "." + line.name, value_text(line) + mark);
     }
@@ -282,7 +347,7 @@ std::string text_of(const AddResult& result, const AddRequest& request, const Ad
     text +=
         fmt::format("  mass and inertia of link {}: times {:.6g}\n", link.link + 1, link.factor);
   }
-  for (const std::string& remark : result.before.remarks) text += "note: " + remark + "\n";
+  for (const std::string& remark : remarks_of(result)) text += "note: " + remark + "\n";
   for (const std::string& note : result.notes) text += "note: " + note + "\n";
   const TextTable table({{"relative error", -48}, {"before", 12}, {"after", 12}});
   text += table.heading();
@@ -293,16 +358,28 @@ std::string text_of(const AddResult& result, const AddRequest& request, const Ad
                         fmt::format("{:.2f} %", error.after_percent));
     }
   };
-  errors("fitted recording", result.fitted_log);
-  errors(result.cross_validated ? "held-out parts" : "hold-out recording", result.held_out);
+  // Of the joint that was asked for, in each of several recordings.
+  const auto each = [&](bool held_out) {
+    for (const AddResult::OfRecording& one : result.recordings) {
+      if (one.held_out == held_out) errors(one.file, {of_joint(one.joints, request.joint)});
+    }
+  };
+  const bool several = names.logs.size() > 1;
+  if (several) each(false);
+  errors(several ? "fitted recordings" : "fitted recording", result.fitted_logs);
+  if (names.holdout.size() > 1) each(true);
+  errors(result.cross_validated      ? "held-out parts"
+         : names.holdout.size() == 1 ? "hold-out recording"
+                                     : "hold-out recordings",
+         result.held_out);
   return text + verdict_of(result, request, names.force) + "\n";
 }
 
 report::Page page_of(const AddResult& result, const AddRequest& request, const AddNames& names) {
   report::Page page;
   page.title = "Adding " + names_of_added(result);
-  page.subtitle =
-      fmt::format("joint {} of {}, fitted to {}", request.joint + 1, names.robot_file, names.log);
+  page.subtitle = fmt::format("{} of {}, fitted to {}", place_asked(request), names.robot_file,
+                              list_of(names.logs));
   page.verdict = {verdict_of(result, request, names.force), level_of(result, request)};
   page.command_line = names.command_line;
 
@@ -314,23 +391,16 @@ report::Page page_of(const AddResult& result, const AddRequest& request, const A
   for (const std::string& note : result.notes) {
     numbers.blocks.emplace_back(report::Note{note, Level::kNeutral});
   }
-  for (const std::string& remark : result.before.remarks) {
+  for (const std::string& remark : remarks_of(result)) {
     numbers.blocks.emplace_back(report::Note{remark, Level::kWarn});
   }
   page.sections.push_back(std::move(numbers));
 
-  report::Section pictures;
-  pictures.heading = names.holdout ? "Hold-out recording" : "Fitted recording";
-  pictures.text = names.holdout.value_or(names.log);
-  const std::vector<NamedComparison> models{{"before", &result.before, report::Tone::kFaint},
-                                            {"after", &result.after, report::Tone::kModel}};
-  pictures.blocks.emplace_back(torque_over_time(models, request.joint));
-  pictures.blocks.emplace_back(residual_over_time(models, request.joint));
-  for (const MotionVariable variable :
-       {MotionVariable::kVelocity, MotionVariable::kPosition, MotionVariable::kAcceleration}) {
-    pictures.blocks.emplace_back(residual_over(models, request.joint, variable));
+  for (std::size_t r = 0; r < result.before.recordings.size(); ++r) {
+    page.sections.push_back(pictures_of(result, request, r));
+    page.sections.back().heading =
+        names.holdout.empty() ? "Fitted recording" : "Hold-out recording";
   }
-  page.sections.push_back(std::move(pictures));
   return page;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "identify/add.hpp"
 #include "report/page.hpp"
@@ -11,8 +11,8 @@ namespace offnominal::desk {
 
 // What was fitted, as the user named it.
 struct AddNames {
-  std::string log;
-  std::optional<std::string> holdout;  // none: parts of the log itself
+  std::vector<std::string> logs;
+  std::vector<std::string> holdout;  // empty: parts of the logs themselves
   std::string robot_file;
   std::string output_file;
   std::string command_line;
@@ -26,8 +26,9 @@ report::Level level_of(const AddResult& result, const AddRequest& request);
 
 // {effect, joint, parameters: {name: {value, unit, ci95, fitted}}, also: [{effect, joint,
 //  parameters}], before: {fit: {relative_error_percent, rms_error}, holdout: {...}}, after: {...},
-//  unit, holdout: {kind, log}, refitted: [{effect, joint, parameters}], links: [{link, factor,
-//  ci95}], notes, objections, doubts, written, filter, verdict}. ci95 is [low, high], null where
+//  unit, holdout: {kind, logs}, recordings: [{log, held_out, joints: [{joint, unit, before,
+//  after}]}], refitted: [{effect, joint, parameters}], links: [{link, factor, ci95}], notes,
+//  objections, doubts, written, filter, verdict}. ci95 is [low, high], null where
 // there is none, and why_no_ci95 then says why; before and after are of the joint that was asked
 // for; written is null where nothing was.
 nlohmann::ordered_json to_json(const AddResult& result, const AddRequest& request,

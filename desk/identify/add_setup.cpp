@@ -35,10 +35,13 @@ class SetUp {
   void check() const {
     const RobotDescription& robot = robot_;
     if (request_.joint >= robot.joints.size()) {
-      throw InputError(
-          {"--joint", "", std::to_string(request_.joint + 1),
-           fmt::format("1 to {}, the joints of robot {}", robot.joints.size(), robot.name), ""});
+      throw InputError({request_.of_motor ? "--motor" : "--joint", "",
+                        std::to_string(request_.joint + 1),
+                        fmt::format("1 to {}, the {} of robot {}", robot.joints.size(),
+                                    request_.of_motor ? "motors" : "joints", robot.name),
+                        ""});
     }
+    if (request_.of_motor) check_motor();
     check_sources();
     std::set<EffectKind> seen;
     for (const EffectKind kind : request_.effects) {
@@ -46,11 +49,13 @@ class SetUp {
       const bool twice = !seen.insert(kind).second;
       const bool there =
           std::any_of(robot.effects.begin(), robot.effects.end(), [&](const RobotEffect& effect) {
-            return effect.kind == kind && effect.joint == request_.joint;
+            return effect.kind == kind && effect.joint == request_.joint &&
+                   effect.of_motor == request_.of_motor;
           });
       if (!(there || twice) || info.may_repeat()) continue;
       throw InputError(
-          {robot.name, fmt::format("joint {}", request_.joint + 1),
+          {robot.name,
+           fmt::format("{} {}", request_.of_motor ? "motor" : "joint", request_.joint + 1),
            fmt::format("{} {}", info.name, twice ? "asked for twice" : "in the model already"),
            "one of a kind per joint",
            twice ? "" : "mark it `fitted = true` to have it fitted again with the next effect"});
@@ -60,6 +65,22 @@ class SetUp {
       throw InputError({robot.name, "effects",
                         std::to_string(robot.effects.size() + request_.effects.size()),
                         fmt::format("up to {}", room), "remove one"});
+    }
+  }
+
+  void check_motor() const {
+    if (!robot_.transmission) {
+      throw InputError({"--motor", "", "a motor", "--joint: the robot file has no [transmission]",
+                        "add [transmission] to the robot file"});
+    }
+    for (const EffectKind kind : request_.effects) {
+      if (motor_may_be_searched(kind)) continue;
+      std::vector<std::string> allowed;
+      for (const EffectInfo& info : kAllEffectInfos) {
+        if (motor_may_be_searched(info.kind)) allowed.emplace_back(info.name);
+      }
+      throw InputError({"--motor", "", info_of(kind)->name, list_of(allowed),
+                        "say --joint: at the joint it is fitted as well"});
     }
   }
 
@@ -80,8 +101,13 @@ class SetUp {
     for (const EffectKind kind : request_.effects) {
       AddSetup::NewEffect one{candidate_of(kind), {}};
       one.given.resize(one.effect->info().parameters.size());
+      act_on_motor(*one.effect);
       setup_.added.push_back(std::move(one));
     }
+  }
+
+  void act_on_motor(EffectCandidate& effect) const {
+    if (request_.of_motor) effect.act_on_motor(joints_of_motor(robot_, request_.joint));
   }
 
   void apply_given() {
@@ -120,8 +146,12 @@ class SetUp {
   bool leaves_something_to_fit() const {
     return std::any_of(setup_.added.begin(), setup_.added.end(), [](const auto& one) {
       const auto parameters = one.effect->info().parameters;
+      const auto is_linear = [](const ParameterInfo& parameter) {
+        return parameter.role == ParameterRole::kLinear;
+      };
+      const bool only_shapes = std::none_of(parameters.begin(), parameters.end(), is_linear);
       for (std::size_t i = 0; i < parameters.size(); ++i) {
-        if (parameters[i].role == ParameterRole::kLinear && !one.given[i]) return true;
+        if ((only_shapes || is_linear(parameters[i])) && !one.given[i]) return true;
       }
       return false;
     });
@@ -146,8 +176,16 @@ class SetUp {
     throw InputError({"--set " + name, "", fmt::format("{:g}", value), allowed, ""});
   }
 
-  // Joints whose torque an effect of that kind on that joint changes.
-  static std::set<std::size_t> joints_of(EffectKind kind, std::size_t joint) {
+  // Joints whose torque an effect of that kind on that joint, or motor, changes.
+  [[nodiscard]] std::set<std::size_t> joints_of(EffectKind kind, std::size_t joint,
+                                                bool of_motor) const {
+    if (of_motor) {
+      std::set<std::size_t> joints;
+      for (const MovedJoint& moved : joints_of_motor(robot_, joint)) {
+        joints.insert(static_cast<std::size_t>(moved.joint));
+      }
+      return joints;
+    }
     if (info_of(kind)->action != EffectAction::kPointMass) return {joint};
     std::set<std::size_t> joints;
     for (std::size_t j = 0; j <= joint; ++j) joints.insert(j);
@@ -158,7 +196,9 @@ class SetUp {
   // on the joints that these act on.
   void refit_coupled() {
     std::set<std::size_t> joints;
-    for (const EffectKind kind : request_.effects) joints.merge(joints_of(kind, request_.joint));
+    for (const EffectKind kind : request_.effects) {
+      joints.merge(joints_of(kind, request_.joint, request_.of_motor));
+    }
     for (std::size_t j = 0; request_.inertia_deviation && j < robot_.joints.size(); ++j) {
       joints.insert(j);
     }
@@ -168,7 +208,7 @@ class SetUp {
       for (std::size_t effect = 0; effect < robot_.effects.size(); ++effect) {
         const RobotEffect& one = robot_.effects[effect];
         if (!one.fitted || chosen.contains(effect)) continue;
-        std::set<std::size_t> of_effect = joints_of(one.kind, one.joint);
+        std::set<std::size_t> of_effect = joints_of(one.kind, one.joint, one.of_motor);
         if (std::none_of(of_effect.begin(), of_effect.end(),
                          [&](std::size_t joint) { return joints.contains(joint); })) {
           continue;
@@ -234,7 +274,7 @@ Eigen::VectorXd given_widths(const AddSetup& setup, std::size_t joint, int joint
   Eigen::VectorXd widths = Eigen::VectorXd::Zero(joint_count);
   for (const AddSetup::NewEffect& one : setup.added) {
     const std::size_t width = width_of(one.effect->kind());
-    if (width >= one.given.size() || !one.given[width]) continue;
+    if (one.effect->of_motor() || width >= one.given.size() || !one.given[width]) continue;
     auto followed = static_cast<Eigen::Index>(joint);
     const auto parameters = one.effect->info().parameters;
     for (std::size_t i = 0; i < parameters.size(); ++i) {

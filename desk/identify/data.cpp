@@ -29,6 +29,14 @@ Data::Data(std::vector<Workspace> made, const RobotDescription& robot,
   target = torque - layout.stack_all(recordings, model);
 }
 
+Data::Data(const Data& same, const RobotDescription& robot, const NuisanceOptions& options)
+    : recordings(same.recordings),
+      layout(same.layout),
+      nuisance(make_nuisance(robot, recordings, layout, options)),
+      torque(same.torque),
+      target(same.target),
+      cache(same.cache) {}
+
 VectorXd set_sign_widths(RobotDescription& robot, const std::vector<Log>& logs,
                          const FilterPlan& plan) {
   constexpr double kShareOfTopSpeed = 0.004;

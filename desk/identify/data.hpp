@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
+#include "identify/column_cache.hpp"
 #include "identify/nuisance.hpp"
 #include "identify/rows.hpp"
 #include "identify/workspace.hpp"
@@ -18,8 +20,12 @@ struct Data {
   Nuisance nuisance;
   Eigen::VectorXd torque;  // measured, filtered, stacked
   Eigen::VectorXd target;  // measured minus model torque
+  // Of `recordings`, which do not change: copies of these data share it.
+  std::shared_ptr<ColumnCache> cache = std::make_shared<ColumnCache>();
 
   Data(std::vector<Workspace> made, const RobotDescription& robot, const NuisanceOptions& options);
+  // The same recordings of the same robot beside another nuisance.
+  Data(const Data& same, const RobotDescription& robot, const NuisanceOptions& options);
 };
 
 // Sets the width of the smoothed sign of every effect that has one to what the motion can resolve,

@@ -1,12 +1,14 @@
 #include "identify/effect_candidate.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string_view>
 
 #include "compare/inverse_model.hpp"
 #include "identify/effects/effects.hpp"
 #include "identify/shape_grid.hpp"
+#include "robot/read_effect.hpp"
 
 namespace offnominal::desk {
 
@@ -16,15 +18,19 @@ using Eigen::VectorXd;
 namespace {
 
 // What a share of the motion is a share of.
-double scale_of(Quantity quantity, const std::vector<Workspace>& at, Index joint) {
+// `at_place`: of what every joint has, that of the effect's joint or motor.
+template <typename AtPlace>
+double scale_of(Quantity quantity, const std::vector<Workspace>& at, const AtPlace& at_place) {
+  VectorXd of_joints(at[0].joint_count());
   switch (quantity) {
     case Quantity::kVelocity: {
       double speed = 0;
-      for (const Workspace& one : at) speed = std::max(speed, one.top_speed[joint]);
+      for (const Workspace& one : at) speed = std::max(speed, at_place(one.top_speed));
       return speed;
     }
     case Quantity::kDistance:
-      return range_moved(at, joint);
+      for (Index j = 0; j < of_joints.size(); ++j) of_joints[j] = range_moved(at, j);
+      return at_place(of_joints);
     case Quantity::kTime:
       return longest_duration_s(at);
     default:
@@ -49,6 +55,17 @@ bool is_sign_width(const ParameterInfo& parameter) {
 
 Regressor torque_of(const Workspace& at, const Effect<double>& effect) {
   const auto joint = static_cast<Index>(effect.joint);
+  if (effect.of_motor) {
+    const Motion motors = motor_motion(at.rigid, at.motion);
+    const VectorXd torque = is_torque_effect(effect.kind)
+                                ? torque_of_effect(effect, JointType::kRevolute, motors, at.start_s)
+                                : VectorXd(reflected_inertia_of(effect) * motors.ddq.col(joint));
+    Regressor regressor;
+    for (const MovedJoint& moved : joints_of_motor(at.rigid, effect.joint)) {
+      regressor.push_back({moved.joint, moved.motor_per_joint * torque});
+    }
+    return regressor;
+  }
   switch (info_of(effect.kind)->action) {
     case EffectAction::kTorque:
     case EffectAction::kTorqueOfState:
@@ -95,7 +112,7 @@ Index EffectCandidate::linear_count() const {
 
 ShapeRange EffectCandidate::range_of(std::size_t parameter, JointType type) const {
   const ParameterInfo& info = info_.parameters[parameter];
-  return {info.name, unit_of(info.quantity, type), {}};
+  return {info.name, unit_of(info.quantity, of_motor() ? JointType::kRevolute : type), {}};
 }
 
 std::vector<ShapeRange> EffectCandidate::shapes(const std::vector<Workspace>& at,
@@ -105,12 +122,20 @@ std::vector<ShapeRange> EffectCandidate::shapes(const std::vector<Workspace>& at
     const ParameterInfo& info = info_.parameters[i];
     if (info.role != ParameterRole::kShape || !finds(info)) continue;
     ShapeRange range = range_of(i, at[0].joint_type(joint));
-    if (info.quantity == Quantity::kJointNumber) {
+    if (info.as_seen) {
+      const PositionSpan seen = positions_seen(at, joint);
+      range.kind = ShapeRange::Kind::kDiscrete;
+      if (info.quantity == Quantity::kPosition) range.grid = {seen.low};
+      if (info.quantity == Quantity::kDistance && seen.high - seen.low >= info.min) {
+        range.grid = {seen.high - seen.low};
+      }
+    } else if (info.quantity == Quantity::kJointNumber) {
       range.kind = ShapeRange::Kind::kDiscrete;
       range.grid = other_joints(at[0], joint);
     } else {
       range.kind = ShapeRange::Kind::kLogarithmic;
-      const double scale = scale_of(info.quantity, at, joint);
+      const double scale = scale_of(
+          info.quantity, at, [&](const VectorXd& of_joints) { return at_place(of_joints, joint); });
       range.grid = logarithmic_grid(info.searched.from * scale, info.searched.to * scale);
     }
     ranges.push_back(std::move(range));
@@ -156,6 +181,7 @@ bool EffectCandidate::is_physical(const VectorXd& coefficients) const {
 }
 
 bool EffectCandidate::applies(const Workspace& at, Index joint) const {
+  if (info_.traits.is_before_sensor && !at.sees_drive(joint)) return false;
   if (info_.find(Quantity::kJointNumber) != nullptr) return at.joint_count() > 1;
   return info_.traits.needs_no_motion || at.top_speed[joint] > 0;
 }
@@ -186,7 +212,7 @@ Effect<double> EffectCandidate::effect(Index joint, const VectorXd& coefficients
                                        std::span<const double> shape,
                                        const VectorXd& sign_width) const {
   Effect<double> made{info_.kind, static_cast<std::uint8_t>(joint),
-                      found_parameters(coefficients, shape)};
+                      found_parameters(coefficients, shape), of_motor()};
   Index moved = joint;
   for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
     const ParameterInfo& parameter = info_.parameters[i];
@@ -194,10 +220,25 @@ Effect<double> EffectCandidate::effect(Index joint, const VectorXd& coefficients
       moved = static_cast<Index>(made.parameters[i]) - 1;
     }
     if (finds(parameter)) continue;
-    made.parameters[i] =
-        is_sign_width(parameter) ? sign_width[moved] : given_[i].value_or(parameter.default_value);
+    made.parameters[i] = is_sign_width(parameter) ? at_place(sign_width, moved)
+                                                  : given_[i].value_or(parameter.default_value);
   }
   return made;
+}
+
+double EffectCandidate::at_place(const VectorXd& of_joints, Index joint) const {
+  if (!of_motor()) return of_joints[joint];
+  double sum = 0;
+  for (const MovedJoint& moved : moved_) {
+    sum += std::abs(moved.motor_per_joint) * of_joints[moved.joint];
+  }
+  return sum;
+}
+
+bool motor_may_be_searched(EffectKind kind) {
+  if (!motor_may_have(kind)) return false;
+  const auto has_own_class = [kind](auto family) { return family(kind) != nullptr; };
+  return !has_own_class(drive_candidate) && !has_own_class(ripple_candidate);
 }
 
 Candidate candidate_of(EffectKind kind) {
@@ -211,8 +252,7 @@ Candidate candidate_of(EffectKind kind) {
 const std::vector<std::unique_ptr<const EffectCandidate>>& all_candidates() {
   static const auto candidates = [] {
     std::vector<std::unique_ptr<const EffectCandidate>> all;
-    for (const EffectInfo& info : kAllEffectInfos) all.push_back(candidate_of(info.kind));
-    for (const EffectInfo& info : kInfosOutsideChains) all.push_back(candidate_of(info.kind));
+    for (const EffectInfo* info : file_effects()) all.push_back(candidate_of(info->kind));
     return all;
   }();
   return candidates;

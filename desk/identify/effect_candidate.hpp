@@ -6,8 +6,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "compare/inverse_model.hpp"
 #include "identify/workspace.hpp"
 
 namespace offnominal::desk {
@@ -103,6 +105,11 @@ class EffectCandidate {
   // A value for a parameter that the search does not find, instead of the struct's default.
   void give(std::size_t parameter, double value) { given_[parameter] = value; }
 
+  // Makes it the effect of a motor that moves these joints, instead of a joint's: `joint` is then
+  // the motor's number everywhere, and motor_may_be_searched().
+  void act_on_motor(std::vector<MovedJoint> moved) { moved_ = std::move(moved); }
+  [[nodiscard]] bool of_motor() const { return !moved_.empty(); }
+
   // What the user reads: the parameters that the search finds.
   [[nodiscard]] std::vector<NamedValue> parameters(JointType type,
                                                    const Eigen::VectorXd& coefficients,
@@ -124,11 +131,20 @@ class EffectCandidate {
   [[nodiscard]] static bool is_near_one(double share) { return share > 0.6 && share < 1.5; }
 
  private:
+  // Of a speed, way or width that every joint has, that of the place: of a motor the most that its
+  // joints make of it.
+  [[nodiscard]] double at_place(const Eigen::VectorXd& of_joints, Eigen::Index joint) const;
+
   const EffectInfo& info_;
+  std::vector<MovedJoint> moved_;
   std::array<std::optional<double>, kMaxEffectParameters> given_{};
 };
 
 using Candidate = std::unique_ptr<EffectCandidate>;
+
+// Whether a search can look for the effect on a motor's shaft (motor_may_have(), and no class in
+// effects/).
+bool motor_may_be_searched(EffectKind kind);
 
 // An effect as a search sees it, with the class that it has in effects/.
 Candidate candidate_of(EffectKind kind);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/combinations.hpp"
 #include "identify/freedom.hpp"
 #include "identify/regimes.hpp"
 #include "identify/sign_width.hpp"
@@ -309,6 +310,23 @@ Estimates estimates_of(const Regression& regression, const RobotDescription& rob
         one.why_no_interval = all.widths[w].why_no_interval;
       }
     }
+  }
+  return all;
+}
+
+std::vector<Estimate> estimates_of(const Data& data, const ModelFit& fit, const LinearModel& model,
+                                   const std::vector<Combination>& combinations) {
+  std::vector<Estimate> all;
+  Linearised linear;
+  linear.columns = model.columns;
+  linear.priors = model.priors;
+  if (linear.columns.empty()) return std::vector<Estimate>(combinations.size());
+  const ScaledColumns scaled = weighted_columns(linear, data.layout, fit);
+  const std::vector<Covariance> covariances = covariances_of(linear, scaled, data, fit);
+  for (const Combination& one : combinations) {
+    Estimate estimate{{"", one.value, ""}, std::nullopt};
+    set_interval(one.of_unknowns, covariances, one.joint, estimate);
+    all.push_back(std::move(estimate));
   }
   return all;
 }

@@ -24,9 +24,10 @@ constexpr int kTenths = 10;
 // and what the filter leaves of an encoder's steps is taken for a direction.
 constexpr double kMovingShare = 0.02;
 
-// The friction of a joint and nothing else of it. What a hysteresis stores it gives back, and only
-// what it has far from a reversal is taken out of the joint. Scale and delay of the drive change
-// neither the sign nor whose torque it is.
+// The friction of a joint and nothing else of it; that of a motor is against the motor's motion,
+// not against that of each joint. What a hysteresis stores it gives back, and only what it has far
+// from a reversal is taken out of the joint. Scale and delay of the drive change neither the sign
+// nor whose torque it is.
 VectorXd friction_torque(const RobotDescription& robot, std::size_t joint, const Motion& motion) {
   RobotDescription with = robot;
   std::erase_if(with.effects, [](const RobotEffect& effect) {
@@ -34,7 +35,7 @@ VectorXd friction_torque(const RobotDescription& robot, std::size_t joint, const
   });
   RobotDescription without = with;
   std::erase_if(without.effects, [&](const RobotEffect& effect) {
-    return effect.joint == joint && is_friction(effect.kind);
+    return !effect.of_motor && effect.joint == joint && is_friction(effect.kind);
   });
   const double smoothing =
       kMovingShare * motion.dq.col(static_cast<Index>(joint)).cwiseAbs().maxCoeff();
@@ -87,9 +88,10 @@ std::string FrictionDrives::words(const RobotDescription& robot) const {
 std::optional<FrictionDrives> friction_that_drives(const RobotDescription& robot, std::size_t joint,
                                                    const Motion& motion, double rms_torque) {
   constexpr double kMatters = 0.02;
-  const bool has_friction = std::any_of(
-      robot.effects.begin(), robot.effects.end(),
-      [&](const RobotEffect& effect) { return effect.joint == joint && is_friction(effect.kind); });
+  const bool has_friction =
+      std::any_of(robot.effects.begin(), robot.effects.end(), [&](const RobotEffect& effect) {
+        return !effect.of_motor && effect.joint == joint && is_friction(effect.kind);
+      });
   if (!has_friction || motion.sample_count() < 2) return std::nullopt;
   const VectorXd dq = motion.dq.col(static_cast<Index>(joint));
   const double slow = kMovingShare * dq.cwiseAbs().maxCoeff();

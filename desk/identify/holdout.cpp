@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "identify/held_out_parts.hpp"
 #include "identify/shape_search.hpp"
 
 namespace offnominal::desk {
@@ -25,17 +26,15 @@ VectorXd HoldOut::cross_validated_with_shapes(const std::vector<Term>& terms) co
 }
 
 VectorXd HoldOut::cross_validated(const std::vector<Term>& terms, bool with_shapes) const {
-  constexpr int kParts = 5;
-  constexpr double kBlockS = 2;
   const RowLayout& layout = regression_.data().layout;
-  const RowLayout::Blocks blocks = layout.blocks(kBlockS);
+  const std::vector<int> parts = held_out_parts(layout, regression_.data().recordings[0].at_rest);
   const bool has_shapes = std::any_of(terms.begin(), terms.end(),
                                       [](const Term& term) { return !term.ranges.empty(); });
   VectorXd residual(layout.rows());
-  for (int part = 0; part < kParts; ++part) {
+  for (int part = 0; part < kHeldOutParts; ++part) {
     std::vector<char> rows(static_cast<std::size_t>(layout.rows()));
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      rows[i] = static_cast<char>(blocks.of_row[i] % kParts != part);
+      rows[i] = static_cast<char>(parts[i] != part);
     }
     std::vector<Term> shaped = terms;
     if (with_shapes && has_shapes) {

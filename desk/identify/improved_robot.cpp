@@ -12,6 +12,7 @@
 #include "identify/physical_range.hpp"
 #include "identify/sign_width.hpp"
 #include "identify/torque_scale.hpp"
+#include "robot/effect_text.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
@@ -24,9 +25,6 @@ namespace {
 // Why no robot file can have it; empty where one can.
 std::string why_unwritable(const Effect<double>& effect, JointType type) {
   const EffectInfo& info = *info_of(effect.kind);
-  if (!chain_may_have(effect.kind)) {
-    return fmt::format("robot files and controllers do not know {} yet", info.name);
-  }
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {
     const ParameterInfo& parameter = info.parameters[i];
     const double value = effect.parameters[i];
@@ -34,9 +32,9 @@ std::string why_unwritable(const Effect<double>& effect, JointType type) {
     const std::string unit = unit_of(parameter.quantity, type);
     const bool low = value < parameter.min;
     return fmt::format(
-        "{} of joint {}: {} = {:.4g}{}, and {} {:g} is possible; look at the units "
+        "{} of {}: {} = {:.4g}{}, and {} {:g} is possible; look at the units "
         "that [channels] gives the torque",
-        info.name, effect.joint + 1, parameter.name, value, unit == "1" ? "" : " " + unit,
+        info.name, place_of(effect), parameter.name, value, unit == "1" ? "" : " " + unit,
         low ? "at least" : "at most", low ? parameter.min : parameter.max);
   }
   return {};
@@ -209,13 +207,11 @@ std::vector<std::string> of_other_sign(const Relinearised& last) {
   std::vector<std::string> all;
   for (std::size_t i = 0; i < last.terms.size(); ++i) {
     const Term& term = last.terms[i];
-    if (!chain_may_have(term.effect->kind()) ||
-        term.effect->is_physical(last.fit.coefficients[i])) {
-      continue;
-    }
-    all.push_back(fmt::format(
-        "{} of joint {} came out as {:.4g}, which cannot be, once all was fitted together",
-        term.effect->name(), term.joint + 1, last.fit.coefficients[i][0]));
+    if (term.effect->is_physical(last.fit.coefficients[i])) continue;
+    all.push_back(
+        fmt::format("{} of {} {} came out as {:.4g}, which cannot be, once all was fitted together",
+                    term.effect->name(), term.effect->of_motor() ? "motor" : "joint",
+                    term.joint + 1, last.fit.coefficients[i][0]));
   }
   return all;
 }
@@ -226,17 +222,17 @@ std::vector<std::string> unphysical(const Relinearised& last, const RobotDescrip
   std::set<Index> joints;
   for (const Term& term : last.terms) {
     const EffectKind kind = term.effect->kind();
-    if (chain_may_have(kind) && is_friction(kind)) joints.insert(term.joint);
+    if (!term.effect->of_motor() && is_friction(kind)) joints.insert(term.joint);
   }
   for (const Moved& moved : moved_numbers(last, improved)) {
     const RobotEffect& effect = improved.effects[moved.effect];
-    if (is_friction(effect.kind)) joints.insert(effect.joint);
+    if (!effect.of_motor && is_friction(effect.kind)) joints.insert(effect.joint);
   }
   const Eigen::VectorXd rms = last.data->layout.rms(last.data->torque);
   for (const Index joint : joints) {
     for (const Workspace& at : last.data->recordings) {
-      const auto drives =
-          friction_that_drives(improved, static_cast<std::size_t>(joint), at.motion, rms[joint]);
+      const auto drives = friction_that_drives(
+          at.as_recorded(improved), static_cast<std::size_t>(joint), at.motion, rms[joint]);
       if (!drives) continue;
       objections.push_back(drives->words(improved));
       break;
@@ -257,12 +253,23 @@ void set_fitted_width(RobotDescription& robot, const std::vector<std::size_t>& r
 }
 
 void scale_links(const Relinearised& found, const std::string& source, RobotDescription& robot) {
-  robot = with_link_factors(std::move(robot), found.link_factors);
-  for (std::size_t link = 0; link < found.link_factors.size(); ++link) {
-    if (found.link_factors[link] == 1) continue;
+  const RobotDescription before = robot;
+  robot = with_link_changes(std::move(robot), found.links);
+  for (std::size_t link = 0; link < found.links.size(); ++link) {
+    const LinkChange& by = found.links[link];
+    if (by.largest(size_of_link(before, link)) == 0) continue;
+    std::string words = fmt::format("Mass and inertia times {:.6g}", by.factor);
+    if (by.inertia_factor != 1) {
+      words = fmt::format("Mass times {:.6g}, inertia times {:.6g}", by.factor,
+                          by.factor * by.inertia_factor);
+    }
+    const auto& c = by.centre_m;
+    if (c[0] != 0 || c[1] != 0 || c[2] != 0) {
+      words += fmt::format(", centre of mass moved by {:.4g}, {:.4g}, {:.4g} m", c[0], c[1], c[2]);
+    }
     std::string& of_link = robot.joints[link].source;
     if (!of_link.empty()) of_link += " ";
-    of_link += fmt::format("Mass and inertia times {:.6g}: {}", found.link_factors[link], source);
+    of_link += words + ": " + source;
   }
 }
 
@@ -279,10 +286,12 @@ std::vector<std::size_t> fitted_effects(const RobotDescription& robot) {
 ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescription& robot,
                              const Data& data, const FileFitOptions& options, Relinearised found) {
   NuisanceOptions nuisance = options.nuisance;
-  if (std::all_of(found.link_factors.begin(), found.link_factors.end(),
-                  [](double factor) { return std::abs(factor - 1) < kWorthWriting; })) {
-    nuisance.link_share = 0;
+  bool as_the_file = true;
+  for (std::size_t link = 0; link < found.links.size(); ++link) {
+    as_the_file =
+        as_the_file && found.links[link].largest(size_of_link(file, link)) < kWorthWriting;
   }
+  if (as_the_file) nuisance.link_share = 0;
   ImprovedRobot improved;
   improved.robot = file;
   FileFitter fitter(file, robot, data, std::move(nuisance), options, found.terms);
@@ -302,8 +311,7 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
     const double factor = factor_of_term(*last.data, last.terms, last.fit, i);
     RobotEffect effect{
         term.effect->effect(term.joint, factor * last.fit.coefficients[i], term.shape, sign_width)};
-    std::string why =
-        why_unwritable(effect, file.joints[static_cast<std::size_t>(term.joint)].joint.type);
+    std::string why = why_unwritable(effect, file.type_of(effect));
     if (!why.empty()) {
       improved.unwritable.push_back(std::move(why));
       improved.added.push_back(kUnwritten);

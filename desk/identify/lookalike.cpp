@@ -42,6 +42,8 @@ bool may_look_alike(const Data& data, const EffectCandidate& effect, Index joint
 
 std::vector<Lookalike> lookalikes(const Regression& regression, const std::vector<Term>& terms,
                                   std::size_t i, std::size_t c) {
+  // A curve of any shape looks like every effect of its variable: that is what it is for.
+  if (terms[i].effect->info().traits.has_any_shape) return {};
   const Data& data = regression.data();
   const Index joint = terms[i].joint;
   const Regression::Design design = regression.design(terms);

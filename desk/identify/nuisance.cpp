@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "compare/inverse_model.hpp"
@@ -69,11 +70,51 @@ class Builder {
 
   void add_link(Index link) {
     const auto which = static_cast<std::size_t>(link);
-    const double factor = options_.link_factors.empty() ? 1 : options_.link_factors[which];
-    add({NuisanceTerm::Kind::kLink, link, 0, 0, counted_from(within(options_.link_share), factor),
+    const LinkChange change = options_.links.empty() ? LinkChange{} : options_.links[which];
+    const auto of_link = [&](const MatrixXd& torque) {
+      Regressor regressor;
+      for (Index joint = 0; joint <= link; ++joint) {
+        regressor.push_back({joint, torque.col(joint)});
+      }
+      return regressor;
+    };
+    add({NuisanceTerm::Kind::kLink, link, 0, 0,
+         counted_from(within(options_.link_share), change.factor),
          fmt::format("mass and inertia of link {}", link + 1)},
+        [&](const Workspace& at) { return of_link(link_torque(at.rigid, which, at.motion)); });
+    if (!options_.link_geometry) return;
+    add({NuisanceTerm::Kind::kLinkInertia, link, 0, 0,
+         counted_from(within(options_.link_share), change.inertia_factor),
+         fmt::format("inertia of link {}", link + 1)},
         [&](const Workspace& at) {
-          const MatrixXd torque = link_torque(at.rigid, which, at.motion);
+          RobotDescription robot = at.rigid;
+          robot.joints[which].joint.mass_kg = 0;
+          return of_link(link_torque(robot, which, at.motion));
+        });
+    for (std::size_t axis = 0; axis < change.centre_m.size(); ++axis) {
+      add_centre(link, axis, change.centre_m[axis]);
+    }
+  }
+
+  // `moved`: by which the robot's is off what the prior is about.
+  void add_centre(Index link, std::size_t axis, double moved) {
+    const auto which = static_cast<std::size_t>(link);
+    const double size = size_of_link(robot_, which);
+    Prior prior = within(options_.link_share * size);
+    prior.mean -= moved;
+    prior.low -= moved;
+    prior.high -= moved;
+    add({NuisanceTerm::Kind::kLinkCentre, link, 0, axis, prior,
+         fmt::format("centre of mass of link {}", link + 1)},
+        [&](const Workspace& at) {
+          // The torque is quadratic in the centre of mass: a central difference is its derivative.
+          const double step = 0.1 * size;
+          const auto torque_at = [&](double by) {
+            RobotDescription robot = at.rigid;
+            robot.joints[which].joint.centre_of_mass_m[axis] += by;
+            return link_torque(robot, which, at.motion);
+          };
+          const MatrixXd torque = (torque_at(step) - torque_at(-step)) / (2 * step);
           Regressor regressor;
           for (Index joint = 0; joint <= link; ++joint) {
             regressor.push_back({joint, torque.col(joint)});
@@ -103,7 +144,7 @@ class Builder {
            unknown.parameter, prior_of(effect, unknown.parameter), name_of(robot_, unknown)},
           [&](const Workspace& at) {
             Regressor columns;
-            for (JointColumn& column : regressor(robot_, unknown, at.motion)) {
+            for (JointColumn& column : regressor(at.as_recorded(robot_), unknown, at.motion)) {
               columns.push_back({static_cast<Index>(column.joint), std::move(column.values)});
             }
             return columns;
@@ -114,12 +155,18 @@ class Builder {
   // How dry friction builds up at a reversal is never quite the file's smoothed sign: a wider one,
   // and a Dahl operator of several widths, each a share of the range moved.
   void add_sign_shapes(Index joint) {
+    // No more of it than the joint's torque: stretches without a reversal say nothing of it, and a
+    // fit of those would predict the others by whatever their noise says.
+    double squares = 0;
+    double samples = 0;
+    for (const Workspace& at : recordings_) {
+      squares += at.torque.col(joint).squaredNorm();
+      samples += static_cast<double>(at.sample_count());
+    }
+    const double torque = std::sqrt(squares / samples);
+    const Prior prior = torque > 0 ? within(torque) : Prior{};
     const auto add_shape = [&](const std::string& name, const auto& shape) {
-      add({NuisanceTerm::Kind::kSignShape,
-           joint,
-           0,
-           0,
-           {},
+      add({NuisanceTerm::Kind::kSignShape, joint, 0, 0, prior,
            fmt::format("{} of joint {}", name, joint + 1)},
           [&](const Workspace& at) -> Regressor {
             return {{joint, shape(at)}};
@@ -173,6 +220,25 @@ class Builder {
 };
 
 }  // namespace
+
+double LinkChange::largest(double size_m) const {
+  double most = std::max(std::abs(factor - 1), std::abs(factor * inertia_factor - 1));
+  for (const double by : centre_m) {
+    if (by != 0) most = std::max(most, std::abs(by) / size_m);
+  }
+  return most;
+}
+
+double size_of_link(const RobotDescription& robot, std::size_t link) {
+  const Joint<double>& joint = robot.joints[link].joint;
+  const auto& c = joint.centre_of_mass_m;
+  const auto& inertia = joint.inertia_kg_m2;
+  const double trace = inertia[0] + inertia[1] + inertia[2];
+  const double gyration =
+      joint.mass_kg > 0 ? std::sqrt(std::max(0.0, trace) / (2 * joint.mass_kg)) : 0;
+  constexpr double kSmallestM = 0.01;
+  return std::max({std::hypot(c[0], c[1], c[2]), gyration, kSmallestM});
+}
 
 Nuisance make_nuisance(const RobotDescription& robot, const std::vector<Workspace>& recordings,
                        const RowLayout& layout, const NuisanceOptions& options) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ namespace offnominal::desk {
 struct NuisanceTerm {
   enum class Kind {
     kLink,         // mass and inertia of a link, as a share
+    kLinkCentre,   // centre of mass of a link along axis `parameter` of its frame, m
+    kLinkInertia,  // inertia of a link about its centre of mass, as a share
     kKnownEffect,  // a linear parameter of an effect of the robot file, as a difference
     kSignShape,    // how dry friction builds up at a reversal; only beside dry friction
     kSkew,         // time skew between torque and position, s
@@ -43,19 +46,35 @@ struct KnownNumber {
   double high = 0;
 };
 
+// How a link differs from what a prior is about.
+struct LinkChange {
+  double factor = 1;                        // of mass and inertia
+  double inertia_factor = 1;                // of inertia, beyond that
+  std::array<double, 3> centre_m{0, 0, 0};  // by which the centre of mass is moved
+
+  // The largest of its changes as a share; a centre's in `size_m`.
+  [[nodiscard]] double largest(double size_m) const;
+};
+
 struct NuisanceOptions {
   // As far as these may be off, two standard deviations of what is believed:
-  double link_share = 0.05;   // mass and inertia of a link, as a share; 0: they are right
+  double link_share = 0.05;  // mass and inertia of a link, as a share; 0: they are right
+  // Mass, centre of mass and inertia of a link each by itself, for numbers that are little more
+  // than a guess: one factor for a link is right where its geometry is.
+  bool link_geometry = false;
   double skew_samples = 1.0;  // torque against position; 0: they are of one time
-  // Factor by which mass and inertia of each link of the robot differ from what the prior is about;
-  // empty: by none.
-  std::vector<double> link_factors = {};
+  // By which each link of the robot differs from what the prior is about; empty: by nothing.
+  std::vector<LinkChange> links = {};
   std::vector<KnownNumber> known = {};  // what is left out is free
   // Effects of the robot, as indices, whose linear numbers are fitted; none: those of all.
   std::optional<std::vector<std::size_t>> free_effects = {};
   // Beside dry friction, ways to build up at a reversal that no robot file can say.
   bool sign_shapes = true;
 };
+
+// Size of a link, m, that its centre of mass is counted in: how far that is from the joint, or the
+// radius of gyration where this is more.
+double size_of_link(const RobotDescription& robot, std::size_t link);
 
 Nuisance make_nuisance(const RobotDescription& robot, const std::vector<Workspace>& recordings,
                        const RowLayout& layout, const NuisanceOptions& options);

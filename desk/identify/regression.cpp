@@ -4,6 +4,7 @@
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 
+#include "identify/independent_samples.hpp"
 #include "signal/correlation.hpp"
 
 namespace offnominal::desk {
@@ -13,18 +14,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-VectorXd independent_samples_of(const RowLayout& layout, const VectorXd& residual) {
-  VectorXd samples = VectorXd::Zero(layout.joint_count());
-  const VectorXd moving = layout.while_moving(residual);
-  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
-    for (Index joint = 0; joint < layout.joint_count(); ++joint) {
-      const auto part = moving.segment(layout.begin(r, joint), layout.samples(r));
-      samples[joint] += layout.moving_count(r, joint) / correlation_samples(part);
-    }
-  }
-  return samples;
-}
 
 // Moves a term's shape, one number after the other, to where gain(term) is largest on its grid.
 template <typename Gain>
@@ -73,10 +62,23 @@ void climb(Term& term, const Gain& gain) {
 
 }  // namespace
 
+VectorXd independent_samples_of(const RowLayout& layout, const VectorXd& residual) {
+  VectorXd samples = VectorXd::Zero(layout.joint_count());
+  const VectorXd moving = layout.while_moving(residual);
+  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+    for (Index joint = 0; joint < layout.joint_count(); ++joint) {
+      const auto part = moving.segment(layout.begin(r, joint), layout.samples(r));
+      samples[joint] += layout.moving_count(r, joint) / correlation_samples(part);
+    }
+  }
+  return samples;
+}
+
 bool Regression::has_dry_friction(const std::vector<Term>& terms, Index joint) const {
   return data_.recordings[0].knows_dry_friction(joint) ||
          std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
-           return term.joint == joint && term.effect->info().traits.is_dry;
+           return !term.effect->of_motor() && term.joint == joint &&
+                  term.effect->info().traits.is_dry;
          });
 }
 
@@ -86,6 +88,15 @@ bool takes_place_of(const Term& term, const NuisanceTerm& nuisance) {
 }
 
 MatrixXd columns_of(const Data& data, const Term& term) {
+  const EffectAction action = term.effect->info().action;
+  const bool of_whole_arm = action == EffectAction::kPointMass || term.effect->is_only_screened();
+  const auto& all = all_candidates();
+  const bool is_common = std::any_of(all.begin(), all.end(), [&](const auto& one) {
+    return one.get() == term.effect;  // any other may have values of its own
+  });
+  if (of_whole_arm && is_common) {
+    return data.cache->columns(data.layout, data.recordings, *term.effect, term.joint, term.shape);
+  }
   return stacked_columns(data.layout, data.recordings, *term.effect, term.joint, term.shape);
 }
 

@@ -13,8 +13,8 @@ namespace offnominal::desk {
 // says (a torque constant, friction by load, elasticity) enter beside the links' masses as a
 // product; a regression about the robot file alone leaves that product out.
 struct Relinearised {
-  std::vector<double> link_factors;  // on mass and inertia of the file's links
-  NuisanceOptions nuisance;          // that `data` was made with
+  std::vector<LinkChange> links;  // of the file's links
+  NuisanceOptions nuisance;       // that `data` was made with
   std::unique_ptr<Data> data;
   std::vector<Term> terms;  // shapes refined
   ModelFit fit;
@@ -25,7 +25,6 @@ Relinearised relinearise(const RobotDescription& robot, const Data& data,
                          const NuisanceOptions& options, const std::vector<Term>& terms,
                          const ModelFit& fit);
 
-// The robot with mass and inertia of its links times these factors.
-RobotDescription with_link_factors(RobotDescription robot, const std::vector<double>& factors);
+RobotDescription with_link_changes(RobotDescription robot, const std::vector<LinkChange>& links);
 
 }  // namespace offnominal::desk

@@ -18,16 +18,20 @@ RowLayout::RowLayout(const std::vector<Workspace>& recordings) {
     period_s_.push_back(at.plan.period_s());
     rows_ += samples * joints_;
   }
-  const bool some_rest = std::any_of(recordings.begin(), recordings.end(),
-                                     [](const Workspace& at) { return at.moving.size() > 0; });
+  const bool some_rest = std::any_of(recordings.begin(), recordings.end(), [](const Workspace& at) {
+    return at.moving.size() > 0 || at.usable.size() > 0;
+  });
   if (!some_rest) return;
   moving_ = VectorXd::Ones(rows_);
   for (std::size_t r = 0; r < recordings.size(); ++r) {
-    if (recordings[r].moving.size() == 0) continue;
+    const Workspace& at = recordings[r];
     for (Index joint = 0; joint < joints_; ++joint) {
-      const VectorXd kept = kept_samples(recordings[r].plan, recordings[r].moving.col(joint));
+      auto rows = moving_.segment(begin(r, joint), samples_[r]);
+      if (at.usable.size() > 0) rows = kept_samples(at.plan, at.usable.col(joint));
+      if (at.moving.size() == 0) continue;
+      const VectorXd kept = rows.cwiseProduct(kept_samples(at.plan, at.moving.col(joint)));
       // Where the filter keeps nothing of what moves, rest is all there is (as in standstill.cpp).
-      if (kept.sum() > 0) moving_.segment(begin(r, joint), samples_[r]) = kept;
+      if (kept.sum() > 0) rows = kept;
     }
   }
 }

@@ -47,12 +47,14 @@ namespace {
 
 bool has_width(EffectKind kind) { return width_of(kind) < info_of(kind)->parameters.size(); }
 
+// Widths of motors are their effects' own.
 bool follows(const Effect<double>& effect, Index joint) {
-  return has_width(effect.kind) && followed_joint(effect) == joint;
+  return !effect.of_motor && has_width(effect.kind) && followed_joint(effect) == joint;
 }
 
 bool follows(const Term& term, Index joint) {
-  return has_width(term.effect->kind()) && followed_joint(term) == joint;
+  return !term.effect->of_motor() && has_width(term.effect->kind()) &&
+         followed_joint(term) == joint;
 }
 
 // Where a term's width is among its shapes; their number where it is not.
@@ -319,7 +321,7 @@ VectorXd settled_sign_widths(const RobotDescription& robot,
   VectorXd settled = VectorXd::Zero(robot.joint_count());
   for (std::size_t i = 0; i < robot.effects.size(); ++i) {
     const RobotEffect& effect = robot.effects[i];
-    if (!has_width(effect.kind) || is_listed(fitted_effects, i)) continue;
+    if (effect.of_motor || !has_width(effect.kind) || is_listed(fitted_effects, i)) continue;
     double& width = settled[followed_joint(effect)];
     if (!(width > 0)) width = effect.parameters[width_of(effect.kind)];
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "identify/data.hpp"
+#include "log/part_of.hpp"
 
 namespace offnominal::desk {
 
@@ -22,18 +23,7 @@ bool counts_time(const RobotEffect& effect) { return info_of(effect.kind)->trait
 
 }  // namespace
 
-Log Stretch::cut() const {
-  Log part;
-  part.file = log->file;
-  part.period_s = log->period_s;
-  part.t_s = log->t_s.segment(first, samples);
-  part.q = log->q.middleRows(first, samples);
-  part.dq = log->dq.middleRows(first, samples);
-  part.tau = log->tau.middleRows(first, samples);
-  part.dq_derived = log->dq_derived;
-  part.remarks = log->remarks;
-  return part;
-}
+Log Stretch::cut() const { return part_of(*log, {first, first + samples - 1}); }
 
 std::vector<Stretch> stretches_of(const std::vector<Log>& logs, const RobotDescription& robot,
                                   const FilterPlan& plan) {

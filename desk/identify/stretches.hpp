@@ -20,7 +20,7 @@ struct Stretch {
   Eigen::Index margin = 0;
 
   [[nodiscard]] bool is_whole() const { return samples == log->sample_count(); }
-  // The samples as a recording; further quantities of the log are left out.
+  // The samples as a recording.
   [[nodiscard]] Log cut() const;
 };
 

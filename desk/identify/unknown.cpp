@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "compare/inverse_model.hpp"
+#include "robot/effect_text.hpp"
 #include "signal/shift.hpp"
 
 namespace offnominal::desk {
@@ -38,6 +39,16 @@ Eigen::VectorXd of_path_effect(const RobotDescription& robot, const Unknown& unk
   return (with(value + 0.5 * period_s) - with(value - 0.5 * period_s)) / period_s;
 }
 
+// What a torque of a motor is at the joints that it moves.
+std::vector<JointColumn> at_joints(const RobotDescription& robot, std::size_t motor,
+                                   const Eigen::VectorXd& torque) {
+  std::vector<JointColumn> columns;
+  for (const MovedJoint& moved : joints_of_motor(robot, motor)) {
+    columns.push_back({static_cast<std::size_t>(moved.joint), moved.motor_per_joint * torque});
+  }
+  return columns;
+}
+
 }  // namespace
 
 std::vector<Unknown> unknowns_of_effect(const RobotDescription& robot, std::size_t effect,
@@ -62,8 +73,9 @@ std::string name_of(const RobotDescription& robot, const Unknown& unknown) {
   if (unknown.kind == Unknown::Kind::kLinkScale) {
     return fmt::format("mass and inertia of link {}", unknown.joint + 1);
   }
-  return fmt::format("{}.{} of joint {}", info_of(robot.effects[unknown.effect].kind)->name,
-                     info_of_parameter(robot, unknown).name, unknown.joint + 1);
+  const RobotEffect& effect = robot.effects[unknown.effect];
+  return fmt::format("{}.{} of {}", info_of(effect.kind)->name,
+                     info_of_parameter(robot, unknown).name, place_of(effect));
 }
 
 std::vector<JointColumn> regressor_before_path(const RobotDescription& robot,
@@ -74,7 +86,11 @@ std::vector<JointColumn> regressor_before_path(const RobotDescription& robot,
   } else {
     const Effect<double> effect = unit_effect(robot, unknown);
     if (is_torque_effect(effect.kind)) {
-      const JointType type = robot.joints[unknown.joint].joint.type;
+      const JointType type = robot.type_of(effect);
+      if (effect.of_motor) {
+        return at_joints(robot, unknown.joint,
+                         torque_of_effect(effect, type, motor_motion(robot, motion)));
+      }
       return {{unknown.joint, torque_of_effect(effect, type, motion)}};
     }
     torque = torque_of_inertial_effect(robot, effect, motion);
@@ -121,8 +137,14 @@ std::vector<std::size_t> joints_of(const RobotDescription& robot, const Unknown&
       (is_torque_effect(robot.effects[unknown.effect].kind) ||
        is_path_effect(robot.effects[unknown.effect].kind) ||
        info_of(robot.effects[unknown.effect].kind)->action == EffectAction::kReflectedInertia);
-  if (own_joint_only) return {unknown.joint};
   std::vector<std::size_t> joints;
+  if (own_joint_only && robot.effects[unknown.effect].of_motor) {
+    for (const MovedJoint& moved : joints_of_motor(robot, unknown.joint)) {
+      joints.push_back(static_cast<std::size_t>(moved.joint));
+    }
+    return joints;
+  }
+  if (own_joint_only) return {unknown.joint};
   for (std::size_t joint = 0; joint <= unknown.joint; ++joint) joints.push_back(joint);
   return joints;
 }

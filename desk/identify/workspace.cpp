@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
+#include "compare/transmission.hpp"
+#include "compare/usable.hpp"
 #include "identify/data.hpp"
 #include "signal/decimate.hpp"
 #include "signal/quantile.hpp"
@@ -38,12 +41,10 @@ std::vector<MatrixXd> mass_columns(const Workspace& at) {
   return columns;
 }
 
-// From what a low-pass takes away, as if white; 0 where the low-pass takes nothing.
-double noise_density(const VectorXd& raw, const VectorXd& smooth, const FilterPlan& plan) {
-  const double band_hz = plan.sample_rate_hz / 2 - plan.position_cutoff_hz;
-  if (!(band_hz > 0)) return 0;
-  const VectorXd fast = raw - smooth;
-  return std::sqrt(fast.squaredNorm() / static_cast<double>(fast.size()) / band_hz);
+// Whether the motor turns as that joint does, and with no other.
+bool moves_alone(const RobotDescription& robot, std::size_t motor, Index joint) {
+  const std::vector<MovedJoint> moved = joints_of_motor(robot, motor);
+  return moved.size() == 1 && moved[0].joint == joint;
 }
 
 }  // namespace
@@ -83,6 +84,16 @@ double range_moved(const std::vector<Workspace>& recordings, Index joint) {
   return range;
 }
 
+PositionSpan positions_seen(const std::vector<Workspace>& recordings, Index joint) {
+  PositionSpan seen{std::numeric_limits<double>::infinity(),
+                    -std::numeric_limits<double>::infinity()};
+  for (const Workspace& at : recordings) {
+    seen.low = std::min(seen.low, at.motion.q.col(joint).minCoeff());
+    seen.high = std::max(seen.high, at.motion.q.col(joint).maxCoeff());
+  }
+  return seen;
+}
+
 double longest_duration_s(const std::vector<Workspace>& recordings) {
   double duration_s = 0;
   for (const Workspace& at : recordings) {
@@ -95,14 +106,23 @@ void Workspace::set_model(const RobotDescription& robot) {
   rigid = robot;
   known_effects = robot.effects;
   rigid.effects.clear();
+  rigid = as_recorded(rigid);
   load_torque = desk::model_torque(rigid, motion);
-  model_torque = robot.effects.empty() ? load_torque : desk::model_torque(robot, motion);
+  const RobotDescription recorded = as_recorded(robot);
+  stiff_torque = robot.effects.empty() ? load_torque : desk::model_torque(recorded, motion);
+  model_torque = stiff_torque;
+  if (has_transmission_effect(recorded)) {
+    model_torque +=
+        transmission_torque(recorded, motion, stiff_torque, torque, torque_noise_density, plan);
+  }
   mass = mass_columns(*this);
 }
 
 bool Workspace::knows_dry_friction(Index joint) const {
   return std::any_of(known_effects.begin(), known_effects.end(), [&](const RobotEffect& effect) {
-    return effect.joint == joint && info_of(effect.kind)->traits.is_dry;
+    const bool is_here = effect.of_motor ? moves_alone(rigid, effect.joint, joint)
+                                         : static_cast<Index>(effect.joint) == joint;
+    return is_here && info_of(effect.kind)->traits.is_dry;
   });
 }
 
@@ -112,10 +132,13 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
   const auto stride = std::max<Index>(
       1, static_cast<Index>(plan.sample_rate_hz / (kRatePerCutoff * plan.torque_cutoff_hz)));
   Workspace at;
+  at.file = log.file;
+  at.payload = log.payload;
   at.plan = thinned(plan, stride);
   const Motion full = motion_of(log, plan);
   at.motion = {every_nth(full.t_s, stride), every_nth_row(full.q, stride),
                every_nth_row(full.dq, stride), every_nth_row(full.ddq, stride)};
+  const MatrixXd usable = usable_samples(log, plan);
   MatrixXd torque = log.tau;
   at.torque_noise_density.resize(torque.cols());
   for (Index joint = 0; joint < torque.cols(); ++joint) {
@@ -123,7 +146,8 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
     if (log.at_rest) continue;
     const VectorXd raw = log.tau.col(joint);
     const VectorXd smooth = zero_phase_low_pass(raw, plan.position_cutoff_hz, plan.sample_rate_hz);
-    at.torque_noise_density[joint] = noise_density(raw, smooth, plan);
+    at.torque_noise_density[joint] = noise_density(
+        raw, smooth, usable.size() > 0 ? VectorXd(usable.col(joint)) : VectorXd(), plan);
     if (stride > 1) torque.col(joint) = smooth;
   }
   at.torque = every_nth_row(torque, stride);
@@ -132,6 +156,9 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
   at.at_rest = log.at_rest;
   at.approach = log.approach;
   at.skew_s = log.period_s;
+  for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
+    at.of_sensor.push_back(log.of_sensor(joint) ? 1 : 0);
+  }
   at.set_model(robot);
   at.sign_width = sign_width;
   at.top_speed = VectorXd::Zero(log.q.cols());
@@ -143,6 +170,7 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
     }
   }
   if (moving.minCoeff() < 1) at.moving = std::move(moving);
+  if (usable.size() > 0) at.usable = every_nth_row(usable, stride);
   return at;
 }
 

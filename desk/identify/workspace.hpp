@@ -2,11 +2,14 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "compare/filter_plan.hpp"
 #include "compare/motion.hpp"
 #include "log/log.hpp"
+#include "robot/payload.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::desk {
@@ -14,24 +17,30 @@ namespace offnominal::desk {
 // One recording with everything that regressors are made from, at a sampling rate that the low-pass
 // of the plan leaves room for. Rows: samples, columns: joints.
 struct Workspace {
-  RobotDescription rigid;  // the robot without effects
+  std::string file;                // of the recording
+  std::optional<Payload> payload;  // the recording's
+  RobotDescription rigid;          // the robot with the payload, without effects
   std::vector<RobotEffect> known_effects;
   FilterPlan plan;               // as of these samples
   Motion motion;                 // low-passed position and its derivatives
   Eigen::MatrixXd torque;        // measured, N m or N
   Eigen::MatrixXd load_torque;   // rigid-body torque of the model without any effect
-  Eigen::MatrixXd model_torque;  // of the model with its effects
+  Eigen::MatrixXd stiff_torque;  // of the model with its effects, transmissions taken for rigid
+  Eigen::MatrixXd model_torque;  // of the model with all its effects
   // Column k of the mass matrix over time: what 1 rad/s^2 or m/s^2 of joint k asks of every joint.
   std::vector<Eigen::MatrixXd> mass;
   Eigen::VectorXd torque_noise_density;  // per joint, of the recording, N m or N per root hertz
   Eigen::VectorXd sign_width;            // per joint: width of the smoothed sign, rad/s or m/s
   Eigen::VectorXd top_speed;             // per joint: 99 % quantile of |dq|
   Eigen::MatrixXd moving;                // standstill.hpp: 1 or 0; empty: 1 throughout
+  Eigen::MatrixXd usable;                // usable.hpp: 1 or 0; empty: 1 throughout
   double skew_s = 0;                     // sampling period of the recording itself
   double start_s = 0;                    // time stamp that effects in time count from
   bool at_rest = false;                  // a hold map: log/hold_map.hpp
   Eigen::MatrixXd approach;              // where at_rest: direction of approach, 1 or -1
   std::vector<char> came_both_ways;      // where at_rest, per joint: both_ways()
+  // Per joint: its torque is that of a sensor behind the gear; empty: of none.
+  std::vector<char> of_sensor;
 
   [[nodiscard]] Eigen::Index sample_count() const { return motion.sample_count(); }
   [[nodiscard]] Eigen::Index joint_count() const { return motion.q.cols(); }
@@ -39,6 +48,10 @@ struct Workspace {
     return rigid.joints[static_cast<std::size_t>(joint)].joint.type;
   }
   [[nodiscard]] double period_s() const { return 1 / plan.sample_rate_hz; }
+  // A robot as it was in this recording, with its payload.
+  [[nodiscard]] RobotDescription as_recorded(const RobotDescription& robot) const {
+    return carrying(robot, payload);
+  }
   // Another model of the same robot: everything that follows from it.
   void set_model(const RobotDescription& robot);
   // Whether the model has dry friction of one level on a joint.
@@ -46,6 +59,9 @@ struct Workspace {
   // Whether a joint came to rest from both sides, in the recordings that are fitted.
   [[nodiscard]] bool both_ways(Eigen::Index joint) const {
     return at_rest && came_both_ways[static_cast<std::size_t>(joint)] != 0;
+  }
+  [[nodiscard]] bool sees_drive(Eigen::Index joint) const {
+    return of_sensor.empty() || of_sensor[static_cast<std::size_t>(joint)] == 0;
   }
   // tanh(dq / sign_width) of a joint.
   [[nodiscard]] Eigen::ArrayXd sign(Eigen::Index joint) const;
@@ -66,6 +82,13 @@ std::vector<char> came_both_ways(const std::vector<Log>& logs);
 
 // Largest range of positions that one recording covers, rad or m.
 double range_moved(const std::vector<Workspace>& recordings, Eigen::Index joint);
+
+// The positions that the recordings cover together, rad or m.
+struct PositionSpan {
+  double low = 0;
+  double high = 0;
+};
+PositionSpan positions_seen(const std::vector<Workspace>& recordings, Eigen::Index joint);
 
 double longest_duration_s(const std::vector<Workspace>& recordings);
 

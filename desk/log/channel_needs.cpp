@@ -63,6 +63,9 @@ NeedOf needs_of(const std::optional<ChannelMap>& channels, std::size_t file, std
     if (channel) want(*channel);
   }
   for (const Channel& channel : channels->torque) want(channel);
+  for (const auto& channel : channels->sensor_torque) {
+    if (channel) want(*channel);
+  }
   for (const auto& [name, channel] : channels->extra) want(channel);
   std::string ascending;
   if (!channels->at_rest && channels->period_s == 0) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,26 +11,69 @@
 
 namespace offnominal::desk {
 
+// Samples first to last, both included.
+struct RowSpan {
+  Eigen::Index first = 0;
+  Eigen::Index last = 0;
+
+  [[nodiscard]] Eigen::Index count() const { return last + 1 - first; }
+};
+
+// Samples of a joint that no analysis may use: a gap, or what the doctor found.
+struct LeftOut {
+  Eigen::Index joint = 0;
+  RowSpan rows;
+  // What a filter spreads of them on either side and goes with them, in periods of its cut-off.
+  double spread_periods = 0;
+};
+
 // One recording in SI units, evenly sampled, time ascending, every number finite. Or a hold map
 // (hold_map.hpp), where at_rest.
 struct Log {
-  std::string file;              // as the user named it
-  double period_s = 0;           // sampling period
-  Eigen::VectorXd t_s;           // as recorded, or the even grid it was resampled to
-  Eigen::MatrixXd q;             // rows: samples, columns: joints; rad or m
-  Eigen::MatrixXd dq;            // rad/s or m/s
-  Eigen::MatrixXd tau;           // torque of the drive, N m or N
+  std::string file;     // as the user named it
+  double period_s = 0;  // sampling period
+  Eigen::VectorXd t_s;  // as recorded, or the even grid it was resampled to
+  Eigen::MatrixXd q;    // rows: samples, columns: joints; rad or m
+  Eigen::MatrixXd dq;   // rad/s or m/s
+  // Torque of the drive, at the joint; or what a sensor behind the gear says, where that is all
+  // there is of a joint (of_sensor()). N m or N.
+  Eigen::MatrixXd tau;
+  // What such a sensor says beside tau: columns as tau, those of other joints 0; no rows where no
+  // joint has both (has_both()).
+  Eigen::MatrixXd sensor_tau;
   std::vector<bool> dq_derived;  // per joint: dq is the derivative of the low-passed q
   std::map<std::string, Eigen::VectorXd> extra;  // further quantities, by name
   bool at_rest = false;
-  Eigen::MatrixXd approach;          // where at_rest: 1 or -1, as q; else empty
-  std::vector<std::string> remarks;  // what a reader of results has to know, in words
-  ChannelMap channels;               // where the columns came from; empty: not read from a file
-  bool common_header = false;        // by their names alone, nobody gave the channels
+  Eigen::MatrixXd approach;             // where at_rest: 1 or -1, as q; else empty
+  std::vector<std::string> remarks;     // what a reader of results has to know, in words
+  ChannelMap channels;                  // where the columns came from; empty: not read from a file
+  bool common_header = false;           // by their names alone, nobody gave the channels
+  std::optional<Payload> payload = {};  // that the robot carried (robot/payload.hpp)
+  Eigen::VectorXd stamps_s;       // of the recorded rows, where t_s is another grid; else empty
+  std::vector<RowSpan> gaps;      // samples of the grid where none were recorded
+  std::vector<RowSpan> cut;       // recorded rows beyond a gap that is too long for one grid
+  std::vector<LeftOut> left_out;  // of `gaps` and of faults, in any order
 
+  [[nodiscard]] bool of_sensor(std::size_t joint) const {
+    return joint < channels.torque_of.size() && channels.torque_of[joint] == ChannelOf::kSensor;
+  }
+  [[nodiscard]] bool has_both(std::size_t joint) const {
+    return joint < channels.sensor_torque.size() && channels.sensor_torque[joint].has_value();
+  }
   [[nodiscard]] int joint_count() const { return static_cast<int>(q.cols()); }
   [[nodiscard]] Eigen::Index sample_count() const { return t_s.size(); }
   [[nodiscard]] double sample_rate_hz() const { return 1 / period_s; }
+  // The recorded rows, from 0, that a span of samples comes from.
+  [[nodiscard]] RowSpan recorded_rows(const RowSpan& samples) const {
+    if (stamps_s.size() == 0) return samples;
+    const double slack = period_s / 2;
+    const auto row_at = [&](double t) {
+      const auto at = std::lower_bound(stamps_s.begin(), stamps_s.end(), t);
+      return std::min<Eigen::Index>(at - stamps_s.begin(), stamps_s.size() - 1);
+    };
+    const Eigen::Index first = row_at(t_s[samples.first] - slack);
+    return {first, std::max(first, row_at(t_s[samples.last] + slack) - 1)};
+  }
 };
 
 }  // namespace offnominal::desk

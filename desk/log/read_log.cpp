@@ -18,11 +18,15 @@
 #include "log/column_values.hpp"
 #include "log/hold_map.hpp"
 #include "log/joined_files.hpp"
+#include "log/joint_side.hpp"
 #include "log/log_format.hpp"
 #include "log/recording_file.hpp"
 #include "log/sampling.hpp"
+#include "log/seen_by_sensor.hpp"
 #include "log/time_of.hpp"
 #include "robot/channels.hpp"
+#include "robot/payload.hpp"
+#include "robot/transmission.hpp"
 #include "robot/units.hpp"
 #include "signal/fold.hpp"
 
@@ -40,8 +44,10 @@ Channel named(std::string source) {
 
 class Assembler {
  public:
-  Assembler(TimedColumns recording, int joint_count)
-      : columns_(std::move(recording.columns)),
+  // `transmission`: of the robot; null: none.
+  Assembler(TimedColumns recording, int joint_count, const TransmissionSettings* transmission)
+      : transmission_(transmission),
+        columns_(std::move(recording.columns)),
         t_s_(std::move(recording.time.t_s)),
         joints_(joint_count) {
     log_.file = columns_.file;
@@ -102,18 +108,22 @@ class Assembler {
     for (Index i = 0; i < joints_; ++i) {
       const auto joint = static_cast<std::size_t>(i);
       log_.q.col(i) = position(map, i);
-      log_.tau.col(i) = sampled(map.torque[joint], fmt::format("torque of joint {}", i + 1));
+      log_.tau.col(i) = sampled(map.torque[joint], words_of("torque", map.torque_of, i));
       const bool measured = joint < map.velocity.size() && map.velocity[joint].has_value();
       log_.dq_derived.push_back(!measured);
       if (measured) {
-        log_.dq.col(i) = sampled(*map.velocity[joint], fmt::format("velocity of joint {}", i + 1));
+        log_.dq.col(i) = sampled(*map.velocity[joint], words_of("velocity", map.velocity_of, i));
       } else {
         log_.dq.col(i).setZero();
       }
     }
+    read_sensors(map);
     for (const auto& [name, channel] : map.extra) log_.extra[name] = sampled(channel, name);
     log_.channels = std::move(map);
     log_.remarks = std::move(columns_.remarks);
+    if (transmission_ != nullptr) to_joint_side(log_, *transmission_);
+    std::string sensors = words_of_sensors(log_);
+    if (!sensors.empty()) log_.remarks.push_back(std::move(sensors));
     if (log_.channels.at_rest) {
       make_hold_map(log_);
     } else {
@@ -174,16 +184,44 @@ class Assembler {
   }
 
   void take_units_of_file(ChannelMap& map) {
-    const auto take = [&](Channel& channel, ChannelQuantity quantity, const char* what, Index i) {
-      take_unit_of_file(columns_, channel, quantity, fmt::format("{} of joint {}", what, i + 1));
+    const auto take = [&](Channel& channel, const char* quantity, const std::vector<ChannelOf>& of,
+                          Index i) {
+      const ChannelOf side = side_at(of, static_cast<std::size_t>(i));
+      take_unit_of_file(columns_, channel, channel_quantity(quantity, side),
+                        words_of(quantity, of, i));
     };
     for (Index i = 0; i < joints_; ++i) {
       const auto joint = static_cast<std::size_t>(i);
-      take(map.position[joint], ChannelQuantity::kPosition, "position", i);
-      take(map.torque[joint], ChannelQuantity::kTorque, "torque", i);
+      take(map.position[joint], "position", map.position_of, i);
+      take(map.torque[joint], "torque", map.torque_of, i);
       if (joint < map.velocity.size() && map.velocity[joint]) {
-        take(*map.velocity[joint], ChannelQuantity::kVelocity, "velocity", i);
+        take(*map.velocity[joint], "velocity", map.velocity_of, i);
       }
+      if (joint < map.sensor_torque.size() && map.sensor_torque[joint]) {
+        take(*map.sensor_torque[joint], "torque", {}, i);
+      }
+    }
+  }
+
+  // "position of motor 2": what the channel is of.
+  static std::string words_of(const char* quantity, const std::vector<ChannelOf>& of, Index i) {
+    switch (side_at(of, static_cast<std::size_t>(i))) {
+      case ChannelOf::kMotor:
+        return fmt::format("{} of motor {}", quantity, i + 1);
+      case ChannelOf::kCurrent:
+        return fmt::format("current of motor {}", i + 1);
+      default:
+        return fmt::format("{} of joint {}", quantity, i + 1);
+    }
+  }
+
+  void read_sensors(const ChannelMap& map) {
+    if (map.sensor_torque.empty()) return;
+    log_.sensor_tau.setZero(log_.t_s.size(), joints_);
+    for (Index i = 0; i < joints_; ++i) {
+      const auto& sensor = map.sensor_torque[static_cast<std::size_t>(i)];
+      if (!sensor) continue;
+      log_.sensor_tau.col(i) = sampled(*sensor, fmt::format("sensor torque of joint {}", i + 1));
     }
   }
 
@@ -199,6 +237,9 @@ class Assembler {
     for (const Channel& channel : map.position) count(channel);
     for (const Channel& channel : map.torque) count(channel);
     for (const auto& channel : map.velocity) {
+      if (channel) count(*channel);
+    }
+    for (const auto& channel : map.sensor_torque) {
       if (channel) count(*channel);
     }
     for (const auto& [name, channel] : map.extra) count(channel);
@@ -221,15 +262,16 @@ class Assembler {
   VectorXd position(const ChannelMap& map, Index joint) {
     constexpr double kTurn = 2 * std::numbers::pi;
     VectorXd q = sampled(map.position[static_cast<std::size_t>(joint)],
-                         fmt::format("position of joint {}", joint + 1));
+                         words_of("position", map.position_of, joint));
     if (map.at_rest) return q;
     const std::vector<Index> folds = folds_of(q, kTurn);
     if (folds.empty()) return q;
     unfold(q, kTurn, folds);
-    columns_.remarks.push_back(fmt::format(
-        "the position of joint {} is folded into a turn: it jumps by 2 pi {} time{}, "
-        "first at t = {:.6g} s, and was unfolded",
-        joint + 1, folds.size(), folds.size() == 1 ? "" : "s", log_.t_s[folds.front()]));
+    columns_.remarks.push_back(
+        fmt::format("the {} is folded into a turn: it jumps by 2 pi {} time{}, "
+                    "first at t = {:.6g} s, and was unfolded",
+                    words_of("position", map.position_of, joint), folds.size(),
+                    folds.size() == 1 ? "" : "s", log_.t_s[folds.front()]));
     return q;
   }
 
@@ -259,6 +301,7 @@ class Assembler {
     remark(log_.tau, "the torque", false);
   }
 
+  const TransmissionSettings* transmission_;
   NamedColumns columns_;
   VectorXd t_s_;
   Index joints_;
@@ -303,15 +346,14 @@ TimedColumns read_files(const std::filesystem::path& path,
   return joined_files(std::move(files), kMinSamples, kMaxGap);
 }
 
-}  // namespace
-
-Log read_log(const std::filesystem::path& path, int joint_count,
-             const std::optional<ChannelMap>& channels, std::optional<double> period_s) {
+Log read(const std::filesystem::path& path, int joint_count,
+         const std::optional<ChannelMap>& channels, std::optional<double> period_s,
+         const TransmissionSettings* transmission) {
   try {
     std::optional<ChannelMap> map = channels;
     if (map && period_s && !map->at_rest) map->period_s = *period_s;
     const double period = map ? map->period_s : period_s.value_or(0);
-    Assembler assembler(read_files(path, map, period), joint_count);
+    Assembler assembler(read_files(path, map, period), joint_count, transmission);
     return map ? assembler.with(*std::move(map)) : assembler.with_common_header(period);
   } catch (const std::bad_alloc&) {
     throw InputError({shown_name(path), "", "more than this machine has memory for",
@@ -320,13 +362,27 @@ Log read_log(const std::filesystem::path& path, int joint_count,
   }
 }
 
+}  // namespace
+
+Log read_log(const std::filesystem::path& path, int joint_count,
+             const std::optional<ChannelMap>& channels, std::optional<double> period_s) {
+  if (channels) check_sides(*channels, std::nullopt, shown_name(path));
+  return read(path, joint_count, channels, period_s, nullptr);
+}
+
 Log read_log_or_hold_map(const std::filesystem::path& path, const RobotDescription& robot,
                          const ChannelOptions& options) {
-  if (!options.file) {
-    return read_log(path, robot.joint_count(), robot.channels, options.period_s);
+  std::optional<ChannelMap> channels = robot.channels;
+  if (options.file) {
+    channels = read_channels_file(*options.file, robot.joint_count());
+    check_sides(*channels, robot.transmission, options.file->string());
   }
-  return read_log(path, robot.joint_count(), read_channels_file(*options.file, robot.joint_count()),
-                  options.period_s);
+  const auto said = payload_of(options.payloads, path.string());
+  Log log = read(path, robot.joint_count(), channels, options.period_s,
+                 robot.transmission ? &*robot.transmission : nullptr);
+  log.payload = said || !channels ? said : payload_of(channels->payloads, path.string());
+  if (log.payload) log.remarks.push_back("with a payload of " + words_of(*log.payload));
+  return log;
 }
 
 Log read_log(const std::filesystem::path& path, const RobotDescription& robot,

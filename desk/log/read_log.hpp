@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "log/log.hpp"
 #include "robot/robot.hpp"
@@ -34,8 +35,9 @@ Log read_log(const std::filesystem::path& path, int joint_count,
 
 // What a command line says of a recording's columns.
 struct ChannelOptions {
-  std::optional<std::filesystem::path> file;  // with [channels], instead of the robot file's
-  std::optional<double> period_s;             // instead of a time, s
+  std::optional<std::filesystem::path> file;    // with [channels], instead of the robot file's
+  std::optional<double> period_s;               // instead of a time, s
+  std::vector<RecordingPayload> payloads = {};  // before what the channels say of payloads
 };
 
 // The recording as the robot's file maps it, unless the options say otherwise. Throws InputError

@@ -20,8 +20,12 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+// What does not change does not change between its rows either.
+bool is_constant(const VectorXd& values) { return values.minCoeff() == values.maxCoeff(); }
+
 // A spline through the jump of an angle that is folded into a turn would swing beyond both ends.
 VectorXd position_at(const VectorXd& t_s, const VectorXd& q, const VectorXd& at_s) {
+  if (is_constant(q)) return VectorXd::Constant(at_s.size(), q[0]);
   for (const double turn : {2 * std::numbers::pi, 360.0}) {
     const std::vector<Index> folds = folds_of(q, turn);
     if (folds.empty()) continue;
@@ -35,6 +39,18 @@ VectorXd position_at(const VectorXd& t_s, const VectorXd& q, const VectorXd& at_
   return spline_at(t_s, q, at_s);
 }
 
+// The row that was recorded at each time of a grid, but for `slack_s`; -1: none. Its values stay
+// what they are: what rests repeats them to the last bit.
+std::vector<Index> rows_at(const VectorXd& recorded_s, const VectorXd& even_s, double slack_s) {
+  std::vector<Index> rows(static_cast<std::size_t>(even_s.size()), -1);
+  Index row = 0;
+  for (Index i = 0; i < even_s.size(); ++i) {
+    while (row + 1 < recorded_s.size() && recorded_s[row] < even_s[i] - slack_s) ++row;
+    if (std::abs(recorded_s[row] - even_s[i]) <= slack_s) rows[static_cast<std::size_t>(i)] = row;
+  }
+  return rows;
+}
+
 void resample(Log& log, double period_s) {
   const VectorXd recorded = log.t_s;
   const double span_s = recorded[recorded.size() - 1] - recorded[0];
@@ -43,18 +59,152 @@ void resample(Log& log, double period_s) {
   for (Index i = 0; i <= steps; ++i) {
     even[i] = std::min(recorded[0] + static_cast<double>(i) * period_s, recorded[0] + span_s);
   }
+  const std::vector<Index> same = rows_at(recorded, even, kSamplingJitter * period_s);
   const auto resample_columns = [&](Eigen::MatrixXd& columns, auto&& interpolate) {
     Eigen::MatrixXd result(even.size(), columns.cols());
     for (Index j = 0; j < columns.cols(); ++j) {
       result.col(j) = interpolate(recorded, columns.col(j), even);
+      for (Index i = 0; i < even.size(); ++i) {
+        const Index row = same[static_cast<std::size_t>(i)];
+        if (row >= 0) result(i, j) = columns(row, j);
+      }
     }
     columns = std::move(result);
   };
   resample_columns(log.q, position_at);
   resample_columns(log.dq, linear_at);
   resample_columns(log.tau, linear_at);
+  if (log.sensor_tau.rows() > 0) resample_columns(log.sensor_tau, linear_at);
   for (auto& [name, values] : log.extra) values = linear_at(recorded, values, even);
   log.t_s = std::move(even);
+}
+
+// Where rows are missing: the last row before, and the first after it.
+struct Hole {
+  Index before = 0;
+  Index after = 0;
+};
+
+// Rows that were only stamped late are there: the stamps behind catch up with the clock.
+std::vector<Hole> holes_of(const VectorXd& t_s, double period_s) {
+  constexpr double kLateS = 0.03;  // a motion is not to be had from stamps that are later
+  std::vector<Hole> holes;
+  const double least_s = std::max(kMaxGap * period_s, kShortestGapS);
+  for (Index i = 0; i + 1 < t_s.size(); ++i) {
+    const double step_s = t_s[i + 1] - t_s[i];
+    if (!(step_s > least_s)) continue;
+    const double missing = step_s / period_s - 1;
+    const double bound = std::min(2 * missing, static_cast<double>(t_s.size()));
+    const Index end = std::min(t_s.size() - 1, i + 1 + static_cast<Index>(bound));
+    Index after = i + 1;
+    for (Index j = i + 2; j <= end; ++j) {
+      const double late = (t_s[j] - t_s[i]) / period_s - static_cast<double>(j - i);
+      if (late > missing / 2) continue;
+      after = j;
+      break;
+    }
+    if (after > i + 1 && step_s < kLateS) continue;
+    holes.push_back({i, after});
+    i = after - 1;
+  }
+  return holes;
+}
+
+// Whether anything was cut.
+bool keep_longest_part(Log& log, const std::vector<Hole>& holes) {
+  const Index rows = log.t_s.size();
+  RowSpan part{0, rows - 1};
+  RowSpan best{0, -1};
+  const auto consider = [&](Index last) {
+    part.last = last;
+    if (part.count() > best.count()) best = part;
+  };
+  for (const Hole& hole : holes) {
+    if (log.t_s[hole.after] - log.t_s[hole.before] <= kLongestGapS) continue;
+    consider(hole.before);
+    part.first = hole.after;
+  }
+  consider(rows - 1);
+  if (best.count() == rows || best.count() < kMinSamples) return false;
+  if (best.first > 0) log.cut.push_back({0, best.first - 1});
+  if (best.last + 1 < rows) log.cut.push_back({best.last + 1, rows - 1});
+  const auto keep = [&](VectorXd& values) {
+    values = values.segment(best.first, best.count()).eval();
+  };
+  const auto keep_rows = [&](Eigen::MatrixXd& columns) {
+    columns = columns.middleRows(best.first, best.count()).eval();
+  };
+  keep(log.t_s);
+  keep_rows(log.q);
+  keep_rows(log.dq);
+  keep_rows(log.tau);
+  for (auto& [name, values] : log.extra) keep(values);
+  return true;
+}
+
+// Before it is an index, and before there is no room for it.
+void check_size(const Log& log, const Sampling& sampling) {
+  constexpr double kMost = 4;  // times what was recorded
+  constexpr double kAlways = 1e5;
+  const double period_s = sampling.median_period_s;
+  const Index rows = log.t_s.size();
+  const double even = (log.t_s[rows - 1] - log.t_s[0]) / period_s;
+  if (even <= std::max(kMost * static_cast<double>(rows), kAlways)) return;
+  throw InputError(
+      {log.file, fmt::format("t = {:.6g} s", sampling.largest_gap_at_s),
+       fmt::format("a gap of {:.4g} s, and {} rows where there should be {:.0f}",
+                   sampling.largest_gap_s, rows, even),
+       fmt::format("gaps up to {:g} s that leave a quarter of the rows, one each {:.4g} s",
+                   kLongestGapS, period_s),
+       "cut the recording at the gap"});
+}
+
+// A few stamps that are off, of rows that are all there: it is the stamps that are wrong, and to
+// put every other row elsewhere for them would be no better.
+bool take_late_stamps_as_even(Log& log, const Sampling& sampling) {
+  constexpr double kMostRows = 0.01;
+  constexpr double kMostPeriods = 3;
+  const Index rows = log.t_s.size();
+  const double period_s = sampling.mean_period_s;
+  const VectorXd even = VectorXd::LinSpaced(rows, log.t_s[0], log.t_s[rows - 1]);
+  Index off = 0;
+  for (Index i = 0; i < rows; ++i) {
+    const double periods = std::abs(log.t_s[i] - even[i]) / period_s;
+    if (periods > kMostPeriods) return false;
+    if (periods > kSamplingJitter) ++off;
+  }
+  if (static_cast<double>(off) > kMostRows * static_cast<double>(rows)) return false;
+  log.remarks.push_back(
+      fmt::format("{} time stamp{} off by more than {:g} % of the sampling period: taken as even",
+                  off, off == 1 ? " is" : "s are", 100 * kSamplingJitter));
+  log.stamps_s = std::move(log.t_s);
+  log.t_s = even;
+  log.period_s = period_s;
+  return true;
+}
+
+// Straight lines over the holes, which are gaps of the log from now on.
+void bridge(Log& log, const VectorXd& recorded_s, const std::vector<Hole>& holes) {
+  const auto line = [&](Eigen::MatrixXd& columns, const RowSpan& rows) {
+    const Index from = std::max<Index>(rows.first - 1, 0);
+    const Index to = std::min(rows.last + 1, columns.rows() - 1);
+    const Eigen::RowVectorXd change = columns.row(to) - columns.row(from);
+    for (Index i = rows.first; i <= rows.last; ++i) {
+      const double share = static_cast<double>(i - from) / static_cast<double>(to - from);
+      columns.row(i) = columns.row(from) + share * change;
+    }
+  };
+  for (const Hole& hole : holes) {
+    const auto begin = log.t_s.begin();
+    RowSpan rows;
+    rows.first = std::upper_bound(begin, log.t_s.end(), recorded_s[hole.before]) - begin;
+    rows.last = std::lower_bound(begin, log.t_s.end(), recorded_s[hole.after]) - begin - 1;
+    if (rows.count() < 1) continue;
+    line(log.q, rows);
+    line(log.dq, rows);
+    line(log.tau, rows);
+    log.gaps.push_back(rows);
+  }
 }
 
 }  // namespace
@@ -75,25 +225,34 @@ Sampling sampling_of(const Eigen::Ref<const VectorXd>& t_s) {
 }
 
 void make_even(Log& log) {
-  const Sampling sampling = sampling_of(log.t_s);
+  Sampling sampling = sampling_of(log.t_s);
   if (sampling.jitter <= kSamplingJitter) {
     log.period_s = sampling.mean_period_s;
     return;
   }
+  if (take_late_stamps_as_even(log, sampling)) return;
   const double period_s = sampling.median_period_s;
-  if (sampling.largest_gap_s > kMaxGap * period_s) {
-    throw InputError({log.file, fmt::format("t = {:.6g} s", sampling.largest_gap_at_s),
-                      fmt::format("a gap of {:.4g} s", sampling.largest_gap_s),
-                      fmt::format("gaps up to {:g} sampling periods, {:.4g} s here", kMaxGap,
-                                  kMaxGap * period_s),
-                      "cut the recording at the gap"});
+  VectorXd recorded = log.t_s;
+  std::vector<Hole> holes = holes_of(recorded, period_s);
+  if (keep_longest_part(log, holes)) {
+    log.stamps_s = std::move(recorded);
+    recorded = log.t_s;
+    holes = holes_of(recorded, period_s);
+    sampling = sampling_of(recorded);
+    if (sampling.jitter <= kSamplingJitter) {
+      log.period_s = sampling.mean_period_s;
+      return;
+    }
   }
+  check_size(log, sampling);
   log.remarks.push_back(fmt::format(
       "sampling is not even (steps of {:.4g} s, off by up to {:.0f} % of their mean): resampled to "
       "{:.4g} s",
       period_s, 100 * sampling.jitter, period_s));
   resample(log, period_s);
   log.period_s = period_s;
+  bridge(log, recorded, holes);
+  if (log.stamps_s.size() == 0) log.stamps_s = std::move(recorded);
 }
 
 void derive_velocities(Log& log) {

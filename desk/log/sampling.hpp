@@ -15,9 +15,16 @@ struct Sampling {
 Sampling sampling_of(const Eigen::Ref<const Eigen::VectorXd>& t_s);
 
 // Sets period_s of a log whose steps are even to within kSamplingJitter (read_log.hpp); resamples
-// any other to its median step, with a remark; positions that are folded into a turn stay so.
-// Throws InputError for a gap of more than kMaxGap steps.
+// any other to its median step, with a remark; positions that are folded into a turn stay so. Where
+// rows are missing, not just late, for more than kMaxGap steps and kShortestGapS, the samples of
+// the grid in between are `gaps` of the log: straight lines, which no analysis may use. Of a
+// recording with a gap of more than kLongestGapS only the longest part between such gaps is kept;
+// the rest is `cut`.
 void make_even(Log& log);
+
+// Shorter ones hold nothing that a motion could do meanwhile.
+inline constexpr double kShortestGapS = 0.01;
+inline constexpr double kLongestGapS = 10;
 
 // Fills dq of the joints marked dq_derived: q low-passed without phase at 100 Hz (a fifth of the
 // sampling rate where that is less), then central differences. Needs period_s.

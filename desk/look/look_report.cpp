@@ -49,6 +49,12 @@ std::string lines_of(const char* mark, const std::vector<std::string>& sentences
   return text;
 }
 
+std::string pasted_lines(const ChannelMap& map, const char* quantity) {
+  std::string text;
+  for (const std::string& line : channel_lines(map, quantity)) text += line + "\n";
+  return text;
+}
+
 }  // namespace
 
 std::string channels_text(const Look& look) {
@@ -57,13 +63,13 @@ std::string channels_text(const Look& look) {
   if (map.period_s > 0) {
     text += "period_s = " + shortest_real(map.period_s) + "\n";
   } else {
-    text += look.t_s ? channel_line(map, "time") + "\n" : "period_s = ...\n";
+    text += look.t_s ? pasted_lines(map, "time") : "period_s = ...\n";
   }
-  text += map.position.empty() ? "position = [...]\n" : channel_line(map, "position") + "\n";
+  text += map.position.empty() ? "position = [...]\n" : pasted_lines(map, "position");
   const bool any_velocity = std::any_of(map.velocity.begin(), map.velocity.end(),
                                         [](const auto& one) { return one.has_value(); });
-  if (any_velocity) text += channel_line(map, "velocity") + "\n";
-  text += map.torque.empty() ? "torque = [...]\n" : channel_line(map, "torque") + "\n";
+  if (any_velocity) text += pasted_lines(map, "velocity");
+  text += map.torque.empty() ? "torque = [...]\n" : pasted_lines(map, "torque");
   return text + lines_of("# still to be said: ", look.missing);
 }
 

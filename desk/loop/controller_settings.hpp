@@ -30,8 +30,8 @@ struct ControllerSettings {
   return std::max<hal::Microseconds>(1, std::llround(1e6 * period_s));
 }
 
-/// Of every controller that is compiled for a number of joints here; fewer hidden units are exactly
-/// a smaller network.
+/// Of every controller here, whatever its number of joints; fewer hidden units are exactly a
+/// smaller network.
 inline constexpr int kControllerCapacity = 128;
 
 template <int N, typename Scalar>
@@ -41,7 +41,7 @@ template <int N, typename Scalar>
       monitor_config_of<N, Scalar>(robot), gains_of<N, Scalar>(robot), arming_of<N, Scalar>(robot));
   config.safe_mode = settings.safe_mode;
   config.stop_at_detection = settings.stop_at_detection;
-  if (!settings.accommodate) config.monitor.max_compensation = {};
+  if (!settings.accommodate) config.monitor.max_compensation.fill(Scalar(0));
   if (settings.max_acceleration) {
     sim::EncoderConfig encoder;
     encoder.bits_per_turn = settings.encoder_bits_per_turn;

@@ -1,4 +1,5 @@
-// The controller's side of any drive protocol, so that a controller is compiled once for all.
+// The controller's side of any drive protocol and of any number of joints, so that a controller is
+// compiled once for all.
 #pragma once
 
 #include <algorithm>
@@ -15,18 +16,17 @@
 namespace offnominal::desk {
 
 namespace detail {
-template <std::size_t Joints, typename... Rows>
+template <typename... Rows>
 constexpr std::size_t most_outgoing(std::tuple<Rows...>* /*rows*/) {
-  return std::max({Rows::Protocol::template Drives<Joints>::kMaxOutgoing...});
+  return std::max({Rows::Protocol::template Drives<hal::kAnyJoints>::kMaxOutgoing...});
 }
 }  // namespace detail
 
-template <std::size_t Joints>
 class DrivePort {
  public:
-  static constexpr std::size_t kJoints = Joints;
+  static constexpr std::size_t kJoints = hal::kAnyJoints;
   static constexpr std::size_t kMaxOutgoing =
-      detail::most_outgoing<Joints>(static_cast<DriveProtocols*>(nullptr));
+      detail::most_outgoing(static_cast<DriveProtocols*>(nullptr));
 
   virtual ~DrivePort() = default;
   virtual hal::Status take(const hal::ReceivedFrame& received) = 0;
@@ -39,10 +39,10 @@ class DrivePort {
   virtual void clear_stop() = 0;
   [[nodiscard]] virtual hal::DriveCounts counts() const = 0;
 };
-static_assert(hal::DriveProtocol<DrivePort<2>>);
+static_assert(hal::DriveProtocol<DrivePort>);
 
 template <hal::DriveProtocol Drives>
-class DrivePortOf final : public DrivePort<Drives::kJoints> {
+class DrivePortOf final : public DrivePort {
  public:
   explicit DrivePortOf(Drives drives) : drives_(std::move(drives)) {}
   hal::Status take(const hal::ReceivedFrame& received) override { return drives_.take(received); }
@@ -66,27 +66,28 @@ class DrivePortOf final : public DrivePort<Drives::kJoints> {
 };
 
 namespace detail {
-template <std::size_t Joints, typename... Rows>
-std::unique_ptr<DrivePort<Joints>> make_drive_port(const DriveSettings& settings,
-                                                   const hal::DriveLink& link,
-                                                   std::tuple<Rows...>* /*rows*/) {
-  using Port = std::unique_ptr<DrivePort<Joints>>;
-  using Make = Port (*)(const hal::DriveValues& values, const hal::DriveLink& link);
+template <typename... Rows>
+std::unique_ptr<DrivePort> make_drive_port(const DriveSettings& settings, std::size_t joints,
+                                           const hal::DriveLink& link,
+                                           std::tuple<Rows...>* /*rows*/) {
+  using Port = std::unique_ptr<DrivePort>;
+  using Make =
+      Port (*)(const hal::DriveValues& values, const hal::DriveLink& link, std::size_t joints);
   constexpr std::array<Make, sizeof...(Rows)> kMakers{
-      [](const hal::DriveValues& values, const hal::DriveLink& of) -> Port {
+      [](const hal::DriveValues& values, const hal::DriveLink& of, std::size_t count) -> Port {
         using Protocol = typename Rows::Protocol;
-        return std::make_unique<DrivePortOf<typename Protocol::template Drives<Joints>>>(
-            Protocol::template drives<Joints>(values, of));
+        return std::make_unique<DrivePortOf<typename Protocol::template Drives<hal::kAnyJoints>>>(
+            Protocol::template drives<hal::kAnyJoints>(values, of, count));
       }...};
-  return kMakers.at(settings.protocol)(values_of(settings), link);
+  return kMakers.at(settings.protocol)(values_of(settings), link, joints);
 }
 }  // namespace detail
 
-/// Of settings of as many joints.
-template <std::size_t Joints>
-[[nodiscard]] std::unique_ptr<DrivePort<Joints>> make_drive_port(const DriveSettings& settings,
-                                                                 const hal::DriveLink& link) {
-  return detail::make_drive_port<Joints>(settings, link, static_cast<DriveProtocols*>(nullptr));
+/// Of settings of as many joints, 1 to kMaxJoints.
+[[nodiscard]] inline std::unique_ptr<DrivePort> make_drive_port(const DriveSettings& settings,
+                                                                std::size_t joints,
+                                                                const hal::DriveLink& link) {
+  return detail::make_drive_port(settings, joints, link, static_cast<DriveProtocols*>(nullptr));
 }
 
 }  // namespace offnominal::desk

@@ -1,12 +1,186 @@
 #include "loop/joint_program.hpp"
 
-#include "robot/chain_of.hpp"
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <offnominal/hal/bus/in_process_bus.hpp>
+#include <offnominal/realtime/recorded_bus.hpp>
+#include <optional>
+#include <span>
+
+#include "common/error.hpp"
+#include "drives/drive_table.hpp"
+#include "loop/drive_port.hpp"
 
 namespace offnominal::desk {
+namespace {
+
+// Healthy drives at the other end of an in-process bus, whose ticks take no time.
+class RehearsalTimer final : public TickTimer {
+ public:
+  using Net = hal::InProcessNet<2>;
+  using Positions = Vector<kRuntimeJoints, float>;
+  // Ends what is not over by itself.
+  RehearsalTimer(Net& net, realtime::LoopPanel& panel, realtime::Microseconds period_us,
+                 std::unique_ptr<sim::Drives> drives, const Positions& positions)
+      : net_(net),
+        panel_(panel),
+        port_(net.port(1)),
+        period_us_(period_us),
+        positions_(positions),
+        drives_(std::move(drives)) {}
+  realtime::Tick wait() override {
+    constexpr int kMostTicks = 1000;
+    if (++ticks_ == kMostTicks) panel_.end.store(true);
+    now_us_ += period_us_;
+    net_.set_time(now_us_);
+    std::array<hal::ReceivedFrame, 2 * kMost> come;
+    const std::size_t count = port_.receive(come);
+    for (std::size_t i = 0; i < count; ++i) drives_->take(come[i]);
+    drives_->tick(now_us_);
+    const auto joints = static_cast<std::size_t>(positions_.size());
+    std::array<std::optional<hal::EncoderReading>, kMost> readings;
+    for (std::size_t j = 0; j < joints; ++j) {
+      readings[j] = hal::EncoderReading{positions_[static_cast<Eigen::Index>(j)], 0, true};
+    }
+    std::array<hal::Frame, sim::Drives::kMostFrames> frames;
+    const std::array<double, kMost> torques{};
+    const std::size_t made = drives_->frames(std::span(readings).first(joints),
+                                             std::span(torques).first(joints), frames);
+    for (std::size_t i = 0; i < made; ++i) static_cast<void>(port_.send(frames[i], now_us_));
+    return {now_us_, 0, 0};
+  }
+  [[nodiscard]] realtime::Microseconds period_us() const override { return period_us_; }
+
+ private:
+  static constexpr auto kMost = static_cast<std::size_t>(kMaxJoints);
+  Net& net_;
+  realtime::LoopPanel& panel_;
+  Net::Port port_;
+  realtime::Microseconds period_us_;
+  Positions positions_;
+  std::unique_ptr<sim::Drives> drives_;
+  realtime::Microseconds now_us_ = 0;
+  int ticks_ = 0;
+};
+
+class JointProgramOf final : public JointProgram {
+ public:
+  using Scalar = float;
+  using Controller =
+      controller::JointController<kRuntimeJoints, kControllerCapacity, Scalar, WithMemory>;
+
+  explicit JointProgramOf(const JointProgramSetup& setup)
+      : setup_(setup),
+        link_{.period_us = setup.timer.period_us(), .format = setup.format},
+        drive_settings_(setup.robot.drive_settings()),
+        drives_(make_drives()),
+        bus_(setup.bus, setup.recorder) {
+    create_controller(setup.robot, setup.settings, controller_);
+  }
+
+  void run() override {
+    report_.grant = realtime::ask_for(setup_.wish);
+    rehearse();
+    const auto reference_at = [this](double time_s) { return reference(time_s, *data_); };
+    report_.loop = Loop<decltype(reference_at)>(
+                       setup_.loop, {controller_, setup_.timer, bus_, *drives_, reference_at,
+                                     setup_.recorder, setup_.panel, *data_})
+                       .run();
+    report_.counts = drives_->counts();
+  }
+
+  [[nodiscard]] const JointProgramReport& report() const override { return report_; }
+
+ private:
+  using Bus = realtime::RecordedBus<BusPort>;
+  using Data = Controller::Data;
+  using Joints = Vector<kRuntimeJoints, Scalar>;
+  using Wanted = Reference<kRuntimeJoints, Scalar>;
+
+  [[nodiscard]] std::unique_ptr<DrivePort> make_drives() const {
+    return make_drive_port(drive_settings_, setup_.robot.joints.size(), link_);
+  }
+
+  template <typename ReferenceAt>
+  using Loop = realtime::ControlLoop<kRuntimeJoints, kControllerCapacity, Scalar, Bus, DrivePort,
+                                     TickTimer, ReferenceAt>;
+
+  // Joints at rest, where they can be and a frame can say it, away from the ends that its counts
+  // may round to. At 0 where that is such a place.
+  [[nodiscard]] Joints a_position() const {
+    constexpr double kCarried = 32;
+    constexpr double kMargin = 1e-3;
+    Joints position(setup_.robot.joint_count());
+    for (Eigen::Index i = 0; i < position.size(); ++i) {
+      const auto& joint = setup_.robot.joints[static_cast<std::size_t>(i)].joint;
+      const double lowest = std::clamp(joint.min_position, -kCarried, kCarried);
+      const double highest = std::clamp(joint.max_position, -kCarried, kCarried);
+      const bool at_zero = lowest < -kMargin && highest > kMargin;
+      position[i] = static_cast<float>(at_zero ? 0.0 : (lowest + highest) / 2);
+    }
+    return position;
+  }
+
+  // Code that has not run before is slow: it is still to be paged in, where the machine is emulated
+  // to be translated. The first ticks that count are to be on time.
+  void rehearse() {
+    const auto net = std::make_unique<hal::InProcessNet<2>>();
+    const auto data = std::make_unique<Data>();
+    BusPortOf<hal::InProcessNet<2>::Port> port(net->port(0));
+    realtime::Recorder nobody;
+    Bus bus(port, nobody);
+    const std::unique_ptr<DrivePort> drives = make_drives();
+    realtime::LoopPanel panel;
+    RehearsalTimer timer(
+        *net, panel, link_.period_us,
+        emulated_drives(drive_settings_, {.joints = setup_.robot.joints.size(), .link = link_}),
+        a_position());
+    // Wherever the motion is, these joints are asked to stay.
+    const auto reference_at = [&](double time_s) {
+      static_cast<void>(reference(time_s, *data));
+      return at_rest(data->sample.q);
+    };
+    constexpr int kTicks = 50;
+    const realtime::LoopConfig config{.arm_when_passive = true,
+                                      .duration_us = kTicks * timer.period_us()};
+    const realtime::LoopReport report =
+        Loop<decltype(reference_at)>(
+            config, {controller_, timer, bus, *drives, reference_at, nobody, panel, *data})
+            .run();
+    if (report.state != hal::ControllerState::kInit) return;
+    throw InputError({"robot " + setup_.robot.name, "joint limits",
+                      "a joint whose positions no frame can say",
+                      "a range within -32 to 32 rad or m",
+                      "count the joint's positions from another place, in the encoder and here"});
+  }
+
+  Wanted reference(double time_s, const Data& data) {
+    if (setup_.motion) return reference_of<Scalar>(setup_.motion(time_s));
+    if (data.state != hal::ControllerState::kArmed) held_ = data.sample.q;
+    return at_rest(held_);
+  }
+  static Wanted at_rest(const Joints& q) {
+    const Joints zero = Joints::Zero(q.size());
+    return {q, zero, zero};
+  }
+
+  JointProgramSetup setup_;
+  hal::DriveLink link_;
+  DriveSettings drive_settings_;
+  std::unique_ptr<DrivePort> drives_;
+  Bus bus_;
+  Controller controller_;
+  // On the heap: 128 hidden units do not belong on a stack.
+  std::unique_ptr<Data> data_ = std::make_unique<Data>();
+  Joints held_;
+  JointProgramReport report_;
+};
+
+}  // namespace
 
 std::unique_ptr<JointProgram> make_joint_program(const JointProgramSetup& setup) {
-  return with_joint_count(setup.robot.joint_count(),
-                          [&]<int N>() { return detail::make_program_of<N>(setup); });
+  return std::make_unique<JointProgramOf>(setup);
 }
 
 }  // namespace offnominal::desk

@@ -57,9 +57,4 @@ class JointProgram {
 /// For a robot of 1 to kMaxJoints joints. Throws InputError where the controller refuses the robot.
 [[nodiscard]] std::unique_ptr<JointProgram> make_joint_program(const JointProgramSetup& setup);
 
-namespace detail {
-template <int N>
-std::unique_ptr<JointProgram> make_program_of(const JointProgramSetup& setup);
-}  // namespace detail
-
 }  // namespace offnominal::desk

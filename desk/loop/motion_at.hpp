@@ -30,8 +30,8 @@ using MotionAt = std::function<sim::DesiredMotion(double time_s)>;
 /// InputError where it is none.
 [[nodiscard]] MotionAt motion_named(const std::string& name, const RobotDescription& robot);
 
-template <int N, typename Scalar>
-[[nodiscard]] Reference<N, Scalar> reference_of(const sim::DesiredMotion& desired) {
+template <typename Scalar>
+[[nodiscard]] Reference<kRuntimeJoints, Scalar> reference_of(const sim::DesiredMotion& desired) {
   return {desired.q.template cast<Scalar>(), desired.dq.template cast<Scalar>(),
           desired.ddq.template cast<Scalar>()};
 }

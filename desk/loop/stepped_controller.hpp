@@ -58,17 +58,9 @@ struct SteppedSetup {
   MotionAt motion;
 };
 
-/// For a robot of 1 to kMaxJoints joints. The controller's numbers are those of firmware, floats;
-/// in double precision it is compiled for the two joints of the paper alone, whose results are
-/// compared in both. Throws InputError for other joints in double precision, and where the
+/// For a robot of 1 to kMaxJoints joints. Firmware computes in floats. Throws InputError where the
 /// controller refuses the robot.
 [[nodiscard]] std::unique_ptr<SteppedController> make_stepped_controller(const SteppedSetup& setup,
                                                                          Precision precision);
 
-namespace detail {
-
-template <int N, typename Scalar>
-std::unique_ptr<SteppedController> make_stepped_controller_of(const SteppedSetup& setup);
-
-}  // namespace detail
 }  // namespace offnominal::desk

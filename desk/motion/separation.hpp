@@ -35,7 +35,7 @@ struct Separation {
 struct SeparationTable {
   // [true effect][rival]; where both are the same, against no rival but the adapting numbers alone.
   std::vector<std::vector<Separation>> of;
-  std::vector<bool> excited;  // per joint: by the measure of `explain` (excitation.hpp)
+  std::vector<bool> excited;  // per joint: whether it moves in more than one pattern
 };
 
 // Judges motions of one robot. Sizes and shapes of the effects are set once, on a reference motion,

@@ -8,8 +8,9 @@
 
 #include "common/error.hpp"
 #include "common/number.hpp"
-#include "replay/replay_joints.hpp"
-#include "robot/chain_of.hpp"
+#include "log/seen_by_sensor.hpp"
+#include "replay/replay_monitor.hpp"
+#include "robot/payload.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
@@ -34,11 +35,11 @@ void check_settings(const RobotDescription& robot, const Log& log) {
          .allowed = "at most " + shortest(kMaxPolePerTick),
          .mend = "lower alpha_per_s in the robot file, or take a recording with faster sampling"});
   }
-  if (robot.estimator.hidden_units > detail::kReplayCapacity) {
+  if (robot.estimator.hidden_units > kReplayCapacity) {
     throw InputError({.file = "robot " + robot.name,
                       .place = "estimator.hidden_units",
                       .found = std::to_string(robot.estimator.hidden_units),
-                      .allowed = "at most " + std::to_string(detail::kReplayCapacity),
+                      .allowed = "at most " + std::to_string(kReplayCapacity),
                       .mend = "use fewer hidden units"});
   }
 }
@@ -61,6 +62,7 @@ std::int64_t Replay::samples() const {
 
 Replay replay(const RobotDescription& robot, const Log& log) {
   check_settings(robot, log);
+  const RobotDescription seen = seen_by_sensors(robot, log);
   Replay result;
   result.robot = robot.name;
   result.log = log.file;
@@ -73,8 +75,7 @@ Replay replay(const RobotDescription& robot, const Log& log) {
     result.acceleration_units.emplace_back(joint.joint.type == JointType::kRevolute ? "rad/s^2"
                                                                                     : "m/s^2");
   }
-  with_joint_count(robot.joint_count(),
-                   [&]<int N>() { detail::replay_joints<N>(robot, log, result); });
+  replay_monitor(carrying(seen, log.payload), log, result);
   if (result.t_s.size() == 0) {
     const auto& [status, refusals] = *result.refused.begin();
     throw InputError({.file = log.file,

@@ -164,10 +164,14 @@ struct Note {
 
 using Block = std::variant<Table, KeyFigures, Chart, Heatmap, Waterfall, Note>;
 
+/// A page may show several recordings: sections of the same `recording` stand together, and the
+/// reader chooses which recording's are shown. The others, whose `recording` is empty, are always
+/// shown.
 struct Section {
   std::string heading{};
   std::string text{};
   std::vector<Block> blocks{};
+  std::string recording{};
 };
 
 struct Page {

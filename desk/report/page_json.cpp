@@ -188,7 +188,10 @@ struct Json {
   }
 
   static json of(const Section& section) {
-    return {{"heading", section.heading}, {"text", section.text}, {"blocks", list(section.blocks)}};
+    return {{"heading", section.heading},
+            {"text", section.text},
+            {"blocks", list(section.blocks)},
+            {"recording", section.recording}};
   }
 };
 

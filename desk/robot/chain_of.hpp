@@ -6,14 +6,14 @@
 #include <cstdint>
 #include <limits>
 #include <offnominal/model/chain.hpp>
+#include <offnominal/vector.hpp>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
-#include <utility>
 
 #include "robot/robot.hpp"
+#include "robot/transmission.hpp"
 
-// From a robot of any size to the fixed-size types of the core.
+// From a robot to the types of the core.
 
 namespace offnominal::desk {
 
@@ -50,50 +50,67 @@ template <typename Scalar>
   return joint;
 }
 
-inline void require_joint_count(const RobotDescription& robot, int count) {
-  if (robot.joint_count() == count) return;
-  throw std::invalid_argument("robot " + robot.name + " has " +
-                              std::to_string(robot.joint_count()) + " joints, not " +
-                              std::to_string(count));
+// Joints beyond those of the transmission have a motor each.
+template <int N, typename Scalar>
+[[nodiscard]] Transmission<N, Scalar> transmission_of(const RobotDescription& robot) {
+  Transmission<N, Scalar> transmission;
+  const Eigen::MatrixXd matrix = motor_per_joint(*robot.transmission);
+  const Eigen::VectorXd offset = motor_offset_rad(*robot.transmission);
+  for (Eigen::Index motor = 0; motor < matrix.rows(); ++motor) {
+    const auto row = static_cast<std::size_t>(motor);
+    transmission.motor_offset_rad[row] = scalar_of<Scalar>(offset[motor]);
+    for (Eigen::Index joint = 0; joint < matrix.cols(); ++joint) {
+      transmission.motor_per_joint[row * transmission.kMost + static_cast<std::size_t>(joint)] =
+          scalar_of<Scalar>(matrix(motor, joint));
+    }
+  }
+  return transmission;
+}
+
+// N: as a template of the core has it.
+template <int N>
+void require_joint_count(const RobotDescription& robot) {
+  const int count = robot.joint_count();
+  if constexpr (N == kRuntimeJoints) {
+    if (count >= 1 && count <= kMaxJoints) return;
+  } else {
+    if (count == N) return;
+  }
+  throw std::invalid_argument(
+      "robot " + robot.name + " has " + std::to_string(count) + " joints, not " +
+      (N == kRuntimeJoints ? "1 to " + std::to_string(kMaxJoints) : std::to_string(N)));
 }
 
 }  // namespace detail
 
-/// The chain that the core computes with, every number rounded to Scalar. Throws
-/// std::invalid_argument when the robot does not have N joints or has more effects than a chain of
-/// N joints holds.
+/// The chain that the core computes with, every number rounded to Scalar; with rigid transmissions:
+/// effects that no chain can have are left out (require_carried() refuses them). N: kRuntimeJoints,
+/// or where something is measured as firmware has it the robot's own number of joints. Throws
+/// std::invalid_argument when the robot does not have N joints, or more effects than a chain of as
+/// many joints holds on a controller.
 template <int N, typename Scalar>
 [[nodiscard]] Chain<N, Scalar> chain_of(const RobotDescription& robot) {
-  detail::require_joint_count(robot, N);
+  detail::require_joint_count<N>(robot);
+  const std::size_t most = kEffectsPerJoint * robot.joints.size();
+  if (robot.effects.size() > most) {
+    throw std::invalid_argument("robot " + robot.name + " has " +
+                                std::to_string(robot.effects.size()) + " effects, at most " +
+                                std::to_string(most) + " are allowed");
+  }
   Chain<N, Scalar> chain;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+  size_for(robot.joints.size(), chain.joints);
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     chain.joints[i] = detail::joint_of<Scalar>(robot.joints[i].joint);
   }
   chain.gravity_m_s2 = detail::scalars_of<Scalar>(robot.gravity_m_s2);
+  if (robot.transmission) chain.transmission = detail::transmission_of<N, Scalar>(robot);
   for (const RobotEffect& effect : robot.effects) {
-    const Effect<Scalar> converted{effect.kind, effect.joint,
-                                   detail::scalars_of<Scalar>(effect.parameters)};
-    if (!chain.effects.add(converted)) {
-      throw std::invalid_argument("robot " + robot.name + " has " +
-                                  std::to_string(robot.effects.size()) + " effects, at most " +
-                                  std::to_string(kEffectsPerJoint * N) + " are allowed");
-    }
+    if (!chain_may_have(effect.kind)) continue;
+    static_cast<void>(
+        chain.effects.add({effect.kind, effect.joint, detail::scalars_of<Scalar>(effect.parameters),
+                           effect.of_motor}));
   }
   return chain;
-}
-
-/// Calls visitor.operator()<N>() with N = joint_count and hands back what it returns. Throws
-/// std::invalid_argument outside 1..kMaxJoints.
-template <int N = 1, typename Visitor>
-auto with_joint_count(int joint_count, Visitor&& visitor)
-    -> decltype(visitor.template operator()<1>()) {
-  if (joint_count == N) return visitor.template operator()<N>();
-  if constexpr (N < kMaxJoints) {
-    return with_joint_count<N + 1>(joint_count, std::forward<Visitor>(visitor));
-  } else {
-    throw std::invalid_argument(std::to_string(joint_count) + " joints; 1 to " +
-                                std::to_string(kMaxJoints) + " are allowed");
-  }
 }
 
 }  // namespace offnominal::desk

@@ -2,13 +2,16 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "robot/robot.hpp"
 
 namespace offnominal::desk {
 
-/// One key of [channels], "time", "position", "velocity" or "torque", as a robot file has it:
-/// position = [{source = "q1"}, {source = "q2", scale = 0.5}]
-[[nodiscard]] std::string channel_line(const ChannelMap& channels, std::string_view key);
+/// The lines of [channels] that say one quantity, "time", "position", "velocity" or "torque", as a
+/// robot file has them: position = [{source = "q1"}, {source = "q2", scale = 0.5}]
+/// One line, or one for each side that a joint's channel is of.
+[[nodiscard]] std::vector<std::string> channel_lines(const ChannelMap& channels,
+                                                     std::string_view quantity);
 
 }  // namespace offnominal::desk

@@ -11,6 +11,7 @@
 #include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "common/toml_table.hpp"
+#include "robot/payload.hpp"
 #include "robot/units.hpp"
 
 namespace offnominal::desk {
@@ -45,13 +46,15 @@ class Parser {
   Parser(std::string file, int joint_count) : file_(std::move(file)), joints_(joint_count) {}
 
   ChannelMap map(const toml::table& table) const {
-    check_keys(table, "channels",
-               {"time", "period_s", "position", "velocity", "torque", "extra", "dbc", "at_rest"});
+    check_keys(
+        table, "channels",
+        {"time", "period_s", "position", "motor_position", "velocity", "motor_velocity", "torque",
+         "motor_torque", "motor_current", "sensor_torque", "extra", "dbc", "at_rest", "payload"});
     ChannelMap map;
     map.time.source = "t";
     map.at_rest = flag(table, "at_rest");
     if (map.at_rest) {
-      for (const char* key : {"time", "period_s", "velocity", "extra"}) {
+      for (const char* key : {"time", "period_s", "velocity", "motor_velocity", "extra"}) {
         const toml::node* node = table.get(key);
         if (node == nullptr) continue;
         fail(*node, std::string("channels.") + key, "a channel beside at_rest = true",
@@ -59,21 +62,16 @@ class Parser {
       }
     }
     read_time(table, map);
-    for (const auto& joint : list(table, "position", true)) {
-      map.position.push_back(channel(*joint.node, joint.place, ChannelQuantity::kPosition));
-    }
-    for (const auto& joint : list(table, "torque", true)) {
-      map.torque.push_back(channel(*joint.node, joint.place, ChannelQuantity::kTorque));
-    }
-    map.velocity.assign(static_cast<std::size_t>(joints_), std::nullopt);
-    const auto velocity = list(table, "velocity", false);
-    for (std::size_t i = 0; i < velocity.size(); ++i) {
-      const auto* text = velocity[i].node->as_string();
-      if (text != nullptr && text->get().empty()) continue;
-      map.velocity[i] = channel(*velocity[i].node, velocity[i].place, ChannelQuantity::kVelocity);
-    }
+    Sided position = of_sides(table, "position", {ChannelOf::kJoint, ChannelOf::kMotor});
+    map.position = all_of(table, "position", position);
+    map.position_of = std::move(position.of);
+    Sided velocity = of_sides(table, "velocity", {ChannelOf::kJoint, ChannelOf::kMotor});
+    map.velocity = std::move(velocity.channels);
+    map.velocity_of = std::move(velocity.of);
+    read_torques(table, map);
     if (const toml::node* node = table.get("extra")) extra(*node, map);
     if (const toml::node* node = table.get("dbc")) map.dbc = path_of(*node, "channels.dbc");
+    if (const toml::node* node = table.get("payload")) read_payloads(*node, map);
     return map;
   }
 
@@ -170,6 +168,75 @@ class Parser {
       } else {
         map.more_times.push_back(std::move(time));
       }
+    }
+  }
+
+  // What the lists of one quantity say, each of its own side; one entry per joint.
+  struct Sided {
+    std::vector<std::optional<Channel>> channels;
+    std::vector<ChannelOf> of;  // empty: of the joints, all of them
+  };
+
+  static bool is_blank(const toml::node& node) {
+    const auto* text = node.as_string();
+    return text != nullptr && text->get().empty();
+  }
+
+  Sided of_sides(const toml::table& table, std::string_view quantity,
+                 std::initializer_list<ChannelOf> sides) const {
+    const auto joints = static_cast<std::size_t>(joints_);
+    Sided read{std::vector<std::optional<Channel>>(joints), {}};
+    std::vector<std::string> place_of(joints);
+    for (const ChannelOf side : sides) {
+      const std::vector<Entry> entries = list(table, channel_key(quantity, side), false);
+      for (std::size_t i = 0; i < entries.size(); ++i) {
+        const auto& [node, place] = entries[i];
+        if (is_blank(*node)) continue;
+        if (read.channels[i]) {
+          fail(*node, place, "a channel beside " + place_of[i], "one of the two",
+               "write \"\" for the joint in one of the lists");
+        }
+        read.channels[i] = channel(*node, place, channel_quantity(quantity, side));
+        place_of[i] = place;
+        if (side == ChannelOf::kJoint) continue;
+        read.of.resize(joints, ChannelOf::kJoint);
+        read.of[i] = side;
+      }
+    }
+    return read;
+  }
+
+  // Every joint has to have one.
+  std::vector<Channel> all_of(const toml::table& table, const std::string& quantity,
+                              const Sided& read) const {
+    std::vector<Channel> channels;
+    for (std::size_t i = 0; i < read.channels.size(); ++i) {
+      if (!read.channels[i]) {
+        if (read.of.empty()) static_cast<void>(list(table, quantity, true));
+        fail(table, "channels." + quantity, "nothing for joint " + std::to_string(i + 1),
+             "a channel for every joint, in the list of the joint or of its motor");
+      }
+      channels.push_back(*read.channels[i]);
+    }
+    return channels;
+  }
+
+  void read_torques(const toml::table& table, ChannelMap& map) const {
+    Sided torque =
+        of_sides(table, "torque", {ChannelOf::kJoint, ChannelOf::kMotor, ChannelOf::kCurrent});
+    Sided sensor = of_sides(table, "torque", {ChannelOf::kSensor});
+    for (std::size_t i = 0; i < torque.channels.size(); ++i) {
+      if (torque.channels[i] || !sensor.channels[i]) continue;
+      torque.channels[i] = std::move(sensor.channels[i]);
+      sensor.channels[i].reset();
+      torque.of.resize(torque.channels.size(), ChannelOf::kJoint);
+      torque.of[i] = ChannelOf::kSensor;
+    }
+    map.torque = all_of(table, "torque", torque);
+    map.torque_of = std::move(torque.of);
+    const auto has = [](const auto& channel) { return channel.has_value(); };
+    if (std::any_of(sensor.channels.begin(), sensor.channels.end(), has)) {
+      map.sensor_torque = std::move(sensor.channels);
     }
   }
 
@@ -286,11 +353,84 @@ class Parser {
     }
   }
 
+  void read_payloads(const toml::node& node, ChannelMap& map) const {
+    const toml::array* entries = node.as_array();
+    if (entries == nullptr) {
+      fail(node, "channels.payload", type_of(node), "a list of tables, one per recording");
+    }
+    for (std::size_t i = 0; i < entries->size(); ++i) {
+      const std::string place = "channels.payload[" + std::to_string(i + 1) + "]";
+      const toml::node& entry = *entries->get(i);
+      const toml::table* table = entry.as_table();
+      const char* const allowed = "{recording = \"FILE\", mass_kg = KG, place_m = [X, Y, Z]}";
+      if (table == nullptr) fail(entry, place, type_of(entry), allowed);
+      check_keys(*table, place, {"recording", "mass_kg", "place_m"});
+      for (const char* key : {"recording", "mass_kg", "place_m"}) {
+        if (table->get(key) == nullptr) {
+          fail(entry, place, std::string("no ") + key, allowed, "nothing of it is guessed");
+        }
+      }
+      RecordingPayload payload;
+      payload.recording = text_of(*table, place, "recording");
+      if (payload.recording.empty()) fail(entry, place, "no name", "the recording's file");
+      payload.payload.mass_kg = number_of(*table, place, "mass_kg", 0);
+      if (payload.payload.mass_kg < 0 || payload.payload.mass_kg > kMostPayloadKg) {
+        fail(*table->get("mass_kg"), place + ".mass_kg", shortest(payload.payload.mass_kg),
+             "0 to " + shortest(kMostPayloadKg) + " kg");
+      }
+      read_place(*table->get("place_m"), place + ".place_m", payload.payload);
+      map.payloads.push_back(std::move(payload));
+    }
+  }
+
+  void read_place(const toml::node& node, const std::string& place, Payload& payload) const {
+    const std::string allowed =
+        "[x, y, z] in the last link's frame, each within " + shortest(kFurthestPayloadM) + " m";
+    const toml::array* numbers = node.as_array();
+    if (numbers == nullptr) fail(node, place, type_of(node), allowed);
+    if (numbers->size() != 3)
+      fail(node, place, std::to_string(numbers->size()) + " numbers", allowed);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const toml::node& one = *numbers->get(i);
+      const auto value = one.value<double>();
+      if (!one.is_number() || !value || !(std::abs(*value) <= kFurthestPayloadM)) {
+        fail(one, place, one.is_number() ? "a number that is too large" : type_of(one), allowed);
+      }
+      payload.place_m[i] = *value;
+    }
+  }
+
   std::string file_;
   int joints_;
 };
 
 }  // namespace
+
+std::string channel_key(std::string_view quantity, ChannelOf of) {
+  switch (of) {
+    case ChannelOf::kJoint:
+      return std::string(quantity);
+    case ChannelOf::kMotor:
+      return "motor_" + std::string(quantity);
+    case ChannelOf::kCurrent:
+      return "motor_current";
+    case ChannelOf::kSensor:
+      return "sensor_torque";
+  }
+  return {};
+}
+
+ChannelQuantity channel_quantity(std::string_view quantity, ChannelOf of) {
+  if (of == ChannelOf::kCurrent) return ChannelQuantity::kCurrent;
+  const bool of_motor = of == ChannelOf::kMotor;
+  if (quantity == "position") {
+    return of_motor ? ChannelQuantity::kMotorPosition : ChannelQuantity::kPosition;
+  }
+  if (quantity == "velocity") {
+    return of_motor ? ChannelQuantity::kMotorVelocity : ChannelQuantity::kVelocity;
+  }
+  return of_motor ? ChannelQuantity::kMotorTorque : ChannelQuantity::kTorque;
+}
 
 ChannelMap parse_channels(const toml::table& table, const std::string& file, int joint_count) {
   return Parser(file, joint_count).map(table);

@@ -41,16 +41,15 @@ double random_position(const Joint<double>& joint, std::mt19937& generator) {
   return std::lerp(low, high, std::clamp(share, 0.0, 1.0));
 }
 
-template <int N>
 bool positive_definite_everywhere(const RobotDescription& robot) {
-  const RigidBodyModel<N, double> model = make_model(chain_of<N, double>(robot));
+  const auto model = make_model(chain_of<kRuntimeJoints, double>(robot));
   std::mt19937 generator;  // the same positions every time
   for (int i = 0; i < kPositions; ++i) {
-    Vector<N, double> q;
-    for (Eigen::Index j = 0; j < N; ++j) {
+    Vector<kRuntimeJoints, double> q(robot.joint_count());
+    for (Eigen::Index j = 0; j < q.size(); ++j) {
       q[j] = random_position(robot.joints[static_cast<std::size_t>(j)].joint, generator);
     }
-    const Eigen::LLT<Matrix<N, N, double>> factor(mass_matrix(model, q));
+    const Eigen::LLT<Matrix<kRuntimeJoints, kRuntimeJoints, double>> factor(mass_matrix(model, q));
     if (factor.info() != Eigen::Success) return false;
   }
   return true;
@@ -61,9 +60,7 @@ bool positive_definite_everywhere(const RobotDescription& robot) {
 void check_mass_matrix(const TomlTable& root, const RobotDescription& robot) {
   const std::optional<std::size_t> lightest = lightest_effect(robot);
   if (!lightest) return;
-  const bool sound = with_joint_count(
-      robot.joint_count(), [&robot]<int N>() { return positive_definite_everywhere<N>(robot); });
-  if (sound) return;
+  if (positive_definite_everywhere(robot)) return;
   const double mass = robot.effects[*lightest].parameters[0];
   root.tables("effect", effect_keys())[*lightest].refuse(
       "mass", shortest(mass) + ", which leaves a mass matrix that is not positive definite",

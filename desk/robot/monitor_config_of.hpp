@@ -8,6 +8,7 @@
 #include <offnominal/diagnosis/bound.hpp>
 #include <offnominal/diagnosis/estimator_config.hpp>
 #include <offnominal/monitor.hpp>
+#include <offnominal/vector.hpp>
 #include <stdexcept>
 #include <vector>
 
@@ -35,20 +36,21 @@ template <typename Scalar>
 namespace detail {
 
 template <int N, typename Scalar>
-void set_scaled_norm(const ScaledNormBoundSettings& settings, UncertaintyBound<N, Scalar>& bound) {
-  constexpr auto kJoints = static_cast<std::size_t>(N);
+void set_scaled_norm(const ScaledNormBoundSettings& settings, std::size_t joints,
+                     UncertaintyBound<N, Scalar>& bound) {
+  size_for(joints * joints, bound.matrix);
   bound.kind = BoundKind::kScaledNorm;
   bound.scale = static_cast<Scalar>(settings.scale);
   bound.offset = static_cast<Scalar>(settings.offset);
-  if (settings.matrix.size() > kJoints) {
+  if (settings.matrix.size() > joints) {
     throw std::invalid_argument("the bound's matrix has more rows than the robot has joints");
   }
   for (std::size_t row = 0; row < settings.matrix.size(); ++row) {
-    if (settings.matrix[row].size() != kJoints) {
+    if (settings.matrix[row].size() != joints) {
       throw std::invalid_argument("a row of the bound's matrix has not one number per joint");
     }
-    for (std::size_t column = 0; column < kJoints; ++column) {
-      bound.matrix[kJoints * row + column] = static_cast<Scalar>(settings.matrix[row][column]);
+    for (std::size_t column = 0; column < joints; ++column) {
+      bound.matrix[joints * row + column] = static_cast<Scalar>(settings.matrix[row][column]);
     }
   }
 }
@@ -70,9 +72,10 @@ void set_table(const TableBoundSettings& settings, UncertaintyBound<N, Scalar>& 
 
 }  // namespace detail
 
-/// Throws std::invalid_argument where the settings do not fit a robot of N joints.
+/// Of a robot with that many joints. Throws std::invalid_argument where the settings do not fit it.
 template <int N, typename Scalar>
-[[nodiscard]] UncertaintyBound<N, Scalar> bound_of(const BoundSettings& settings) {
+[[nodiscard]] UncertaintyBound<N, Scalar> bound_of(
+    const BoundSettings& settings, std::size_t joints = static_cast<std::size_t>(N)) {
   UncertaintyBound<N, Scalar> bound;
   bound.velocity_error = static_cast<Scalar>(settings.velocity_error);
   switch (settings.kind) {
@@ -81,7 +84,7 @@ template <int N, typename Scalar>
       bound.offset = static_cast<Scalar>(settings.constant.value);
       break;
     case BoundSettings::Kind::kScaledNorm:
-      detail::set_scaled_norm(settings.scaled_norm, bound);
+      detail::set_scaled_norm(settings.scaled_norm, joints, bound);
       break;
     case BoundSettings::Kind::kTable:
       detail::set_table(settings.table, bound);
@@ -92,9 +95,10 @@ template <int N, typename Scalar>
 
 template <int N, typename Scalar>
 [[nodiscard]] ComputedTorqueGains<N, Scalar> gains_of(const RobotDescription& robot) {
-  detail::require_joint_count(robot, N);
+  detail::require_joint_count<N>(robot);
   ComputedTorqueGains<N, Scalar> gains;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+  size_for(robot.joints.size(), gains.kp, gains.kd);
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     gains.kp[i] = static_cast<Scalar>(robot.joints[i].kp);
     gains.kd[i] = static_cast<Scalar>(robot.joints[i].kd);
   }
@@ -128,9 +132,10 @@ template <int N, typename Scalar>
   MonitorConfig<N, Scalar> config;
   config.chain = chain_of<N, Scalar>(robot);
   config.estimator = estimator_config_of<Scalar>(robot.estimator);
-  config.bound = bound_of<N, Scalar>(*robot.bound);
+  config.bound = bound_of<N, Scalar>(*robot.bound, robot.joints.size());
   config.torque_signal = robot.estimator.torque_signal;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+  size_for(robot.joints.size(), config.max_compensation);
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     config.max_compensation[i] = config.chain.joints[i].max_torque;
   }
   return config;

@@ -8,7 +8,7 @@
 namespace offnominal::desk {
 namespace {
 
-const std::vector<std::string> kCommonKeys{"kind", "joint", "fitted", "source"};
+const std::vector<std::string> kCommonKeys{"kind", "joint", "motor", "fitted", "source"};
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -55,13 +55,39 @@ double read_other_joint(const TomlTable& table, const ParameterInfo& parameter,
   return static_cast<double>(number);
 }
 
+void check_motor(const TomlTable& table, const EffectInfo& info, bool has_transmission) {
+  if (table.has("joint")) {
+    table.refuse("motor", "a motor beside a joint", "one of the two",
+                 "leave out the one on whose shaft it does not act");
+  }
+  if (!has_transmission) {
+    table.refuse("motor", "a motor, without [transmission]",
+                 "joint, or motor beside [transmission]",
+                 "add [transmission], or write the effect as it is at the joint");
+  }
+  if (motor_may_have(info.kind)) return;
+  table.refuse("motor", std::string(info.name) + " of a motor",
+               "effects that are a torque of the motor's own motion, or its inertia",
+               "write `joint`, with the numbers as they are at the joint");
+}
+
 }  // namespace
+
+const std::vector<const EffectInfo*>& file_effects() {
+  static const std::vector<const EffectInfo*> effects = [] {
+    std::vector<const EffectInfo*> all;
+    for (const EffectInfo& info : kAllEffectInfos) all.push_back(&info);
+    for (const EffectInfo& info : kInfosOutsideChains) all.push_back(&info);
+    return all;
+  }();
+  return effects;
+}
 
 const std::vector<std::string>& effect_keys() {
   static const std::vector<std::string> keys = [] {
     std::vector<std::string> all = kCommonKeys;
-    for (const EffectInfo& info : kAllEffectInfos) {
-      for (const std::string& name : parameter_names(info)) {
+    for (const EffectInfo* info : file_effects()) {
+      for (const std::string& name : parameter_names(*info)) {
         if (!contains(all, name)) all.push_back(name);
       }
     }
@@ -73,22 +99,26 @@ const std::vector<std::string>& effect_keys() {
 const std::vector<std::string>& effect_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const EffectInfo& info : kAllEffectInfos) all.emplace_back(info.name);
+    for (const EffectInfo* info : file_effects()) all.emplace_back(info->name);
     return all;
   }();
   return names;
 }
 
-RobotEffect read_effect(const TomlTable& table, const std::vector<RobotJoint>& joints) {
-  const EffectInfo& info = kAllEffectInfos[table.choice("kind", effect_names())];
+RobotEffect read_effect(const TomlTable& table, const std::vector<RobotJoint>& joints,
+                        bool has_transmission) {
+  const EffectInfo& info = *file_effects()[table.choice("kind", effect_names())];
   refuse_parameters_of_other_kinds(table, info);
   RobotEffect effect;
   effect.kind = info.kind;
-  const auto joint = table.integer("joint", 1, static_cast<std::int64_t>(joints.size()));
+  effect.of_motor = table.has("motor");
+  if (effect.of_motor) check_motor(table, info, has_transmission);
+  const auto joint = table.integer(effect.of_motor ? "motor" : "joint", 1,
+                                   static_cast<std::int64_t>(joints.size()));
   effect.joint = static_cast<std::uint8_t>(joint - 1);
   effect.fitted = table.boolean("fitted", false);
   effect.source = table.text_or_empty("source");
-  const JointType type = joints[effect.joint].joint.type;
+  const JointType type = effect.of_motor ? JointType::kRevolute : joints[effect.joint].joint.type;
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {
     const ParameterInfo& parameter = info.parameters[i];
     if (parameter.quantity == Quantity::kJointNumber) {

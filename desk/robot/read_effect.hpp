@@ -14,8 +14,11 @@ namespace offnominal::desk {
 /// Every effect's name, in the order of the core's list.
 [[nodiscard]] const std::vector<std::string>& effect_names();
 
-/// One [[effect]] of a robot with these joints.
-[[nodiscard]] RobotEffect read_effect(const TomlTable& table,
-                                      const std::vector<RobotJoint>& joints);
+/// The effects that a robot file may have, those that no on-board monitor can carry last.
+[[nodiscard]] const std::vector<const EffectInfo*>& file_effects();
+
+/// One [[effect]] of a robot with these joints; of a motor only where it has a transmission.
+[[nodiscard]] RobotEffect read_effect(const TomlTable& table, const std::vector<RobotJoint>& joints,
+                                      bool has_transmission);
 
 }  // namespace offnominal::desk

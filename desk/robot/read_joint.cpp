@@ -1,5 +1,7 @@
 #include "robot/read_joint.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -71,10 +73,31 @@ std::array<double, 6> inertia_of(const TomlTable& link) {
   return inertia;
 }
 
-void read_link(const TomlTable& table, Joint<double>& joint) {
-  const TomlTable link = table.table("link", {"mass_kg", "centre_of_mass_m", "inertia_kg_m2"});
-  joint.mass_kg = link.number("mass_kg", physical(positive("kg", "give the link's mass in kg")));
-  joint.centre_of_mass_m = vector_of(link, "centre_of_mass_m", physical(any_number("m")));
+constexpr const char* kMass = "mass_kg";
+constexpr const char* kCentreOfMass = "centre_of_mass_m";
+
+const std::vector<std::string>& link_keys() {
+  static const std::vector<std::string> keys{kMass, kCentreOfMass, "inertia_kg_m2"};
+  return keys;
+}
+
+void read_link(const TomlTable& table, Joint<double>& joint, std::vector<std::string>& blanks) {
+  const auto found = table.optional_table("link", link_keys());
+  if (!found) {
+    blanks.insert(blanks.end(), {kMass, kCentreOfMass});
+    return;
+  }
+  const TomlTable& link = *found;
+  if (link.has(kMass)) {
+    joint.mass_kg = link.number(kMass, physical(positive("kg", "give the link's mass in kg")));
+  } else {
+    blanks.emplace_back(kMass);
+  }
+  if (link.has(kCentreOfMass)) {
+    joint.centre_of_mass_m = vector_of(link, kCentreOfMass, physical(any_number("m")));
+  } else {
+    blanks.emplace_back(kCentreOfMass);
+  }
   joint.inertia_kg_m2 = inertia_of(link);
 }
 
@@ -129,7 +152,7 @@ const std::vector<std::string>& joint_keys() {
   return keys;
 }
 
-RobotJoint read_joint(const TomlTable& table) {
+RobotJoint read_joint(const TomlTable& table, std::vector<std::string>& blanks) {
   RobotJoint result;
   result.name = table.text("name");
   result.joint.type = table.choice("type", {"revolute", "prismatic"}) == 0 ? JointType::kRevolute
@@ -139,7 +162,7 @@ RobotJoint read_joint(const TomlTable& table) {
       table.has("origin_m") ? vector_of(table, "origin_m", physical(any_number("m"))) : kZero;
   result.joint.rotation = rotation_of(table);
   result.source = table.text_or_empty("source");
-  read_link(table, result.joint);
+  read_link(table, result.joint, blanks);
   read_limits(table, result.joint);
   result.encoder = encoder_of(table, result.joint.type);
   if (const auto control = table.optional_table("control", {"kp_per_s2", "kd_per_s"})) {
@@ -151,6 +174,19 @@ RobotJoint read_joint(const TomlTable& table) {
                  "a joint that validate() accepts", "see docs/troubleshooting.md");
   }
   return result;
+}
+
+void refuse_blank(const TomlTable& joint, const std::string& key, std::size_t others) {
+  const std::string more = others == 0 ? ""
+                                       : fmt::format(" (and {} more blank{} in this file)", others,
+                                                     others == 1 ? "" : "s");
+  joint.table("link", link_keys()).refuse(
+      key, "nothing: the key is missing" + more,
+      key == "mass_kg" ? "a finite number > 0, in kg" : "a list of 3 finite numbers, in m",
+      fmt::format(
+          "add `{}` to {}: from CAD, a data sheet or scales; or let `offnominal identify` find "
+          "the links' numbers in recordings",
+          key, joint.path_of("link")));
 }
 
 }  // namespace offnominal::desk

@@ -15,12 +15,11 @@
 
 #include "drives/drive_settings.hpp"
 
-// One robot as the host tools hold it: any number of joints, everything in SI units. It is what a
-// robot file says and nothing else; chain_of() turns it into the fixed-size chain of the core.
+// One robot as the host tools hold it: 1 to kMaxJoints joints, everything in SI units. It is what a
+// robot file says and nothing else; chain_of() turns it into the chain of the core.
 
 namespace offnominal::desk {
 
-inline constexpr int kMaxJoints = 8;
 inline constexpr int kMaxHiddenUnits = 256;
 
 struct Encoder {
@@ -34,6 +33,15 @@ struct RobotJoint {
   double kp = 0;            // 1/s^2, computed torque (paper eq. 29)
   double kd = 0;            // 1/s
   std::string source = {};  // where the numbers come from, free text; empty: not said
+};
+
+// A number of a joint that its file leaves blank (docs/your-own-arm.md): what stands in its place
+// in the description means nothing.
+struct Blank {
+  std::size_t joint = 0;
+  std::string key;  // of its link: "mass_kg" or "centre_of_mass_m"
+
+  friend bool operator==(const Blank&, const Blank&) = default;
 };
 
 // Settings of the on-board estimator (paper section 3).
@@ -90,6 +98,26 @@ struct Channel {
   std::vector<Channel> sum = {};
 };
 
+// A known mass that the robot carries while it is recorded: a point in the last link's frame.
+struct Payload {
+  double mass_kg = 0;
+  std::array<double, 3> place_m{0, 0, 0};
+};
+
+// Which recording it is of: its file as the user names it, or that without its folder.
+struct RecordingPayload {
+  std::string recording;
+  Payload payload;
+};
+
+// What the channel of a joint is of (docs/robot-file.md#channels), and the key that says so.
+enum class ChannelOf : std::uint8_t {
+  kJoint,    // position, velocity, torque: of the joint; a torque as the drive gives it there
+  kMotor,    // motor_position, motor_velocity, motor_torque: of the motor of that number
+  kCurrent,  // motor_current: of that motor
+  kSensor,   // sensor_torque: of a sensor behind the gear, which sees what the link gets
+};
+
 struct ChannelMap {
   Channel time;                                  // t, s; not read where there is a period_s
   std::vector<Channel> more_times = {};          // of the second file of a recording, and so on
@@ -97,9 +125,28 @@ struct ChannelMap {
   std::vector<Channel> position;                 // per joint
   std::vector<std::optional<Channel>> velocity;  // none: derived from the position
   std::vector<Channel> torque;                   // per joint
-  std::map<std::string, Channel> extra;          // name -> channel
+  // Per joint, what these are of; empty: of the joints, all of them. Where there are other sides,
+  // the robot's transmission leads to the joints.
+  std::vector<ChannelOf> position_of = {};
+  std::vector<ChannelOf> velocity_of = {};
+  std::vector<ChannelOf> torque_of = {};
+  // Per joint: of a sensor behind the gear, beside the torque of the drive; empty: of no joint.
+  std::vector<std::optional<Channel>> sensor_torque = {};
+  std::map<std::string, Channel> extra;  // name -> channel
   std::string dbc = {};  // DBC file that decodes a candump log; empty: offnominal's own frames
   bool at_rest = false;  // the recordings are hold maps (log/hold_map.hpp): time is not read
+  std::vector<RecordingPayload> payloads = {};  // of recordings that have a known payload
+};
+
+// Between motors and joints, as many of one as of the other: transmission.hpp has the equations.
+struct TransmissionSettings {
+  // Motor per joint, rad per rad or m: one number each where no joint shares a motor, otherwise a
+  // row for every motor. One of the two is empty.
+  std::vector<double> ratio;
+  std::vector<std::vector<double>> matrix;
+  std::vector<double> offset_rad;       // of the motors where all joints are at 0; empty: none
+  std::vector<double> torque_constant;  // N m/A, per motor; empty: not known
+  std::string source = {};              // where the numbers come from, free text; empty: not said
 };
 
 // An effect that the robot's file knows. `fitted`: its numbers come from a recording, `add` may fit
@@ -118,12 +165,18 @@ struct RobotDescription {
   EstimatorSettings estimator;
   ArmingSettings arming;
   std::optional<BoundSettings> bound;
-  std::optional<DriveSettings> drives;  // none: drive_settings()
+  std::optional<TransmissionSettings> transmission;  // none: everything is said of the joints
+  std::optional<DriveSettings> drives;               // none: drive_settings()
   std::optional<ChannelMap> channels;
+  std::vector<Blank> blanks = {};  // none, but where they were allowed when it was read
   // The text it was read from, so that writing keeps comments and order; null: none. Copies, of
   // which a fit makes thousands, share it.
   std::shared_ptr<const std::string> file_text = nullptr;
 
+  // Of the units of an effect's parameters: motors turn.
+  [[nodiscard]] JointType type_of(const Effect<double>& effect) const {
+    return effect.of_motor ? JointType::kRevolute : joints[effect.joint].joint.type;
+  }
   [[nodiscard]] int joint_count() const { return static_cast<int>(joints.size()); }
   [[nodiscard]] DriveSettings drive_settings() const { return drives.value_or(DriveSettings{}); }
 };

@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "common/number.hpp"
 #include "common/toml_table.hpp"
+#include "drives/drive_table.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/channels.hpp"
 #include "robot/check_mass_matrix.hpp"
@@ -23,16 +24,23 @@
 #include "robot/text_lines.hpp"
 #include "robot/text_with_bound.hpp"
 #include "robot/text_with_effects.hpp"
+#include "robot/transmission.hpp"
 
 namespace offnominal::desk {
 namespace {
 
-const std::vector<std::string> kRootKeys{"format",       "name",    "source",
-                                         "gravity_m_s2", "joint",   "effect",
-                                         "estimator",    "arming",  "uncertainty_bound",
-                                         "drives",       "channels"};
+const std::vector<std::string> kRootKeys{"format",       "name",   "source",
+                                         "gravity_m_s2", "joint",  "effect",
+                                         "estimator",    "arming", "uncertainty_bound",
+                                         "transmission", "drives", "channels"};
 
-std::vector<RobotJoint> read_joints(const TomlTable& root) {
+void refuse_blanks(const std::vector<TomlTable>& joints, const std::vector<Blank>& blanks) {
+  if (blanks.empty()) return;
+  refuse_blank(joints[blanks.front().joint], blanks.front().key, blanks.size() - 1);
+}
+
+std::vector<RobotJoint> read_joints(const TomlTable& root, Blanks allowed,
+                                    std::vector<Blank>& blanks) {
   const std::vector<TomlTable> tables = root.tables("joint", joint_keys());
   if (tables.empty() || tables.size() > static_cast<std::size_t>(kMaxJoints)) {
     root.refuse("joint", std::to_string(tables.size()) + " joints",
@@ -42,17 +50,20 @@ std::vector<RobotJoint> read_joints(const TomlTable& root) {
   std::vector<RobotJoint> joints;
   std::set<std::string> names;
   for (const TomlTable& table : tables) {
-    joints.push_back(read_joint(table));
+    std::vector<std::string> keys;
+    joints.push_back(read_joint(table, keys));
+    for (std::string& key : keys) blanks.push_back({joints.size() - 1, std::move(key)});
     const std::string& name = joints.back().name;
     if (names.insert(name).second) continue;
     table.refuse("name", "the name \"" + name + "\" a second time", "names that differ",
                  "give this joint another name");
   }
+  if (allowed == Blanks::kRefused) refuse_blanks(tables, blanks);
   return joints;
 }
 
-std::vector<RobotEffect> read_effects(const TomlTable& root,
-                                      const std::vector<RobotJoint>& joints) {
+std::vector<RobotEffect> read_effects(const TomlTable& root, const std::vector<RobotJoint>& joints,
+                                      bool has_transmission) {
   const std::vector<TomlTable> tables = root.tables("effect", effect_keys());
   const std::size_t most = kEffectsPerJoint * joints.size();
   if (tables.size() > most) {
@@ -65,7 +76,7 @@ std::vector<RobotEffect> read_effects(const TomlTable& root,
   std::vector<double> friction_per_load(joints.size());
   constexpr double kMost = effects::LoadDependentFriction::kMostFactor;
   for (const TomlTable& table : tables) {
-    effects.push_back(read_effect(table, joints));
+    effects.push_back(read_effect(table, joints, has_transmission));
     double& of_joint = friction_per_load[effects.back().joint];
     of_joint += most_friction_per_load<double>(effects.back());
     if (of_joint <= kMost) continue;
@@ -80,10 +91,8 @@ std::vector<RobotEffect> read_effects(const TomlTable& root,
 // joints.
 void check_initial_weights(const TomlTable& root, const RobotDescription& robot) {
   const EstimatorSettings& settings = robot.estimator;
-  const double norm = with_joint_count(robot.joint_count(), [&settings]<int N>() {
-    return std::sqrt(initial_squared_norm<N, kMaxHiddenUnits, double>(
-        settings.seed, settings.hidden_units, settings.initial_weight_range));
-  });
+  const double norm = std::sqrt(initial_squared_norm<kRuntimeJoints, kMaxHiddenUnits, double>(
+      settings.seed, settings.hidden_units, settings.initial_weight_range, robot.joint_count()));
   if (norm < settings.weight_radius) return;
   root.refuse("estimator",
               "initial weights of norm " + shortest(static_cast<double>(static_cast<float>(norm))) +
@@ -94,20 +103,31 @@ void check_initial_weights(const TomlTable& root, const RobotDescription& robot)
 
 void check_delays(const TomlTable& root, const RobotDescription& robot) {
   const double most_s = kMaxDelayTicks * robot.estimator.period_s;
-  const auto delays_s = with_joint_count(robot.joint_count(), [&]<int N>() {
-    const Chain<N, double> chain = chain_of<N, double>(robot);
-    std::vector<double> of_joints;
-    for (std::size_t i = 0; i < chain.joints.size(); ++i) {
-      of_joints.push_back(delay_of_joint(chain, i));
-    }
-    return of_joints;
-  });
-  for (std::size_t i = 0; i < delays_s.size(); ++i) {
-    if (delays_s[i] <= most_s) continue;
+  const auto chain = chain_of<kRuntimeJoints, double>(robot);
+  for (std::size_t i = 0; i < chain.joints.size(); ++i) {
+    const double delay_s = delay_of_joint(chain, i);
+    if (delay_s <= most_s) continue;
     root.refuse(
-        "effect", fmt::format("a delay of {:g} s on joint {}", delays_s[i], i + 1),
+        "effect", fmt::format("a delay of {:g} s on joint {}", delay_s, i + 1),
         fmt::format("at most {:g} s, {} ticks of estimator.period_s", most_s, kMaxDelayTicks),
         "correct the delay of time_delay, or estimator.period_s");
+  }
+}
+
+// A protocol that scales every axis by itself has no joint for the axes of motors that joints
+// share.
+void check_axes(const TomlTable& root, const RobotDescription& robot) {
+  if (!robot.transmission || protocol_of(*robot.drives).joint_keys.empty()) return;
+  const std::vector<std::size_t> groups = coupled_groups(*robot.transmission);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (groups[i] == i) continue;
+    root.refuse(
+        "drives",
+        fmt::format("{}, whose axes move one joint each, beside joints {} and {} that share "
+                    "motors",
+                    protocol_of(*robot.drives).name, groups[i] + 1, i + 1),
+        "drives whose frames are of joints, as `protected` has them",
+        "leave [drives] out where the file is for recordings only");
   }
 }
 
@@ -145,7 +165,23 @@ std::optional<std::string> text_with_changes(const RobotDescription& robot,
 
 }  // namespace
 
+void require_carried(const RobotDescription& robot, const std::string& file,
+                     const std::string& who) {
+  for (const RobotEffect& effect : robot.effects) {
+    if (chain_may_have(effect.kind)) continue;
+    throw InputError(
+        {.file = file,
+         .place = "effect",
+         .found = fmt::format("{} on joint {}, which {} cannot carry", info_of(effect.kind)->name,
+                              effect.joint + 1, who),
+         .allowed = "effects of rigid transmissions",
+         .mend = "remove it from this file, and keep it in the one that compare, add and explain "
+                 "are given"});
+  }
+}
+
 void require_bound(const RobotDescription& robot, const std::string& file) {
+  require_carried(robot, file);
   if (robot.bound) return;
   throw InputError({.file = file,
                     .place = "uncertainty_bound",
@@ -155,7 +191,7 @@ void require_bound(const RobotDescription& robot, const std::string& file) {
                             "without a bound there is no threshold"});
 }
 
-RobotDescription parse_robot(std::string_view text, const std::string& file) {
+RobotDescription parse_robot(std::string_view text, const std::string& file, Blanks blanks) {
   const toml::table document = parse_toml(text, file);
   const TomlTable root(file, "", document, kRootKeys);
   if (root.integer("format", 1, 1'000'000) != kRobotFileFormat) {
@@ -168,8 +204,11 @@ RobotDescription parse_robot(std::string_view text, const std::string& file) {
   const std::vector<double> gravity =
       root.numbers("gravity_m_s2", physical(any_number("m/s^2")), 3, 3);
   robot.gravity_m_s2 = {gravity[0], gravity[1], gravity[2]};
-  robot.joints = read_joints(root);
-  robot.effects = read_effects(root, robot.joints);
+  robot.joints = read_joints(root, blanks, robot.blanks);
+  if (const auto table = root.optional_table("transmission", transmission_keys())) {
+    robot.transmission = read_transmission(*table, robot.joint_count());
+  }
+  robot.effects = read_effects(root, robot.joints, robot.transmission.has_value());
   check_mass_matrix(root, robot);
   if (const auto table = root.optional_table("estimator", estimator_keys())) {
     robot.estimator = read_estimator(*table);
@@ -184,20 +223,27 @@ RobotDescription parse_robot(std::string_view text, const std::string& file) {
   }
   if (const toml::table* table = root.raw_table("drives")) {
     robot.drives = read_drives(*table, file, robot.joint_count(), robot.estimator.period_s);
+    check_axes(root, robot);
   }
   if (const toml::table* table = root.raw_table("channels")) {
     robot.channels = parse_channels(*table, file, robot.joint_count());
+    check_sides(*robot.channels, robot.transmission, file);
   }
   robot.file_text = std::make_shared<const std::string>(text);
   return robot;
 }
 
-RobotDescription read_robot_file(const std::filesystem::path& path) {
-  return parse_robot(read_text_file(path), path.string());
+RobotDescription read_robot_file(const std::filesystem::path& path, Blanks blanks) {
+  return parse_robot(read_text_file(path), path.string(), blanks);
 }
 
 void write_robot_file(const RobotDescription& robot, const std::filesystem::path& path,
                       Existing existing) {
+  if (!robot.blanks.empty()) {
+    throw InputError({path.string(), fmt::format("joint {}", robot.blanks[0].joint + 1),
+                      "a blank for link." + robot.blanks[0].key, "a number",
+                      "a robot with blanks is not written again: fill them in before"});
+  }
   const std::string plain = robot_text(robot);
   static_cast<void>(parse_robot(plain, path.string() + " (to be written)"));
   const auto as_it_was = text_with_changes(robot, path.string());

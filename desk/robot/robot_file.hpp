@@ -14,16 +14,29 @@ namespace offnominal::desk {
 
 inline constexpr int kRobotFileFormat = 1;
 
+/// Whether numbers that torques depend on may be missing: a joint's mass and centre of mass, as
+/// `offnominal new` leaves them.
+enum class Blanks { kRefused, kAllowed };
+
 /// Reads a robot file. Throws InputError with file, line, key path, what was found, what is allowed
 /// and how to mend it at the first thing that is wrong; unknown keys are wrong. A description that
-/// comes back is accepted by the core's validate().
-[[nodiscard]] RobotDescription read_robot_file(const std::filesystem::path& path);
+/// comes back is accepted by the core's validate(). Where blanks are refused, the message names the
+/// first and says how many more there are; where they are allowed, the description lists them.
+[[nodiscard]] RobotDescription read_robot_file(const std::filesystem::path& path,
+                                               Blanks blanks = Blanks::kRefused);
 
 /// The same for a text; `file` names it in messages.
-[[nodiscard]] RobotDescription parse_robot(std::string_view text, const std::string& file);
+[[nodiscard]] RobotDescription parse_robot(std::string_view text, const std::string& file,
+                                           Blanks blanks = Blanks::kRefused);
 
-/// Throws InputError, with `file` in it, where the robot has no uncertainty bound: without one
-/// there is no threshold.
+/// Throws InputError, with `file` in it, where `who` ("the on-board monitor") would have to leave
+/// an effect of the file out: one that no chain of the core can have, of a transmission that is not
+/// rigid.
+void require_carried(const RobotDescription& robot, const std::string& file,
+                     const std::string& who = "the on-board monitor");
+
+/// Throws InputError, with `file` in it, where the robot has no uncertainty bound, without which
+/// there is no threshold, or as require_carried(): what runs the monitor needs both.
 void require_bound(const RobotDescription& robot, const std::string& file);
 
 /// The text of a robot file. Numbers have as many digits as it takes to get them back to the bit:
@@ -34,8 +47,8 @@ void require_bound(const RobotDescription& robot, const std::string& file);
 /// bound were changed since `robot` was
 /// read, every other line stays as it was, comments and order included; otherwise robot_text() is
 /// written. Throws InputError, nothing written, when the text would not be read again (a robot that
-/// was changed into a wrong one), when `path` exists and `existing` refuses that, or when it cannot
-/// be written.
+/// was changed into a wrong one, or has blanks), when `path` exists and `existing` refuses that, or
+/// when it cannot be written.
 void write_robot_file(const RobotDescription& robot, const std::filesystem::path& path,
                       Existing existing = Existing::kRefuse);
 

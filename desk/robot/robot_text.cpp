@@ -9,6 +9,7 @@
 #include "drives/drive_table.hpp"
 #include "robot/bound_text.hpp"
 #include "robot/channel_text.hpp"
+#include "robot/channels.hpp"
 #include "robot/effect_text.hpp"
 #include "robot/read_joint.hpp"
 #include "robot/robot_file.hpp"
@@ -231,22 +232,77 @@ std::string channel_text(const Channel& channel) {
   return text + "}";
 }
 
-std::string channels_value(const ChannelMap& channels, std::string_view key) {
-  if (key == "time") {
-    if (channels.more_times.empty()) return channel_text(channels.time);
-    return "[" + channel_text(channels.time) + ", " + list_of(channels.more_times, channel_text) +
-           "]";
+std::string payload_text(const RecordingPayload& one) {
+  const auto number = [](double value) { return shortest_real(value); };
+  return "{recording = " + quoted(one.recording) +
+         ", mass_kg = " + shortest_real(one.payload.mass_kg) + ", place_m = [" +
+         list_of(one.payload.place_m, number) + "]}";
+}
+
+using OptionalChannels = std::vector<std::optional<Channel>>;
+
+std::string channel_list(const OptionalChannels& channels) {
+  return "[" +
+         list_of(channels,
+                 [](const auto& channel) {
+                   return channel ? channel_text(*channel) : std::string("\"\"");
+                 }) +
+         "]";
+}
+
+// Key and list for each side that is there; those of the joints first, also where there is nothing.
+void add_sides(const OptionalChannels& channels, const std::vector<ChannelOf>& of,
+               std::string_view quantity, std::vector<std::string>& lines) {
+  for (const ChannelOf side : {ChannelOf::kJoint, ChannelOf::kMotor, ChannelOf::kCurrent}) {
+    OptionalChannels mine(channels.size());
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      if (side_at(of, i) == side) mine[i] = channels[i];
+    }
+    const bool none = std::none_of(mine.begin(), mine.end(), [](const auto& c) { return !!c; });
+    const bool of_joints = side == ChannelOf::kJoint && of.empty();
+    if (none && !of_joints) continue;
+    lines.push_back(channel_key(quantity, side) + " = " + channel_list(mine));
   }
-  if (key == "position") return "[" + list_of(channels.position, channel_text) + "]";
-  if (key == "torque") return "[" + list_of(channels.torque, channel_text) + "]";
-  const auto text = [](const auto& channel) {
-    return channel ? channel_text(*channel) : std::string("\"\"");
+}
+
+std::string time_value(const ChannelMap& channels) {
+  if (channels.more_times.empty()) return channel_text(channels.time);
+  return "[" + channel_text(channels.time) + ", " + list_of(channels.more_times, channel_text) +
+         "]";
+}
+
+// Of all joints that have one, whether beside the drive's torque or alone.
+void add_sensors(const ChannelMap& channels, std::vector<std::string>& lines) {
+  OptionalChannels sensors = channels.sensor_torque;
+  sensors.resize(channels.torque.size());
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (side_at(channels.torque_of, i) == ChannelOf::kSensor) sensors[i] = channels.torque[i];
+  }
+  if (std::any_of(sensors.begin(), sensors.end(), [](const auto& c) { return !!c; })) {
+    lines.push_back(channel_key("torque", ChannelOf::kSensor) + " = " + channel_list(sensors));
+  }
+}
+
+OptionalChannels as_optional(const std::vector<Channel>& channels) {
+  return {channels.begin(), channels.end()};
+}
+
+void write_transmission(Writer& out, const TransmissionSettings& settings) {
+  out.table("[transmission]");
+  const auto any = [&](const char* name, const std::vector<double>& values) {
+    if (!values.empty()) out.value(name, list(values));
   };
-  return "[" + list_of(channels.velocity, text) + "]";
+  any("ratio", settings.ratio);
+  if (!settings.matrix.empty()) out.value("matrix", rows(settings.matrix));
+  any("offset_rad", settings.offset_rad);
+  any("torque_constant", settings.torque_constant);
+  out.text_if_any("source", settings.source);
 }
 
 void write_channels(Writer& out, const ChannelMap& channels) {
-  const auto write = [&](const char* key) { out.value(key, channels_value(channels, key)); };
+  const auto write = [&](const char* quantity) {
+    for (const std::string& line : channel_lines(channels, quantity)) out.line(line);
+  };
   out.table("[channels]");
   if (channels.at_rest) {
     out.value("at_rest", "true");
@@ -264,6 +320,9 @@ void write_channels(Writer& out, const ChannelMap& channels) {
   if (!channels.dbc.empty()) {
     out.value("dbc", quoted(std::filesystem::absolute(channels.dbc).string()));
   }
+  if (!channels.payloads.empty()) {
+    out.value("payload", "[" + list_of(channels.payloads, payload_text) + "]");
+  }
   if (channels.extra.empty()) return;
   out.table("[channels.extra]");
   for (const auto& [name, channel] : channels.extra) out.value(key(name), channel_text(channel));
@@ -271,8 +330,19 @@ void write_channels(Writer& out, const ChannelMap& channels) {
 
 }  // namespace
 
-std::string channel_line(const ChannelMap& channels, std::string_view key) {
-  return std::string(key) + " = " + channels_value(channels, key);
+std::vector<std::string> channel_lines(const ChannelMap& channels, std::string_view quantity) {
+  std::vector<std::string> lines;
+  if (quantity == "time") {
+    lines.push_back("time = " + time_value(channels));
+  } else if (quantity == "position") {
+    add_sides(as_optional(channels.position), channels.position_of, quantity, lines);
+  } else if (quantity == "velocity") {
+    add_sides(channels.velocity, channels.velocity_of, quantity, lines);
+  } else {
+    add_sides(as_optional(channels.torque), channels.torque_of, quantity, lines);
+    add_sensors(channels, lines);
+  }
+  return lines;
 }
 
 std::string effect_text(const RobotEffect& effect) {
@@ -281,7 +351,7 @@ std::string effect_text(const RobotEffect& effect) {
   Writer out;
   out.line("[[effect]]");
   out.value("kind", quoted(info->name));
-  out.value("joint", std::to_string(effect.joint + 1));
+  out.value(effect.of_motor ? "motor" : "joint", std::to_string(effect.joint + 1));
   for (std::size_t i = 0; i < info->parameters.size(); ++i) {
     const bool whole = info->parameters[i].quantity == Quantity::kJointNumber;
     out.value(info->parameters[i].name,
@@ -290,6 +360,10 @@ std::string effect_text(const RobotEffect& effect) {
   if (effect.fitted) out.value("fitted", "true");
   out.text_if_any("source", effect.source);
   return out.text();
+}
+
+std::string place_of(const Effect<double>& effect) {
+  return (effect.of_motor ? "motor " : "joint ") + std::to_string(effect.joint + 1);
 }
 
 std::string bound_text(const BoundSettings& bound) {
@@ -310,6 +384,7 @@ std::string robot_text(const RobotDescription& robot) {
   write_estimator(out, robot.estimator);
   write_arming(out, robot.arming);
   if (robot.bound) out.block(bound_text(*robot.bound));
+  if (robot.transmission) write_transmission(out, *robot.transmission);
   if (robot.drives) write_drives(out, *robot.drives);
   if (robot.channels) write_channels(out, *robot.channels);
   return out.text();

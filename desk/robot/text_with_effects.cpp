@@ -39,7 +39,8 @@ std::size_t place_for_first_effect(const Lines& lines) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::string_view line = trimmed(lines[i]);
     if (!line.starts_with("[estimator]") && !line.starts_with("[uncertainty_bound]") &&
-        !line.starts_with("[drives]") && !line.starts_with("[channels]")) {
+        !line.starts_with("[transmission]") && !line.starts_with("[drives]") &&
+        !line.starts_with("[channels]")) {
       continue;
     }
     while (i > 0 && is_comment(lines[i - 1])) --i;

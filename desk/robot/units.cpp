@@ -74,6 +74,14 @@ bool is_unit_of(const SourceUnit& unit, ChannelQuantity quantity) {
       return of == Dimension::kAngularVelocity || of == Dimension::kVelocity;
     case ChannelQuantity::kTorque:
       return of == Dimension::kTorque || of == Dimension::kForce;
+    case ChannelQuantity::kMotorPosition:
+      return of == Dimension::kAngle;
+    case ChannelQuantity::kMotorVelocity:
+      return of == Dimension::kAngularVelocity;
+    case ChannelQuantity::kMotorTorque:
+      return of == Dimension::kTorque;
+    case ChannelQuantity::kCurrent:
+      return of == Dimension::kCurrent;
   }
   return false;
 }
@@ -88,6 +96,14 @@ const char* units_of(ChannelQuantity quantity) {
       return "rad/s, mrad/s, deg/s, rpm, turns/s, m/s, cm/s, mm/s, m/min, mm/min";
     case ChannelQuantity::kTorque:
       return "Nm, kNm, Ncm, mNm, uNm, N, kN, mN";
+    case ChannelQuantity::kMotorPosition:
+      return "rad, mrad, deg, turns";
+    case ChannelQuantity::kMotorVelocity:
+      return "rad/s, mrad/s, deg/s, rpm, turns/s";
+    case ChannelQuantity::kMotorTorque:
+      return "Nm, kNm, Ncm, mNm, uNm";
+    case ChannelQuantity::kCurrent:
+      return "A, mA";
   }
   return "";
 }

@@ -27,7 +27,16 @@ struct SourceUnit {
 };
 
 /// What a channel of a recording becomes.
-enum class ChannelQuantity : std::uint8_t { kTime, kPosition, kVelocity, kTorque };
+enum class ChannelQuantity : std::uint8_t {
+  kTime,
+  kPosition,  // of a joint, as the next two
+  kVelocity,
+  kTorque,
+  kMotorPosition,  // motors turn
+  kMotorVelocity,
+  kMotorTorque,
+  kCurrent,
+};
 
 /// Whether no more than the unit has to be said to have the quantity in SI units: "deg" of a
 /// position, and not "A" of a torque.

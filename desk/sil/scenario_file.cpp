@@ -102,7 +102,7 @@ Scenario read_scenario(const std::filesystem::path& path,
                    "none: its friction and disturbance are the paper's",
                    "hide it in the plant of a robot file: --plant FILE");
     }
-    scenario.hidden.push_back(read_effect(table, plant->joints));
+    scenario.hidden.push_back(read_effect(table, plant->joints, plant->transmission.has_value()));
   }
   return scenario;
 }

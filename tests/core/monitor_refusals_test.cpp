@@ -214,5 +214,44 @@ INSTANTIATE_TEST_SUITE_P(
                 Status::kInvalidLimit}),
     [](const testing::TestParamInfo<Refusal>& tested) { return tested.param.name; });
 
+// GIVEN joints whose number is known at run time only WHEN something is of another number of them
+// THEN it is refused.
+TEST(MonitorAtRunTime, RefusesWhatIsOfAnotherNumberOfJoints) {
+  using Watch = Monitor<kRuntimeJoints, 4, float>;
+  constexpr std::size_t kJoints = 3;
+  Watch::Config config;
+  config.estimator.hidden_units = 4;
+  EXPECT_EQ(validate<4>(config), Status::kWrongJointCount) << "no joint";
+  config.chain.joints.assign(kJoints, {});
+  for (Joint<float>& joint : config.chain.joints) joint.inertia_kg_m2 = {1, 1, 1, 0, 0, 0};
+  EXPECT_EQ(validate<4>(config), Status::kWrongJointCount) << "limits";
+  config.max_compensation.assign(kJoints, 1);
+  EXPECT_EQ(validate<4>(config), Status::kOk);
+  config.bound.kind = BoundKind::kScaledNorm;
+  config.bound.matrix.assign(kJoints * kJoints - 1, 1);
+  EXPECT_EQ(validate<4>(config), Status::kWrongJointCount) << "matrix";
+  config.bound.kind = BoundKind::kTable;
+  config.bound.points = 1;
+  config.bound.value[0] = 1;
+  config.bound.joint = kJoints;
+  EXPECT_EQ(validate<4>(config), Status::kInvalidBound);
+  config.bound.joint = kJoints - 1;
+
+  Watch monitor;
+  ASSERT_EQ(Watch::create(config, monitor), Status::kOk);
+  Watch::State state;
+  Watch::Output output;
+  Watch::Sample sample;
+  EXPECT_EQ(monitor.reset(sample, state), Status::kWrongJointCount);
+  size_for(kJoints, sample.q, sample.dq, sample.tau);
+  EXPECT_EQ(monitor.reset(sample, state), Status::kOk);
+  for (auto* values : {&sample.q, &sample.dq, &sample.tau}) {
+    values->setZero(kJoints + 1);
+    EXPECT_EQ(monitor.step(sample, state, output), Status::kWrongJointCount);
+    values->setZero(kJoints);
+  }
+  EXPECT_EQ(monitor.step(sample, state, output), Status::kOk);
+}
+
 }  // namespace
 }  // namespace offnominal::test

@@ -6,7 +6,7 @@
 cmake_minimum_required(VERSION 3.22)
 
 separate_arguments(flags UNIX_COMMAND "${FLAGS}")
-set(includes "-I${ROOT}/core/include" "-I${ROOT}/hal/include" "-I${ROOT}/targets/include" -isystem "${EIGEN}")
+set(includes "-I${ROOT}/core/include" "-I${ROOT}/core/joint_count" "-I${ROOT}/hal/include" "-I${ROOT}/targets/include" -isystem "${EIGEN}")
 file(MAKE_DIRECTORY "${WORK}")
 execute_process(
   COMMAND ${LAUNCHER} "${COMPILER}" -std=c++20 -O2 -DNDEBUG -Wfatal-errors ${flags} ${includes} -c

@@ -22,10 +22,15 @@ struct Size {
   using Scalar = Type;
 };
 
+// Of joints whose number is known at run time only.
+constexpr std::size_t kJointsAtRunTime = 7;
+
 template <int N, typename Scalar>
 MonitorConfig<N, Scalar> config() {
   MonitorConfig<N, Scalar> config;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+  size_for(kJointsAtRunTime, config.chain.joints, config.max_compensation);
+  size_for(kJointsAtRunTime * kJointsAtRunTime, config.bound.matrix);
+  for (std::size_t i = 0; i < config.chain.joints.size(); ++i) {
     auto& joint = config.chain.joints[i];
     // One prismatic joint, then axes in turn.
     joint.type = i == 1 ? JointType::kPrismatic : JointType::kRevolute;
@@ -59,7 +64,7 @@ template <typename S>
 class HeapCalls : public ::testing::Test {};
 
 using Sizes = ::testing::Types<Size<2, 35, float>, Size<2, 35, double>, Size<6, 35, float>,
-                               Size<7, 64, float>>;
+                               Size<7, 64, float>, Size<kRuntimeJoints, 35, double>>;
 TYPED_TEST_SUITE(HeapCalls, Sizes);
 
 TYPED_TEST(HeapCalls, AreNoneInAMillionTicksHealthyAndAdapting) {
@@ -69,9 +74,12 @@ TYPED_TEST(HeapCalls, AreNoneInAMillionTicksHealthyAndAdapting) {
   const auto controller = std::make_unique<Controller<kJoints, kHidden, Scalar>>();
   const MonitorConfig<kJoints, Scalar> settings = config<kJoints, Scalar>();
   ComputedTorqueGains<kJoints, Scalar> gains;
+  size_for(kJointsAtRunTime, gains.kp, gains.kd);
   gains.kp.fill(100);
   gains.kd.fill(20);
-  const Vector<kJoints, Scalar> q = Vector<kJoints, Scalar>::Constant(Scalar(0.1));
+  Vector<kJoints, Scalar> q;
+  size_for(kJointsAtRunTime, q);
+  q.fill(Scalar(0.1));
 
   const std::uint64_t before = bench::heap_calls();
   const Status started = start(settings, gains, *controller);

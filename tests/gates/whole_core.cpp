@@ -14,7 +14,8 @@ template <int N, int L, typename Scalar>
 JointSample<N, Scalar> sample_at(const Controller<N, L, Scalar>& controller, Scalar t,
                                  Scalar fault_nm) {
   Reference<N, Scalar> reference;
-  for (Eigen::Index i = 0; i < N; ++i) {
+  size_for(controller.monitor.model().bodies.size(), reference.q, reference.dq, reference.ddq);
+  for (Eigen::Index i = 0; i < reference.q.size(); ++i) {
     const Scalar w = Scalar(2) + static_cast<Scalar>(i) / Scalar(4);
     reference.q[i] = Scalar(0.2) * (Scalar(1) - std::cos(w * t));
     reference.dq[i] = Scalar(0.2) * w * std::sin(w * t);
@@ -50,7 +51,7 @@ Status run(Controller<N, L, Scalar>& controller, std::uint32_t ticks, Scalar fau
     const JointSample<N, Scalar> sample = sample_at(controller, t, fault_nm);
     if (tick % 1000 == 999) {
       JointSample<N, Scalar> spoilt = sample;
-      spoilt.dq[N - 1] = std::numeric_limits<Scalar>::quiet_NaN();
+      spoilt.dq[spoilt.dq.size() - 1] = std::numeric_limits<Scalar>::quiet_NaN();
       const Status refused = controller.monitor.step(spoilt, controller.state, controller.output);
       if (refused != Status::kNonFiniteVelocity) return refused;
     }
@@ -74,7 +75,7 @@ double call_the_rest(const Controller<N, L, Scalar>& controller, const Vector<N,
   sum += detector.latched ? 1 : 0;
 
   FaultClass fault;
-  fault.margin = margin_for_constant_signs(4, N);
+  fault.margin = margin_for_constant_signs(4, static_cast<int>(model.bodies.size()));
   double delay_s = 0;
   if (detection_delay_bound(fault, delay_s) == Status::kOk) sum += delay_s;
 
@@ -98,6 +99,7 @@ OFFNOMINAL_GATE(2, 35, float)
 OFFNOMINAL_GATE(2, 35, double)
 OFFNOMINAL_GATE(6, 35, float)
 OFFNOMINAL_GATE(7, 64, float)
+OFFNOMINAL_GATE(kRuntimeJoints, 35, double)
 
 }  // namespace offnominal::gates
 

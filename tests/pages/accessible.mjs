@@ -96,7 +96,7 @@ function drawingFaults() {
     return over(`rgb(${r},${g},${b})`, opacity / 255, surface);
   };
   const faults = [];
-  for (const { block, chart, host, option } of figures) {
+  for (const { block, chart, host, option } of shownFigures()) {
     const canvas = host.querySelector("canvas");
     const drawn = copyOf(canvas);
     const ratio = canvas.width / canvas.clientWidth;
@@ -167,6 +167,7 @@ function layoutFaults() {
   }
   const names = new Map();
   for (const control of document.querySelectorAll("button, summary")) {
+    if (control.closest("[hidden]") !== null) continue; // of another recording
     names.set(control.textContent, (names.get(control.textContent) ?? 0) + 1);
   }
   for (const [name, times] of names) {
@@ -182,7 +183,7 @@ export async function checkLayout(page, fault) {
 /** Goes through the page by Tab, without a mouse, and uses one chart of each sort that it meets. */
 export async function checkKeyboard(page, fault) {
   const wanted = await page.evaluate(() => {
-    const kStops = "a[href], button, summary, [tabindex='0'], [role=application]";
+    const kStops = "a[href], button, select, summary, [tabindex='0'], [role=application]";
     const shown = [...document.querySelectorAll(kStops)].filter((node) => node.checkVisibility({ visibilityProperty: true }));
     shown.forEach((node, index) => (node.dataset.stop = index));
     document.activeElement.blur();

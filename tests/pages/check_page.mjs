@@ -103,6 +103,7 @@ function observe() {
   });
   const blocks = {};
   for (const node of document.querySelectorAll("[data-block]")) {
+    if (node.closest("[hidden]") !== null) continue; // of another recording
     const canvas = node.querySelector("canvas");
     const box = canvas?.getBoundingClientRect();
     blocks[node.dataset.block] = {
@@ -125,6 +126,8 @@ function observe() {
     heading: document.querySelector("h1")?.textContent,
     verdict: document.getElementById("verdict-words")?.textContent,
     headings: [...document.querySelectorAll("h2")].map((node) => node.textContent),
+    recording: document.getElementById("recording")?.value ?? "",
+    recordings: [...(document.getElementById("recording")?.options ?? [])].map((each) => each.value),
     footer: document.querySelector("footer")?.textContent ?? "",
     blocks,
     overflow: document.documentElement.scrollWidth - document.documentElement.clientWidth,
@@ -173,14 +176,23 @@ function checkPage(data, seen, fault) {
   }
   if (seen.overflow > 0) fault(`the page is ${seen.overflow} pixels wider than the window`);
   let blocks = 0;
-  data.sections.forEach((section, at) =>
+  const named = data.sections.map((each) => each.recording).filter((name) => name !== "");
+  expect("recordings to choose from", seen.recordings.join("|"), [...new Set(named)].join("|"));
+  data.sections.forEach((section, at) => {
+    if (![seen.recording, ""].includes(section.recording)) return;
     section.blocks.forEach((block, i) => {
       checkBlock(block, seen.blocks[`${at}.${i}`], `${at}.${i}`, fault);
       ++blocks;
-    }),
-  );
+    });
+  });
   expect("number of blocks", Object.keys(seen.blocks).length, blocks);
   return blocks;
+}
+
+/** From the last to the first, which is the one that the page opens with. */
+function recordings(data) {
+  const names = data.sections.map((each) => each.recording).filter((name) => name !== "");
+  return [...new Set(names)].reverse();
 }
 
 /** After the page has answered a change of its window. Runs inside the browser. */
@@ -191,9 +203,10 @@ function settled() {
 /** Zooms the charts by their API, as a reader would, so that a fault in redrawing shows. */
 async function exercise(page) {
   await page.evaluate(() => {
-    const groups = figures.map(({ block }) => block.zoom_group || block);
+    const shown = shownFigures();
+    const groups = shown.map(({ block }) => block.zoom_group || block);
     // The others of a group follow their first.
-    const zoomed = figures.filter(
+    const zoomed = shown.filter(
       ({ kind }, index) => kind.cursor !== null && groups.indexOf(groups[index]) === index,
     );
     for (const figure of zoomed) {
@@ -251,6 +264,14 @@ async function check(options, fault) {
       blocks = await checkLook(page, data, options, [width, mode], axeSource, fault);
       // Where tables scroll, they are stops of the Tab key, too.
       if (width === kNarrowest && mode === "light") await checkKeyboard(page, fault);
+    }
+    for (const name of recordings(data)) {
+      await page.selectOption("#recording", name);
+      await page.evaluate(settled);
+      const inRecording = (words) => fault(`recording ${name}: ${words}`);
+      checkPage(data, await page.evaluate(observe), inRecording);
+      await checkDrawings(page, inRecording);
+      await checkLayout(page, inRecording);
     }
     await exercise(page).catch((error) => fault(`zooming and hiding: ${error.message}`));
     await checkPaper(page, axeSource, fault);

@@ -290,6 +290,13 @@ Page sample() {
              "Coulomb friction.",
              Level::kWarn},
         Note{"All numbers of this page are in the JSON that it embeds."}}}};
+  for (const char* name : {"speed_1.csv", "speed_2.csv, 30 to 64 s (held out)"}) {
+    Chart chart = residual_chart(r);
+    chart.title = "Residual of the recording";
+    Section of_one{"Joint 1", name, {chart}};
+    of_one.recording = name;
+    page.sections.push_back(std::move(of_one));
+  }
   page.command_line = "offnominal paper --fault mass_loss --report sample.html";
   return page;
 }

@@ -27,7 +27,7 @@ struct MonitorConfig {
   UncertaintyBound<N, Scalar> bound;
   TorqueSignal torque_signal = TorqueSignal::kSampled;
   // Largest compensating torque per joint, N m or N, >= 0. Zero: report, do not act.
-  std::array<Scalar, static_cast<std::size_t>(N)> max_compensation{};
+  PerJoint<N, Scalar> max_compensation{};
 };
 
 // kOk where every part is usable, otherwise the first fault.
@@ -35,7 +35,9 @@ template <int L, int N, typename Scalar>
 [[nodiscard]] Status validate(const MonitorConfig<N, Scalar>& config) {
   if (const Status status = validate(config.chain); status != Status::kOk) return status;
   if (const Status status = validate<L>(config.estimator); status != Status::kOk) return status;
-  if (const Status status = validate(config.bound); status != Status::kOk) return status;
+  const std::size_t joints = config.chain.joints.size();
+  if (const Status status = validate(config.bound, joints); status != Status::kOk) return status;
+  if (config.max_compensation.size() != joints) return Status::kWrongJointCount;
   for (const Scalar limit : config.max_compensation) {
     if (is_nan(limit) || limit < 0) return Status::kInvalidLimit;
   }
@@ -48,7 +50,7 @@ struct MonitorState {
   bool initialised = false;
   std::uint64_t tick = 0;  // since reset()
   JointSample<N, Scalar> sample;
-  Matrix<N, N, Scalar> inertia_factor = Matrix<N, N, Scalar>::Zero();  // of M(sample.q), lower
+  Matrix<N, N, Scalar> inertia_factor = no_values<Matrix<N, N, Scalar>>();  // of M(sample.q), lower
   EstimatorState<N, L, Scalar> estimator;
   DetectorState<Scalar> detector;
   [[no_unique_address]] typename Memory::template Of<N, Scalar>::State memory{};
@@ -57,11 +59,11 @@ struct MonitorState {
 // What a controller reads after a tick.
 template <int N, typename Scalar>
 struct MonitorOutput {
-  double time_s = 0;                                      // since reset()
-  Vector<N, Scalar> error = Vector<N, Scalar>::Zero();    // e = dq - omega, rad/s or m/s
-  Scalar error_norm{};                                    // |e|
-  Scalar threshold{};                                     // mu, rad/s or m/s
-  Vector<N, Scalar> psi_hat = Vector<N, Scalar>::Zero();  // fault estimate, rad/s^2 or m/s^2
+  double time_s = 0;                               // since reset()
+  Vector<N, Scalar> error = zeros<N, Scalar>();    // e = dq - omega, rad/s or m/s
+  Scalar error_norm{};                             // |e|
+  Scalar threshold{};                              // mu, rad/s or m/s
+  Vector<N, Scalar> psi_hat = zeros<N, Scalar>();  // fault estimate, rad/s^2 or m/s^2
   DetectorState<Scalar> detector;
   CompensatingTorque<N, Scalar> compensation;
 };
@@ -90,7 +92,8 @@ class Monitor {
     monitor.config_ = config;
     monitor.model_ = make_model(config.chain);
     monitor.memory_.prepare(config.chain, monitor.model_, config.estimator.period_s);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+    size_for(config.max_compensation.size(), monitor.max_compensation_);
+    for (std::size_t i = 0; i < config.max_compensation.size(); ++i) {
       monitor.max_compensation_[static_cast<Eigen::Index>(i)] = config.max_compensation[i];
     }
     monitor.ready_ = true;
@@ -159,7 +162,7 @@ class Monitor {
     state.inertia_factor = nominal.factor;
     output.time_s = end_s;
     output.error = state.estimator.error;
-    output.error_norm = state.estimator.error.norm();
+    output.error_norm = detail::length(state.estimator.error);
     output.threshold = state.estimator.mu;
     output.psi_hat = state.estimator.psi_hat;
     update(state.detector, output.error_norm, output.threshold, state.tick, end_s);
@@ -234,7 +237,7 @@ class Monitor {
   Config config_{};
   RigidBodyModel<N, Scalar> model_{};
   [[no_unique_address]] EffectMemoryOf memory_{};
-  Vector<N, Scalar> max_compensation_ = Vector<N, Scalar>::Zero();
+  Vector<N, Scalar> max_compensation_ = zeros<N, Scalar>();
   bool ready_ = false;
 };
 

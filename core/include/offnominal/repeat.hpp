@@ -15,4 +15,15 @@ EIGEN_ALWAYS_INLINE void repeat(const Body& body) {
   all(std::make_integer_sequence<int, Count>{});
 }
 
+// The same, where Count may be no number (kRuntimeJoints, and less): then body(0) .. body(count -
+// 1) in a loop.
+template <int Count, typename Body>
+EIGEN_ALWAYS_INLINE void repeat([[maybe_unused]] Eigen::Index count, const Body& body) {
+  if constexpr (Count < 0) {
+    for (int i = 0; i < static_cast<int>(count); ++i) body(i);
+  } else {
+    repeat<Count>(body);
+  }
+}
+
 }  // namespace offnominal::detail

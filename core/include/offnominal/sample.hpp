@@ -16,9 +16,9 @@ namespace offnominal {
 // before it comes here.
 template <int N, typename Scalar>
 struct JointSample {
-  Vector<N, Scalar> q = Vector<N, Scalar>::Zero();    // rad or m
-  Vector<N, Scalar> dq = Vector<N, Scalar>::Zero();   // rad/s or m/s
-  Vector<N, Scalar> tau = Vector<N, Scalar>::Zero();  // really applied, N m or N, not commanded
+  Vector<N, Scalar> q = zeros<N, Scalar>();    // rad or m
+  Vector<N, Scalar> dq = zeros<N, Scalar>();   // rad/s or m/s
+  Vector<N, Scalar> tau = zeros<N, Scalar>();  // really applied, N m or N, not commanded
 };
 
 // The torque between two samples, which the samples alone do not say.
@@ -34,17 +34,23 @@ enum class TorqueSignal : std::uint8_t {
 inline constexpr double kTorqueMargin = 0.2;
 
 // kOk where every number is finite and inside the joint's limits, a torque within kTorqueMargin
-// beyond; otherwise the first fault, with non-finite numbers before ranges.
+// beyond; otherwise the first fault, with non-finite numbers before ranges, and another number of
+// joints before all.
 template <int N, typename Scalar>
-[[nodiscard]] Status validate(
-    const JointSample<N, Scalar>& sample,
-    const std::array<Joint<Scalar>, static_cast<std::size_t>(N)>& joints) {
+[[nodiscard]] Status validate(const JointSample<N, Scalar>& sample,
+                              const PerJoint<N, Joint<Scalar>>& joints) {
+  if constexpr (N == kRuntimeJoints) {
+    const auto count = static_cast<Eigen::Index>(joints.size());
+    if (sample.q.size() != count || sample.dq.size() != count || sample.tau.size() != count) {
+      return Status::kWrongJointCount;
+    }
+  }
   if (!all_finite(sample.q)) return Status::kNonFinitePosition;
   if (!all_finite(sample.dq)) return Status::kNonFiniteVelocity;
   if (!all_finite(sample.tau)) return Status::kNonFiniteTorque;
   // On this side of the comparison: max_torque may be the largest number that there is.
   constexpr auto kShare = static_cast<Scalar>(1 / (1 + kTorqueMargin));
-  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+  for (std::size_t i = 0; i < joints.size(); ++i) {
     const auto index = static_cast<Eigen::Index>(i);
     const Joint<Scalar>& joint = joints[i];
     if (sample.q[index] < joint.min_position || sample.q[index] > joint.max_position) {

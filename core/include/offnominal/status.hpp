@@ -20,6 +20,7 @@ enum class Status : std::uint8_t {
   kTorqueOutOfRange = 7,
   kNotInitialised = 8,
   kNonFiniteReference = 9,
+  kWrongJointCount = 10,  // or a configuration; where their number is known at run time only
 
   // A configuration that validate() refuses (20..49).
   kInvalidPeriod = 20,
@@ -73,6 +74,8 @@ enum class Status : std::uint8_t {
       return "NotInitialised";
     case Status::kNonFiniteReference:
       return "NonFiniteReference";
+    case Status::kWrongJointCount:
+      return "WrongJointCount";
     case Status::kInvalidPeriod:
       return "InvalidPeriod";
     case Status::kInvalidFilterPole:

@@ -230,7 +230,8 @@ function setZoomBrush(figure, active) {
 
 function watchShift() {
   const zoomed = figures.filter((figure) => figure.kind.cursor !== null);
-  const set = (active) => zoomed.forEach((figure) => setZoomBrush(figure, active));
+  const set = (active) =>
+    zoomed.filter(({ chart }) => chart !== null).forEach((figure) => setZoomBrush(figure, active));
   window.addEventListener("keydown", ({ key, repeat }) => {
     if (key === "Shift" && !repeat) set(false);
   });
@@ -274,8 +275,13 @@ function shareExtents() {
   }
 }
 
+/** Those of the recording that is shown; the others are drawn when they are. */
+function shownFigures() {
+  return figures.filter(({ host }) => host.closest("[hidden]") === null);
+}
+
 function redrawAll() {
-  for (const figure of figures) {
+  for (const figure of shownFigures()) {
     figure.chart?.resize();
     drawFigure(figure);
   }
@@ -283,7 +289,7 @@ function redrawAll() {
 
 function drawAll() {
   shareExtents();
-  figures.forEach(drawFigure);
+  shownFigures().forEach(drawFigure);
   darkPreference.addEventListener("change", redrawAll);
   let width = window.innerWidth;
   window.addEventListener("resize", () => {
@@ -300,14 +306,14 @@ function watchPrinting() {
   const kPaperWidth = 640;
   window.addEventListener("beforeprint", () => {
     document.documentElement.setAttribute("data-print", "");
-    for (const figure of figures) {
+    for (const figure of shownFigures()) {
       figure.chart.resize({ width: kPaperWidth });
       drawFigure(figure);
     }
   });
   window.addEventListener("afterprint", () => {
     document.documentElement.removeAttribute("data-print");
-    for (const figure of figures) figure.chart.resize({ width: "auto" });
+    for (const figure of shownFigures()) figure.chart.resize({ width: "auto" });
     redrawAll();
   });
 }

@@ -116,13 +116,22 @@ function blockElement(block, place) {
   return figureElement(block, place);
 }
 
+/** Charts that zoom together are of one recording. */
+function ofRecording(block, recording) {
+  if (recording === "" || !block.zoom_group) return block;
+  return { ...block, zoom_group: `${block.zoom_group} of ${recording}` };
+}
+
 function sectionElement(section, index) {
   const id = `section-${index + 1}`;
   const root = element("section", { id, "aria-labelledby": `${id}-heading` });
+  if (section.recording !== "") root.dataset.recording = section.recording;
   root.append(element("h2", { id: `${id}-heading` }, section.heading));
   root.append(...paragraphs(section.text));
   const blocks = element("div", { class: "blocks" });
-  section.blocks.forEach((block, at) => blocks.append(blockElement(block, `${index}.${at}`)));
+  section.blocks.forEach((block, at) =>
+    blocks.append(blockElement(ofRecording(block, section.recording), `${index}.${at}`)),
+  );
   if (section.blocks.length > 0) root.append(blocks);
   return root;
 }
@@ -143,7 +152,9 @@ function contentsElement(sections) {
   const list = element("ol");
   sections.forEach((section, index) => {
     const link = element("a", { href: `#section-${index + 1}` }, section.heading);
-    list.append(element("li", {}, link));
+    const item = element("li", {}, link);
+    if (section.recording !== "") item.dataset.recording = section.recording;
+    list.append(item);
   });
   return element("nav", { class: "contents", "aria-label": "Contents" }, list);
 }
@@ -168,11 +179,37 @@ function footerElement(data) {
   return footer;
 }
 
+/** Where the page shows several recordings, the choice of the one that is seen; null where it does not. */
+function recordingChoice(sections) {
+  const names = [...new Set(sections.map((section) => section.recording))].filter((name) => name !== "");
+  if (names.length === 0) return null;
+  const choice = element("select", { id: "recording" });
+  for (const name of names) choice.append(element("option", { value: name }, name));
+  choice.addEventListener("change", () => {
+    showRecording(choice.value);
+    redrawAll();
+  });
+  const label = element("label", { for: "recording" }, "Recording");
+  return element("div", { class: "choice" }, label, choice);
+}
+
+/** Hides all that is of another recording. */
+function showRecording(name) {
+  for (const node of document.querySelectorAll("[data-recording]")) {
+    node.hidden = node.dataset.recording !== name;
+  }
+}
+
 function buildPage() {
   const data = JSON.parse(document.getElementById("data").textContent);
   const main = element("main");
-  data.sections.forEach((section, index) => main.append(sectionElement(section, index)));
+  const choice = recordingChoice(data.sections);
+  data.sections.forEach((section, index) => {
+    if (section.recording !== "" && choice.parentNode === null) main.append(choice);
+    main.append(sectionElement(section, index));
+  });
   document.getElementById("page").append(headerElement(data), main, footerElement(data));
+  if (choice !== null) showRecording(choice.querySelector("select").value);
   drawAll();
   watchWidths();
 }

@@ -249,6 +249,18 @@ Values hide_gear_loss(const HidingPlace& place, const Drawn& drawn) {
   return {friction.driven_loss, friction.driving_loss};
 }
 
+Values hide_gas_spring(const HidingPlace& place, const Drawn& drawn) {
+  GasSpring& spring = joint_of(place).loads.gas_spring;
+  const auto q = place.survey.q.col(place.joint);
+  spring.dead_centre_rad = q.mean() + place.draws.from(drawn[1]);
+  spring.pin_m = place.draws.from(drawn[2]) * spring.foot_m;
+  spring.force_n = 1.0;
+  VectorXd per_newton(q.size());
+  for (Index k = 0; k < q.size(); ++k) per_newton[k] = spring.torque(q[k]);
+  spring.force_n = sized(place, drawn[0], per_newton);
+  return {spring.force_n, spring.pin_m, spring.dead_centre_rad};
+}
+
 }  // namespace
 
 const std::vector<HiddenEffectRow>& hidden_effect_table() {
@@ -386,6 +398,15 @@ const std::vector<HiddenEffectRow>& hidden_effect_table() {
        "",
        {{"driven_loss", ""}, {"driving_loss", ""}},
        hide_gear_loss},
+      // A gas spring; its curve over the position is what a robot file can have of it.
+      {kPositionTorque,
+       "position_torque",
+       {{"share", 0.08, 0.2},
+        {"dead centre from the mean position", -0.5, 0.5, "rad"},
+        {"pin per foot", 0.55, 0.75}},
+       "a gas spring",
+       {{"force", "N"}, {"pin", "m"}, {"dead_centre", "rad"}},
+       hide_gas_spring},
   };
   return rows;
 }

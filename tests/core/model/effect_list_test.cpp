@@ -24,7 +24,7 @@ TEST(EffectList, EveryEffectHasItsOwnNumberAndName) {
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
     EXPECT_EQ(info_of(info.kind), &info);
   }
-  EXPECT_EQ(kinds.size(), 21U);
+  EXPECT_EQ(kinds.size(), 22U);
 }
 
 TEST(EffectList, AChainMayHaveThoseOfTheListAndNoOther) {
@@ -140,7 +140,7 @@ TEST(EffectTraits, SayWhatTheStructsTorqueDoes) {
       }
     });
   }
-  EXPECT_EQ(torques, 11);
+  EXPECT_EQ(torques, 12);
 }
 
 TEST(EffectTraits, OnlyFrictionHasASignOfItsCoefficients) {

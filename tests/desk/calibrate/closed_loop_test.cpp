@@ -38,7 +38,7 @@ RobotDescription with_effects(const RobotDescription& robot, const std::vector<E
   request.joint = joint;
   request.fit_skew = false;  // the monitor will have the recording's
   // The monitor sees what is faster than the usual filter lets pass.
-  const AddResult result = add(robot, request, log, nullptr, {.cutoff_hz = 100, .decimate = {}});
+  const AddResult result = add(robot, request, {log}, {}, {.cutoff_hz = 100, .decimate = {}});
   EXPECT_TRUE(result.objections.empty()) << result.objections.front();
   return result.robot;
 }

@@ -171,6 +171,10 @@ TYPED_TEST(GeneratedModel, HoldsTheHostsConfigurationToTheBit) {
                                            this->robot_.joints[i].encoder.counts_per_unit));
   }
   expect_same_bits(generated.chain.gravity_m_s2, host.chain.gravity_m_s2, "gravity");
+  expect_same_bits(generated.chain.transmission.motor_per_joint,
+                   host.chain.transmission.motor_per_joint, "transmission");
+  expect_same_bits(generated.chain.transmission.motor_offset_rad,
+                   host.chain.transmission.motor_offset_rad, "motor offset");
   expect_same_bits(numbers_in(generated.estimator), numbers_in(host.estimator), "estimator");
   EXPECT_EQ(generated.estimator.seed, host.estimator.seed);
   expect_same_bits(numbers_in(generated.bound), numbers_in(host.bound), "bound");
@@ -202,6 +206,7 @@ TYPED_TEST(GeneratedModel, GivesTheHostsTorqueForEveryEffect) {
   for (std::size_t i = 0; i < host.effects.size; ++i) {
     SCOPED_TRACE(info_of(host.effects.items[i].kind)->name);
     EXPECT_EQ(generated.effects.items[i].kind, host.effects.items[i].kind);
+    EXPECT_EQ(generated.effects.items[i].of_motor, host.effects.items[i].of_motor);
     const auto with_generated = only(generated, i);
     const auto with_host = only(host, i);
     for (int sample = 0; sample < 20; ++sample) {

@@ -48,6 +48,7 @@ class OutputFile : public testing::Test {
         {"explain", {with({"explain", path("a.csv")}, robot), {"--report"}}},
         {"export-mjcf", {{"export-mjcf", path("r.toml")}, {"-o"}}},
         {"export-urdf", {{"export-urdf", path("r.toml")}, {"-o"}}},
+        {"identify", {with({"identify", path("a.csv")}, robot), {"-o", "--report"}}},
         {"import-urdf", {{"import-urdf", path("r.toml")}, {"-o"}}},
         {"look", {{"look", path("r.toml")}, {"--report"}}},
         {"motion", {with({"motion"}, robot), {"-o", "--report"}}},
@@ -100,8 +101,8 @@ TEST_F(OutputFile, OfEveryVerbIsNeverAnInput) {
   for (const auto& [verb, call] : calls()) {
     for (const std::string& option : call.outputs) {
       SCOPED_TRACE(verb + " " + option);
-      // `-o` of those two may write the robot file that they read.
-      if (option == "-o" && (verb == "add" || verb == "calibrate")) continue;
+      // `-o` of those may write the robot file that they read.
+      if (option == "-o" && (verb == "add" || verb == "calibrate" || verb == "identify")) continue;
       for (const char* name : {"r.toml", "link"}) {
         expect_refusal(with(writing(call, option, path(name)), {"--force"}), "which is that of ");
       }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../compare/recorded_arm.hpp"
+#include "common/number.hpp"
 #include "desk/support/run_command.hpp"
 #include "log/csv_text.hpp"
 #include "robot/robot_file.hpp"
@@ -54,7 +55,8 @@ class RecordingsOfVerbs : public testing::Test {
   }
   static nlohmann::json without_name(const std::string& out) {
     nlohmann::json json = nlohmann::json::parse(out);
-    json.erase("log");
+    for (const char* key : {"log", "logs"}) json.erase(key);
+    for (nlohmann::json& one : json["recordings"]) one.erase("log");
     return json;
   }
 
@@ -236,6 +238,85 @@ TEST_F(RecordingsOfVerbs, AndRobotsAreNamedInAdviceAsTheyHaveToBeTyped) {
   EXPECT_THAT(result.out, Not(HasSubstr("ROBOT")));
   const std::string page = test::content_of(folder_ / "page.html");
   EXPECT_THAT(page, HasSubstr("offnominal explain '" + log + "' --robot"));
+}
+
+// One file per speed is the usual friction experiment.
+TEST_F(RecordingsOfVerbs, GivenSeveralThenCompareAndAddTakeThemTogether) {
+  const CommandResult compared = run({"compare", path("a.csv"), path("b.csv"), "--json"});
+  ASSERT_EQ(compared.exit_code, 0) << compared.err;
+  const auto json = nlohmann::json::parse(compared.out);
+  EXPECT_EQ(json.at("logs"), (Words{path("a.csv"), path("b.csv")}));
+  EXPECT_EQ(json.at("recordings").size(), 2U);
+
+  const auto hidden = [](const test::ArmInstant& at) { return Eigen::Vector2d(0, 2 * at.dq[1]); };
+  const Words speeds{"0.4", "0.7", "1.0"};
+  for (const std::string& speed : speeds) {
+    put(folder_ / (speed + ".csv"), csv_text(test::record_arm({.duration_s = 10,
+                                                               .rate_hz = 200,
+                                                               .torque_noise = 0.02,
+                                                               .seed = 7,
+                                                               .amplitude = std::stod(speed)},
+                                                              hidden)));
+  }
+  const CommandResult added =
+      run({"add", "viscous_friction", "--joint", "2", "--log", path("0.4.csv"), path("0.7.csv"),
+           "--holdout", path("1.0.csv"), "-o", path("new.toml"), "--json"});
+  ASSERT_EQ(added.exit_code, 0) << added.err;
+  const auto answer = nlohmann::json::parse(added.out);
+  EXPECT_NEAR(answer.at("parameters").at("coefficient").at("value").get<double>(), 2, 0.05);
+  EXPECT_EQ(answer.at("holdout").at("kind"), "recording");
+  EXPECT_EQ(answer.at("recordings").size(), 3U);
+  EXPECT_TRUE(answer.at("recordings")[2].at("held_out"));
+  EXPECT_THAT(test::content_of(folder_ / "new.toml"),
+              HasSubstr("Fitted to " + path("0.4.csv") + ", " + path("0.7.csv")));
+}
+
+TEST_F(RecordingsOfVerbs, GivenAPayloadThenItIsOfThatRecordingAndSaid) {
+  test::ArmRecording loaded{.duration_s = 6, .rate_hz = 200};
+  loaded.arm.mass2_kg += 0.7;
+  put(folder_ / "loaded.csv", csv_text(test::record_arm(loaded)));
+  const auto& centre = test::arm_description().joints[1].joint.centre_of_mass_m;
+  const std::string place =
+      shortest(centre[0]) + "," + shortest(centre[1]) + "," + shortest(centre[2]);
+  const CommandResult result = run({"compare", path("a.csv"), path("loaded.csv"), "--payload",
+                                    "loaded.csv=0.7@" + place, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_LT(json.at("joints")[1].at("relative_error_percent").get<double>(), 1);
+  EXPECT_EQ(json.at("recordings")[1].at("payload").at("mass_kg"), 0.7);
+  EXPECT_THAT(json.at("recordings")[1].at("remarks").dump(), HasSubstr("with a payload of 0.7 kg"));
+  expect_refusal(run({"compare", path("a.csv"), "--payload", "b.csv=0.7@0,0,0"}),
+                 "--payload: found a payload of b.csv; allowed: one of the recordings");
+  expect_refusal(run({"replay", path("a.csv"), "--payload", "a.csv=0.7"}), "LOG=KG@X,Y,Z");
+}
+
+TEST_F(RecordingsOfVerbs, GivenOneTwiceThenCompareRefusesIt) {
+  expect_refusal(run({"compare", path("a.csv"), path("a.csv")}), "recordings that differ");
+  expect_refusal(run({"compare", path("a.csv"), (folder_ / "." / "a.csv").string()}),
+                 "recordings that differ");
+}
+
+TEST_F(RecordingsOfVerbs, GivenOneThatDoesNotFitThenItIsNamed) {
+  put(folder_ / "one.csv", "t,q1,tau1\n0,0,0\n0.01,0,0\n");
+  expect_refusal(run({"compare", path("a.csv"), path("one.csv")}),
+                 "one.csv: columns: found q1 only");
+}
+
+TEST_F(RecordingsOfVerbs, GivenSeveralThenThePageOfExplainShowsEachAndTheHeldOutToo) {
+  for (const char* name : {"u.csv", "v.csv", "w.csv"}) {
+    put(folder_ / name, csv_text(test::record_arm({.duration_s = 12,
+                                                   .rate_hz = 200,
+                                                   .torque_noise = 0.05,
+                                                   .amplitude = 0.5 + 0.1 * (name[0] - 't')})));
+  }
+  const CommandResult result =
+      run({"explain", path("u.csv"), path("v.csv"), "--holdout", path("w.csv"), "--replays", "0",
+           "--report", path("page.html")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string page = test::content_of(folder_ / "page.html");
+  for (const std::string& name : {path("u.csv"), path("v.csv"), path("w.csv") + " (held out)"}) {
+    EXPECT_THAT(page, HasSubstr("\"recording\":\"" + name + "\""));
+  }
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST(Compare, GivenTheTrueModelThenTheErrorIsTheFiltersOnly) {
     EXPECT_GT(joint.fit_percent, 99.9);
     EXPECT_EQ(joint.unit, "N m");
   }
-  EXPECT_EQ(level_of(comparison), report::Level::kGood);
+  EXPECT_EQ(level_of(together({comparison})), report::Level::kGood);
 }
 
 TEST(Compare, GivenHiddenViscousFrictionThenTheErrorIsItsSizeAndFollowsTheVelocity) {
@@ -41,7 +41,7 @@ TEST(Compare, GivenHiddenViscousFrictionThenTheErrorIsItsSizeAndFollowsTheVeloci
   EXPECT_NEAR(second.relative_error_percent, 100 * second.rms_error / second.rms_torque, 1e-9);
   EXPECT_EQ(second.where.front().variable, "velocity");
   EXPECT_GT(second.where.front().share, 0.97);
-  EXPECT_THAT(verdict_of(comparison), HasSubstr("of the error follows the velocity"));
+  EXPECT_THAT(verdict_of(together({comparison})), HasSubstr("of the error follows the velocity"));
   EXPECT_LT(comparison.joints[0].relative_error_percent, 0.05);
 }
 
@@ -51,8 +51,8 @@ TEST(Compare, GivenNoTorqueAtAllThenThereIsNoPercentage) {
   const Comparison comparison = compare(arm_description(), measure(log, arm_description()));
   EXPECT_TRUE(std::isnan(comparison.joints[0].relative_error_percent));
   EXPECT_TRUE(std::isnan(comparison.joints[0].fit_percent));
-  EXPECT_THAT(verdict_of(comparison), HasSubstr("0 throughout"));
-  const auto json = to_json(comparison, {"log", "robot", ""});
+  EXPECT_THAT(verdict_of(together({comparison})), HasSubstr("0 throughout"));
+  const auto json = to_json(together({comparison}), {{"log"}, "robot", ""});
   EXPECT_EQ(json.dump().find("nan"), std::string::npos);
   EXPECT_NE(json.dump().find("\"relative_error_percent\":null"), std::string::npos);
 }
@@ -68,7 +68,7 @@ TEST(Compare, GivenAConstantTorqueThenTheFitDoesNotExist) {
 TEST(Compare, JsonHasTheFieldsOfTheCommand) {
   const Comparison comparison =
       compare(arm_description(), measure(record_arm({}), arm_description()));
-  const auto json = to_json(comparison, {"arm.csv", "arm.toml", ""});
+  const auto json = to_json(together({comparison}), {{"arm.csv"}, "arm.toml", ""});
   ASSERT_EQ(json.at("joints").size(), 2U);
   const auto& joint = json.at("joints").at(1);
   EXPECT_EQ(joint.at("joint"), 2);
@@ -83,7 +83,8 @@ TEST(Compare, JsonHasTheFieldsOfTheCommand) {
 TEST(Compare, PageCanBeRendered) {
   const Comparison comparison =
       compare(arm_description(), measure(record_arm({}), arm_description()));
-  const report::Page page = page_of(comparison, {"arm.csv", "arm.toml", "offnominal compare"});
+  const report::Page page =
+      page_of(together({comparison}), {{"arm.csv"}, "arm.toml", "offnominal compare"});
   EXPECT_THAT(report::render(page), HasSubstr("arm.csv against arm.toml"));
   EXPECT_EQ(page.sections.size(), 3U);
 }

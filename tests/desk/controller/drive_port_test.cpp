@@ -64,7 +64,7 @@ class BothEnds {
       const bool drives = mode == hal::DriveMode::kTorque;
       commands[j] = {mode, drives ? static_cast<float>(j + 1) : 0.0F};
     }
-    std::array<hal::Frame, DrivePort<kJoints>::kMaxOutgoing> outgoing;
+    std::array<hal::Frame, DrivePort::kMaxOutgoing> outgoing;
     const std::size_t count =
         driver->outgoing(commands, {hal::ControllerState::kArmed, 0, ticks_++}, outgoing);
     carry(std::span<const hal::Frame>(outgoing).first(count), from_controller(settings_),
@@ -105,7 +105,7 @@ class BothEnds {
 
  public:
   std::unique_ptr<sim::Drives> emulated = emulated_drives(settings_, {kJoints, link_});
-  std::unique_ptr<DrivePort<kJoints>> driver = make_drive_port<kJoints>(settings_, link_);
+  std::unique_ptr<DrivePort> driver = make_drive_port(settings_, kJoints, link_);
 };
 
 class EveryProtocol : public testing::TestWithParam<std::size_t> {

@@ -157,13 +157,13 @@ TEST(UrdfRefusal, KnowsABaseThatIsNotAboveTheTip) {
 
 TEST(UrdfRefusal, RefusesAChainOfMoreJointsThanARobotFileHas) {
   std::string text = "<robot name=\"snake\"><link name=\"l0\"/>";
-  for (int i = 1; i <= 9; ++i) {
+  for (int i = 1; i <= kMaxJoints + 1; ++i) {
     const std::string at = std::to_string(i);
     text += "<link name=\"l" + at + "\"/><joint name=\"j" + at +
             "\" type=\"continuous\"><parent link=\"l" + std::to_string(i - 1) +
             "\"/><child link=\"l" + at + "\"/></joint>";
   }
-  EXPECT_THAT(refusal_of(text + "</robot>", {}), HasSubstr("found 9 moving joints between `l0`"));
+  EXPECT_THAT(refusal_of(text + "</robot>", {}), HasSubstr("found 13 moving joints between `l0`"));
 }
 
 TEST(UrdfRefusal, SeesARingThatHangsOnNothing) {

@@ -25,15 +25,14 @@ MotionState random_state(std::mt19937_64& generator, int joints) {
 }
 
 std::vector<double> torque_of(const desk::RobotDescription& robot, const MotionState& state) {
-  return desk::with_joint_count(robot.joint_count(), [&]<int N>() {
-    const auto vector = [](const std::vector<double>& values) {
-      return Vector<N, double>(Eigen::Map<const Vector<N, double>>(values.data()));
-    };
-    const auto model = make_model(desk::chain_of<N, double>(robot));
-    const Vector<N, double> torque =
-        inverse_dynamics(model, vector(state.q), vector(state.dq), vector(state.ddq), 0.0);
-    return std::vector<double>(torque.begin(), torque.end());
-  });
+  using Joints = Vector<kRuntimeJoints, double>;
+  const auto vector = [&](const std::vector<double>& values) {
+    return Joints(Eigen::Map<const Joints>(values.data(), robot.joint_count()));
+  };
+  const auto model = make_model(desk::chain_of<kRuntimeJoints, double>(robot));
+  const Joints torque =
+      inverse_dynamics(model, vector(state.q), vector(state.dq), vector(state.ddq), 0.0);
+  return {torque.begin(), torque.end()};
 }
 
 double deviation(const std::vector<double>& a, const std::vector<double>& b) {

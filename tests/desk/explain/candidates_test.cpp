@@ -65,7 +65,7 @@ TEST(Candidates, GiveTheEffectThatTheirRegressorsAreOf) {
       ++compared;
     }
   }
-  EXPECT_EQ(compared, 24);
+  EXPECT_EQ(compared, 26);
 }
 
 TEST(Candidates, HaveARegressorPerLinearParameterAtEveryPointOfTheirGrids) {

@@ -25,6 +25,7 @@ Explanation nothing_found(double left_to_noise) {
   joint.rms_after = left_to_noise * joint.noise_floor;
   e.joints = {joint};
   e.excitation.resize(1);
+  e.excitation[0].moves = true;
   e.excitation[0].sufficient = true;
   Rejection rejected;
   rejected.what = {EffectKind::kTimeDelay, 0};
@@ -91,6 +92,26 @@ TEST(Verdict, OfAPoorMotionSuspectsNothing) {
   EXPECT_FALSE(e.suspected);
 }
 
+// What shows and cannot be told from the model's own numbers is neither explained nor unknown.
+TEST(Verdict, OfWhatIsNotToldFromTheModelsOwnNumbersIsNotExcited) {
+  Explanation e = nothing_found(5);
+  e.where = {{0, "velocity", 0.7}};
+  e.unsure = {0};
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kNotExcited) << e.words;
+  EXPECT_THAT(e.answers[0].words, HasSubstr("do not tell it from the model's own numbers"));
+}
+
+// A motion that would not show small friction hides nothing that stands out.
+TEST(Verdict, OfARestThatFollowsAVariableIsUnknownWhateverTheMotionWouldNotShow) {
+  Explanation e = nothing_found(5);
+  e.where = {{0, "velocity", 0.7}};
+  e.excitation[0].sufficient = false;
+  e.excitation[0].lack = "coulomb_friction would not show in these recordings";
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kUnknownStateDependent) << e.words;
+}
+
 TEST(Verdict, OfARestThatStandsAboveTheNoiseSaysSoWhateverIsSuspected) {
   Explanation e = suspicious(2);
   e.joints[0].rms_torque = 100;
@@ -136,6 +157,7 @@ TEST(Verdict, IsGivenForEveryJointTheWorstFirst) {
   other.rms_after = 3;
   e.joints.push_back(other);
   e.excitation.resize(2);
+  e.excitation[1].moves = true;
   e.excitation[1].sufficient = true;
   e.where = {{1, "velocity", 0.7}};
   judge_whole(e);
@@ -191,6 +213,27 @@ TEST(Verdict, OfATorqueOverAVariableSaysHowMuchOfItAnEffectIs) {
   EXPECT_EQ(e.verdict, Verdict::kUnknownStateDependent);
   EXPECT_THAT(e.words, HasSubstr("a torque over position"));
   EXPECT_THAT(e.words, HasSubstr("joint_stiffness is 60 %"));
+}
+
+TEST(Verdict, SaysHowFarTheLinksWereLetOffTheFileWhereTheRecordingsSaidSo) {
+  Explanation e = found_with_rest(1.1);
+  e.link_share = 0.6;
+  judge_whole(e);
+  EXPECT_THAT(e.advice, Not(Contains(HasSubstr("--link-share"))));
+  e.link_share_judged = true;
+  judge_whole(e);
+  EXPECT_THAT(e.advice, Contains(AllOf(HasSubstr("within 60 %"), HasSubstr("--link-share"))));
+}
+
+// Friction is there beside it.
+TEST(Verdict, OfATorqueOverAVariableBesideWhatWasFoundNamesBoth) {
+  Explanation e = found_with_rest(5);
+  e.over_variable = {{0, "position", {}, 0.4, {}, {}}};
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kFound);
+  EXPECT_THAT(e.answers[0].words,
+              AllOf(HasSubstr("coulomb_friction"), HasSubstr("a torque over position"),
+                    HasSubstr("beside what was found")));
 }
 
 TEST(Verdict, SaysInOneSentenceThatAFileHasNoFriction) {

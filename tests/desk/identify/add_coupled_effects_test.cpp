@@ -44,7 +44,7 @@ AddResult add_to(const RobotDescription& robot, EffectKind kind, std::size_t joi
   request.effects = {kind};
   request.joint = joint;
   request.inertia_deviation = inertia_deviation;
-  return add(robot, request, record_arm(settings, hidden), nullptr);
+  return add(robot, request, {record_arm(settings, hidden)}, {});
 }
 
 double held_out_fall(const AddResult& result, std::size_t joint) {
@@ -78,7 +78,7 @@ TEST(AddDrift, TimeCountsFromTheFirstSample) {
   request.effects = {EffectKind::kTemperatureDrift};
   request.joint = 1;
   request.set = {{"level", 0}, {"smoothing", 0.01}};
-  const AddResult result = add(arm_description(), request, log, nullptr);
+  const AddResult result = add(arm_description(), request, {log}, {});
   EXPECT_NEAR(value_of(result, EffectKind::kTemperatureDrift, "coefficient"), 2, 0.05);
   EXPECT_NEAR(value_of(result, EffectKind::kTemperatureDrift, "time_constant"), 5, 0.2);
 }
@@ -149,7 +149,7 @@ TEST(AddCoupling, GivenThreeJointsThenTheSourceIsSearchedFor) {
     request.effects = {EffectKind::kJointCoupling};
     request.joint = static_cast<std::size_t>(joint);
     request.set = {{"level", 0}, {"smoothing", 0.01}};
-    const AddResult result = add(slides.robot, request, slides.log, nullptr);
+    const AddResult result = add(slides.robot, request, {slides.log}, {});
     EXPECT_EQ(value_of(result, EffectKind::kJointCoupling, "source_joint"), source + 1);
     EXPECT_NEAR(value_of(result, EffectKind::kJointCoupling, "coefficient"), 1.2, 0.01);
   }
@@ -221,7 +221,7 @@ TEST(AddLoadFriction, GivenTheWrongMassThenRefittingInertiaFindsBoth) {
 
 std::string refusal(const AddRequest& request, const RobotDescription& robot) {
   try {
-    add(robot, request, record_arm({.duration_s = 3}), nullptr);
+    add(robot, request, {record_arm({.duration_s = 3})}, {});
   } catch (const InputError& error) {
     return error.what();
   }

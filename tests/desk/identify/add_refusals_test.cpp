@@ -30,7 +30,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 
 const ArmRecording kUsualArm{.torque_noise = 0.1, .encoder_step = 2 * std::numbers::pi / (1 << 19)};
-const AddNames kNames{"a", {}, "b", "c", "", false};
+const AddNames kNames{{"a"}, {}, "b", "c", "", false};
 
 AddRequest on_joint_2(EffectKind kind) {
   AddRequest request;
@@ -42,7 +42,7 @@ AddRequest on_joint_2(EffectKind kind) {
 
 AddResult fitted(const RobotDescription& robot, EffectKind kind, const HiddenTorque& hidden,
                  const ArmRecording& settings = kUsualArm) {
-  return add(robot, on_joint_2(kind), record_arm(settings, hidden), nullptr);
+  return add(robot, on_joint_2(kind), {record_arm(settings, hidden)}, {});
 }
 
 HiddenTorque viscous(double coefficient) {
@@ -129,7 +129,7 @@ TEST(AddRefuses, GIVEN_a_difference_between_the_directions_THEN_it_is_not_taken_
 
 TEST(AddRefuses, GIVEN_an_error_that_does_not_fall_THEN_only_force_writes_it) {
   const AddRequest request = on_joint_2(EffectKind::kCoggingTorque);
-  const AddResult result = add(arm_description(), request, record_arm(kUsualArm), nullptr);
+  const AddResult result = add(arm_description(), request, {record_arm(kUsualArm)}, {});
   ASSERT_FALSE(result.held_out.at(0).fall() > 0) << "nothing is hidden in this recording";
   EXPECT_THAT(result.objections, IsEmpty());
   EXPECT_THAT(result.doubts, Contains(HasSubstr("the error of joint 2 does not fall")));
@@ -191,8 +191,8 @@ TEST(AddSays, ThatAJointIsChosenAndNotMeasured) {
   request.set = {{"source_joint", 1.0}};
   const AddResult result =
       add(robot, request,
-          record_arm(kUsualArm, [](const ArmInstant& at) { return Vector2d(0, 0.8 * at.dq[0]); }),
-          nullptr);
+          {record_arm(kUsualArm, [](const ArmInstant& at) { return Vector2d(0, 0.8 * at.dq[0]); })},
+          {});
   EXPECT_THAT(text_of(result, request, kNames), Not(HasSubstr("factor of 7")));
 }
 

@@ -46,7 +46,7 @@ AddRequest request_for(std::vector<EffectKind> effects, std::size_t joint) {
 // The effect on the arm without effects, fitted to a recording that hides `hidden`.
 AddResult fit_one(EffectKind kind, std::size_t joint, const HiddenTorque& hidden,
                   const ArmRecording& settings = kUsual) {
-  return add(arm_description(), request_for({kind}, joint), record_arm(settings, hidden), nullptr);
+  return add(arm_description(), request_for({kind}, joint), {record_arm(settings, hidden)}, {});
 }
 
 TEST(Add, GivenHiddenViscousFrictionThenItsCoefficientIsFound) {
@@ -99,13 +99,13 @@ TEST(Add, GivenStribeckFrictionBesideCoulombThenBothAreFound) {
   const AddResult result =
       add(arm_description(),
           request_for({EffectKind::kCoulombFriction, EffectKind::kStribeckFriction}, 0),
-          record_arm(kUsual,
-                     [](const ArmInstant& at) {
-                       const double ratio = at.dq[0] / 0.2;
-                       return Vector2d(
-                           std::tanh(at.dq[0] / 0.01) * (2 + 1.5 * std::exp(-ratio * ratio)), 0);
-                     }),
-          nullptr);
+          {record_arm(kUsual,
+                      [](const ArmInstant& at) {
+                        const double ratio = at.dq[0] / 0.2;
+                        return Vector2d(
+                            std::tanh(at.dq[0] / 0.01) * (2 + 1.5 * std::exp(-ratio * ratio)), 0);
+                      })},
+          {});
   EXPECT_NEAR(value_of(result, EffectKind::kStribeckFriction, "level"), 1.5, 0.1);
   EXPECT_NEAR(value_of(result, EffectKind::kStribeckFriction, "stribeck_velocity"), 0.2, 0.01);
   EXPECT_NEAR(value_of(result, EffectKind::kCoulombFriction, "level"), 2, 0.05);
@@ -141,7 +141,7 @@ TEST(Add, GivenAPayloadThenItsMassIsFoundThroughBothJoints) {
   heavy.arm.mass2_kg = 2.4;
   AddRequest request = request_for({EffectKind::kTipPayload}, 1);
   request.set = {{"x", 1.0}};
-  const AddResult result = add(arm_description(), request, record_arm(heavy), nullptr);
+  const AddResult result = add(arm_description(), request, {record_arm(heavy)}, {});
   EXPECT_NEAR(value_of(result, EffectKind::kTipPayload, "mass"), 0.4, 0.01);
   EXPECT_EQ(result.held_out.size(), 2U);
 }
@@ -161,16 +161,16 @@ TEST(Add, EffectsMarkedFittedAreFittedAgainOthersAreNot) {
   robot.effects = {effect_of(EffectKind::kViscousFriction, 1, {2.0}, true),
                    effect_of(EffectKind::kTorqueOffset, 0, {0.7}, true)};
   const AddRequest request = request_for({EffectKind::kCoulombFriction}, 1);
-  const AddResult again = add(robot, request, measured, nullptr);
+  const AddResult again = add(robot, request, {measured}, {});
   EXPECT_NEAR(again.robot.effects[0].parameters[0], 0.8, 0.02);
   EXPECT_EQ(again.robot.effects[1].parameters[0], 0.7) << "another joint's effect is not touched";
   EXPECT_THAT(again.notes, Contains(HasSubstr("fitted again together with it: viscous_friction")));
 
   AddRequest keep = request;
   keep.keep = true;
-  EXPECT_EQ(add(robot, keep, measured, nullptr).robot.effects[0].parameters[0], 2.0);
+  EXPECT_EQ(add(robot, keep, {measured}, {}).robot.effects[0].parameters[0], 2.0);
   robot.effects[0].fitted = false;
-  EXPECT_EQ(add(robot, request, measured, nullptr).robot.effects[0].parameters[0], 2.0);
+  EXPECT_EQ(add(robot, request, {measured}, {}).robot.effects[0].parameters[0], 2.0);
 }
 
 TEST(Add, WidthsOfOneJointHaveOneValue) {
@@ -181,24 +181,24 @@ TEST(Add, WidthsOfOneJointHaveOneValue) {
   RobotDescription robot = arm_description();
   robot.effects = {effect_of(EffectKind::kCoulombFriction, 1, {2, 0.5}, true)};
   const AddRequest request = request_for({EffectKind::kFrictionAsymmetry}, 1);
-  const AddResult tied = add(robot, request, measured, nullptr);
+  const AddResult tied = add(robot, request, {measured}, {});
   EXPECT_NEAR(tied.robot.effects[0].parameters[1], 0.04, 0.004);
   EXPECT_EQ(tied.robot.effects[0].parameters[1], tied.robot.effects[1].parameters[2]);
   robot.effects[0].fitted = false;
   robot.effects[0].parameters[1] = 0.05;
-  const AddResult taken = add(robot, request, measured, nullptr);
+  const AddResult taken = add(robot, request, {measured}, {});
   EXPECT_EQ(taken.robot.effects[1].parameters[2], 0.05);
 }
 
 TEST(Add, GivenValuesAreNotFitted) {
   AddRequest request = request_for({EffectKind::kCoulombFriction}, 0);
   request.set = {{"coulomb_friction.smoothing", 0.02}};
-  const AddResult result =
-      add(arm_description(), request,
-          record_arm(kUsual, [](const ArmInstant& at) { return Vector2d(2 * sign(at.dq[0]), 0); }),
-          nullptr);
+  const AddResult result = add(
+      arm_description(), request,
+      {record_arm(kUsual, [](const ArmInstant& at) { return Vector2d(2 * sign(at.dq[0]), 0); })},
+      {});
   EXPECT_EQ(value_of(result, EffectKind::kCoulombFriction, "smoothing"), 0.02);
-  const auto json = to_json(result, request, {"a", {}, "b", "c", ""});
+  const auto json = to_json(result, request, {{"a"}, {}, "b", "c", ""});
   EXPECT_EQ(json.at("parameters").at("smoothing").at("fitted"), false);
   EXPECT_TRUE(json.at("parameters").at("smoothing").at("ci95").is_null());
   EXPECT_EQ(json.at("parameters").at("level").at("unit"), "N m");
@@ -211,7 +211,7 @@ TEST(Add, GivenTheWrongMassThenRefittingInertiaFindsBothAndNotRefittingBiases) {
       record_arm(heavy, [](const ArmInstant& at) { return Vector2d(0, 0.8 * at.dq[1]); });
   AddRequest request = request_for({EffectKind::kViscousFriction}, 1);
   request.inertia_deviation = 0.05;
-  const AddResult result = add(arm_description(), request, measured, nullptr);
+  const AddResult result = add(arm_description(), request, {measured}, {});
   ASSERT_EQ(result.fit.links.size(), 2U);
   EXPECT_NEAR(result.fit.links[1].factor, 1.05, 0.002);
   EXPECT_NEAR(result.robot.joints[1].joint.mass_kg, 2.1, 0.005);
@@ -219,7 +219,7 @@ TEST(Add, GivenTheWrongMassThenRefittingInertiaFindsBothAndNotRefittingBiases) {
   EXPECT_THAT(result.robot.joints[1].source, HasSubstr("Mass and inertia times 1.0"));
 
   request.inertia_deviation.reset();
-  const AddResult without = add(arm_description(), request, measured, nullptr);
+  const AddResult without = add(arm_description(), request, {measured}, {});
   EXPECT_TRUE(without.fit.links.empty());
   EXPECT_EQ(without.robot.joints[1].joint.mass_kg, 2.0);
   EXPECT_GT(without.held_out[0].after_rms, 3 * result.held_out[1].after_rms);
@@ -230,18 +230,18 @@ TEST(Add, GivenTwoEffectsThatAreOneThenItObjects) {
   robot.effects = {effect_of(EffectKind::kLinkMass, 1, {0.1}, true)};
   AddRequest request = request_for({EffectKind::kTipPayload}, 1);
   request.set = {{"x", 1.0}};  // the link's own centre of mass
-  const AddResult result = add(robot, request, record_arm(kUsual), nullptr);
+  const AddResult result = add(robot, request, {record_arm(kUsual)}, {});
   EXPECT_THAT(result.objections,
               Contains(HasSubstr("cannot tell tip_payload from link_mass.mass of joint 2")));
   EXPECT_THAT(verdict_of(result, request), HasSubstr("Nothing was written"));
-  EXPECT_TRUE(to_json(result, request, {"a", {}, "b", "c", ""}).at("written").is_null());
+  EXPECT_TRUE(to_json(result, request, {{"a"}, {}, "b", "c", ""}).at("written").is_null());
 }
 
 TEST(Add, GivenAJointThatDoesNotMoveThenItObjects) {
   Log log = record_arm({});
   log.q.col(1).setConstant(0.2);
   const AddResult result =
-      add(arm_description(), request_for({EffectKind::kViscousFriction}, 1), log, nullptr);
+      add(arm_description(), request_for({EffectKind::kViscousFriction}, 1), {log}, {});
   EXPECT_THAT(result.objections, Contains(HasSubstr("has no influence on the torque")));
 }
 
@@ -263,7 +263,7 @@ TEST(Add, OffsetLooksLikeTheLevelOfAnAsymmetryAndTheNotesSaySo) {
 
 TEST(Add, GivenNoEffectInTheDataThenTheVerdictSaysThatTheErrorDoesNotFall) {
   const AddRequest request = request_for({EffectKind::kQuadraticFriction}, 1);
-  const AddResult result = add(arm_description(), request, record_arm(kUsual), nullptr);
+  const AddResult result = add(arm_description(), request, {record_arm(kUsual)}, {});
   EXPECT_LT(std::abs(value_of(result, EffectKind::kQuadraticFriction, "coefficient")), 0.01);
   EXPECT_NE(level_of(result, request), report::Level::kGood);
 }
@@ -275,11 +275,11 @@ TEST(Add, GivenAHoldOutRecordingThenTheErrorIsJudgedOnIt) {
   other.amplitude = 0.7;
   const Log holdout = record_arm(other, hidden);
   const AddResult result = add(arm_description(), request_for({EffectKind::kViscousFriction}, 1),
-                               record_arm(kUsual, hidden), &holdout);
+                               {record_arm(kUsual, hidden)}, {holdout});
   EXPECT_FALSE(result.cross_validated);
   ASSERT_EQ(result.held_out.size(), 2U);
   const Comparison after =
-      compare(result.robot, measure(holdout, arm_description(), result.after.plan));
+      compare(result.robot, measure(holdout, arm_description(), result.after.recordings[0].plan));
   EXPECT_EQ(result.held_out[1].after_percent, after.joints[1].relative_error_percent);
   EXPECT_LT(result.held_out[1].after_percent, 0.2 * result.held_out[1].before_percent);
 }
@@ -288,12 +288,12 @@ TEST(Add, SameInputGivesTheSameBytes) {
   const auto once = [] {
     const AddRequest request =
         request_for({EffectKind::kCoulombFriction, EffectKind::kTorqueOffset}, 0);
-    const AddResult result =
-        add(arm_description(), request,
-            record_arm(kUsual,
-                       [](const ArmInstant& at) { return Vector2d(2 * sign(at.dq[0]) + 0.4, 0); }),
-            nullptr);
-    return to_json(result, request, {"a", {}, "b", "c", ""}).dump();
+    const AddResult result = add(
+        arm_description(), request,
+        {record_arm(kUsual,
+                    [](const ArmInstant& at) { return Vector2d(2 * sign(at.dq[0]) + 0.4, 0); })},
+        {});
+    return to_json(result, request, {{"a"}, {}, "b", "c", ""}).dump();
   };
   EXPECT_EQ(once(), once());
 }
@@ -312,7 +312,7 @@ TEST(Add, IntervalsCoverTheTruthUnderCorrelatedNoise) {
     };
     const Log log = record_arm({.duration_s = 30, .rate_hz = 100}, hidden);
     const AddResult result =
-        add(arm_description(), request_for({EffectKind::kViscousFriction}, 1), log, nullptr);
+        add(arm_description(), request_for({EffectKind::kViscousFriction}, 1), {log}, {});
     const auto& ci95 = result.fit.parameters[0].ci95;
     ASSERT_TRUE(ci95.has_value());
     covered += (*ci95)[0] <= 0.8 && 0.8 <= (*ci95)[1];
@@ -326,7 +326,7 @@ TEST(Add, RequestsThatMakeNoSenseAreRefused) {
   const Log measured = record_arm({.duration_s = 3});
   const auto refuse = [&](const AddRequest& request, const RobotDescription& robot) {
     try {
-      add(robot, request, measured, nullptr);
+      add(robot, request, {measured}, {});
     } catch (const InputError& error) {
       return std::string(error.what());
     }
@@ -360,8 +360,27 @@ TEST(Add, PageCanBeRendered) {
     return Vector2d(0, 0.8 * at.dq[1]);
   });
   const report::Page page =
-      page_of(result, request, {"arm.csv", {}, "arm.toml", "new.toml", "offnominal add"});
+      page_of(result, request, {{"arm.csv"}, {}, "arm.toml", "new.toml", "offnominal add"});
   EXPECT_THAT(report::render(page), HasSubstr("viscous_friction"));
+}
+
+// Two payloads that are known, in two recordings of one friction.
+TEST(Add, GivenRecordingsWithKnownPayloadsThenTheyAreFittedTogetherAsOneRobot) {
+  const HiddenTorque hidden = [](const ArmInstant& at) { return Vector2d(0, 0.8 * at.dq[1]); };
+  ArmRecording loaded = kUsual;
+  loaded.arm.mass2_kg += 0.7;
+  loaded.amplitude = 0.8;
+  std::vector<Log> logs{record_arm(kUsual, hidden), record_arm(loaded, hidden)};
+  const AddRequest request = request_for({EffectKind::kViscousFriction}, 1);
+  const AddResult unsaid = add(arm_description(), request, logs, {});
+  logs[1].payload = Payload{0.7, arm_description().joints[1].joint.centre_of_mass_m};
+  const AddResult result = add(arm_description(), request, logs, {});
+  EXPECT_TRUE(result.objections.empty());
+  EXPECT_NEAR(value_of(result, EffectKind::kViscousFriction, "coefficient"), 0.8, 0.01);
+  EXPECT_LT(result.held_out[0].after_rms, 0.2 * unsaid.held_out[0].after_rms);
+  ASSERT_EQ(result.recordings.size(), 2U);
+  EXPECT_LT(result.recordings[1].joints[1].after_percent, 1);
+  EXPECT_EQ(result.robot.effects.size(), 1U) << "a payload is a recording's, not the robot's";
 }
 
 }  // namespace

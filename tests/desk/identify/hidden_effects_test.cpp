@@ -73,7 +73,7 @@ class HiddenEffectInFile : public ::testing::TestWithParam<Tried> {
     add_request.effects = {kind_named(std::string(hidden::name(GetParam().effect)))};
     add_request.joint = static_cast<std::size_t>(made_.truth.effects[0].joint);
     if (GetParam().refit_inertia) add_request.inertia_deviation = 0.05;
-    result_ = add(nominal_, add_request, to_log(made_.recording), nullptr, FilterRequest{12.0, {}});
+    result_ = add(nominal_, add_request, {to_log(made_.recording)}, {}, FilterRequest{12.0, {}});
     // What was written is what is read.
     improved_ = parse_robot(robot_text(result_.robot), "improved.toml");
   }

@@ -238,7 +238,7 @@ std::string moved(std::string_view text, double by_s, const std::string& interfa
 TEST_F(SilLog, ATimeThatGoesBackIsRefused) {
   record(hal::FrameFormat::kClassic);
   EXPECT_EQ(refusal_of(text), "");
-  EXPECT_THAT(refusal_of(text + moved(text, 2, "vcan0")), testing::HasSubstr("gap"));
+  EXPECT_EQ(refusal_of(text + moved(text, 2, "vcan0")), "");  // a gap: log.gaps
   for (const double back_s : {0.0, 0.9}) {
     EXPECT_THAT(refusal_of(text + moved(text, back_s, "vcan0")),
                 testing::AllOf(testing::HasSubstr("before that of"), testing::HasSubstr("line ")));

@@ -65,12 +65,46 @@ TEST(Sampling, GivenUnevenStepsThenTheLogIsResampledAndSaysSo) {
   EXPECT_EQ(log.dq.rows(), log.sample_count());
 }
 
-TEST(Sampling, GivenAGapThenItsTimeIsSaid) {
+TEST(Sampling, GivenAGapThenItsSamplesAreMarked) {
   VectorXd t = VectorXd::LinSpaced(101, 0, 1);
   t.tail(50).array() += 0.2;
   Log log = log_of(t);
-  EXPECT_THAT(message_of<InputError>([&] { make_even(log); }),
-              testing::AllOf(HasSubstr("t = 0.5 s"), HasSubstr("a gap of 0.21 s")));
+  make_even(log);
+  EXPECT_EQ(log.sample_count(), 121);
+  ASSERT_EQ(log.gaps.size(), 1U);
+  EXPECT_NEAR(log.t_s[log.gaps[0].first], 0.51, 1e-9);
+  EXPECT_NEAR(log.t_s[log.gaps[0].last], 0.69, 0.011);
+  EXPECT_EQ(log.recorded_rows({0, 10}).last, 10);
+  EXPECT_EQ(log.recorded_rows({120, 120}).last, 100);
+  EXPECT_TRUE(log.cut.empty());
+}
+
+TEST(Sampling, GivenAFewLateStampsThenNothingIsMissing) {
+  VectorXd t = VectorXd::LinSpaced(1001, 0, 1);
+  for (const Eigen::Index row : {100, 500, 800}) t[row] += 0.0009;
+  t[300] = t[301] - 1e-5;
+  Log log = log_of(t);
+  make_even(log);
+  EXPECT_TRUE(log.gaps.empty());
+}
+
+TEST(Sampling, GivenAPauseThenTheLongestPartIsKept) {
+  VectorXd t = VectorXd::LinSpaced(1001, 0, 10);
+  t.tail(400).array() += 3600;
+  Log log = log_of(t);
+  make_even(log);
+  EXPECT_EQ(log.sample_count(), 601);
+  ASSERT_EQ(log.cut.size(), 1U);
+  EXPECT_EQ(log.cut[0].first, 601);
+  EXPECT_EQ(log.cut[0].last, 1000);
+}
+
+TEST(Sampling, GivenHardlyAnyRowsInALongTimeThenItIsRefused) {
+  VectorXd t(2000);
+  for (Eigen::Index i = 0; i < t.size(); ++i)
+    t[i] = 1e-4 * static_cast<double>(i) + 9.0 * static_cast<double>(i / 100);
+  Log log = log_of(t);
+  EXPECT_THAT(message_of<InputError>([&] { make_even(log); }), HasSubstr("a gap of 9 s"));
 }
 
 }  // namespace

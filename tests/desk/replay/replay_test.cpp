@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <offnominal/model/inverse_dynamics.hpp>
 
 #include "common/error.hpp"
 #include "desk/compare/recorded_arm.hpp"
+#include "desk/sil/serial_robot.hpp"
+#include "robot/chain_of.hpp"
 
 // The on-board monitor over a recording of a simulated arm that is healthy, or not from some time
 // on.
@@ -133,6 +136,40 @@ TEST(Replay, GivenManySamplesThatAreRefusedThenItIsBlind) {
     EXPECT_THAT(words_of(result), HasSubstr("Blind: "));
     EXPECT_EQ(to_json(result)["blind"], true);
     EXPECT_EQ(page_of(result, "").verdict.level, report::Level::kWarn);
+  }
+}
+
+// An arm that stands still, held by what its model says; from half of the recording on by more than
+// that on its last joint.
+Log held_arm(const RobotDescription& robot) {
+  const auto model = make_model(chain_of<offnominal::kRuntimeJoints, double>(robot));
+  const Eigen::Index joints = robot.joint_count();
+  const offnominal::Vector<offnominal::kRuntimeJoints, double> zero =
+      offnominal::Vector<offnominal::kRuntimeJoints, double>::Zero(joints);
+  constexpr Eigen::Index kSamples = 1001;
+  Log log;
+  log.file = "held.csv";
+  log.period_s = 0.001;
+  log.t_s = Eigen::VectorXd::LinSpaced(kSamples, 0, 1);
+  log.q = Eigen::MatrixXd::Zero(kSamples, joints);
+  log.dq = log.q;
+  log.tau = inverse_dynamics(model, zero, zero, zero, 0.0).transpose().replicate(kSamples, 1);
+  log.tau.col(joints - 1).tail(kSamples / 2).array() += 2.0;
+  return log;
+}
+
+TEST(Replay, TakesEveryNumberOfJoints) {
+  for (const int joints : {1, 5, offnominal::kMaxJoints}) {
+    const RobotDescription robot = offnominal::test::serial_robot(joints);
+    const Replay result = replay(robot, held_arm(robot));
+    ASSERT_EQ(result.psi_hat.cols(), joints);
+    EXPECT_EQ(result.judged(), 1001) << joints;
+    ASSERT_TRUE(result.detection_time_s) << joints;
+    EXPECT_GT(*result.detection_time_s, 0.5) << joints;
+    EXPECT_LT(*result.detection_time_s, 0.7) << joints;
+    Eigen::Index worst = -1;
+    result.error.row(result.error.rows() - 1).cwiseAbs().maxCoeff(&worst);
+    EXPECT_EQ(worst, joints - 1);
   }
 }
 

@@ -41,15 +41,26 @@ TEST(ChainOf, RefusesAnotherNumberOfJointsAndTooManyEffects) {
   RobotDescription robot = sample();
   EXPECT_THROW(static_cast<void>(chain_of<3, double>(robot)), std::invalid_argument);
   robot.effects.resize(17);
+  EXPECT_THROW((static_cast<void>(chain_of<kRuntimeJoints, double>(robot))), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(chain_of<2, double>(robot)), std::invalid_argument);
 }
 
-TEST(WithJointCount, CallsTheVisitorWithTheNumberAsAConstant) {
-  for (int n = 1; n <= kMaxJoints; ++n) {
-    EXPECT_EQ(with_joint_count(n, []<int N>() { return std::to_string(N); }), std::to_string(n));
+TEST(ChainOf, TakesAnyNumberOfJointsAtRunTimeUpToTheMost) {
+  RobotDescription robot = sample();
+  robot.effects.clear();
+  for (const int joints : {1, 2, kMaxJoints}) {
+    robot.joints.resize(static_cast<std::size_t>(joints), robot.joints.front());
+    const auto chain = chain_of<kRuntimeJoints, double>(robot);
+    EXPECT_EQ(chain.joints.size(), static_cast<std::size_t>(joints));
+    EXPECT_EQ(validate(chain), Status::kOk);
   }
-  EXPECT_THROW(with_joint_count(0, []<int N>() { return N; }), std::invalid_argument);
-  EXPECT_THROW(with_joint_count(kMaxJoints + 1, []<int N>() { return N; }), std::invalid_argument);
+  robot.effects.resize(static_cast<std::size_t>(kEffectsPerJoint * kMaxJoints) + 1);
+  EXPECT_THROW((static_cast<void>(chain_of<kRuntimeJoints, double>(robot))), std::invalid_argument);
+  robot.effects.clear();
+  robot.joints.push_back(robot.joints.front());
+  EXPECT_THROW((static_cast<void>(chain_of<kRuntimeJoints, double>(robot))), std::invalid_argument);
+  robot.joints.clear();
+  EXPECT_THROW((static_cast<void>(chain_of<kRuntimeJoints, double>(robot))), std::invalid_argument);
 }
 
 TEST(EstimatorConfigOf, HoldsTheSettings) {

@@ -15,6 +15,7 @@
 #include "robot/read_joint.hpp"
 #include "robot/read_settings.hpp"
 #include "robot/robot_file.hpp"
+#include "robot/transmission.hpp"
 #include "support/places.hpp"
 
 // The documents say what the code does: every status, effect, parameter and key has its place.
@@ -68,12 +69,12 @@ std::string parameter_row(const ParameterInfo& parameter) {
 
 TEST(RobotFileDocument, HasEveryEffectWithItsFormulaAndParameters) {
   const std::string text = document("robot-file.md");
-  for (const EffectInfo& info : kAllEffectInfos) {
-    const std::string section = paragraph_below(text, "### " + std::string(info.name)) + "\n";
-    ASSERT_NE(section, "\n") << "docs/robot-file.md needs a section ### " << info.name;
-    EXPECT_THAT(section, HasSubstr("    " + std::string(info.formula) + "\n")) << info.name;
-    for (const ParameterInfo& parameter : info.parameters) {
-      EXPECT_THAT(section, HasSubstr(parameter_row(parameter))) << info.name;
+  for (const EffectInfo* info : file_effects()) {
+    const std::string section = paragraph_below(text, "### " + std::string(info->name)) + "\n";
+    ASSERT_NE(section, "\n") << "docs/robot-file.md needs a section ### " << info->name;
+    EXPECT_THAT(section, HasSubstr("    " + std::string(info->formula) + "\n")) << info->name;
+    for (const ParameterInfo& parameter : info->parameters) {
+      EXPECT_THAT(section, HasSubstr(parameter_row(parameter))) << info->name;
     }
   }
 }
@@ -84,8 +85,7 @@ TEST(ExplainDocument, HasARowForEveryEffectAndNoOther) {
     rows +=
         std::string("| `") + info.name + "` | " + info.words + " | " + info.motion_hint + " |\n";
   };
-  for (const EffectInfo& info : kAllEffectInfos) add(info);
-  for (const EffectInfo& info : kInfosOutsideChains) add(info);
+  for (const EffectInfo* info : file_effects()) add(*info);
   EXPECT_THAT(document("explain.md"),
               HasSubstr("| effect | what it is | the motion that shows it best |\n|---|---|---|\n" +
                         rows + "\n"));
@@ -93,8 +93,8 @@ TEST(ExplainDocument, HasARowForEveryEffectAndNoOther) {
 
 TEST(RobotFileDocument, HasEveryKey) {
   const std::string text = document("robot-file.md");
-  for (const auto& keys :
-       {joint_keys(), effect_keys(), estimator_keys(), arming_keys(), bound_keys()}) {
+  for (const auto& keys : {joint_keys(), effect_keys(), estimator_keys(), arming_keys(),
+                           bound_keys(), transmission_keys()}) {
     for (const std::string& key : keys) {
       EXPECT_THAT(text, HasSubstr("\n| `" + key + "` |")) << key;
     }
@@ -113,11 +113,12 @@ TEST(RobotFileDocument, HasAnExampleThatIsAccepted) {
 }
 
 TEST(EffectParameters, DoNotCollideWithTheOtherKeysOfAnEffect) {
-  for (const EffectInfo& info : kAllEffectInfos) {
-    for (const ParameterInfo& parameter : info.parameters) {
+  for (const EffectInfo* info : file_effects()) {
+    for (const ParameterInfo& parameter : info->parameters) {
       const std::string name = parameter.name;
-      EXPECT_TRUE(name != "kind" && name != "joint" && name != "fitted" && name != "source")
-          << info.name << "." << name;
+      EXPECT_TRUE(name != "kind" && name != "joint" && name != "motor" && name != "fitted" &&
+                  name != "source")
+          << info->name << "." << name;
     }
   }
 }

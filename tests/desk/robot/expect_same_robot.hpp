@@ -6,6 +6,8 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "robot/robot.hpp"
 
@@ -49,6 +51,7 @@ inline void expect_same(const desk::RobotJoint& a, const desk::RobotJoint& b) {
 inline void expect_same(const desk::RobotEffect& a, const desk::RobotEffect& b) {
   EXPECT_EQ(a.kind, b.kind);
   EXPECT_EQ(a.joint, b.joint);
+  EXPECT_EQ(a.of_motor, b.of_motor);
   expect_same(a.parameters, b.parameters);
   EXPECT_EQ(a.fitted, b.fitted);
   EXPECT_EQ(a.source, b.source);
@@ -96,6 +99,23 @@ inline void expect_same(const desk::DriveSettings& a, const desk::DriveSettings&
   EXPECT_EQ(a.source, b.source);
 }
 
+inline void expect_same(const desk::TransmissionSettings& a, const desk::TransmissionSettings& b) {
+  expect_same(a.ratio, b.ratio);
+  expect_same(a.matrix, b.matrix);
+  expect_same(a.offset_rad, b.offset_rad);
+  expect_same(a.torque_constant, b.torque_constant);
+  EXPECT_EQ(a.source, b.source);
+}
+
+inline void expect_same(const std::vector<std::optional<desk::Channel>>& a,
+                        const std::vector<std::optional<desk::Channel>>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].has_value(), b[i].has_value());
+    if (a[i]) expect_same(*a[i], *b[i]);
+  }
+}
+
 inline void expect_same(const desk::Channel& a, const desk::Channel& b) {
   EXPECT_EQ(a.source, b.source);
   EXPECT_EQ(a.scale, b.scale);
@@ -112,12 +132,18 @@ inline void expect_same(const desk::ChannelMap& a, const desk::ChannelMap& b) {
   expect_same(a.more_times, b.more_times);
   expect_same(a.period_s, b.period_s);
   expect_same(a.position, b.position);
-  ASSERT_EQ(a.velocity.size(), b.velocity.size());
-  for (std::size_t i = 0; i < a.velocity.size(); ++i) {
-    ASSERT_EQ(a.velocity[i].has_value(), b.velocity[i].has_value());
-    if (a.velocity[i]) expect_same(*a.velocity[i], *b.velocity[i]);
-  }
+  expect_same(a.velocity, b.velocity);
+  EXPECT_EQ(a.position_of, b.position_of);
+  EXPECT_EQ(a.velocity_of, b.velocity_of);
+  EXPECT_EQ(a.torque_of, b.torque_of);
+  expect_same(a.sensor_torque, b.sensor_torque);
   expect_same(a.torque, b.torque);
+  ASSERT_EQ(a.payloads.size(), b.payloads.size());
+  for (std::size_t i = 0; i < a.payloads.size(); ++i) {
+    EXPECT_EQ(a.payloads[i].recording, b.payloads[i].recording);
+    EXPECT_EQ(a.payloads[i].payload.mass_kg, b.payloads[i].payload.mass_kg);
+    EXPECT_EQ(a.payloads[i].payload.place_m, b.payloads[i].payload.place_m);
+  }
   ASSERT_EQ(a.extra.size(), b.extra.size());
   for (const auto& [name, channel] : a.extra) {
     ASSERT_TRUE(b.extra.contains(name)) << name;
@@ -135,6 +161,8 @@ inline void expect_same(const desk::RobotDescription& a, const desk::RobotDescri
   expect_same(a.arming, b.arming);
   ASSERT_EQ(a.bound.has_value(), b.bound.has_value());
   if (a.bound) expect_same(*a.bound, *b.bound);
+  ASSERT_EQ(a.transmission.has_value(), b.transmission.has_value());
+  if (a.transmission) expect_same(*a.transmission, *b.transmission);
   ASSERT_EQ(a.drives.has_value(), b.drives.has_value());
   if (a.drives) expect_same(*a.drives, *b.drives);
   ASSERT_EQ(a.channels.has_value(), b.channels.has_value());

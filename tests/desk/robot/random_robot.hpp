@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -22,15 +23,22 @@ class RandomRobot {
     robot.name = word();
     robot.source = any_text();
     robot.gravity_m_s2 = {length(), length(), length()};
-    const int joints = whole(1, desk::kMaxJoints);
+    const int joints = whole(1, kMaxJoints);
     for (int i = 0; i < joints; ++i) robot.joints.push_back(joint(i));
+    if (coin()) robot.transmission = transmission(joints);
     const int effects = whole(0, kEffectsPerJoint * joints);
     for (int i = 0; i < effects; ++i) robot.effects.push_back(effect(robot));
     robot.estimator = estimator();
     robot.arming = arming(joints);
     if (coin()) robot.bound = bound(joints);
     if (coin()) robot.drives = drives(joints, robot.estimator.period_s);
-    if (coin()) robot.channels = channels(joints);
+    // Axes of their own have no place beside joints that share motors.
+    const bool shares = robot.transmission && !robot.transmission->matrix.empty();
+    if (shares && robot.drives && robot.drives->protocol != 0) robot.drives.reset();
+    if (coin()) {
+      robot.channels = channels(joints);
+      if (robot.transmission) add_sides(*robot.channels, *robot.transmission);
+    }
     return robot;
   }
 
@@ -124,7 +132,7 @@ class RandomRobot {
       result.parameters[i] = value >= parameter.min ? value : positive(kLargestLength);
       // A small share of the range: those of one joint may have to add up to no more than its end.
       if (parameter.max < effects::kAny) {
-        constexpr double kMost = kEffectsPerJoint * desk::kMaxJoints;
+        constexpr double kMost = kEffectsPerJoint * kMaxJoints;
         result.parameters[i] =
             parameter.min + (parameter.max - parameter.min) * std::fabs(uniform()) / kMost;
       }
@@ -135,9 +143,52 @@ class RandomRobot {
     const bool is_mass =
         result.kind == EffectKind::kLinkMass || result.kind == EffectKind::kTipPayload;
     if (is_mass) result.parameters[0] = std::fabs(result.parameters[0]);
+    result.of_motor = robot.transmission && motor_may_have(result.kind) && coin();
     result.fitted = coin();
     result.source = any_text();
     return result;
+  }
+
+  // With rows that differ: the diagonal outweighs the rest.
+  desk::TransmissionSettings transmission(int joints) {
+    desk::TransmissionSettings settings;
+    settings.source = any_text();
+    const auto ratio = [&] { return (coin() ? 1 : -1) * (1 + std::fabs(uniform())) * 100; };
+    const bool coupled = coin();
+    for (int i = 0; i < joints; ++i) {
+      if (!coupled) settings.ratio.push_back(ratio());
+      if (!coupled) continue;
+      auto& row = settings.matrix.emplace_back();
+      for (int k = 0; k < joints; ++k) row.push_back(i == k ? ratio() : 10 * uniform());
+    }
+    for (int i = 0; i < joints; ++i) {
+      settings.offset_rad.push_back(uniform());
+      settings.torque_constant.push_back(ratio() / 1000);
+    }
+    if (coin()) settings.offset_rad.clear();
+    return settings;
+  }
+
+  // All on one side where all joints share motors, each on its own otherwise.
+  void add_sides(desk::ChannelMap& map, const desk::TransmissionSettings& transmission) {
+    const std::size_t joints = map.position.size();
+    const bool mixed = transmission.matrix.empty();
+    const auto sides = [&](int most) {
+      std::vector<desk::ChannelOf> of(joints, static_cast<desk::ChannelOf>(whole(0, most)));
+      for (auto& one : of) {
+        if (mixed) one = static_cast<desk::ChannelOf>(whole(0, most));
+      }
+      const bool all_joints = std::all_of(
+          of.begin(), of.end(), [](desk::ChannelOf one) { return one == desk::ChannelOf::kJoint; });
+      return all_joints ? std::vector<desk::ChannelOf>{} : of;
+    };
+    map.position_of = sides(1);
+    map.torque_of = sides(3);
+    for (std::size_t i = 0; i < joints && coin(); ++i) {
+      if (i < map.torque_of.size() && map.torque_of[i] == desk::ChannelOf::kSensor) continue;
+      map.sensor_torque.resize(joints);
+      map.sensor_torque[i] = channel();
+    }
   }
 
   desk::EstimatorSettings estimator() {
@@ -255,6 +306,9 @@ class RandomRobot {
       map.torque.push_back(channel());
     }
     if (coin()) map.dbc = "/" + word() + any_text();
+    for (int i = whole(0, 2); i > 0; --i) {
+      map.payloads.push_back({word() + any_text(), {50 * (1 + uniform()), {uniform(), 0, -1e-3}}});
+    }
     if (map.at_rest) return map;
     for (int i = whole(0, 3); i > 0; --i) map.extra[word() + any_text()] = channel();
     return map;

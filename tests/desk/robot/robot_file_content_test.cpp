@@ -48,12 +48,13 @@ TEST(RobotFileContent, HoldsTheEffectsInTheirOrder) {
   ASSERT_EQ(robot.effects.size(), 2U);
   EXPECT_EQ(robot.effects[0].kind, EffectKind::kStribeckFriction);
   EXPECT_EQ(robot.effects[0].joint, 0);
-  EXPECT_EQ(robot.effects[0].parameters, (std::array{1.5, 0.2, 0.01, 0.0})) << "default smoothing";
+  EXPECT_EQ(robot.effects[0].parameters, (std::array<double, kMaxEffectParameters>{1.5, 0.2, 0.01}))
+      << "default smoothing";
   EXPECT_TRUE(robot.effects[0].fitted);
   EXPECT_EQ(robot.effects[0].source, "add, log A");
   EXPECT_EQ(robot.effects[1].kind, EffectKind::kViscousFriction);
   EXPECT_EQ(robot.effects[1].joint, 1);
-  EXPECT_EQ(robot.effects[1].parameters, (std::array{12.0, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(robot.effects[1].parameters, (std::array<double, kMaxEffectParameters>{12.0}));
   EXPECT_FALSE(robot.effects[1].fitted);
 }
 

@@ -340,14 +340,14 @@ x = 1.0
 
 TEST(RobotFile, RefusesARobotWithoutJointsOrWithTooMany) {
   const std::string head = "format = 1\nname = \"r\"\ngravity_m_s2 = [0, 0, 0]\n";
-  EXPECT_THAT(refusal(head), HasSubstr("joint: found 0 joints; allowed: 1 to 8 joints"));
+  EXPECT_THAT(refusal(head), HasSubstr("joint: found 0 joints; allowed: 1 to 12 joints"));
   std::string text = head;
-  for (int i = 0; i < 9; ++i) {
+  for (int i = 0; i <= kMaxJoints; ++i) {
     text += "[[joint]]\nname = \"j" + std::to_string(i) +
             "\"\ntype = \"revolute\"\naxis = [1, 0, 0]\n[joint.link]\nmass_kg = 1\n"
             "centre_of_mass_m = [0, 0, 0]\n";
   }
-  EXPECT_THAT(refusal(text), HasSubstr("joint: found 9 joints"));
+  EXPECT_THAT(refusal(text), HasSubstr("joint: found 13 joints"));
   EXPECT_THAT(refusal(head + "joint = 3\n"),
               HasSubstr("joint: found 3; allowed: a list of tables"));
 }

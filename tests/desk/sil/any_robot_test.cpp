@@ -1,4 +1,4 @@
-// Robot files with one to seven joints at both ends of a bus.
+// Robot files with one to twelve joints at both ends of a bus.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,8 @@ TEST_P(AnyRobot, FollowsItsMotionAndIsQuietWhileItIsHealthy) {
   const SilResult result = run(robot, scenario);
   EXPECT_EQ(result.state, hal::ControllerState::kArmed) << controller::name_of(result.fault);
   EXPECT_FALSE(result.run.detection_time_s.has_value());
-  EXPECT_LT(result.run.max_error_to_threshold_before_fault, 0.5);
+  // One bound for the norm over all joints: of twelve, what frames and floats round is more of it.
+  EXPECT_LT(result.run.max_error_to_threshold_before_fault, GetParam() <= 7 ? 0.5 : 0.8);
   EXPECT_LT(result.run.tracking_rms_rad, 0.01);
   EXPECT_EQ(result.bus.rejected, 0U);
   EXPECT_EQ(result.bus.stale, 0U);
@@ -88,7 +89,18 @@ TEST_P(AnyRobot, ShowsWhatIsHiddenInThePlantAlone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Joints, AnyRobot,
-                         testing::ValuesIn(test::every_nth(std::array{1, 4, 6, 7}, 4)));
+                         testing::ValuesIn(test::every_nth(std::array{1, 4, 6, 7, kMaxJoints}, 4)));
+
+TEST(AnyRobotInDouble, DoesWhatItDoesInFloats) {
+  const RobotDescription robot = serial_robot(3);
+  Scenario scenario = scenario_of(robot);
+  const SilResult in_float = run(robot, scenario);
+  scenario.precision = Precision::kDouble;
+  const SilResult in_double = run(robot, scenario);
+  EXPECT_EQ(in_double.state, hal::ControllerState::kArmed);
+  EXPECT_NE(in_double.run.tracking_rms_rad, in_float.run.tracking_rms_rad);
+  EXPECT_NEAR(in_double.run.tracking_rms_rad / in_float.run.tracking_rms_rad, 1, 1e-2);
+}
 
 // GIVEN nobody's wish THEN CAN FD carries what is too much for classic CAN, and that alone.
 TEST(FramesOfAnyRobot, AreClassicWhereTheyFit) {
@@ -130,9 +142,6 @@ TEST(AnyRobotRefused, WhereBothEndsDoNotFitTogether) {
   EXPECT_THAT(
       refusal(robot, scenario_of(robot, {{.kind = FaultEventKind::kNonlinear, .begin_s = 1.0}})),
       HasSubstr("paper's arm"));
-  Scenario in_double = scenario_of(robot);
-  in_double.precision = Precision::kDouble;
-  EXPECT_THAT(refusal(robot, in_double), HasSubstr("float"));
 }
 
 }  // namespace

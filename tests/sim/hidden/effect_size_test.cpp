@@ -69,7 +69,8 @@ INSTANTIATE_TEST_SUITE_P(HiddenRobots, EffectSize,
                                          Bounds{HiddenEffect::kPeriodicDisturbance, 0.04, 0.1},
                                          Bounds{HiddenEffect::kJointCoupling, 0.05, 0.13},
                                          Bounds{HiddenEffect::kTemperatureDrift, 0.08, 0.2},
-                                         Bounds{HiddenEffect::kGearLoss, 0.1, 0.3}),
+                                         Bounds{HiddenEffect::kGearLoss, 0.1, 0.3},
+                                         Bounds{HiddenEffect::kPositionTorque, 0.08, 0.22}),
                          [](const auto& given) { return std::string(name(given.param.effect)); });
 
 TEST(EffectSize, NothingHiddenLeavesNothingUnexplained) {

@@ -126,6 +126,17 @@ ArrayXd formula(const TrueEffect& h, const Robot& robot, const Robot& base, cons
       return get("sine") * (get("order") * s.q).sin() + get("cosine") * (get("order") * s.q).cos();
     case HiddenEffect::kJointStiffness:
       return get("stiffness") * (s.q - get("rest_position"));
+    case HiddenEffect::kPositionTorque: {
+      // Foot at (0.4 m, 0), pin at `pin` from the axis; the push along the spring times its lever.
+      const double foot = 0.4;
+      const double pin = get("pin");
+      const ArrayXd x = pin * (s.q - get("dead_centre")).cos();
+      const ArrayXd y = pin * (s.q - get("dead_centre")).sin();
+      const ArrayXd length = ((x - foot).square() + y.square()).sqrt();
+      const ArrayXd volume = 1 - 0.4 * (1 - (length - (foot - pin)) / (2 * pin));
+      const ArrayXd push = get("force") * volume.pow(-1.2);
+      return -push * (x * y - y * (x - foot)) / length;
+    }
     case HiddenEffect::kTimeDelay:
       return s.tau - s.earlier_tau;
     case HiddenEffect::kPeriodicDisturbance:
@@ -172,7 +183,7 @@ INSTANTIATE_TEST_SUITE_P(
                     HiddenEffect::kCoggingTorque, HiddenEffect::kJointStiffness,
                     HiddenEffect::kTimeDelay, HiddenEffect::kPeriodicDisturbance,
                     HiddenEffect::kJointCoupling, HiddenEffect::kTemperatureDrift,
-                    HiddenEffect::kGearLoss),
+                    HiddenEffect::kGearLoss, HiddenEffect::kPositionTorque),
     [](const auto& given) { return std::string(name(given.param)); });
 
 // Added masses are those of the truth, in kg.

@@ -8,8 +8,8 @@ namespace offnominal {
 
 template <int N, typename Scalar>
 struct CompensatingTorque {
-  Vector<N, Scalar> torque = Vector<N, Scalar>::Zero();  // to be added to the command, N m or N
-  bool saturated = false;                                // a joint's limit was reached
+  Vector<N, Scalar> torque = zeros<N, Scalar>();  // to be added to the command, N m or N
+  bool saturated = false;                         // a joint's limit was reached
 };
 
 // Accommodation, paper eq. (31): tau_r = tau + torque with torque = -M(q) psi_hat, every joint
@@ -19,12 +19,12 @@ struct CompensatingTorque {
 template <int N, typename Scalar>
 [[nodiscard]] CompensatingTorque<N, Scalar> compensating_torque(
     const Matrix<N, N, Scalar>& inertia, const Vector<N, Scalar>& psi_hat,
-    const Vector<N, Scalar>& limit,
-    const Vector<N, Scalar>& told_per_load = Vector<N, Scalar>::Ones()) {
+    const Vector<N, Scalar>& limit, const Vector<N, Scalar>& told_per_load) {
   CompensatingTorque<N, Scalar> result;
+  size_for(static_cast<std::size_t>(limit.size()), result.torque);
   const Vector<N, Scalar> wanted =
       -told_per_load.cwiseProduct(product<N, Scalar>(inertia, psi_hat));
-  for (Eigen::Index i = 0; i < N; ++i) {
+  for (Eigen::Index i = 0; i < limit.size(); ++i) {
     const Scalar w = wanted[i];
     const bool over = w > limit[i];
     const bool under = w < -limit[i];
@@ -32,6 +32,12 @@ template <int N, typename Scalar>
     result.saturated = result.saturated || over || under;
   }
   return result;
+}
+template <int N, typename Scalar>
+[[nodiscard]] CompensatingTorque<N, Scalar> compensating_torque(const Matrix<N, N, Scalar>& inertia,
+                                                                const Vector<N, Scalar>& psi_hat,
+                                                                const Vector<N, Scalar>& limit) {
+  return compensating_torque<N, Scalar>(inertia, psi_hat, limit, ones<N, Scalar>(limit.size()));
 }
 
 }  // namespace offnominal

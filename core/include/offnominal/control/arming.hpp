@@ -14,21 +14,21 @@ namespace offnominal {
 // set, zero, are refused.
 template <int N, typename Scalar>
 struct ArmingConfig {
-  using PerJoint = std::array<Scalar, static_cast<std::size_t>(N)>;
-  PerJoint position_window{};  // most between reference and joint, > 0, rad or m
+  PerJoint<N, Scalar> position_window{};  // most between reference and joint, > 0, rad or m
   // The joint's largest speed, and the most between its velocity and the reference's; > 0, rad/s
   // or m/s. A motion that starts on the move has to say so here.
-  PerJoint speed{};
+  PerJoint<N, Scalar> speed{};
   // The commanded torque moves no faster than this, at arming and ever after; > 0, N m/s or N/s.
-  PerJoint torque_rate{};
+  PerJoint<N, Scalar> torque_rate{};
   // Time in which what is between reference and arm at arming fades out of the reference, > 0.
   Scalar ramp_s{};
 };
 
+// Of as many joints everywhere.
 template <int N, typename Scalar>
 [[nodiscard]] Status validate(const ArmingConfig<N, Scalar>& config) {
   const auto usable = [](Scalar value) { return is_finite(value) && value > 0; };
-  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+  for (std::size_t i = 0; i < config.speed.size(); ++i) {
     const bool good = usable(config.position_window[i]) && usable(config.speed[i]) &&
                       usable(config.torque_rate[i]);
     if (!good) return Status::kInvalidLimit;
@@ -43,7 +43,12 @@ template <int N, typename Scalar>
   constexpr Scalar kLimitsPerSecond = 20;
   ArmingConfig<N, Scalar> config;
   config.ramp_s = 1;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+  if constexpr (N == kRuntimeJoints) {
+    for (auto* values : {&config.position_window, &config.speed, &config.torque_rate}) {
+      values->assign(chain.joints.size(), Scalar(0));
+    }
+  }
+  for (std::size_t i = 0; i < chain.joints.size(); ++i) {
     const bool turns = chain.joints[i].type == JointType::kRevolute;
     config.position_window[i] = turns ? Scalar(0.05) : Scalar(0.01);
     config.speed[i] = config.position_window[i];

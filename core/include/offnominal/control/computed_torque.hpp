@@ -13,21 +13,21 @@ namespace offnominal {
 // Diagonals of K_p (1/s^2) and K_d (1/s) of eq. (29), >= 0.
 template <int N, typename Scalar>
 struct ComputedTorqueGains {
-  std::array<Scalar, static_cast<std::size_t>(N)> kp{};
-  std::array<Scalar, static_cast<std::size_t>(N)> kd{};
+  PerJoint<N, Scalar> kp{};
+  PerJoint<N, Scalar> kd{};
 };
 
 // Where the joints should be: rad, rad/s, rad/s^2 (m, m/s, m/s^2).
 template <int N, typename Scalar>
 struct Reference {
-  Vector<N, Scalar> q = Vector<N, Scalar>::Zero();
-  Vector<N, Scalar> dq = Vector<N, Scalar>::Zero();
-  Vector<N, Scalar> ddq = Vector<N, Scalar>::Zero();
+  Vector<N, Scalar> q = zeros<N, Scalar>();
+  Vector<N, Scalar> dq = zeros<N, Scalar>();
+  Vector<N, Scalar> ddq = zeros<N, Scalar>();
 };
 
 template <int N, typename Scalar>
 [[nodiscard]] Status validate(const ComputedTorqueGains<N, Scalar>& gains) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+  for (std::size_t i = 0; i < gains.kp.size(); ++i) {
     const bool good =
         is_finite(gains.kp[i]) && gains.kp[i] >= 0 && is_finite(gains.kd[i]) && gains.kd[i] >= 0;
     if (!good) return Status::kInvalidGain;
@@ -45,8 +45,8 @@ template <int N, typename Scalar>
                                                 const Vector<N, Scalar>& q,
                                                 const Vector<N, Scalar>& dq, double time_s) {
   using Diagonal = Eigen::Map<const Vector<N, Scalar>>;
-  const Diagonal kp(gains.kp.data());
-  const Diagonal kd(gains.kd.data());
+  const Diagonal kp(gains.kp.data(), q.size());
+  const Diagonal kd(gains.kd.data(), q.size());
   const Vector<N, Scalar> ddq =
       reference.ddq + kd.cwiseProduct(reference.dq - dq) + kp.cwiseProduct(reference.q - q);
   return inverse_dynamics(model, q, dq, ddq, time_s);

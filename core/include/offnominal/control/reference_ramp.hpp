@@ -13,8 +13,8 @@ namespace offnominal {
 // The reference less the arm, at time 0.
 template <int N, typename Scalar>
 struct ReferenceRamp {
-  Vector<N, Scalar> q = Vector<N, Scalar>::Zero();   // rad or m
-  Vector<N, Scalar> dq = Vector<N, Scalar>::Zero();  // rad/s or m/s
+  Vector<N, Scalar> q = zeros<N, Scalar>();   // rad or m
+  Vector<N, Scalar> dq = zeros<N, Scalar>();  // rad/s or m/s
 };
 
 // Takes off `reference` what is left of the ramp at time_s of its ramp_s > 0; nothing from its end

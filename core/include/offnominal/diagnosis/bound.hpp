@@ -38,7 +38,7 @@ struct UncertaintyBound {
   Scalar offset = 1;  // > 0 for kConstant, >= 0 for kScaledNorm
   Scalar scale = 1;   // > 0
   // A, row by row; rows that are not needed stay zero. |.| is the Euclidean norm.
-  std::array<Scalar, static_cast<std::size_t>(N* N)> matrix{};
+  PerJointPair<N, Scalar> matrix{};
   // kTable: abscissae strictly rising, values > 0, the end values hold beyond both ends.
   BoundVariable variable = BoundVariable::kSpeed;
   std::uint8_t joint = 0;
@@ -50,8 +50,8 @@ struct UncertaintyBound {
 namespace detail {
 
 template <int N, typename Scalar>
-[[nodiscard]] bool table_valid(const UncertaintyBound<N, Scalar>& bound) {
-  if (bound.points < 1 || bound.points > kMaxTablePoints || bound.joint >= N) return false;
+[[nodiscard]] bool table_valid(const UncertaintyBound<N, Scalar>& bound, std::size_t joints) {
+  if (bound.points < 1 || bound.points > kMaxTablePoints || bound.joint >= joints) return false;
   for (std::size_t i = 0; i < bound.points; ++i) {
     if (!is_finite(bound.at[i]) || !is_finite(bound.value[i]) || bound.value[i] <= 0) {
       return false;
@@ -74,8 +74,10 @@ template <int N, typename Scalar>
 
 }  // namespace detail
 
+// For a chain of `joints` joints. kWrongJointCount: the matrix in use is one of other joints.
 template <int N, typename Scalar>
-[[nodiscard]] Status validate(const UncertaintyBound<N, Scalar>& bound) {
+[[nodiscard]] Status validate(const UncertaintyBound<N, Scalar>& bound,
+                              std::size_t joints = static_cast<std::size_t>(N)) {
   const auto require = [](bool good) { return good ? Status::kOk : Status::kInvalidBound; };
   if (!is_finite(bound.velocity_error) || bound.velocity_error < 0) {
     return Status::kInvalidBound;
@@ -84,12 +86,16 @@ template <int N, typename Scalar>
     case BoundKind::kConstant:
       return require(is_finite(bound.offset) && bound.offset > 0);
     case BoundKind::kScaledNorm: {
+      if constexpr (N == kRuntimeJoints) {
+        const bool fits = joints > 0 && bound.matrix.size() == joints * joints;
+        if (!fits) return Status::kWrongJointCount;
+      }
       const bool good =
           is_finite(bound.scale) && bound.scale > 0 && is_finite(bound.offset) && bound.offset >= 0;
       return require(good && all_finite(bound.matrix));
     }
     case BoundKind::kTable:
-      return require(detail::table_valid(bound));
+      return require(detail::table_valid(bound, joints));
   }
   return Status::kInvalidBound;
 }
@@ -102,9 +108,11 @@ template <int N, typename Scalar>
     case BoundKind::kConstant:
       return bound.offset;
     case BoundKind::kScaledNorm: {
-      using RowMajor = Eigen::Matrix<Scalar, N, N, N == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
-      const Eigen::Map<const RowMajor> a(bound.matrix.data());
-      return bound.scale * (product<N, Scalar>(a, dq).norm() + bound.offset);
+      constexpr int kMost = kMostJoints<N>;
+      using RowMajor =
+          Eigen::Matrix<Scalar, N, N, N == 1 ? Eigen::ColMajor : Eigen::RowMajor, kMost, kMost>;
+      const Eigen::Map<const RowMajor> a(bound.matrix.data(), dq.size(), dq.size());
+      return bound.scale * (detail::length(product<N, Scalar>(a, dq)) + bound.offset);
     }
     case BoundKind::kTable: {
       const auto joint = static_cast<Eigen::Index>(bound.joint);

@@ -18,7 +18,7 @@ enum class DeadZone : std::uint8_t {
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> dead_zone(const Vector<N, Scalar>& e, Scalar mu, DeadZone kind,
                                           Scalar largest = std::numeric_limits<Scalar>::max()) {
-  const Scalar norm = e.norm();
+  const Scalar norm = detail::length(e);
   const Scalar inverse = Scalar(1) / Eigen::numext::maxi(norm, std::numeric_limits<Scalar>::min());
   const Scalar shrunk = kind == DeadZone::kContinuous ? Scalar(1) - mu * inverse : Scalar(1);
   const Scalar limited = Eigen::numext::mini(shrunk, largest * inverse);

@@ -33,7 +33,7 @@ template <typename Scalar>
 // Whether a tick can begin or end with it: otherwise the numbers that come of it are none.
 template <int N, typename Scalar>
 [[nodiscard]] bool is_bounded(const EstimatorInput<N, Scalar>& input, Scalar z_squared_norm) {
-  return is_within(z_squared_norm) && is_within(input.nominal_ddq.squaredNorm()) &&
+  return is_within(z_squared_norm) && is_within(squared_length(input.nominal_ddq)) &&
          is_within(input.mu_bar);
 }
 
@@ -41,7 +41,7 @@ template <int N, typename Scalar>
 template <int N, int L, typename Scalar>
 void begin_at(const EstimatorInput<N, Scalar>& sample, EstimatorState<N, L, Scalar>& state) {
   state.z = sample.z;
-  state.z_squared_norm = sample.z.squaredNorm();
+  state.z_squared_norm = squared_norm_of_input<N, Scalar>(sample.z);
   state.nominal_ddq = sample.nominal_ddq;
   state.mu_bar = sample.mu_bar;
   first_layer(state.weights, sample.z, state.w1_z);
@@ -58,19 +58,22 @@ template <int N, int L, typename Scalar>
 [[nodiscard]] Status reset(const EstimatorConfig<Scalar>& config,
                            const EstimatorInput<N, Scalar>& sample,
                            EstimatorState<N, L, Scalar>& state) {
-  if (!detail::is_bounded(sample, sample.z.squaredNorm())) return Status::kNumericOverflow;
-  const Scalar squared = initial_squared_norm<N, L, Scalar>(config.seed, config.hidden_units,
-                                                            config.initial_weight_range);
+  if (!detail::is_bounded(sample, squared_norm_of_input<N, Scalar>(sample.z)))
+    return Status::kNumericOverflow;
+  const Eigen::Index joints = sample.nominal_ddq.size();
+  const Scalar squared = initial_squared_norm<N, L, Scalar>(
+      config.seed, config.hidden_units, config.initial_weight_range, static_cast<int>(joints));
   if (!is_finite(squared) || std::sqrt(squared) >= config.weight_radius) {
     return Status::kInvalidInitialWeights;
   }
   // In place: on a controller's stack there is no room for another state.
-  set_initial_weights(config.seed, config.hidden_units, config.initial_weight_range, state.weights);
+  set_initial_weights(config.seed, config.hidden_units, config.initial_weight_range, state.weights,
+                      joints);
   state.theta_squared_norm = squared_norm(state.weights);
-  state.omega = sample.z.template segment<N>(1 + N);
+  state.omega = velocity_in<N, Scalar>(sample.z);
   state.mu = Scalar(0);
-  state.error.setZero();
-  state.psi_hat.setZero();
+  state.error.setZero(joints);
+  state.psi_hat.setZero(joints);
   detail::begin_at(sample, state);
   return Status::kOk;
 }
@@ -81,9 +84,10 @@ template <int N, int L, typename Scalar>
 template <int N, int L, typename Scalar>
 [[nodiscard]] Status resume(const EstimatorInput<N, Scalar>& sample, Scalar mu_jump,
                             EstimatorState<N, L, Scalar>& state) {
-  if (!detail::is_bounded(sample, sample.z.squaredNorm())) return Status::kNumericOverflow;
+  if (!detail::is_bounded(sample, squared_norm_of_input<N, Scalar>(sample.z)))
+    return Status::kNumericOverflow;
   detail::begin_at(sample, state);
-  state.omega = sample.z.template segment<N>(1 + N) - state.error;
+  state.omega = velocity_in<N, Scalar>(sample.z) - state.error;
   state.mu += mu_jump;
   state.psi_hat = network_output(state.weights, state.sigma);
   return Status::kOk;
@@ -100,7 +104,8 @@ template <int N, int L, typename Scalar>
   const detail::TickEnd<N, Scalar> end = tick.integrate();
   const bool bounded = detail::is_bounded(input, tick.input_products().z11) &&
                        detail::is_within(tick.squared_reach(end.theta)) &&
-                       detail::is_within(end.omega.squaredNorm()) && detail::is_within(end.mu);
+                       detail::is_within(detail::squared_length(end.omega)) &&
+                       detail::is_within(end.mu);
   if (!bounded) return Status::kNumericOverflow;
   tick.finish(end.theta, state);
   state.omega = end.omega;
@@ -108,7 +113,7 @@ template <int N, int L, typename Scalar>
   state.z = input.z;
   state.nominal_ddq = input.nominal_ddq;
   state.mu_bar = input.mu_bar;
-  state.error = input.z.template segment<N>(1 + N) - state.omega;
+  state.error = velocity_in<N, Scalar>(input.z) - state.omega;
   return Status::kOk;
 }
 

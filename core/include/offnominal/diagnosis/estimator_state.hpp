@@ -7,15 +7,15 @@ namespace offnominal {
 
 template <int N, int L, typename Scalar>
 struct EstimatorState {
-  Vector<N, Scalar> omega = Vector<N, Scalar>::Zero();    // velocity estimate, rad/s or m/s
-  Scalar mu{};                                            // threshold of |e|, rad/s or m/s
-  Vector<N, Scalar> error = Vector<N, Scalar>::Zero();    // e, rad/s or m/s
-  Vector<N, Scalar> psi_hat = Vector<N, Scalar>::Zero();  // fault estimate, rad/s^2 or m/s^2
-  NetworkWeights<N, L, Scalar> weights;                   // theta
+  Vector<N, Scalar> omega = zeros<N, Scalar>();    // velocity estimate, rad/s or m/s
+  Scalar mu{};                                     // threshold of |e|, rad/s or m/s
+  Vector<N, Scalar> error = zeros<N, Scalar>();    // e, rad/s or m/s
+  Vector<N, Scalar> psi_hat = zeros<N, Scalar>();  // fault estimate, rad/s^2 or m/s^2
+  NetworkWeights<N, L, Scalar> weights;            // theta
 
   // The tick's end, which is the next tick's beginning.
-  NetworkInput<N, Scalar> z = NetworkInput<N, Scalar>::Zero();
-  Vector<N, Scalar> nominal_ddq = Vector<N, Scalar>::Zero();  // f, rad/s^2 or m/s^2
+  NetworkInput<N, Scalar> z = no_values<NetworkInput<N, Scalar>>();
+  Vector<N, Scalar> nominal_ddq = zeros<N, Scalar>();  // f, rad/s^2 or m/s^2
   Scalar mu_bar{};
   HiddenVector<L, Scalar> w1_z = HiddenVector<L, Scalar>::Zero();   // W1 z
   HiddenVector<L, Scalar> sigma = HiddenVector<L, Scalar>::Zero();  // sigma(W1 z)

@@ -66,7 +66,8 @@ template <int Stage, int N, int L, typename Scalar>
   constexpr auto kStage = static_cast<std::size_t>(Stage);
   using Lanes = Block<Scalar>;
   std::array<Lanes, kStage> before;
-  std::array<Lanes, static_cast<std::size_t>(N)> w2_sigma;
+  std::array<Lanes, static_cast<std::size_t>(kMostJoints<N>)> w2_sigma;
+  const Eigen::Index joints = weights.w2_transposed.cols();
   before.fill(spread(Scalar(0)));
   w2_sigma.fill(spread(Scalar(0)));
   for_each_block<Scalar, L, Stage == kStages - 1 ? kLongRow : kShortRow>([&](
@@ -82,18 +83,21 @@ template <int Stage, int N, int L, typename Scalar>
       const auto stage = static_cast<std::size_t>(j);
       before[stage] += sigma * load(&factors.sigma(stage)[row]);
     });
-    repeat<N>([&](int k) __attribute__((always_inline)) {
-      w2_sigma[static_cast<std::size_t>(k)] += sigma * load(&weights.w2_transposed(row, k));
-    });
+    repeat<N>(
+        joints, [&](int k) __attribute__((always_inline)) {
+          w2_sigma[static_cast<std::size_t>(k)] += sigma * load(&weights.w2_transposed(row, k));
+        });
   });
   SigmaSums<N, Scalar> sums;
+  sums.w2_sigma.resize(joints);
   repeat<Stage>([&](int j) __attribute__((always_inline)) {
     const auto stage = static_cast<std::size_t>(j);
     sums.before[stage] = total<Scalar>(before[stage]);
   });
-  repeat<N>([&](int k) __attribute__((always_inline)) {
-    sums.w2_sigma[k] = total<Scalar>(w2_sigma[static_cast<std::size_t>(k)]);
-  });
+  repeat<N>(
+      joints, [&](int k) __attribute__((always_inline)) {
+        sums.w2_sigma[k] = total<Scalar>(w2_sigma[static_cast<std::size_t>(k)]);
+      });
   return sums;
 }
 
@@ -113,9 +117,10 @@ template <int Stage, int N, int L, typename Scalar>
   with_b.fill(spread(Scalar(0)));
   for_each_block<Scalar, L>([&](int row) __attribute__((always_inline)) {
     Lanes back = kept_d[0] * load(&weights.w2_transposed(row, 0));
-    repeat<N - 1>([&](int k) __attribute__((always_inline)) {
-      back += kept_d[k + 1] * load(&weights.w2_transposed(row, k + 1));
-    });
+    repeat<N - 1>(
+        kept_d.size() - 1, [&](int k) __attribute__((always_inline)) {
+          back += kept_d[k + 1] * load(&weights.w2_transposed(row, k + 1));
+        });
     repeat<Stage>([&](int j) __attribute__((always_inline)) {
       const auto stage = static_cast<std::size_t>(j);
       back += nu[stage] * load(&factors.sigma(stage)[row]);
@@ -154,14 +159,17 @@ update_weights(SpanPoint<Scalar> point, Matrix<N, kStages, Scalar> share,
                const NetworkInput<N, Scalar>& z0, const NetworkInput<N, Scalar>& z1, Scalar z01,
                Scalar z11, NetworkWeights<N, L, Scalar>& weights, HiddenVector<L, Scalar>& w1_z) {
   using Lanes = Block<Scalar>;
-  constexpr auto kInputs = static_cast<std::size_t>(kNetworkInputs<N>);
+  constexpr auto kInputs = static_cast<std::size_t>(kMostNetworkInputs<N>);
+  const Eigen::Index inputs = z0.size();
+  const Eigen::Index joints = weights.w2_transposed.cols();
   // Spread over the lanes once, not once per block.
   std::array<Lanes, kInputs> at_begin;
   std::array<Lanes, kInputs> at_end;
-  repeat<kNetworkInputs<N>>([&](int i) __attribute__((always_inline)) {
-    at_begin[static_cast<std::size_t>(i)] = spread(z0[i]);
-    at_end[static_cast<std::size_t>(i)] = spread(z1[i]);
-  });
+  repeat<kNetworkInputs<N>>(
+      inputs, [&](int i) __attribute__((always_inline)) {
+        at_begin[static_cast<std::size_t>(i)] = spread(z0[i]);
+        at_end[static_cast<std::size_t>(i)] = spread(z1[i]);
+      });
   const Scalar half_1 = Scalar(0.5) * point.gain[1];
   const Scalar half_2 = Scalar(0.5) * point.gain[2];
   // With vectors one sum per column: a single one would be a chain of dependent additions.
@@ -172,13 +180,14 @@ update_weights(SpanPoint<Scalar> point, Matrix<N, kStages, Scalar> share,
     const Lanes p = point.gain[0] * load(&factors.b[0][row]) + middle;
     const Lanes r = point.gain[3] * load(&factors.b[3][row]) + middle;
     store<Scalar>(point.keep * load(&w1_z1[row]) + z01 * p + z11 * r, &w1_z[row]);
-    repeat<kNetworkInputs<N>>([&](int input) __attribute__((always_inline)) {
-      const auto i = static_cast<std::size_t>(input);
-      Scalar* const w = &weights.w1(row, input);
-      const Lanes updated = point.keep * load<Scalar>(w) + at_begin[i] * p + at_end[i] * r;
-      squares[i % squares.size()] += updated * updated;
-      store<Scalar>(updated, w);
-    });
+    repeat<kNetworkInputs<N>>(
+        inputs, [&](int input) __attribute__((always_inline)) {
+          const auto i = static_cast<std::size_t>(input);
+          Scalar* const w = &weights.w1(row, input);
+          const Lanes updated = point.keep * load<Scalar>(w) + at_begin[i] * p + at_end[i] * r;
+          squares[i % squares.size()] += updated * updated;
+          store<Scalar>(updated, w);
+        });
   });
   for_each_block<Scalar, L, kLongRow>([&](int row) __attribute__((always_inline)) {
     std::array<Lanes, kStages> sigma;
@@ -186,15 +195,16 @@ update_weights(SpanPoint<Scalar> point, Matrix<N, kStages, Scalar> share,
       const auto stage = static_cast<std::size_t>(j);
       sigma[stage] = load(&factors.sigma(stage)[row]);
     });
-    repeat<N>([&](int k) __attribute__((always_inline)) {
-      Scalar* const w = &weights.w2_transposed(row, k);
-      Lanes updated = point.keep * load<Scalar>(w);
-      repeat<kStages>([&](int j) __attribute__((always_inline)) {
-        updated += share(k, j) * sigma[static_cast<std::size_t>(j)];
-      });
-      squares[static_cast<std::size_t>(k) % squares.size()] += updated * updated;
-      store<Scalar>(updated, w);
-    });
+    repeat<N>(
+        joints, [&](int k) __attribute__((always_inline)) {
+          Scalar* const w = &weights.w2_transposed(row, k);
+          Lanes updated = point.keep * load<Scalar>(w);
+          repeat<kStages>([&](int j) __attribute__((always_inline)) {
+            updated += share(k, j) * sigma[static_cast<std::size_t>(j)];
+          });
+          squares[static_cast<std::size_t>(k) % squares.size()] += updated * updated;
+          store<Scalar>(updated, w);
+        });
   });
   Lanes sum = spread(Scalar(0));
   for (const Lanes& part : squares) sum += part;
@@ -207,26 +217,30 @@ template <int N, int L, typename Scalar>
     Scalar shrink, NetworkWeights<N, L, Scalar>& weights, HiddenVector<L, Scalar>& w1_z,
     HiddenVector<L, Scalar>& sigma) {
   using Lanes = Block<Scalar>;
-  std::array<Lanes, static_cast<std::size_t>(N)> psi;
+  const Eigen::Index joints = weights.w2_transposed.cols();
+  std::array<Lanes, static_cast<std::size_t>(kMostJoints<N>)> psi;
   psi.fill(spread(Scalar(0)));
   for_each_block<Scalar, L, kLongRow>([&](int row) __attribute__((always_inline)) {
     const Lanes pre = shrink * load<Scalar>(&w1_z[row]);
     const Lanes s = sigmoid_of_block<Scalar>(pre);
     store<Scalar>(pre, &w1_z[row]);
     store<Scalar>(s, &sigma[row]);
-    repeat<kNetworkInputs<N>>([&](int input) __attribute__((always_inline)) {
-      Scalar* const w = &weights.w1(row, input);
-      store<Scalar>(shrink * load<Scalar>(w), w);
-    });
-    repeat<N>([&](int k) __attribute__((always_inline)) {
-      Scalar* const w = &weights.w2_transposed(row, k);
-      const Lanes w2 = shrink * load<Scalar>(w);
-      store<Scalar>(w2, w);
-      psi[static_cast<std::size_t>(k)] += s * w2;
-    });
+    repeat<kNetworkInputs<N>>(
+        weights.w1.cols(), [&](int input) __attribute__((always_inline)) {
+          Scalar* const w = &weights.w1(row, input);
+          store<Scalar>(shrink * load<Scalar>(w), w);
+        });
+    repeat<N>(
+        joints, [&](int k) __attribute__((always_inline)) {
+          Scalar* const w = &weights.w2_transposed(row, k);
+          const Lanes w2 = shrink * load<Scalar>(w);
+          store<Scalar>(w2, w);
+          psi[static_cast<std::size_t>(k)] += s * w2;
+        });
   });
   Vector<N, Scalar> psi_hat;
-  for (Eigen::Index k = 0; k < N; ++k) {
+  psi_hat.resize(joints);
+  for (Eigen::Index k = 0; k < joints; ++k) {
     psi_hat[k] = total<Scalar>(psi[static_cast<std::size_t>(k)]);
   }
   return psi_hat;

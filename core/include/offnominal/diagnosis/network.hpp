@@ -14,13 +14,36 @@ namespace offnominal {
 
 // Network inputs of n joints: 1, q, dq, tau.
 template <int N>
-inline constexpr int kNetworkInputs = 3 * N + 1;
+inline constexpr int kNetworkInputs = N == kRuntimeJoints ? kRuntimeJoints : 3 * N + 1;
+template <int N>
+inline constexpr int kMostNetworkInputs = kNetworkInputs<kMostJoints<N>>;
 
 template <int L, typename Scalar>
 using HiddenVector = Eigen::Array<Scalar, kHiddenRows<L, Scalar>, 1>;
 
 template <int N, typename Scalar>
-using NetworkInput = Vector<kNetworkInputs<N>, Scalar>;
+using NetworkInput =
+    Eigen::Matrix<Scalar, kNetworkInputs<N>, 1, Eigen::AutoAlign, kMostNetworkInputs<N>, 1>;
+
+// Their inner product, and the joints' velocities among them.
+template <int N, typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Scalar dot_of_inputs(const NetworkInput<N, Scalar>& z,
+                                                       const NetworkInput<N, Scalar>& other) {
+  return detail::dot<kNetworkInputs<1>, 3>(z, other);
+}
+template <int N, typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Scalar squared_norm_of_input(const NetworkInput<N, Scalar>& z) {
+  return detail::squared_length<kNetworkInputs<1>, 3>(z);
+}
+template <int N, typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE auto velocity_in(const NetworkInput<N, Scalar>& z) {
+  if constexpr (N == kRuntimeJoints) {
+    const Eigen::Index joints = (z.size() - 1) / 3;
+    return z.segment(1 + joints, joints);
+  } else {
+    return z.template segment<N>(1 + N);
+  }
+}
 
 // theta of the paper. L is the capacity: a hidden unit whose weights are all zero stays so under
 // the learning law (sigma(0) = 0, so its output weights have no gradient, and without output
@@ -28,8 +51,12 @@ using NetworkInput = Vector<kNetworkInputs<N>, Scalar>;
 template <int N, int L, typename Scalar>
 struct NetworkWeights {
   static constexpr int kRows = kHiddenRows<L, Scalar>;
-  Matrix<kRows, kNetworkInputs<N>, Scalar> w1 = Matrix<kRows, kNetworkInputs<N>, Scalar>::Zero();
-  Matrix<kRows, N, Scalar> w2_transposed = Matrix<kRows, N, Scalar>::Zero();
+  using InputWeights = Eigen::Matrix<Scalar, kRows, kNetworkInputs<N>,
+                                     Matrix<kRows, kMostNetworkInputs<N>, Scalar>::Options, kRows,
+                                     kMostNetworkInputs<N>>;
+  using OutputWeights = Matrix<kRows, N, Scalar>;
+  InputWeights w1 = no_values<InputWeights>();
+  OutputWeights w2_transposed = no_values<OutputWeights>();
 };
 
 template <int N, typename Scalar>
@@ -37,10 +64,16 @@ template <int N, typename Scalar>
                                                     const Vector<N, Scalar>& dq,
                                                     const Vector<N, Scalar>& tau) {
   NetworkInput<N, Scalar> z;
-  z[0] = Scalar(1);
-  z.template segment<N>(1) = q;
-  z.template segment<N>(1 + N) = dq;
-  z.template segment<N>(1 + 2 * N) = tau;
+  if constexpr (N == kRuntimeJoints) {
+    const Eigen::Index joints = q.size();
+    z.resize(1 + 3 * joints);
+    z << Scalar(1), q, dq, tau;
+  } else {
+    z[0] = Scalar(1);
+    z.template segment<N>(1) = q;
+    z.template segment<N>(1 + N) = dq;
+    z.template segment<N>(1 + 2 * N) = tau;
+  }
   return z;
 }
 
@@ -69,33 +102,34 @@ class InitialWeights {
 };
 
 // W2(0) = 0, so that psi_hat = 0 (eq. 6); W1(0) of InitialWeights in the first `hidden_units` rows,
-// at most L; the rest zero.
+// at most L; the rest zero. `joints`: of a network whose compiler does not know it.
 template <int N, int L, typename Scalar>
 void set_initial_weights(std::uint32_t seed, int hidden_units, Scalar range,
-                         NetworkWeights<N, L, Scalar>& weights) {
-  weights.w1.setZero();
-  weights.w2_transposed.setZero();
+                         NetworkWeights<N, L, Scalar>& weights, Eigen::Index joints = N) {
+  weights.w1.setZero(weights.w1.rows(), 3 * joints + 1);
+  weights.w2_transposed.setZero(weights.w1.rows(), joints);
   InitialWeights<Scalar> sequence(seed, range);
   for (Eigen::Index unit = 0; unit < hidden_units && unit < L; ++unit) {
-    for (Eigen::Index input = 0; input < kNetworkInputs<N>; ++input) {
+    for (Eigen::Index input = 0; input < weights.w1.cols(); ++input) {
       weights.w1(unit, input) = sequence.next();
     }
   }
 }
 template <int N, int L, typename Scalar>
 [[nodiscard]] NetworkWeights<N, L, Scalar> initial_weights(std::uint32_t seed, int hidden_units,
-                                                           Scalar range) {
+                                                           Scalar range, Eigen::Index joints = N) {
   NetworkWeights<N, L, Scalar> weights;
-  set_initial_weights(seed, hidden_units, range, weights);
+  set_initial_weights(seed, hidden_units, range, weights, joints);
   return weights;
 }
 
 // |theta(0)|^2 of such weights, without room for them.
 template <int N, int L, typename Scalar>
-[[nodiscard]] Scalar initial_squared_norm(std::uint32_t seed, int hidden_units, Scalar range) {
+[[nodiscard]] Scalar initial_squared_norm(std::uint32_t seed, int hidden_units, Scalar range,
+                                          int joints = N) {
   InitialWeights<Scalar> sequence(seed, range);
   Scalar sum(0);
-  for (int i = std::min(hidden_units, L) * kNetworkInputs<N>; i > 0; --i) {
+  for (int i = std::min(hidden_units, L) * (3 * joints + 1); i > 0; --i) {
     const Scalar weight = sequence.next();
     sum += weight * weight;
   }
@@ -110,9 +144,10 @@ EIGEN_ALWAYS_INLINE void first_layer(const NetworkWeights<N, L, Scalar>& weights
   using namespace detail;
   for_each_block<Scalar, L, kLongRow>([&](int row) __attribute__((always_inline)) {
     Block<Scalar> sum = z[0] * load(&weights.w1(row, 0));
-    repeat<kNetworkInputs<N> - 1>([&](int i) __attribute__((always_inline)) {
-      sum += z[i + 1] * load(&weights.w1(row, i + 1));
-    });
+    repeat<kNetworkInputs<N> - 1>(
+        z.size() - 1, [&](int i) __attribute__((always_inline)) {
+          sum += z[i + 1] * load(&weights.w1(row, i + 1));
+        });
     store<Scalar>(sum, &w1_z[row]);
   });
 }
@@ -122,7 +157,8 @@ template <int N, int L, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> network_output(const NetworkWeights<N, L, Scalar>& weights,
                                                const HiddenVector<L, Scalar>& sigma) {
   Vector<N, Scalar> psi_hat;
-  for (Eigen::Index k = 0; k < N; ++k) {
+  psi_hat.resize(weights.w2_transposed.cols());
+  for (Eigen::Index k = 0; k < psi_hat.size(); ++k) {
     detail::Block<Scalar> sum{};
     detail::for_each_block<Scalar, L>([&](int row) __attribute__((always_inline)) {
       sum += detail::load(&sigma[row]) * detail::load(&weights.w2_transposed(row, k));

@@ -75,8 +75,8 @@ class TickIntegrator {
         factors_{{}, begin.sigma, {}} {
     const Scalar half(0.5);
     z_.z00 = begin.z_squared_norm;
-    z_.z01 = begin.z.dot(input.z);
-    z_.z11 = input.z.squaredNorm();
+    z_.z01 = dot_of_inputs<N, Scalar>(begin.z, input.z);
+    z_.z11 = squared_norm_of_input<N, Scalar>(input.z);
     z_.z0m = half * (z_.z00 + z_.z01);
     z_.zm1 = half * (z_.z01 + z_.z11);
     z_.zmm = half * (z_.z0m + z_.zm1);
@@ -89,9 +89,9 @@ class TickIntegrator {
   [[nodiscard]] EIGEN_ALWAYS_INLINE TickEnd<N, Scalar> integrate() {
     const Scalar h = config_.period_s;
     const Scalar half = Scalar(0.5);
-    const StageSignals<N, Scalar> begin{begin_.z.template segment<N>(1 + N), model_.nominal_ddq,
+    const StageSignals<N, Scalar> begin{velocity_in<N, Scalar>(begin_.z), model_.nominal_ddq,
                                         model_.mu_bar};
-    const StageSignals<N, Scalar> end{input_.z.template segment<N>(1 + N), input_.nominal_ddq,
+    const StageSignals<N, Scalar> end{velocity_in<N, Scalar>(input_.z), input_.nominal_ddq,
                                       input_.mu_bar};
     const StageSignals<N, Scalar> middle{half * (begin.dq + end.dq),
                                          half * (begin.nominal_ddq + end.nominal_ddq),
@@ -104,7 +104,7 @@ class TickIntegrator {
         {Scalar(1), {}},
         {begin_.theta_squared_norm, begin_.theta_squared_norm}};
     // A tick that begins inside the dead-zone learns nothing, whatever its inner stages look like.
-    rate_ = at.d.squaredNorm() > Scalar(0) ? config_.learning_rate : Scalar(0);
+    rate_ = squared_length(at.d) > Scalar(0) ? config_.learning_rate : Scalar(0);
     TickEnd<N, Scalar> sum{begin_.omega, begin_.mu, {Scalar(1), {}}};
     at = stage<0>(begin, middle.dq, {}, z_.z00, at, h * half, h / 6, sum);
     at = stage<1>(middle, middle.dq, {z_.z0m}, z_.zmm, at, h * half, h / 3, sum);
@@ -132,11 +132,14 @@ class TickIntegrator {
   EIGEN_ALWAYS_INLINE void finish(const SpanPoint<Scalar>& theta,
                                   EstimatorState<N, L, Scalar>& state) const {
     Matrix<N, kStages, Scalar> share;
+    const Eigen::Index joints = d_[0].size();
+    share.resize(joints, kStages);
     repeat<kStages>([&](int j) __attribute__((always_inline)) {
       const auto stage = static_cast<std::size_t>(j);
-      repeat<N>([&](int k) __attribute__((always_inline)) {
-        share(k, j) = theta.gain[stage] * d_[stage][k];
-      });
+      repeat<N>(
+          joints, [&](int k) __attribute__((always_inline)) {
+            share(k, j) = theta.gain[stage] * d_[stage][k];
+          });
     });
     const Scalar squared =
         update_weights<N, L, Scalar>(theta, share, factors_, w1_z_.at_end, state.z, input_.z,
@@ -207,15 +210,15 @@ class TickIntegrator {
     std::array<Scalar, kStages> nu{};
     repeat<S>([&](int i) __attribute__((always_inline)) {
       const auto j = static_cast<std::size_t>(i);
-      nu[j] = Scalar(0.5) * at.theta.gain[j] * d_[j].dot(at.d);
+      nu[j] = Scalar(0.5) * at.theta.gain[j] * dot(d_[j], at.d);
     });
     const GradientSums<Scalar> sums =
         gradient_pass<S, N, L, Scalar>(w1_z_, begin_.weights, (Scalar(0.5) * at.theta.keep) * at.d,
                                        nu, at.theta.keep, kappa, factors_);
-    const Scalar w2_squared = sums.sigma_squared * at.d.squaredNorm();
+    const Scalar w2_squared = sums.sigma_squared * squared_length(at.d);
     gradient_reach_[s] = sums.b_squared * (z_.z00 + z_.z11) + w2_squared;
-    return {sums.with_begin + at.d.dot(output.with_w2_begin),
-            sums.with_theta + at.d.dot(output.psi_hat), sums.b_squared * zz + w2_squared};
+    return {sums.with_begin + dot(at.d, output.with_w2_begin),
+            sums.with_theta + dot(at.d, output.psi_hat), sums.b_squared * zz + w2_squared};
   }
 
   // Moves theta's coordinates along a stage's gradient, less the pull of projection.

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <offnominal/finite.hpp>
+#include <offnominal/joint_count.hpp>
 #include <offnominal/model/effect_list.hpp>
 #include <offnominal/model/quantity.hpp>
 #include <offnominal/status.hpp>
@@ -41,12 +42,27 @@ struct Joint {
   Scalar max_torque = std::numeric_limits<Scalar>::max();
 };
 
+// Between motors and joints: q_m = A q + offset, dq_m = A dq, tau = A^T tau_m. Only effects of
+// motors act by it; samples and torques are of the joints.
+template <int N, typename Scalar>
+struct Transmission {
+  static constexpr auto kMost = static_cast<std::size_t>(kMostJoints<N>);
+  // A, row by row, kMost numbers each: rad of the motor per rad or m of each joint.
+  std::array<Scalar, kMost* kMost> motor_per_joint = [] {
+    std::array<Scalar, kMost * kMost> identity{};
+    for (std::size_t i = 0; i < identity.size(); i += kMost + 1) identity[i] = 1;
+    return identity;
+  }();
+  std::array<Scalar, kMost> motor_offset_rad{};
+};
+
 template <int N, typename Scalar>
 struct Chain {
-  static_assert(N >= 1, "a chain has at least one joint");
-  std::array<Joint<Scalar>, static_cast<std::size_t>(N)> joints{};
+  static_assert(N >= 1 || N == kRuntimeJoints, "a chain has at least one joint");
+  PerJoint<N, Joint<Scalar>> joints{};                                   // as many as the chain has
   std::array<Scalar, 3> gravity_m_s2{0, 0, static_cast<Scalar>(-9.81)};  // base frame
-  EffectList<Scalar, kEffectsPerJoint * N> effects{};
+  EffectList<Scalar, kEffectsPerJoint * kMostJoints<N>> effects{};
+  Transmission<N, Scalar> transmission{};
 };
 
 namespace detail {
@@ -118,20 +134,29 @@ template <typename Scalar>
 }
 
 // kOk where every joint, effect and the gravity vector are usable; otherwise the first fault found.
-// kTooManyEffects: the list's size is above its capacity.
+// kTooManyEffects: the list's size is above its capacity. kWrongJointCount: no joint. A
+// transmission with a number that is not finite is kInvalidEffect, as it serves effects alone.
 template <int N, typename Scalar>
 [[nodiscard]] inline Status validate(const Chain<N, Scalar>& chain) {
+  if constexpr (N == kRuntimeJoints) {
+    if (chain.joints.empty()) return Status::kWrongJointCount;
+  }
   if (!all_finite(chain.gravity_m_s2)) return Status::kInvalidGravity;
   for (const Joint<Scalar>& joint : chain.joints) {
     const Status status = validate(joint);
     if (status != Status::kOk) return status;
   }
   if (chain.effects.size > chain.effects.items.size()) return Status::kTooManyEffects;
-  std::array<Scalar, static_cast<std::size_t>(N)> friction_per_load{};
+  if (!all_finite(chain.transmission.motor_per_joint) ||
+      !all_finite(chain.transmission.motor_offset_rad)) {
+    return Status::kInvalidEffect;
+  }
+  const auto joints = static_cast<int>(chain.joints.size());
+  std::array<Scalar, static_cast<std::size_t>(kMostJoints<N>)> friction_per_load{};
   for (const Effect<Scalar>& effect : chain.effects.view()) {
     const bool usable =
-        effect.joint < N && parameters_valid(effect) && source_joint_valid(effect, N);
-    if (!usable) return Status::kInvalidEffect;
+        effect.joint < joints && parameters_valid(effect) && source_joint_valid(effect, joints);
+    if (!usable || (effect.of_motor && !motor_may_have(effect.kind))) return Status::kInvalidEffect;
     Scalar& of_joint = friction_per_load[effect.joint];
     of_joint += most_friction_per_load(effect);
     const double most = effects::LoadDependentFriction::kMostFactor;

@@ -18,7 +18,7 @@
 
 namespace offnominal {
 
-inline constexpr int kMaxEffectParameters = 4;
+inline constexpr int kMaxEffectParameters = 8;
 
 // Which physics an effect is. The numbers are stable, names are name_of(kind).
 enum class EffectKind : std::uint8_t {
@@ -43,6 +43,7 @@ enum class EffectKind : std::uint8_t {
   kJointElasticity = 18,
   kBacklash = 19,
   kGearLoss = 20,
+  kPositionTorque = 21,
 };
 
 // How a parameter enters the effect's torque.
@@ -68,6 +69,9 @@ struct ParameterInfo {
   double default_value;  // where it is not required
   const char* meaning;
   SearchedShare searched = {};
+  // A shape that follows from the recordings: a position is the lowest that they show, a distance
+  // how far it is from there to the highest.
+  bool as_seen = false;
 };
 
 // How an effect acts: what its struct has.
@@ -81,6 +85,9 @@ enum class EffectAction : std::uint8_t {
   kDelay,             // delay_s(): by when it acts
   kDisplacement,      // none of these: the link is not where the motor is
 };
+
+// The one variable of its joint that an effect's torque is a function of.
+enum class EffectVariable : std::uint8_t { kNone, kPosition, kVelocity, kLoad };
 
 // The sign that the linear parameters of an effect may have.
 enum class CoefficientSign : std::uint8_t {
@@ -100,16 +107,26 @@ struct EffectTraits {
   bool acts_at_rest = false;     // where nothing moves
   bool counts_time = false;      // by the time since the run began
   bool needs_no_motion = false;  // a joint that never moves shows it
+  // In rotor or gear, before a torque sensor that sits behind the gear: such a sensor does not see
+  // it. Friction is not, since bearings and seals behind the sensor rub too.
+  bool is_before_sensor = false;
   CoefficientSign sign = CoefficientSign::kEither;
+  EffectVariable follows = EffectVariable::kNone;
+  // A curve of any shape over that variable: it can stand for every other effect of it, and is
+  // named only where none of them is what the recordings show.
+  bool has_any_shape = false;
 };
 
 // One effect with its values. `joint` counts from 0; `parameters` in the order of the effect's
-// kParameters, the rest 0.
+// kParameters, the rest 0. With `of_motor` it acts on the shaft of the motor of that number
+// (Transmission, chain.hpp): by the motor's position and velocity, in rad, with a torque of the
+// motor. Not every effect can (motor_may_have(), effect_list.hpp).
 template <typename Scalar>
 struct Effect {
   EffectKind kind = EffectKind::kViscousFriction;
   std::uint8_t joint = 0;
   std::array<Scalar, kMaxEffectParameters> parameters{};
+  bool of_motor = false;
 };
 
 // What an effect may depend on at one joint at one instant.

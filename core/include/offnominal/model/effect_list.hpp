@@ -27,7 +27,8 @@ using AllEffects =
                 effects::RotorInertia, effects::TipPayload, effects::LinkMass,
                 effects::JointStiffness, effects::CoggingTorque, effects::PeriodicDisturbance,
                 effects::TemperatureDrift, effects::JointCoupling, effects::LoadDependentFriction,
-                effects::TorqueScale, effects::Hysteresis, effects::TimeDelay, effects::GearLoss>;
+                effects::TorqueScale, effects::Hysteresis, effects::TimeDelay, effects::GearLoss,
+                effects::PositionTorque>;
 
 // Those that recordings are searched for and that no chain can have.
 using EffectsOutsideChains = EffectTypes<effects::JointElasticity, effects::Backlash>;
@@ -194,6 +195,18 @@ inline constexpr std::size_t kSourceParameter = [] {
 }();
 template <typename E>
 inline constexpr bool kHasSource = kSourceParameter<E> < E::kParameters.size();
+
+// Whether a motor's shaft may have an effect of that kind: a torque by its own motion, or inertia.
+// What scales or delays the way from motor to joint, and what remembers, belongs to joints.
+[[nodiscard]] constexpr bool motor_may_have(EffectKind kind) {
+  bool may = false;
+  visit_effect(kind, [&]<typename E>() {
+    constexpr EffectAction kAction = detail::action_of<E>();
+    may = !kHasSource<E> &&
+          (kAction == EffectAction::kTorque || kAction == EffectAction::kReflectedInertia);
+  });
+  return may;
+}
 
 // The other joint that an effect with kHasSource names, from 0.
 template <typename E, typename Scalar>

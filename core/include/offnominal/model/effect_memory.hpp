@@ -90,14 +90,14 @@ class NoEffectMemory {
 template <int N, typename Scalar>
 class EffectMemory {
  public:
-  static constexpr std::size_t kCapacity = static_cast<std::size_t>(kEffectsPerJoint) * N;
+  static constexpr int kCapacity = kEffectsPerJoint * kMostJoints<N>;
 
   // What acts at a sample, N m or N per joint.
   struct Now {
-    Vector<N, Scalar> tau = Vector<N, Scalar>::Zero();  // logged torque that arrives now
+    Vector<N, Scalar> tau = zeros<N, Scalar>();  // logged torque that arrives now
     // What effects with a state take of it, as the drive has to be told.
-    Vector<N, Scalar> remembered = Vector<N, Scalar>::Zero();
-    std::array<Scalar, kCapacity> z{};  // per effect with a state
+    Vector<N, Scalar> remembered = zeros<N, Scalar>();
+    std::array<Scalar, static_cast<std::size_t>(kCapacity)> z{};  // per effect with a state
 
     [[nodiscard]] const Vector<N, Scalar>& acting(const Vector<N, Scalar>& /*tau*/) const {
       return tau;
@@ -108,7 +108,7 @@ class EffectMemory {
     }
   };
   struct State : Now {
-    Vector<N, Scalar> q = Vector<N, Scalar>::Zero();  // at the last sample
+    Vector<N, Scalar> q = zeros<N, Scalar>();  // at the last sample
     // Logged torques, the newest at `newest`, older ones before it, round and round.
     std::array<Vector<N, Scalar>, static_cast<std::size_t>(kMaxDelayTicks) + 2> logged{};
     std::uint8_t newest = 0;
@@ -116,7 +116,7 @@ class EffectMemory {
 
   // kInvalidEffect where a joint's torque is later than kMaxDelayTicks.
   [[nodiscard]] static Status validate(const Chain<N, Scalar>& chain, Scalar period_s) {
-    for (std::size_t joint = 0; joint < static_cast<std::size_t>(N); ++joint) {
+    for (std::size_t joint = 0; joint < chain.joints.size(); ++joint) {
       const bool possible = delay_of_joint(chain, joint) <= kMaxDelayTicks * period_s;
       if (!possible) return Status::kInvalidEffect;
     }
@@ -132,7 +132,8 @@ class EffectMemory {
       });
     }
     told_per_given_ = model.told_per_given;
-    for (std::size_t joint = 0; joint < static_cast<std::size_t>(N); ++joint) {
+    size_for(chain.joints.size(), whole_ticks_, part_of_tick_);
+    for (std::size_t joint = 0; joint < chain.joints.size(); ++joint) {
       const Scalar ticks = delay_of_joint(chain, joint) / period_s;
       whole_ticks_[joint] = static_cast<std::uint8_t>(ticks);
       part_of_tick_[joint] = ticks - static_cast<Scalar>(whole_ticks_[joint]);
@@ -142,6 +143,7 @@ class EffectMemory {
   // At the first sample of a run.
   [[nodiscard]] Now begin(const JointSample<N, Scalar>& sample) const {
     Now now;
+    size_for(whole_ticks_.size(), now.remembered);
     now.tau = sample.tau;
     return now;
   }
@@ -150,6 +152,7 @@ class EffectMemory {
   [[nodiscard]] Now next(const JointSample<N, Scalar>& sample, std::uint32_t missed,
                          const State& state) const {
     Now now;
+    size_for(whole_ticks_.size(), now.tau, now.remembered);
     std::size_t i = 0;
     for (const Effect<Scalar>& effect : with_state_.view()) {
       const auto joint = static_cast<Eigen::Index>(effect.joint);
@@ -162,7 +165,7 @@ class EffectMemory {
       });
       ++i;
     }
-    for (std::size_t joint = 0; joint < static_cast<std::size_t>(N); ++joint) {
+    for (std::size_t joint = 0; joint < whole_ticks_.size(); ++joint) {
       const std::uint32_t whole = whole_ticks_[joint];
       const Scalar later = logged(sample, missed, state, whole, joint);
       const Scalar earlier = logged(sample, missed, state, whole + 1, joint);
@@ -201,11 +204,11 @@ class EffectMemory {
     state.q = sample.q;
   }
 
-  EffectList<Scalar, kEffectsPerJoint * N> with_state_{};
-  Vector<N, Scalar> told_per_given_ = Vector<N, Scalar>::Ones();
+  EffectList<Scalar, kCapacity> with_state_{};
+  Vector<N, Scalar> told_per_given_ = ones<N, Scalar>();
   // Per joint: the delay in ticks.
-  std::array<std::uint8_t, static_cast<std::size_t>(N)> whole_ticks_{};
-  std::array<Scalar, static_cast<std::size_t>(N)> part_of_tick_{};
+  PerJoint<N, std::uint8_t> whole_ticks_{};
+  PerJoint<N, Scalar> part_of_tick_{};
 };
 
 // Policies.

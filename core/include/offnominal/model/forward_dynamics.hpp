@@ -12,12 +12,12 @@ namespace offnominal {
 // What the model says at one instant.
 template <int N, typename Scalar>
 struct ForwardDynamics {
-  Vector<N, Scalar> ddq = Vector<N, Scalar>::Zero();            // rad/s^2 or m/s^2
-  Matrix<N, N, Scalar> inertia = Matrix<N, N, Scalar>::Zero();  // M(q)
-  Matrix<N, N, Scalar> factor = Matrix<N, N, Scalar>::Zero();   // lower, M(q) = factor factor^T
+  Vector<N, Scalar> ddq = zeros<N, Scalar>();                        // rad/s^2 or m/s^2
+  Matrix<N, N, Scalar> inertia = no_values<Matrix<N, N, Scalar>>();  // M(q)
+  Matrix<N, N, Scalar> factor = no_values<Matrix<N, N, Scalar>>();  // lower, M(q) = factor factor^T
   // What the drive has to be told per torque more on inertia and weight, at this load; 1 without
   // effects on the torque's way.
-  Vector<N, Scalar> told_per_load = Vector<N, Scalar>::Ones();
+  Vector<N, Scalar> told_per_load = ones<N, Scalar>();
 };
 
 // ddq = M(q)^-1 (load_torque(tau) - V(q, dq) dq - G(q)): the paper's f with the known effects. The

@@ -41,9 +41,10 @@ template <bool Accelerating, int N, typename Scalar>
                                                   const Vector<N, Scalar>& dq,
                                                   const Vector<N, Scalar>& ddq) {
   using Vec3 = Vector<3, Scalar>;
-  constexpr auto kCount = static_cast<std::size_t>(N);
-  std::array<Vec3, kCount> force;   // on link i from the link before it, link's frame
-  std::array<Vec3, kCount> moment;  // about the origin of the link's frame
+  constexpr auto kMost = static_cast<std::size_t>(kMostJoints<N>);
+  const std::size_t count = model.bodies.size();
+  std::array<Vec3, kMost> force;   // on link i from the link before it, link's frame
+  std::array<Vec3, kMost> moment;  // about the origin of the link's frame
 
   Vec3 omega = Vec3::Zero();
   Vec3 omega_dot = Vec3::Zero();
@@ -64,7 +65,7 @@ template <bool Accelerating, int N, typename Scalar>
     force[0] = first.link.mass * acceleration;
     moment[0].setZero();
   }
-  for (std::size_t i = 1; i < kCount; ++i) {
+  for (std::size_t i = 1; i < count; ++i) {
     const auto& body = model.bodies[i];
     const auto index = static_cast<Eigen::Index>(i);
     acceleration += centripetal<Scalar>(omega, omega.squaredNorm(), at.origin[i]);
@@ -93,7 +94,8 @@ template <bool Accelerating, int N, typename Scalar>
   }
 
   Vector<N, Scalar> torque;
-  for (std::size_t i = kCount; i-- > 0;) {
+  torque.resize(static_cast<Eigen::Index>(count));
+  for (std::size_t i = count; i-- > 0;) {
     const auto& body = model.bodies[i];
     const auto index = static_cast<Eigen::Index>(i);
     const Vec3& along = body.type == JointType::kRevolute ? moment[i] : force[i];
@@ -104,6 +106,9 @@ template <bool Accelerating, int N, typename Scalar>
       force[i - 1] += passed;
       moment[i - 1] += rotated<Scalar>(at.rotation[i], moment[i]) + at.origin[i].cross(passed);
     }
+  }
+  if constexpr (Accelerating) {
+    if (model.has_rotors) torque += model.rotors.lazyProduct(ddq);
   }
   return torque;
 }

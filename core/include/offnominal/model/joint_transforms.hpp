@@ -11,8 +11,8 @@ namespace offnominal {
 // Placement of every link's frame in the frame before it at one position of the joints.
 template <int N, typename Scalar>
 struct JointTransforms {
-  std::array<Matrix<3, 3, Scalar>, static_cast<std::size_t>(N)> rotation;  // child to parent
-  std::array<Vector<3, Scalar>, static_cast<std::size_t>(N)> origin;       // m, parent's frame
+  PerJoint<N, Matrix<3, 3, Scalar>> rotation;  // child to parent
+  PerJoint<N, Vector<3, Scalar>> origin;       // m, parent's frame
 };
 
 // q: rad or m. A non-finite q gives non-finite transforms.
@@ -20,7 +20,11 @@ template <int N, typename Scalar>
 [[nodiscard]] JointTransforms<N, Scalar> joint_transforms(const RigidBodyModel<N, Scalar>& model,
                                                           const Vector<N, Scalar>& q) {
   JointTransforms<N, Scalar> at;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+  if constexpr (N == kRuntimeJoints) {
+    at.rotation.assign(model.bodies.size(), Matrix<3, 3, Scalar>::Zero());
+    at.origin.assign(model.bodies.size(), Vector<3, Scalar>::Zero());
+  }
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const auto& body = model.bodies[i];
     const Scalar qi = q[static_cast<Eigen::Index>(i)];
     if (body.type == JointType::kRevolute) {

@@ -55,9 +55,11 @@ template <int N, typename Scalar>
 [[nodiscard]] Matrix<N, N, Scalar> mass_matrix(const RigidBodyModel<N, Scalar>& model,
                                                const JointTransforms<N, Scalar>& at) {
   using Vec3 = Vector<3, Scalar>;
+  const std::size_t count = model.bodies.size();
   Matrix<N, N, Scalar> m;
-  SpatialInertia<Scalar> composite = model.bodies[static_cast<std::size_t>(N - 1)].link;
-  for (std::size_t j = static_cast<std::size_t>(N); j-- > 1;) {
+  m.resize(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
+  SpatialInertia<Scalar> composite = model.bodies[count - 1].link;
+  for (std::size_t j = count; j-- > 1;) {
     const auto& body = model.bodies[j];
     const auto column = static_cast<Eigen::Index>(j);
     Vec3 force;
@@ -92,10 +94,13 @@ template <int N, typename Scalar>
       first.reflected_inertia + (first.type == JointType::kRevolute
                                      ? first.axis.dot(first.link.inertia.lazyProduct(first.axis))
                                      : first.link.mass);
-  if constexpr (N > 1) {
-    m(0, 0) += detail::inertia_seen_by_parent(composite, at.rotation[1], at.origin[1], first.type,
-                                              first.axis);
+  if constexpr (N != 1) {
+    if (count > 1) {
+      m(0, 0) += detail::inertia_seen_by_parent(composite, at.rotation[1], at.origin[1], first.type,
+                                                first.axis);
+    }
   }
+  if (model.has_rotors) m += model.rotors;
   return m;
 }
 

@@ -4,13 +4,9 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <offnominal/model/chain.hpp>
+#include <offnominal/vector.hpp>
 
 namespace offnominal {
-
-template <int Rows, typename Scalar>
-using Vector = Eigen::Matrix<Scalar, Rows, 1>;
-template <int Rows, int Columns, typename Scalar>
-using Matrix = Eigen::Matrix<Scalar, Rows, Columns>;
 
 namespace detail {
 
@@ -62,15 +58,56 @@ struct RigidBodyModel {
     SpatialInertia<Scalar> link;
     Scalar reflected_inertia{};
   };
-  std::array<Body, static_cast<std::size_t>(N)> bodies{};
+  PerJoint<N, Body> bodies{};
   Vector<3, Scalar> gravity = Vector<3, Scalar>::Zero();
   // Those with a torque() or a friction_per_load() only.
-  EffectList<Scalar, kEffectsPerJoint * N> torque_effects{};
+  EffectList<Scalar, kEffectsPerJoint * kMostJoints<N>> torque_effects{};
   // Torque that the drive is told, and that a log says, per torque that it gives; product of the
   // effects with a told_per_given().
-  Vector<N, Scalar> told_per_given = Vector<N, Scalar>::Ones();
+  Vector<N, Scalar> told_per_given = ones<N, Scalar>();
   bool has_torque_path = false;  // some effect scales what passes from drive to load
+  // Of Transmission; and what rotors of motors add to the mass matrix, kg m^2, kg m or kg.
+  bool has_rotors = false;
+  Matrix<N, N, Scalar> motor_per_joint = no_values<Matrix<N, N, Scalar>>();
+  Vector<N, Scalar> motor_offset_rad = no_values<Vector<N, Scalar>>();
+  Matrix<N, N, Scalar> rotors = no_values<Matrix<N, N, Scalar>>();
 };
+
+namespace detail {
+
+template <int N, typename Scalar>
+void take_transmission(const Transmission<N, Scalar>& transmission,
+                       RigidBodyModel<N, Scalar>& model) {
+  const auto count = static_cast<Eigen::Index>(model.bodies.size());
+  if constexpr (N == kRuntimeJoints) {
+    model.motor_per_joint.resize(count, count);
+    model.motor_offset_rad.resize(count);
+    model.rotors.setZero(count, count);
+  }
+  for (Eigen::Index motor = 0; motor < count; ++motor) {
+    const auto row = static_cast<std::size_t>(motor);
+    model.motor_offset_rad[motor] = transmission.motor_offset_rad[row];
+    for (Eigen::Index joint = 0; joint < count; ++joint) {
+      model.motor_per_joint(motor, joint) =
+          transmission.motor_per_joint[row * transmission.kMost + static_cast<std::size_t>(joint)];
+    }
+  }
+}
+
+// A rotor turns with its motor, 2 T = inertia (row . dq)^2, with the motor's row of A.
+template <int N, typename Scalar>
+EIGEN_DONT_INLINE void add_rotor(Eigen::Index motor, Scalar inertia,
+                                 RigidBodyModel<N, Scalar>& model) {
+  model.has_rotors = true;
+  for (Eigen::Index i = 0; i < model.rotors.rows(); ++i) {
+    for (Eigen::Index k = 0; k < model.rotors.cols(); ++k) {
+      model.rotors(i, k) +=
+          inertia * model.motor_per_joint(motor, i) * model.motor_per_joint(motor, k);
+    }
+  }
+}
+
+}  // namespace detail
 
 // Makes the model of a chain that validate() has accepted; of any other the result is undefined
 // (no crash, no meaning). Effects with a memory are none of an instant: effect_memory.hpp has them.
@@ -79,8 +116,13 @@ template <int N, typename Scalar>
   using Vec3 = Vector<3, Scalar>;
   using Mat3 = Matrix<3, 3, Scalar>;
   RigidBodyModel<N, Scalar> model;
+  const std::size_t count = chain.joints.size();
+  if constexpr (N == kRuntimeJoints) {
+    model.bodies.assign(count, {});
+    model.told_per_given.setOnes(static_cast<Eigen::Index>(count));
+  }
   model.gravity = Vec3(chain.gravity_m_s2[0], chain.gravity_m_s2[1], chain.gravity_m_s2[2]);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(N); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const Joint<Scalar>& joint = chain.joints[i];
     auto& body = model.bodies[i];
     body.type = joint.type;
@@ -110,16 +152,22 @@ template <int N, typename Scalar>
     about_centre << xx, xy, xz, xy, yy, yz, xz, yz, zz;
     body.link.inertia += about_centre;
   }
+  detail::take_transmission(chain.transmission, model);
   for (Effect<Scalar> effect : chain.effects.view()) {
-    if (effect.joint >= N || !source_joint_valid(effect, N)) continue;
+    if (effect.joint >= count || !source_joint_valid(effect, static_cast<int>(count))) continue;
     const Joint<Scalar>& joint = chain.joints[effect.joint];
     auto& body = model.bodies[effect.joint];
     visit_effect(effect.kind, [&]<typename E>() {
       if constexpr (requires { E::prepare(effect.parameters, joint.type); }) {
-        E::prepare(effect.parameters, joint.type);
+        E::prepare(effect.parameters, effect.of_motor ? JointType::kRevolute : joint.type);
       }
       if constexpr (requires { E::reflected_inertia(effect.parameters); }) {
-        body.reflected_inertia += E::reflected_inertia(effect.parameters);
+        const Scalar inertia = E::reflected_inertia(effect.parameters);
+        if (effect.of_motor) {
+          detail::add_rotor(static_cast<Eigen::Index>(effect.joint), inertia, model);
+        } else {
+          body.reflected_inertia += inertia;
+        }
       } else if constexpr (requires { E::point_mass(effect.parameters, joint.centre_of_mass_m); }) {
         const auto added = E::point_mass(effect.parameters, joint.centre_of_mass_m);
         body.link.add_point_mass(

@@ -21,11 +21,38 @@ namespace offnominal {
 // What the effects of every joint are at one instant, whatever the torque.
 template <int N, typename Scalar>
 struct JointEffects {
-  Vector<N, Scalar> torque = Vector<N, Scalar>::Zero();  // N m or N
+  Vector<N, Scalar> torque = zeros<N, Scalar>();  // N m or N
   // effects::LoadFriction, of all effects together; by_size is signed by the direction.
-  Vector<N, Scalar> friction_by_size = Vector<N, Scalar>::Zero();
-  Vector<N, Scalar> friction_by_load = Vector<N, Scalar>::Zero();
+  Vector<N, Scalar> friction_by_size = zeros<N, Scalar>();
+  Vector<N, Scalar> friction_by_load = zeros<N, Scalar>();
 };
+
+namespace detail {
+
+// What the motor of that number does. Out of line, as the next one: few chains have such effects,
+// and where there are none this shall cost no more than the question.
+template <int N, typename Scalar>
+[[nodiscard]] EIGEN_DONT_INLINE JointInstant<Scalar> motor_instant(
+    const RigidBodyModel<N, Scalar>& model, const Vector<N, Scalar>& q, const Vector<N, Scalar>& dq,
+    Eigen::Index motor, double time_s) {
+  JointInstant<Scalar> instant{model.motor_offset_rad[motor], Scalar(0), time_s};
+  for (Eigen::Index joint = 0; joint < q.size(); ++joint) {
+    instant.q += model.motor_per_joint(motor, joint) * q[joint];
+    instant.dq += model.motor_per_joint(motor, joint) * dq[joint];
+  }
+  return instant;
+}
+
+// What a torque of that motor is at the joints.
+template <int N, typename Scalar>
+EIGEN_DONT_INLINE void add_motor_torque(const RigidBodyModel<N, Scalar>& model, Eigen::Index motor,
+                                        Scalar torque, Vector<N, Scalar>& sum) {
+  for (Eigen::Index joint = 0; joint < sum.size(); ++joint) {
+    sum[joint] += torque * model.motor_per_joint(motor, joint);
+  }
+}
+
+}  // namespace detail
 
 // time_s: since the run's origin.
 template <int N, typename Scalar>
@@ -33,19 +60,27 @@ template <int N, typename Scalar>
                                                     const Vector<N, Scalar>& q,
                                                     const Vector<N, Scalar>& dq, double time_s) {
   JointEffects<N, Scalar> sum;
+  size_for(model.bodies.size(), sum.torque, sum.friction_by_size, sum.friction_by_load);
   for (const Effect<Scalar>& effect : model.torque_effects.view()) {
     const auto joint = static_cast<Eigen::Index>(effect.joint);
     JointInstant<Scalar> instant{q[joint], dq[joint], time_s};
+    if (effect.of_motor) instant = detail::motor_instant(model, q, dq, joint, time_s);
+    Scalar torque{};
     visit_effect(effect.kind, [&]<typename E>() {
       if constexpr (kHasSource<E>) instant.source_dq = dq[source_joint<E>(effect.parameters)];
       if constexpr (requires { E::torque(effect.parameters, instant); }) {
-        sum.torque[joint] += E::torque(effect.parameters, instant);
+        torque = E::torque(effect.parameters, instant);
       } else if constexpr (requires { E::friction_per_load(effect.parameters, instant); }) {
         const auto friction = E::friction_per_load(effect.parameters, instant);
         sum.friction_by_size[joint] += friction.by_size;
         sum.friction_by_load[joint] += friction.by_load;
       }
     });
+    if (effect.of_motor) {
+      detail::add_motor_torque(model, joint, torque, sum.torque);
+    } else {
+      sum.torque[joint] += torque;
+    }
   }
   return sum;
 }
@@ -86,7 +121,7 @@ template <int N, typename Scalar>
                                             const Vector<N, Scalar>& tau) {
   if (!model.has_torque_path) return tau - effects.torque;
   Vector<N, Scalar> load = tau.cwiseQuotient(model.told_per_given) - effects.torque;
-  for (Eigen::Index i = 0; i < N; ++i) {
+  for (Eigen::Index i = 0; i < load.size(); ++i) {
     load[i] /=
         detail::given_per_load(effects.friction_by_size[i], effects.friction_by_load[i], load[i]);
   }
@@ -100,7 +135,7 @@ template <int N, typename Scalar>
                                               const Vector<N, Scalar>& load) {
   Vector<N, Scalar> per_load = model.told_per_given;
   if (!model.has_torque_path) return per_load;
-  for (Eigen::Index i = 0; i < N; ++i) {
+  for (Eigen::Index i = 0; i < load.size(); ++i) {
     per_load[i] *=
         detail::given_per_load(effects.friction_by_size[i], effects.friction_by_load[i], load[i]);
   }

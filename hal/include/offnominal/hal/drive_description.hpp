@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <offnominal/hal/bus/frame.hpp>
+#include <offnominal/joint_count.hpp>
 #include <span>
 
 // How a drive protocol describes itself to robot files and to the programs that read them. Beside
@@ -13,8 +14,9 @@
 //   kKeys, kJointKeys         std::arrays of DriveKey: of all drives, and of the drive of a joint
 //   kHasFd                    whether it carries several joints in a frame of CAN FD
 //   kHasPositionsAlone        whether its drives may leave out velocities
-//   Drives<N>                 its DriveProtocol for N joints
-//   drives<N>(values, link)   makes one of values that fault_of() does not refuse
+//   Drives<N>                 its DriveProtocol for N joints, or for kAnyJoints
+//   drives<N>(values, link, joints)   makes one of values that fault_of() does not refuse; joints:
+//                             of kAnyJoints
 //   fault_of(values, period)  what is wrong with values that are each in their range, for ticks of
 //                             a period, s
 //   busy_share(values, joints, format, period)  share of a bus's time that its frames take at
@@ -24,6 +26,20 @@
 //                             returns how many, at most kMostDriveFilters
 
 namespace offnominal::hal {
+
+// In place of the number of joints that a driver is for: one of run time, 1 to kMaxJoints.
+inline constexpr auto kAnyJoints = static_cast<std::size_t>(kRuntimeJoints);
+template <std::size_t Joints>
+inline constexpr auto kMostDrives = static_cast<std::size_t>(kMostJoints<static_cast<int>(Joints)>);
+
+// One T per joint; `joints` counts with kAnyJoints.
+template <std::size_t Joints, typename T>
+[[nodiscard]] constexpr PerJoint<static_cast<int>(Joints), T> per_joint(
+    [[maybe_unused]] std::size_t joints) {
+  PerJoint<static_cast<int>(Joints), T> values{};
+  if constexpr (Joints == kAnyJoints) values.assign(joints, T{});
+  return values;
+}
 
 // A key of [drives]. Every value is a number: a word is its place in `words`.
 struct DriveKey {

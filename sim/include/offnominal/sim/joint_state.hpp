@@ -2,11 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <offnominal/joint_count.hpp>
 
 namespace offnominal::sim {
-
-/// The most joints that a plant may have.
-inline constexpr int kMaxJoints = 12;
 
 /// One number per joint, 1 to kMaxJoints. No heap.
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxJoints, 1>;

@@ -21,7 +21,7 @@ template <int N, typename Scalar>
   if (!all_finite(reference.q) || !all_finite(reference.dq) || !all_finite(reference.ddq)) {
     return fault_of(Status::kNonFiniteReference);
   }
-  for (Eigen::Index i = 0; i < N; ++i) {
+  for (Eigen::Index i = 0; i < reference.q.size(); ++i) {
     const Scalar most = config.monitor.chain.joints[static_cast<std::size_t>(i)].max_velocity;
     const bool inside = reference.q[i] >= range.lowest[i] && reference.q[i] <= range.highest[i] &&
                         std::fabs(reference.dq[i]) <= most;
@@ -42,7 +42,7 @@ template <int N, typename Scalar>
 [[nodiscard]] Fault check_arming(const ControllerConfig<N, Scalar>& config,
                                  const JointSample<N, Scalar>& sample,
                                  const Reference<N, Scalar>& reference) {
-  for (std::size_t j = 0; j < static_cast<std::size_t>(N); ++j) {
+  for (std::size_t j = 0; j < config.gains.kp.size(); ++j) {
     const auto i = static_cast<Eigen::Index>(j);
     if (config.gains.kp[j] <= 0 || config.gains.kd[j] <= 0) return Fault::kNoGains;
     const Scalar limit = config.monitor.chain.joints[j].max_torque;

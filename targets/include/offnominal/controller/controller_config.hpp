@@ -77,15 +77,17 @@ template <int N, typename Scalar>
 // Where a joint can be, rad or m: its limits, or where these say less what the configuration does.
 template <int N, typename Scalar>
 struct PositionRange {
-  Vector<N, Scalar> lowest = Vector<N, Scalar>::Zero();
-  Vector<N, Scalar> highest = Vector<N, Scalar>::Zero();
+  Vector<N, Scalar> lowest = zeros<N, Scalar>();
+  Vector<N, Scalar> highest = zeros<N, Scalar>();
 };
 
 template <int N, typename Scalar>
 [[nodiscard]] PositionRange<N, Scalar> position_range_of(
     const ControllerConfig<N, Scalar>& config) {
   PositionRange<N, Scalar> range;
-  for (std::size_t j = 0; j < static_cast<std::size_t>(N); ++j) {
+  const std::size_t joints = config.monitor.chain.joints.size();
+  size_for(joints, range.lowest, range.highest);
+  for (std::size_t j = 0; j < joints; ++j) {
     const Joint<Scalar>& joint = config.monitor.chain.joints[j];
     const auto i = static_cast<Eigen::Index>(j);
     range.lowest[i] = std::max(joint.min_position, -config.most_position);
@@ -100,6 +102,14 @@ inline constexpr int kLeastRampPeriods = 10;
 
 template <int N, typename Scalar>
 [[nodiscard]] Status validate(const ControllerConfig<N, Scalar>& config) {
+  if constexpr (N == kRuntimeJoints) {
+    const std::size_t joints = config.monitor.chain.joints.size();
+    const auto fits = [&](const auto& values) { return values.size() == joints; };
+    const bool all_fit = fits(config.gains.kp) && fits(config.gains.kd) &&
+                         fits(config.arming.position_window) && fits(config.arming.speed) &&
+                         fits(config.arming.torque_rate);
+    if (!all_fit) return Status::kWrongJointCount;
+  }
   if (const Status status = validate(config.gains); status != Status::kOk) return status;
   if (const Status status = validate(config.arming); status != Status::kOk) return status;
   if (!is_finite(config.most_position) || config.most_position <= 0) {

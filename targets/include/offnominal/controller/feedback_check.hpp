@@ -1,18 +1,18 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <offnominal/controller/fault.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/hal/status.hpp>
+#include <offnominal/joint_count.hpp>
 
 // What the joints' feedback says of them, before anything is made of their numbers.
 
 namespace offnominal::controller {
 
-template <std::size_t Joints>
-using FeedbackOf = std::array<hal::JointFeedback, Joints>;
+template <int N>
+using FeedbackOf = PerJoint<N, hal::JointFeedback>;
 
 // Of a frame: not what belongs to somebody else, and not the first records of a source, which are
 // awaited.
@@ -22,8 +22,8 @@ using FeedbackOf = std::array<hal::JointFeedback, Joints>;
 }
 
 // kNone, or the first joint's fault.
-template <std::size_t Joints>
-[[nodiscard]] Fault check_feedback(const FeedbackOf<Joints>& feedback) {
+template <int N>
+[[nodiscard]] Fault check_feedback(const FeedbackOf<N>& feedback) {
   for (const hal::JointFeedback& joint : feedback) {
     if (joint.encoder == hal::SourceState::kStale) return Fault::kEncoderSilent;
     if (joint.encoder == hal::SourceState::kError) return Fault::kEncoderUntrusted;
@@ -36,15 +36,15 @@ template <std::size_t Joints>
   return Fault::kNone;
 }
 
-template <std::size_t Joints>
-[[nodiscard]] bool all_valid(const FeedbackOf<Joints>& feedback) {
+template <int N>
+[[nodiscard]] bool all_valid(const FeedbackOf<N>& feedback) {
   return std::all_of(feedback.begin(), feedback.end(), [](const hal::JointFeedback& joint) {
     return joint.encoder == hal::SourceState::kValid && joint.drive == hal::SourceState::kValid;
   });
 }
 
-template <std::size_t Joints>
-[[nodiscard]] bool all_in_torque_mode(const FeedbackOf<Joints>& feedback) {
+template <int N>
+[[nodiscard]] bool all_in_torque_mode(const FeedbackOf<N>& feedback) {
   return std::all_of(feedback.begin(), feedback.end(), [](const hal::JointFeedback& joint) {
     return joint.status.mode == hal::DriveMode::kTorque;
   });

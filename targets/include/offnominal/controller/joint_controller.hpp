@@ -41,7 +41,7 @@ struct ControllerData : SampleData<N, Scalar>, TakeoverData<N, Scalar> {
   std::uint32_t late_ticks = 0;      // whole periods that this tick began too late
   std::uint16_t late_in_a_row = 0;   // ticks that did
   bool ends = false;                 // let_go() was called
-  std::array<hal::TorqueCommand, static_cast<std::size_t>(N)> commands{};
+  PerJoint<N, hal::TorqueCommand> commands{};
   MonitorState<N, L, Scalar, Memory> monitor;
   MonitorOutput<N, Scalar> output;
 };
@@ -73,7 +73,10 @@ class JointController {
   template <hal::Bus Bus, hal::DriveProtocol Drives, typename ReferenceAt>
   void step(Microseconds begin_us, std::uint32_t late_ticks, const ReferenceAt& reference_at,
             Bus& bus, Drives& drives, Data& data) const {
-    static_assert(Drives::kJoints == kJoints);
+    static_assert(Drives::kJoints == static_cast<std::size_t>(N));
+    if constexpr (N == kRuntimeJoints) {
+      if (data.commands.size() != joints()) size_data(data);
+    }
     ++data.ticks;
     receive(bus, drives, data);
     count_late(late_ticks, data);
@@ -154,7 +157,6 @@ class JointController {
   [[nodiscard]] const Watch& monitor() const { return monitor_; }
 
  private:
-  static constexpr auto kJoints = static_cast<std::size_t>(N);
   using Feedback = typename SampleTaker<N, Scalar>::Feedback;
 
   // At most so many frames in one tick: a node that babbles must not keep the controller busy.
@@ -162,6 +164,19 @@ class JointController {
   static constexpr int kMostBatches = 64;
   // As many ticks as a silent encoder is borne.
   static constexpr std::uint8_t kImplausibleAllowed = 2;
+
+  [[nodiscard]] std::size_t joints() const { return config_.monitor.chain.joints.size(); }
+  // Before the first tick, where the compiler does not know how many joints there are.
+  void size_data(Data& data) const {
+    size_for(joints(), data.sample.q, data.sample.dq, data.sample.tau, data.implausible_time_us,
+             data.used_time_us, data.velocity, data.turns, data.commands);
+    takeover_.reset(data);
+    forget_output(data);
+  }
+  void forget_output(Data& data) const {
+    data.output = {};
+    size_for(joints(), data.output.error, data.output.psi_hat, data.output.compensation.torque);
+  }
 
   // Armed, and time has begun.
   static bool is_running(const Data& data) {
@@ -194,10 +209,11 @@ class JointController {
   [[gnu::noinline]] void take_feedback(Microseconds begin_us, Bus& bus, Drives& drives,
                                        Data& data) const {
     Feedback feedback;
-    for (std::size_t j = 0; j < kJoints; ++j) feedback[j] = drives.feedback(j, begin_us);
+    size_for(joints(), feedback);
+    for (std::size_t j = 0; j < feedback.size(); ++j) feedback[j] = drives.feedback(j, begin_us);
     samples_.screen(feedback, data);
     Fault fault = judge(feedback, drives.stop_seen(), bus.state().mode, data);
-    const bool in_torque_mode = all_in_torque_mode<kJoints>(feedback);
+    const bool in_torque_mode = all_in_torque_mode<N>(feedback);
     if (fault == Fault::kNone && data.state == ControllerState::kArmed) {
       fault = takeover_.judge(in_torque_mode, drives.drive_max_age_us(), data);
     }
@@ -227,7 +243,7 @@ class JointController {
     const bool armed = data.state == ControllerState::kArmed;
     const bool too_late = armed && data.late_ticks > config_.late_ticks_allowed;
     if (too_late || data.late_in_a_row > config_.late_ticks_allowed) return Fault::kOverrun;
-    const Fault fault = check_feedback<kJoints>(feedback);
+    const Fault fault = check_feedback<N>(feedback);
     const bool implausible = data.implausible_in_a_row > kImplausibleAllowed;
     return fault == Fault::kNone && implausible ? fault_of(data.implausible) : fault;
   }
@@ -241,7 +257,7 @@ class JointController {
       if (has_left_init || fault == Fault::kEmergencyStop) enter_fault(fault, bus, data);
       return;
     }
-    const bool well = all_valid<kJoints>(feedback) && data.implausible == Status::kOk;
+    const bool well = all_valid<N>(feedback) && data.implausible == Status::kOk;
     if (data.state == ControllerState::kInit && well) {
       data.state = ControllerState::kPassive;
       data.monitor.initialised = false;
@@ -288,8 +304,11 @@ class JointController {
     if (data.monitor.initialised) {
       return fault_of(monitor_.resume(data.sample, data.unseen_ticks, data.monitor));
     }
-    data.output = {};
-    if constexpr (Watch::kRemembers) data.monitor.memory = {};  // of another run
+    forget_output(data);
+    if constexpr (Watch::kRemembers) {
+      data.monitor.memory = {};  // of another run
+      size_for(joints(), data.monitor.memory.remembered);
+    }
     if (armed) {
       const Fault fault = begin_control(reference_at, data);
       if (fault != Fault::kNone) return fault;
@@ -312,10 +331,10 @@ class JointController {
                              : check_beginning(reference, data);
     if (fault == Fault::kNone) fault = takeover_.hold(data.sample, reference, data);
     if (fault != Fault::kNone) return fault;
-    Vector<N, Scalar> wanted = Vector<N, Scalar>::Zero();
+    Vector<N, Scalar> wanted = zeros<N, Scalar>(static_cast<Eigen::Index>(joints()));
     const Fault refusal = want_torque(reference_at, data, wanted);
     if constexpr (Watch::kRemembers) {
-      for (std::size_t j = 0; j < kJoints; ++j) {
+      for (std::size_t j = 0; j < joints(); ++j) {
         if (delay_of_joint(config_.monitor.chain, j) > 0) continue;
         data.sample.tau[static_cast<Eigen::Index>(j)] = wanted[static_cast<Eigen::Index>(j)];
       }
@@ -361,7 +380,7 @@ class JointController {
         enter_fault(fault, bus, data);
         return;
       }
-      for (std::size_t j = 0; j < kJoints; ++j) {
+      for (std::size_t j = 0; j < data.commands.size(); ++j) {
         data.commands[j] = {hal::DriveMode::kTorque,
                             static_cast<float>(tau[static_cast<Eigen::Index>(j)])};
       }

@@ -33,24 +33,25 @@ struct SampleData {
   // Readings of a position that cannot be, of one joint or of several in a tick; of the last, why.
   std::uint8_t implausible_in_a_row = 0;
   Status implausible = Status::kOk;
-  std::array<Microseconds, static_cast<std::size_t>(N)> implausible_time_us{};
-  std::array<Microseconds, static_cast<std::size_t>(N)> used_time_us{};  // of the last sample
-  std::array<VelocityObserverState<Scalar>, static_cast<std::size_t>(N)> velocity{};
-  std::array<TurnCount<Scalar>, static_cast<std::size_t>(N)> turns{};
+  PerJoint<N, Microseconds> implausible_time_us{};
+  PerJoint<N, Microseconds> used_time_us{};  // of the last sample
+  PerJoint<N, VelocityObserverState<Scalar>> velocity{};
+  PerJoint<N, TurnCount<Scalar>> turns{};
 };
 
 template <int N, typename Scalar>
 class SampleTaker {
  public:
   using Data = SampleData<N, Scalar>;
-  using Feedback = std::array<hal::JointFeedback, static_cast<std::size_t>(N)>;
+  using Feedback = PerJoint<N, hal::JointFeedback>;
 
   SampleTaker() = default;
   // Of a configuration that validate() accepts.
   explicit SampleTaker(const ControllerConfig<N, Scalar>& config)
       : range_(position_range_of(config)), observer_(observer_of(config)) {
     const Joint<Scalar> unlimited;
-    for (std::size_t j = 0; j < kJoints; ++j) {
+    size_for(config.monitor.chain.joints.size(), turns_for_ever_);
+    for (std::size_t j = 0; j < turns_for_ever_.size(); ++j) {
       const Joint<Scalar>& joint = config.monitor.chain.joints[j];
       turns_for_ever_[j] = joint.type == JointType::kRevolute &&
                            joint.min_position <= unlimited.min_position &&
@@ -69,7 +70,7 @@ class SampleTaker {
   void screen(const Feedback& feedback, Data& data) const {
     data.implausible = Status::kOk;
     bool is_new = false;
-    for (std::size_t j = 0; j < kJoints; ++j) {
+    for (std::size_t j = 0; j < turns_for_ever_.size(); ++j) {
       const auto i = static_cast<Eigen::Index>(j);
       const Scalar position = position_in(counted(feedback[j].reading, j, data));
       const bool valid = feedback[j].encoder == hal::SourceState::kValid;
@@ -91,7 +92,7 @@ class SampleTaker {
   // After screen(). Fresh: every joint has been read since the last sample, where it can be.
   void take(const Feedback& feedback, Data& data) const {
     data.fresh = data.implausible == Status::kOk;
-    for (std::size_t j = 0; j < kJoints; ++j) {
+    for (std::size_t j = 0; j < turns_for_ever_.size(); ++j) {
       const bool valid = feedback[j].encoder == hal::SourceState::kValid;
       const bool is_new = feedback[j].encoder_time_us != data.used_time_us[j];
       data.fresh = data.fresh && valid && is_new;
@@ -100,7 +101,7 @@ class SampleTaker {
       if (data.unseen_ticks < std::numeric_limits<std::uint32_t>::max()) ++data.unseen_ticks;
       return;
     }
-    for (std::size_t j = 0; j < kJoints; ++j) {
+    for (std::size_t j = 0; j < turns_for_ever_.size(); ++j) {
       const auto i = static_cast<Eigen::Index>(j);
       data.used_time_us[j] = feedback[j].encoder_time_us;
       data.turns[j] = counted(feedback[j].reading, j, data);
@@ -127,8 +128,6 @@ class SampleTaker {
   [[nodiscard]] const PositionRange<N, Scalar>& range() const { return range_; }
 
  private:
-  static constexpr auto kJoints = static_cast<std::size_t>(N);
-
   // A joint passes from one end of what is carried to the other, and not from one half of it to the
   // other within a reading; what is beyond the ends was not carried modulo anything.
   [[nodiscard]] TurnCount<Scalar> counted(const hal::EncoderReading& reading, std::size_t joint,
@@ -171,7 +170,7 @@ class SampleTaker {
 
   PositionRange<N, Scalar> range_;
   VelocityObserverConfig<Scalar> observer_;
-  std::array<bool, kJoints> turns_for_ever_{};
+  PerJoint<N, bool> turns_for_ever_{};  // as many as there are joints
 };
 
 }  // namespace offnominal::controller

@@ -26,11 +26,11 @@ struct TakeoverData {
   // Since arming there was a sample to begin with: where the joints were in it and how fast, rad or
   // m, rad/s or m/s, and when.
   bool holds = false;
-  Vector<N, Scalar> held_q = Vector<N, Scalar>::Zero();
-  Vector<N, Scalar> held_dq = Vector<N, Scalar>::Zero();
+  Vector<N, Scalar> held_q = zeros<N, Scalar>();
+  Vector<N, Scalar> held_dq = zeros<N, Scalar>();
   std::uint64_t held_since = 0;  // of the waiting ticks
   // Of each joint, since arming: the torque rate has let through what is wanted.
-  std::array<bool, static_cast<std::size_t>(N)> torque_is_in{};
+  PerJoint<N, bool> torque_is_in{};
   // It has of all, every drive was in torque mode, and the arm at rest: time has begun.
   bool drives_follow = false;
   ReferenceRamp<N, Scalar> ramp;  // from the sample at time 0
@@ -46,7 +46,7 @@ class Takeover {
   explicit Takeover(const ControllerConfig<N, Scalar>& config)
       : arming_(config.arming), time_to_follow_us_(config.time_to_follow_us) {
     double swing_s = 0;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(N); ++j) {
+    for (std::size_t j = 0; j < config.arming.torque_rate.size(); ++j) {
       const Scalar limit = config.monitor.chain.joints[j].max_torque;
       swing_s = std::max(swing_s, static_cast<double>(limit / config.arming.torque_rate[j]));
     }
@@ -59,7 +59,11 @@ class Takeover {
     period_us_ = static_cast<Microseconds>(Scalar(1e6) * period_s + Scalar(0.5));
   }
 
-  static void reset(Data& data) { data = {}; }
+  void reset(Data& data) const {
+    data = {};
+    size_for(arming_.speed.size(), data.held_q, data.held_dq, data.torque_is_in, data.ramp.q,
+             data.ramp.dq);
+  }
 
   // In a tick of an armed controller: kNone, or why it has to end. Drives that have followed once
   // have fallen back where they do not.
@@ -91,8 +95,9 @@ class Takeover {
   // Where the arm is to be until time begins: it comes to rest, within ramp_s, where it was.
   [[nodiscard]] Reference<N, Scalar> held(const Data& data) const {
     Reference<N, Scalar> reference;
-    reference.q = data.held_q;
     ReferenceRamp<N, Scalar> rest;
+    size_for(arming_.speed.size(), reference.dq, reference.ddq, rest.q);
+    reference.q = data.held_q;
     rest.dq = -data.held_dq;
     const auto ticks = static_cast<double>(data.waiting_ticks - data.held_since);
     ramp_in(rest, ticks * period_s_, arming_.ramp_s, reference);
@@ -108,9 +113,8 @@ class Takeover {
   }
 
  private:
-  static bool all_within(const Vector<N, Scalar>& values,
-                         const typename ArmingConfig<N, Scalar>::PerJoint& most) {
-    for (std::size_t j = 0; j < static_cast<std::size_t>(N); ++j) {
+  static bool all_within(const Vector<N, Scalar>& values, const PerJoint<N, Scalar>& most) {
+    for (std::size_t j = 0; j < most.size(); ++j) {
       if (!is_within(values[static_cast<Eigen::Index>(j)], most[j])) return false;
     }
     return true;

@@ -26,21 +26,22 @@ template <typename Scalar>
 template <int N, typename Scalar>
 class TorqueLimiter {
  public:
-  using Commands = std::array<hal::TorqueCommand, static_cast<std::size_t>(N)>;
+  using Commands = PerJoint<N, hal::TorqueCommand>;
 
   TorqueLimiter() = default;
   // Of a configuration that validate() accepts.
   explicit TorqueLimiter(const ControllerConfig<N, Scalar>& config) {
-    for (std::size_t j = 0; j < kJoints; ++j) {
+    const std::size_t joints = config.monitor.chain.joints.size();
+    size_for(joints, limit_, step_);
+    for (std::size_t j = 0; j < joints; ++j) {
       limit_[j] = static_cast<Scalar>(largest_command(config.monitor.chain.joints[j].max_torque));
       step_[j] = config.arming.torque_rate[j] * config.monitor.estimator.period_s;
     }
   }
 
   // commands: of the tick before. is_in[j] becomes true where the rate takes nothing away.
-  void hold(const Commands& commands, Vector<N, Scalar>& tau,
-            std::array<bool, static_cast<std::size_t>(N)>& is_in) const {
-    for (std::size_t j = 0; j < kJoints; ++j) {
+  void hold(const Commands& commands, Vector<N, Scalar>& tau, PerJoint<N, bool>& is_in) const {
+    for (std::size_t j = 0; j < limit_.size(); ++j) {
       const auto before = static_cast<Scalar>(commands[j].torque);
       Scalar& wanted = tau[static_cast<Eigen::Index>(j)];
       wanted = std::clamp(wanted, -limit_[j], limit_[j]);
@@ -51,9 +52,8 @@ class TorqueLimiter {
   }
 
  private:
-  static constexpr auto kJoints = static_cast<std::size_t>(N);
-  std::array<Scalar, kJoints> limit_{};  // N m or N
-  std::array<Scalar, kJoints> step_{};   // in one tick, N m or N
+  PerJoint<N, Scalar> limit_{};  // N m or N
+  PerJoint<N, Scalar> step_{};   // in one tick, N m or N
 };
 
 }  // namespace offnominal::controller

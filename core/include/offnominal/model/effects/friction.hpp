@@ -33,7 +33,9 @@ struct ViscousFriction {
   static constexpr const char* kFormula = "coefficient * dq";
   static constexpr const char* kWords = "friction proportional to speed";
   static constexpr const char* kMotionHint = "move at several constant speeds";
-  static constexpr EffectTraits kTraits{.is_friction = true, .sign = CoefficientSign::kPositive};
+  static constexpr EffectTraits kTraits{.is_friction = true,
+                                        .sign = CoefficientSign::kPositive,
+                                        .follows = EffectVariable::kVelocity};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"coefficient", Quantity::kEffortPerVelocity, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "torque per velocity"},
@@ -51,8 +53,10 @@ struct CoulombFriction {
   static constexpr const char* kFormula = "level * tanh(dq / smoothing)";
   static constexpr const char* kWords = "dry friction, independent of speed";
   static constexpr const char* kMotionHint = "reverse often at moderate speed";
-  static constexpr EffectTraits kTraits{
-      .is_friction = true, .is_dry = true, .sign = CoefficientSign::kPositive};
+  static constexpr EffectTraits kTraits{.is_friction = true,
+                                        .is_dry = true,
+                                        .sign = CoefficientSign::kPositive,
+                                        .follows = EffectVariable::kVelocity};
   static constexpr std::array<ParameterInfo, 2> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "torque against the motion, whatever its speed"},
@@ -76,7 +80,7 @@ struct FrictionAsymmetry {
   static constexpr const char* kWords = "friction that differs between the two directions";
   static constexpr const char* kMotionHint =
       "move at several speeds in both directions, with rests in between";
-  static constexpr EffectTraits kTraits{};
+  static constexpr EffectTraits kTraits{.follows = EffectVariable::kVelocity};
   static constexpr std::array<ParameterInfo, 3> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "half the difference of the Coulomb levels of the two directions"},
@@ -104,7 +108,8 @@ struct StribeckFriction {
   static constexpr const char* kMotionHint =
       "hold at least four low speeds between a third and three times the Stribeck velocity";
   static constexpr EffectTraits kTraits{.is_friction = true,
-                                        .sign = CoefficientSign::kMostlyPositive};
+                                        .sign = CoefficientSign::kMostlyPositive,
+                                        .follows = EffectVariable::kVelocity};
   static constexpr std::array<ParameterInfo, 3> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "static friction minus Coulomb friction"},
@@ -133,7 +138,7 @@ struct QuadraticFriction {
   static constexpr const char* kFormula = "coefficient * dq * |dq|";
   static constexpr const char* kWords = "drag that grows with the square of speed";
   static constexpr const char* kMotionHint = "use a speed range of more than 3 to 1";
-  static constexpr EffectTraits kTraits{.is_friction = true};
+  static constexpr EffectTraits kTraits{.is_friction = true, .follows = EffectVariable::kVelocity};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"coefficient", Quantity::kEffortPerVelocitySquared, ParameterRole::kLinear, -kAny, kAny,
        true, 0, "torque per squared velocity, against the motion"},

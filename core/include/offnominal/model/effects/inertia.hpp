@@ -21,7 +21,7 @@ struct RotorInertia {
   static constexpr const char* kFormula = "inertia * ddq";
   static constexpr const char* kWords = "the inertia of rotor and gear";
   static constexpr const char* kMotionHint = "accelerate hard, link by link";
-  static constexpr EffectTraits kTraits{};
+  static constexpr EffectTraits kTraits{.is_before_sensor = true};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"inertia", Quantity::kReflectedInertia, ParameterRole::kLinear, 0, kAny, true, 0,
        "inertia of rotor and gear as seen at the joint"},

@@ -33,6 +33,7 @@ enum class HiddenEffect {
   kJointCoupling,
   kTemperatureDrift,
   kGearLoss,
+  kPositionTorque,
 };
 
 /// Effects that the analysis has no candidate for.
@@ -118,6 +119,28 @@ struct JointFriction {
   }
 };
 
+/// A gas spring between a foot on the link before and a pin on the joint's own link: a triangle
+/// with the joint's axis, whose third side is the spring. It pushes, the more the shorter it is.
+struct GasSpring {
+  double force_n = 0.0;          ///< of the gas at its largest volume
+  double foot_m = 0.4;           ///< from the axis
+  double pin_m = 0.25;           ///< from the axis
+  double dead_centre_rad = 0.0;  ///< position at which the pin is next to the foot
+  double squeezed = 0.4;         ///< share of the volume that is gone there
+
+  /// What the drive has to supply with the link at q, N m.
+  [[nodiscard]] double torque(double q) const {
+    const double angle = q - dead_centre_rad;
+    const double length =
+        std::sqrt(foot_m * foot_m + pin_m * pin_m - 2.0 * foot_m * pin_m * std::cos(angle));
+    const double extended = (length - (foot_m - pin_m)) / (2.0 * pin_m);  // 0 to 1: foot_m > pin_m
+    constexpr double kPolytropic = 1.2;
+    const double force = force_n * std::pow(1.0 - squeezed * (1.0 - extended), -kPolytropic);
+    const double lever_m = foot_m * pin_m * std::sin(angle) / length;
+    return -force * lever_m;
+  }
+};
+
 /// Torques beside gravity and friction. All are what the drive has to supply.
 struct JointLoads {
   double offset_nm = 0.0;
@@ -134,6 +157,7 @@ struct JointLoads {
   double stop_nm_rad = 0.0;         ///< stiffness of the end stop
   double stop_position_rad = 0.0;
   double stop_side = 1.0;  ///< 1: acts above the position, -1: below
+  GasSpring gas_spring;
 
   /// On the motor's side, N m.
   [[nodiscard]] double on_motor(const MotorSide& at) const {
@@ -146,6 +170,7 @@ struct JointLoads {
   /// On the link's side, at its position, N m.
   [[nodiscard]] double on_link(double q, double t_s) const {
     double torque = spring_nm_rad * (q - spring_rest_rad);
+    if (gas_spring.force_n != 0.0) torque += gas_spring.torque(q);
     if (periodic_nm != 0.0)
       torque += periodic_nm * std::sin(periodic_rad_s * t_s + periodic_phase_rad);
     const double beyond = stop_side * (q - stop_position_rad);

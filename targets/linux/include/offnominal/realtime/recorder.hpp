@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <offnominal/hal/bus/frame.hpp>
+#include <offnominal/joint_count.hpp>
 #include <offnominal/realtime/spsc_ring.hpp>
 #include <string>
 #include <thread>
@@ -22,7 +23,8 @@ struct FrameEntry {
 
 // One line of the table: its time, then numbers, then one digit.
 struct Row {
-  static constexpr std::size_t kMostValues = 56;
+  // What a loop records: five of every joint, and eight more.
+  static constexpr std::size_t kMostValues = 5 * static_cast<std::size_t>(kMaxJoints) + 8;
   Microseconds time_us = 0;
   std::array<double, kMostValues> values{};
   std::uint8_t digit = 0;  // 0 to 9

@@ -12,6 +12,7 @@
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/hal/finite.hpp>
 #include <offnominal/hal/record.hpp>
+#include <offnominal/joint_count.hpp>
 #include <span>
 
 // ODrive's CANSimple protocol, as far as a torque controller needs it (docs/can-simple.md): ODrive
@@ -67,17 +68,22 @@ inline constexpr std::uint8_t kCanSimpleNodes = 64;  // 6 bits of an identifier
   return Status::kOk;
 }
 
+// Joints: a number, or kAnyJoints for as many as there are axes.
 template <std::size_t Joints>
 class CanSimpleDrives {
  public:
   static_assert(Joints >= 1);
   static constexpr std::size_t kJoints = Joints;
-  static constexpr std::size_t kMaxOutgoing = 2 * Joints;
+  static constexpr std::size_t kMaxOutgoing = 2 * kMostDrives<Joints>;
+  using Axes = PerJoint<static_cast<int>(Joints), CanSimpleAxis>;
 
   // The axes have to be configured for torque control (input mode "passthrough") before. With a
   // configuration that validate() refuses it hears nobody and tells nobody anything.
-  CanSimpleDrives(const CanSimpleConfig& config, const std::array<CanSimpleAxis, Joints>& axes)
-      : config_(config), axes_(axes), configuration_(validate(config, axes)) {}
+  CanSimpleDrives(const CanSimpleConfig& config, const Axes& axes)
+      : config_(config),
+        axes_(axes),
+        configuration_(validate(config, axes)),
+        state_(per_joint<Joints, Axis>(axes.size())) {}
 
   // What validate() says of the configuration; to be looked at before the first tick.
   [[nodiscard]] Status configuration() const { return configuration_; }
@@ -86,7 +92,7 @@ class CanSimpleDrives {
     if (configuration_ != Status::kOk) return configuration_;
     const Frame& frame = received.frame;
     if (frame.extended || frame.fd) return Status::kUnknownId;
-    for (std::size_t j = 0; j < Joints; ++j) {
+    for (std::size_t j = 0; j < axes_.size(); ++j) {
       if (axes_[j].node == frame.id >> kCommandBits) return take_of(j, frame, received.time_us);
     }
     return Status::kUnknownId;
@@ -117,7 +123,7 @@ class CanSimpleDrives {
                                      const Heartbeat& heartbeat, std::span<Frame> into) {
     if (configuration_ != Status::kOk) return 0;
     std::size_t count = 0;
-    for (std::size_t j = 0; j < Joints; ++j) {
+    for (std::size_t j = 0; j < axes_.size(); ++j) {
       Axis& axis = state_[j];
       const TorqueCommand& command = commands[j];
       const bool drives = command.mode == DriveMode::kTorque && is_finite(command.torque);
@@ -275,9 +281,9 @@ class CanSimpleDrives {
   }
 
   CanSimpleConfig config_;
-  std::array<CanSimpleAxis, Joints> axes_;
+  Axes axes_;
   Status configuration_;
-  std::array<Axis, Joints> state_{};
+  PerJoint<static_cast<int>(Joints), Axis> state_{};
   Microseconds newest_us_ = 0;  // when the newest of the axes' frames came: this side has no clock
 };
 
@@ -347,9 +353,10 @@ struct CanSimple {
   using Drives = CanSimpleDrives<Joints>;
 
   template <std::size_t Joints>
-  [[nodiscard]] static Drives<Joints> drives(const DriveValues& values, const DriveLink& /*link*/) {
-    std::array<CanSimpleAxis, Joints> axes;
-    for (std::size_t j = 0; j < Joints; ++j) axes[j] = axis_of(values, j);
+  [[nodiscard]] static Drives<Joints> drives(const DriveValues& values, const DriveLink& /*link*/,
+                                             std::size_t joints = Joints) {
+    auto axes = per_joint<Joints, CanSimpleAxis>(joints);
+    for (std::size_t j = 0; j < axes.size(); ++j) axes[j] = axis_of(values, j);
     return Drives<Joints>(config_of(values), axes);
   }
 

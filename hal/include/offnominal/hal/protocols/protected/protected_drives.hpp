@@ -10,6 +10,7 @@
 #include <offnominal/hal/messages.hpp>
 #include <offnominal/hal/protocols/protected/address.hpp>
 #include <offnominal/hal/source.hpp>
+#include <offnominal/joint_count.hpp>
 #include <span>
 
 namespace offnominal::hal {
@@ -37,6 +38,10 @@ namespace offnominal::hal {
 template <typename Message, std::size_t Joints>
 class Inbox {
  public:
+  Inbox() = default;
+  explicit Inbox(std::size_t joints)
+      : sources_(per_joint<Joints, Source>(joints)), newest_(per_joint<Joints, Message>(joints)) {}
+
   // The record of joint `node`, which came at time_us.
   [[nodiscard]] Status take(const SourceConfig& config, MessageKind kind, std::size_t node,
                             std::span<const std::uint8_t, kRecordLength> record,
@@ -59,20 +64,28 @@ class Inbox {
   [[nodiscard]] const Source& source(std::size_t node) const { return sources_[node]; }
 
  private:
-  std::array<Source, Joints> sources_{};
-  std::array<Message, Joints> newest_{};
+  PerJoint<static_cast<int>(Joints), Source> sources_{};
+  PerJoint<static_cast<int>(Joints), Message> newest_{};
 };
 
-// offnominal's own frames (address.hpp, messages.hpp), every record with counter and CRC.
+// offnominal's own frames (address.hpp, messages.hpp), every record with counter and CRC. Joints: a
+// number, or kAnyJoints for one that the constructor is given.
 template <std::size_t Joints>
 class ProtectedDrives {
  public:
-  static_assert(Joints >= 1 && Joints < kControllerNode);
   static constexpr std::size_t kJoints = Joints;
-  static constexpr std::size_t kMaxOutgoing = Joints + 1;
+  static constexpr std::size_t kMost = kMostDrives<Joints>;
+  static constexpr std::size_t kMaxOutgoing = kMost + 1;
+  static_assert(kMost >= 1 && kMost < kControllerNode);
 
-  ProtectedDrives(const SourceConfig& encoder, const SourceConfig& drive, FrameFormat format)
-      : encoder_config_(encoder), drive_config_(drive), format_(format) {}
+  ProtectedDrives(const SourceConfig& encoder, const SourceConfig& drive, FrameFormat format,
+                  std::size_t joints = Joints)
+      : encoder_config_(encoder),
+        drive_config_(drive),
+        format_(format),
+        encoders_(joints),
+        drives_(joints),
+        torque_counters_(per_joint<Joints, std::uint8_t>(joints)) {}
 
   [[nodiscard]] Status take(const ReceivedFrame& received) {
     Address address;
@@ -98,8 +111,9 @@ class ProtectedDrives {
 
   [[nodiscard]] std::size_t outgoing(std::span<const TorqueCommand> commands,
                                      const Heartbeat& heartbeat, std::span<Frame> into) {
-    std::array<Record, Joints> records{};
-    for (std::size_t joint = 0; joint < Joints; ++joint) {
+    std::array<Record, kMost> records{};
+    const std::size_t joints = torque_counters_.size();
+    for (std::size_t joint = 0; joint < joints; ++joint) {
       const auto node = static_cast<std::uint8_t>(joint);
       const std::uint16_t id = data_id_of(MessageKind::kTorqueCommand, node);
       const std::uint8_t counter = torque_counters_[joint]++;
@@ -107,7 +121,8 @@ class ProtectedDrives {
         static_cast<void>(encode(TorqueCommand{}, counter, id, records[joint]));
       }
     }
-    std::size_t count = pack(MessageKind::kTorqueCommand, records, format_, into);
+    std::size_t count = pack(MessageKind::kTorqueCommand,
+                             std::span<const Record>(records).first(joints), format_, into);
     if (heartbeat.ticks % kHeartbeatTicks != 0) return count;
     Record record{};
     static_cast<void>(encode(heartbeat, heartbeat_counter_++,
@@ -123,7 +138,7 @@ class ProtectedDrives {
 
   [[nodiscard]] DriveCounts counts() const {
     DriveCounts counts;
-    for (std::size_t joint = 0; joint < Joints; ++joint) {
+    for (std::size_t joint = 0; joint < torque_counters_.size(); ++joint) {
       for (const Source* source : {&encoders_.source(joint), &drives_.source(joint)}) {
         counts.lost += source->lost;
         counts.rejected += std::uint64_t{source->rejected} + source->repeated;
@@ -144,10 +159,10 @@ class ProtectedDrives {
     switch (kind) {
       case MessageKind::kEncoder:
         // What a CAN FD group has too much, by its length.
-        if (node >= Joints) return Status::kOk;
+        if (node >= torque_counters_.size()) return Status::kOk;
         return encoders_.take(encoder_config_, kind, node, record, time_us);
       case MessageKind::kDriveStatus:
-        if (node >= Joints) return Status::kOk;
+        if (node >= torque_counters_.size()) return Status::kOk;
         return drives_.take(drive_config_, kind, node, record, time_us);
       case MessageKind::kEmergencyStop: {
         EmergencyStop stop;
@@ -170,7 +185,7 @@ class ProtectedDrives {
   FrameFormat format_;
   Inbox<EncoderReading, Joints> encoders_;
   Inbox<DriveStatus, Joints> drives_;
-  std::array<std::uint8_t, Joints> torque_counters_{};
+  PerJoint<static_cast<int>(Joints), std::uint8_t> torque_counters_{};
   std::uint8_t heartbeat_counter_ = 0;
   bool stop_seen_ = false;
 };
@@ -191,9 +206,10 @@ struct Protected {
   using Drives = ProtectedDrives<Joints>;
 
   template <std::size_t Joints>
-  [[nodiscard]] static Drives<Joints> drives(const DriveValues& /*values*/, const DriveLink& link) {
+  [[nodiscard]] static Drives<Joints> drives(const DriveValues& /*values*/, const DriveLink& link,
+                                             std::size_t joints = Joints) {
     const SourceConfig source = source_config(link.period_us);
-    return Drives<Joints>(source, source, link.format);
+    return Drives<Joints>(source, source, link.format, joints);
   }
 
   [[nodiscard]] static DriveFault fault_of(const DriveValues& /*values*/, double /*period_s*/) {

@@ -1,4 +1,4 @@
-#pragma once
+#include "replay/replay_monitor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,15 +9,14 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "replay/replay.hpp"
-#include "replay/replay_joints.hpp"
 #include "robot/monitor_config_of.hpp"
 
-// Body of replay_joints(); CMakeLists.txt makes a source file for each number of joints.
+namespace offnominal::desk {
+namespace {
 
-namespace offnominal::desk::detail {
+using ReplayMonitor = Monitor<kRuntimeJoints, kReplayCapacity, double, WithMemory>;
 
-inline void require_start(Status status, const RobotDescription& robot) {
+void require_start(Status status, const RobotDescription& robot) {
   if (status == Status::kOk) return;
   throw InputError({.file = "robot " + robot.name,
                     .place = "monitor",
@@ -37,8 +36,7 @@ class ReplayCollector {
     result.psi_hat.resize(samples, joints);
   }
 
-  template <int N>
-  void accept(double t_s, const MonitorOutput<N, double>& output, double weight_norm) {
+  void accept(double t_s, const ReplayMonitor::Output& output, double weight_norm) {
     result_.t_s[count_] = t_s;
     result_.error.row(count_) = output.error.transpose();
     result_.error_norm[count_] = output.error_norm;
@@ -82,21 +80,23 @@ class ReplayCollector {
   bool in_alarm_ = false;
 };
 
-template <int N>
-void replay_joints(const RobotDescription& robot, const Log& log, Replay& result) {
-  using ReplayMonitor = Monitor<N, kReplayCapacity, double, WithMemory>;
-  MonitorConfig<N, double> config = monitor_config_of<N, double>(robot);
+}  // namespace
+
+void replay_monitor(const RobotDescription& robot, const Log& log, Replay& result) {
+  auto config = monitor_config_of<kRuntimeJoints, double>(robot);
   config.estimator.period_s = log.period_s;
   ReplayMonitor monitor;
   require_start(ReplayMonitor::create(config, monitor), robot);
-  // On the heap: 128 hidden units of 8 joints do not belong on a stack.
-  const auto state = std::make_unique<typename ReplayMonitor::State>();
-  typename ReplayMonitor::Output output;
-  ReplayCollector collector(log.sample_count(), N, result);
+  // On the heap: 128 hidden units of 12 joints do not belong on a stack.
+  const auto state = std::make_unique<ReplayMonitor::State>();
+  ReplayMonitor::Output output;
+  // Of the sample that a run starts with: no error yet.
+  size_for(robot.joints.size(), output.error, output.psi_hat);
+  ReplayCollector collector(log.sample_count(), robot.joint_count(), result);
   bool started = false;
   for (Eigen::Index i = 0; i < log.sample_count(); ++i) {
-    const JointSample<N, double> sample{log.q.row(i).transpose(), log.dq.row(i).transpose(),
-                                        log.tau.row(i).transpose()};
+    const ReplayMonitor::Sample sample{log.q.row(i).transpose(), log.dq.row(i).transpose(),
+                                       log.tau.row(i).transpose()};
     const Status status =
         started ? monitor.step(sample, *state, output) : monitor.reset(sample, *state);
     // A run starts at the first sample that is good; a setting that no sample can mend ends it.
@@ -106,9 +106,9 @@ void replay_joints(const RobotDescription& robot, const Log& log, Replay& result
       continue;
     }
     started = true;
-    collector.accept<N>(log.t_s[i], output, std::sqrt(state->estimator.theta_squared_norm));
+    collector.accept(log.t_s[i], output, std::sqrt(state->estimator.theta_squared_norm));
   }
   collector.finish();
 }
 
-}  // namespace offnominal::desk::detail
+}  // namespace offnominal::desk

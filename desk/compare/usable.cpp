@@ -1,0 +1,25 @@
+#include "compare/usable.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+MatrixXd usable_samples(const Log& log, const FilterPlan& plan) {
+  if (log.left_out.empty()) return {};
+  const Index rows = log.sample_count();
+  MatrixXd usable = MatrixXd::Ones(rows, log.q.cols());
+  for (const LeftOut& out : log.left_out) {
+    const auto spread = static_cast<Index>(
+        std::ceil(out.spread_periods * plan.sample_rate_hz / plan.torque_cutoff_hz));
+    const Index first = std::clamp<Index>(out.rows.first - spread, 0, rows);
+    const Index end = std::clamp<Index>(out.rows.last + 1 + spread, first, rows);
+    usable.col(out.joint).segment(first, end - first).setZero();
+  }
+  return usable;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,216 @@
+#include "explain/any_shape.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "explain/alternatives.hpp"
+#include "explain/remainder.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+
+namespace {
+
+// As leave_out_stand_ins() has them: what is left is looked at where it stands so far above the
+// noise, and this share of it follows the variable; what has a name takes so much of what a free
+// function takes.
+constexpr double kFarAboveNoise = 1.5;
+constexpr double kFollowing = 0.15;
+constexpr double kAlmostAll = 0.9;
+// How much more likely, in log-likelihood, it has to make the recordings than anything simpler.
+constexpr double kMoreLikely = 3;
+
+bool has_kind(const Data& data, const std::vector<Term>& terms, EffectKind kind, Index joint) {
+  const auto& known = data.recordings[0].known_effects;
+  return std::any_of(known.begin(), known.end(),
+                     [&](const RobotEffect& one) {
+                       return one.kind == kind && one.joint == joint && !one.of_motor;
+                     }) ||
+         std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
+           return term.effect->kind() == kind && term.joint == joint;
+         });
+}
+
+std::optional<Term> curve_of(const Data& data, const EffectCandidate& effect, Index joint) {
+  Term term{&effect, joint, {}, effect.shapes(data.recordings, joint)};
+  for (const ShapeRange& range : term.ranges) {
+    if (range.grid.empty()) return std::nullopt;
+    term.shape.push_back(range.grid.front());
+  }
+  return term;
+}
+
+double energy_on(const Data& data, const ModelFit& fit, Index joint) {
+  return std::pow(data.layout.rms(fit.residual)[joint], 2);
+}
+
+double explained_on(const Data& data, const ModelFit& before, const ModelFit& after, Index joint) {
+  return energy_on(data, before, joint) - energy_on(data, after, joint);
+}
+
+// The terms but those.
+std::vector<Term> without(std::vector<Term> terms, const std::vector<std::size_t>& which) {
+  for (std::size_t i = which.size(); i-- > 0;) {
+    terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(which[i]));
+  }
+  return terms;
+}
+
+class Curve {
+ public:
+  Curve(const Search& search, const Regression& regression, const FoundModel& found, Term curve)
+      : search_(search),
+        regression_(regression),
+        data_(regression.data()),
+        found_(found),
+        terms_(found.terms()),
+        curve_(std::move(curve)) {
+    for (std::size_t i = 0; i < terms_.size(); ++i) {
+      const bool of_variable =
+          terms_[i].joint == curve_.joint && terms_[i].effect->info().traits.follows == variable();
+      if (of_variable) own_.push_back(i);
+    }
+  }
+
+  [[nodiscard]] std::optional<AnyShape> judged() const {
+    AnyShape shape = in_place_of(own_);
+    if (energy(shape.proposal.fit) >= energy(found_.fit)) shape = in_place_of(held());
+    const double taken = explained_on(data_, shape.without, shape.proposal.fit, curve_.joint);
+    const double more =
+        energy(shape.proposal.fit) * share_of(structure_of(data_, shape.proposal.fit.residual),
+                                              curve_.joint, name_of(variable()));
+    if (!(taken > 0) || taken < kAlmostAll * (taken + more)) return std::nullopt;
+    if (!describe_replaced(taken, shape) || !beats_the_simpler(shape.proposal)) return std::nullopt;
+    if (variable() == EffectVariable::kPosition && is_a_stop(shape)) return std::nullopt;
+    return shape;
+  }
+
+ private:
+  [[nodiscard]] EffectVariable variable() const { return curve_.effect->info().traits.follows; }
+  [[nodiscard]] double energy(const ModelFit& fit) const {
+    return energy_on(data_, fit, curve_.joint);
+  }
+
+  [[nodiscard]] AnyShape in_place_of(std::vector<std::size_t> replaced) const {
+    std::vector<Term> terms = without(terms_, replaced);
+    AnyShape shape{{}, regression_.fit(terms), std::move(replaced), {}};
+    terms.push_back(curve_);
+    shape.proposal = search_.proposal_of(terms, terms.size() - 1);
+    return shape;
+  }
+
+  // Whether a stop, which acts on one side of a place and is proportional to how far beyond, takes
+  // as much as the curve: what has a kink is no smooth curve, however well one goes round it.
+  [[nodiscard]] bool is_a_stop(const AnyShape& shape) const {
+    constexpr int kPlaces = 60;
+    constexpr double kNearly = 0.95;  // between two places
+    const Judge judge(shape.without.remainder);
+    const double enough = kNearly * judge.gain(columns_of(data_, curve_));
+    const auto [low, high] = positions_seen(data_.recordings, curve_.joint);
+    for (const double side : {1.0, -1.0}) {
+      for (int i = 1; i < kPlaces; ++i) {
+        const double place = low + (high - low) * i / kPlaces;
+        std::vector<Regressor> beyond;
+        for (const Workspace& at : data_.recordings) {
+          const Eigen::ArrayXd q = at.motion.q.col(curve_.joint).array();
+          beyond.push_back({{curve_.joint, (side * (q - place)).max(0.0).matrix()}});
+        }
+        if (judge.gain(data_.layout.stack(data_.recordings, beyond)) >= enough) return true;
+      }
+    }
+    return false;
+  }
+
+  // What the curve holds as it is: a spring.
+  [[nodiscard]] std::vector<std::size_t> held() const {
+    std::vector<std::size_t> held;
+    for (const std::size_t i : own_) {
+      if (is_nested(data_, found_.baseline, terms_[i], curve_)) held.push_back(i);
+    }
+    return held;
+  }
+
+  // What the replaced are of what the curve takes, in words; false where one of them is nearly all.
+  [[nodiscard]] bool describe_replaced(double taken, AnyShape& shape) const {
+    const char* name = nullptr;
+    double most = 0;
+    for (const std::size_t i : shape.replaced) {
+      std::vector<Term> alone = without(terms_, shape.replaced);
+      alone.push_back(terms_[i]);
+      const double own =
+          explained_on(data_, shape.without, regression_.fit(alone), curve_.joint) / taken;
+      if (own >= kAlmostAll) return false;
+      if (name != nullptr && own <= most) continue;
+      most = own;
+      name = terms_[i].effect->name();
+    }
+    if (name != nullptr) shape.words = fmt::format("{} is {:.0f} % of it", name, 100 * most);
+    return true;
+  }
+
+  [[nodiscard]] bool beats_the_simpler(const Proposal& curve) const {
+    const auto joint = static_cast<std::size_t>(curve_.joint);
+    std::vector<char> open(static_cast<std::size_t>(data_.layout.joint_count()), 0);
+    open[joint] = 1;
+    auto proposals =
+        search_.propose_per_joint(terms_, found_.fit, search_.screen(terms_, found_.fit), open);
+    std::vector<Proposal>& all = proposals[joint];
+    all.push_back(curve);
+    search_.rank(all);
+    double own = 0;
+    double best = -std::numeric_limits<double>::infinity();
+    for (const Proposal& one : all) {
+      if (one.terms.back().effect == curve_.effect) {
+        own = one.score;
+      } else {
+        best = std::max(best, one.score);
+      }
+    }
+    return own >= best + kMoreLikely;
+  }
+
+  const Search& search_;
+  const Regression& regression_;
+  const Data& data_;
+  const FoundModel& found_;
+  std::vector<Term> terms_;
+  Term curve_;
+  std::vector<std::size_t> own_;  // of the terms: effects of the variable on the joint
+};
+
+}  // namespace
+
+std::optional<AnyShape> any_shape_on(Index joint, const Search& search,
+                                     const Regression& regression, const FoundModel& found) {
+  const Data& data = regression.data();
+  if (data.recordings[0].at_rest) return std::nullopt;
+  const double left = data.layout.rms(found.fit.residual)[joint];
+  if (!(left > kFarAboveNoise * noise_floor_of(data, found.fit.residual)[joint]))
+    return std::nullopt;
+  const std::vector<StructureShare> structure = structure_of(data, found.fit.residual);
+  for (const auto& effect : all_candidates()) {
+    const EffectTraits& traits = effect->info().traits;
+    const char* variable = name_of(traits.follows);
+    if (!traits.has_any_shape || share_of(structure, joint, variable) < kFollowing) continue;
+    if (has_kind(data, found.terms(), effect->kind(), joint)) continue;
+    std::optional<Term> term = curve_of(data, *effect, joint);
+    if (!term) continue;
+    auto shape = Curve(search, regression, found, std::move(*term)).judged();
+    if (shape) return shape;
+  }
+  return std::nullopt;
+}
+
+const EffectInfo* any_shape_over(std::string_view variable) {
+  for (const EffectInfo& info : kAllEffectInfos) {
+    if (info.traits.has_any_shape && name_of(info.traits.follows) == variable) return &info;
+  }
+  return nullptr;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "explain/data_fault.hpp"
+#include "log/log.hpp"
+
+// What the doctor's checks ask of one signal.
+
+namespace offnominal::desk {
+
+// Rows that repeat the row before them exactly.
+struct Burst {
+  Eigen::Index first = 0;   // row that holds the value first
+  Eigen::Index length = 0;  // rows that repeat it
+
+  [[nodiscard]] Eigen::Index end() const { return first + length; }  // the last of them
+};
+std::vector<Burst> repeats_of(const Eigen::VectorXd& x);
+
+// Whether a burst holds a gap, or begins or ends so near to one that the gap makes it look so.
+bool is_next_to_gap(const Log& log, const Burst& burst);
+
+// How many rows up to each repeat the one before them.
+std::vector<Eigen::Index> repeats_before_of(const Eigen::VectorXd& x);
+
+// Share of the rows around a burst that repeat the row before them, at most: two standard errors
+// up.
+double own_repeats(const std::vector<Eigen::Index>& repeats_before, const Burst& burst);
+
+// What a signal is rounded to. Printed with so many digits it is another at every size; of numbers
+// that are not rounded it is nothing that matters.
+class Rounding {
+ public:
+  explicit Rounding(const Eigen::VectorXd& x);
+
+  // Of values of that size; infinity where nothing changes.
+  [[nodiscard]] double at(double value) const;
+
+ private:
+  double smallest_;
+  int digits_ = 0;  // 0: another number of digits at every value
+};
+
+// Whether noise larger than what the signal is rounded to surrounds a burst: then no value of it
+// repeats for long. Neither an encoder's steps nor printed digits are noise, however they vary.
+bool is_noisy_around(const Eigen::VectorXd& x, const Burst& burst);
+
+// The largest change of the way over `width` rows from one width to the next, but for what `events`
+// single events make of it.
+double usual_change_of_pace(const Eigen::VectorXd& x, Eigen::Index width, int events);
+
+// Puts the stretches into a fault, with rows and times, in order.
+void set_spans(const Log& log, const std::vector<RowSpan>& spans, DataFault& fault);
+// "rows 1201 to 1500, 2.4 to 3 s", of the longest, and how many more there are.
+std::string words_of_spans(const DataFault& fault);
+std::string words_of(const FaultSpan& span);
+
+}  // namespace offnominal::desk

@@ -1,0 +1,282 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "compare/inverse_model.hpp"
+#include "compare/motion.hpp"
+#include "explain/doctor_checks.hpp"
+#include "explain/doctor_signal.hpp"
+#include "signal/decimate.hpp"
+#include "signal/quantile.hpp"
+
+// One value for long, while the joint moves: a dead encoder, a blocked reader, a drive that is not
+// on yet. A joint that rests repeats its values too, and a drive at its limit its torque.
+
+namespace offnominal::desk {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr Index kFewestRepeats = 10;
+constexpr Index kFewestAtStart = 4;
+// Single events, such as a joint that is stopped by hand, that are no measure of what it does
+// usually.
+constexpr int kEvents = 2;
+constexpr double kUnusual = 2;
+constexpr double kSensorSteps = 3;  // of the encoder
+constexpr double kSeldom = 1e-3;
+
+// How a burst begins and ends in a position.
+class BurstEnds {
+ public:
+  explicit BurstEnds(const VectorXd& q) : q_(q), rounding_(q) {
+    constexpr double kNearlyTop = 0.99;
+    const Index steps = q.size() - 1;
+    top_pace_ = quantile((q.tail(steps) - q.head(steps)).cwiseAbs(), kNearlyTop);
+    for (Index width = 1; width <= kWidest; width *= 2) {
+      limits_.push_back(kUnusual * usual_change_of_pace(q, width, kEvents));
+    }
+  }
+
+  // The joint moved at full pace right before it: a real one slows down.
+  [[nodiscard]] bool starts_abruptly(const Burst& burst) const {
+    constexpr Index kWhole = 4;  // widths
+    constexpr double kPaceKept = 0.5;
+    constexpr double kPaceBefore = 0.3;
+    constexpr double kOfTopPace = 0.3;
+    std::size_t at = 0;
+    for (Index width = 1; width <= kWidest && kWhole * width <= burst.length; width *= 2) {
+      const double limit = limits_[at++] + kSensorSteps * rounding_.at(q_[burst.first]);
+      const Index from = burst.first - kWhole * width;
+      if (from < 0) break;
+      const double last = std::abs(q_[burst.first] - q_[burst.first - width]);
+      const double whole = std::abs(q_[burst.first] - q_[from]) / kWhole;
+      const double before = std::abs(q_[burst.first - width] - q_[from]) / (kWhole - 1);
+      // One jump is no pace, and dry friction stops what is slow at once.
+      if (last > limit && last > kOfTopPace * top_pace_ * static_cast<double>(width) &&
+          last > kPaceKept * whole && before > kPaceBefore * last)
+        return true;
+    }
+    return false;
+  }
+
+  // It goes on with a jump.
+  [[nodiscard]] bool ends_in_jump(const Burst& burst) const {
+    const Index end = burst.end();
+    if (end + 1 >= q_.size()) return false;
+    const double jump = std::abs(q_[end + 1] - q_[end]);
+    const double next = end + 2 < q_.size() ? std::abs(q_[end + 2] - q_[end + 1]) : 0;
+    constexpr double kOfTopPace = 2;
+    return jump > limits_.front() + kSensorSteps * rounding_.at(q_[end + 1]) &&
+           jump > kOfTopPace * top_pace_ && jump > 2 * next;
+  }
+
+  // A jump that is not more than what the joint can have moved meanwhile, by how it moves then.
+  [[nodiscard]] bool moves_on(const Burst& burst) const {
+    constexpr Index kRows = 8;
+    constexpr double kOfJump = 0.2;
+    const Index first = burst.end() + 1;
+    const Index last = std::min(first + kRows, q_.size() - 1);
+    if (last <= first) return false;
+    const double pace =
+        (q_.segment(first + 1, last - first) - q_.segment(first, last - first)).cwiseAbs().mean();
+    return pace * static_cast<double>(burst.length) > kOfJump * std::abs(q_[first] - q_[first - 1]);
+  }
+
+ private:
+  static constexpr Index kWidest = 16;
+
+  const VectorXd& q_;
+  Rounding rounding_;
+  double top_pace_ = 0;         // from one row to the next
+  std::vector<double> limits_;  // per width: 1, 2, 4, ...
+};
+
+// Its measured velocity moves on.
+bool velocity_moves(const Log& log, Index joint, const Burst& burst) {
+  constexpr double kOfUsual = 0.3;
+  constexpr double kOfTop = 0.95;
+  if (log.dq_derived[static_cast<std::size_t>(joint)]) return false;
+  const VectorXd dq = log.dq.col(joint);
+  const double usual = quantile(dq.cwiseAbs(), kOfTop);
+  const VectorXd during = dq.segment(burst.first + 1, burst.length);
+  // Where it is filtered it only comes to rest later.
+  constexpr double kLateS = 0.15;
+  if (static_cast<double>(burst.length) * log.period_s < 2 * kLateS) return false;
+  return during.minCoeff() < during.maxCoeff() && std::abs(during.mean()) > kOfUsual * usual &&
+         during.cwiseAbs().mean() > kSensorSteps * smallest_step(dq);
+}
+
+// As a drive or a logger takes to start.
+bool is_short(const Log& log, const Burst& burst) {
+  constexpr double kStartS = 1;
+  return static_cast<double>(burst.length) * log.period_s <= kStartS;
+}
+
+std::vector<Burst> long_bursts(const VectorXd& x) {
+  std::vector<Burst> bursts = repeats_of(x);
+  std::erase_if(bursts, [](const Burst& burst) {
+    return burst.length < (burst.first == 0 ? kFewestAtStart : kFewestRepeats);
+  });
+  return bursts;
+}
+
+std::vector<Burst> stuck_positions(const Log& log, Index joint) {
+  const VectorXd q = log.q.col(joint);
+  std::vector<Burst> bursts = long_bursts(q);
+  if (bursts.empty() || (q.array() == q[0]).all()) return {};
+  const BurstEnds ends(q);
+  const std::vector<Index> repeats_before = repeats_before_of(q);
+  std::erase_if(bursts, [&](const Burst& burst) {
+    if (is_next_to_gap(log, burst)) return true;
+    // A coarse encoder holds its value for as long where the joint is slow.
+    const bool usual = static_cast<double>(q.size()) * std::pow(own_repeats(repeats_before, burst),
+                                                                static_cast<double>(burst.length)) >
+                       kSeldom;
+    const bool by_velocity = velocity_moves(log, joint, burst);
+    const bool at_start = burst.first == 0 && is_short(log, burst);
+    if (ends.ends_in_jump(burst) && (at_start || ends.moves_on(burst))) return false;
+    if (usual && !by_velocity) return true;
+    return !by_velocity && !ends.starts_abruptly(burst);
+  });
+  return bursts;
+}
+
+// What the model says of the torques, for how they change.
+class ExpectedTorque {
+ public:
+  ExpectedTorque(const Log& log, const RobotDescription& robot)
+      : stride_(std::max<Index>(1, log.sample_count() / kMostRows)) {
+    constexpr double kHz = 10;
+    constexpr double kOfRate = 0.2;
+    FilterPlan plan;
+    plan.sample_rate_hz = log.sample_rate_hz();
+    plan.position_cutoff_hz = std::min(kHz, kOfRate * plan.sample_rate_hz);
+    const Motion full = motion_of(log, plan);
+    torque_ =
+        model_torque(robot, {every_nth(full.t_s, stride_), every_nth_row(full.q, stride_),
+                             every_nth_row(full.dq, stride_), every_nth_row(full.ddq, stride_)});
+  }
+
+  // Between its largest and its smallest during a burst.
+  [[nodiscard]] double change_during(const Burst& burst, Index joint) const {
+    const Index first = std::min(burst.first / stride_ + 1, torque_.rows() - 1);
+    const Index last = std::min(burst.end() / stride_, torque_.rows() - 1);
+    if (last <= first) return 0;
+    const auto during = torque_.col(joint).segment(first, last + 1 - first);
+    return during.maxCoeff() - during.minCoeff();
+  }
+
+ private:
+  static constexpr Index kMostRows = 5000;
+  Index stride_;
+  Eigen::MatrixXd torque_;
+};
+
+std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorque& expected) {
+  constexpr double kShortestS = 0.1;
+  constexpr double kTravel = 0.01;  // of the joint's range
+  constexpr double kChange = 0.15;  // of the torque's range
+  constexpr std::size_t kUsual = 4;
+  constexpr Index kLonger = 3;
+  constexpr double kAtExtreme = 1e-3;
+  const VectorXd tau = log.tau.col(joint);
+  const auto q = log.q.col(joint);
+  const double range = q.maxCoeff() - q.minCoeff();
+  std::vector<Burst> bursts = repeats_of(tau);
+  std::sort(bursts.begin(), bursts.end(),
+            [](const Burst& a, const Burst& b) { return a.length > b.length; });
+  const Index usual = bursts.size() > kUsual ? bursts[kUsual].length : 0;
+  const std::vector<Index> repeats_before = repeats_before_of(tau);
+  const double low = tau.minCoeff();
+  const double high = tau.maxCoeff();
+  const double near = kAtExtreme * (high - low);
+  const BurstEnds ends(tau);
+  std::erase_if(bursts, [&](const Burst& burst) {
+    if (is_next_to_gap(log, burst)) return true;
+    // A drive that gives nothing yet, then all at once, also where it holds the joint.
+    if (burst.first == 0 && tau[0] == 0 && burst.length >= kFewestAtStart && is_short(log, burst) &&
+        ends.ends_in_jump(burst)) {
+      return false;
+    }
+    if (static_cast<double>(burst.length) <
+            std::max<double>(kFewestRepeats, kShortestS / log.period_s) ||
+        !(range > 0)) {
+      return true;
+    }
+    const auto during = q.segment(burst.first, burst.length + 1);
+    if (during.maxCoeff() - during.minCoeff() < kTravel * range) return true;
+    const double value = tau[burst.first];
+    // A drive that is off, or at its limit: find_saturation().
+    if (value == 0 || value <= low + near || value >= high - near) return true;
+    if (is_noisy_around(tau, burst)) return false;
+    const bool by_chance =
+        static_cast<double>(tau.size()) *
+            std::pow(own_repeats(repeats_before, burst), static_cast<double>(burst.length)) >
+        kSeldom;
+    return by_chance || burst.length < kLonger * usual ||
+           expected.change_during(burst, joint) < kChange * (high - low);
+  });
+  return bursts;
+}
+
+// Short repeats that come often have a name of their own.
+bool is_known(const std::vector<DataFault>& faults, Index joint, FaultySignal signal,
+              const Burst& burst) {
+  return std::any_of(faults.begin(), faults.end(), [&](const DataFault& fault) {
+    return fault.kind == DataFaultKind::kStaleSamples && fault.joint == joint &&
+           fault.signal == signal &&
+           std::any_of(fault.spans.begin(), fault.spans.end(), [&](const FaultSpan& span) {
+             return span.samples.first <= burst.end() && span.samples.last > burst.first;
+           });
+  });
+}
+
+void add_stuck_fault(const Log& log, Index joint, bool position, bool at_start,
+                     const std::vector<Burst>& bursts, std::vector<DataFault>& faults) {
+  std::vector<RowSpan> spans;
+  Index rows = 0;
+  for (const Burst& burst : bursts) {
+    if ((burst.first == 0) != at_start) continue;
+    // At the start the first row is not the last good one.
+    spans.push_back({burst.first + (at_start ? 0 : 1), burst.end()});
+    rows += spans.back().count();
+  }
+  if (spans.empty()) return;
+  DataFault fault;
+  fault.kind = at_start ? DataFaultKind::kStart : DataFaultKind::kStuck;
+  fault.joint = joint;
+  fault.signal = position ? FaultySignal::kPosition : FaultySignal::kTorque;
+  fault.size = static_cast<double>(rows) / static_cast<double>(log.sample_count());
+  set_spans(log, spans, fault);
+  fault.words = fmt::format("the {} of joint {} {} while the joint moves: {}",
+                            position ? "position" : "torque", joint + 1,
+                            at_start ? "does not change at the start" : "is stuck at one value",
+                            words_of_spans(fault));
+  fault.mend = at_start ? "start to record when the drive is on and every channel is there"
+                        : "look at the sensor, its cable and the channel that it is logged from";
+  faults.push_back(std::move(fault));
+}
+
+}  // namespace
+
+void find_stuck_values(const Log& log, const RobotDescription& robot,
+                       std::vector<DataFault>& faults) {
+  const ExpectedTorque expected(log, robot);
+  for (Index joint = 0; joint < log.q.cols(); ++joint) {
+    for (const bool position : {true, false}) {
+      auto bursts = position ? stuck_positions(log, joint) : stuck_torques(log, joint, expected);
+      const auto signal = position ? FaultySignal::kPosition : FaultySignal::kTorque;
+      std::erase_if(bursts,
+                    [&](const Burst& burst) { return is_known(faults, joint, signal, burst); });
+      for (const bool at_start : {true, false}) {
+        add_stuck_fault(log, joint, position, at_start, bursts, faults);
+      }
+    }
+  }
+}
+
+}  // namespace offnominal::desk

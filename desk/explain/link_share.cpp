@@ -1,0 +1,89 @@
+#include "explain/link_share.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "explain/friction_family.hpp"
+#include "identify/parallel.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+// Far beyond CAD, and little more than the geometry known.
+constexpr std::array kShares{0.2, 0.6};
+// Log-likelihood that a wider share has to gain, and the share of a joint's error.
+constexpr double kClearly = 10;
+constexpr double kRelevantFall = 0.05;
+
+// How much more likely the errors that are left make the data, and the largest fall of one.
+struct ShareGain {
+  double log_likelihood = 0;
+  double fall = 0;
+};
+
+ShareGain gain_of(const VectorXd& before, const VectorXd& after, const VectorXd& samples) {
+  ShareGain gain;
+  for (Index joint = 0; joint < before.size(); ++joint) {
+    if (!(before[joint] > 0) || !(after[joint] > 0)) continue;
+    gain.log_likelihood += samples[joint] * std::log(before[joint] / after[joint]);
+    gain.fall = std::max(gain.fall, 1 - after[joint] / before[joint]);
+  }
+  return gain;
+}
+
+struct HeldOutErrors {
+  VectorXd rms;
+  VectorXd samples;  // independent ones, per joint
+};
+
+HeldOutErrors held_out_of(const Data& data) {
+  const Regression regression(data);
+  const std::vector<Term> terms = standard_friction(data);
+  const ModelFit fit = regression.fit(terms);
+  const HoldOut parts(regression, nullptr);
+  return {parts.rms(parts.residual(terms, fit)), fit.remainder.independent_samples};
+}
+
+}  // namespace
+
+std::optional<double> wider_link_share(const RobotDescription& robot, const Data& data,
+                                       int threads) {
+  std::array<HeldOutErrors, 1 + kShares.size()> held;
+  parallel_for(held.size(), threads, [&](std::size_t i) {
+    NuisanceOptions wide;
+    if (i == 0) {
+      held[i] = held_out_of(data);
+      return;
+    }
+    wide.link_share = kShares[i - 1];
+    wide.link_geometry = true;
+    held[i] = held_out_of(Data(data, robot, wide));
+  });
+  std::optional<double> share;
+  const HeldOutErrors* best = held.data();
+  for (std::size_t i = 1; i < held.size(); ++i) {
+    const ShareGain gain = gain_of(best->rms, held[i].rms, held[i].samples);
+    if (gain.log_likelihood < kClearly || gain.fall < kRelevantFall) continue;
+    best = &held[i];
+    share = kShares[i - 1];
+  }
+  return share;
+}
+
+bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const FoundModel& usual) {
+  const VectorXd after = hold_out.rms(wide.held_out_after);
+  const VectorXd before = hold_out.rms(usual.held_out_after);
+  const ShareGain gain = gain_of(before, after, wide.fit.remainder.independent_samples);
+  if (gain.log_likelihood > kClearly && gain.fall > kRelevantFall) return true;
+  constexpr std::size_t kManyEffects = 3;
+  return gain.log_likelihood > -kClearly &&
+         usual.accepted.size() >= wide.accepted.size() + kManyEffects;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+
+#include "explain/find_model.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::desk {
+
+// What is believed of the links' numbers where nobody says it: right to a few per cent, as CAD is.
+inline constexpr double kUsualLinkShare = 0.05;
+// Beyond this a link's mass, centre of mass and inertia are off each by itself.
+inline constexpr double kCadShare = 0.1;
+
+// A wider share, as far as the recordings ask for one: with mass, centre of mass and inertia of
+// every link each free within it, and Coulomb and viscous friction on every joint that moves,
+// held-out time has to become clearly more likely (at least one joint's error falls by a
+// twentieth). The narrower one of those that are about as good; none where the usual one is.
+// `robot`: that `data` was made with, at the usual share.
+std::optional<double> wider_link_share(const RobotDescription& robot, const Data& data,
+                                       int threads);
+
+// Of two searches, whether the one with the wider share is to be believed: it predicts held-out
+// data clearly better than the one that had to explain the same by effects, or about as well where
+// that one needed at least three effects more. A link of another mass is an effect, and named.
+bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const FoundModel& usual);
+
+}  // namespace offnominal::desk

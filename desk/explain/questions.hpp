@@ -1,0 +1,39 @@
+#pragma once
+
+#include "explain/search.hpp"
+
+namespace offnominal::desk {
+
+// What these recordings can say is judged by question: whether they would show this effect beside
+// everything that the model adapts to it, by the likelihood with and without it. Correlated errors
+// count once, and what is believed of the links' masses is part of the model.
+
+// Every effect's formula is a simplification, and leaves about this share of its own torque.
+inline constexpr double kLeftOfItself = 0.06;
+
+// Torque of a fitted term and what of it can be told from everything else that the model fits, rms
+// in units of each joint's error and over all joints together.
+struct Shown {
+  double torque = 0;
+  double apart = 0;
+
+  // Whether more of it shows than what such an effect leaves of itself: the rest of a model that is
+  // not quite right may look like anything.
+  [[nodiscard]] bool is_enough() const { return apart >= kLeftOfItself * torque; }
+};
+
+// `which`: one of the terms that `fit` is of; `without`: the fit of the others.
+Shown shown(const Data& data, const std::vector<Term>& terms, std::size_t which,
+            const ModelFit& fit, const ModelFit& without);
+
+// Weighted energy of a term's torque as it was fitted, over all rows; `weights` per joint.
+double weighted_energy(const Data& data, const Term& term, const Eigen::VectorXd& coefficients,
+                       const Eigen::VectorXd& weights);
+
+// The smallest rms torque of an effect on its joint that the recordings would show beside the
+// model: what is left of it beside everything else has to be relevant, and to make the recordings
+// more likely by as much as a search asks for. `one`: a candidate that does not; infinite where the
+// model takes up whatever the effect does.
+double smallest_shown(const Data& data, const ModelFit& at, const Screened& one);
+
+}  // namespace offnominal::desk

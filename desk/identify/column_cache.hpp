@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "identify/effect_candidate.hpp"
+#include "identify/rows.hpp"
+
+namespace offnominal::desk {
+
+// Stacked columns of candidates at shapes that were asked for before, of one set of recordings:
+// those of an effect that needs the dynamics of the whole arm cost as much as everything else. What
+// comes back is what would be computed anew. Any number of threads may ask at once.
+class ColumnCache {
+ public:
+  // Columns of `effect`, which is one of all_candidates(), on a joint.
+  [[nodiscard]] Eigen::MatrixXd columns(const RowLayout& layout,
+                                        const std::vector<Workspace>& recordings,
+                                        const EffectCandidate& effect, Eigen::Index joint,
+                                        const ShapePoint& shape);
+
+ private:
+  struct Key {
+    EffectKind kind = EffectKind::kViscousFriction;
+    Eigen::Index joint = 0;
+    ShapePoint shape;
+    friend auto operator<=>(const Key&, const Key&) = default;
+  };
+  [[nodiscard]] std::optional<Eigen::MatrixXd> known(const Key& key);
+
+  std::mutex mutex_;
+  std::map<Key, Eigen::MatrixXd> known_;
+  std::size_t numbers_ = 0;  // in known_
+};
+
+}  // namespace offnominal::desk
