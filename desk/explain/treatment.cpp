@@ -101,10 +101,17 @@ std::vector<Index> depending_on(Index joint, const Log& log, const RobotDescript
   return joints;
 }
 
+// What a position would have done for most of the recording cannot be asked of it.
+bool is_most_of(const DataFault& fault, const Log& log) {
+  Index rows = 0;
+  for (const FaultSpan& span : fault.spans) rows += span.samples.count();
+  return 2 * rows > log.sample_count();
+}
+
 std::vector<Index> joints_without(const DataFault& fault, const Log& log,
                                   const RobotDescription& robot) {
   if (fault.joint >= 0 && fault.signal == FaultySignal::kTorque) return {fault.joint};
-  if (fault.joint >= 0 && fault.signal == FaultySignal::kPosition) {
+  if (fault.joint >= 0 && fault.signal == FaultySignal::kPosition && !is_most_of(fault, log)) {
     return depending_on(fault.joint, log, robot);
   }
   std::vector<Index> all(static_cast<std::size_t>(log.q.cols()));

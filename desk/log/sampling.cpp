@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/error.hpp"
@@ -39,16 +41,15 @@ VectorXd position_at(const VectorXd& t_s, const VectorXd& q, const VectorXd& at_
   return spline_at(t_s, q, at_s);
 }
 
-// The row that was recorded at each time of a grid, but for `slack_s`; -1: none. Its values stay
-// what they are: what rests repeats them to the last bit.
-std::vector<Index> rows_at(const VectorXd& recorded_s, const VectorXd& even_s, double slack_s) {
-  std::vector<Index> rows(static_cast<std::size_t>(even_s.size()), -1);
+// What rests between two rows rests there: a spline rings about it, and the doctor would see the
+// value move.
+void keep_rests(const VectorXd& recorded_s, const VectorXd& q, const VectorXd& even_s,
+                Eigen::Ref<VectorXd> result) {
   Index row = 0;
   for (Index i = 0; i < even_s.size(); ++i) {
-    while (row + 1 < recorded_s.size() && recorded_s[row] < even_s[i] - slack_s) ++row;
-    if (std::abs(recorded_s[row] - even_s[i]) <= slack_s) rows[static_cast<std::size_t>(i)] = row;
+    while (row + 2 < recorded_s.size() && recorded_s[row + 1] < even_s[i]) ++row;
+    if (q[row] == q[row + 1]) result[i] = q[row];
   }
-  return rows;
 }
 
 void resample(Log& log, double period_s) {
@@ -59,15 +60,11 @@ void resample(Log& log, double period_s) {
   for (Index i = 0; i <= steps; ++i) {
     even[i] = std::min(recorded[0] + static_cast<double>(i) * period_s, recorded[0] + span_s);
   }
-  const std::vector<Index> same = rows_at(recorded, even, kSamplingJitter * period_s);
   const auto resample_columns = [&](Eigen::MatrixXd& columns, auto&& interpolate) {
     Eigen::MatrixXd result(even.size(), columns.cols());
     for (Index j = 0; j < columns.cols(); ++j) {
       result.col(j) = interpolate(recorded, columns.col(j), even);
-      for (Index i = 0; i < even.size(); ++i) {
-        const Index row = same[static_cast<std::size_t>(i)];
-        if (row >= 0) result(i, j) = columns(row, j);
-      }
+      keep_rests(recorded, columns.col(j), even, result.col(j));
     }
     columns = std::move(result);
   };
@@ -94,7 +91,8 @@ std::vector<Hole> holes_of(const VectorXd& t_s, double period_s) {
     const double step_s = t_s[i + 1] - t_s[i];
     if (!(step_s > least_s)) continue;
     const double missing = step_s / period_s - 1;
-    const double bound = std::min(2 * missing, static_cast<double>(t_s.size()));
+    constexpr double kFarthest = 10000;  // rows
+    const double bound = std::min({2 * missing, static_cast<double>(t_s.size()), kFarthest});
     const Index end = std::min(t_s.size() - 1, i + 1 + static_cast<Index>(bound));
     Index after = i + 1;
     for (Index j = i + 2; j <= end; ++j) {
@@ -108,6 +106,17 @@ std::vector<Hole> holes_of(const VectorXd& t_s, double period_s) {
     i = after - 1;
   }
   return holes;
+}
+
+// Straight lines over these rows of every column, between the rows around them.
+void draw_lines(Eigen::MatrixXd& columns, const RowSpan& rows) {
+  const Index from = std::max<Index>(rows.first - 1, 0);
+  const Index to = std::min(rows.last + 1, columns.rows() - 1);
+  const Eigen::RowVectorXd change = columns.row(to) - columns.row(from);
+  for (Index i = rows.first; i <= rows.last; ++i) {
+    const double share = static_cast<double>(i - from) / static_cast<double>(to - from);
+    columns.row(i) = columns.row(from) + share * change;
+  }
 }
 
 // Whether anything was cut.
@@ -138,6 +147,7 @@ bool keep_longest_part(Log& log, const std::vector<Hole>& holes) {
   keep_rows(log.q);
   keep_rows(log.dq);
   keep_rows(log.tau);
+  if (log.sensor_tau.rows() > 0) keep_rows(log.sensor_tau);
   for (auto& [name, values] : log.extra) keep(values);
   return true;
 }
@@ -159,50 +169,107 @@ void check_size(const Log& log, const Sampling& sampling) {
        "cut the recording at the gap"});
 }
 
-// A few stamps that are off, of rows that are all there: it is the stamps that are wrong, and to
-// put every other row elsewhere for them would be no better.
-bool take_late_stamps_as_even(Log& log, const Sampling& sampling) {
+// How many stamps of rows that are all there are off by more than kSamplingJitter; none where they
+// are too many, or too far off, for a clock that is only late at times.
+std::optional<Index> stamps_off(const Eigen::Ref<const VectorXd>& t_s, double period_s) {
   constexpr double kMostRows = 0.01;
   constexpr double kMostPeriods = 3;
-  const Index rows = log.t_s.size();
-  const double period_s = sampling.mean_period_s;
-  const VectorXd even = VectorXd::LinSpaced(rows, log.t_s[0], log.t_s[rows - 1]);
+  const Index rows = t_s.size();
+  const VectorXd even = VectorXd::LinSpaced(rows, t_s[0], t_s[rows - 1]);
   Index off = 0;
   for (Index i = 0; i < rows; ++i) {
-    const double periods = std::abs(log.t_s[i] - even[i]) / period_s;
-    if (periods > kMostPeriods) return false;
+    const double periods = std::abs(t_s[i] - even[i]) / period_s;
+    if (periods > kMostPeriods) return std::nullopt;
     if (periods > kSamplingJitter) ++off;
   }
-  if (static_cast<double>(off) > kMostRows * static_cast<double>(rows)) return false;
+  if (static_cast<double>(off) > kMostRows * static_cast<double>(rows)) return std::nullopt;
+  return off;
+}
+
+// It is a few stamps that are wrong then, and to put every other row elsewhere for them would be no
+// better.
+bool take_late_stamps_as_even(Log& log, const Sampling& sampling) {
+  const auto off = stamps_off(log.t_s, sampling.mean_period_s);
+  if (!off) return false;
   log.remarks.push_back(
       fmt::format("{} time stamp{} off by more than {:g} % of the sampling period: taken as even",
-                  off, off == 1 ? " is" : "s are", 100 * kSamplingJitter));
-  log.stamps_s = std::move(log.t_s);
-  log.t_s = even;
-  log.period_s = period_s;
+                  *off, *off == 1 ? " is" : "s are", 100 * kSamplingJitter));
+  const Index rows = log.t_s.size();
+  VectorXd even = VectorXd::LinSpaced(rows, log.t_s[0], log.t_s[rows - 1]);
+  log.stamps_s = std::exchange(log.t_s, std::move(even));
+  log.period_s = sampling.mean_period_s;
   return true;
+}
+
+// The rows between steps over which at least one is missing. A row that is late leaves none out:
+// the one behind it is where it was to be expected.
+std::vector<RowSpan> parts_of(const VectorXd& t_s, double period_s) {
+  constexpr double kMissing = 1.5;  // periods, of one step
+  std::vector<RowSpan> parts{{0, 0}};
+  for (Index i = 1; i < t_s.size(); ++i) {
+    const bool missing =
+        t_s[i] - t_s[i - 1] > kMissing * period_s &&
+        (i + 1 == t_s.size() || t_s[i + 1] - t_s[i - 1] > (1 + kMissing) * period_s);
+    if (missing) parts.push_back({i, i});
+    parts.back().last = i;
+  }
+  return parts;
+}
+
+// Period of rows that are even but for those that are missing; none where they are not.
+std::optional<double> period_between(const VectorXd& t_s, const std::vector<RowSpan>& parts) {
+  const auto span_s = [&](const RowSpan& part) { return t_s[part.last] - t_s[part.first]; };
+  double sum_s = 0;
+  Index steps = 0;
+  for (const RowSpan& part : parts) {
+    sum_s += span_s(part);
+    steps += part.count() - 1;
+  }
+  if (steps < 1) return std::nullopt;
+  const double period_s = sum_s / static_cast<double>(steps);
+  for (const RowSpan& part : parts) {
+    const double whole_s = period_s * static_cast<double>(part.count() - 1);
+    if (std::abs(span_s(part) - whole_s) > period_s / 2 ||
+        !stamps_off(t_s.segment(part.first, part.count()), period_s)) {
+      return std::nullopt;
+    }
+  }
+  return period_s;
+}
+
+// Rows that are even but for those that are missing are put on the grid that they are of: they keep
+// their values to the last bit. Returns its period; none where they are not even, and nothing
+// moved.
+std::optional<double> put_on_grid(VectorXd& t_s, double period_s) {
+  const std::vector<RowSpan> parts = parts_of(t_s, period_s);
+  const auto period = period_between(t_s, parts);
+  if (!period) return std::nullopt;
+  const double from_s = t_s[0];
+  Index next = 0;
+  for (const RowSpan& part : parts) {
+    const auto first = static_cast<Index>(std::llround((t_s[part.first] - from_s) / *period));
+    next = std::max(first, next);
+    for (Index i = part.first; i <= part.last; ++i) {
+      t_s[i] = from_s + static_cast<double>(next++) * *period;
+    }
+  }
+  return period;
 }
 
 // Straight lines over the holes, which are gaps of the log from now on.
 void bridge(Log& log, const VectorXd& recorded_s, const std::vector<Hole>& holes) {
-  const auto line = [&](Eigen::MatrixXd& columns, const RowSpan& rows) {
-    const Index from = std::max<Index>(rows.first - 1, 0);
-    const Index to = std::min(rows.last + 1, columns.rows() - 1);
-    const Eigen::RowVectorXd change = columns.row(to) - columns.row(from);
-    for (Index i = rows.first; i <= rows.last; ++i) {
-      const double share = static_cast<double>(i - from) / static_cast<double>(to - from);
-      columns.row(i) = columns.row(from) + share * change;
-    }
-  };
+  // A sample of the grid so near a row is that row.
+  const double same_s = kSamplingJitter * log.period_s;
   for (const Hole& hole : holes) {
     const auto begin = log.t_s.begin();
     RowSpan rows;
-    rows.first = std::upper_bound(begin, log.t_s.end(), recorded_s[hole.before]) - begin;
-    rows.last = std::lower_bound(begin, log.t_s.end(), recorded_s[hole.after]) - begin - 1;
+    rows.first = std::upper_bound(begin, log.t_s.end(), recorded_s[hole.before] + same_s) - begin;
+    rows.last = std::lower_bound(begin, log.t_s.end(), recorded_s[hole.after] - same_s) - begin - 1;
     if (rows.count() < 1) continue;
-    line(log.q, rows);
-    line(log.dq, rows);
-    line(log.tau, rows);
+    draw_lines(log.q, rows);
+    draw_lines(log.dq, rows);
+    draw_lines(log.tau, rows);
+    if (log.sensor_tau.rows() > 0) draw_lines(log.sensor_tau, rows);
     log.gaps.push_back(rows);
   }
 }
@@ -231,28 +298,37 @@ void make_even(Log& log) {
     return;
   }
   if (take_late_stamps_as_even(log, sampling)) return;
-  const double period_s = sampling.median_period_s;
+  double period_s = sampling.median_period_s;
   VectorXd recorded = log.t_s;
   std::vector<Hole> holes = holes_of(recorded, period_s);
   if (keep_longest_part(log, holes)) {
     log.stamps_s = std::move(recorded);
     recorded = log.t_s;
-    holes = holes_of(recorded, period_s);
     sampling = sampling_of(recorded);
+    period_s = sampling.median_period_s;
+    holes = holes_of(recorded, period_s);
     if (sampling.jitter <= kSamplingJitter) {
       log.period_s = sampling.mean_period_s;
       return;
     }
   }
   check_size(log, sampling);
-  log.remarks.push_back(fmt::format(
-      "sampling is not even (steps of {:.4g} s, off by up to {:.0f} % of their mean): resampled to "
-      "{:.4g} s",
-      period_s, 100 * sampling.jitter, period_s));
-  resample(log, period_s);
-  log.period_s = period_s;
+  if (log.stamps_s.size() == 0) log.stamps_s = recorded;
+  const auto grid_s = put_on_grid(log.t_s, period_s);
+  if (grid_s) {
+    log.remarks.push_back(fmt::format("rows are missing, one each {:.4g} s: filled in", *grid_s));
+    recorded = log.t_s;
+    const Index before = log.cut.empty() || log.cut[0].first > 0 ? 0 : log.cut[0].last + 1;
+    log.stamps_s.segment(before, recorded.size()) = recorded;
+  } else {
+    log.remarks.push_back(
+        fmt::format("sampling is not even (steps of {:.4g} s, off by up to {:.0f} % of their "
+                    "mean): resampled to {:.4g} s",
+                    period_s, 100 * sampling.jitter, period_s));
+  }
+  log.period_s = grid_s.value_or(period_s);
+  resample(log, log.period_s);
   bridge(log, recorded, holes);
-  if (log.stamps_s.size() == 0) log.stamps_s = std::move(recorded);
 }
 
 void derive_velocities(Log& log) {

@@ -100,7 +100,7 @@ TEST(PositionTorque, IsOfferedWhereAnEndStopIsNoSmoothCurve) {
     errors.noise_floor = 0.1;
   }
   told.excitation.resize(2);
-  for (Excitation& one : told.excitation) one.sufficient = true;
+  for (Excitation& one : told.excitation) one.moves = one.sufficient = true;
   told.where = {{1, "position", 0.7}};
   judge_whole(told);
   EXPECT_EQ(told.verdict, Verdict::kUnknownStateDependent);
