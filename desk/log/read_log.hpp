@@ -23,7 +23,7 @@ namespace offnominal::desk {
 // Throws InputError, with the place in the file, when a column is missing (the message lists those
 // that are there), is not numeric, or differs in length from the time; when the number of joints is
 // not joint_count; when a value is not finite; when time does not ascend; when there are fewer than
-// kMinSamples samples, or a gap of more than kMaxGap median steps.
+// kMinSamples samples, or gaps that leave less than a quarter of the rows (sampling.hpp).
 //
 // "a.csv+b.csv" are two files of one recording (joined_files.hpp). Units that a file says of its
 // columns are taken where the channels say neither unit nor scale, positions that jump by 2 pi as

@@ -44,7 +44,7 @@ struct Habits {
   int encoder_bits = 19;         ///< per turn; 0: none
   bool float_positions = false;  ///< 32 bit, not rounded to an encoder's step
   bool five_digits = false;      ///< everything but the time is printed with five digits
-  int late_stamps = 0;           ///< of the whole recording, by 1 to 3 periods
+  int late_stamps = 0;           ///< of the whole recording, by 0.2 to 0.9 of a period
   bool with_velocity = false;    ///< from the same encoder, with noise
 };
 Habits draw_habits(hidden::Draws& draws);
