@@ -18,7 +18,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr Index kAroundRows = 8;
-constexpr Index kLongestSpike = 5;  // rows
 constexpr double kUsualShare = 0.99;
 constexpr double kNoiseDeviations = 12;  // standard deviations
 constexpr double kDeviationOfMedian = 1.4826;
@@ -190,7 +189,16 @@ RowSpan shorter_side(Index step, Index rows) {
 
 void find_position_jumps(const Log& log, Index joint, std::vector<DataFault>& faults) {
   const VectorXd q = log.q.col(joint);
-  const Breaks jumps = breaks_of(q, known_spans(faults, joint, FaultySignal::kPosition));
+  std::vector<RowSpan> known = known_spans(faults, joint, FaultySignal::kPosition);
+  const bool stale = std::any_of(faults.begin(), faults.end(), [&](const DataFault& fault) {
+    return fault.kind == DataFaultKind::kStaleSamples && fault.joint == joint &&
+           fault.signal == FaultySignal::kPosition;
+  });
+  // A channel that is known to repeat catches up after every burst.
+  if (stale) {
+    for (const Burst& burst : repeats_of(q)) known.push_back({burst.first, burst.end() + 1});
+  }
+  const Breaks jumps = breaks_of(q, known);
   add_jump_fault(log, joint, true, DataFaultKind::kJump, jumps.spikes, jumps.largest,
                  "jumps and comes back", faults);
   std::vector<RowSpan> sides;

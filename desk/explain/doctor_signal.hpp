@@ -20,6 +20,9 @@ struct Burst {
 };
 std::vector<Burst> repeats_of(const Eigen::VectorXd& x);
 
+// Rows after which a value that is back was a spike's.
+inline constexpr Eigen::Index kLongestSpike = 5;
+
 // Whether a burst holds a gap, or begins or ends so near to one that the gap makes it look so.
 bool is_next_to_gap(const Log& log, const Burst& burst);
 

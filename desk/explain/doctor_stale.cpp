@@ -84,8 +84,16 @@ struct Stale {
   Index longest = 0;
 };
 
-// `smooth`: the channel is free of noise beyond its steps, so that a jump must stand out.
-Stale stale_of(const Log& log, const VectorXd& x, bool smooth) {
+// Feedback gives the same torque as long as its encoder says the same.
+bool rests(const VectorXd& q, const Burst& burst) {
+  const auto during = q.segment(burst.first, burst.length + 1);
+  return during.minCoeff() == during.maxCoeff();
+}
+
+// Of a position or a torque: of a channel free of noise beyond its steps a jump must stand out.
+Stale stale_of(const Log& log, Index joint, bool smooth) {
+  const VectorXd q = log.q.col(joint);
+  const VectorXd x = smooth ? q : log.tau.col(joint);
   const Rounding rounding(x);
   const std::vector<Burst> bursts = repeats_of(x);
   const Index hold = usual_hold(bursts, x.size());
@@ -98,7 +106,7 @@ Stale stale_of(const Log& log, const VectorXd& x, bool smooth) {
     if (burst.length < kShortestBurst || burst.length <= 2 * hold || end + 1 >= x.size()) continue;
     if (is_next_to_gap(log, burst)) continue;
     // A torque at its limit repeats honestly: find_saturation().
-    if (!smooth && (x[end] == low || x[end] == high)) continue;
+    if (!smooth && (x[end] == low || x[end] == high || rests(q, burst))) continue;
     const double jump = std::abs(x[end + 1] - x[end]);
     const double step = rounding.at(x[end + 1]);
     if (jump < kJumpSteps * step) continue;
@@ -136,9 +144,9 @@ double smallest_step(const VectorXd& x) {
 void find_stale_samples(const Log& log, std::vector<DataFault>& faults) {
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     for (const bool position : {true, false}) {
-      const VectorXd x = position ? log.q.col(joint) : log.tau.col(joint);
-      const Stale stale = stale_of(log, x, position);
-      const double share = static_cast<double>(stale.rows) / static_cast<double>(x.size());
+      const Stale stale = stale_of(log, joint, position);
+      const double share =
+          static_cast<double>(stale.rows) / static_cast<double>(log.sample_count());
       if (stale.spans.size() < kFewestBursts || share < kLeastShare) continue;
       DataFault fault;
       fault.kind = DataFaultKind::kStaleSamples;

@@ -70,8 +70,18 @@ class BurstEnds {
     const double jump = std::abs(q_[end + 1] - q_[end]);
     const double next = end + 2 < q_.size() ? std::abs(q_[end + 2] - q_[end + 1]) : 0;
     constexpr double kOfTopPace = 2;
+    if (comes_back(burst)) return false;
     return jump > limits_.front() + kSensorSteps * rounding_.at(q_[end + 1]) &&
            jump > kOfTopPace * top_pace_ && jump > 2 * next;
+  }
+
+  // It comes to its end with the recording, or with a change that the joint does not show
+  // otherwise: what rests starts anew by and by.
+  [[nodiscard]] bool ends_unlike_a_rest(const Burst& burst) const {
+    const Index end = burst.end();
+    if (end + 1 >= q_.size()) return true;
+    return !comes_back(burst) && std::abs(q_[end + 1] - q_[end]) >
+                                     limits_.front() + kSensorSteps * rounding_.at(q_[end + 1]);
   }
 
   // A jump that is not more than what the joint can have moved meanwhile, by how it moves then.
@@ -88,6 +98,16 @@ class BurstEnds {
 
  private:
   static constexpr Index kWidest = 16;
+
+  // What follows it is a spike of a joint that rests.
+  [[nodiscard]] bool comes_back(const Burst& burst) const {
+    const Index end = burst.end();
+    const double jump = std::abs(q_[end + 1] - q_[end]);
+    for (Index i = end + 2; i <= std::min(end + 1 + kLongestSpike, q_.size() - 1); ++i) {
+      if (std::abs(q_[i] - q_[end]) < jump / 2) return true;
+    }
+    return false;
+  }
 
   const VectorXd& q_;
   Rounding rounding_;
@@ -140,7 +160,7 @@ std::vector<Burst> stuck_positions(const Log& log, Index joint) {
     const bool at_start = burst.first == 0 && is_short(log, burst);
     if (ends.ends_in_jump(burst) && (at_start || ends.moves_on(burst))) return false;
     if (usual && !by_velocity) return true;
-    return !by_velocity && !ends.starts_abruptly(burst);
+    return !by_velocity && !(ends.starts_abruptly(burst) && ends.ends_unlike_a_rest(burst));
   });
   return bursts;
 }
@@ -210,8 +230,9 @@ std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorq
     const auto during = q.segment(burst.first, burst.length + 1);
     if (during.maxCoeff() - during.minCoeff() < kTravel * range) return true;
     const double value = tau[burst.first];
-    // A drive that is off, or at its limit: find_saturation().
-    if (value == 0 || value <= low + near || value >= high - near) return true;
+    // A drive that is off, or at its limit: find_saturation(). None is there most of the time.
+    const bool at_end = value <= low + near || value >= high - near;
+    if (value == 0 || (at_end && 2 * burst.length < tau.size())) return true;
     if (is_noisy_around(tau, burst)) return false;
     const bool by_chance =
         static_cast<double>(tau.size()) *

@@ -66,13 +66,16 @@ void draw_line(Eigen::Ref<VectorXd> x, const RowSpan& rows) {
   }
 }
 
-// What a low-pass of the torque spreads of a stretch, in periods of its cut-off: a line over a few
-// milliseconds is what was there, a torque at its limit was there, and of anything else a
+// What a low-pass of the torque spreads of a stretch, in periods of its cut-off: a line over a
+// small part of one is what was there, a torque at its limit was there, and of anything else a
 // thousandth is left after three periods.
-double spread_of(DataFaultKind kind, double duration_s) {
-  constexpr double kShortS = 0.01;
-  if (kind == DataFaultKind::kSaturation) return 0.5;
-  return duration_s <= kShortS ? 0 : 3;
+double spread_of(const DataFault& fault, const RowSpan& rows, const FilterPlan& plan) {
+  constexpr double kShort = 1.0 / 3;    // of a torque
+  constexpr double kShorter = 1.0 / 6;  // of a position, which is differentiated twice
+  if (fault.kind == DataFaultKind::kSaturation) return 0.5;
+  const double periods =
+      static_cast<double>(rows.count()) * plan.torque_cutoff_hz / plan.sample_rate_hz;
+  return periods <= (fault.signal == FaultySignal::kTorque ? kShort : kShorter) ? 0 : 3;
 }
 
 // Joints whose rigid-body torque depends on the position of one: would it stand still, they would
@@ -121,11 +124,12 @@ std::vector<Index> joints_without(const DataFault& fault, const Log& log,
 
 // A gap has no more samples than the grid between two rows: a straight line was put there.
 void leave_out(const DataFault& fault, Log& log) {
+  const FilterPlan plan = usual_plan(log);
   for (const FaultSpan& span : fault.spans) {
     if (span.samples.count() < 1) continue;
-    const double duration_s = static_cast<double>(span.samples.count()) * log.period_s;
+    const double spread = spread_of(fault, span.samples, plan);
     for (const Index joint : fault.left_out_of) {
-      log.left_out.push_back({joint, span.samples, spread_of(fault.kind, duration_s)});
+      log.left_out.push_back({joint, span.samples, spread});
     }
   }
 }

@@ -52,7 +52,9 @@ void expect_fault(hidden::DataFault fault, const std::string& kind) {
     for (const bool noisy : {false, true}) {
       hidden::Request request = request_of(seed, noisy);
       request.fault = fault;
-      EXPECT_EQ(found_in(examine_case(request)), kind) << "seed " << seed << " noisy " << noisy;
+      const auto faults = examine_case(request);
+      EXPECT_EQ(found_in(faults), kind) << "seed " << seed << " noisy " << noisy << ": "
+                                        << (faults.empty() ? "" : faults.back().words);
     }
   }
 }

@@ -161,15 +161,17 @@ TEST_F(BamXl330, LoadDependentFrictionComesFirst) {
   EXPECT_THAT(e.found[0].what.name(), ::testing::AnyOf("load_dependent_friction", "gear_loss"))
       << e.words;
   for (const Finding& one : e.found) EXPECT_NE(one.what.name(), "coulomb_friction");
-  EXPECT_LT(e.joints[0].holdout_after, 0.5 * e.joints[0].holdout_before);
+  // Beside links as wide as the recordings ask for, which take some of it by themselves.
+  EXPECT_LT(e.joints[0].holdout_after, 0.5 * e.joints[0].rms_before);
 }
 
 TEST_F(BamXl330, BesideItCoulombFrictionIsDropped) {
   know(EffectKind::kLoadDependentFriction, 0.3);
   const std::vector<Log> gentle(logs_.begin(), logs_.begin() + 6);
   const Explanation e = explain(robot_, gentle, {}, few_draws());
-  // At most the doubt that the loss depends on which way power flows (the authors' model M5).
-  if (e.verdict != Verdict::kExplained) {
+  // At most another value of what the file knows, or the doubt that the loss depends on which way
+  // power flows (the authors' model M5).
+  if (e.verdict != Verdict::kExplained && e.verdict != Verdict::kParameterShift) {
     ASSERT_TRUE(e.suspected) << e.words;
     EXPECT_EQ(e.suspected->what.name(), "gear_loss") << e.words;
   }
