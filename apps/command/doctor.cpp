@@ -5,7 +5,7 @@
 
 #include "common/error.hpp"
 #include "explain/doctor.hpp"
-#include "explain/treatment.hpp"
+#include "explain/explain.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -40,13 +40,7 @@ std::vector<DataFault> treated(const std::vector<std::span<Log>>& groups,
                                const RobotDescription& robot, const std::vector<KeepFault>& keep,
                                Progress& progress, std::optional<RestsOn> what) {
   progress.begin("examining the recordings");
-  std::vector<DataFault> all;
-  for (const std::span<Log> group : groups) {
-    for (Log& log : group) {
-      if (log.at_rest) continue;
-      for (DataFault& fault : treat(log, robot, keep)) all.push_back(std::move(fault));
-    }
-  }
+  const std::vector<DataFault> all = treat_all(groups, robot, keep);
   progress.end();
   for (const DataFault& fault : all) {
     if (!what || !spoils(fault, *what)) continue;

@@ -172,7 +172,9 @@ void add_all_found(const AddOptions& options, const std::string& command_line,
                            files.robot,
                            command_line,
                            files.channels.file ? files.channels.file->string() : "",
-                           files.channels.payloads};
+                           files.channels.payloads,
+                           explain.keep,
+                           explain.link_share};
   write_report(options.answer, [&] { return page_of(added.explanation, names); });
   std::vector<std::string> written;
   if (added.may_be_written(force)) {

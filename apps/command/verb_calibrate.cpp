@@ -4,12 +4,14 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "calibrate/calibrate.hpp"
 #include "calibrate/calibrate_report.hpp"
+#include "calibrate/split.hpp"
 #include "command/answer.hpp"
 #include "command/command_line.hpp"
 #include "command/doctor.hpp"
@@ -23,6 +25,7 @@
 #include "log/log_format.hpp"
 #include "log/part_of.hpp"
 #include "log/read_log.hpp"
+#include "robot/effect_text.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
@@ -49,11 +52,26 @@ void check_numbers(const CalibrateOptions& options) {
   }
 }
 
-std::vector<Log> parts_left_of(const std::vector<Log>& logs) {
-  constexpr double kShortestS = 2;
+constexpr double kShortestS = 2;
+
+// The monitor starts anew behind what is left out, and its effects in time would too.
+void refuse_late_start(const RobotDescription& robot, const Log& log) {
+  for (const RobotEffect& effect : robot.effects) {
+    if (!info_of(effect.kind)->traits.counts_time) continue;
+    throw InputError({log.file, "", "faults of the recording, which are left out",
+                      fmt::format("none but at its end, as {} of {} counts from its start",
+                                  info_of(effect.kind)->name, place_of(effect)),
+                      "record anew, or say with --keep JOINT:REASON what is no fault"});
+  }
+}
+
+std::vector<Log> parts_left_of(const RobotDescription& robot, const std::vector<Log>& logs) {
   std::vector<Log> parts;
   for (const Log& log : logs) {
-    for (Log& part : untouched_parts(log, kShortestS)) parts.push_back(std::move(part));
+    for (Log& part : untouched_parts(log, kShortestS)) {
+      if (part.t_s[0] != log.t_s[0]) refuse_late_start(robot, log);
+      parts.push_back(std::move(part));
+    }
     if (!parts.empty() && parts.back().file == log.file) continue;
     throw InputError({log.file, "", "no part without a fault of the recording",
                       fmt::format("one of {:g} s or more", kShortestS),
@@ -68,8 +86,10 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
   FitData data = read_fit_data("calibrate", "LOG", options.files, read_log, progress);
   const auto faults =
       treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kVelocityToo);
-  // The monitor starts anew behind what is left out.
-  for (std::vector<Log>* group : {&data.logs, &data.holdout}) *group = parts_left_of(*group);
+  for (std::vector<Log>* group : {&data.logs, &data.holdout}) {
+    *group = parts_left_of(data.robot, *group);
+  }
+  if (data.holdout.empty()) data.holdout = take_held_out(data.logs, kShortestS);
   progress.begin("shapes of the bound");
   const CalibrateRequest request{
       options.alarms_per_hour, options.velocity_error,
@@ -89,8 +109,10 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
   }
   const auto text = [&] {
     std::string notes;
+    std::set<std::string> told;  // a recording may be in parts
     for (const auto* group : {&data.logs, &data.holdout}) {
       for (const Log& log : *group) {
+        if (!told.insert(log.file).second) continue;
         for (const std::string& remark : log.remarks) {
           notes += fmt::format("note: {}: {}\n", log.file, remark);
         }

@@ -41,7 +41,9 @@ void run(const ExplainArguments& options, const std::string& command_line) {
                            files.robot,
                            command_line,
                            files.channels.file ? files.channels.file->string() : "",
-                           files.channels.payloads};
+                           files.channels.payloads,
+                           settings.keep,
+                           settings.link_share};
   write_report(options.answer, [&] { return page_of(explanation, names); });
   print_answer(
       options.answer, [&] { return to_json(explanation, names); },

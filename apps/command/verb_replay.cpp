@@ -68,7 +68,10 @@ std::string text_of(const Replay& replay) {
 // The monitor on the controller has no gaps either.
 void require_whole(const Log& log) {
   if (log.gaps.empty() && log.cut.empty()) return;
-  const double at_s = log.gaps.empty() ? log.t_s[log.t_s.size() - 1] : log.t_s[log.gaps[0].first];
+  const bool at_front = !log.cut.empty() && log.cut.front().first == 0;
+  const double at_s = !log.gaps.empty() ? log.t_s[log.gaps[0].first]
+                      : at_front        ? log.t_s[0]
+                                        : log.t_s[log.t_s.size() - 1];
   throw InputError({log.file, fmt::format("t = {:.6g} s", at_s), "a gap",
                     "a recording of every tick, as the monitor sees it",
                     "cut the recording at the gap"});

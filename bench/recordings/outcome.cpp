@@ -87,7 +87,8 @@ bool is_reached(const Explanation& e, const Claim& claim) {
   };
   const auto says_it = [&](const std::vector<desk::DataFault>& faults) {
     return std::any_of(faults.begin(), faults.end(), [&](const desk::DataFault& one) {
-      return one.words.find(claim.words[0]) != std::string::npos;
+      return (one.joint < 0 || is_on(one.joint, claim)) &&
+             one.words.find(claim.words[0]) != std::string::npos;
     });
   };
   switch (claim.kind) {
@@ -111,7 +112,7 @@ bool is_reached(const Explanation& e, const Claim& claim) {
                            return is_on(one.joint, claim) && one.variable == claim.words[0];
                          });
     case Claim::Kind::kFault:
-      return says_it(e.data_faults) || says_it(e.data_hints);
+      return says_it(e.data_faults) || says_it(e.data_hints) || says_it(e.left_out);
   }
   return false;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calibrate/recorded_error.hpp"
+#include "log/log.hpp"
 
 namespace offnominal::desk {
 
@@ -27,5 +28,11 @@ struct Split {
 /// the filter forgets its start, cannot be told from the other fifths and are always calibrated on.
 [[nodiscard]] Split split(const std::vector<RecordedError>& recordings, std::size_t given,
                           double settling_s);
+
+/// Takes out of parts between faults (log/part_of.hpp), which are in the order of their recordings,
+/// what is held out: all of the last of several recordings, or trailing parts of the only one until
+/// they are a fifth of its samples, where both pieces are of `shortest_s` or more only a piece of
+/// the last of them. Nothing of a recording in one part, of which split() holds out the last fifth.
+[[nodiscard]] std::vector<Log> take_held_out(std::vector<Log>& parts, double shortest_s);
 
 }  // namespace offnominal::desk

@@ -131,6 +131,18 @@ std::vector<MovedJoint> joints_of_motor(const RobotDescription& robot, std::size
   return joints;
 }
 
+bool acts_on_joint(const RobotDescription& robot, const RobotEffect& effect, Index joint) {
+  if (!effect.of_motor) return static_cast<Index>(effect.joint) == joint;
+  const std::vector<MovedJoint> moved = joints_of_motor(robot, effect.joint);
+  return std::any_of(moved.begin(), moved.end(),
+                     [&](const MovedJoint& one) { return one.joint == joint; });
+}
+
+bool is_of_joint(const RobotDescription& robot, const RobotEffect& effect, Index joint) {
+  const bool shared = effect.of_motor && joints_of_motor(robot, effect.joint).size() > 1;
+  return !shared && acts_on_joint(robot, effect, joint);
+}
+
 VectorXd torque_of_effect(const Effect<double>& effect, JointType type, const Motion& motion,
                           double start_s) {
   const auto joint = static_cast<Index>(effect.joint);

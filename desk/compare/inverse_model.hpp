@@ -52,6 +52,12 @@ struct MovedJoint {
 };
 std::vector<MovedJoint> joints_of_motor(const RobotDescription& robot, std::size_t motor);
 
+// Whether an effect of the robot acts on a joint: its own, or one of a motor that moves the joint.
+bool acts_on_joint(const RobotDescription& robot, const RobotEffect& effect, Eigen::Index joint);
+// The same of an effect that acts there as one of the joint's own would: of a motor that moves this
+// joint and no other.
+bool is_of_joint(const RobotDescription& robot, const RobotEffect& effect, Eigen::Index joint);
+
 // The torque of one torque effect on its own joint, of the given type; for an effect of a motor
 // that of the motor, where the motion is the motors'. The run that its time counts
 // from began at `start_s`, on the motion's clock.

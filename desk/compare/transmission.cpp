@@ -108,7 +108,10 @@ MatrixXd transmission_torque(const RobotDescription& robot, const Motion& motion
                              const MatrixXd& stiff, const MatrixXd& measured,
                              const VectorXd& density, const FilterPlan& plan) {
   RobotDescription rigid = robot;
-  rigid.effects.clear();
+  // What is carried is moved as the links are.
+  std::erase_if(rigid.effects, [](const RobotEffect& effect) {
+    return info_of(effect.kind)->action != EffectAction::kPointMass;
+  });
   const MatrixXd load = model_torque(rigid, motion);
   const VectorXd told_per_given = told_torque(robot, motion).per_given;
   const double period_s = 1 / plan.sample_rate_hz;

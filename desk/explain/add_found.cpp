@@ -49,10 +49,13 @@ HeldOutSquares held_out_squares(const AddedFindings& added, std::size_t joint) {
   HeldOutSquares squares;
   bool apart = false;
   for (const Gain& gain : added.gains) {
-    if (!gain.held_out) continue;
+    const BeforeAfter& error = gain.joints[joint];
+    // Of a joint of which a recording has nothing, it says nothing.
+    const bool says = std::isfinite(error.before_rms) && std::isfinite(error.after_rms);
+    if (!gain.held_out || !says) continue;
     apart = true;
-    squares.before += std::pow(gain.joints[joint].before_rms, 2);
-    squares.after += std::pow(gain.joints[joint].after_rms, 2);
+    squares.before += std::pow(error.before_rms, 2);
+    squares.after += std::pow(error.after_rms, 2);
   }
   if (apart) return squares;
   return {std::pow(of_parts.holdout_before, 2), std::pow(of_parts.holdout_after, 2)};
@@ -70,6 +73,11 @@ std::vector<std::string> doubts_of(const AddedFindings& added) {
       return one.what.joint == static_cast<Eigen::Index>(joint);
     });
     if (asked ? fall > 0 : !(fall < -kRelevant)) continue;
+    if (!(squares.before > 0)) {
+      doubts.push_back(fmt::format(
+          "no data that were not used for the fit say anything of joint {}", joint + 1));
+      continue;
+    }
     doubts.push_back(
         fmt::format("on data not used for the fit the error of joint {} {}, by {:.1f} %: these "
                     "data do not support what was found",

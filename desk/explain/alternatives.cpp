@@ -32,13 +32,12 @@ bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternati
 bool is_nested(const Data& data, const ModelFit& baseline, const Term& inner, const Term& outer) {
   constexpr double kSine = 0.1;
   Remainder target = baseline.remainder;
-  const MatrixXd outside = columns_of(data, outer);
   const MatrixXd inside = columns_of(data, inner);
-  if (outside.cols() <= inside.cols()) return false;
+  if (columns_of(data, outer).cols() <= inside.cols()) return false;
   for (Index c = 0; c < inside.cols(); ++c) {
     target.residual = target.beside_basis(target.weighted(inside.col(c)));
     target.energy = data.layout.energy(target.residual);
-    const Evidence evidence = judge(target, outside);
+    const Evidence evidence = evidence_for(Judge(target), data, outer);
     if (!evidence.usable || 1 - evidence.gain > kSine * kSine) return false;
   }
   return true;

@@ -25,17 +25,6 @@ constexpr double kAlmostAll = 0.9;
 // How much more likely, in log-likelihood, it has to make the recordings than anything simpler.
 constexpr double kMoreLikely = 3;
 
-bool has_kind(const Data& data, const std::vector<Term>& terms, EffectKind kind, Index joint) {
-  const auto& known = data.recordings[0].known_effects;
-  return std::any_of(known.begin(), known.end(),
-                     [&](const RobotEffect& one) {
-                       return one.kind == kind && one.joint == joint && !one.of_motor;
-                     }) ||
-         std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
-           return term.effect->kind() == kind && term.joint == joint;
-         });
-}
-
 std::optional<Term> curve_of(const Data& data, const EffectCandidate& effect, Index joint) {
   Term term{&effect, joint, {}, effect.shapes(data.recordings, joint)};
   for (const ShapeRange& range : term.ranges) {
@@ -110,7 +99,7 @@ class Curve {
     constexpr int kPlaces = 60;
     constexpr double kNearly = 0.95;  // between two places
     const Judge judge(shape.without.remainder);
-    const double enough = kNearly * judge.gain(columns_of(data_, curve_));
+    const double enough = kNearly * evidence_for(judge, data_, curve_).gain;
     const auto [low, high] = positions_seen(data_.recordings, curve_.joint);
     for (const double side : {1.0, -1.0}) {
       for (int i = 1; i < kPlaces; ++i) {
@@ -197,7 +186,7 @@ std::optional<AnyShape> any_shape_on(Index joint, const Search& search,
     const EffectTraits& traits = effect->info().traits;
     const char* variable = name_of(traits.follows);
     if (!traits.has_any_shape || share_of(structure, joint, variable) < kFollowing) continue;
-    if (has_kind(data, found.terms(), effect->kind(), joint)) continue;
+    if (has_effect(data, found.terms(), effect->kind(), joint)) continue;
     std::optional<Term> term = curve_of(data, *effect, joint);
     if (!term) continue;
     auto shape = Curve(search, regression, found, std::move(*term)).judged();

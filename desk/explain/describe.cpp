@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "compare/inverse_model.hpp"
 #include "explain/band_shift.hpp"
 #include "explain/confirm.hpp"
 #include "explain/questions.hpp"
@@ -183,7 +184,7 @@ void describe_friction_of_file(const SearchResult& from, Explanation& to) {
   for (Index joint = 0; joint < from.regression.data().layout.joint_count(); ++joint) {
     const auto& known = from.robot.effects;
     const bool has = std::any_of(known.begin(), known.end(), [&](const RobotEffect& one) {
-      return one.joint == joint && info_of(one.kind)->traits.is_friction;
+      return info_of(one.kind)->traits.is_friction && acts_on_joint(from.robot, one, joint);
     });
     if (!has) to.without_friction.push_back(joint);
   }

@@ -61,9 +61,11 @@ class Explainer {
     };
     const std::vector<Stretch> searched = stretches_of(logs, robot_, plan);
     left_out_ = words_of(searched, logs);
+    std::unique_ptr<Data> data = data_of(searched);
+    nuisance_.ranges_moved = ranges_moved(data->recordings);
     std::unique_ptr<Data> held_out;
     if (!holdout.empty()) held_out = data_of(stretches_of(holdout, robot_, plan));
-    set_data(data_of(searched), std::move(held_out));
+    set_data(std::move(data), std::move(held_out));
   }
 
   // A recording at fault tells nothing of effects: then there is no search, and what the model
@@ -129,7 +131,9 @@ class Explainer {
 
   [[nodiscard]] FoundModel find(bool search, const Explanation& result) const {
     return find_model(*search_, *regression_, *hold_out_, result.excitation,
-                      {.most_effects = search ? most_effects() : 0, .replays = options_.replays},
+                      {.most_effects = search ? most_effects() : 0,
+                       .room = room_for_effects(),
+                       .replays = options_.replays},
                       on_progress_);
   }
 
@@ -200,9 +204,19 @@ class Explainer {
 
   // A hold map may show one order after the other: as many as robot files have room for.
   [[nodiscard]] int most_effects() const {
-    if (!data_->recordings[0].at_rest) return options_.most_effects;
-    return std::max(1, kEffectsPerJoint * static_cast<int>(robot_.joints.size()) -
-                           static_cast<int>(robot_.effects.size()));
+    return data_->recordings[0].at_rest ? std::max(1, room_for_effects()) : options_.most_effects;
+  }
+
+  // Of a robot file, and with what is carried in a recording, which is one more.
+  [[nodiscard]] int room_for_effects() const {
+    const auto is_loaded = [](const Data* data) {
+      return data != nullptr &&
+             std::any_of(data->recordings.begin(), data->recordings.end(),
+                         [](const Workspace& at) { return at.payload.has_value(); });
+    };
+    const bool loaded = is_loaded(data_.get()) || is_loaded(held_out_.get());
+    return kEffectsPerJoint * static_cast<int>(robot_.joints.size()) -
+           static_cast<int>(robot_.effects.size()) - (loaded ? 1 : 0);
   }
 
   // What is held is not what moves, and a model of what happens at rest knows neither time nor what
@@ -228,11 +242,12 @@ class Explainer {
 
   static void check(const std::vector<Log>& logs, const FilterPlan& plan) {
     for (const Log& log : logs) {
-      const Index left = (log.sample_count() - 2 * plan.edge_samples) / plan.decimation;
+      const FilterPlan own = plan_for(log, plan);
+      const Index left = (log.sample_count() - 2 * own.edge_samples) / own.decimation;
       if (left >= kMinFilteredSamples) continue;
       throw InputError({log.file, "", fmt::format("{} samples", log.sample_count()),
                         fmt::format("{} or more with this filter",
-                                    kMinFilteredSamples * plan.decimation + 2 * plan.edge_samples),
+                                    kMinFilteredSamples * own.decimation + 2 * own.edge_samples),
                         "record for longer"});
     }
   }
@@ -314,7 +329,38 @@ class Explainer {
   std::unique_ptr<Search> search_;
 };
 
+void check_keep(const std::vector<KeepFault>& keep, const RobotDescription& robot) {
+  for (const KeepFault& one : keep) {
+    if (one.joint < 0) continue;
+    const std::string said = fmt::format("{}:{}", one.joint + 1, name_of(one.kind));
+    if (one.joint >= robot.joint_count()) {
+      throw InputError({"--keep", "", said,
+                        fmt::format("one of the joints 1 to {} of robot {}, or all",
+                                    robot.joint_count(), robot.name),
+                        ""});
+    }
+    if (one.kind == DataFaultKind::kGaps || one.kind == DataFaultKind::kTimeUnit) {
+      throw InputError({"--keep", "", said, "a fault of one joint: the time is of all",
+                        fmt::format("write all:{}", name_of(one.kind))});
+    }
+  }
+}
+
 }  // namespace
+
+std::vector<DataFault> treat_all(const std::vector<std::span<Log>>& groups,
+                                 const RobotDescription& robot,
+                                 const std::vector<KeepFault>& keep) {
+  check_keep(keep, robot);
+  std::vector<DataFault> all;
+  for (const std::span<Log> group : groups) {
+    for (Log& log : group) {
+      if (log.at_rest) continue;
+      for (DataFault& fault : treat(log, robot, keep)) all.push_back(std::move(fault));
+    }
+  }
+  return all;
+}
 
 Treated treated(const RobotDescription& robot, std::vector<Log> logs, std::vector<Log> holdout,
                 const std::vector<KeepFault>& keep) {
@@ -324,9 +370,7 @@ Treated treated(const RobotDescription& robot, std::vector<Log> logs, std::vecto
     for (const Log& log : *recordings) refuse_hidden_from_sensors(robot, log);
   }
   Treated all{std::move(logs), std::move(holdout), {}};
-  for (std::vector<Log>* group : {&all.logs, &all.holdout}) {
-    for (DataFault& fault : treat(*group, robot, keep)) all.faults.push_back(std::move(fault));
-  }
+  all.faults = treat_all({all.logs, all.holdout}, robot, keep);
   return all;
 }
 

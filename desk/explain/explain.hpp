@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -206,6 +207,11 @@ struct ExplainOptions {
   std::string robot_file = {};  // as the user named it, for commands in the advice; empty: "ROBOT"
   std::vector<KeepFault> keep = {};  // of the doctor's findings, that are no faults
 };
+
+// treat() of all of them. Throws InputError, in the name of --keep, where `keep` speaks of a joint
+// that the robot does not have, or of one joint's fault that is always of all.
+std::vector<DataFault> treat_all(const std::vector<std::span<Log>>& groups,
+                                 const RobotDescription& robot, const std::vector<KeepFault>& keep);
 
 // Recordings of which the doctor has left out what is at fault.
 struct Treated {

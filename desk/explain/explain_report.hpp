@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct ExplainNames {
   std::string command_line;
   std::string channels = {};                    // file of --channels, empty: none
   std::vector<RecordingPayload> payloads = {};  // of --payload
+  std::vector<KeepFault> keep = {};             // of --keep
+  std::optional<double> link_share = {};        // of --link-share
 };
 
 // How a page shows a verdict.

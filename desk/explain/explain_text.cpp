@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/input_name.hpp"
+#include "common/number.hpp"
 #include "common/shell_word.hpp"
 #include "common/text_table.hpp"
 #include "explain/data_fault_report.hpp"
@@ -36,7 +38,7 @@ std::string text_of_joints(const Explanation& e) {
   std::string text = "\n" + table.heading();
   for (const JointErrors& joint : e.joints) {
     const auto with_unit = [&](double value) {
-      return fmt::format("{:.4g} {}", value, joint.unit);
+      return std::isfinite(value) ? fmt::format("{:.4g} {}", value, joint.unit) : std::string("-");
     };
     text += table.row(joint.joint + 1, with_unit(joint.rms_torque), with_unit(joint.rms_before),
                       with_unit(joint.rms_improved), with_unit(joint.noise_floor),
@@ -96,6 +98,11 @@ std::string command_to_add(const ExplainNames& names) {
   for (const RecordingPayload& one : names.payloads) {
     command += " --payload " + shell_word(text_of(one));
   }
+  for (const KeepFault& one : names.keep) {
+    const std::string joint = one.joint < 0 ? "all" : std::to_string(one.joint + 1);
+    command += fmt::format(" --keep {}:{}", joint, name_of(one.kind));
+  }
+  if (names.link_share) command += " --link-share " + shortest(*names.link_share);
   return fmt::format("to write a robot file with it{}: {} -o FILE\n",
                      kept ? "" : ", keep what came through a pipe in a file, and", command);
 }

@@ -171,6 +171,10 @@ class Finder {
   }
 
  private:
+  [[nodiscard]] bool has_room_for(std::size_t more) const {
+    return static_cast<int>(found_.accepted.size() + more) <= options_.room;
+  }
+
   // How far the search has come on one joint.
   struct OfJoint {
     std::vector<std::vector<EffectKind>> failed;  // as the model now is
@@ -239,7 +243,7 @@ class Finder {
     if (fall.share < kWorthAWord || !matters(fall)) return;
     const double before = hold_out_.rms(found_.held_out_after)[fall.joint];
     const double after = hold_out_.rms(hold_out_.residual(one.terms, one.fit))[fall.joint];
-    if (explained_share(before, after) < kWorthAWord) return;
+    if (!(explained_share(before, after) >= kWorthAWord)) return;
     if (!p) p = search_.family_p(one, found_.fit);
     if (*p > kLikely || (found_.suspected && found_.suspected->p <= *p)) return;
     found_.suspected = {one.terms.back(), *p, fall.share};
@@ -276,7 +280,7 @@ class Finder {
     for (const Proposal& one : list) {
       const auto& failed = joints_[joint].failed;
       if (std::find(failed.begin(), failed.end(), kinds_of(one)) != failed.end()) continue;
-      if (!relevant(found_.fit, one.fit)) continue;
+      if (!has_room_for(one.added) || !relevant(found_.fit, one.fit)) continue;
       if (!excitation_[joint].moves) continue;
       if (is_misfit_of_a_curve(one.terms.back())) continue;
       return &one;
@@ -345,7 +349,7 @@ class Finder {
           continue;
         }
       }
-      if (passes(now, null, held_before, held_of_all)) {
+      if (has_room_for(now.added) && passes(now, null, held_before, held_of_all)) {
         accepted = true;
       } else {
         of.failed.push_back(kinds_of(*one));
@@ -387,7 +391,7 @@ class Finder {
     }
     const auto joint = static_cast<Index>(joint_of(one));
     const VectorXd held_after = hold_out_.rms(held_of_all);
-    if (explained_share(held_before[joint], held_after[joint]) < kRelevantHeldOut) {
+    if (!(explained_share(held_before[joint], held_after[joint]) >= kRelevantHeldOut)) {
       // An effect may show on another joint than the one it acts from.
       const VectorXd alone = hold_out_.rms(hold_out_.residual(one.terms, one.fit));
       if (best_fall(held_before, alone).share < kRelevantHeldOut) {
@@ -430,6 +434,7 @@ class Finder {
       }
       auto curve = any_shape_on(static_cast<Index>(joint), search_, regression_, found_);
       if (!curve || !relevant(found_.fit, curve->proposal.fit)) continue;
+      if (curve->replaced.empty() && !has_room_for(1)) continue;
       const Proposal& one = curve->proposal;
       const std::size_t before = found_.accepted.size();
       const VectorXd held_before = hold_out_.rms(found_.held_out_after);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,8 +57,9 @@ void order_and_hold_out(const Regression& regression, const HoldOut& hold_out, i
                         FoundModel& found);
 
 struct FindOptions {
-  int most_effects = 6;  // of one joint
-  int replays = 19;      // 0: none
+  int most_effects = 6;                        // of one joint
+  int room = std::numeric_limits<int>::max();  // for effects of all joints together
+  int replays = 19;                            // 0: none
 };
 
 // Adds effects in rounds, in each the best one of every joint that passes significance over the

@@ -152,13 +152,8 @@ class Judgement {
     const VectorXd target = of_joint(at.residual);
     const MatrixXd free = beside(bins_over(data_, joint, variable));
     std::vector<MatrixXd> effects;
-    for (const EffectAt& one : all) {
-      for (const Accepted& accepted : found_.accepted) {
-        if (EffectAt{accepted.term.effect->kind(), accepted.term.joint} == one) {
-          effects.push_back(beside(columns_of(data_, accepted.term)));
-          break;
-        }
-      }
+    for (const Accepted& one : found_.accepted) {  // as `all` has them: there may be two of a kind
+      if (one.term.joint == joint) effects.push_back(beside(columns_of(data_, one.term)));
     }
     const auto left = [&](std::size_t without) {
       Index width = free.cols();

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "compare/inverse_model.hpp"
 #include "identify/parallel.hpp"
 
 namespace offnominal::desk {
@@ -21,7 +22,7 @@ bool is_larger_member(EffectKind kind) {
       EffectKind::kStribeckFriction, EffectKind::kQuadraticFriction,
       EffectKind::kTemperatureDrift, EffectKind::kFrictionAsymmetry,
       EffectKind::kHysteresis,       EffectKind::kLoadDependentFriction,
-      EffectKind::kJointCoupling,
+      EffectKind::kJointCoupling,    EffectKind::kGearLoss,
   };
   return std::find(kLarger.begin(), kLarger.end(), kind) != kLarger.end();
 }
@@ -33,16 +34,14 @@ bool is_member(EffectKind kind) {
 // What of Coulomb and viscous friction neither the file nor the model has on a joint.
 std::vector<EffectKind> lacking(const Data& data, const std::vector<Term>& terms, Index joint) {
   std::vector<EffectKind> missing;
+  const Workspace& at = data.recordings[0];
   for (const EffectKind kind : {EffectKind::kViscousFriction, EffectKind::kCoulombFriction}) {
-    const auto& known = data.recordings[0].known_effects;
-    const bool has = std::any_of(known.begin(), known.end(),
-                                 [&](const RobotEffect& one) {
-                                   return one.joint == joint && one.kind == kind;
-                                 }) ||
-                     std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
-                       return term.joint == joint && term.effect->kind() == kind;
-                     });
-    if (!has) missing.push_back(kind);
+    // A motor's is friction of all joints that it moves.
+    const bool known =
+        std::any_of(at.known_effects.begin(), at.known_effects.end(), [&](const RobotEffect& one) {
+          return one.kind == kind && acts_on_joint(at.rigid, one, joint);
+        });
+    if (!known && !has_term(terms, kind, joint)) missing.push_back(kind);
   }
   return missing;
 }
@@ -66,7 +65,7 @@ bool brings(const Proposal& one, EffectKind kind) {
 std::vector<Term> standard_friction(const Data& data) {
   std::vector<Term> terms;
   for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
-    if (!(data.recordings[0].top_speed[joint] > 0)) continue;
+    if (!moves_in_any(data.recordings, joint)) continue;
     for (const EffectKind kind : lacking(data, {}, joint)) {
       terms.push_back(term_of(data, kind, joint));
     }
@@ -118,7 +117,7 @@ void put_friction_first(const Search& search, const Regression& regression,
   std::vector<Member> members;
   for (std::size_t joint = 0; joint < proposals.size(); ++joint) {
     const auto at = static_cast<Index>(joint);
-    if (open[joint] == 0 || !(data.recordings[0].top_speed[at] > 0)) continue;
+    if (open[joint] == 0 || !moves_in_any(data.recordings, at)) continue;
     const std::vector<EffectKind> missing = lacking(data, terms, at);
     for (const EffectKind kind : missing) members.push_back({joint, {kind}, {}});
     if (missing.size() > 1) members.push_back({joint, missing, {}});

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "compare/inverse_model.hpp"
 #include "identify/parallel.hpp"
 #include "identify/shape_search.hpp"
 #include "signal/correlation.hpp"
@@ -60,10 +61,7 @@ bool Search::is_worth_a_name(const Term& term, const VectorXd& coefficients) con
 // In the robot file already, where it is one of a kind: then its numbers are a nuisance.
 bool Search::is_known(const EffectCandidate& effect, Index joint) const {
   if (effect.spectrum() != EffectCandidate::Spectrum::kNone) return false;
-  const auto& known = data_.recordings[0].known_effects;
-  return std::any_of(known.begin(), known.end(), [&](const RobotEffect& one) {
-    return one.joint == joint && one.kind == effect.kind();
-  });
+  return data_.recordings[0].knows(effect.kind(), joint);
 }
 
 Search::Search(const Regression& regression, const SearchOptions& options)
@@ -72,8 +70,8 @@ Search::Search(const Regression& regression, const SearchOptions& options)
     if (effect->info().traits.has_any_shape) continue;  // any_shape.hpp
     for (Index joint = 0; joint < data_.layout.joint_count(); ++joint) {
       const Workspace& first = data_.recordings[0];
-      const bool acts =
-          first.at_rest ? effect->acts_at_rest(first, joint) : effect->applies(first, joint);
+      const bool acts = first.at_rest ? effect->acts_at_rest(first, joint)
+                                      : effect->applies_in_any(data_.recordings, joint);
       if (!acts || is_known(*effect, joint)) continue;
       Slot slot;
       slot.term = {effect.get(), joint, {}, effect->shapes(data_.recordings, joint)};
@@ -158,11 +156,13 @@ Screening Search::screen(const std::vector<Term>& terms, const ModelFit& at) con
 bool Search::is_asked_first(const Term& term) const {
   const EffectKind kind = term.effect->kind();
   if (kind != EffectKind::kViscousFriction && kind != EffectKind::kCoulombFriction) return false;
-  const auto& known = data_.recordings[0].known_effects;
-  return std::none_of(known.begin(), known.end(), [&](const RobotEffect& one) {
-    return one.joint == term.joint &&
-           (one.kind == EffectKind::kViscousFriction || one.kind == EffectKind::kCoulombFriction);
-  });
+  const Workspace& at = data_.recordings[0];
+  return std::none_of(at.known_effects.begin(), at.known_effects.end(),
+                      [&](const RobotEffect& one) {
+                        return (one.kind == EffectKind::kViscousFriction ||
+                                one.kind == EffectKind::kCoulombFriction) &&
+                               acts_on_joint(at.rigid, one, term.joint);
+                      });
 }
 
 NullOfSearch Search::null_of(const std::vector<Term>& terms, const ModelFit& fit,
@@ -238,7 +238,7 @@ NullOfSearch Search::null_of(const std::vector<Term>& terms, const ModelFit& fit
 double Search::family_p(const Term& term, const ModelFit& at, const NullOfSearch& null) const {
   Remainder before = at.remainder;
   before.blocks = null.blocks[static_cast<std::size_t>(term.joint)];
-  const Evidence evidence = judge(before, columns_of(data_, term));
+  const Evidence evidence = evidence_for(Judge(before), data_, term);
   if (!evidence.usable) return 1;
   const double log10_p = -std::log10(std::max(
       p_of_statistic(evidence.statistic, evidence.coefficients.size(), before.blocks.count),
@@ -325,8 +325,13 @@ void Search::rank(std::vector<Proposal>& proposals) const {
   const RowLayout& layout = data_.layout;
   VectorXd samples = VectorXd::Zero(layout.joint_count());
   double least = std::numeric_limits<double>::infinity();
+  // Of a joint of which nothing is left, nothing is said.
+  const auto logs = [&](const ModelFit& fit) -> Eigen::ArrayXd {
+    const Eigen::ArrayXd rms = layout.rms(fit.residual).array();
+    return (rms > 0).select(rms.max(1e-300).log(), 0.0);
+  };
   for (const Proposal& one : proposals) {
-    const double left = layout.rms(one.fit.residual).array().log().sum();
+    const double left = logs(one.fit).sum();
     if (left < least) {
       least = left;
       samples = one.fit.remainder.independent_samples;
@@ -338,7 +343,7 @@ void Search::rank(std::vector<Proposal>& proposals) const {
       parameters += static_cast<double>(one.fit.coefficients[i].size()) +
                     static_cast<double>(one.terms[i].ranges.size());
     }
-    one.score = -(samples.array() * layout.rms(one.fit.residual).array().log()).sum() -
+    one.score = -(samples.array() * logs(one.fit)).sum() -
                 0.5 * parameters * std::log(std::max(samples.sum(), 2.0));
   }
   std::stable_sort(proposals.begin(), proposals.end(),

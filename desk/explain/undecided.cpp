@@ -77,7 +77,7 @@ std::vector<Possible> slow_ripples(const Regression& regression, const std::vect
   std::vector<Possible> possible;
   for (const auto& effect : all_candidates()) {
     if (effect->spectrum() != EffectCandidate::Spectrum::kPosition) continue;
-    if (!effect->applies(data.recordings[0], joint)) continue;
+    if (!effect->applies_in_any(data.recordings, joint)) continue;
     const Term term{effect.get(), joint, {kPeriodsInRange * period / range}};
     std::vector<Term> terms = found;
     terms.push_back(term);

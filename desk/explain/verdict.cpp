@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <utility>
 
+#include "compare/inverse_model.hpp"
 #include "explain/any_shape.hpp"
 #include "explain/explain_report.hpp"
 #include "explain/find_model.hpp"
@@ -242,7 +244,7 @@ std::string words_of_detectable(const Explanation& e) {
   double most = 0;
   for (const Rejection& one : e.rejected) {
     const double torque = e.joints[static_cast<std::size_t>(one.what.joint)].rms_torque;
-    if (!(torque > 0)) continue;
+    if (!(torque > 0) || !std::isfinite(one.smallest_detectable)) continue;
     least = std::min(least, 100 * one.smallest_detectable / torque);
     most = std::max(most, 100 * one.smallest_detectable / torque);
   }
@@ -384,10 +386,22 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
   return answer;
 }
 
+// Of a joint whose samples are all left out.
+JointAnswer lost_joint(const JointErrors& errors) {
+  JointAnswer answer;
+  answer.joint = errors.joint;
+  answer.verdict = Verdict::kNotExcited;
+  answer.words = "nothing is left of its recordings that is free of faults.";
+  return answer;
+}
+
 // Those that matter most first: by the share of their torque that was missing.
 void judge_joints(Explanation& e) {
   e.answers.clear();
-  for (const JointErrors& joint : e.joints) e.answers.push_back(judge_joint(e, joint));
+  for (const JointErrors& joint : e.joints) {
+    const bool lost = !std::isfinite(joint.rms_torque);
+    e.answers.push_back(lost ? lost_joint(joint) : judge_joint(e, joint));
+  }
   const auto share = [&](const JointAnswer& one) {
     const JointErrors& errors = errors_of(e, one.joint);
     return errors.rms_torque > 0 ? errors.rms_before / errors.rms_torque : 0;
@@ -427,6 +441,11 @@ void advise_on_shapes(Explanation& e) {
     }
     const EffectInfo* curve = any_shape_over(variable);
     if (curve == nullptr || holds(one.found, {curve->kind, one.joint})) continue;
+    const auto& known = e.improved.effects;
+    const bool has = std::any_of(known.begin(), known.end(), [&](const RobotEffect& effect) {
+      return effect.kind == curve->kind && acts_on_joint(e.improved, effect, one.joint);
+    });
+    if (has) continue;
     e.advice.push_back(fmt::format(
         "joint {}: `offnominal add {} --joint {} --robot {} --log LOG -o improved.toml` puts it "
         "into the model as {}",

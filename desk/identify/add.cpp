@@ -98,13 +98,20 @@ std::string value_words(const AddResult& result, const FittedParameter& paramete
   return words;
 }
 
-// On data that the fit has not seen: the joint that was asked for must gain, no other may lose more
-// than what a twentieth is.
+// On data that the fit has not seen: the joint that was asked for must gain, or one of those that
+// the motor moves, no other may lose more than what a twentieth is.
 void doubt_what_held_out_data_say(const AddRequest& request, AddResult& result) {
   constexpr double kRelevant = 0.05;
+  const std::vector<std::size_t> joints = joints_asked(result.robot, request);
+  const auto is_asked = [&](const BeforeAfter& error) {
+    return std::find(joints.begin(), joints.end(), error.joint) != joints.end();
+  };
+  const bool falls =
+      std::any_of(result.held_out.begin(), result.held_out.end(),
+                  [&](const BeforeAfter& error) { return is_asked(error) && error.fall() > 0; });
   for (const BeforeAfter& error : result.held_out) {
-    const bool asked = error.joint == request.joint;
-    if (asked ? error.fall() > 0 : !(error.fall() < -kRelevant)) continue;
+    const bool asked = is_asked(error) && !falls;
+    if (!asked && !(error.fall() < -kRelevant)) continue;
     result.doubts.push_back(
         fmt::format("on data not used for the fit the error of joint {} {}, from {:.2f} % to "
                     "{:.2f} %: these data do not support the effect",
@@ -328,7 +335,8 @@ class Adder {
   [[nodiscard]] std::vector<std::size_t> touched_joints() const {
     const Relinearised& last = improved_.last;
     const RowLayout& layout = last.data->layout;
-    std::set<std::size_t> joints{request_.joint};
+    const std::vector<std::size_t> asked = joints_asked(file_, request_);
+    std::set<std::size_t> joints(asked.begin(), asked.end());
     const auto touch = [&](const Eigen::Ref<const VectorXd>& column) {
       const VectorXd energy = layout.energy(column);
       for (Index joint = 0; joint < energy.size(); ++joint) {
@@ -395,7 +403,8 @@ class Adder {
     result_.held_out = holdout_.empty() ? parts_held_out() : both(holdout_, true);
   }
 
-  // Share of the joint's rms torque that a number's change by `by` makes.
+  // Share of the joint's rms torque, the largest where a motor moves several, that a number's
+  // change by `by` makes.
   [[nodiscard]] double torque_share(const FittedParameter& parameter, double by) const {
     const Relinearised& last = improved_.last;
     const RowLayout& layout = last.data->layout;
@@ -408,8 +417,13 @@ class Adder {
             parameter.parameter) {
           continue;
         }
-        const Index joint = last.terms[i].joint;
-        return std::abs(by) * layout.rms(columns.col(c))[joint] / torque[joint];
+        const VectorXd rms = layout.rms(columns.col(c));
+        double share = 0;
+        for (const std::size_t joint : joints_asked(file_, request_)) {
+          const auto j = static_cast<Index>(joint);
+          if (torque[j] > 0) share = std::max(share, std::abs(by) * rms[j] / torque[j]);
+        }
+        return share;
       }
     }
     return 0;
@@ -526,6 +540,15 @@ void check_sensors(const RobotDescription& robot, const AddRequest& request, con
 }
 
 }  // namespace
+
+std::vector<std::size_t> joints_asked(const RobotDescription& robot, const AddRequest& request) {
+  if (!request.of_motor) return {request.joint};
+  std::vector<std::size_t> joints;
+  for (const MovedJoint& moved : joints_of_motor(robot, request.joint)) {
+    joints.push_back(static_cast<std::size_t>(moved.joint));
+  }
+  return joints;
+}
 
 AddResult add(const RobotDescription& robot, const AddRequest& request,
               const std::vector<Log>& logs, const std::vector<Log>& holdout,

@@ -30,6 +30,9 @@ struct AddRequest {
   std::string source;  // what the written effects say of where their numbers come from
 };
 
+// The joints whose torque has what is asked for: that joint, or those that the motor moves.
+std::vector<std::size_t> joints_asked(const RobotDescription& robot, const AddRequest& request);
+
 // One parameter of an effect after a fit.
 struct FittedParameter {
   std::size_t effect = 0;  // index into the robot's effects

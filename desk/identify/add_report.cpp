@@ -26,6 +26,15 @@ const BeforeAfter& of_joint(const std::vector<BeforeAfter>& all, std::size_t joi
                        [&](const BeforeAfter& entry) { return entry.joint == joint; });
 }
 
+// The joint that is told of: the one asked for, or of those that the motor moves the one whose
+// error falls most.
+std::size_t joint_told(const AddResult& result, const AddRequest& request) {
+  const std::vector<std::size_t> joints = joints_asked(result.robot, request);
+  return *std::max_element(joints.begin(), joints.end(), [&](std::size_t a, std::size_t b) {
+    return of_joint(result.held_out, a).fall() < of_joint(result.held_out, b).fall();
+  });
+}
+
 std::string effect_name(const AddResult& result, std::size_t effect) {
   return info_of(result.robot.effects[effect].kind)->name;
 }
@@ -216,7 +225,7 @@ report::Table error_table(const AddResult& result, const AddNames& names) {
 }
 
 report::KeyFigures key_figures(const AddResult& result, const AddRequest& request) {
-  const BeforeAfter& error = of_joint(result.held_out, request.joint);
+  const BeforeAfter& error = of_joint(result.held_out, joint_told(result, request));
   report::KeyFigures keys;
   for (const bool after : {false, true}) {
     report::KeyFigure figure;
@@ -235,17 +244,18 @@ report::KeyFigures key_figures(const AddResult& result, const AddRequest& reques
 report::Section pictures_of(const AddResult& result, const AddRequest& request,
                             std::size_t recording) {
   report::Section pictures;
+  const std::size_t joint = joint_told(result, request);
   const Comparison& before = result.before.recordings[recording];
   pictures.text = before.file;
   if (result.before.recordings.size() > 1) pictures.recording = before.file;
   const std::vector<NamedComparison> models{
       {"before", &before, report::Tone::kFaint},
       {"after", &result.after.recordings[recording], report::Tone::kModel}};
-  pictures.blocks.emplace_back(torque_over_time(models, request.joint));
-  pictures.blocks.emplace_back(residual_over_time(models, request.joint));
+  pictures.blocks.emplace_back(torque_over_time(models, joint));
+  pictures.blocks.emplace_back(residual_over_time(models, joint));
   for (const MotionVariable variable :
        {MotionVariable::kVelocity, MotionVariable::kPosition, MotionVariable::kAcceleration}) {
-    pictures.blocks.emplace_back(residual_over(models, request.joint, variable));
+    pictures.blocks.emplace_back(residual_over(models, joint, variable));
   }
   return pictures;
 }
@@ -261,7 +271,7 @@ std::string verdict_of(const AddResult& result, const AddRequest& request, bool 
     }
     return words + ".";
   }
-  const BeforeAfter& error = of_joint(result.held_out, request.joint);
+  const BeforeAfter& error = of_joint(result.held_out, joint_told(result, request));
   const std::string numbers =
       fmt::format("from {:.2f} % to {:.2f} % of the {} of joint {} ({:.4g} to {:.4g} {} rms)",
                   error.before_percent, error.after_percent, effort_name(error.unit),
@@ -286,7 +296,7 @@ Level level_of(const AddResult& result, const AddRequest& request) {
   // A twentieth of the error is what an effect has to take away to be worth its place.
   constexpr double kRelevant = 0.05;
   if (!result.objections.empty()) return Level::kBad;
-  const double fall = of_joint(result.held_out, request.joint).fall();
+  const double fall = of_joint(result.held_out, joint_told(result, request)).fall();
   if (!result.doubts.empty()) return Level::kBad;
   return fall < kRelevant ? Level::kWarn : Level::kGood;
 }
@@ -297,8 +307,8 @@ ordered_json to_json(const AddResult& result, const AddRequest& request, const A
   for (std::size_t i = 1; i < result.added.size(); ++i) {
     json["also"].push_back(effect_json(result, result.added[i]));
   }
-  const BeforeAfter& fitted = of_joint(result.fitted_logs, request.joint);
-  const BeforeAfter& held_out = of_joint(result.held_out, request.joint);
+  const BeforeAfter& fitted = of_joint(result.fitted_logs, joint_told(result, request));
+  const BeforeAfter& held_out = of_joint(result.held_out, joint_told(result, request));
   json["before"] = {{"fit", error_json(fitted.before_percent, fitted.before_rms)},
                     {"holdout", error_json(held_out.before_percent, held_out.before_rms)}};
   json["after"] = {{"fit", error_json(fitted.after_percent, fitted.after_rms)},
@@ -361,7 +371,8 @@ std::string text_of(const AddResult& result, const AddRequest& request, const Ad
   // Of the joint that was asked for, in each of several recordings.
   const auto each = [&](bool held_out) {
     for (const AddResult::OfRecording& one : result.recordings) {
-      if (one.held_out == held_out) errors(one.file, {of_joint(one.joints, request.joint)});
+      if (one.held_out == held_out)
+        errors(one.file, {of_joint(one.joints, joint_told(result, request))});
     }
   };
   const bool several = names.logs.size() > 1;

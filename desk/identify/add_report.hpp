@@ -30,7 +30,8 @@ report::Level level_of(const AddResult& result, const AddRequest& request);
 //  after}]}], refitted: [{effect, joint, parameters}], links: [{link, factor, ci95}], notes,
 //  objections, doubts, written, filter, verdict}. ci95 is [low, high], null where
 // there is none, and why_no_ci95 then says why; before and after are of the joint that was asked
-// for; written is null where nothing was.
+// for, or of those that the motor moves of the one whose error falls most; written is null where
+// nothing was.
 nlohmann::ordered_json to_json(const AddResult& result, const AddRequest& request,
                                const AddNames& names);
 

@@ -39,10 +39,10 @@ double scale_of(Quantity quantity, const std::vector<Workspace>& at, const AtPla
 }
 
 // The other joints that move, counted from 1.
-std::vector<double> other_joints(const Workspace& at, Index joint) {
+std::vector<double> other_joints(const std::vector<Workspace>& at, Index joint) {
   std::vector<double> others;
-  for (Index k = 0; k < at.joint_count(); ++k) {
-    if (k != joint && at.top_speed[k] > 0) others.push_back(static_cast<double>(k + 1));
+  for (Index k = 0; k < at[0].joint_count(); ++k) {
+    if (k != joint && moves_in_any(at, k)) others.push_back(static_cast<double>(k + 1));
   }
   return others;
 }
@@ -131,7 +131,7 @@ std::vector<ShapeRange> EffectCandidate::shapes(const std::vector<Workspace>& at
       }
     } else if (info.quantity == Quantity::kJointNumber) {
       range.kind = ShapeRange::Kind::kDiscrete;
-      range.grid = other_joints(at[0], joint);
+      range.grid = other_joints(at, joint);
     } else {
       range.kind = ShapeRange::Kind::kLogarithmic;
       const double scale = scale_of(
@@ -184,6 +184,11 @@ bool EffectCandidate::applies(const Workspace& at, Index joint) const {
   if (info_.traits.is_before_sensor && !at.sees_drive(joint)) return false;
   if (info_.find(Quantity::kJointNumber) != nullptr) return at.joint_count() > 1;
   return info_.traits.needs_no_motion || at.top_speed[joint] > 0;
+}
+
+bool EffectCandidate::applies_in_any(const std::vector<Workspace>& at, Index joint) const {
+  return std::any_of(at.begin(), at.end(),
+                     [&](const Workspace& one) { return applies(one, joint); });
 }
 
 bool EffectCandidate::acts_at_rest(const Workspace& /*at*/, Index /*joint*/) const {

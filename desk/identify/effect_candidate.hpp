@@ -87,6 +87,8 @@ class EffectCandidate {
   [[nodiscard]] virtual bool is_physical(const Eigen::VectorXd& coefficients) const;
   // Whether the effect can act on this joint of the robot.
   [[nodiscard]] virtual bool applies(const Workspace& at, Eigen::Index joint) const;
+  // ... as any of the recordings has it: a joint may stand in the first.
+  [[nodiscard]] bool applies_in_any(const std::vector<Workspace>& at, Eigen::Index joint) const;
   // Whether it acts on this joint where nothing moves: what hold maps are searched for. By default
   // what the struct says, unless it counts time, which readings at rest do not have.
   [[nodiscard]] virtual bool acts_at_rest(const Workspace& at, Eigen::Index joint) const;

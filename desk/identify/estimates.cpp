@@ -201,6 +201,7 @@ ScaledColumns weighted_columns(const Linearised& model, const RowLayout& layout,
 // Sum over the groups of the outer product of their scores.
 MatrixXd meat_of(const RowLayout::Blocks& groups, const MatrixXd& columns,
                  const VectorXd& residual) {
+  if (groups.count == 0) return MatrixXd::Zero(columns.cols(), columns.cols());
   MatrixXd scores = MatrixXd::Zero(groups.count, columns.cols());
   for (Index row = 0; row < residual.size(); ++row) {
     scores.row(groups.of_row[static_cast<std::size_t>(row)]) += residual[row] * columns.row(row);

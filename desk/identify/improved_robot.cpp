@@ -245,6 +245,7 @@ void set_fitted_width(RobotDescription& robot, const std::vector<std::size_t>& r
                       Index joint, double width) {
   for (const std::size_t i : refitted) {
     RobotEffect& effect = robot.effects[i];
+    if (effect.of_motor) continue;
     const std::size_t at = width_of(effect.kind);
     if (at < info_of(effect.kind)->parameters.size() && followed_joint(effect) == joint) {
       effect.parameters[at] = width;

@@ -18,23 +18,11 @@ constexpr double kSmallestSine = 0.07;
 // Less than this share left after the other columns are taken out: nothing to compare.
 constexpr double kNothingLeft = 1e-6;
 
-bool is_in_model(const Data& data, const std::vector<Term>& terms, const EffectCandidate& effect,
-                 Index joint) {
-  const auto& known = data.recordings[0].known_effects;
-  return std::any_of(known.begin(), known.end(),
-                     [&](const RobotEffect& one) {
-                       return one.kind == effect.kind() && one.joint == joint;
-                     }) ||
-         std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
-           return term.effect->kind() == effect.kind() && term.joint == joint;
-         });
-}
-
 // Of the effects that act on their own joint alone.
 bool may_look_alike(const Data& data, const EffectCandidate& effect, Index joint) {
   const EffectAction action = effect.info().action;
   return action != EffectAction::kPointMass && action != EffectAction::kReflectedInertia &&
-         !effect.is_only_screened() && effect.applies(data.recordings[0], joint) &&
+         !effect.is_only_screened() && effect.applies_in_any(data.recordings, joint) &&
          effect.shapes(data.recordings, joint).empty();
 }
 
@@ -75,7 +63,8 @@ std::vector<Lookalike> lookalikes(const Regression& regression, const std::vecto
   std::vector<Lookalike> found;
   if (!(own.norm() > 0)) return found;
   for (const auto& effect : all_candidates()) {
-    if (is_in_model(data, terms, *effect, joint) || !may_look_alike(data, *effect, joint)) continue;
+    if (has_effect(data, terms, effect->kind(), joint)) continue;
+    if (!may_look_alike(data, *effect, joint)) continue;
     const MatrixXd columns = stacked_columns(data.layout, data.recordings, *effect, joint, {});
     for (Index k = 0; k < columns.cols(); ++k) {
       const VectorXd raw = of_joint(columns.col(k));

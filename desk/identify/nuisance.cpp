@@ -152,6 +152,11 @@ class Builder {
     }
   }
 
+  [[nodiscard]] double range_of(Index joint) const {
+    return options_.ranges_moved.size() > 0 ? options_.ranges_moved[joint]
+                                            : range_moved(recordings_, joint);
+  }
+
   // How dry friction builds up at a reversal is never quite the file's smoothed sign: a wider one,
   // and a Dahl operator of several widths, each a share of the range moved.
   void add_sign_shapes(Index joint) {
@@ -175,8 +180,10 @@ class Builder {
     add_shape("wider sign", [&](const Workspace& at) -> VectorXd {
       return (at.motion.dq.col(joint).array() / (4 * at.sign_width[joint])).tanh() - at.sign(joint);
     });
-    const double range = range_moved(recordings_, joint);
-    if (!(range > 0)) return;  // a stuck encoder: nothing builds up over no way
+    // Of a stuck encoder nothing builds up, and the columns are 0: any data of one robot have the
+    // same terms.
+    constexpr double kLeast = 1e-9;
+    const double range = std::max(range_of(joint), kLeast);
     for (const double share : kPreslidingShares) {
       add_shape(fmt::format("pre-sliding over {:.2g}", share * range),
                 [&](const Workspace& at) -> VectorXd {

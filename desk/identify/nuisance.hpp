@@ -70,6 +70,10 @@ struct NuisanceOptions {
   std::optional<std::vector<std::size_t>> free_effects = {};
   // Beside dry friction, ways to build up at a reversal that no robot file can say.
   bool sign_shapes = true;
+  // Per joint, what their widths are shares of, rad or m: of the data that are fitted, so that a
+  // coefficient has one meaning on what is held out too. Empty: what the recordings themselves
+  // move.
+  Eigen::VectorXd ranges_moved = {};
 };
 
 // Size of a link, m, that its centre of mass is counted in: how far that is from the joint, or the

@@ -82,6 +82,26 @@ bool Regression::has_dry_friction(const std::vector<Term>& terms, Index joint) c
          });
 }
 
+bool has_term(const std::vector<Term>& terms, EffectKind kind, Index joint) {
+  return std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
+    return !term.effect->of_motor() && term.effect->kind() == kind && term.joint == joint;
+  });
+}
+
+bool has_effect(const Data& data, const std::vector<Term>& terms, EffectKind kind, Index joint) {
+  return data.recordings[0].knows(kind, joint) || has_term(terms, kind, joint);
+}
+
+Evidence evidence_for(const Judge& judge, const Data& data, const Term& term) {
+  const MatrixXd columns = columns_of(data, term);
+  Evidence evidence = judge.evidence(columns);
+  const Index fewest = term.effect->info().traits.has_any_shape ? 1 : columns.cols();
+  for (Index count = columns.cols() - 1; !evidence.usable && count >= fewest; --count) {
+    evidence = judge.evidence(MatrixXd(columns.leftCols(count)));
+  }
+  return evidence;
+}
+
 bool takes_place_of(const Term& term, const NuisanceTerm& nuisance) {
   return nuisance.kind == NuisanceTerm::Kind::kSkew && term.joint == nuisance.joint &&
          term.effect->replaces_skew();

@@ -31,6 +31,12 @@ struct Term {
 // Whether a term takes the place of an unknown of the nuisance once it is in the model.
 bool takes_place_of(const Term& term, const NuisanceTerm& nuisance);
 
+// Whether one of the terms is that effect of a joint.
+bool has_term(const std::vector<Term>& terms, EffectKind kind, Eigen::Index joint);
+// Whether the file or one of the terms has that effect on a joint.
+bool has_effect(const Data& data, const std::vector<Term>& terms, EffectKind kind,
+                Eigen::Index joint);
+
 // A model's fit to data: the nuisance and the terms.
 struct ModelFit {
   Eigen::VectorXd nuisance;                   // one per nuisance term
@@ -43,6 +49,10 @@ struct ModelFit {
 
 // Columns of a term on any data of the same robot.
 Eigen::MatrixXd columns_of(const Data& data, const Term& term);
+
+// The evidence for a term. The columns of a curve of any shape add up to a constant, which the
+// model may have beside it: then it is judged by as many of its columns as say something new.
+Evidence evidence_for(const Judge& judge, const Data& data, const Term& term);
 
 // Fits models to data, which have to outlive it: the nuisance, and terms.
 class Regression {

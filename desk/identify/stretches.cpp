@@ -66,7 +66,7 @@ std::vector<Workspace> searched_workspaces(const std::vector<Stretch>& stretches
   std::vector<Workspace> made;
   for (const Stretch& stretch : stretches) {
     FilterPlan own = plan_for(*stretch.log, plan);
-    own.edge_samples = std::max(plan.edge_samples, stretch.margin);
+    own.edge_samples = std::max(own.edge_samples, stretch.margin);
     if (stretch.is_whole()) {
       made.push_back(make_workspace(*stretch.log, robot, own, sign_width));
       continue;

@@ -41,12 +41,6 @@ std::vector<MatrixXd> mass_columns(const Workspace& at) {
   return columns;
 }
 
-// Whether the motor turns as that joint does, and with no other.
-bool moves_alone(const RobotDescription& robot, std::size_t motor, Index joint) {
-  const std::vector<MovedJoint> moved = joints_of_motor(robot, motor);
-  return moved.size() == 1 && moved[0].joint == joint;
-}
-
 }  // namespace
 
 Eigen::ArrayXd Workspace::sign(Index joint) const {
@@ -75,6 +69,11 @@ std::vector<char> came_both_ways(const std::vector<Log>& logs) {
   return both;
 }
 
+bool moves_in_any(const std::vector<Workspace>& recordings, Index joint) {
+  return std::any_of(recordings.begin(), recordings.end(),
+                     [&](const Workspace& at) { return at.top_speed[joint] > 0; });
+}
+
 double range_moved(const std::vector<Workspace>& recordings, Index joint) {
   double range = 0;
   for (const Workspace& at : recordings) {
@@ -82,6 +81,14 @@ double range_moved(const std::vector<Workspace>& recordings, Index joint) {
     range = std::max(range, q.maxCoeff() - q.minCoeff());
   }
   return range;
+}
+
+VectorXd ranges_moved(const std::vector<Workspace>& recordings) {
+  VectorXd ranges(recordings.front().joint_count());
+  for (Index joint = 0; joint < ranges.size(); ++joint) {
+    ranges[joint] = range_moved(recordings, joint);
+  }
+  return ranges;
 }
 
 PositionSpan positions_seen(const std::vector<Workspace>& recordings, Index joint) {
@@ -118,11 +125,15 @@ void Workspace::set_model(const RobotDescription& robot) {
   mass = mass_columns(*this);
 }
 
+bool Workspace::knows(EffectKind kind, Index joint) const {
+  return std::any_of(known_effects.begin(), known_effects.end(), [&](const RobotEffect& effect) {
+    return effect.kind == kind && is_of_joint(rigid, effect, joint);
+  });
+}
+
 bool Workspace::knows_dry_friction(Index joint) const {
   return std::any_of(known_effects.begin(), known_effects.end(), [&](const RobotEffect& effect) {
-    const bool is_here = effect.of_motor ? moves_alone(rigid, effect.joint, joint)
-                                         : static_cast<Index>(effect.joint) == joint;
-    return is_here && info_of(effect.kind)->traits.is_dry;
+    return info_of(effect.kind)->traits.is_dry && is_of_joint(rigid, effect, joint);
   });
 }
 

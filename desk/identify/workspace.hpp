@@ -54,6 +54,9 @@ struct Workspace {
   }
   // Another model of the same robot: everything that follows from it.
   void set_model(const RobotDescription& robot);
+  // Whether the model has an effect on a joint: the joint's, or that of a motor that moves it
+  // alone.
+  [[nodiscard]] bool knows(EffectKind kind, Eigen::Index joint) const;
   // Whether the model has dry friction of one level on a joint.
   [[nodiscard]] bool knows_dry_friction(Eigen::Index joint) const;
   // Whether a joint came to rest from both sides, in the recordings that are fitted.
@@ -80,8 +83,12 @@ std::vector<Workspace> make_workspaces(const std::vector<Log>& logs, const Robot
 // Per joint: 1 where some of the hold maps' readings came from below and some from above.
 std::vector<char> came_both_ways(const std::vector<Log>& logs);
 
+// Whether a joint moves in one of the recordings.
+bool moves_in_any(const std::vector<Workspace>& recordings, Eigen::Index joint);
+
 // Largest range of positions that one recording covers, rad or m.
 double range_moved(const std::vector<Workspace>& recordings, Eigen::Index joint);
+Eigen::VectorXd ranges_moved(const std::vector<Workspace>& recordings);
 
 // The positions that the recordings cover together, rad or m.
 struct PositionSpan {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace offnominal::desk {
 
@@ -190,6 +191,10 @@ ConsistentPoint consistent_fit(const ConsistentModel& model,
   options.gradient_tolerance = 0;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
+  if (!summary.IsSolutionUsable()) {
+    throw std::runtime_error("the fit of links and drives to the recordings failed: " +
+                             summary.message);
+  }
   return point;
 }
 

@@ -19,7 +19,9 @@ bool is_standard(EffectKind kind) {
 }
 
 // Carried masses are numbers of the links, and what scales the drive's torque is no torque.
+// What the file says of a motor stays: the standard drive is of joints.
 bool may_be_refitted(const RobotEffect& effect) {
+  if (effect.of_motor) return false;
   if (is_path_effect(effect.kind)) return false;
   if (info_of(effect.kind)->action == EffectAction::kPointMass) return false;
   return is_standard(effect.kind) || effect.fitted;
@@ -27,7 +29,7 @@ bool may_be_refitted(const RobotEffect& effect) {
 
 bool has_effect(const RobotDescription& robot, EffectKind kind, std::size_t joint) {
   return std::any_of(robot.effects.begin(), robot.effects.end(), [&](const RobotEffect& one) {
-    return one.kind == kind && one.joint == joint && !one.of_motor;
+    return one.kind == kind && acts_on_joint(robot, one, static_cast<Index>(joint));
   });
 }
 
@@ -78,11 +80,12 @@ DriveModel drive_model(const RobotDescription& file, const DriveRequest& request
     const RobotEffect& effect = file.effects[i];
     if (may_be_refitted(effect) && request.moves[effect.joint] != 0) drives.refitted.push_back(i);
   }
-  const std::size_t room = static_cast<std::size_t>(kEffectsPerJoint) * file.joints.size();
+  const std::size_t room =
+      static_cast<std::size_t>(kEffectsPerJoint) * file.joints.size() - (request.payload ? 1 : 0);
   for (std::size_t joint = 0; joint < file.joints.size(); ++joint) {
     if (request.moves[joint] == 0) continue;
     for (const EffectKind kind : kStandardDrive) {
-      if (has_effect(file, kind, joint)) continue;
+      if (has_effect(file, kind, joint) || !request.shows(kind, joint)) continue;
       const auto& rotors = request.rotors;
       const bool is_rotor = kind == EffectKind::kRotorInertia;
       if (is_rotor && std::find(rotors.begin(), rotors.end(), joint) == rotors.end()) continue;

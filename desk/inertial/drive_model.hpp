@@ -30,6 +30,15 @@ struct DriveRequest {
   std::vector<char> moves;          // per joint; the drive of one that stands is left alone
   std::vector<std::size_t> rotors;  // joints whose rotor is no part of a link
   bool keep = false;                // effects of the file stay as they are
+  // Per joint: its torque is that of a sensor behind the gear; empty: of none.
+  std::vector<char> of_sensor = {};
+  bool payload = false;  // a recording has one: it takes the room of an effect
+
+  // Whether the recordings can show such an effect of a joint.
+  [[nodiscard]] bool shows(EffectKind kind, std::size_t joint) const {
+    const bool hidden = joint < of_sensor.size() && of_sensor[joint] != 0;
+    return !hidden || !info_of(kind)->traits.is_before_sensor;
+  }
 };
 
 DriveModel drive_model(const RobotDescription& file, const DriveRequest& request);

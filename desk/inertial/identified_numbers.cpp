@@ -238,6 +238,7 @@ class FittedNumbers {
           fit_.data().nuisance.terms[static_cast<std::size_t>(fit_.design().kept[i])];
       if (term.kind == NuisanceTerm::Kind::kKnownEffect &&
           fit_.file().effects[term.effect].kind == EffectKind::kRotorInertia &&
+          !fit_.file().effects[term.effect].of_motor &&
           fit_.file().effects[term.effect].joint == joint) {
         return static_cast<Index>(i);
       }

@@ -11,6 +11,7 @@
 #include "identify/file_errors.hpp"
 #include "inertial/identified_numbers.hpp"
 #include "inertial/inertial_fit.hpp"
+#include "log/seen_by_sensor.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
@@ -173,7 +174,10 @@ class Identifier {
     }
     const std::string left_out = words_of(fit_.stretches(), logs_);
     if (!left_out.empty()) result_.notes.push_back(left_out);
-    if (!request_.payload) note_rotors();
+    if (!request_.payload) {
+      note_motors();
+      note_rotors();
+    }
     if (result_.held_out.empty()) {
       result_.notes.emplace_back("the recordings are too short to hold a part of them out");
     }
@@ -183,11 +187,29 @@ class Identifier {
     }
   }
 
+  [[nodiscard]] bool has_motor_effect(std::size_t joint) const {
+    return std::any_of(file_.effects.begin(), file_.effects.end(), [&](const RobotEffect& one) {
+      return one.of_motor && acts_on_joint(file_, one, static_cast<Index>(joint));
+    });
+  }
+
+  void note_motors() {
+    std::vector<std::string> joints;
+    for (std::size_t joint = 0; joint < file_.joints.size(); ++joint) {
+      if (has_motor_effect(joint)) joints.push_back(std::to_string(joint + 1));
+    }
+    if (joints.empty() || request_.keep) return;
+    result_.notes.push_back(fmt::format(
+        "effects of the motors of joint {} were left as the file has them", list_of(joints)));
+  }
+
   void note_rotors() {
     std::vector<std::string> joints;
     for (std::size_t joint = 0; joint < file_.joints.size(); ++joint) {
       const auto& rotors = fit_.base_request().rotors;
       if (!fit_.moves(joint) || request_.keep) continue;
+      // Of a sensor behind the gear its remark speaks, and of motors the note before.
+      if (logs_.front().of_sensor(joint) || has_motor_effect(joint)) continue;
       if (std::find(rotors.begin(), rotors.end(), joint) != rotors.end()) continue;
       joints.push_back(std::to_string(joint + 1));
     }
@@ -242,6 +264,9 @@ std::size_t Identification::determined_count() const {
 Identification identify(const RobotDescription& robot, const IdentifyRequest& request,
                         const std::vector<Log>& logs, const std::vector<Log>& holdout,
                         const FilterRequest& filter, const OnProgress& on_progress) {
+  for (const std::vector<Log>* recordings : {&logs, &holdout}) {
+    for (const Log& log : *recordings) refuse_hidden_from_sensors(robot, log);
+  }
   return Identifier(robot, request, logs, holdout, filter, on_progress).run();
 }
 

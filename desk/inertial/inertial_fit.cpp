@@ -74,7 +74,7 @@ void InertialFit::scale_geometry() {
     if (!is_known(link)) unknown.push_back(link);
   }
   if (unknown.empty()) return;
-  drives_ = drive_model(robot_, {base_.moves, {}, false});
+  drives_ = drive_model(robot_, drive_request({}, false));
   const Data data(recordings_, robot_, nuisance_);
   const std::vector<Term> terms = terms_of(drives_, data);
   const Regression::Design design = Regression(data).design(terms);
@@ -116,16 +116,36 @@ void InertialFit::scale_geometry() {
   for (Workspace& at : recordings_) at.set_model(robot_);
 }
 
+DriveRequest InertialFit::drive_request(std::vector<std::size_t> rotors, bool keep) const {
+  DriveRequest request{base_.moves, std::move(rotors), keep, recordings_[0].of_sensor};
+  for (std::size_t joint = 0; joint < request.of_sensor.size(); ++joint) {
+    for (const Workspace& at : recordings_) {
+      if (!at.sees_drive(static_cast<Index>(joint))) request.of_sensor[joint] = 1;
+    }
+  }
+  request.payload = std::any_of(recordings_.begin(), recordings_.end(),
+                                [](const Workspace& at) { return at.payload.has_value(); });
+  return request;
+}
+
 void InertialFit::choose_drives() {
   if (request_.payload) {
     drives_ = {};
   } else {
     base_.rotors.clear();
+    const DriveRequest all = drive_request({}, request_.keep);
     for (std::size_t joint = 0; joint < robot_.joints.size(); ++joint) {
-      if (moves(joint)) base_.rotors.push_back(joint);
+      const bool shows = moves(joint) && all.shows(EffectKind::kRotorInertia, joint);
+      // A motor's rotor stays as the file has it.
+      const bool of_motor =
+          std::any_of(file_.effects.begin(), file_.effects.end(), [&](const RobotEffect& one) {
+            return one.of_motor && one.kind == EffectKind::kRotorInertia &&
+                   acts_on_joint(file_, one, static_cast<Index>(joint));
+          });
+      if (shows && !of_motor) base_.rotors.push_back(joint);
     }
     const std::vector<std::size_t> apart = rotors_apart(robot_, base_);
-    drives_ = drive_model(robot_, {base_.moves, apart, request_.keep});
+    drives_ = drive_model(robot_, drive_request(apart, request_.keep));
     // What the links are named beside: rotors of the file and new ones.
     std::erase_if(base_.rotors, [&](std::size_t joint) {
       const bool is_apart = std::find(apart.begin(), apart.end(), joint) != apart.end();
@@ -371,6 +391,7 @@ void InertialFit::put_drives(RobotDescription& robot) const {
   }
   for (const std::size_t i : drives_.refitted) {
     RobotEffect& effect = robot.effects[i];
+    if (effect.of_motor) continue;
     const std::size_t width = width_of(effect.kind);
     if (width >= info_of(effect.kind)->parameters.size()) continue;
     const Index joint = followed_joint(effect);

@@ -57,6 +57,7 @@ class InertialFit {
   void find_standing();
   void scale_geometry();
   void choose_drives();
+  [[nodiscard]] DriveRequest drive_request(std::vector<std::size_t> rotors, bool keep) const;
   void set_inertial_columns();
   void adopt_links();
   void set_width(Eigen::Index joint, double width);

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "common/error.hpp"
+#include "common/input_name.hpp"
 #include "common/number.hpp"
 
 namespace offnominal::desk {
@@ -31,6 +32,14 @@ std::optional<double> number_of(std::string_view text) {
 
 RobotDescription carrying(RobotDescription robot, const std::optional<Payload>& payload) {
   if (!payload) return robot;
+  const std::size_t most = kEffectsPerJoint * robot.joints.size();
+  if (robot.effects.size() >= most) {
+    throw InputError(
+        {"robot " + robot.name, "effect",
+         fmt::format("{} effects beside a payload of {}", robot.effects.size(), words_of(*payload)),
+         fmt::format("at most {} where a recording has a payload", most - 1),
+         "leave one of the effects out of a copy of the robot file for it"});
+  }
   RobotEffect effect;
   effect.kind = EffectKind::kTipPayload;
   effect.joint = static_cast<std::uint8_t>(robot.joints.size() - 1);
@@ -41,8 +50,11 @@ RobotDescription carrying(RobotDescription robot, const std::optional<Payload>& 
 }
 
 bool is_of(const RecordingPayload& payload, const std::string& recording) {
-  return payload.recording == recording ||
-         payload.recording == std::filesystem::path(recording).filename().string();
+  if (payload.recording == recording) return true;
+  const auto files = recording_files(recording);
+  return std::any_of(files.begin(), files.end(), [&](const std::filesystem::path& file) {
+    return payload.recording == file.string() || payload.recording == file.filename().string();
+  });
 }
 
 std::optional<Payload> payload_of(const std::vector<RecordingPayload>& payloads,

@@ -2,10 +2,12 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 
 #include "common/error.hpp"
+#include "common/number.hpp"
 #include "robot/channels.hpp"
 
 namespace offnominal::desk {
@@ -17,6 +19,7 @@ using Eigen::VectorXd;
 
 // More than any gear, belt or screw has.
 constexpr double kMostRatio = 1e6;
+constexpr double kLeastRatio = 1e-6;
 constexpr double kMostOffsetRad = 1e6;
 constexpr double kMostTorqueConstant = 1e3;
 
@@ -32,15 +35,18 @@ std::string number_of(const char* what, Index i) {
   return std::string(what) + " " + std::to_string(i + 1);
 }
 
-// One number per joint or motor, none of them 0.
+// One number per joint or motor, `of`, none of them 0 or smaller in size than `least`.
 std::vector<double> read_factors(const TomlTable& table, const std::string& key,
-                                 const NumberRule& rule, std::size_t count,
-                                 const std::string& mend) {
+                                 const NumberRule& rule, std::size_t count, const char* of,
+                                 double least, const std::string& mend) {
   std::vector<double> values = table.numbers(key, rule, count, count);
-  const auto zero = std::find(values.begin(), values.end(), 0.0);
-  if (zero != values.end()) {
-    table.refuse(key, "0 for " + number_of("joint", zero - values.begin()),
-                 "any other number, negative where they turn against each other", mend);
+  const auto bad = std::find_if(values.begin(), values.end(), [least](double value) {
+    return value == 0 || std::abs(value) < least;
+  });
+  if (bad != values.end()) {
+    const std::string size = least > 0 ? " of " + shortest(least) + " or more in size" : "";
+    table.refuse(key, shortest(*bad) + " for " + number_of(of, bad - values.begin()),
+                 "any other number" + size + ", negative where they turn against each other", mend);
   }
   return values;
 }
@@ -132,7 +138,7 @@ TransmissionSettings read_transmission(const TomlTable& table, int joint_count) 
   if (table.has("ratio")) {
     settings.ratio =
         read_factors(table, "ratio", within(kMostRatio, "rad of the motor per rad or m"), joints,
-                     "write 1 for a joint that its motor moves directly");
+                     "joint", kLeastRatio, "write 1 for a joint that its motor moves directly");
   } else {
     read_matrix(table, joints, settings);
   }
@@ -143,7 +149,7 @@ TransmissionSettings read_transmission(const TomlTable& table, int joint_count) 
   if (table.has("torque_constant")) {
     settings.torque_constant =
         read_factors(table, "torque_constant", within(kMostTorqueConstant, "N m/A"), joints,
-                     "give the motor's torque per current, from its data sheet");
+                     "motor", 0, "give the motor's torque per current, from its data sheet");
   }
   settings.source = table.text_or_empty("source");
   return settings;

@@ -45,6 +45,9 @@ void refuse_shared_motors(const RobotDescription& robot, const std::vector<Robot
 
 RobotChain whole_chain(const RobotPlantSetup& setup) {
   require_carried(setup.robot, "robot " + setup.robot.name, "the simulated plant");
+  RobotDescription hidden = setup.robot;
+  hidden.effects = setup.hidden;
+  require_carried(hidden, "robot " + setup.robot.name + ", hidden", "the simulated plant");
   refuse_shared_motors(setup.robot, setup.robot.effects);
   refuse_shared_motors(setup.robot, setup.hidden);
   RobotChain chain = chain_of<kRuntimeJoints, double>(setup.robot);

@@ -7,8 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "calibrate/calibrate_report.hpp"
+#include "calibrate/split.hpp"
 #include "common/error.hpp"
 #include "desk/compare/recorded_arm.hpp"
+#include "log/part_of.hpp"
 #include "replay/replay.hpp"
 #include "robot/robot_file.hpp"
 #include "support/repetitions.hpp"
@@ -33,6 +35,39 @@ Log recording(std::uint64_t seed, double duration_s = 40,
       {.duration_s = duration_s, .rate_hz = 200, .torque_noise = 0.5, .seed = seed}, hidden);
   log.file = "recording " + std::to_string(seed);
   return log;
+}
+
+// Parts of one file, or of several, of so many samples at 200 Hz each.
+std::vector<Log> parts_of(const std::vector<std::pair<const char*, Eigen::Index>>& parts) {
+  std::vector<Log> all;
+  for (const auto& [file, samples] : parts) {
+    all.push_back(part_of(recording(1, 20), {0, samples - 1}));
+    all.back().file = file;
+  }
+  return all;
+}
+
+TEST(HeldOutParts, AreAFifthOfTheOnlyRecordingWhateverTheLastPartIs) {
+  std::vector<Log> parts = parts_of({{"a", 2000}, {"a", 1600}, {"a", 400}});
+  const std::vector<Log> held_out = take_held_out(parts, 2);
+  ASSERT_EQ(parts.size(), 2U);
+  ASSERT_EQ(held_out.size(), 2U);
+  EXPECT_EQ(parts[1].sample_count() + held_out[0].sample_count(), 1600);
+  EXPECT_EQ(held_out[0].sample_count() + held_out[1].sample_count(), 800);
+  EXPECT_GT(held_out[0].t_s[0], parts[1].t_s[0]);
+}
+
+TEST(HeldOutParts, OfSeveralRecordingsAreAllOfTheLast) {
+  std::vector<Log> parts = parts_of({{"a", 2000}, {"b", 1600}, {"b", 400}});
+  EXPECT_EQ(take_held_out(parts, 2).size(), 2U);
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].file, "a");
+}
+
+TEST(HeldOutParts, OfARecordingWithoutFaultsAreLeftToTheSplit) {
+  std::vector<Log> parts = parts_of({{"a", 2000}});
+  EXPECT_THAT(take_held_out(parts, 2), IsEmpty());
+  EXPECT_EQ(parts.size(), 1U);
 }
 
 double in_force(const Calibration& calibration) {

@@ -72,6 +72,24 @@ TEST(TransmissionTorque, OfAnElasticJointIsThatOfTheLinkBehindTheMotor) {
   EXPECT_GT(largest, 5);
 }
 
+// What is carried is behind the transmission too, as the link itself is.
+TEST(TransmissionTorque, IsTheSameOfAMassThatIsCarried) {
+  constexpr double kCarriedKg = 3;
+  const Measurement measured = measure(sine(), slide());
+  for (const RobotDescription& robot :
+       {with(EffectKind::kJointElasticity, 2000), with(EffectKind::kBacklash, 0.004)}) {
+    RobotDescription carrying = robot;
+    carrying.effects.push_back(
+        test::effect_of(EffectKind::kTipPayload, 0, {kCarriedKg, 0, 0, 0}, false));
+    RobotDescription heavier = robot;
+    heavier.joints[0].joint.mass_kg += kCarriedKg;
+    EXPECT_LT((compare(carrying, measured).model - compare(heavier, measured).model)
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1e-6);
+  }
+}
+
 TEST(TransmissionTorque, OfAStiffJointOrOneWithHardlyAnyPlayIsNearlyNone) {
   const Measurement measured = measure(sine(), slide());
   const Comparison rigid = compare(slide(), measured);

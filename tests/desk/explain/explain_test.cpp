@@ -18,6 +18,7 @@
 #include "common/error.hpp"
 #include "explain/explain_report.hpp"
 #include "hidden_case.hpp"
+#include "serial_arm.hpp"
 #include "support/repetitions.hpp"
 
 namespace offnominal::desk {
@@ -298,6 +299,31 @@ TEST(Explain, RefusesARecordingOfAnotherRobot) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("2 joints"));
   }
+}
+
+TEST(Explain, RefusesToKeepWhatTheRobotDoesNotHave) {
+  const RobotDescription robot = to_robot(case_of(5, {}).nominal);
+  for (const char* keep : {"9:saturation", "1:gaps", "1:time_unit"}) {
+    EXPECT_THROW(static_cast<void>(treat_all({}, robot, {keep_fault_of(keep)})), InputError)
+        << keep;
+  }
+  EXPECT_NO_THROW(static_cast<void>(
+      treat_all({}, robot, {keep_fault_of("all:gaps"), keep_fault_of("1:stuck")})));
+}
+
+// A file has as many effects as a controller holds: what is found beyond has no place.
+TEST(Explain, GIVEN_a_file_without_room_THEN_it_finds_nothing_more) {
+  RobotDescription robot = test::serial_arm(1);
+  robot.effects.clear();
+  for (int order = 0; order < kEffectsPerJoint; ++order) {
+    robot.effects.push_back(
+        test::effect_of(EffectKind::kCoggingTorque, 0, {1e-3, 1e-3, 40.0 + order}));
+  }
+  const Log log = test::record(test::serial_arm(1), {.duration_s = 12});
+  const Explanation told = explain(robot, {log}, {}, quick());
+  EXPECT_THAT(told.found, IsEmpty());
+  robot.effects.pop_back();
+  EXPECT_LE(explain(robot, {log}, {}, quick()).found.size(), 1U);
 }
 
 TEST(Explain, RefusesTooShortARecording) {

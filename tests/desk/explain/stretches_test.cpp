@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "desk/compare/recorded_arm.hpp"
+
 namespace offnominal::desk {
 namespace {
 
@@ -70,6 +72,17 @@ TEST(Stretches, GIVEN_a_stretch_THEN_its_cut_is_those_samples) {
   EXPECT_EQ(cut.q(5, 6), logs[0].q(one.first + 5, 6));
   EXPECT_EQ(cut.tau(one.samples - 1, 0), logs[0].tau(one.first + one.samples - 1, 0));
   EXPECT_EQ(cut.joint_count(), 7);
+}
+
+TEST(Stretches, GIVEN_another_rate_THEN_a_recording_has_the_edges_of_its_own_filter) {
+  const std::vector<Log> logs{test::record_arm({.rate_hz = 250}), test::record_arm({})};
+  const RobotDescription robot = test::arm_description();
+  const FilterPlan plan = plan_filter(logs, robot);
+  const Eigen::VectorXd widths = Eigen::VectorXd::Constant(2, 0.01);
+  const auto searched = searched_workspaces(stretches_of(logs, robot, plan), robot, plan, widths);
+  const auto made = make_workspaces(logs, robot, plan, widths);
+  ASSERT_EQ(searched.size(), 2U);
+  EXPECT_EQ(searched[1].plan.edge_samples, made[1].plan.edge_samples);
 }
 
 TEST(Stretches, GIVEN_an_effect_in_time_in_the_robot_file_THEN_nothing_is_cut) {

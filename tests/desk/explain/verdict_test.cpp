@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "explain/explain_report.hpp"
+
 // What a search came to, in one word: of explanations made by hand, where simulated recordings
 // would not tell the cases apart.
 
@@ -65,6 +69,40 @@ TEST(Verdict, OfAJointWithoutTorqueSaysNoShareOfIt) {
   judge_whole(e);
   EXPECT_EQ(e.verdict, Verdict::kExplained);
   EXPECT_THAT(e.words, Not(HasSubstr("can be named")));
+}
+
+TEST(Verdict, SaysNothingOfWhatNoRecordingWouldShow) {
+  Explanation e = nothing_found(1.1);
+  e.rejected.push_back(e.rejected[0]);
+  e.rejected[1].smallest_detectable = std::numeric_limits<double>::infinity();
+  judge_whole(e);
+  EXPECT_THAT(e.words, HasSubstr("No effect below 0.5 % of a joint's torque can be named"));
+}
+
+TEST(Verdict, OfAJointOfWhichNothingIsLeftSaysSo) {
+  Explanation e = nothing_found(1.1);
+  e.joints.push_back(e.joints[0]);
+  e.joints[1].joint = 1;
+  e.joints[1].rms_torque = std::numeric_limits<double>::quiet_NaN();
+  e.excitation.resize(2, e.excitation[0]);
+  judge_whole(e);
+  EXPECT_EQ(e.answers[1].joint, 1);
+  EXPECT_EQ(e.answers[1].verdict, Verdict::kNotExcited);
+  EXPECT_THAT(e.answers[1].words, HasSubstr("nothing is left of its recordings"));
+  EXPECT_THAT(text_of(e, {{"log"}, {}, "robot", ""}), Not(HasSubstr("nan")));
+}
+
+TEST(Verdict, OffersNoCurveToAFileThatHasOne) {
+  Explanation e = nothing_found(5);
+  e.where = {{0, "position", 0.7}};
+  e.improved.joints.resize(1);
+  judge_whole(e);
+  EXPECT_THAT(e.advice, Contains(HasSubstr("add position_torque")));
+  RobotEffect curve;
+  curve.kind = EffectKind::kPositionTorque;
+  e.improved.effects = {curve};
+  judge_whole(e);
+  EXPECT_THAT(e.advice, Not(Contains(HasSubstr("add position_torque"))));
 }
 
 TEST(Verdict, OfNoiseThatIsUnlikelyIsUndecidedAndAdvisesTheMotion) {
@@ -134,6 +172,15 @@ Explanation found_with_rest(double left_to_noise) {
   e.found = {finding};
   e.where = {{0, "position and velocity", 0.6}};
   return e;
+}
+
+TEST(CommandToAdd, HasWhatTheUserKeptAndHowFarLinksAreOff) {
+  Explanation e = found_with_rest(1.1);
+  judge_whole(e);
+  ExplainNames names{{"log"}, {}, "robot", ""};
+  names.keep = {keep_fault_of("2:saturation"), keep_fault_of("all:gaps")};
+  names.link_share = 0.2;
+  EXPECT_THAT(text_of(e, names), HasSubstr("--keep 2:saturation --keep all:gaps --link-share 0.2"));
 }
 
 // On a real arm the rest is always far above the sensor's noise: it is told, and deletes nothing.

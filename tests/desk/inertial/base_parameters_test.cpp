@@ -9,6 +9,7 @@
 #include "desk/exchange/urdfs.hpp"
 #include "exchange/import_urdf.hpp"
 #include "identify/inertial_regressor.hpp"
+#include "inertial/drive_model.hpp"
 #include "mujoco_plant.hpp"
 #include "support/seed.hpp"
 
@@ -93,6 +94,34 @@ TEST(BaseParameters, CannotTellTheFirstRotorFromTheLink) {
   EXPECT_THAT(
       desk::base_parameters(robot, request).names,
       testing::Contains(testing::AllOf(testing::HasSubstr("Izz1"), testing::HasSubstr(" + Ia1"))));
+}
+
+TEST(DriveModel, LeavesWhatTheFileSaysOfMotors) {
+  RobotDescription robot = plain_arm(2);
+  robot.effects.clear();
+  robot.transmission.emplace();
+  robot.transmission->matrix = {{10, 10}, {0, 10}};
+  desk::RobotEffect friction;
+  friction.kind = EffectKind::kViscousFriction;
+  friction.fitted = true;
+  friction.of_motor = true;
+  robot.effects = {friction};
+  const desk::DriveModel drives = drive_model(robot, {{1, 1}, {0, 1}, false});
+  EXPECT_THAT(drives.refitted, testing::IsEmpty());
+  for (const auto& one : drives.added) {
+    EXPECT_NE(one.kind, EffectKind::kViscousFriction) << "motor 1 moves both joints";
+  }
+}
+
+TEST(DriveModel, HasNoRotorWhereASensorBehindTheGearIsRead) {
+  RobotDescription robot = plain_arm(2);
+  robot.effects.clear();
+  const desk::DriveModel drives = drive_model(robot, {{1, 1}, {0, 1}, false, {1, 0}});
+  std::vector<std::size_t> rotors;
+  for (const auto& one : drives.added) {
+    if (one.kind == EffectKind::kRotorInertia) rotors.push_back(one.joint);
+  }
+  EXPECT_THAT(rotors, testing::ElementsAre(1U));
 }
 
 TEST(BaseParameters, OfAnArmWhoseFirstJointStandsLackWhatItAloneShows) {

@@ -42,6 +42,20 @@ TEST(Payload, IsOfARecordingByItsWholeNameOrThatOfItsFile) {
   EXPECT_FALSE(payload_of(payloads, "ba.csv").has_value());
 }
 
+TEST(Payload, IsOfAJoinedRecordingByTheNameOfAnyOfItsFiles) {
+  const std::vector<RecordingPayload> payloads{{"b.csv", {2, {0, 0, 0}}}};
+  ASSERT_TRUE(payload_of(payloads, "runs/a.csv+runs/b.csv").has_value());
+  EXPECT_EQ(payload_of(payloads, "runs/a.csv+runs/b.csv")->mass_kg, 2);
+  EXPECT_FALSE(payload_of(payloads, "runs/a.csv+runs/c.csv").has_value());
+}
+
+TEST(Payload, GivenAFileWithoutRoomThenItIsRefusedInWords) {
+  RobotDescription robot = parse_robot(test::kSampleRobot, "sample.toml");
+  robot.effects.resize(kEffectsPerJoint * robot.joints.size());
+  EXPECT_NO_THROW(static_cast<void>(carrying(robot, std::nullopt)));
+  EXPECT_THROW(static_cast<void>(carrying(robot, Payload{0.8, {0, 0, 0}})), InputError);
+}
+
 TEST(Payload, GivenTwoOfOneRecordingThenTheyHaveToAgree) {
   std::vector<RecordingPayload> payloads{{"a.csv", {1, {0, 0, 0}}}, {"runs/a.csv", {1, {0, 0, 0}}}};
   EXPECT_EQ(payload_of(payloads, "runs/a.csv")->mass_kg, 1);

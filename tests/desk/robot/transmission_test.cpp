@@ -83,6 +83,9 @@ TEST(TransmissionTable, DamagedOnesSayWhatIsWrongAndHowToMendIt) {
               AllOf(HasSubstr("transmission.ratio"), HasSubstr("a list of 2 numbers")));
   EXPECT_THAT(transmission_refusal("[transmission]\nratio = [100, 0]\n"),
               AllOf(HasSubstr("transmission.ratio"), HasSubstr("0 for joint 2")));
+  EXPECT_THAT(transmission_refusal("[transmission]\nratio = [100, -1e-7]\n"),
+              AllOf(HasSubstr("transmission.ratio"), HasSubstr("-1e-07 for joint 2"),
+                    HasSubstr("1e-06 or more in size")));
   EXPECT_THAT(transmission_refusal("[transmission]\nratio = [100, 'fast']\n"),
               HasSubstr("transmission.ratio[2]"));
   EXPECT_THAT(transmission_refusal("[transmission]\nratio = [100, 1e9]\n"),
@@ -94,7 +97,7 @@ TEST(TransmissionTable, DamagedOnesSayWhatIsWrongAndHowToMendIt) {
   EXPECT_THAT(transmission_refusal("[transmission]\nmatrix = [[1, 2], [3]]\n"),
               HasSubstr("transmission.matrix[2]"));
   EXPECT_THAT(transmission_refusal("[transmission]\nratio = [1, 1]\ntorque_constant = [0.1, 0]\n"),
-              AllOf(HasSubstr("transmission.torque_constant"), HasSubstr("0 for joint 2")));
+              AllOf(HasSubstr("transmission.torque_constant"), HasSubstr("0 for motor 2")));
   EXPECT_THAT(
       transmission_refusal("[transmission]\nratio = [1, 1]\ntorque_constants = [1, 1]\n"),
       AllOf(HasSubstr("transmission.torque_constants"), HasSubstr("write `torque_constant`")));

@@ -155,5 +155,14 @@ TEST(RobotPlant, RefusesEffectsThatTheCoreRefuses) {
                InputError);
 }
 
+TEST(RobotPlant, RefusesHiddenEffectsThatItCannotCarry) {
+  for (const EffectKind kind : {EffectKind::kJointElasticity, EffectKind::kBacklash}) {
+    EXPECT_THROW(
+        static_cast<void>(make_robot_plant(
+            {test::serial_robot(1), {effect_of(kind, 0, {1.0})}, {}, resting(1), kPeriodS})),
+        InputError);
+  }
+}
+
 }  // namespace
 }  // namespace offnominal::desk::sil
