@@ -1,9 +1,11 @@
 #include "explain/alternatives.hpp"
 
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "explain/questions.hpp"
+#include "identify/shape_grid.hpp"
 #include "signal/correlation.hpp"
 
 namespace offnominal::desk {
@@ -41,6 +43,22 @@ bool is_nested(const Data& data, const ModelFit& baseline, const Term& inner, co
     if (!evidence.usable || 1 - evidence.gain > kSine * kSine) return false;
   }
   return true;
+}
+
+std::vector<Term> slow_ripples(const Data& data, Index joint) {
+  constexpr std::array kPeriodsInRange{0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5};
+  const double range = range_moved(data.recordings, joint);
+  const double period = first_order_period(data.recordings[0].joint_type(joint));
+  std::vector<Term> ripples;
+  if (!(range > 0)) return ripples;
+  for (const auto& effect : all_candidates()) {
+    if (effect->spectrum() != EffectCandidate::Spectrum::kPosition) continue;
+    if (!effect->applies_in_any(data.recordings, joint)) continue;
+    for (const double periods : kPeriodsInRange) {
+      ripples.push_back({effect.get(), joint, {periods * period / range}});
+    }
+  }
+  return ripples;
 }
 
 }  // namespace offnominal::desk

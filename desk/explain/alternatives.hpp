@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "identify/data.hpp"
 #include "identify/regression.hpp"
 
@@ -18,5 +20,9 @@ bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternati
 // Whether all columns of `inner` lie in the span of those of `outer` beside what `baseline` fits:
 // then the larger group cannot but explain as much.
 bool is_nested(const Data& data, const ModelFit& baseline, const Term& inner, const Term& outer);
+
+// Candidates of a spectrum over the position are searched from two periods per range on: what
+// repeats over more than the range of a joint is a curve, and looks like an offset or a spring.
+std::vector<Term> slow_ripples(const Data& data, Eigen::Index joint);
 
 }  // namespace offnominal::desk

@@ -130,7 +130,7 @@ void describe_rejections(const SearchResult& from, Explanation& to) {
 void ask_each_joint(const SearchResult& from, Explanation& to) {
   constexpr std::array kAsked{EffectKind::kViscousFriction, EffectKind::kCoulombFriction,
                               EffectKind::kTorqueOffset, EffectKind::kJointStiffness};
-  constexpr double kShareOfTorque = 0.1;  // an effect of this much should not stay unseen
+  constexpr double kShareOfTorque = 0.2;  // an effect of this much should not stay unseen
   const VectorXd torque = from.regression.data().layout.rms(from.regression.data().torque);
   for (const Rejection& one : to.rejected) {
     const auto joint = static_cast<std::size_t>(one.what.joint);

@@ -24,6 +24,9 @@ struct Excitation {
   std::string lack;  // in words, what would not; empty where sufficient
 };
 
+// A separation from which on a motion is rich.
+inline constexpr double kRichMotion = 0.1;
+
 // 1, q, dq, ddq, sgn dq and dq |dq| of a joint: what any motion should tell apart.
 std::vector<Regressor> standard_regressors(const Workspace& at, Eigen::Index joint);
 

@@ -80,7 +80,7 @@ class Explainer {
     FoundModel found = search_model(search, result);
     const HoldOut& hold_out = *hold_out_;
     result.over_variable = leave_out_stand_ins(*regression_, hold_out, options_.threads, found);
-    result.ambiguous = classes_of(found, hold_out);
+    result.ambiguous = classes_of(found, hold_out, result.excitation);
     if (search) {
       for (auto& one : undecided(*search_, *regression_, found, result.excitation)) {
         result.ambiguous.push_back(std::move(one));
@@ -254,11 +254,11 @@ class Explainer {
 
   // What each effect that was found could just as well be. A later, smaller one that as many others
   // explain as well has no name: it is left to the remainder.
-  [[nodiscard]] std::vector<std::vector<EffectAt>> classes_of(FoundModel& found,
-                                                              const HoldOut& hold_out) const {
+  [[nodiscard]] std::vector<std::vector<EffectAt>> classes_of(
+      FoundModel& found, const HoldOut& hold_out, const std::vector<Excitation>& excitation) const {
     constexpr std::size_t kMostAlike = 4;
     std::vector<std::vector<EffectAt>> classes;
-    std::vector<std::vector<EffectAt>> same = all_alike(found);
+    std::vector<std::vector<EffectAt>> same = all_alike(found, excitation);
     for (std::size_t i = found.accepted.size(); i-- > 0;) {
       if (i > 0 && same[i].size() > kMostAlike) {
         found.accepted.erase(found.accepted.begin() + static_cast<std::ptrdiff_t>(i));
@@ -266,7 +266,7 @@ class Explainer {
         // Another order, and other companions: all are asked anew.
         classes.clear();
         i = found.accepted.size();
-        same = all_alike(found);
+        same = all_alike(found, excitation);
       } else if (same[i].size() > 1) {
         classes.insert(classes.begin(), std::move(same[i]));
       }
@@ -275,15 +275,19 @@ class Explainer {
   }
 
   // What each of them could just as well be.
-  [[nodiscard]] std::vector<std::vector<EffectAt>> all_alike(const FoundModel& found) const {
+  [[nodiscard]] std::vector<std::vector<EffectAt>> all_alike(
+      const FoundModel& found, const std::vector<Excitation>& excitation) const {
     tell("looking for what else the effects could be");
     std::vector<std::vector<EffectAt>> same(found.accepted.size());
-    parallel_for(same.size(), options_.threads, [&](std::size_t i) { same[i] = alike(found, i); });
+    parallel_for(same.size(), options_.threads, [&](std::size_t i) {
+      same[i] = alike(found, i, excitation[static_cast<std::size_t>(found.accepted[i].term.joint)]);
+    });
     return same;
   }
 
   // An effect that was found, and what describes the recordings as well in its place.
-  [[nodiscard]] std::vector<EffectAt> alike(const FoundModel& found, std::size_t i) const {
+  [[nodiscard]] std::vector<EffectAt> alike(const FoundModel& found, std::size_t i,
+                                            const Excitation& motion) const {
     const Term& mine = found.accepted[i].term;
     const std::vector<Term> others = found.terms_without(i);
     const ModelFit beside = regression_->fit(others);
@@ -297,18 +301,29 @@ class Explainer {
     std::erase_if(screening.candidates,
                   [&](const Screened& one) { return one.evidence.gain < kNear * most; });
     std::vector<EffectAt> same{{mine.effect->kind(), mine.joint}};
-    for (const Proposal& other : search_->propose(others, beside, screening)) {
-      const Term& term = other.terms.back();
+    const auto compare_with = [&](const Term& term, const ModelFit& fit, double energy) {
       const EffectAt name{term.effect->kind(), term.joint};
-      const double energy = std::max(
-          own,
-          weighted_energy(*data_, term, other.fit.coefficients.back(), found.fit.joint_weights));
-      if (name == same[0] || !as_good(*data_, found.fit, other.fit, energy) ||
+      if (holds(same, name) || !as_good(*data_, found.fit, fit, energy) ||
           is_nested(*data_, found.baseline, mine, term) ||
-          is_refuted_by_simpler(*data_, mine, found.fit, term, other.fit)) {
-        continue;
+          is_refuted_by_simpler(*data_, mine, found.fit, term, fit)) {
+        return;
       }
       same.push_back(name);
+    };
+    for (const Proposal& other : search_->propose(others, beside, screening)) {
+      const Term& term = other.terms.back();
+      compare_with(term, other.fit,
+                   std::max(own, weighted_energy(*data_, term, other.fit.coefficients.back(),
+                                                 found.fit.joint_weights)));
+    }
+    // A rich motion tells a curve over the position from the rest, and the curve's name is then the
+    // simplest that fits.
+    if (motion.separation >= kRichMotion) return same;
+    // Slow ripples stand against each other and the offset: their own torque may be any.
+    for (const Term& ripple : slow_ripples(*data_, mine.joint)) {
+      std::vector<Term> terms = others;
+      terms.push_back(ripple);
+      compare_with(ripple, regression_->fit(terms), own);
     }
     return same;
   }

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "explain/alternatives.hpp"
 #include "explain/any_shape.hpp"
 #include "explain/confirm.hpp"
 #include "explain/friction_family.hpp"
@@ -166,6 +167,7 @@ class Finder {
       }
     }
     drop_what_is_not_needed();
+    if (replace_several_by_one()) drop_what_is_not_needed();
     order_and_hold_out(regression_, hold_out_, threads(), found_);
     return std::move(found_);
   }
@@ -383,7 +385,8 @@ class Finder {
         suspect(one, p);
         return false;
       }
-      if (!shown(regression_.data(), one.terms, i, one.fit, without).is_enough()) {
+      if (!shown(regression_.data(), one.terms, i, one.fit, without).is_enough() ||
+          repeats_with_motion(regression_.data(), one.terms[i])) {
         found_.unsure[joint_of(one)] = 1;
         return false;
       }
@@ -500,6 +503,63 @@ class Finder {
       found_.accepted.erase(found_.accepted.begin() + static_cast<std::ptrdiff_t>(least));
       found_.fit = regression_.fit(found_.terms());
     }
+  }
+
+  [[nodiscard]] std::vector<Accepted> accepted_elsewhere(std::size_t joint) const {
+    std::vector<Accepted> elsewhere = found_.accepted;
+    std::erase_if(elsewhere, [&](const Accepted& one) {
+      return static_cast<std::size_t>(one.term.joint) == joint;
+    });
+    return elsewhere;
+  }
+
+  // One effect that describes a joint as well as all that were found on it, one after the other,
+  // is the simpler answer: a first one that was only close leaves what a second one then takes.
+  bool replace_several_by_one() {
+    constexpr std::size_t kMostTries = 8;
+    bool replaced = false;
+    for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+      const std::vector<Accepted> all = found_.accepted;
+      std::vector<Accepted> elsewhere = accepted_elsewhere(joint);
+      if (all.size() < elsewhere.size() + 2) continue;
+      tell(fmt::format("trying a single effect on joint {}", joint + 1));
+      const ModelFit several = found_.fit;
+      found_.accepted = std::move(elsewhere);
+      found_.fit = regression_.fit(found_.terms());
+      found_.held_out_after = hold_out_.residual(found_.terms(), found_.fit);
+      if (accept_instead(joint, several, kMostTries)) {
+        replaced = true;
+        continue;
+      }
+      found_.accepted = all;
+      found_.fit = several;
+      found_.held_out_after = hold_out_.residual(found_.terms(), found_.fit);
+    }
+    return replaced;
+  }
+
+  // Takes the best effect on a joint that is as good as `several`; false where there is none.
+  bool accept_instead(std::size_t joint, const ModelFit& several, std::size_t most_tries) {
+    const Data& data = regression_.data();
+    std::vector<char> open(joints_.size(), 0);
+    open[joint] = 1;
+    const std::vector<Term> terms = found_.terms();
+    const auto proposals =
+        search_.propose_per_joint(terms, found_.fit, search_.screen(terms, found_.fit), open);
+    std::size_t tries = 0;
+    for (const Proposal& one : proposals[joint]) {
+      if (one.added > 1 || one.terms.back().effect->info().traits.has_any_shape) continue;
+      if (++tries > most_tries) break;
+      // Within chance, and not within what its formula simplifies: that may be the other ones.
+      if (!as_good(data, several, one.fit, 0)) continue;
+      const NullOfSearch null = search_.null_of(one.terms, one.fit, found_.fit);
+      if (passes(one, null, hold_out_.rms(found_.held_out_after),
+                 hold_out_.residual(one.terms, one.fit))) {
+        found_.held_out_after = hold_out_.residual(one.terms, one.fit);
+        return true;
+      }
+    }
+    return false;
   }
 
   const Search& search_;

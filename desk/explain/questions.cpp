@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "explain/find_model.hpp"
 
@@ -33,6 +34,42 @@ Shown shown(const Data& data, const std::vector<Term>& terms, std::size_t which,
   result.apart =
       std::sqrt(std::max(0.0, energy_of(without.residual) - energy_of(fit.residual)) / rows);
   return result;
+}
+
+namespace {
+
+// Rms of how far a motion is from itself so many samples later, over the motion's own.
+double change_after(const VectorXd& q, Index lag) {
+  const Index count = q.size() - lag;
+  const VectorXd around = q.array() - q.mean();
+  const double own = around.squaredNorm() / static_cast<double>(q.size());
+  const double change = (q.tail(count) - q.head(count)).squaredNorm() / static_cast<double>(count);
+  return own > 0 ? std::sqrt(change / own) : 0;
+}
+
+}  // namespace
+
+bool repeats_with_motion(const Data& data, const Term& term) {
+  constexpr int kHighest = 8;    // harmonic of the motion that a torque of its state shows
+  constexpr double kSame = 0.2;  // of the motion
+  if (term.effect->spectrum() != EffectCandidate::Spectrum::kTime) return false;
+  const double cycle_s = 2 * std::numbers::pi / term.shape[0];  // of an angular frequency
+  bool any = false;
+  for (const Workspace& at : data.recordings) {
+    const VectorXd q = at.motion.q.col(term.joint);
+    if (q.size() < 4 || q.minCoeff() == q.maxCoeff()) continue;
+    any = true;
+    const auto repeats_after = [&](int cycles) {
+      const auto lag = static_cast<Index>(std::llround(cycles * cycle_s / at.period_s()));
+      // What hardly moves meanwhile does not repeat.
+      return lag >= 2 && 2 * lag <= q.size() && change_after(q, lag) < kSame &&
+             change_after(q, lag / 2) > kSame;
+    };
+    bool repeats = false;
+    for (int cycles = 1; cycles <= kHighest && !repeats; ++cycles) repeats = repeats_after(cycles);
+    if (!repeats) return false;
+  }
+  return any;
 }
 
 double smallest_shown(const Data& data, const ModelFit& at, const Screened& one) {

@@ -30,6 +30,10 @@ Shown shown(const Data& data, const std::vector<Term>& terms, std::size_t which,
 double weighted_energy(const Data& data, const Term& term, const Eigen::VectorXd& coefficients,
                        const Eigen::VectorXd& weights);
 
+// Whether a torque that is periodic in time comes back with the motion of its joint: what repeats
+// with a motion that repeats may be any torque that follows the position or the velocity.
+bool repeats_with_motion(const Data& data, const Term& term);
+
 // The smallest rms torque of an effect on its joint that the recordings would show beside the
 // model: what is left of it beside everything else has to be relevant, and to make the recordings
 // more likely by as much as a search asks for. `one`: a candidate that does not; infinite where the

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "explain/alternatives.hpp"
 #include "explain/remainder.hpp"
-#include "identify/shape_grid.hpp"
 
 namespace offnominal::desk {
 
@@ -66,36 +66,14 @@ std::vector<Index> joints_that_show(const Regression& regression, const std::vec
   return shows;
 }
 
-// Candidates of a spectrum are searched from two periods per range on; a torque that repeats over
-// more than the range is a curve of the position.
-std::vector<Possible> slow_ripples(const Regression& regression, const std::vector<Term>& found,
-                                   const VectorXd& before, Index joint) {
-  constexpr double kPeriodsInRange = 0.5;
-  const Data& data = regression.data();
-  const double range = range_moved(data.recordings, joint);
-  const double period = first_order_period(data.recordings[0].joint_type(joint));
-  std::vector<Possible> possible;
-  for (const auto& effect : all_candidates()) {
-    if (effect->spectrum() != EffectCandidate::Spectrum::kPosition) continue;
-    if (!effect->applies_in_any(data.recordings, joint)) continue;
-    const Term term{effect.get(), joint, {kPeriodsInRange * period / range}};
-    std::vector<Term> terms = found;
-    terms.push_back(term);
-    const VectorXd left = data.layout.rms(regression.fit(terms).residual);
-    possible.push_back({{effect->kind(), joint}, explained_share(before[joint], left[joint])});
-  }
-  return possible;
-}
-
 // What every proposal and every slow ripple explains on a joint, the most first.
 std::vector<Possible> explained_on(Index joint, const Regression& regression,
                                    const std::vector<Term>& found, const VectorXd& before,
                                    const std::vector<Proposal>& proposals) {
-  std::vector<Possible> possible = slow_ripples(regression, found, before, joint);
-  for (const Proposal& one : proposals) {
-    const Term& term = one.terms.back();
+  std::vector<Possible> possible;
+  const auto add = [&](const Term& term, const ModelFit& fit) {
     const EffectAt what{term.effect->kind(), term.joint};
-    const double left = regression.data().layout.rms(one.fit.residual)[joint];
+    const double left = regression.data().layout.rms(fit.residual)[joint];
     const double share = explained_share(before[joint], left);
     const auto same = std::find_if(possible.begin(), possible.end(),
                                    [&](const Possible& other) { return other.what == what; });
@@ -104,7 +82,13 @@ std::vector<Possible> explained_on(Index joint, const Regression& regression,
     } else {
       same->share = std::max(same->share, share);
     }
+  };
+  for (const Term& ripple : slow_ripples(regression.data(), joint)) {
+    std::vector<Term> terms = found;
+    terms.push_back(ripple);
+    add(ripple, regression.fit(terms));
   }
+  for (const Proposal& one : proposals) add(one.terms.back(), one.fit);
   std::stable_sort(possible.begin(), possible.end(),
                    [](const Possible& a, const Possible& b) { return a.share > b.share; });
   return possible;
