@@ -22,10 +22,11 @@ struct Excitation {
   // Whether every effect that any drive may have would show.
   bool sufficient = false;
   std::string lack;  // in words, what would not; empty where sufficient
-};
 
-// A separation from which on a motion is rich.
-inline constexpr double kRichMotion = 0.1;
+  // Whether it moves as poorly as on one sine or at one speed to and fro, which reach 0.09: effects
+  // that every drive may have are nearly the same then, and what fits best is one of many.
+  [[nodiscard]] bool is_poor() const { return moves && separation > 0 && separation < 0.095; }
+};
 
 // 1, q, dq, ddq, sgn dq and dq |dq| of a joint: what any motion should tell apart.
 std::vector<Regressor> standard_regressors(const Workspace& at, Eigen::Index joint);

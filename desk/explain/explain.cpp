@@ -279,15 +279,14 @@ class Explainer {
       const FoundModel& found, const std::vector<Excitation>& excitation) const {
     tell("looking for what else the effects could be");
     std::vector<std::vector<EffectAt>> same(found.accepted.size());
-    parallel_for(same.size(), options_.threads, [&](std::size_t i) {
-      same[i] = alike(found, i, excitation[static_cast<std::size_t>(found.accepted[i].term.joint)]);
-    });
+    parallel_for(same.size(), options_.threads,
+                 [&](std::size_t i) { same[i] = alike(found, i, excitation); });
     return same;
   }
 
   // An effect that was found, and what describes the recordings as well in its place.
   [[nodiscard]] std::vector<EffectAt> alike(const FoundModel& found, std::size_t i,
-                                            const Excitation& motion) const {
+                                            const std::vector<Excitation>& excitation) const {
     const Term& mine = found.accepted[i].term;
     const std::vector<Term> others = found.terms_without(i);
     const ModelFit beside = regression_->fit(others);
@@ -301,31 +300,37 @@ class Explainer {
     std::erase_if(screening.candidates,
                   [&](const Screened& one) { return one.evidence.gain < kNear * most; });
     std::vector<EffectAt> same{{mine.effect->kind(), mine.joint}};
-    const auto compare_with = [&](const Term& term, const ModelFit& fit, double energy) {
-      const EffectAt name{term.effect->kind(), term.joint};
-      if (holds(same, name) || !as_good(*data_, found.fit, fit, energy) ||
-          is_nested(*data_, found.baseline, mine, term) ||
-          is_refuted_by_simpler(*data_, mine, found.fit, term, fit)) {
-        return;
-      }
-      same.push_back(name);
-    };
     for (const Proposal& other : search_->propose(others, beside, screening)) {
       const Term& term = other.terms.back();
-      compare_with(term, other.fit,
-                   std::max(own, weighted_energy(*data_, term, other.fit.coefficients.back(),
-                                                 found.fit.joint_weights)));
+      const EffectAt name{term.effect->kind(), term.joint};
+      const double energy = std::max(
+          own,
+          weighted_energy(*data_, term, other.fit.coefficients.back(), found.fit.joint_weights));
+      if (name == same[0] || !as_good(*data_, found.fit, other.fit, energy) ||
+          is_nested(*data_, found.baseline, mine, term) ||
+          is_refuted_by_simpler(*data_, mine, found.fit, term, other.fit)) {
+        continue;
+      }
+      same.push_back(name);
     }
-    // A rich motion tells a curve over the position from the rest, and the curve's name is then the
-    // simplest that fits.
-    if (motion.separation >= kRichMotion) return same;
-    // Slow ripples stand against each other and the offset: their own torque may be any.
+    if (excitation[static_cast<std::size_t>(mine.joint)].is_poor()) {
+      add_slow_ripples(found, mine, others, own, same);
+    }
+    return same;
+  }
+
+  // Ripples slower than the range: a rich motion tells them from an offset or a spring, or has
+  // none.
+  void add_slow_ripples(const FoundModel& found, const Term& mine, const std::vector<Term>& others,
+                        double energy, std::vector<EffectAt>& same) const {
     for (const Term& ripple : slow_ripples(*data_, mine.joint)) {
       std::vector<Term> terms = others;
       terms.push_back(ripple);
-      compare_with(ripple, regression_->fit(terms), own);
+      const EffectAt name{ripple.effect->kind(), ripple.joint};
+      if (!holds(same, name) && as_good(*data_, found.fit, regression_->fit(terms), energy)) {
+        same.push_back(name);
+      }
     }
-    return same;
   }
 
   const RobotDescription& file_;

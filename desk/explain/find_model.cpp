@@ -385,7 +385,8 @@ class Finder {
         suspect(one, p);
         return false;
       }
-      if (!shown(regression_.data(), one.terms, i, one.fit, without).is_enough() ||
+      if (!shown(regression_.data(), one.terms, i, one.fit, without)
+               .is_enough(excitation_[joint_of(one)], one.terms[i].effect->kind()) ||
           repeats_with_motion(regression_.data(), one.terms[i])) {
         found_.unsure[joint_of(one)] = 1;
         return false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "explain/excitation.hpp"
 #include "explain/search.hpp"
 
 namespace offnominal::desk {
@@ -18,8 +19,17 @@ struct Shown {
   double apart = 0;
 
   // Whether more of it shows than what such an effect leaves of itself: the rest of a model that is
-  // not quite right may look like anything.
-  [[nodiscard]] bool is_enough() const { return apart >= kLeftOfItself * torque; }
+  // not quite right may look like anything. On a poor motion the model's own numbers take most of
+  // any effect, and what is left of one looks like that of another; only the friction that every
+  // drive has is believed there by less.
+  [[nodiscard]] bool is_enough(const Excitation& motion, EffectKind kind) const {
+    constexpr double kOfFriction = 0.35;
+    constexpr double kOfOthers = 0.85;
+    if (!motion.is_poor()) return apart >= kLeftOfItself * torque;
+    const bool every_drive_has =
+        kind == EffectKind::kViscousFriction || kind == EffectKind::kCoulombFriction;
+    return apart >= (every_drive_has ? kOfFriction : kOfOthers) * torque;
+  }
 };
 
 // `which`: one of the terms that `fit` is of; `without`: the fit of the others.

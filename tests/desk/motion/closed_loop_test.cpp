@@ -125,7 +125,7 @@ TEST(Ambiguous, BecomesFoundOnTheMotionThatTheAdviceNames) {
     const hidden::DrawnRobot drawn = hidden::draw_robot(request);
     const RobotDescription robot = to_robot(drawn.nominal);
     const Explanation first =
-        explain_quickly(robot, record_sines(request, drawn.nominal, 8, {{0.6, 0.2}, {0.2, 0.7}}));
+        explain_quickly(robot, record_sines(request, drawn.nominal, 8, {{0.6, 0.2}}));
     if (first.verdict != Verdict::kAmbiguous) continue;
     ++seen;
     SCOPED_TRACE(std::string(hidden::name(request.effects[0])) + ": " + first.words);
