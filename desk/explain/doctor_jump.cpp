@@ -228,6 +228,7 @@ void find_jumps(const Log& log, std::vector<DataFault>& faults) {
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     for (const bool position : {true, false}) {
       const VectorXd x = position ? log.q.col(joint) : log.tau.col(joint);
+      if (position && stands_still(x)) continue;
       const auto signal = position ? FaultySignal::kPosition : FaultySignal::kTorque;
       const bool known = std::any_of(faults.begin(), faults.end(), [&](const DataFault& fault) {
         return fault.joint == joint && fault.signal == signal;

@@ -77,6 +77,12 @@ double Rounding::at(double value) const {
   return std::max(smallest_, std::pow(10.0, std::floor(std::log10(std::abs(value))) + 1 - digits_));
 }
 
+bool stands_still(const VectorXd& q) {
+  constexpr double kFewestSteps = 16;
+  const double step = Rounding(q).at(q.cwiseAbs().maxCoeff());
+  return !(q.maxCoeff() - q.minCoeff() > kFewestSteps * step);
+}
+
 bool is_noisy_around(const VectorXd& x, const Burst& burst) {
   constexpr Index kNear = 200;
   constexpr Index kFewest = 30;

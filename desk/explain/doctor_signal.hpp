@@ -47,6 +47,10 @@ class Rounding {
   int digits_ = 0;  // 0: another number of digits at every value
 };
 
+// Whether a position flickers between a few values that it is rounded to: the joint stands still,
+// and nothing can be said of how it moves.
+bool stands_still(const Eigen::VectorXd& q);
+
 // Whether noise larger than what the signal is rounded to surrounds a burst: then no value of it
 // repeats for long. Neither an encoder's steps nor printed digits are noise, however they vary.
 bool is_noisy_around(const Eigen::VectorXd& x, const Burst& burst);

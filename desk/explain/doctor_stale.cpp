@@ -144,6 +144,7 @@ double smallest_step(const VectorXd& x) {
 void find_stale_samples(const Log& log, std::vector<DataFault>& faults) {
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     for (const bool position : {true, false}) {
+      if (position && stands_still(log.q.col(joint))) continue;
       const Stale stale = stale_of(log, joint, position);
       const double share =
           static_cast<double>(stale.rows) / static_cast<double>(log.sample_count());

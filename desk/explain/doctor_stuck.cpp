@@ -147,7 +147,7 @@ std::vector<Burst> long_bursts(const VectorXd& x) {
 std::vector<Burst> stuck_positions(const Log& log, Index joint) {
   const VectorXd q = log.q.col(joint);
   std::vector<Burst> bursts = long_bursts(q);
-  if (bursts.empty() || (q.array() == q[0]).all()) return {};
+  if (bursts.empty() || stands_still(q)) return {};
   const BurstEnds ends(q);
   const std::vector<Index> repeats_before = repeats_before_of(q);
   std::erase_if(bursts, [&](const Burst& burst) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "explain/doctor_checks.hpp"
+#include "explain/doctor_signal.hpp"
 #include "log/sampling.hpp"
 #include "signal/fold.hpp"
 #include "signal/quantile.hpp"
@@ -155,6 +156,7 @@ void mend_wrapped(Log& log, const RobotDescription& robot, std::vector<DataFault
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     const RobotJoint& of = robot.joints[static_cast<std::size_t>(joint)];
     VectorXd q = log.q.col(joint);
+    if (stands_still(q)) continue;
     const auto found = unfolded(q, of);
     if (!found) continue;
     DataFault fault;

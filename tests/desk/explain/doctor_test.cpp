@@ -244,5 +244,23 @@ TEST(Doctor, RefusesARobotWithAnotherNumberOfJoints) {
   EXPECT_THROW(static_cast<void>(examine(test::record_arm({}), robot)), std::invalid_argument);
 }
 
+// A joint that is held while the other one moves: its encoder flickers between a few counts.
+TEST(Doctor, HasNothingAgainstTheFlickerOfAJointThatStandsStill) {
+  test::ArmRecording settings;
+  settings.torque_noise = 0.05;
+  Log log = test::record_arm(settings);
+  constexpr double kCount = 6e-6;
+  for (Index i = 0; i < log.sample_count(); ++i) {
+    const double waver =
+        std::sin(0.01 * static_cast<double>(i)) + 0.6 * std::sin(0.0037 * static_cast<double>(i));
+    log.q(i, 1) = kCount * (50000 + std::round(1.4 * waver));
+  }
+  log.dq_derived = {true, true};
+  for (const DataFault& fault : examine(log, test::arm_description())) {
+    EXPECT_NE(fault.signal, FaultySignal::kPosition) << fault.words;
+    EXPECT_NE(fault.kind, DataFaultKind::kWrapped) << fault.words;
+  }
+}
+
 }  // namespace
 }  // namespace offnominal::desk
