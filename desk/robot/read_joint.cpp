@@ -180,13 +180,14 @@ void refuse_blank(const TomlTable& joint, const std::string& key, std::size_t ot
   const std::string more = others == 0 ? ""
                                        : fmt::format(" (and {} more blank{} in this file)", others,
                                                      others == 1 ? "" : "s");
-  joint.table("link", link_keys()).refuse(
-      key, "nothing: the key is missing" + more,
-      key == "mass_kg" ? "a finite number > 0, in kg" : "a list of 3 finite numbers, in m",
-      fmt::format(
-          "add `{}` to {}: from CAD, a data sheet or scales; or let `offnominal identify` find "
-          "the links' numbers in recordings",
-          key, joint.path_of("link")));
+  joint.table("link", link_keys())
+      .refuse(
+          key, "nothing: the key is missing" + more,
+          key == "mass_kg" ? "a finite number > 0, in kg" : "a list of 3 finite numbers, in m",
+          fmt::format(
+              "add `{}` to {}: from CAD, a data sheet or scales; or let `offnominal identify` find "
+              "the links' numbers in recordings",
+              key, joint.path_of("link")));
 }
 
 }  // namespace offnominal::desk

@@ -15,7 +15,7 @@ template <int Rows, int Columns, typename Scalar>
 using Matrix = Eigen::Matrix<Scalar, Rows, Columns,
                              Eigen::AutoAlign | (Rows == 1 && Columns != 1 ? Eigen::RowMajor
                                                  : Columns == 1 && Rows != 1
-                                                     ? Eigen::ColMajor
+                                                     ? Eigen::ColMajor  // NOLINT
                                                      : EIGEN_DEFAULT_MATRIX_STORAGE_ORDER_OPTION),
                              kMostJoints<Rows>, kMostJoints<Columns>>;
 

@@ -173,7 +173,8 @@ TEST(Treatment, PartsWithoutFaultsAreWhatIsBetweenThem) {
   EXPECT_TRUE(parts[1].left_out.empty());
 }
 
-// A small share of `./dev bench doctor`, of both families: of thousands it is right about 95 to 98 %.
+// A small share of `./dev bench doctor`, of both families: it is right about 95 to 98 % of
+// thousands.
 TEST(Treatment, IsRightAboutRecordingsOfSixJoints) {
   const std::uint64_t seed = test::test_seed();
   constexpr int kCases = 2 * test::repetitions(22);
