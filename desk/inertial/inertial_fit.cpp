@@ -320,17 +320,18 @@ void InertialFit::choose_share() {
   share_ = all[all.size() / 2];
   if (parts.size() > 1) {
     double least = std::numeric_limits<double>::infinity();
-    for (auto share = all.rbegin(); share != all.rend(); ++share) {
+    for (std::size_t i = all.size(); i-- > 0;) {
+      const double share = all[i];
       VectorXd energy = VectorXd::Zero(data_->layout.joint_count());
       for (const int part : parts) {
         const ConsistentPoint without = consistent_fit(model_, reduced_->weighted(weights_, part),
-                                                       *share, prior_weight_, point_);
+                                                       share, prior_weight_, point_);
         energy += reduced_->energy(without_skew(columns_at(model_, without)), part);
       }
       const double weighted = weights_.cwiseAbs2().dot(energy);
       if (weighted > kAsGood * least) continue;
       least = std::min(least, weighted);
-      share_ = *share;
+      share_ = share;
       held_out_energy_ = energy;
     }
   }
