@@ -40,7 +40,7 @@ std::vector<DataFault> treated(const std::vector<std::span<Log>>& groups,
                                const RobotDescription& robot, const std::vector<KeepFault>& keep,
                                Progress& progress, std::optional<RestsOn> what) {
   progress.begin("examining the recordings");
-  const std::vector<DataFault> all = treat_all(groups, robot, keep);
+  std::vector<DataFault> all = treat_all(groups, robot, keep);
   progress.end();
   for (const DataFault& fault : all) {
     if (!what || !spoils(fault, *what)) continue;

@@ -270,7 +270,7 @@ void scale_links(const Relinearised& found, const std::string& source, RobotDesc
     }
     std::string& of_link = robot.joints[link].source;
     if (!of_link.empty()) of_link += " ";
-    of_link += words + ": " + source;
+    of_link += fmt::format("{}: {}", words, source);
   }
 }
 

@@ -115,9 +115,9 @@ INSTANTIATE_TEST_SUITE_P(Effects, PoorMotion, ::testing::ValuesIn(kPoorly),
 TEST(Ambiguous, BecomesFoundOnTheMotionThatTheAdviceNames) {
   constexpr int kWanted = 1;  // of 24 robots one or two are left in a class
   int seen = 0;
-  constexpr std::array kEffects{hidden::HiddenEffect::kBacklash,
-                                hidden::HiddenEffect::kViscousFriction,
-                                hidden::HiddenEffect::kLoadDependentFriction};
+  constexpr std::array kEffects{hidden::HiddenEffect::kViscousFriction,
+                                hidden::HiddenEffect::kLoadDependentFriction,
+                                hidden::HiddenEffect::kJointStiffness};
   for (std::size_t i = 0; i < 8 * kEffects.size() && seen < kWanted; ++i) {
     hidden::Request request;
     request.seed = 1 + i / kEffects.size();
