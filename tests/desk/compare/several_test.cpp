@@ -112,7 +112,7 @@ TEST(ComparedRecordings, GivenAKnownPayloadThenTheModelCarriesItInThatRecordingA
   Log loaded = with_payload();
   const std::vector<Log> unsaid{record_arm({.duration_s = 12, .rate_hz = 250}), loaded};
   EXPECT_GT(compared(unsaid, arm_description()).recordings[1].joints[1].relative_error_percent, 10);
-  const auto& centre = arm_description().joints[1].joint.centre_of_mass_m;
+  const auto centre = arm_description().joints[1].joint.centre_of_mass_m;
   loaded.payload = Payload{0.7, centre};
   const Comparisons all = compared({unsaid[0], loaded}, arm_description());
   for (const Comparison& one : all.recordings) {

@@ -101,8 +101,10 @@ TEST(Sampling, GivenAPauseThenTheLongestPartIsKept) {
 
 TEST(Sampling, GivenHardlyAnyRowsInALongTimeThenItIsRefused) {
   VectorXd t(2000);
-  for (Eigen::Index i = 0; i < t.size(); ++i)
-    t[i] = 1e-4 * static_cast<double>(i) + 9.0 * static_cast<double>(i / 100);
+  for (Eigen::Index i = 0; i < t.size(); ++i) {
+    const Eigen::Index burst = i / 100;
+    t[i] = 1e-4 * static_cast<double>(i) + 9.0 * static_cast<double>(burst);
+  }
   Log log = log_of(t);
   EXPECT_THAT(message_of<InputError>([&] { make_even(log); }), HasSubstr("a gap of 9 s"));
 }
