@@ -208,8 +208,9 @@ struct ExplainOptions {
   std::vector<KeepFault> keep = {};  // of the doctor's findings, that are no faults
 };
 
-// treat() of all of them. Throws InputError, in the name of --keep, where `keep` speaks of a joint
-// that the robot does not have, or of one joint's fault that is always of all.
+// treat() of all of them; readings at rest are left as they are: every check there is needs time.
+// Throws InputError, in the name of --keep, where `keep` speaks of a joint that the robot does not
+// have, or of one joint's fault that is always of all.
 std::vector<DataFault> treat_all(const std::vector<std::span<Log>>& groups,
                                  const RobotDescription& robot, const std::vector<KeepFault>& keep);
 

@@ -359,9 +359,7 @@ class Finder {
     }
     if (!accepted) return false;
     refine_shapes();
-    const std::vector<Term> terms = found_.terms();
-    found_.fit = regression_.fit(terms);
-    found_.held_out_after = hold_out_.residual(terms, found_.fit);
+    refit();
     return true;
   }
 
@@ -456,10 +454,14 @@ class Finder {
     if (!added) return false;
     drop_what_is_not_needed();
     refine_shapes();
+    refit();
+    return true;
+  }
+
+  void refit() {
     const std::vector<Term> terms = found_.terms();
     found_.fit = regression_.fit(terms);
     found_.held_out_after = hold_out_.residual(terms, found_.fit);
-    return true;
   }
 
   // Every shape anew beside all that is in the model now, over the whole of its range: which point
@@ -526,8 +528,7 @@ class Finder {
       tell(fmt::format("trying a single effect on joint {}", joint + 1));
       const ModelFit several = found_.fit;
       found_.accepted = std::move(elsewhere);
-      found_.fit = regression_.fit(found_.terms());
-      found_.held_out_after = hold_out_.residual(found_.terms(), found_.fit);
+      refit();
       if (accept_instead(joint, several, kMostTries)) {
         replaced = true;
         continue;
@@ -554,9 +555,9 @@ class Finder {
       // Within chance, and not within what its formula simplifies: that may be the other ones.
       if (!as_good(data, several, one.fit, 0)) continue;
       const NullOfSearch null = search_.null_of(one.terms, one.fit, found_.fit);
-      if (passes(one, null, hold_out_.rms(found_.held_out_after),
-                 hold_out_.residual(one.terms, one.fit))) {
-        found_.held_out_after = hold_out_.residual(one.terms, one.fit);
+      VectorXd held_out = hold_out_.residual(one.terms, one.fit);
+      if (passes(one, null, hold_out_.rms(found_.held_out_after), held_out)) {
+        found_.held_out_after = std::move(held_out);
         return true;
       }
     }

@@ -199,16 +199,6 @@ std::vector<DataFault> treat(Log& log, const RobotDescription& robot,
   return faults;
 }
 
-std::vector<DataFault> treat(std::vector<Log>& logs, const RobotDescription& robot,
-                             const std::vector<KeepFault>& keep) {
-  std::vector<DataFault> all;
-  for (Log& log : logs) {
-    if (log.at_rest) continue;
-    for (DataFault& fault : treat(log, robot, keep)) all.push_back(std::move(fault));
-  }
-  return all;
-}
-
 KeepFault keep_fault_of(const std::string& text) {
   std::vector<std::string> reasons;
   for (int kind = 0; kind <= static_cast<int>(DataFaultKind::kStart); ++kind) {

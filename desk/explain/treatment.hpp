@@ -17,10 +17,6 @@ namespace offnominal::desk {
 std::vector<DataFault> treat(Log& log, const RobotDescription& robot,
                              const std::vector<KeepFault>& keep = {});
 
-// The same of several; readings at rest are left as they are: every check there is needs time.
-std::vector<DataFault> treat(std::vector<Log>& logs, const RobotDescription& robot,
-                             const std::vector<KeepFault>& keep = {});
-
 // Straight lines over the spans of a fault in the signal that it is of; nothing for saturation,
 // which is a torque that was there.
 void bridge(const DataFault& fault, Log& log);
