@@ -274,7 +274,8 @@ TEST_F(RecordingsOfVerbs, GivenAPayloadThenItIsOfThatRecordingAndSaid) {
   test::ArmRecording loaded{.duration_s = 6, .rate_hz = 200};
   loaded.arm.mass2_kg += 0.7;
   put(folder_ / "loaded.csv", csv_text(test::record_arm(loaded)));
-  const auto& centre = test::arm_description().joints[1].joint.centre_of_mass_m;
+  const RobotDescription arm = test::arm_description();
+  const auto& centre = arm.joints[1].joint.centre_of_mass_m;
   const std::string place =
       shortest(centre[0]) + "," + shortest(centre[1]) + "," + shortest(centre[2]);
   const CommandResult result = run({"compare", path("a.csv"), path("loaded.csv"), "--payload",

@@ -17,7 +17,7 @@ using sim::FaultEventKind;
 using testing::HasSubstr;
 
 // Two joints every millisecond; seven as often as classic CAN lets them.
-class Odrives : public testing::TestWithParam<std::tuple<int, const char*>> {
+class Odrives : public testing::TestWithParam<std::tuple<int, std::string>> {
  protected:
   [[nodiscard]] static int joints() { return std::get<0>(GetParam()); }
   [[nodiscard]] static RobotDescription robot() {
@@ -81,7 +81,8 @@ TEST_P(Odrives, LetGoWhereAnEncoderFails) {
 }
 
 INSTANTIATE_TEST_SUITE_P(JointsAndFirmware, Odrives,
-                         testing::Combine(testing::Values(2, 7), testing::Values("0.5", "0.6")),
+                         testing::Combine(testing::Values(2, 7),
+                                          testing::Values(std::string("0.5"), std::string("0.6"))),
                          [](const auto& odrives) {
                            return std::to_string(std::get<0>(odrives.param)) + "_v" +
                                   std::get<1>(odrives.param)[2];
