@@ -1,5 +1,6 @@
 #include "explain/alternatives.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -28,7 +29,12 @@ bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternati
   const auto count = static_cast<double>(blocks.count);
   const double deviation = std::sqrt((difference.array() - mean).square().sum() / (count - 1));
   const double error = deviation * std::sqrt(correlation_samples(difference) / count);
-  return mean < kTellApart * error + kLeftOfItself * kLeftOfItself * energy / count;
+  // Were the other one the truth and its formula a simplification, the chosen one, which has
+  // nothing of what the formula leaves, would leave about as much.
+  constexpr double kMoreThanLeft = 3;  // of a joint's energy: twice the rms
+  const double simplified = kLeftOfItself * kLeftOfItself * energy;
+  const double left = mine.squaredNorm() / static_cast<double>(layout.joint_count());
+  return mean < kTellApart * error + std::min(simplified, kMoreThanLeft * left) / count;
 }
 
 bool is_nested(const Data& data, const ModelFit& baseline, const Term& inner, const Term& outer) {

@@ -195,6 +195,19 @@ class Finder {
     return best_fall(layout.rms(before.residual), layout.rms(after.residual));
   }
 
+  // By how much the log-likelihood of all joints' recordings grows.
+  [[nodiscard]] double more_likely(const ModelFit& before, const ModelFit& after) const {
+    const RowLayout& layout = regression_.data().layout;
+    const VectorXd was = layout.rms(before.residual);
+    const VectorXd is = layout.rms(after.residual);
+    double sum = 0;
+    for (Index joint = 0; joint < is.size(); ++joint) {
+      if (!(was[joint] > 0) || !(is[joint] > 0)) continue;
+      sum += after.remainder.independent_samples[joint] * std::log(was[joint] / is[joint]);
+    }
+    return sum;
+  }
+
   // Whether it is more than nothing to the joint's torque, and more than what effects that were
   // found before leave of themselves: each of them is a simplification of something.
   [[nodiscard]] bool matters(const Fall& fall) const {
@@ -329,8 +342,10 @@ class Finder {
 
   // Accepts those of the proposals, at most one per joint, that pass; the others are set aside.
   bool accept_of(std::vector<const Proposal*> best) {
+    // What makes all joints together most likely comes first: a payload looks like another torque
+    // constant to each of them.
     std::stable_sort(best.begin(), best.end(), [&](const Proposal* a, const Proposal* b) {
-      return fall_of(found_.fit, a->fit).share > fall_of(found_.fit, b->fit).share;
+      return more_likely(found_.fit, a->fit) > more_likely(found_.fit, b->fit);
     });
     const std::vector<Term> all = terms_with(best);
     const ModelFit fit_of_all = best.size() == 1 ? best[0]->fit : regression_.fit(all);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "compare/inverse_model.hpp"
@@ -10,6 +11,7 @@
 namespace offnominal::desk {
 
 using Eigen::Index;
+using Eigen::VectorXd;
 
 namespace {
 
@@ -46,7 +48,14 @@ std::vector<EffectKind> lacking(const Data& data, const std::vector<Term>& terms
   return missing;
 }
 
-Term term_of(const Data& data, EffectKind kind, Index joint) {
+bool brings(const Proposal& one, EffectKind kind) {
+  return std::any_of(one.terms.end() - static_cast<std::ptrdiff_t>(one.added), one.terms.end(),
+                     [&](const Term& term) { return term.effect->kind() == kind; });
+}
+
+}  // namespace
+
+Term first_on_grid(const Data& data, EffectKind kind, Index joint) {
   const auto& all = all_candidates();
   const auto effect =
       std::find_if(all.begin(), all.end(), [&](const auto& one) { return one->kind() == kind; });
@@ -55,19 +64,12 @@ Term term_of(const Data& data, EffectKind kind, Index joint) {
   return term;
 }
 
-bool brings(const Proposal& one, EffectKind kind) {
-  return std::any_of(one.terms.end() - static_cast<std::ptrdiff_t>(one.added), one.terms.end(),
-                     [&](const Term& term) { return term.effect->kind() == kind; });
-}
-
-}  // namespace
-
 std::vector<Term> standard_friction(const Data& data) {
   std::vector<Term> terms;
   for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
     if (!moves_in_any(data.recordings, joint)) continue;
     for (const EffectKind kind : lacking(data, {}, joint)) {
-      terms.push_back(term_of(data, kind, joint));
+      terms.push_back(first_on_grid(data, kind, joint));
     }
   }
   return terms;
@@ -75,11 +77,22 @@ std::vector<Term> standard_friction(const Data& data) {
 
 bool is_refuted_by_simpler(const Data& data, const Term& simpler, const ModelFit& with_simpler,
                            const Term& other, const ModelFit& with_other) {
-  if (!is_member(simpler.effect->kind()) || !is_larger_member(other.effect->kind())) return false;
-  const Index joint = simpler.joint;
-  if (other.joint != joint) return false;
-  return data.layout.rms(with_other.residual)[joint] >=
-         data.layout.rms(with_simpler.residual)[joint];
+  if (other.joint != simpler.joint) return false;
+  const VectorXd simple = data.layout.rms(with_simpler.residual);
+  const VectorXd rest = data.layout.rms(with_other.residual);
+  // A link that is heavier as a whole is a payload at its centre of mass.
+  if (simpler.effect->kind() == EffectKind::kLinkMass &&
+      other.effect->kind() == EffectKind::kTipPayload) {
+    const VectorXd& samples = with_other.remainder.independent_samples;
+    double more_likely = 0;
+    for (Index joint = 0; joint < rest.size(); ++joint) {
+      if (rest[joint] > 0) more_likely += samples[joint] * std::log(simple[joint] / rest[joint]);
+    }
+    const auto place = static_cast<double>(other.shape.size());
+    return more_likely < kBeats + 0.5 * place * std::log(std::max(samples.sum(), 2.0));
+  }
+  return is_member(simpler.effect->kind()) && is_larger_member(other.effect->kind()) &&
+         rest[simpler.joint] >= simple[simpler.joint];
 }
 
 void refine_over_range(const Regression& regression, std::vector<Term>& terms, std::size_t which) {
@@ -126,7 +139,7 @@ void put_friction_first(const Search& search, const Regression& regression,
     Member& member = members[i];
     std::vector<Term> longer = terms;
     for (const EffectKind kind : member.kinds) {
-      longer.push_back(term_of(data, kind, static_cast<Index>(member.joint)));
+      longer.push_back(first_on_grid(data, kind, static_cast<Index>(member.joint)));
     }
     refine_over_range(regression, longer, longer.size() - 1);
     member.proposal = search.proposal_of(std::move(longer), terms.size());

@@ -17,9 +17,13 @@ void put_friction_first(const Search& search, const Regression& regression,
                         std::vector<std::vector<Proposal>>& proposals);
 
 // Whether `other`, in the place of Coulomb or viscous friction, is a larger member of their family
-// that does not make the recordings more likely: then the simpler one has the name.
+// that does not make the recordings more likely: then the simpler one has the name. So has a
+// heavier last link beside a payload somewhere on it.
 bool is_refuted_by_simpler(const Data& data, const Term& simpler, const ModelFit& with_simpler,
                            const Term& other, const ModelFit& with_other);
+
+// An effect on a joint, its shape at the first point of its grid.
+Term first_on_grid(const Data& data, EffectKind kind, Eigen::Index joint);
 
 // What of Coulomb and viscous friction the file lacks on joints that move.
 std::vector<Term> standard_friction(const Data& data);

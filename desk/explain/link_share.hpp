@@ -13,10 +13,11 @@ inline constexpr double kUsualLinkShare = 0.05;
 inline constexpr double kCadShare = 0.1;
 
 // A wider share, as far as the recordings ask for one: with mass, centre of mass and inertia of
-// every link each free within it, and Coulomb and viscous friction on every joint that moves,
-// held-out time has to become clearly more likely (at least one joint's error falls by a
-// twentieth). The narrower one of those that are about as good; none where the usual one is.
-// `robot`: that `data` was made with, at the usual share.
+// every link each free within it, Coulomb and viscous friction on every joint that moves, and a
+// payload on the last link of an arm of three joints or more, held-out time has to become clearly
+// more likely (at least one joint's error falls by a twentieth). The narrower one of those that are
+// about as good; none where the usual one is. `robot`: that `data` was made with, at the usual
+// share.
 std::optional<double> wider_link_share(const RobotDescription& robot, const Data& data,
                                        int threads);
 

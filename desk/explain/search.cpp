@@ -47,6 +47,13 @@ bool is_within_reach(const Data& data, const Term& term, const VectorXd& coeffic
   return true;
 }
 
+// Numbers of a term's shape that the recordings choose.
+double chosen_numbers(const Term& term) {
+  return static_cast<double>(
+      std::count_if(term.ranges.begin(), term.ranges.end(),
+                    [](const ShapeRange& one) { return one.grid.size() != 1; }));
+}
+
 }  // namespace
 
 // What every model adapts in its nuisance is no discovery in another name either.
@@ -100,8 +107,8 @@ std::vector<ShapePoint> Search::grid_of(const Term& term) {
 
 void Search::finish(Screened& screened, const Remainder& at) const {
   const Evidence& evidence = screened.evidence;
-  const double parameters = static_cast<double>(evidence.coefficients.size()) +
-                            static_cast<double>(screened.term.ranges.size());
+  const double parameters =
+      static_cast<double>(evidence.coefficients.size()) + chosen_numbers(screened.term);
   const double samples = at.independent_samples.sum();
   screened.score = evidence.log_likelihood - 0.5 * parameters * std::log(std::max(samples, 2.0));
   screened.log10_p = -std::log10(std::max(
@@ -340,8 +347,8 @@ void Search::rank(std::vector<Proposal>& proposals) const {
   for (Proposal& one : proposals) {
     double parameters = 0;
     for (std::size_t i = one.terms.size() - one.added; i < one.terms.size(); ++i) {
-      parameters += static_cast<double>(one.fit.coefficients[i].size()) +
-                    static_cast<double>(one.terms[i].ranges.size());
+      parameters +=
+          static_cast<double>(one.fit.coefficients[i].size()) + chosen_numbers(one.terms[i]);
     }
     one.score = -(samples.array() * logs(one.fit)).sum() -
                 0.5 * parameters * std::log(std::max(samples.sum(), 2.0));

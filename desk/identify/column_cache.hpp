@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -31,8 +32,13 @@ class ColumnCache {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
   [[nodiscard]] std::optional<Eigen::MatrixXd> known(const Key& key);
+  // Stacked, of each of a link's ten numbers (inertial_regressor.hpp), in which the torque of a
+  // mass anywhere on it is linear.
+  [[nodiscard]] std::shared_ptr<const Eigen::MatrixXd> of_link(
+      const RowLayout& layout, const std::vector<Workspace>& recordings, Eigen::Index link);
 
   std::mutex mutex_;
+  std::map<Eigen::Index, std::shared_ptr<const Eigen::MatrixXd>> of_links_;
   std::map<Key, Eigen::MatrixXd> known_;
   std::size_t numbers_ = 0;  // in known_
 };

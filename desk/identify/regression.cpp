@@ -35,7 +35,7 @@ void jump(Term& term, const Gain& gain) {
 // Moves a term's shape, one number after the other, within the neighbouring points of its grid to
 // where gain(term) is largest.
 template <typename Gain>
-void climb(Term& term, const Gain& gain) {
+void climb_once(Term& term, const Gain& gain) {
   for (std::size_t axis = 0; axis < term.ranges.size(); ++axis) {
     const ShapeRange& range = term.ranges[axis];
     if (!range.is_searched()) continue;
@@ -57,6 +57,21 @@ void climb(Term& term, const Gain& gain) {
     const auto [found, loss] = boost::math::tools::brent_find_minima(
         [&](double x) { return -gain_at(x); }, low, high, kBits, most);
     if (-loss > gain_at(coordinate(term.shape[axis]))) term.shape[axis] = value_at(found);
+  }
+}
+
+// The same until it is at the top: what is best for one number depends on the others.
+template <typename Gain>
+void climb(Term& term, const Gain& gain) {
+  constexpr double kStill = 1e-4;  // of the gain, that another turn brings
+  const auto searched = std::count_if(term.ranges.begin(), term.ranges.end(),
+                                      [](const ShapeRange& one) { return one.is_searched(); });
+  double most = gain(term);
+  for (auto turn = searched; turn > 0; --turn) {
+    climb_once(term, gain);
+    const double now = gain(term);
+    if (!(now - most > kStill * std::abs(most))) return;
+    most = now;
   }
 }
 
