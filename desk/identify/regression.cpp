@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
+#include <optional>
 
 #include "identify/independent_samples.hpp"
 #include "signal/correlation.hpp"
@@ -72,6 +73,68 @@ void climb(Term& term, const Gain& gain) {
     const double now = gain(term);
     if (!(now - most > kStill * std::abs(most))) return;
     most = now;
+  }
+}
+
+// What all numbers of a shape would have to change by together: with coefficient a and coefficients
+// b of the column's derivatives, the column at shape + b / a fits best, as far as it is linear.
+// Climbed one after the other, a mass and its lever would follow each other for ever.
+// `solved`: the coefficients of columns beside everything else, none where they add nothing.
+template <typename Solved>
+std::optional<ShapePoint> slid(const Data& data, const Term& term, const Solved& solved) {
+  const MatrixXd here = columns_of(data, term);
+  MatrixXd columns(here.rows(), 1 + static_cast<Index>(term.shape.size()));
+  columns.col(0) = here.col(0);
+  for (std::size_t axis = 0; axis < term.shape.size(); ++axis) {
+    const std::vector<double>& grid = term.ranges[axis].grid;
+    const double step = 1e-3 * (grid.back() - grid.front());
+    Term above = term;
+    Term below = term;
+    above.shape[axis] += step;
+    below.shape[axis] -= step;
+    columns.col(1 + static_cast<Index>(axis)) =
+        (columns_of(data, above).col(0) - columns_of(data, below).col(0)) / (2 * step);
+  }
+  const std::optional<VectorXd> coefficients = solved(columns);
+  if (!coefficients) return std::nullopt;
+  ShapePoint point = term.shape;
+  for (std::size_t axis = 0; axis < point.size(); ++axis) {
+    const std::vector<double>& grid = term.ranges[axis].grid;
+    const double by = (*coefficients)[1 + static_cast<Index>(axis)] / (*coefficients)[0];
+    if (!std::isfinite(by)) return std::nullopt;
+    point[axis] = std::clamp(point[axis] + by, grid.front(), grid.back());
+  }
+  return point;
+}
+
+// Moves a place, all of whose numbers are looked for and whose effect has one coefficient, to where
+// gain(term) is largest, from where it is and from the middle of its ranges.
+template <typename Gain, typename Solved>
+void slide(const Data& data, Term& term, const Gain& gain, const Solved& solved) {
+  const bool is_place =
+      term.ranges.size() > 1 &&
+      std::all_of(term.ranges.begin(), term.ranges.end(), [](const ShapeRange& one) {
+        return one.is_searched() && one.kind == ShapeRange::Kind::kLinear;
+      });
+  if (!is_place) return;
+  constexpr int kMostSteps = 6;
+  Term from_middle = term;
+  for (std::size_t axis = 0; axis < term.shape.size(); ++axis) {
+    const std::vector<double>& grid = term.ranges[axis].grid;
+    from_middle.shape[axis] = grid[grid.size() / 2];
+  }
+  double most = gain(term);
+  for (Term trial : {term, from_middle}) {
+    for (int step = 0; step < kMostSteps; ++step) {
+      const auto point = slid(data, trial, solved);
+      if (!point || *point == trial.shape) break;
+      trial.shape = *point;
+      const double now = gain(trial);
+      if (now > most) {
+        most = now;
+        term.shape = trial.shape;
+      }
+    }
   }
 }
 
@@ -247,7 +310,13 @@ void Regression::refine(std::vector<Term>& terms, std::size_t which, const Model
                         const Judge& judge) const {
   if (!terms[which].is_searched()) return;
   if (!holds_an_end(beside)) {
-    climb(terms[which], [&](const Term& trial) { return judge.gain(columns_of(data_, trial)); });
+    const auto gain = [&](const Term& trial) { return judge.gain(columns_of(data_, trial)); };
+    slide(data_, terms[which], gain, [&](const MatrixXd& columns) -> std::optional<VectorXd> {
+      const Evidence evidence = judge.evidence(columns);
+      if (!evidence.usable) return std::nullopt;
+      return evidence.coefficients;
+    });
+    climb(terms[which], gain);
     return;
   }
   // Without the term a nuisance may stand at an end where it does not belong with it: a payload
@@ -258,8 +327,9 @@ void Regression::refine(std::vector<Term>& terms, std::size_t which, const Model
   const Design made = design(others);
   const VectorXd weights =
       data_.layout.weighted(VectorXd::Ones(data_.layout.rows()), now.joint_weights);
-  const ProfileFit profile(weights.asDiagonal() * made.columns, weights.cwiseProduct(data_.target),
-                           made.priors, now.prior_weight);
+  const MatrixXd weighted = weights.asDiagonal() * made.columns;
+  const VectorXd target = weights.cwiseProduct(data_.target);
+  const ProfileFit profile(weighted, target, made.priors, now.prior_weight);
   const auto gain = [&](const Term& trial) {
     return -profile.energy_with(weights.asDiagonal() * columns_of(data_, trial));
   };
@@ -267,6 +337,13 @@ void Regression::refine(std::vector<Term>& terms, std::size_t which, const Model
   // them, and one that is not the peak is none.
   const bool spectral = terms[which].effect->spectrum() != EffectCandidate::Spectrum::kNone;
   if (!spectral) jump(terms[which], gain);
+  slide(data_, terms[which], gain, [&](const MatrixXd& columns) -> std::optional<VectorXd> {
+    MatrixXd all(weighted.rows(), weighted.cols() + columns.cols());
+    all << weighted, weights.asDiagonal() * columns;
+    std::vector<Prior> priors = made.priors;
+    priors.resize(priors.size() + static_cast<std::size_t>(columns.cols()));
+    return least_squares_with_priors(all, target, priors, now.prior_weight).x.tail(columns.cols());
+  });
   climb(terms[which], gain);
 }
 

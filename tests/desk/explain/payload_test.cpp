@@ -1,0 +1,93 @@
+// What an arm carries: a mass anywhere on its last link.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "explain/explain.hpp"
+#include "identify/regression.hpp"
+#include "serial_arm.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+using Eigen::Index;
+using ::testing::Contains;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr int kJoints = 5;
+
+Explanation explained(const RobotDescription& file, const RobotDescription& real,
+                      std::uint64_t seed) {
+  ExplainOptions options;
+  options.bootstrap_draws = 499;
+  options.threads = 2;
+  return explain(file, {test::record(real, {.duration_s = 15, .seed = seed})}, {}, options);
+}
+
+double number(const Finding& finding, const std::string& name) {
+  for (const Estimate& one : finding.parameters) {
+    if (one.value.name == name) return one.value.value;
+  }
+  ADD_FAILURE() << "no " << name;
+  return 0;
+}
+
+// Its column is put together from those of the link's ten numbers.
+TEST(Payload, HasTheTorqueOfAMassAtItsPlace) {
+  const RobotDescription robot = test::serial_arm(kJoints);
+  const std::vector<Log> logs{test::record(robot, {.duration_s = 5, .torque_noise_nm = 0})};
+  const FilterPlan plan = plan_filter(logs, robot);
+  const Data data(make_workspaces(logs, robot, plan, Eigen::VectorXd::Zero(kJoints)), robot, {});
+  const auto& all = all_candidates();
+  const auto payload = std::find_if(all.begin(), all.end(), [](const auto& one) {
+    return one->kind() == EffectKind::kTipPayload;
+  });
+  ASSERT_NE(payload, all.end());
+  for (const ShapePoint& place : {ShapePoint{0.1, 0.02, -0.3}, ShapePoint{-0.2, 0.4, 0.05}}) {
+    const Eigen::MatrixXd own =
+        stacked_columns(data.layout, data.recordings, **payload, kJoints - 1, place);
+    const Eigen::MatrixXd cached = columns_of(data, {payload->get(), kJoints - 1, place, {}, {}});
+    ASSERT_GT(own.norm(), 1);
+    EXPECT_LT((own - cached).norm(), 1e-9 * own.norm());
+  }
+}
+
+TEST(Payload, BesideTheAxisOfTheLastLinkIsNamedWithItsMassAndPlace) {
+  const RobotDescription file = test::serial_arm(kJoints);
+  RobotDescription real = file;
+  real.effects.push_back(
+      test::effect_of(EffectKind::kTipPayload, kJoints - 1, {0.8, 0.03, -0.09, 0.11}));
+  const Explanation told = explained(file, real, 3);
+  ASSERT_THAT(told.found, Not(IsEmpty())) << told.words;
+  const Finding& payload = told.found.front();
+  EXPECT_EQ(payload.what, (EffectAt{EffectKind::kTipPayload, kJoints - 1})) << told.words;
+  EXPECT_NEAR(number(payload, "mass"), 0.8, 0.04);
+  EXPECT_NEAR(number(payload, "x"), 0.03, 0.02);
+  EXPECT_NEAR(number(payload, "y"), -0.09, 0.02);
+  EXPECT_NEAR(number(payload, "z"), 0.11, 0.02);
+  for (const auto& same : told.ambiguous) {
+    EXPECT_FALSE(same.size() > 2) << "a heavier last link at most comes as near: " << told.words;
+  }
+}
+
+// A payload at the centre of mass is nothing else: the simpler name is the right one.
+TEST(Payload, AtTheCentreOfMassIsAHeavierLink) {
+  const RobotDescription file = test::serial_arm(kJoints);
+  RobotDescription real = file;
+  real.effects.push_back(test::effect_of(EffectKind::kLinkMass, kJoints - 1, {0.8}));
+  const Explanation told = explained(file, real, 4);
+  ASSERT_THAT(told.found, Not(IsEmpty())) << told.words;
+  EXPECT_EQ(told.found.front().what, (EffectAt{EffectKind::kLinkMass, kJoints - 1})) << told.words;
+  EXPECT_THAT(told.ambiguous,
+              Not(Contains(Contains(EffectAt{EffectKind::kTipPayload, kJoints - 1}))))
+      << told.words;
+}
+
+}  // namespace
+}  // namespace offnominal::desk
