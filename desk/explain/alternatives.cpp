@@ -15,15 +15,20 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternative, double energy) {
-  const RowLayout& layout = data.layout;
-  const RowLayout::Blocks& blocks = chosen.remainder.blocks;
-  const VectorXd mine = layout.weighted(chosen.residual, chosen.joint_weights);
-  const VectorXd other = layout.weighted(alternative.residual, chosen.joint_weights);
+namespace {
+
+// Whether it explains the blocks of one joint about as well.
+bool as_good_on(Index joint, const RowLayout& layout, const RowLayout::Blocks& blocks,
+                const VectorXd& mine, const VectorXd& other, double simplified) {
   VectorXd difference = VectorXd::Zero(blocks.count);
-  for (Index row = 0; row < mine.size(); ++row) {
-    difference[blocks.of_row[static_cast<std::size_t>(row)]] +=
-        other[row] * other[row] - mine[row] * mine[row];
+  double left = 0;
+  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+    const Index begin = layout.begin(r, joint);
+    for (Index row = begin; row < begin + layout.samples(r); ++row) {
+      const double own = mine[row] * mine[row];
+      left += own;
+      difference[blocks.of_row[static_cast<std::size_t>(row)]] += other[row] * other[row] - own;
+    }
   }
   const double mean = difference.mean();
   const auto count = static_cast<double>(blocks.count);
@@ -31,10 +36,22 @@ bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternati
   const double error = deviation * std::sqrt(correlation_samples(difference) / count);
   // Were the other one the truth and its formula a simplification, the chosen one, which has
   // nothing of what the formula leaves, would leave about as much.
-  constexpr double kMoreThanLeft = 3;  // of a joint's energy: twice the rms
+  constexpr double kMoreThanLeft = 3;  // twice the rms
+  return mean <= kTellApart * error + std::min(simplified, kMoreThanLeft * left) / count;
+}
+
+}  // namespace
+
+bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternative, double energy) {
+  const RowLayout& layout = data.layout;
+  const VectorXd mine = layout.weighted(chosen.residual, chosen.joint_weights);
+  const VectorXd other = layout.weighted(alternative.residual, chosen.joint_weights);
   const double simplified = kLeftOfItself * kLeftOfItself * energy;
-  const double left = mine.squaredNorm() / static_cast<double>(layout.joint_count());
-  return mean < kTellApart * error + std::min(simplified, kMoreThanLeft * left) / count;
+  // What takes as much away from another joint has not explained this one.
+  for (Index joint = 0; joint < layout.joint_count(); ++joint) {
+    if (!as_good_on(joint, layout, chosen.remainder.blocks, mine, other, simplified)) return false;
+  }
+  return true;
 }
 
 bool is_nested(const Data& data, const ModelFit& baseline, const Term& inner, const Term& outer) {

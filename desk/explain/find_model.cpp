@@ -446,7 +446,10 @@ class Finder {
   bool add_any_shapes() {
     bool added = false;
     for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
-      if (!excitation_[joint].sufficient || joints_[joint].effects >= options_.most_effects) {
+      const Excitation& motion = excitation_[joint];
+      // What is left of any effect on a poor motion is a curve over the position.
+      if (!motion.sufficient || motion.is_poor() ||
+          joints_[joint].effects >= options_.most_effects) {
         continue;
       }
       auto curve = any_shape_on(static_cast<Index>(joint), search_, regression_, found_);
@@ -542,21 +545,24 @@ class Finder {
       if (all.size() < elsewhere.size() + 2) continue;
       tell(fmt::format("trying a single effect on joint {}", joint + 1));
       const ModelFit several = found_.fit;
+      const VectorXd held_of_several = hold_out_.residual(found_.terms(), several);
       found_.accepted = std::move(elsewhere);
       refit();
-      if (accept_instead(joint, several, kMostTries)) {
+      if (accept_instead(joint, several, held_of_several, kMostTries)) {
         replaced = true;
         continue;
       }
       found_.accepted = all;
       found_.fit = several;
-      found_.held_out_after = hold_out_.residual(found_.terms(), found_.fit);
+      found_.held_out_after = held_of_several;
     }
     return replaced;
   }
 
   // Takes the best effect on a joint that is as good as `several`; false where there is none.
-  bool accept_instead(std::size_t joint, const ModelFit& several, std::size_t most_tries) {
+  bool accept_instead(std::size_t joint, const ModelFit& several, const VectorXd& held_of_several,
+                      std::size_t most_tries) {
+    constexpr double kAsWell = 1.1;
     const Data& data = regression_.data();
     std::vector<char> open(joints_.size(), 0);
     open[joint] = 1;
@@ -571,6 +577,10 @@ class Finder {
       if (!as_good(data, several, one.fit, 0)) continue;
       const NullOfSearch null = search_.null_of(one.terms, one.fit, found_.fit);
       VectorXd held_out = hold_out_.residual(one.terms, one.fit);
+      // What several predict clearly better is no chance.
+      const auto which = static_cast<Index>(joint);
+      if (hold_out_.rms(held_out)[which] > kAsWell * hold_out_.rms(held_of_several)[which])
+        continue;
       if (passes(one, null, hold_out_.rms(found_.held_out_after), held_out)) {
         found_.held_out_after = std::move(held_out);
         return true;

@@ -53,6 +53,27 @@ bool brings(const Proposal& one, EffectKind kind) {
                      [&](const Term& term) { return term.effect->kind() == kind; });
 }
 
+bool may_lack_offset(const Data& data, const std::vector<Term>& terms, Index joint) {
+  return !has_effect(data, terms, EffectKind::kTorqueOffset, joint) &&
+         !has_effect(data, terms, EffectKind::kJointStiffness, joint);
+}
+
+// Of what friction a joint lacks each by itself and all together, and the same beside a constant
+// torque: on a slow joint each hides the other, judged one after the other. Friction stands last.
+std::vector<std::vector<EffectKind>> combinations_of(const std::vector<EffectKind>& missing,
+                                                     bool with_offset) {
+  std::vector<std::vector<EffectKind>> all;
+  for (const EffectKind kind : missing) all.push_back({kind});
+  if (missing.size() > 1) all.push_back(missing);
+  const std::size_t without = all.size();
+  for (std::size_t i = 0; with_offset && i < without; ++i) {
+    std::vector<EffectKind> kinds{EffectKind::kTorqueOffset};
+    kinds.insert(kinds.end(), all[i].begin(), all[i].end());
+    all.push_back(std::move(kinds));
+  }
+  return all;
+}
+
 }  // namespace
 
 Term first_on_grid(const Data& data, EffectKind kind, Index joint) {
@@ -131,9 +152,10 @@ void put_friction_first(const Search& search, const Regression& regression,
   for (std::size_t joint = 0; joint < proposals.size(); ++joint) {
     const auto at = static_cast<Index>(joint);
     if (open[joint] == 0 || !moves_in_any(data.recordings, at)) continue;
-    const std::vector<EffectKind> missing = lacking(data, terms, at);
-    for (const EffectKind kind : missing) members.push_back({joint, {kind}, {}});
-    if (missing.size() > 1) members.push_back({joint, missing, {}});
+    for (std::vector<EffectKind>& kinds :
+         combinations_of(lacking(data, terms, at), may_lack_offset(data, terms, at))) {
+      members.push_back({joint, std::move(kinds), {}});
+    }
   }
   parallel_for(members.size(), search.options().threads, [&](std::size_t i) {
     Member& member = members[i];

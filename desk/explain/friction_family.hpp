@@ -8,10 +8,11 @@ namespace offnominal::desk {
 
 // Every drive has friction. Where the model of a joint has no Coulomb or no viscous friction, what
 // may stand for either, or for both at once, is compared with them first: the family of one, of the
-// other and of both, every shape refitted. Puts the members of the family that the model lacks
-// among a joint's proposals and takes out whatever larger member does not beat the best of them,
-// and a drift where there is no friction yet that could drift. `open`: per joint, whether it is
-// searched; `proposals`: per joint, ranked, and again after it.
+// other and of both, each with and without a constant torque, every shape refitted. Puts the
+// members of the family that the model lacks among a joint's proposals and takes out whatever
+// larger member does not beat the best of them, and a drift where there is no friction yet that
+// could drift. `open`: per joint, whether it is searched; `proposals`: per joint, ranked, and again
+// after it.
 void put_friction_first(const Search& search, const Regression& regression,
                         const std::vector<Term>& terms, const std::vector<char>& open,
                         std::vector<std::vector<Proposal>>& proposals);
