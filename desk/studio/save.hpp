@@ -8,7 +8,7 @@
 namespace offnominal::desk::studio {
 
 struct SaveRequest {
-  std::string name;            // of the file; empty: proposed_name()
+  std::string name = {};       // of the file; empty: proposed_name()
   bool replace = false;        // a file that is there
   bool accept_doubts = false;  // steps with which the held-out error does not fall
 };

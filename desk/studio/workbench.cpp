@@ -14,40 +14,48 @@
 namespace offnominal::desk::studio {
 namespace {
 
-// A fit holds the curves of every recording.
-constexpr std::size_t kMostKnown = 64;
+// A fit holds the curves of every recording: at most so much of them is kept, bytes.
+constexpr double kMostKept = 512e6;
 
-std::vector<Measurement> measured(const std::vector<Log>& logs, const RobotDescription& robot,
-                                  const FilterPlan& plan) {
-  std::vector<Measurement> all;
-  for (const Log& log : logs) all.push_back(measure(log, robot, plan));
-  return all;
+Comparisons compare_all(const RobotDescription& robot, const std::vector<Log>& logs,
+                        const FilterPlan& plan) {
+  std::vector<Comparison> comparisons;
+  for (const Log& log : logs) comparisons.push_back(compare(robot, measure(log, robot, plan)));
+  return together(std::move(comparisons));
 }
 
-Comparisons compare_all(const RobotDescription& robot, const std::vector<Measurement>& all) {
-  std::vector<Comparison> comparisons;
-  for (const Measurement& one : all) comparisons.push_back(compare(robot, one));
-  return together(std::move(comparisons));
+// Of two models on one and of one on the other, as a fit keeps them.
+double bytes_of(const Compared& compared) {
+  Eigen::Index numbers = 0;
+  const auto count = [&](const Comparisons& all) {
+    for (const Comparison& one : all.recordings) numbers += 7 * one.measured.size();
+  };
+  count(compared.fitted);
+  if (compared.held_out) count(*compared.held_out);
+  return 2 * sizeof(double) * static_cast<double>(numbers);
 }
 
 }  // namespace
 
-Workbench::Workbench(Input input) : input_(std::move(input)) {
+Workbench::Workbench(Input input)
+    : input_(std::move(input)), memory_(input_.recordings->logs, input_.recordings->holdout) {
   const Treated& recordings = *input_.recordings;
   for (const std::vector<Log>* group : {&recordings.logs, &recordings.holdout}) {
     for (const Log& log : *group) require_joints(log, input_.robot);
   }
-  const FilterPlan plan = plan_filter(recordings.logs, input_.robot);
-  measured_ = measured(recordings.logs, input_.robot, plan);
-  measured_held_out_ = measured(recordings.holdout, input_.robot, plan);
-  start_ = compared(input_.robot);
+  const FilterPlan& plan = memory_.plan(input_.robot);
+  start_.fitted = compare_all(input_.robot, recordings.logs, plan);
+  if (!recordings.holdout.empty()) {
+    start_.held_out = compare_all(input_.robot, recordings.holdout, plan);
+  }
   now_ = start_;
+  most_known_ = static_cast<std::size_t>(std::clamp(kMostKept / bytes_of(start_), 4.0, 64.0));
 }
 
-Compared Workbench::compared(const RobotDescription& robot) const {
-  Compared all{compare_all(robot, measured_), std::nullopt};
-  if (!measured_held_out_.empty()) all.held_out = compare_all(robot, measured_held_out_);
-  return all;
+Compared Workbench::compared(const Fitted& last) {
+  const AddResult& result = last.result;
+  if (result.cross_validated) return {result.after, std::nullopt};
+  return {result.after_fitted, result.after};
 }
 
 const RobotDescription& Workbench::robot_after(std::size_t steps) const {
@@ -113,8 +121,7 @@ void Workbench::undo(std::size_t id) {
 
 void Workbench::take(std::vector<Step> steps) {
   std::vector<Fit> fits = fits_of(steps);
-  const RobotDescription& robot = fits.empty() ? input_.robot : fits.back()->result.robot;
-  Compared now = fits.empty() ? start_ : compared(robot);
+  Compared now = fits.empty() ? start_ : compared(*fits.back());
   steps_ = std::move(steps);
   fits_ = std::move(fits);
   now_ = std::move(now);
@@ -140,7 +147,7 @@ Workbench::Fit Workbench::fit(const RobotDescription& robot, const Step& step,
   if (!made->result.objections.empty()) {
     throw Refused(Refused::Why::kNotNow, verdict_of(made->result, request));
   }
-  if (known_.size() >= kMostKnown) known_.clear();
+  if (known_.size() >= most_known_) known_.clear();
   known_.emplace(key, made);
   return made;
 }

@@ -83,17 +83,18 @@ class Workbench {
 
   [[nodiscard]] const RobotDescription& robot_after(std::size_t steps) const;
   [[nodiscard]] AddRequest request_of(const Step& step) const;
-  [[nodiscard]] Compared compared(const RobotDescription& robot) const;
+  // With all of these fits.
+  [[nodiscard]] static Compared compared(const Fitted& last);
   [[nodiscard]] std::vector<Fit> fits_of(const std::vector<Step>& steps);
   Fit fit(const RobotDescription& robot, const Step& step, const std::string& key);
   void take(std::vector<Step> steps);
 
   Input input_;
-  std::vector<Measurement> measured_;
-  std::vector<Measurement> measured_held_out_;
+  FitMemory memory_;
   std::vector<Step> steps_;
   std::vector<Fit> fits_;
   std::map<std::string, Fit> known_;  // by the steps up to it: what was undone comes back at once
+  std::size_t most_known_ = 0;
   Compared start_;
   Compared now_;
   std::size_t next_id_ = 1;

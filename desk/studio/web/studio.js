@@ -139,7 +139,7 @@ function saveContent() {
   form.append(
     element("label", { for: "save-name" }, save.fixed ? "Robot file" : "Robot file, beside the one that was read"),
     name,
-    button("save", "Save", () => actions.save({}), { class: "action main" }),
+    button("save-file", "Save", () => actions.save({}), { class: "action main" }),
   );
   const content = [form];
   if (saving.words !== "") {
