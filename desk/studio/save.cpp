@@ -54,7 +54,7 @@ std::filesystem::path place_to_save(const Input& input, const std::string& name)
                   "The name has to be that of a file beside the robot file, without a folder, and "
                   "end in .toml.");
   }
-  const std::filesystem::path path =
+  std::filesystem::path path =
       std::filesystem::path(input.robot_file).parent_path() / std::filesystem::path(own);
   check_is_no_input(input, path.string());
   return path;

@@ -99,8 +99,9 @@ std::string Workbench::why_not(EffectKind kind, std::size_t joint) const {
     return {};
   } catch (const InputError& error) {
     const InputProblem& problem = error.problem();
-    return problem.allowed.empty() ? problem.found
-                                   : problem.found + "; allowed: " + problem.allowed;
+    std::string words = problem.place.empty() ? "" : problem.place + ": ";
+    words += problem.found;
+    return problem.allowed.empty() ? words : words + "; allowed: " + problem.allowed;
   }
 }
 

@@ -41,7 +41,8 @@ function readArguments() {
 async function hostileInputs(options, folder) {
   const robot = join(folder, "robot.toml");
   const text = await readFile(options.robot, "utf8");
-  await writeFile(robot, text.replace(/^name = ".*"$/gm, `name = "${kScript}"`));
+  let count = 0; // joints have to have names that differ
+  await writeFile(robot, text.replace(/^name = ".*"$/gm, () => `name = "${kScript}${++count}"`));
   const copy = async (file, name) => {
     if (file === undefined) return undefined;
     const to = join(folder, `${name}${kScript}${extname(file)}`);
@@ -66,6 +67,7 @@ function startStudio(options, inputs) {
     });
     program.on("exit", () => failed(new Error("studio ended before it said its address")));
   });
+  address.catch(() => {}); // who waits for it later hears of it
   return { program, ended, address };
 }
 

@@ -96,17 +96,18 @@ function headlineContent() {
       "neutral",
     ),
   ];
-  return [
-    keyFiguresElement({ figures: figuresOf }, "headline"),
-    explained(
-      "What do these numbers mean?",
-      "The error is what the model misses of the measured torque: the root mean square of measured " +
-        "minus model, as a share of that of the measured torque, both low-passed alike. 0 % is a " +
-        "perfect model.",
-      "Held-out data were not used for the fit: only an error that falls there shows that an effect " +
-        "is real. On fitted data it falls with every number that is fitted.",
-    ),
-  ];
+  return keyFiguresElement({ figures: figuresOf }, "headline");
+}
+
+function meaningContent() {
+  return explained(
+    "What do these numbers mean?",
+    "The error is what the model misses of the measured torque: the root mean square of measured " +
+      "minus model, as a share of that of the measured torque, both low-passed alike. 0 % is a " +
+      "perfect model.",
+    "Held-out data were not used for the fit: only an error that falls there shows that an effect " +
+      "is real. On fitted data it falls with every number that is fitted.",
+  );
 }
 
 function recordingPicker() {
@@ -162,7 +163,7 @@ function show() {
   document.title = `Studio: ${state.robot.name}`;
   replaceContent(places.head, headerContent(), ...state.hints.map((hint) => noteWith("warn", hint)));
   replaceContent(places.joints, jointChoice());
-  replaceContent(places.headline, ...headlineContent());
+  replaceContent(places.headline, headlineContent());
   document.getElementById("effects-heading").textContent = `Effects of joint ${joint.joint}`;
   replaceContent(places.effects, ...effectList(joint, actions));
   replaceContent(places.recording, recordingPicker());
@@ -293,7 +294,13 @@ function buildStudio() {
   pictures.append(
     place("headline"),
     place("message", { role: "alert" }),
-    sectionWith("look", "Measured and model", place("recording"), place("charts", { class: "blocks" })),
+    sectionWith(
+      "look",
+      "Measured and model",
+      meaningContent(),
+      place("recording"),
+      place("charts", { class: "blocks" }),
+    ),
     sectionWith("steps", "What was added", place("fall"), place("steps")),
     sectionWith("learn", "What is missing?", place("learn")),
     sectionWith("save", "Save", place("save")),
