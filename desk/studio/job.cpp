@@ -25,6 +25,7 @@ Job::Report Job::report() {
   asked_ = Clock::now();
   if (report_.state == State::kRunning) {
     report_.seconds = std::chrono::duration<double>(asked_ - start_).count();
+    if (stopped_) report_.doing = "stopping at the end of this part";
   }
   return report_;
 }

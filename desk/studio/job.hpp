@@ -28,7 +28,8 @@ class Job {
     std::shared_ptr<const Explanation> explanation = nullptr;  // where it is done
     std::size_t of_revision = 0;                               // as start() was given it
   };
-  static constexpr std::chrono::seconds kAbandoned{20};
+  /// A page that is hidden behind others asks once a minute.
+  static constexpr std::chrono::seconds kAbandoned{90};
 
   Job() = default;
   Job(const Job&) = delete;

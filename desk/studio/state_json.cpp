@@ -7,6 +7,7 @@
 
 #include "explain/data_fault_report.hpp"
 #include "identify/add_report.hpp"
+#include "log/log.hpp"
 #include "robot/read_effect.hpp"
 #include "studio/commands.hpp"
 #include "studio/save.hpp"

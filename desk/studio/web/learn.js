@@ -11,6 +11,11 @@ function isAdded(state, what) {
   return state.steps.some(({ effect, joint }) => effect === what.effect && joint === what.joint);
 }
 
+function chanceWords(p) {
+  if (p < 1e-4) return "Chance does practically never do that.";
+  return `By chance in one of ${formatSignificant(1 / p, 2)} such searches at most.`;
+}
+
 function findingCard(card, id, state, actions) {
   const root = element("li", { class: "card finding" });
   const head = element("div", { class: "step-head" }, element("h4", {}, effectTitle(card.title)));
@@ -26,7 +31,7 @@ function findingCard(card, id, state, actions) {
       {},
       `Error on held-out data without it ${error(card.held_out_before)}, with it ` +
         `${error(card.held_out_after)}: it takes off ${formatNumber(share, ".0f")} %. ` +
-        `By chance in one of ${formatSignificant(1 / card.p_value, 2)} such searches at most.`,
+        chanceWords(card.p_value),
     ),
   );
   if (card.alternatives.length > 0) {
