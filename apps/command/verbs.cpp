@@ -5,7 +5,7 @@
 namespace offnominal::desk {
 namespace {
 
-constexpr std::array<Verb, 15> kVerbs = {{
+constexpr std::array<Verb, 16> kVerbs = {{
     {"add", "Fit an effect to a recording and write the robot file that has it", set_up_add},
     {"calibrate", "Find the uncertainty bound from recordings of the healthy robot",
      set_up_calibrate},
@@ -31,6 +31,8 @@ constexpr std::array<Verb, 15> kVerbs = {{
     {"replay", "Run the on-board monitor over a recording: residual, threshold, alarms",
      set_up_replay},
     {"sil", "Run controller and arm at the two ends of a CAN bus, with faults", set_up_sil},
+    {"studio", "Look, learn, add and watch the error fall, in one page on this machine",
+     set_up_studio},
 }};
 
 }  // namespace

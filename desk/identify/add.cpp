@@ -122,24 +122,25 @@ void doubt_what_held_out_data_say(const AddRequest& request, AddResult& result) 
 
 class Adder {
  public:
-  Adder(const RobotDescription& file, const AddRequest& request, const std::vector<Log>& logs,
-        const std::vector<Log>& holdout, const FilterRequest& filter, const OnProgress& on_progress)
+  Adder(const RobotDescription& file, const AddRequest& request, FitMemory& memory,
+        const OnProgress& on_progress)
       : file_(file),
         robot_(file),
         request_(request),
-        logs_(logs),
-        holdout_(holdout),
+        memory_(memory),
+        holdout_(memory.holdout()),
         on_progress_(on_progress),
-        setup_(set_up(file, request)),
-        plan_(checked_plan(filter)) {
+        setup_(set_up(file, request)) {
+    for (const std::vector<Log>* some : {&memory.logs(), &memory.holdout()}) {
+      for (const Log& log : *some) require_joints(log, file_);
+    }
     // What is believed of a link is two standard deviations wide.
     nuisance_.link_share = 2 * request.inertia_deviation.value_or(0);
     nuisance_.free_effects = setup_.refitted;
     if (!request.fit_skew) nuisance_.skew_samples = 0;
-    widths_ = set_sign_widths(robot_, logs_, plan_);
-    data_ = std::make_unique<Data>(
-        searched_workspaces(stretches_of(logs_, robot_, plan_), robot_, plan_, widths_), robot_,
-        nuisance_);
+    const VectorXd& widths = memory_.sign_widths(file_);
+    set_sign_widths(robot_, widths);
+    data_ = std::make_unique<Data>(memory_.workspaces(robot_, widths), robot_, nuisance_);
     regression_ = std::make_unique<Regression>(*data_);
     terms_ = terms_of(setup_, request.joint, *data_);
   }
@@ -156,13 +157,6 @@ class Adder {
   }
 
  private:
-  [[nodiscard]] FilterPlan checked_plan(const FilterRequest& filter) const {
-    for (const std::vector<Log>* some : {&logs_, &holdout_}) {
-      for (const Log& log : *some) require_joints(log, file_);
-    }
-    return plan_filter(logs_, file_, filter);
-  }
-
   [[nodiscard]] Unknown unknown_of(const ModelNumber& number) const {
     Unknown unknown;
     if (number.of == ModelNumber::Of::kTerm) {
@@ -364,8 +358,7 @@ class Adder {
     none.link_share = 0;
     none.sign_shapes = false;
     RobotDescription as_it_is = file_;
-    const Data before(searched_workspaces(stretches_of(logs_, file_, plan_), as_it_is, plan_,
-                                          improved_.last.data->recordings[0].sign_width),
+    const Data before(memory_.workspaces(as_it_is, improved_.last.data->recordings[0].sign_width),
                       as_it_is, none);
     const Regression nothing(before);
     const HoldOut of_before(nothing, nullptr);
@@ -384,23 +377,24 @@ class Adder {
   }
 
   void judge() {
-    const auto both = [&](const std::vector<Log>& logs, bool held_out) {
-      std::vector<Comparison> before;
-      std::vector<Comparison> after;
-      for (const Log& log : logs) {
-        const Measurement measured = measure(log, file_, plan_);
-        before.push_back(compare(file_, measured));
-        after.push_back(compare(result_.robot, measured));
+    const auto take = [&](FitMemory::Two two, bool held_out) {
+      for (std::size_t i = 0; i < two.after.recordings.size(); ++i) {
+        const Comparison& one = two.after.recordings[i];
         result_.recordings.push_back(
-            {log.file, held_out, before_after(before.back(), after.back()), log.remarks});
+            {one.file, held_out, before_after(two.before.recordings[i], one), one.remarks});
       }
-      result_.before = together(std::move(before));
-      result_.after = together(std::move(after));
+      result_.before = std::move(two.before);
+      result_.after = std::move(two.after);
       return before_after(result_.before.joints, result_.after.joints);
     };
-    result_.fitted_logs = both(logs_, false);
+    result_.fitted_logs = take(memory_.compared(file_, result_.robot), false);
     result_.cross_validated = holdout_.empty();
-    result_.held_out = holdout_.empty() ? parts_held_out() : both(holdout_, true);
+    if (holdout_.empty()) {
+      result_.held_out = parts_held_out();
+      return;
+    }
+    result_.after_fitted = std::move(result_.after);
+    result_.held_out = take(memory_.compared_held_out(file_, result_.robot), true);
   }
 
   // Share of the joint's rms torque, the largest where a motor moves several, that a number's
@@ -509,13 +503,11 @@ class Adder {
   const RobotDescription& file_;
   RobotDescription robot_;  // the same with signs as wide as the motion can resolve
   const AddRequest& request_;
-  const std::vector<Log>& logs_;
+  FitMemory& memory_;
   const std::vector<Log>& holdout_;
   const OnProgress& on_progress_;
   AddSetup setup_;
-  FilterPlan plan_;
   NuisanceOptions nuisance_;
-  VectorXd widths_;
   std::unique_ptr<Data> data_;
   std::unique_ptr<Regression> regression_;
   std::vector<Term> terms_;
@@ -550,12 +542,18 @@ std::vector<std::size_t> joints_asked(const RobotDescription& robot, const AddRe
   return joints;
 }
 
+AddResult add(const RobotDescription& robot, const AddRequest& request, FitMemory& memory,
+              const OnProgress& on_progress) {
+  for (const Log& log : memory.logs()) check_sensors(robot, request, log);
+  for (const Log& log : memory.holdout()) check_sensors(robot, request, log);
+  return Adder(robot, request, memory, on_progress).run();
+}
+
 AddResult add(const RobotDescription& robot, const AddRequest& request,
               const std::vector<Log>& logs, const std::vector<Log>& holdout,
               const FilterRequest& filter, const OnProgress& on_progress) {
-  for (const Log& log : logs) check_sensors(robot, request, log);
-  for (const Log& log : holdout) check_sensors(robot, request, log);
-  return Adder(robot, request, logs, holdout, filter, on_progress).run();
+  FitMemory memory(logs, holdout, filter, FitMemory::For::kOneFit);
+  return add(robot, request, memory, on_progress);
 }
 
 }  // namespace offnominal::desk

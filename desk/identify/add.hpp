@@ -7,6 +7,7 @@
 
 #include "compare/before_after.hpp"
 #include "compare/compare.hpp"
+#include "identify/fit_memory.hpp"
 #include "identify/freedom.hpp"
 #include "identify/on_progress.hpp"
 #include "identify/unknown.hpp"
@@ -80,6 +81,7 @@ struct AddResult {
   std::vector<OfRecording> recordings;
   Comparisons before;  // on the hold-out recordings, or on the fitted ones where there are none
   Comparisons after;
+  Comparisons after_fitted;             // on the fitted recordings, where there are others
   std::vector<std::string> notes;       // what a reader of the numbers has to know
   std::vector<std::string> objections;  // why the result must not be used; empty: it may
   // Why it should not be, as far as data say that the fit has not seen: for the user to overrule.
@@ -100,5 +102,10 @@ struct AddResult {
 AddResult add(const RobotDescription& robot, const AddRequest& request,
               const std::vector<Log>& logs, const std::vector<Log>& holdout,
               const FilterRequest& filter = {}, const OnProgress& on_progress = {});
+
+// The same, to the bit, of the memory's recordings with its filter: for many fits one after the
+// other.
+AddResult add(const RobotDescription& robot, const AddRequest& request, FitMemory& memory,
+              const OnProgress& on_progress = {});
 
 }  // namespace offnominal::desk

@@ -37,20 +37,29 @@ Data::Data(const Data& same, const RobotDescription& robot, const NuisanceOption
       target(same.target),
       cache(same.cache) {}
 
-VectorXd set_sign_widths(RobotDescription& robot, const std::vector<Log>& logs,
-                         const FilterPlan& plan) {
+VectorXd resolved_sign_widths(const std::vector<Log>& logs, const FilterPlan& plan) {
   constexpr double kShareOfTopSpeed = 0.004;
-  VectorXd widths = VectorXd::Zero(robot.joint_count());
+  VectorXd widths = VectorXd::Zero(logs.front().q.cols());
   for (const Log& log : logs) {
     const MatrixXd dq = motion_of(log, plan).dq;
-    for (Index joint = 0; joint < robot.joint_count(); ++joint) {
+    for (Index joint = 0; joint < widths.size(); ++joint) {
       const double top = quantile(dq.col(joint).cwiseAbs(), kTopSpeedShare);
       widths[joint] = std::max(widths[joint], kShareOfTopSpeed * top);
     }
   }
+  return widths;
+}
+
+void set_sign_widths(RobotDescription& robot, const VectorXd& widths) {
   for (Index joint = 0; joint < robot.joint_count(); ++joint) {
     if (widths[joint] > 0) set_sign_width(robot, joint, widths[joint]);
   }
+}
+
+VectorXd set_sign_widths(RobotDescription& robot, const std::vector<Log>& logs,
+                         const FilterPlan& plan) {
+  VectorXd widths = resolved_sign_widths(logs, plan);
+  set_sign_widths(robot, widths);
   return widths;
 }
 

@@ -28,6 +28,11 @@ struct Data {
   Data(const Data& same, const RobotDescription& robot, const NuisanceOptions& options);
 };
 
+// The width of the smoothed sign that the motion can resolve, per joint; 0 where it does not move.
+Eigen::VectorXd resolved_sign_widths(const std::vector<Log>& logs, const FilterPlan& plan);
+// Sets it, where it is above 0, in every effect that has one.
+void set_sign_widths(RobotDescription& robot, const Eigen::VectorXd& widths);
+
 // Sets the width of the smoothed sign of every effect that has one to what the motion can resolve,
 // and returns it per joint. The shape of the build-up at a reversal is a nuisance.
 Eigen::VectorXd set_sign_widths(RobotDescription& robot, const std::vector<Log>& logs,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
@@ -29,6 +30,18 @@ FilterPlan thinned(const FilterPlan& plan, Index stride) {
   thin.decimation = std::max<Index>(1, std::lround(static_cast<double>(plan.decimation) / by));
   thin.edge_samples = static_cast<Index>(std::ceil(static_cast<double>(plan.edge_samples) / by));
   return thin;
+}
+
+// Whether two robots have the same inverse dynamics, but for their effects.
+bool have_same_bodies(const RobotDescription& a, const RobotDescription& b) {
+  const auto of = [](const RobotJoint& one) {
+    const Joint<double>& joint = one.joint;
+    return std::tie(joint.type, joint.axis, joint.origin_m, joint.rotation, joint.mass_kg,
+                    joint.centre_of_mass_m, joint.inertia_kg_m2);
+  };
+  return a.gravity_m_s2 == b.gravity_m_s2 &&
+         std::equal(a.joints.begin(), a.joints.end(), b.joints.begin(), b.joints.end(),
+                    [&](const RobotJoint& x, const RobotJoint& y) { return of(x) == of(y); });
 }
 
 std::vector<MatrixXd> mass_columns(const Workspace& at) {
@@ -110,11 +123,13 @@ double longest_duration_s(const std::vector<Workspace>& recordings) {
 }
 
 void Workspace::set_model(const RobotDescription& robot) {
+  // The mass matrix over time is most of the work, and effects are no part of it.
+  const bool same = mass.size() == robot.joints.size() && have_same_bodies(rigid, robot);
   rigid = robot;
   known_effects = robot.effects;
   rigid.effects.clear();
   rigid = as_recorded(rigid);
-  load_torque = desk::model_torque(rigid, motion);
+  if (!same) load_torque = desk::model_torque(rigid, motion);
   const RobotDescription recorded = as_recorded(robot);
   stiff_torque = robot.effects.empty() ? load_torque : desk::model_torque(recorded, motion);
   model_torque = stiff_torque;
@@ -122,7 +137,16 @@ void Workspace::set_model(const RobotDescription& robot) {
     model_torque +=
         transmission_torque(recorded, motion, stiff_torque, torque, torque_noise_density, plan);
   }
-  mass = mass_columns(*this);
+  if (!same) mass = mass_columns(*this);
+}
+
+void Workspace::set_sign_width(const VectorXd& widths) {
+  constexpr double kStill = 1e-9;
+  sign_width = widths;
+  for (Index joint = 0; joint < sign_width.size(); ++joint) {
+    if (sign_width[joint] > 0) continue;
+    sign_width[joint] = std::max(0.01 * top_speed[joint], kStill);
+  }
 }
 
 bool Workspace::knows(EffectKind kind, Index joint) const {
@@ -171,15 +195,11 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
     at.of_sensor.push_back(log.of_sensor(joint) ? 1 : 0);
   }
   at.set_model(robot);
-  at.sign_width = sign_width;
   at.top_speed = VectorXd::Zero(log.q.cols());
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     at.top_speed[joint] = quantile(at.motion.dq.col(joint).cwiseAbs(), kTopSpeedShare);
-    if (!(at.sign_width[joint] > 0)) {
-      constexpr double kStill = 1e-9;
-      at.sign_width[joint] = std::max(0.01 * at.top_speed[joint], kStill);
-    }
   }
+  at.set_sign_width(sign_width);
   if (moving.minCoeff() < 1) at.moving = std::move(moving);
   if (usable.size() > 0) at.usable = every_nth_row(usable, stride);
   return at;

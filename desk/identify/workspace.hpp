@@ -54,6 +54,8 @@ struct Workspace {
   }
   // Another model of the same robot: everything that follows from it.
   void set_model(const RobotDescription& robot);
+  // Per joint, 0 where nothing is known: then a hundredth of the top speed.
+  void set_sign_width(const Eigen::VectorXd& widths);
   // Whether the model has an effect on a joint: the joint's, or that of a motor that moves it
   // alone.
   [[nodiscard]] bool knows(EffectKind kind, Eigen::Index joint) const;

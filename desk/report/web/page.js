@@ -213,5 +213,3 @@ function buildPage() {
   drawAll();
   watchWidths();
 }
-
-buildPage();

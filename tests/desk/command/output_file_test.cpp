@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,7 @@ class OutputFile : public testing::Test {
         {"paper", {with({"paper", "--fault", "none"}, robot), {"--log", "--report"}}},
         {"replay", {with({"replay", path("a.csv")}, robot), {"--report"}}},
         {"sil", {with({"sil"}, robot), {"--log", "--candump", "--report"}}},
+        {"studio", {with({"studio", path("a.csv"), "--no-open"}, robot), {"-o"}}},
     };
   }
 
@@ -96,13 +98,14 @@ TEST_F(OutputFile, OfEveryVerbReplacesNoFileThatIsThere) {
 }
 
 TEST_F(OutputFile, OfEveryVerbIsNeverAnInput) {
+  const std::set<std::string> kMayWriteItsRobot = {"add", "calibrate", "identify", "studio"};
   put(folder_ / "r.toml", "input");
   std::filesystem::create_symlink("r.toml", folder_ / "link");
   for (const auto& [verb, call] : calls()) {
     for (const std::string& option : call.outputs) {
       SCOPED_TRACE(verb + " " + option);
       // `-o` of those may write the robot file that they read.
-      if (option == "-o" && (verb == "add" || verb == "calibrate" || verb == "identify")) continue;
+      if (option == "-o" && kMayWriteItsRobot.contains(verb)) continue;
       for (const char* name : {"r.toml", "link"}) {
         expect_refusal(with(writing(call, option, path(name)), {"--force"}), "which is that of ");
       }

@@ -1,0 +1,79 @@
+#include "identify/fit_memory.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "identify/data.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+bool are_same(const std::vector<Stretch>& a, const std::vector<Stretch>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Stretch& x, const Stretch& y) {
+    return x.log == y.log && x.first == y.first && x.samples == y.samples && x.margin == y.margin;
+  });
+}
+
+}  // namespace
+
+const FilterPlan& FitMemory::plan(const RobotDescription& robot) {
+  if (!plan_) plan_ = plan_filter(logs_, robot, filter_);
+  return *plan_;
+}
+
+const Eigen::VectorXd& FitMemory::sign_widths(const RobotDescription& robot) {
+  if (!sign_widths_) sign_widths_ = resolved_sign_widths(logs_, plan(robot));
+  return *sign_widths_;
+}
+
+std::vector<Workspace> FitMemory::workspaces(const RobotDescription& robot,
+                                             const Eigen::VectorXd& sign_width) {
+  std::vector<Stretch> stretches = stretches_of(logs_, robot, plan(robot));
+  if (workspaces_.empty() || !are_same(stretches, stretches_)) {
+    workspaces_ = searched_workspaces(stretches, robot, plan(robot), sign_width);
+    stretches_ = std::move(stretches);
+  }
+  std::vector<Workspace> made = workspaces_;
+  for (Workspace& at : made) {
+    at.set_model(robot);
+    at.set_sign_width(sign_width);
+  }
+  return made;
+}
+
+FitMemory::Two FitMemory::compare_two(const RobotDescription& before, const RobotDescription& after,
+                                      const std::vector<Log>& logs, Known& known) {
+  const std::string text = for_ == For::kMany ? robot_text(before) : "";
+  const bool is_known = !text.empty() && text == known.robot;
+  std::vector<Comparison> first;
+  std::vector<Comparison> second;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    if (known.measured.size() == i) {
+      known.measured.push_back(measure(logs[i], before, plan(before)));
+    }
+    if (!is_known) first.push_back(compare(before, known.measured[i]));
+    second.push_back(compare(after, known.measured[i]));
+    if (for_ == For::kOneFit) known.measured[i] = {};
+  }
+  Two two{is_known ? std::move(known.result) : together(std::move(first)),
+          together(std::move(second))};
+  if (for_ == For::kOneFit) {
+    known.measured.clear();
+    return two;
+  }
+  known.robot = robot_text(after);
+  known.result = two.after;
+  return two;
+}
+
+FitMemory::Two FitMemory::compared(const RobotDescription& before, const RobotDescription& after) {
+  return compare_two(before, after, logs_, fitted_);
+}
+
+FitMemory::Two FitMemory::compared_held_out(const RobotDescription& before,
+                                            const RobotDescription& after) {
+  return compare_two(before, after, holdout_, held_out_);
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studio/workbench.hpp"
+
+namespace offnominal::desk::studio {
+
+/// The commands that make `output` of the robot file without Studio: an `add` for each step, and a
+/// `compare` of what comes out. Empty where there is no step.
+std::vector<std::string> commands_of(const Workbench& bench, const std::string& output);
+
+}  // namespace offnominal::desk::studio

@@ -1,0 +1,80 @@
+#include "studio/save.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include "common/file.hpp"
+#include "common/input_name.hpp"
+#include "common/output_file.hpp"
+#include "robot/robot_file.hpp"
+#include "studio/refused.hpp"
+
+namespace offnominal::desk::studio {
+namespace {
+
+constexpr std::size_t kLongestName = 120;
+
+bool is_plain_name(const std::string& name) {
+  if (name.size() > kLongestName || !name.ends_with(".toml") || name.starts_with(".")) return false;
+  return std::none_of(name.begin(), name.end(), [](const char c) {
+    return c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+  });
+}
+
+void check_is_no_input(const Input& input, const std::string& path) {
+  for (const auto* files : {&input.log_files, &input.holdout_files}) {
+    for (const std::string& recording : *files) {
+      for (const std::filesystem::path& file : recording_files(recording)) {
+        if (!same_file(file.string(), path)) continue;
+        throw Refused(Refused::Why::kBadRequest,
+                      "That is a recording of this session: choose another name.");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::string proposed_name(const Input& input) {
+  if (input.output) return *input.output;
+  return std::filesystem::path(input.robot_file).stem().string() + "_studio.toml";
+}
+
+std::filesystem::path place_to_save(const Input& input, const std::string& name) {
+  if (input.output) {
+    if (!name.empty() && name != *input.output) {
+      throw Refused(Refused::Why::kBadRequest,
+                    "This session writes the file that -o names, and no other.");
+    }
+    return *input.output;
+  }
+  const std::string own = name.empty() ? proposed_name(input) : name;
+  if (!is_plain_name(own)) {
+    throw Refused(Refused::Why::kBadRequest,
+                  "The name has to be that of a file beside the robot file, without a folder, and "
+                  "end in .toml.");
+  }
+  std::filesystem::path path =
+      std::filesystem::path(input.robot_file).parent_path() / std::filesystem::path(own);
+  check_is_no_input(input, path.string());
+  return path;
+}
+
+std::filesystem::path save(const Workbench& bench, const SaveRequest& request) {
+  if (bench.steps().empty()) {
+    throw Refused(Refused::Why::kNotNow, "There is nothing to save yet: add an effect first.");
+  }
+  std::filesystem::path path = place_to_save(bench.input(), request.name);
+  for (std::size_t i = 0; i < bench.steps().size() && !request.accept_doubts; ++i) {
+    if (bench.fitted(i).result.doubts.empty()) continue;
+    throw Refused(Refused::Why::kMustConfirm, bench.fitted(i).result.doubts.front());
+  }
+  std::error_code ignored;
+  if (!request.replace && std::filesystem::exists(path, ignored)) {
+    throw Refused(Refused::Why::kMustConfirm, path.string() + " is there already.");
+  }
+  write_robot_file(bench.robot(), path, existing_if(request.replace));
+  return path;
+}
+
+}  // namespace offnominal::desk::studio

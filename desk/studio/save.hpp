@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "studio/workbench.hpp"
+
+namespace offnominal::desk::studio {
+
+struct SaveRequest {
+  std::string name = {};       // of the file; empty: proposed_name()
+  bool replace = false;        // a file that is there
+  bool accept_doubts = false;  // steps with which the held-out error does not fall
+};
+
+/// What is written unless the user says another name: that of -o, or "emps_studio.toml" for
+/// emps.toml.
+std::string proposed_name(const Input& input);
+
+/// The file of that name that a session may write: that of -o, or one beside the robot file. Throws
+/// Refused where the name is none of a TOML file in that folder, or is that of an input other than
+/// the robot file.
+std::filesystem::path place_to_save(const Input& input, const std::string& name);
+
+/// Writes the robot with all steps as `offnominal add` writes it, whole or not at all, and returns
+/// its path. Throws Refused where there is no step, and kMustConfirm where a file is there or a
+/// step is in doubt and the request does not say that this is meant; InputError where it cannot be
+/// written.
+std::filesystem::path save(const Workbench& bench, const SaveRequest& request);
+
+}  // namespace offnominal::desk::studio

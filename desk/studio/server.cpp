@@ -1,0 +1,109 @@
+#include "studio/server.hpp"
+
+#include <httplib.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "common/error.hpp"
+#include "studio/guard.hpp"
+#include "studio/routes.hpp"
+#include "studio/session.hpp"
+
+namespace offnominal::desk::studio {
+namespace {
+
+constexpr const char* kHost = "127.0.0.1";
+// A browser keeps up to six connections, each of which holds a thread.
+constexpr std::size_t kThreads = 16;
+// What the end of the server waits for, at most; a connection of this machine is soon made anew.
+constexpr int kIdleS = 1;
+constexpr int kReadS = 5;
+
+const httplib::Headers kHeaders = {
+    {"Content-Security-Policy",
+     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' "
+     "data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors "
+     "'none'"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"X-Frame-Options", "DENY"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+    {"Cross-Origin-Opener-Policy", "same-origin"},
+    {"Cache-Control", "no-store"},
+};
+
+int port_of(httplib::Server& server, int port) {
+  if (port == 0) {
+    const int chosen = server.bind_to_any_port(kHost);
+    if (chosen > 0) return chosen;
+  } else if (server.bind_to_port(kHost, port)) {
+    return port;
+  }
+  throw InputError({"--port", "", std::to_string(port) + ", which cannot be taken",
+                    "a port of 127.0.0.1 that is free", "leave --port out: a free one is chosen"});
+}
+
+}  // namespace
+
+struct Server::Parts {
+  Parts(Input input, int asked_port)
+      : session(std::move(input)),
+        port((set_up(), port_of(http, asked_port))),
+        guard(random_token(), port) {
+    set_up_routes(http, guard.path(), session);
+    http.set_pre_routing_handler(
+        [this](const httplib::Request& request, httplib::Response& response) {
+          return let_in(request, response);
+        });
+  }
+
+  void set_up() {
+    http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+    http.set_payload_max_length(kMostBody);
+    http.set_keep_alive_timeout(kIdleS);
+    http.set_read_timeout(kReadS);
+    http.set_tcp_nodelay(true);
+    http.set_default_headers(kHeaders);
+    // httplib's own option lets another server share the port.
+    http.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      static_cast<void>(::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes));
+    });
+  }
+
+  httplib::Server::HandlerResponse let_in(const httplib::Request& request,
+                                          httplib::Response& response) const {
+    const std::string host = request.get_header_value("Host");
+    const std::string origin = request.get_header_value("Origin");
+    const std::string site = request.get_header_value("Sec-Fetch-Site");
+    const int refusal = guard.refusal({request.method, request.path, host, origin, site});
+    if (refusal == 0) return httplib::Server::HandlerResponse::Unhandled;
+    response.status = refusal;
+    response.set_header("Connection", "close");
+    response.set_content("Not for you.\n", "text/plain; charset=utf-8");
+    return httplib::Server::HandlerResponse::Handled;
+  }
+
+  Session session;
+  httplib::Server http;
+  int port;
+  Guard guard;
+};
+
+Server::Server(Input input, int port) : parts_(std::make_unique<Parts>(std::move(input), port)) {}
+Server::~Server() = default;
+
+std::string Server::address() const { return parts_->guard.address(); }
+int Server::port() const { return parts_->port; }
+
+void Server::run() {
+  if (!parts_->http.listen_after_bind()) throw std::runtime_error("the port was lost");
+}
+
+void Server::stop() {
+  parts_->session.leave();
+  parts_->http.stop();
+}
+
+}  // namespace offnominal::desk::studio

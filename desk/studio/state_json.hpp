@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+
+#include "studio/workbench.hpp"
+
+namespace offnominal::desk::studio {
+
+/// What docs/studio.md calls the state: robot, recordings, joints with their errors, steps, effects
+/// of every joint, what is said of the recordings, and what saving would write. Joints count
+/// from 1. A number that there is not is null.
+nlohmann::ordered_json state_of(const Workbench& bench);
+
+}  // namespace offnominal::desk::studio

@@ -1,0 +1,117 @@
+/** The figures of the joint that is looked at, by their place; made once, then filled anew. */
+const drawn = new Map();
+
+const tableWidths = new ResizeObserver((entries) => {
+  for (const { target } of entries) markWidth(target);
+});
+
+function watchTables(root) {
+  for (const scroll of root.querySelectorAll(".scroll")) tableWidths.observe(scroll);
+}
+
+function makeFigure(block, place, host) {
+  const root = figureElement(block, place);
+  host.append(root);
+  watchTables(root);
+  const figure = figures.at(-1);
+  drawn.set(place, figure);
+  return figure;
+}
+
+/** Another content in the same picture: what is hidden or zoomed stays so. */
+function refill(figure, block) {
+  const root = figure.host.closest("figure");
+  figure.block = block;
+  figure.cursor = null;
+  figure.host.style.height = `${figure.kind.height(block)}px`;
+  root.querySelector("h3").textContent = block.title;
+  const words = root.querySelector("h3").id.replace(/-title$/, "-words");
+  document.getElementById(words).textContent = figure.kind.words(block);
+  refillRemark(root, block.note);
+  const numbers = root.querySelector("details");
+  const open = numbers.open;
+  const anew = numbersElement(figure);
+  anew.open = open;
+  numbers.replaceWith(anew);
+  watchTables(anew);
+}
+
+function refillRemark(root, note) {
+  let remark = root.querySelector(":scope > .remark");
+  if (note === "") return remark?.remove();
+  if (remark === null) {
+    remark = element("p", { class: "remark" });
+    root.querySelector("details").before(remark);
+  }
+  remark.textContent = note;
+}
+
+function timeFigures() {
+  return [...drawn.values()].filter(({ block }) => block.zoom_group);
+}
+
+function chartPixels() {
+  const width = timeFigures()[0]?.host.clientWidth || document.documentElement.clientWidth;
+  return Math.min(8000, Math.max(100, Math.round(width * (window.devicePixelRatio || 1))));
+}
+
+function chartAddress(look, range) {
+  const parts = [`joint=${look.joint}`, `recording=${look.recording}`, `pixels=${chartPixels()}`];
+  if (range) parts.push("only=time", `from=${range.from}`, `to=${range.to}`);
+  return `charts?${parts.join("&")}`;
+}
+
+/** The charts of another model, joint or recording. */
+function showCharts(answer, host, fallHost) {
+  const first = drawn.size === 0;
+  answer.charts.forEach((block, index) => {
+    const place = `chart.${index}`;
+    if (drawn.has(place)) refill(drawn.get(place), block);
+    else makeFigure(block, place, host);
+  });
+  if (drawn.has("fall.0")) refill(drawn.get("fall.0"), answer.waterfall);
+  else makeFigure(answer.waterfall, "fall.0", fallHost);
+  if (first) {
+    drawAll();
+    for (const figure of timeFigures()) figure.chart.on("datazoom", zoomed);
+    return;
+  }
+  shareExtents();
+  for (const figure of drawn.values()) {
+    figure.chart?.resize();
+    drawFigure(figure);
+  }
+}
+
+let zoomTimer = 0;
+/** Whom to tell of a zoom; set by studio.js. */
+let onZoom = () => {};
+
+/** Once the reader has come to rest. */
+function zoomed() {
+  clearTimeout(zoomTimer);
+  zoomTimer = setTimeout(() => onZoom(zoomRange()), 120);
+}
+
+/** What is shown of the time; null: all of it. */
+function zoomRange() {
+  const figure = timeFigures()[0];
+  if (!figure?.chart) return null;
+  const { start, end, startValue, endValue } = figure.chart.getOption().dataZoom[0];
+  if (start <= 0.01 && end >= 99.99) return null;
+  return startValue < endValue ? { from: startValue, to: endValue } : null;
+}
+
+/** The same charts over time, finer where the reader has zoomed. */
+function showFiner(answer) {
+  answer.charts.forEach((block, index) => {
+    const figure = drawn.get(`chart.${index}`);
+    refill(figure, block);
+    drawFigure(figure);
+  });
+}
+
+function showWhole() {
+  const [figure] = timeFigures();
+  if (figure?.chart && zoomRange() !== null) resetZoom(figure);
+}

@@ -1,0 +1,136 @@
+/** An effect that can be added from an answer, or is. */
+function addButton(what, id, added, actions) {
+  const name = `${effectTitle(what.effect)}, joint ${what.joint}`;
+  if (added) return element("span", { class: "added" }, `Added: ${name}`);
+  const node = button(id, "Add", () => actions.add(what.effect, what.joint), { class: "action main" });
+  node.append(element("span", { class: "hidden-text" }, ` ${name}`));
+  return node;
+}
+
+function isAdded(state, what) {
+  return state.steps.some(({ effect, joint }) => effect === what.effect && joint === what.joint);
+}
+
+function chanceWords(p) {
+  if (p < 1e-4) return "Chance does practically never do that.";
+  return `By chance in one of ${formatSignificant(1 / p, 2)} such searches at most.`;
+}
+
+function findingCard(card, id, state, actions) {
+  const root = element("li", { class: "card finding" });
+  const head = element("div", { class: "step-head" }, element("h4", {}, effectTitle(card.title)));
+  head.append(addButton(card, `add-${id}`, isAdded(state, card), actions));
+  const error = (value) => withUnit(formatSignificant(value, 4), card.unit);
+  const share = 100 * (1 - card.held_out_after / card.held_out_before);
+  root.append(
+    head,
+    element("p", {}, `${card.words}. Its torque: `, element("code", {}, card.formula)),
+    parameterList(card.parameters.map((each) => [each.name, each])),
+    element(
+      "p",
+      {},
+      `Error on held-out data without it ${error(card.held_out_before)}, with it ` +
+        `${error(card.held_out_after)}: it takes off ${formatNumber(share, ".0f")} %. ` +
+        chanceWords(card.p_value),
+    ),
+  );
+  if (card.alternatives.length > 0) {
+    root.append(element("p", {}, "These recordings do not tell it from:"));
+    root.append(choiceList(card.alternatives, id, state, actions));
+  }
+  return root;
+}
+
+function choiceList(effects, id, state, actions) {
+  const list = element("ul", { class: "choices" });
+  effects.forEach((what, index) =>
+    list.append(
+      element(
+        "li",
+        {},
+        element("span", {}, `${effectTitle(what.effect)}: ${what.words}`),
+        addButton(what, `add-${id}-${index}`, isAdded(state, what), actions),
+      ),
+    ),
+  );
+  return list;
+}
+
+function jointAnswer(answer, state, actions) {
+  const root = element("div", { class: "answer" });
+  root.append(element("h3", {}, `Joint ${answer.joint}`), element("p", {}, answer.words));
+  const cards = element("ul", { class: "findings" });
+  answer.cards.forEach((card, index) =>
+    cards.append(findingCard(card, `${answer.joint}-${index}`, state, actions)),
+  );
+  if (answer.cards.length > 0) root.append(cards);
+  answer.classes.forEach((members, index) => {
+    root.append(element("p", {}, "One of these is missing; the recordings do not tell which:"));
+    root.append(choiceList(members, `${answer.joint}-class-${index}`, state, actions));
+  });
+  return root;
+}
+
+function answerElement(found, state, actions) {
+  const root = element("div", {}, element("p", { class: "answer-words" }, found.answer.words));
+  const silent = found.answer.joints.filter(
+    ({ cards, classes }) => cards.length === 0 && classes.length === 0,
+  );
+  for (const answer of found.answer.joints) {
+    if (!silent.includes(answer)) root.append(jointAnswer(answer, state, actions));
+  }
+  if (silent.length > 0) {
+    const rest = element("details", {}, element("summary", {}, `Joints with nothing to add (${silent.length})`));
+    for (const answer of silent) rest.append(element("p", {}, answer.words));
+    root.append(rest);
+  }
+  if (found.answer.advice.length > 0) {
+    const advice = element("details", {}, element("summary", {}, "Advice"));
+    for (const text of found.answer.advice) advice.append(element("p", {}, text));
+    root.append(advice);
+  }
+  return root;
+}
+
+/** The search for what is missing: its button, its progress or its answer. */
+function learnContent(found, state, actions) {
+  if (found.state === "running") {
+    return [
+      element(
+        "p",
+        { class: "progress", role: "status" },
+        element("span", { class: "spinner", "aria-hidden": "true" }),
+        `Searching for ${formatNumber(found.seconds, ".0f")} s: ${found.doing} …`,
+      ),
+      button("stop-search", "Stop", actions.stop),
+    ];
+  }
+  const again = state.steps.length > 0 || found.state === "done";
+  const content = [
+    button("search", again ? "Search what is left" : "Search for missing effects", actions.search, {
+      class: "action main",
+    }),
+  ];
+  if (found.state === "none") {
+    content.unshift(
+      element(
+        "p",
+        { class: "empty" },
+        "The search tries every known effect on every joint, keeps what holds on data that no fit " +
+          "has seen, and says what the recordings cannot tell. It runs in the background; charts " +
+          "stay usable meanwhile, the model stays as it is.",
+      ),
+    );
+  }
+  if (found.state === "stopped") content.unshift(element("p", { class: "empty" }, "The search was stopped."));
+  if (found.state === "failed") content.unshift(noteWith("bad", found.error));
+  if (found.state === "done") {
+    if (found.revision !== state.revision) {
+      content.unshift(
+        noteWith("neutral", "The model has changed since this answer: search again for what is left now."),
+      );
+    }
+    content.push(answerElement(found, state, actions));
+  }
+  return content;
+}

@@ -1,0 +1,91 @@
+/** One effect of a joint: a switch, its name and words, and one click away its formula. */
+function effectRow(effect, joint, actions) {
+  const on = effect.in_file || effect.steps.length > 0;
+  const locked = effect.in_file || (!on && effect.why_not !== "");
+  const id = `switch-${effect.effect}`;
+  const control = button(id, "", () => actions.toggle(effect, joint), {
+    class: "switch",
+    role: "switch",
+    "aria-checked": String(on),
+    "aria-labelledby": `${id}-name`,
+    "aria-describedby": `${id}-words`,
+    ...(locked ? { "aria-disabled": "true" } : {}),
+  });
+  const name = element("span", { class: "effect-name", id: `${id}-name` }, effectTitle(effect.effect));
+  const details = element(
+    "details",
+    { class: "effect-text" },
+    element("summary", { id: `${id}-summary` }, name),
+    element("p", {}, "Its torque: ", element("code", {}, effect.formula)),
+  );
+  const words = element("p", { class: "effect-words", id: `${id}-words` }, effect.words);
+  if (effect.in_file) words.append(element("b", {}, " · in the robot file"));
+  else if (locked) words.append(element("b", {}, ` · not possible: ${effect.why_not}`));
+  const row = element("li", { class: on ? "on" : "" }, control, element("div", {}, details, words));
+  if (on && effect.may_repeat && effect.why_not === "") {
+    row.lastChild.append(
+      button(`more-${effect.effect}`, "Add another", () => actions.add(effect.effect, joint)),
+    );
+  }
+  return row;
+}
+
+/** The switches of a joint; what cannot act there is folded up. */
+function effectList(joint, actions) {
+  const possible = (effect) =>
+    effect.in_file || effect.steps.length > 0 || effect.why_not === "";
+  const list = element("ul", { class: "effects" });
+  for (const effect of joint.effects.filter(possible)) list.append(effectRow(effect, joint.joint, actions));
+  const others = joint.effects.filter((effect) => !possible(effect));
+  if (others.length === 0) return [list];
+  const rest = element("ul", { class: "effects" });
+  for (const effect of others) rest.append(effectRow(effect, joint.joint, actions));
+  const fold = element("details", {}, element("summary", {}, `Not on this joint (${others.length})`));
+  fold.append(rest);
+  return [list, fold];
+}
+
+function stepRow(step, number, actions) {
+  const name = `${effectTitle(step.effect)}, joint ${step.joint}`;
+  const undo = button(`undo-${step.id}`, "Undo", () => actions.undo(step.id));
+  undo.append(element("span", { class: "hidden-text" }, ` ${name}`));
+  const { before, after } = step;
+  const told = after.held_out_percent === null ? "fitted_percent" : "held_out_percent";
+  const fall = element(
+    "span",
+    { class: "fall" },
+    `${percent(before[told])} → `,
+    element("b", {}, percent(after[told])),
+  );
+  const head = element("div", { class: "step-head" }, element("h3", {}, `${number}. ${name}`), fall, undo);
+  const row = element("li", { class: "card step" }, head);
+  row.append(parameterList(Object.entries(step.parameters)));
+  for (const doubt of step.doubts) row.append(noteWith("warn", doubt));
+  if (step.notes.length > 0 || step.refitted.length > 0) row.append(stepDetails(step));
+  return row;
+}
+
+function stepDetails(step) {
+  const details = element("details", {}, element("summary", {}, "More of this fit"));
+  for (const other of step.refitted) {
+    details.append(
+      element("p", {}, `Fitted again with it: ${effectTitle(other.effect)}, joint ${other.joint}`),
+      parameterList(Object.entries(other.parameters)),
+    );
+  }
+  for (const note of step.notes) details.append(element("p", {}, note));
+  return details;
+}
+
+function stepList(steps, actions) {
+  if (steps.length === 0) {
+    return element(
+      "p",
+      { class: "empty" },
+      "Nothing is added yet. Switch an effect on, or let the search below say which one is missing.",
+    );
+  }
+  const list = element("ol", { class: "steps" });
+  steps.forEach((step, index) => list.append(stepRow(step, index + 1, actions)));
+  return list;
+}

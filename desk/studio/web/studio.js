@@ -1,0 +1,339 @@
+/** What is looked at, and what the server last said. */
+const look = { joint: 1, recording: 1 };
+let state = null;
+let found = { state: "none" };
+let busy = false;
+/** Under "save": what came of it, or what has to be confirmed. */
+let saving = { words: "", level: "neutral", confirm: null, name: null };
+
+const places = {};
+
+function place(name, attributes = {}) {
+  places[name] = element("div", { id: `place-${name}`, ...attributes });
+  return places[name];
+}
+
+function currentJoint() {
+  return state.joints[look.joint - 1];
+}
+
+function errorOf(joint, when) {
+  const { held_out_percent, fitted_percent } = joint[when];
+  return held_out_percent ?? fitted_percent;
+}
+
+function baseName(path) {
+  return path.split("/").at(-1);
+}
+
+function headerContent() {
+  const names = (held) => state.recordings.filter((each) => each.held_out === held).map((each) => baseName(each.name));
+  const judged = state.held_out === "recordings" ? names(true).join(", ") : "parts of the same, held out in turn";
+  const header = element("header", {}, element("h1", {}, `Studio: ${state.robot.name}`));
+  header.append(
+    element(
+      "p",
+      { class: "subtitle" },
+      `${state.robot.file} · fitted to ${names(false).join(", ")} · judged on ${judged}`,
+    ),
+  );
+  return header;
+}
+
+function jointRow(joint) {
+  const id = `joint-${joint.joint}`;
+  const input = element("input", { type: "radio", name: "joint", id, value: String(joint.joint) });
+  input.checked = joint.joint === look.joint;
+  input.addEventListener("change", () => choose({ joint: joint.joint }));
+  const start = errorOf(joint, "start");
+  const now = errorOf(joint, "now");
+  const bar = element("span", { class: "bar", "aria-hidden": "true" });
+  const width = (value) => `${Math.min(100, Math.max(0, value ?? 0))}%`;
+  bar.append(element("i", { class: "was", style: `width:${width(start)}` }));
+  bar.append(element("i", { class: "is", style: `width:${width(now)}` }));
+  const numbers =
+    start === now ? percent(now) : [`${percent(start)} → `, element("b", {}, percent(now))];
+  const label = element("label", { for: id });
+  label.append(
+    element("span", { class: "joint-name" }, `${joint.joint}. ${joint.name}${joint.moves ? "" : " (stands still)"}`),
+    bar,
+    element("span", { class: "joint-numbers" }, ...[numbers].flat()),
+  );
+  return element("div", { class: "joint" }, input, label);
+}
+
+function jointChoice() {
+  const set = element("fieldset", { class: "joints" }, element("legend", {}, "Joint, and its error"));
+  for (const joint of state.joints) set.append(jointRow(joint));
+  return set;
+}
+
+function figureOf(label, value, note, level) {
+  return { label, value, unit: "%", format: ".2f", level, note };
+}
+
+function headlineContent() {
+  const joint = currentJoint();
+  const { start, now } = joint;
+  const fell = (key) => {
+    if (state.steps.length === 0 || start[key] === null || now[key] === null) return "as read";
+    return `as read ${formatNumber(start[key], ".2f")} %`;
+  };
+  const better = (key) => now[key] !== null && start[key] !== null && now[key] < 0.98 * start[key];
+  const figuresOf = [
+    figureOf(
+      `Joint ${joint.joint}: error on held-out data`,
+      now.held_out_percent,
+      now.held_out_percent === null
+        ? "no recording is held out: known once an effect is added"
+        : fell("held_out_percent"),
+      better("held_out_percent") ? "good" : "neutral",
+    ),
+    figureOf(
+      `Joint ${joint.joint}: error on fitted data`,
+      now.fitted_percent,
+      fell("fitted_percent"),
+      "neutral",
+    ),
+  ];
+  return keyFiguresElement({ figures: figuresOf }, "headline");
+}
+
+function meaningContent() {
+  return explained(
+    "What do these numbers mean?",
+    "The error is what the model misses of the measured torque: the root mean square of measured " +
+      "minus model, as a share of that of the measured torque, both low-passed alike. 0 % is a " +
+      "perfect model.",
+    "Held-out data were not used for the fit: only an error that falls there shows that an effect " +
+      "is real. On fitted data it falls with every number that is fitted.",
+  );
+}
+
+function recordingPicker() {
+  const select = element("select", { id: "recording-choice" });
+  state.recordings.forEach((each, index) => {
+    const option = element(
+      "option",
+      { value: String(index + 1) },
+      `${baseName(each.name)} (${each.held_out ? "held out" : "fitted"})`,
+    );
+    option.selected = index + 1 === look.recording;
+    select.append(option);
+  });
+  select.addEventListener("change", () => choose({ recording: Number(select.value) }));
+  return element("div", { class: "choice-row" }, element("label", { for: "recording-choice" }, "Recording"), select);
+}
+
+function saveContent() {
+  const { save } = state;
+  if (state.steps.length === 0) {
+    return [
+      element("p", { class: "empty" }, "There is nothing to save yet: switch an effect on first."),
+    ];
+  }
+  const name = element("input", { type: "text", id: "save-name", spellcheck: "false", autocomplete: "off" });
+  name.value = saving.name ?? save.name;
+  name.readOnly = save.fixed;
+  name.addEventListener("input", () => (saving = { ...saving, name: name.value, confirm: null, words: "" }));
+  const form = element("div", { class: "save-row" });
+  form.append(
+    element("label", { for: "save-name" }, save.fixed ? "Robot file" : "Robot file, beside the one that was read"),
+    name,
+    button("save-file", "Save", () => actions.save({}), { class: "action main" }),
+  );
+  const content = [form];
+  if (saving.words !== "") {
+    const note = noteWith(saving.level, saving.words, " ");
+    if (saving.confirm !== null) {
+      note.firstChild.append(button("save-anyway", "Save all the same", () => actions.save(saving.confirm)));
+    }
+    content.push(note);
+  }
+  content.push(
+    element("p", { class: "remark" }, "The same without Studio, numbers and file alike:"),
+    element("pre", { tabindex: "0", "aria-label": "Commands that repeat this session" }, save.commands.join("\n")),
+    button("copy", "Copy the commands", () => navigator.clipboard.writeText(save.commands.join("\n"))),
+  );
+  return content;
+}
+
+function show() {
+  const joint = currentJoint();
+  document.title = `Studio: ${state.robot.name}`;
+  replaceContent(places.head, headerContent(), ...state.hints.map((hint) => noteWith("warn", hint)));
+  replaceContent(places.joints, jointChoice());
+  replaceContent(places.headline, headlineContent());
+  document.getElementById("effects-heading").textContent = `Effects of joint ${joint.joint}`;
+  replaceContent(places.effects, ...effectList(joint, actions));
+  replaceContent(places.recording, recordingPicker());
+  replaceContent(places.steps, stepList(state.steps, actions));
+  places.fall.hidden = state.steps.length === 0;
+  showFound();
+  replaceContent(places.save, ...saveContent());
+}
+
+function showFound() {
+  replaceContent(places.learn, ...learnContent(found, state, actions));
+  document.body.toggleAttribute("data-searching", found.state === "running");
+}
+
+function setBusy(value) {
+  busy = value;
+  document.body.toggleAttribute("data-busy", value);
+  places.effects.setAttribute("aria-busy", String(value));
+}
+
+function complain(words) {
+  replaceContent(places.message, words === "" ? "" : noteWith("bad", words));
+  if (words !== "") places.message.scrollIntoView({ block: "nearest" });
+}
+
+async function drawCharts() {
+  const answer = await ask("GET", chartAddress(look, null));
+  showCharts(answer, places.charts, places.fall);
+  document.body.dataset.revision = String(answer.revision);
+  const range = zoomRange();
+  if (range !== null) await drawFiner(range);
+}
+
+async function drawFiner(range) {
+  if (range === null) return;
+  showFiner(await ask("GET", chartAddress(look, range)));
+}
+
+/** Runs one change at a time; what fails is said, and nothing else has changed. */
+async function change(work) {
+  if (busy) return;
+  setBusy(true);
+  complain("");
+  try {
+    await work();
+  } catch (error) {
+    complain(error.message);
+  }
+  setBusy(false);
+}
+
+async function changeModel(method, path, body) {
+  await change(async () => {
+    state = await ask(method, path, body);
+    saving = { ...saving, words: "", confirm: null };
+    show();
+    await drawCharts();
+    const joint = currentJoint();
+    say(`Joint ${joint.joint}: error now ${percent(errorOf(joint, "now"))}`);
+  });
+}
+
+async function choose(what) {
+  await change(async () => {
+    if (what.recording) showWhole();
+    Object.assign(look, what);
+    show();
+    await drawCharts();
+  });
+}
+
+async function follow() {
+  while (found.state === "running") {
+    await new Promise((done) => setTimeout(done, 400));
+    try {
+      found = await ask("GET", "explanation");
+    } catch (error) {
+      complain(error.message);
+      return;
+    }
+    showFound();
+  }
+  say(found.state === "done" ? found.answer.words : "The search has ended.");
+}
+
+const actions = {
+  add: (effect, joint) => {
+    look.joint = joint;
+    return changeModel("POST", "steps", { effect, joint });
+  },
+  undo: (id) => changeModel("DELETE", `steps/${id}`),
+  toggle: (effect, joint) =>
+    effect.steps.length > 0 ? actions.undo(effect.steps.at(-1)) : actions.add(effect.effect, joint),
+  search: () =>
+    change(async () => {
+      found = await ask("POST", "explanation");
+      showFound();
+      follow();
+    }),
+  stop: async () => {
+    await ask("DELETE", "explanation").catch((error) => complain(error.message));
+  },
+  save: async (agreed) => {
+    const request = { ...(state.save.fixed ? {} : { name: saving.name ?? state.save.name }), ...agreed };
+    try {
+      const { saved } = await ask("POST", "save", request);
+      saving = { ...saving, words: `Written: ${saved}`, level: "good", confirm: null };
+    } catch (error) {
+      const confirm = error.confirm ? nextConfirm(agreed) : null;
+      saving = { ...saving, words: error.message, level: error.confirm ? "warn" : "bad", confirm };
+    }
+    replaceContent(places.save, ...saveContent());
+    say(saving.words);
+  },
+};
+
+/** What a second "save" agrees to: first that a step is in doubt, then that a file is there. */
+function nextConfirm(agreed) {
+  const doubtful = state.steps.some((step) => step.doubts.length > 0);
+  return doubtful && !agreed.accept_doubts ? { accept_doubts: true } : { ...agreed, replace: true };
+}
+
+function buildStudio() {
+  const main = element("main");
+  const side = element("div", { class: "side" });
+  side.append(place("joints"), sectionWith("effects", "Effects", place("effects")));
+  const pictures = element("div", { class: "pictures" });
+  pictures.append(
+    place("headline"),
+    place("message", { role: "alert" }),
+    sectionWith(
+      "look",
+      "Measured and model",
+      meaningContent(),
+      place("recording"),
+      place("charts", { class: "blocks" }),
+    ),
+    sectionWith("steps", "What was added", place("fall"), place("steps")),
+    sectionWith("learn", "What is missing?", place("learn")),
+    sectionWith("save", "Save", place("save")),
+  );
+  main.append(place("head"), element("div", { class: "desk" }, side, pictures));
+  const footer = element("footer");
+  footer.append(
+    element("p", { id: "spoken", class: "hidden-text", role: "status" }),
+    element("p", {}, "offnominal Studio, diagnostic aid, claims no SIL/PL. Nothing leaves this machine."),
+    element(
+      "p",
+      {},
+      "Charts: drag to zoom, shift-drag to move, ctrl-wheel to zoom, double click to reset. A chart that " +
+        "has the focus takes keys: arrows show values, + and - zoom, 0 resets. Drawn with Apache ECharts.",
+    ),
+  );
+  document.getElementById("page").append(main, footer);
+}
+
+async function start() {
+  buildStudio();
+  onZoom = (range) => drawFiner(range).catch((error) => complain(error.message));
+  try {
+    state = await ask("GET", "state");
+    found = await ask("GET", "explanation");
+    const worst = state.joints.reduce((a, b) => (errorOf(b, "now") > errorOf(a, "now") && b.moves ? b : a));
+    look.joint = worst.joint;
+    show();
+    await drawCharts();
+    if (found.state === "running") follow();
+  } catch (error) {
+    complain(error.message);
+  }
+}
+
+start();
