@@ -290,7 +290,7 @@ std::string judgement_of(const AddResult& result, const AddRequest& request) {
 }
 
 std::string verdict_of(const AddResult& result, const AddRequest& request, bool force) {
-  const std::string words = judgement_of(result, request);
+  std::string words = judgement_of(result, request);
   if (!result.objections.empty()) return "Nothing was written: " + words;
   if (result.doubts.empty()) return words;
   return words + (force ? " Written all the same, as --force says."
