@@ -156,6 +156,7 @@ void write_estimator(Writer& out, const EstimatorSettings& settings) {
             quoted(settings.dead_zone == DeadZone::kContinuous ? "continuous" : "discontinuous"));
   out.value("torque_signal",
             quoted(settings.torque_signal == TorqueSignal::kSampled ? "sampled" : "held"));
+  if (settings.space == EstimatorSpace::kTorque) out.value("space", quoted("torque"));
   out.text_if_any("source", settings.source);
 }
 
@@ -169,6 +170,28 @@ void write_arming(Writer& out, const ArmingSettings& settings) {
   per_joint("torque_rate", settings.torque_rate);
   out.value("ramp_s", shortest_real(settings.ramp_s));
   out.text_if_any("source", settings.source);
+}
+
+// The joints' constants in one list, what depends on a speed in tables of one line.
+void write_joint_bounds(Writer& out, const std::vector<JointBoundSettings>& joints) {
+  std::vector<double> values;
+  std::vector<double> errors;
+  std::vector<std::string> tables;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const JointBoundSettings& joint = joints[i];
+    values.push_back(joint.at.empty() ? joint.value[0] : 0);
+    errors.push_back(joint.momentum_error);
+    if (joint.at.empty()) continue;
+    tables.push_back("{joint = " + std::to_string(i + 1) + ", at = " + list(joint.at) +
+                     ", value = " + list(joint.value) + "}");
+  }
+  out.value("kind", quoted("per_joint"));
+  out.value("value", list(values));
+  const auto as_it_is = [](const std::string& text) { return text; };
+  if (!tables.empty()) out.value("over_speed", "[" + list_of(tables, as_it_is) + "]");
+  if (*std::max_element(errors.begin(), errors.end()) > 0) {
+    out.value("momentum_error", list(errors));
+  }
 }
 
 void write_bound(Writer& out, const BoundSettings& bound) {
@@ -193,6 +216,9 @@ void write_bound(Writer& out, const BoundSettings& bound) {
       out.value("value", list(bound.table.value));
       break;
     }
+    case BoundSettings::Kind::kPerJoint:
+      write_joint_bounds(out, bound.joints);
+      break;
   }
   if (bound.velocity_error > 0) out.value("velocity_error", shortest_real(bound.velocity_error));
   out.text_if_any("source", bound.source);
