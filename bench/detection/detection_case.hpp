@@ -25,7 +25,7 @@ struct DetectionFault {
 inline constexpr double kFaultS = 6;
 inline constexpr double kFaultRunS = 10;
 
-// The faults of the table in docs/theory.md.
+// The faults of the table in docs/calibrate.md.
 [[nodiscard]] std::vector<DetectionFault> detection_faults();
 
 // The arm as its file says it: CAD off by 3 %, friction by 10 %; no limits, no bound.

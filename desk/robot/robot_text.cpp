@@ -172,28 +172,6 @@ void write_arming(Writer& out, const ArmingSettings& settings) {
   out.text_if_any("source", settings.source);
 }
 
-// The joints' constants in one list, what depends on a speed in tables of one line.
-void write_joint_bounds(Writer& out, const std::vector<JointBoundSettings>& joints) {
-  std::vector<double> values;
-  std::vector<double> errors;
-  std::vector<std::string> tables;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const JointBoundSettings& joint = joints[i];
-    values.push_back(joint.at.empty() ? joint.value[0] : 0);
-    errors.push_back(joint.momentum_error);
-    if (joint.at.empty()) continue;
-    tables.push_back("{joint = " + std::to_string(i + 1) + ", at = " + list(joint.at) +
-                     ", value = " + list(joint.value) + "}");
-  }
-  out.value("kind", quoted("per_joint"));
-  out.value("value", list(values));
-  const auto as_it_is = [](const std::string& text) { return text; };
-  if (!tables.empty()) out.value("over_speed", "[" + list_of(tables, as_it_is) + "]");
-  if (*std::max_element(errors.begin(), errors.end()) > 0) {
-    out.value("momentum_error", list(errors));
-  }
-}
-
 void write_bound(Writer& out, const BoundSettings& bound) {
   out.line("[uncertainty_bound]");
   switch (bound.kind) {
@@ -217,7 +195,7 @@ void write_bound(Writer& out, const BoundSettings& bound) {
       break;
     }
     case BoundSettings::Kind::kPerJoint:
-      write_joint_bounds(out, bound.joints);
+      out.line(joint_bounds_text(bound.joints));
       break;
   }
   if (bound.velocity_error > 0) out.value("velocity_error", shortest_real(bound.velocity_error));

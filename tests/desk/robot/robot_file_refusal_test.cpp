@@ -256,56 +256,6 @@ const std::vector<Mistake> kMistakes{
 INSTANTIATE_TEST_SUITE_P(RobotFile, Refusal, testing::ValuesIn(kMistakes),
                          [](const auto& test) { return std::string(test.param.name); });
 
-// The sample in torque space, with `bound` in place of its bound.
-std::string in_torque_space(const std::string& bound) {
-  std::string text = test::changed(test::kSampleRobot, "seed = 7", "seed = 7\nspace = \"torque\"");
-  const auto begin = text.find("[uncertainty_bound]");
-  const auto end = text.find("\n[", begin);
-  return text.substr(0, begin) + bound + text.substr(std::min(end, text.size()));
-}
-
-TEST(RobotFile, RefusesABoundThatDoesNotGoWithTheSpace) {
-  EXPECT_THAT(
-      refusal(test::changed(test::kSampleRobot, "seed = 7", "seed = 7\nspace = \"torque\"")),
-      testing::AllOf(HasSubstr("uncertainty_bound.kind: found a bound of accelerations beside "
-                               "estimator.space = \"torque\""),
-                     HasSubstr("allowed: \"per_joint\", N m or N per joint"),
-                     HasSubstr("to mend: leave [uncertainty_bound] out")));
-  const std::string per_joint = "[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.0, 2.0]\n";
-  EXPECT_EQ(refusal(in_torque_space(per_joint)), "accepted");
-  EXPECT_EQ(refusal(in_torque_space("")), "accepted") << "calibrate finds one";
-  EXPECT_THAT(refusal(test::changed(in_torque_space(per_joint), "space = \"torque\"",
-                                    "space = \"acceleration\"")),
-              HasSubstr("a bound of torques, beside estimator.space = \"acceleration\""));
-}
-
-TEST(RobotFile, RefusesBoundsPerJointThatAreNotOnePerJoint) {
-  const auto with = [](const std::string& keys) {
-    return refusal(in_torque_space("[uncertainty_bound]\nkind = \"per_joint\"\n" + keys + "\n"));
-  };
-  EXPECT_THAT(with("value = [1.0]"), HasSubstr("uncertainty_bound.value: found a list of 1"));
-  EXPECT_THAT(with("value = [1.0, 0.0]"),
-              HasSubstr("found 0 for joint 2; allowed: a number above 0"));
-  EXPECT_THAT(with("value = [1.0, -2.0]"), HasSubstr("uncertainty_bound.value[2]: found -2"));
-  EXPECT_THAT(with("value = [1.0, 2.0]\nvelocity_error = 0.1"),
-              HasSubstr("a key that a bound of kind per_joint does not have"));
-  EXPECT_THAT(with("value = [1.0, 2.0]\nmomentum_error = [0.1, -0.1]"),
-              HasSubstr("uncertainty_bound.momentum_error[2]: found -0.1"));
-  const std::string table = "over_speed = [{joint = 2, at = [0.0, 1.0], value = [1.0, 2.0]}";
-  EXPECT_EQ(with("value = [1.0, 0.0]\n" + table + "]"), "accepted");
-  EXPECT_THAT(with("value = [1.0, 2.0]\n" + table + "]"),
-              HasSubstr("found 2 for joint 2; allowed: 0, as over_speed has this joint's values"));
-  EXPECT_THAT(
-      with("value = [1.0, 0.0]\n" + table + ", {joint = 2, at = [0.0, 1.0], value = [1.0, 2.0]}]"),
-      HasSubstr("joint 2 a second time"));
-  EXPECT_THAT(
-      with("value = [1.0, 0.0]\nover_speed = [{joint = 2, at = [1.0, 0.0], value = [1.0, 2.0]}]"),
-      HasSubstr("0 after 1; allowed: strictly rising numbers"));
-  EXPECT_THAT(
-      with("value = [1.0, 0.0]\nover_speed = [{joint = 3, at = [0.0, 1.0], value = [1.0, 2.0]}]"),
-      HasSubstr("a whole number from 1 to 2"));
-}
-
 TEST(RobotFile, AcceptsTheSampleThatEveryMistakeStartsFrom) {
   EXPECT_EQ(refusal(test::kSampleRobot), "accepted");
 }
