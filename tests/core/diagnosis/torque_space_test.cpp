@@ -125,6 +125,29 @@ TEST(TorqueSpace, SeesOnAJointWhatExceedsItsBoundAndNothingOnTheOthers) {
   }
 }
 
+// Inside a tick in which its bound rises, a joint's error may pass its threshold for a moment while
+// another one learns.
+TEST(TorqueSpace, DoesNotLearnOnAJointThatBeganItsTickWithinItsThreshold) {
+  EstimatorConfig<double> config;
+  config.hidden_units = kUnits;
+  EstimatorState<kWatched, kUnits, double, TorqueSpace> state;
+  const auto input = [](const Torques& p, double third_bound) {
+    const Torques bound(1, 1, third_bound);
+    return EstimatorInput<kWatched, double, TorqueSpace>{
+        network_input<kWatched, double>({0.3, 0.2, 0.1}, p, bound), Torques::Zero(), bound, {p}};
+  };
+  ASSERT_EQ(reset(config, input(Torques::Zero(), 0.1), state), Status::kOk);
+  Torques p = Torques::Zero();
+  for (int tick = 0; tick < 50; ++tick) {
+    const bool rises = tick == 49;
+    p += config.period_s * Torques(20, 0, rises ? 40 : 0);
+    ASSERT_EQ(step(config, input(p, rises ? 100 : 0.1), state), Status::kOk);
+    ASSERT_LT(std::fabs(state.error[2]), state.mu[2]);
+  }
+  EXPECT_NE(state.psi_hat[0], 0);
+  EXPECT_EQ(state.psi_hat[2], 0);
+}
+
 // Theorem 4.2 of one joint.
 TEST(TorqueSpace, SeesEveryFaultWhoseFilteredSizeExceedsTwiceItsJointsThreshold) {
   std::mt19937_64 generator = seeded_generator();
