@@ -54,7 +54,7 @@ std::string source_of(const CalibrateRequest& request, const JointsCalibration& 
 
 void collect(const std::string& joint, const std::vector<std::string>& from,
              std::vector<std::string>& into) {
-  for (const std::string& words : from) into.push_back(joint + ": " + words);
+  for (const std::string& words : from) into.push_back(fmt::format("{}: {}", joint, words));
 }
 
 }  // namespace
