@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "calibrate/calibrate.hpp"
+#include "calibrate/calibrate_joints.hpp"
 #include "calibrate/calibrate_report.hpp"
+#include "calibrate/joints_report.hpp"
 #include "calibrate/split.hpp"
 #include "command/answer.hpp"
 #include "command/command_line.hpp"
@@ -80,25 +82,10 @@ std::vector<Log> parts_left_of(const RobotDescription& robot, const std::vector<
   return parts;
 }
 
-void run(const CalibrateOptions& options, const std::string& command_line, ExitCode& exit_code) {
-  check_numbers(options);
-  Progress progress;
-  FitData data = read_fit_data("calibrate", "LOG", options.files, read_log, progress);
-  const auto faults =
-      treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kVelocityToo);
-  for (std::vector<Log>* group : {&data.logs, &data.holdout}) {
-    *group = parts_left_of(data.robot, *group);
-  }
-  if (data.holdout.empty()) data.holdout = take_held_out(data.logs, kShortestS);
-  progress.begin("shapes of the bound");
-  const CalibrateRequest request{
-      options.alarms_per_hour, options.velocity_error,
-      "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + "."};
-  require_carried(data.robot, options.files.robot);
-  const Calibration result =
-      calibrate(data.robot, request, data.logs, data.holdout, [&progress] { progress.step(); });
-  progress.end();
-  const CalibrateNames names{options.files.robot, options.output, command_line};
+// Result: a Calibration, or a JointsCalibration.
+template <typename Result, typename Faults>
+void tell(const Result& result, const CalibrateOptions& options, const CalibrateNames& names,
+          const FitData& data, const Faults& faults, ExitCode& exit_code) {
   write_report(options.answer, [&] { return with_faults(page_of(result, names), faults); });
   std::vector<std::string> written;
   if (result.objections.empty()) {
@@ -124,6 +111,33 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
       options.answer, [&] { return with_faults(to_json(result, names), faults); }, text, written);
 }
 
+void run(const CalibrateOptions& options, const std::string& command_line, ExitCode& exit_code) {
+  check_numbers(options);
+  Progress progress;
+  FitData data = read_fit_data("calibrate", "LOG", options.files, read_log, progress);
+  const auto faults =
+      treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kVelocityToo);
+  for (std::vector<Log>* group : {&data.logs, &data.holdout}) {
+    *group = parts_left_of(data.robot, *group);
+  }
+  if (data.holdout.empty()) data.holdout = take_held_out(data.logs, kShortestS);
+  progress.begin("shapes of the bound");
+  const CalibrateRequest request{
+      options.alarms_per_hour, options.velocity_error,
+      "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + "."};
+  require_carried(data.robot, options.files.robot);
+  const CalibrateNames names{options.files.robot, options.output, command_line};
+  const auto on_step = [&progress] { progress.step(); };
+  if (data.robot.estimator.space == EstimatorSpace::kTorque) {
+    const auto result = calibrate_joints(data.robot, request, data.logs, data.holdout, on_step);
+    progress.end();
+    tell(result, options, names, data, faults, exit_code);
+  } else {
+    const auto result = calibrate(data.robot, request, data.logs, data.holdout, on_step);
+    progress.end();
+    tell(result, options, names, data, faults, exit_code);
+  }
+}
 constexpr const char* kHowItCalibrates =
     "The recordings must be free of faults: what they hold is what the monitor will tolerate. The "
     "threshold mu is the bound after the monitor's own filter, and it is mu, not the bound at an "

@@ -41,6 +41,7 @@ BoundSettings unit_bound(const BoundShape& shape, int k) {
   bound.velocity_error = 0;
   switch (bound.kind) {
     case Kind::kConstant:
+    case Kind::kPerJoint:  // no shape: each joint has one of its own
       bound.constant.value = 1;
       break;
     case Kind::kScaledNorm:
@@ -157,6 +158,7 @@ BoundSettings bound_with(const BoundShape& shape, const Eigen::VectorXd& coeffic
   bound.velocity_error = round_up(velocity_error, kDigits);
   switch (bound.kind) {
     case Kind::kConstant:
+    case Kind::kPerJoint:
       bound.constant.value = round_up(coefficients[0], kDigits);
       break;
     case Kind::kScaledNorm:
@@ -196,6 +198,14 @@ std::vector<BoundShape> bound_shapes(const RobotDescription& robot,
   return shapes;
 }
 
+std::vector<BoundShape> joint_bound_shapes(int joint,
+                                           const std::vector<RecordedError>& recordings) {
+  std::vector<BoundShape> shapes(1);
+  shapes[0].words = "constant";
+  add_table(BoundVariable::kSpeed, joint, recordings, shapes);
+  return shapes;
+}
+
 FilteredBasis filtered_basis(const RobotDescription& robot, const BoundShape& shape,
                              const RecordedError& recording) {
   const TickFilter filter = tick_filter(robot.estimator.alpha, recording.period_s);
@@ -219,6 +229,8 @@ FilteredBasis filtered_basis(const RobotDescription& robot, const BoundShape& sh
   // The allowance 2 v stands in the threshold from the start.
   basis.along.col(shape.size).setConstant(2);
   basis.first_tick.col(shape.size).setConstant(2);
+  basis.along *= recording.scale;
+  basis.first_tick *= recording.scale;
   return basis;
 }
 

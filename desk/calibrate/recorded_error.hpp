@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "log/log.hpp"
 #include "robot/robot.hpp"
@@ -23,7 +24,8 @@ struct TickFilter {
 /// Sample 0 is the start of the run, where |e| is 0 and nothing is judged.
 struct RecordedError {
   std::string file;
-  std::string unit;  // of e: "rad/s", "m/s", or "1" where joints of both types are mixed
+  // Of e: "rad/s", "m/s", or "1" where joints of both types are mixed; "N m" or "N" of one joint.
+  std::string unit;
   double period_s = 0;
   Eigen::VectorXd t_s;         // as recorded
   Eigen::VectorXd error_norm;  // |e|, what `offnominal replay` shows before any alarm
@@ -35,9 +37,18 @@ struct RecordedError {
   Eigen::MatrixXd dq;
   Eigen::MatrixXd tau;
 
+  // 1, or of one joint's residual alpha: by which the filter's output is multiplied here.
+  double scale = 1;
+  Eigen::VectorXd residual;  // of one joint, with its sign; empty of |e|
+
   [[nodiscard]] Eigen::Index samples() const { return t_s.size(); }
   [[nodiscard]] double duration_s() const { return static_cast<double>(samples() - 1) * period_s; }
 };
+
+/// The same of each joint of a robot with EstimatorSpace::kTorque: residuals and thresholds in N m
+/// or N, behind the filter's alpha.
+[[nodiscard]] std::vector<RecordedError> joint_errors(const RobotDescription& robot,
+                                                      const Log& log);
 
 /// Runs the monitor of `robot` over `log` without learning. Throws InputError as replay() does, and
 /// where a sample is refused: what the monitor would not look at cannot calibrate it.

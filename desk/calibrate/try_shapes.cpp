@@ -107,7 +107,8 @@ Tries try_shapes(const RobotDescription& robot, const CalibrationData& data,
     if (on_step) on_step();
     return tried;
   };
-  const std::vector<BoundShape> shapes = bound_shapes(robot, fitted);
+  const std::vector<BoundShape> shapes =
+      data.joint ? joint_bound_shapes(*data.joint, fitted) : bound_shapes(robot, fitted);
   Tries tries;
   Tried constant = try_shape(shapes.front());
   if (constant.maxima.size() >= static_cast<std::size_t>(kFewestBlocks) + kBlocksOfAnEvent) {
