@@ -69,9 +69,9 @@ Eigen::VectorXd basis_values(const UncertaintyBound<kRuntimeJoints, double>& bou
                              const RecordedError& recording, Index shift) {
   Eigen::VectorXd values(recording.samples());
   for (Index i = 0; i < recording.samples(); ++i) {
-    const Joints q = recording.q.row(i);
-    const Joints dq = recording.dq.row(i);
-    const Joints tau = recording.tau.row(std::min(i + shift, recording.samples() - 1));
+    const Joints q = recording.signals->q.row(i);
+    const Joints dq = recording.signals->dq.row(i);
+    const Joints tau = recording.signals->tau.row(std::min(i + shift, recording.samples() - 1));
     values[i] = evaluate(bound, q, dq, tau);
   }
   return values;
@@ -97,7 +97,8 @@ std::vector<std::vector<double>> mean_inverse_inertia(
     const RobotDescription& robot, const std::vector<RecordedError>& recordings) {
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(robot.joint_count());
   for (const RecordedError& recording : recordings) {
-    mean += recording.q.colwise().mean().transpose() / static_cast<double>(recordings.size());
+    mean +=
+        recording.signals->q.colwise().mean().transpose() / static_cast<double>(recordings.size());
   }
   const auto model = make_model(chain_of<kRuntimeJoints, double>(robot));
   const Joints q = mean;
@@ -132,9 +133,10 @@ void add_table(BoundVariable variable, int joint, const std::vector<RecordedErro
                std::vector<BoundShape>& shapes) {
   std::vector<double> values;
   for (const RecordedError& recording : recordings) {
-    const Eigen::MatrixXd& source = variable == BoundVariable::kPosition ? recording.q
-                                    : variable == BoundVariable::kSpeed  ? recording.dq
-                                                                         : recording.tau;
+    const RecordedSignals& signals = *recording.signals;
+    const Eigen::MatrixXd& source = variable == BoundVariable::kPosition ? signals.q
+                                    : variable == BoundVariable::kSpeed  ? signals.dq
+                                                                         : signals.tau;
     for (const double value : source.col(joint)) {
       values.push_back(variable == BoundVariable::kPosition ? value : std::abs(value));
     }

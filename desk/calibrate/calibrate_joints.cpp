@@ -27,6 +27,22 @@ JointErrors errors_of(const RobotDescription& robot, const std::vector<Log>& log
   return errors;
 }
 
+// [joint][recording]
+std::vector<std::vector<Eigen::VectorXd>> thresholds_of(const RobotDescription& robot,
+                                                        const std::vector<Log>& logs,
+                                                        const std::vector<Log>& holdout) {
+  std::vector<std::vector<Eigen::VectorXd>> thresholds(robot.joints.size());
+  for (const auto* group : {&logs, &holdout}) {
+    for (const Log& log : *group) {
+      const Eigen::MatrixXd of_joints = joint_thresholds(robot, log);
+      for (std::size_t i = 0; i < thresholds.size(); ++i) {
+        thresholds[i].emplace_back(of_joints.col(static_cast<Eigen::Index>(i)));
+      }
+    }
+  }
+  return thresholds;
+}
+
 JointBoundSettings joint_bound(const BoundSettings& bound) {
   JointBoundSettings joint;
   joint.momentum_error = bound.velocity_error;
@@ -88,14 +104,13 @@ JointsCalibration calibrate_joints(const RobotDescription& robot, const Calibrat
     bound.joints.push_back(joint_bound(*fits[i].result.robot.bound));
   }
   // The core itself runs over every recording again, with the new bounds.
-  const JointErrors again = errors_of(result.robot, logs, holdout);
+  const auto thresholds = thresholds_of(result.robot, logs, holdout);
   for (std::size_t i = 0; i < count; ++i) {
-    std::vector<Eigen::VectorXd> thresholds;
-    for (const RecordedError& recording : again[i]) thresholds.push_back(recording.old_threshold);
     JointCalibration& joint = result.joints.emplace_back();
     joint.name = robot.joints[i].name;
-    joint.fault = smallest_fault(again[i], thresholds, robot.estimator.alpha);
-    joint.calibration = judged_calibration(std::move(fits[i]), of_one, data[i], thresholds);
+    joint.fault =
+        smallest_fault(data[i].recordings, thresholds[i], bound.joints[i], robot.estimator.alpha);
+    joint.calibration = judged_calibration(std::move(fits[i]), of_one, data[i], thresholds[i]);
     const std::string place = fmt::format("joint {} ({})", i + 1, joint.name);
     collect(place, joint.calibration.notes, result.notes);
     collect(place, joint.calibration.objections, result.objections);

@@ -44,13 +44,21 @@ void check_data(const CalibrationData& data) {
          .allowed = fmt::format("at least {}", kFewestBlocks),
          .mend = "take longer recordings, or more of them"});
   }
-  if (!(largest > 0)) {
-    throw InputError({.file = data.recordings.front().file,
-                      .place = data.joint ? fmt::format("joint {}", *data.joint + 1) : "|e|",
-                      .found = "no error at all",
-                      .allowed = "recordings of a machine",
-                      .mend = "check that the recordings are not the model's own output"});
+  if (largest > 0) return;
+  if (data.joint) {
+    throw InputError(
+        {.file = data.recordings.front().file,
+         .place = fmt::format("joint {}", *data.joint + 1),
+         .found = "no residual at all: it did not move, or has no torque, in these recordings",
+         .allowed = "recordings in which every joint of the robot moves and is driven",
+         .mend = "move it in them, or take it out of the robot file; check too that the recordings "
+                 "are not the model's own output"});
   }
+  throw InputError({.file = data.recordings.front().file,
+                    .place = "|e|",
+                    .found = "no error at all",
+                    .allowed = "recordings of a machine",
+                    .mend = "check that the recordings are not the model's own output"});
 }
 
 std::int64_t alarms_in(const VectorXd& error, const VectorXd& threshold) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <offnominal/model/quantity.hpp>
 
 #include "common/number.hpp"
 #include "common/text_table.hpp"
@@ -90,21 +91,26 @@ nlohmann::ordered_json joint_json(const JointsCalibration& calibration, std::siz
                                   const CalibrateNames& names) {
   const JointCalibration& joint = calibration.joints[i];
   const JointBoundSettings& bound = calibration.robot.bound->joints[i];
+  const JointType type = calibration.robot.joints[i].joint.type;
   nlohmann::ordered_json json = to_json(joint.calibration, names);
   for (const char* key : {"robot", "output", "verdict", "old_bound", "new_bound"}) json.erase(key);
-  nlohmann::ordered_json result = {
-      {"joint", i + 1},
-      {"name", joint.name},
-      {"bound",
-       {{"at", bound.at}, {"value", bound.value}, {"momentum_error", bound.momentum_error}}},
-      {"smallest_fault",
-       {{"unit", joint.calibration.unit},
-        {"seen_in_95_of_100", joint.fault.usual},
-        {"window_s", joint.fault.window_s},
-        {"twice_that_within_s", joint.fault.twice_s},
-        {"certain", joint.fault.certain},
-        {"certain_with", joint.fault.certain_with},
-        {"certain_within_s", joint.fault.certain_s}}}};
+  nlohmann::ordered_json result = {{"joint", i + 1},
+                                   {"name", joint.name},
+                                   {"bound",
+                                    {{"unit", joint.calibration.unit},
+                                     {"at", bound.at},
+                                     {"at_unit", unit_of(Quantity::kVelocity, type)},
+                                     {"value", bound.value},
+                                     {"momentum_error", bound.momentum_error},
+                                     {"momentum_error_unit", joint.calibration.unit + " s"}}},
+                                   {"smallest_fault",
+                                    {{"unit", joint.calibration.unit},
+                                     {"seen_in_95_of_100", joint.fault.usual},
+                                     {"window_s", joint.fault.window_s},
+                                     {"twice_that_within_s", joint.fault.twice_s},
+                                     {"certain", joint.fault.certain},
+                                     {"certain_with", joint.fault.certain_with},
+                                     {"certain_within_s", joint.fault.certain_s}}}};
   result.update(json);
   return result;
 }

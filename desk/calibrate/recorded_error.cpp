@@ -36,6 +36,10 @@ void require_all_accepted(const Replay& replay) {
                "in which something went wrong"});
 }
 
+std::shared_ptr<const RecordedSignals> signals_of(const Log& log) {
+  return std::make_shared<const RecordedSignals>(RecordedSignals{log.q, log.dq, log.tau});
+}
+
 Eigen::VectorXd first_ticks(const Eigen::MatrixXd& error, double keep) {
   const Eigen::Index ticks = error.rows() - 1;
   Eigen::VectorXd norms = Eigen::VectorXd::Zero(error.rows());
@@ -81,9 +85,7 @@ RecordedError recorded_error(const RobotDescription& robot, const Log& log) {
       first_ticks(run.error, tick_filter(robot.estimator.alpha, log.period_s).keep);
   recorded.loudest_joint = loudest_joints(run.error);
   if (robot.bound) recorded.old_threshold = run.threshold;
-  recorded.q = log.q;
-  recorded.dq = log.dq;
-  recorded.tau = log.tau;
+  recorded.signals = signals_of(log);
   return recorded;
 }
 
@@ -91,6 +93,7 @@ std::vector<RecordedError> joint_errors(const RobotDescription& robot, const Log
   const Replay run = replay(without_learning(robot), log);
   require_all_accepted(run);
   const double keep = tick_filter(robot.estimator.alpha, log.period_s).keep;
+  const auto signals = signals_of(log);
   std::vector<RecordedError> joints;
   for (Eigen::Index joint = 0; joint < run.error.cols(); ++joint) {
     RecordedError& recorded = joints.emplace_back();
@@ -103,12 +106,14 @@ std::vector<RecordedError> joint_errors(const RobotDescription& robot, const Log
     recorded.first_tick = first_ticks(run.error.col(joint), keep);
     recorded.loudest_joint = Eigen::VectorXi::Constant(run.error.rows(), static_cast<int>(joint));
     if (robot.bound) recorded.old_threshold = run.thresholds.col(joint);
-    recorded.q = log.q;
-    recorded.dq = log.dq;
-    recorded.tau = log.tau;
+    recorded.signals = signals;
     recorded.scale = robot.estimator.alpha;
   }
   return joints;
+}
+
+Eigen::MatrixXd joint_thresholds(const RobotDescription& robot, const Log& log) {
+  return replay(without_learning(robot), log).thresholds;
 }
 
 }  // namespace offnominal::desk

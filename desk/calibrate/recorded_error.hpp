@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,13 @@ struct TickFilter {
 };
 [[nodiscard]] TickFilter tick_filter(double alpha_per_s, double period_s);
 
+/// Rows: samples, columns: joints.
+struct RecordedSignals {
+  Eigen::MatrixXd q;
+  Eigen::MatrixXd dq;
+  Eigen::MatrixXd tau;
+};
+
 /// Sample 0 is the start of the run, where |e| is 0 and nothing is judged.
 struct RecordedError {
   std::string file;
@@ -33,9 +41,7 @@ struct RecordedError {
   Eigen::VectorXd first_tick;
   Eigen::VectorXi loudest_joint;  // from 0; the one with the largest |e_j| at the sample
   Eigen::VectorXd old_threshold;  // mu of the robot file's own bound; empty: it has none
-  Eigen::MatrixXd q;              // rows: samples, columns: joints
-  Eigen::MatrixXd dq;
-  Eigen::MatrixXd tau;
+  std::shared_ptr<const RecordedSignals> signals;  // one for all joints of a recording
 
   // 1, or of one joint's residual alpha: by which the filter's output is multiplied here.
   double scale = 1;
@@ -49,6 +55,9 @@ struct RecordedError {
 /// or N, behind the filter's alpha.
 [[nodiscard]] std::vector<RecordedError> joint_errors(const RobotDescription& robot,
                                                       const Log& log);
+
+/// The thresholds of these joints alone, columns: joints. The robot has a bound.
+[[nodiscard]] Eigen::MatrixXd joint_thresholds(const RobotDescription& robot, const Log& log);
 
 /// Runs the monitor of `robot` over `log` without learning. Throws InputError as replay() does, and
 /// where a sample is refused: what the monitor would not look at cannot calibrate it.

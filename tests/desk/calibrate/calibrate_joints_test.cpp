@@ -3,10 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
+#include "calibrate/calibrate_one.hpp"
 #include "calibrate/joints_report.hpp"
+#include "calibrate/recorded_error.hpp"
 #include "common/error.hpp"
 #include "desk/compare/recorded_arm.hpp"
 #include "replay/replay.hpp"
@@ -119,12 +124,26 @@ TEST(CalibrateJoints, TheSmallestFaultsAreSeenWhereTheySay) {
   }
 }
 
+TEST(CalibrateJoints, CertainIsAboveTwiceWhatTheBoundCanComeToAtAnySpeed) {
+  const JointsCalibration& result = calibrated();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const JointBoundSettings& bound = result.robot.bound->joints[i];
+    const double alpha = result.robot.estimator.alpha;
+    const double fastest = *std::max_element(bound.value.begin(), bound.value.end()) +
+                           2 * alpha * bound.momentum_error;
+    EXPECT_DOUBLE_EQ(result.joints[i].fault.certain, 2 * fastest);
+  }
+}
+
 TEST(CalibrateJoints, TellsThemInWordsAndInNumbers) {
   const CalibrateNames names{"arm.toml", "new.toml", "offnominal calibrate"};
   const auto json = to_json(calibrated(), names);
   EXPECT_EQ(json["space"], "torque");
   EXPECT_EQ(json["joints"][1]["joint"], 2);
   EXPECT_EQ(json["joints"][1]["smallest_fault"]["unit"], "N m");
+  EXPECT_EQ(json["joints"][0]["bound"]["unit"], "N m");
+  EXPECT_EQ(json["joints"][0]["bound"]["at_unit"], "rad/s");
+  EXPECT_EQ(json["joints"][0]["bound"]["momentum_error_unit"], "N m s");
   EXPECT_GT(json["joints"][0]["smallest_fault"]["seen_in_95_of_100"], 0);
   EXPECT_THAT(text_of(calibrated(), names), HasSubstr("0.1 per hour of all joints"));
   EXPECT_THAT(verdict_of(calibrated()), HasSubstr("N m on joint 2; 0 alarm(s) of 2 joints"));
@@ -141,6 +160,25 @@ TEST(CalibrateJoints, ObjectsToAFaultInOneRecordingAndSaysOnWhichJoint) {
   ASSERT_FALSE(result.objections.empty());
   EXPECT_THAT(result.objections.front(), HasSubstr("joint 2 ("));
   EXPECT_THAT(verdict_of(result), HasSubstr("no bounds that can be trusted"));
+}
+
+TEST(CalibrateJoints, SaysOfAJointWithoutResidualThatItWasNotMoved) {
+  std::vector<RecordedError> recordings = {joint_errors(arm_watched_by_joint(), arm_run(1))[1]};
+  recordings[0].error_norm.setZero();
+  try {
+    static_cast<void>(data_of(std::move(recordings), 1, 10, 1, 2));
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("joint 2: found no residual at all: it did not move"));
+    EXPECT_THAT(error.what(), HasSubstr("or take it out of the robot"));
+  }
+}
+
+TEST(CalibrateJoints, OfOneRecordingShareItsSignals) {
+  const auto joints = joint_errors(arm_watched_by_joint(), arm_run(1));
+  ASSERT_EQ(joints.size(), 2U);
+  EXPECT_EQ(joints[0].signals, joints[1].signals);
+  EXPECT_EQ(joints[0].signals->dq, arm_run(1).dq);
 }
 
 TEST(CalibrateJoints, RefusesAVelocityError) {
