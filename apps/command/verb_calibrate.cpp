@@ -54,6 +54,15 @@ void check_numbers(const CalibrateOptions& options) {
   }
 }
 
+void check_velocity_error(const CalibrateOptions& options, const RobotDescription& robot) {
+  if (!options.velocity_error || robot.estimator.space != EstimatorSpace::kTorque) return;
+  refuse_option("calibrate", "--velocity-error",
+                fmt::format("{:g}, beside estimator.space = \"torque\" in {}",
+                            *options.velocity_error, options.files.robot),
+                "none: what it adds to a joint's momentum depends on the others",
+                "leave it out; momentum errors are found with the bounds");
+}
+
 constexpr double kShortestS = 2;
 
 // The monitor starts anew behind what is left out, and its effects in time would too.
@@ -114,7 +123,10 @@ void tell(const Result& result, const CalibrateOptions& options, const Calibrate
 void run(const CalibrateOptions& options, const std::string& command_line, ExitCode& exit_code) {
   check_numbers(options);
   Progress progress;
-  FitData data = read_fit_data("calibrate", "LOG", options.files, read_log, progress);
+  RobotDescription robot = read_robot_file(options.files.robot);
+  check_velocity_error(options, robot);
+  FitData data =
+      read_fit_data("calibrate", "LOG", options.files, std::move(robot), read_log, progress);
   const auto faults =
       treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kVelocityToo);
   for (std::vector<Log>* group : {&data.logs, &data.holdout}) {
@@ -145,6 +157,9 @@ constexpr const char* kHowItCalibrates =
     "Constant, scaled-norm and table bounds are tried; the tightest that keeps the level on parts "
     "it has not seen is taken. Without --holdout the last of several recordings is held out, or "
     "the last fifth of a single one.\n"
+    "With estimator.space = \"torque\" each joint gets a bound of its own, of a constant and a "
+    "table "
+    "over its speed the better one, and --velocity-error is refused.\n"
     "Exit code 1, and nothing written, when the hold-out data raise more alarms than the level "
     "allows, or when one part's error is so unlike the others' that it may hold a fault.";
 
@@ -166,7 +181,8 @@ void set_up_calibrate(CLI::App& verb, ExitCode& exit_code) {
       ->capture_default_str();
   verb.add_option("--velocity-error", options->velocity_error,
                   "Largest error of the measured velocity, rad/s or m/s, where it is known; "
-                  "without it, it is found with the bound");
+                  "without it, it is found with the bound. None where "
+                  "estimator.space = \"torque\"");
   add_channels_option(verb, options->files.channels, "recordings'");
   add_keep_option(verb, options->keep);
   add_report_option(verb, options->answer);

@@ -55,8 +55,11 @@ std::string text_of(const Replay& replay) {
                     joint.max_residual, joint.max_threshold, joint.unit,
                     joint.max_error_to_threshold, first));
   }
-  row("largest |e|", fmt::format("{:.4g} {}", replay.error_norm.maxCoeff(), replay.unit));
-  row("largest threshold mu", fmt::format("{:.4g} {}", replay.threshold.maxCoeff(), replay.unit));
+  // Joint by joint they are of whichever was nearest, and of mixed units.
+  if (replay.joints.empty()) {
+    row("largest |e|", fmt::format("{:.4g} {}", replay.error_norm.maxCoeff(), replay.unit));
+    row("largest threshold mu", fmt::format("{:.4g} {}", replay.threshold.maxCoeff(), replay.unit));
+  }
   row("largest |e| / mu", fmt::format("{:.4g}", replay.max_error_to_threshold));
   for (Eigen::Index joint = 0; joint < replay.psi_hat.cols(); ++joint) {
     const auto index = static_cast<std::size_t>(joint);

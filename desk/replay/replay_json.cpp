@@ -30,15 +30,19 @@ void add_joints(const Replay& replay, nlohmann::json& json) {
   nlohmann::json joints = nlohmann::json::array();
   for (std::size_t i = 0; i < replay.joints.size(); ++i) {
     const JointReplay& joint = replay.joints[i];
+    const auto index = static_cast<Eigen::Index>(i);
     joints.push_back({{"joint", i + 1},
                       {"name", replay.joint_names[i]},
                       {"unit", joint.unit},
                       {"max_residual", joint.max_residual},
                       {"max_threshold", joint.max_threshold},
                       {"max_error_to_threshold", finite_or_null(joint.max_error_to_threshold)},
+                      {"max_abs_psi_hat", replay.psi_hat.col(index).cwiseAbs().maxCoeff()},
                       {"detection_time_s", time_or_null(joint.detection_time_s)},
                       {"alarms", alarms_json(joint.alarms)}});
   }
+  // Of whichever joint was nearest to its threshold, and of mixed units.
+  for (const char* key : {"max_error", "max_threshold", "max_abs_psi_hat"}) json[key] = nullptr;
   json["space"] = "torque";
   json["first_joint"] =
       replay.first_joint ? nlohmann::json(*replay.first_joint + 1) : nlohmann::json();

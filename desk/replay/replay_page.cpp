@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "replay/replay.hpp"
 
@@ -16,9 +17,9 @@ std::vector<double> values(const Eigen::Ref<const Eigen::VectorXd>& vector) {
   return {vector.begin(), vector.end()};
 }
 
-std::vector<EventMark> alarm_marks(const Replay& replay) {
+std::vector<EventMark> alarm_marks(const std::optional<double>& detection_time_s) {
   std::vector<EventMark> marks;
-  if (replay.detection_time_s) marks.push_back({*replay.detection_time_s, "detected", Level::kBad});
+  if (detection_time_s) marks.push_back({*detection_time_s, "detected", Level::kBad});
   return marks;
 }
 
@@ -35,7 +36,7 @@ Chart residual_chart(const Replay& replay) {
                    .x = values(replay.t_s),
                    .y = values(replay.threshold),
                    .tone = Tone::kThreshold}};
-  chart.events = alarm_marks(replay);
+  chart.events = alarm_marks(replay.detection_time_s);
   chart.zoom_group = "time";
   chart.slider = true;
   return chart;
@@ -56,9 +57,7 @@ Chart joint_chart(const Replay& replay, Eigen::Index joint) {
                    .x = values(replay.t_s),
                    .y = values(replay.thresholds.col(joint)),
                    .tone = Tone::kThreshold}};
-  if (of_joint.detection_time_s) {
-    chart.events.push_back({*of_joint.detection_time_s, "detected", Level::kBad});
-  }
+  chart.events = alarm_marks(of_joint.detection_time_s);
   chart.zoom_group = "time";
   chart.slider = joint == 0;
   return chart;
@@ -120,7 +119,8 @@ Chart estimate_chart(const Replay& replay, Eigen::Index joint) {
                    .x = values(replay.t_s),
                    .y = values(replay.psi_hat.col(joint)),
                    .tone = Tone::kModel}};
-  chart.events = alarm_marks(replay);
+  chart.events =
+      alarm_marks(in_torque ? replay.joints[index].detection_time_s : replay.detection_time_s);
   chart.zoom_group = "time";
   return chart;
 }

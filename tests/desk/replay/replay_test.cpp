@@ -114,6 +114,11 @@ TEST(Replay, GivenTorqueSpaceThenTheFaultyJointIsNamedWhenTheFilterSaysSo) {
   EXPECT_EQ(json["first_joint"], 2);
   EXPECT_EQ(json["joints"][0]["detection_time_s"], nullptr);
   EXPECT_EQ(json["joints"][1]["alarms"].size(), faulty.joints[1].alarms.size());
+  EXPECT_EQ(json["joints"][1]["max_abs_psi_hat"], faulty.psi_hat.col(1).cwiseAbs().maxCoeff());
+  for (const char* of_any_joint : {"max_error", "max_threshold", "max_abs_psi_hat"}) {
+    ASSERT_TRUE(json.contains(of_any_joint));
+    EXPECT_TRUE(json[of_any_joint].is_null()) << of_any_joint << " of which joint?";
+  }
   EXPECT_EQ(to_json(replay(watched_arm(), recording_with({0, 1}))).count("joints"), 0U);
 }
 
@@ -126,7 +131,15 @@ TEST(Replay, GivenTorqueSpaceAndFaultsOnTwoJointsThenTheLaterOneIsSaidWithItsDel
   const double later = *faulty.joints[0].detection_time_s - *faulty.detection_time_s;
   EXPECT_NEAR(later, (std::log(6.0) - std::log(1.5)) / 10, 0.003);
   EXPECT_THAT(words_of(faulty), HasSubstr("; then joint 1 ("));
-  EXPECT_EQ(page_of(faulty, "").verdict.level, report::Level::kBad);
+  const report::Page page = page_of(faulty, "");
+  EXPECT_EQ(page.verdict.level, report::Level::kBad);
+  ASSERT_EQ(page.sections[1].blocks.size(), 2U);
+  for (const std::size_t joint : {0U, 1U}) {
+    const auto& chart = std::get<report::Chart>(page.sections[1].blocks[joint]);
+    ASSERT_EQ(chart.events.size(), 1U);
+    EXPECT_EQ(chart.events[0].x, *faulty.joints[joint].detection_time_s)
+        << "its own, not the first";
+  }
   const Replay healthy = replay(robot, recording_with({0, 0.9}));
   EXPECT_FALSE(healthy.detection_time_s || healthy.first_joint);
   EXPECT_NEAR(healthy.max_error_to_threshold, 0.9, 0.01);
