@@ -41,6 +41,13 @@ class MomentumRobot {
            config_.period_s * static_cast<double>(ticks_));
   }
 
+  // Behind a gap in which the momentum came to `p`.
+  void go_on_at(const Torques& p) {
+    p_ = p;
+    ASSERT_EQ(resume(input(), Torques(Torques::Zero()), state), Status::kOk);
+  }
+  [[nodiscard]] const Torques& momentum() const { return p_; }
+
   EstimatorState<kWatched, kUnits, double, TorqueSpace> state;
   JointDetectors<kWatched, double> detectors;
 
@@ -101,6 +108,28 @@ TEST(TorqueSpace, RaisesNoAlarmInAThousandUncertaintiesWithinTheBoundOfEachJoint
     ASSERT_FALSE(robot.detectors.latched) << "run " << run;
     ASSERT_TRUE(robot.state.psi_hat.isZero(0));
   }
+}
+
+// p - (p - e) is not e to the bit.
+TEST(TorqueSpace, GivenAGapThenRoundingTakesNoJointBeyondItsThreshold) {
+  std::mt19937_64 generator = seeded_generator();
+  MomentumRobot robot(random_estimator(generator), random_bound(generator));
+  int moved = 0;
+  for (int run = 0; run < repetitions(1000); ++run) {
+    const Torques mu(uniform(generator, 0.1, 1), uniform(generator, 0.1, 1), 0.25);
+    robot.state.mu = mu;
+    robot.state.error = {mu[0], -mu[1], 0.5};
+    robot.go_on_at(Torques::NullaryExpr([&] { return uniform(generator, -50, 50); }));
+    const Torques begins_with = robot.momentum() - robot.state.omega;
+    ASSERT_EQ(robot.state.error, begins_with);
+    for (const Eigen::Index joint : {0, 1}) {
+      moved += std::abs(begins_with[joint]) > mu[joint] ? 1 : 0;
+      ASSERT_LE(std::abs(begins_with[joint]), robot.state.mu[joint]) << "joint " << joint;
+      ASSERT_NEAR(robot.state.mu[joint], mu[joint], 1e-12);
+    }
+    ASSERT_EQ(robot.state.mu[2], 0.25) << "beyond before, and no threshold of its own for it";
+  }
+  EXPECT_GT(moved, repetitions(1000) / 10) << "rounding has to matter here";
 }
 
 TEST(TorqueSpace, SeesOnAJointWhatExceedsItsBoundAndNothingOnTheOthers) {

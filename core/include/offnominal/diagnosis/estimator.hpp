@@ -61,6 +61,23 @@ void begin_at(const EstimatorInput<N, Scalar, Space>& sample,
   state.sigma = sigmoid(state.w1_z);
 }
 
+// Adds `jump` to mu, and more where e, within mu as it `was`, has been moved beyond it by rounding.
+template <typename Values>
+void raise_threshold(const Values& was, const Values& e, typename Values::Scalar jump,
+                     typename Values::Scalar& mu) {
+  const bool within = length(was) <= mu;
+  mu += jump;
+  if (within) mu = Eigen::numext::maxi(mu, length(e));
+}
+template <typename Values>
+void raise_threshold(const Values& was, const Values& e, const Values& jump, Values& mu) {
+  for (Eigen::Index i = 0; i < mu.size(); ++i) {
+    const bool within = Eigen::numext::abs(was[i]) <= mu[i];
+    mu[i] += jump[i];
+    if (within) mu[i] = Eigen::numext::maxi(mu[i], Eigen::numext::abs(e[i]));
+  }
+}
+
 }  // namespace detail
 
 // Starts at a sample: omega(0) = dq(0), mu(0) = 0, W2(0) = 0 and seeded W1(0).
@@ -91,9 +108,10 @@ template <int N, int L, typename Scalar, typename Space>
   return Status::kOk;
 }
 
-// Goes on at a sample after a gap without any: e, mu and theta are those before the gap, and omega
-// is moved to the new velocity for it, as if no time had passed. `mu_jump` >= 0 comes on top of mu,
-// for what the velocity's own error puts into omega there. kNumericOverflow as reset().
+// Goes on at a sample after a gap without any: but for rounding e, mu and theta are those before
+// the gap, and omega is moved to the new velocity for it, as if no time had passed. No e that was
+// within mu is beyond it then. `mu_jump` >= 0 comes on top of mu, for what the velocity's own error
+// puts into omega there. kNumericOverflow as reset().
 template <int N, int L, typename Scalar, typename Space>
 [[nodiscard]] Status resume(const EstimatorInput<N, Scalar, Space>& sample,
                             const typename Space::template Threshold<N, Scalar>& mu_jump,
@@ -101,8 +119,11 @@ template <int N, int L, typename Scalar, typename Space>
   if (!detail::is_bounded(sample, squared_norm_of_input<N, Scalar>(sample.z)))
     return Status::kNumericOverflow;
   detail::begin_at(sample, state);
-  state.omega = detail::measured_at<N, Scalar, Space>(sample) - state.error;
-  state.mu += mu_jump;
+  const Vector<N, Scalar> was = state.error;
+  state.omega = detail::measured_at<N, Scalar, Space>(sample) - was;
+  // What the next tick begins with: y - (y - e) is not e to the bit.
+  state.error = detail::measured_at<N, Scalar, Space>(sample) - state.omega;
+  detail::raise_threshold(was, state.error, mu_jump, state.mu);
   state.psi_hat = network_output(state.weights, state.sigma);
   return Status::kOk;
 }
