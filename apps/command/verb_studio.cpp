@@ -31,6 +31,7 @@
 #include "common/shell_word.hpp"
 #include "log/log_format.hpp"
 #include "log/read_log.hpp"
+#include "log/seen_by_sensor.hpp"
 #include "studio/server.hpp"
 
 namespace offnominal::desk {
@@ -47,10 +48,11 @@ struct StudioOptions {
   int threads = 1;
 };
 
-// Of what was given, that which every command has to be given again to read the same.
+// Of what was given, that which every command has to be given again to read the same; beside
+// --payload, which is of a recording.
 std::string options_of(const CLI::App& verb) {
   std::string line;
-  for (const char* name : {"--channels", "--period", "--payload", "--keep"}) {
+  for (const char* name : {"--channels", "--period", "--keep"}) {
     const CLI::Option* option = verb.get_option(name);
     for (const std::string& word : option->results()) {
       line += std::string(" ") + name + " " + shell_word(word);
@@ -71,6 +73,9 @@ studio::Input read_input(const StudioOptions& options, const std::string& more) 
   }
   Progress progress;
   FitData data = read_fit_data("studio", "RECORDING", files, read_log, progress);
+  for (const std::vector<Log>* some : {&data.logs, &data.holdout}) {
+    for (const Log& log : *some) refuse_hidden_from_sensors(data.robot, log);
+  }
   Treated recordings;
   recordings.faults =
       treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kTorque);
@@ -84,6 +89,7 @@ studio::Input read_input(const StudioOptions& options, const std::string& more) 
   input.holdout_files = files.holdout;
   input.source = "Fitted to " + file_names(files.logs) + " by offnominal add.";
   input.options = more;
+  input.payloads = files.channels.payloads;
   input.output = options.output;
   input.threads = options.threads;
   return input;
@@ -97,6 +103,7 @@ void open_browser(const std::string& address) {
   std::array<char*, 3> words = {program.data(), argument.data(), nullptr};
   posix_spawn_file_actions_t silent;
   posix_spawn_file_actions_init(&silent);
+  posix_spawn_file_actions_addopen(&silent, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&silent, 1, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&silent, 2, "/dev/null", O_WRONLY, 0);
   posix_spawnattr_t attributes;
@@ -104,7 +111,8 @@ void open_browser(const std::string& address) {
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  // A session of its own: Ctrl-C in the terminal is not for the browser.
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSID);
   pid_t child = 0;
   if (posix_spawnp(&child, words[0], &silent, &attributes, words.data(), environ) == 0) {
     std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();

@@ -515,7 +515,8 @@ class Adder {
   AddResult result_;
 };
 
-// What a sensor behind the gear does not see cannot be fitted to its torques.
+}  // namespace
+
 void check_sensors(const RobotDescription& robot, const AddRequest& request, const Log& log) {
   RobotDescription asked = robot;
   const bool exists =
@@ -530,8 +531,6 @@ void check_sensors(const RobotDescription& robot, const AddRequest& request, con
   }
   refuse_hidden_from_sensors(asked, log);
 }
-
-}  // namespace
 
 std::vector<std::size_t> joints_asked(const RobotDescription& robot, const AddRequest& request) {
   if (!request.of_motor) return {request.joint};

@@ -34,6 +34,10 @@ struct AddRequest {
 // The joints whose torque has what is asked for: that joint, or those that the motor moves.
 std::vector<std::size_t> joints_asked(const RobotDescription& robot, const AddRequest& request);
 
+// What a sensor behind the gear does not see cannot be fitted to its torques: throws InputError
+// where the recording does not show what is asked for or an effect of the robot, as add() does.
+void check_sensors(const RobotDescription& robot, const AddRequest& request, const Log& log);
+
 // One parameter of an effect after a fit.
 struct FittedParameter {
   std::size_t effect = 0;  // index into the robot's effects

@@ -262,10 +262,10 @@ report::Section pictures_of(const AddResult& result, const AddRequest& request,
 
 }  // namespace
 
-std::string verdict_of(const AddResult& result, const AddRequest& request, bool force) {
+std::string judgement_of(const AddResult& result, const AddRequest& request) {
   const std::string names = names_of_added(result);
   if (!result.objections.empty()) {
-    std::string words = fmt::format("Nothing was written: {}", result.objections.front());
+    std::string words = result.objections.front();
     for (std::size_t i = 1; i < result.objections.size(); ++i) {
       words += "; " + result.objections[i];
     }
@@ -277,19 +277,24 @@ std::string verdict_of(const AddResult& result, const AddRequest& request, bool 
                   error.before_percent, error.after_percent, effort_name(error.unit),
                   error.joint + 1, error.before_rms, error.after_rms, error.unit);
   if (!result.doubts.empty()) {
-    std::string words = error.fall() > 0
-                            ? fmt::format(
-                                  "With {} the error of joint {} on data not used for the "
-                                  "fit falls {}, but {}.",
-                                  names, error.joint + 1, numbers, result.doubts.front())
-                            : fmt::format(
-                                  "With {} the error on data not used for the fit does not "
-                                  "fall: it goes {}. These data do not support the effect.",
-                                  names, numbers);
-    return words + (force ? " Written all the same, as --force says."
-                          : " Nothing was written; --force writes it all the same.");
+    return error.fall() > 0
+               ? fmt::format(
+                     "With {} the error of joint {} on data not used for the fit falls {}, but {}.",
+                     names, error.joint + 1, numbers, result.doubts.front())
+               : fmt::format(
+                     "With {} the error on data not used for the fit does not fall: it goes {}. "
+                     "These data do not support the effect.",
+                     names, numbers);
   }
   return fmt::format("With {} the error on data not used for the fit falls {}.", names, numbers);
+}
+
+std::string verdict_of(const AddResult& result, const AddRequest& request, bool force) {
+  std::string words = judgement_of(result, request);
+  if (!result.objections.empty()) return "Nothing was written: " + words;
+  if (result.doubts.empty()) return words;
+  return words + (force ? " Written all the same, as --force says."
+                        : " Nothing was written; --force writes it all the same.");
 }
 
 Level level_of(const AddResult& result, const AddRequest& request) {

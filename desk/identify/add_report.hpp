@@ -19,8 +19,10 @@ struct AddNames {
   bool force = false;  // doubts are overruled
 };
 
-// What became of the error on data that the fit has not seen, in a sentence or two; why the result
-// is not written, where it is not.
+// What became of the error on data that the fit has not seen, in a sentence or two, or why the
+// result must not be used.
+std::string judgement_of(const AddResult& result, const AddRequest& request);
+// The same, and that the result is not written, where it is not.
 std::string verdict_of(const AddResult& result, const AddRequest& request, bool force = false);
 report::Level level_of(const AddResult& result, const AddRequest& request);
 

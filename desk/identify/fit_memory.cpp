@@ -46,6 +46,7 @@ FitMemory::Two FitMemory::compare_two(const RobotDescription& before, const Robo
                                       const std::vector<Log>& logs, Known& known) {
   const std::string text = for_ == For::kMany ? robot_text(before) : "";
   const bool is_known = !text.empty() && text == known.robot;
+  known.robot.clear();  // its result is given away
   std::vector<Comparison> first;
   std::vector<Comparison> second;
   for (std::size_t i = 0; i < logs.size(); ++i) {

@@ -8,7 +8,8 @@
 namespace offnominal::desk::studio {
 
 /// The commands that make `output` of the robot file without Studio: an `add` for each step, and a
-/// `compare` of what comes out. Empty where there is no step.
+/// `compare` of what comes out. Empty where there is no step. No file that is there is written:
+/// where `output` is, it is one of another name in that folder.
 std::vector<std::string> commands_of(const Workbench& bench, const std::string& output);
 
 }  // namespace offnominal::desk::studio

@@ -5,6 +5,7 @@
 
 #include "common/file.hpp"
 #include "common/input_name.hpp"
+#include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "robot/robot_file.hpp"
 #include "studio/refused.hpp"
@@ -14,12 +15,17 @@ namespace {
 
 constexpr std::size_t kLongestName = 120;
 
+bool is_never_in_a_name(char c) {
+  return c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+}
+
 bool is_plain_name(const std::string& name) {
   if (name.size() > kLongestName || !name.ends_with(".toml") || name.starts_with(".")) return false;
-  return std::none_of(name.begin(), name.end(), [](const char c) {
-    return c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-  });
+  return std::none_of(name.begin(), name.end(), is_never_in_a_name);
 }
+
+// Of UTF-8, one that does not begin a character.
+bool is_inside_a_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
 void check_is_no_input(const Input& input, const std::string& path) {
   for (const auto* files : {&input.log_files, &input.holdout_files}) {
@@ -37,7 +43,20 @@ void check_is_no_input(const Input& input, const std::string& path) {
 
 std::string proposed_name(const Input& input) {
   if (input.output) return *input.output;
-  return std::filesystem::path(input.robot_file).stem().string() + "_studio.toml";
+  const std::string ending = "_studio.toml";
+  std::string name = as_utf8(std::filesystem::path(input.robot_file).stem().string());
+  name.erase(0, name.find_first_not_of('.'));
+  std::replace_if(name.begin(), name.end(), is_never_in_a_name, '_');
+  std::size_t length = std::min(name.size(), kLongestName - ending.size());
+  while (length > 0 && length < name.size() && is_inside_a_character(name[length])) --length;
+  name.resize(length);
+  return (name.empty() ? "robot" : name) + ending;
+}
+
+std::filesystem::path place_of_name(const Input& input, const std::string& name) {
+  const std::string own = name.empty() ? proposed_name(input) : name;
+  if (input.output) return own;
+  return std::filesystem::path(input.robot_file).parent_path() / std::filesystem::path(own);
 }
 
 std::filesystem::path place_to_save(const Input& input, const std::string& name) {
@@ -54,8 +73,7 @@ std::filesystem::path place_to_save(const Input& input, const std::string& name)
                   "The name has to be that of a file beside the robot file, without a folder, and "
                   "end in .toml.");
   }
-  std::filesystem::path path =
-      std::filesystem::path(input.robot_file).parent_path() / std::filesystem::path(own);
+  std::filesystem::path path = place_of_name(input, own);
   check_is_no_input(input, path.string());
   return path;
 }

@@ -14,8 +14,11 @@ struct SaveRequest {
 };
 
 /// What is written unless the user says another name: that of -o, or "emps_studio.toml" for
-/// emps.toml.
+/// emps.toml: always a name that place_to_save() takes, unless it is that of a recording.
 std::string proposed_name(const Input& input);
+
+/// Where a file of that name is; empty: of the proposed one.
+std::filesystem::path place_of_name(const Input& input, const std::string& name);
 
 /// The file of that name that a session may write: that of -o, or one beside the robot file. Throws
 /// Refused where the name is none of a TOML file in that folder, or is that of an input other than

@@ -2,6 +2,7 @@
 
 #include <httplib.h>
 
+#include <atomic>
 #include <stdexcept>
 #include <utility>
 
@@ -59,7 +60,12 @@ struct Server::Parts {
   }
 
   void set_up() {
-    http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+    // Made once the server listens: only from then on can httplib stop it.
+    http.new_task_queue = [this] {
+      listens = true;
+      if (is_to_stop) stop_once();
+      return new httplib::ThreadPool(kThreads);
+    };
     http.set_payload_max_length(kMostBody);
     http.set_keep_alive_timeout(kIdleS);
     http.set_read_timeout(kReadS);
@@ -77,7 +83,12 @@ struct Server::Parts {
     const std::string host = request.get_header_value("Host");
     const std::string origin = request.get_header_value("Origin");
     const std::string site = request.get_header_value("Sec-Fetch-Site");
-    const int refusal = guard.refusal({request.method, request.path, host, origin, site});
+    int refusal = guard.refusal({request.method, request.path, host, origin, site});
+    // Of a body in pieces, or of one that ends with the connection, httplib takes any length.
+    const bool is_of_known_length =
+        !request.has_header("Transfer-Encoding") &&
+        (request.method != "POST" || request.has_header("Content-Length"));
+    if (refusal == 0 && !is_of_known_length) refusal = 411;
     if (refusal == 0) return httplib::Server::HandlerResponse::Unhandled;
     response.status = refusal;
     response.set_header("Connection", "close");
@@ -85,8 +96,16 @@ struct Server::Parts {
     return httplib::Server::HandlerResponse::Handled;
   }
 
+  // httplib does not take it twice.
+  void stop_once() {
+    if (!has_stopped.exchange(true)) http.stop();
+  }
+
   Session session;
   httplib::Server http;
+  std::atomic<bool> listens = false;
+  std::atomic<bool> is_to_stop = false;
+  std::atomic<bool> has_stopped = false;
   int port;
   Guard guard;
 };
@@ -103,7 +122,8 @@ void Server::run() {
 
 void Server::stop() {
   parts_->session.leave();
-  parts_->http.stop();
+  parts_->is_to_stop = true;
+  if (parts_->listens) parts_->stop_once();
 }
 
 }  // namespace offnominal::desk::studio

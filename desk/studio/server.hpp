@@ -21,7 +21,8 @@ class Server {
   /// Where the page is, the token in it: "http://127.0.0.1:40123/9f.../".
   [[nodiscard]] std::string address() const;
   [[nodiscard]] int port() const;
-  /// Serves until stop(). Throws std::runtime_error where the port is lost.
+  /// Serves until stop(), which may have been called before. Throws std::runtime_error where the
+  /// port is lost.
   void run();
   /// From any thread, not from a signal handler: lets what is being answered be answered, stops the
   /// search in the background, and run() returns.

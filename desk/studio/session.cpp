@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/json_text.hpp"
+#include "common/output_file.hpp"
 #include "robot/read_effect.hpp"
 #include "studio/cards.hpp"
 #include "studio/commands.hpp"
@@ -30,9 +31,18 @@ Session::Session(Input input) : bench_(std::move(input)) {}
 ordered_json Session::state_now() {
   ordered_json json = state_of(bench_);
   json["revision"] = revision_;
-  json["save"]["saved"] = nullptr;
+  const Input& input = bench_.input();
+  json["save"] = {{"name", saved_.empty() ? proposed_name(input) : saved_name_},
+                  {"fixed", input.output.has_value()},
+                  {"saved", nullptr},
+                  {"commands", commands()}};
   if (!saved_.empty() && saved_revision_ == revision_) json["save"]["saved"] = saved_;
   return json;
+}
+
+std::vector<std::string> Session::commands() const {
+  if (is_robot_file_replaced_) return {};
+  return commands_of(bench_, saved_.empty() ? place_of_name(bench_.input(), "").string() : saved_);
 }
 
 ordered_json Session::state() {
@@ -77,8 +87,10 @@ ordered_json Session::undo(std::size_t step) {
 ordered_json Session::save(const SaveRequest& request) {
   const std::lock_guard guard(lock_);
   saved_ = studio::save(bench_, request).string();
+  saved_name_ = request.name.empty() ? proposed_name(bench_.input()) : request.name;
   saved_revision_ = revision_;
-  return {{"saved", saved_}, {"commands", commands_of(bench_, saved_)}};
+  if (same_file(saved_, bench_.input().robot_file)) is_robot_file_replaced_ = true;
+  return {{"saved", saved_}, {"commands", commands()}};
 }
 
 ordered_json Session::start_to_explain() {

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "studio/charts.hpp"
 #include "studio/job.hpp"
@@ -36,12 +37,16 @@ class Session {
  private:
   void refuse_while_explaining() const;
   [[nodiscard]] nlohmann::ordered_json state_now();
+  // Those that repeat the session.
+  [[nodiscard]] std::vector<std::string> commands() const;
 
   std::mutex lock_;
   Workbench bench_;
   std::size_t revision_ = 0;  // of the model
-  std::string saved_;         // the last file that was written, and of which revision
+  std::string saved_;         // the last file that was written, its name, and of which revision
+  std::string saved_name_;
   std::size_t saved_revision_ = 0;
+  bool is_robot_file_replaced_ = false;  // by one that was written: no command can start from it
   Job job_;
 };
 

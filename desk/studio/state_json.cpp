@@ -2,15 +2,13 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "explain/data_fault_report.hpp"
 #include "identify/add_report.hpp"
 #include "log/log.hpp"
 #include "robot/read_effect.hpp"
-#include "studio/commands.hpp"
-#include "studio/save.hpp"
 
 namespace offnominal::desk::studio {
 
@@ -25,6 +23,23 @@ ordered_json number(double value) {
 ordered_json errors_of(const Workbench& bench, std::size_t joint, std::size_t steps) {
   return {{"fitted_percent", number(bench.fitted_percent(joint, steps))},
           {"held_out_percent", number(bench.held_out_percent(joint, steps))}};
+}
+
+// The errors of a step's joint without it and with it, as `add` prints them: where parts of the
+// recordings are held out, those that are predicted without it may differ from step to step.
+struct OfStep {
+  ordered_json before;
+  ordered_json after;
+};
+OfStep errors_of_step(const Workbench& bench, std::size_t step) {
+  const std::size_t joint = bench.steps()[step].joint;
+  OfStep errors{errors_of(bench, joint, step), errors_of(bench, joint, step + 1)};
+  for (const BeforeAfter& one : bench.fitted(step).result.held_out) {
+    if (one.joint != joint) continue;
+    errors.before["held_out_percent"] = number(one.before_percent);
+    errors.after["held_out_percent"] = number(one.after_percent);
+  }
+  return errors;
 }
 
 ordered_json recordings_of(const Input& input) {
@@ -105,6 +120,7 @@ ordered_json steps_of(const Workbench& bench) {
   for (std::size_t i = 0; i < bench.steps().size(); ++i) {
     const Step& step = bench.steps()[i];
     const Fitted& fitted = bench.fitted(i);
+    OfStep errors = errors_of_step(bench, i);
     const ordered_json added = desk::to_json(fitted.result, fitted.request, AddNames{});
     all.push_back({{"id", step.id},
                    {"effect", info_of(step.kind)->name},
@@ -112,9 +128,9 @@ ordered_json steps_of(const Workbench& bench) {
                    {"joint", step.joint + 1},
                    {"parameters", added.at("parameters")},
                    {"refitted", added.at("refitted")},
-                   {"before", errors_of(bench, step.joint, i)},
-                   {"after", errors_of(bench, step.joint, i + 1)},
-                   {"verdict", verdict_of(fitted.result, fitted.request)},
+                   {"before", std::move(errors.before)},
+                   {"after", std::move(errors.after)},
+                   {"verdict", judgement_of(fitted.result, fitted.request)},
                    {"notes", fitted.result.notes},
                    {"doubts", fitted.result.doubts}});
   }
@@ -125,17 +141,12 @@ ordered_json steps_of(const Workbench& bench) {
 
 ordered_json state_of(const Workbench& bench) {
   const Input& input = bench.input();
-  const std::string output = proposed_name(input);
   return {{"robot", {{"name", input.robot.name}, {"file", input.robot_file}}},
           {"held_out", bench.start().held_out ? "recordings" : "parts"},
           {"recordings", recordings_of(input)},
           {"hints", hints_of(input.recordings->faults)},
           {"joints", joints_of(bench)},
-          {"steps", steps_of(bench)},
-          {"save",
-           {{"name", output},
-            {"fixed", input.output.has_value()},
-            {"commands", commands_of(bench, place_to_save(input, "").string())}}}};
+          {"steps", steps_of(bench)}};
 }
 
 }  // namespace offnominal::desk::studio

@@ -8,8 +8,8 @@
 namespace offnominal::desk::studio {
 
 /// What docs/studio.md calls the state: robot, recordings, joints with their errors, steps, effects
-/// of every joint, what is said of the recordings, and what saving would write. Joints count
-/// from 1. A number that there is not is null.
+/// of every joint, and what is said of the recordings. What saving would write, the session says.
+/// Joints count from 1. A number that there is not is null.
 nlohmann::ordered_json state_of(const Workbench& bench);
 
 }  // namespace offnominal::desk::studio

@@ -95,7 +95,11 @@ AddRequest Workbench::request_of(const Step& step) const {
 
 std::string Workbench::why_not(EffectKind kind, std::size_t joint) const {
   try {
-    static_cast<void>(set_up(robot(), request_of({0, kind, joint})));
+    const AddRequest request = request_of({0, kind, joint});
+    static_cast<void>(set_up(robot(), request));
+    for (const auto* some : {&input_.recordings->logs, &input_.recordings->holdout}) {
+      for (const Log& log : *some) check_sensors(robot(), request, log);
+    }
     return {};
   } catch (const InputError& error) {
     const InputProblem& problem = error.problem();
@@ -143,10 +147,9 @@ Workbench::Fit Workbench::fit(const RobotDescription& robot, const Step& step,
   const auto known = known_.find(key);
   if (known != known_.end()) return known->second;
   const AddRequest request = request_of(step);
-  auto made = std::make_shared<const Fitted>(Fitted{
-      request, desk::add(robot, request, input_.recordings->logs, input_.recordings->holdout)});
+  auto made = std::make_shared<const Fitted>(Fitted{request, desk::add(robot, request, memory_)});
   if (!made->result.objections.empty()) {
-    throw Refused(Refused::Why::kNotNow, verdict_of(made->result, request));
+    throw Refused(Refused::Why::kNotNow, "Not added: " + judgement_of(made->result, request));
   }
   if (known_.size() >= most_known_) known_.clear();
   known_.emplace(key, made);

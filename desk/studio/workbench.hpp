@@ -10,6 +10,7 @@
 #include "compare/compare.hpp"
 #include "explain/explain.hpp"
 #include "identify/add.hpp"
+#include "robot/payload.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::desk::studio {
@@ -23,6 +24,7 @@ struct Input {
   std::vector<std::string> holdout_files;     // the same
   std::string source;                         // what fitted effects say of where they come from
   std::string options;                        // of every command that repeats the session, or empty
+  std::vector<RecordingPayload> payloads;     // what --payload says of some of the recordings
   std::optional<std::string> output;          // the file that -o names; none: beside the robot file
   int threads = 1;                            // of explain
 };

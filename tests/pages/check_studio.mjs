@@ -105,8 +105,39 @@ async function checkSaved(page, options, inputs, fault) {
   if (inputs.holdout) words2.push("--holdout", inputs.holdout);
   verb(options, ...words2, "-o", added);
   if ((await readFile(saved, "utf8")) !== (await readFile(added, "utf8"))) fault("the saved file is not that of add");
+  await checkCommands(page, options, saved, fault);
   await page.click("#save-file");
   await page.waitForSelector("#save-anyway");
+  // Another name: what was asked of the old one is no question any more.
+  await page.fill("#save-name", "other.toml");
+  if ((await page.$("#save-anyway")) !== null) fault("another name leaves the question about the old one");
+}
+
+/** What the page prints, run by a shell as it stands, writes the saved file once more. */
+async function checkCommands(page, options, saved, fault) {
+  const lines = await page.textContent("#place-save pre");
+  const script = `set -e\noffnominal() { "$PROGRAM" "$@"; }\n${lines}\n`;
+  try {
+    execFileSync("/bin/sh", ["-c", script], { env: { ...process.env, PROGRAM: options.offnominal }, stdio: "pipe" });
+  } catch (error) {
+    return fault(`the commands of the page fail: ${error.stderr}`);
+  }
+  const again = saved.replace(/\.toml$/, "_again.toml");
+  if ((await readFile(again, "utf8")) !== (await readFile(saved, "utf8"))) fault("the commands write another file");
+}
+
+/** Choices while a change is under way wait for its end: the last one counts. */
+async function checkHaste(page, options, fault) {
+  const all = await page.$$eval("[name=joint]", (inputs) => inputs.map((each) => each.id));
+  const own = `joint-${options.joint}`;
+  const other = all.find((id) => id !== own);
+  if (other === undefined) return;
+  await page.evaluate(([first, last]) => [first, last].forEach((id) => document.getElementById(id).click()), [other, own]);
+  await page.waitForFunction(() => !document.body.hasAttribute("data-busy"));
+  const [joint, title] = await page.evaluate(() => [look.joint, document.querySelector("#place-charts h3").textContent]);
+  if (joint !== Number(options.joint)) fault(`chosen in haste, joint ${joint} is shown`);
+  const tools = await page.$$eval("#place-charts figure:first-child .hidden-text", (spans) => spans.map((each) => each.textContent));
+  if (!tools.every((words) => words === ` of ${title}`)) fault(`under "${title}" a control says "${tools}"`);
 }
 
 async function checkSteps(page, options, inputs, fault) {
@@ -119,7 +150,12 @@ async function checkSteps(page, options, inputs, fault) {
   if (!(added[0] < asRead[0] || Number.isNaN(asRead[0])) || !(added[1] < asRead[1])) {
     fault(`the error did not fall: ${asRead} became ${added}`);
   }
+  await checkHaste(page, options, fault);
+  const text = `${toggle}-text`;
+  await page.click(`${text} summary`);
   await afterChange(page, () => page.click(".step button"));
+  if (await page.evaluate(() => document.activeElement === document.body)) fault("after Undo the focus is lost");
+  if (!(await page.$eval(text, (details) => details.open))) fault("after a change what was unfolded is shut");
   const undone = await headline(page);
   if (undone[1] !== asRead[1]) fault(`undone, the error is ${undone}, and was ${asRead}`);
   // With the keyboard alone; the focus stays on the switch.

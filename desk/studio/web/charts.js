@@ -25,6 +25,8 @@ function refill(figure, block) {
   figure.cursor = null;
   figure.host.style.height = `${figure.kind.height(block)}px`;
   root.querySelector("h3").textContent = block.title;
+  for (const hidden of root.querySelectorAll(".tools .hidden-text")) hidden.textContent = ` of ${block.title}`;
+  figure.legend?.setAttribute("aria-label", `Series of ${block.title}`);
   const words = root.querySelector("h3").id.replace(/-title$/, "-words");
   document.getElementById(words).textContent = figure.kind.words(block);
   refillRemark(root, block.note);

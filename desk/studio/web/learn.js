@@ -7,8 +7,11 @@ function addButton(what, id, added, actions) {
   return node;
 }
 
+/** That it is there and cannot be there once more. */
 function isAdded(state, what) {
-  return state.steps.some(({ effect, joint }) => effect === what.effect && joint === what.joint);
+  const { effects } = state.joints[what.joint - 1];
+  const known = effects.find(({ effect }) => effect === what.effect);
+  return known !== undefined && known.steps.length > 0 && !known.may_repeat;
 }
 
 function chanceWords(p) {
@@ -71,6 +74,10 @@ function jointAnswer(answer, state, actions) {
   return root;
 }
 
+function foldWith(id, title) {
+  return element("details", { id }, element("summary", { id: `${id}-summary` }, title));
+}
+
 function answerElement(found, state, actions) {
   const root = element("div", {}, element("p", { class: "answer-words" }, found.answer.words));
   const silent = found.answer.joints.filter(
@@ -80,31 +87,43 @@ function answerElement(found, state, actions) {
     if (!silent.includes(answer)) root.append(jointAnswer(answer, state, actions));
   }
   if (silent.length > 0) {
-    const rest = element("details", {}, element("summary", {}, `Joints with nothing to add (${silent.length})`));
+    const rest = foldWith("nothing-to-add", `Joints with nothing to add (${silent.length})`);
     for (const answer of silent) rest.append(element("p", {}, answer.words));
     root.append(rest);
   }
   if (found.answer.advice.length > 0) {
-    const advice = element("details", {}, element("summary", {}, "Advice"));
+    const advice = foldWith("advice", "Advice");
     for (const text of found.answer.advice) advice.append(element("p", {}, text));
     root.append(advice);
   }
   return root;
 }
 
+/** How long it has run stands beside what is read out: that is only what it does. */
+function progressContent(found, actions) {
+  const doing = element("span", { id: "search-doing", role: "status" }, found.doing);
+  const seconds = element("span", { id: "search-seconds" }, secondsWords(found));
+  const progress = element("p", { class: "progress" }, element("span", { class: "spinner", "aria-hidden": "true" }));
+  progress.append(element("span", {}, "Searching for ", seconds, ": ", doing, " …"));
+  return [progress, button("stop-search", "Stop", actions.stop, { "data-free": "" })];
+}
+
+function secondsWords(found) {
+  return `${formatNumber(found.seconds, ".0f")} s`;
+}
+
+/** The same search goes on: false where its place does not show it yet. */
+function updateProgress(found) {
+  const doing = document.getElementById("search-doing");
+  if (doing === null) return false;
+  if (doing.textContent !== found.doing) doing.textContent = found.doing;
+  document.getElementById("search-seconds").textContent = secondsWords(found);
+  return true;
+}
+
 /** The search for what is missing: its button, its progress or its answer. */
 function learnContent(found, state, actions) {
-  if (found.state === "running") {
-    return [
-      element(
-        "p",
-        { class: "progress", role: "status" },
-        element("span", { class: "spinner", "aria-hidden": "true" }),
-        `Searching for ${formatNumber(found.seconds, ".0f")} s: ${found.doing} …`,
-      ),
-      button("stop-search", "Stop", actions.stop),
-    ];
-  }
+  if (found.state === "running") return progressContent(found, actions);
   const again = state.steps.length > 0 || found.state === "done";
   const content = [
     button("search", again ? "Search what is left" : "Search for missing effects", actions.search, {

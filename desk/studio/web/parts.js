@@ -20,12 +20,33 @@ function joined(items, separator) {
   return items.flatMap((item, index) => (index === 0 ? [item] : [separator, item]));
 }
 
-/** Puts new content in the place of old; who had the focus there keeps it. */
+/**
+ * Puts new content in the place of old. What was unfolded stays so, and who had the focus there keeps it;
+ * where the control is gone it is on the place, from which the next key leads to what is there now.
+ */
 function replaceContent(host, ...children) {
   const active = document.activeElement;
-  const id = host.contains(active) ? active.id : "";
+  const hadFocus = host.contains(active);
+  const unfolded = [...host.querySelectorAll("details[open][id]")].map(({ id }) => id);
   host.replaceChildren(...children);
-  if (id !== "") document.getElementById(id)?.focus({ preventScroll: true });
+  for (const details of host.querySelectorAll("details[id]")) details.open = unfolded.includes(details.id);
+  if (!hadFocus) return;
+  const same = active.id === "" ? null : document.getElementById(active.id);
+  if (same === null) host.tabIndex = -1;
+  (same ?? host).focus({ preventScroll: true });
+}
+
+/** While a change is under way no other begins: its controls say so, and keep the focus. */
+function holdControls(held) {
+  for (const control of document.querySelectorAll(".switch, .action:not([data-free])")) {
+    if (held && !control.hasAttribute("aria-disabled")) {
+      control.setAttribute("aria-disabled", "true");
+      control.setAttribute("data-held", "");
+    } else if (!held && control.hasAttribute("data-held")) {
+      control.removeAttribute("aria-disabled");
+      control.removeAttribute("data-held");
+    }
+  }
 }
 
 function sectionWith(id, heading, ...children) {

@@ -14,7 +14,7 @@ function effectRow(effect, joint, actions) {
   const name = element("span", { class: "effect-name", id: `${id}-name` }, effectTitle(effect.effect));
   const details = element(
     "details",
-    { class: "effect-text" },
+    { class: "effect-text", id: `${id}-text` },
     element("summary", { id: `${id}-summary` }, name),
     element("p", {}, "Its torque: ", element("code", {}, effect.formula)),
   );
@@ -40,7 +40,7 @@ function effectList(joint, actions) {
   if (others.length === 0) return [list];
   const rest = element("ul", { class: "effects" });
   for (const effect of others) rest.append(effectRow(effect, joint.joint, actions));
-  const fold = element("details", {}, element("summary", {}, `Not on this joint (${others.length})`));
+  const fold = element("details", { id: "other-effects" }, element("summary", { id: "other-effects-summary" }, `Not on this joint (${others.length})`));
   fold.append(rest);
   return [list, fold];
 }
@@ -66,7 +66,8 @@ function stepRow(step, number, actions) {
 }
 
 function stepDetails(step) {
-  const details = element("details", {}, element("summary", {}, "More of this fit"));
+  const id = `more-of-step-${step.id}`;
+  const details = element("details", { id }, element("summary", { id: `${id}-summary` }, "More of this fit"));
   for (const other of step.refitted) {
     details.append(
       element("p", {}, `Fitted again with it: ${effectTitle(other.effect)}, joint ${other.joint}`),

@@ -3,6 +3,8 @@ const look = { joint: 1, recording: 1 };
 let state = null;
 let found = { state: "none" };
 let busy = false;
+/** What was chosen last while a change was under way. */
+let wish = null;
 /** Under "save": what came of it, or what has to be confirmed. */
 let saving = { words: "", level: "neutral", confirm: null, name: null };
 
@@ -135,7 +137,10 @@ function saveContent() {
   const name = element("input", { type: "text", id: "save-name", spellcheck: "false", autocomplete: "off" });
   name.value = saving.name ?? save.name;
   name.readOnly = save.fixed;
-  name.addEventListener("input", () => (saving = { ...saving, name: name.value, confirm: null, words: "" }));
+  name.addEventListener("input", () => {
+    saving = { ...saving, name: name.value, confirm: null, words: "" };
+    places.save.querySelector(".note")?.remove();
+  });
   const form = element("div", { class: "save-row" });
   form.append(
     element("label", { for: "save-name" }, save.fixed ? "Robot file" : "Robot file, beside the one that was read"),
@@ -146,16 +151,28 @@ function saveContent() {
   if (saving.words !== "") {
     const note = noteWith(saving.level, saving.words, " ");
     if (saving.confirm !== null) {
-      note.firstChild.append(button("save-anyway", "Save all the same", () => actions.save(saving.confirm)));
+      note.firstChild.append(button("save-anyway", "Save all the same", () => actions.save(saving.confirm ?? {})));
     }
     content.push(note);
   }
-  content.push(
-    element("p", { class: "remark" }, "The same without Studio, numbers and file alike:"),
-    element("pre", { tabindex: "0", "aria-label": "Commands that repeat this session" }, save.commands.join("\n")),
-    button("copy", "Copy the commands", () => navigator.clipboard.writeText(save.commands.join("\n"))),
-  );
-  return content;
+  return [...content, ...commandsContent(save)];
+}
+
+function commandsContent({ commands }) {
+  if (commands.length === 0) {
+    const why = "The robot file that was read is replaced: no command can start from it any more.";
+    return [element("p", { class: "remark" }, why)];
+  }
+  const copy = () => navigator.clipboard.writeText(commands.join("\n"));
+  return [
+    element(
+      "p",
+      { class: "remark" },
+      "The same without Studio, numbers and file alike; each writes a file that is not there yet:",
+    ),
+    element("pre", { tabindex: "0", "aria-label": "Commands that repeat this session" }, commands.join("\n")),
+    button("copy", "Copy the commands", copy, { "data-free": "" }),
+  ];
 }
 
 function show() {
@@ -170,11 +187,19 @@ function show() {
   replaceContent(places.steps, stepList(state.steps, actions));
   places.fall.hidden = state.steps.length === 0;
   showFound();
+  showSave();
+}
+
+function showSave() {
   replaceContent(places.save, ...saveContent());
+  if (busy) holdControls(true);
 }
 
 function showFound() {
-  replaceContent(places.learn, ...learnContent(found, state, actions));
+  if (found.state !== "running" || !updateProgress(found)) {
+    replaceContent(places.learn, ...learnContent(found, state, actions));
+    if (busy) holdControls(true);
+  }
   document.body.toggleAttribute("data-searching", found.state === "running");
 }
 
@@ -182,6 +207,7 @@ function setBusy(value) {
   busy = value;
   document.body.toggleAttribute("data-busy", value);
   places.effects.setAttribute("aria-busy", String(value));
+  holdControls(value);
 }
 
 function complain(words) {
@@ -213,6 +239,10 @@ async function change(work) {
     complain(error.message);
   }
   setBusy(false);
+  if (wish === null) return;
+  const chosen = wish;
+  wish = null;
+  await choose(chosen);
 }
 
 async function changeModel(method, path, body) {
@@ -226,7 +256,12 @@ async function changeModel(method, path, body) {
   });
 }
 
+/** Another joint or recording; while a change is under way the last wish waits for its end. */
 async function choose(what) {
+  if (busy) {
+    wish = { ...wish, ...what };
+    return;
+  }
   await change(async () => {
     if (what.recording) showWhole();
     Object.assign(look, what);
@@ -251,7 +286,7 @@ async function follow() {
 
 const actions = {
   add: (effect, joint) => {
-    look.joint = joint;
+    if (!busy) look.joint = joint;
     return changeModel("POST", "steps", { effect, joint });
   },
   undo: (id) => changeModel("DELETE", `steps/${id}`),
@@ -266,19 +301,22 @@ const actions = {
   stop: async () => {
     await ask("DELETE", "explanation").catch((error) => complain(error.message));
   },
-  save: async (agreed) => {
-    const request = { ...(state.save.fixed ? {} : { name: saving.name ?? state.save.name }), ...agreed };
-    try {
-      const { saved } = await ask("POST", "save", request);
-      saving = { ...saving, words: `Written: ${saved}`, level: "good", confirm: null };
-    } catch (error) {
-      const confirm = error.confirm ? nextConfirm(agreed) : null;
-      saving = { ...saving, words: error.message, level: error.confirm ? "warn" : "bad", confirm };
-    }
-    replaceContent(places.save, ...saveContent());
-    say(saving.words);
-  },
+  save: (agreed) => change(() => save(agreed)),
 };
+
+async function save(agreed) {
+  const name = saving.name ?? state.save.name;
+  try {
+    const { saved, commands } = await ask("POST", "save", { ...(state.save.fixed ? {} : { name }), ...agreed });
+    state.save = { ...state.save, saved, commands, name: state.save.fixed ? state.save.name : name };
+    saving = { ...saving, words: `Written: ${saved}`, level: "good", confirm: null };
+  } catch (error) {
+    const confirm = error.confirm ? nextConfirm(agreed) : null;
+    saving = { ...saving, words: error.message, level: error.confirm ? "warn" : "bad", confirm };
+  }
+  showSave();
+  say(saving.words);
+}
 
 /** What a second "save" agrees to: first that a step is in doubt, then that a file is there. */
 function nextConfirm(agreed) {

@@ -3,8 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <httplib.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cstdint>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -63,6 +70,25 @@ class StudioServer : public ::testing::Test {
     return {result->status, json::parse(result->body)};
   }
 
+  // The first that comes back of a request whose body is still to come.
+  [[nodiscard]] std::string answer_to(const std::string& request) const {
+    const int connection = ::socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in there{};
+    there.sin_family = AF_INET;
+    there.sin_port = htons(static_cast<std::uint16_t>(server_.port()));
+    there.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    std::string answer(256, ' ');
+    ssize_t got = -1;
+    if (::connect(connection, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0 &&
+        ::send(connection, request.data(), request.size(), 0) ==
+            static_cast<ssize_t>(request.size())) {
+      got = ::recv(connection, answer.data(), answer.size(), 0);
+    }
+    ::close(connection);
+    answer.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+    return answer;
+  }
+
   TemporaryFolder folder_;
   Server server_{studio_input(folder_ / "arm.toml", true), 0};
   std::thread thread_{[this] { server_.run(); }};
@@ -96,6 +122,50 @@ TEST_F(StudioServer, RefusesAnotherHostOriginMethodAndTooLongABody) {
       client().Post(at("api/steps"), {{"Origin", own()}}, long_body, "application/json")->status,
       413);
   EXPECT_EQ(client().Post(at("api/steps"), {{"Origin", own()}}, "{}", "text/plain")->status, 400);
+}
+
+// Of a body in pieces any length would get in so.
+TEST_F(StudioServer, RefusesABodyInPieces) {
+  const std::string head = "POST " + at("api/steps") +
+                           " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(server_.port()) +
+                           "\r\nOrigin: " + own() + "\r\nContent-Type: application/json\r\n";
+  EXPECT_THAT(answer_to(head + "Transfer-Encoding: chunked\r\n\r\n"), HasSubstr(" 411 "));
+  EXPECT_THAT(answer_to(head + "Content-Length: 2\r\nTransfer-Encoding: chunked\r\n\r\n"),
+              HasSubstr(" 411 "));
+  EXPECT_THAT(answer_to(head + "\r\n"), HasSubstr(" 411 "));
+}
+
+TEST_F(StudioServer, SaysTheSavedNameFromThenOn) {
+  EXPECT_EQ(post("steps", {{"effect", "viscous_friction"}, {"joint", 2}}).first, 200);
+  EXPECT_EQ(get("state").at("save").at("name"), "arm_studio.toml");
+  const auto [status, answer] = post("save", {{"name", "mine.toml"}});
+  ASSERT_EQ(status, 200);
+  const json save = get("state").at("save");
+  EXPECT_EQ(save.at("name"), "mine.toml");
+  EXPECT_EQ(save.at("saved"), answer.at("saved"));
+  EXPECT_EQ(save.at("commands"), answer.at("commands"));
+  EXPECT_THAT(save.at("commands").at(0).get<std::string>(),
+              HasSubstr((folder_ / "mine_again.toml").string()));
+  // No command can start from a robot file that is not there any more.
+  ASSERT_EQ(post("save", {{"name", "arm.toml"}, {"replace", true}}).first, 200);
+  EXPECT_TRUE(get("state").at("save").at("commands").empty());
+}
+
+TEST(StudioServerAlone, EndsWhereItIsStoppedBeforeItServes) {
+  const TemporaryFolder folder;
+  Server server(studio_input(folder / "arm.toml", true), 0);
+  server.stop();
+  std::atomic<bool> has_ended = false;
+  std::thread thread([&] {
+    server.run();
+    has_ended = true;
+  });
+  for (int i = 0; i < 100 && !has_ended; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  EXPECT_TRUE(has_ended);
+  if (has_ended) thread.join();
+  if (!has_ended) std::quick_exit(1);
 }
 
 TEST_F(StudioServer, AddsUndoesAndSavesByTheNumbersOfTheWorkbench) {
