@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "calibrate/calibrate.hpp"
+#include "calibrate/calibrate_joints.hpp"
 #include "calibrate/calibrate_report.hpp"
+#include "calibrate/joints_report.hpp"
 #include "calibrate/split.hpp"
 #include "command/answer.hpp"
 #include "command/command_line.hpp"
@@ -52,6 +54,15 @@ void check_numbers(const CalibrateOptions& options) {
   }
 }
 
+void check_velocity_error(const CalibrateOptions& options, const RobotDescription& robot) {
+  if (!options.velocity_error || robot.estimator.space != EstimatorSpace::kTorque) return;
+  refuse_option("calibrate", "--velocity-error",
+                fmt::format("{:g}, beside estimator.space = \"torque\" in {}",
+                            *options.velocity_error, options.files.robot),
+                "none: what it adds to a joint's momentum depends on the others",
+                "leave it out; momentum errors are found with the bounds");
+}
+
 constexpr double kShortestS = 2;
 
 // The monitor starts anew behind what is left out, and its effects in time would too.
@@ -80,25 +91,10 @@ std::vector<Log> parts_left_of(const RobotDescription& robot, const std::vector<
   return parts;
 }
 
-void run(const CalibrateOptions& options, const std::string& command_line, ExitCode& exit_code) {
-  check_numbers(options);
-  Progress progress;
-  FitData data = read_fit_data("calibrate", "LOG", options.files, read_log, progress);
-  const auto faults =
-      treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kVelocityToo);
-  for (std::vector<Log>* group : {&data.logs, &data.holdout}) {
-    *group = parts_left_of(data.robot, *group);
-  }
-  if (data.holdout.empty()) data.holdout = take_held_out(data.logs, kShortestS);
-  progress.begin("shapes of the bound");
-  const CalibrateRequest request{
-      options.alarms_per_hour, options.velocity_error,
-      "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + "."};
-  require_carried(data.robot, options.files.robot);
-  const Calibration result =
-      calibrate(data.robot, request, data.logs, data.holdout, [&progress] { progress.step(); });
-  progress.end();
-  const CalibrateNames names{options.files.robot, options.output, command_line};
+// Result: a Calibration, or a JointsCalibration.
+template <typename Result, typename Faults>
+void tell(const Result& result, const CalibrateOptions& options, const CalibrateNames& names,
+          const FitData& data, const Faults& faults, ExitCode& exit_code) {
   write_report(options.answer, [&] { return with_faults(page_of(result, names), faults); });
   std::vector<std::string> written;
   if (result.objections.empty()) {
@@ -124,6 +120,36 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
       options.answer, [&] { return with_faults(to_json(result, names), faults); }, text, written);
 }
 
+void run(const CalibrateOptions& options, const std::string& command_line, ExitCode& exit_code) {
+  check_numbers(options);
+  Progress progress;
+  RobotDescription robot = read_robot_file(options.files.robot);
+  check_velocity_error(options, robot);
+  FitData data =
+      read_fit_data("calibrate", "LOG", options.files, std::move(robot), read_log, progress);
+  const auto faults =
+      treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kVelocityToo);
+  for (std::vector<Log>* group : {&data.logs, &data.holdout}) {
+    *group = parts_left_of(data.robot, *group);
+  }
+  if (data.holdout.empty()) data.holdout = take_held_out(data.logs, kShortestS);
+  progress.begin("shapes of the bound");
+  const CalibrateRequest request{
+      options.alarms_per_hour, options.velocity_error,
+      "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + "."};
+  require_carried(data.robot, options.files.robot);
+  const CalibrateNames names{options.files.robot, options.output, command_line};
+  const auto on_step = [&progress] { progress.step(); };
+  if (data.robot.estimator.space == EstimatorSpace::kTorque) {
+    const auto result = calibrate_joints(data.robot, request, data.logs, data.holdout, on_step);
+    progress.end();
+    tell(result, options, names, data, faults, exit_code);
+  } else {
+    const auto result = calibrate(data.robot, request, data.logs, data.holdout, on_step);
+    progress.end();
+    tell(result, options, names, data, faults, exit_code);
+  }
+}
 constexpr const char* kHowItCalibrates =
     "The recordings must be free of faults: what they hold is what the monitor will tolerate. The "
     "threshold mu is the bound after the monitor's own filter, and it is mu, not the bound at an "
@@ -131,6 +157,9 @@ constexpr const char* kHowItCalibrates =
     "Constant, scaled-norm and table bounds are tried; the tightest that keeps the level on parts "
     "it has not seen is taken. Without --holdout the last of several recordings is held out, or "
     "the last fifth of a single one.\n"
+    "With estimator.space = \"torque\" each joint gets a bound of its own, of a constant and a "
+    "table "
+    "over its speed the better one, and --velocity-error is refused.\n"
     "Exit code 1, and nothing written, when the hold-out data raise more alarms than the level "
     "allows, or when one part's error is so unlike the others' that it may hold a fault.";
 
@@ -152,7 +181,8 @@ void set_up_calibrate(CLI::App& verb, ExitCode& exit_code) {
       ->capture_default_str();
   verb.add_option("--velocity-error", options->velocity_error,
                   "Largest error of the measured velocity, rad/s or m/s, where it is known; "
-                  "without it, it is found with the bound");
+                  "without it, it is found with the bound. None where "
+                  "estimator.space = \"torque\"");
   add_channels_option(verb, options->files.channels, "recordings'");
   add_keep_option(verb, options->keep);
   add_report_option(verb, options->answer);

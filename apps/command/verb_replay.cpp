@@ -44,14 +44,28 @@ std::string text_of(const Replay& replay) {
   const auto row = [&](const std::string& name, const std::string& value) {
     text += table.row(name, value);
   };
-  row("largest |e|", fmt::format("{:.4g} {}", replay.error_norm.maxCoeff(), replay.unit));
-  row("largest threshold mu", fmt::format("{:.4g} {}", replay.threshold.maxCoeff(), replay.unit));
+  for (std::size_t i = 0; i < replay.joints.size(); ++i) {
+    const JointReplay& joint = replay.joints[i];
+    const std::string first = joint.detection_time_s
+                                  ? fmt::format(", first alarm at {:.3f} s, {} in all",
+                                                *joint.detection_time_s, joint.alarms.size())
+                                  : "";
+    row(fmt::format("joint {}, {}", i + 1, replay.joint_names[i]),
+        fmt::format("residual up to {:.4g}, threshold up to {:.4g} {}, ratio up to {:.3g}{}",
+                    joint.max_residual, joint.max_threshold, joint.unit,
+                    joint.max_error_to_threshold, first));
+  }
+  // Joint by joint they are of whichever was nearest, and of mixed units.
+  if (replay.joints.empty()) {
+    row("largest |e|", fmt::format("{:.4g} {}", replay.error_norm.maxCoeff(), replay.unit));
+    row("largest threshold mu", fmt::format("{:.4g} {}", replay.threshold.maxCoeff(), replay.unit));
+  }
   row("largest |e| / mu", fmt::format("{:.4g}", replay.max_error_to_threshold));
   for (Eigen::Index joint = 0; joint < replay.psi_hat.cols(); ++joint) {
     const auto index = static_cast<std::size_t>(joint);
     row("largest |psi_hat|, " + replay.joint_names[index],
         fmt::format("{:.4g} {}", replay.psi_hat.col(joint).cwiseAbs().maxCoeff(),
-                    replay.acceleration_units[index]));
+                    replay.psi_hat_units[index]));
   }
   for (std::size_t i = 0; i < replay.alarms.size() && i < kPrintedAlarms; ++i) {
     const Alarm& alarm = replay.alarms[i];

@@ -126,7 +126,7 @@ RobotDescription robot_of(const Options& options) {
   RobotDescription robot =
       options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
   if (options.rate_hz) robot.estimator.period_s = 1 / *options.rate_hz;
-  require_bound(robot, options.robot.value_or(robot.name));
+  require_controller_bound(robot, options.robot.value_or(robot.name));
   return robot;
 }
 

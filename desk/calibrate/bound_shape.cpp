@@ -41,6 +41,7 @@ BoundSettings unit_bound(const BoundShape& shape, int k) {
   bound.velocity_error = 0;
   switch (bound.kind) {
     case Kind::kConstant:
+    case Kind::kPerJoint:  // no shape: each joint has one of its own
       bound.constant.value = 1;
       break;
     case Kind::kScaledNorm:
@@ -68,9 +69,9 @@ Eigen::VectorXd basis_values(const UncertaintyBound<kRuntimeJoints, double>& bou
                              const RecordedError& recording, Index shift) {
   Eigen::VectorXd values(recording.samples());
   for (Index i = 0; i < recording.samples(); ++i) {
-    const Joints q = recording.q.row(i);
-    const Joints dq = recording.dq.row(i);
-    const Joints tau = recording.tau.row(std::min(i + shift, recording.samples() - 1));
+    const Joints q = recording.signals->q.row(i);
+    const Joints dq = recording.signals->dq.row(i);
+    const Joints tau = recording.signals->tau.row(std::min(i + shift, recording.samples() - 1));
     values[i] = evaluate(bound, q, dq, tau);
   }
   return values;
@@ -96,7 +97,8 @@ std::vector<std::vector<double>> mean_inverse_inertia(
     const RobotDescription& robot, const std::vector<RecordedError>& recordings) {
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(robot.joint_count());
   for (const RecordedError& recording : recordings) {
-    mean += recording.q.colwise().mean().transpose() / static_cast<double>(recordings.size());
+    mean +=
+        recording.signals->q.colwise().mean().transpose() / static_cast<double>(recordings.size());
   }
   const auto model = make_model(chain_of<kRuntimeJoints, double>(robot));
   const Joints q = mean;
@@ -131,9 +133,10 @@ void add_table(BoundVariable variable, int joint, const std::vector<RecordedErro
                std::vector<BoundShape>& shapes) {
   std::vector<double> values;
   for (const RecordedError& recording : recordings) {
-    const Eigen::MatrixXd& source = variable == BoundVariable::kPosition ? recording.q
-                                    : variable == BoundVariable::kSpeed  ? recording.dq
-                                                                         : recording.tau;
+    const RecordedSignals& signals = *recording.signals;
+    const Eigen::MatrixXd& source = variable == BoundVariable::kPosition ? signals.q
+                                    : variable == BoundVariable::kSpeed  ? signals.dq
+                                                                         : signals.tau;
     for (const double value : source.col(joint)) {
       values.push_back(variable == BoundVariable::kPosition ? value : std::abs(value));
     }
@@ -157,6 +160,7 @@ BoundSettings bound_with(const BoundShape& shape, const Eigen::VectorXd& coeffic
   bound.velocity_error = round_up(velocity_error, kDigits);
   switch (bound.kind) {
     case Kind::kConstant:
+    case Kind::kPerJoint:
       bound.constant.value = round_up(coefficients[0], kDigits);
       break;
     case Kind::kScaledNorm:
@@ -196,6 +200,14 @@ std::vector<BoundShape> bound_shapes(const RobotDescription& robot,
   return shapes;
 }
 
+std::vector<BoundShape> joint_bound_shapes(int joint,
+                                           const std::vector<RecordedError>& recordings) {
+  std::vector<BoundShape> shapes(1);
+  shapes[0].words = "constant";
+  add_table(BoundVariable::kSpeed, joint, recordings, shapes);
+  return shapes;
+}
+
 FilteredBasis filtered_basis(const RobotDescription& robot, const BoundShape& shape,
                              const RecordedError& recording) {
   const TickFilter filter = tick_filter(robot.estimator.alpha, recording.period_s);
@@ -219,6 +231,8 @@ FilteredBasis filtered_basis(const RobotDescription& robot, const BoundShape& sh
   // The allowance 2 v stands in the threshold from the start.
   basis.along.col(shape.size).setConstant(2);
   basis.first_tick.col(shape.size).setConstant(2);
+  basis.along *= recording.scale;
+  basis.first_tick *= recording.scale;
   return basis;
 }
 

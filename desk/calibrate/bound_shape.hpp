@@ -31,6 +31,10 @@ struct BoundShape {
 [[nodiscard]] std::vector<BoundShape> bound_shapes(const RobotDescription& robot,
                                                    const std::vector<RecordedError>& recordings);
 
+/// Of one joint alone, for EstimatorSpace::kTorque: constant, and a table over its own speed.
+[[nodiscard]] std::vector<BoundShape> joint_bound_shapes(
+    int joint, const std::vector<RecordedError>& recordings);
+
 /// What the unknown numbers of a shape contribute to the threshold: columns c_1.., then v. Rows:
 /// samples of the recording, row 0 (the start) is not judged.
 struct FilteredBasis {

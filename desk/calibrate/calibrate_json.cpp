@@ -34,6 +34,8 @@ ordered_json calibration_json(const BoundSettings& bound, const std::string& vel
               {"value", bound.table.value}};
       break;
     }
+    case BoundSettings::Kind::kPerJoint:  // said joint by joint (joints_report.cpp)
+      break;
   }
   json["unit"] = plain ? velocity_unit : velocity_unit + "^2";
   json["velocity_error"] = bound.velocity_error;

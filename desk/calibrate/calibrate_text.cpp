@@ -81,6 +81,8 @@ std::string words_of(const BoundSettings& bound, const std::string& unit) {
                           list_text(bound.table.at), acceleration);
       break;
     }
+    case BoundSettings::Kind::kPerJoint:  // said joint by joint (joints_report.cpp)
+      break;
   }
   if (bound.velocity_error > 0) {
     words += fmt::format("; velocity error {} {}", shortest(bound.velocity_error), unit);

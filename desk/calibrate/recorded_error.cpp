@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
+
 #include "common/error.hpp"
 #include "replay/replay.hpp"
 
@@ -13,7 +15,12 @@ namespace {
 RobotDescription without_learning(RobotDescription robot) {
   robot.estimator.learning_rate = 0;
   robot.estimator.hidden_units = 1;
-  if (!robot.bound) robot.bound.emplace();
+  if (robot.bound) return robot;
+  BoundSettings& bound = robot.bound.emplace();
+  if (robot.estimator.space == EstimatorSpace::kTorque) {
+    bound.kind = BoundSettings::Kind::kPerJoint;
+    bound.joints.resize(robot.joints.size());
+  }
   return robot;
 }
 
@@ -27,6 +34,10 @@ void require_all_accepted(const Replay& replay) {
        .allowed = "a recording of which the monitor accepts every sample",
        .mend = "check the units, [channels] and [joint.limits]; leave out a recording "
                "in which something went wrong"});
+}
+
+std::shared_ptr<const RecordedSignals> signals_of(const Log& log) {
+  return std::make_shared<const RecordedSignals>(RecordedSignals{log.q, log.dq, log.tau});
 }
 
 Eigen::VectorXd first_ticks(const Eigen::MatrixXd& error, double keep) {
@@ -74,10 +85,35 @@ RecordedError recorded_error(const RobotDescription& robot, const Log& log) {
       first_ticks(run.error, tick_filter(robot.estimator.alpha, log.period_s).keep);
   recorded.loudest_joint = loudest_joints(run.error);
   if (robot.bound) recorded.old_threshold = run.threshold;
-  recorded.q = log.q;
-  recorded.dq = log.dq;
-  recorded.tau = log.tau;
+  recorded.signals = signals_of(log);
   return recorded;
+}
+
+std::vector<RecordedError> joint_errors(const RobotDescription& robot, const Log& log) {
+  const Replay run = replay(without_learning(robot), log);
+  require_all_accepted(run);
+  const double keep = tick_filter(robot.estimator.alpha, log.period_s).keep;
+  const auto signals = signals_of(log);
+  std::vector<RecordedError> joints;
+  for (Eigen::Index joint = 0; joint < run.error.cols(); ++joint) {
+    RecordedError& recorded = joints.emplace_back();
+    recorded.file = log.file;
+    recorded.unit = run.joints[static_cast<std::size_t>(joint)].unit;
+    recorded.period_s = log.period_s;
+    recorded.t_s = run.t_s;
+    recorded.residual = run.error.col(joint);
+    recorded.error_norm = recorded.residual.cwiseAbs();
+    recorded.first_tick = first_ticks(run.error.col(joint), keep);
+    recorded.loudest_joint = Eigen::VectorXi::Constant(run.error.rows(), static_cast<int>(joint));
+    if (robot.bound) recorded.old_threshold = run.thresholds.col(joint);
+    recorded.signals = signals;
+    recorded.scale = robot.estimator.alpha;
+  }
+  return joints;
+}
+
+Eigen::MatrixXd joint_thresholds(const RobotDescription& robot, const Log& log) {
+  return replay(without_learning(robot), log).thresholds;
 }
 
 }  // namespace offnominal::desk

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "log/log.hpp"
 #include "robot/robot.hpp"
@@ -20,10 +22,18 @@ struct TickFilter {
 };
 [[nodiscard]] TickFilter tick_filter(double alpha_per_s, double period_s);
 
+/// Rows: samples, columns: joints.
+struct RecordedSignals {
+  Eigen::MatrixXd q;
+  Eigen::MatrixXd dq;
+  Eigen::MatrixXd tau;
+};
+
 /// Sample 0 is the start of the run, where |e| is 0 and nothing is judged.
 struct RecordedError {
   std::string file;
-  std::string unit;  // of e: "rad/s", "m/s", or "1" where joints of both types are mixed
+  // Of e: "rad/s", "m/s", or "1" where joints of both types are mixed; "N m" or "N" of one joint.
+  std::string unit;
   double period_s = 0;
   Eigen::VectorXd t_s;         // as recorded
   Eigen::VectorXd error_norm;  // |e|, what `offnominal replay` shows before any alarm
@@ -31,13 +41,23 @@ struct RecordedError {
   Eigen::VectorXd first_tick;
   Eigen::VectorXi loudest_joint;  // from 0; the one with the largest |e_j| at the sample
   Eigen::VectorXd old_threshold;  // mu of the robot file's own bound; empty: it has none
-  Eigen::MatrixXd q;              // rows: samples, columns: joints
-  Eigen::MatrixXd dq;
-  Eigen::MatrixXd tau;
+  std::shared_ptr<const RecordedSignals> signals;  // one for all joints of a recording
+
+  // 1, or of one joint's residual alpha: by which the filter's output is multiplied here.
+  double scale = 1;
+  Eigen::VectorXd residual;  // of one joint, with its sign; empty of |e|
 
   [[nodiscard]] Eigen::Index samples() const { return t_s.size(); }
   [[nodiscard]] double duration_s() const { return static_cast<double>(samples() - 1) * period_s; }
 };
+
+/// The same of each joint of a robot with EstimatorSpace::kTorque: residuals and thresholds in N m
+/// or N, behind the filter's alpha.
+[[nodiscard]] std::vector<RecordedError> joint_errors(const RobotDescription& robot,
+                                                      const Log& log);
+
+/// The thresholds of these joints alone, columns: joints. The robot has a bound.
+[[nodiscard]] Eigen::MatrixXd joint_thresholds(const RobotDescription& robot, const Log& log);
 
 /// Runs the monitor of `robot` over `log` without learning. Throws InputError as replay() does, and
 /// where a sample is refused: what the monitor would not look at cannot calibrate it.

@@ -16,6 +16,9 @@ constexpr double kWorthwhile = 0.15;
 // No c_k falls below this share of the constant bound: where the recordings say little, a table
 // would otherwise fall to nothing.
 constexpr double kLowestShare = 0.1;
+// Nor the constant bound, where it would fall to nothing because the allowance for the velocity's
+// own error covers everything, below this share of the largest |e|: a bound has to be above 0.
+constexpr double kLowestShareOfError = 1e-3;
 // What a transient that was taken out asks for, and a little more: the next one like it is no
 // smaller. How much larger it may be, one event does not say.
 constexpr double kAboveTransient = 1.05;
@@ -87,6 +90,16 @@ Transient transient_of(const CalibrationData& data, const SampleRange& event, co
   return transient;
 }
 
+// The constant bound whose threshold, once the filter has settled, is that share of the largest
+// |e|.
+double lowest_constant(const std::vector<RecordedError>& recordings, double alpha_per_s) {
+  double largest = 0;  // of |e|, in the bound's unit
+  for (const RecordedError& recording : recordings) {
+    largest = std::max(largest, recording.error_norm.maxCoeff() * alpha_per_s / recording.scale);
+  }
+  return kLowestShareOfError * largest;
+}
+
 }  // namespace
 
 // The constant bound first: it shows whether one event would decide everything.
@@ -107,12 +120,19 @@ Tries try_shapes(const RobotDescription& robot, const CalibrationData& data,
     if (on_step) on_step();
     return tried;
   };
-  const std::vector<BoundShape> shapes = bound_shapes(robot, fitted);
+  const auto try_constant = [&](const BoundShape& shape) {
+    Tried tried = try_shape(shape);
+    if (tried.fit.coefficients[0] > 0) return tried;
+    lowest = lowest_constant(fitted, robot.estimator.alpha);
+    return try_shape(shape);
+  };
+  const std::vector<BoundShape> shapes =
+      data.joint ? joint_bound_shapes(*data.joint, fitted) : bound_shapes(robot, fitted);
   Tries tries;
-  Tried constant = try_shape(shapes.front());
+  Tried constant = try_constant(shapes.front());
   if (constant.maxima.size() >= static_cast<std::size_t>(kFewestBlocks) + kBlocksOfAnEvent) {
     apart = loudest_event(constant, data);
-    Tried without = try_shape(shapes.front());
+    Tried without = try_constant(shapes.front());
     if (constant.mean_threshold > kDecides * without.mean_threshold) {
       tries.transient = transient_of(data, *apart, constant, without);
       constant = std::move(without);

@@ -21,6 +21,8 @@ struct CalibrationData {
   std::vector<RecordedError> recordings;
   Split split;
   double block_s = 0;
+  std::optional<int> joint;  // from 0; the recordings' errors are of this one alone
+  std::size_t judged = 1;    // how many errors are judged in all: joints, or 1
 
   [[nodiscard]] std::int64_t block_samples(const RecordedError& recording) const {
     return std::max<std::int64_t>(1, std::llround(block_s / recording.period_s));

@@ -418,7 +418,7 @@ ModelHeader model_header(const RobotDescription& robot, const ModelHeaderOptions
                                  "between them",
                       .mend = "choose another name"});
   }
-  require_bound(robot, options.robot_file);
+  require_controller_bound(robot, options.robot_file);
   return write(robot, options);
 }
 

@@ -51,7 +51,7 @@ namespace {
 void check_run(const RobotDescription& robot, const RunSettings& settings,
                const std::string& verb) {
   const double period = robot.estimator.period_s;
-  require_bound(robot, "robot " + robot.name);
+  require_controller_bound(robot, "robot " + robot.name);
   if (!(period >= kMinPeriod && period <= kMaxPeriod)) {
     refuse(verb, "step", shortest(period) + " s", "1e-5 to 0.02 s");
   }

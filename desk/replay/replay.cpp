@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
 #include <offnominal/diagnosis/estimator_config.hpp>
 #include <offnominal/model/quantity.hpp>
+#include <utility>
 
 #include "common/error.hpp"
 #include "common/number.hpp"
@@ -44,12 +46,13 @@ void check_settings(const RobotDescription& robot, const Log& log) {
   }
 }
 
-std::string velocity_unit(const RobotDescription& robot) {
+std::string common_unit(const RobotDescription& robot, Quantity quantity,
+                        const std::string& otherwise) {
   const JointType first = robot.joints.front().joint.type;
   for (const RobotJoint& joint : robot.joints) {
-    if (joint.joint.type != first) return "1";
+    if (joint.joint.type != first) return otherwise;
   }
-  return unit_of(Quantity::kVelocity, first);
+  return unit_of(quantity, first);
 }
 
 }  // namespace
@@ -66,14 +69,19 @@ Replay replay(const RobotDescription& robot, const Log& log) {
   Replay result;
   result.robot = robot.name;
   result.log = log.file;
-  result.unit = velocity_unit(robot);
+  const bool in_torque = robot.estimator.space == EstimatorSpace::kTorque;
+  result.space = robot.estimator.space;
+  result.unit = in_torque ? common_unit(robot, Quantity::kEffort, "N m or N")
+                          : common_unit(robot, Quantity::kVelocity, "1");
   result.period_s = log.period_s;
   result.hidden_units = robot.estimator.hidden_units;
   result.seed = robot.estimator.seed;
   for (const RobotJoint& joint : robot.joints) {
     result.joint_names.push_back(joint.name);
-    result.acceleration_units.emplace_back(joint.joint.type == JointType::kRevolute ? "rad/s^2"
-                                                                                    : "m/s^2");
+    const JointType type = joint.joint.type;
+    const char* const acceleration = type == JointType::kRevolute ? "rad/s^2" : "m/s^2";
+    result.psi_hat_units.emplace_back(in_torque ? unit_of(Quantity::kEffort, type) : acceleration);
+    if (in_torque) result.joints.emplace_back().unit = unit_of(Quantity::kEffort, type);
   }
   replay_monitor(carrying(seen, log.payload), log, result);
   if (result.t_s.size() == 0) {
@@ -93,9 +101,38 @@ bool Replay::is_blind() const {
   return longest_refused > kBorneInARow || (samples() - judged()) * kBorneOneIn > samples();
 }
 
+namespace {
+
+// The joint that crossed first, and the others in the order in which they followed.
+std::string joints_words(const Replay& replay) {
+  const auto first = static_cast<std::size_t>(*replay.first_joint);
+  const double at_s = *replay.detection_time_s;
+  std::vector<std::pair<double, std::size_t>> later;
+  for (std::size_t i = 0; i < replay.joints.size(); ++i) {
+    const JointReplay& joint = replay.joints[i];
+    if (i != first && joint.detection_time_s) later.emplace_back(*joint.detection_time_s, i);
+  }
+  std::sort(later.begin(), later.end());
+  std::string words = fmt::format(
+      "Off nominal: joint {} ({}) first, its residual crosses its threshold at {:.3f} s, up to "
+      "{:.3g} {}",
+      first + 1, replay.joint_names[first], at_s, replay.joints[first].max_residual,
+      replay.joints[first].unit);
+  for (std::size_t k = 0; k < later.size(); ++k) {
+    words += fmt::format("{} joint {} ({}) {:.3f} s after it", k == 0 ? "; then" : ",",
+                         later[k].second + 1, replay.joint_names[later[k].second],
+                         later[k].first - at_s);
+  }
+  return words + ".";
+}
+
+}  // namespace
+
 std::string words_of(const Replay& replay) {
   std::string words;
-  if (replay.detection_time_s) {
+  if (replay.first_joint) {
+    words = joints_words(replay);
+  } else if (replay.detection_time_s) {
     words = fmt::format(
         "Off nominal: the residual crosses its threshold at {:.3f} s, in {} stretch{}.",
         *replay.detection_time_s, replay.alarms.size(), replay.alarms.size() == 1 ? "" : "es");

@@ -29,25 +29,42 @@ struct Refusals {
   double first_s = 0;
 };
 
+// One joint of a monitor that judges joint by joint (EstimatorSpace::kTorque).
+struct JointReplay {
+  std::string unit;  // of residual and threshold: "N m" or "N"
+  double max_residual = 0;
+  double max_threshold = 0;
+  double max_error_to_threshold = 0;
+  std::optional<double> detection_time_s;  // its first alarm, time of the recording
+  std::vector<Alarm> alarms;
+};
+
+// With EstimatorSpace::kTorque error holds residuals alpha (p - omega) in N m or N, psi_hat too,
+// and error_norm and threshold are those of the joint that is nearest to its threshold.
 struct Replay {
   std::string robot;
   std::string log;
-  std::string unit;  // of |e|, mu: "rad/s", "m/s", or "1" where joints of both types are mixed
+  EstimatorSpace space = EstimatorSpace::kAcceleration;
+  // Of |e|, mu: "rad/s", "m/s", "1" where joints of both types are mixed; "N m", "N", "N m or N".
+  std::string unit;
   double period_s = 0;
   int hidden_units = 0;
   std::uint32_t seed = 0;
   std::vector<std::string> joint_names;
-  std::vector<std::string> acceleration_units;  // of psi_hat, per joint
+  std::vector<std::string> psi_hat_units;  // per joint
 
   // One entry per sample that was accepted; times as in the recording.
   Eigen::VectorXd t_s;
   Eigen::MatrixXd error;       // e; rows: samples, columns: joints
   Eigen::VectorXd error_norm;  // |e|
   Eigen::VectorXd threshold;   // mu
+  Eigen::MatrixXd thresholds;  // of each joint, as error; empty where there is one of all
   Eigen::MatrixXd psi_hat;     // rows: samples, columns: joints; rad/s^2 or m/s^2
 
   std::optional<double> detection_time_s;  // first alarm, time of the recording
   std::vector<Alarm> alarms;
+  std::vector<JointReplay> joints;  // empty where there is one threshold of all
+  std::optional<int> first_joint;   // from 0, of the first alarm where joints are told apart
   double max_error_to_threshold = 0;
   double max_weight_norm = 0;
   std::map<std::string, Refusals> refused;  // by the status' name

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 
 #include "replay/replay.hpp"
@@ -10,38 +11,71 @@ nlohmann::json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }
 
-}  // namespace
-
-nlohmann::json to_json(const Replay& replay) {
+nlohmann::json alarms_json(const std::vector<Alarm>& all) {
   nlohmann::json alarms = nlohmann::json::array();
-  for (const Alarm& alarm : replay.alarms) {
+  for (const Alarm& alarm : all) {
     alarms.push_back({{"start_s", alarm.start_s},
                       {"end_s", alarm.end_s},
                       {"max_error_to_threshold", finite_or_null(alarm.max_error_to_threshold)}});
   }
+  return alarms;
+}
+
+nlohmann::json time_or_null(const std::optional<double>& time_s) {
+  return time_s ? nlohmann::json(*time_s) : nlohmann::json();
+}
+
+// What is said of joints that are judged one by one.
+void add_joints(const Replay& replay, nlohmann::json& json) {
+  nlohmann::json joints = nlohmann::json::array();
+  for (std::size_t i = 0; i < replay.joints.size(); ++i) {
+    const JointReplay& joint = replay.joints[i];
+    const auto index = static_cast<Eigen::Index>(i);
+    joints.push_back({{"joint", i + 1},
+                      {"name", replay.joint_names[i]},
+                      {"unit", joint.unit},
+                      {"max_residual", joint.max_residual},
+                      {"max_threshold", joint.max_threshold},
+                      {"max_error_to_threshold", finite_or_null(joint.max_error_to_threshold)},
+                      {"max_abs_psi_hat", replay.psi_hat.col(index).cwiseAbs().maxCoeff()},
+                      {"detection_time_s", time_or_null(joint.detection_time_s)},
+                      {"alarms", alarms_json(joint.alarms)}});
+  }
+  // Of whichever joint was nearest to its threshold, and of mixed units.
+  for (const char* key : {"max_error", "max_threshold", "max_abs_psi_hat"}) json[key] = nullptr;
+  json["space"] = "torque";
+  json["first_joint"] =
+      replay.first_joint ? nlohmann::json(*replay.first_joint + 1) : nlohmann::json();
+  json["joints"] = joints;
+}
+
+}  // namespace
+
+nlohmann::json to_json(const Replay& replay) {
   nlohmann::json refused = nlohmann::json::object();
   for (const auto& [status, refusals] : replay.refused) {
     refused[status] = {{"count", refusals.count}, {"first_s", refusals.first_s}};
   }
-  return {{"robot", replay.robot},
-          {"log", replay.log},
-          {"unit", replay.unit},
-          {"period_s", replay.period_s},
-          {"scalar", "double"},
-          {"hidden_units", replay.hidden_units},
-          {"seed", replay.seed},
-          {"samples", replay.samples()},
-          {"judged", replay.judged()},
-          {"blind", replay.is_blind()},
-          {"refused", refused},
-          {"detection_time_s",
-           replay.detection_time_s ? nlohmann::json(*replay.detection_time_s) : nlohmann::json()},
-          {"alarms", alarms},
-          {"max_error_to_threshold", finite_or_null(replay.max_error_to_threshold)},
-          {"max_error", replay.error_norm.maxCoeff()},
-          {"max_threshold", replay.threshold.maxCoeff()},
-          {"max_abs_psi_hat", replay.psi_hat.cwiseAbs().maxCoeff()},
-          {"max_weight_norm", replay.max_weight_norm}};
+  nlohmann::json json = {{"robot", replay.robot},
+                         {"log", replay.log},
+                         {"unit", replay.unit},
+                         {"period_s", replay.period_s},
+                         {"scalar", "double"},
+                         {"hidden_units", replay.hidden_units},
+                         {"seed", replay.seed},
+                         {"samples", replay.samples()},
+                         {"judged", replay.judged()},
+                         {"blind", replay.is_blind()},
+                         {"refused", refused},
+                         {"detection_time_s", time_or_null(replay.detection_time_s)},
+                         {"alarms", alarms_json(replay.alarms)},
+                         {"max_error_to_threshold", finite_or_null(replay.max_error_to_threshold)},
+                         {"max_error", replay.error_norm.maxCoeff()},
+                         {"max_threshold", replay.threshold.maxCoeff()},
+                         {"max_abs_psi_hat", replay.psi_hat.cwiseAbs().maxCoeff()},
+                         {"max_weight_norm", replay.max_weight_norm}};
+  if (replay.space == EstimatorSpace::kTorque) add_joints(replay, json);
+  return json;
 }
 
 }  // namespace offnominal::desk

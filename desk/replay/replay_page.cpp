@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "replay/replay.hpp"
 
@@ -16,9 +17,9 @@ std::vector<double> values(const Eigen::Ref<const Eigen::VectorXd>& vector) {
   return {vector.begin(), vector.end()};
 }
 
-std::vector<EventMark> alarm_marks(const Replay& replay) {
+std::vector<EventMark> alarm_marks(const std::optional<double>& detection_time_s) {
   std::vector<EventMark> marks;
-  if (replay.detection_time_s) marks.push_back({*replay.detection_time_s, "detected", Level::kBad});
+  if (detection_time_s) marks.push_back({*detection_time_s, "detected", Level::kBad});
   return marks;
 }
 
@@ -35,10 +36,76 @@ Chart residual_chart(const Replay& replay) {
                    .x = values(replay.t_s),
                    .y = values(replay.threshold),
                    .tone = Tone::kThreshold}};
-  chart.events = alarm_marks(replay);
+  chart.events = alarm_marks(replay.detection_time_s);
   chart.zoom_group = "time";
   chart.slider = true;
   return chart;
+}
+
+Chart joint_chart(const Replay& replay, Eigen::Index joint) {
+  const auto index = static_cast<std::size_t>(joint);
+  const JointReplay& of_joint = replay.joints[index];
+  Chart chart;
+  chart.title = "Residual against its threshold, " + replay.joint_names[index];
+  chart.x = {.name = "time", .unit = "s"};
+  chart.y = {{.name = "torque", .unit = of_joint.unit}};
+  chart.series = {{.name = "|residual|",
+                   .x = values(replay.t_s),
+                   .y = values(replay.error.col(joint).cwiseAbs()),
+                   .tone = Tone::kResidual},
+                  {.name = "threshold",
+                   .x = values(replay.t_s),
+                   .y = values(replay.thresholds.col(joint)),
+                   .tone = Tone::kThreshold}};
+  chart.events = alarm_marks(of_joint.detection_time_s);
+  chart.zoom_group = "time";
+  chart.slider = joint == 0;
+  return chart;
+}
+
+Table joint_table(const Replay& replay) {
+  Table table;
+  table.caption = "Joint by joint";
+  table.columns = {{"joint", ""},
+                   {"first alarm", "s", ".3f"},
+                   {"stretches", "1", ".0f"},
+                   {"unit", ""},
+                   {"largest residual", "", ".4g"},
+                   {"largest threshold", "", ".4g"},
+                   {"largest ratio", "1", ".3g"}};
+  for (std::size_t i = 0; i < replay.joints.size(); ++i) {
+    const JointReplay& joint = replay.joints[i];
+    table.rows.push_back({replay.joint_names[i],
+                          {},
+                          static_cast<double>(joint.alarms.size()),
+                          joint.unit,
+                          joint.max_residual,
+                          joint.max_threshold,
+                          joint.max_error_to_threshold});
+    if (joint.detection_time_s) table.rows.back()[1] = *joint.detection_time_s;
+  }
+  return table;
+}
+
+// One chart of all joints, or one of each where each has its own threshold.
+void add_residuals(const Replay& replay, Section& section) {
+  if (replay.joints.empty()) {
+    section.text =
+        "e is the measured velocity minus the estimator's. The monitor is certain that the robot "
+        "no "
+        "longer behaves as its model and its uncertainty bound say when |e| exceeds mu.";
+    section.blocks.emplace_back(residual_chart(replay));
+    return;
+  }
+  section.text =
+      "A joint's residual is the torque on it that the model does not explain, behind the "
+      "estimator's filter. The monitor is certain that the joint no longer behaves as its model "
+      "and "
+      "its uncertainty bound say when the residual exceeds the threshold.";
+  section.blocks.emplace_back(joint_table(replay));
+  for (Eigen::Index joint = 0; joint < replay.error.cols(); ++joint) {
+    section.blocks.emplace_back(joint_chart(replay, joint));
+  }
 }
 
 Chart estimate_chart(const Replay& replay, Eigen::Index joint) {
@@ -46,12 +113,14 @@ Chart estimate_chart(const Replay& replay, Eigen::Index joint) {
   Chart chart;
   chart.title = "Fault estimate psi_hat, " + replay.joint_names[index];
   chart.x = {.name = "time", .unit = "s"};
-  chart.y = {{.name = "acceleration", .unit = replay.acceleration_units[index]}};
+  const bool in_torque = replay.space == EstimatorSpace::kTorque;
+  chart.y = {{.name = in_torque ? "torque" : "acceleration", .unit = replay.psi_hat_units[index]}};
   chart.series = {{.name = "psi_hat",
                    .x = values(replay.t_s),
                    .y = values(replay.psi_hat.col(joint)),
                    .tone = Tone::kModel}};
-  chart.events = alarm_marks(replay);
+  chart.events =
+      alarm_marks(in_torque ? replay.joints[index].detection_time_s : replay.detection_time_s);
   chart.zoom_group = "time";
   return chart;
 }
@@ -109,17 +178,17 @@ report::Page page_of(const Replay& replay, const std::string& command_line) {
   page.verdict = {words_of(replay), level_of(replay)};
   page.command_line = command_line;
   Section residual{.heading = "Residual", .text = "", .blocks = {}};
-  residual.text =
-      "e is the measured velocity minus the estimator's. The monitor is certain that the robot no "
-      "longer behaves as its model and its uncertainty bound say when |e| exceeds mu.";
   residual.blocks.emplace_back(key_figures(replay));
-  residual.blocks.emplace_back(residual_chart(replay));
+  add_residuals(replay, residual);
   if (!replay.alarms.empty()) residual.blocks.emplace_back(alarm_table(replay));
   page.sections.push_back(residual);
   Section estimate{.heading = "What changed", .text = "", .blocks = {}};
   estimate.text =
-      "The network's estimate of the acceleration that the model does not explain; exactly zero "
-      "until the first alarm.";
+      replay.space == EstimatorSpace::kTorque
+          ? "The network's estimate of the torque that the model does not explain; on each joint "
+            "exactly zero until its first alarm."
+          : "The network's estimate of the acceleration that the model does not explain; exactly "
+            "zero until the first alarm.";
   for (Eigen::Index joint = 0; joint < replay.psi_hat.cols(); ++joint) {
     estimate.blocks.emplace_back(estimate_chart(replay, joint));
   }

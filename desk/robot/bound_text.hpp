@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "robot/robot.hpp"
 
@@ -8,5 +9,9 @@ namespace offnominal::desk {
 
 /// [uncertainty_bound] of a robot file, header included.
 [[nodiscard]] std::string bound_text(const BoundSettings& bound);
+
+/// The keys of Kind::kPerJoint, `kind` first, without a line break at the end: the joints'
+/// constants in one list, what depends on a speed in tables of one line.
+[[nodiscard]] std::string joint_bounds_text(const std::vector<JointBoundSettings>& joints);
 
 }  // namespace offnominal::desk

@@ -7,9 +7,11 @@
 #include <offnominal/control/computed_torque.hpp>
 #include <offnominal/diagnosis/bound.hpp>
 #include <offnominal/diagnosis/estimator_config.hpp>
+#include <offnominal/diagnosis/joint_bound.hpp>
 #include <offnominal/monitor.hpp>
 #include <offnominal/vector.hpp>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include "robot/chain_of.hpp"
@@ -72,6 +74,33 @@ void set_table(const TableBoundSettings& settings, UncertaintyBound<N, Scalar>& 
 
 }  // namespace detail
 
+/// Of a robot with that many joints. Throws std::invalid_argument where the settings are not one
+/// per joint, or have too many points.
+template <int N, typename Scalar>
+[[nodiscard]] TorqueBound<N, Scalar> torque_bound_of(
+    const BoundSettings& settings, std::size_t joints = static_cast<std::size_t>(N)) {
+  if (settings.kind != BoundSettings::Kind::kPerJoint || settings.joints.size() != joints) {
+    throw std::invalid_argument("the bound is not one per joint");
+  }
+  TorqueBound<N, Scalar> bound;
+  size_for(joints, bound.joints);
+  for (std::size_t i = 0; i < joints; ++i) {
+    const JointBoundSettings& from = settings.joints[i];
+    JointBound<Scalar>& joint = bound.joints[i];
+    if (from.value.empty() || from.value.size() > joint.value.size() ||
+        (from.value.size() > 1 && from.at.size() != from.value.size())) {
+      throw std::invalid_argument("a joint's bound has not a speed for each value, or too many");
+    }
+    joint.points = static_cast<std::uint8_t>(from.value.size());
+    for (std::size_t k = 0; k < from.value.size(); ++k) {
+      joint.value[k] = static_cast<Scalar>(from.value[k]);
+      if (!from.at.empty()) joint.at[k] = static_cast<Scalar>(from.at[k]);
+    }
+    joint.momentum_error = static_cast<Scalar>(from.momentum_error);
+  }
+  return bound;
+}
+
 /// Of a robot with that many joints. Throws std::invalid_argument where the settings do not fit it.
 template <int N, typename Scalar>
 [[nodiscard]] UncertaintyBound<N, Scalar> bound_of(
@@ -89,6 +118,8 @@ template <int N, typename Scalar>
     case BoundSettings::Kind::kTable:
       detail::set_table(settings.table, bound);
       break;
+    case BoundSettings::Kind::kPerJoint:
+      throw std::invalid_argument("a bound of torques where one of accelerations is asked for");
   }
   return bound;
 }
@@ -124,15 +155,19 @@ template <int N, typename Scalar>
 }
 
 /// Chain, estimator and bound in one. Compensation is limited to each joint's max_torque. Throws
-/// std::invalid_argument when the robot has no bound, or not N joints.
-template <int N, typename Scalar>
-[[nodiscard]] MonitorConfig<N, Scalar> monitor_config_of(const RobotDescription& robot) {
+/// std::invalid_argument when the robot has no bound of that Space, or not N joints.
+template <int N, typename Scalar, typename Space = AccelerationSpace>
+[[nodiscard]] MonitorConfig<N, Scalar, Space> monitor_config_of(const RobotDescription& robot) {
   if (!robot.bound)
     throw std::invalid_argument("robot " + robot.name + " has no uncertainty bound");
-  MonitorConfig<N, Scalar> config;
+  MonitorConfig<N, Scalar, Space> config;
   config.chain = chain_of<N, Scalar>(robot);
   config.estimator = estimator_config_of<Scalar>(robot.estimator);
-  config.bound = bound_of<N, Scalar>(*robot.bound, robot.joints.size());
+  if constexpr (std::is_same_v<Space, TorqueSpace>) {
+    config.bound = torque_bound_of<N, Scalar>(*robot.bound, robot.joints.size());
+  } else {
+    config.bound = bound_of<N, Scalar>(*robot.bound, robot.joints.size());
+  }
   config.torque_signal = robot.estimator.torque_signal;
   size_for(robot.joints.size(), config.max_compensation);
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {

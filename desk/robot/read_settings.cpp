@@ -5,6 +5,7 @@
 #include <limits>
 #include <offnominal/diagnosis/bound.hpp>
 #include <offnominal/diagnosis/estimator_config.hpp>
+#include <offnominal/diagnosis/joint_bound.hpp>
 
 #include "common/nearest.hpp"
 #include "common/number.hpp"
@@ -12,10 +13,60 @@
 namespace offnominal::desk {
 namespace {
 
+void require_rising(const TomlTable& table, const std::vector<double>& at) {
+  for (std::size_t i = 1; i < at.size(); ++i) {
+    if (at[i] > at[i - 1]) continue;
+    table.refuse("at", shortest(at[i]) + " after " + shortest(at[i - 1]), "strictly rising numbers",
+                 "sort the points, and their values with them");
+  }
+}
+
+// Of joints whose bound depends on their speed; returns which.
+std::vector<bool> read_over_speed(const TomlTable& table, std::vector<JointBoundSettings>& joints) {
+  std::vector<bool> given(joints.size());
+  for (const TomlTable& of_joint : table.tables("over_speed", {"joint", "at", "value"})) {
+    const auto number = of_joint.integer("joint", 1, static_cast<std::int64_t>(joints.size()));
+    const auto joint = static_cast<std::size_t>(number - 1);
+    if (given[joint]) {
+      of_joint.refuse("joint", "joint " + std::to_string(number) + " a second time",
+                      "one table per joint", "make one table of them");
+    }
+    given[joint] = true;
+    joints[joint].at = of_joint.numbers("at", not_negative("rad/s or m/s"), 2,
+                                        static_cast<std::size_t>(kMaxJointBoundPoints));
+    require_rising(of_joint, joints[joint].at);
+    joints[joint].value = of_joint.numbers("value", positive("N m or N"), joints[joint].at.size(),
+                                           joints[joint].at.size());
+  }
+  return given;
+}
+
+std::vector<JointBoundSettings> read_joint_bounds(const TomlTable& table, std::size_t count) {
+  std::vector<JointBoundSettings> joints(count);
+  const std::vector<double> values = table.numbers("value", not_negative("N m or N"), count, count);
+  const std::vector<bool> over_speed = read_over_speed(table, joints);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (over_speed[i] != (values[i] == 0)) {
+      table.refuse("value", shortest(values[i]) + " for joint " + std::to_string(i + 1),
+                   over_speed[i] ? "0, as over_speed has this joint's values" : "a number above 0",
+                   over_speed[i]
+                       ? "write 0, or remove the joint's table from over_speed"
+                       : "give the bound in N m or N, or the joint's table in over_speed");
+    }
+    if (!over_speed[i]) joints[i].value = {values[i]};
+  }
+  if (!table.has("momentum_error")) return joints;
+  const std::vector<double> errors =
+      table.numbers("momentum_error", not_negative("N m s or N s"), count, count);
+  for (std::size_t i = 0; i < count; ++i) joints[i].momentum_error = errors[i];
+  return joints;
+}
+
 // Refuses the keys that belong to another kind of bound.
 void refuse_keys_other_than(const TomlTable& table, const std::vector<std::string>& own,
                             const std::string& kind) {
-  std::vector<std::string> allowed{"kind", "source", "velocity_error"};
+  std::vector<std::string> allowed{"kind", "source"};
+  if (kind != "per_joint") allowed.emplace_back("velocity_error");
   allowed.insert(allowed.end(), own.begin(), own.end());
   for (const std::string& key : bound_keys()) {
     bool known = false;
@@ -33,11 +84,7 @@ TableBoundSettings read_table_bound(const TomlTable& table, int joint_count) {
   bound.variable = static_cast<BoundVariable>(variable);
   bound.joint = static_cast<int>(table.integer("joint", 1, joint_count)) - 1;
   bound.at = table.numbers("at", any_number(""), 1, kMaxTablePoints);
-  for (std::size_t i = 1; i < bound.at.size(); ++i) {
-    if (bound.at[i] > bound.at[i - 1]) continue;
-    table.refuse("at", shortest(bound.at[i]) + " after " + shortest(bound.at[i - 1]),
-                 "strictly rising numbers", "sort the points, and their values with them");
-  }
+  require_rising(table, bound.at);
   bound.value =
       table.numbers("value", positive("rad/s^2 or m/s^2"), bound.at.size(), bound.at.size());
   return bound;
@@ -46,11 +93,11 @@ TableBoundSettings read_table_bound(const TomlTable& table, int joint_count) {
 }  // namespace
 
 const std::vector<std::string>& estimator_keys() {
-  static const std::vector<std::string> keys{"period_s",      "alpha_per_s",
-                                             "hidden_units",  "learning_rate",
-                                             "weight_radius", "initial_weight_range",
-                                             "seed",          "dead_zone",
-                                             "torque_signal", "source"};
+  static const std::vector<std::string> keys{
+      "period_s",      "alpha_per_s",   "hidden_units",
+      "learning_rate", "weight_radius", "initial_weight_range",
+      "seed",          "dead_zone",     "torque_signal",
+      "space",         "source"};
   return keys;
 }
 
@@ -61,9 +108,9 @@ const std::vector<std::string>& arming_keys() {
 }
 
 const std::vector<std::string>& bound_keys() {
-  static const std::vector<std::string> keys{"kind",   "source",        "value",    "scale",
-                                             "offset", "matrix",        "variable", "joint",
-                                             "at",     "velocity_error"};
+  static const std::vector<std::string> keys{
+      "kind",     "source", "value", "scale",          "offset",     "matrix",
+      "variable", "joint",  "at",    "velocity_error", "over_speed", "momentum_error"};
   return keys;
 }
 
@@ -104,6 +151,11 @@ EstimatorSettings read_estimator(const TomlTable& table) {
                                  ? TorqueSignal::kSampled
                                  : TorqueSignal::kHeld;
   }
+  if (table.has("space")) {
+    settings.space = table.choice("space", {"acceleration", "torque"}) == 0
+                         ? EstimatorSpace::kAcceleration
+                         : EstimatorSpace::kTorque;
+  }
   settings.source = table.text_or_empty("source");
   return settings;
 }
@@ -126,7 +178,7 @@ ArmingSettings read_arming(const TomlTable& table, int joint_count) {
 BoundSettings read_bound(const TomlTable& table, int joint_count) {
   BoundSettings bound;
   const auto joints = static_cast<std::size_t>(joint_count);
-  switch (table.choice("kind", {"constant", "scaled_norm", "table"})) {
+  switch (table.choice("kind", {"constant", "scaled_norm", "table", "per_joint"})) {
     case 0:
       refuse_keys_other_than(table, {"value"}, "constant");
       bound.kind = BoundSettings::Kind::kConstant;
@@ -138,6 +190,11 @@ BoundSettings read_bound(const TomlTable& table, int joint_count) {
       bound.scaled_norm.scale = table.number("scale", positive(""));
       bound.scaled_norm.offset = table.number("offset", not_negative(""));
       bound.scaled_norm.matrix = table.rows("matrix", any_number(""), 1, joints, joints);
+      break;
+    case 3:
+      refuse_keys_other_than(table, {"value", "over_speed", "momentum_error"}, "per_joint");
+      bound.kind = BoundSettings::Kind::kPerJoint;
+      bound.joints = read_joint_bounds(table, joints);
       break;
     default:
       refuse_keys_other_than(table, {"variable", "joint", "at", "value"}, "table");

@@ -44,8 +44,12 @@ struct Blank {
   friend bool operator==(const Blank&, const Blank&) = default;
 };
 
+// In which quantity the monitor compares: AccelerationSpace or TorqueSpace of the core.
+enum class EstimatorSpace : std::uint8_t { kAcceleration, kTorque };
+
 // Settings of the on-board estimator (paper section 3).
 struct EstimatorSettings : EstimatorConfig<double> {
+  EstimatorSpace space = EstimatorSpace::kAcceleration;
   TorqueSignal torque_signal = TorqueSignal::kSampled;
   std::string source = {};  // where the numbers come from, free text; empty: not said
 };
@@ -76,12 +80,25 @@ struct TableBoundSettings {
   std::vector<double> at;
   std::vector<double> value;
 };
+// Of one joint in EstimatorSpace::kTorque: linear between points over its own speed, N m or N; one
+// value without a point is a constant.
+struct JointBoundSettings {
+  std::vector<double> at;  // rad/s or m/s; empty for a constant
+  std::vector<double> value{1};
+  double momentum_error = 0;  // of p by that of the measured velocities, N m s or N s
+};
 struct BoundSettings {
-  enum class Kind : std::uint8_t { kConstant, kScaledNorm, kTable } kind = Kind::kConstant;
+  enum class Kind : std::uint8_t {
+    kConstant,
+    kScaledNorm,
+    kTable,
+    kPerJoint
+  } kind = Kind::kConstant;
   ConstantBoundSettings constant;
   ScaledNormBoundSettings scaled_norm;
   TableBoundSettings table;
-  double velocity_error = 0;  // largest error of the measured velocity, rad/s or m/s
+  std::vector<JointBoundSettings> joints;  // kPerJoint, the only kind of EstimatorSpace::kTorque
+  double velocity_error = 0;  // largest error of the measured velocity, rad/s or m/s; not kPerJoint
   std::string source = {};    // where the numbers come from, free text; empty: not said
 };
 

@@ -114,6 +114,26 @@ void check_delays(const TomlTable& root, const RobotDescription& robot) {
   }
 }
 
+// Bounds of accelerations and of torques are no substitutes for each other.
+void check_space(const TomlTable& root, const RobotDescription& robot) {
+  if (!robot.bound) return;
+  const bool in_torque = robot.estimator.space == EstimatorSpace::kTorque;
+  const bool per_joint = robot.bound->kind == BoundSettings::Kind::kPerJoint;
+  if (in_torque == per_joint) return;
+  const TomlTable table = root.table("uncertainty_bound", bound_keys());
+  if (in_torque) {
+    table.refuse("kind", "a bound of accelerations beside estimator.space = \"torque\"",
+                 "\"per_joint\", N m or N per joint",
+                 "leave [uncertainty_bound] out and let `offnominal calibrate` find the bounds, or "
+                 "set estimator.space to \"acceleration\"");
+  }
+  table.refuse("kind",
+               "\"per_joint\", a bound of torques, beside estimator.space = \"acceleration\"",
+               "\"constant\", \"scaled_norm\" or \"table\"",
+               "set estimator.space to \"torque\", or leave [uncertainty_bound] out and let "
+               "`offnominal calibrate` find another");
+}
+
 // A protocol that scales every axis by itself has no joint for the axes of motors that joints
 // share.
 void check_axes(const TomlTable& root, const RobotDescription& robot) {
@@ -191,6 +211,20 @@ void require_bound(const RobotDescription& robot, const std::string& file) {
                             "without a bound there is no threshold"});
 }
 
+void require_controller_bound(const RobotDescription& robot, const std::string& file) {
+  if (robot.estimator.space == EstimatorSpace::kTorque) {
+    throw InputError({.file = file,
+                      .place = "estimator.space",
+                      .found = "\"torque\"",
+                      .allowed = "\"acceleration\" where the joint controller runs or its header "
+                                 "is written",
+                      .mend =
+                          "`offnominal replay` and `offnominal calibrate` watch joint by joint; "
+                          "give the controller a file with its space and bound of accelerations"});
+  }
+  require_bound(robot, file);
+}
+
 RobotDescription parse_robot(std::string_view text, const std::string& file, Blanks blanks) {
   const toml::table document = parse_toml(text, file);
   const TomlTable root(file, "", document, kRootKeys);
@@ -221,6 +255,7 @@ RobotDescription parse_robot(std::string_view text, const std::string& file, Bla
   if (const auto table = root.optional_table("uncertainty_bound", bound_keys())) {
     robot.bound = read_bound(*table, robot.joint_count());
   }
+  check_space(root, robot);
   if (const toml::table* table = root.raw_table("drives")) {
     robot.drives = read_drives(*table, file, robot.joint_count(), robot.estimator.period_s);
     check_axes(root, robot);

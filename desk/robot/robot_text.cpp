@@ -156,6 +156,7 @@ void write_estimator(Writer& out, const EstimatorSettings& settings) {
             quoted(settings.dead_zone == DeadZone::kContinuous ? "continuous" : "discontinuous"));
   out.value("torque_signal",
             quoted(settings.torque_signal == TorqueSignal::kSampled ? "sampled" : "held"));
+  if (settings.space == EstimatorSpace::kTorque) out.value("space", quoted("torque"));
   out.text_if_any("source", settings.source);
 }
 
@@ -193,6 +194,9 @@ void write_bound(Writer& out, const BoundSettings& bound) {
       out.value("value", list(bound.table.value));
       break;
     }
+    case BoundSettings::Kind::kPerJoint:
+      out.line(joint_bounds_text(bound.joints));
+      break;
   }
   if (bound.velocity_error > 0) out.value("velocity_error", shortest_real(bound.velocity_error));
   out.text_if_any("source", bound.source);

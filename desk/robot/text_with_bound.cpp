@@ -24,13 +24,25 @@ std::optional<std::size_t> header_of_bound(const std::string& text, const Lines&
   return line - 1;
 }
 
+// Behind the bound and the tables that belong to it, [[uncertainty_bound.over_speed]].
+std::size_t end_of_bound(const Lines& lines, std::size_t header) {
+  std::size_t end = end_of_block(lines, header);
+  for (std::size_t next = end; next < lines.size(); ++next) {
+    if (!is_header(lines[next])) continue;
+    if (!trimmed(lines[next]).starts_with("[[uncertainty_bound.")) break;
+    end = end_of_block(lines, next);
+    next = end - 1;
+  }
+  return end;
+}
+
 std::string with_block(const Lines& lines, std::size_t header, const std::string& block) {
   LineComposer out(lines);
   std::size_t begin = header;
   while (begin > 0 && header < lines.size() && is_comment(lines[begin - 1])) --begin;
   out.copy_until(begin);
   out.insert(block);
-  if (header < lines.size()) out.skip_to(end_of_block(lines, header));
+  if (header < lines.size()) out.skip_to(end_of_bound(lines, header));
   out.copy_until(lines.size());
   return out.text();
 }

@@ -31,7 +31,7 @@ std::string sizes_words() {
 
 std::unique_ptr<Tick> make_tick(const RobotDescription& robot, Precision precision,
                                 hal::FrameFormat format) {
-  require_bound(robot, "robot " + robot.name);
+  require_controller_bound(robot, "robot " + robot.name);
   const TickSize* size = size_for(robot);
   if (size == nullptr) {
     throw InputError(

@@ -78,7 +78,7 @@ class TickOf final : public Tick {
     }
     const EstimatorInput<N, Scalar> at_end{
         network_input<N, Scalar>(sample_.q, sample_.dq, sample_.tau),
-        work_.data.monitor.estimator.nominal_ddq, work_.data.monitor.estimator.mu_bar};
+        work_.data.monitor.estimator.nominal_rate, work_.data.monitor.estimator.mu_bar};
     static_cast<void>(offnominal::step(config.estimator, at_end, work_.data.monitor.estimator));
   }
 

@@ -34,9 +34,9 @@ TEST(Heap, TheForbiddanceIsNoticed) {
   EXPECT_THROW(grown.resize(100), std::logic_error);
 }
 
-template <int N, int L, typename Scalar>
-MonitorConfig<N, Scalar> any_config(std::mt19937_64& generator) {
-  MonitorConfig<N, Scalar> config;
+template <int N, int L, typename Scalar, typename Space>
+MonitorConfig<N, Scalar, Space> any_config(std::mt19937_64& generator) {
+  MonitorConfig<N, Scalar, Space> config;
   config.chain = random_chain<N, Scalar>(generator);
   for (int i = 0; i < N; ++i) {
     const auto joint = static_cast<std::uint8_t>(i);
@@ -45,18 +45,22 @@ MonitorConfig<N, Scalar> any_config(std::mt19937_64& generator) {
         {EffectKind::kStribeckFriction, joint, {Scalar(0.5), Scalar(0.1), Scalar(0.01)}}));
   }
   config.estimator.hidden_units = L;
-  config.bound.kind = BoundKind::kScaledNorm;
-  config.bound.offset = Scalar(0.01);
-  config.bound.matrix.fill(Scalar(0.01));
+  if constexpr (std::is_same_v<Space, TorqueSpace>) {
+    for (JointBound<Scalar>& joint : config.bound.joints) joint.value[0] = Scalar(0.01);
+  } else {
+    config.bound.kind = BoundKind::kScaledNorm;
+    config.bound.offset = Scalar(0.01);
+    config.bound.matrix.fill(Scalar(0.01));
+  }
   config.max_compensation.fill(Scalar(10));
   return config;
 }
 
 // A thousand ticks with learning and projection, and a controller beside them.
-template <int N, int L, typename Scalar>
+template <int N, int L, typename Scalar, typename Space = AccelerationSpace>
 void expect_no_heap(std::mt19937_64& generator) {
-  using Watch = Monitor<N, L, Scalar>;
-  MonitorConfig<N, Scalar> config = any_config<N, L, Scalar>(generator);
+  using Watch = Monitor<N, L, Scalar, WithoutMemory, Space>;
+  auto config = any_config<N, L, Scalar, Space>(generator);
   config.estimator.weight_radius = 4;
   Watch monitor;
   typename Watch::State state;
@@ -88,6 +92,9 @@ TEST(Heap, IsNotUsedByATickOfAnyShape) {
   expect_no_heap<2, 35, double>(generator);
   expect_no_heap<6, 48, float>(generator);
   expect_no_heap<7, 64, double>(generator);
+  expect_no_heap<1, 1, float, TorqueSpace>(generator);
+  expect_no_heap<7, 64, float, TorqueSpace>(generator);
+  expect_no_heap<7, 64, double, TorqueSpace>(generator);
 }
 
 }  // namespace

@@ -39,34 +39,44 @@ void take_all(const From& from, Into& into) {
 }
 
 template <int N, typename Scalar>
-MonitorConfig<kRuntimeJoints, Scalar> at_run_time(const MonitorConfig<N, Scalar>& from) {
-  MonitorConfig<kRuntimeJoints, Scalar> config;
+void take_bound(const UncertaintyBound<N, Scalar>& from,
+                UncertaintyBound<kRuntimeJoints, Scalar>& bound) {
+  bound.kind = from.kind;
+  bound.velocity_error = from.velocity_error;
+  bound.offset = from.offset;
+  bound.scale = from.scale;
+  take_all(from.matrix, bound.matrix);
+  bound.variable = from.variable;
+  bound.joint = from.joint;
+  bound.points = from.points;
+  bound.at = from.at;
+  bound.value = from.value;
+}
+template <int N, typename Scalar>
+void take_bound(const TorqueBound<N, Scalar>& from, TorqueBound<kRuntimeJoints, Scalar>& bound) {
+  take_all(from.joints, bound.joints);
+}
+
+template <int N, typename Scalar, typename Space>
+MonitorConfig<kRuntimeJoints, Scalar, Space> at_run_time(
+    const MonitorConfig<N, Scalar, Space>& from) {
+  MonitorConfig<kRuntimeJoints, Scalar, Space> config;
   take_all(from.chain.joints, config.chain.joints);
   config.chain.gravity_m_s2 = from.chain.gravity_m_s2;
   for (const Effect<Scalar>& effect : from.chain.effects.view()) {
     EXPECT_TRUE(config.chain.effects.add(effect));
   }
   config.estimator = from.estimator;
-  config.bound.kind = from.bound.kind;
-  config.bound.velocity_error = from.bound.velocity_error;
-  config.bound.offset = from.bound.offset;
-  config.bound.scale = from.bound.scale;
-  take_all(from.bound.matrix, config.bound.matrix);
-  config.bound.variable = from.bound.variable;
-  config.bound.joint = from.bound.joint;
-  config.bound.points = from.bound.points;
-  config.bound.at = from.bound.at;
-  config.bound.value = from.bound.value;
+  take_bound(from.bound, config.bound);
   config.torque_signal = from.torque_signal;
   take_all(from.max_compensation, config.max_compensation);
   return config;
 }
 
 // Every way in which an effect acts.
-template <int N, typename Scalar>
-MonitorConfig<N, Scalar> any_config(BoundKind bound, TorqueSignal signal,
-                                    std::mt19937_64& generator) {
-  MonitorConfig<N, Scalar> config;
+template <int N, typename Scalar, typename Space>
+MonitorConfig<N, Scalar, Space> any_arm(TorqueSignal signal, std::mt19937_64& generator) {
+  MonitorConfig<N, Scalar, Space> config;
   config.chain = random_chain<N, Scalar>(generator);
   const auto add = [&](EffectKind kind, int joint,
                        std::array<Scalar, kMaxEffectParameters> parameters) {
@@ -85,6 +95,14 @@ MonitorConfig<N, Scalar> any_config(BoundKind bound, TorqueSignal signal,
   config.estimator.learning_rate = 40;
   config.estimator.weight_radius = 3;
   config.torque_signal = signal;
+  config.max_compensation.fill(Scalar(2));
+  return config;
+}
+
+template <int N, typename Scalar>
+MonitorConfig<N, Scalar> any_config(BoundKind bound, TorqueSignal signal,
+                                    std::mt19937_64& generator) {
+  auto config = any_arm<N, Scalar, AccelerationSpace>(signal, generator);
   config.bound.kind = bound;
   config.bound.offset = Scalar(0.01);
   config.bound.velocity_error = Scalar(0.001);
@@ -94,18 +112,30 @@ MonitorConfig<N, Scalar> any_config(BoundKind bound, TorqueSignal signal,
   config.bound.points = 2;
   config.bound.at[1] = 5;
   config.bound.value = {Scalar(0.05), Scalar(0.1)};
-  config.max_compensation.fill(Scalar(2));
+  return config;
+}
+
+template <int N, typename Scalar>
+MonitorConfig<N, Scalar, TorqueSpace> any_torque_config(TorqueSignal signal,
+                                                        std::mt19937_64& generator) {
+  auto config = any_arm<N, Scalar, TorqueSpace>(signal, generator);
+  for (JointBound<Scalar>& joint : config.bound.joints) {
+    joint.points = 2;
+    joint.at[1] = Scalar(0.3);
+    joint.value = {Scalar(0.05), static_cast<Scalar>(uniform(generator, 0.1, 0.5))};
+    joint.momentum_error = Scalar(0.001);
+  }
   return config;
 }
 
 // Both monitors over the same motion.
-template <int N, typename Scalar>
+template <int N, typename Scalar, typename Space>
 class Pair {
  public:
-  using Fixed = Monitor<N, kUnits, Scalar, WithMemory>;
-  using AtRunTime = Monitor<kRuntimeJoints, kUnits, Scalar, WithMemory>;
+  using Fixed = Monitor<N, kUnits, Scalar, WithMemory, Space>;
+  using AtRunTime = Monitor<kRuntimeJoints, kUnits, Scalar, WithMemory, Space>;
 
-  explicit Pair(const MonitorConfig<N, Scalar>& config) {
+  explicit Pair(const MonitorConfig<N, Scalar, Space>& config) {
     EXPECT_EQ(Fixed::create(config, fixed_), Status::kOk);
     EXPECT_EQ(AtRunTime::create(at_run_time(config), at_run_time_), Status::kOk);
     for (std::size_t i = 0; i < gains_.kp.size(); ++i) {
@@ -170,6 +200,11 @@ class Pair {
     expect_same_bits(output_.compensation.torque, other_output_.compensation.torque,
                      "compensation");
     EXPECT_EQ(output_.detector.level, other_output_.detector.level);
+    if constexpr (std::is_same_v<Space, TorqueSpace>) {
+      expect_same_bits(output_.thresholds, other_output_.thresholds, "thresholds");
+      ASSERT_EQ(other_output_.detector.joints.size(), output_.detector.joints.size());
+      EXPECT_EQ(output_.detector.first_joint, other_output_.detector.first_joint);
+    }
   }
   void compare_states() {
     const auto& one = state_.estimator;
@@ -177,8 +212,12 @@ class Pair {
     expect_same_bits(one.omega, other.omega, "omega");
     expect_same_bits(one.weights.w1, other.weights.w1, "W1");
     expect_same_bits(one.weights.w2_transposed, other.weights.w2_transposed, "W2");
-    expect_same_bits(one.nominal_ddq, other.nominal_ddq, "f");
-    expect_same_bits(state_.inertia_factor, other_state_.inertia_factor, "factor of M");
+    expect_same_bits(one.nominal_rate, other.nominal_rate, "f");
+    if constexpr (std::is_same_v<Space, TorqueSpace>) {
+      expect_same_bits(one.measured.momentum, other.measured.momentum, "p");
+    } else {
+      expect_same_bits(state_.inertia_factor, other_state_.inertia_factor, "factor of M");
+    }
     expect_same_bits(state_.memory.tau, other_state_.memory.tau, "torque that acts");
     expect_same_bits(state_.memory.remembered, other_state_.memory.remembered, "remembered");
   }
@@ -198,9 +237,13 @@ void expect_the_same(std::mt19937_64& generator) {
   SCOPED_TRACE(std::to_string(N) + " joints, " + (sizeof(Scalar) == 4 ? "float" : "double"));
   for (const BoundKind bound : {BoundKind::kConstant, BoundKind::kScaledNorm, BoundKind::kTable}) {
     for (const TorqueSignal signal : {TorqueSignal::kSampled, TorqueSignal::kHeld}) {
-      Pair<N, Scalar>(any_config<N, Scalar>(bound, signal, generator)).run(generator);
+      Pair(any_config<N, Scalar>(bound, signal, generator)).run(generator);
       if (testing::Test::HasFatalFailure()) return;
     }
+  }
+  for (const TorqueSignal signal : {TorqueSignal::kSampled, TorqueSignal::kHeld}) {
+    Pair(any_torque_config<N, Scalar>(signal, generator)).run(generator);
+    if (testing::Test::HasFatalFailure()) return;
   }
 }
 

@@ -109,3 +109,6 @@ template class offnominal::Monitor<2, 35, float>;
 template class offnominal::Monitor<2, 35, double>;
 template class offnominal::Monitor<6, 35, float>;
 template class offnominal::Monitor<7, 64, float>;
+template class offnominal::Monitor<7, 64, float, offnominal::WithoutMemory,
+                                   offnominal::TorqueSpace>;
+template class offnominal::Monitor<2, 35, double, offnominal::WithMemory, offnominal::TorqueSpace>;

@@ -6,33 +6,32 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <offnominal/control/accommodation.hpp>
-#include <offnominal/diagnosis/bound.hpp>
-#include <offnominal/diagnosis/detector.hpp>
 #include <offnominal/diagnosis/estimator.hpp>
 #include <offnominal/finite.hpp>
 #include <offnominal/model/chain.hpp>
 #include <offnominal/model/effect_memory.hpp>
-#include <offnominal/model/forward_dynamics.hpp>
+#include <offnominal/monitor_form.hpp>
 #include <offnominal/sample.hpp>
 #include <offnominal/status.hpp>
 #include <type_traits>
 
 namespace offnominal {
 
-template <int N, typename Scalar>
+// Space: TorqueSpace for thresholds joint by joint (diagnosis/space.hpp); the default is the
+// paper's.
+template <int N, typename Scalar, typename Space = AccelerationSpace>
 struct MonitorConfig {
   Chain<N, Scalar> chain;
   EstimatorConfig<Scalar> estimator;
-  UncertaintyBound<N, Scalar> bound;
+  typename MonitorForm<Space, N, Scalar>::Bound bound;
   TorqueSignal torque_signal = TorqueSignal::kSampled;
   // Largest compensating torque per joint, N m or N, >= 0. Zero: report, do not act.
   PerJoint<N, Scalar> max_compensation{};
 };
 
 // kOk where every part is usable, otherwise the first fault.
-template <int L, int N, typename Scalar>
-[[nodiscard]] Status validate(const MonitorConfig<N, Scalar>& config) {
+template <int L, int N, typename Scalar, typename Space>
+[[nodiscard]] Status validate(const MonitorConfig<N, Scalar, Space>& config) {
   if (const Status status = validate(config.chain); status != Status::kOk) return status;
   if (const Status status = validate<L>(config.estimator); status != Status::kOk) return status;
   const std::size_t joints = config.chain.joints.size();
@@ -45,39 +44,43 @@ template <int L, int N, typename Scalar>
 }
 
 // Everything that changes from tick to tick; plain data, ready to be logged or copied.
-template <int N, int L, typename Scalar, typename Memory = WithoutMemory>
-struct MonitorState {
+template <int N, int L, typename Scalar, typename Memory = WithoutMemory,
+          typename Space = AccelerationSpace>
+struct MonitorState : MonitorForm<Space, N, Scalar>::Kept {
   bool initialised = false;
   std::uint64_t tick = 0;  // since reset()
   JointSample<N, Scalar> sample;
-  Matrix<N, N, Scalar> inertia_factor = no_values<Matrix<N, N, Scalar>>();  // of M(sample.q), lower
-  EstimatorState<N, L, Scalar> estimator;
-  DetectorState<Scalar> detector;
+  EstimatorState<N, L, Scalar, Space> estimator;
+  typename MonitorForm<Space, N, Scalar>::Detector detector;
   [[no_unique_address]] typename Memory::template Of<N, Scalar>::State memory{};
 };
 
-// What a controller reads after a tick.
-template <int N, typename Scalar>
-struct MonitorOutput {
+// What a controller reads after a tick. In TorqueSpace error is the residual alpha (p - omega) in N
+// m or N, psi_hat too, error_norm and threshold are those of the joint that is nearest to its
+// threshold, or farthest beyond; `thresholds` and detector.joints say it of every joint.
+template <int N, typename Scalar, typename Space = AccelerationSpace>
+struct MonitorOutput : MonitorForm<Space, N, Scalar>::JointOutput {
   double time_s = 0;                               // since reset()
   Vector<N, Scalar> error = zeros<N, Scalar>();    // e = dq - omega, rad/s or m/s
   Scalar error_norm{};                             // |e|
   Scalar threshold{};                              // mu, rad/s or m/s
   Vector<N, Scalar> psi_hat = zeros<N, Scalar>();  // fault estimate, rad/s^2 or m/s^2
-  DetectorState<Scalar> detector;
+  typename MonitorForm<Space, N, Scalar>::Detector detector;
   CompensatingTorque<N, Scalar> compensation;
 };
 
 // The whole on-board diagnosis of an N-joint chain with at most L hidden units. The object is the
 // immutable part; all that changes is in MonitorState, so that one monitor serves many states.
 // Memory: WithMemory where the model may have effects with one (effect_memory.hpp).
-template <int N, int L, typename Scalar, typename Memory = WithoutMemory>
+// Space: in which quantity it compares (diagnosis/space.hpp).
+template <int N, int L, typename Scalar, typename Memory = WithoutMemory,
+          typename Space = AccelerationSpace>
 class Monitor {
  public:
-  using Config = MonitorConfig<N, Scalar>;
-  using State = MonitorState<N, L, Scalar, Memory>;
+  using Config = MonitorConfig<N, Scalar, Space>;
+  using State = MonitorState<N, L, Scalar, Memory, Space>;
   using Sample = JointSample<N, Scalar>;
-  using Output = MonitorOutput<N, Scalar>;
+  using Output = MonitorOutput<N, Scalar, Space>;
   // Whether its state has a `memory.remembered`: torque that the drive has to be told beside the
   // model's.
   static constexpr bool kRemembers = std::is_same_v<Memory, WithMemory>;
@@ -103,8 +106,8 @@ class Monitor {
   // Starts a run at a sample, time 0. Any refusal leaves `state` unchanged.
   [[nodiscard]] Status reset(const Sample& sample, State& state) const {
     if (!ready_) return Status::kNotInitialised;
-    ForwardDynamics<N, Scalar> nominal;
-    EstimatorInput<N, Scalar> input;
+    Dynamics nominal;
+    Input input;
     const Now now = memory_.begin(sample);
     Status status = look(sample, now, 0.0, nominal, input);
     if (status != Status::kOk) return status;
@@ -113,8 +116,8 @@ class Monitor {
     state.estimator.mu = velocity_allowance();
     memory_.keep_begin(sample, now, state.memory);
     state.sample = sample;
-    state.inertia_factor = nominal.factor;
-    state.detector = {};
+    Form::keep(nominal, state);
+    Form::start(config_.chain.joints.size(), state.detector);
     state.tick = 0;
     state.initialised = true;
     return Status::kOk;
@@ -127,8 +130,8 @@ class Monitor {
   [[nodiscard]] Status resume(const Sample& sample, std::uint32_t missed, State& state) const {
     if (!ready_ || !state.initialised) return Status::kNotInitialised;
     const std::uint64_t tick = state.tick + missed + 1;
-    ForwardDynamics<N, Scalar> nominal;
-    EstimatorInput<N, Scalar> input;
+    Dynamics nominal;
+    Input input;
     const Now now = memory_.next(sample, missed, state.memory);
     Status status = look(sample, now, time_at(tick), nominal, input);
     if (status != Status::kOk) return status;
@@ -137,7 +140,7 @@ class Monitor {
     memory_.keep(sample, missed, now, state.memory);
     state.tick = tick;
     state.sample = sample;
-    state.inertia_factor = nominal.factor;
+    Form::keep(nominal, state);
     return Status::kOk;
   }
 
@@ -147,8 +150,8 @@ class Monitor {
   [[nodiscard]] Status step(const Sample& sample, State& state, Output& output) const {
     if (!ready_ || !state.initialised) return Status::kNotInitialised;
     const double end_s = time_at(state.tick + 1);
-    ForwardDynamics<N, Scalar> nominal;
-    EstimatorInput<N, Scalar> input;
+    Dynamics nominal;
+    Input input;
     const Now now = memory_.next(sample, 0, state.memory);
     Status status = look(sample, now, end_s, nominal, input);
     if (status != Status::kOk) return status;
@@ -159,16 +162,12 @@ class Monitor {
     memory_.keep(sample, 0, now, state.memory);
     ++state.tick;
     state.sample = sample;
-    state.inertia_factor = nominal.factor;
+    Form::keep(nominal, state);
     output.time_s = end_s;
-    output.error = state.estimator.error;
-    output.error_norm = detail::length(state.estimator.error);
-    output.threshold = state.estimator.mu;
+    Form::judge(config_.estimator.alpha, state, output);
     output.psi_hat = state.estimator.psi_hat;
-    update(state.detector, output.error_norm, output.threshold, state.tick, end_s);
     output.detector = state.detector;
-    output.compensation = compensating_torque<N, Scalar>(nominal.inertia, output.psi_hat,
-                                                         max_compensation_, nominal.told_per_load);
+    output.compensation = Form::compensation(nominal, output.psi_hat, max_compensation_);
     return Status::kOk;
   }
 
@@ -176,22 +175,24 @@ class Monitor {
   [[nodiscard]] const RigidBodyModel<N, Scalar>& model() const { return model_; }
 
  private:
+  using Form = MonitorForm<Space, N, Scalar>;
+  using Dynamics = typename Form::Dynamics;
+  using Input = EstimatorInput<N, Scalar, Space>;
+  using Threshold = typename Space::template Threshold<N, Scalar>;
   using EffectMemoryOf = typename Memory::template Of<N, Scalar>;
   using Now = typename EffectMemoryOf::Now;
 
   // What the model and the bound say at a sample; refuses one that they cannot judge. Not inlined:
   // on a controller its callers share its code, and the estimator its stack.
   [[nodiscard, gnu::noinline]] Status look(const Sample& sample, const Now& now, double time_s,
-                                           ForwardDynamics<N, Scalar>& nominal,
-                                           EstimatorInput<N, Scalar>& input) const {
+                                           Dynamics& nominal, Input& input) const {
     Status status = validate<N>(sample, config_.chain.joints);
     if (status != Status::kOk) return status;
     const Vector<N, Scalar>& tau = now.acting(sample.tau);
-    status =
-        forward_dynamics<N, Scalar>(model_, sample.q, sample.dq, now.driving(tau), time_s, nominal);
+    status = Form::look(model_, sample.q, sample.dq, now.driving(tau), time_s, nominal);
     if (status != Status::kOk) return status;
     input.z = network_input<N, Scalar>(sample.q, sample.dq, tau);
-    input.nominal_ddq = nominal.ddq;
+    Form::fill(nominal, input);
     input.mu_bar = bound_at(sample.q, sample.dq, tau);
     return Status::kOk;
   }
@@ -200,26 +201,24 @@ class Monitor {
     return static_cast<double>(tick) * static_cast<double>(config_.estimator.period_s);
   }
 
-  // The velocity's own error e_v enters e directly, through omega(0) and through the filter's
-  // input: together at most 2 |e_v|. With mu starting there and alpha times it in the filter's
-  // input, mu stays exactly that much above the filtered bound.
-  [[nodiscard]] Scalar velocity_allowance() const { return 2 * config_.bound.velocity_error; }
-  [[nodiscard]] Scalar bound_at(const Vector<N, Scalar>& q, const Vector<N, Scalar>& dq,
-                                const Vector<N, Scalar>& tau) const {
-    return evaluate(config_.bound, q, dq, tau) + config_.estimator.alpha * velocity_allowance();
+  // With mu starting there and alpha times it in the filter's input, mu stays exactly that much
+  // above the filtered bound.
+  [[nodiscard]] Threshold velocity_allowance() const { return Form::allowance(config_.bound); }
+  [[nodiscard]] Threshold bound_at(const Vector<N, Scalar>& q, const Vector<N, Scalar>& dq,
+                                   const Vector<N, Scalar>& tau) const {
+    return Form::bound_at(config_.bound, q, dq, tau) +
+           config_.estimator.alpha * velocity_allowance();
   }
 
   // A held torque jumps at the sample: f and the bound there are those of the new torque.
-  [[nodiscard]] TickBegin<N, Scalar> begin_of_tick(const Vector<N, Scalar>& tau,
-                                                   const State& state) const {
-    TickBegin<N, Scalar> begin{state.estimator.nominal_ddq, state.estimator.mu_bar};
+  [[nodiscard]] TickBegin<N, Scalar, Space> begin_of_tick(const Vector<N, Scalar>& tau,
+                                                          const State& state) const {
+    TickBegin<N, Scalar, Space> begin{state.estimator.nominal_rate, state.estimator.mu_bar};
     if (config_.torque_signal == TorqueSignal::kSampled) return begin;
-    Vector<N, Scalar> jump = load_jump(tau, state);
-    solve_in_place<N, Scalar>(state.inertia_factor, jump);
-    begin.nominal_ddq += jump;
-    const bool bound_follows_torque =
-        config_.bound.kind == BoundKind::kTable && config_.bound.variable == BoundVariable::kTorque;
-    if (bound_follows_torque) begin.mu_bar = bound_at(state.sample.q, state.sample.dq, tau);
+    begin.nominal_rate += Form::jump(state, load_jump(tau, state));
+    if (Form::follows_torque(config_.bound)) {
+      begin.mu_bar = bound_at(state.sample.q, state.sample.dq, tau);
+    }
     return begin;
   }
 

@@ -160,7 +160,7 @@ TYPED_TEST(Estimator, GivenASignalTooLargeForTheScalarThenItIsRefusedAndTheNextG
     EXPECT_EQ(step(this->config, input, this->state), Status::kNumericOverflow) << bad;
     EXPECT_EQ(bits_of(this->state), before) << bad;
     input = estimator_input<kJoints, TypeParam>(this->at(3.001));
-    input.nominal_ddq.setConstant(std::fabs(bad) > largest || std::isnan(bad) ? bad : infinity);
+    input.nominal_rate.setConstant(std::fabs(bad) > largest || std::isnan(bad) ? bad : infinity);
     EXPECT_EQ(step(this->config, input, this->state), Status::kNumericOverflow) << bad;
     EXPECT_EQ(bits_of(this->state), before) << bad;
   }

@@ -50,7 +50,7 @@ void add_bits(const EstimatorState<N, L, Scalar>& state, Bits& bits) {
   bits.add(state.error);
   bits.add(state.psi_hat);
   bits.add(state.z);
-  bits.add(state.nominal_ddq);
+  bits.add(state.nominal_rate);
   bits.add(state.mu_bar);
   bits.add(state.w1_z);
   bits.add(state.sigma);

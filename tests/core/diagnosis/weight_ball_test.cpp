@@ -39,7 +39,7 @@ Input<Scalar> random_input(Mood mood, const Input<Scalar>& before, std::mt19937_
   Input<Scalar> input = before;
   const auto fill = [&](auto&& number) {
     for (Eigen::Index i = 1; i < input.z.size(); ++i) input.z[i] = number(input.z[i]);
-    for (Scalar& f : input.nominal_ddq) f = number(f);
+    for (Scalar& f : input.nominal_rate) f = number(f);
   };
   switch (mood) {
     case Mood::kCalm:
@@ -99,7 +99,7 @@ class RandomLife {
   void restart() {
     last_.z.setZero();
     last_.z[0] = 1;
-    last_.nominal_ddq.setZero();
+    last_.nominal_rate.setZero();
     last_.mu_bar = Scalar(0.1);
     EXPECT_EQ(reset(config_, last_, state), Status::kOk);
     mood_ = static_cast<Mood>(generator_() % 6);

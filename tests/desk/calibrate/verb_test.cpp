@@ -25,6 +25,7 @@ using offnominal::test::CommandResult;
 using offnominal::test::content_of;
 using offnominal::test::record_arm;
 using testing::HasSubstr;
+using testing::Not;
 
 class CalibrateVerb : public testing::Test {
  protected:
@@ -99,6 +100,34 @@ TEST_F(CalibrateVerb, AFaultInTheHoldOutEndsInOneAndNothingIsWritten) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.out, HasSubstr("not written: "));
   EXPECT_FALSE(std::filesystem::exists(path("new.toml")));
+}
+
+TEST_F(CalibrateVerb, RefusesAVelocityErrorInTorqueSpaceBeforeItReadsARecording) {
+  RobotDescription robot = arm_description();
+  robot.estimator.space = EstimatorSpace::kTorque;
+  offnominal::test::put(folder_ / "torque.toml", robot_text(robot));
+  const CommandResult result = calibrate({path("nowhere.csv"), "--robot", path("torque.toml"), "-o",
+                                          path("new.toml"), "--velocity-error", "0.1"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("offnominal calibrate: --velocity-error: found 0.1"));
+  EXPECT_THAT(result.err, HasSubstr("in " + path("torque.toml")));
+}
+
+TEST_F(CalibrateVerb, ReplayOfATorqueSpaceSaysNoMaximaOverJoints) {
+  RobotDescription robot = arm_description();
+  robot.estimator.space = EstimatorSpace::kTorque;
+  robot.bound.emplace().kind = BoundSettings::Kind::kPerJoint;
+  robot.bound->joints.assign(2, {});
+  offnominal::test::put(folder_ / "torque.toml", robot_text(robot));
+  const auto replayed = [&](const std::string& file) {
+    return offnominal::test::run_command(offnominal::test::command_file(),
+                                         {"replay", path("a.csv"), "--robot", path(file)});
+  };
+  const CommandResult joint_by_joint = replayed("torque.toml");
+  EXPECT_EQ(joint_by_joint.exit_code, 0) << joint_by_joint.err;
+  EXPECT_THAT(joint_by_joint.out, HasSubstr("largest |e| / mu"));
+  EXPECT_THAT(joint_by_joint.out, Not(HasSubstr("largest threshold mu")));
+  EXPECT_THAT(replayed("arm.toml").out, HasSubstr("largest threshold mu"));
 }
 
 TEST_F(CalibrateVerb, RefusesWithOneLineAndExitTwo) {

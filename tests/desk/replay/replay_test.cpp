@@ -77,6 +77,75 @@ TEST(Replay, GivenAHiddenTorqueWithinTheBoundThenThereIsNoAlarm) {
   EXPECT_NEAR(tolerated.max_error_to_threshold, 0.9, 0.01);
 }
 
+constexpr double kTorqueBound = 1;  // N m
+
+RobotDescription arm_in_torque_space() {
+  RobotDescription robot = arm_description();
+  robot.estimator.space = EstimatorSpace::kTorque;
+  robot.bound.emplace().kind = BoundSettings::Kind::kPerJoint;
+  robot.bound->joints.assign(2, {});
+  robot.bound->joints[1].value = {kTorqueBound};
+  return robot;
+}
+
+Log recording_with(const Vector2d& torque) {
+  return record_arm({.duration_s = 10}, [torque](const ArmInstant& at) -> Vector2d {
+    return at.t_s < kFaultTime ? Vector2d(Vector2d::Zero()) : torque;
+  });
+}
+
+// A torque d on one joint alone: its residual is d (1 - exp(-alpha s)), in N m, against the bound.
+TEST(Replay, GivenTorqueSpaceThenTheFaultyJointIsNamedWhenTheFilterSaysSo) {
+  const Replay faulty = replay(arm_in_torque_space(), recording_with({0, 3 * kTorqueBound}));
+  ASSERT_TRUE(faulty.detection_time_s);
+  EXPECT_NEAR(*faulty.detection_time_s, kFaultTime + std::log(1.5) / 10, 0.0021);
+  EXPECT_EQ(faulty.first_joint, 1);
+  EXPECT_EQ(faulty.unit, "N m");
+  ASSERT_EQ(faulty.joints.size(), 2U);
+  EXPECT_FALSE(faulty.joints[0].detection_time_s);
+  EXPECT_LT(faulty.joints[0].max_residual, 0.01);
+  EXPECT_EQ(faulty.joints[1].detection_time_s, faulty.detection_time_s);
+  EXPECT_NEAR(faulty.joints[1].max_threshold, kTorqueBound, 1e-6);
+  EXPECT_TRUE(faulty.psi_hat.col(0).isZero(0));
+  EXPECT_GT(std::abs(faulty.psi_hat.col(1).mean()), 0.1);
+  EXPECT_THAT(words_of(faulty), HasSubstr("joint 2 (" + faulty.joint_names[1] + ") first"));
+  const nlohmann::json json = to_json(faulty);
+  EXPECT_EQ(json["space"], "torque");
+  EXPECT_EQ(json["first_joint"], 2);
+  EXPECT_EQ(json["joints"][0]["detection_time_s"], nullptr);
+  EXPECT_EQ(json["joints"][1]["alarms"].size(), faulty.joints[1].alarms.size());
+  EXPECT_EQ(json["joints"][1]["max_abs_psi_hat"], faulty.psi_hat.col(1).cwiseAbs().maxCoeff());
+  for (const char* of_any_joint : {"max_error", "max_threshold", "max_abs_psi_hat"}) {
+    ASSERT_TRUE(json.contains(of_any_joint));
+    EXPECT_TRUE(json[of_any_joint].is_null()) << of_any_joint << " of which joint?";
+  }
+  EXPECT_EQ(to_json(replay(watched_arm(), recording_with({0, 1}))).count("joints"), 0U);
+}
+
+TEST(Replay, GivenTorqueSpaceAndFaultsOnTwoJointsThenTheLaterOneIsSaidWithItsDelay) {
+  RobotDescription robot = arm_in_torque_space();
+  robot.bound->joints[0].value = {2.5};
+  const Replay faulty = replay(robot, recording_with({3, 3}));
+  EXPECT_EQ(faulty.first_joint, 1);
+  ASSERT_TRUE(faulty.joints[0].detection_time_s);
+  const double later = *faulty.joints[0].detection_time_s - *faulty.detection_time_s;
+  EXPECT_NEAR(later, (std::log(6.0) - std::log(1.5)) / 10, 0.003);
+  EXPECT_THAT(words_of(faulty), HasSubstr("; then joint 1 ("));
+  const report::Page page = page_of(faulty, "");
+  EXPECT_EQ(page.verdict.level, report::Level::kBad);
+  ASSERT_EQ(page.sections[1].blocks.size(), 2U);
+  for (const std::size_t joint : {0U, 1U}) {
+    const auto& chart = std::get<report::Chart>(page.sections[1].blocks[joint]);
+    ASSERT_EQ(chart.events.size(), 1U);
+    EXPECT_EQ(chart.events[0].x, *faulty.joints[joint].detection_time_s)
+        << "its own, not the first";
+  }
+  const Replay healthy = replay(robot, recording_with({0, 0.9}));
+  EXPECT_FALSE(healthy.detection_time_s || healthy.first_joint);
+  EXPECT_NEAR(healthy.max_error_to_threshold, 0.9, 0.01);
+  EXPECT_THAT(words_of(healthy), HasSubstr("Nominal"));
+}
+
 std::string refusal(const RobotDescription& robot, const Log& log) {
   try {
     static_cast<void>(replay(robot, log));

@@ -67,6 +67,7 @@ inline void expect_same(const desk::EstimatorSettings& a, const desk::EstimatorS
   EXPECT_EQ(a.seed, b.seed);
   EXPECT_EQ(a.dead_zone, b.dead_zone);
   EXPECT_EQ(a.torque_signal, b.torque_signal);
+  EXPECT_EQ(a.space, b.space);
   EXPECT_EQ(a.source, b.source);
 }
 
@@ -90,6 +91,12 @@ inline void expect_same(const desk::BoundSettings& a, const desk::BoundSettings&
   EXPECT_EQ(a.table.joint, b.table.joint);
   expect_same(a.table.at, b.table.at);
   expect_same(a.table.value, b.table.value);
+  ASSERT_EQ(a.joints.size(), b.joints.size());
+  for (std::size_t i = 0; i < a.joints.size(); ++i) {
+    expect_same(a.joints[i].at, b.joints[i].at);
+    expect_same(a.joints[i].value, b.joints[i].value);
+    expect_same(a.joints[i].momentum_error, b.joints[i].momentum_error);
+  }
 }
 
 inline void expect_same(const desk::DriveSettings& a, const desk::DriveSettings& b) {

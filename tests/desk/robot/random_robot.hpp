@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <offnominal/diagnosis/joint_bound.hpp>
 #include <random>
 #include <string>
 #include <vector>
@@ -30,7 +31,7 @@ class RandomRobot {
     for (int i = 0; i < effects; ++i) robot.effects.push_back(effect(robot));
     robot.estimator = estimator();
     robot.arming = arming(joints);
-    if (coin()) robot.bound = bound(joints);
+    if (coin()) robot.bound = bound(joints, robot.estimator.space);
     if (coin()) robot.drives = drives(joints, robot.estimator.period_s);
     // Axes of their own have no place beside joints that share motors.
     const bool shares = robot.transmission && !robot.transmission->matrix.empty();
@@ -202,6 +203,7 @@ class RandomRobot {
     settings.seed = static_cast<std::uint32_t>(generator_());
     settings.dead_zone = coin() ? DeadZone::kContinuous : DeadZone::kDiscontinuous;
     settings.torque_signal = coin() ? TorqueSignal::kSampled : TorqueSignal::kHeld;
+    settings.space = coin() ? desk::EstimatorSpace::kAcceleration : desk::EstimatorSpace::kTorque;
     settings.source = any_text();
     return settings;
   }
@@ -221,9 +223,28 @@ class RandomRobot {
     return settings;
   }
 
-  desk::BoundSettings bound(int joints) {
+  desk::JointBoundSettings joint_bound() {
+    desk::JointBoundSettings result;
+    result.value = {positive()};
+    if (coin()) result.momentum_error = positive();
+    if (coin()) return result;
+    result.at = {0};
+    for (int i = whole(1, kMaxJointBoundPoints - 1); i > 0; --i) {
+      result.at.push_back(
+          std::nextafter(result.at.back() + positive(), std::numeric_limits<double>::max()));
+      result.value.push_back(positive());
+    }
+    return result;
+  }
+
+  desk::BoundSettings bound(int joints, desk::EstimatorSpace space) {
     desk::BoundSettings result;
     result.source = any_text();
+    if (space == desk::EstimatorSpace::kTorque) {
+      result.kind = desk::BoundSettings::Kind::kPerJoint;
+      for (int i = 0; i < joints; ++i) result.joints.push_back(joint_bound());
+      return result;
+    }
     if (coin()) result.velocity_error = positive();
     result.kind = static_cast<desk::BoundSettings::Kind>(whole(0, 2));
     if (result.kind == desk::BoundSettings::Kind::kConstant) result.constant.value = positive();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "desk/support/temporary_folder.hpp"
 #include "robot/robot_file.hpp"
@@ -33,6 +34,28 @@ RobotDescription with_new_bound(const std::string& text) {
 TEST(TextWithBound, TheOldBoundGoesWithTheCommentThatSpeaksOfIt) {
   const std::string text = kHead + kOldBound + kTail;
   EXPECT_EQ(text_with_bound(text, with_new_bound(text)), kHead + kNewBound + kTail);
+}
+
+// Bounds joint by joint, with a table over speed each, written as tables of their own.
+TEST(TextWithBound, TheTablesOfTheOldBoundGoWithItWhereTheyHaveHeaders) {
+  const auto over_speed = [](const std::string& value) {
+    return "\n[[uncertainty_bound.over_speed]] # by hand\njoint = 1\nat = [0.0, 1.0]\nvalue = " +
+           value + "\n";
+  };
+  const std::string head = kHead + "\n[estimator]\nspace = \"torque\" # kept as well\n";
+  const std::string bound =
+      "\n[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [0.0]\n# of the slide\n";
+  const std::string text = head + bound + over_speed("[1.0, 2.0]") + kTail;
+  RobotDescription robot = parse_robot(text, "r.toml");
+  robot.bound->joints[0].value = {3, 4};
+  const auto written = text_with_bound(text, robot);
+  ASSERT_TRUE(written) << "the comments of the file are lost";
+  EXPECT_EQ(written->substr(0, head.size()), head);
+  EXPECT_EQ(written->substr(written->size() - kTail.size()), kTail);
+  EXPECT_EQ(written->find("by hand"), std::string::npos);
+  EXPECT_EQ(parse_robot(*written, "r.toml").bound->joints[0].value, (std::vector{3.0, 4.0}));
+  // The same where they are the last lines of the file.
+  EXPECT_TRUE(text_with_bound(head + kTail + bound + over_speed("[1.0, 2.0]"), robot));
 }
 
 TEST(TextWithBound, AFirstBoundFollowsTheLastLine) {

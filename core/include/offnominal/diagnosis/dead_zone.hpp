@@ -26,4 +26,20 @@ template <int N, typename Scalar>
   return factor * e;
 }
 
+// The same joint by joint, for thresholds of their own: component i is 0 while |e_i| <= mu_i.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> dead_zone(const Vector<N, Scalar>& e, const Vector<N, Scalar>& mu,
+                                          DeadZone kind,
+                                          Scalar largest = std::numeric_limits<Scalar>::max()) {
+  Vector<N, Scalar> outside = e;
+  for (Eigen::Index i = 0; i < e.size(); ++i) {
+    const Scalar size = Eigen::numext::abs(e[i]);
+    const Scalar beyond = kind == DeadZone::kContinuous ? e[i] - (e[i] < 0 ? -mu[i] : mu[i]) : e[i];
+    outside[i] = size > mu[i] ? beyond : Scalar(0);
+  }
+  const Scalar norm =
+      Eigen::numext::maxi(detail::length(outside), std::numeric_limits<Scalar>::min());
+  return Eigen::numext::mini(Scalar(1), largest / norm) * outside;
+}
+
 }  // namespace offnominal

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <offnominal/vector.hpp>
 
 namespace offnominal {
 
@@ -27,12 +30,45 @@ inline void update(DetectorState<Scalar>& state, Scalar error_norm, Scalar mu, s
   }
 }
 
+// The same joint by joint. Its own level is that of any joint; its latch, of the first.
+template <int N, typename Scalar>
+struct JointDetectors : DetectorState<Scalar> {
+  PerJoint<N, DetectorState<Scalar>> joints{};
+  std::uint8_t first_joint = 0;  // that latched first, from 0; valid while latched
+};
+
+// Judges one tick: joint i by |e_i| > mu_i >= 0, in the same unit. The joint with the largest
+// |e_i| / mu_i; of several that cross first in the same tick it is the one that is said.
+template <int N, typename Scalar>
+inline Eigen::Index update(JointDetectors<N, Scalar>& state, const Vector<N, Scalar>& e,
+                           const Vector<N, Scalar>& mu, std::uint64_t tick, double time_s) {
+  Eigen::Index worst = 0;
+  bool any = false;
+  for (Eigen::Index i = 0; i < e.size(); ++i) {
+    const Scalar size = Eigen::numext::abs(e[i]);
+    DetectorState<Scalar>& joint = state.joints[static_cast<std::size_t>(i)];
+    update(joint, size, mu[i], tick, time_s);
+    any = any || joint.level;
+    if (size * mu[worst] > Eigen::numext::abs(e[worst]) * mu[i]) worst = i;
+  }
+  const bool first = any && !state.latched;
+  if (first) state.first_joint = static_cast<std::uint8_t>(worst);
+  update(static_cast<DetectorState<Scalar>&>(state), any ? Scalar(1) : Scalar(0), Scalar(0), tick,
+         time_s);
+  return worst;
+}
+
 // Forgets the latched detection. The next crossing latches again, with its own time.
 template <typename Scalar>
 inline void clear_latch(DetectorState<Scalar>& state) {
   state.latched = false;
   state.detection_tick = 0;
   state.detection_time_s = 0;
+}
+template <int N, typename Scalar>
+inline void clear_latch(JointDetectors<N, Scalar>& state) {
+  clear_latch(static_cast<DetectorState<Scalar>&>(state));
+  for (DetectorState<Scalar>& joint : state.joints) clear_latch(joint);
 }
 
 }  // namespace offnominal

@@ -10,15 +10,17 @@
 #include <offnominal/diagnosis/estimator_state.hpp>
 #include <offnominal/diagnosis/gradient_span.hpp>
 #include <offnominal/diagnosis/hidden_pass.hpp>
+#include <offnominal/diagnosis/space.hpp>
+#include <type_traits>
 
 namespace offnominal::detail {
 
 // Signals at one place inside the tick.
-template <int N, typename Scalar>
+template <int N, typename Scalar, typename Space>
 struct StageSignals {
-  Vector<N, Scalar> dq;
-  Vector<N, Scalar> nominal_ddq;
-  Scalar mu_bar{};
+  Vector<N, Scalar> y;  // dq, or p
+  Vector<N, Scalar> nominal_rate;
+  typename Space::template Threshold<N, Scalar> mu_bar{};
 };
 
 // Inner products z_i . z_j of the tick's beginning (0), middle (m) and end (1).
@@ -28,10 +30,10 @@ struct InputProducts {
 };
 
 // What one Runge-Kutta stage starts from.
-template <int N, typename Scalar>
+template <int N, typename Scalar, typename Space>
 struct StagePoint {
   Vector<N, Scalar> omega;
-  Scalar mu{};
+  typename Space::template Threshold<N, Scalar> mu{};
   Vector<N, Scalar> e;
   Vector<N, Scalar> d;
   SpanPoint<Scalar> theta;
@@ -47,10 +49,10 @@ struct StageOutput {
 };
 
 // Where the tick ends: omega, mu and the coordinates of theta before it is shrunk into the ball.
-template <int N, typename Scalar>
+template <int N, typename Scalar, typename Space>
 struct TickEnd {
   Vector<N, Scalar> omega;
-  Scalar mu{};
+  typename Space::template Threshold<N, Scalar> mu{};
   SpanPoint<Scalar> theta;
 };
 
@@ -60,13 +62,18 @@ template <typename Scalar>
 inline constexpr Scalar kLargestStep = 1000;
 
 // One tick in progress: takes omega, mu and the coordinates of theta through the four stages.
-template <int N, int L, typename Scalar>
+template <int N, int L, typename Scalar, typename Space>
 class TickIntegrator {
  public:
+  using Threshold = typename Space::template Threshold<N, Scalar>;
+  using End = TickEnd<N, Scalar, Space>;
+  using Signals = StageSignals<N, Scalar, Space>;
+  using Point = StagePoint<N, Scalar, Space>;
+  static constexpr bool kPerJoint = !std::is_same_v<Threshold, Scalar>;
   EIGEN_ALWAYS_INLINE TickIntegrator(const EstimatorConfig<Scalar>& config,
-                                     const TickBegin<N, Scalar>& model,
-                                     const EstimatorInput<N, Scalar>& input,
-                                     const EstimatorState<N, L, Scalar>& begin)
+                                     const TickBegin<N, Scalar, Space>& model,
+                                     const EstimatorInput<N, Scalar, Space>& input,
+                                     const EstimatorState<N, L, Scalar, Space>& begin)
       : config_(config),
         model_(model),
         input_(input),
@@ -86,30 +93,30 @@ class TickIntegrator {
     first_layer<N, L, Scalar>(begin.weights, input.z, w1_z_.at_end);
   }
 
-  [[nodiscard]] EIGEN_ALWAYS_INLINE TickEnd<N, Scalar> integrate() {
+  [[nodiscard]] EIGEN_ALWAYS_INLINE End integrate() {
     const Scalar h = config_.period_s;
     const Scalar half = Scalar(0.5);
-    const StageSignals<N, Scalar> begin{velocity_in<N, Scalar>(begin_.z), model_.nominal_ddq,
-                                        model_.mu_bar};
-    const StageSignals<N, Scalar> end{velocity_in<N, Scalar>(input_.z), input_.nominal_ddq,
-                                      input_.mu_bar};
-    const StageSignals<N, Scalar> middle{half * (begin.dq + end.dq),
-                                         half * (begin.nominal_ddq + end.nominal_ddq),
-                                         half * (begin.mu_bar + end.mu_bar)};
-    StagePoint<N, Scalar> at{
-        begin_.omega,
-        begin_.mu,
-        begin.dq - begin_.omega,
-        dead_zone<N, Scalar>(begin.dq - begin_.omega, begin_.mu, config_.dead_zone, largest_d_),
-        {Scalar(1), {}},
-        {begin_.theta_squared_norm, begin_.theta_squared_norm}};
+    const Signals begin{measured_at<N, Scalar, Space>(begin_), model_.nominal_rate, model_.mu_bar};
+    const Signals end{measured_at<N, Scalar, Space>(input_), input_.nominal_rate, input_.mu_bar};
+    const Signals middle{half * (begin.y + end.y), half * (begin.nominal_rate + end.nominal_rate),
+                         half * (begin.mu_bar + end.mu_bar)};
+    Point at{begin_.omega,
+             begin_.mu,
+             begin.y - begin_.omega,
+             dead_zone<N, Scalar>(begin.y - begin_.omega, begin_.mu, config_.dead_zone, largest_d_),
+             {Scalar(1), {}},
+             {begin_.theta_squared_norm, begin_.theta_squared_norm}};
     // A tick that begins inside the dead-zone learns nothing, whatever its inner stages look like.
     rate_ = squared_length(at.d) > Scalar(0) ? config_.learning_rate : Scalar(0);
-    TickEnd<N, Scalar> sum{begin_.omega, begin_.mu, {Scalar(1), {}}};
-    at = stage<0>(begin, middle.dq, {}, z_.z00, at, h * half, h / 6, sum);
-    at = stage<1>(middle, middle.dq, {z_.z0m}, z_.zmm, at, h * half, h / 3, sum);
-    at = stage<2>(middle, end.dq, {z_.z0m, z_.zmm}, z_.zmm, at, h, h / 3, sum);
-    stage<3>(end, end.dq, {z_.z01, z_.zm1, z_.zm1}, z_.z11, at, h, h / 6, sum);
+    if constexpr (kPerJoint) {
+      learns_ = at.d;
+      for (Scalar& joint : learns_) joint = joint == Scalar(0) ? Scalar(0) : Scalar(1);
+    }
+    End sum{begin_.omega, begin_.mu, {Scalar(1), {}}};
+    at = stage<0>(begin, middle.y, {}, z_.z00, at, h * half, h / 6, sum);
+    at = stage<1>(middle, middle.y, {z_.z0m}, z_.zmm, at, h * half, h / 3, sum);
+    at = stage<2>(middle, end.y, {z_.z0m, z_.zmm}, z_.zmm, at, h, h / 3, sum);
+    stage<3>(end, end.y, {z_.z01, z_.zm1, z_.zm1}, z_.z11, at, h, h / 6, sum);
     return sum;
   }
 
@@ -130,7 +137,7 @@ class TickIntegrator {
   // Moves the weights and leaves them and what depends on them ready for the next tick. `state` is
   // the state that the tick began with.
   EIGEN_ALWAYS_INLINE void finish(const SpanPoint<Scalar>& theta,
-                                  EstimatorState<N, L, Scalar>& state) const {
+                                  EstimatorState<N, L, Scalar, Space>& state) const {
     Matrix<N, kStages, Scalar> share;
     const Eigen::Index joints = d_[0].size();
     share.resize(joints, kStages);
@@ -153,13 +160,13 @@ class TickIntegrator {
   }
 
  private:
+  struct NoJoints {};
+
   // One stage. z_z[j] = z_j . z_s for the stages j before, zz = |z_s|^2.
   template <int S>
-  EIGEN_ALWAYS_INLINE StagePoint<N, Scalar> stage(const StageSignals<N, Scalar>& signals,
-                                                  const Vector<N, Scalar>& next_dq,
-                                                  const std::array<Scalar, kStages>& z_z, Scalar zz,
-                                                  const StagePoint<N, Scalar>& at, Scalar advance,
-                                                  Scalar weight, TickEnd<N, Scalar>& sum) {
+  EIGEN_ALWAYS_INLINE Point stage(const Signals& signals, const Vector<N, Scalar>& next_y,
+                                  const std::array<Scalar, kStages>& z_z, Scalar zz,
+                                  const Point& at, Scalar advance, Scalar weight, End& sum) {
     d_[static_cast<std::size_t>(S)] = at.d;
     std::array<Scalar, kStages> kappa{};
     repeat<S>([&](int i) __attribute__((always_inline)) {
@@ -167,16 +174,18 @@ class TickIntegrator {
       kappa[j] = at.theta.gain[j] * z_z[j];
     });
     const StageOutput<N, Scalar> output = network_output_at<S>(kappa, at);
-    StagePoint<N, Scalar> next;
-    const Vector<N, Scalar> omega_dot = config_.alpha * at.e + signals.nominal_ddq + output.psi_hat;
-    const Scalar mu_dot = signals.mu_bar - config_.alpha * at.mu;
+    Point next;
+    const Vector<N, Scalar> omega_dot =
+        config_.alpha * at.e + signals.nominal_rate + output.psi_hat;
+    const Threshold mu_dot = signals.mu_bar - config_.alpha * at.mu;
     sum.omega += weight * omega_dot;
     sum.mu += weight * mu_dot;
     if constexpr (S + 1 < kStages) {
       next.omega = begin_.omega + advance * omega_dot;
       next.mu = begin_.mu + advance * mu_dot;
-      next.e = next_dq - next.omega;
+      next.e = next_y - next.omega;
       next.d = dead_zone<N, Scalar>(next.e, next.mu, config_.dead_zone, largest_d_);
+      if constexpr (kPerJoint) next.d = next.d.cwiseProduct(learns_);
     }
     learn<S>(gradient_at<S>(kappa, zz, at, output), at, advance, weight, next, sum);
     return next;
@@ -185,7 +194,7 @@ class TickIntegrator {
   // psi_hat at a stage; needs the directions d of the stages before.
   template <int S>
   EIGEN_ALWAYS_INLINE StageOutput<N, Scalar> network_output_at(
-      const std::array<Scalar, kStages>& kappa, const StagePoint<N, Scalar>& at) {
+      const std::array<Scalar, kStages>& kappa, const Point& at) {
     if constexpr (S == 0) {
       return {begin_.psi_hat, begin_.psi_hat};
     } else {
@@ -203,8 +212,7 @@ class TickIntegrator {
   // The inner products of a stage's gradient; its factors stay in factors_.
   template <int S>
   EIGEN_ALWAYS_INLINE GradientProducts<Scalar> gradient_at(const std::array<Scalar, kStages>& kappa,
-                                                           Scalar zz,
-                                                           const StagePoint<N, Scalar>& at,
+                                                           Scalar zz, const Point& at,
                                                            const StageOutput<N, Scalar>& output) {
     constexpr auto s = static_cast<std::size_t>(S);
     std::array<Scalar, kStages> nu{};
@@ -223,9 +231,8 @@ class TickIntegrator {
 
   // Moves theta's coordinates along a stage's gradient, less the pull of projection.
   template <int S>
-  EIGEN_ALWAYS_INLINE void learn(const GradientProducts<Scalar>& gradient,
-                                 const StagePoint<N, Scalar>& at, Scalar advance, Scalar weight,
-                                 StagePoint<N, Scalar>& next, TickEnd<N, Scalar>& sum) const {
+  EIGEN_ALWAYS_INLINE void learn(const GradientProducts<Scalar>& gradient, const Point& at,
+                                 Scalar advance, Scalar weight, Point& next, End& sum) const {
     constexpr auto s = static_cast<std::size_t>(S);
     const Scalar pull =
         projection_rate(at.norms.squared) * Eigen::numext::maxi(gradient.with_theta, Scalar(0));
@@ -254,11 +261,13 @@ class TickIntegrator {
   }
 
   const EstimatorConfig<Scalar>& config_;
-  const TickBegin<N, Scalar>& model_;
-  const EstimatorInput<N, Scalar>& input_;
-  const EstimatorState<N, L, Scalar>& begin_;
+  const TickBegin<N, Scalar, Space>& model_;
+  const EstimatorInput<N, Scalar, Space>& input_;
+  const EstimatorState<N, L, Scalar, Space>& begin_;
   Scalar largest_d_{};
   Scalar rate_{};  // of learning, in this tick
+  // The same for each joint, 0 or 1, where each has its own dead-zone.
+  [[no_unique_address]] std::conditional_t<kPerJoint, Vector<N, Scalar>, NoJoints> learns_{};
   Scalar radius_squared_{};
   InputProducts<Scalar> z_;
   FirstLayer<L, Scalar> w1_z_;

@@ -1,0 +1,156 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <offnominal/control/accommodation.hpp>
+#include <offnominal/diagnosis/bound.hpp>
+#include <offnominal/diagnosis/detector.hpp>
+#include <offnominal/diagnosis/estimator_state.hpp>
+#include <offnominal/diagnosis/joint_bound.hpp>
+#include <offnominal/diagnosis/space.hpp>
+#include <offnominal/model/cholesky.hpp>
+#include <offnominal/model/forward_dynamics.hpp>
+#include <offnominal/model/momentum.hpp>
+#include <offnominal/status.hpp>
+
+// What a monitor does differently in each space (diagnosis/space.hpp). One specialisation each:
+//   Bound, Dynamics           what a configuration says, what the model says of a sample
+//   Kept                      of the last sample, in MonitorState
+//   JointOutput, Detector     in MonitorOutput, and in both
+//   look(), fill()            model and input of the estimator at a sample
+//   start()                   of the detector at the first one
+//   allowance(), bound_at()   threshold of a measured velocity's own error, mu_bar
+//   jump()                    of the nominal rate, by a jump of the load at the last sample
+//   judge()                   error and threshold of a tick, against each other
+//   compensation()            torque that takes psi_hat away
+
+namespace offnominal {
+
+template <typename Space, int N, typename Scalar>
+struct MonitorForm;
+
+template <int N, typename Scalar>
+struct MonitorForm<AccelerationSpace, N, Scalar> {
+  using Bound = UncertaintyBound<N, Scalar>;
+  using Dynamics = ForwardDynamics<N, Scalar>;
+  using Detector = DetectorState<Scalar>;
+  using Input = EstimatorInput<N, Scalar, AccelerationSpace>;
+  struct Kept {
+    Matrix<N, N, Scalar> inertia_factor = no_values<Matrix<N, N, Scalar>>();  // of M(q), lower
+  };
+  struct JointOutput {};
+
+  [[nodiscard]] static EIGEN_ALWAYS_INLINE Status look(const RigidBodyModel<N, Scalar>& model,
+                                                       const Vector<N, Scalar>& q,
+                                                       const Vector<N, Scalar>& dq,
+                                                       const Vector<N, Scalar>& driving,
+                                                       double time_s, Dynamics& nominal) {
+    return forward_dynamics<N, Scalar>(model, q, dq, driving, time_s, nominal);
+  }
+  static EIGEN_ALWAYS_INLINE void fill(const Dynamics& nominal, Input& input) {
+    input.nominal_rate = nominal.ddq;
+  }
+  static void start(std::size_t /*joints*/, Detector& detector) { detector = {}; }
+  static EIGEN_ALWAYS_INLINE void keep(const Dynamics& nominal, Kept& kept) {
+    kept.inertia_factor = nominal.factor;
+  }
+
+  // The velocity's own error e_v enters e directly, through omega(0) and through the filter's
+  // input: together at most 2 |e_v|.
+  [[nodiscard]] static Scalar allowance(const Bound& bound) { return 2 * bound.velocity_error; }
+  [[nodiscard]] static Scalar bound_at(const Bound& bound, const Vector<N, Scalar>& q,
+                                       const Vector<N, Scalar>& dq, const Vector<N, Scalar>& tau) {
+    return evaluate(bound, q, dq, tau);
+  }
+  [[nodiscard]] static bool follows_torque(const Bound& bound) {
+    return bound.kind == BoundKind::kTable && bound.variable == BoundVariable::kTorque;
+  }
+  [[nodiscard]] static Vector<N, Scalar> jump(const Kept& kept, Vector<N, Scalar> load) {
+    solve_in_place<N, Scalar>(kept.inertia_factor, load);
+    return load;
+  }
+
+  template <typename State, typename Output>
+  static EIGEN_ALWAYS_INLINE void judge(Scalar /*alpha*/, State& state, Output& output) {
+    output.error = state.estimator.error;
+    output.error_norm = detail::length(state.estimator.error);
+    output.threshold = state.estimator.mu;
+    update(state.detector, output.error_norm, output.threshold, state.tick, output.time_s);
+  }
+  [[nodiscard]] static CompensatingTorque<N, Scalar> compensation(const Dynamics& nominal,
+                                                                  const Vector<N, Scalar>& psi_hat,
+                                                                  const Vector<N, Scalar>& limit) {
+    return compensating_torque<N, Scalar>(nominal.inertia, psi_hat, limit, nominal.told_per_load);
+  }
+};
+
+template <int N, typename Scalar>
+struct MonitorForm<TorqueSpace, N, Scalar> {
+  using Bound = TorqueBound<N, Scalar>;
+  using Dynamics = MomentumDynamics<N, Scalar>;
+  using Detector = JointDetectors<N, Scalar>;
+  using Input = EstimatorInput<N, Scalar, TorqueSpace>;
+  struct Kept {};
+  struct JointOutput {
+    Vector<N, Scalar> thresholds = zeros<N, Scalar>();  // alpha mu_i of |error_i|, N m or N
+  };
+
+  [[nodiscard]] static EIGEN_ALWAYS_INLINE Status look(const RigidBodyModel<N, Scalar>& model,
+                                                       const Vector<N, Scalar>& q,
+                                                       const Vector<N, Scalar>& dq,
+                                                       const Vector<N, Scalar>& driving,
+                                                       double time_s, Dynamics& nominal) {
+    nominal = momentum_dynamics<N, Scalar>(model, q, dq, driving, time_s);
+    return Status::kOk;
+  }
+  static EIGEN_ALWAYS_INLINE void fill(const Dynamics& nominal, Input& input) {
+    input.nominal_rate = nominal.rate;
+    input.measured.momentum = nominal.momentum;
+  }
+  static void start(std::size_t joints, Detector& detector) {
+    detector = {};
+    size_for(joints, detector.joints);
+  }
+  static void keep(const Dynamics& /*nominal*/, Kept& /*kept*/) {}
+
+  // As of the velocity's error, joint by joint.
+  [[nodiscard]] static Vector<N, Scalar> allowance(const Bound& bound) {
+    Vector<N, Scalar> values;
+    values.resize(static_cast<Eigen::Index>(bound.joints.size()));
+    for (std::size_t i = 0; i < bound.joints.size(); ++i) {
+      values[static_cast<Eigen::Index>(i)] = 2 * bound.joints[i].momentum_error;
+    }
+    return values;
+  }
+  [[nodiscard]] static Vector<N, Scalar> bound_at(const Bound& bound,
+                                                  const Vector<N, Scalar>& /*q*/,
+                                                  const Vector<N, Scalar>& dq,
+                                                  const Vector<N, Scalar>& /*tau*/) {
+    return evaluate(bound, dq);
+  }
+  [[nodiscard]] static bool follows_torque(const Bound& /*bound*/) { return false; }
+  [[nodiscard]] static const Vector<N, Scalar>& jump(const Kept& /*kept*/,
+                                                     const Vector<N, Scalar>& load) {
+    return load;
+  }
+
+  // In N m: alpha e and alpha mu, what a lasting torque and a lasting bound tend to.
+  template <typename State, typename Output>
+  static EIGEN_ALWAYS_INLINE void judge(Scalar alpha, State& state, Output& output) {
+    const Vector<N, Scalar>& e = state.estimator.error;
+    const Vector<N, Scalar>& mu = state.estimator.mu;
+    output.error = alpha * e;
+    output.thresholds = alpha * mu;
+    const Eigen::Index worst = update(state.detector, e, mu, state.tick, output.time_s);
+    output.error_norm = Eigen::numext::abs(output.error[worst]);
+    output.threshold = output.thresholds[worst];
+  }
+  [[nodiscard]] static CompensatingTorque<N, Scalar> compensation(const Dynamics& nominal,
+                                                                  const Vector<N, Scalar>& psi_hat,
+                                                                  const Vector<N, Scalar>& limit) {
+    return compensating_torque_of_load<N, Scalar>(psi_hat, limit, nominal.told_per_load);
+  }
+};
+
+}  // namespace offnominal

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrate/calibrate.hpp"
+#include "calibrate/recorded_error.hpp"
+#include "calibrate/try_shapes.hpp"
+
+// The steps of a calibration of one error: of |e|, or of one joint's residual.
+
+namespace offnominal::desk {
+
+/// Of recordings of which the first `given` are to calibrate on. Throws InputError where they are
+/// too short, or without any error.
+[[nodiscard]] CalibrationData data_of(std::vector<RecordedError> recordings, std::size_t given,
+                                      double alpha_per_s, std::optional<int> joint = {},
+                                      std::size_t judged = 1);
+
+/// The bound, before it is judged.
+struct Fitted {
+  Tries tries;
+  std::size_t chosen = 0;
+  Calibration result;  // with everything but stretches, notes and objections
+};
+[[nodiscard]] Fitted fitted(const RobotDescription& robot, const CalibrateRequest& request,
+                            const CalibrationData& data, const std::function<void()>& on_step);
+
+/// Held against the recordings: `thresholds` of each are those of the core with the new bound.
+[[nodiscard]] Calibration judged_calibration(Fitted fit, const CalibrateRequest& request,
+                                             const CalibrationData& data,
+                                             const std::vector<Eigen::VectorXd>& thresholds);
+
+/// What a reader of the numbers has to know of robot and recordings.
+void note_what_matters(const RobotDescription& robot, std::size_t recordings,
+                       std::vector<std::string>& notes);
+
+}  // namespace offnominal::desk

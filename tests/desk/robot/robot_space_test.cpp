@@ -1,0 +1,96 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "common/error.hpp"
+#include "robot/robot_file.hpp"
+#include "sample_robot.hpp"
+
+// Robot files in EstimatorSpace::kTorque, and bounds joint by joint.
+
+namespace offnominal::desk {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string space_refusal(const std::string& text) {
+  try {
+    static_cast<void>(parse_robot(text, "dir/r.toml"));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+// The sample in torque space, with `bound` in place of its bound.
+std::string in_torque_space(const std::string& bound) {
+  std::string text = test::changed(test::kSampleRobot, "seed = 7", "seed = 7\nspace = \"torque\"");
+  const auto begin = text.find("[uncertainty_bound]");
+  const auto end = text.find("\n[", begin);
+  return text.substr(0, begin) + bound + text.substr(std::min(end, text.size()));
+}
+
+TEST(RobotFile, RefusesABoundThatDoesNotGoWithTheSpace) {
+  EXPECT_THAT(
+      space_refusal(test::changed(test::kSampleRobot, "seed = 7", "seed = 7\nspace = \"torque\"")),
+      AllOf(HasSubstr("uncertainty_bound.kind: found a bound of accelerations beside "
+                      "estimator.space = \"torque\""),
+            HasSubstr("allowed: \"per_joint\", N m or N per joint"),
+            HasSubstr("to mend: leave [uncertainty_bound] out")));
+  const std::string per_joint = "[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.0, 2.0]\n";
+  EXPECT_EQ(space_refusal(in_torque_space(per_joint)), "accepted");
+  EXPECT_EQ(space_refusal(in_torque_space("")), "accepted") << "calibrate finds one";
+  EXPECT_THAT(space_refusal(test::changed(in_torque_space(per_joint), "space = \"torque\"",
+                                          "space = \"acceleration\"")),
+              HasSubstr("a bound of torques, beside estimator.space = \"acceleration\""));
+}
+
+TEST(RobotFile, RefusesBoundsPerJointThatAreNotOnePerJoint) {
+  const auto with = [](const std::string& keys) {
+    return space_refusal(
+        in_torque_space("[uncertainty_bound]\nkind = \"per_joint\"\n" + keys + "\n"));
+  };
+  EXPECT_THAT(with("value = [1.0]"), HasSubstr("uncertainty_bound.value: found a list of 1"));
+  EXPECT_THAT(with("value = [1.0, 0.0]"),
+              HasSubstr("found 0 for joint 2; allowed: a number above 0"));
+  EXPECT_THAT(with("value = [1.0, -2.0]"), HasSubstr("uncertainty_bound.value[2]: found -2"));
+  EXPECT_THAT(with("value = [1.0, 2.0]\nvelocity_error = 0.1"),
+              HasSubstr("a key that a bound of kind per_joint does not have"));
+  EXPECT_THAT(with("value = [1.0, 2.0]\nmomentum_error = [0.1, -0.1]"),
+              HasSubstr("uncertainty_bound.momentum_error[2]: found -0.1"));
+  const std::string table = "over_speed = [{joint = 2, at = [0.0, 1.0], value = [1.0, 2.0]}";
+  EXPECT_EQ(with("value = [1.0, 0.0]\n" + table + "]"), "accepted");
+  EXPECT_THAT(with("value = [1.0, 2.0]\n" + table + "]"),
+              HasSubstr("found 2 for joint 2; allowed: 0, as over_speed has this joint's values"));
+  EXPECT_THAT(
+      with("value = [1.0, 0.0]\n" + table + ", {joint = 2, at = [0.0, 1.0], value = [1.0, 2.0]}]"),
+      HasSubstr("joint 2 a second time"));
+  EXPECT_THAT(
+      with("value = [1.0, 0.0]\nover_speed = [{joint = 2, at = [1.0, 0.0], value = [1.0, 2.0]}]"),
+      HasSubstr("0 after 1; allowed: strictly rising numbers"));
+  EXPECT_THAT(
+      with("value = [1.0, 0.0]\nover_speed = [{joint = 3, at = [0.0, 1.0], value = [1.0, 2.0]}]"),
+      HasSubstr("a whole number from 1 to 2"));
+}
+
+TEST(RobotFile, InTorqueSpaceIsRefusedWhereTheJointControllerRuns) {
+  const RobotDescription robot = parse_robot(
+      in_torque_space("[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.0, 2.0]\n"),
+      "arm.toml");
+  EXPECT_NO_THROW(require_bound(robot, "arm.toml"));
+  try {
+    require_controller_bound(robot, "arm.toml");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("arm.toml: estimator.space: found \"torque\""),
+                                    HasSubstr("`offnominal replay` and `offnominal calibrate`")));
+  }
+  EXPECT_NO_THROW(
+      require_controller_bound(parse_robot(test::kSampleRobot, "arm.toml"), "arm.toml"));
+}
+
+}  // namespace
+}  // namespace offnominal::desk
