@@ -76,6 +76,17 @@ verdicts() {
     }' "$1"
 }
 
+# words_of REPORT NAME: the last that a test said, indented. What failed is told once more at the end: the
+# middle of a log of an hour is what is cut off first.
+words_of() {
+  awk -v name="name=\"$2\"" '
+    /<testcase / { asked = index($0, name) > 0 }
+    /<system-out>/ { inside = 1; sub(/.*<system-out>/, "") }
+    asked && inside { sub(/<\/system-out>.*/, ""); print }
+    /<\/system-out>/ { inside = 0 }' "$1" |
+    sed 's/&lt;/</g; s/&gt;/>/g; s/&quot;/"/g; s/&amp;/\&/g; s/^/      /' | cut -c 1-400 | tail -n 25
+}
+
 # whole REPORT: whether a JUnit report is there to its end.
 whole() { grep -qs '</testsuite>' "$1"; }
 
@@ -115,7 +126,8 @@ run_suite() {
     case "$verdict" in
       pass) passed=$((passed + 1)) ;;
       skip) skipped=$((skipped + 1)) ;;
-      *) fail "$preset: $name" ;;
+      *) fail "$preset: $name
+$(words_of "$report" "$name")" ;;
     esac
   done < <(verdicts "$report")
   if ((outcome != 0 && failed == before)); then fail "$title: ended with $outcome"; fi

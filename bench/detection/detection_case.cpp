@@ -30,7 +30,7 @@ desk::RobotDescription true_robot() {
   return robot;
 }
 
-ArmEffect effect_of(EffectKind kind, Eigen::Index joint, std::vector<double> values) {
+ArmEffect effect_of(EffectKind kind, Eigen::Index joint, const std::vector<double>& values) {
   ArmEffect effect{kind, joint, {}, kFaultS};
   for (const double value : values) effect.numbers.emplace_back("", value);
   return effect;

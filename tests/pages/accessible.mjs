@@ -11,10 +11,14 @@ export async function readAxe(web) {
   return readFile(createRequire(join(web, "package.json")).resolve("axe-core/axe.min.js"), "utf8");
 }
 
-/** All of the page, what is folded up, too. */
+/**
+ * All of the page, what is folded up, too; from its top, where nothing lies below the bar that stays in
+ * sight: what is half below it is scrolled out, not too small.
+ */
 export async function checkWithAxe(page, axeSource, fault) {
   await page.evaluate(() => {
     for (const details of document.querySelectorAll("details")) details.open = true;
+    window.scrollTo({ top: 0, behavior: "instant" });
   });
   if (await page.evaluate(() => typeof axe === "undefined")) await page.evaluate(axeSource);
   const found = await page.evaluate(
