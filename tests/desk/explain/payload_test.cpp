@@ -41,7 +41,7 @@ double number(const Finding& finding, const std::string& name) {
 // Its column is put together from those of the link's ten numbers.
 TEST(Payload, HasTheTorqueOfAMassAtItsPlace) {
   const RobotDescription robot = test::serial_arm(kJoints);
-  const std::vector<Log> logs{test::record(robot, {.duration_s = 5, .torque_noise_nm = 0})};
+  const std::vector<Log> logs{test::record(robot, {.duration_s = 5, .torque_noise_nm = 1e-6})};
   const FilterPlan plan = plan_filter(logs, robot);
   const Data data(make_workspaces(logs, robot, plan, Eigen::VectorXd::Zero(kJoints)), robot, {});
   const auto& all = all_candidates();
