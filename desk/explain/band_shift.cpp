@@ -22,7 +22,12 @@ std::vector<NamedValue> numbers_of(const Data& data, const std::vector<Term>& te
 }
 
 // The same terms fitted in a band of that share of the first one.
-std::vector<std::vector<NamedValue>> numbers_in(double share, const Relinearised& fitted) {
+struct NarrowFit {
+  std::vector<std::vector<NamedValue>> numbers;
+  std::vector<Eigen::VectorXd> coefficients;
+};
+
+NarrowFit fitted_in(double share, const Relinearised& fitted) {
   std::vector<Workspace> recordings = fitted.data->recordings;
   for (Workspace& at : recordings) at.plan.torque_cutoff_hz *= share;
   RobotDescription robot = recordings[0].rigid;
@@ -32,30 +37,32 @@ std::vector<std::vector<NamedValue>> numbers_in(double share, const Relinearised
   std::vector<Term> terms = fitted.terms;
   for (std::size_t i = 0; i < terms.size(); ++i) regression.refine(terms, i);
   const ModelFit fit = regression.fit(terms);
-  std::vector<std::vector<NamedValue>> numbers;
+  NarrowFit result{{}, fit.coefficients};
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    numbers.push_back(numbers_of(narrow, terms, fit, i));
+    result.numbers.push_back(numbers_of(narrow, terms, fit, i));
   }
-  return numbers;
+  return result;
 }
 
 }  // namespace
 
-std::vector<std::vector<double>> largest_shifts_in_narrower_bands(const Relinearised& fitted) {
+std::vector<BandShift> shifts_in_narrower_bands(const Relinearised& fitted) {
   std::vector<std::vector<NamedValue>> whole;
-  std::vector<std::vector<double>> shifts;
+  std::vector<BandShift> shifts;
   for (std::size_t i = 0; i < fitted.terms.size(); ++i) {
     whole.push_back(numbers_of(*fitted.data, fitted.terms, fitted.fit, i));
-    shifts.emplace_back(whole[i].size(), 0.0);
+    shifts.push_back({std::vector<double>(whole[i].size(), 0.0), {}});
   }
   // Readings at rest have no band.
   if (fitted.data->recordings[0].at_rest) return shifts;
   for (const double share : kBands) {
-    const auto numbers = numbers_in(share, fitted);
+    const NarrowFit narrow = fitted_in(share, fitted);
     for (std::size_t i = 0; i < shifts.size(); ++i) {
-      for (std::size_t p = 0; p < shifts[i].size(); ++p) {
-        const double moved = std::abs(numbers[i][p].value - whole[i][p].value);
-        if (std::isfinite(moved)) shifts[i][p] = std::max(shifts[i][p], moved);
+      shifts[i].linear.emplace_back(narrow.coefficients[i] - fitted.fit.coefficients[i]);
+      std::vector<double>& largest = shifts[i].numbers;
+      for (std::size_t p = 0; p < largest.size(); ++p) {
+        const double moved = std::abs(narrow.numbers[i][p].value - whole[i][p].value);
+        if (std::isfinite(moved)) largest[p] = std::max(largest[p], moved);
       }
     }
   }

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "compare/inverse_model.hpp"
-#include "explain/band_shift.hpp"
 #include "explain/confirm.hpp"
 #include "explain/questions.hpp"
 #include "explain/remainder.hpp"
@@ -45,39 +44,9 @@ void describe_joints(const SearchResult& from, Explanation& to) {
   }
 }
 
-bool is_positive(const Term& term, const std::string& parameter) {
-  return std::any_of(term.ranges.begin(), term.ranges.end(), [&](const ShapeRange& range) {
-    return range.name == parameter &&
-           (range.is_positive() || range.name == effects::kSmoothing.name);
-  });
-}
-
-// Intervals that hold noise, and what the model's simplifications do: as far as a number moves in
-// narrower bands counts as one standard deviation of that.
-std::vector<std::vector<Estimate>> estimates_with_discrepancy(const ImprovedRobot& improved) {
-  constexpr double kTwoSided95 = 1.96;
-  const Relinearised& fitted = improved.last;
-  auto estimates = estimates_of(improved).terms;
-  const auto shifts = largest_shifts_in_narrower_bands(fitted);
-  for (std::size_t i = 0; i < estimates.size(); ++i) {
-    for (std::size_t p = 0; p < estimates[i].size(); ++p) {
-      Estimate& one = estimates[i][p];
-      if (!one.ci95) continue;
-      const double noise = ((*one.ci95)[1] - (*one.ci95)[0]) / 2;
-      const double half = std::hypot(noise, kTwoSided95 * shifts[i][p]);
-      one.ci95 = {one.value.value - half, one.value.value + half};
-      if (is_positive(fitted.terms[i], one.value.name)) {
-        (*one.ci95)[0] = std::max(0.0, (*one.ci95)[0]);
-      }
-    }
-  }
-  return estimates;
-}
-
 void describe_findings(const SearchResult& from, Explanation& to) {
   const Data& data = from.regression.data();
   if (from.found.accepted.empty()) return;
-  const auto estimates = estimates_with_discrepancy(from.improved);
   const VectorXd simulated_after = simulated_position_error(data, from.found.fit.residual);
   const VectorXd held_after = from.hold_out.rms(from.found.held_out_after);
   std::vector<Finding> findings(from.found.accepted.size());
@@ -92,7 +61,7 @@ void describe_findings(const SearchResult& from, Explanation& to) {
     finding.words = effect.info().words;
     if (!accepted.stands_for.empty()) finding.words += "; " + accepted.stands_for;
     finding.formula = effect.info().formula;
-    finding.parameters = estimates[i];
+    finding.parameters = from.sizes.numbers[i];
     finding.p_value = accepted.p;
     finding.p_replay = accepted.p_replay;
     finding.holdout_before = from.hold_out.rms(from.hold_out.residual(without, fit))[joint];

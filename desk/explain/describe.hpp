@@ -2,6 +2,7 @@
 
 #include "explain/explain.hpp"
 #include "explain/find_model.hpp"
+#include "explain/sizes.hpp"
 #include "identify/improved_robot.hpp"
 
 namespace offnominal::desk {
@@ -14,6 +15,7 @@ struct SearchResult {
   const HoldOut& hold_out;
   const FoundModel& found;
   const ImprovedRobot& improved;  // with the found model's final numbers
+  const Sizes& sizes;             // of its effects
 };
 
 // Fills in all that an explanation says in numbers: errors per joint, findings, rejections, what

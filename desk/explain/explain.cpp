@@ -19,6 +19,7 @@
 #include "explain/friction_family.hpp"
 #include "explain/link_share.hpp"
 #include "explain/questions.hpp"
+#include "explain/sizes.hpp"
 #include "explain/undecided.hpp"
 #include "explain/verdict.hpp"
 #include "identify/file_errors.hpp"
@@ -80,7 +81,16 @@ class Explainer {
     FoundModel found = search_model(search, result);
     const HoldOut& hold_out = *hold_out_;
     result.over_variable = leave_out_stand_ins(*regression_, hold_out, options_.threads, found);
-    result.ambiguous = classes_of(found, hold_out, result.excitation);
+    ImprovedRobot improved;
+    Sizes sizes;
+    do {
+      result.ambiguous = classes_of(found, hold_out, result.excitation);
+      tell("fitting the numbers");
+      improved = improved_robot(file_, robot_, *data_,
+                                {nuisance_, fitted_effects(file_), {}, options_.source},
+                                relinearise(robot_, *data_, nuisance_, found.terms(), found.fit));
+      sizes = sizes_of(improved);
+    } while (leave_out_unsure(sizes, *regression_, hold_out, options_.threads, found));
     if (search) {
       for (auto& one : undecided(*search_, *regression_, found, result.excitation)) {
         result.ambiguous.push_back(std::move(one));
@@ -89,11 +99,7 @@ class Explainer {
     for (std::size_t joint = 0; joint < found.unsure.size(); ++joint) {
       if (found.unsure[joint] != 0) result.unsure.push_back(static_cast<Index>(joint));
     }
-    tell("fitting the numbers");
-    ImprovedRobot improved = improved_robot(
-        file_, robot_, *data_, {nuisance_, fitted_effects(file_), {}, options_.source},
-        relinearise(robot_, *data_, nuisance_, found.terms(), found.fit));
-    describe({robot_, *regression_, *search_, hold_out, found, improved}, result);
+    describe({robot_, *regression_, *search_, hold_out, found, improved, sizes}, result);
     leave_out_undecided(found, result.ambiguous, improved);
     result.improved = std::move(improved.robot);
     result.unwritable = std::move(improved.unwritable);

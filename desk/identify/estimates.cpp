@@ -2,7 +2,9 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <limits>
 
 #include "identify/combinations.hpp"
 #include "identify/freedom.hpp"
@@ -97,6 +99,30 @@ void set_interval(const VectorXd& slope, const std::vector<Covariance>& covarian
   } else {
     estimate.why_no_interval = "no interval: the recordings do not determine it";
   }
+}
+
+// How much wider the 95 % region of so many numbers together is than that of one.
+double region_over_interval(Index numbers) {
+  const auto of = [](double count) {
+    return boost::math::quantile(boost::math::chi_squared(count), 0.95);
+  };
+  return std::sqrt(of(static_cast<double>(numbers)) / of(1));
+}
+
+// Of the ways to group the samples the one that is least sure of the term.
+LinearPart linear_part(const VectorXd& coefficients, const std::vector<Covariance>& covariances,
+                       const Place& place) {
+  LinearPart least{coefficients, {}};
+  for (const Covariance& one : covariances) {
+    const Freedom& freedom = one.of_joint[static_cast<std::size_t>(place.joint)];
+    if (!freedom.suffices()) return {coefficients, {}};
+    const double width = half_width_per_deviation(freedom) * region_over_interval(place.linear);
+    const LinearPart part{
+        coefficients,
+        width * width * one.matrix.block(place.first, place.first, place.linear, place.linear)};
+    if (least.region.size() == 0 || part.from_nothing() < least.from_nothing()) least = part;
+  }
+  return least;
 }
 
 // Chosen among a few values, or the only one there is: no interval belongs to it.
@@ -270,6 +296,20 @@ Index joint_shown_on(const RowLayout& layout, const ScaledColumns& scaled, const
 
 }  // namespace
 
+double LinearPart::from_nothing() const {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  if (region.size() == 0) return kUnknown;
+  const double squared = value.dot(region.completeOrthogonalDecomposition().solve(value));
+  return std::isfinite(squared) ? std::sqrt(std::max(0.0, squared)) : kUnknown;
+}
+
+void LinearPart::widen(const VectorXd& deviation) {
+  constexpr double kTwoSided95 = 1.96;
+  if (region.size() == 0 || !deviation.allFinite()) return;
+  const double width = kTwoSided95 * region_over_interval(value.size());
+  region += width * width * deviation * deviation.transpose();
+}
+
 Estimates estimates_of(const Regression& regression, const RobotDescription& robot,
                        const std::vector<Term>& terms, const ModelFit& fit,
                        const std::vector<Index>& widths) {
@@ -284,6 +324,7 @@ Estimates estimates_of(const Regression& regression, const RobotDescription& rob
     const double factor = factor_of_term(data, terms, fit, i);
     all.terms.push_back(
         of_term(data, terms[i], fit.coefficients[i], factor, covariances, model.places[i]));
+    all.linear.push_back(linear_part(fit.coefficients[i], covariances, model.places[i]));
   }
   const auto of_column = [&](Index column, double value, Index joint) {
     Estimate estimate{{"", value, ""}, std::nullopt};

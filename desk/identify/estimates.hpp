@@ -17,6 +17,19 @@ struct Estimate {
   std::string why_no_interval = {};
 };
 
+// What a term is linear in: of a drive's loss two numbers, of which one may well be nothing.
+struct LinearPart {
+  Eigen::VectorXd value;  // as the regression has it
+  // Its 95 % region about the value, all numbers together: nothing lies on its edge where
+  // value' region^-1 value is 1. Empty where the samples do not suffice to say.
+  Eigen::MatrixXd region;
+
+  // How far the term is from nothing, in half-widths of the region; infinite where that is unknown.
+  [[nodiscard]] double from_nothing() const;
+  // Makes the region as much wider as one standard deviation of this says.
+  void widen(const Eigen::VectorXd& deviation);
+};
+
 // Numbers of a fitted model with 95 % intervals: a covariance that is robust to errors correlated
 // within a block of time (K.-Y. Liang, S. L. Zeger, Biometrika 73(1), 1986), shapes linearised
 // about where they are, Student's t with the blocks that tell of the joint concerned less the
@@ -24,6 +37,7 @@ struct Estimate {
 // determine a number, it says so.
 struct Estimates {
   std::vector<std::vector<Estimate>> terms;  // parameters of every term
+  std::vector<LinearPart> linear;            // per term
   // Per nuisance term of the data: what it adds to the number that it is counted from. A time skew
   // and shapes of the sign have none.
   std::vector<Estimate> nuisance;

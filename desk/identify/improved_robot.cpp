@@ -352,6 +352,10 @@ Estimates estimates_of(const ImprovedRobot& improved) {
       const double half = std::hypot(noise, one.value.value - other.value.value);
       one.ci95 = {one.value.value - half, one.value.value + half};
     }
+    LinearPart& linear = estimates.linear[i];
+    const VectorXd apart = beside.linear[i].value - linear.value;
+    if (beside.linear[i].from_nothing() < linear.from_nothing()) linear = beside.linear[i];
+    linear.widen(apart);
   }
   return estimates;
 }

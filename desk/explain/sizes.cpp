@@ -1,0 +1,91 @@
+#include "explain/sizes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+
+#include "explain/band_shift.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+bool is_positive(const Term& term, const std::string& parameter) {
+  return std::any_of(term.ranges.begin(), term.ranges.end(), [&](const ShapeRange& range) {
+    return range.name == parameter &&
+           (range.is_positive() || range.name == effects::kSmoothing.name);
+  });
+}
+
+void widen(Estimate& estimate, double deviation) {
+  constexpr double kTwoSided95 = 1.96;
+  if (!estimate.ci95) return;
+  const double noise = ((*estimate.ci95)[1] - (*estimate.ci95)[0]) / 2;
+  const double half = std::hypot(noise, kTwoSided95 * deviation);
+  estimate.ci95 = {estimate.value.value - half, estimate.value.value + half};
+}
+
+}  // namespace
+
+Sizes sizes_of(const ImprovedRobot& improved) {
+  const std::vector<Term>& terms = improved.last.terms;
+  if (terms.empty()) return {};
+  Estimates estimates = estimates_of(improved);
+  const std::vector<BandShift> shifts = shifts_in_narrower_bands(improved.last);
+  Sizes sizes;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    for (std::size_t p = 0; p < estimates.terms[i].size(); ++p) {
+      Estimate& one = estimates.terms[i][p];
+      widen(one, shifts[i].numbers[p]);
+      if (one.ci95 && is_positive(terms[i], one.value.name)) {
+        (*one.ci95)[0] = std::max(0.0, (*one.ci95)[0]);
+      }
+    }
+    double least = estimates.linear[i].from_nothing();
+    for (const VectorXd& shift : shifts[i].linear) {
+      LinearPart wider = estimates.linear[i];
+      wider.widen(shift);
+      least = std::min(least, wider.from_nothing());
+    }
+    sizes.from_nothing.push_back(least);
+  }
+  sizes.numbers = std::move(estimates.terms);
+  return sizes;
+}
+
+bool leave_out_unsure(const Sizes& sizes, const Regression& regression, const HoldOut& hold_out,
+                      int threads, FoundModel& found) {
+  // Significance was asked before, and these intervals hold more than noise: what reaches twice as
+  // far as the size itself is none.
+  constexpr double kSure = 0.5;
+  const RowLayout& layout = regression.data().layout;
+  constexpr auto kNone = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> least(static_cast<std::size_t>(layout.joint_count()), kNone);
+  for (std::size_t i = 0; i < found.accepted.size(); ++i) {
+    std::size_t& of_joint = least[static_cast<std::size_t>(found.accepted[i].term.joint)];
+    if (sizes.from_nothing[i] >= kSure) continue;
+    if (of_joint == kNone || sizes.from_nothing[i] < sizes.from_nothing[of_joint]) of_joint = i;
+  }
+  std::vector<Accepted> kept;
+  for (std::size_t i = 0; i < found.accepted.size(); ++i) {
+    if (std::find(least.begin(), least.end(), i) == least.end()) kept.push_back(found.accepted[i]);
+  }
+  if (kept.size() == found.accepted.size()) return false;
+  if (found.accepted.size() == 1) {
+    const Accepted& alone = found.accepted.front();
+    const Index joint = alone.term.joint;
+    const double before = layout.rms(found.baseline.residual)[joint];
+    const double after = layout.rms(found.fit.residual)[joint];
+    found.suspected = {alone.term, alone.p, explained_share(before, after)};
+  }
+  found.accepted = std::move(kept);
+  order_and_hold_out(regression, hold_out, threads, found);
+  return true;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "explain/find_model.hpp"
+#include "identify/estimates.hpp"
+#include "identify/improved_robot.hpp"
+
+namespace offnominal::desk {
+
+// The numbers of every effect that was found, with intervals that hold noise, and what the model's
+// simplifications do: as far as a number moves in narrower bands counts as one standard deviation
+// of that (band_shift.hpp).
+struct Sizes {
+  std::vector<std::vector<Estimate>> numbers;
+  std::vector<double> from_nothing;  // LinearPart::from_nothing()
+};
+
+Sizes sizes_of(const ImprovedRobot& improved);
+
+// Takes names back whose size the recordings do not tell from nothing, of each joint the least sure
+// one; false where all are sure. A shape at the end of what a motion resolves (extra friction below
+// its slowest velocity) fits a few stretches closely, beyond what chance does, and its size says
+// nothing of the next. One that was found alone may still be worth a word: it is suspected.
+bool leave_out_unsure(const Sizes& sizes, const Regression& regression, const HoldOut& hold_out,
+                      int threads, FoundModel& found);
+
+}  // namespace offnominal::desk
