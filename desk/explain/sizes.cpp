@@ -30,6 +30,17 @@ void widen(Estimate& estimate, double deviation) {
   estimate.ci95 = {estimate.value.value - half, estimate.value.value + half};
 }
 
+// Share of the squared error that goes, on the joint where that is most.
+double largest_share(const RowLayout& layout, const ModelFit& before, const ModelFit& after) {
+  const VectorXd was = layout.rms(before.residual);
+  const VectorXd is = layout.rms(after.residual);
+  double most = 0;
+  for (Index joint = 0; joint < was.size(); ++joint) {
+    if (was[joint] > 0) most = std::max(most, explained_share(was[joint], is[joint]));
+  }
+  return most;
+}
+
 }  // namespace
 
 Sizes sizes_of(const ImprovedRobot& improved) {
@@ -63,27 +74,16 @@ bool leave_out_unsure(const Sizes& sizes, const Regression& regression, const Ho
   // Significance was asked before, and these intervals hold more than noise: what reaches twice as
   // far as the size itself is none.
   constexpr double kSure = 0.5;
-  const RowLayout& layout = regression.data().layout;
-  constexpr auto kNone = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> least(static_cast<std::size_t>(layout.joint_count()), kNone);
-  for (std::size_t i = 0; i < found.accepted.size(); ++i) {
-    std::size_t& of_joint = least[static_cast<std::size_t>(found.accepted[i].term.joint)];
-    if (sizes.from_nothing[i] >= kSure) continue;
-    if (of_joint == kNone || sizes.from_nothing[i] < sizes.from_nothing[of_joint]) of_joint = i;
-  }
-  std::vector<Accepted> kept;
-  for (std::size_t i = 0; i < found.accepted.size(); ++i) {
-    if (std::find(least.begin(), least.end(), i) == least.end()) kept.push_back(found.accepted[i]);
-  }
-  if (kept.size() == found.accepted.size()) return false;
+  const std::vector<double>& from_nothing = sizes.from_nothing;
+  const auto least = std::min_element(from_nothing.begin(), from_nothing.end());
+  if (least == from_nothing.end() || *least >= kSure) return false;
+  const auto goes = found.accepted.begin() + (least - from_nothing.begin());
+  found.unsure[static_cast<std::size_t>(goes->term.joint)] = 1;
   if (found.accepted.size() == 1) {
-    const Accepted& alone = found.accepted.front();
-    const Index joint = alone.term.joint;
-    const double before = layout.rms(found.baseline.residual)[joint];
-    const double after = layout.rms(found.fit.residual)[joint];
-    found.suspected = {alone.term, alone.p, explained_share(before, after)};
+    found.suspected = {goes->term, goes->p,
+                       largest_share(regression.data().layout, found.baseline, found.fit)};
   }
-  found.accepted = std::move(kept);
+  found.accepted.erase(goes);
   order_and_hold_out(regression, hold_out, threads, found);
   return true;
 }

@@ -18,10 +18,11 @@ struct Sizes {
 
 Sizes sizes_of(const ImprovedRobot& improved);
 
-// Takes names back whose size the recordings do not tell from nothing, of each joint the least sure
-// one; false where all are sure. A shape at the end of what a motion resolves (extra friction below
-// its slowest velocity) fits a few stretches closely, beyond what chance does, and its size says
-// nothing of the next. One that was found alone may still be worth a word: it is suspected.
+// Takes back the name whose size the recordings tell least from nothing, one at a time: what goes
+// may be what made another unsure. False where all are sure. A shape at the end of what a motion
+// resolves (extra friction below its slowest velocity) fits a few stretches closely, beyond what
+// chance does, and its size says nothing of the next. Its joint is unsure from then on; one that
+// was found alone is suspected, too. `sizes`: of the accepted, in their order.
 bool leave_out_unsure(const Sizes& sizes, const Regression& regression, const HoldOut& hold_out,
                       int threads, FoundModel& found);
 

@@ -354,7 +354,9 @@ Estimates estimates_of(const ImprovedRobot& improved) {
     }
     LinearPart& linear = estimates.linear[i];
     const VectorXd apart = beside.linear[i].value - linear.value;
-    if (beside.linear[i].from_nothing() < linear.from_nothing()) linear = beside.linear[i];
+    const bool known = linear.region.size() > 0 && beside.linear[i].region.size() > 0;
+    if (!known) linear.region.resize(0, 0);
+    if (known && beside.linear[i].from_nothing() < linear.from_nothing()) linear = beside.linear[i];
     linear.widen(apart);
   }
   return estimates;

@@ -55,6 +55,7 @@ class UnsureSizes : public ::testing::Test {
     regression_ = std::make_unique<Regression>(*data_);
     hold_out_ = std::make_unique<HoldOut>(*regression_, nullptr);
     found_.baseline = regression_->fit({});
+    found_.unsure.assign(1, 0);
     found_.held_out_before = hold_out_->residual({}, found_.baseline);
     for (const EffectKind kind : {EffectKind::kCoulombFriction, EffectKind::kViscousFriction}) {
       found_.accepted.push_back({first_on_grid(*data_, kind, 0), 0.001, 1});
@@ -92,14 +93,16 @@ TEST_F(UnsureSizes, WhatIsThereIsFarFromNothingAndWhatIsNotIsNear) {
 TEST_F(UnsureSizes, KeepTheirNamesWhereAllAreSure) {
   EXPECT_FALSE(leave_out({4, 0.6}));
   EXPECT_EQ(found_.accepted.size(), 2U);
+  EXPECT_EQ(found_.unsure[0], 0);
 }
 
-TEST_F(UnsureSizes, LoseTheLeastSureNameOfAJointFirst) {
+TEST_F(UnsureSizes, LoseTheLeastSureNameFirstAndAlone) {
   const EffectKind surer = found_.accepted[0].term.effect->kind();
   EXPECT_TRUE(leave_out({0.4, 0.3}));
   ASSERT_EQ(found_.accepted.size(), 1U);
   EXPECT_EQ(found_.accepted[0].term.effect->kind(), surer);
   EXPECT_FALSE(found_.suspected);
+  EXPECT_EQ(found_.unsure[0], 1) << "something shows there, all the same";
   EXPECT_EQ(found_.waterfall.size(), 2U) << "judged anew on what is held out";
 }
 
@@ -112,6 +115,8 @@ TEST_F(UnsureSizes, AloneAreStillSuspected) {
   ASSERT_TRUE(found_.suspected);
   EXPECT_EQ(found_.suspected->term.effect->kind(), last);
   EXPECT_GT(found_.suspected->share, 0.3);
+  EXPECT_LE(found_.suspected->share, 1);
+  EXPECT_FALSE(leave_out({})) << "and there is an end";
 }
 
 }  // namespace
