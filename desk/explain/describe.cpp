@@ -11,7 +11,6 @@
 #include "explain/confirm.hpp"
 #include "explain/questions.hpp"
 #include "explain/remainder.hpp"
-#include "identify/estimates.hpp"
 #include "identify/parallel.hpp"
 
 namespace offnominal::desk {

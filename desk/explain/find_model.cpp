@@ -21,6 +21,16 @@ namespace offnominal::desk {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+Fall best_fall(const VectorXd& before, const VectorXd& after) {
+  Fall best;
+  for (Index joint = 0; joint < before.size(); ++joint) {
+    if (!(before[joint] > 0)) continue;
+    const double share = explained_share(before[joint], after[joint]);
+    if (share > best.share) best = {joint, share, before[joint] * std::sqrt(std::max(0.0, share))};
+  }
+  return best;
+}
+
 std::vector<Term> FoundModel::terms() const {
   std::vector<Term> terms;
   for (const Accepted& one : accepted) terms.push_back(one.term);
@@ -37,23 +47,6 @@ namespace {
 
 // Share of the energy of what is held out that has to go.
 constexpr double kRelevantHeldOut = 0.05;
-
-// What goes of an error on the joint where the largest share of its energy goes.
-struct Fall {
-  Index joint = 0;
-  double share = -1;  // of the energy
-  double rms = 0;     // of what goes
-};
-
-Fall best_fall(const VectorXd& before, const VectorXd& after) {
-  Fall best;
-  for (Index joint = 0; joint < before.size(); ++joint) {
-    if (!(before[joint] > 0)) continue;
-    const double share = explained_share(before[joint], after[joint]);
-    if (share > best.share) best = {joint, share, before[joint] * std::sqrt(std::max(0.0, share))};
-  }
-  return best;
-}
 
 // The first so many effects of every joint, as indices into all, in the order of the joints' own.
 using OrderOfJoints = std::vector<std::vector<std::size_t>>;

@@ -21,6 +21,16 @@ struct Accepted {
   std::string stands_for = {};  // what else it is, in words: any_shape.hpp
 };
 
+// What goes of an error on the joint where the largest share of its energy goes.
+struct Fall {
+  Eigen::Index joint = 0;
+  double share = -1;  // of the energy
+  double rms = 0;     // of what goes
+};
+
+// Errors per joint, rms.
+Fall best_fall(const Eigen::VectorXd& before, const Eigen::VectorXd& after);
+
 // The effect that came closest to a name: likely more than chance, and too unsure or too small.
 struct Suspected {
   Term term;

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <string>
 
 #include "explain/band_shift.hpp"
 
 namespace offnominal::desk {
 
-using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
@@ -28,17 +26,6 @@ void widen(Estimate& estimate, double deviation) {
   const double noise = ((*estimate.ci95)[1] - (*estimate.ci95)[0]) / 2;
   const double half = std::hypot(noise, kTwoSided95 * deviation);
   estimate.ci95 = {estimate.value.value - half, estimate.value.value + half};
-}
-
-// Share of the squared error that goes, on the joint where that is most.
-double largest_share(const RowLayout& layout, const ModelFit& before, const ModelFit& after) {
-  const VectorXd was = layout.rms(before.residual);
-  const VectorXd is = layout.rms(after.residual);
-  double most = 0;
-  for (Index joint = 0; joint < was.size(); ++joint) {
-    if (was[joint] > 0) most = std::max(most, explained_share(was[joint], is[joint]));
-  }
-  return most;
 }
 
 }  // namespace
@@ -80,8 +67,10 @@ bool leave_out_unsure(const Sizes& sizes, const Regression& regression, const Ho
   const auto goes = found.accepted.begin() + (least - from_nothing.begin());
   found.unsure[static_cast<std::size_t>(goes->term.joint)] = 1;
   if (found.accepted.size() == 1) {
-    found.suspected = {goes->term, goes->p,
-                       largest_share(regression.data().layout, found.baseline, found.fit)};
+    const RowLayout& layout = regression.data().layout;
+    const Fall fall =
+        best_fall(layout.rms(found.baseline.residual), layout.rms(found.fit.residual));
+    found.suspected = {goes->term, goes->p, std::max(0.0, fall.share)};
   }
   found.accepted.erase(goes);
   order_and_hold_out(regression, hold_out, threads, found);
