@@ -16,6 +16,7 @@
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
+#include "command/write_robot.hpp"
 #include "common/nearest.hpp"
 #include "common/output_file.hpp"
 #include "explain/add_found.hpp"
@@ -139,7 +140,7 @@ void add_named(const AddOptions& options, const std::string& command_line, ExitC
                [&] { return with_faults(page_of(result, request, names), faults); });
   std::vector<std::string> written;
   if (result.may_be_written(options.answer.force)) {
-    write_robot_file(result.robot, options.output, options.answer.existing());
+    write_robot(result.robot, options.files.robot, options.output, options.answer);
     written.push_back(options.output);
   } else {
     exit_code = ExitCode::kCheckFailed;
@@ -178,7 +179,7 @@ void add_all_found(const AddOptions& options, const std::string& command_line,
   write_report(options.answer, [&] { return page_of(added.explanation, names); });
   std::vector<std::string> written;
   if (added.may_be_written(force)) {
-    write_robot_file(added.explanation.improved, options.output, options.answer.existing());
+    write_robot(added.explanation.improved, files.robot, options.output, options.answer);
     written.push_back(options.output);
   } else {
     exit_code = ExitCode::kCheckFailed;
@@ -249,7 +250,9 @@ void set_up_add(CLI::App& verb, ExitCode& exit_code) {
                    "write it even where the error on data not used for the fit does not fall");
   verb.add_option("--set", options->set,
                   "NAME=VALUE or EFFECT.NAME=VALUE: a parameter of the new effects that is given, "
-                  "not fitted; SI units")
+                  "not fitted; SI units. Once for each")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
       ->take_all()
       ->allow_extra_args(false);
   verb.add_flag("--keep-effects", options->keep_effects,

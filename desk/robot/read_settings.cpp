@@ -32,18 +32,19 @@ std::vector<bool> read_over_speed(const TomlTable& table, std::vector<JointBound
                       "one table per joint", "make one table of them");
     }
     given[joint] = true;
-    joints[joint].at = of_joint.numbers("at", not_negative("rad/s or m/s"), 2,
+    joints[joint].at = of_joint.numbers("at", physical(not_negative("rad/s or m/s")), 2,
                                         static_cast<std::size_t>(kMaxJointBoundPoints));
     require_rising(of_joint, joints[joint].at);
-    joints[joint].value = of_joint.numbers("value", positive("N m or N"), joints[joint].at.size(),
-                                           joints[joint].at.size());
+    joints[joint].value = of_joint.numbers("value", physical(positive("N m or N")),
+                                           joints[joint].at.size(), joints[joint].at.size());
   }
   return given;
 }
 
 std::vector<JointBoundSettings> read_joint_bounds(const TomlTable& table, std::size_t count) {
   std::vector<JointBoundSettings> joints(count);
-  const std::vector<double> values = table.numbers("value", not_negative("N m or N"), count, count);
+  const std::vector<double> values =
+      table.numbers("value", physical(not_negative("N m or N")), count, count);
   const std::vector<bool> over_speed = read_over_speed(table, joints);
   for (std::size_t i = 0; i < count; ++i) {
     if (over_speed[i] != (values[i] == 0)) {
@@ -57,7 +58,7 @@ std::vector<JointBoundSettings> read_joint_bounds(const TomlTable& table, std::s
   }
   if (!table.has("momentum_error")) return joints;
   const std::vector<double> errors =
-      table.numbers("momentum_error", not_negative("N m s or N s"), count, count);
+      table.numbers("momentum_error", physical(not_negative("N m s or N s")), count, count);
   for (std::size_t i = 0; i < count; ++i) joints[i].momentum_error = errors[i];
   return joints;
 }
@@ -83,11 +84,26 @@ TableBoundSettings read_table_bound(const TomlTable& table, int joint_count) {
   const std::size_t variable = table.choice("variable", {"position", "speed", "torque"});
   bound.variable = static_cast<BoundVariable>(variable);
   bound.joint = static_cast<int>(table.integer("joint", 1, joint_count)) - 1;
-  bound.at = table.numbers("at", any_number(""), 1, kMaxTablePoints);
+  bound.at = table.numbers("at", physical(any_number("")), 1, kMaxTablePoints);
   require_rising(table, bound.at);
-  bound.value =
-      table.numbers("value", positive("rad/s^2 or m/s^2"), bound.at.size(), bound.at.size());
+  bound.value = table.numbers("value", physical(positive("rad/s^2 or m/s^2")), bound.at.size(),
+                              bound.at.size());
   return bound;
+}
+
+// A kind of the other space is read all the same: what does not go together is said of both keys
+// (robot_file.cpp).
+BoundSettings::Kind read_kind(const TomlTable& table, EstimatorSpace space) {
+  using Kind = BoundSettings::Kind;
+  static const std::vector<std::string> kKinds{"constant", "scaled_norm", "table", "per_joint"};
+  const std::string found = table.text_or_empty("kind");
+  for (std::size_t i = 0; i < kKinds.size(); ++i) {
+    if (found == kKinds[i]) return static_cast<Kind>(i);
+  }
+  const std::vector<std::string> of_accelerations(kKinds.begin(), kKinds.end() - 1);
+  const std::vector<std::string> of_torques(kKinds.end() - 1, kKinds.end());
+  const bool in_torque = space == EstimatorSpace::kTorque;
+  return static_cast<Kind>(table.choice("kind", in_torque ? of_torques : of_accelerations));
 }
 
 }  // namespace
@@ -131,14 +147,16 @@ EstimatorSettings read_estimator(const TomlTable& table) {
   }
   settings.hidden_units =
       static_cast<int>(table.integer("hidden_units", 1, kMaxHiddenUnits, settings.hidden_units));
-  settings.learning_rate = table.number(
-      "learning_rate", not_negative("", "give the rate Gamma; 0 detects without learning"),
-      settings.learning_rate);
-  settings.weight_radius = table.number(
-      "weight_radius", positive("", "give the radius M of the ball that holds the weights"),
-      settings.weight_radius);
+  settings.learning_rate =
+      table.number("learning_rate",
+                   physical(not_negative("", "give the rate Gamma; 0 detects without learning")),
+                   settings.learning_rate);
+  settings.weight_radius =
+      table.number("weight_radius",
+                   physical(positive("", "give the radius M of the ball that holds the weights")),
+                   settings.weight_radius);
   settings.initial_weight_range =
-      table.number("initial_weight_range", positive(""), settings.initial_weight_range);
+      table.number("initial_weight_range", physical(positive("")), settings.initial_weight_range);
   settings.seed = static_cast<std::uint32_t>(table.integer(
       "seed", 0, std::numeric_limits<std::uint32_t>::max(), std::int64_t{settings.seed}));
   if (table.has("dead_zone")) {
@@ -175,35 +193,32 @@ ArmingSettings read_arming(const TomlTable& table, int joint_count) {
   return settings;
 }
 
-BoundSettings read_bound(const TomlTable& table, int joint_count) {
+BoundSettings read_bound(const TomlTable& table, int joint_count, EstimatorSpace space) {
   BoundSettings bound;
   const auto joints = static_cast<std::size_t>(joint_count);
-  switch (table.choice("kind", {"constant", "scaled_norm", "table", "per_joint"})) {
-    case 0:
+  bound.kind = read_kind(table, space);
+  switch (bound.kind) {
+    case BoundSettings::Kind::kConstant:
       refuse_keys_other_than(table, {"value"}, "constant");
-      bound.kind = BoundSettings::Kind::kConstant;
-      bound.constant.value = table.number("value", positive("rad/s^2 or m/s^2"));
+      bound.constant.value = table.number("value", physical(positive("rad/s^2 or m/s^2")));
       break;
-    case 1:
+    case BoundSettings::Kind::kScaledNorm:
       refuse_keys_other_than(table, {"scale", "offset", "matrix"}, "scaled_norm");
-      bound.kind = BoundSettings::Kind::kScaledNorm;
-      bound.scaled_norm.scale = table.number("scale", positive(""));
-      bound.scaled_norm.offset = table.number("offset", not_negative(""));
-      bound.scaled_norm.matrix = table.rows("matrix", any_number(""), 1, joints, joints);
+      bound.scaled_norm.scale = table.number("scale", physical(positive("")));
+      bound.scaled_norm.offset = table.number("offset", physical(not_negative("")));
+      bound.scaled_norm.matrix = table.rows("matrix", physical(any_number("")), 1, joints, joints);
       break;
-    case 3:
-      refuse_keys_other_than(table, {"value", "over_speed", "momentum_error"}, "per_joint");
-      bound.kind = BoundSettings::Kind::kPerJoint;
-      bound.joints = read_joint_bounds(table, joints);
-      break;
-    default:
+    case BoundSettings::Kind::kTable:
       refuse_keys_other_than(table, {"variable", "joint", "at", "value"}, "table");
-      bound.kind = BoundSettings::Kind::kTable;
       bound.table = read_table_bound(table, joint_count);
+      break;
+    case BoundSettings::Kind::kPerJoint:
+      refuse_keys_other_than(table, {"value", "over_speed", "momentum_error"}, "per_joint");
+      bound.joints = read_joint_bounds(table, joints);
       break;
   }
   bound.velocity_error =
-      table.number("velocity_error", not_negative("rad/s or m/s"), bound.velocity_error);
+      table.number("velocity_error", physical(not_negative("rad/s or m/s")), bound.velocity_error);
   bound.source = table.text_or_empty("source");
   return bound;
 }

@@ -20,7 +20,9 @@ namespace offnominal::desk {
 /// [arming] of a robot with `joint_count` joints.
 [[nodiscard]] ArmingSettings read_arming(const TomlTable& table, int joint_count);
 
-/// [uncertainty_bound] of a robot with `joint_count` joints.
-[[nodiscard]] BoundSettings read_bound(const TomlTable& table, int joint_count);
+/// [uncertainty_bound] of a robot with `joint_count` joints. `space` says which kinds are named
+/// where there is none; those of the other space are read all the same.
+[[nodiscard]] BoundSettings read_bound(const TomlTable& table, int joint_count,
+                                       EstimatorSpace space);
 
 }  // namespace offnominal::desk

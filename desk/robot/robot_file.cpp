@@ -175,12 +175,22 @@ std::string with_dbc(const std::string& text, const RobotDescription& robot,
 std::optional<std::string> text_with_changes(const RobotDescription& robot,
                                              const std::string& file) {
   if (robot.file_text == nullptr) return std::nullopt;
-  const std::string old_text = with_dbc(*robot.file_text, robot, file);
+  const std::string old_text = with_dbc(without_returns(*robot.file_text), robot, file);
   RobotDescription effects_only = robot;
   effects_only.bound = parse_robot(old_text, file).bound;
   auto text = text_with_effects(old_text, effects_only, file);
   if (!text || !robot.bound) return robot.bound ? std::nullopt : text;
   return text_with_bound(*text, robot, file);
+}
+
+// With its line, where the robot comes from a text.
+std::string place_of_space(const RobotDescription& robot) {
+  const std::string key = "estimator.space";
+  if (robot.file_text == nullptr) return key;
+  const toml::table document = parse_toml(*robot.file_text, "");
+  const toml::node* const node = document.at_path(key).node();
+  if (node == nullptr || node->source().begin.line == 0) return key;
+  return fmt::format("line {}, {}", node->source().begin.line, key);
 }
 
 }  // namespace
@@ -214,7 +224,7 @@ void require_bound(const RobotDescription& robot, const std::string& file) {
 void require_controller_bound(const RobotDescription& robot, const std::string& file) {
   if (robot.estimator.space == EstimatorSpace::kTorque) {
     throw InputError({.file = file,
-                      .place = "estimator.space",
+                      .place = place_of_space(robot),
                       .found = "\"torque\"",
                       .allowed = "\"acceleration\" where the joint controller runs or its header "
                                  "is written",
@@ -253,7 +263,7 @@ RobotDescription parse_robot(std::string_view text, const std::string& file, Bla
   check_initial_weights(root, robot);
   check_delays(root, robot);
   if (const auto table = root.optional_table("uncertainty_bound", bound_keys())) {
-    robot.bound = read_bound(*table, robot.joint_count());
+    robot.bound = read_bound(*table, robot.joint_count(), robot.estimator.space);
   }
   check_space(root, robot);
   if (const toml::table* table = root.raw_table("drives")) {
@@ -272,8 +282,8 @@ RobotDescription read_robot_file(const std::filesystem::path& path, Blanks blank
   return parse_robot(read_text_file(path), path.string(), blanks);
 }
 
-void write_robot_file(const RobotDescription& robot, const std::filesystem::path& path,
-                      Existing existing) {
+KeptComments write_robot_file(const RobotDescription& robot, const std::filesystem::path& path,
+                              Existing existing) {
   if (!robot.blanks.empty()) {
     throw InputError({path.string(), fmt::format("joint {}", robot.blanks[0].joint + 1),
                       "a blank for link." + robot.blanks[0].key, "a number",
@@ -282,7 +292,11 @@ void write_robot_file(const RobotDescription& robot, const std::filesystem::path
   const std::string plain = robot_text(robot);
   static_cast<void>(parse_robot(plain, path.string() + " (to be written)"));
   const auto as_it_was = text_with_changes(robot, path.string());
-  write_file_atomically(path, as_it_was.value_or(plain), existing);
+  std::string text = as_it_was.value_or(plain);
+  const bool is_cut = as_it_was.has_value() || robot.file_text == nullptr;
+  if (robot.file_text != nullptr && has_returns(*robot.file_text)) text = with_returns(text);
+  write_file_atomically(path, text, existing);
+  return is_cut || !has_comments(*robot.file_text) ? KeptComments::kAll : KeptComments::kNone;
 }
 
 }  // namespace offnominal::desk

@@ -47,13 +47,16 @@ void require_controller_bound(const RobotDescription& robot, const std::string& 
 /// parse_robot(robot_text(robot)) == robot, for every robot that can be read.
 [[nodiscard]] std::string robot_text(const RobotDescription& robot);
 
-/// Writes a robot file, whole or not at all. Where only effects and the uncertainty
-/// bound were changed since `robot` was
-/// read, every other line stays as it was, comments and order included; otherwise robot_text() is
-/// written. Throws InputError, nothing written, when the text would not be read again (a robot that
-/// was changed into a wrong one, or has blanks), when `path` exists and `existing` refuses that, or
-/// when it cannot be written.
-void write_robot_file(const RobotDescription& robot, const std::filesystem::path& path,
-                      Existing existing = Existing::kRefuse);
+/// Whether the comments of the file that a robot was read from are in what was written.
+enum class KeptComments { kAll, kNone };
+
+/// Writes a robot file, whole or not at all. Where only effects and the uncertainty bound were
+/// changed since `robot` was read, every other line stays as it was, comments and order included;
+/// otherwise, or where they stand in a way that cannot be cut by lines, robot_text() is written.
+/// Lines end as the first of that file does. Throws InputError, nothing written, when the text
+/// would not be read again (a robot that was changed into a wrong one, or has blanks), when `path`
+/// exists and `existing` refuses that, or when it cannot be written.
+KeptComments write_robot_file(const RobotDescription& robot, const std::filesystem::path& path,
+                              Existing existing = Existing::kRefuse);
 
 }  // namespace offnominal::desk

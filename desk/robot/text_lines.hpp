@@ -18,6 +18,27 @@ using Lines = std::vector<std::string>;
   return lines;
 }
 
+// Whether lines end as on Windows, by the first of them.
+[[nodiscard]] inline bool has_returns(const std::string& text) {
+  const auto end = text.find('\n');
+  return end != std::string::npos && end > 0 && text[end - 1] == '\r';
+}
+[[nodiscard]] inline std::string without_returns(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\r' || i + 1 == text.size() || text[i + 1] != '\n') result += text[i];
+  }
+  return result;
+}
+[[nodiscard]] inline std::string with_returns(const std::string& text) {
+  std::string result;
+  for (const char c : without_returns(text)) {
+    if (c == '\n') result += '\r';
+    result += c;
+  }
+  return result;
+}
+
 [[nodiscard]] inline std::string_view trimmed(const std::string& line) {
   const auto first = line.find_first_not_of(" \t\r");
   if (first == std::string::npos) return {};
@@ -29,6 +50,14 @@ using Lines = std::vector<std::string>;
 }
 [[nodiscard]] inline bool is_comment(const std::string& line) {
   return trimmed(line).starts_with('#');
+}
+
+// A line of its own, or behind a value; a string that holds such a sign is taken for one too.
+[[nodiscard]] inline bool has_comments(const std::string& text) {
+  for (const std::string& line : lines_of(text)) {
+    if (is_comment(line) || line.find(" #") != std::string::npos) return true;
+  }
+  return false;
 }
 
 // Behind the last key of the table whose header stands at `begin`. Comments and blank lines above

@@ -2,7 +2,10 @@
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <vector>
 
 #include "common/error.hpp"
 #include "robot/bound_text.hpp"
@@ -12,16 +15,17 @@
 namespace offnominal::desk {
 namespace {
 
-// Line of the bound's header, from 0; lines.size() where there is no bound, none where there is one
-// that is not a table of its own.
-std::optional<std::size_t> header_of_bound(const std::string& text, const Lines& lines) {
-  const toml::table document = toml::parse(text);
-  const toml::table* table = document["uncertainty_bound"].as_table();
-  if (table == nullptr) return lines.size();
-  const std::size_t line = table->source().begin.line;
-  if (line < 1 || line > lines.size()) return std::nullopt;
-  if (!trimmed(lines[line - 1]).starts_with("[uncertainty_bound]")) return std::nullopt;
-  return line - 1;
+// Lines from `begin` to before `end`, from 0.
+struct LineRange {
+  std::size_t begin;
+  std::size_t end;
+};
+
+// A header may have blanks within its brackets.
+std::string header_of(const std::string& line) {
+  std::string header(trimmed(line));
+  header.erase(std::remove(header.begin(), header.end(), ' '), header.end());
+  return header;
 }
 
 // Behind the bound and the tables that belong to it, [[uncertainty_bound.over_speed]].
@@ -29,21 +33,67 @@ std::size_t end_of_bound(const Lines& lines, std::size_t header) {
   std::size_t end = end_of_block(lines, header);
   for (std::size_t next = end; next < lines.size(); ++next) {
     if (!is_header(lines[next])) continue;
-    if (!trimmed(lines[next]).starts_with("[[uncertainty_bound.")) break;
+    if (!header_of(lines[next]).starts_with("[[uncertainty_bound.")) break;
     end = end_of_block(lines, next);
     next = end - 1;
   }
   return end;
 }
 
-std::string with_block(const Lines& lines, std::size_t header, const std::string& block) {
+// Of a key and its value, which may go over several lines; none where the line has more before it.
+std::optional<LineRange> lines_of_key(const toml::node& value, const Lines& lines) {
+  const toml::source_region& source = value.source();
+  const std::size_t begin = source.begin.line;
+  const std::size_t end = std::max<std::size_t>(begin, source.end.line);
+  if (begin < 1 || end > lines.size()) return std::nullopt;
+  if (!trimmed(lines[begin - 1]).starts_with("uncertainty_bound")) return std::nullopt;
+  return LineRange{begin - 1, end};
+}
+
+// Where the old bound stands: under a header, with what belongs to it, or as {...} or dotted keys
+// above all headers; no range where there is none.
+struct OldBound {
+  std::vector<LineRange> ranges;
+  bool under_header = false;
+};
+
+// Nothing where it stands otherwise.
+std::optional<OldBound> old_bound_of(const std::string& text, const Lines& lines) {
+  const toml::table document = toml::parse(text);
+  const toml::table* table = document["uncertainty_bound"].as_table();
+  OldBound old;
+  if (table == nullptr) return old;
+  const std::size_t line = table->source().begin.line;
+  if (line >= 1 && line <= lines.size() &&
+      header_of(lines[line - 1]).starts_with("[uncertainty_bound]")) {
+    std::size_t begin = line - 1;
+    while (begin > 0 && is_comment(lines[begin - 1])) --begin;
+    return OldBound{{{begin, end_of_bound(lines, line - 1)}}, true};
+  }
+  const auto add = [&](const toml::node& value) {
+    const auto range = lines_of_key(value, lines);
+    if (range) old.ranges.push_back(*range);
+    return range.has_value();
+  };
+  if (table->is_inline()) return add(*table) ? std::optional(old) : std::nullopt;
+  for (const auto& [key, value] : *table) {
+    if (!add(value)) return std::nullopt;
+  }
+  std::sort(old.ranges.begin(), old.ranges.end(),
+            [](const LineRange& a, const LineRange& b) { return a.begin < b.begin; });
+  return old;
+}
+
+// Above all headers a table would take the keys that follow it.
+std::string with_block(const Lines& lines, const OldBound& old, const std::string& block) {
   LineComposer out(lines);
-  std::size_t begin = header;
-  while (begin > 0 && header < lines.size() && is_comment(lines[begin - 1])) --begin;
-  out.copy_until(begin);
-  out.insert(block);
-  if (header < lines.size()) out.skip_to(end_of_bound(lines, header));
+  for (const LineRange& range : old.ranges) {
+    out.copy_until(range.begin);
+    if (old.under_header) out.insert(block);
+    out.skip_to(range.end);
+  }
   out.copy_until(lines.size());
+  if (!old.under_header) out.insert(block);
   return out.text();
 }
 
@@ -59,9 +109,9 @@ std::optional<std::string> text_with_bound(const std::string& old_text,
       return robot_text(old) == robot_text(robot) ? std::optional(old_text) : std::nullopt;
     }
     const Lines lines = lines_of(old_text);
-    const auto header = header_of_bound(old_text, lines);
-    if (!header) return std::nullopt;
-    std::string text = with_block(lines, *header, block);
+    const auto old_bound = old_bound_of(old_text, lines);
+    if (!old_bound) return std::nullopt;
+    std::string text = with_block(lines, *old_bound, block);
     // Catches everything at once: other changes than the bound, cuts in the wrong place.
     if (robot_text(parse_robot(text, file)) != robot_text(robot)) return std::nullopt;
     return text;

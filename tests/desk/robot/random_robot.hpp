@@ -48,9 +48,10 @@ class RandomRobot {
   int whole(int min, int max) { return std::uniform_int_distribution<int>(min, max)(generator_); }
   double uniform() { return std::uniform_real_distribution<double>(-1, 1)(generator_); }
 
-  // Powers of 2 up to which a robot file takes lengths, gravity and parameters, and masses.
+  // Powers of 2 up to which a robot file takes lengths, gravity and parameters, masses, and bounds.
   static constexpr int kLargestLength = 15;
   static constexpr int kLargestMass = 22;
+  static constexpr int kLargestOfBound = 38;
 
   // Of any size, whole numbers and both zeros among them.
   double number(int largest = 60) {
@@ -253,13 +254,13 @@ class RandomRobot {
       result.scaled_norm.offset = coin() ? positive() : 0.0;
       for (int row = whole(1, joints); row > 0; --row) {
         auto& numbers = result.scaled_norm.matrix.emplace_back();
-        for (int i = 0; i < joints; ++i) numbers.push_back(number());
+        for (int i = 0; i < joints; ++i) numbers.push_back(number(kLargestOfBound));
       }
     }
     if (result.kind == desk::BoundSettings::Kind::kTable) {
       result.table.variable = static_cast<BoundVariable>(whole(0, 2));
       result.table.joint = whole(0, joints - 1);
-      double at = number();
+      double at = number(kLargestOfBound);
       for (int i = whole(1, 16); i > 0; --i) {
         result.table.at.push_back(at);
         result.table.value.push_back(positive());

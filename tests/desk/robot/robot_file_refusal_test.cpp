@@ -236,7 +236,7 @@ const std::vector<Mistake> kMistakes{
      "at most 0.95 per joint", "make one effect of them"},
     // Bound.
     {"UnknownBound", "\"table\"", "\"tables\"", "tables", "uncertainty_bound.kind",
-     "the string \"tables\"", "constant, scaled_norm, table, per_joint", "write \"table\""},
+     "the string \"tables\"", "constant, scaled_norm, table;", "write \"table\""},
     {"BoundNotPositive", "value = [1.0, 2.5]", "value = [1.0, 0.0]", "value = [",
      "uncertainty_bound.value[2]", "0", "a finite number > 0", "write a number"},
     {"NegativeVelocityError", "value = [1.0, 2.5]", "value = [1.0, 2.5]\nvelocity_error = -0.1",

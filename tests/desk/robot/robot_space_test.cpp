@@ -14,7 +14,9 @@ namespace offnominal::desk {
 namespace {
 
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string space_refusal(const std::string& text) {
   try {
@@ -76,6 +78,52 @@ TEST(RobotFile, RefusesBoundsPerJointThatAreNotOnePerJoint) {
       HasSubstr("a whole number from 1 to 2"));
 }
 
+TEST(RobotFile, NamesTheKindsOfItsSpaceWhereABoundHasNone) {
+  EXPECT_THAT(space_refusal(in_torque_space("[uncertainty_bound]\nvalue = [1.0, 2.0]\n")),
+              AllOf(ContainsRegex("line [0-9]+, uncertainty_bound.kind: found nothing"),
+                    HasSubstr("allowed: per_joint;")));
+  EXPECT_THAT(space_refusal(in_torque_space("[uncertainty_bound]\nkind = \"per_jiont\"\n")),
+              AllOf(HasSubstr("allowed: per_joint;"), HasSubstr("write \"per_joint\"")));
+  const std::string sample = test::kSampleRobot;
+  const auto kind = sample.find("kind = ", sample.find("[uncertainty_bound]"));
+  const std::string without = sample.substr(0, kind) + sample.substr(sample.find('\n', kind) + 1);
+  EXPECT_THAT(space_refusal(without), AllOf(HasSubstr("allowed: constant, scaled_norm, table;"),
+                                            Not(HasSubstr("per_joint"))));
+}
+
+// With such a number every sample overflows, and the recording would be blamed.
+TEST(RobotFile, RefusesBoundsThatNoRobotHas) {
+  for (const char* keys :
+       {"value = [1.0, 1e200]", "value = [1.0, 2.0]\nmomentum_error = [0.0, 1e200]",
+        "value = [1.0, 0.0]\nover_speed = [{joint = 2, at = [0.0, 1e200], value = [1.0, 2.0]}]",
+        "value = [1.0, 0.0]\nover_speed = [{joint = 2, at = [0.0, 1.0], value = [1.0, 1e200]}]"}) {
+    EXPECT_THAT(space_refusal(in_torque_space("[uncertainty_bound]\nkind = \"per_joint\"\n" +
+                                              std::string(keys) + "\n")),
+                AllOf(ContainsRegex("r.toml: line [0-9]+, uncertainty_bound.*: found 1e.200"),
+                      HasSubstr(": no robot has more; to mend: look at its unit")))
+        << keys;
+  }
+  const std::string sample = test::kSampleRobot;
+  const std::string head = sample.substr(0, sample.find("[uncertainty_bound]"));
+  for (const char* keys :
+       {"kind = \"constant\"\nvalue = 1e200",
+        "kind = \"constant\"\nvalue = 1\nvelocity_error = 1e200",
+        "kind = \"scaled_norm\"\nscale = 1e200\noffset = 1\nmatrix = [[1, 1]]",
+        "kind = \"scaled_norm\"\nscale = 1\noffset = 1e200\nmatrix = [[1, 1]]",
+        "kind = \"scaled_norm\"\nscale = 1\noffset = 1\nmatrix = [[1, -1e200]]",
+        "kind = \"table\"\nvariable = \"speed\"\njoint = 1\nat = [0, 1]\nvalue = [1, 1e200]"}) {
+    EXPECT_THAT(space_refusal(head + "[uncertainty_bound]\n" + keys + "\n"),
+                HasSubstr("no robot has more"))
+        << keys;
+  }
+  for (const char* line :
+       {"learning_rate = 0.5", "weight_radius = 3.0", "initial_weight_range = 0.2"}) {
+    const std::string key = std::string(line).substr(0, std::string(line).find(' '));
+    EXPECT_THAT(space_refusal(test::changed(sample, line, key + " = 1e200")),
+                AllOf(HasSubstr("estimator." + key), HasSubstr("no robot has more")));
+  }
+}
+
 TEST(RobotFile, InTorqueSpaceIsRefusedWhereTheJointControllerRuns) {
   const RobotDescription robot = parse_robot(
       in_torque_space("[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.0, 2.0]\n"),
@@ -85,8 +133,16 @@ TEST(RobotFile, InTorqueSpaceIsRefusedWhereTheJointControllerRuns) {
     require_controller_bound(robot, "arm.toml");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("arm.toml: estimator.space: found \"torque\""),
+    EXPECT_THAT(error.what(), AllOf(ContainsRegex("arm.toml: line [0-9]+, estimator.space: found"),
                                     HasSubstr("`offnominal replay` and `offnominal calibrate`")));
+  }
+  RobotDescription made = robot;
+  made.file_text = nullptr;
+  try {
+    require_controller_bound(made, "arm.toml");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("arm.toml: estimator.space: found \"torque\""));
   }
   EXPECT_NO_THROW(
       require_controller_bound(parse_robot(test::kSampleRobot, "arm.toml"), "arm.toml"));

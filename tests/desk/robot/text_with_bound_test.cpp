@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,20 @@ TEST(TextWithBound, TheTablesOfTheOldBoundGoWithItWhereTheyHaveHeaders) {
   EXPECT_TRUE(text_with_bound(head + kTail + bound + over_speed("[1.0, 2.0]"), robot));
 }
 
+// Above all headers there is no place for a table: the new bound goes to the end, and what stands
+// above the old one may speak of the whole file.
+TEST(TextWithBound, ABoundInOneLineGoesAndEveryOtherLineStays) {
+  const std::string rest = kHead.substr(kHead.find('\n') + 1) + kTail;
+  for (const std::string bound :
+       {"uncertainty_bound = {kind = \"constant\", value = 4.4} # by hand\n",
+        "uncertainty_bound.kind = \"table\"\nuncertainty_bound.variable = \"speed\"\n"
+        "uncertainty_bound.joint = 1\nuncertainty_bound.at = [\n  0.0, # slow\n  1.0\n]\n"
+        "uncertainty_bound.value = [1.0, 2.0]\n"}) {
+    const std::string text = "# kept\n" + bound + rest;
+    EXPECT_EQ(text_with_bound(text, with_new_bound(text)), "# kept\n" + rest + kNewBound);
+  }
+}
+
 TEST(TextWithBound, AFirstBoundFollowsTheLastLine) {
   const std::string text = kHead + kTail;
   EXPECT_EQ(text_with_bound(text, with_new_bound(text)), text + kNewBound);
@@ -77,6 +92,49 @@ TEST(TextWithBound, RefusesOtherChangesAndTextsThatItCannotCut) {
   robot.bound.reset();
   EXPECT_FALSE(text_with_bound(text, robot));
   EXPECT_FALSE(text_with_bound("format = 1", with_new_bound(text)));
+}
+
+std::string with_returns_of(const std::string& text) {
+  std::string result;
+  for (const char c : text) result += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  return result;
+}
+
+TEST(TextWithBound, WritingEndsEveryLineAsTheFileDoes) {
+  const test::TemporaryFolder folder;
+  const std::string text = kHead + kOldBound + kTail;
+  for (const std::string& old_text : {with_returns_of(text), with_returns_of(kHead) + kTail}) {
+    RobotDescription robot = with_new_bound(old_text);
+    EXPECT_EQ(write_robot_file(robot, folder / "new.toml", Existing::kReplace), KeptComments::kAll);
+    const std::string written = test::content_of(folder / "new.toml");
+    EXPECT_NE(written.find("# kept\r\n"), std::string::npos);
+    EXPECT_NE(written.find("value = 0.5\r\n"), std::string::npos);
+    EXPECT_EQ(std::count(written.begin(), written.end(), '\n'),
+              std::count(written.begin(), written.end(), '\r'));
+    // An effect that is new as well, and what cannot be cut.
+    RobotEffect effect;
+    effect.kind = EffectKind::kViscousFriction;
+    effect.parameters[0] = 3;
+    robot.effects.push_back(effect);
+    robot.name = "other";
+    EXPECT_EQ(write_robot_file(robot, folder / "new.toml", Existing::kReplace),
+              KeptComments::kNone);
+    const std::string anew = test::content_of(folder / "new.toml");
+    EXPECT_EQ(std::count(anew.begin(), anew.end(), '\n'),
+              std::count(anew.begin(), anew.end(), '\r'));
+  }
+}
+
+TEST(TextWithBound, WritingSaysWhereCommentsAreLost) {
+  const test::TemporaryFolder folder;
+  const auto written = [&](const std::string& text) {
+    return write_robot_file(with_new_bound(text), folder / "new.toml", Existing::kReplace);
+  };
+  const std::string quoted = "\n[\"uncertainty_bound\"]\nkind = \"constant\"\nvalue = 4.4\n";
+  EXPECT_EQ(written(kHead + quoted), KeptComments::kNone);
+  EXPECT_EQ(written(kHead + kOldBound), KeptComments::kAll);
+  const std::string bare = "format = 1\nname = \"r\"\n" + kHead.substr(kHead.find("gravity"));
+  EXPECT_EQ(written(bare + quoted), KeptComments::kAll) << "there are none";
 }
 
 TEST(TextWithBound, WritingKeepsTheRestOfTheFileEvenWhereEffectsChangedToo) {
