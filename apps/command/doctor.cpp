@@ -30,8 +30,10 @@ void add_keep_option(CLI::App& verb, std::vector<KeepFault>& keep) {
             keep.clear();
             for (const std::string& text : texts) keep.push_back(keep_fault_of(text));
           },
-          "JOINT:REASON, or all:REASON, such as 2:saturation: what the doctor finds there is no "
-          "fault, and nothing is left out or refused for it")
+          "2:saturation, all:gaps and the like: what the doctor finds there is no fault, and "
+          "nothing is left out or refused for it. Once for each")
+      ->type_name("JOINT:REASON")
+      ->expected(1)
       ->take_all()
       ->allow_extra_args(false);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command/recordings.hpp"
+#include "common/numeric_options.hpp"
 #include "compare/filter_plan.hpp"
 #include "log/read_log.hpp"
 
@@ -36,10 +37,10 @@ inline void add_channels_option(CLI::App& verb, ChannelOptions& channels,
           [&verb, &channels](const std::vector<std::string>& texts) {
             channels.payloads = payloads_of(verb.get_name(), texts);
           },
-          "LOG=KG@X,Y,Z: what the robot carried in a recording, a point mass in kg at that place "
-          "in "
-          "the last link's frame, m")
-      ->type_name("TEXT")
+          "What the robot carried in a recording, a point mass in kg at that place in the last "
+          "link's frame, m. Once for each recording")
+      ->type_name("LOG=KG@X,Y,Z")
+      ->expected(1)
       ->take_all()
       ->allow_extra_args(false);
   verb.add_option(
@@ -47,7 +48,7 @@ inline void add_channels_option(CLI::App& verb, ChannelOptions& channels,
       "TOML file that maps the " + whose + " columns, instead of the robot file's [channels]");
   verb.add_option("--period", channels.period_s,
                   "Time between two samples, s, instead of a column of time")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
 }
 
 /// --threads, by default as many as the machine has.

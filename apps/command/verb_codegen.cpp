@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,6 +10,7 @@
 #include "codegen/model_header.hpp"
 #include "command/answer.hpp"
 #include "command/verbs.hpp"
+#include "common/amount.hpp"
 #include "common/file.hpp"
 #include "common/output_file.hpp"
 #include "robot/robot_file.hpp"
@@ -49,8 +51,11 @@ void run(const CodegenOptions& options) {
             ? ""
             : fmt::format("note: for double only; rounded to float the core refuses it ({})\n",
                           name_of(header.in_float));
-    return note + fmt::format("{}: {} joints, {} effects, {} hidden units\n", robot.name,
-                              header.joints, header.effects, header.hidden_units);
+    return note +
+           fmt::format("{}: {}, {}, {}\n", robot.name,
+                       counted(static_cast<std::size_t>(header.joints), "joint"),
+                       counted(static_cast<std::size_t>(header.effects), "effect"),
+                       counted(static_cast<std::size_t>(header.hidden_units), "hidden unit"));
   };
   print_answer(options.answer, [&] { return to_json(options, robot, header); }, text,
                {options.output});

@@ -7,6 +7,7 @@
 #include "command/command_line.hpp"
 #include "command/progress.hpp"
 #include "command/verbs.hpp"
+#include "common/numeric_options.hpp"
 #include "log/log_format.hpp"
 #include "look/look.hpp"
 #include "look/look_report.hpp"
@@ -43,7 +44,7 @@ void set_up_look(CLI::App& verb, ExitCode& /*exit_code*/) {
                   "Robot file, for the number of joints and their limits");
   verb.add_option("--period", options->period_s,
                   "Time between two samples, s, where no column has it")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   add_page_options(verb, options->answer);
   add_json_option(verb, options->answer);
   verb.footer(

@@ -17,6 +17,7 @@
 
 #include "common/error.hpp"
 #include "common/json_text.hpp"
+#include "common/numeric_options.hpp"
 #include "common/output_file.hpp"
 #include "common/program.hpp"
 #include "controller/outcome.hpp"
@@ -78,7 +79,7 @@ void add_options(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--duration", options.duration_s,
                  "End after so many seconds; with --arm they count from arming")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   app.add_flag("--arm", options.arm,
                "Arm once, as soon as every joint is heard; end where that is refused");
   app.add_option("--motion", options.motion,
@@ -98,7 +99,7 @@ void add_options(CLI::App& app, Options& options) {
       ->excludes(fd);
   app.add_option("--observe-velocity", options.max_acceleration,
                  "Drives send positions alone; no joint accelerates faster, rad/s^2 or m/s^2")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   app.add_option("--encoder-bits", options.encoder_bits_per_turn,
                  "Of the encoders, with --observe-velocity")
       ->check(CLI::Range(1, 32));

@@ -14,6 +14,7 @@
 
 #include "common/error.hpp"
 #include "common/json_text.hpp"
+#include "common/numeric_options.hpp"
 #include "common/output_file.hpp"
 #include "common/program.hpp"
 #include "drives/drive_settings.hpp"
@@ -73,7 +74,7 @@ void add_options(CLI::App& app, Options& options) {
       ->check(CLI::Range(0.0, 0.999))
       ->capture_default_str();
   app.add_option("--duration", options.duration_s, "End after so many seconds")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   auto* fd = app.add_flag("--fd", options.fd, "CAN FD: one frame for up to 8 joints");
   app.add_flag("--classic", options.classic,
                "Classic CAN; without either what fits into a tick, classic CAN first")
