@@ -16,6 +16,7 @@
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
 #include "command/verbs.hpp"
+#include "common/amount.hpp"
 #include "common/error.hpp"
 #include "common/text_table.hpp"
 #include "log/log_format.hpp"
@@ -26,7 +27,7 @@
 namespace offnominal::desk {
 namespace {
 
-constexpr std::size_t kPrintedAlarms = 10;
+constexpr std::size_t kPrinted = 10;  // alarms, blind stretches
 
 struct ReplayOptions {
   std::string log;
@@ -35,6 +36,16 @@ struct ReplayOptions {
   bool check = false;
   AnswerOptions answer;
 };
+
+// The first of them, a row each, the name beside the first.
+template <typename One, typename Words, typename Row>
+void list(const std::vector<One>& all, const std::string& name, const Words& words,
+          const Row& row) {
+  for (std::size_t i = 0; i < all.size() && i < kPrinted; ++i) {
+    row(i == 0 ? name : "", words(all[i]));
+  }
+  if (all.size() > kPrinted) row("", fmt::format("and {} more (--json)", all.size() - kPrinted));
+}
 
 std::string text_of(const Replay& replay) {
   const TextTable table({{"", -28}, {"", 0}}, "  ");
@@ -60,22 +71,30 @@ std::string text_of(const Replay& replay) {
     row("largest |e|", fmt::format("{:.4g} {}", replay.error_norm.maxCoeff(), replay.unit));
     row("largest threshold mu", fmt::format("{:.4g} {}", replay.threshold.maxCoeff(), replay.unit));
   }
-  row("largest |e| / mu", fmt::format("{:.4g}", replay.max_error_to_threshold));
+  row(ratio_name(replay), fmt::format("{:.4g}", replay.max_error_to_threshold));
   for (Eigen::Index joint = 0; joint < replay.psi_hat.cols(); ++joint) {
     const auto index = static_cast<std::size_t>(joint);
     row("largest |psi_hat|, " + replay.joint_names[index],
         fmt::format("{:.4g} {}", replay.psi_hat.col(joint).cwiseAbs().maxCoeff(),
                     replay.psi_hat_units[index]));
   }
-  for (std::size_t i = 0; i < replay.alarms.size() && i < kPrintedAlarms; ++i) {
-    const Alarm& alarm = replay.alarms[i];
-    row(i == 0 ? "alarms" : "",
-        fmt::format("{:.3f} to {:.3f} s, |e| up to {:.3g} mu", alarm.start_s, alarm.end_s,
-                    alarm.max_error_to_threshold));
-  }
-  if (replay.alarms.size() > kPrintedAlarms) {
-    row("", fmt::format("and {} more (--json)", replay.alarms.size() - kPrintedAlarms));
-  }
+  list(
+      replay.alarms, "alarms",
+      [&](const Alarm& alarm) {
+        const std::string joints = joints_of(replay, alarm);
+        return fmt::format("{:.3f} to {:.3f} s, {} of {:.3g}{}", alarm.start_s, alarm.end_s,
+                           ratio_name(replay), alarm.max_error_to_threshold,
+                           joints.empty() ? "" : ", " + joints);
+      },
+      row);
+  list(
+      replay.blind, "blind",
+      [](const BlindStretch& one) {
+        return fmt::format("{:.3f} to {:.3f} s, {} refused", one.start_s, one.end_s,
+                           counted(static_cast<std::size_t>(one.samples), "sample"));
+      },
+      row);
+  if (replay.blind.size() > 1) row("blind in all", fmt::format("{:.3f} s", replay.blind_s()));
   return text + words_of(replay) + "\n";
 }
 
@@ -126,7 +145,8 @@ void set_up_replay(CLI::App& verb, ExitCode& exit_code) {
   verb.footer(
       "The tick is the recording's sampling period. The recording's torque has to be the torque "
       "that was really applied, not the commanded one. Samples that the monitor refuses are not "
-      "judged: more than two in a row, or one in a hundred, and the verdict is \"Blind\".");
+      "judged: more than two in a row, or one in a hundred, and the verdict is \"Blind\". Behind "
+      "one or two in a row the monitor goes on, behind more it begins afresh.");
   verb.callback([&verb, options, &exit_code] { run(*options, command_line_of(verb), exit_code); });
 }
 

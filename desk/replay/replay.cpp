@@ -8,7 +8,9 @@
 #include <offnominal/model/quantity.hpp>
 #include <utility>
 
+#include "common/amount.hpp"
 #include "common/error.hpp"
+#include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "log/seen_by_sensor.hpp"
 #include "replay/replay_monitor.hpp"
@@ -23,7 +25,7 @@ void check_settings(const RobotDescription& robot, const Log& log) {
     throw InputError(
         {.file = log.file,
          .place = "columns",
-         .found = std::to_string(log.q.cols()) + " joints",
+         .found = counted(static_cast<std::size_t>(log.q.cols()), "joint"),
          .allowed = std::to_string(robot.joint_count()) + ", as robot " + robot.name + " has",
          .mend = "give the recording's own robot file"});
   }
@@ -96,9 +98,14 @@ Replay replay(const RobotDescription& robot, const Log& log) {
 }
 
 bool Replay::is_blind() const {
-  constexpr std::int64_t kBorneInARow = 2;
   constexpr std::int64_t kBorneOneIn = 100;
   return longest_refused > kBorneInARow || (samples() - judged()) * kBorneOneIn > samples();
+}
+
+double Replay::blind_s() const {
+  return std::accumulate(blind.begin(), blind.end(), 0.0, [](double sum, const BlindStretch& one) {
+    return sum + one.end_s - one.start_s;
+  });
 }
 
 namespace {
@@ -119,11 +126,25 @@ std::string joints_words(const Replay& replay) {
       first + 1, replay.joint_names[first], at_s, replay.joints[first].max_residual,
       replay.joints[first].unit);
   for (std::size_t k = 0; k < later.size(); ++k) {
-    words += fmt::format("{} joint {} ({}) {:.3f} s after it", k == 0 ? "; then" : ",",
-                         later[k].second + 1, replay.joint_names[later[k].second],
-                         later[k].first - at_s);
+    const auto& [time_s, joint] = later[k];
+    words += fmt::format("{} joint {} ({}) ", k == 0 ? "; then" : ",", joint + 1,
+                         replay.joint_names[joint]);
+    words += time_s > at_s ? fmt::format("{:.3f} s after it", time_s - at_s)
+                           : std::string("in the same tick");
   }
   return words + ".";
+}
+
+// Nobody saw what was there: neither "nominal" nor "off nominal" speaks of it.
+std::string blind_words(const Replay& replay) {
+  const BlindStretch& first = replay.blind.front();
+  const bool one = replay.blind.size() == 1;
+  return fmt::format(
+      " Blind for {:.3f} s{}, {}from {:.3f} to {:.3f} s: what happened there nobody saw, and the "
+      "monitor began afresh behind {}.",
+      replay.blind_s(),
+      one ? "" : " in all, in " + counted(replay.blind.size(), "stretch", "stretches"),
+      one ? "" : "the first ", first.start_s, first.end_s, one ? "it" : "each");
 }
 
 }  // namespace
@@ -133,9 +154,9 @@ std::string words_of(const Replay& replay) {
   if (replay.first_joint) {
     words = joints_words(replay);
   } else if (replay.detection_time_s) {
-    words = fmt::format(
-        "Off nominal: the residual crosses its threshold at {:.3f} s, in {} stretch{}.",
-        *replay.detection_time_s, replay.alarms.size(), replay.alarms.size() == 1 ? "" : "es");
+    words = fmt::format("Off nominal: the residual crosses its threshold at {:.3f} s, in {}.",
+                        *replay.detection_time_s,
+                        counted(replay.alarms.size(), "stretch", "stretches"));
   } else if (replay.is_blind()) {
     words = fmt::format(
         "Blind: {} of {} samples were judged, at most {} in a row were not; in those that were the "
@@ -146,11 +167,24 @@ std::string words_of(const Replay& replay) {
     words = fmt::format("Nominal: the residual stays below its threshold, at most {:.1f} % of it.",
                         100 * replay.max_error_to_threshold);
   }
+  if (!replay.blind.empty()) words += blind_words(replay);
   for (const auto& [status, refusals] : replay.refused) {
-    words += fmt::format(" {} sample{} refused ({}, first at {:.3f} s).", refusals.count,
-                         refusals.count == 1 ? "" : "s", status, refusals.first_s);
+    words += fmt::format(" {} refused ({}, first at {:.3f} s).",
+                         counted(static_cast<std::size_t>(refusals.count), "sample"), status,
+                         refusals.first_s);
   }
   return words;
+}
+
+std::string ratio_name(const Replay& replay) {
+  return replay.joints.empty() ? "largest |e| / mu" : "largest residual / threshold";
+}
+
+std::string joints_of(const Replay& replay, const Alarm& alarm) {
+  return list_of(alarm.joints, [&](int joint) {
+    return fmt::format("joint {} ({})", joint + 1,
+                       replay.joint_names[static_cast<std::size_t>(joint)]);
+  });
 }
 
 }  // namespace offnominal::desk

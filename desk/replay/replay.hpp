@@ -21,6 +21,17 @@ struct Alarm {
   double start_s = 0;
   double end_s = 0;
   double max_error_to_threshold = 0;  // largest |e| / mu in it
+  // From 0, in the order in which they crossed; of several in one tick the farthest beyond first.
+  // Empty where there is one threshold of all.
+  std::vector<int> joints = {};
+};
+
+// More samples refused in a row than the monitor bears: it sees nothing from the first of them to
+// the sample that it begins afresh with, or to the last of the recording where none is good.
+struct BlindStretch {
+  double start_s = 0;
+  double end_s = 0;
+  std::int64_t samples = 0;
 };
 
 // Samples that the monitor refused for one reason.
@@ -69,18 +80,22 @@ struct Replay {
   double max_weight_norm = 0;
   std::map<std::string, Refusals> refused;  // by the status' name
   std::int64_t longest_refused = 0;         // samples in a row
+  std::vector<BlindStretch> blind;
 
   [[nodiscard]] std::int64_t samples() const;  // accepted and refused
   [[nodiscard]] std::int64_t judged() const { return t_s.size(); }
   // Whether so many samples were refused that no alarm says nothing: more than two in a row, which
   // is as long as a controller bears it, or more than one in a hundred.
   [[nodiscard]] bool is_blind() const;
+  [[nodiscard]] double blind_s() const;  // of all stretches together
 };
 
 // Replays `log` through the monitor of `robot`, with the recording's sampling period as the tick.
-// The recording's torque is taken as the torque that was really applied. Throws InputError when the
-// recording has another number of joints, the robot file has no uncertainty bound, when a setting
-// does not go with the sampling period, or when no sample is accepted.
+// The recording's torque is taken as the torque that was really applied. As on the controller, the
+// monitor goes on behind one or two samples that it refuses, what it knew kept; behind more of them
+// it begins afresh, as at the start of the recording but for its threshold, which stays. Throws
+// InputError when the recording has another number of joints, the robot file has no uncertainty
+// bound, when a setting does not go with the sampling period, or when no sample is accepted.
 [[nodiscard]] Replay replay(const RobotDescription& robot, const Log& log);
 
 [[nodiscard]] nlohmann::json to_json(const Replay& replay);
@@ -88,5 +103,11 @@ struct Replay {
 
 // What the replay says, in one sentence or two.
 [[nodiscard]] std::string words_of(const Replay& replay);
+
+// How the largest ratio is called: of |e| and mu, or of residual and threshold, joint by joint.
+[[nodiscard]] std::string ratio_name(const Replay& replay);
+// Whose alarm it is, "joint 2 (elbow), joint 1 (shoulder)"; empty where there is one threshold of
+// all.
+[[nodiscard]] std::string joints_of(const Replay& replay, const Alarm& alarm);
 
 }  // namespace offnominal::desk

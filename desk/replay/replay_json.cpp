@@ -14,11 +14,21 @@ nlohmann::json finite_or_null(double value) {
 nlohmann::json alarms_json(const std::vector<Alarm>& all) {
   nlohmann::json alarms = nlohmann::json::array();
   for (const Alarm& alarm : all) {
-    alarms.push_back({{"start_s", alarm.start_s},
-                      {"end_s", alarm.end_s},
-                      {"max_error_to_threshold", finite_or_null(alarm.max_error_to_threshold)}});
+    nlohmann::json& json = alarms.emplace_back(
+        nlohmann::json{{"start_s", alarm.start_s},
+                       {"end_s", alarm.end_s},
+                       {"max_error_to_threshold", finite_or_null(alarm.max_error_to_threshold)}});
+    for (const int joint : alarm.joints) json["joints"].push_back(joint + 1);
   }
   return alarms;
+}
+
+nlohmann::json blind_json(const std::vector<BlindStretch>& all) {
+  nlohmann::json stretches = nlohmann::json::array();
+  for (const BlindStretch& one : all) {
+    stretches.push_back({{"start_s", one.start_s}, {"end_s", one.end_s}, {"samples", one.samples}});
+  }
+  return stretches;
 }
 
 nlohmann::json time_or_null(const std::optional<double>& time_s) {
@@ -66,6 +76,8 @@ nlohmann::json to_json(const Replay& replay) {
                          {"samples", replay.samples()},
                          {"judged", replay.judged()},
                          {"blind", replay.is_blind()},
+                         {"blind_s", replay.blind_s()},
+                         {"blind_stretches", blind_json(replay.blind)},
                          {"refused", refused},
                          {"detection_time_s", time_or_null(replay.detection_time_s)},
                          {"alarms", alarms_json(replay.alarms)},

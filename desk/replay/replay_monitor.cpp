@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <offnominal/model/effect_list.hpp>
 #include <offnominal/monitor.hpp>
 #include <optional>
 #include <string>
@@ -40,7 +41,7 @@ class AlarmCollector {
   void take(double t_s, bool level, double ratio, std::vector<Alarm>& alarms,
             std::optional<double>& detection_time_s) {
     if (level) {
-      if (!in_alarm_) alarms.push_back({t_s, t_s, 0});
+      if (!in_alarm_) alarms.push_back({t_s, t_s, 0, {}});
       Alarm& alarm = alarms.back();
       alarm.end_s = t_s;
       alarm.max_error_to_threshold = std::max(alarm.max_error_to_threshold, ratio);
@@ -76,20 +77,28 @@ class ReplayCollector {
     result_.threshold[count_] = output.threshold;
     result_.psi_hat.row(count_) = output.psi_hat.transpose();
     ++count_;
-    refused_in_a_row_ = 0;
+    end_refusals(t_s);
     const double ratio = ratio_of(output.error_norm, output.threshold);
     result_.max_error_to_threshold = std::max(result_.max_error_to_threshold, ratio);
     result_.max_weight_norm = std::max(result_.max_weight_norm, weight_norm);
     any_.take(t_s, output.detector.level, ratio, result_.alarms, result_.detection_time_s);
+    if constexpr (std::is_same_v<Space, TorqueSpace>) {
+      if (output.detector.level) name_joints(output);
+    }
   }
 
   void refuse(double t_s, Status status) {
     Refusals& refusals = result_.refused[name_of(status)];
     if (refusals.count++ == 0) refusals.first_s = t_s;
-    result_.longest_refused = std::max(result_.longest_refused, ++refused_in_a_row_);
+    if (refused_in_a_row_++ == 0) first_refused_s_ = t_s;
+    last_refused_s_ = t_s;
+    result_.longest_refused = std::max(result_.longest_refused, refused_in_a_row_);
   }
 
+  [[nodiscard]] std::int64_t refused_in_a_row() const { return refused_in_a_row_; }
+
   void finish() {
+    end_refusals(last_refused_s_);
     result_.t_s.conservativeResize(count_);
     result_.error.conservativeResize(count_, Eigen::NoChange);
     result_.error_norm.conservativeResize(count_);
@@ -99,6 +108,29 @@ class ReplayCollector {
   }
 
  private:
+  void end_refusals(double t_s) {
+    if (refused_in_a_row_ > kBorneInARow) {
+      result_.blind.push_back({first_refused_s_, t_s, refused_in_a_row_});
+    }
+    refused_in_a_row_ = 0;
+  }
+
+  // Of the stretch that is under way: who has crossed now, and had not before.
+  void name_joints(const MonitorOutput<kRuntimeJoints, double, TorqueSpace>& output) {
+    std::vector<int>& named = result_.alarms.back().joints;
+    const auto ratio = [&](int joint) {
+      return ratio_of(std::abs(output.error[joint]), output.thresholds[joint]);
+    };
+    const auto before = static_cast<std::ptrdiff_t>(named.size());
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      const int joint = static_cast<int>(i);
+      const bool is_named = std::find(named.begin(), named.end(), joint) != named.end();
+      if (output.detector.joints[i].level && !is_named) named.push_back(joint);
+    }
+    std::stable_sort(named.begin() + before, named.end(),
+                     [&](int a, int b) { return ratio(a) > ratio(b); });
+  }
+
   void accept_joints(double t_s, const MonitorOutput<kRuntimeJoints, double, TorqueSpace>& output) {
     result_.thresholds.row(count_) = output.thresholds.transpose();
     if (output.detector.latched && !result_.first_joint) {
@@ -121,6 +153,8 @@ class ReplayCollector {
   Replay& result_;
   Eigen::Index count_ = 0;
   std::int64_t refused_in_a_row_ = 0;
+  double first_refused_s_ = 0;  // of those in a row
+  double last_refused_s_ = 0;
   AlarmCollector any_;
   std::vector<AlarmCollector> joints_;
 };
@@ -136,6 +170,40 @@ MonitorOutput<kRuntimeJoints, double, Space> first_output(std::size_t joints) {
   return output;
 }
 
+bool counts_time(const RobotDescription& robot) {
+  return std::any_of(robot.effects.begin(), robot.effects.end(), [](const RobotEffect& effect) {
+    return info_of(effect.kind)->traits.counts_time;
+  });
+}
+
+// Begins as at the start of a recording, with two differences. The time that effects count goes on:
+// `tick` is what the recording has come to. And a threshold that was there stays: one that begins
+// at nothing is that of the bound at an instant, which a healthy robot may exceed for as long as
+// the filter forgives it (docs/theory.md, erratum 6).
+template <typename Watch>
+Status begin_afresh(const Watch& monitor, const typename Watch::Sample& sample, std::uint64_t tick,
+                    bool counts_time, typename Watch::State& state) {
+  const auto before = state.initialised ? std::optional(state.estimator.mu) : std::nullopt;
+  Status status = monitor.reset(sample, state);
+  if (status != Status::kOk) return status;
+  const auto threshold = before.value_or(state.estimator.mu);
+  if (counts_time && tick > 0) {
+    state.tick = tick - 1;
+    status = monitor.resume(sample, 0, state);
+  }
+  state.estimator.mu = threshold;
+  return status;
+}
+
+// What is said of the sample that it begins afresh with: no error yet, and the threshold that was.
+template <typename Output>
+void forget(const Output& at_start, Output& output) {
+  output.error = at_start.error;
+  output.error_norm = at_start.error_norm;
+  output.psi_hat = at_start.psi_hat;
+  output.detector = at_start.detector;
+}
+
 template <typename Space>
 void replay_in(const RobotDescription& robot, const Log& log, Replay& result) {
   using Watch = ReplayMonitor<Space>;
@@ -145,22 +213,32 @@ void replay_in(const RobotDescription& robot, const Log& log, Replay& result) {
   require_start(Watch::create(config, monitor), robot);
   // On the heap: 128 hidden units of 12 joints do not belong on a stack.
   const auto state = std::make_unique<typename Watch::State>();
-  auto output = first_output<Space>(robot.joints.size());
+  const auto at_start = first_output<Space>(robot.joints.size());
+  auto output = at_start;
 
   ReplayCollector collector(log.sample_count(), robot.joint_count(), result);
-  bool started = false;
+  const bool in_time = counts_time(robot);
   for (Eigen::Index i = 0; i < log.sample_count(); ++i) {
     const typename Watch::Sample sample{log.q.row(i).transpose(), log.dq.row(i).transpose(),
                                         log.tau.row(i).transpose()};
-    const Status status =
-        started ? monitor.step(sample, *state, output) : monitor.reset(sample, *state);
-    // A run starts at the first sample that is good; a setting that no sample can mend ends it.
+    const std::int64_t missed = collector.refused_in_a_row();
+    // A run starts at the first sample that is good.
+    const bool afresh = !state->initialised || missed > kBorneInARow;
+    Status status = Status::kOk;
+    if (afresh) {
+      status = begin_afresh(monitor, sample, static_cast<std::uint64_t>(i), in_time, *state);
+    } else if (missed > 0) {
+      status = monitor.resume(sample, static_cast<std::uint32_t>(missed), *state);
+    } else {
+      status = monitor.step(sample, *state, output);
+    }
+    // A setting that no sample can mend ends it.
     if (status == Status::kInvalidInitialWeights) require_start(status, robot);
     if (status != Status::kOk) {
       collector.refuse(log.t_s[i], status);
       continue;
     }
-    started = true;
+    if (afresh) forget(at_start, output);
     collector.accept<Space>(log.t_s[i], output, std::sqrt(state->estimator.theta_squared_norm));
   }
   collector.finish();

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -13,8 +14,24 @@ using namespace report;  // a page is written in its own words
 
 constexpr std::size_t kMarkedAlarms = 20;
 
-std::vector<double> values(const Eigen::Ref<const Eigen::VectorXd>& vector) {
-  return {vector.begin(), vector.end()};
+// A line over time that is broken where the monitor was blind.
+Series line_of(const Replay& replay, const std::string& name,
+               const Eigen::Ref<const Eigen::VectorXd>& values, Tone tone) {
+  Series line{.name = name, .tone = tone};
+  std::size_t next = 0;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    for (; next < replay.blind.size() && replay.blind[next].start_s < replay.t_s[i]; ++next) {
+      line.x.push_back(replay.blind[next].start_s);
+      line.y.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+    line.x.push_back(replay.t_s[i]);
+    line.y.push_back(values[i]);
+  }
+  return line;
+}
+
+std::string note_on_blind(const Replay& replay) {
+  return replay.blind.empty() ? "" : "The lines are broken where the monitor was blind.";
 }
 
 std::vector<EventMark> alarm_marks(const std::optional<double>& detection_time_s) {
@@ -28,14 +45,9 @@ Chart residual_chart(const Replay& replay) {
   chart.title = "Residual against its threshold";
   chart.x = {.name = "time", .unit = "s"};
   chart.y = {{.name = "velocity", .unit = replay.unit}};
-  chart.series = {{.name = "|e|",
-                   .x = values(replay.t_s),
-                   .y = values(replay.error_norm),
-                   .tone = Tone::kResidual},
-                  {.name = "threshold mu",
-                   .x = values(replay.t_s),
-                   .y = values(replay.threshold),
-                   .tone = Tone::kThreshold}};
+  chart.series = {line_of(replay, "|e|", replay.error_norm, Tone::kResidual),
+                  line_of(replay, "threshold mu", replay.threshold, Tone::kThreshold)};
+  chart.note = note_on_blind(replay);
   chart.events = alarm_marks(replay.detection_time_s);
   chart.zoom_group = "time";
   chart.slider = true;
@@ -49,14 +61,10 @@ Chart joint_chart(const Replay& replay, Eigen::Index joint) {
   chart.title = "Residual against its threshold, " + replay.joint_names[index];
   chart.x = {.name = "time", .unit = "s"};
   chart.y = {{.name = "torque", .unit = of_joint.unit}};
-  chart.series = {{.name = "|residual|",
-                   .x = values(replay.t_s),
-                   .y = values(replay.error.col(joint).cwiseAbs()),
-                   .tone = Tone::kResidual},
-                  {.name = "threshold",
-                   .x = values(replay.t_s),
-                   .y = values(replay.thresholds.col(joint)),
-                   .tone = Tone::kThreshold}};
+  chart.series = {
+      line_of(replay, "|residual|", replay.error.col(joint).cwiseAbs(), Tone::kResidual),
+      line_of(replay, "threshold", replay.thresholds.col(joint), Tone::kThreshold)};
+  chart.note = note_on_blind(replay);
   chart.events = alarm_marks(of_joint.detection_time_s);
   chart.zoom_group = "time";
   chart.slider = joint == 0;
@@ -115,10 +123,7 @@ Chart estimate_chart(const Replay& replay, Eigen::Index joint) {
   chart.x = {.name = "time", .unit = "s"};
   const bool in_torque = replay.space == EstimatorSpace::kTorque;
   chart.y = {{.name = in_torque ? "torque" : "acceleration", .unit = replay.psi_hat_units[index]}};
-  chart.series = {{.name = "psi_hat",
-                   .x = values(replay.t_s),
-                   .y = values(replay.psi_hat.col(joint)),
-                   .tone = Tone::kModel}};
+  chart.series = {line_of(replay, "psi_hat", replay.psi_hat.col(joint), Tone::kModel)};
   chart.events =
       alarm_marks(in_torque ? replay.joints[index].detection_time_s : replay.detection_time_s);
   chart.zoom_group = "time";
@@ -128,7 +133,9 @@ Chart estimate_chart(const Replay& replay, Eigen::Index joint) {
 Table alarm_table(const Replay& replay) {
   Table table;
   table.caption = "Stretches with the residual above its threshold";
-  table.columns = {{"from", "s", ".3f"}, {"to", "s", ".3f"}, {"largest |e| / mu", "1", ".3g"}};
+  const bool in_torque = replay.space == EstimatorSpace::kTorque;
+  table.columns = {{"from", "s", ".3f"}, {"to", "s", ".3f"}, {ratio_name(replay), "1", ".3g"}};
+  if (in_torque) table.columns.push_back({"joints, the first to cross first", ""});
   for (const Alarm& alarm : replay.alarms) {
     if (table.rows.size() == kMarkedAlarms) {
       table.note = fmt::format("The first {} of {}; `--json` has them all.", kMarkedAlarms,
@@ -136,6 +143,22 @@ Table alarm_table(const Replay& replay) {
       break;
     }
     table.rows.push_back({alarm.start_s, alarm.end_s, alarm.max_error_to_threshold});
+    if (in_torque) table.rows.back().emplace_back(joints_of(replay, alarm));
+  }
+  return table;
+}
+
+Table blind_table(const Replay& replay) {
+  Table table;
+  table.caption = fmt::format("Blind for {:.3f} s: what was here nobody saw", replay.blind_s());
+  table.columns = {{"from", "s", ".3f"}, {"to", "s", ".3f"}, {"samples refused", "1", "d"}};
+  for (const BlindStretch& one : replay.blind) {
+    if (table.rows.size() == kMarkedAlarms) {
+      table.note = fmt::format("The first {} of {}; `--json` has them all.", kMarkedAlarms,
+                               replay.blind.size());
+      break;
+    }
+    table.rows.push_back({one.start_s, one.end_s, static_cast<double>(one.samples)});
   }
   return table;
 }
@@ -156,16 +179,18 @@ KeyFigures key_figures(const Replay& replay) {
     detected.unit = "";
   }
   detected.level = level_of(replay);
-  figures.figures = {detected,
-                     {.label = "largest |e| / mu",
-                      .value = replay.max_error_to_threshold,
-                      .unit = "1",
-                      .format = ".3g"},
-                     {.label = "samples judged",
-                      .value = fmt::format("{} of {}", replay.judged(), replay.samples()),
-                      .unit = "",
-                      .level = replay.is_blind() ? Level::kWarn : Level::kNeutral},
-                     {.label = "tick", .value = 1000 * replay.period_s, .unit = "ms"}};
+  figures.figures = {
+      detected,
+      {.label = ratio_name(replay),
+       .value = replay.max_error_to_threshold,
+       .unit = "1",
+       .format = ".3g"},
+      {.label = "samples judged",
+       .value = fmt::format("{} of {}", replay.judged(), replay.samples()),
+       .unit = "",
+       .level = replay.is_blind() ? Level::kWarn : Level::kNeutral,
+       .note = replay.blind.empty() ? "" : fmt::format("blind for {:.3f} s", replay.blind_s())},
+      {.label = "tick", .value = 1000 * replay.period_s, .unit = "ms"}};
   return figures;
 }
 
@@ -181,6 +206,7 @@ report::Page page_of(const Replay& replay, const std::string& command_line) {
   residual.blocks.emplace_back(key_figures(replay));
   add_residuals(replay, residual);
   if (!replay.alarms.empty()) residual.blocks.emplace_back(alarm_table(replay));
+  if (!replay.blind.empty()) residual.blocks.emplace_back(blind_table(replay));
   page.sections.push_back(residual);
   Section estimate{.heading = "What changed", .text = "", .blocks = {}};
   estimate.text =
@@ -189,6 +215,7 @@ report::Page page_of(const Replay& replay, const std::string& command_line) {
             "exactly zero until its first alarm."
           : "The network's estimate of the acceleration that the model does not explain; exactly "
             "zero until the first alarm.";
+  if (!replay.blind.empty()) estimate.text += " Behind a blind stretch it begins at zero again.";
   for (Eigen::Index joint = 0; joint < replay.psi_hat.cols(); ++joint) {
     estimate.blocks.emplace_back(estimate_chart(replay, joint));
   }

@@ -23,7 +23,9 @@ using offnominal::test::arm_description;
 using offnominal::test::ArmInstant;
 using offnominal::test::record_arm;
 using namespace offnominal::desk;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr double kFaultTime = 6;
 constexpr double kBound = 2;  // rad/s^2
@@ -131,6 +133,12 @@ TEST(Replay, GivenTorqueSpaceAndFaultsOnTwoJointsThenTheLaterOneIsSaidWithItsDel
   const double later = *faulty.joints[0].detection_time_s - *faulty.detection_time_s;
   EXPECT_NEAR(later, (std::log(6.0) - std::log(1.5)) / 10, 0.003);
   EXPECT_THAT(words_of(faulty), HasSubstr("; then joint 1 ("));
+  // Whose an alarm of any joint is.
+  EXPECT_THAT(faulty.alarms.front().joints, ElementsAre(1, 0));
+  EXPECT_EQ(joints_of(faulty, faulty.alarms.front()), "joint 2 (elbow), joint 1 (shoulder)");
+  EXPECT_EQ(to_json(faulty)["alarms"][0]["joints"], (std::vector{2, 1}));
+  EXPECT_THAT(report::to_json(page_of(faulty, "")).dump(),
+              HasSubstr("joint 2 (elbow), joint 1 (shoulder)"));
   const report::Page page = page_of(faulty, "");
   EXPECT_EQ(page.verdict.level, report::Level::kBad);
   ASSERT_EQ(page.sections[1].blocks.size(), 2U);
@@ -144,6 +152,19 @@ TEST(Replay, GivenTorqueSpaceAndFaultsOnTwoJointsThenTheLaterOneIsSaidWithItsDel
   EXPECT_FALSE(healthy.detection_time_s || healthy.first_joint);
   EXPECT_NEAR(healthy.max_error_to_threshold, 0.9, 0.01);
   EXPECT_THAT(words_of(healthy), HasSubstr("Nominal"));
+}
+
+TEST(Replay, GivenTwoJointsThatCrossInOneTickThenItSaysSo) {
+  const Replay faulty = replay(arm_in_torque_space(), recording_with({50, 50}));
+  ASSERT_EQ(faulty.joints[0].detection_time_s, faulty.joints[1].detection_time_s);
+  EXPECT_THAT(words_of(faulty), HasSubstr(" in the same tick."));
+  EXPECT_THAT(words_of(faulty), Not(HasSubstr("0.000 s after it")));
+}
+
+TEST(Replay, GivenOneThresholdOfAllThenItsAlarmsNameNoJoint) {
+  const Replay faulty = replay(watched_arm(), faulty_recording(3 * kBound));
+  EXPECT_TRUE(faulty.alarms.front().joints.empty());
+  EXPECT_FALSE(to_json(faulty)["alarms"][0].contains("joints"));
 }
 
 std::string refusal(const RobotDescription& robot, const Log& log) {
@@ -160,6 +181,9 @@ TEST(Replay, RefusesWhatItCannotReplay) {
   RobotDescription robot = watched_arm();
   robot.joints.pop_back();
   EXPECT_THAT(refusal(robot, log), HasSubstr("found 2 joints; allowed: 1, as robot arm has"));
+  Log of_one = log;
+  of_one.q.conservativeResize(Eigen::NoChange, 1);
+  EXPECT_THAT(refusal(arm_description(), of_one), HasSubstr("found 1 joint; allowed: 2"));
   EXPECT_THAT(refusal(arm_description(), log), HasSubstr("uncertainty_bound"));
   robot = watched_arm();
   robot.estimator.alpha = 2000;
