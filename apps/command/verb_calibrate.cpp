@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -22,7 +23,10 @@
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
+#include "command/write_robot.hpp"
+#include "common/amount.hpp"
 #include "common/error.hpp"
+#include "common/nearest.hpp"
 #include "common/output_file.hpp"
 #include "log/log_format.hpp"
 #include "log/part_of.hpp"
@@ -84,11 +88,52 @@ std::vector<Log> parts_left_of(const RobotDescription& robot, const std::vector<
       parts.push_back(std::move(part));
     }
     if (!parts.empty() && parts.back().file == log.file) continue;
-    throw InputError({log.file, "", "no part without a fault of the recording",
-                      fmt::format("one of {:g} s or more", kShortestS),
-                      "record anew, or say with --keep JOINT:REASON what is no fault"});
+    std::set<Eigen::Index> stretches;  // each joint's are listed
+    for (const LeftOut& out : log.left_out) stretches.insert(out.rows.first);
+    throw InputError(
+        {log.file, "",
+         fmt::format("{} left out, and no {:g} s between what is left out",
+                     counted(stretches.size(), "stretch", "stretches"), kShortestS),
+         fmt::format("a part of {:g} s or more without a fault of the recording", kShortestS),
+         "record anew, or say with --keep JOINT:REASON what is no fault"});
   }
   return parts;
+}
+
+double seconds_of(const std::vector<Log>& logs) {
+  double seconds = 0;
+  for (const Log& log : logs) seconds += static_cast<double>(log.sample_count()) * log.period_s;
+  return seconds;
+}
+
+// What the examination took of the recordings to calibrate on, of which `parts` are left; empty:
+// nothing.
+std::string left_out_words(double recorded_s, const std::vector<Log>& parts,
+                           const std::vector<DataFault>& faults) {
+  struct Taken {
+    std::size_t stretches = 0;
+    Eigen::Index rows = 0;
+  };
+  std::map<std::string, Taken> reasons;
+  for (const DataFault& fault : faults) {
+    if (fault.left_out_of.empty()) continue;
+    Taken& taken = reasons[name_of(fault.kind)];
+    for (const FaultSpan& span : fault.spans) {
+      ++taken.stretches;
+      taken.rows += span.samples.count();
+    }
+  }
+  if (reasons.empty()) return {};
+  const auto words = [](const auto& reason) {
+    return fmt::format("{} of {} in {}",
+                       counted(static_cast<std::size_t>(reason.second.rows), "row"), reason.first,
+                       counted(reason.second.stretches, "stretch", "stretches"));
+  };
+  return fmt::format(
+      "of {:.4g} s recorded {:.4g} s are left, in {} of {:g} s or more between what "
+      "is left out ({})",
+      recorded_s, seconds_of(parts), counted(parts.size(), "part"), kShortestS,
+      list_of(reasons, words));
 }
 
 // Result: a Calibration, or a JointsCalibration.
@@ -98,7 +143,7 @@ void tell(const Result& result, const CalibrateOptions& options, const Calibrate
   write_report(options.answer, [&] { return with_faults(page_of(result, names), faults); });
   std::vector<std::string> written;
   if (result.objections.empty()) {
-    write_robot_file(result.robot, options.output, options.answer.existing());
+    write_robot(result.robot, options.files.robot, options.output, options.answer);
     written.push_back(options.output);
   } else {
     exit_code = ExitCode::kCheckFailed;
@@ -129,14 +174,16 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
       read_fit_data("calibrate", "LOG", options.files, std::move(robot), read_log, progress);
   const auto faults =
       treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kVelocityToo);
+  const double recorded_s = seconds_of(data.logs);
   for (std::vector<Log>* group : {&data.logs, &data.holdout}) {
     *group = parts_left_of(data.robot, *group);
   }
+  const std::string left_out = left_out_words(recorded_s, data.logs, faults);
   if (data.holdout.empty()) data.holdout = take_held_out(data.logs, kShortestS);
   progress.begin("shapes of the bound");
   const CalibrateRequest request{
       options.alarms_per_hour, options.velocity_error,
-      "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + "."};
+      "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + ".", left_out};
   require_carried(data.robot, options.files.robot);
   const CalibrateNames names{options.files.robot, options.output, command_line};
   const auto on_step = [&progress] { progress.step(); };

@@ -4,6 +4,10 @@
 
 namespace offnominal::desk {
 
+ErrorWords words_of_joint() {
+  return {"residual", "the residual", "residual / threshold", "of its threshold", true};
+}
+
 BoundMargin margin_of(const Calibration& calibration) {
   BoundMargin margin;
   double samples = 0;

@@ -21,7 +21,19 @@ struct CalibrateRequest {
   double alarms_per_hour = 0.1;          // the rate to aim at, > 0
   std::optional<double> velocity_error;  // given, rad/s or m/s; none: found with the bound
   std::string source;                    // what the written bound says beside its level
+  // What was left out of the recordings, in words, for where the rest is too short; empty: nothing.
+  std::string left_out = {};
 };
+
+/// How the error and its threshold are called: |e| and mu, or those of one joint.
+struct ErrorWords {
+  std::string name = "|e|";
+  std::string subject = "|e|";
+  std::string ratio = "|e| / mu";
+  std::string of_threshold = "mu";
+  bool of_one_joint = false;
+};
+[[nodiscard]] ErrorWords words_of_joint();
 
 // A stretch of one recording that is judged as a whole.
 struct JudgedStretch {
@@ -82,6 +94,7 @@ struct Calibration {
   RobotDescription robot;  // with the new bound
   std::optional<BoundSettings> old_bound;
   std::string unit;  // of |e| and mu
+  ErrorWords words;
   std::vector<ShapeScore> shapes;
   FalseAlarmLevel level;
   std::optional<Transient> transient;

@@ -7,6 +7,7 @@
 
 #include "calibrate/calibrate_one.hpp"
 #include "calibrate/recorded_error.hpp"
+#include "common/amount.hpp"
 #include "common/error.hpp"
 
 namespace offnominal::desk {
@@ -63,9 +64,9 @@ std::string source_of(const CalibrateRequest& request, const JointsCalibration& 
   }
   return fmt::format(
       "{} {:g} false alarms per hour of all joints by extrapolation of {} block maxima of {:g} s "
-      "each; on hold-out data {} alarm(s) in {:g} s.",
-      request.source, result.alarms_per_hour, level.blocks, level.block_s, alarms,
-      level.held_out_s);
+      "each; on hold-out data {} in {:g} s.",
+      request.source, result.alarms_per_hour, level.blocks, level.block_s,
+      counted(static_cast<std::size_t>(alarms), "alarm"), level.held_out_s);
 }
 
 void collect(const std::string& joint, const std::vector<std::string>& from,
@@ -99,7 +100,7 @@ JointsCalibration calibrate_joints(const RobotDescription& robot, const Calibrat
   bound.kind = BoundSettings::Kind::kPerJoint;
   for (std::size_t i = 0; i < count; ++i) {
     data.push_back(data_of(std::move(errors[i]), logs.size(), robot.estimator.alpha,
-                           static_cast<int>(i), count));
+                           static_cast<int>(i), count, request.left_out));
     fits.push_back(fitted(robot, of_one, data[i], on_step));
     bound.joints.push_back(joint_bound(*fits[i].result.robot.bound));
   }

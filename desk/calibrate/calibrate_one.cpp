@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/amount.hpp"
 #include "common/error.hpp"
 #include "common/number.hpp"
 
@@ -22,7 +23,7 @@ constexpr double kShortestBlock = 1;  // s
 constexpr double kStrayRatio = 2.5;
 constexpr double kUnlikely = 0.01;
 
-void check_data(const CalibrationData& data) {
+void check_data(const CalibrationData& data, const std::string& left_out) {
   std::int64_t blocks = 0;
   double largest = 0;
   double longest_s = 0;
@@ -35,14 +36,20 @@ void check_data(const CalibrationData& data) {
                        recording.error_norm.segment(fold.begin, fold.end - fold.begin).maxCoeff());
   }
   if (blocks < kFewestBlocks) {
+    const bool fifths = !data.split.always.empty();
     throw InputError(
         {.file = data.recordings.front().file,
          .place = "length of the recordings",
-         .found = fmt::format("{} whole block(s) of {:g} s to calibrate on, in {} stretch(es) of "
-                              "{:.3g} s at most",
-                              blocks, data.block_s, data.split.folds.size(), longest_s),
+         .found =
+             fmt::format("{} of {:g} s to calibrate on, in {} of {:.3g} s at most{}",
+                         counted(static_cast<std::size_t>(blocks), "whole block"), data.block_s,
+                         fifths ? "fifths of one stretch"
+                                : counted(data.split.folds.size(), "stretch", "stretches"),
+                         longest_s, left_out.empty() ? "" : "; " + left_out),
          .allowed = fmt::format("at least {}", kFewestBlocks),
-         .mend = "take longer recordings, or more of them"});
+         .mend = left_out.empty() ? "take longer recordings, or more of them"
+                                  : "take longer recordings, or more of them, or say with --keep "
+                                    "JOINT:REASON what is no fault"});
   }
   if (largest > 0) return;
   if (data.joint) {
@@ -142,8 +149,9 @@ void count_held_out(const CalibrationData& data, Calibration& result) {
     level.held_out_s += stretch.end_s - stretch.begin_s;
     level.held_out_alarms += stretch.alarms_after;
     if (!stretch.first_alarm_s) continue;
-    where += fmt::format("{}{} from {:.3f} s on, |e| up to {:.3g} mu", where.empty() ? "" : "; ",
-                         stretch.file, *stretch.first_alarm_s, stretch.max_ratio_after);
+    where += fmt::format("{}{} from {:.3f} s on, {} up to {:.3g} {}", where.empty() ? "" : "; ",
+                         stretch.file, *stretch.first_alarm_s, result.words.subject,
+                         stretch.max_ratio_after, result.words.of_threshold);
   }
   level.highest_per_hour = 3600 * highest_rate(level.held_out_alarms, level.held_out_s);
   const double expected = level.alarms_per_hour / 3600 * level.held_out_s;
@@ -152,19 +160,25 @@ void count_held_out(const CalibrationData& data, Calibration& result) {
     return;
   }
   result.objections.push_back(fmt::format(
-      "{} alarm(s) in {:g} s of hold-out data, where {:.2g} were expected ({}): the bound does not "
+      "{} in {:g} s of hold-out data, where {:.2g} were expected ({}): the bound does not "
       "keep its level. Calibrate on more recordings, of all the motions that the robot makes.",
-      level.held_out_alarms, level.held_out_s, expected, where));
+      counted(static_cast<std::size_t>(level.held_out_alarms), "alarm"), level.held_out_s, expected,
+      where));
+}
+
+// Of all joints' errors, which has most of it; of one joint's there is nothing to say.
+std::string most_on(const Calibration& result, int joint) {
+  return result.words.of_one_joint ? "" : fmt::format(", most of it on joint {}", joint + 1);
 }
 
 void object_to_stray(const std::string& file, double time_s, int joint, double ratio,
                      Calibration& result) {
   if (ratio <= kStrayRatio) return;
   result.objections.push_back(fmt::format(
-      "{}: at {:.3f} s |e| is {:.2g} times the largest that all other parts ask for, most of it on "
-      "joint {}. A fault there, or a motion that no other part has: leave the recording out, or "
-      "add recordings like it.",
-      file, time_s, ratio, joint + 1));
+      "{}: at {:.3f} s {} is {} times the largest that all other parts ask for{}. A fault there, "
+      "or "
+      "a motion that no other part has: leave the recording out, or add recordings like it.",
+      file, time_s, result.words.subject, significant(ratio, 2), most_on(result, joint)));
 }
 
 void look_for_strays(const CalibrationData& data, const Tried& constant, Calibration& result) {
@@ -186,13 +200,14 @@ void note_transient(Calibration& result) {
   if (!result.transient || result.transient->ratio > kStrayRatio) return;
   const Transient& one = *result.transient;
   result.notes.push_back(fmt::format(
-      "{}: one transient at {:.3f} s, most of it on joint {}: |e| = {:.3g} {}, {:.2g} times the "
+      "{}: one transient at {:.3f} s{}: {} is {} {}, {:.2g} times the "
       "largest that all other parts ask for. The bound covers it with 5 % to spare and is not "
       "widened beyond for "
       "it: one event says nothing of how large the next one is. Taken for one of many it would "
       "have made a constant bound {:.3g} times as wide. Record more starts and stops if the robot "
       "has them.",
-      one.file, one.time_s, one.joint + 1, one.error_norm, result.unit, one.ratio,
+      one.file, one.time_s, most_on(result, one.joint), result.words.subject,
+      significant(one.error_norm, 3), result.unit, one.ratio,
       one.mean_threshold_with / one.mean_threshold_without));
 }
 
@@ -204,37 +219,37 @@ void note_width(const Tried& chosen, Calibration& result) {
       margin.is_much_wider()
           ? fmt::format("The new bound is {:.3g} times as wide as the old one", *margin.new_to_old)
           : std::string("The new bound is hardly felt");
-  words +=
-      fmt::format(": the recordings reach |e| / mu of {:.3g} at most", margin.largest_ratio_after);
+  words += fmt::format(": the recordings reach {} of {:.3g} at most", result.words.ratio,
+                       margin.largest_ratio_after);
   if (margin.largest_ratio_before) {
     words += fmt::format(" ({:.3g} with the old bound)", *margin.largest_ratio_before);
   }
   result.notes.push_back(
       words +
-      fmt::format(". The tightest bound that covers them has a mean threshold of {:.3g} {}, and it "
-                  "is widened {:.3g} times: their largest unseen |e| asks for {:.3g}, the rest is "
+      fmt::format(". The tightest bound that covers them has a mean threshold of {} {}, and it "
+                  "is widened {:.3g} times: their largest unseen {} asks for {:.3g}, the rest is "
                   "extrapolation of {} block maxima to {:g} false alarms per hour. Longer and "
                   "more recordings make that less.",
-                  chosen.fit.mean_threshold, result.unit, chosen.widening,
-                  std::max({1.0, chosen.largest, chosen.fit.apart_ratio}), chosen.maxima.size(),
-                  result.level.alarms_per_hour));
+                  significant(chosen.fit.mean_threshold, 3), result.unit, chosen.widening,
+                  result.words.name, std::max({1.0, chosen.largest, chosen.fit.apart_ratio}),
+                  chosen.maxima.size(), result.level.alarms_per_hour));
 }
 
 void note_old_alarms(Calibration& result) {
   for (const JudgedStretch& stretch : result.stretches) {
     if (stretch.alarms_before == 0) continue;
     result.notes.push_back(fmt::format(
-        "{}: the old bound raises {} alarm(s) in it. If that was a fault, the new bound hides it.",
-        stretch.file, stretch.alarms_before));
+        "{}: the old bound raises {} in it. If that was a fault, the new bound hides it.",
+        stretch.file, counted(static_cast<std::size_t>(stretch.alarms_before), "alarm")));
   }
 }
 
 std::string source_of(const CalibrateRequest& request, const FalseAlarmLevel& level) {
   return fmt::format(
       "{} {:g} false alarms per hour by extrapolation of {} block maxima of {:g} s; on hold-out "
-      "data {} alarm(s) in {:g} s.",
-      request.source, level.alarms_per_hour, level.blocks, level.block_s, level.held_out_alarms,
-      level.held_out_s);
+      "data {} in {:g} s.",
+      request.source, level.alarms_per_hour, level.blocks, level.block_s,
+      counted(static_cast<std::size_t>(level.held_out_alarms), "alarm"), level.held_out_s);
 }
 
 }  // namespace
@@ -256,14 +271,15 @@ void note_what_matters(const RobotDescription& robot, std::size_t recordings,
 }
 
 CalibrationData data_of(std::vector<RecordedError> recordings, std::size_t given,
-                        double alpha_per_s, std::optional<int> joint, std::size_t judged) {
+                        double alpha_per_s, std::optional<int> joint, std::size_t judged,
+                        const std::string& left_out) {
   CalibrationData data;
   data.recordings = std::move(recordings);
   data.block_s = std::max(kShortestBlock, kBlockTimeConstants / alpha_per_s);
   data.joint = joint;
   data.judged = judged;
   data.split = split(data.recordings, given, 0.5 * data.block_s);
-  check_data(data);
+  check_data(data, left_out);
   return data;
 }
 
@@ -275,6 +291,7 @@ Fitted fitted(const RobotDescription& robot, const CalibrateRequest& request,
   const Tried& best = tried[fit.chosen];
   Calibration& result = fit.result;
   result.unit = data.recordings.front().unit;
+  if (data.joint) result.words = words_of_joint();
   result.old_bound = robot.bound;
   for (std::size_t i = 0; i < tried.size(); ++i) {
     result.shapes.push_back({tried[i].shape.words, tried[i].largest, tried[i].widening,

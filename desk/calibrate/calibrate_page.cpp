@@ -182,6 +182,14 @@ Table bound_table(const Calibration& calibration) {
 
 }  // namespace
 
+void add_remarks(const std::vector<std::string>& notes, const std::vector<std::string>& objections,
+                 report::Section& section) {
+  for (const std::string& objection : objections) {
+    section.blocks.emplace_back(Note{objection, Level::kBad});
+  }
+  for (const std::string& note : notes) section.blocks.emplace_back(Note{note, Level::kWarn});
+}
+
 report::Page page_of(const Calibration& calibration, const CalibrateNames& names) {
   Page page;
   page.title = "Calibrated uncertainty bound of " + names.robot;
@@ -190,12 +198,7 @@ report::Page page_of(const Calibration& calibration, const CalibrateNames& names
   page.command_line = names.command_line;
   Section result{.heading = "The bound", .text = "", .blocks = {}};
   result.blocks.emplace_back(figures_of(calibration));
-  for (const std::string& objection : calibration.objections) {
-    result.blocks.emplace_back(Note{objection, Level::kBad});
-  }
-  for (const std::string& note : calibration.notes) {
-    result.blocks.emplace_back(Note{note, Level::kWarn});
-  }
+  add_remarks(calibration.notes, calibration.objections, result);
   result.blocks.emplace_back(bound_table(calibration));
   if (calibration.old_bound) result.blocks.emplace_back(bars_of(calibration));
   page.sections.push_back(result);

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "calibrate/calibrate.hpp"
 #include "report/page.hpp"
@@ -20,6 +21,13 @@ struct CalibrateNames {
 
 /// The result in one sentence or two.
 [[nodiscard]] std::string verdict_of(const Calibration& calibration);
+
+/// Why the result must not be used, and what a reader has to know of it: at the head of a page, and
+/// as lines of a text.
+void add_remarks(const std::vector<std::string>& notes, const std::vector<std::string>& objections,
+                 report::Section& section);
+[[nodiscard]] std::string remarks_text(const std::vector<std::string>& notes,
+                                       const std::vector<std::string>& objections);
 
 [[nodiscard]] std::string text_of(const Calibration& calibration, const CalibrateNames& names);
 [[nodiscard]] nlohmann::ordered_json to_json(const Calibration& calibration,

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "calibrate/calibrate_report.hpp"
+#include "common/amount.hpp"
 #include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "common/text_table.hpp"
@@ -90,6 +91,14 @@ std::string words_of(const BoundSettings& bound, const std::string& unit) {
   return words;
 }
 
+std::string remarks_text(const std::vector<std::string>& notes,
+                         const std::vector<std::string>& objections) {
+  std::string text;
+  for (const std::string& note : notes) text += "note: " + note + "\n";
+  for (const std::string& objection : objections) text += "not written: " + objection + "\n";
+  return text;
+}
+
 std::string verdict_of(const Calibration& calibration) {
   if (!calibration.objections.empty()) {
     return "These recordings give no bound that can be trusted. " + calibration.objections.front();
@@ -107,7 +116,8 @@ std::string verdict_of(const Calibration& calibration) {
     words += fmt::format(", {:.3g} of the old one", *margin.largest_ratio_before);
   }
   const FalseAlarmLevel& level = calibration.level;
-  return words + fmt::format("; {} alarm(s) in {:g} s of hold-out data.", level.held_out_alarms,
+  return words + fmt::format("; {} in {:g} s of hold-out data.",
+                             counted(static_cast<std::size_t>(level.held_out_alarms), "alarm"),
                              level.held_out_s);
 }
 
@@ -122,15 +132,13 @@ std::string text_of(const Calibration& calibration, const CalibrateNames& names)
   text += fmt::format(
       "\nfalse alarms: {:g} per hour, extrapolated from the maxima of {} blocks of {:g} s that the "
       "bound had not seen\n(extreme-value law with shape {:.3g}; blocks taken as independent, "
-      "motions as in these recordings)\ncounted on hold-out data: {} alarm(s) in {:g} s, which by "
+      "motions as in these recordings)\ncounted on hold-out data: {} in {:g} s, which by "
       "itself excludes more than {:.3g} per hour (95 %)\n",
-      level.alarms_per_hour, level.blocks, level.block_s, level.law.shape, level.held_out_alarms,
-      level.held_out_s, level.highest_per_hour);
-  for (const std::string& note : calibration.notes) text += "note: " + note + "\n";
-  for (const std::string& objection : calibration.objections) {
-    text += "not written: " + objection + "\n";
-  }
-  return text + verdict_of(calibration) + "\n";
+      level.alarms_per_hour, level.blocks, level.block_s, level.law.shape,
+      counted(static_cast<std::size_t>(level.held_out_alarms), "alarm"), level.held_out_s,
+      level.highest_per_hour);
+  return text + remarks_text(calibration.notes, calibration.objections) + verdict_of(calibration) +
+         "\n";
 }
 
 }  // namespace offnominal::desk

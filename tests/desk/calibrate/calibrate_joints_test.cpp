@@ -24,8 +24,10 @@ namespace {
 
 using Eigen::Vector2d;
 using test::ArmInstant;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 RobotDescription arm_watched_by_joint() {
   RobotDescription robot = test::arm_description();
@@ -146,8 +148,53 @@ TEST(CalibrateJoints, TellsThemInWordsAndInNumbers) {
   EXPECT_EQ(json["joints"][0]["bound"]["momentum_error_unit"], "N m s");
   EXPECT_GT(json["joints"][0]["smallest_fault"]["seen_in_95_of_100"], 0);
   EXPECT_THAT(text_of(calibrated(), names), HasSubstr("0.1 per hour of all joints"));
-  EXPECT_THAT(verdict_of(calibrated()), HasSubstr("N m on joint 2; 0 alarm(s) of 2 joints"));
+  EXPECT_THAT(verdict_of(calibrated()), HasSubstr("N m on joint 2; 0 alarms of 2 joints"));
   EXPECT_EQ(page_of(calibrated(), names).sections.size(), 2U);
+}
+
+std::string page_text(const JointsCalibration& calibration) {
+  return report::to_json(page_of(calibration, {"arm.toml", "new.toml", ""})).dump();
+}
+
+TEST(CalibrateJoints, SaysOfEachJointWhatRulesItsThreshold) {
+  const CalibrateNames names{"arm.toml", "new.toml", "offnominal calibrate"};
+  JointsCalibration result = calibrated();
+  const double mean = margin_of(result.joints[0].calibration).mean_after;
+  result.robot.bound->joints[0].momentum_error = 0.75 * mean / (2 * result.robot.estimator.alpha);
+  result.robot.bound->joints[1].momentum_error = 0;
+  const auto json = to_json(result, names);
+  EXPECT_EQ(json["joints"][0]["threshold"]["ruled_by"], "momentum error");
+  EXPECT_NEAR(json["joints"][0]["threshold"]["momentum_error_share"].get<double>(), 0.75, 1e-12);
+  EXPECT_EQ(json["joints"][1]["threshold"]["ruled_by"], "bound");
+  EXPECT_EQ(json["joints"][1]["threshold"]["momentum_error_share"], 0);
+  EXPECT_THAT(text_of(result, names), ContainsRegex("1 shoulder +momentum error .* 75 %"));
+  EXPECT_THAT(text_of(result, names), ContainsRegex("2 elbow +bound +0 N m s +0 %"));
+  EXPECT_THAT(page_text(result), HasSubstr("What rules each threshold"));
+  EXPECT_THAT(page_text(result), HasSubstr("\"momentum error\""));
+}
+
+TEST(CalibrateJoints, ShowsHowEachStandsToTheOldOneAndWhatTheCountExcludes) {
+  const CalibrateNames names{"arm.toml", "new.toml", "offnominal calibrate"};
+  EXPECT_THAT(text_of(calibrated(), names), ContainsRegex("1 shoulder .* % +none +359\n"))
+      << "3 / 30 s by the hour, and there was no bound";
+  JointsCalibration result = calibrated();
+  for (JointCalibration& joint : result.joints) {
+    joint.calibration.old_bound.emplace();
+    for (JudgedStretch& stretch : joint.calibration.stretches) {
+      stretch.mean_threshold_before = 4 * stretch.mean_threshold_after;
+    }
+  }
+  EXPECT_THAT(text_of(result, names), ContainsRegex("1 shoulder .* % +0\\.250 +359\n"));
+  EXPECT_THAT(page_text(result), HasSubstr("mean threshold to the old one's"));
+  EXPECT_THAT(page_text(result), HasSubstr("excluded from"));
+}
+
+TEST(CalibrateJoints, WritesLargeFiguresOut) {
+  JointsCalibration result = calibrated();
+  result.joints[0].fault.usual = 281.4;
+  EXPECT_THAT(verdict_of(result), HasSubstr("seen from 280 N m on joint 1"));
+  result.joints.resize(1);
+  EXPECT_THAT(verdict_of(result), HasSubstr("0 alarms of 1 joint in 30 s"));
 }
 
 TEST(CalibrateJoints, ObjectsToAFaultInOneRecordingAndSaysOnWhichJoint) {
@@ -159,6 +206,12 @@ TEST(CalibrateJoints, ObjectsToAFaultInOneRecordingAndSaysOnWhichJoint) {
       calibrate_joints(arm_watched_by_joint(), {}, {arm_run(1), faulty}, {arm_run(3)});
   ASSERT_FALSE(result.objections.empty());
   EXPECT_THAT(result.objections.front(), HasSubstr("joint 2 ("));
+  EXPECT_THAT(result.objections.front(), HasSubstr(" the residual is "));
+  for (const auto* remarks : {&result.objections, &result.notes}) {
+    for (const std::string& words : *remarks) {
+      EXPECT_THAT(words, Not(HasSubstr("|e|"))) << "that is of all joints, and no torque";
+    }
+  }
   EXPECT_THAT(verdict_of(result), HasSubstr("no bounds that can be trusted"));
 }
 

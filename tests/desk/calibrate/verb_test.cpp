@@ -64,7 +64,7 @@ TEST_F(CalibrateVerb, WritesARobotFileThatReplaysWithoutAlarm) {
       calibrate({path("a.csv"), "--holdout", path("b.csv"), "--robot", path("arm.toml"), "-o",
                  path("new.toml"), "--report", path("page.html")});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("0 alarm(s) in 20 s"));
+  EXPECT_THAT(result.out, HasSubstr("0 alarms in 20 s"));
   EXPECT_THAT(result.out, HasSubstr("written: " + path("new.toml")));
   const std::string text = content_of(path("new.toml"));
   EXPECT_THAT(text, HasSubstr("# a comment that stays"));
@@ -125,9 +125,70 @@ TEST_F(CalibrateVerb, ReplayOfATorqueSpaceSaysNoMaximaOverJoints) {
   };
   const CommandResult joint_by_joint = replayed("torque.toml");
   EXPECT_EQ(joint_by_joint.exit_code, 0) << joint_by_joint.err;
-  EXPECT_THAT(joint_by_joint.out, HasSubstr("largest |e| / mu"));
+  EXPECT_THAT(joint_by_joint.out, HasSubstr("largest residual / threshold"));
+  EXPECT_THAT(joint_by_joint.out, Not(HasSubstr("|e|")));
   EXPECT_THAT(joint_by_joint.out, Not(HasSubstr("largest threshold mu")));
   EXPECT_THAT(replayed("arm.toml").out, HasSubstr("largest threshold mu"));
+}
+
+TEST_F(CalibrateVerb, SaysWhereTheCommentsOfTheRobotFileAreLost) {
+  const std::string text = content_of(path("arm.toml"));
+  const auto bound = text.find("[uncertainty_bound]");
+  const std::string head = text.substr(0, bound);
+  offnominal::test::put(folder_ / "one_line.toml",
+                        "# a comment that stays\nuncertainty_bound = {kind = \"constant\", value = "
+                        "50.0}\n" +
+                            head.substr(head.find("format")));
+  offnominal::test::put(folder_ / "quoted.toml",
+                        head + "[\"uncertainty_bound\"]\nkind = \"constant\"\nvalue = 50.0\n");
+  const auto written = [&](const std::string& robot) {
+    const CommandResult result =
+        calibrate({path("a.csv"), "--robot", path(robot), "-o", path("new.toml"), "--force"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result;
+  };
+  EXPECT_THAT(written("one_line.toml").err, Not(HasSubstr("comments")));
+  EXPECT_THAT(content_of(path("new.toml")), HasSubstr("# a comment that stays\n"));
+  EXPECT_THAT(written("quoted.toml").err,
+              HasSubstr("hint: " + path("new.toml") + " has none of the comments of"));
+}
+
+// Single bad rows: each costs itself alone, and cuts the recording all the same.
+void spoil(Log& log, double first_s, double every_s) {
+  const auto rows = [&](double seconds) {
+    return static_cast<Eigen::Index>(seconds / log.period_s);
+  };
+  for (Eigen::Index row = rows(first_s); row < log.sample_count(); row += rows(every_s)) {
+    log.tau(row, 0) += 400;
+  }
+}
+
+TEST_F(CalibrateVerb, SaysWhatWasCutOutWhereTheRestIsTooShort) {
+  const auto told = [&](double first_s) {
+    Log log = record_arm({.duration_s = 20, .rate_hz = 200, .torque_noise = 0.5});
+    spoil(log, first_s, 1.5);
+    offnominal::test::put(folder_ / "cut.csv", csv_text(log));
+    const CommandResult result =
+        calibrate({path("cut.csv"), "--robot", path("arm.toml"), "-o", path("new.toml")});
+    EXPECT_EQ(result.exit_code, 2);
+    return result.err;
+  };
+  EXPECT_THAT(told(1.5), HasSubstr("13 stretches left out, and no 2 s between what is left out"));
+  const std::string few = told(3.0);
+  EXPECT_THAT(few, HasSubstr("whole blocks of 1 s to calibrate on, in "));
+  EXPECT_THAT(few, HasSubstr("; of 20"));
+  EXPECT_THAT(few, HasSubstr("12 rows of jump in 12 stretches"));
+  EXPECT_THAT(few, HasSubstr("say with --keep JOINT:REASON what is no fault"));
+}
+
+TEST_F(CalibrateVerb, TakesOneReasonToKeepAtATime) {
+  const CommandResult help = calibrate({"--help"});
+  EXPECT_THAT(help.out, HasSubstr("--keep JOINT:REASON "));
+  EXPECT_THAT(help.out, Not(HasSubstr("--keep JOINT:REASON ...")));
+  const CommandResult result =
+      calibrate({"--keep", "all:jump", "--keep", "1:stuck", path("a.csv"), path("b.csv"), "--robot",
+                 path("arm.toml"), "-o", path("new.toml")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
 }
 
 TEST_F(CalibrateVerb, RefusesWithOneLineAndExitTwo) {
@@ -149,6 +210,7 @@ TEST_F(CalibrateVerb, RefusesWithOneLineAndExitTwo) {
       {{path("a.csv"), "--robot", robot, "-o", out, "--alarms-per-hour", "0"}, "1e-6 to 60"},
       {{path("a.csv"), "--robot", robot, "-o", out, "--velocity-error", "-1"}, "at least 0"},
       {{path("a.csv"), "--robot", robot, "-o", "/nowhere/new.toml"}, "/nowhere/new.toml"},
+      {{path("a.csv"), "--robot", robot, "-o", out, "--period", "0"}, "--period: 0 is no number"},
       {{path("a.csv"), "--robot", (offnominal::test::kRobots / "emps.toml").string(), "-o", out},
        "a.csv"}};
   for (const Wrong& wrong : all) {
