@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 #include "compare/inverse_model.hpp"
@@ -148,6 +149,29 @@ void describe_loud(const SearchResult& from, Explanation& to) {
   }
 }
 
+void describe_changes(const SearchResult& from, Explanation& to) {
+  std::vector<std::string> files;  // in the order of the recordings
+  for (const Workspace& at : from.regression.data().recordings) {
+    if (std::find(files.begin(), files.end(), at.file) == files.end()) files.push_back(at.file);
+  }
+  const auto place_of = [](const Term& term) { return EffectAt{term.effect->kind(), term.joint}; };
+  for (const FoundChange& one : from.changes) {
+    Change change;
+    change.what = place_of(one.term);
+    std::transform(one.alike.begin(), one.alike.end(), std::back_inserter(change.alike), place_of);
+    change.recording = static_cast<std::size_t>(
+        std::find(files.begin(), files.end(), one.term.during->file) - files.begin());
+    change.at_s = one.term.during->from_s;
+    change.at_ci95_s = one.at_s;
+    // How a sign is smoothed does not change.
+    std::copy_if(
+        one.numbers.begin(), one.numbers.end(), std::back_inserter(change.by),
+        [](const Estimate& number) { return number.value.name != effects::kSmoothing.name; });
+    change.p_value = one.p;
+    to.changes.push_back(std::move(change));
+  }
+}
+
 void describe_friction_of_file(const SearchResult& from, Explanation& to) {
   for (Index joint = 0; joint < from.regression.data().layout.joint_count(); ++joint) {
     const auto& known = from.robot.effects;
@@ -226,6 +250,7 @@ void describe(const SearchResult& result, Explanation& to) {
   describe_shifts(result, to);
   describe_hold_friction(result, to);
   describe_loud(result, to);
+  describe_changes(result, to);
   describe_friction_of_file(result, to);
   describe_series(result, to);
   to.where = structure_of(result.regression.data(), result.found.fit.residual);

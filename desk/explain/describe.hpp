@@ -1,5 +1,6 @@
 #pragma once
 
+#include "explain/change.hpp"
 #include "explain/explain.hpp"
 #include "explain/find_model.hpp"
 #include "explain/sizes.hpp"
@@ -16,6 +17,7 @@ struct SearchResult {
   const FoundModel& found;
   const ImprovedRobot& improved;  // with the found model's final numbers
   const Sizes& sizes;             // of its effects
+  const std::vector<FoundChange>& changes;
 };
 
 // Fills in all that an explanation says in numbers: errors per joint, findings, rejections, what

@@ -13,12 +13,14 @@
 #include "common/shell_word.hpp"
 #include "compare/measurement.hpp"
 #include "explain/alternatives.hpp"
+#include "explain/change.hpp"
 #include "explain/describe.hpp"
 #include "explain/find_model.hpp"
 #include "explain/free_function.hpp"
 #include "explain/friction_family.hpp"
 #include "explain/link_share.hpp"
 #include "explain/questions.hpp"
+#include "explain/search_setting.hpp"
 #include "explain/sizes.hpp"
 #include "explain/undecided.hpp"
 #include "explain/verdict.hpp"
@@ -52,21 +54,26 @@ class Explainer {
     check(logs, plan);
     check(holdout, plan);
     const VectorXd widths = set_sign_widths(robot_, logs, plan);
-    nuisance_.link_share = options.link_share.value_or(kUsualLinkShare);
-    nuisance_.link_geometry = nuisance_.link_share > kCadShare;
+    NuisanceOptions nuisance;
+    nuisance.link_share = options.link_share.value_or(kUsualLinkShare);
+    nuisance.link_geometry = nuisance.link_share > kCadShare;
     both_ways_ = came_both_ways(logs);
     const auto data_of = [&](const std::vector<Stretch>& some) {
       auto made = searched_workspaces(some, robot_, plan, widths);
       for (Workspace& at : made) at.came_both_ways = both_ways_;
-      return std::make_unique<Data>(std::move(made), robot_, nuisance_);
+      return std::make_unique<Data>(std::move(made), robot_, nuisance);
     };
     const std::vector<Stretch> searched = stretches_of(logs, robot_, plan);
     left_out_ = words_of(searched, logs);
     std::unique_ptr<Data> data = data_of(searched);
-    nuisance_.ranges_moved = ranges_moved(data->recordings);
+    nuisance.ranges_moved = ranges_moved(data->recordings);
     std::unique_ptr<Data> held_out;
     if (!holdout.empty()) held_out = data_of(stretches_of(holdout, robot_, plan));
-    set_data(std::move(data), std::move(held_out));
+    tell("preparing the candidates' regressors");
+    setting_ = setting_of(std::move(nuisance), std::move(data), std::move(held_out),
+                          {.bootstrap_draws = options_.bootstrap_draws,
+                           .seed = options_.seed,
+                           .threads = options_.threads});
   }
 
   // A recording at fault tells nothing of effects: then there is no search, and what the model
@@ -75,31 +82,36 @@ class Explainer {
     Explanation result;
     if (!options_.robot_file.empty() && !is_stream(options_.robot_file))
       result.robot_file = shell_word(options_.robot_file);
-    result.at_rest = data_->recordings[0].at_rest;
-    result.holdout_is_apart = hold_out_->is_apart();
-    result.excitation = excitation_of(data_->recordings);
-    FoundModel found = search_model(search, result);
-    const HoldOut& hold_out = *hold_out_;
-    result.over_variable = leave_out_stand_ins(*regression_, hold_out, options_.threads, found);
+    result.at_rest = setting_.data->recordings[0].at_rest;
+    result.holdout_is_apart = setting_.hold_out->is_apart();
+    result.excitation = excitation_of(setting_.data->recordings);
+    FoundModel found = search_with_changes(search, result);
+    const HoldOut& hold_out = *setting_.hold_out;
+    result.over_variable =
+        leave_out_stand_ins(*setting_.regression, hold_out, options_.threads, found);
     ImprovedRobot improved;
     Sizes sizes;
     do {
       result.ambiguous = classes_of(found, hold_out, result.excitation);
       tell("fitting the numbers");
-      improved = improved_robot(file_, robot_, *data_,
-                                {nuisance_, fitted_effects(file_), {}, options_.source},
-                                relinearise(robot_, *data_, nuisance_, found.terms(), found.fit));
+      improved = improved_robot(
+          file_, robot_, *setting_.data,
+          {setting_.nuisance, fitted_effects(file_), {}, options_.source},
+          relinearise(robot_, *setting_.data, setting_.nuisance, found.terms(), found.fit));
       sizes = sizes_of(improved);
-    } while (leave_out_unsure(sizes, *regression_, hold_out, options_.threads, found));
+    } while (leave_out_unsure(sizes, *setting_.regression, hold_out, options_.threads, found));
     if (search) {
-      for (auto& one : undecided(*search_, *regression_, found, result.excitation)) {
+      for (auto& one :
+           undecided(*setting_.search, *setting_.regression, found, result.excitation)) {
         result.ambiguous.push_back(std::move(one));
       }
     }
     for (std::size_t joint = 0; joint < found.unsure.size(); ++joint) {
       if (found.unsure[joint] != 0) result.unsure.push_back(static_cast<Index>(joint));
     }
-    describe({robot_, *regression_, *search_, hold_out, found, improved, sizes}, result);
+    describe({robot_, *setting_.regression, *setting_.search, hold_out, found, improved, sizes,
+              changes_},
+             result);
     leave_out_undecided(found, result.ambiguous, improved);
     result.improved = std::move(improved.robot);
     result.unwritable = std::move(improved.unwritable);
@@ -123,20 +135,8 @@ class Explainer {
     if (on_progress_) on_progress_(doing);
   }
 
-  void set_data(std::unique_ptr<Data> data, std::unique_ptr<Data> held_out) {
-    data_ = std::move(data);
-    held_out_ = std::move(held_out);
-    regression_ = std::make_unique<Regression>(*data_);
-    hold_out_ = std::make_unique<HoldOut>(*regression_, held_out_.get());
-    tell("preparing the candidates' regressors");
-    search_ = std::make_unique<Search>(*regression_,
-                                       SearchOptions{.bootstrap_draws = options_.bootstrap_draws,
-                                                     .seed = options_.seed,
-                                                     .threads = options_.threads});
-  }
-
   [[nodiscard]] FoundModel find(bool search, const Explanation& result) const {
-    return find_model(*search_, *regression_, *hold_out_, result.excitation,
+    return find_model(*setting_.search, *setting_.regression, *setting_.hold_out, result.excitation,
                       {.most_effects = search ? most_effects() : 0,
                        .room = room_for_effects(),
                        .replays = options_.replays},
@@ -145,36 +145,64 @@ class Explainer {
 
   // With links as far off as the recordings ask for, where nobody has said how far that is.
   FoundModel search_model(bool search, Explanation& result) {
-    result.link_share = nuisance_.link_share;
+    result.link_share = setting_.nuisance.link_share;
+    result.link_share_judged = false;
     FoundModel usual = find(search, result);
     if (!search || options_.link_share || result.at_rest) return usual;
     tell("asking how far the links' numbers are off");
-    const auto share = wider_link_share(robot_, *data_, options_.threads);
+    NuisanceOptions wider = setting_.nuisance;
+    const auto share = wider_link_share(robot_, *setting_.data, wider.changes, options_.threads);
     if (!share) return usual;
+    wider.link_share = *share;
+    wider.link_geometry = true;
     // What the fits point to has to stay where it is until one of them is chosen.
-    const NuisanceOptions before = nuisance_;
-    auto data = std::move(data_);
-    auto held_out = std::move(held_out_);
-    auto regression = std::move(regression_);
-    auto hold_out = std::move(hold_out_);
-    auto search_of_usual = std::move(search_);
-    nuisance_.link_share = *share;
-    nuisance_.link_geometry = true;
-    set_data(std::make_unique<Data>(*data, robot_, nuisance_),
-             held_out ? std::make_unique<Data>(*held_out, robot_, nuisance_) : nullptr);
+    SearchSetting of_usual = set_beside(wider);
     FoundModel wide = find(search, result);
-    if (is_clearly_better(*hold_out_, wide, usual)) {
+    if (is_clearly_better(*setting_.hold_out, wide, usual)) {
       result.link_share = *share;
       result.link_share_judged = true;
       return wide;
     }
-    nuisance_ = before;
-    data_ = std::move(data);
-    held_out_ = std::move(held_out);
-    regression_ = std::move(regression);
-    hold_out_ = std::move(hold_out);
-    search_ = std::move(search_of_usual);
+    setting_ = std::move(of_usual);
     return usual;
+  }
+
+  // Another nuisance from now on; returns the setting that was.
+  SearchSetting set_beside(const NuisanceOptions& nuisance) {
+    tell("preparing the candidates' regressors");
+    SearchSetting before = std::exchange(setting_, {});
+    setting_ = beside(before, robot_, nuisance);
+    return before;
+  }
+
+  // The same beside what changes in the middle of a recording, if anything does: it is asked of
+  // the model without, and what is missing all the time is then sought anew beside it.
+  FoundModel search_with_changes(bool search, Explanation& result) {
+    const NuisanceOptions usual = setting_.nuisance;
+    FoundModel without = search_model(search, result);
+    if (!search || result.at_rest) return without;
+    tell("looking for what changes in the middle");
+    changes_ = changes_beside(*setting_.regression, without.terms(), setting_.search->options());
+    if (changes_.empty()) return without;
+    const double share = result.link_share;
+    const bool judged = result.link_share_judged;
+    NuisanceOptions changed = usual;
+    changed.changes = terms_of(changes_);
+    SearchSetting of_without = set_beside(changed);
+    FoundModel with = search_model(search, result);
+    NuisanceOptions unchanged = setting_.nuisance;
+    unchanged.changes.clear();
+    const Data plain(*setting_.data, robot_, unchanged);
+    changes_ = changes_beside(Regression(plain), with.terms(), setting_.search->options());
+    if (!changes_.empty() &&
+        predicts_better(*setting_.regression, with, *of_without.regression, without)) {
+      return with;
+    }
+    changes_.clear();
+    setting_ = std::move(of_without);
+    result.link_share = share;
+    result.link_share_judged = judged;
+    return without;
   }
 
   // What could as well be something else is not written; its numbers were fitted beside it.
@@ -210,7 +238,8 @@ class Explainer {
 
   // A hold map may show one order after the other: as many as robot files have room for.
   [[nodiscard]] int most_effects() const {
-    return data_->recordings[0].at_rest ? std::max(1, room_for_effects()) : options_.most_effects;
+    return setting_.data->recordings[0].at_rest ? std::max(1, room_for_effects())
+                                                : options_.most_effects;
   }
 
   // Of a robot file, and with what is carried in a recording, which is one more.
@@ -220,7 +249,7 @@ class Explainer {
              std::any_of(data->recordings.begin(), data->recordings.end(),
                          [](const Workspace& at) { return at.payload.has_value(); });
     };
-    const bool loaded = is_loaded(data_.get()) || is_loaded(held_out_.get());
+    const bool loaded = is_loaded(setting_.data.get()) || is_loaded(setting_.held_out.get());
     return kEffectsPerJoint * static_cast<int>(robot_.joints.size()) -
            static_cast<int>(robot_.effects.size()) - (loaded ? 1 : 0);
   }
@@ -268,7 +297,7 @@ class Explainer {
     for (std::size_t i = found.accepted.size(); i-- > 0;) {
       if (i > 0 && same[i].size() > kMostAlike) {
         found.accepted.erase(found.accepted.begin() + static_cast<std::ptrdiff_t>(i));
-        order_and_hold_out(*regression_, hold_out, options_.threads, found);
+        order_and_hold_out(*setting_.regression, hold_out, options_.threads, found);
         // Another order, and other companions: all are asked anew.
         classes.clear();
         i = found.accepted.size();
@@ -295,10 +324,10 @@ class Explainer {
                                             const std::vector<Excitation>& excitation) const {
     const Term& mine = found.accepted[i].term;
     const std::vector<Term> others = found.terms_without(i);
-    const ModelFit beside = regression_->fit(others);
+    const ModelFit beside = setting_.regression->fit(others);
     const double own =
-        weighted_energy(*data_, mine, found.fit.coefficients[i], found.fit.joint_weights);
-    Screening screening = search_->screen(others, beside);
+        weighted_energy(*setting_.data, mine, found.fit.coefficients[i], found.fit.joint_weights);
+    Screening screening = setting_.search->screen(others, beside);
     // What takes far less than the best does not come as close as noise would let it.
     constexpr double kNear = 0.25;
     double most = 0;
@@ -306,15 +335,15 @@ class Explainer {
     std::erase_if(screening.candidates,
                   [&](const Screened& one) { return one.evidence.gain < kNear * most; });
     std::vector<EffectAt> same{{mine.effect->kind(), mine.joint}};
-    for (const Proposal& other : search_->propose(others, beside, screening)) {
+    for (const Proposal& other : setting_.search->propose(others, beside, screening)) {
       const Term& term = other.terms.back();
       const EffectAt name{term.effect->kind(), term.joint};
-      const double energy = std::max(
-          own,
-          weighted_energy(*data_, term, other.fit.coefficients.back(), found.fit.joint_weights));
-      if (name == same[0] || !as_good(*data_, found.fit, other.fit, energy) ||
-          is_nested(*data_, found.baseline, mine, term) ||
-          is_refuted_by_simpler(*data_, mine, found.fit, term, other.fit)) {
+      const double energy =
+          std::max(own, weighted_energy(*setting_.data, term, other.fit.coefficients.back(),
+                                        found.fit.joint_weights));
+      if (name == same[0] || !as_good(*setting_.data, found.fit, other.fit, energy) ||
+          is_nested(*setting_.data, found.baseline, mine, term) ||
+          is_refuted_by_simpler(*setting_.data, mine, found.fit, term, other.fit)) {
         continue;
       }
       same.push_back(name);
@@ -329,11 +358,12 @@ class Explainer {
   // none.
   void add_slow_ripples(const FoundModel& found, const Term& mine, const std::vector<Term>& others,
                         double energy, std::vector<EffectAt>& same) const {
-    for (const Term& ripple : slow_ripples(*data_, mine.joint)) {
+    for (const Term& ripple : slow_ripples(*setting_.data, mine.joint)) {
       std::vector<Term> terms = others;
       terms.push_back(ripple);
       const EffectAt name{ripple.effect->kind(), ripple.joint};
-      if (!holds(same, name) && as_good(*data_, found.fit, regression_->fit(terms), energy)) {
+      if (!holds(same, name) &&
+          as_good(*setting_.data, found.fit, setting_.regression->fit(terms), energy)) {
         same.push_back(name);
       }
     }
@@ -344,15 +374,11 @@ class Explainer {
   const std::vector<Log>& logs_;
   FilterPlan plan_;  // of all of them
   ExplainOptions options_;
-  NuisanceOptions nuisance_;
   const OnProgress& on_progress_;
   std::vector<char> both_ways_;
   std::string left_out_;
-  std::unique_ptr<Data> data_;
-  std::unique_ptr<Data> held_out_;
-  std::unique_ptr<Regression> regression_;
-  std::unique_ptr<HoldOut> hold_out_;
-  std::unique_ptr<Search> search_;
+  SearchSetting setting_;
+  std::vector<FoundChange> changes_;
 };
 
 void check_keep(const std::vector<KeepFault>& keep, const RobotDescription& robot) {

@@ -28,6 +28,7 @@ enum class Verdict {
   kUnknownStateDependent,
   kUnknownExternal,
   kNotExcited,
+  kChanged,
   kDataFault
 };
 const char* name_of(Verdict verdict);
@@ -81,6 +82,20 @@ struct LoudSpan {
   double from_s = 0;          // by the recording's own time stamps
   double to_s = 0;
 };
+
+// Something that a joint has, or has no longer, from a moment in the middle of a recording on.
+struct Change {
+  EffectAt what;
+  std::vector<EffectAt> alike;  // what else may have changed: these recordings cannot tell
+  std::size_t recording = 0;    // from 0
+  double at_s = 0;              // by the recording's own time stamps
+  std::array<double, 2> at_ci95_s{};
+  std::vector<Estimate> by;  // what of the effect is there more than before
+  double p_value = 1;        // of the whole search for changes, wild block bootstrap
+};
+
+// "coulomb_friction on joint 4 at 14.98 s of recording 1 (level by +3.1 N m)".
+std::string words_of(const Change& change);
 
 // An effect that noise may hide: likely more than chance, and too unsure or too small to be named.
 struct Suspicion {
@@ -155,6 +170,7 @@ struct Explanation {
   std::vector<Finding> found;        // what matters most first
   std::vector<OverVariable> over_variable;
   std::vector<LoudSpan> loud;
+  std::vector<Change> changes;  // the likeliest first
   // Joints whose model has neither Coulomb nor viscous friction.
   std::vector<Eigen::Index> without_friction;
   std::vector<std::vector<EffectAt>> ambiguous;

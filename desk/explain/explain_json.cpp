@@ -13,9 +13,9 @@ ordered_json effect_at(const EffectAt& what) {
   return {{"effect", what.name()}, {"joint", what.joint + 1}};
 }
 
-ordered_json parameters_of(const Finding& finding) {
+ordered_json parameters_of(const std::vector<Estimate>& numbers) {
   ordered_json parameters = ordered_json::object();
-  for (const Estimate& one : finding.parameters) {
+  for (const Estimate& one : numbers) {
     ordered_json value{{"value", one.value.value}, {"unit", one.value.unit}, {"ci95", nullptr}};
     if (one.ci95) {
       value["ci95"] = {(*one.ci95)[0], (*one.ci95)[1]};
@@ -30,7 +30,7 @@ ordered_json parameters_of(const Finding& finding) {
 ordered_json json_of(const Finding& finding) {
   ordered_json json = effect_at(finding.what);
   json["formula"] = finding.formula;
-  json["parameters"] = parameters_of(finding);
+  json["parameters"] = parameters_of(finding.parameters);
   json["p_value"] = finding.p_value;
   json["p_value_replay"] = finding.p_replay;
   json["holdout_error_before"] = finding.holdout_before;
@@ -94,6 +94,17 @@ ordered_json json_of(const OverVariable& one) {
           {"torque", one.torque}};
 }
 
+ordered_json json_of(const Change& one) {
+  ordered_json json = effect_at(one.what);
+  json["alike"] = array_of(one.alike, effect_at);
+  json["recording"] = one.recording + 1;
+  json["at_s"] = one.at_s;
+  json["at_s_ci95"] = one.at_ci95_s;
+  json["by"] = parameters_of(one.by);
+  json["p_value"] = one.p_value;
+  return json;
+}
+
 }  // namespace
 
 ordered_json to_json(const Explanation& e, const ExplainNames& names) {
@@ -110,6 +121,7 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
   json["over_variable"] =
       array_of(e.over_variable, [](const OverVariable& one) { return json_of(one); });
   json["found"] = array_of(e.found, [](const Finding& finding) { return json_of(finding); });
+  json["changes"] = array_of(e.changes, [](const Change& one) { return json_of(one); });
   json["waterfall"] = ordered_json::array();
   for (std::size_t i = 0; i < e.waterfall.size(); ++i) {
     ordered_json step{{"added", nullptr}, {"holdout", ordered_json::array()}};

@@ -113,6 +113,35 @@ report::Table finding_table(const Explanation& e) {
   return table;
 }
 
+report::Table change_table(const Explanation& e) {
+  report::Table table;
+  table.caption = "What changes in the middle of a recording";
+  table.columns = {{"effect", "", ".4g"},    {"joint", "", "d"},         {"recording", "", "d"},
+                   {"at", "s", ".2f"},       {"95 % from", "s", ".2f"},  {"to", "s", ".2f"},
+                   {"parameter", "", ".4g"}, {"changes by", "", "+.3g"}, {"95 % from ", "", "+.3g"},
+                   {"to ", "", "+.3g"},      {"unit", "", ".4g"},        {"p", "", ".2g"}};
+  for (const Change& one : e.changes) {
+    std::string name(one.what.name());
+    for (const EffectAt& other : one.alike) {
+      name += fmt::format(" or {} of joint {}", other.name(), other.joint + 1);
+    }
+    for (const Estimate& by : one.by) {
+      report::Cell low;
+      report::Cell high;
+      if (by.ci95) {
+        low = (*by.ci95)[0];
+        high = (*by.ci95)[1];
+      }
+      table.rows.push_back({name, static_cast<double>(one.what.joint + 1),
+                            static_cast<double>(one.recording + 1), one.at_s, one.at_ci95_s[0],
+                            one.at_ci95_s[1], by.value.name, by.value.value, low, high,
+                            by.value.unit, one.p_value});
+    }
+  }
+  table.note = "There from that moment on, and not before; a minus sign: there until then.";
+  return table;
+}
+
 report::Table where_table(const Explanation& e) {
   constexpr std::size_t kMost = 8;
   report::Table table;
@@ -369,6 +398,7 @@ report::Page page_of(const Explanation& e, const ExplainNames& names) {
   if (!e.left_out.empty()) overview.blocks.emplace_back(table_of_left_out(e.left_out));
   if (!e.answers.empty()) overview.blocks.emplace_back(answer_table(e));
   if (!e.found.empty()) overview.blocks.emplace_back(finding_table(e));
+  if (!e.changes.empty()) overview.blocks.emplace_back(change_table(e));
   if (!e.ambiguous.empty()) overview.blocks.emplace_back(class_table(e));
   overview.blocks.emplace_back(error_table(e));
   if (!e.where.empty()) overview.blocks.emplace_back(where_table(e));

@@ -81,6 +81,23 @@ std::string text_of_findings(const Explanation& e) {
   return text;
 }
 
+std::string text_of_changes(const Explanation& e) {
+  std::string text;
+  for (const Change& one : e.changes) {
+    text += fmt::format(
+        "\nfrom {:.2f} s ({:.2f} .. {:.2f} s) of recording {} on: {} on joint {} changes by\n",
+        one.at_s, one.at_ci95_s[0], one.at_ci95_s[1], one.recording + 1, one.what.name(),
+        one.what.joint + 1);
+    for (const Estimate& by : one.by) text += "   " + words_of(by) + "\n";
+    text += fmt::format("   p = {:.2g} over the whole search for changes\n", one.p_value);
+    for (const EffectAt& other : one.alike) {
+      text += fmt::format("   or it is {} on joint {}: not told apart\n", other.name(),
+                          other.joint + 1);
+    }
+  }
+  return text;
+}
+
 // The command that writes what was found. What came through a pipe is gone: it is to be kept first.
 std::string command_to_add(const ExplainNames& names) {
   bool kept = true;
@@ -121,6 +138,7 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
   text += text_of_joints(e);
   text += text_of_answers(e);
   text += text_of_findings(e);
+  text += text_of_changes(e);
   if (!e.where.empty()) {
     const StructureShare& first = e.where.front();
     text += fmt::format("\nwhat is left follows the {} of joint {} by {:.0f} %\n", first.variable,

@@ -68,7 +68,7 @@ HeldOutErrors held_out_of(const Data& data) {
 }  // namespace
 
 std::optional<double> wider_link_share(const RobotDescription& robot, const Data& data,
-                                       int threads) {
+                                       const std::vector<Term>& changes, int threads) {
   std::array<HeldOutErrors, 1 + kShares.size()> held;
   parallel_for(held.size(), threads, [&](std::size_t i) {
     NuisanceOptions wide;
@@ -78,6 +78,7 @@ std::optional<double> wider_link_share(const RobotDescription& robot, const Data
     }
     wide.link_share = kShares[i - 1];
     wide.link_geometry = true;
+    wide.changes = changes;
     held[i] = held_out_of(Data(data, robot, wide));
   });
   std::optional<double> share;

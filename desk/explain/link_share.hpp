@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "explain/find_model.hpp"
 #include "robot/robot.hpp"
@@ -16,10 +17,10 @@ inline constexpr double kCadShare = 0.1;
 // every link each free within it, Coulomb and viscous friction on every joint that moves, and a
 // payload on the last link of an arm of three joints or more, held-out time has to become clearly
 // more likely (at least one joint's error falls by a twentieth). The narrower one of those that are
-// about as good; none where the usual one is. `robot`: that `data` was made with, at the usual
-// share.
+// about as good; none where the usual one is. `robot` and `changes`
+// (nuisance.hpp): that `data` was made with, at the usual share.
 std::optional<double> wider_link_share(const RobotDescription& robot, const Data& data,
-                                       int threads);
+                                       const std::vector<Term>& changes, int threads);
 
 // Of two searches, whether the one with the wider share is to be believed: it predicts held-out
 // data clearly better than the one that had to explain the same by effects, or about as well where

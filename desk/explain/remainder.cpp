@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -269,6 +270,49 @@ MapOver map_over(const Data& data, const VectorXd& left, Index joint, const std:
   return map;
 }
 
+namespace {
+
+// Where between `low` and `high` the power of the samples changes, by the likelihood of two levels:
+// the first sample of the second one.
+Index step_of_power(const Eigen::Ref<const VectorXd>& values, Index low, Index high) {
+  const Index count = high - low;
+  VectorXd sum = VectorXd::Zero(count + 1);
+  for (Index i = 0; i < count; ++i) sum[i + 1] = sum[i] + values[low + i] * values[low + i];
+  const double floor = 1e-12 * sum[count] + 1e-300;
+  Index best = low;
+  double most = -std::numeric_limits<double>::infinity();
+  for (Index i = 2; i + 2 <= count; ++i) {
+    const auto before = static_cast<double>(i);
+    const auto after = static_cast<double>(count - i);
+    const double likely = -before * std::log((sum[i] + floor) / before) -
+                          after * std::log((sum[count] - sum[i] + floor) / after);
+    if (likely <= most) continue;
+    most = likely;
+    best = low + i;
+  }
+  return best;
+}
+
+// Samples of one recording, `count` from `first` on.
+struct LoudSamples {
+  Index first = 0;
+  Index count = 0;
+};
+
+// Its first and last sample, to the sample, where it was found in whole windows: each end is looked
+// for from a window outside to the middle.
+LoudSamples sharpened(const LoudSamples& rough, const Eigen::Ref<const VectorXd>& values,
+                      Index window) {
+  const Index middle = rough.first + rough.count / 2;
+  const Index low = std::max<Index>(0, rough.first - window);
+  const Index high = std::min(values.size(), rough.first + rough.count + window);
+  const Index first = step_of_power(values, low, middle);
+  const Index last = step_of_power(values, middle, high);
+  return {first, std::max<Index>(1, last - first)};
+}
+
+}  // namespace
+
 std::vector<LoudWindow> loud_windows(const Data& data, const VectorXd& left, Index joint) {
   constexpr double kWindowS = 0.5;
   constexpr double kLoudest = 0.1;
@@ -276,18 +320,19 @@ std::vector<LoudWindow> loud_windows(const Data& data, const VectorXd& left, Ind
   const RowLayout& layout = data.layout;
   const VectorXd residual = layout.while_moving(left);
   struct Window {
-    LoudWindow where;
+    std::size_t recording = 0;
+    LoudSamples samples;
     double power = 0;
   };
   std::vector<Window> windows;
+  const auto length_in = [&](std::size_t r) {
+    return std::max<Index>(1, std::lround(kWindowS / layout.period_s(r)));
+  };
   for (std::size_t r = 0; r < layout.recording_count(); ++r) {
-    const VectorXd t_s = kept_samples(data.recordings[r].plan, data.recordings[r].motion.t_s);
-    const auto length = std::max<Index>(1, std::lround(kWindowS / layout.period_s(r)));
-    for (Index first = 0; first < t_s.size(); first += length) {
-      const Index count = std::min(length, t_s.size() - first);
+    for (Index first = 0; first < layout.samples(r); first += length_in(r)) {
+      const Index count = std::min(length_in(r), layout.samples(r) - first);
       const auto part = residual.segment(layout.begin(r, joint) + first, count);
-      windows.push_back({{r, t_s[first], t_s[first + count - 1]},
-                         part.squaredNorm() / static_cast<double>(count)});
+      windows.push_back({r, {first, count}, part.squaredNorm() / static_cast<double>(count)});
     }
   }
   std::vector<double> powers;
@@ -297,18 +342,26 @@ std::vector<LoudWindow> loud_windows(const Data& data, const VectorXd& left, Ind
     return powers[static_cast<std::size_t>(share * static_cast<double>(powers.size() - 1))];
   };
   const double least = std::max(at(1 - kLoudest), kAboveMedian * at(0.5));
-  std::vector<LoudWindow> loud;
+  std::vector<Window> loud;
   for (std::size_t i = 0; i < windows.size(); ++i) {
     if (!(windows[i].power >= least) || !(windows[i].power > 0)) continue;
     const bool joins = i > 0 && !loud.empty() && windows[i - 1].power >= least &&
-                       loud.back().recording == windows[i].where.recording;
+                       loud.back().recording == windows[i].recording;
     if (joins) {
-      loud.back().to_s = windows[i].where.to_s;
+      loud.back().samples.count += windows[i].samples.count;
     } else {
-      loud.push_back(windows[i].where);
+      loud.push_back(windows[i]);
     }
   }
-  return loud;
+  std::vector<LoudWindow> all;
+  for (const Window& one : loud) {
+    const std::size_t r = one.recording;
+    const VectorXd t_s = kept_samples(data.recordings[r].plan, data.recordings[r].motion.t_s);
+    const auto own = residual.segment(layout.begin(r, joint), layout.samples(r));
+    const LoudSamples ends = sharpened(one.samples, own, length_in(r));
+    all.push_back({r, t_s[ends.first], t_s[ends.first + ends.count - 1]});
+  }
+  return all;
 }
 
 }  // namespace offnominal::desk

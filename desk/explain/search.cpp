@@ -6,9 +6,9 @@
 #include <map>
 
 #include "compare/inverse_model.hpp"
+#include "identify/independent_samples.hpp"
 #include "identify/parallel.hpp"
 #include "identify/shape_search.hpp"
-#include "signal/correlation.hpp"
 
 namespace offnominal::desk {
 
@@ -175,23 +175,11 @@ bool Search::is_asked_first(const Term& term) const {
 NullOfSearch Search::null_of(const std::vector<Term>& terms, const ModelFit& fit,
                              const ModelFit& at) const {
   const RowLayout& layout = data_.layout;
-  const VectorXd moving = layout.while_moving(fit.residual);
-  double whole_s = 0;
-  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
-    whole_s += layout.period_s(r) * static_cast<double>(layout.samples(r));
-  }
   // Lengths in a few steps: joints whose errors are correlated alike are judged at once.
-  constexpr double kFewestBlocks = 20;
   constexpr double kStep = 1.25;
   std::map<int, std::vector<Index>> joints_of_length;
   for (Index joint = 0; joint < layout.joint_count(); ++joint) {
-    double correlation_s = 0;
-    for (std::size_t r = 0; r < layout.recording_count(); ++r) {
-      const auto part = moving.segment(layout.begin(r, joint), layout.samples(r));
-      correlation_s = std::max(correlation_s, correlation_samples(part) * layout.period_s(r));
-    }
-    const double length_s =
-        std::max(kShortestBlockS, std::min(3 * correlation_s, whole_s / kFewestBlocks));
+    const double length_s = independent_block_s(layout, fit.residual, joint);
     joints_of_length[static_cast<int>(
                          std::floor(std::log(length_s / kShortestBlockS) / std::log(kStep) + 1e-9))]
         .push_back(joint);

@@ -36,7 +36,7 @@ struct VerdictRow {
   report::Level level;  // of its page
   bool to_write;
 };
-constexpr std::array<VerdictRow, 8> kVerdicts = {{
+constexpr std::array<VerdictRow, 9> kVerdicts = {{
     {Verdict::kExplained, "explained", report::Level::kGood, false},
     {Verdict::kFound, "found", report::Level::kGood, true},
     {Verdict::kAmbiguous, "ambiguous", report::Level::kWarn, false},
@@ -44,6 +44,7 @@ constexpr std::array<VerdictRow, 8> kVerdicts = {{
     {Verdict::kUnknownStateDependent, "unknown_state_dependent", report::Level::kBad, false},
     {Verdict::kUnknownExternal, "unknown_external", report::Level::kBad, false},
     {Verdict::kNotExcited, "not_excited", report::Level::kWarn, false},
+    {Verdict::kChanged, "changed", report::Level::kWarn, false},
     {Verdict::kDataFault, "data_fault", report::Level::kBad, false},
 }};
 
@@ -151,6 +152,30 @@ std::string words_of(const OverVariable& shape) {
       "takes",
       shape.variable, fmt::join(names, " and "), names.size() == 1 ? "is" : "are",
       100 * std::max(0.0, shape.share));
+}
+
+std::string words_of_changes(const std::vector<Change>& changes) {
+  std::vector<std::string> all;
+  std::transform(changes.begin(), changes.end(), std::back_inserter(all),
+                 [](const Change& one) { return words_of(one); });
+  return fmt::format("{}", fmt::join(all, "; "));
+}
+
+std::vector<Change> changes_on(const Explanation& e, Eigen::Index joint) {
+  std::vector<Change> own;
+  std::copy_if(e.changes.begin(), e.changes.end(), std::back_inserter(own),
+               [&](const Change& one) { return one.what.joint == joint; });
+  return own;
+}
+
+// What is found beside a change holds all the time, and a robot file knows no other time.
+void advise_on_changes(Explanation& e) {
+  for (const Change& one : e.changes) {
+    e.advice.push_back(fmt::format(
+        "recording {} before and behind {:.4g} s is of two robots: a robot file says one of them; "
+        "cut it there to fit or calibrate either",
+        one.recording + 1, one.at_s));
+  }
 }
 
 void advise_on_classes(Explanation& e) {
@@ -275,6 +300,24 @@ void judge_suspected(const Suspicion& one, Explanation& e) {
 
 const char* name_of(Verdict verdict) { return row_of(verdict).name; }
 
+std::string words_of(const Change& change) {
+  std::vector<std::string> names{std::string(change.what.name())};
+  for (const EffectAt& one : change.alike) {
+    names.push_back(one.joint == change.what.joint
+                        ? std::string(one.name())
+                        : fmt::format("{} of {}", one.name(), at_joint(one.joint)));
+  }
+  std::vector<std::string> by;
+  for (const Estimate& one : change.by) {
+    const bool plain = one.value.unit.empty() || one.value.unit == "1";
+    by.push_back(fmt::format("{} {:+.3g}{}", one.value.name, one.value.value,
+                             plain ? "" : " " + one.value.unit));
+  }
+  return fmt::format("{} on {} at {:.2f} s of recording {} ({})", fmt::join(names, " or "),
+                     at_joint(change.what.joint), change.at_s, change.recording + 1,
+                     fmt::join(by, ", "));
+}
+
 bool is_to_write(Verdict verdict) { return row_of(verdict).to_write; }
 
 report::Level level_of(Verdict verdict) { return row_of(verdict).level; }
@@ -380,6 +423,12 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
   } else {
     answer.words = "no known effect is missing.";
   }
+  if (const auto changes = changes_on(e, errors.joint); !changes.empty()) {
+    const bool alone = answer.found.empty() && answer.ambiguous.empty();
+    if (alone) answer.verdict = Verdict::kChanged;
+    answer.words = fmt::format("{}changes in the middle: {}.", alone ? "" : answer.words + " It ",
+                               words_of_changes(changes));
+  }
   for (const std::string& shape : shapes) answer.words += fmt::format(" It has {}.", shape);
   const char* left = stands_out(errors) ? " What is left: " : "";
   if (*left != '\0') answer.words += left + words_of(answer.left, errors.unit) + ".";
@@ -479,6 +528,7 @@ void judge_whole(Explanation& e) {
     e.found.clear();
     e.ambiguous.clear();
     e.over_variable.clear();
+    e.changes.clear();
     e.waterfall.resize(std::min<std::size_t>(1, e.waterfall.size()));
     return;
   }
@@ -509,6 +559,10 @@ void judge_whole(Explanation& e) {
     judge_ambiguous(e);
   } else if (!e.found.empty()) {
     judge_found(e);
+  } else if (!e.changes.empty()) {
+    e.verdict = Verdict::kChanged;
+    e.words = "The robot changes in the middle of a recording: " + words_of_changes(e.changes) +
+              ". Nothing else is missing that has a name.";
   } else if (unknown != nullptr) {
     judge_unknown(*unknown, e);
   } else if (shift != e.answers.end()) {
@@ -542,6 +596,11 @@ void judge_whole(Explanation& e) {
                   "noise, and follows nothing that was looked at.",
                   at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
   }
+  if (e.verdict != Verdict::kChanged && !e.changes.empty()) {
+    e.words +=
+        " The robot changes in the middle of a recording: " + words_of_changes(e.changes) + ".";
+  }
+  advise_on_changes(e);
   advise_on_rest(e);
   advise_on_shapes(e);
 }

@@ -49,6 +49,7 @@ class Builder {
       if (options_.sign_shapes) add_sign_shapes(joint);
       if (options_.skew_samples > 0) add_skew(joint);
     }
+    for (const Term& change : options_.changes) add_change(change);
     Nuisance nuisance;
     nuisance.terms = std::move(terms_);
     nuisance.columns.resize(layout_.rows(), static_cast<Index>(columns_.size()));
@@ -216,6 +217,22 @@ class Builder {
         [&](const Workspace& at) -> Regressor {
           return {{joint, central_difference(at.torque.col(joint), at.period_s())}};
         });
+  }
+
+  void add_change(const Term& change) {
+    MatrixXd columns =
+        stacked_columns(layout_, recordings_, *change.effect, change.joint, change.shape);
+    columns.array().colwise() *= rows_in(*change.during, layout_, recordings_).array();
+    for (Index c = 0; c < columns.cols(); ++c) {
+      terms_.push_back({NuisanceTerm::Kind::kChange,
+                        change.joint,
+                        0,
+                        0,
+                        {},
+                        fmt::format("{} of joint {} from {:.4g} s of {} on", change.effect->name(),
+                                    change.joint + 1, change.during->from_s, change.during->file)});
+      columns_.emplace_back(columns.col(c));
+    }
   }
 
   const RobotDescription& robot_;

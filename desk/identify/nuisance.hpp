@@ -8,6 +8,7 @@
 
 #include "identify/fit.hpp"
 #include "identify/rows.hpp"
+#include "identify/term.hpp"
 #include "identify/workspace.hpp"
 #include "robot/robot.hpp"
 
@@ -24,6 +25,7 @@ struct NuisanceTerm {
     kSignShape,    // how dry friction builds up at a reversal; only beside dry friction
     kSkew,         // time skew between torque and position, s
     kApproach,     // of hold maps: friction by the direction of approach, N m or N
+    kChange,       // a coefficient of an effect that acts in a part of a recording
   };
   Kind kind = Kind::kLink;
   Eigen::Index joint = 0;  // or link
@@ -74,6 +76,8 @@ struct NuisanceOptions {
   // coefficient has one meaning on what is held out too. Empty: what the recordings themselves
   // move.
   Eigen::VectorXd ranges_moved = {};
+  // What changed in the middle of a recording: no robot file can say it.
+  std::vector<Term> changes = {};
 };
 
 // Size of a link, m, that its centre of mass is counted in: how far that is from the joint, or the

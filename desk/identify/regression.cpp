@@ -152,6 +152,19 @@ VectorXd independent_samples_of(const RowLayout& layout, const VectorXd& residua
   return samples;
 }
 
+double independent_block_s(const RowLayout& layout, const VectorXd& residual, Index joint) {
+  constexpr double kFewestBlocks = 20;
+  const VectorXd moving = layout.while_moving(residual);
+  double whole_s = 0;
+  double correlation_s = 0;
+  for (std::size_t r = 0; r < layout.recording_count(); ++r) {
+    whole_s += layout.period_s(r) * static_cast<double>(layout.samples(r));
+    const auto part = moving.segment(layout.begin(r, joint), layout.samples(r));
+    correlation_s = std::max(correlation_s, correlation_samples(part) * layout.period_s(r));
+  }
+  return std::max(kShortestBlockS, std::min(3 * correlation_s, whole_s / kFewestBlocks));
+}
+
 bool Regression::has_dry_friction(const std::vector<Term>& terms, Index joint) const {
   return data_.recordings[0].knows_dry_friction(joint) ||
          std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
@@ -185,7 +198,9 @@ bool takes_place_of(const Term& term, const NuisanceTerm& nuisance) {
          term.effect->replaces_skew();
 }
 
-MatrixXd columns_of(const Data& data, const Term& term) {
+namespace {
+
+MatrixXd columns_of_all(const Data& data, const Term& term) {
   const EffectAction action = term.effect->info().action;
   const bool of_whole_arm = action == EffectAction::kPointMass || term.effect->is_only_screened();
   const auto& all = all_candidates();
@@ -196,6 +211,16 @@ MatrixXd columns_of(const Data& data, const Term& term) {
     return data.cache->columns(data.layout, data.recordings, *term.effect, term.joint, term.shape);
   }
   return stacked_columns(data.layout, data.recordings, *term.effect, term.joint, term.shape);
+}
+
+}  // namespace
+
+MatrixXd columns_of(const Data& data, const Term& term) {
+  MatrixXd columns = columns_of_all(data, term);
+  if (term.during) {
+    columns.array().colwise() *= rows_in(*term.during, data.layout, data.recordings).array();
+  }
+  return columns;
 }
 
 Regression::Design Regression::design(const std::vector<Term>& terms) const {

@@ -1,32 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <optional>
 #include <vector>
 
 #include "identify/data.hpp"
-#include "identify/effect_candidate.hpp"
 #include "identify/evidence.hpp"
 #include "identify/fit.hpp"
+#include "identify/term.hpp"
 
 namespace offnominal::desk {
-
-// An effect on a joint that may be in the model.
-struct Term {
-  const EffectCandidate* effect = nullptr;
-  Eigen::Index joint = 0;
-  ShapePoint shape{};
-  std::vector<ShapeRange> ranges{};
-  // Coefficients that are given, not fitted; empty: none of them.
-  std::vector<std::optional<double>> given{};
-
-  // Whether it has a shape that has to be looked for.
-  [[nodiscard]] bool is_searched() const {
-    return std::any_of(ranges.begin(), ranges.end(),
-                       [](const ShapeRange& range) { return range.is_searched(); });
-  }
-};
 
 // Whether a term takes the place of an unknown of the nuisance once it is in the model.
 bool takes_place_of(const Term& term, const NuisanceTerm& nuisance);

@@ -46,6 +46,9 @@ class ArmJudge {
     for (const auto& same : told_.ambiguous) {
       if (!same.empty() && !holds_one_that_is_there(same)) count_wrong(same.front());
     }
+    for (const desk::Change& one : told_.changes) {
+      if (!is_true(one)) count_wrong(one.what);
+    }
     judge_moments();
     return std::move(score_);
   }
@@ -115,6 +118,15 @@ class ArmJudge {
            truth_.link_mass_error_share[joint] * mass >= 0;
   }
 
+  // A change of what is said, or of something that it is not told from, near that moment.
+  [[nodiscard]] bool is_true(const desk::Change& told) const {
+    constexpr double kNearS = 1;
+    return std::any_of(truth_.changes.begin(), truth_.changes.end(), [&](const ArmTrueEffect& one) {
+      const bool named = told.what == place_of(one) || holds(told.alike, place_of(one));
+      return named && std::abs(told.at_s - one.effect.from_s) <= kNearS;
+    });
+  }
+
   void count_wrong(const EffectAt& one) {
     at(one.joint).is_wrong = true;
     score_.wrong.push_back(one);
@@ -123,9 +135,13 @@ class ArmJudge {
   // Whether the answer tells of something on this joint that begins or ends then.
   [[nodiscard]] bool tells_of(double t_s, Index joint) const {
     const auto near = [&](double told_s) { return std::abs(told_s - t_s) <= kMomentS; };
-    return std::any_of(told_.loud.begin(), told_.loud.end(), [&](const desk::LoudSpan& span) {
-      return span.joint == joint && (near(span.from_s) || near(span.to_s));
-    });
+    return std::any_of(told_.loud.begin(), told_.loud.end(),
+                       [&](const desk::LoudSpan& span) {
+                         return span.joint == joint && (near(span.from_s) || near(span.to_s));
+                       }) ||
+           std::any_of(told_.changes.begin(), told_.changes.end(), [&](const desk::Change& one) {
+             return one.what.joint == joint && near(one.at_s);
+           });
   }
   [[nodiscard]] bool tells_of_any(double t_s, Index last_joint) const {
     for (Index joint = 0; joint <= last_joint; ++joint) {

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "explain/find_model.hpp"
+#include "explain/search.hpp"
+#include "identify/estimates.hpp"
+#include "identify/regression.hpp"
+
+namespace offnominal::desk {
+
+// Something that a joint has, or has no longer, from a moment of a recording on.
+struct FoundChange {
+  Term term;                   // its effect, in the part of the recording behind that moment
+  std::array<double, 2> at_s;  // where the moment lies, 95 %, by the recording's time stamps
+  std::vector<Term> alike;     // what else describes the recordings as well, best first
+  double p = 1;                // of the whole search for changes, wild block bootstrap
+  std::vector<Estimate> numbers;
+};
+
+// What changes in the middle of one of the recordings beside a model: a payload on the last link,
+// and per joint viscous or Coulomb friction, a constant torque, the torque constant. `terms`: of
+// the model; those that count time are left out of it, since they may be bent to a change. A change
+// is told where it takes as much as an effect has to (find_model.hpp), beside that effect all the
+// time, where no slow drift of the effect (a cubic in time) makes the recordings as likely, where a
+// free function of position, velocity and load of the joint does not take half of it (another
+// motion behind that moment is no change), and where its size is told from nothing. In the order of
+// how likely they make the recordings.
+std::vector<FoundChange> changes_beside(const Regression& regression, std::vector<Term> terms,
+                                        const SearchOptions& options);
+
+std::vector<Term> terms_of(const std::vector<FoundChange>& changes);
+
+// Whether time that was not fitted is clearly more likely by the model beside changes. `with` is of
+// `regression`, `without` of `regression_without`.
+bool predicts_better(const Regression& regression, const FoundModel& with,
+                     const Regression& regression_without, const FoundModel& without);
+
+}  // namespace offnominal::desk
