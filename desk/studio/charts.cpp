@@ -31,12 +31,6 @@ const std::vector<Comparison>* held_out(const Compared& compared) {
   return compared.held_out ? &compared.held_out->recordings : nullptr;
 }
 
-const Comparison& recording_of(const Compared& compared, std::size_t recording) {
-  const std::vector<Comparison>& fitted = compared.fitted.recordings;
-  return recording < fitted.size() ? fitted[recording]
-                                   : (*held_out(compared))[recording - fitted.size()];
-}
-
 void check(const Workbench& bench, const View& view) {
   const Treated& all = *bench.input().recordings;
   const auto refuse = [](const std::string& words) {

@@ -62,18 +62,31 @@ Number number_of(const Request& request, const char* name) {
   return value;
 }
 
+// The part of the time that is shown, where the request names one.
+template <typename Any>
+void set_range(const Request& request, Any& view) {
+  if (!request.has_param("from") || !request.has_param("to")) return;
+  view.from_s = number_of<double>(request, "from");
+  view.to_s = number_of<double>(request, "to");
+  if (!std::isfinite(*view.from_s) || !std::isfinite(*view.to_s)) {
+    throw Refused(Refused::Why::kBadRequest, "from and to have to be times.");
+  }
+}
+
 View view_of(const Request& request) {
   View view;
   view.joint = number_of<std::size_t>(request, "joint") - 1;
   view.recording = number_of<std::size_t>(request, "recording") - 1;
   view.pixels = number_of<std::size_t>(request, "pixels");
-  if (request.has_param("from") && request.has_param("to")) {
-    view.from_s = number_of<double>(request, "from");
-    view.to_s = number_of<double>(request, "to");
-    if (!std::isfinite(*view.from_s) || !std::isfinite(*view.to_s)) {
-      throw Refused(Refused::Why::kBadRequest, "from and to have to be times.");
-    }
-  }
+  set_range(request, view);
+  return view;
+}
+
+ArmView arm_view_of(const Request& request) {
+  ArmView view;
+  view.recording = number_of<std::size_t>(request, "recording") - 1;
+  if (request.has_param("instants")) view.instants = number_of<std::size_t>(request, "instants");
+  set_range(request, view);
   return view;
 }
 
@@ -97,6 +110,11 @@ void set_up_files(httplib::Server& server, const std::string& path) {
   file("echarts\\.js", std::string(report::assets::echarts()), kScript);
   file("report\\.js", std::string(report::assets::script()), kScript);
   file("studio\\.js", std::string(assets::script()), kScript);
+  // The modules of the arm, under the names by which they import each other.
+  file("arm_view\\.js", std::string(assets::arm_view()), kScript);
+  file("orbit_controls\\.js", std::string(assets::orbit_controls()), kScript);
+  file("three\\.module\\.min\\.js", std::string(assets::three()), kScript);
+  file("three\\.core\\.min\\.js", std::string(assets::three_core()), kScript);
 }
 
 void set_up_model(httplib::Server& server, const std::string& api, Session& session) {
@@ -107,6 +125,9 @@ void set_up_model(httplib::Server& server, const std::string& api, Session& sess
     answer(response, [&] {
       return session.charts(view_of(request), request.get_param_value("only") == "time");
     });
+  });
+  server.Get(api + "arm", [&session](const Request& request, Response& response) {
+    answer(response, [&] { return session.arm(arm_view_of(request)); });
   });
   server.Post(api + "steps", [&session](const Request& request, Response& response) {
     answer(response, [&] {

@@ -58,6 +58,13 @@ nlohmann::json Session::charts(const View& view, bool only_time) {
   return json;
 }
 
+ordered_json Session::arm(const ArmView& view) {
+  const std::lock_guard guard(lock_);
+  ordered_json json{{"revision", revision_}};
+  json.update(arm_of(bench_, view));
+  return json;
+}
+
 void Session::refuse_while_explaining() const {
   if (!job_.is_running()) return;
   throw Refused(Refused::Why::kNotNow,

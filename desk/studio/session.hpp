@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "studio/arm.hpp"
 #include "studio/charts.hpp"
 #include "studio/job.hpp"
 #include "studio/save.hpp"
@@ -24,6 +25,7 @@ class Session {
   [[nodiscard]] nlohmann::ordered_json state();
   /// `only_time`: what a zoom changes.
   [[nodiscard]] nlohmann::json charts(const View& view, bool only_time);
+  [[nodiscard]] nlohmann::ordered_json arm(const ArmView& view);
   /// Both answer with the new state.
   nlohmann::ordered_json add(const std::string& effect, int joint);
   nlohmann::ordered_json undo(std::size_t step);

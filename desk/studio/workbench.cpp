@@ -37,6 +37,12 @@ double bytes_of(const Compared& compared) {
 
 }  // namespace
 
+const Comparison& recording_of(const Compared& compared, std::size_t recording) {
+  const std::vector<Comparison>& fitted = compared.fitted.recordings;
+  return recording < fitted.size() ? fitted[recording]
+                                   : compared.held_out->recordings[recording - fitted.size()];
+}
+
 Workbench::Workbench(Input input)
     : input_(std::move(input)), memory_(input_.recordings->logs, input_.recordings->holdout) {
   const Treated& recordings = *input_.recordings;

@@ -48,6 +48,9 @@ struct Compared {
   std::optional<Comparisons> held_out;  // none: no recording is held out
 };
 
+/// From 0, the fitted ones first; `recording` is less than there are.
+const Comparison& recording_of(const Compared& compared, std::size_t recording);
+
 /// The robot as it was read with a stack of added effects. Every step is one add() to the robot of
 /// the step before, as `offnominal add` would do it to its file: the numbers are the same.
 /// Not for several threads at once.

@@ -12,6 +12,7 @@ import { extname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
 import { checkWithAxe, readAxe } from "./accessible.mjs";
+import { checkArm, checkWithoutWebgl } from "./studio_arm.mjs";
 
 const kScript = "<img src=x onerror=window.hacked=1>";
 const kLooks = [
@@ -19,6 +20,7 @@ const kLooks = [
   [1280, "dark"],
   [400, "light"],
   [2560, "light"],
+  [3840, "dark"],
 ];
 const web = fileURLToPath(new URL("../../desk/report/web/", import.meta.url));
 
@@ -236,7 +238,9 @@ async function openPage(context, address, fault) {
   page.on("pageerror", (error) => fault(`script error: ${error.message}`));
   page.on("console", (message) => {
     const refused = message.text().includes("409 (Conflict)"); // that a file is there, say
-    if (["error", "warning"].includes(message.type()) && !refused) fault(`console: ${message.text()}`);
+    // Chromium's own, of a picture that is read back for a screenshot.
+    const slow = message.text().includes("GPU stall due to ReadPixels");
+    if (["error", "warning"].includes(message.type()) && !refused && !slow) fault(`console: ${message.text()}`);
   });
   await page.goto(address);
   await page.waitForSelector("body[data-revision]");
@@ -253,16 +257,25 @@ async function check(options, fault) {
   try {
     browser = await chromium.launch({
       executablePath: options.chromium,
-      args: ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"],
+      args: ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run", "--disable-background-networking"],
     });
     const context = await browser.newContext({ viewport: { width: 1280, height: 900 } });
     const page = await openPage(context, await address, fault);
     if (options.measure) return await measure(page);
     await checkSteps(page, options, inputs, fault);
     await checkZoom(page, fault);
+    await checkArm(page, fault);
     const learnt = await checkSearch(page, fault);
     // axe needs a page whose policy lets its source in: it comes by the debugger, which is let in.
     await look(page, options, axeSource, fault);
+    const plain = await browser.newContext({ viewport: { width: 1280, height: 900 } });
+    await plain.addInitScript(() => {
+      const { getContext } = HTMLCanvasElement.prototype;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+        return kind.startsWith("webgl") ? null : getContext.call(this, kind, ...more);
+      };
+    });
+    await checkWithoutWebgl(await openPage(plain, await address, fault), fault);
     if (await page.evaluate(() => window.hacked !== undefined)) fault("a name was taken for markup");
     console.log(`studio: added, undone, saved, searched (${learnt}); the verbs say the same`);
   } finally {

@@ -75,7 +75,10 @@ function showCharts(answer, host, fallHost) {
   else makeFigure(answer.waterfall, "fall.0", fallHost);
   if (first) {
     drawAll();
-    for (const figure of timeFigures()) figure.chart.on("datazoom", zoomed);
+    for (const figure of timeFigures()) {
+      figure.chart.on("datazoom", zoomed);
+      followChart(figure);
+    }
     return;
   }
   shareExtents();

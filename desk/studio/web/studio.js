@@ -221,11 +221,18 @@ async function drawCharts() {
   document.body.dataset.revision = String(answer.revision);
   const range = zoomRange();
   if (range !== null) await drawFiner(range);
+  else showArm(null);
 }
 
+/** What a zoom changes; null: all of the time is shown, of which the charts have it all. */
 async function drawFiner(range) {
-  if (range === null) return;
-  showFiner(await ask("GET", chartAddress(look, range)));
+  showArm(range);
+  if (range !== null) showFiner(await ask("GET", chartAddress(look, range)));
+}
+
+/** Nothing waits for the arm. */
+function showArm(range) {
+  drawArm(range).catch((error) => complain(error.message));
 }
 
 /** Runs one change at a time; what fails is said, and nothing else has changed. */
@@ -263,7 +270,11 @@ async function choose(what) {
     return;
   }
   await change(async () => {
-    if (what.recording) showWhole();
+    if (what.recording) {
+      showWhole();
+      stopPlay();
+      clearCursors();
+    }
     Object.assign(look, what);
     show();
     await drawCharts();
@@ -337,6 +348,7 @@ function buildStudio() {
       "Measured and model",
       meaningContent(),
       place("recording"),
+      armElement(),
       place("charts", { class: "blocks" }),
     ),
     sectionWith("steps", "What was added", place("fall"), place("steps")),
@@ -352,7 +364,8 @@ function buildStudio() {
       "p",
       {},
       "Charts: drag to zoom, shift-drag to move, ctrl-wheel to zoom, double click to reset. A chart that " +
-        "has the focus takes keys: arrows show values, + and - zoom, 0 resets. Drawn with Apache ECharts.",
+        "has the focus takes keys: arrows show values, + and - zoom, 0 resets. The arm: drag to turn, ctrl-wheel to come nearer. " +
+        "Drawn with Apache ECharts and three.js.",
     ),
   );
   document.getElementById("page").append(main, footer);

@@ -102,7 +102,8 @@ TEST_F(StudioServer, ServesThePageWithoutInlineScriptAndNothingWithoutTheToken) 
   EXPECT_THAT(page->get_header_value("Content-Security-Policy"), HasSubstr("default-src 'none'"));
   EXPECT_EQ(page->get_header_value("Referrer-Policy"), "no-referrer");
   EXPECT_THAT(page->body, Not(HasSubstr("<script>")));
-  for (const char* file : {"studio.css", "studio.js", "report.js", "echarts.js"}) {
+  for (const char* file : {"studio.css", "studio.js", "report.js", "echarts.js", "arm_view.js",
+                           "orbit_controls.js", "three.module.min.js", "three.core.min.js"}) {
     EXPECT_EQ(client().Get(at(file))->status, 200) << file;
   }
   EXPECT_EQ(client().Get("/")->status, 404);
@@ -201,9 +202,31 @@ TEST_F(StudioServer, RefusesWhatItDoesNotUnderstandInWords) {
   }
   for (const char* charts :
        {"charts", "charts?joint=0&recording=1&pixels=500", "charts?joint=1&recording=1&pixels=5e9",
-        "charts?joint=1&recording=1&pixels=500&from=nan&to=1"}) {
+        "charts?joint=1&recording=1&pixels=500&from=nan&to=1", "arm",
+        "arm?recording=", "arm?recording=0", "arm?recording=3", "arm?recording=-1",
+        "arm?recording=1e9", "arm?recording=99999999999999999999", "arm?recording=1&instants=1",
+        "arm?recording=1&instants=1001", "arm?recording=1&from=nan&to=1",
+        "arm?recording=1&from=2&to=1", "arm?recording=1&from=2&to=2",
+        "arm?recording=1&from=1e999&to=2", "arm?recording=1%00&from=1&to=2",
+        "arm?recording=<img>&instants=;"}) {
     EXPECT_EQ(client().Get(at("api/") + charts)->status, 400) << charts;
   }
+}
+
+TEST_F(StudioServer, GivesTheArmWithTheRevisionOfTheModel) {
+  const json whole = get("arm?recording=1");
+  EXPECT_EQ(whole.at("revision"), 0);
+  EXPECT_GT(whole.at("t_s").size(), 300U);
+  EXPECT_EQ(post("steps", {{"effect", "viscous_friction"}, {"joint", 2}}).first, 200);
+  const json part = get("arm?recording=2&instants=20&from=2&to=3");
+  EXPECT_EQ(part.at("revision"), 1);
+  EXPECT_EQ(part.at("recording"), 2);
+  for (const char* what : {"position", "measured", "model", "error"}) {
+    ASSERT_EQ(part.at(what).size(), 2U) << what;
+    EXPECT_EQ(part.at(what).at(1).size(), 20U) << what;
+  }
+  EXPECT_EQ(part.at("place_m").at(1).size(), 60U);
+  EXPECT_EQ(part.at("turn").at(1).size(), 80U);
 }
 
 TEST_F(StudioServer, SearchesInTheBackgroundAndStops) {
@@ -213,6 +236,7 @@ TEST_F(StudioServer, SearchesInTheBackgroundAndStops) {
   EXPECT_EQ(post("steps", {{"effect", "viscous_friction"}, {"joint", 2}}).first, 409);
   EXPECT_EQ(post("explanation", json::object()).first, 409);
   EXPECT_EQ(get("charts?joint=1&recording=1&pixels=500").at("charts").size(), 4U);
+  EXPECT_EQ(get("arm?recording=1").at("joints").size(), 2U);
   erase("explanation");
   json answer;
   do {
