@@ -1,6 +1,5 @@
 #include "explain/change.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -9,8 +8,9 @@
 #include <utility>
 
 #include "explain/alternatives.hpp"
+#include "explain/change_questions.hpp"
+#include "explain/moments.hpp"
 #include "explain/questions.hpp"
-#include "explain/remainder.hpp"
 #include "identify/independent_samples.hpp"
 #include "identify/parallel.hpp"
 
@@ -28,64 +28,6 @@ constexpr std::array kMayChange{EffectKind::kTipPayload, EffectKind::kCoulombFri
 constexpr std::size_t kMostChanges = 4;
 constexpr double kClearly = 10;  // log-likelihood
 
-// A remainder beside more columns, stacked and not weighted; what they do not add is left out.
-Remainder beside_columns(Remainder at, const MatrixXd& columns) {
-  constexpr double kNothingNew = 1e-3;
-  MatrixXd fresh(at.residual.size(), columns.cols());
-  for (Index c = 0; c < columns.cols(); ++c) {
-    fresh.col(c) = at.weighted(columns.col(c));
-    const double length = fresh.col(c).norm();
-    if (length > 0) fresh.col(c) /= length;
-  }
-  fresh = at.beside_basis(std::move(fresh));
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(fresh);
-  Index rank = 0;
-  while (rank < qr.matrixR().cols() && std::abs(qr.matrixR()(rank, rank)) > kNothingNew) ++rank;
-  if (rank == 0) return at;
-  MatrixXd more = MatrixXd::Identity(fresh.rows(), rank);
-  more.applyOnTheLeft(qr.householderQ());
-  at.residual -= more * (more.transpose() * at.residual).eval();
-  at.energy = at.layout->energy(at.residual);
-  at.basis.conservativeResize(Eigen::NoChange, at.basis.cols() + rank);
-  at.basis.rightCols(rank) = more;
-  return at;
-}
-
-// The stretches of one recording, and where a change in it may be looked for.
-struct Recorded {
-  std::string file;
-  double from_s = 0;
-  double to_s = 0;
-  std::vector<double> samples;  // time stamps of the kept samples, ascending
-  std::vector<double> grid;     // moments, a few steps apart
-};
-
-std::vector<Recorded> recorded_in(const Data& data) {
-  constexpr double kEdgeS = 1;
-  constexpr double kEdgeShare = 0.05;
-  constexpr int kSteps = 80;
-  constexpr double kSmallestStepS = 0.2;
-  std::vector<Recorded> all;
-  for (const Workspace& at : data.recordings) {
-    const VectorXd t_s = kept_samples(at.plan, at.motion.t_s);
-    if (t_s.size() == 0) continue;
-    auto same = std::find_if(all.begin(), all.end(),
-                             [&](const Recorded& one) { return one.file == at.file; });
-    if (same == all.end()) same = all.insert(all.end(), {at.file, t_s[0], t_s[0], {}, {}});
-    same->samples.insert(same->samples.end(), t_s.begin(), t_s.end());
-  }
-  for (Recorded& one : all) {
-    std::sort(one.samples.begin(), one.samples.end());
-    one.from_s = one.samples.front();
-    one.to_s = one.samples.back();
-    const double duration = one.to_s - one.from_s;
-    const double edge = std::max(kEdgeS, kEdgeShare * duration);
-    const double step = std::max(kSmallestStepS, duration / kSteps);
-    for (double t = one.from_s + edge; t <= one.to_s - edge; t += step) one.grid.push_back(t);
-  }
-  return all;
-}
-
 class ChangeFinder {
  public:
   ChangeFinder(const Regression& regression, std::vector<Term> terms, const SearchOptions& options)
@@ -93,14 +35,8 @@ class ChangeFinder {
         data_(regression.data()),
         terms_(std::move(terms)),
         options_(options),
-        recorded_(recorded_in(data_)) {
+        moments_(data_) {
     std::erase_if(terms_, [](const Term& term) { return term.effect->info().traits.counts_time; });
-    for (const Recorded& in : recorded_) {
-      rows_.emplace_back();
-      for (const double t : in.grid) {
-        rows_.back().push_back(rows_in({in.file, t}, data_.layout, data_.recordings));
-      }
-    }
     for (const auto& effect : all_candidates()) {
       if (std::find(kMayChange.begin(), kMayChange.end(), effect->kind()) == kMayChange.end()) {
         continue;
@@ -135,20 +71,14 @@ class ChangeFinder {
     candidates_.push_back(std::move(term));
   }
 
-  // Columns of what acts behind a moment of a grid alone.
-  [[nodiscard]] MatrixXd behind(const MatrixXd& columns, std::size_t recorded,
-                                std::size_t moment) const {
-    return columns.array().colwise() * rows_[recorded][moment].array();
+  [[nodiscard]] const Moments::Recorded& recorded(const Scanned& one) const {
+    return moments_.recorded()[one.recorded];
   }
 
-  [[nodiscard]] static Term at_moment(Term term, const Recorded& in, double t_s) {
-    term.during = TimeSpan{in.file, t_s};
-    return term;
-  }
-
-  [[nodiscard]] double likelihood(const Judge& judge, const Term& term) const {
-    const Evidence evidence = judge.evidence(columns_of(data_, term));
-    return evidence.usable ? evidence.log_likelihood : 0;
+  // Columns of a term as it would be all the time.
+  [[nodiscard]] MatrixXd whole(Term term) const {
+    term.during.reset();
+    return columns_of(data_, term);
   }
 
   // The model with what changes, as it is known so far.
@@ -161,10 +91,9 @@ class ChangeFinder {
   // The effect as it would be all the time is beside it: only what changes is asked for. An error
   // with a step in it looks correlated for as long as the recording is: `independent` samples are
   // those of what is left without it.
-  [[nodiscard]] Remainder beside_effect(const ModelFit& at, Term effect,
+  [[nodiscard]] Remainder beside_effect(const ModelFit& at, const Term& effect,
                                         const VectorXd& independent) const {
-    effect.during.reset();
-    Remainder beside = beside_columns(at.remainder, columns_of(data_, effect));
+    Remainder beside = beside_columns(at.remainder, whole(effect));
     beside.independent_samples = independent;
     return beside;
   }
@@ -184,69 +113,106 @@ class ChangeFinder {
   [[nodiscard]] Scanned scan(const Term& effect, const ModelFit& at) const {
     const Remainder remainder = beside_effect(at, effect, all_samples());
     const Judge judge(remainder);
-    const MatrixXd columns = columns_of(data_, effect);
+    const MatrixXd columns = whole(effect);
     Scanned best{effect};
-    for (std::size_t r = 0; r < recorded_.size(); ++r) {
-      for (std::size_t m = 0; m < recorded_[r].grid.size(); ++m) {
-        const Evidence evidence = judge.evidence(behind(columns, r, m));
-        if (!evidence.usable || evidence.log_likelihood <= best.log_likelihood) continue;
-        best = {at_moment(effect, recorded_[r], recorded_[r].grid[m]), r, evidence.log_likelihood};
+    for (std::size_t r = 0; r < moments_.recorded().size(); ++r) {
+      const Moments::Recorded& in = moments_.recorded()[r];
+      for (std::size_t m = 0; m < in.grid.size(); ++m) {
+        const double likely = likelihood_of(judge, moments_.behind(columns, r, m));
+        if (likely <= best.log_likelihood) continue;
+        best = {effect, r, likely};
+        best.term.during = TimeSpan{in.file, in.grid[m]};
       }
     }
     return best;
   }
 
-  // Moves the moment to where the recordings are most likely, near where it is: to the sample, and
-  // between two of them.
-  void refine_moment(Scanned& one, const Judge& judge) const {
-    constexpr int kParts = 6;  // of the time between two samples
-    const Recorded& in = recorded_[one.recorded];
-    if (in.grid.size() < 2 || in.samples.size() < 2) return;
-    const double around = one.term.during->from_s;
-    const double reach = 1.5 * (in.grid[1] - in.grid[0]);
+  // One end of where it acts.
+  using End = double TimeSpan::*;
+
+  // Moves that end to where the recordings are most likely, near where it is, in ever smaller
+  // steps: to a few parts of a sample.
+  void refine_end(Scanned& one, End end, const Judge& judge) const {
+    constexpr double kParts = 6;  // of the time between two samples
+    constexpr int kSteps = 6;     // to either side
+    const Moments::Recorded& in = recorded(one);
+    const MatrixXd columns = whole(one.term);
+    double reach = 1.5 * in.step_s();
     one.log_likelihood = -std::numeric_limits<double>::infinity();
-    const Term effect = one.term;
-    const auto try_at = [&](double t_s) {
-      const Term here = at_moment(effect, in, t_s);
-      const double likely = likelihood(judge, here);
-      if (likely <= one.log_likelihood) return;
-      one.log_likelihood = likely;
-      one.term = here;
-    };
-    const auto first = std::lower_bound(in.samples.begin(), in.samples.end(), around - reach);
-    for (auto t = first; t != in.samples.end() && *t <= around + reach; ++t) try_at(*t);
-    const double period = (in.to_s - in.from_s) / static_cast<double>(in.samples.size() - 1);
-    const double best = one.term.during->from_s;
-    for (int part = 1 - kParts; part < kParts; ++part) try_at(best + period * part / kParts);
+    while (reach > in.period_s() / kParts) {
+      TimeSpan here = *one.term.during;
+      const double middle = here.*end;
+      for (int step = -kSteps; step <= kSteps; ++step) {
+        here.*end = middle + reach * step / kSteps;
+        const double likely = likelihood_of(judge, moments_.inside(columns, here));
+        if (likely <= one.log_likelihood) continue;
+        one.log_likelihood = likely;
+        one.term.during = here;
+      }
+      reach *= 1.5 / kSteps;
+    }
   }
 
-  // The moment, and the place of what is carried, each as the other has it.
+  void refine_ends(Scanned& one, const ModelFit& at) const {
+    const Remainder remainder = beside_effect(at, one.term, all_samples());
+    const Judge judge(remainder);
+    refine_end(one, &TimeSpan::from_s, judge);
+    if (!one.term.during->ends()) return;
+    refine_end(one, &TimeSpan::to_s, judge);
+    refine_end(one, &TimeSpan::from_s, judge);
+  }
+
+  // When it acts, and the place of what is carried, each as the other has it.
   void refine(Scanned& one, const ModelFit& at) const {
-    refine_moment(one, Judge(beside_effect(at, one.term, all_samples())));
+    refine_ends(one, at);
     if (!one.term.is_searched()) return;
     std::vector<Term> all = model();
     all.push_back(one.term);
     regression_.refine(all, all.size() - 1);
     one.term = all.back();
-    refine_moment(one, Judge(beside_effect(at, one.term, all_samples())));
+    refine_ends(one, at);
   }
 
-  // 95 % of where the moment is: as far as the likelihood stays near its top.
-  [[nodiscard]] std::array<double, 2> moment_of(const Scanned& one, const Judge& judge) const {
+  // What comes and goes again: from or to the moment that was found, where that makes the
+  // recordings clearly more likely.
+  void end_it(Scanned& one, const ModelFit& at) const {
+    constexpr double kShortestS = 2;  // what is shorter is a push, or another event
+    const Remainder remainder = beside_effect(at, one.term, all_samples());
+    const Judge judge(remainder);
+    const MatrixXd columns = whole(one.term);
+    Scanned best = one;
+    best.log_likelihood += kClearly;
+    const double moment = one.term.during->from_s;
+    for (const double other : recorded(one).grid) {
+      if (std::abs(other - moment) < kShortestS) continue;
+      const TimeSpan part{one.term.during->file, std::min(moment, other), std::max(moment, other)};
+      const double likely = likelihood_of(judge, moments_.inside(columns, part));
+      if (likely <= best.log_likelihood) continue;
+      best.log_likelihood = likely;
+      best.term.during = part;
+    }
+    if (!best.term.during->ends()) return;
+    refine(best, at);
+    one = best;
+  }
+
+  // 95 % of where an end is: as far as the likelihood stays near its top.
+  [[nodiscard]] std::array<double, 2> interval_of(const Scanned& one, End end,
+                                                  const Judge& judge) const {
     constexpr double kHalfChiSquared95 = 1.92;
-    const std::vector<double>& samples = recorded_[one.recorded].samples;
-    const auto top = std::lower_bound(samples.begin(), samples.end(), one.term.during->from_s);
-    const auto is_near = [&](double t) {
-      return likelihood(judge, at_moment(one.term, recorded_[one.recorded], t)) >=
-             one.log_likelihood - kHalfChiSquared95;
+    const Moments::Recorded& in = recorded(one);
+    const MatrixXd columns = whole(one.term);
+    const auto farthest = [&](double sign) {
+      TimeSpan here = *one.term.during;
+      // Within a sample the filter leaves no more to be told.
+      while (here.*end > in.from_s && here.*end < in.to_s) {
+        here.*end += sign * in.period_s();
+        const double likely = likelihood_of(judge, moments_.inside(columns, here));
+        if (likely < one.log_likelihood - kHalfChiSquared95) break;
+      }
+      return std::clamp(here.*end, in.from_s, in.to_s);
     };
-    // A change lies between the sample before and the first one that has it.
-    auto low = top;
-    while (low != samples.begin() && is_near(*std::prev(low))) --low;
-    if (low != samples.begin()) --low;
-    auto high = top;
-    while (std::next(high) != samples.end() && is_near(*std::next(high))) ++high;
-    return {*low, *high};
+    return {farthest(-1), farthest(1)};
   }
 
   bool add_one() {
@@ -262,6 +228,7 @@ class ChangeFinder {
     for (std::size_t i = 0; i < std::min(kMostTries, scanned.size()); ++i) {
       Scanned one = scanned[i];
       refine(one, at);
+      end_it(one, at);
       if (auto change = judged(one, at)) {
         change->alike = alike(one, scanned, at);
         found_.push_back(std::move(*change));
@@ -289,22 +256,25 @@ class ChangeFinder {
     const ModelFit fit = regression_.fit(with);
     const Remainder remainder = beside_effect(at, one.term, fit.remainder.independent_samples);
     const Judge judge(remainder);
-    one.log_likelihood = likelihood(judge, one.term);
+    one.log_likelihood = likelihood_of(judge, columns_of(data_, one.term));
     if (one.log_likelihood < kClearly) return std::nullopt;
     const Fall fall =
         best_fall(data_.layout.rms(fit_without.residual), data_.layout.rms(fit.residual));
-    if (!is_relevant(fall) || !is_sudden(one, judge) || !is_no_other_motion(one, remainder, fall)) {
+    if (!is_relevant(fall) ||
+        !is_sudden(moments_, one.recorded, whole(one.term), one.log_likelihood, judge) ||
+        !is_no_other_motion(data_, remainder, columns_of(data_, one.term))) {
       return std::nullopt;
     }
     FoundChange change;
     change.term = one.term;
-    change.p = p_of(one.term, fit_without, fit);
+    change.p = p_of(one, fit_without, fit);
     if (change.p > kFamilyError) return std::nullopt;
     // Physics of the file's own numbers does not matter to the size.
     const Estimates estimates = estimates_of(regression_, data_.recordings[0].rigid, with, fit);
     if (!(estimates.linear.back().from_nothing() >= 1)) return std::nullopt;
     change.numbers = estimates.terms.back();
-    change.at_s = moment_of(one, judge);
+    change.at_s = interval_of(one, &TimeSpan::from_s, judge);
+    if (one.term.during->ends()) change.until_s = interval_of(one, &TimeSpan::to_s, judge);
     return change;
   }
 
@@ -316,63 +286,34 @@ class ChangeFinder {
            fall.rms >= kLeftOfItself * layout.rms(plain.residual)[fall.joint];
   }
 
-  // A drift of the effect, as slow as a cubic in time, does not make the recordings as likely.
-  [[nodiscard]] bool is_sudden(const Scanned& one, const Judge& judge) const {
-    constexpr double kSudden = 5;
-    constexpr int kDegree = 3;
-    const Recorded& in = recorded_[one.recorded];
-    Term whole = one.term;
-    whole.during = TimeSpan{in.file, in.from_s};
-    const MatrixXd columns = columns_of(data_, whole);
-    MatrixXd slow(columns.rows(), kDegree * columns.cols());
-    const RowLayout& layout = data_.layout;
-    for (std::size_t r = 0; r < data_.recordings.size(); ++r) {
-      const Workspace& at = data_.recordings[r];
-      const VectorXd t_s = kept_samples(at.plan, at.motion.t_s);
-      const Eigen::ArrayXd part = (t_s.array() - in.from_s) / (in.to_s - in.from_s);
-      for (Index joint = 0; joint < layout.joint_count(); ++joint) {
-        const Index begin = layout.begin(r, joint);
-        for (Index c = 0; c < slow.cols(); ++c) {
-          slow.col(c).segment(begin, t_s.size()) =
-              columns.col(c / kDegree).segment(begin, t_s.size()).array() *
-              part.pow(static_cast<double>(c % kDegree + 1));
-        }
-      }
-    }
-    const Evidence drift = judge.evidence(slow);
-    return one.log_likelihood > (drift.usable ? drift.log_likelihood : 0) + kSudden;
-  }
-
-  // Free functions of what the joint does take less than half of it: behind the moment it does not
-  // only move otherwise.
-  [[nodiscard]] bool is_no_other_motion(const Scanned& one, const Remainder& remainder,
-                                        const Fall& fall) const {
-    constexpr double kStays = 0.5;
-    const MatrixXd columns = columns_of(data_, one.term);
-    const double taken = Judge(remainder).gain(columns) * remainder.residual.squaredNorm();
-    Remainder free = remainder;
-    for (const char* variable : {"position", "velocity", "load"}) {
-      free = beside_columns(std::move(free), bins_over(data_, fall.joint, variable));
-    }
-    const double still = Judge(free).gain(columns) * free.residual.squaredNorm();
-    return still >= kStays * taken;
-  }
-
   // Probability that such a search shows as much anywhere where nothing changes.
-  [[nodiscard]] double p_of(const Term& term, const ModelFit& without, const ModelFit& fit) const {
-    Remainder noise = fit.remainder;
+  [[nodiscard]] double p_of(const Scanned& one, const ModelFit& without,
+                            const ModelFit& fit) const {
+    constexpr double kBlocksBeside = 3;  // a moment needs them on both sides to be judged by
+    ModelFit noise = fit;
     double block_s = kShortestBlockS;
     for (Index joint = 0; joint < data_.layout.joint_count(); ++joint) {
       block_s = std::max(block_s, independent_block_s(data_.layout, fit.residual, joint));
     }
-    noise.blocks = data_.layout.blocks(block_s);
-    const Judge judge(noise);
+    noise.remainder.blocks = data_.layout.blocks(block_s);
+    const double edge_s = kBlocksBeside * block_s;
+    const TimeSpan& during = *one.term.during;
+    if (!recorded(one).is_inside(during.from_s, edge_s)) return 1;
+    if (during.ends() &&
+        (!recorded(one).is_inside(during.to_s, edge_s) || during.to_s - during.from_s < edge_s)) {
+      return 1;
+    }
     std::vector<std::vector<Evidence>> of_candidates(candidates_.size());
     parallel_for(candidates_.size(), options_.threads, [&](std::size_t i) {
-      const MatrixXd columns = columns_of(data_, candidates_[i]);
-      for (std::size_t r = 0; r < recorded_.size(); ++r) {
-        for (std::size_t m = 0; m < recorded_[r].grid.size(); ++m) {
-          of_candidates[i].push_back(judge.evidence(behind(columns, r, m)));
+      const Remainder beside =
+          beside_effect(noise, candidates_[i], noise.remainder.independent_samples);
+      const Judge judge(beside);
+      const MatrixXd columns = whole(candidates_[i]);
+      for (std::size_t r = 0; r < moments_.recorded().size(); ++r) {
+        const Moments::Recorded& in = moments_.recorded()[r];
+        for (std::size_t m = 0; m < in.grid.size(); ++m) {
+          if (!in.is_inside(in.grid[m], edge_s)) continue;
+          of_candidates[i].push_back(judge.evidence(moments_.behind(columns, r, m)));
         }
       }
     });
@@ -380,19 +321,18 @@ class ChangeFinder {
     for (auto& of_one : of_candidates) {
       std::move(of_one.begin(), of_one.end(), std::back_inserter(groups));
     }
-    std::erase_if(groups, [](const Evidence& one) { return !one.usable; });
-    std::vector<double> largest = largest_without_effect(
-        groups, noise.blocks.count, options_.bootstrap_draws, options_.seed, options_.threads);
+    std::erase_if(groups, [](const Evidence& group) { return !group.usable; });
+    const int blocks = noise.remainder.blocks.count;
+    std::vector<double> largest = largest_without_effect(groups, blocks, options_.bootstrap_draws,
+                                                         options_.seed, options_.threads);
     std::sort(largest.begin(), largest.end());
     Remainder before = without.remainder;
-    before.blocks = noise.blocks;
-    const Evidence evidence = Judge(before).evidence(columns_of(data_, term));
+    before.blocks = noise.remainder.blocks;
+    const Evidence evidence = Judge(before).evidence(columns_of(data_, one.term));
     if (!evidence.usable) return 1;
-    return p_among(
-        largest,
-        -std::log10(std::max(
-            p_of_statistic(evidence.statistic, evidence.coefficients.size(), before.blocks.count),
-            1e-300)));
+    const double p =
+        p_of_statistic(evidence.statistic, evidence.coefficients.size(), before.blocks.count);
+    return p_among(largest, -std::log10(std::max(p, 1e-300)));
   }
 
   // What else could have changed, each at its own best moment near it.
@@ -411,10 +351,13 @@ class ChangeFinder {
     for (Scanned other : scanned) {
       const bool same_effect =
           other.term.effect == mine.term.effect && other.term.joint == mine.term.joint;
-      const bool elsewhere =
-          other.recorded != mine.recorded ||
-          std::abs(other.term.during->from_s - mine.term.during->from_s) > kSameMomentS;
+      const auto is_at = [&](double end_s) {
+        return std::abs(other.term.during->from_s - end_s) <= kSameMomentS;
+      };
+      const bool elsewhere = other.recorded != mine.recorded ||
+                             !(is_at(mine.term.during->from_s) || is_at(mine.term.during->to_s));
       if (same_effect || elsewhere) continue;
+      other.term.during = mine.term.during;
       refine(other, at);
       if (as_good(data_, chosen, fit_with(other).first, energy)) all.push_back(other.term);
     }
@@ -425,8 +368,7 @@ class ChangeFinder {
   const Data& data_;
   std::vector<Term> terms_;
   SearchOptions options_;
-  std::vector<Recorded> recorded_;
-  std::vector<std::vector<VectorXd>> rows_;  // per recording and moment: behind it
+  Moments moments_;
   std::vector<Term> candidates_;
   std::vector<FoundChange> found_;
 };
@@ -436,6 +378,18 @@ class ChangeFinder {
 std::vector<FoundChange> changes_beside(const Regression& regression, std::vector<Term> terms,
                                         const SearchOptions& options) {
   return ChangeFinder(regression, std::move(terms), options).run();
+}
+
+bool are_same(const std::vector<FoundChange>& a, const std::vector<FoundChange>& b) {
+  constexpr double kSameS = 0.2;
+  return std::is_permutation(
+      a.begin(), a.end(), b.begin(), b.end(), [&](const FoundChange& x, const FoundChange& y) {
+        const auto near = [&](double s, double t) { return s == t || std::abs(s - t) <= kSameS; };
+        return x.term.effect == y.term.effect && x.term.joint == y.term.joint &&
+               x.term.during->file == y.term.during->file &&
+               near(x.term.during->from_s, y.term.during->from_s) &&
+               near(x.term.during->to_s, y.term.during->to_s);
+      });
 }
 
 std::vector<Term> terms_of(const std::vector<FoundChange>& changes) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "explain/find_model.hpp"
@@ -14,8 +15,10 @@ namespace offnominal::desk {
 struct FoundChange {
   Term term;                   // its effect, in the part of the recording behind that moment
   std::array<double, 2> at_s;  // where the moment lies, 95 %, by the recording's time stamps
-  std::vector<Term> alike;     // what else describes the recordings as well, best first
-  double p = 1;                // of the whole search for changes, wild block bootstrap
+  // Where the moment lies at which it is gone again; none: it stays.
+  std::optional<std::array<double, 2>> until_s = {};
+  std::vector<Term> alike;  // what else describes the recordings as well, best first
+  double p = 1;             // of the whole search for changes, wild block bootstrap
   std::vector<Estimate> numbers;
 };
 
@@ -23,12 +26,16 @@ struct FoundChange {
 // and per joint viscous or Coulomb friction, a constant torque, the torque constant. `terms`: of
 // the model; those that count time are left out of it, since they may be bent to a change. A change
 // is told where it takes as much as an effect has to (find_model.hpp), beside that effect all the
-// time, where no slow drift of the effect (a cubic in time) makes the recordings as likely, where a
-// free function of position, velocity and load of the joint does not take half of it (another
-// motion behind that moment is no change), and where its size is told from nothing. In the order of
-// how likely they make the recordings.
+// time, where no drift of the effect (a cubic in time, or one that fades) makes the recordings as
+// likely, where free functions of position, velocity and load of the joints that it acts on do not
+// take half of it (another motion behind that moment is no change), and where its size is told from
+// nothing. What comes and goes again is one change. In the order of how likely they make the
+// recordings.
 std::vector<FoundChange> changes_beside(const Regression& regression, std::vector<Term> terms,
                                         const SearchOptions& options);
+
+// Whether they are of the same effects and joints, at the same moments to a fifth of a second.
+bool are_same(const std::vector<FoundChange>& a, const std::vector<FoundChange>& b);
 
 std::vector<Term> terms_of(const std::vector<FoundChange>& changes);
 

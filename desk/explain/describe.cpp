@@ -163,6 +163,10 @@ void describe_changes(const SearchResult& from, Explanation& to) {
         std::find(files.begin(), files.end(), one.term.during->file) - files.begin());
     change.at_s = one.term.during->from_s;
     change.at_ci95_s = one.at_s;
+    if (one.until_s) {
+      change.until_s = one.term.during->to_s;
+      change.until_ci95_s = *one.until_s;
+    }
     // How a sign is smoothed does not change.
     std::copy_if(
         one.numbers.begin(), one.numbers.end(), std::back_inserter(change.by),

@@ -181,28 +181,43 @@ class Explainer {
     const NuisanceOptions usual = setting_.nuisance;
     FoundModel without = search_model(search, result);
     if (!search || result.at_rest) return without;
-    tell("looking for what changes in the middle");
-    changes_ = changes_beside(*setting_.regression, without.terms(), setting_.search->options());
-    if (changes_.empty()) return without;
-    const double share = result.link_share;
     const bool judged = result.link_share_judged;
-    NuisanceOptions changed = usual;
-    changed.changes = terms_of(changes_);
-    SearchSetting of_without = set_beside(changed);
-    FoundModel with = search_model(search, result);
-    NuisanceOptions unchanged = setting_.nuisance;
-    unchanged.changes.clear();
-    const Data plain(*setting_.data, robot_, unchanged);
-    changes_ = changes_beside(Regression(plain), with.terms(), setting_.search->options());
-    if (!changes_.empty() &&
-        predicts_better(*setting_.regression, with, *of_without.regression, without)) {
-      return with;
+    const double share = result.link_share;
+    auto changes = changes_in(without);
+    if (changes.empty()) return without;
+    SearchSetting of_without = std::exchange(setting_, {});
+    // What is missing all the time and what changes are sought beside each other until both stay.
+    constexpr int kTurns = 2;
+    for (int turn = 0; turn < kTurns && !changes.empty(); ++turn) {
+      NuisanceOptions changed = usual;
+      changed.changes = terms_of(changes);
+      tell("preparing the candidates' regressors");
+      setting_ = beside(of_without, robot_, changed);
+      FoundModel with = search_model(search, result);
+      changes_ = changes_in(with);
+      if (are_same(changes, changes_)) {
+        if (!predicts_better(*setting_.regression, with, *of_without.regression, without)) break;
+        return with;
+      }
+      changes = changes_;
     }
     changes_.clear();
     setting_ = std::move(of_without);
     result.link_share = share;
     result.link_share_judged = judged;
     return without;
+  }
+
+  // Beside the effects that were found.
+  [[nodiscard]] std::vector<FoundChange> changes_in(const FoundModel& found) const {
+    tell("looking for what changes in the middle");
+    NuisanceOptions unchanged = setting_.nuisance;
+    if (unchanged.changes.empty()) {
+      return changes_beside(*setting_.regression, found.terms(), setting_.search->options());
+    }
+    unchanged.changes.clear();
+    const Data plain(*setting_.data, robot_, unchanged);
+    return changes_beside(Regression(plain), found.terms(), setting_.search->options());
   }
 
   // What could as well be something else is not written; its numbers were fitted beside it.

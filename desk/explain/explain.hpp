@@ -90,11 +90,14 @@ struct Change {
   std::size_t recording = 0;    // from 0
   double at_s = 0;              // by the recording's own time stamps
   std::array<double, 2> at_ci95_s{};
+  // When it is gone again; none: it stays.
+  std::optional<double> until_s;
+  std::array<double, 2> until_ci95_s{};
   std::vector<Estimate> by;  // what of the effect is there more than before
   double p_value = 1;        // of the whole search for changes, wild block bootstrap
 };
 
-// "coulomb_friction on joint 4 at 14.98 s of recording 1 (level by +3.1 N m)".
+// "coulomb_friction on joint 4 from 14.98 s of recording 1 on (level +3.1 N m)".
 std::string words_of(const Change& change);
 
 // An effect that noise may hide: likely more than chance, and too unsure or too small to be named.

@@ -100,6 +100,12 @@ ordered_json json_of(const Change& one) {
   json["recording"] = one.recording + 1;
   json["at_s"] = one.at_s;
   json["at_s_ci95"] = one.at_ci95_s;
+  json["until_s"] = nullptr;
+  json["until_s_ci95"] = nullptr;
+  if (one.until_s) {
+    json["until_s"] = *one.until_s;
+    json["until_s_ci95"] = one.until_ci95_s;
+  }
   json["by"] = parameters_of(one.by);
   json["p_value"] = one.p_value;
   return json;

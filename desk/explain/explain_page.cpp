@@ -116,10 +116,19 @@ report::Table finding_table(const Explanation& e) {
 report::Table change_table(const Explanation& e) {
   report::Table table;
   table.caption = "What changes in the middle of a recording";
-  table.columns = {{"effect", "", ".4g"},    {"joint", "", "d"},         {"recording", "", "d"},
-                   {"at", "s", ".2f"},       {"95 % from", "s", ".2f"},  {"to", "s", ".2f"},
-                   {"parameter", "", ".4g"}, {"changes by", "", "+.3g"}, {"95 % from ", "", "+.3g"},
-                   {"to ", "", "+.3g"},      {"unit", "", ".4g"},        {"p", "", ".2g"}};
+  table.columns = {{"effect", "", ".4g"},
+                   {"joint", "", "d"},
+                   {"recording", "", "d"},
+                   {"at", "s", ".2f"},
+                   {"95 % from", "s", ".2f"},
+                   {"to", "s", ".2f"},
+                   {"gone at", "s", ".2f"},
+                   {"parameter", "", ".4g"},
+                   {"changes by", "", "+.3g"},
+                   {"95 % from ", "", "+.3g"},
+                   {"to ", "", "+.3g"},
+                   {"unit", "", ".4g"},
+                   {"p", "", ".2g"}};
   for (const Change& one : e.changes) {
     std::string name(one.what.name());
     for (const EffectAt& other : one.alike) {
@@ -128,17 +137,21 @@ report::Table change_table(const Explanation& e) {
     for (const Estimate& by : one.by) {
       report::Cell low;
       report::Cell high;
+      report::Cell gone;
+      if (one.until_s) gone = *one.until_s;
       if (by.ci95) {
         low = (*by.ci95)[0];
         high = (*by.ci95)[1];
       }
       table.rows.push_back({name, static_cast<double>(one.what.joint + 1),
                             static_cast<double>(one.recording + 1), one.at_s, one.at_ci95_s[0],
-                            one.at_ci95_s[1], by.value.name, by.value.value, low, high,
+                            one.at_ci95_s[1], gone, by.value.name, by.value.value, low, high,
                             by.value.unit, one.p_value});
     }
   }
-  table.note = "There from that moment on, and not before; a minus sign: there until then.";
+  table.note =
+      "There from that moment on, or until it is gone, and not before; a minus sign: there until "
+      "then.";
   return table;
 }
 

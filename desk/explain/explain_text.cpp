@@ -84,10 +84,13 @@ std::string text_of_findings(const Explanation& e) {
 std::string text_of_changes(const Explanation& e) {
   std::string text;
   for (const Change& one : e.changes) {
-    text += fmt::format(
-        "\nfrom {:.2f} s ({:.2f} .. {:.2f} s) of recording {} on: {} on joint {} changes by\n",
-        one.at_s, one.at_ci95_s[0], one.at_ci95_s[1], one.recording + 1, one.what.name(),
-        one.what.joint + 1);
+    const std::string until =
+        one.until_s ? fmt::format("to {:.2f} s ({:.2f} .. {:.2f} s) of recording {}", *one.until_s,
+                                  one.until_ci95_s[0], one.until_ci95_s[1], one.recording + 1)
+                    : fmt::format("of recording {} on", one.recording + 1);
+    text += fmt::format("\nfrom {:.2f} s ({:.2f} .. {:.2f} s) {}: {} on joint {} changes by\n",
+                        one.at_s, one.at_ci95_s[0], one.at_ci95_s[1], until, one.what.name(),
+                        one.what.joint + 1);
     for (const Estimate& by : one.by) text += "   " + words_of(by) + "\n";
     text += fmt::format("   p = {:.2g} over the whole search for changes\n", one.p_value);
     for (const EffectAt& other : one.alike) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 namespace offnominal::desk {
 
@@ -272,20 +273,25 @@ MapOver map_over(const Data& data, const VectorXd& left, Index joint, const std:
 
 namespace {
 
-// Where between `low` and `high` the power of the samples changes, by the likelihood of two levels:
-// the first sample of the second one.
-Index step_of_power(const Eigen::Ref<const VectorXd>& values, Index low, Index high) {
+// Where between `low` and `high` the power of the samples changes, by the likelihood of two levels
+// clearly above that of one: the first sample of the second one. `quiet`: power that tells nothing.
+std::optional<Index> step_of_power(const Eigen::Ref<const VectorXd>& values, Index low, Index high,
+                                   double quiet) {
+  constexpr double kTold = 8;
   const Index count = high - low;
+  if (count < 4) return std::nullopt;
   VectorXd sum = VectorXd::Zero(count + 1);
   for (Index i = 0; i < count; ++i) sum[i + 1] = sum[i] + values[low + i] * values[low + i];
-  const double floor = 1e-12 * sum[count] + 1e-300;
-  Index best = low;
-  double most = -std::numeric_limits<double>::infinity();
+  const double floor = 0.1 * quiet + 1e-300;
+  const auto level = [&](double energy, double samples) {
+    return -samples * std::log(energy / samples + floor);
+  };
+  std::optional<Index> best;
+  double most = level(sum[count], static_cast<double>(count)) + kTold;
   for (Index i = 2; i + 2 <= count; ++i) {
     const auto before = static_cast<double>(i);
     const auto after = static_cast<double>(count - i);
-    const double likely = -before * std::log((sum[i] + floor) / before) -
-                          after * std::log((sum[count] - sum[i] + floor) / after);
+    const double likely = level(sum[i], before) + level(sum[count] - sum[i], after);
     if (likely <= most) continue;
     most = likely;
     best = low + i;
@@ -300,15 +306,19 @@ struct LoudSamples {
 };
 
 // Its first and last sample, to the sample, where it was found in whole windows: each end is looked
-// for from a window outside to the middle.
+// for from a window outside to the middle, and stays where none is to be seen or the recording has
+// one.
 LoudSamples sharpened(const LoudSamples& rough, const Eigen::Ref<const VectorXd>& values,
-                      Index window) {
+                      Index window, double quiet) {
   const Index middle = rough.first + rough.count / 2;
   const Index low = std::max<Index>(0, rough.first - window);
   const Index high = std::min(values.size(), rough.first + rough.count + window);
-  const Index first = step_of_power(values, low, middle);
-  const Index last = step_of_power(values, middle, high);
-  return {first, std::max<Index>(1, last - first)};
+  const Index rough_end = rough.first + rough.count;
+  Index first = rough.first;
+  Index end = rough_end;
+  if (rough.first > 0) first = step_of_power(values, low, middle, quiet).value_or(first);
+  if (rough_end < values.size()) end = step_of_power(values, middle, high, quiet).value_or(end);
+  return {first, std::max<Index>(1, end - first)};
 }
 
 }  // namespace
@@ -358,7 +368,7 @@ std::vector<LoudWindow> loud_windows(const Data& data, const VectorXd& left, Ind
     const std::size_t r = one.recording;
     const VectorXd t_s = kept_samples(data.recordings[r].plan, data.recordings[r].motion.t_s);
     const auto own = residual.segment(layout.begin(r, joint), layout.samples(r));
-    const LoudSamples ends = sharpened(one.samples, own, length_in(r));
+    const LoudSamples ends = sharpened(one.samples, own, length_in(r), at(0.5));
     all.push_back({r, t_s[ends.first], t_s[ends.first + ends.count - 1]});
   }
   return all;

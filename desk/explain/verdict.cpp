@@ -171,10 +171,14 @@ std::vector<Change> changes_on(const Explanation& e, Eigen::Index joint) {
 // What is found beside a change holds all the time, and a robot file knows no other time.
 void advise_on_changes(Explanation& e) {
   for (const Change& one : e.changes) {
-    e.advice.push_back(fmt::format(
-        "recording {} before and behind {:.4g} s is of two robots: a robot file says one of them; "
-        "cut it there to fit or calibrate either",
-        one.recording + 1, one.at_s));
+    e.advice.push_back(
+        one.until_s
+            ? fmt::format("recording {} from {:.4g} to {:.4g} s is of another robot, or of "
+                          "something that holds it: leave that out to fit or calibrate the rest",
+                          one.recording + 1, one.at_s, *one.until_s)
+            : fmt::format("recording {} before and behind {:.4g} s is of two robots: a robot file "
+                          "says one of them; cut it there to fit or calibrate either",
+                          one.recording + 1, one.at_s));
   }
 }
 
@@ -313,9 +317,12 @@ std::string words_of(const Change& change) {
     by.push_back(fmt::format("{} {:+.3g}{}", one.value.name, one.value.value,
                              plain ? "" : " " + one.value.unit));
   }
-  return fmt::format("{} on {} at {:.2f} s of recording {} ({})", fmt::join(names, " or "),
-                     at_joint(change.what.joint), change.at_s, change.recording + 1,
-                     fmt::join(by, ", "));
+  const std::string until =
+      change.until_s
+          ? fmt::format("to {:.2f} s of recording {}", *change.until_s, change.recording + 1)
+          : fmt::format("s of recording {} on", change.recording + 1);
+  return fmt::format("{} on {} from {:.2f} {} ({})", fmt::join(names, " or "),
+                     at_joint(change.what.joint), change.at_s, until, fmt::join(by, ", "));
 }
 
 bool is_to_write(Verdict verdict) { return row_of(verdict).to_write; }
@@ -424,7 +431,7 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
     answer.words = "no known effect is missing.";
   }
   if (const auto changes = changes_on(e, errors.joint); !changes.empty()) {
-    const bool alone = answer.found.empty() && answer.ambiguous.empty();
+    const bool alone = answer.verdict == Verdict::kExplained;
     if (alone) answer.verdict = Verdict::kChanged;
     answer.words = fmt::format("{}changes in the middle: {}.", alone ? "" : answer.words + " It ",
                                words_of_changes(changes));
@@ -559,15 +566,15 @@ void judge_whole(Explanation& e) {
     judge_ambiguous(e);
   } else if (!e.found.empty()) {
     judge_found(e);
-  } else if (!e.changes.empty()) {
-    e.verdict = Verdict::kChanged;
-    e.words = "The robot changes in the middle of a recording: " + words_of_changes(e.changes) +
-              ". Nothing else is missing that has a name.";
   } else if (unknown != nullptr) {
     judge_unknown(*unknown, e);
   } else if (shift != e.answers.end()) {
     e.verdict = Verdict::kParameterShift;
     e.words = "A known quantity has another value: " + shift->words;
+  } else if (!e.changes.empty()) {
+    e.verdict = Verdict::kChanged;
+    e.words =
+        "The robot changes in the middle of a recording: " + words_of_changes(e.changes) + ".";
   } else if (poor) {
     e.verdict = Verdict::kNotExcited;
     e.words = e.unsure.empty()

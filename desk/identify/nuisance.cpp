@@ -220,9 +220,9 @@ class Builder {
   }
 
   void add_change(const Term& change) {
-    MatrixXd columns =
-        stacked_columns(layout_, recordings_, *change.effect, change.joint, change.shape);
-    columns.array().colwise() *= rows_in(*change.during, layout_, recordings_).array();
+    const MatrixXd columns =
+        within(shares_of(*change.during, recordings_), layout_,
+               stacked_columns(layout_, recordings_, *change.effect, change.joint, change.shape));
     for (Index c = 0; c < columns.cols(); ++c) {
       terms_.push_back({NuisanceTerm::Kind::kChange,
                         change.joint,

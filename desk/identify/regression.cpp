@@ -218,7 +218,7 @@ MatrixXd columns_of_all(const Data& data, const Term& term) {
 MatrixXd columns_of(const Data& data, const Term& term) {
   MatrixXd columns = columns_of_all(data, term);
   if (term.during) {
-    columns.array().colwise() *= rows_in(*term.during, data.layout, data.recordings).array();
+    columns = within(shares_of(*term.during, data.recordings), data.layout, columns);
   }
   return columns;
 }

@@ -3,23 +3,34 @@
 namespace offnominal::desk {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd rows_in(const TimeSpan& span, const RowLayout& layout,
-                 const std::vector<Workspace>& recordings) {
-  VectorXd rows = VectorXd::Zero(layout.rows());
+std::vector<VectorXd> shares_of(const TimeSpan& span, const std::vector<Workspace>& recordings) {
+  std::vector<VectorXd> shares(recordings.size());
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     const Workspace& at = recordings[r];
     if (at.file != span.file) continue;
     const VectorXd& t_s = at.motion.t_s;
     VectorXd inside(t_s.size());
     for (Index i = 0; i < t_s.size(); ++i) inside[i] = span.holds(t_s[i]) ? 1 : 0;
-    const VectorXd kept = filtered(at.plan, inside);
+    shares[r] = filtered(at.plan, inside);
+  }
+  return shares;
+}
+
+MatrixXd within(const std::vector<VectorXd>& shares, const RowLayout& layout,
+                const MatrixXd& columns) {
+  MatrixXd inside = MatrixXd::Zero(columns.rows(), columns.cols());
+  for (std::size_t r = 0; r < shares.size(); ++r) {
+    if (shares[r].size() == 0) continue;
     for (Index joint = 0; joint < layout.joint_count(); ++joint) {
-      rows.segment(layout.begin(r, joint), layout.samples(r)) = kept;
+      const Index begin = layout.begin(r, joint);
+      inside.middleRows(begin, layout.samples(r)) =
+          columns.middleRows(begin, layout.samples(r)).array().colwise() * shares[r].array();
     }
   }
-  return rows;
+  return inside;
 }
 
 }  // namespace offnominal::desk

@@ -19,6 +19,7 @@ struct TimeSpan {
   double from_s = 0;
   double to_s = std::numeric_limits<double>::infinity();
 
+  [[nodiscard]] bool ends() const { return to_s < std::numeric_limits<double>::infinity(); }
   [[nodiscard]] bool holds(double t_s) const { return t_s >= from_s && t_s < to_s; }
 };
 
@@ -40,10 +41,15 @@ struct Term {
   }
 };
 
-// What is left of a constant 1 in every row where it is 1 in the span and 0 elsewhere: the low-pass
-// that torques and regressors pass makes a slope of its ends. A regressor times this is what the
-// filter makes of one that acts in the span alone, as far as it does not change during that slope.
-Eigen::VectorXd rows_in(const TimeSpan& span, const RowLayout& layout,
-                        const std::vector<Workspace>& recordings);
+// Per recording, at its filtered samples, what the low-pass that torques and regressors pass makes
+// of a 1 in the span and a 0 elsewhere; empty where the span is of another recording. A regressor
+// times this is what the filter makes of one that acts in the span alone, as far as it does not
+// change during the slopes at the span's ends.
+std::vector<Eigen::VectorXd> shares_of(const TimeSpan& span,
+                                       const std::vector<Workspace>& recordings);
+
+// Stacked columns times such shares; 0 in other recordings.
+Eigen::MatrixXd within(const std::vector<Eigen::VectorXd>& shares, const RowLayout& layout,
+                       const Eigen::MatrixXd& columns);
 
 }  // namespace offnominal::desk

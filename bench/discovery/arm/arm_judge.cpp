@@ -122,7 +122,9 @@ class ArmJudge {
   [[nodiscard]] bool is_true(const desk::Change& told) const {
     constexpr double kNearS = 1;
     return std::any_of(truth_.changes.begin(), truth_.changes.end(), [&](const ArmTrueEffect& one) {
-      const bool named = told.what == place_of(one) || holds(told.alike, place_of(one));
+      const bool named =
+          (told.what == place_of(one) && told.by.front().value.value * one.effect.number(0) > 0) ||
+          holds(told.alike, place_of(one));
       return named && std::abs(told.at_s - one.effect.from_s) <= kNearS;
     });
   }

@@ -176,6 +176,37 @@ TEST(Change, IsNotToldWhereOnlyTheMotionIsAnother) {
   EXPECT_THAT(told.changes, IsEmpty()) << told.words;
 }
 
+// ... however fast it fades.
+TEST(Change, IsNotToldOfAFastDrift) {
+  const RobotDescription robot = test::serial_arm(2);
+  const RobotDescription warming =
+      with(robot, test::effect_of(EffectKind::kTemperatureDrift, 1, {0.8, 0.0, 1.2, 0.01}));
+  const Log log = test::record(warming, {.duration_s = 30, .seed = 6});
+  const Explanation told = explain(robot, {log}, {}, quick());
+  EXPECT_THAT(told.changes, IsEmpty()) << told.words;
+}
+
+TEST(Change, ThatGoesAgainIsOneFromAMomentToAnother) {
+  constexpr double kGoneS = 13.4;
+  const RobotDescription robot = test::serial_arm(kJoints);
+  const RobotDescription loaded =
+      with(robot, test::effect_of(EffectKind::kTipPayload, kJoints - 1, {0.5, 0.05, -0.03, 0.06}));
+  Log log = recorded(robot, loaded);
+  const Log after = recorded(robot, robot);
+  for (Index i = 0; i < log.t_s.size(); ++i) {
+    if (log.t_s[i] >= kGoneS) log.tau.row(i) = after.tau.row(i);
+  }
+  const Explanation told = explain(robot, {log}, {}, quick());
+  ASSERT_THAT(told.changes, SizeIs(1)) << told.words;
+  const Change& change = told.changes[0];
+  EXPECT_EQ(change.what, (EffectAt{EffectKind::kTipPayload, kJoints - 1}));
+  EXPECT_NEAR(number(change, "mass"), 0.5, 0.05);
+  EXPECT_NEAR(change.at_s, kMomentS, 0.1);
+  ASSERT_TRUE(change.until_s);
+  EXPECT_NEAR(*change.until_s, kGoneS, 0.1);
+  EXPECT_THAT(told.words, HasSubstr("to 13.4"));
+}
+
 TEST(Change, IsTheSameForAnyNumberOfThreads) {
   const RobotDescription robot = test::serial_arm(2);
   const RobotDescription other =
@@ -215,7 +246,8 @@ TEST(TimeSpan, IsOneInItsPartOfItsRecordingAndNothingElsewhere) {
   const std::vector<Workspace> recordings =
       make_workspaces(logs, robot, plan, Eigen::VectorXd::Zero(2));
   const RowLayout layout(recordings);
-  const Eigen::VectorXd rows = rows_in({"second", 2, 4}, layout, recordings);
+  const Eigen::MatrixXd rows = within(shares_of({"second", 2, 4}, recordings), layout,
+                                      Eigen::MatrixXd::Ones(layout.rows(), 1));
   constexpr double kSlopeS = 0.1;
   for (std::size_t r = 0; r < 2; ++r) {
     const Eigen::VectorXd t_s = kept_samples(recordings[r].plan, recordings[r].motion.t_s);
@@ -223,7 +255,7 @@ TEST(TimeSpan, IsOneInItsPartOfItsRecordingAndNothingElsewhere) {
       for (Index i = 0; i < t_s.size(); ++i) {
         if (std::min(std::abs(t_s[i] - 2), std::abs(t_s[i] - 4)) < kSlopeS) continue;
         const bool inside = r == 1 && t_s[i] >= 2 && t_s[i] < 4;
-        EXPECT_NEAR(rows[layout.begin(r, joint) + i], inside ? 1 : 0, 0.1) << t_s[i];
+        EXPECT_NEAR(rows(layout.begin(r, joint) + i, 0), inside ? 1 : 0, 0.1) << t_s[i];
       }
     }
   }

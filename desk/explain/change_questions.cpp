@@ -1,0 +1,81 @@
+#include "explain/change_questions.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "explain/remainder.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Remainder beside_columns(Remainder at, const MatrixXd& columns) {
+  constexpr double kNothingNew = 1e-3;
+  MatrixXd fresh(at.residual.size(), columns.cols());
+  for (Index c = 0; c < columns.cols(); ++c) {
+    fresh.col(c) = at.weighted(columns.col(c));
+    const double length = fresh.col(c).norm();
+    if (length > 0) fresh.col(c) /= length;
+  }
+  fresh = at.beside_basis(std::move(fresh));
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(fresh);
+  const Index most = std::min(fresh.rows(), fresh.cols());
+  Index rank = 0;
+  while (rank < most && std::abs(qr.matrixR()(rank, rank)) > kNothingNew) ++rank;
+  if (rank == 0) return at;
+  MatrixXd more = MatrixXd::Identity(fresh.rows(), rank);
+  more.applyOnTheLeft(qr.householderQ());
+  at.residual -= more * (more.transpose() * at.residual).eval();
+  at.energy = at.layout->energy(at.residual);
+  at.basis.conservativeResize(fresh.rows(), at.basis.cols() + rank);
+  at.basis.rightCols(rank) = more;
+  return at;
+}
+
+double likelihood_of(const Judge& judge, const MatrixXd& columns) {
+  const Evidence evidence = judge.evidence(columns);
+  return evidence.usable ? evidence.log_likelihood : 0;
+}
+
+bool is_sudden(const Moments& moments, std::size_t recorded, const MatrixXd& columns, double likely,
+               const Judge& judge) {
+  constexpr double kSudden = 5;
+  constexpr int kDegree = 3;
+  constexpr std::array kFadeParts{0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.33};  // of the recording
+  const auto is_as_likely = [&](const MatrixXd& slow) {
+    return likelihood_of(judge, slow) + kSudden >= likely;
+  };
+  MatrixXd cubic(columns.rows(), kDegree * columns.cols());
+  for (int power = 1; power <= kDegree; ++power) {
+    cubic.middleCols((power - 1) * columns.cols(), columns.cols()) =
+        moments.shaped(columns, recorded, [&](double part) { return std::pow(part, power); });
+  }
+  if (is_as_likely(cubic)) return false;
+  return std::none_of(kFadeParts.begin(), kFadeParts.end(), [&](double fades) {
+    return is_as_likely(
+        moments.shaped(columns, recorded, [&](double part) { return std::exp(-part / fades); }));
+  });
+}
+
+bool is_no_other_motion(const Data& data, const Remainder& remainder, const MatrixXd& columns) {
+  constexpr double kStays = 0.5;
+  constexpr double kActsOn = 0.2;  // of the energy of the effect
+  const VectorXd energy =
+      data.layout.energy(data.layout.weighted(columns.rowwise().sum(), remainder.joint_weights));
+  const auto taken = [&](const Remainder& at) { return Judge(at).gain(columns) * at.energy.sum(); };
+  Remainder free = remainder;
+  for (Index joint = 0; joint < energy.size(); ++joint) {
+    if (energy[joint] < kActsOn * energy.sum()) continue;
+    for (const char* variable : {"position", "velocity", "load"}) {
+      free = beside_columns(std::move(free), bins_over(data, joint, variable));
+    }
+  }
+  return taken(free) >= kStays * taken(remainder);
+}
+
+}  // namespace offnominal::desk
