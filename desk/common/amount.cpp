@@ -12,7 +12,7 @@ std::string counted(std::size_t count, const std::string& noun, const std::strin
 }
 
 std::string significant(double value, int digits) {
-  const std::string rounded = fmt::format("{:.{}e}", value, digits - 1);
+  std::string rounded = fmt::format("{:.{}e}", value, digits - 1);
   if (value == 0) return "0";
   const auto mark = rounded.find('e');
   if (mark == std::string::npos) return rounded;

@@ -185,7 +185,7 @@ std::optional<std::string> text_with_changes(const RobotDescription& robot,
 
 // With its line, where the robot comes from a text.
 std::string place_of_space(const RobotDescription& robot) {
-  const std::string key = "estimator.space";
+  std::string key = "estimator.space";
   if (robot.file_text == nullptr) return key;
   const toml::table document = parse_toml(*robot.file_text, "");
   const toml::node* const node = document.at_path(key).node();
