@@ -24,7 +24,7 @@ Matrix3d rotation_of(const Joint<double>& joint) {
 
 // An even rod has m L^2 / 12 across about its middle.
 Vector3d end_of_rod(const Joint<double>& joint) {
-  const Vector3d centre = vector_of(joint.centre_of_mass_m);
+  Vector3d centre = vector_of(joint.centre_of_mass_m);
   const auto& [xx, yy, zz, xy, xz, yz] = joint.inertia_kg_m2;
   Matrix3d inertia;
   inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;

@@ -28,11 +28,16 @@ function shown(page) {
   }));
 }
 
-/** Presses a key on the picture; returns what was shown before and after. */
+/**
+ * Presses a key on the picture; returns what was shown before, and after it was drawn anew. A busy machine without a
+ * graphics card takes its time for that; a picture that is not drawn within 10 s does not follow.
+ */
 async function press(page, key) {
   const before = await shown(page);
   await page.press("#arm-view", key);
-  await page.waitForTimeout(80);
+  await page
+    .waitForFunction((drawn) => arm.view.pictures > drawn, before.pictures, { timeout: 10_000 })
+    .catch(() => undefined);
   return [before, await shown(page)];
 }
 

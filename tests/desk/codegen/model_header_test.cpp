@@ -45,13 +45,13 @@ TEST(ModelHeader, RepeatsToTheLetter) {
 
 TEST(ModelHeader, OffersDoubleAloneWhereFloatWouldBeRefused) {
   const ModelHeader header =
-      header_of(changed(test::kSampleRobot, "learning_rate = 0.5", "learning_rate = 1e60"));
-  EXPECT_EQ(header.in_float, Status::kInvalidLearningRate);
+      header_of(changed(test::kSampleRobot, "weight_radius = 3.0", "weight_radius = 1e-60"));
+  EXPECT_EQ(header.in_float, Status::kInvalidWeightRadius);
   EXPECT_THAT(header.text, HasSubstr("For double only: rounded to float"));
   EXPECT_THAT(header.text, HasSubstr("template <std::same_as<double> Scalar>"));
-  const ModelHeader gains =
-      header_of(changed(test::kSampleRobot, "kp_per_s2 = 100.0", "kp_per_s2 = 1e60"));
-  EXPECT_EQ(gains.in_float, Status::kInvalidGain);
+  const ModelHeader pole =
+      header_of(changed(test::kSampleRobot, "alpha_per_s = 20.0", "alpha_per_s = 1e-60"));
+  EXPECT_EQ(pole.in_float, Status::kInvalidFilterPole);
 }
 
 std::string refusal_of(const std::string& text, const ModelHeaderOptions& options) {
