@@ -30,12 +30,13 @@ constexpr double kClearly = 10;  // log-likelihood
 
 class ChangeFinder {
  public:
-  ChangeFinder(const Regression& regression, std::vector<Term> terms, const SearchOptions& options)
+  ChangeFinder(const Regression& regression, std::vector<Term> terms, const SearchOptions& options,
+               const std::optional<TimeSpan>& given)
       : regression_(regression),
         data_(regression.data()),
         terms_(std::move(terms)),
         options_(options),
-        moments_(data_) {
+        moments_(data_, given) {
     std::erase_if(terms_, [](const Term& term) { return term.effect->info().traits.counts_time; });
     for (const auto& effect : all_candidates()) {
       if (std::find(kMayChange.begin(), kMayChange.end(), effect->kind()) == kMayChange.end()) {
@@ -121,7 +122,7 @@ class ChangeFinder {
         const double likely = likelihood_of(judge, moments_.behind(columns, r, m));
         if (likely <= best.log_likelihood) continue;
         best = {effect, r, likely};
-        best.term.during = TimeSpan{in.file, in.grid[m]};
+        best.term.during = moments_.span(r, m);
       }
     }
     return best;
@@ -164,19 +165,20 @@ class ChangeFinder {
 
   // When it acts, and the place of what is carried, each as the other has it.
   void refine(Scanned& one, const ModelFit& at) const {
-    refine_ends(one, at);
+    if (!moments_.are_given()) refine_ends(one, at);
     if (!one.term.is_searched()) return;
     std::vector<Term> all = model();
     all.push_back(one.term);
     regression_.refine(all, all.size() - 1);
     one.term = all.back();
-    refine_ends(one, at);
+    if (!moments_.are_given()) refine_ends(one, at);
   }
 
   // What comes and goes again: from or to the moment that was found, where that makes the
   // recordings clearly more likely.
   void end_it(Scanned& one, const ModelFit& at) const {
     constexpr double kShortestS = 2;  // what is shorter is a push, or another event
+    if (moments_.are_given()) return;
     const Remainder remainder = beside_effect(at, one.term, all_samples());
     const Judge judge(remainder);
     const MatrixXd columns = whole(one.term);
@@ -185,7 +187,7 @@ class ChangeFinder {
     const double moment = one.term.during->from_s;
     for (const double other : recorded(one).grid) {
       if (std::abs(other - moment) < kShortestS) continue;
-      const TimeSpan part{one.term.during->file, std::min(moment, other), std::max(moment, other)};
+      const TimeSpan part{one.term.during->files, std::min(moment, other), std::max(moment, other)};
       const double likely = likelihood_of(judge, moments_.inside(columns, part));
       if (likely <= best.log_likelihood) continue;
       best.log_likelihood = likely;
@@ -260,8 +262,10 @@ class ChangeFinder {
     if (one.log_likelihood < kClearly) return std::nullopt;
     const Fall fall =
         best_fall(data_.layout.rms(fit_without.residual), data_.layout.rms(fit.residual));
+    const bool asks_when = !moments_.are_given();
     if (!is_relevant(fall) ||
-        !is_sudden(moments_, one.recorded, whole(one.term), one.log_likelihood, judge) ||
+        (asks_when &&
+         !is_sudden(moments_, one.recorded, whole(one.term), one.log_likelihood, judge)) ||
         !is_no_other_motion(data_, remainder, columns_of(data_, one.term))) {
       return std::nullopt;
     }
@@ -273,7 +277,7 @@ class ChangeFinder {
     const Estimates estimates = estimates_of(regression_, data_.recordings[0].rigid, with, fit);
     if (!(estimates.linear.back().from_nothing() >= 1)) return std::nullopt;
     change.numbers = estimates.terms.back();
-    change.at_s = interval_of(one, &TimeSpan::from_s, judge);
+    if (asks_when) change.at_s = interval_of(one, &TimeSpan::from_s, judge);
     if (one.term.during->ends()) change.until_s = interval_of(one, &TimeSpan::to_s, judge);
     return change;
   }
@@ -298,9 +302,12 @@ class ChangeFinder {
     noise.remainder.blocks = data_.layout.blocks(block_s);
     const double edge_s = kBlocksBeside * block_s;
     const TimeSpan& during = *one.term.during;
-    if (!recorded(one).is_inside(during.from_s, edge_s)) return 1;
+    const auto may_be_at = [&](const Moments::Recorded& in, double t_s) {
+      return moments_.are_given() || in.is_inside(t_s, edge_s);
+    };
+    if (!may_be_at(recorded(one), during.from_s)) return 1;
     if (during.ends() &&
-        (!recorded(one).is_inside(during.to_s, edge_s) || during.to_s - during.from_s < edge_s)) {
+        (!may_be_at(recorded(one), during.to_s) || during.to_s - during.from_s < edge_s)) {
       return 1;
     }
     std::vector<std::vector<Evidence>> of_candidates(candidates_.size());
@@ -312,7 +319,7 @@ class ChangeFinder {
       for (std::size_t r = 0; r < moments_.recorded().size(); ++r) {
         const Moments::Recorded& in = moments_.recorded()[r];
         for (std::size_t m = 0; m < in.grid.size(); ++m) {
-          if (!in.is_inside(in.grid[m], edge_s)) continue;
+          if (!may_be_at(in, in.grid[m])) continue;
           of_candidates[i].push_back(judge.evidence(moments_.behind(columns, r, m)));
         }
       }
@@ -352,7 +359,7 @@ class ChangeFinder {
       const bool same_effect =
           other.term.effect == mine.term.effect && other.term.joint == mine.term.joint;
       const auto is_at = [&](double end_s) {
-        return std::abs(other.term.during->from_s - end_s) <= kSameMomentS;
+        return moments_.are_given() || std::abs(other.term.during->from_s - end_s) <= kSameMomentS;
       };
       const bool elsewhere = other.recorded != mine.recorded ||
                              !(is_at(mine.term.during->from_s) || is_at(mine.term.during->to_s));
@@ -376,8 +383,9 @@ class ChangeFinder {
 }  // namespace
 
 std::vector<FoundChange> changes_beside(const Regression& regression, std::vector<Term> terms,
-                                        const SearchOptions& options) {
-  return ChangeFinder(regression, std::move(terms), options).run();
+                                        const SearchOptions& options,
+                                        const std::optional<TimeSpan>& given) {
+  return ChangeFinder(regression, std::move(terms), options, given).run();
 }
 
 bool are_same(const std::vector<FoundChange>& a, const std::vector<FoundChange>& b) {
@@ -386,7 +394,7 @@ bool are_same(const std::vector<FoundChange>& a, const std::vector<FoundChange>&
       a.begin(), a.end(), b.begin(), b.end(), [&](const FoundChange& x, const FoundChange& y) {
         const auto near = [&](double s, double t) { return s == t || std::abs(s - t) <= kSameS; };
         return x.term.effect == y.term.effect && x.term.joint == y.term.joint &&
-               x.term.during->file == y.term.during->file &&
+               x.term.during->files == y.term.during->files &&
                near(x.term.during->from_s, y.term.during->from_s) &&
                near(x.term.during->to_s, y.term.during->to_s);
       });

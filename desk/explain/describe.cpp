@@ -160,8 +160,11 @@ void describe_changes(const SearchResult& from, Explanation& to) {
     change.what = place_of(one.term);
     std::transform(one.alike.begin(), one.alike.end(), std::back_inserter(change.alike), place_of);
     change.recording = static_cast<std::size_t>(
-        std::find(files.begin(), files.end(), one.term.during->file) - files.begin());
-    change.at_s = one.term.during->from_s;
+        std::find_if(files.begin(), files.end(),
+                     [&](const std::string& file) { return one.term.during->is_of(file); }) -
+        files.begin());
+    change.is_between = !one.term.during->begins();
+    if (!change.is_between) change.at_s = one.term.during->from_s;
     change.at_ci95_s = one.at_s;
     if (one.until_s) {
       change.until_s = one.term.during->to_s;

@@ -18,6 +18,7 @@
 #include "explain/find_model.hpp"
 #include "explain/free_function.hpp"
 #include "explain/friction_family.hpp"
+#include "explain/given_part.hpp"
 #include "explain/link_share.hpp"
 #include "explain/questions.hpp"
 #include "explain/search_setting.hpp"
@@ -47,6 +48,7 @@ class Explainer {
             const std::vector<Log>& holdout, const ExplainOptions& options,
             const OnProgress& on_progress)
       : file_(robot), robot_(robot), logs_(logs), options_(options), on_progress_(on_progress) {
+    given_ = part_that_may_differ(logs, options_);
     check_kind(logs, logs.front().at_rest);
     check_kind(holdout, logs.front().at_rest);
     plan_ = plan_filter(logs, robot_);
@@ -85,6 +87,8 @@ class Explainer {
     result.at_rest = setting_.data->recordings[0].at_rest;
     result.holdout_is_apart = setting_.hold_out->is_apart();
     result.excitation = excitation_of(setting_.data->recordings);
+    result.changes_asked = given_.has_value();
+    result.changes_between = given_ && !given_->begins();
     FoundModel found = search_with_changes(search, result);
     const HoldOut& hold_out = *setting_.hold_out;
     result.over_variable =
@@ -210,14 +214,15 @@ class Explainer {
 
   // Beside the effects that were found.
   [[nodiscard]] std::vector<FoundChange> changes_in(const FoundModel& found) const {
-    tell("looking for what changes in the middle");
+    tell(given_ ? "looking for what has changed" : "looking for what changes in the middle");
     NuisanceOptions unchanged = setting_.nuisance;
     if (unchanged.changes.empty()) {
-      return changes_beside(*setting_.regression, found.terms(), setting_.search->options());
+      return changes_beside(*setting_.regression, found.terms(), setting_.search->options(),
+                            given_);
     }
     unchanged.changes.clear();
     const Data plain(*setting_.data, robot_, unchanged);
-    return changes_beside(Regression(plain), found.terms(), setting_.search->options());
+    return changes_beside(Regression(plain), found.terms(), setting_.search->options(), given_);
   }
 
   // What could as well be something else is not written; its numbers were fitted beside it.
@@ -394,6 +399,7 @@ class Explainer {
   std::string left_out_;
   SearchSetting setting_;
   std::vector<FoundChange> changes_;
+  std::optional<TimeSpan> given_;  // the only part that may differ from the rest
 };
 
 void check_keep(const std::vector<KeepFault>& keep, const RobotDescription& robot) {

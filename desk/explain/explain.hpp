@@ -83,13 +83,16 @@ struct LoudSpan {
   double to_s = 0;
 };
 
-// Something that a joint has, or has no longer, from a moment in the middle of a recording on.
+// Something that a joint has, or has no longer, from a moment in the middle of a recording on, or
+// in the recordings that were made after the others.
 struct Change {
   EffectAt what;
   std::vector<EffectAt> alike;  // what else may have changed: these recordings cannot tell
-  std::size_t recording = 0;    // from 0
-  double at_s = 0;              // by the recording's own time stamps
-  std::array<double, 2> at_ci95_s{};
+  // In those recordings as a whole: then it has no moment.
+  bool is_between = false;
+  std::size_t recording = 0;                            // from 0; of those recordings the first
+  double at_s = 0;                                      // by the recording's own time stamps
+  std::optional<std::array<double, 2>> at_ci95_s = {};  // none: the moment was given
   // When it is gone again; none: it stays.
   std::optional<double> until_s;
   std::array<double, 2> until_ci95_s{};
@@ -97,7 +100,8 @@ struct Change {
   double p_value = 1;        // of the whole search for changes, wild block bootstrap
 };
 
-// "coulomb_friction on joint 4 from 14.98 s of recording 1 on (level +3.1 N m)".
+// "coulomb_friction on joint 4 from 14.98 s of recording 1 on (level +3.1 N m)", "tip_payload on
+// joint 6 from before to after (mass +0.5 kg)".
 std::string words_of(const Change& change);
 
 // An effect that noise may hide: likely more than chance, and too unsure or too small to be named.
@@ -174,6 +178,10 @@ struct Explanation {
   std::vector<OverVariable> over_variable;
   std::vector<LoudSpan> loud;
   std::vector<Change> changes;  // the likeliest first
+  // Whether it was asked what has changed since a given time or recording, and whether that is
+  // what is in one recording and not in another.
+  bool changes_asked = false;
+  bool changes_between = false;
   // Joints whose model has neither Coulomb nor viscous friction.
   std::vector<Eigen::Index> without_friction;
   std::vector<std::vector<EffectAt>> ambiguous;
@@ -225,6 +233,11 @@ struct ExplainOptions {
   std::string source = {};      // what `improved` says of where its numbers come from
   std::string robot_file = {};  // as the user named it, for commands in the advice; empty: "ROBOT"
   std::vector<KeepFault> keep = {};  // of the doctor's findings, that are no faults
+  // When the robot may have become another one, where that is known: nothing else is then asked of
+  // changes. The recordings from this one on were made after it (0: none of them), or what the only
+  // recording has from there on, by its own time stamps.
+  std::size_t after = 0;
+  std::optional<double> since_s = {};
 };
 
 // treat() of all of them; readings at rest are left as they are: every check there is needs time.
@@ -245,7 +258,8 @@ Treated treated(const RobotDescription& robot, std::vector<Log> logs, std::vecto
 
 // Which effects the robot's model lacks, by recordings of it. `holdout` may be empty: then parts of
 // the recordings are held out in turn. Throws InputError where the recordings and the robot do not
-// fit together or are too short.
+// fit together or are too short, and in the names of --after and --since, where the options say
+// what cannot be.
 Explanation explain(const RobotDescription& robot, std::vector<Log> logs, std::vector<Log> holdout,
                     const ExplainOptions& options, const OnProgress& on_progress = {});
 Explanation explain(const RobotDescription& robot, const Treated& recordings,

@@ -97,9 +97,12 @@ ordered_json json_of(const OverVariable& one) {
 ordered_json json_of(const Change& one) {
   ordered_json json = effect_at(one.what);
   json["alike"] = array_of(one.alike, effect_at);
+  json["between"] = one.is_between;
   json["recording"] = one.recording + 1;
-  json["at_s"] = one.at_s;
-  json["at_s_ci95"] = one.at_ci95_s;
+  json["at_s"] = nullptr;
+  json["at_s_ci95"] = nullptr;
+  if (!one.is_between) json["at_s"] = one.at_s;
+  if (one.at_ci95_s) json["at_s_ci95"] = *one.at_ci95_s;
   json["until_s"] = nullptr;
   json["until_s_ci95"] = nullptr;
   if (one.until_s) {
@@ -116,6 +119,7 @@ ordered_json json_of(const Change& one) {
 ordered_json to_json(const Explanation& e, const ExplainNames& names) {
   ordered_json json;
   json["logs"] = names.logs;
+  json["after"] = names.after;
   json["holdout"] = names.holdout;
   json["robot"] = names.robot_file;
   json["verdict"] = name_of(e.verdict);

@@ -113,9 +113,17 @@ report::Table finding_table(const Explanation& e) {
   return table;
 }
 
+std::string words_of_recordings(const ExplainNames& names) {
+  if (names.after.empty()) return list_of(names.logs);
+  const std::vector<std::string> before(
+      names.logs.begin(), names.logs.end() - static_cast<std::ptrdiff_t>(names.after.size()));
+  return list_of(before) + " before, " + list_of(names.after) + " after,";
+}
+
 report::Table change_table(const Explanation& e) {
   report::Table table;
-  table.caption = "What changes in the middle of a recording";
+  table.caption = e.changes_between ? "What changes from the recordings before to those after"
+                                    : "What changes in the middle of a recording";
   table.columns = {{"effect", "", ".4g"},
                    {"joint", "", "d"},
                    {"recording", "", "d"},
@@ -137,21 +145,31 @@ report::Table change_table(const Explanation& e) {
     for (const Estimate& by : one.by) {
       report::Cell low;
       report::Cell high;
+      report::Cell at;
+      report::Cell earliest;
+      report::Cell latest;
       report::Cell gone;
+      if (!one.is_between) at = one.at_s;
+      if (one.at_ci95_s) {
+        earliest = (*one.at_ci95_s)[0];
+        latest = (*one.at_ci95_s)[1];
+      }
       if (one.until_s) gone = *one.until_s;
       if (by.ci95) {
         low = (*by.ci95)[0];
         high = (*by.ci95)[1];
       }
       table.rows.push_back({name, static_cast<double>(one.what.joint + 1),
-                            static_cast<double>(one.recording + 1), one.at_s, one.at_ci95_s[0],
-                            one.at_ci95_s[1], gone, by.value.name, by.value.value, low, high,
-                            by.value.unit, one.p_value});
+                            static_cast<double>(one.recording + 1), at, earliest, latest, gone,
+                            by.value.name, by.value.value, low, high, by.value.unit, one.p_value});
     }
   }
   table.note =
-      "There from that moment on, or until it is gone, and not before; a minus sign: there until "
-      "then.";
+      e.changes_between
+          ? "There in the recordings after, and not in those before; a minus sign: the "
+            "other way round."
+          : "There from that moment on, or until it is gone, and not before; a minus sign: "
+            "there until then.";
   return table;
 }
 
@@ -400,7 +418,7 @@ report::Section waterfalls(const Explanation& e) {
 report::Page page_of(const Explanation& e, const ExplainNames& names) {
   report::Page page;
   page.title = "What the model lacks";
-  page.subtitle = list_of(names.logs) + " against " + names.robot_file;
+  page.subtitle = words_of_recordings(names) + " against " + names.robot_file;
   page.verdict = {std::string(name_of(e.verdict)) + ": " + e.words, level_of(e.verdict)};
   page.command_line = names.command_line;
   report::Section overview;

@@ -81,15 +81,22 @@ std::string text_of_findings(const Explanation& e) {
   return text;
 }
 
+// With the 95 % of each moment that was found.
+std::string time_of(const Change& one) {
+  if (one.is_between) return "from before to after";
+  std::string text = fmt::format("from {:.2f} s", one.at_s);
+  if (one.at_ci95_s) {
+    text += fmt::format(" ({:.2f} .. {:.2f} s)", (*one.at_ci95_s)[0], (*one.at_ci95_s)[1]);
+  }
+  if (!one.until_s) return text + fmt::format(" of recording {} on", one.recording + 1);
+  return text + fmt::format(" to {:.2f} s ({:.2f} .. {:.2f} s) of recording {}", *one.until_s,
+                            one.until_ci95_s[0], one.until_ci95_s[1], one.recording + 1);
+}
+
 std::string text_of_changes(const Explanation& e) {
   std::string text;
   for (const Change& one : e.changes) {
-    const std::string until =
-        one.until_s ? fmt::format("to {:.2f} s ({:.2f} .. {:.2f} s) of recording {}", *one.until_s,
-                                  one.until_ci95_s[0], one.until_ci95_s[1], one.recording + 1)
-                    : fmt::format("of recording {} on", one.recording + 1);
-    text += fmt::format("\nfrom {:.2f} s ({:.2f} .. {:.2f} s) {}: {} on joint {} changes by\n",
-                        one.at_s, one.at_ci95_s[0], one.at_ci95_s[1], until, one.what.name(),
+    text += fmt::format("\n{}: {} on joint {} changes by\n", time_of(one), one.what.name(),
                         one.what.joint + 1);
     for (const Estimate& by : one.by) text += "   " + words_of(by) + "\n";
     text += fmt::format("   p = {:.2g} over the whole search for changes\n", one.p_value);
@@ -111,7 +118,10 @@ std::string command_to_add(const ExplainNames& names) {
   };
   std::string command = "offnominal add --all-found --robot" + word(names.robot_file, "ROBOT");
   command += " --log";
-  for (const std::string& log : names.logs) command += word(log, "LOG");
+  // Of what was made after a change nothing is to be added to a model of what was before it.
+  for (std::size_t i = 0; i + names.after.size() < names.logs.size(); ++i) {
+    command += word(names.logs[i], "LOG");
+  }
   if (!names.holdout.empty()) command += " --holdout";
   for (const std::string& log : names.holdout) command += word(log, "HOLDOUT");
   if (!names.channels.empty()) command += " --channels" + word(names.channels, "CHANNELS");

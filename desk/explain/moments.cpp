@@ -1,6 +1,7 @@
 #include "explain/moments.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace offnominal::desk {
 
@@ -42,13 +43,24 @@ double Moments::Recorded::period_s() const {
   return samples.size() < 2 ? 0 : (to_s - from_s) / static_cast<double>(samples.size() - 1);
 }
 
-Moments::Moments(const Data& data) : data_(data), recorded_(recorded_in(data)) {
-  for (const Recorded& in : recorded_) {
+Moments::Moments(const Data& data, std::optional<TimeSpan> given)
+    : data_(data), given_(std::move(given)) {
+  if (given_) {
+    recorded_ = {{given_->files.front(), 0, 0, {}, {given_->from_s}}};
+  } else {
+    recorded_ = recorded_in(data);
+  }
+  for (std::size_t r = 0; r < recorded_.size(); ++r) {
     shares_.emplace_back();
-    for (const double t : in.grid) {
-      shares_.back().push_back(shares_of({in.file, t}, data_.recordings));
+    for (std::size_t m = 0; m < recorded_[r].grid.size(); ++m) {
+      shares_.back().push_back(shares_of(span(r, m), data_.recordings));
     }
   }
+}
+
+TimeSpan Moments::span(std::size_t recorded, std::size_t moment) const {
+  if (given_) return *given_;
+  return {{recorded_[recorded].file}, recorded_[recorded].grid[moment]};
 }
 
 MatrixXd Moments::behind(const MatrixXd& columns, std::size_t recorded, std::size_t moment) const {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace offnominal::desk {
 // Where in recordings something may change, and what columns are behind a moment.
 class Moments {
  public:
-  // The stretches of one recording.
+  // The stretches of one recording; or, where the only change that is asked of is given, nothing
+  // but that one moment.
   struct Recorded {
     std::string file;
     double from_s = 0;
@@ -31,10 +33,15 @@ class Moments {
     }
   };
 
-  // `data` have to outlive it.
-  explicit Moments(const Data& data);
+  // `data` have to outlive it. `given`: the only part that may differ from the rest, recordings
+  // made later or what is behind a moment.
+  Moments(const Data& data, std::optional<TimeSpan> given);
+
+  [[nodiscard]] bool are_given() const { return given_.has_value(); }
 
   [[nodiscard]] const std::vector<Recorded>& recorded() const { return recorded_; }
+  // What is behind a moment of that recording's grid.
+  [[nodiscard]] TimeSpan span(std::size_t recorded, std::size_t moment) const;
   // Stacked columns of what acts behind a moment of that recording's grid, or in a part of one.
   [[nodiscard]] Eigen::MatrixXd behind(const Eigen::MatrixXd& columns, std::size_t recorded,
                                        std::size_t moment) const;
@@ -45,6 +52,7 @@ class Moments {
 
  private:
   const Data& data_;
+  std::optional<TimeSpan> given_;
   std::vector<Recorded> recorded_;
   std::vector<std::vector<std::vector<Eigen::VectorXd>>> shares_;  // per recorded and moment
 };

@@ -12,6 +12,7 @@
 
 #include "compare/inverse_model.hpp"
 #include "explain/any_shape.hpp"
+#include "explain/change_words.hpp"
 #include "explain/explain_report.hpp"
 #include "explain/find_model.hpp"
 
@@ -154,34 +155,6 @@ std::string words_of(const OverVariable& shape) {
       100 * std::max(0.0, shape.share));
 }
 
-std::string words_of_changes(const std::vector<Change>& changes) {
-  std::vector<std::string> all;
-  std::transform(changes.begin(), changes.end(), std::back_inserter(all),
-                 [](const Change& one) { return words_of(one); });
-  return fmt::format("{}", fmt::join(all, "; "));
-}
-
-std::vector<Change> changes_on(const Explanation& e, Eigen::Index joint) {
-  std::vector<Change> own;
-  std::copy_if(e.changes.begin(), e.changes.end(), std::back_inserter(own),
-               [&](const Change& one) { return one.what.joint == joint; });
-  return own;
-}
-
-// What is found beside a change holds all the time, and a robot file knows no other time.
-void advise_on_changes(Explanation& e) {
-  for (const Change& one : e.changes) {
-    e.advice.push_back(
-        one.until_s
-            ? fmt::format("recording {} from {:.4g} to {:.4g} s is of another robot, or of "
-                          "something that holds it: leave that out to fit or calibrate the rest",
-                          one.recording + 1, one.at_s, *one.until_s)
-            : fmt::format("recording {} before and behind {:.4g} s is of two robots: a robot file "
-                          "says one of them; cut it there to fit or calibrate either",
-                          one.recording + 1, one.at_s));
-  }
-}
-
 void advise_on_classes(Explanation& e) {
   for (const auto& same : e.ambiguous) {
     std::vector<std::string> all;
@@ -304,27 +277,6 @@ void judge_suspected(const Suspicion& one, Explanation& e) {
 
 const char* name_of(Verdict verdict) { return row_of(verdict).name; }
 
-std::string words_of(const Change& change) {
-  std::vector<std::string> names{std::string(change.what.name())};
-  for (const EffectAt& one : change.alike) {
-    names.push_back(one.joint == change.what.joint
-                        ? std::string(one.name())
-                        : fmt::format("{} of {}", one.name(), at_joint(one.joint)));
-  }
-  std::vector<std::string> by;
-  for (const Estimate& one : change.by) {
-    const bool plain = one.value.unit.empty() || one.value.unit == "1";
-    by.push_back(fmt::format("{} {:+.3g}{}", one.value.name, one.value.value,
-                             plain ? "" : " " + one.value.unit));
-  }
-  const std::string until =
-      change.until_s
-          ? fmt::format("to {:.2f} s of recording {}", *change.until_s, change.recording + 1)
-          : fmt::format("s of recording {} on", change.recording + 1);
-  return fmt::format("{} on {} from {:.2f} {} ({})", fmt::join(names, " or "),
-                     at_joint(change.what.joint), change.at_s, until, fmt::join(by, ", "));
-}
-
 bool is_to_write(Verdict verdict) { return row_of(verdict).to_write; }
 
 report::Level level_of(Verdict verdict) { return row_of(verdict).level; }
@@ -433,8 +385,8 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
   if (const auto changes = changes_on(e, errors.joint); !changes.empty()) {
     const bool alone = answer.verdict == Verdict::kExplained;
     if (alone) answer.verdict = Verdict::kChanged;
-    answer.words = fmt::format("{}changes in the middle: {}.", alone ? "" : answer.words + " It ",
-                               words_of_changes(changes));
+    answer.words = fmt::format("{}changes{}: {}.", alone ? "" : answer.words + " It ",
+                               e.changes_between ? "" : " in the middle", words_of(changes));
   }
   for (const std::string& shape : shapes) answer.words += fmt::format(" It has {}.", shape);
   const char* left = stands_out(errors) ? " What is left: " : "";
@@ -573,8 +525,7 @@ void judge_whole(Explanation& e) {
     e.words = "A known quantity has another value: " + shift->words;
   } else if (!e.changes.empty()) {
     e.verdict = Verdict::kChanged;
-    e.words =
-        "The robot changes in the middle of a recording: " + words_of_changes(e.changes) + ".";
+    e.words = sentence_on_changes(e);
   } else if (poor) {
     e.verdict = Verdict::kNotExcited;
     e.words = e.unsure.empty()
@@ -603,10 +554,8 @@ void judge_whole(Explanation& e) {
                   "noise, and follows nothing that was looked at.",
                   at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
   }
-  if (e.verdict != Verdict::kChanged && !e.changes.empty()) {
-    e.words +=
-        " The robot changes in the middle of a recording: " + words_of_changes(e.changes) + ".";
-  }
+  const std::string changes = sentence_on_changes(e);
+  if (e.verdict != Verdict::kChanged && !changes.empty()) e.words += " " + changes;
   advise_on_changes(e);
   advise_on_rest(e);
   advise_on_shapes(e);

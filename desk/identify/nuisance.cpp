@@ -229,8 +229,8 @@ class Builder {
                         0,
                         0,
                         {},
-                        fmt::format("{} of joint {} from {:.4g} s of {} on", change.effect->name(),
-                                    change.joint + 1, change.during->from_s, change.during->file)});
+                        fmt::format("{} of joint {}, {}", change.effect->name(), change.joint + 1,
+                                    words_of(*change.during))});
       columns_.emplace_back(columns.col(c));
     }
   }

@@ -1,16 +1,26 @@
 #include "identify/term.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 namespace offnominal::desk {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+std::string words_of(const TimeSpan& span) {
+  const std::string files = fmt::format("{}", fmt::join(span.files, " and "));
+  if (!span.begins()) return "in " + files;
+  return span.ends() ? fmt::format("from {:.4g} to {:.4g} s of {}", span.from_s, span.to_s, files)
+                     : fmt::format("from {:.4g} s of {} on", span.from_s, files);
+}
+
 std::vector<VectorXd> shares_of(const TimeSpan& span, const std::vector<Workspace>& recordings) {
   std::vector<VectorXd> shares(recordings.size());
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     const Workspace& at = recordings[r];
-    if (at.file != span.file) continue;
+    if (!span.is_of(at.file)) continue;
     const VectorXd& t_s = at.motion.t_s;
     VectorXd inside(t_s.size());
     for (Index i = 0; i < t_s.size(); ++i) inside[i] = span.holds(t_s[i]) ? 1 : 0;

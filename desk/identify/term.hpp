@@ -13,15 +13,23 @@
 
 namespace offnominal::desk {
 
-// A part of a recording by its own time stamps: `from_s` and later, before `to_s`.
+// A part of one recording by its own time stamps, `from_s` and later, before `to_s`; or several
+// recordings as a whole.
 struct TimeSpan {
-  std::string file;  // of the recording
-  double from_s = 0;
+  std::vector<std::string> files;  // of the recordings
+  double from_s = -std::numeric_limits<double>::infinity();
   double to_s = std::numeric_limits<double>::infinity();
 
+  [[nodiscard]] bool begins() const { return from_s > -std::numeric_limits<double>::infinity(); }
   [[nodiscard]] bool ends() const { return to_s < std::numeric_limits<double>::infinity(); }
+  [[nodiscard]] bool is_of(const std::string& file) const {
+    return std::find(files.begin(), files.end(), file) != files.end();
+  }
   [[nodiscard]] bool holds(double t_s) const { return t_s >= from_s && t_s < to_s; }
 };
+
+// "from 14.98 s of a.csv on", "from 3 to 9 s of a.csv", "in b.csv and c.csv".
+std::string words_of(const TimeSpan& span);
 
 // An effect on a joint that may be in the model.
 struct Term {
@@ -42,7 +50,7 @@ struct Term {
 };
 
 // Per recording, at its filtered samples, what the low-pass that torques and regressors pass makes
-// of a 1 in the span and a 0 elsewhere; empty where the span is of another recording. A regressor
+// of a 1 in the span and a 0 elsewhere; empty where the span is of other recordings. A regressor
 // times this is what the filter makes of one that acts in the span alone, as far as it does not
 // change during the slopes at the span's ends.
 std::vector<Eigen::VectorXd> shares_of(const TimeSpan& span,

@@ -319,5 +319,26 @@ TEST_F(RecordingsOfVerbs, GivenSeveralThenThePageOfExplainShowsEachAndTheHeldOut
   }
 }
 
+// Which of them are of before and which of after is said of all, or there is no question.
+TEST_F(RecordingsOfVerbs, BeforeAndAfterComeTogetherAndInsteadOfRecordings) {
+  expect_refusal(run({"explain"}),
+                 "explain: LOG: found none; allowed: one recording or more, or "
+                 "--before and --after");
+  expect_refusal(run({"explain", "--before", path("a.csv")}), "--before requires --after");
+  expect_refusal(run({"explain", "--after", path("a.csv")}), "--after requires --before");
+  expect_refusal(
+      run({"explain", path("a.csv"), "--before", path("a.csv"), "--after", path("b.csv")}),
+      "excludes");
+  expect_refusal(run({"explain", "--before", path("a.csv"), "--after", path("a.csv")}),
+                 "--before and --after");
+  expect_refusal(run({"explain", path("a.csv"), "--since", "100"}), "--since: found 100 s");
+  const CommandResult told = run(
+      {"explain", "--before", path("a.csv"), "--after", path("b.csv"), "--replays", "0", "--json"});
+  ASSERT_EQ(told.exit_code, 0) << told.err;
+  const nlohmann::json json = nlohmann::json::parse(told.out);
+  EXPECT_EQ(json.at("after"), nlohmann::json({path("b.csv")}));
+  EXPECT_EQ(json.at("logs").size(), 2U);
+}
+
 }  // namespace
 }  // namespace offnominal::desk

@@ -65,9 +65,9 @@ double number(const Change& change, const std::string& name) {
 
 void expect_at_moment(const Change& change) {
   EXPECT_NEAR(change.at_s, kMomentS, 0.1);
-  EXPECT_LE(change.at_ci95_s[0], kMomentS + 0.02);
-  EXPECT_GE(change.at_ci95_s[1], kMomentS - 0.02);
-  EXPECT_LT(change.at_ci95_s[1] - change.at_ci95_s[0], 1);
+  EXPECT_LE((*change.at_ci95_s)[0], kMomentS + 0.02);
+  EXPECT_GE((*change.at_ci95_s)[1], kMomentS - 0.02);
+  EXPECT_LT((*change.at_ci95_s)[1] - (*change.at_ci95_s)[0], 1);
 }
 
 TEST(Change, OfWhatIsCarriedIsToldWithItsMassAndItsMoment) {
