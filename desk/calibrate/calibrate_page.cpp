@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calibrate/calibrate_report.hpp"
+#include "report/numbers.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -11,10 +12,6 @@ namespace {
 using namespace report;  // a page is written in its own words
 
 constexpr int kHistogramBars = 40;
-
-std::vector<double> axis_values(const Eigen::VectorXd& vector) {
-  return {vector.begin(), vector.end()};
-}
 
 KeyFigures figures_of(const Calibration& calibration) {
   const BoundMargin margin = margin_of(calibration);
@@ -74,18 +71,18 @@ Chart threshold_chart(const Calibration& calibration, const JudgedStretch& stret
   chart.x = {.name = "time", .unit = "s"};
   chart.y = {{.name = "velocity", .unit = calibration.unit}};
   chart.series.push_back({.name = "|e|",
-                          .x = axis_values(stretch.t_s),
-                          .y = axis_values(stretch.error_norm),
+                          .x = numbers(stretch.t_s),
+                          .y = numbers(stretch.error_norm),
                           .tone = Tone::kResidual});
   if (stretch.threshold_before.size() > 0) {
     chart.series.push_back({.name = "threshold mu, old",
-                            .x = axis_values(stretch.t_s),
-                            .y = axis_values(stretch.threshold_before),
+                            .x = numbers(stretch.t_s),
+                            .y = numbers(stretch.threshold_before),
                             .tone = Tone::kFaint});
   }
   chart.series.push_back({.name = "threshold mu, new",
-                          .x = axis_values(stretch.t_s),
-                          .y = axis_values(stretch.threshold_after),
+                          .x = numbers(stretch.t_s),
+                          .y = numbers(stretch.threshold_after),
                           .tone = Tone::kThreshold});
   chart.zoom_group = fmt::format("recording {}", index);
   chart.slider = true;

@@ -10,6 +10,7 @@
 #include "common/amount.hpp"
 #include "common/number.hpp"
 #include "common/text_table.hpp"
+#include "report/numbers.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -141,21 +142,18 @@ std::string rules_text(const JointsCalibration& calibration) {
 
 Chart residual_chart(const JointCalibration& joint, const JudgedStretch& stretch,
                      std::size_t index) {
-  const auto values = [](const Eigen::VectorXd& vector) {
-    return std::vector<double>(vector.begin(), vector.end());
-  };
   Chart chart;
   chart.title =
       fmt::format("{}, {}{}", joint.name, stretch.file, stretch.held_out ? ", hold-out" : "");
   chart.x = {.name = "time", .unit = "s"};
   chart.y = {{.name = "torque", .unit = joint.calibration.unit}};
   chart.series = {{.name = "|residual|",
-                   .x = values(stretch.t_s),
-                   .y = values(stretch.error_norm),
+                   .x = numbers(stretch.t_s),
+                   .y = numbers(stretch.error_norm),
                    .tone = Tone::kResidual},
                   {.name = "threshold",
-                   .x = values(stretch.t_s),
-                   .y = values(stretch.threshold_after),
+                   .x = numbers(stretch.t_s),
+                   .y = numbers(stretch.threshold_after),
                    .tone = Tone::kThreshold}};
   chart.zoom_group = fmt::format("recording {}", index);
   return chart;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "common/effort_name.hpp"
+#include "report/numbers.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -14,13 +15,10 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using report::Axis;
 using report::Chart;
+using report::numbers;
 using report::Series;
 using report::SeriesKind;
 using report::Tone;
-
-std::vector<double> numbers(const Eigen::Ref<const VectorXd>& values) {
-  return {values.data(), values.data() + values.size()};
-}
 
 Axis axis(const std::string& name, const std::string& unit) {
   Axis result;

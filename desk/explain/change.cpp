@@ -22,9 +22,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr std::array kMayChange{EffectKind::kTipPayload, EffectKind::kCoulombFriction,
-                                EffectKind::kViscousFriction, EffectKind::kTorqueOffset,
-                                EffectKind::kTorqueScale};
 constexpr std::size_t kMostChanges = 4;
 constexpr double kClearly = 10;  // log-likelihood
 
@@ -39,9 +36,7 @@ class ChangeFinder {
         moments_(data_, given) {
     std::erase_if(terms_, [](const Term& term) { return term.effect->info().traits.counts_time; });
     for (const auto& effect : all_candidates()) {
-      if (std::find(kMayChange.begin(), kMayChange.end(), effect->kind()) == kMayChange.end()) {
-        continue;
-      }
+      if (!effect->info().traits.may_change) continue;
       for (Index joint = 0; joint < data_.layout.joint_count(); ++joint)
         add_candidate(*effect, joint);
     }

@@ -10,6 +10,7 @@
 #include "common/nearest.hpp"
 #include "explain/data_fault_report.hpp"
 #include "explain/explain_report.hpp"
+#include "report/numbers.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -17,10 +18,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 using report::Level;
-
-std::vector<double> numbers(const Eigen::Ref<const VectorXd>& values) {
-  return {values.begin(), values.end()};
-}
+using report::numbers;
 
 const JointErrors& joint_of(const Explanation& e, Index joint) {
   return e.joints[static_cast<std::size_t>(joint)];

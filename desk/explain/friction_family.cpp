@@ -1,7 +1,6 @@
 #include "explain/friction_family.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -18,26 +17,13 @@ namespace {
 // How much more likely, in log-likelihood, a larger member has to make the recordings.
 constexpr double kBeats = 3;
 
-// Friction that is there beside Coulomb and viscous friction: by itself it may look like them.
-bool is_larger_member(EffectKind kind) {
-  constexpr std::array kLarger{
-      EffectKind::kStribeckFriction, EffectKind::kQuadraticFriction,
-      EffectKind::kTemperatureDrift, EffectKind::kFrictionAsymmetry,
-      EffectKind::kHysteresis,       EffectKind::kLoadDependentFriction,
-      EffectKind::kJointCoupling,    EffectKind::kGearLoss,
-  };
-  return std::find(kLarger.begin(), kLarger.end(), kind) != kLarger.end();
-}
-
-bool is_member(EffectKind kind) {
-  return kind == EffectKind::kViscousFriction || kind == EffectKind::kCoulombFriction;
-}
-
 // What of Coulomb and viscous friction neither the file nor the model has on a joint.
 std::vector<EffectKind> lacking(const Data& data, const std::vector<Term>& terms, Index joint) {
   std::vector<EffectKind> missing;
   const Workspace& at = data.recordings[0];
-  for (const EffectKind kind : {EffectKind::kViscousFriction, EffectKind::kCoulombFriction}) {
+  for (const EffectInfo& info : kAllEffectInfos) {
+    if (!info.traits.every_drive_has) continue;
+    const EffectKind kind = info.kind;
     // A motor's is friction of all joints that it moves.
     const bool known =
         std::any_of(at.known_effects.begin(), at.known_effects.end(), [&](const RobotEffect& one) {
@@ -48,10 +34,14 @@ std::vector<EffectKind> lacking(const Data& data, const std::vector<Term>& terms
   return missing;
 }
 
-bool brings(const Proposal& one, EffectKind kind) {
+// Whether it adds an effect of which that is true.
+template <typename Is>
+bool brings(const Proposal& one, const Is& is) {
   return std::any_of(one.terms.end() - static_cast<std::ptrdiff_t>(one.added), one.terms.end(),
-                     [&](const Term& term) { return term.effect->kind() == kind; });
+                     [&](const Term& term) { return is(term.effect->info()); });
 }
+
+bool is_drift(const EffectInfo& info) { return info.traits.is_friction && info.traits.counts_time; }
 
 bool may_lack_offset(const Data& data, const std::vector<Term>& terms, Index joint) {
   return !has_effect(data, terms, EffectKind::kTorqueOffset, joint) &&
@@ -112,7 +102,8 @@ bool is_refuted_by_simpler(const Data& data, const Term& simpler, const ModelFit
     const auto place = static_cast<double>(other.shape.size());
     return more_likely < kBeats + 0.5 * place * std::log(std::max(samples.sum(), 2.0));
   }
-  return is_member(simpler.effect->kind()) && is_larger_member(other.effect->kind()) &&
+  return simpler.effect->info().traits.every_drive_has &&
+         other.effect->info().traits.passes_for_friction &&
          rest[simpler.joint] >= simple[simpler.joint];
 }
 
@@ -172,24 +163,25 @@ void put_friction_first(const Search& search, const Regression& regression,
     for (Member& member : members) {
       if (member.joint != joint || !member.proposal.physical) continue;
       if (member.kinds.size() == 1) {
-        std::erase_if(list, [&](const Proposal& one) { return brings(one, member.kinds[0]); });
+        const auto is_same = [&](const EffectInfo& info) { return info.kind == member.kinds[0]; };
+        std::erase_if(list, [&](const Proposal& one) { return brings(one, is_same); });
       }
       list.push_back(std::move(member.proposal));
       has_family = true;
     }
     // What changes has to be there: a drift beside no friction at all stands for the friction.
     if (lacking(data, terms, static_cast<Index>(joint)).size() > 1) {
-      std::erase_if(list,
-                    [](const Proposal& one) { return brings(one, EffectKind::kTemperatureDrift); });
+      std::erase_if(list, [](const Proposal& one) { return brings(one, is_drift); });
     }
     if (!has_family) continue;
     search.rank(list);
     double best = -std::numeric_limits<double>::infinity();
     for (const Proposal& one : list) {
-      if (is_member(one.terms.back().effect->kind())) best = std::max(best, one.score);
+      if (one.terms.back().effect->info().traits.every_drive_has) best = std::max(best, one.score);
     }
     std::erase_if(list, [&](const Proposal& one) {
-      return is_larger_member(one.terms.back().effect->kind()) && one.score < best + kBeats;
+      return one.terms.back().effect->info().traits.passes_for_friction &&
+             one.score < best + kBeats;
     });
   }
 }

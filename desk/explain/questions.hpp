@@ -26,9 +26,7 @@ struct Shown {
     constexpr double kOfFriction = 0.35;
     constexpr double kOfOthers = 0.85;
     if (!motion.is_poor()) return apart >= kLeftOfItself * torque;
-    const bool every_drive_has =
-        kind == EffectKind::kViscousFriction || kind == EffectKind::kCoulombFriction;
-    return apart >= (every_drive_has ? kOfFriction : kOfOthers) * torque;
+    return apart >= (info_of(kind)->traits.every_drive_has ? kOfFriction : kOfOthers) * torque;
   }
 };
 

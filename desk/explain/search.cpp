@@ -20,33 +20,6 @@ namespace {
 
 constexpr double kSmallestShare = 0.02;  // of the energy, for a closer look
 
-// Whether the recordings can show the effect as it came out. A spring whose rest lies far outside
-// of the range moved is a constant torque with a slope; a time constant as long as a recording is
-// friction that stays; a Stribeck velocity at the low end of its range is the width of the sign.
-bool is_within_reach(const Data& data, const Term& term, const VectorXd& coefficients) {
-  constexpr double kRangesAway = 3;
-  constexpr double kNearEnd = 1.02;
-  if (term.effect->kind() == EffectKind::kJointStiffness) {
-    const auto [low, high] = positions_seen(data.recordings, term.joint);
-    const double rest = -coefficients[1] / coefficients[0];
-    const double slack = kRangesAway * (high - low);
-    return rest >= low - slack && rest <= high + slack;
-  }
-  for (std::size_t i = 0; i < term.shape.size(); ++i) {
-    if (!term.ranges[i].is_searched()) continue;
-    const std::vector<double>& grid = term.ranges[i].grid;
-    if (term.effect->kind() == EffectKind::kTemperatureDrift &&
-        term.shape[i] * kNearEnd > grid.back()) {
-      return false;
-    }
-    if (term.effect->kind() == EffectKind::kStribeckFriction &&
-        term.shape[i] < kNearEnd * grid.front()) {
-      return false;
-    }
-  }
-  return true;
-}
-
 // Numbers of a term's shape that the recordings choose.
 double chosen_numbers(const Term& term) {
   return static_cast<double>(
@@ -59,7 +32,9 @@ double chosen_numbers(const Term& term) {
 // What every model adapts in its nuisance is no discovery in another name either.
 bool Search::is_worth_a_name(const Term& term, const VectorXd& coefficients) const {
   const auto& nuisance = data_.nuisance.terms;
-  return term.effect->is_physical(coefficients) && is_within_reach(data_, term, coefficients) &&
+  return term.effect->is_physical(coefficients) &&
+         term.effect->is_within_reach(data_.recordings, term.joint, coefficients, term.shape,
+                                      term.ranges) &&
          std::none_of(nuisance.begin(), nuisance.end(), [&](const NuisanceTerm& one) {
            return takes_place_of(term, one) && coefficients[0] <= one.prior.high;
          });
@@ -161,13 +136,11 @@ Screening Search::screen(const std::vector<Term>& terms, const ModelFit& at) con
 
 // Friction of a drive whose file has none at all.
 bool Search::is_asked_first(const Term& term) const {
-  const EffectKind kind = term.effect->kind();
-  if (kind != EffectKind::kViscousFriction && kind != EffectKind::kCoulombFriction) return false;
+  if (!term.effect->info().traits.every_drive_has) return false;
   const Workspace& at = data_.recordings[0];
   return std::none_of(at.known_effects.begin(), at.known_effects.end(),
                       [&](const RobotEffect& one) {
-                        return (one.kind == EffectKind::kViscousFriction ||
-                                one.kind == EffectKind::kCoulombFriction) &&
+                        return info_of(one.kind)->traits.every_drive_has &&
                                acts_on_joint(at.rigid, one, term.joint);
                       });
 }

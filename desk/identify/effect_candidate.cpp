@@ -100,6 +100,23 @@ std::vector<ShapePoint> product_grid(const std::vector<ShapeRange>& ranges) {
   return points;
 }
 
+bool ShapeRange::is_other_effect(double value) const {
+  constexpr double kNearEnd = 1.02;
+  if (!is_searched()) return false;
+  return (other_effect == OtherEffectAt::kLowest && value < kNearEnd * grid.front()) ||
+         (other_effect == OtherEffectAt::kHighest && value * kNearEnd > grid.back());
+}
+
+bool EffectCandidate::is_within_reach(const std::vector<Workspace>& /*at*/, Index /*joint*/,
+                                      const VectorXd& /*coefficients*/,
+                                      std::span<const double> shape,
+                                      const std::vector<ShapeRange>& ranges) const {
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    if (ranges[i].is_other_effect(shape[i])) return false;
+  }
+  return true;
+}
+
 bool EffectCandidate::finds(const ParameterInfo& parameter) const {
   return parameter.required || parameter.searched.to > 0;
 }
@@ -137,6 +154,7 @@ std::vector<ShapeRange> EffectCandidate::shapes(const std::vector<Workspace>& at
       const double scale = scale_of(
           info.quantity, at, [&](const VectorXd& of_joints) { return at_place(of_joints, joint); });
       range.grid = logarithmic_grid(info.searched.from * scale, info.searched.to * scale);
+      range.other_effect = info.searched.other_effect;
     }
     ranges.push_back(std::move(range));
   }

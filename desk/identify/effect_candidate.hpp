@@ -35,7 +35,11 @@ struct ShapeRange {
     kLogarithmic,  // the same, in its logarithm
     kDiscrete      // only the grid's values have a meaning
   } kind = Kind::kLinear;
+  // At which end another effect is meant.
+  OtherEffectAt other_effect = OtherEffectAt::kNeitherEnd;
 
+  // Whether a searched value lies at that end.
+  [[nodiscard]] bool is_other_effect(double value) const;
   // Whether the best value lies anywhere between the grid's ends and has to be looked for.
   [[nodiscard]] bool is_searched() const { return kind != Kind::kDiscrete && grid.size() >= 2; }
   // Whether it has no meaning below zero: a width, a velocity or a time constant.
@@ -85,6 +89,12 @@ class EffectCandidate {
   // Whether fitted coefficients are physical: friction takes energy out, and an operator whose size
   // is in its shape has a coefficient near 1. By default what the struct says of their sign.
   [[nodiscard]] virtual bool is_physical(const Eigen::VectorXd& coefficients) const;
+  // Whether these recordings can show the effect as it came out: by default, where no number of its
+  // shape lies at an end of its range at which another effect is meant. `ranges`: of the shape.
+  [[nodiscard]] virtual bool is_within_reach(const std::vector<Workspace>& at, Eigen::Index joint,
+                                             const Eigen::VectorXd& coefficients,
+                                             std::span<const double> shape,
+                                             const std::vector<ShapeRange>& ranges) const;
   // Whether the effect can act on this joint of the robot.
   [[nodiscard]] virtual bool applies(const Workspace& at, Eigen::Index joint) const;
   // ... as any of the recordings has it: a joint may stand in the first.

@@ -1,15 +1,12 @@
 #include <fmt/format.h>
 
 #include "motion/design_report.hpp"
+#include "report/numbers.hpp"
 
 namespace offnominal::desk::motion {
 namespace {
 
 using namespace report;  // a page is written in its own words
-
-std::vector<double> numbers(const Eigen::Ref<const Eigen::VectorXd>& vector) {
-  return {vector.begin(), vector.end()};
-}
 
 Chart joint_chart(std::size_t joint, const std::string& what, const std::string& unit,
                   const Eigen::VectorXd& t_s, const Eigen::VectorXd& values, double low,

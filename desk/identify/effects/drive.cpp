@@ -43,6 +43,16 @@ class Stiffness final : public EffectCandidate {
                               std::span<const double> /*shape*/) const override {
     return {coefficients[0], -coefficients[1] / coefficients[0]};
   }
+  // One whose rest lies far outside of the range moved is a constant torque with a slope.
+  bool is_within_reach(const std::vector<Workspace>& at, Index joint, const VectorXd& coefficients,
+                       std::span<const double> /*shape*/,
+                       const std::vector<ShapeRange>& /*ranges*/) const override {
+    constexpr double kRangesAway = 3;
+    const auto [low, high] = positions_seen(at, joint);
+    const double rest = -coefficients[1] / coefficients[0];
+    const double slack = kRangesAway * (high - low);
+    return rest >= low - slack && rest <= high + slack;
+  }
   bool shape_is_coefficient(std::size_t parameter) const override { return parameter == 1; }
 
  protected:

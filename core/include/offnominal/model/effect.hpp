@@ -52,11 +52,15 @@ enum class ParameterRole : std::uint8_t {
   kShape,   // it sits inside a nonlinearity: it is searched for, or left as given
 };
 
+// At which end of the range that is searched a shape makes another effect of this one.
+enum class OtherEffectAt : std::uint8_t { kNeitherEnd, kLowest, kHighest };
+
 // Where a search looks for a shape parameter, as shares of what the motion shows of its quantity:
 // of the top speed (kVelocity), the range moved (kDistance) or the duration (kTime).
 struct SearchedShare {
   double from = 0;
   double to = 0;  // 0: not searched in this way
+  OtherEffectAt other_effect = OtherEffectAt::kNeitherEnd;
 };
 
 struct ParameterInfo {
@@ -115,6 +119,12 @@ struct EffectTraits {
   // A curve of any shape over that variable: it can stand for every other effect of it, and is
   // named only where none of them is what the recordings show.
   bool has_any_shape = false;
+  // Friction without which there is no drive: a model that lacks it is asked for it first.
+  bool every_drive_has = false;
+  // By itself it looks like that friction, and is named only where it is clearly more likely.
+  bool passes_for_friction = false;
+  // A robot may have more or less of it from one moment to the next.
+  bool may_change = false;
 };
 
 // One effect with its values. `joint` counts from 0; `parameters` in the order of the effect's

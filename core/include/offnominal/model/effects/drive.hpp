@@ -17,7 +17,8 @@ struct TorqueOffset {
   static constexpr const char* kFormula = "level";
   static constexpr const char* kWords = "a constant torque";
   static constexpr const char* kMotionHint = "rest at several positions";
-  static constexpr EffectTraits kTraits{.acts_at_rest = true, .needs_no_motion = true};
+  static constexpr EffectTraits kTraits{
+      .acts_at_rest = true, .needs_no_motion = true, .may_change = true};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "constant torque, such as a bias of the torque measurement"},

@@ -35,7 +35,9 @@ struct ViscousFriction {
   static constexpr const char* kMotionHint = "move at several constant speeds";
   static constexpr EffectTraits kTraits{.is_friction = true,
                                         .sign = CoefficientSign::kPositive,
-                                        .follows = EffectVariable::kVelocity};
+                                        .follows = EffectVariable::kVelocity,
+                                        .every_drive_has = true,
+                                        .may_change = true};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"coefficient", Quantity::kEffortPerVelocity, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "torque per velocity"},
@@ -56,7 +58,9 @@ struct CoulombFriction {
   static constexpr EffectTraits kTraits{.is_friction = true,
                                         .is_dry = true,
                                         .sign = CoefficientSign::kPositive,
-                                        .follows = EffectVariable::kVelocity};
+                                        .follows = EffectVariable::kVelocity,
+                                        .every_drive_has = true,
+                                        .may_change = true};
   static constexpr std::array<ParameterInfo, 2> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "torque against the motion, whatever its speed"},
@@ -80,7 +84,8 @@ struct FrictionAsymmetry {
   static constexpr const char* kWords = "friction that differs between the two directions";
   static constexpr const char* kMotionHint =
       "move at several speeds in both directions, with rests in between";
-  static constexpr EffectTraits kTraits{.follows = EffectVariable::kVelocity};
+  static constexpr EffectTraits kTraits{.follows = EffectVariable::kVelocity,
+                                        .passes_for_friction = true};
   static constexpr std::array<ParameterInfo, 3> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "half the difference of the Coulomb levels of the two directions"},
@@ -109,7 +114,8 @@ struct StribeckFriction {
       "hold at least four low speeds between a third and three times the Stribeck velocity";
   static constexpr EffectTraits kTraits{.is_friction = true,
                                         .sign = CoefficientSign::kMostlyPositive,
-                                        .follows = EffectVariable::kVelocity};
+                                        .follows = EffectVariable::kVelocity,
+                                        .passes_for_friction = true};
   static constexpr std::array<ParameterInfo, 3> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "static friction minus Coulomb friction"},
@@ -121,7 +127,8 @@ struct StribeckFriction {
        true,
        0,
        "velocity at which the excess has fallen to 1/e",
-       {0.015, 0.4}},
+       // At the low end it is the width of the sign.
+       {0.015, 0.4, OtherEffectAt::kLowest}},
       kSmoothing,
   }};
   template <typename Scalar>
@@ -138,7 +145,8 @@ struct QuadraticFriction {
   static constexpr const char* kFormula = "coefficient * dq * |dq|";
   static constexpr const char* kWords = "drag that grows with the square of speed";
   static constexpr const char* kMotionHint = "use a speed range of more than 3 to 1";
-  static constexpr EffectTraits kTraits{.is_friction = true, .follows = EffectVariable::kVelocity};
+  static constexpr EffectTraits kTraits{
+      .is_friction = true, .follows = EffectVariable::kVelocity, .passes_for_friction = true};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"coefficient", Quantity::kEffortPerVelocitySquared, ParameterRole::kLinear, -kAny, kAny,
        true, 0, "torque per squared velocity, against the motion"},
@@ -159,7 +167,8 @@ struct TemperatureDrift {
   static constexpr const char* kWords = "friction that changes while the joint warms up";
   static constexpr const char* kMotionHint =
       "repeat the same motion from a cold start for several time constants";
-  static constexpr EffectTraits kTraits{.is_friction = true, .counts_time = true};
+  static constexpr EffectTraits kTraits{
+      .is_friction = true, .counts_time = true, .passes_for_friction = true};
   static constexpr std::array<ParameterInfo, 4> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "excess of the Coulomb level at the start"},
@@ -175,7 +184,7 @@ struct TemperatureDrift {
        true,
        0,
        "time after which the excess has fallen to 1/e",
-       {1.0 / 12, 0.75}},
+       {1.0 / 12, 0.75, OtherEffectAt::kHighest}},
       kSmoothing,
   }};
   template <typename Scalar>
@@ -194,7 +203,7 @@ struct JointCoupling {
       "coefficient * dq_k + level * tanh(dq_k / smoothing), k = source_joint";
   static constexpr const char* kWords = "friction from the motion of another joint";
   static constexpr const char* kMotionHint = "move one joint at a time";
-  static constexpr EffectTraits kTraits{};
+  static constexpr EffectTraits kTraits{.passes_for_friction = true};
   static constexpr std::array<ParameterInfo, 4> kParameters{{
       {"coefficient", Quantity::kEffortPerVelocity, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "torque per velocity of the other joint"},

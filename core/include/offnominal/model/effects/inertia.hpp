@@ -39,7 +39,7 @@ struct TipPayload {
   static constexpr const char* kFormula = "inverse dynamics of a point mass at (x, y, z)";
   static constexpr const char* kWords = "a payload at the tip";
   static constexpr const char* kMotionHint = "hold several poses under gravity";
-  static constexpr EffectTraits kTraits{.acts_at_rest = true};
+  static constexpr EffectTraits kTraits{.acts_at_rest = true, .may_change = true};
   static constexpr std::array<ParameterInfo, 4> kParameters{{
       {"mass", Quantity::kMass, ParameterRole::kLinear, -kAny, kAny, true, 0, "carried mass"},
       {"x", Quantity::kLength, ParameterRole::kShape, -kAny, kAny, false, 0, "in the link's frame"},

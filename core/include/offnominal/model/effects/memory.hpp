@@ -19,7 +19,8 @@ struct Hysteresis {
   static constexpr const char* kWords =
       "friction that builds up over a distance after each reversal";
   static constexpr const char* kMotionHint = "make many small reversals";
-  static constexpr EffectTraits kTraits{.is_friction = true, .sign = CoefficientSign::kPositive};
+  static constexpr EffectTraits kTraits{
+      .is_friction = true, .sign = CoefficientSign::kPositive, .passes_for_friction = true};
   static constexpr std::array<ParameterInfo, 2> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "torque against the motion, far from a reversal"},

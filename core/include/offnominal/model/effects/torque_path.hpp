@@ -27,8 +27,10 @@ struct LoadDependentFriction {
   static constexpr const char* kFormula = "factor * |load torque| * tanh(dq / smoothing)";
   static constexpr const char* kWords = "friction that grows with the torque transmitted";
   static constexpr const char* kMotionHint = "reverse at poses with little and with much load";
-  static constexpr EffectTraits kTraits{
-      .is_friction = true, .is_before_sensor = true, .sign = CoefficientSign::kPositive};
+  static constexpr EffectTraits kTraits{.is_friction = true,
+                                        .is_before_sensor = true,
+                                        .sign = CoefficientSign::kPositive,
+                                        .passes_for_friction = true};
   // At 1 a joint that its load drives would lock, and no acceleration would follow from the torque.
   static constexpr double kMostFactor = 0.95;
   static constexpr std::array<ParameterInfo, 2> kParameters{{
@@ -65,8 +67,10 @@ struct GearLoss {
       "a gear whose loss depends on whether it drives or is driven back";
   static constexpr const char* kMotionHint =
       "raise and lower a load at several poses, as often with the load as against it";
-  static constexpr EffectTraits kTraits{
-      .is_friction = true, .is_before_sensor = true, .sign = CoefficientSign::kPositive};
+  static constexpr EffectTraits kTraits{.is_friction = true,
+                                        .is_before_sensor = true,
+                                        .sign = CoefficientSign::kPositive,
+                                        .passes_for_friction = true};
   static constexpr double kMostDrivingLoss = 2;
   static constexpr std::array<ParameterInfo, 3> kParameters{{
       {"driven_loss", Quantity::kRatio, ParameterRole::kLinear, 0,
@@ -101,7 +105,8 @@ struct TorqueScale {
   static constexpr const char* kFormula = "error * (torque of the model)";
   static constexpr const char* kWords = "a wrong torque constant";
   static constexpr const char* kMotionHint = "move with a payload of known mass";
-  static constexpr EffectTraits kTraits{.acts_at_rest = true, .follows = EffectVariable::kLoad};
+  static constexpr EffectTraits kTraits{
+      .acts_at_rest = true, .follows = EffectVariable::kLoad, .may_change = true};
   static constexpr std::array<ParameterInfo, 1> kParameters{{
       {"error", Quantity::kRatio, ParameterRole::kLinear, -0.9, 9, true, 0,
        "logged torque per torque that acts, less 1"},
