@@ -17,9 +17,11 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Whether it explains the blocks of one joint about as well.
+// Whether it explains the blocks of one joint about as well. `independent`: samples of the joint
+// that what the other one leaves is worth.
 bool as_good_on(Index joint, const RowLayout& layout, const RowLayout::Blocks& blocks,
-                const VectorXd& mine, const VectorXd& other, double simplified) {
+                const VectorXd& mine, const VectorXd& other, double simplified,
+                double independent) {
   VectorXd difference = VectorXd::Zero(blocks.count);
   double left = 0;
   for (std::size_t r = 0; r < layout.recording_count(); ++r) {
@@ -37,7 +39,14 @@ bool as_good_on(Index joint, const RowLayout& layout, const RowLayout::Blocks& b
   // Were the other one the truth and its formula a simplification, the chosen one, which has
   // nothing of what the formula leaves, would leave about as much.
   constexpr double kMoreThanLeft = 3;  // twice the rms
-  return mean <= kTellApart * error + std::min(simplified, kMoreThanLeft * left) / count;
+  const double allowed = std::min(simplified, kMoreThanLeft * left);
+  if (!(mean <= kTellApart * error + allowed / count)) return false;
+  // Energies of blocks have long tails, and hide in them that one leaves several times the other.
+  // Were what the other one leaves its noise, that the chosen one takes so much of it would be
+  // chance.
+  constexpr double kLikelier = kTellApart * kTellApart / 2;
+  const double others = left + difference.sum();
+  return !(left > 0) || !(0.5 * independent * std::log(others / (left + allowed)) > kLikelier);
 }
 
 }  // namespace
@@ -49,7 +58,10 @@ bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternati
   const double simplified = kLeftOfItself * kLeftOfItself * energy;
   // What takes as much away from another joint has not explained this one.
   for (Index joint = 0; joint < layout.joint_count(); ++joint) {
-    if (!as_good_on(joint, layout, chosen.remainder.blocks, mine, other, simplified)) return false;
+    if (!as_good_on(joint, layout, chosen.remainder.blocks, mine, other, simplified,
+                    alternative.remainder.independent_samples[joint])) {
+      return false;
+    }
   }
   return true;
 }

@@ -14,8 +14,9 @@ inline constexpr double kTellApart = 3;
 // Whether a model with another effect explains every block of time of every joint about as well as
 // the chosen one: the difference of the blocks' squared errors is within three of its standard
 // errors, blocks that are correlated counted once, and within what the chosen effect's formula
-// simplifies, but no more than twice what the chosen one leaves. `energy`: of the chosen effect's
-// torque or of the other's, weighted as the chosen fit (questions.hpp).
+// simplifies, but no more than twice what the chosen one leaves; and what the other one leaves is
+// not worth so many samples that the chosen one could take this much of it by chance. `energy`: of
+// the chosen effect's torque or of the other's, weighted as the chosen fit (questions.hpp).
 bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternative, double energy);
 
 // Whether all columns of `inner` lie in the span of those of `outer` beside what `baseline` fits:

@@ -409,13 +409,7 @@ bool predicts_better(const Regression& regression, const FoundModel& with,
   };
   const VectorXd after = held_out(regression, with);
   const VectorXd before = held_out(regression_without, without);
-  double likely = 0;
-  for (Index joint = 0; joint < after.size(); ++joint) {
-    if (!(before[joint] > 0) || !(after[joint] > 0)) continue;
-    likely +=
-        with.fit.remainder.independent_samples[joint] * std::log(before[joint] / after[joint]);
-  }
-  return likely > kClearly;
+  return growth_of_log_likelihood(before, after, with.fit.remainder.independent_samples) > kClearly;
 }
 
 }  // namespace offnominal::desk

@@ -313,30 +313,54 @@ class Explainer {
       FoundModel& found, const HoldOut& hold_out, const std::vector<Excitation>& excitation) const {
     constexpr std::size_t kMostAlike = 4;
     std::vector<std::vector<EffectAt>> classes;
-    std::vector<std::vector<EffectAt>> same = all_alike(found, excitation);
+    std::vector<Asked> asked = all_asked(found, excitation, {});
     for (std::size_t i = found.accepted.size(); i-- > 0;) {
-      if (i > 0 && same[i].size() > kMostAlike) {
+      if (i > 0 && asked[i].same.size() > kMostAlike) {
+        const VectorXd touched = torque_energy(found, i);
         found.accepted.erase(found.accepted.begin() + static_cast<std::ptrdiff_t>(i));
         order_and_hold_out(*setting_.regression, hold_out, options_.threads, found);
-        // Another order, and other companions: all are asked anew.
+        // Another order, and on the joints that it acted on other companions: there all are asked
+        // anew. On the others what is left is as it was.
+        std::erase_if(asked, [&](const Asked& one) { return touched[one.term.joint] > 0; });
+        asked = all_asked(found, excitation, asked);
         classes.clear();
         i = found.accepted.size();
-        same = all_alike(found, excitation);
-      } else if (same[i].size() > 1) {
-        classes.insert(classes.begin(), std::move(same[i]));
+      } else if (asked[i].same.size() > 1) {
+        classes.insert(classes.begin(), asked[i].same);
       }
     }
     return classes;
   }
 
-  // What each of them could just as well be.
-  [[nodiscard]] std::vector<std::vector<EffectAt>> all_alike(
-      const FoundModel& found, const std::vector<Excitation>& excitation) const {
+  // An effect that was found, and what it could just as well be.
+  struct Asked {
+    Term term;
+    std::vector<EffectAt> same;
+  };
+
+  // Per joint, of the torque of one that was found.
+  [[nodiscard]] VectorXd torque_energy(const FoundModel& found, std::size_t i) const {
+    const RowLayout& layout = setting_.data->layout;
+    const VectorXd torque =
+        columns_of(*setting_.data, found.accepted[i].term) * found.fit.coefficients[i];
+    return layout.energy(layout.weighted(torque, found.fit.joint_weights));
+  }
+
+  // Every effect that was found, in their order, asked unless it has been already.
+  [[nodiscard]] std::vector<Asked> all_asked(const FoundModel& found,
+                                             const std::vector<Excitation>& excitation,
+                                             const std::vector<Asked>& known) const {
     tell("looking for what else the effects could be");
-    std::vector<std::vector<EffectAt>> same(found.accepted.size());
-    parallel_for(same.size(), options_.threads,
-                 [&](std::size_t i) { same[i] = alike(found, i, excitation); });
-    return same;
+    std::vector<Asked> asked(found.accepted.size());
+    parallel_for(asked.size(), options_.threads, [&](std::size_t i) {
+      const Term& term = found.accepted[i].term;
+      const auto before = std::find_if(known.begin(), known.end(), [&](const Asked& one) {
+        return one.term.effect == term.effect && one.term.joint == term.joint &&
+               one.term.shape == term.shape;
+      });
+      asked[i] = before != known.end() ? *before : Asked{term, alike(found, i, excitation)};
+    });
+    return asked;
   }
 
   // An effect that was found, and what describes the recordings as well in its place.

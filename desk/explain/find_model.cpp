@@ -191,14 +191,8 @@ class Finder {
   // By how much the log-likelihood of all joints' recordings grows.
   [[nodiscard]] double more_likely(const ModelFit& before, const ModelFit& after) const {
     const RowLayout& layout = regression_.data().layout;
-    const VectorXd was = layout.rms(before.residual);
-    const VectorXd is = layout.rms(after.residual);
-    double sum = 0;
-    for (Index joint = 0; joint < is.size(); ++joint) {
-      if (!(was[joint] > 0) || !(is[joint] > 0)) continue;
-      sum += after.remainder.independent_samples[joint] * std::log(was[joint] / is[joint]);
-    }
-    return sum;
+    return growth_of_log_likelihood(layout.rms(before.residual), layout.rms(after.residual),
+                                    after.remainder.independent_samples);
   }
 
   // Whether it is more than nothing to the joint's torque, and more than what effects that were
@@ -496,18 +490,28 @@ class Finder {
     }
   }
 
-  // Every accepted effect must still be needed beside all others: the one that is needed least
-  // goes first.
+  // Whether what is held out is predicted better with the model than without one of its effects.
+  [[nodiscard]] bool predicts(const std::vector<Term>& terms_without, const ModelFit& without,
+                              const VectorXd& held_out) const {
+    const VectorXd before = hold_out_.rms(hold_out_.residual(terms_without, without));
+    return growth_of_log_likelihood(before, held_out, found_.fit.remainder.independent_samples) > 0;
+  }
+
+  // Every accepted effect must still be needed beside all others, and predict what is held out:
+  // what came later may have taken over from it. The one that is needed least goes first.
   void drop_what_is_not_needed() {
     if (found_.accepted.size() < 2) return;
     tell("trying to do without each effect again");
     while (found_.accepted.size() > 1) {
       std::vector<double> shares(found_.accepted.size());
       std::vector<char> needed(shares.size());
+      const VectorXd held_out = hold_out_.rms(hold_out_.residual(found_.terms(), found_.fit));
       parallel_for(shares.size(), threads(), [&](std::size_t i) {
-        const ModelFit without = regression_.fit(found_.terms_without(i));
+        const std::vector<Term> terms = found_.terms_without(i);
+        const ModelFit without = regression_.fit(terms);
         shares[i] = fall_of(without, found_.fit).share;
-        needed[i] = static_cast<char>(relevant(without, found_.fit));
+        needed[i] =
+            static_cast<char>(relevant(without, found_.fit) && predicts(terms, without, held_out));
       });
       std::size_t least = shares.size();
       for (std::size_t i = 0; i < shares.size(); ++i) {

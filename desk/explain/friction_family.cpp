@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "compare/inverse_model.hpp"
+#include "explain/questions.hpp"
 #include "identify/parallel.hpp"
 
 namespace offnominal::desk {
@@ -95,12 +96,9 @@ bool is_refuted_by_simpler(const Data& data, const Term& simpler, const ModelFit
   if (simpler.effect->kind() == EffectKind::kLinkMass &&
       other.effect->kind() == EffectKind::kTipPayload) {
     const VectorXd& samples = with_other.remainder.independent_samples;
-    double more_likely = 0;
-    for (Index joint = 0; joint < rest.size(); ++joint) {
-      if (rest[joint] > 0) more_likely += samples[joint] * std::log(simple[joint] / rest[joint]);
-    }
     const auto place = static_cast<double>(other.shape.size());
-    return more_likely < kBeats + 0.5 * place * std::log(std::max(samples.sum(), 2.0));
+    return growth_of_log_likelihood(simple, rest, samples) <
+           kBeats + 0.5 * place * std::log(std::max(samples.sum(), 2.0));
   }
   return simpler.effect->info().traits.every_drive_has &&
          other.effect->info().traits.passes_for_friction &&

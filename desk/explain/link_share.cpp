@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "explain/friction_family.hpp"
+#include "explain/questions.hpp"
 #include "identify/parallel.hpp"
 
 namespace offnominal::desk {
@@ -28,10 +29,9 @@ struct ShareGain {
 };
 
 ShareGain gain_of(const VectorXd& before, const VectorXd& after, const VectorXd& samples) {
-  ShareGain gain;
+  ShareGain gain{growth_of_log_likelihood(before, after, samples), 0};
   for (Index joint = 0; joint < before.size(); ++joint) {
-    if (!(before[joint] > 0) || !(after[joint] > 0)) continue;
-    gain.log_likelihood += samples[joint] * std::log(before[joint] / after[joint]);
+    if (!(before[joint] > 0)) continue;
     gain.fall = std::max(gain.fall, 1 - after[joint] / before[joint]);
   }
   return gain;

@@ -20,6 +20,16 @@ double weighted_energy(const Data& data, const Term& term, const VectorXd& coeff
   return torque.squaredNorm();
 }
 
+double growth_of_log_likelihood(const VectorXd& before, const VectorXd& after,
+                                const VectorXd& samples) {
+  double sum = 0;
+  for (Index joint = 0; joint < before.size(); ++joint) {
+    if (!(before[joint] > 0) || !(after[joint] > 0)) continue;
+    sum += samples[joint] * std::log(before[joint] / after[joint]);
+  }
+  return sum;
+}
+
 Shown shown(const Data& data, const std::vector<Term>& terms, std::size_t which,
             const ModelFit& fit, const ModelFit& without) {
   const RowLayout& layout = data.layout;

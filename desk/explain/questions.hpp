@@ -30,6 +30,12 @@ struct Shown {
   }
 };
 
+// By how much the log-likelihood of all joints' recordings grows where what is left goes from
+// `before` to `after`, rms per joint; `samples`: independent ones that each is worth. A joint of
+// which nothing is left says nothing.
+double growth_of_log_likelihood(const Eigen::VectorXd& before, const Eigen::VectorXd& after,
+                                const Eigen::VectorXd& samples);
+
 // `which`: one of the terms that `fit` is of; `without`: the fit of the others.
 Shown shown(const Data& data, const std::vector<Term>& terms, std::size_t which,
             const ModelFit& fit, const ModelFit& without);

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "identify/effects/effects.hpp"
 #include "signal/differentiate.hpp"
 
@@ -14,6 +16,12 @@ class Scale final : public EffectCandidate {
   std::vector<Regressor> regressors(const Workspace& at, Index joint,
                                     std::span<const double> /*shape*/) const override {
     return {{{joint, at.model_torque.col(joint)}}};
+  }
+  // A drive that gives half of what it says, or half as much again, has another unit or gear: that
+  // is no constant that is off, and what looks like it is mostly an inertia that is wrong.
+  bool is_physical(const VectorXd& coefficients) const override {
+    constexpr double kMost = 0.5;
+    return std::abs(coefficients[0]) < kMost;
   }
 };
 

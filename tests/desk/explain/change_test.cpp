@@ -12,15 +12,17 @@
 #include <string>
 #include <vector>
 
+#include "changed_arm.hpp"
 #include "explain/explain.hpp"
 #include "explain/explain_report.hpp"
 #include "identify/term.hpp"
-#include "serial_arm.hpp"
 
 namespace offnominal::desk {
 namespace {
 
 using Eigen::Index;
+using test::number;
+using test::with;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -48,19 +50,6 @@ Log recorded(const RobotDescription& before, const RobotDescription& behind,
     if (log.t_s[i] >= kMomentS) log.tau.row(i) = other.tau.row(i);
   }
   return log;
-}
-
-RobotDescription with(RobotDescription robot, const RobotEffect& effect) {
-  robot.effects.push_back(effect);
-  return robot;
-}
-
-double number(const Change& change, const std::string& name) {
-  for (const Estimate& one : change.by) {
-    if (one.value.name == name) return one.value.value;
-  }
-  ADD_FAILURE() << "no " << name;
-  return 0;
 }
 
 void expect_at_moment(const Change& change) {
@@ -246,7 +235,7 @@ TEST(TimeSpan, IsOneInItsPartOfItsRecordingAndNothingElsewhere) {
   const std::vector<Workspace> recordings =
       make_workspaces(logs, robot, plan, Eigen::VectorXd::Zero(2));
   const RowLayout layout(recordings);
-  const Eigen::MatrixXd rows = within(shares_of({"second", 2, 4}, recordings), layout,
+  const Eigen::MatrixXd rows = within(shares_of({{"second"}, 2, 4}, recordings), layout,
                                       Eigen::MatrixXd::Ones(layout.rows(), 1));
   constexpr double kSlopeS = 0.1;
   for (std::size_t r = 0; r < 2; ++r) {

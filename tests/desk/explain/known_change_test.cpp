@@ -9,15 +9,17 @@
 #include <string>
 #include <vector>
 
+#include "changed_arm.hpp"
 #include "common/error.hpp"
 #include "explain/explain.hpp"
 #include "explain/explain_report.hpp"
-#include "serial_arm.hpp"
 
 namespace offnominal::desk {
 namespace {
 
 using Eigen::Index;
+using test::number;
+using test::with;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -39,19 +41,6 @@ Log recorded(const RobotDescription& robot, const std::string& name, std::uint64
   Log log = test::record(robot, {.duration_s = 15, .seed = seed});
   log.file = name;
   return log;
-}
-
-RobotDescription with(RobotDescription robot, const RobotEffect& effect) {
-  robot.effects.push_back(effect);
-  return robot;
-}
-
-double number(const Change& change, const std::string& name) {
-  for (const Estimate& one : change.by) {
-    if (one.value.name == name) return one.value.value;
-  }
-  ADD_FAILURE() << "no " << name;
-  return 0;
 }
 
 TEST(KnownChange, OfThePayloadBetweenRecordingsIsToldWithItsMass) {
@@ -92,7 +81,7 @@ TEST(KnownChange, OfFrictionIsToldBesideAnEffectThatIsMissingInBoth) {
 TEST(KnownChange, IsNoneBetweenTwoMotionsOfOneRobot) {
   const RobotDescription robot = test::serial_arm(kJoints);
   const RobotDescription same =
-      with(robot, test::effect_of(EffectKind::kCoulombFriction, 1, {0.8, 0.01}));
+      with(robot, test::effect_of(EffectKind::kJointStiffness, 1, {5, 0.1}));
   const Explanation told =
       explain(robot, {recorded(same, "a", 4), recorded(same, "b", 5)}, {}, after(1));
   EXPECT_THAT(told.changes, IsEmpty()) << told.words;
