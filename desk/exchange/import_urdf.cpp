@@ -57,6 +57,8 @@ class Importer {
     name_robot(robot);
     say_what_was_chosen(request);
     robot.gravity_m_s2 = gravity();
+    note(Kind::kAssumed, 0, "the link `world`, which joints name, is the ground",
+         document_.has_implied_world);
     Isometry3d next = stand_on_base();
     for (std::size_t i = 0; i < chain_.moving.size(); ++i) next = add_joint(i, next);
     for (const auto& [what, entry] : document_.elements.left_out) {
@@ -170,8 +172,7 @@ class Importer {
     if (link.inertial == nullptr) return std::nullopt;
     const urdf::Inertial& given = *link.inertial;
     const std::string place = document_.link_place(link.name);
-    const std::array<double, 6> tensor{given.ixx, given.iyy, given.izz,
-                                       given.ixy, given.ixz, given.iyz};
+    std::array<double, 6> tensor{given.ixx, given.iyy, given.izz, given.ixy, given.ixz, given.iyz};
     const bool no_tensor = tensor == std::array<double, 6>{};
     if (given.mass == 0 && no_tensor) return std::nullopt;
     if (given.mass == 0) {
@@ -179,7 +180,16 @@ class Importer {
              "give the link's mass, or an inertia of zeros");
     }
     const std::string fault = inertia_fault(tensor);
-    if (!fault.empty()) {
+    // What is off by rounding, or by a drawing's parts left out, is no reason to have no robot.
+    constexpr double kSlightly = 0.1;
+    const auto possible =
+        fault.empty() ? std::nullopt : with_triangle_inequality(tensor, kSlightly);
+    if (possible) {
+      tensor = *possible;
+      note(Kind::kAssumed, line_of(link),
+           fmt::format("the nearest inertia of link `{}` that a body can have: the file's is {}",
+                       link.name, fault));
+    } else if (!fault.empty()) {
       refuse(
           place, fault,
           "a positive definite tensor about the centre of mass whose principal moments are each at "
@@ -190,8 +200,8 @@ class Importer {
     note(Kind::kAssumed, line_of(link),
          fmt::format("a point mass: the inertia of link `{}` is zero", link.name), no_tensor);
     RigidBody own{given.mass, Vector3d::Zero(), {}};
-    own.inertia_kg_m2 << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz,
-        given.ixz, given.iyz, given.izz;
+    const auto& [xx, yy, zz, xy, xz, yz] = tensor;
+    own.inertia_kg_m2 << xx, xy, xz, xy, yy, yz, xz, yz, zz;
     return seen_from(own, placement_of(given.origin));
   }
 

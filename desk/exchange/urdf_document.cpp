@@ -31,6 +31,19 @@ class Messages : public console_bridge::OutputHandler {
   std::string first_error;
 };
 
+// Adds the link `world` where joints hang on it and nothing says it; whether that was so.
+bool imply_world(UrdfElements& elements) {
+  const std::string world = "world";
+  const auto hangs = std::find_if(elements.joints.begin(), elements.joints.end(),
+                                  [&](const JointElement& one) { return one.parent == world; });
+  if (hangs == elements.joints.end() || elements.link_lines.contains(world)) return false;
+  const std::size_t end = elements.xml.rfind("</robot>");
+  if (end == std::string::npos) return false;
+  elements.xml.insert(end, "<link name=\"world\"/>");
+  elements.link_lines.emplace(world, hangs->line);
+  return true;
+}
+
 void check_links_of_joints(const UrdfElements& elements, const std::string& file) {
   std::vector<std::string> names;
   for (const auto& [name, line] : elements.link_lines) names.push_back(name);
@@ -118,6 +131,7 @@ const JointElement& UrdfDocument::joint(const std::string& name) const {
 
 UrdfDocument parse_urdf(std::string_view text, const std::string& file) {
   UrdfDocument document{file, read_urdf_elements(text, file), nullptr};
+  document.has_implied_world = imply_world(document.elements);
   check_links_of_joints(document.elements, file);
   check_tree(document.elements, file);
   const Messages messages;

@@ -15,6 +15,8 @@ struct UrdfDocument {
   std::string file;  // as the user named it
   UrdfElements elements;
   std::shared_ptr<urdf::ModelInterface> model;
+  // Joints hang on a link `world` that no element says, as some simulators take for the ground.
+  bool has_implied_world = false;
 
   // Of a name that the file has.
   [[nodiscard]] std::string link_place(const std::string& name) const;   // "line 3, link `arm`"

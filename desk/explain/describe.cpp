@@ -127,13 +127,19 @@ void describe_shifts(const SearchResult& from, Explanation& to) {
   for (std::size_t i = 0; i < data.nuisance.terms.size(); ++i) {
     const NuisanceTerm& term = data.nuisance.terms[i];
     if (term.kind != NuisanceTerm::Kind::kKnownEffect) continue;
+    // What is said of a joint that stands is what is believed of it.
+    if (!to.excitation[static_cast<std::size_t>(term.joint)].moves) continue;
     const auto column = static_cast<Index>(i);
-    const double file = from.robot.effects[term.effect].parameters[term.parameter];
+    const RobotEffect& effect = from.robot.effects[term.effect];
+    const double file = effect.parameters[term.parameter];
     const double by = from.found.fit.nuisance[column];
     const double rms =
         std::abs(by) * data.layout.rms(data.nuisance.columns.col(column))[term.joint];
     if (std::abs(by) > kShifted * std::abs(file) && rms > kMatters * torque[term.joint]) {
-      to.shifts.push_back({term.joint, term.name, file != 0 ? by / file : 1.0});
+      to.shifts.push_back(
+          {term.joint, term.name, file != 0 ? by / file : 1.0, file, file + by,
+           offnominal::unit_of(info_of(effect.kind)->parameters[term.parameter].quantity,
+                               from.robot.type_of(effect))});
     }
   }
 }

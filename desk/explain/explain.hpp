@@ -138,7 +138,14 @@ struct Shift {
   Eigen::Index joint = 0;
   std::string name;
   double share = 0;  // of the file's value
+  double file = 0;   // that value
+  double came = 0;   // what the recordings say instead
+  std::string unit;
 };
+
+// "viscous_friction.coefficient of joint 3 is off by +44 %"; where it is off by more than itself,
+// both values.
+std::string words_of(const Shift& shift);
 
 // What holds a joint where it has come to rest, by the direction from which it came: fitted beside
 // everything else, never written. A hold map cannot say how much of it is Coulomb friction.

@@ -160,9 +160,9 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
                         {"share_of_residual", share.share}};
   });
   json["shifts"] = array_of(e.shifts, [](const Shift& shift) {
-    return ordered_json{{"joint", shift.joint + 1},
-                        {"parameter", shift.name},
-                        {"share_of_file_value", shift.share}};
+    return ordered_json{
+        {"joint", shift.joint + 1}, {"parameter", shift.name}, {"share_of_file_value", shift.share},
+        {"file_value", shift.file}, {"value", shift.came},     {"unit", shift.unit}};
   });
   json["link_share"] = {{"value", e.link_share}, {"judged", e.link_share_judged}};
   json["data_faults"] = to_json(e.data_faults);

@@ -164,7 +164,7 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
         one.joint + 1, one.level, one.unit);
   }
   for (const Shift& shift : e.shifts) {
-    text += fmt::format("the file's {} is off by {:+.0f} %\n", shift.name, 100 * shift.share);
+    text += "the file's " + words_of(shift) + "\n";
   }
   for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
   for (const std::string& why : e.unwritable) text += "cannot be written: " + why + "\n";

@@ -277,6 +277,13 @@ void judge_suspected(const Suspicion& one, Explanation& e) {
 
 const char* name_of(Verdict verdict) { return row_of(verdict).name; }
 
+std::string words_of(const Shift& shift) {
+  if (std::abs(shift.share) <= 1) {
+    return fmt::format("{} is off by {:+.0f} %", shift.name, 100 * shift.share);
+  }
+  return fmt::format("{} is {:.3g} {}, not {:.3g}", shift.name, shift.came, shift.unit, shift.file);
+}
+
 bool is_to_write(Verdict verdict) { return row_of(verdict).to_write; }
 
 report::Level level_of(Verdict verdict) { return row_of(verdict).level; }
@@ -372,7 +379,7 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
     answer.words = "none of the known effects.";
   } else if (shift != e.shifts.end() && !stands) {
     answer.verdict = Verdict::kParameterShift;
-    answer.words = fmt::format("{} is off by {:+.0f} %.", shift->name, 100 * shift->share);
+    answer.words = words_of(*shift) + ".";
   } else if (poor) {
     answer.verdict = Verdict::kNotExcited;
     answer.words = e.excitation[which].lack + ".";

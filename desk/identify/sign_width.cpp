@@ -216,8 +216,9 @@ class WidthSearch {
     double top = 0;
     for (const Workspace& at : data_.recordings) top = std::max(top, at.top_speed[joint_]);
     constexpr double kNarrowest = 1e-3;
+    constexpr double kWidest = 0.3;
     constexpr double kPerDecade = 4;
-    const std::vector<double> grid = logarithmic_grid(kNarrowest * top, top, kPerDecade);
+    const std::vector<double> grid = logarithmic_grid(kNarrowest * top, kWidest * top, kPerDecade);
     if (grid.empty()) return present;
     std::vector<double> energies;
     for (const double width : grid) energies.push_back(energy(width));

@@ -53,6 +53,19 @@ double mean_inertia(const Data& data, Index joint) {
   return samples > 0 ? sum / samples : 0;
 }
 
+// The inertia to which the joint's torque would be due if it were due to nothing else. A rotor
+// behind a gear of a hundred turns a wrist's link along with it: what the joint turns says little.
+double inertia_of_all_torque(const Data& data, Index joint) {
+  double squares = 0;
+  double samples = 0;
+  for (const Workspace& at : data.recordings) {
+    squares += at.motion.ddq.col(joint).squaredNorm();
+    samples += static_cast<double>(at.sample_count());
+  }
+  if (!(squares > 0)) return 0;
+  return data.layout.rms(data.torque)[joint] / std::sqrt(squares / samples);
+}
+
 // `start`: what the number is counted from.
 Prior believed(const Data& data, EffectKind kind, std::size_t parameter, Index joint,
                double start) {
@@ -62,7 +75,7 @@ Prior believed(const Data& data, EffectKind kind, std::size_t parameter, Index j
   if (range.min > -effects::kAny) prior.low = range.min - start;
   if (range.max < effects::kAny) prior.high = range.max - start;
   if (kind == EffectKind::kRotorInertia) {
-    const double inertia = mean_inertia(data, joint);
+    const double inertia = std::max(mean_inertia(data, joint), inertia_of_all_torque(data, joint));
     if (inertia > 0) prior.deviation = std::max(inertia, std::abs(start));
   }
   if (kind == EffectKind::kTorqueOffset) {

@@ -47,8 +47,8 @@ DriveModel drive_model(const RobotDescription& file, const DriveRequest& request
 std::vector<Term> terms_of(const DriveModel& drives, const Data& data);
 
 // The linear numbers of a regression's design, with what is believed of them: friction takes energy
-// out, a rotor's inertia is not far above what the joint turns, an offset not far above a tenth of
-// the torque.
+// out, a rotor's inertia is not far above what all of the joint's torque would turn, an offset not
+// far above a tenth of the torque.
 void add_linear_numbers(const RobotDescription& file, const Data& data,
                         const Regression::Design& design, const std::vector<Term>& terms,
                         ConsistentModel& model);

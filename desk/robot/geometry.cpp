@@ -25,6 +25,13 @@ std::array<double, 9> rows_of(const Eigen::Matrix3d& matrix) {
   return rows;
 }
 
+Eigen::Matrix3d tensor_of(const std::array<double, 6>& inertia_kg_m2) {
+  const auto& [xx, yy, zz, xy, xz, yz] = inertia_kg_m2;
+  Eigen::Matrix3d tensor;
+  tensor << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  return tensor;
+}
+
 }  // namespace
 
 std::optional<std::array<double, 3>> unit_vector(const std::array<double, 3>& vector) {
@@ -51,15 +58,31 @@ std::optional<std::array<double, 9>> nearest_rotation(const std::array<double, 9
   return rows_of(svd.matrixU() * svd.matrixV().transpose());
 }
 
+std::optional<std::array<double, 6>> with_triangle_inequality(
+    const std::array<double, 6>& inertia_kg_m2, double share) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tensor_of(inertia_kg_m2));
+  Eigen::Vector3d moments = solver.eigenvalues();  // ascending
+  const double lacks = moments[2] - moments[0] - moments[1];
+  if (moments[0] < moments[2] * kTolerance || !(lacks > 0) || lacks > share * moments[2]) {
+    return std::nullopt;
+  }
+  // A little more, so that the last bits do not break it again.
+  const double raised = lacks / 2 + kTolerance * moments[2];
+  moments[0] += raised;
+  moments[1] += raised;
+  const Eigen::Matrix3d& axes = solver.eigenvectors();
+  const Eigen::Matrix3d tensor = axes * moments.asDiagonal() * axes.transpose();
+  return std::array{tensor(0, 0), tensor(1, 1), tensor(2, 2),
+                    tensor(0, 1), tensor(0, 2), tensor(1, 2)};
+}
+
 std::string inertia_fault(const std::array<double, 6>& inertia_kg_m2) {
   Joint<double> probe;
   probe.inertia_kg_m2 = inertia_kg_m2;
   if (validate(probe) == Status::kOk) return {};
-  const auto& [xx, yy, zz, xy, xz, yz] = inertia_kg_m2;
-  Eigen::Matrix3d tensor;
-  tensor << xx, xy, xz, xy, yy, yz, xz, yz, zz;
-  const Eigen::Vector3d moments =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
+                                      tensor_of(inertia_kg_m2), Eigen::EigenvaluesOnly)
+                                      .eigenvalues();
   // Six digits are enough to see what is wrong.
   const auto rounded = [](double x) {
     return shortest(static_cast<double>(static_cast<float>(x)));

@@ -23,4 +23,9 @@ namespace offnominal::desk {
 /// moments; empty where a body can have it.
 [[nodiscard]] std::string inertia_fault(const std::array<double, 6>& inertia_kg_m2);
 
+/// A tensor that breaks the triangle inequality by at most `share` of its largest principal moment,
+/// with the two smaller ones raised by as much each until a body can have it. None for any other.
+[[nodiscard]] std::optional<std::array<double, 6>> with_triangle_inequality(
+    const std::array<double, 6>& inertia_kg_m2, double share);
+
 }  // namespace offnominal::desk

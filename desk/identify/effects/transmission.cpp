@@ -1,5 +1,7 @@
 #include "compare/transmission.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "identify/effects/effects.hpp"
@@ -42,6 +44,21 @@ class Elasticity final : public EffectCandidate {
   }
   bool shape_is_coefficient(std::size_t parameter) const override { return parameter == 0; }
   bool is_physical(const VectorXd& c) const override { return c[0] > 0; }
+  // Linear in the compliance it holds for deflections far below the range moved; what would bend
+  // the joint through more of that is no elasticity of a drive.
+  bool is_within_reach(const std::vector<Workspace>& at, Index joint, const VectorXd& coefficients,
+                       std::span<const double> /*shape*/,
+                       const std::vector<ShapeRange>& /*ranges*/) const override {
+    constexpr double kOfRange = 0.05;
+    const auto [low, high] = positions_seen(at, joint);
+    double deflection = 0;
+    for (const Workspace& one : at) {
+      const Eigen::ArrayXd load = one.load_torque.col(joint).array();
+      const double spread = std::sqrt((load - load.mean()).square().mean());
+      deflection = std::max(deflection, coefficients[0] * spread);
+    }
+    return deflection <= kOfRange * (high - low);
+  }
   bool is_only_screened() const override { return true; }
 };
 

@@ -51,6 +51,37 @@ TEST(ImportUrdf, MergesFixedLinksAsWorkedOutByHand) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(joint.inertia_kg_m2[i], by_hand[i], 1e-15) << i;
 }
 
+// 0.1 + 0.2 lack 0.02 of 0.32: both get half of it.
+TEST(ImportUrdf, TakesTheNearestInertiaThatABodyCanHave) {
+  const ImportedRobot imported = import_urdf(R"(<robot name="brick">
+    <link name="ground"/>
+    <link name="brick"><inertial><mass value="1"/>
+      <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.32"/></inertial></link>
+    <joint name="pin" type="continuous"><parent link="ground"/><child link="brick"/>
+      <axis xyz="0 0 1"/></joint></robot>)",
+                                             "brick.urdf");
+  const auto& inertia = imported.robot.joints[0].joint.inertia_kg_m2;
+  const double by_hand[]{0.11, 0.21, 0.32, 0, 0, 0};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(inertia[i], by_hand[i], 1e-6) << i;
+  EXPECT_THAT(notes_of(imported),
+              Contains(HasSubstr("assumed 3 the nearest inertia of link `brick` that a body can "
+                                 "have: the file's is a tensor that breaks the triangle")));
+}
+
+// As files for Drake have it.
+TEST(ImportUrdf, TakesAWorldThatNothingSaysForTheGround) {
+  const ImportedRobot imported = import_urdf(R"(<robot name="pendulum">
+    <link name="base"/>
+    <link name="rod"><inertial><mass value="1"/>
+      <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
+    <joint name="weld" type="fixed"><parent link="world"/><child link="base"/></joint>
+    <joint name="pin" type="continuous"><parent link="base"/><child link="rod"/>
+      <axis xyz="0 1 0"/></joint></robot>)",
+                                             "pendulum.urdf");
+  EXPECT_EQ(imported.robot.joint_count(), 1);
+  EXPECT_THAT(notes_of(imported), Contains(HasSubstr("the link `world`, which joints name")));
+}
+
 // A brick whose axes are turned by 90 degrees about z: xx and yy change places.
 TEST(ImportUrdf, TurnsAnInertiaIntoTheLinksFrame) {
   const ImportedRobot imported = import_urdf(R"(<robot name="brick">
