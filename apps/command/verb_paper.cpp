@@ -107,7 +107,10 @@ void check_together(const PaperOptions& options) {
 
 RobotDescription robot_of(const PaperOptions& options, const std::optional<std::string>& file) {
   RobotDescription robot = file ? read_robot_file(*file) : paper::two_link_robot();
-  if (file) require_controller_bound(robot, *file);
+  if (file) {
+    require_bound(robot, *file);
+    paper::require_acceleration_space(robot, *file);
+  }
   EstimatorSettings& estimator = robot.estimator;
   if (options.dead_zone) {
     estimator.dead_zone =

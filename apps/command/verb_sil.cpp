@@ -130,7 +130,7 @@ sil::SilResult lock_step(const SilOptions& options, const RobotDescription& robo
 void run(const SilOptions& options, const std::string& command_line) {
   const RobotDescription robot =
       options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
-  if (options.robot) require_controller_bound(robot, *options.robot);
+  if (options.robot) require_bound(robot, *options.robot);
   const sil::Scenario scenario = scenario_of(options, robot);
   hal::VirtualCan made;
   sil::make_if_missing(options.bus, made);

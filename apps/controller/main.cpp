@@ -127,7 +127,7 @@ RobotDescription robot_of(const Options& options) {
   RobotDescription robot =
       options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
   if (options.rate_hz) robot.estimator.period_s = 1 / *options.rate_hz;
-  require_controller_bound(robot, options.robot.value_or(robot.name));
+  require_bound(robot, options.robot.value_or(robot.name));
   return robot;
 }
 
@@ -206,12 +206,13 @@ int run(const Options& options) {
       socket);
   BusPortOf<hal::SocketCan&> bus(socket);
   realtime::Recorder recorder;
-  sil::open_recorder({.candump = options.candump.value_or(""),
-                      .interface = options.bus,
-                      .csv = options.log.value_or(""),
-                      .columns = realtime::loop_columns(joints),
-                      .replace = options.force},
-                     recorder);
+  sil::open_recorder(
+      {.candump = options.candump.value_or(""),
+       .interface = options.bus,
+       .csv = options.log.value_or(""),
+       .columns = realtime::loop_columns(joints, robot.estimator.space == EstimatorSpace::kTorque),
+       .replace = options.force},
+      recorder);
   const Microseconds period_us = period_us_of(robot.estimator.period_s);
   RealTimeTimer timer(period_us, std::llround(options.phase * static_cast<double>(period_us)));
   realtime::LoopPanel panel;

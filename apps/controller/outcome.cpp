@@ -16,6 +16,8 @@ nlohmann::ordered_json to_json(const ControllerOutcome& outcome) {
   json["refusal"] = controller::name_of(loop.refusal);
   json["detection_time_s"] = loop.detected ? nlohmann::ordered_json(loop.detection_time_s)
                                            : nlohmann::ordered_json(nullptr);
+  json["first_joint"] = loop.first_joint < 0 ? nlohmann::ordered_json(nullptr)
+                                             : nlohmann::ordered_json(loop.first_joint + 1);
   json["ticks"] = loop.ticks;
   json["overruns"] = loop.overruns;
   json["ticks_left_out"] = loop.left_out;
@@ -55,6 +57,7 @@ std::string text_of(const ControllerOutcome& outcome) {
   }
   row("detected", loop.detected ? fmt::format("{:.3f} s after arming", loop.detection_time_s)
                                 : std::string("nothing"));
+  if (loop.first_joint >= 0) row("first joint off nominal", std::to_string(loop.first_joint + 1));
   row("ticks", std::to_string(loop.ticks));
   row("overruns (ticks a period or more too late)", std::to_string(loop.overruns));
   row("ticks that they cost", std::to_string(loop.left_out));

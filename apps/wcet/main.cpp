@@ -28,7 +28,7 @@ struct Options {
 int run(const Options& options) {
   const RobotDescription robot =
       options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
-  if (options.robot) require_controller_bound(robot, *options.robot);
+  if (options.robot) require_bound(robot, *options.robot);
   wcet::WcetSettings settings = options.settings;
   settings.precision = precision_of(options.scalar);
   settings.format = options.fd ? hal::FrameFormat::kFd : hal::FrameFormat::kClassic;

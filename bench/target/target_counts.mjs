@@ -9,10 +9,13 @@ import { join } from "node:path";
 const twoJoints = { name: "two_link", joints: 2, hidden: 35 };
 const sixJoints = { name: "arm6", joints: 6, hidden: 35 };
 const sevenJoints = { name: "arm7", joints: 7, hidden: 64 };
+const inTorqueSpace = { space: " torque", scalars: ["float"] };
+const twoByJoint = { ...twoJoints, ...inTorqueSpace, name: "two_link_torque" };
+const sevenByJoint = { ...sevenJoints, ...inTorqueSpace, name: "arm7_torque" };
 const boards = [
   {
     preset: "cortex-m7", machine: "mps2-an500", scalars: ["float", "double"],
-    robots: [twoJoints, sixJoints, sevenJoints],
+    robots: [twoJoints, sixJoints, sevenJoints, twoByJoint, sevenByJoint],
   },
   { preset: "cortex-m4", machine: "mps2-an386", scalars: ["float"], robots: [twoJoints] },
 ];
@@ -220,7 +223,8 @@ const all = {};
 for (const board of boards) {
   for (const scalar of board.scalars) {
     for (const robot of board.robots) {
-      const name = `${board.preset} ${scalar} ${robot.joints} joints L=${robot.hidden}`;
+      if (!(robot.scalars ?? board.scalars).includes(scalar)) continue;
+      const name = `${board.preset} ${scalar} ${robot.joints} joints L=${robot.hidden}${robot.space ?? ""}`;
       all[name] = countsOf(options["--builds"], board, robot, scalar);
     }
   }

@@ -161,4 +161,21 @@ bool is_namespace(std::string_view name) {
   }
 }
 
+std::string member(std::string_view name, std::string_view value, std::string_view remark) {
+  std::string text = fmt::format(".{} = {},", name, value);
+  if (!remark.empty()) text += fmt::format("  // {}", remark);
+  return text + "\n";
+}
+
+std::string indented(std::string_view text, std::string_view indent) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n') + 1;
+    result += indent;
+    result += text.substr(0, end);
+    text.remove_prefix(end);
+  }
+  return result;
+}
+
 }  // namespace offnominal::desk::cpp_text

@@ -24,6 +24,13 @@ namespace offnominal::desk::cpp_text {
 /// text.
 [[nodiscard]] std::string comment(std::string_view text, std::string_view indent = {});
 
+/// One member of a designated initialiser, a line, with what it means.
+[[nodiscard]] std::string member(std::string_view name, std::string_view value,
+                                 std::string_view remark = {});
+
+/// Every line of `text` behind `indent`; the last one ends as all do.
+[[nodiscard]] std::string indented(std::string_view text, std::string_view indent);
+
 /// True for names that a program may give to a namespace, nested ones with `::` between them.
 [[nodiscard]] bool is_namespace(std::string_view name);
 

@@ -19,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "codegen/bound_constant.hpp"
 #include "codegen/cpp_text.hpp"
 #include "common/error.hpp"
 #include "common/nearest.hpp"
@@ -31,24 +32,8 @@
 namespace offnominal::desk {
 namespace {
 
-// One member of a designated initialiser, with what it means.
-std::string member(std::string_view name, std::string_view value, std::string_view remark = {}) {
-  std::string text = fmt::format(".{} = {},", name, value);
-  if (!remark.empty()) text += fmt::format("  // {}", remark);
-  return text + "\n";
-}
-
-// Every line of `text` behind `indent`.
-std::string indented(std::string_view text, std::string_view indent) {
-  std::string result;
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n') + 1;
-    result += indent;
-    result += text.substr(0, end);
-    text.remove_prefix(end);
-  }
-  return result;
-}
+using cpp_text::indented;
+using cpp_text::member;
 
 // Limits that are not set keep the default, the largest number of the scalar.
 std::string limits_text(const Joint<double>& joint) {
@@ -183,53 +168,6 @@ std::string estimator_constant(const EstimatorConfig<double>& config) {
   return text + member("seed", fmt::format("{}U", config.seed), "of the initial weights");
 }
 
-// The unit of velocities over several joints, where they have one.
-std::string norm_unit(const RobotDescription& robot, Quantity quantity) {
-  const JointType first = robot.joints.front().joint.type;
-  for (const RobotJoint& joint : robot.joints) {
-    if (joint.joint.type != first) return "rad/s and m/s mixed";
-  }
-  return unit_of(quantity, first);
-}
-
-std::string table_text(const UncertaintyBound<kRuntimeJoints, double>& bound,
-                       const RobotDescription& robot) {
-  constexpr std::array kVariables{"kPosition", "kSpeed", "kTorque"};
-  constexpr std::array kQuantities{Quantity::kPosition, Quantity::kVelocity, Quantity::kEffort};
-  const auto variable = static_cast<std::size_t>(bound.variable);
-  const JointType type = robot.joints[bound.joint].joint.type;
-  const auto in_use = [&](const auto& values) {
-    return cpp_text::numbers(std::span<const double>(values.data(), bound.points));
-  };
-  std::string text =
-      member("variable", fmt::format("offnominal::BoundVariable::{}", kVariables.at(variable)));
-  text += member("joint", std::to_string(bound.joint), "from 0");
-  text += member("points", std::to_string(bound.points));
-  text += member("at", in_use(bound.at), unit_of(kQuantities.at(variable), type));
-  return text + member("value", in_use(bound.value), "mu_bar");
-}
-
-std::string bound_constant(const UncertaintyBound<kRuntimeJoints, double>& bound,
-                           const RobotDescription& robot) {
-  constexpr std::array kKinds{"kConstant", "kScaledNorm", "kTable"};
-  std::string text = member("kind", fmt::format("offnominal::BoundKind::{}",
-                                                kKinds.at(static_cast<std::size_t>(bound.kind))));
-  text += member("velocity_error", cpp_text::number(bound.velocity_error),
-                 norm_unit(robot, Quantity::kVelocity) + ", of the measurement");
-  switch (bound.kind) {
-    case BoundKind::kConstant:
-      return text + member("offset", cpp_text::number(bound.offset), "mu_bar");
-    case BoundKind::kScaledNorm:
-      text += member("offset", cpp_text::number(bound.offset));
-      text +=
-          member("scale", cpp_text::number(bound.scale), "mu_bar = scale (|matrix dq| + offset)");
-      return text + member("matrix", cpp_text::numbers(bound.matrix), "row by row");
-    case BoundKind::kTable:
-      return text + table_text(bound, robot);
-  }
-  return text;
-}
-
 std::string arming_constant(const ArmingConfig<kRuntimeJoints, double>& config,
                             const RobotDescription& robot) {
   return cpp_text::comment(robot.arming.source) +
@@ -335,14 +273,19 @@ std::string head_text(const RobotDescription& robot, const ModelHeaderOptions& o
       list_of(robot.joints, [](const RobotJoint& joint) { return cpp_text::literal(joint.name); });
   const bool memory = std::any_of(robot.effects.begin(), robot.effects.end(),
                                   [](const RobotEffect& effect) { return remembers(effect.kind); });
+  const bool by_joint = robot.estimator.space == EstimatorSpace::kTorque;
   return text +
          fmt::format("inline constexpr std::array<const char*, kJoints> kJointNames{{{}}};\n\n",
                      names) +
          fmt::format("// {}\nusing Memory = offnominal::{};\n",
                      memory ? "Some effects have a memory." : "No effect has a memory.",
                      memory ? "WithMemory" : "WithoutMemory") +
+         fmt::format("// {}\nusing Space = offnominal::{};\n",
+                     by_joint ? "Thresholds joint by joint, N m or N."
+                              : "One threshold of the norm over all joints.",
+                     by_joint ? "TorqueSpace" : "AccelerationSpace") +
          "// Takes kMonitorConfig<Scalar>.\ntemplate <typename Scalar>\n"
-         "using Monitor = offnominal::Monitor<kJoints, kHiddenUnits, Scalar, Memory>;\n\n";
+         "using Monitor = offnominal::Monitor<kJoints, kHiddenUnits, Scalar, Memory, Space>;\n\n";
 }
 
 // Like the other conversions, but it has no type of the core.
@@ -355,9 +298,9 @@ std::string encoder_text(const RobotDescription& robot, const ModelHeader& heade
                   list.substr(1, list.size() - 2) + ",\n", header);
 }
 
+template <typename Space>
 Status validity_in_float(const RobotDescription& robot) {
-  const MonitorConfig<kRuntimeJoints, float> config =
-      monitor_config_of<kRuntimeJoints, float>(robot);
+  const auto config = monitor_config_of<kRuntimeJoints, float, Space>(robot);
   Status status = validate<kMaxHiddenUnits>(config);
   if (status != Status::kOk) return status;
   status = EffectMemory<kRuntimeJoints, float>::validate(config.chain, config.estimator.period_s);
@@ -366,28 +309,28 @@ Status validity_in_float(const RobotDescription& robot) {
   return status == Status::kOk ? validate(arming_of<kRuntimeJoints, float>(robot)) : status;
 }
 
+template <typename Space>
 ModelHeader write(const RobotDescription& robot, const ModelHeaderOptions& options) {
-  const MonitorConfig<kRuntimeJoints, double> config =
-      monitor_config_of<kRuntimeJoints, double>(robot);
+  const auto config = monitor_config_of<kRuntimeJoints, double, Space>(robot);
   const ComputedTorqueGains<kRuntimeJoints, double> gains = gains_of<kRuntimeJoints, double>(robot);
   ModelHeader header{.text = {},
                      .joints = robot.joint_count(),
                      .hidden_units = config.estimator.hidden_units,
                      .effects = config.chain.effects.size,
-                     .in_float = validity_in_float(robot)};
+                     .in_float = validity_in_float<Space>(robot)};
   std::string text = head_text(robot, options, header);
   text += constant("offnominal::Chain<kJoints, Scalar>", "kChain", chain_text(config.chain, robot),
                    header);
   text += constant("offnominal::EstimatorConfig<Scalar>", "kEstimatorConfig",
                    cpp_text::comment(robot.estimator.source) + estimator_constant(config.estimator),
                    header);
-  text += "// mu_bar, rad/s^2 (m/s^2): what |M^-1 (unmodelled torque)| does not exceed.\n" +
-          constant("offnominal::UncertaintyBound<kJoints, Scalar>", "kBound",
-                   cpp_text::comment(robot.bound->source) + bound_constant(config.bound, robot),
+  const BoundConstant bound = bound_constant(config.bound, robot);
+  text += cpp_text::comment(bound.remark) +
+          constant(bound.type, "kBound", cpp_text::comment(robot.bound->source) + bound.members,
                    header);
   const bool held = config.torque_signal == TorqueSignal::kHeld;
   text +=
-      constant("offnominal::MonitorConfig<kJoints, Scalar>", "kMonitorConfig",
+      constant("offnominal::MonitorConfig<kJoints, Scalar, Space>", "kMonitorConfig",
                member("chain", "kChain<Scalar>") + member("estimator", "kEstimatorConfig<Scalar>") +
                    member("bound", "kBound<Scalar>") +
                    member("torque_signal", held ? "offnominal::TorqueSignal::kHeld"
@@ -418,8 +361,10 @@ ModelHeader model_header(const RobotDescription& robot, const ModelHeaderOptions
                                  "between them",
                       .mend = "choose another name"});
   }
-  require_controller_bound(robot, options.robot_file);
-  return write(robot, options);
+  require_bound(robot, options.robot_file);
+  return robot.estimator.space == EstimatorSpace::kTorque
+             ? write<TorqueSpace>(robot, options)
+             : write<AccelerationSpace>(robot, options);
 }
 
 }  // namespace offnominal::desk

@@ -7,9 +7,11 @@
 #include <offnominal/diagnosis/velocity_observer.hpp>
 #include <optional>
 #include <string>
+#include <type_traits>
 
 #include "common/error.hpp"
 #include "common/number.hpp"
+#include "loop/momentum_error.hpp"
 #include "offnominal/sim/encoder.hpp"
 #include "robot/monitor_config_of.hpp"
 
@@ -34,11 +36,31 @@ struct ControllerSettings {
 /// smaller network.
 inline constexpr int kControllerCapacity = 128;
 
+namespace detail {
+
+// What a velocity that is wrong by `error`, rad/s or m/s, on any joint adds to a bound.
 template <int N, typename Scalar>
-[[nodiscard]] controller::ControllerConfig<N, Scalar> controller_config_of(
+void add_velocity_error(const RobotDescription& /*robot*/, Scalar error,
+                        UncertaintyBound<N, Scalar>& bound) {
+  bound.velocity_error += error;
+}
+template <int N, typename Scalar>
+void add_velocity_error(const RobotDescription& robot, Scalar error,
+                        TorqueBound<N, Scalar>& bound) {
+  const std::vector<double> per_velocity = momentum_per_velocity(robot);
+  for (std::size_t i = 0; i < bound.joints.size(); ++i) {
+    bound.joints[i].momentum_error += static_cast<Scalar>(per_velocity[i]) * error;
+  }
+}
+
+}  // namespace detail
+
+template <int N, typename Scalar, typename Space>
+[[nodiscard]] controller::ControllerConfig<N, Scalar, Space> controller_config_of(
     const RobotDescription& robot, const ControllerSettings& settings) {
-  controller::ControllerConfig<N, Scalar> config = controller::controller_config(
-      monitor_config_of<N, Scalar>(robot), gains_of<N, Scalar>(robot), arming_of<N, Scalar>(robot));
+  auto config =
+      controller::controller_config(monitor_config_of<N, Scalar, Space>(robot),
+                                    gains_of<N, Scalar>(robot), arming_of<N, Scalar>(robot));
   config.safe_mode = settings.safe_mode;
   config.stop_at_detection = settings.stop_at_detection;
   if (!settings.accommodate) config.monitor.max_compensation.fill(Scalar(0));
@@ -47,18 +69,19 @@ template <int N, typename Scalar>
     encoder.bits_per_turn = settings.encoder_bits_per_turn;
     const double half_count =
         0.5 * (sim::position_step_rad(encoder) + static_cast<double>(hal::kPositionPerCount));
-    config.monitor.bound.velocity_error += velocity_error_bound(
-        config.velocity_observer, static_cast<Scalar>(*settings.max_acceleration),
-        static_cast<Scalar>(half_count));
+    const Scalar error = velocity_error_bound(config.velocity_observer,
+                                              static_cast<Scalar>(*settings.max_acceleration),
+                                              static_cast<Scalar>(half_count));
+    detail::add_velocity_error(robot, error, config.monitor.bound);
   }
   return config;
 }
 
 /// Throws InputError where the controller refuses what the robot file says.
-template <int N, int L, typename Scalar, typename Memory>
+template <int N, int L, typename Scalar, typename Memory, typename Space>
 void create_controller(const RobotDescription& robot, const ControllerSettings& settings,
-                       controller::JointController<N, L, Scalar, Memory>& controller) {
-  using Controller = controller::JointController<N, L, Scalar, Memory>;
+                       controller::JointController<N, L, Scalar, Memory, Space>& controller) {
+  using Controller = controller::JointController<N, L, Scalar, Memory, Space>;
   const double least_ramp_s = controller::kLeastRampPeriods * robot.estimator.period_s;
   if (robot.arming.ramp_s + robot.estimator.period_s / 2 < least_ramp_s) {
     throw InputError({.file = "robot " + robot.name,
@@ -68,7 +91,7 @@ void create_controller(const RobotDescription& robot, const ControllerSettings& 
                       .mend = "in less, what is between reference and arm is a jump"});
   }
   const Status status =
-      Controller::create(controller_config_of<N, Scalar>(robot, settings), controller);
+      Controller::create(controller_config_of<N, Scalar, Space>(robot, settings), controller);
   if (status == Status::kOk) return;
   throw InputError({.file = "robot " + robot.name,
                     .place = "controller",

@@ -1,78 +1,15 @@
 #include "loop/stepped_controller.hpp"
 
-#include <cmath>
-#include <memory>
-#include <offnominal/controller/joint_controller.hpp>
-
-#include "loop/drive_port.hpp"
+#include "loop/in_space.hpp"
 
 namespace offnominal::desk {
-namespace {
-
-template <typename Scalar>
-class SteppedControllerOf final : public SteppedController {
- public:
-  using Controller =
-      controller::JointController<kRuntimeJoints, kControllerCapacity, Scalar, WithMemory>;
-  explicit SteppedControllerOf(const SteppedSetup& setup)
-      : motion_(setup.motion),
-        drives_(
-            make_drive_port(setup.robot.drive_settings(), setup.robot.joints.size(), setup.link)) {
-    create_controller(setup.robot, setup.settings, controller_);
-  }
-
-  void step(hal::Microseconds begin_us, BusPort& bus) override {
-    controller_.step(begin_us, 0, reference(), bus, *drives_, *data_);
-  }
-  [[nodiscard]] controller::Fault arm() override { return controller_.arm(reference(), *data_); }
-  [[nodiscard]] hal::ControllerState state() const override { return data_->state; }
-  [[nodiscard]] controller::Fault fault() const override { return data_->fault; }
-
-  [[nodiscard]] ControllerView view() const override {
-    const auto doubles = [](const Vector<kRuntimeJoints, Scalar>& values) -> sim::JointVector {
-      return values.template cast<double>();
-    };
-    ControllerView view;
-    view.run_ticks = data_->run_ticks;
-    view.fresh = data_->fresh;
-    view.drives_follow = data_->drives_follow;
-    view.seen = {doubles(data_->sample.q), doubles(data_->sample.dq)};
-    view.tau = doubles(data_->sample.tau);
-    view.psi_hat = doubles(data_->output.psi_hat);
-    view.error_norm = static_cast<double>(data_->output.error_norm);
-    view.threshold = static_cast<double>(data_->output.threshold);
-    view.weight_norm =
-        std::sqrt(static_cast<double>(squared_norm(data_->monitor.estimator.weights)));
-    view.detected = data_->output.detector.latched;
-    return view;
-  }
-
-  [[nodiscard]] ControllerTotals totals() const override {
-    ControllerTotals totals;
-    totals.overruns = data_->overruns;
-    totals.missed_samples = data_->missed_samples;
-    totals.counts = drives_->counts();
-    return totals;
-  }
-
- private:
-  [[nodiscard]] auto reference() const {
-    return [this](double time_s) { return reference_of<Scalar>(motion_(time_s)); };
-  }
-
-  MotionAt motion_;
-  std::unique_ptr<DrivePort> drives_;
-  Controller controller_;
-  // On the heap: 128 hidden units do not belong on a stack.
-  std::unique_ptr<typename Controller::Data> data_ = std::make_unique<typename Controller::Data>();
-};
-
-}  // namespace
 
 std::unique_ptr<SteppedController> make_stepped_controller(const SteppedSetup& setup,
                                                            Precision precision) {
-  if (precision == Precision::kFloat) return std::make_unique<SteppedControllerOf<float>>(setup);
-  return std::make_unique<SteppedControllerOf<double>>(setup);
+  if (setup.robot.estimator.space == EstimatorSpace::kTorque) {
+    return stepped_in_torque(setup, precision);
+  }
+  return stepped_in_acceleration(setup, precision);
 }
 
 }  // namespace offnominal::desk

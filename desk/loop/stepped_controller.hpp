@@ -27,6 +27,10 @@ struct ControllerView {
   sim::JointVector psi_hat;
   double error_norm = 0;
   double threshold = 0;
+  // Of a controller that judges joint by joint; otherwise empty, and -1.
+  sim::JointVector error;       // N m or N
+  sim::JointVector thresholds;  // N m or N
+  int first_joint = -1;         // that was detected first, from 0
   double weight_norm = 0;
   bool detected = false;  // latched
 };

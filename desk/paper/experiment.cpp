@@ -51,7 +51,7 @@ namespace {
 void check_run(const RobotDescription& robot, const RunSettings& settings,
                const std::string& verb) {
   const double period = robot.estimator.period_s;
-  require_controller_bound(robot, "robot " + robot.name);
+  require_bound(robot, "robot " + robot.name);
   if (!(period >= kMinPeriod && period <= kMaxPeriod)) {
     refuse(verb, "step", shortest(period) + " s", "1e-5 to 0.02 s");
   }
@@ -65,8 +65,18 @@ void check_run(const RobotDescription& robot, const RunSettings& settings,
   }
 }
 
+void require_acceleration_space(const RobotDescription& robot, const std::string& file) {
+  if (robot.estimator.space == EstimatorSpace::kAcceleration) return;
+  throw InputError({.file = file,
+                    .place = "estimator.space",
+                    .found = "\"torque\"",
+                    .allowed = "\"acceleration\": the paper's experiment has the paper's monitor",
+                    .mend = "`offnominal sil` runs the same arm and faults joint by joint"});
+}
+
 void check_experiment(const RobotDescription& robot, const Experiment& experiment,
                       const std::string& verb) {
+  require_acceleration_space(robot, "robot " + robot.name);
   if (robot.joint_count() != 2) {
     refuse(verb, "--robot", std::to_string(robot.joint_count()) + " joint(s)",
            "2, as the paper's arm has");

@@ -37,6 +37,10 @@ struct Experiment : RunSettings {
 void check_experiment(const RobotDescription& robot, const Experiment& experiment,
                       const std::string& verb);
 
+/// Throws InputError, with `file` in it, where the robot's monitor compares in another space than
+/// the paper's.
+void require_acceleration_space(const RobotDescription& robot, const std::string& file);
+
 /// The arm of an experiment. Throws InputError where its fault cannot be.
 [[nodiscard]] sim::TwoLinkPlant plant_of(const Experiment& experiment);
 

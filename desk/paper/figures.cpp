@@ -74,9 +74,9 @@ void add_joint_angles(report::Section& section, const ExperimentResult& run, int
 
 void add_fault_functions(report::Section& section, const ExperimentResult& run, int number) {
   for (std::size_t i = 0; i < run.series.q.size(); ++i) {
-    Chart chart =
-        time_chart(run, titled(number, fmt::format("fault and network output, joint {}", i + 1)),
-                   axis("acceleration", "rad/s^2"));
+    Chart chart = time_chart(
+        run, titled(number, fmt::format("fault and network output, joint {}", i + 1)),
+        run.joints.empty() ? axis("acceleration", "rad/s^2") : axis("torque", run.joints[i].unit));
     chart.series = {line("fault function", run.series.time_s, run.series.psi[i], Tone::kMeasured),
                     line("network output", run.series.time_s, run.series.psi_hat[i], Tone::kModel)};
     chart.width = report::Width::kHalf;
@@ -100,6 +100,27 @@ void add_filtered_sizes(report::Section& section, const ExperimentResult& run, i
   section.blocks.emplace_back(std::move(chart));
 }
 
+// Of a monitor that judges joint by joint.
+void add_joint_residuals(report::Section& section, const ExperimentResult& run) {
+  const TimeSeries& series = run.series;
+  for (std::size_t i = 0; i < run.joints.size(); ++i) {
+    const JointRun& joint = run.joints[i];
+    Chart chart =
+        time_chart(run, fmt::format("Residual and threshold of joint {}, {}", i + 1, joint.name),
+                   axis("residual", joint.unit));
+    chart.series = {line("threshold", series.time_s, series.joint_threshold[i], Tone::kThreshold),
+                    line("fault, filtered", series.time_s, series.joint_fault[i], Tone::kMeasured),
+                    line("residual", series.time_s, series.joint_residual[i], Tone::kResidual)};
+    chart.width = report::Width::kHalf;
+    if (i == 0) {
+      chart.note =
+          "A joint is called off nominal when its residual exceeds its threshold. It is certain to "
+          "be once its filtered fault exceeds twice the threshold.";
+    }
+    section.blocks.emplace_back(std::move(chart));
+  }
+}
+
 report::Section fault_section(const std::string& heading, const ExperimentResult& run,
                               int first_figure) {
   report::Section section;
@@ -107,7 +128,11 @@ report::Section fault_section(const std::string& heading, const ExperimentResult
   section.text = words_of(run);
   add_joint_angles(section, run, first_figure);
   add_fault_functions(section, run, first_figure > 0 ? first_figure + 1 : 0);
-  add_filtered_sizes(section, run, first_figure > 0 ? first_figure + 2 : 0);
+  if (run.joints.empty()) {
+    add_filtered_sizes(section, run, first_figure > 0 ? first_figure + 2 : 0);
+  } else {
+    add_joint_residuals(section, run);
+  }
   return section;
 }
 

@@ -12,7 +12,7 @@ Json nullable(const std::optional<double>& value) { return value ? Json(*value) 
 }  // namespace
 
 Json to_json(const ExperimentResult& result) {
-  return {
+  Json json = {
       {"fault", name_of(result.fault)},
       {"accommodate", result.accommodate},
       {"fault_time_s", nullable(result.fault_time_s)},
@@ -27,6 +27,15 @@ Json to_json(const ExperimentResult& result) {
       {"scalar", name_of(result.precision)},
       {"seed", result.seed},
   };
+  if (result.joints.empty()) return json;
+  json["first_joint"] = result.first_joint ? Json(*result.first_joint + 1) : Json(nullptr);
+  for (const JointRun& joint : result.joints) {
+    json["joints"].push_back(
+        {{"name", joint.name},
+         {"detection_time_s", nullable(joint.detection_time_s)},
+         {"max_error_to_threshold_before_fault", joint.max_error_to_threshold_before_fault}});
+  }
+  return json;
 }
 
 Json to_json(const SweepResult& sweep) {

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <offnominal/model/mass_matrix.hpp>
+
+#include "robot/chain_of.hpp"
 
 namespace offnominal::desk::paper {
 
@@ -22,15 +26,32 @@ RunObserver::RunObserver(const RobotDescription& robot, const RunSettings& setti
        {&series.q, &series.dq, &series.tau, &series.q_desired, &series.psi, &series.psi_hat}) {
     per_joint->resize(robot.joints.size());
   }
+  if (robot.estimator.space != EstimatorSpace::kTorque) return;
+  model_ = make_model(chain_of<kRuntimeJoints, double>(robot));
+  for (const RobotJoint& joint : robot.joints) {
+    const bool turns = joint.joint.type == JointType::kRevolute;
+    JointRun& of_joint = result_.joints.emplace_back();
+    of_joint.name = joint.name;
+    of_joint.unit = turns ? "N m" : "N";
+  }
+  for (auto* per_joint : {&series.joint_residual, &series.joint_threshold, &series.joint_fault}) {
+    per_joint->resize(robot.joints.size());
+  }
+}
+
+sim::JointVector RunObserver::fault_of(const TickRecord& tick) const {
+  if (!model_) return tick.psi;
+  return mass_matrix<kRuntimeJoints, double>(*model_, tick.state.q) * tick.psi;
 }
 
 void RunObserver::operator()(const TickRecord& tick) {
   // W_alpha over one tick, its input taken at the tick's mean value.
-  eta_ = decay_ * eta_ + input_gain_ * 0.5 * (last_psi_ + tick.psi);
-  last_psi_ = tick.psi;
+  const sim::JointVector psi = fault_of(tick);
+  eta_ = decay_ * eta_ + input_gain_ * 0.5 * (last_psi_ + psi);
+  last_psi_ = psi;
   judge(tick);
-  if (tick.time_s >= window_start_ - tolerance_) add_to_window(tick);
-  if (settings_.record) keep(tick);
+  if (tick.time_s >= window_start_ - tolerance_) add_to_window(tick, psi);
+  if (settings_.record) keep(tick, psi);
 }
 
 ExperimentResult RunObserver::finish() {
@@ -45,14 +66,20 @@ ExperimentResult RunObserver::finish() {
   return std::move(result_);
 }
 
+bool RunObserver::is_guaranteed(const TickRecord& tick) const {
+  if (!model_) return eta_.norm() > 2.0 * tick.threshold;
+  const double alpha = robot_.estimator.alpha;
+  return (alpha * eta_.array().abs() > 2.0 * tick.thresholds.array()).any();
+}
+
 void RunObserver::judge(const TickRecord& tick) {
   result_.steps = tick.tick;
   result_.max_weight_norm = std::max(result_.max_weight_norm, tick.weight_norm);
   if (tick.detected && !result_.detection_time_s) result_.detection_time_s = tick.time_s;
-  if (eta_.norm() > 2.0 * tick.threshold && !result_.guaranteed_time_s) {
-    result_.guaranteed_time_s = tick.time_s;
-  }
-  if (tick.time_s <= healthy_until_ + tolerance_) {
+  if (!result_.guaranteed_time_s && is_guaranteed(tick)) result_.guaranteed_time_s = tick.time_s;
+  const bool healthy = tick.time_s <= healthy_until_ + tolerance_;
+  if (model_) judge_joints(tick, healthy);
+  if (healthy) {
     double& ratio = result_.max_error_to_threshold_before_fault;
     ratio = std::max(ratio, tick.error_norm / tick.threshold);
     double& largest = result_.max_abs_psi_hat_before_fault;
@@ -60,14 +87,38 @@ void RunObserver::judge(const TickRecord& tick) {
   }
 }
 
-void RunObserver::add_to_window(const TickRecord& tick) {
-  ++window_.ticks;
-  window_.tracking += (tick.q_desired - tick.state.q).squaredNorm();
-  window_.psi += tick.psi.squaredNorm();
-  window_.mismatch += (tick.psi - tick.psi_hat).squaredNorm();
+void RunObserver::judge_joints(const TickRecord& tick, bool healthy) {
+  if (tick.first_joint >= 0 && !result_.first_joint) result_.first_joint = tick.first_joint;
+  for (std::size_t i = 0; i < result_.joints.size(); ++i) {
+    const auto index = static_cast<Eigen::Index>(i);
+    const double residual = std::abs(tick.error[index]);
+    const double threshold = tick.thresholds[index];
+    JointRun& joint = result_.joints[i];
+    if (residual > threshold && !joint.detection_time_s) joint.detection_time_s = tick.time_s;
+    if (!healthy || threshold <= 0) continue;
+    double& ratio = joint.max_error_to_threshold_before_fault;
+    ratio = std::max(ratio, residual / threshold);
+  }
 }
 
-void RunObserver::keep(const TickRecord& tick) {
+void RunObserver::add_to_window(const TickRecord& tick, const sim::JointVector& psi) {
+  ++window_.ticks;
+  window_.tracking += (tick.q_desired - tick.state.q).squaredNorm();
+  window_.psi += psi.squaredNorm();
+  window_.mismatch += (psi - tick.psi_hat).squaredNorm();
+}
+
+void RunObserver::keep_joints(const TickRecord& tick) {
+  TimeSeries& series = result_.series;
+  for (std::size_t i = 0; i < result_.joints.size(); ++i) {
+    const auto index = static_cast<Eigen::Index>(i);
+    series.joint_residual[i].push_back(std::abs(tick.error[index]));
+    series.joint_threshold[i].push_back(tick.thresholds[index]);
+    series.joint_fault[i].push_back(robot_.estimator.alpha * std::abs(eta_[index]));
+  }
+}
+
+void RunObserver::keep(const TickRecord& tick, const sim::JointVector& psi) {
   TimeSeries& series = result_.series;
   series.time_s.push_back(tick.time_s);
   const auto keep_all = [](std::vector<std::vector<double>>& series_of,
@@ -80,11 +131,12 @@ void RunObserver::keep(const TickRecord& tick) {
   keep_all(series.dq, tick.state.dq);
   keep_all(series.tau, tick.tau);
   keep_all(series.q_desired, tick.q_desired);
-  keep_all(series.psi, tick.psi);
+  keep_all(series.psi, psi);
   keep_all(series.psi_hat, tick.psi_hat);
   series.error_norm.push_back(tick.error_norm);
   series.threshold.push_back(tick.threshold);
   series.filtered_fault.push_back(eta_.norm());
+  if (model_) keep_joints(tick);
   if (tick.bus) series.bus.push_back(*tick.bus);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <offnominal/model/rigid_body_model.hpp>
 #include <optional>
 
 #include "offnominal/sim/joint_state.hpp"
@@ -20,12 +21,16 @@ struct TickRecord {
   sim::JointState state;
   sim::JointVector q_desired;
   sim::JointVector tau;      // applied over the tick
-  sim::JointVector psi;      // true fault function at this state and torque
+  sim::JointVector psi;      // true fault function at this state and torque, an acceleration
   sim::JointVector psi_hat;  // its estimate
   double error_norm = 0.0;
   double threshold = 0.0;
   double weight_norm = 0.0;
   bool detected = false;  // latched
+  // In EstimatorSpace::kTorque, N m or N; otherwise empty, and -1.
+  sim::JointVector error;
+  sim::JointVector thresholds;
+  int first_joint = -1;  // that was detected, from 0
   std::optional<BusTick> bus;
 };
 
@@ -50,14 +55,20 @@ class RunObserver {
     std::int64_t ticks = 0;
   };
 
+  // The tick's fault function in the quantity that the monitor compares.
+  [[nodiscard]] sim::JointVector fault_of(const TickRecord& tick) const;
+  [[nodiscard]] bool is_guaranteed(const TickRecord& tick) const;
   void judge(const TickRecord& tick);
-  void add_to_window(const TickRecord& tick);
-  void keep(const TickRecord& tick);
+  void judge_joints(const TickRecord& tick, bool healthy);
+  void add_to_window(const TickRecord& tick, const sim::JointVector& psi);
+  void keep(const TickRecord& tick, const sim::JointVector& psi);
+  void keep_joints(const TickRecord& tick);
 
   const RobotDescription& robot_;
   RunSettings settings_;
   double decay_, input_gain_, healthy_until_, window_start_, tolerance_;
   sim::JointVector eta_, last_psi_;
+  std::optional<RigidBodyModel<kRuntimeJoints, double>> model_;  // in EstimatorSpace::kTorque
   WindowSums window_;
   ExperimentResult result_;
 };

@@ -25,7 +25,10 @@ struct RunSettings {
   bool record = false;  // keep the time series
 };
 
-/// What happened at every tick, all of the same length; [joint] where there is one per joint.
+/// What happened at every tick, all of the same length; [joint] where there is one per joint. In
+/// EstimatorSpace::kTorque faults and their estimates are torques of the joints, N m or N (beta psi
+/// times the mass matrix of the model), error and threshold those of the joint that is nearest to
+/// its own.
 struct TimeSeries {
   std::vector<double> time_s;
   std::vector<std::vector<double>> q;          // rad
@@ -37,7 +40,19 @@ struct TimeSeries {
   std::vector<double> error_norm;              // |e|, rad/s
   std::vector<double> threshold;               // mu, the filtered uncertainty bound, rad/s
   std::vector<double> filtered_fault;          // |eta|, eta = W_alpha[beta psi], rad/s
-  std::vector<BusTick> bus;                    // empty where there is none
+  // Of a monitor that judges joint by joint, N m or N; otherwise empty.
+  std::vector<std::vector<double>> joint_residual;   // |alpha e_i|
+  std::vector<std::vector<double>> joint_threshold;  // alpha mu_i
+  std::vector<std::vector<double>> joint_fault;      // |alpha eta_i|
+  std::vector<BusTick> bus;                          // empty where there is none
+};
+
+/// What a monitor that judges joint by joint said of one.
+struct JointRun {
+  std::string name;
+  std::string unit;                        // of its torque
+  std::optional<double> detection_time_s;  // first crossing
+  double max_error_to_threshold_before_fault = 0;
 };
 
 struct ExperimentResult {
@@ -56,7 +71,9 @@ struct ExperimentResult {
   double tracking_rms_rad = 0.0;                        // norm over joints
   std::optional<double> fault_estimate_relative_error;  // ||psi - psi_hat|| / ||psi||
   double max_weight_norm = 0.0;                         // |theta|
-  TimeSeries series;                                    // empty unless recorded
+  std::vector<JointRun> joints;                         // empty unless in EstimatorSpace::kTorque
+  std::optional<int> first_joint;  // that was detected, from 0; none unless there
+  TimeSeries series;               // empty unless recorded
 };
 
 /// Throws InputError, before anything runs and in the name of `verb`, for a robot without a bound

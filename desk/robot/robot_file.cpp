@@ -183,16 +183,6 @@ std::optional<std::string> text_with_changes(const RobotDescription& robot,
   return text_with_bound(*text, robot, file);
 }
 
-// With its line, where the robot comes from a text.
-std::string place_of_space(const RobotDescription& robot) {
-  std::string key = "estimator.space";
-  if (robot.file_text == nullptr) return key;
-  const toml::table document = parse_toml(*robot.file_text, "");
-  const toml::node* const node = document.at_path(key).node();
-  if (node == nullptr || node->source().begin.line == 0) return key;
-  return fmt::format("line {}, {}", node->source().begin.line, key);
-}
-
 }  // namespace
 
 void require_carried(const RobotDescription& robot, const std::string& file,
@@ -219,20 +209,6 @@ void require_bound(const RobotDescription& robot, const std::string& file) {
                     .allowed = "a table [uncertainty_bound]",
                     .mend = "add one (docs/robot-file.md), or let `offnominal calibrate` find it: "
                             "without a bound there is no threshold"});
-}
-
-void require_controller_bound(const RobotDescription& robot, const std::string& file) {
-  if (robot.estimator.space == EstimatorSpace::kTorque) {
-    throw InputError({.file = file,
-                      .place = place_of_space(robot),
-                      .found = "\"torque\"",
-                      .allowed = "\"acceleration\" where the joint controller runs or its header "
-                                 "is written",
-                      .mend =
-                          "`offnominal replay` and `offnominal calibrate` watch joint by joint; "
-                          "give the controller a file with its space and bound of accelerations"});
-  }
-  require_bound(robot, file);
 }
 
 RobotDescription parse_robot(std::string_view text, const std::string& file, Blanks blanks) {

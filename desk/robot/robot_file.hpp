@@ -39,10 +39,6 @@ void require_carried(const RobotDescription& robot, const std::string& file,
 /// there is no threshold, or as require_carried(): what runs the monitor needs both.
 void require_bound(const RobotDescription& robot, const std::string& file);
 
-/// The same for what runs the joint controller, or writes its header: there the monitor compares in
-/// EstimatorSpace::kAcceleration only.
-void require_controller_bound(const RobotDescription& robot, const std::string& file);
-
 /// The text of a robot file. Numbers have as many digits as it takes to get them back to the bit:
 /// parse_robot(robot_text(robot)) == robot, for every robot that can be read.
 [[nodiscard]] std::string robot_text(const RobotDescription& robot);

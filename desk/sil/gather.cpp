@@ -58,7 +58,8 @@ class Partner {
 };
 
 paper::TickRecord record_of(const Table& plant, Index row, const Table& controller, Index partner,
-                            const Scenario& scenario, double period_s) {
+                            const Scenario& scenario, const RobotDescription& robot) {
+  const double period_s = robot.estimator.period_s;
   paper::TickRecord record;
   record.time_s = plant.at("arm_t", row);
   record.tick = std::llround(record.time_s / period_s);
@@ -74,6 +75,11 @@ paper::TickRecord record_of(const Table& plant, Index row, const Table& controll
   record.threshold = controller.at("threshold", partner);
   record.weight_norm = controller.at("weights", partner);
   record.detected = controller.at("detected", partner) != 0;
+  if (robot.estimator.space == EstimatorSpace::kTorque) {
+    record.error = controller.all("error", partner);
+    record.thresholds = controller.all("threshold", partner);
+    record.first_joint = static_cast<int>(controller.at("first_joint", partner)) - 1;
+  }
   // The controller's rows are those of its fresh ticks.
   record.bus = {true,
                 {controller.all("q", partner), controller.all("dq", partner)},
@@ -143,7 +149,7 @@ SilResult gather(const RobotDescription& robot, const Scenario& scenario,
   for (Index row = 0; row < plant.rows(); ++row) {
     if (plant.at("arm_t", row) > duration_s + 0.5 * period_s) break;
     if (!partner.find(plant.at("t", row))) continue;
-    observer(record_of(plant, row, controller, partner.row(), scenario, period_s));
+    observer(record_of(plant, row, controller, partner.row(), scenario, robot));
   }
   SilResult result;
   result.run = observer.finish();

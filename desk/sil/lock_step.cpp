@@ -118,6 +118,9 @@ class LockStepLoop {
     record.threshold = view.threshold;
     record.weight_norm = view.weight_norm;
     record.detected = view.detected;
+    record.error = view.error;
+    record.thresholds = view.thresholds;
+    record.first_joint = view.first_joint;
     // Before the drives follow, a sample holds the torque that is asked for.
     record.bus = {view.fresh && view.drives_follow, view.seen, view.tau, plant_.acting_nm()};
     return record;

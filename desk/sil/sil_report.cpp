@@ -32,6 +32,21 @@ std::string tracking(const SilResult& result) {
   return std::isfinite(rms) ? fmt::format("{:.4f} rad rms", rms) : "none: the run ended early";
 }
 
+std::string joint_words(const paper::ExperimentResult& run, std::size_t joint) {
+  return fmt::format("joint {} ({})", joint + 1, run.joints[joint].name);
+}
+
+// Every joint that crossed its threshold, in the order of the chain: "joint 2 (elbow) at 1.031 s".
+std::string joints_off_nominal(const paper::ExperimentResult& run) {
+  std::string words;
+  for (std::size_t i = 0; i < run.joints.size(); ++i) {
+    if (!run.joints[i].detection_time_s) continue;
+    words += fmt::format("{}{} at {:.3f} s", words.empty() ? "" : ", ", joint_words(run, i),
+                         *run.joints[i].detection_time_s);
+  }
+  return words.empty() ? "none" : words;
+}
+
 void add_rows_of(const RealTimeReport& time, std::vector<Row>& rows) {
   rows.push_back({"ticks of the controller", std::to_string(time.ticks)});
   rows.push_back({"latest begin of a tick", fmt::format("{} us", time.worst_late_us)});
@@ -72,6 +87,13 @@ std::vector<Row> rows_of(const SilResult& result) {
       {"not sent for lateness", std::to_string(bus.late)},
       {"bus load at most, 1 Mbit/s (FD data 5 Mbit/s)", fmt::format("{:.1f} %", 100 * bus.load)},
   };
+  if (!run.joints.empty()) {
+    constexpr int kBehindDetected = 3;
+    const std::string first =
+        run.first_joint ? joint_words(run, static_cast<std::size_t>(*run.first_joint)) : "none";
+    rows.insert(rows.begin() + kBehindDetected, {{"first joint off nominal", first},
+                                                 {"joints off nominal", joints_off_nominal(run)}});
+  }
   if (result.real_time) add_rows_of(*result.real_time, rows);
   return rows;
 }
@@ -132,6 +154,10 @@ std::string sentence_of(const SilResult& result) {
     words = "The monitor sees nothing that the uncertainty could not do.";
   } else {
     words = "Nothing is wrong, and nothing is called a fault.";
+  }
+  if (run.first_joint) {
+    words += fmt::format(" First off nominal is {}.",
+                         joint_words(run, static_cast<std::size_t>(*run.first_joint)));
   }
   if (result.state == hal::ControllerState::kFault) {
     words += fmt::format(" The controller went to its safe state: {}.",

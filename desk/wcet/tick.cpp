@@ -31,7 +31,7 @@ std::string sizes_words() {
 
 std::unique_ptr<Tick> make_tick(const RobotDescription& robot, Precision precision,
                                 hal::FrameFormat format) {
-  require_controller_bound(robot, "robot " + robot.name);
+  require_bound(robot, "robot " + robot.name);
   const TickSize* size = size_for(robot);
   if (size == nullptr) {
     throw InputError(
@@ -43,7 +43,8 @@ std::unique_ptr<Tick> make_tick(const RobotDescription& robot, Precision precisi
          .mend = "build with -DOFFNOMINAL_WCET_SIZES=" + std::to_string(robot.joint_count()) + "x" +
                  std::to_string(robot.estimator.hidden_units)});
   }
-  return size->make(robot, precision, format);
+  const bool by_joint = robot.estimator.space == EstimatorSpace::kTorque;
+  return (by_joint ? size->make_in_torque_space : size->make)(robot, precision, format);
 }
 
 }  // namespace offnominal::desk::wcet

@@ -19,10 +19,11 @@ namespace offnominal::desk::wcet {
 /// Where a tick begins, and what it receives. One number per joint in q, dq and tau.
 struct TickInput {
   // The sample at both ends of the tick, before frames round it.
-  std::vector<double> q;            // rad or m
-  std::vector<double> dq;           // rad/s or m/s
-  std::vector<double> tau;          // N m or N
-  double threshold = 0.1;           // mu at the tick's beginning, rad/s or m/s, > 0
+  std::vector<double> q;    // rad or m
+  std::vector<double> dq;   // rad/s or m/s
+  std::vector<double> tau;  // N m or N
+  // mu at the tick's beginning, rad/s or m/s, > 0; of every joint, N m s or N s, in TorqueSpace.
+  double threshold = 0.1;
   double error_to_threshold = 0.5;  // |e| / mu there
   double input_weights = 0.05;      // root mean square of W1
   double output_weights = 0.05;     // of W2

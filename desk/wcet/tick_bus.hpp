@@ -105,6 +105,9 @@ class MarkedDrives {
     marks_->end_of(Phase::kControl);
     return drives_.outgoing(commands, heartbeat, into);
   }
+  [[nodiscard]] bool report(const hal::Diagnosis& found, hal::Frame& into) {
+    return drives_.report(found, into);
+  }
   [[nodiscard]] hal::Microseconds drive_max_age_us() const { return drives_.drive_max_age_us(); }
   [[nodiscard]] bool stop_seen() const { return drives_.stop_seen(); }
   void clear_stop() { drives_.clear_stop(); }

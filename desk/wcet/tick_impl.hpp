@@ -7,6 +7,8 @@
 #include <offnominal/controller/joint_controller.hpp>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include "loop/controller_settings.hpp"
 #include "wcet/tick.hpp"
@@ -16,10 +18,10 @@
 
 namespace offnominal::desk::wcet {
 
-template <int N, int L, typename Scalar>
+template <int N, int L, typename Scalar, typename Space>
 class TickOf final : public Tick {
  public:
-  using Controller = controller::JointController<N, L, Scalar, WithMemory>;
+  using Controller = controller::JointController<N, L, Scalar, WithMemory, Space>;
   using Data = typename Controller::Data;
   using Drives = MarkedDrives<static_cast<std::size_t>(N)>;
 
@@ -73,20 +75,21 @@ class TickOf final : public Tick {
                          static_cast<double>(config.estimator.period_s);
     if (part == Part::kModel) {
       static_cast<void>(
-          forward_dynamics(monitor.model(), sample_.q, sample_.dq, sample_.tau, end_s, nominal_));
+          Form::look(monitor.model(), sample_.q, sample_.dq, sample_.tau, end_s, nominal_));
       return;
     }
-    const EstimatorInput<N, Scalar> at_end{
-        network_input<N, Scalar>(sample_.q, sample_.dq, sample_.tau),
-        work_.data.monitor.estimator.nominal_rate, work_.data.monitor.estimator.mu_bar};
-    static_cast<void>(offnominal::step(config.estimator, at_end, work_.data.monitor.estimator));
+    State& estimator = work_.data.monitor.estimator;
+    const EstimatorInput<N, Scalar, Space> at_end{
+        network_input<N, Scalar>(sample_.q, sample_.dq, sample_.tau), estimator.nominal_rate,
+        estimator.mu_bar, estimator.measured};
+    static_cast<void>(offnominal::step(config.estimator, at_end, estimator));
   }
 
   TickFacts facts() override {
     restore();
-    const EstimatorState<N, L, Scalar> before = work_.data.monitor.estimator;
+    const State before = work_.data.monitor.estimator;
     run();
-    const EstimatorState<N, L, Scalar>& after = work_.data.monitor.estimator;
+    const State& after = work_.data.monitor.estimator;
     const Scalar radius = work_.controller.config().monitor.estimator.weight_radius;
     TickFacts facts;
     facts.watched = work_.data.fresh && work_.data.state == hal::ControllerState::kArmed;
@@ -99,7 +102,7 @@ class TickOf final : public Tick {
             4 * offnominal::detail::rounding_allowance<L, Scalar>(before.theta_squared_norm) >=
         radius * radius;
     facts.gradient_outwards = outward_gradient(before) > 0;
-    facts.error_to_threshold = static_cast<double>(before.error.norm() / before.mu);
+    facts.error_to_threshold = static_cast<double>(error_to_threshold(before));
     facts.weight_norm = static_cast<double>(std::sqrt(after.theta_squared_norm));
     facts.weight_radius = static_cast<double>(radius);
     facts.smallest_sigmoid = static_cast<double>(before.sigma.head(used_units_).abs().minCoeff());
@@ -117,6 +120,10 @@ class TickOf final : public Tick {
   [[nodiscard]] int hidden_capacity() const override { return kHiddenRows<L, Scalar>; }
 
  private:
+  static constexpr bool kByJoint = std::is_same_v<Space, TorqueSpace>;
+  using Form = MonitorForm<Space, N, Scalar>;
+  using State = EstimatorState<N, L, Scalar, Space>;
+
   // What a tick touches, in one piece.
   struct Work {
     Work(const hal::SourceConfig& source, hal::FrameFormat format, PhaseMarks& marks)
@@ -146,7 +153,7 @@ class TickOf final : public Tick {
     for (const Scalar x : v) values.push_back(static_cast<double>(x));
     return values;
   }
-  [[nodiscard]] double subnormal_share(const EstimatorState<N, L, Scalar>& state) const {
+  [[nodiscard]] double subnormal_share(const State& state) const {
     int count = 0;
     for (int unit = 0; unit < used_units_; ++unit) {
       for (int joint = 0; joint < N; ++joint) {
@@ -155,13 +162,32 @@ class TickOf final : public Tick {
     }
     return static_cast<double>(count) / (used_units_ * N);
   }
+  // |e| / mu; of several thresholds, of the joint that is nearest to its own.
+  static Scalar error_to_threshold(const State& state) {
+    if constexpr (kByJoint) {
+      return (state.error.array().abs() / state.mu.array()).maxCoeff();
+    } else {
+      return state.error.norm() / state.mu;
+    }
+  }
+  // Of what is learnt: the direction of D[e].
+  static Vector<N, Scalar> learnt_from(const State& state) {
+    if constexpr (kByJoint) {
+      const auto e = state.error.array();
+      return (e.abs() > state.mu.array())
+          .select(e - e.sign() * state.mu.array(), Scalar(0))
+          .matrix();
+    } else {
+      return state.error;
+    }
+  }
   // <theta, g> of the learning law's gradient g for the error's direction: above 0 learning would
   // lengthen theta.
-  static double outward_gradient(const EstimatorState<N, L, Scalar>& state) {
-    const HiddenVector<L, Scalar> back =
-        state.weights.w2_transposed.lazyProduct(state.error).array();
+  static double outward_gradient(const State& state) {
+    const Vector<N, Scalar> learnt = learnt_from(state);
+    const HiddenVector<L, Scalar> back = state.weights.w2_transposed.lazyProduct(learnt).array();
     const HiddenVector<L, Scalar> slope = Scalar(0.5) * (Scalar(1) - state.sigma.square());
-    return static_cast<double>((back * slope * state.w1_z).sum() + state.error.dot(state.psi_hat));
+    return static_cast<double>((back * slope * state.w1_z).sum() + learnt.dot(state.psi_hat));
   }
 
   // The sample's frames, one tick later than the last ones; sample_ is what they carry.
@@ -224,20 +250,27 @@ class TickOf final : public Tick {
     auto& monitor = work_.data.monitor;
     require(work_.controller.monitor().reset(sample_, monitor));
     monitor.tick = input.ticks;
-    EstimatorState<N, L, Scalar>& state = monitor.estimator;
+    State& state = monitor.estimator;
     state.weights = weights_of(input, state.z);
     state.theta_squared_norm = squared_norm(state.weights);
     state.w1_z = state.weights.w1.lazyProduct(state.z).array();
     state.sigma = sigmoid(state.w1_z);
     state.psi_hat = state.weights.w2_transposed.transpose().lazyProduct(state.sigma.matrix());
-    state.mu = static_cast<Scalar>(input.threshold);
+    if constexpr (kByJoint) {
+      state.mu.setConstant(static_cast<Scalar>(input.threshold));
+    } else {
+      state.mu = static_cast<Scalar>(input.threshold);
+    }
     // Along psi_hat: such an error makes learning lengthen theta.
     const Scalar length = state.psi_hat.stableNorm();
     Vector<N, Scalar> direction = Vector<N, Scalar>::Constant(1 / std::sqrt(Scalar(N)));
     if (length > std::numeric_limits<Scalar>::min()) direction = state.psi_hat / length;
+    if constexpr (kByJoint) direction /= direction.cwiseAbs().maxCoeff();
+    const Vector<N, Scalar> measured =
+        offnominal::detail::measured_at<N, Scalar, Space>(std::as_const(state));
     state.omega =
-        sample_.dq - static_cast<Scalar>(input.error_to_threshold * input.threshold) * direction;
-    state.error = sample_.dq - state.omega;
+        measured - static_cast<Scalar>(input.error_to_threshold * input.threshold) * direction;
+    state.error = measured - state.omega;
   }
 
   // Weights with the pattern of the start's, scaled as the input says.
@@ -281,7 +314,7 @@ class TickOf final : public Tick {
   PhaseMarks marks_;
   Reference<N, Scalar> reference_;
   JointSample<N, Scalar> sample_;
-  ForwardDynamics<N, Scalar> nominal_;
+  typename Form::Dynamics nominal_;
   std::vector<hal::ReceivedFrame> frames_;
   std::size_t own_frames_ = 0;
   Work work_{hal::source_config(period_us_), format_, marks_};

@@ -56,6 +56,18 @@ bool divides(const Frame& frame, const Address& address, std::size_t index) {
   return check == (static_cast<unsigned>(record[6]) << 8U | record[7]);
 }
 
+// What is decoded is what was encoded, to the bit.
+void check_diagnosis(const Frame& frame, const Address& address) {
+  if (address.kind != MessageKind::kDiagnosis) return;
+  const std::uint16_t id = data_id_of(address.kind, address.first_node);
+  Diagnosis found;
+  std::uint8_t counter = 0;
+  if (decode(record_in(frame, 0), id, found, counter) != Status::kOk) return;
+  Record again{};
+  const bool encodes = encode(found, counter, id, again) == Status::kOk;
+  if (!encodes || !std::equal(again.begin(), again.end(), frame.data.begin())) std::abort();
+}
+
 using Odrives = CanSimpleDrives<2>;
 
 void check_odrives(const Frame& frame, Microseconds now_us, Odrives& drives) {
@@ -102,6 +114,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Address address;
     const bool ours = address_of(frame, address) == Status::kOk;
     if (!ours && (status == Status::kOk || after != before)) std::abort();
+    if (ours) check_diagnosis(frame, address);
     if (status == Status::kOk && address.kind == MessageKind::kEmergencyStop &&
         !divides(frame, address, 0)) {
       std::abort();

@@ -114,6 +114,33 @@ TEST(Heartbeat, Arrives) {
   EXPECT_EQ(decoded<Heartbeat>({4, 0, 0, 0, 0}), Status::kInvalidValue);
 }
 
+TEST(Diagnosis, ArrivesInItsCounts) {
+  const Diagnosis received = round_trip(Diagnosis{true, 7, 12, 1.25F});
+  EXPECT_TRUE(received.level);
+  EXPECT_EQ(received.first_joint, 7);
+  EXPECT_EQ(received.worst_joint, 12);
+  EXPECT_EQ(received.error_to_threshold, 1.25F);
+  const Diagnosis nothing = round_trip(Diagnosis{});
+  EXPECT_FALSE(nothing.level);
+  EXPECT_EQ(nothing.first_joint, 0);
+  EXPECT_EQ(nothing.worst_joint, 0);
+  for (const float large : {256.0F, 1e30F, kInfinity}) {
+    EXPECT_EQ(round_trip(Diagnosis{true, 1, 1, large}).error_to_threshold, 255.99609375F) << large;
+  }
+}
+
+TEST(Diagnosis, ThatContradictsItselfIsRefused) {
+  EXPECT_EQ(encoded(Diagnosis{false, 0, 1, kNan}), Status::kInvalidValue);
+  EXPECT_EQ(encoded(Diagnosis{false, 0, 1, -0.5F}), Status::kInvalidValue);
+  EXPECT_EQ(encoded(Diagnosis{true, 1, 0, 0}), Status::kInvalidValue)
+      << "beyond what nobody judges";
+  EXPECT_EQ(encoded(Diagnosis{false, 1, 0, 0.5F}), Status::kInvalidValue);
+  EXPECT_EQ(decoded<Diagnosis>({2, 0, 1, 0, 0}), Status::kInvalidValue);
+  EXPECT_EQ(decoded<Diagnosis>({1, 1, 0, 0, 0}), Status::kInvalidValue);
+  EXPECT_EQ(decoded<Diagnosis>({0, 1, 0, 1, 0}), Status::kInvalidValue);
+  EXPECT_EQ(decoded<Diagnosis>({0, 1, 0, 0, 0}), Status::kOk);
+}
+
 TEST(EmergencyStop, Arrives) {
   const EmergencyStop received = round_trip(EmergencyStop{31, 42});
   EXPECT_EQ(received.source, 31);

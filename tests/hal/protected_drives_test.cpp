@@ -202,6 +202,8 @@ TEST(ProtectedDrives, LeaveWhatIsNotForAController) {
             Status::kUnknownId);
   EXPECT_EQ(arm.take({frame_with(MessageKind::kHeartbeat, 0, Heartbeat{}, 0), 0}),
             Status::kUnknownId);
+  EXPECT_EQ(arm.take({frame_with(MessageKind::kDiagnosis, kControllerNode, Diagnosis{}, 0), 0}),
+            Status::kUnknownId);
   EXPECT_EQ(arm.feedback(0, 0).encoder, SourceState::kNeverSeen);
   EXPECT_EQ(arm.encoder_source(0).rejected, 0U);
 }
@@ -262,6 +264,24 @@ TEST(ProtectedDrives, SendOffWhereACommandCannotBeSent) {
     EXPECT_EQ(received(frames, 1).counter, received(frames, 0).counter);
     EXPECT_EQ(received(frames, 0).command.torque, 2.0F);
     EXPECT_EQ(received(frames, 2).command.torque, 2.0F);
+  }
+}
+
+TEST(ProtectedDrives, ReportWhatTheMonitorFoundCountedOneByOne) {
+  Drives arm = drives();
+  for (int i = 0; i < 300; ++i) {
+    Frame frame;
+    ASSERT_FALSE(arm.report({.worst_joint = 1, .error_to_threshold = -1}, frame));
+    const Diagnosis sent{true, 3, 2, 1.5F};
+    ASSERT_TRUE(arm.report(sent, frame));
+    ASSERT_EQ(frame.id, 0x73FU);
+    Diagnosis heard;
+    std::uint8_t counter = 0;
+    ASSERT_EQ(decode(record_in(frame, 0), data_id_of(MessageKind::kDiagnosis, kControllerNode),
+                     heard, counter),
+              Status::kOk);
+    ASSERT_EQ(heard.first_joint, 3);
+    ASSERT_EQ(counter, static_cast<std::uint8_t>(i)) << "what is not sent is not counted";
   }
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <type_traits>
 
 namespace offnominal::test {
 
@@ -43,6 +44,7 @@ struct OneDrive {
     heartbeat = said;
     return 0;
   }
+  static bool report(const hal::Diagnosis& /*found*/, hal::Frame& /*into*/) { return false; }
   [[nodiscard]] static hal::Microseconds drive_max_age_us() { return 2500; }
   [[nodiscard]] bool stop_seen() const { return false; }
   void clear_stop() {}
@@ -50,15 +52,16 @@ struct OneDrive {
 };
 
 // The joint turns about an upright axis, without friction: what moves it is its torque alone.
-class JointOnDesk {
+template <typename Space>
+class JointOnDeskIn {
  public:
-  using Controller = controller::JointController<1, 4, float>;
-  using Config = Controller::Config;
+  using Controller = controller::JointController<1, 4, float, WithoutMemory, Space>;
+  using Config = typename Controller::Config;
   static constexpr double kInertia = 2;  // kg m^2
   static constexpr double kPeriod = 0.001;
 
   static Config config() {
-    MonitorConfig<1, float> monitor;
+    MonitorConfig<1, float, Space> monitor;
     monitor.chain.gravity_m_s2 = {0, 0, -9.81F};
     auto& joint = monitor.chain.joints[0];
     joint.mass_kg = static_cast<float>(kInertia);
@@ -66,15 +69,19 @@ class JointOnDesk {
     joint.max_torque = 100;
     monitor.torque_signal = TorqueSignal::kHeld;
     monitor.estimator.hidden_units = 4;
-    monitor.bound.kind = BoundKind::kConstant;
-    monitor.bound.offset = 5;
+    if constexpr (std::is_same_v<Space, TorqueSpace>) {
+      monitor.bound.joints[0].value[0] = static_cast<float>(5 * kInertia);
+    } else {
+      monitor.bound.kind = BoundKind::kConstant;
+      monitor.bound.offset = 5;
+    }
     ComputedTorqueGains<1, float> gains;
     gains.kp.fill(100);
     gains.kd.fill(20);
     return controller::controller_config(monitor, gains);
   }
 
-  explicit JointOnDesk(const Config& config = JointOnDesk::config()) {
+  explicit JointOnDeskIn(const Config& config = JointOnDeskIn::config()) {
     if (Controller::create(config, controller) != Status::kOk) throw std::logic_error("refused");
   }
 
@@ -128,7 +135,7 @@ class JointOnDesk {
   SilentBus bus;
   OneDrive drive;
   Controller controller;
-  std::unique_ptr<Controller::Data> data = std::make_unique<Controller::Data>();
+  std::unique_ptr<typename Controller::Data> data = std::make_unique<typename Controller::Data>();
 
  private:
   void move() {
@@ -142,6 +149,8 @@ class JointOnDesk {
     dq = 0;
   }
 };
+
+using JointOnDesk = JointOnDeskIn<AccelerationSpace>;
 
 // A reference of one joint.
 inline Reference<1, float> at(float q, float dq = 0, float ddq = 0) {

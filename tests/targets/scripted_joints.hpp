@@ -11,6 +11,7 @@
 #include <offnominal/controller/joint_controller.hpp>
 #include <span>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 namespace offnominal::test {
@@ -62,6 +63,8 @@ class ScriptedDrives {
   mutable hal::Microseconds asked_at_us = 0;
   std::array<hal::TorqueCommand, Joints> commands;
   hal::Heartbeat heartbeat;
+  static constexpr std::uint32_t kReportId = 0x73F;
+  std::vector<hal::Diagnosis> reports;
 
   hal::Status take(const hal::ReceivedFrame& /*frame*/) {
     return taken < answers.size() ? answers[taken++] : (++taken, hal::Status::kOk);
@@ -77,6 +80,11 @@ class ScriptedDrives {
     for (std::size_t j = 0; j < Joints; ++j) into[j].id = static_cast<std::uint32_t>(0x100 + j);
     return Joints;
   }
+  bool report(const hal::Diagnosis& found, hal::Frame& into) {
+    reports.push_back(found);
+    into.id = kReportId;
+    return true;
+  }
   [[nodiscard]] hal::Microseconds drive_max_age_us() const { return max_age_us; }
   [[nodiscard]] bool stop_seen() const { return stop; }
   void clear_stop() { stop = false; }
@@ -86,7 +94,8 @@ class ScriptedDrives {
 // Two slides at right angles without weight: of the first one the drive moves 5 kg, of the second
 // 3 kg, and neither feels the other. They stand where the test puts them; drives are in the mode
 // that they were told, and say that they give the torque that they were told.
-class ScriptedJoints {
+template <typename Space>
+class ScriptedJointsIn {
  public:
   static constexpr std::size_t kJoints = 2;
   static constexpr hal::Microseconds kPeriodUs = 1000;
@@ -94,15 +103,17 @@ class ScriptedJoints {
   static constexpr double kMaxTorque = 10;
   static constexpr double kKp = 100;
   static constexpr double kKd = 20;
-  using Controller = controller::JointController<2, 4, double>;
+  using Controller = controller::JointController<2, 4, double, WithoutMemory, Space>;
+  using Config = typename Controller::Config;
+  using Drives = ScriptedDrives<kJoints>;
   using Vector2 = Vector<2, double>;
 
-  explicit ScriptedJoints(const Controller::Config& config = default_config()) {
+  explicit ScriptedJointsIn(const Config& config = default_config()) {
     if (Controller::create(config, controller) != Status::kOk) throw std::logic_error("refused");
   }
 
-  static Controller::Config default_config() {
-    MonitorConfig<2, double> monitor;
+  static Config default_config() {
+    MonitorConfig<2, double, Space> monitor;
     monitor.chain.gravity_m_s2 = {0, 0, 0};
     monitor.chain.joints[0].axis = {1, 0, 0};
     monitor.chain.joints[1].axis = {0, 1, 0};
@@ -114,7 +125,12 @@ class ScriptedJoints {
     }
     monitor.estimator.hidden_units = 4;
     monitor.estimator.learning_rate = 0;
-    monitor.bound.offset = 1000;  // nothing is a fault of the arm
+    // Nothing is a fault of the arm.
+    if constexpr (std::is_same_v<Space, TorqueSpace>) {
+      for (auto& joint : monitor.bound.joints) joint.value[0] = 1000;
+    } else {
+      monitor.bound.offset = 1000;
+    }
     ComputedTorqueGains<2, double> gains;
     gains.kp.fill(kKp);
     gains.kd.fill(kKd);
@@ -177,7 +193,9 @@ class ScriptedJoints {
     return Reference<2, double>{};
   };
   Controller controller;
-  std::unique_ptr<Controller::Data> data = std::make_unique<Controller::Data>();
+  std::unique_ptr<typename Controller::Data> data = std::make_unique<typename Controller::Data>();
 };
+
+using ScriptedJoints = ScriptedJointsIn<AccelerationSpace>;
 
 }  // namespace offnominal::test

@@ -1,3 +1,16 @@
+# offnominal_torque_space(<robot file> <bounds> <file>): the robot with its monitor in torque space, and of
+# every joint one of the bounds, N m: "1.0, 2.0". [uncertainty_bound] has to be its last table.
+function(offnominal_torque_space robot bounds file)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${robot}")
+  file(READ "${robot}" text)
+  string(FIND "${text}" "[uncertainty_bound]" end)
+  string(SUBSTRING "${text}" 0 ${end} text)
+  string(REPLACE "[estimator]" "[estimator]\nspace = \"torque\"" text "${text}")
+  string(APPEND text "[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [${bounds}]\n"
+                     "source = \"chosen: something to cross\"\n")
+  file(CONFIGURE OUTPUT "${file}" CONTENT "${text}" @ONLY)
+endfunction()
+
 # offnominal_counted_arm(<joints> <hidden units> <file>): bench/discovery's arm with the first joints
 # only, and the estimator and bound that it lacks.
 function(offnominal_counted_arm joints hidden file)

@@ -14,6 +14,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "models/by_joint.hpp"
 #include "models/emps.hpp"
 #include "models/every_effect.hpp"
 #include "models/two_link.hpp"
@@ -33,6 +34,7 @@ template <typename S>
 struct GeneratedTwoLink {
   using Scalar = S;
   using Memory = models::two_link::Memory;
+  using Space = models::two_link::Space;
   static constexpr int kJoints = models::two_link::kJoints;
   static constexpr int kHiddenUnits = models::two_link::kHiddenUnits;
   static constexpr const auto& kConfig = models::two_link::kMonitorConfig<S>;
@@ -46,6 +48,7 @@ template <typename S>
 struct GeneratedEmps {
   using Scalar = S;
   using Memory = models::emps::Memory;
+  using Space = models::emps::Space;
   static constexpr int kJoints = models::emps::kJoints;
   static constexpr int kHiddenUnits = models::emps::kHiddenUnits;
   static constexpr const auto& kConfig = models::emps::kMonitorConfig<S>;
@@ -59,6 +62,7 @@ template <typename S>
 struct GeneratedEveryEffect {
   using Scalar = S;
   using Memory = models::every_effect::Memory;
+  using Space = models::every_effect::Space;
   static constexpr int kJoints = models::every_effect::kJoints;
   static constexpr int kHiddenUnits = models::every_effect::kHiddenUnits;
   static constexpr const auto& kConfig = models::every_effect::kMonitorConfig<S>;
@@ -68,6 +72,21 @@ struct GeneratedEveryEffect {
   static constexpr const auto& kNames = models::every_effect::kJointNames;
   inline static const std::string kFile =
       (test::source_dir() / "tests/desk/codegen/every_effect.toml").string();
+};
+template <typename S>
+struct GeneratedByJoint {
+  using Scalar = S;
+  using Memory = models::by_joint::Memory;
+  using Space = models::by_joint::Space;
+  static constexpr int kJoints = models::by_joint::kJoints;
+  static constexpr int kHiddenUnits = models::by_joint::kHiddenUnits;
+  static constexpr const auto& kConfig = models::by_joint::kMonitorConfig<S>;
+  static constexpr const auto& kGains = models::by_joint::kComputedTorqueGains<S>;
+  static constexpr const auto& kArming = models::by_joint::kArmingConfig<S>;
+  static constexpr const auto& kEncoders = models::by_joint::kEncoderCountsPerUnit<S>;
+  static constexpr const auto& kNames = models::by_joint::kJointNames;
+  inline static const std::string kFile =
+      (test::source_dir() / "tests/desk/codegen/by_joint.toml").string();
 };
 
 // Not only equal: the same bits, so that 0 and -0 differ and NaN equals itself.
@@ -130,8 +149,20 @@ std::vector<Scalar> numbers_in(const UncertaintyBound<N, Scalar>& bound) {
 }
 
 template <int N, typename Scalar>
+std::vector<Scalar> numbers_in(const TorqueBound<N, Scalar>& bound) {
+  std::vector<Scalar> all;
+  for (const JointBound<Scalar>& joint : bound.joints) {
+    all.push_back(static_cast<Scalar>(joint.points));
+    all.push_back(joint.momentum_error);
+    all.insert(all.end(), joint.at.begin(), joint.at.end());
+    all.insert(all.end(), joint.value.begin(), joint.value.end());
+  }
+  return all;
+}
+
+template <int N, typename Scalar, typename Space>
 JointSample<N, Scalar> random_sample(std::mt19937_64& generator,
-                                     const MonitorConfig<N, Scalar>& config) {
+                                     const MonitorConfig<N, Scalar, Space>& config) {
   std::uniform_real_distribution<Scalar> unit(-1, 1);
   JointSample<N, Scalar> sample;
   for (Eigen::Index i = 0; i < N; ++i) {
@@ -150,14 +181,16 @@ template <typename Generated>
 class GeneratedModel : public testing::Test {
  protected:
   RobotDescription robot_ = read_robot_file(Generated::kFile);
-  MonitorConfig<Generated::kJoints, typename Generated::Scalar> host_ =
-      monitor_config_of<Generated::kJoints, typename Generated::Scalar>(robot_);
+  MonitorConfig<Generated::kJoints, typename Generated::Scalar, typename Generated::Space> host_ =
+      monitor_config_of<Generated::kJoints, typename Generated::Scalar, typename Generated::Space>(
+          robot_);
   std::mt19937_64 generator_ = test::seeded_generator();
 };
 
-using AllGenerated = testing::Types<GeneratedTwoLink<float>, GeneratedTwoLink<double>,
-                                    GeneratedEmps<float>, GeneratedEmps<double>,
-                                    GeneratedEveryEffect<float>, GeneratedEveryEffect<double>>;
+using AllGenerated =
+    testing::Types<GeneratedTwoLink<float>, GeneratedTwoLink<double>, GeneratedEmps<float>,
+                   GeneratedEmps<double>, GeneratedEveryEffect<float>, GeneratedEveryEffect<double>,
+                   GeneratedByJoint<float>, GeneratedByJoint<double>>;
 TYPED_TEST_SUITE(GeneratedModel, AllGenerated);
 
 TYPED_TEST(GeneratedModel, HoldsTheHostsConfigurationToTheBit) {
@@ -210,7 +243,7 @@ TYPED_TEST(GeneratedModel, GivesTheHostsTorqueForEveryEffect) {
     const auto with_generated = only(generated, i);
     const auto with_host = only(host, i);
     for (int sample = 0; sample < 20; ++sample) {
-      const auto at = random_sample<kN, Scalar>(this->generator_, this->host_);
+      const auto at = random_sample(this->generator_, this->host_);
       const Vector<kN, Scalar> ddq = Scalar(3) * at.dq;
       const double time_s = 0.1 * sample;
       expect_same_bits(inverse_dynamics(with_generated, at.q, at.dq, ddq, time_s),
@@ -225,7 +258,7 @@ TYPED_TEST(GeneratedModel, GivesTheHostsDynamics) {
   const auto generated = make_model(TypeParam::kConfig.chain);
   const auto host = make_model(this->host_.chain);
   for (int i = 0; i < 200; ++i) {
-    const auto at = random_sample<kN, Scalar>(this->generator_, this->host_);
+    const auto at = random_sample(this->generator_, this->host_);
     const double time_s = 0.01 * static_cast<double>(i);
     ForwardDynamics<kN, Scalar> a;
     ForwardDynamics<kN, Scalar> b;
@@ -239,7 +272,8 @@ TYPED_TEST(GeneratedModel, GivesTheHostsDynamics) {
 TYPED_TEST(GeneratedModel, TakesTheHostsSteps) {
   constexpr int kN = TypeParam::kJoints;
   using Scalar = typename TypeParam::Scalar;
-  using Watch = Monitor<kN, TypeParam::kHiddenUnits, Scalar, typename TypeParam::Memory>;
+  using Watch = Monitor<kN, TypeParam::kHiddenUnits, Scalar, typename TypeParam::Memory,
+                        typename TypeParam::Space>;
   Watch generated;
   Watch host;
   ASSERT_EQ(Watch::create(TypeParam::kConfig, generated), Status::kOk);
@@ -248,12 +282,12 @@ TYPED_TEST(GeneratedModel, TakesTheHostsSteps) {
   typename Watch::State b;
   typename Watch::Output out_a;
   typename Watch::Output out_b;
-  const auto first = random_sample<kN, Scalar>(this->generator_, this->host_);
+  const auto first = random_sample(this->generator_, this->host_);
   ASSERT_EQ(generated.reset(first, a), Status::kOk);
   ASSERT_EQ(host.reset(first, b), Status::kOk);
   // Samples without a physical connection: the estimator learns all the time.
   for (int tick = 0; tick < 500; ++tick) {
-    const auto sample = random_sample<kN, Scalar>(this->generator_, this->host_);
+    const auto sample = random_sample(this->generator_, this->host_);
     ASSERT_EQ(generated.step(sample, a, out_a), Status::kOk);
     ASSERT_EQ(host.step(sample, b, out_b), Status::kOk);
     expect_same_bits(out_a.error, out_b.error, "e");

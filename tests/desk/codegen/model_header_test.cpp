@@ -44,14 +44,52 @@ TEST(ModelHeader, RepeatsToTheLetter) {
 }
 
 TEST(ModelHeader, OffersDoubleAloneWhereFloatWouldBeRefused) {
+  // The initial weights have to be inside the radius, or the file is refused.
+  const std::string weights =
+      changed(test::kSampleRobot, "initial_weight_range = 0.2", "initial_weight_range = 1e-63");
   const ModelHeader header =
-      header_of(changed(test::kSampleRobot, "weight_radius = 3.0", "weight_radius = 1e-60"));
+      header_of(changed(weights, "weight_radius = 3.0", "weight_radius = 1e-60"));
   EXPECT_EQ(header.in_float, Status::kInvalidWeightRadius);
   EXPECT_THAT(header.text, HasSubstr("For double only: rounded to float"));
   EXPECT_THAT(header.text, HasSubstr("template <std::same_as<double> Scalar>"));
   const ModelHeader pole =
       header_of(changed(test::kSampleRobot, "alpha_per_s = 20.0", "alpha_per_s = 1e-60"));
   EXPECT_EQ(pole.in_float, Status::kInvalidFilterPole);
+}
+
+// The sample with its monitor in torque space.
+std::string by_joint(const std::string& bound) {
+  std::string text = changed(test::kSampleRobot, "seed = 7", "seed = 7\nspace = \"torque\"");
+  const auto begin = text.find("[uncertainty_bound]");
+  text.replace(begin, text.find("[channels]") - begin, bound);
+  return text;
+}
+
+TEST(ModelHeader, InTorqueSpaceHasABoundOfEveryJointInItsUnit) {
+  const ModelHeader header =
+      header_of(by_joint("[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.5, 0.0]\n"
+                         "over_speed = [{joint = 2, at = [0.0, 0.5], value = [2.0, 3.0]}]\n"
+                         "momentum_error = [0.25, 0.0]\n"));
+  EXPECT_THAT(header.text, HasSubstr("using Space = offnominal::TorqueSpace;\n"));
+  EXPECT_THAT(header.text, HasSubstr("constexpr offnominal::TorqueBound<kJoints, Scalar> kBound"));
+  EXPECT_THAT(
+      header.text,
+      HasSubstr("constexpr offnominal::MonitorConfig<kJoints, Scalar, Space> kMonitorConfig"));
+  EXPECT_THAT(header.text, HasSubstr(".points = 1,\n"));
+  EXPECT_THAT(header.text, HasSubstr(".value = {Scalar(1.5)},  // N m\n"));
+  EXPECT_THAT(header.text, HasSubstr(".momentum_error = Scalar(0.25),  // N m s\n"));
+  EXPECT_THAT(header.text, HasSubstr(".at = {Scalar(0.0), Scalar(0.5)},  // m/s\n"));
+  EXPECT_THAT(header.text, HasSubstr(".value = {Scalar(2.0), Scalar(3.0)},  // N\n"));
+  EXPECT_EQ(header.in_float, Status::kOk);
+  const ModelHeader plain = header_of(test::kSampleRobot);
+  EXPECT_THAT(plain.text, HasSubstr("using Space = offnominal::AccelerationSpace;\n"));
+}
+
+TEST(ModelHeader, InTorqueSpaceOffersDoubleAloneWhereFloatWouldBeRefused) {
+  const ModelHeader header =
+      header_of(by_joint("[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.5, 1e-60]\n"));
+  EXPECT_EQ(header.in_float, Status::kInvalidBound);
+  EXPECT_THAT(header.text, HasSubstr("template <std::same_as<double> Scalar>"));
 }
 
 std::string refusal_of(const std::string& text, const ModelHeaderOptions& options) {

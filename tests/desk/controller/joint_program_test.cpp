@@ -13,6 +13,7 @@
 #include "desk/sil/serial_robot.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "drives/drive_table.hpp"
+#include "log/csv_log.hpp"
 #include "robot/robot_file.hpp"
 #include "support/places.hpp"
 
@@ -68,13 +69,14 @@ class Pendulum final : public TickTimer {
   double q = 0;
   double dq = 0;
   double lowest = 1e9;
+  double push_nm = 0;  // beside the drive's torque
 
  private:
   // Its brake opens when it is first told to give torque.
   void move() {
     started_ = started_ || gives_torque();
     if (!started_) return;
-    dq += 1e-3 * (drives_->torque_nm(0, dq) - 2 * 9.81 * std::cos(q)) / 2;
+    dq += 1e-3 * (drives_->torque_nm(0, dq) + push_nm - 2 * 9.81 * std::cos(q)) / 2;
     q += 1e-3 * dq;
     lowest = std::min(lowest, q);
   }
@@ -184,6 +186,33 @@ TEST(JointProgram, AMotionThatBeginsOnTheMoveIsOne) {
   Bench allowed(robot("[-3.0, 3.0]", "speed = [0.6]\n"), motion);
   const auto report = allowed.run({.arm_when_passive = true, .duration_us = 100'000});
   EXPECT_EQ(report.refusal, Fault::kNone);
+}
+
+// GIVEN a file in torque space WHEN somebody pushes the joint THEN report and recording name it.
+TEST(JointProgram, InTorqueSpaceSaysAndRecordsWhichJointWasFirst) {
+  RobotDescription of = robot("[-3.0, 3.0]", "");
+  of.estimator.space = EstimatorSpace::kTorque;
+  of.bound->kind = BoundSettings::Kind::kPerJoint;
+  of.bound->joints = {{.at = {}, .value = {5.0}}};
+  const test::TemporaryFolder folder;
+  for (const double push_nm : {0.0, 20.0}) {
+    const std::string file = (folder / (push_nm > 0 ? "pushed.csv" : "healthy.csv")).string();
+    Bench bench(of);
+    ASSERT_EQ(bench.recorder.open({.csv = file, .columns = realtime::loop_columns(1, true)}), 0);
+    bench.pendulum.before_tick = [&](int tick) {
+      if (tick > 3000) bench.pendulum.push_nm = push_nm;
+    };
+    const auto report = bench.run({.arm_when_passive = true, .duration_us = 4'000'000});
+    bench.recorder.close();
+    EXPECT_EQ(report.fault, Fault::kNone) << name_of(report.fault);
+    EXPECT_EQ(report.detected, push_nm > 0);
+    EXPECT_EQ(report.first_joint, push_nm > 0 ? 0 : -1);
+    auto columns = read_csv(file, [](const std::string&) { return Need::kRequired; }).columns;
+    EXPECT_EQ(columns.at("first_joint").maxCoeff(), push_nm > 0 ? 1 : 0);
+    EXPECT_NEAR(columns.at("threshold1").maxCoeff(), 5, 1e-3);
+    const double residual = columns.at("error1").cwiseAbs().maxCoeff();
+    EXPECT_NEAR(residual, push_nm, push_nm > 0 ? 3 : 1);
+  }
 }
 
 // A number of joints that is not compiled in would be known by its first robot.

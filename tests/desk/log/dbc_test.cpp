@@ -115,6 +115,17 @@ TEST(Dbc, SaysOfHeartbeatsAndStopsWhatTheCodeSays) {
       false);
 }
 
+TEST(Dbc, SaysOfDiagnosesWhatTheCodeSays) {
+  const Values found = signals_of(
+      frame_of(hal::MessageKind::kDiagnosis, 31,
+               record_of(hal::MessageKind::kDiagnosis, 31, hal::Diagnosis{true, 4, 6, 100.25F})));
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found.at("beyond_threshold"), 1);
+  EXPECT_EQ(found.at("first_joint"), 4);
+  EXPECT_EQ(found.at("worst_joint"), 6);
+  EXPECT_EQ(found.at("error_to_threshold"), 100.25);
+}
+
 // No message beside those of the code, and every bit of a record has a signal, one alone.
 TEST(Dbc, CoversEveryBitOfEveryFrameOnce) {
   std::set<std::uint32_t> ids;

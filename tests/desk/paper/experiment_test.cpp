@@ -193,6 +193,7 @@ TEST(PaperExperiment, RefusesWhatItCannotRun) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   refused([](auto& robot, auto&) { robot.joints.pop_back(); });
   refused([](auto& robot, auto&) { robot.bound.reset(); });
+  refused([](auto& robot, auto&) { robot.estimator.space = EstimatorSpace::kTorque; });
   refused([](auto& robot, auto&) { robot.estimator.period_s = 0.0; });
   refused([](auto& robot, auto&) { robot.estimator.period_s = 0.1; });
   refused([nan](auto& robot, auto&) { robot.estimator.period_s = nan; });

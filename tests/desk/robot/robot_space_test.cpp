@@ -124,28 +124,10 @@ TEST(RobotFile, RefusesBoundsThatNoRobotHas) {
   }
 }
 
-TEST(RobotFile, InTorqueSpaceIsRefusedWhereTheJointControllerRuns) {
-  const RobotDescription robot = parse_robot(
-      in_torque_space("[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.0, 2.0]\n"),
-      "arm.toml");
-  EXPECT_NO_THROW(require_bound(robot, "arm.toml"));
-  try {
-    require_controller_bound(robot, "arm.toml");
-    FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), AllOf(ContainsRegex("arm.toml: line [0-9]+, estimator.space: found"),
-                                    HasSubstr("`offnominal replay` and `offnominal calibrate`")));
-  }
-  RobotDescription made = robot;
-  made.file_text = nullptr;
-  try {
-    require_controller_bound(made, "arm.toml");
-    FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("arm.toml: estimator.space: found \"torque\""));
-  }
-  EXPECT_NO_THROW(
-      require_controller_bound(parse_robot(test::kSampleRobot, "arm.toml"), "arm.toml"));
+TEST(RobotFile, InTorqueSpaceHasTheBoundThatAControllerNeeds) {
+  const std::string per_joint = "[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.0, 2.0]\n";
+  EXPECT_NO_THROW(require_bound(parse_robot(in_torque_space(per_joint), "arm.toml"), "arm.toml"));
+  EXPECT_THROW(require_bound(parse_robot(in_torque_space(""), "arm.toml"), "arm.toml"), InputError);
 }
 
 }  // namespace

@@ -101,6 +101,21 @@ TEST_F(RealTime, RunsARobotFileOfSixJoints) {
   EXPECT_NE(content_of(folder_ / "run.log").find("1A0##"), std::string::npos);
 }
 
+// Which joint it was comes with the controller's recording.
+TEST_F(RealTime, NamesTheJointThatIsOffNominal) {
+  put(folder_ / "robot.toml", test::by_joint_robot_text(2, 2.0));
+  const auto result =
+      run("[[fault]]\nkind = \"disturbance_torque\"\nbegin_s = 1.0\njoint = 2\nsize = 10\n",
+          {"--robot", folder_ / "robot.toml", "--duration", "2", "--candump", folder_ / "run.log",
+           "--force"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json run = json::parse(result.out);
+  EXPECT_EQ(run.at("first_joint"), 2) << run.dump(2);
+  ASSERT_EQ(run.at("joints").size(), 2U);
+  EXPECT_EQ(run.at("joints")[1].at("detection_time_s"), run.at("detection_time_s"));
+  EXPECT_NE(content_of(folder_ / "run.log").find(" 73F#"), std::string::npos);
+}
+
 // Both programs take the drives' protocol from the robot's file.
 TEST_F(RealTime, RunsARobotFileWithOdrives) {
   run_until_silent(test::odrive_robot_text(2, 2, "0.6"), 2);

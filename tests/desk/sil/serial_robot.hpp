@@ -43,6 +43,19 @@ inline desk::RobotDescription serial_robot(int joints) {
   return desk::parse_robot(serial_robot_text(joints), "serial.toml");
 }
 
+/// The same with its monitor in torque space, and of every joint the same bound, N m.
+inline std::string by_joint_robot_text(int joints, double bound_nm) {
+  std::string text = serial_robot_text(joints);
+  text.erase(text.find("[uncertainty_bound]"));
+  text += "space = \"torque\"\n[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [";
+  for (int i = 0; i < joints; ++i) text += fmt::format("{}{:.3f}", i == 0 ? "" : ", ", bound_nm);
+  return text + "]\n";
+}
+
+inline desk::RobotDescription by_joint_robot(int joints, double bound_nm) {
+  return desk::parse_robot(by_joint_robot_text(joints, bound_nm), "by_joint.toml");
+}
+
 /// The same behind ODrives that tell their torque, every second one turning against its joint; a
 /// tick and a reading every period_ms.
 inline std::string odrive_robot_text(int joints, int period_ms, const std::string& firmware) {

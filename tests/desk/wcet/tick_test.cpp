@@ -52,6 +52,36 @@ TEST(Tick, HasTimeInEveryPhaseAndPart) {
   }
 }
 
+// The paper's arm with its monitor in torque space.
+RobotDescription by_joint() {
+  RobotDescription robot = paper::two_link_robot();
+  robot.estimator.space = EstimatorSpace::kTorque;
+  robot.bound = BoundSettings{};
+  robot.bound->kind = BoundSettings::Kind::kPerJoint;
+  robot.bound->joints.resize(2);
+  return robot;
+}
+
+TEST(Tick, InTorqueSpaceIsWhatEveryScenarioAsksFor) {
+  const RobotDescription robot = by_joint();
+  for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
+    const auto tick = make_tick(robot, precision, hal::FrameFormat::kClassic);
+    for (const Scenario& scenario : scenarios(robot, precision)) {
+      tick->prepare(scenario.input);
+      const TickFacts facts = tick->facts();
+      EXPECT_TRUE(facts.watched) << scenario.name;
+      EXPECT_EQ(facts.learned, scenario.input.error_to_threshold > 1) << scenario.name;
+      EXPECT_NEAR(facts.error_to_threshold / scenario.input.error_to_threshold, 1, 1e-3)
+          << scenario.name;
+      EXPECT_EQ(facts.began_on_ball, scenario.input.on_ball) << scenario.name;
+      EXPECT_TRUE(facts.gradient_outwards || !scenario.input.on_ball) << scenario.name;
+      tick->restore();
+      tick->run_part(Part::kModel);
+      tick->run_part(Part::kEstimator);
+    }
+  }
+}
+
 std::string refusal_of(const RobotDescription& robot) {
   try {
     static_cast<void>(make_tick(robot, Precision::kFloat, hal::FrameFormat::kClassic));

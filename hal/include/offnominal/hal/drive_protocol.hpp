@@ -34,6 +34,9 @@ struct DriveCounts {
 // outgoing(c, h, into)     The frames of one tick, one command per joint and, when it is due, the
 //                          heartbeat; returns how many, at most kMaxOutgoing. A command that the
 //                          protocol cannot carry is sent as DriveMode::kOff.
+// report(d, into)          The frame that tells all others what a monitor found that judges joint
+// by
+//                          joint; false where the protocol has none, or cannot carry it.
 // drive_max_age_us()       How old a drive's status may be before it is stale: a change of its mode
 //                          stays unseen no longer.
 // stop_seen(), clear_stop()  Whether somebody has asked for an emergency stop; latched until
@@ -43,20 +46,22 @@ template <typename P>
 concept DriveProtocol = requires(P& drives, const P& seen, const ReceivedFrame& received,
                                  std::size_t joint, Microseconds now_us,
                                  std::span<const TorqueCommand> commands,
-                                 const Heartbeat& heartbeat, std::span<Frame> into) {
+                                 const Heartbeat& heartbeat, std::span<Frame> into,
+                                 const Diagnosis& diagnosis, Frame& frame) {
   { P::kJoints } -> std::convertible_to<std::size_t>;
   { P::kMaxOutgoing } -> std::convertible_to<std::size_t>;
   { drives.take(received) } -> std::same_as<Status>;
   { seen.feedback(joint, now_us) } -> std::same_as<JointFeedback>;
   { drives.outgoing(commands, heartbeat, into) } -> std::same_as<std::size_t>;
+  { drives.report(diagnosis, frame) } -> std::same_as<bool>;
   { seen.drive_max_age_us() } -> std::same_as<Microseconds>;
   { seen.stop_seen() } -> std::same_as<bool>;
   { drives.clear_stop() } -> std::same_as<void>;
   { seen.counts() } -> std::same_as<DriveCounts>;
 };
 
-// A heartbeat goes out every so many ticks; where their 32 bits wrap, once in 49 days at 1 kHz, one
-// comes earlier.
+// A heartbeat goes out every so many ticks, and half as many later a diagnosis; where their 32 bits
+// wrap, once in 49 days at 1 kHz, one comes earlier.
 inline constexpr std::uint32_t kHeartbeatTicks = 10;
 // The node number of the controller itself.
 inline constexpr std::uint8_t kControllerNode = 31;

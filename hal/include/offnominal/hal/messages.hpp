@@ -78,6 +78,16 @@ struct Heartbeat {
   std::uint32_t ticks = 0;
 };
 
+// Controller -> all, of a monitor that judges joint by joint. Joints count from 1; 0: none.
+struct Diagnosis {
+  bool level = false;            // some joint is beyond its threshold
+  std::uint8_t first_joint = 0;  // that crossed its threshold first since the run began, latched
+  std::uint8_t worst_joint = 0;  // with the largest |e| / mu; none while nothing is judged
+  // Its |e| / mu, >= 0; on the wire in 256ths, the largest number standing for all above it.
+  float error_to_threshold = 0;
+};
+inline constexpr float kRatioPerCount = 0x1p-8F;
+
 // Anyone -> all. Whoever sees one has to go to its safe state.
 struct EmergencyStop {
   std::uint8_t source = 0;  // node that asks for it
@@ -164,6 +174,23 @@ inline constexpr std::int32_t kNoVelocity = -(1 << 15);
   return Status::kOk;
 }
 
+[[nodiscard]] inline Status encode(const Diagnosis& diagnosis, std::uint8_t counter,
+                                   std::uint16_t data_id, Record& record) {
+  const float ratio = diagnosis.error_to_threshold;
+  const bool judges = diagnosis.worst_joint != 0;
+  // NaN is not.
+  if (!(ratio >= 0) || (!judges && (diagnosis.level || ratio > 0))) return Status::kInvalidValue;
+  constexpr float kMost = 0xFFFF;
+  const auto counts = static_cast<std::uint32_t>(std::fmin(ratio / kRatioPerCount, kMost));
+  Content content{};
+  content[0] = diagnosis.level ? 1 : 0;
+  content[1] = diagnosis.first_joint;
+  content[2] = diagnosis.worst_joint;
+  to_little_endian(counts, std::span(content).last<2>());
+  record = seal(content, counter, data_id);
+  return Status::kOk;
+}
+
 [[nodiscard]] inline Status encode(const EmergencyStop& stop, std::uint8_t counter,
                                    std::uint16_t data_id, Record& record) {
   record = seal({stop.source, stop.reason, 0, 0, 0}, counter, data_id);
@@ -205,6 +232,15 @@ namespace detail {
   if (content[0] > static_cast<unsigned>(ControllerState::kFault)) return false;
   heartbeat = {static_cast<ControllerState>(content[0]), content[1],
                from_little_endian(std::span(content).last<3>())};
+  return true;
+}
+
+[[nodiscard]] inline bool from_content(const Content& content, Diagnosis& diagnosis) {
+  const std::uint32_t counts = from_little_endian(std::span(content).last<2>());
+  const bool judges = content[2] != 0;
+  if (content[0] > 1 || (!judges && (content[0] != 0 || counts != 0))) return false;
+  diagnosis = {content[0] != 0, content[1], content[2],
+               static_cast<float>(counts) * kRatioPerCount};
   return true;
 }
 

@@ -14,9 +14,9 @@ namespace offnominal::controller {
 
 // kNone for a reference that the joints can follow; otherwise NonFiniteReference or
 // kReferenceOutOfRange.
-template <int N, typename Scalar>
+template <int N, typename Scalar, typename Space>
 [[nodiscard]] Fault check_reference(const Reference<N, Scalar>& reference,
-                                    const ControllerConfig<N, Scalar>& config,
+                                    const ControllerConfig<N, Scalar, Space>& config,
                                     const PositionRange<N, Scalar>& range) {
   if (!all_finite(reference.q) || !all_finite(reference.dq) || !all_finite(reference.ddq)) {
     return fault_of(Status::kNonFiniteReference);
@@ -38,8 +38,8 @@ template <typename Scalar>
 
 // Whether torque may be commanded that starts at this sample, with `reference` at time 0, which
 // check_reference() has passed: kNone, or why not.
-template <int N, typename Scalar>
-[[nodiscard]] Fault check_arming(const ControllerConfig<N, Scalar>& config,
+template <int N, typename Scalar, typename Space>
+[[nodiscard]] Fault check_arming(const ControllerConfig<N, Scalar, Space>& config,
                                  const JointSample<N, Scalar>& sample,
                                  const Reference<N, Scalar>& reference) {
   for (std::size_t j = 0; j < config.gains.kp.size(); ++j) {

@@ -15,10 +15,11 @@ namespace offnominal::controller {
 
 using hal::Microseconds;
 
-template <int N, typename Scalar>
+// Space: as of the Monitor.
+template <int N, typename Scalar, typename Space = AccelerationSpace>
 struct ControllerConfig {
   // max_compensation zero: the monitor watches and does not act.
-  MonitorConfig<N, Scalar> monitor;
+  MonitorConfig<N, Scalar, Space> monitor;
   ComputedTorqueGains<N, Scalar> gains;
   ArmingConfig<N, Scalar> arming;
   // No joint can be further from 0 than this, rad or m, whatever its limits: what says that it is
@@ -34,7 +35,8 @@ struct ControllerConfig {
   // which may take twice the longest way from 0 to a joint's torque limit, and ramp_s, more.
   Microseconds time_to_follow_us = 20000;
   // For drives that send positions alone; monitor.bound.velocity_error has to hold its
-  // velocity_error_bound() then. Its period_s is the monitor's.
+  // velocity_error_bound() then, in TorqueSpace every joint's momentum_error what M makes of it.
+  // Its period_s is the monitor's.
   VelocityObserverConfig<Scalar> velocity_observer;
   bool stop_at_detection = false;  // a crossed threshold leads to the safe state
   // Watch in kPassive too: where brakes are open and somebody else moves the joints.
@@ -43,11 +45,11 @@ struct ControllerConfig {
 
 // A configuration whose times follow from the monitor's period, whatever that is: commands live for
 // 0.9 of it, and the velocity observer has forgotten its start within some fifty of them.
-template <int N, typename Scalar>
-[[nodiscard]] ControllerConfig<N, Scalar> controller_config(
-    const MonitorConfig<N, Scalar>& monitor, const ComputedTorqueGains<N, Scalar>& gains,
+template <int N, typename Scalar, typename Space>
+[[nodiscard]] ControllerConfig<N, Scalar, Space> controller_config(
+    const MonitorConfig<N, Scalar, Space>& monitor, const ComputedTorqueGains<N, Scalar>& gains,
     const ArmingConfig<N, Scalar>& arming) {
-  ControllerConfig<N, Scalar> config;
+  ControllerConfig<N, Scalar, Space> config;
   config.monitor = monitor;
   config.gains = gains;
   config.arming = arming;
@@ -59,16 +61,16 @@ template <int N, typename Scalar>
 }
 
 // With default_arming().
-template <int N, typename Scalar>
-[[nodiscard]] ControllerConfig<N, Scalar> controller_config(
-    const MonitorConfig<N, Scalar>& monitor, const ComputedTorqueGains<N, Scalar>& gains) {
+template <int N, typename Scalar, typename Space>
+[[nodiscard]] ControllerConfig<N, Scalar, Space> controller_config(
+    const MonitorConfig<N, Scalar, Space>& monitor, const ComputedTorqueGains<N, Scalar>& gains) {
   return controller_config(monitor, gains, default_arming(monitor.chain));
 }
 
 // The velocity observer as it runs.
-template <int N, typename Scalar>
+template <int N, typename Scalar, typename Space>
 [[nodiscard]] VelocityObserverConfig<Scalar> observer_of(
-    const ControllerConfig<N, Scalar>& config) {
+    const ControllerConfig<N, Scalar, Space>& config) {
   VelocityObserverConfig<Scalar> observer = config.velocity_observer;
   observer.period_s = config.monitor.estimator.period_s;
   return observer;
@@ -81,9 +83,9 @@ struct PositionRange {
   Vector<N, Scalar> highest = zeros<N, Scalar>();
 };
 
-template <int N, typename Scalar>
+template <int N, typename Scalar, typename Space>
 [[nodiscard]] PositionRange<N, Scalar> position_range_of(
-    const ControllerConfig<N, Scalar>& config) {
+    const ControllerConfig<N, Scalar, Space>& config) {
   PositionRange<N, Scalar> range;
   const std::size_t joints = config.monitor.chain.joints.size();
   size_for(joints, range.lowest, range.highest);
@@ -100,8 +102,8 @@ template <int N, typename Scalar>
 // before a drive has answered.
 inline constexpr int kLeastRampPeriods = 10;
 
-template <int N, typename Scalar>
-[[nodiscard]] Status validate(const ControllerConfig<N, Scalar>& config) {
+template <int N, typename Scalar, typename Space>
+[[nodiscard]] Status validate(const ControllerConfig<N, Scalar, Space>& config) {
   if constexpr (N == kRuntimeJoints) {
     const std::size_t joints = config.monitor.chain.joints.size();
     const auto fits = [&](const auto& values) { return values.size() == joints; };

@@ -9,6 +9,8 @@
 #include <offnominal/control/reference_ramp.hpp>
 #include <offnominal/controller/arming_check.hpp>
 #include <offnominal/controller/controller_config.hpp>
+#include <offnominal/controller/controller_data.hpp>
+#include <offnominal/controller/diagnosis_of.hpp>
 #include <offnominal/controller/fault.hpp>
 #include <offnominal/controller/feedback_check.hpp>
 #include <offnominal/controller/sample_taker.hpp>
@@ -18,6 +20,7 @@
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/monitor.hpp>
 #include <span>
+#include <type_traits>
 
 // The joint controller, one tick at a time: receive, judge, watch, command. The same code runs in a
 // unit test, in software-in-the-loop, on Linux and on a microcontroller: what differs is the bus,
@@ -25,34 +28,15 @@
 
 namespace offnominal::controller {
 
-using hal::ControllerState;
-
-// Plain data, ready to be logged.
-template <int N, int L, typename Scalar, typename Memory = WithoutMemory>
-struct ControllerData : SampleData<N, Scalar>, TakeoverData<N, Scalar> {
-  ControllerState state = ControllerState::kInit;
-  Fault fault = Fault::kNone;
-  std::uint64_t ticks = 0;           // since the start
-  std::uint64_t run_ticks = 0;       // since time began
-  std::uint32_t overruns = 0;        // ticks that began late, ever
-  std::uint32_t missed_samples = 0;  // ticks without a fresh reading of every joint, ever
-  std::uint32_t refused_frames = 0;  // that came with something wrong in them, ever
-  std::uint32_t unsent_frames = 0;   // that the bus did not take, ever
-  std::uint32_t late_ticks = 0;      // whole periods that this tick began too late
-  std::uint16_t late_in_a_row = 0;   // ticks that did
-  bool ends = false;                 // let_go() was called
-  PerJoint<N, hal::TorqueCommand> commands{};
-  MonitorState<N, L, Scalar, Memory> monitor;
-  MonitorOutput<N, Scalar> output;
-};
-
-// Memory: as of the Monitor.
-template <int N, int L, typename Scalar, typename Memory = WithoutMemory>
+// Memory, Space: as of the Monitor. In TorqueSpace the bus is told which joint is off nominal
+// (hal::Diagnosis).
+template <int N, int L, typename Scalar, typename Memory = WithoutMemory,
+          typename Space = AccelerationSpace>
 class JointController {
  public:
-  using Config = ControllerConfig<N, Scalar>;
-  using Data = ControllerData<N, L, Scalar, Memory>;
-  using Watch = Monitor<N, L, Scalar, Memory>;
+  using Config = ControllerConfig<N, Scalar, Space>;
+  using Data = ControllerData<N, L, Scalar, Memory, Space>;
+  using Watch = Monitor<N, L, Scalar, Memory, Space>;
 
   // As Monitor::create().
   [[nodiscard]] static Status create(const Config& config, JointController& controller) {
@@ -158,6 +142,7 @@ class JointController {
 
  private:
   using Feedback = typename SampleTaker<N, Scalar>::Feedback;
+  static constexpr bool kByJoint = std::is_same_v<Space, TorqueSpace>;
 
   // At most so many frames in one tick: a node that babbles must not keep the controller busy.
   static constexpr std::size_t kBatch = 4;
@@ -176,6 +161,9 @@ class JointController {
   void forget_output(Data& data) const {
     data.output = {};
     size_for(joints(), data.output.error, data.output.psi_hat, data.output.compensation.torque);
+    if constexpr (kByJoint) {
+      size_for(joints(), data.output.thresholds, data.output.detector.joints);
+    }
   }
 
   // Armed, and time has begun.
@@ -397,6 +385,24 @@ class JointController {
       const hal::Status status = bus.send(frames[i], begin_us + config_.command_lifetime_us);
       if (status != hal::Status::kOk) ++data.unsent_frames;
     }
+    if constexpr (kByJoint) report(begin_us, bus, drives, data);
+  }
+
+  // Which joint is off nominal: between two heartbeats, and at once in the tick that says it first.
+  template <typename Bus, typename Drives>
+  void report(Microseconds begin_us, Bus& bus, Drives& drives, Data& data) const {
+    const DetectorState<Scalar>& detector = data.output.detector;
+    const bool is_new =
+        detector.latched && data.fresh && detector.detection_tick == data.monitor.tick;
+    const bool due = data.ticks % hal::kHeartbeatTicks == hal::kHeartbeatTicks / 2;
+    hal::Frame frame;
+    if (!due && !is_new) return;
+    const bool watches =
+        data.state == ControllerState::kArmed || data.state == ControllerState::kPassive;
+    const bool judges = watches && data.monitor.initialised;
+    if (!drives.report(diagnosis_of(data.output, judges), frame)) return;
+    const hal::Status status = bus.send(frame, begin_us + config_.command_lifetime_us);
+    if (status != hal::Status::kOk) ++data.unsent_frames;
   }
 
   Config config_{};

@@ -47,7 +47,8 @@ class SampleTaker {
 
   SampleTaker() = default;
   // Of a configuration that validate() accepts.
-  explicit SampleTaker(const ControllerConfig<N, Scalar>& config)
+  template <typename Space>
+  explicit SampleTaker(const ControllerConfig<N, Scalar, Space>& config)
       : range_(position_range_of(config)), observer_(observer_of(config)) {
     const Joint<Scalar> unlimited;
     size_for(config.monitor.chain.joints.size(), turns_for_ever_);

@@ -43,7 +43,8 @@ class Takeover {
 
   Takeover() = default;
   // Of a configuration that validate() accepts.
-  explicit Takeover(const ControllerConfig<N, Scalar>& config)
+  template <typename Space>
+  explicit Takeover(const ControllerConfig<N, Scalar, Space>& config)
       : arming_(config.arming), time_to_follow_us_(config.time_to_follow_us) {
     double swing_s = 0;
     for (std::size_t j = 0; j < config.arming.torque_rate.size(); ++j) {

@@ -30,7 +30,8 @@ class TorqueLimiter {
 
   TorqueLimiter() = default;
   // Of a configuration that validate() accepts.
-  explicit TorqueLimiter(const ControllerConfig<N, Scalar>& config) {
+  template <typename Space>
+  explicit TorqueLimiter(const ControllerConfig<N, Scalar, Space>& config) {
     const std::size_t joints = config.monitor.chain.joints.size();
     size_for(joints, limit_, step_);
     for (std::size_t j = 0; j < joints; ++j) {

@@ -9,6 +9,7 @@
 #include <offnominal/realtime/cycle_timer.hpp>
 #include <offnominal/realtime/recorder.hpp>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 // The joint controller, tick by tick in real time: what the thread of a controller program runs.
@@ -53,15 +54,23 @@ struct LoopReport {
   std::uint32_t unsent_frames = 0;
   bool detected = false;
   double detection_time_s = 0;  // since arming
+  int first_joint = -1;         // that was detected, from 0; -1: none, or not in TorqueSpace
 };
 
-// The columns of the rows that the loop records, for RecorderConfig::columns.
-[[nodiscard]] inline std::vector<std::string> loop_columns(int joints) {
+// The columns of the rows that the loop records, for RecorderConfig::columns. by_joint: of a
+// controller in TorqueSpace.
+[[nodiscard]] inline std::vector<std::string> loop_columns(int joints, bool by_joint = false) {
   std::vector<std::string> columns;
-  for (const char* quantity : {"q", "dq", "tau", "command", "psi_hat"}) {
+  const auto add_of_joints = [&](const char* quantity) {
     for (int joint = 1; joint <= joints; ++joint) {
       columns.push_back(quantity + std::to_string(joint));
     }
+  };
+  for (const char* quantity : {"q", "dq", "tau", "command", "psi_hat"}) add_of_joints(quantity);
+  if (by_joint) {
+    add_of_joints("error");
+    add_of_joints("threshold");
+    columns.emplace_back("first_joint");
   }
   for (const char* name : {"error", "threshold", "weights", "detected", "motion_t", "late_ticks",
                            "latency_us", "fault", "state"}) {
@@ -72,8 +81,8 @@ struct LoopReport {
 
 namespace detail {
 
-template <int N, int L, typename Scalar, typename Memory>
-[[nodiscard]] Row row_of(const controller::ControllerData<N, L, Scalar, Memory>& data,
+template <int N, int L, typename Scalar, typename Memory, typename Space>
+[[nodiscard]] Row row_of(const controller::ControllerData<N, L, Scalar, Memory, Space>& data,
                          const Tick& tick, Scalar period_s) {
   Row row;
   // When it was due: rows are evenly spaced.
@@ -88,6 +97,11 @@ template <int N, int L, typename Scalar, typename Memory>
   put_all(data.sample.tau);
   for (const hal::TorqueCommand& command : data.commands) put(static_cast<double>(command.torque));
   put_all(data.output.psi_hat);
+  if constexpr (std::is_same_v<Space, TorqueSpace>) {
+    put_all(data.output.error);
+    put_all(data.output.thresholds);
+    put(data.output.detector.latched ? data.output.detector.first_joint + 1 : 0);
+  }
   put(static_cast<double>(data.output.error_norm));
   put(static_cast<double>(data.output.threshold));
   put(std::sqrt(static_cast<double>(data.monitor.estimator.theta_squared_norm)));
@@ -105,10 +119,10 @@ template <int N, int L, typename Scalar, typename Memory>
 // Runs until it is asked to end, or what the configuration says. `timer` is a CycleTimer, or what
 // else has its wait(). The rows are those of the ticks with a fresh sample. No heap.
 template <int N, int L, typename Scalar, hal::Bus Bus, hal::DriveProtocol Drives, typename Timer,
-          typename ReferenceAt>
+          typename ReferenceAt, typename Space = AccelerationSpace>
 class ControlLoop {
  public:
-  using Controller = controller::JointController<N, L, Scalar, WithMemory>;
+  using Controller = controller::JointController<N, L, Scalar, WithMemory, Space>;
   using Data = typename Controller::Data;
 
   // What a loop is made of; all of it has to outlive the loop. `data` belongs on the heap.
@@ -189,6 +203,9 @@ class ControlLoop {
     if (parts_.data.output.detector.latched && !report_.detected) {
       report_.detected = true;
       report_.detection_time_s = parts_.data.output.detector.detection_time_s;
+      if constexpr (std::is_same_v<Space, TorqueSpace>) {
+        report_.first_joint = parts_.data.output.detector.first_joint;
+      }
     }
     const Microseconds period_us = parts_.timer.period_us();
     report_.left_out += tick.late_ticks;

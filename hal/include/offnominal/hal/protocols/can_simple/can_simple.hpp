@@ -148,6 +148,9 @@ class CanSimpleDrives {
     return max_age_us(config_.heartbeat_interval_us);
   }
 
+  // The protocol has no frame for it.
+  [[nodiscard]] static bool report(const Diagnosis& /*found*/, Frame& /*into*/) { return false; }
+
   // Nobody asks for an emergency stop in this protocol; an axis that stopped says so by its error.
   [[nodiscard]] bool stop_seen() const { return false; }
   void clear_stop() {}

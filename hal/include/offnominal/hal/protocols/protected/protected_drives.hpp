@@ -131,6 +131,15 @@ class ProtectedDrives {
     return count;
   }
 
+  [[nodiscard]] bool report(const Diagnosis& found, Frame& into) {
+    Record record{};
+    const std::uint16_t id = data_id_of(MessageKind::kDiagnosis, kControllerNode);
+    if (encode(found, diagnosis_counter_, id, record) != Status::kOk) return false;
+    ++diagnosis_counter_;
+    into = frame_of(MessageKind::kDiagnosis, kControllerNode, record);
+    return true;
+  }
+
   [[nodiscard]] Microseconds drive_max_age_us() const { return drive_config_.max_age_us; }
 
   [[nodiscard]] bool stop_seen() const { return stop_seen_; }
@@ -175,6 +184,7 @@ class ProtectedDrives {
       }
       case MessageKind::kTorqueCommand:
       case MessageKind::kHeartbeat:
+      case MessageKind::kDiagnosis:
         break;
     }
     return Status::kUnknownId;
@@ -187,6 +197,7 @@ class ProtectedDrives {
   Inbox<DriveStatus, Joints> drives_;
   PerJoint<static_cast<int>(Joints), std::uint8_t> torque_counters_{};
   std::uint8_t heartbeat_counter_ = 0;
+  std::uint8_t diagnosis_counter_ = 0;
   bool stop_seen_ = false;
 };
 
@@ -235,7 +246,7 @@ struct Protected {
     return frames[0];
   }
 
-  // Stops, readings, statuses; torque commands and heartbeats.
+  // Stops, readings, statuses; torque commands, heartbeats and diagnoses.
   [[nodiscard]] static std::size_t from_drives(const DriveValues& /*values*/,
                                                std::span<IdFilter> into) {
     into[0] = {.id = 0x020, .mask = 0x7E0};
@@ -246,7 +257,7 @@ struct Protected {
   [[nodiscard]] static std::size_t from_controller(const DriveValues& /*values*/,
                                                    std::span<IdFilter> into) {
     into[0] = {.id = 0x100, .mask = 0x7C0};
-    into[1] = {.id = 0x700, .mask = 0x7E0};
+    into[1] = {.id = 0x700, .mask = 0x7C0};
     return 2;
   }
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <offnominal/controller/fault.hpp>
+#include <offnominal/controller/sample_taker.hpp>
+#include <offnominal/controller/takeover.hpp>
+#include <offnominal/hal/messages.hpp>
+#include <offnominal/monitor.hpp>
+
+// All that a joint controller's tick changes.
+
+namespace offnominal::controller {
+
+using hal::ControllerState;
+
+// Plain data, ready to be logged.
+template <int N, int L, typename Scalar, typename Memory = WithoutMemory,
+          typename Space = AccelerationSpace>
+struct ControllerData : SampleData<N, Scalar>, TakeoverData<N, Scalar> {
+  ControllerState state = ControllerState::kInit;
+  Fault fault = Fault::kNone;
+  std::uint64_t ticks = 0;           // since the start
+  std::uint64_t run_ticks = 0;       // since time began
+  std::uint32_t overruns = 0;        // ticks that began late, ever
+  std::uint32_t missed_samples = 0;  // ticks without a fresh reading of every joint, ever
+  std::uint32_t refused_frames = 0;  // that came with something wrong in them, ever
+  std::uint32_t unsent_frames = 0;   // that the bus did not take, ever
+  std::uint32_t late_ticks = 0;      // whole periods that this tick began too late
+  std::uint16_t late_in_a_row = 0;   // ticks that did
+  bool ends = false;                 // let_go() was called
+  PerJoint<N, hal::TorqueCommand> commands{};
+  MonitorState<N, L, Scalar, Memory, Space> monitor;
+  MonitorOutput<N, Scalar, Space> output;
+};
+
+}  // namespace offnominal::controller

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <offnominal/hal/messages.hpp>
+#include <offnominal/monitor.hpp>
+
+namespace offnominal::controller {
+
+// What the bus is told of a tick's output. judges: the monitor has had that tick; otherwise it is
+// what was latched before, alone.
+template <int N, typename Scalar>
+[[nodiscard]] hal::Diagnosis diagnosis_of(const MonitorOutput<N, Scalar, TorqueSpace>& output,
+                                          bool judges) {
+  hal::Diagnosis diagnosis;
+  const JointDetectors<N, Scalar>& detector = output.detector;
+  if (detector.latched) {
+    diagnosis.first_joint = static_cast<std::uint8_t>(detector.first_joint + 1);
+  }
+  if (!judges) return diagnosis;
+  diagnosis.level = detector.level;
+  Eigen::Index worst = 0;
+  for (Eigen::Index i = 1; i < output.error.size(); ++i) {
+    const Scalar size = Eigen::numext::abs(output.error[i]) * output.thresholds[worst];
+    if (size > Eigen::numext::abs(output.error[worst]) * output.thresholds[i]) worst = i;
+  }
+  diagnosis.worst_joint = static_cast<std::uint8_t>(worst + 1);
+  const Scalar error = Eigen::numext::abs(output.error[worst]);
+  const Scalar threshold = output.thresholds[worst];
+  constexpr auto kMost = Scalar(1e6);  // more than a frame says
+  if (error > 0) {
+    diagnosis.error_to_threshold =
+        static_cast<float>(threshold > 0 ? std::min(error / threshold, kMost) : kMost);
+  }
+  return diagnosis;
+}
+
+}  // namespace offnominal::controller

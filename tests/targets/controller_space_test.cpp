@@ -1,0 +1,183 @@
+// The joint controller in both spaces of its monitor, and what it tells the bus of joints.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <offnominal/controller/diagnosis_of.hpp>
+
+#include "joint_on_desk.hpp"
+#include "scripted_joints.hpp"
+
+namespace offnominal::test {
+namespace {
+
+using controller::Fault;
+using hal::ControllerState;
+using hal::DriveMode;
+
+// A bound that the torques of these tests exceed: 1 m/s^2, or what that is of each joint.
+template <typename Space>
+typename ScriptedJointsIn<Space>::Config watchful() {
+  auto config = ScriptedJointsIn<Space>::default_config();
+  if constexpr (std::is_same_v<Space, TorqueSpace>) {
+    config.monitor.bound.joints[0].value[0] = 5;
+    config.monitor.bound.joints[1].value[0] = 3;
+  } else {
+    config.monitor.bound.offset = 1;
+  }
+  return config;
+}
+
+// The drive says that it gives so much, and its joint does not move.
+template <typename Arm>
+void give_in_vain(Arm& arm, std::size_t joint, float torque_n) {
+  arm.follows[joint] = false;
+  arm.drives.joints[joint].status = {DriveMode::kTorque, 0, torque_n};
+}
+
+template <typename Space>
+class ControllerInSpace : public testing::Test {};
+using BothSpaces = testing::Types<AccelerationSpace, TorqueSpace>;
+TYPED_TEST_SUITE(ControllerInSpace, BothSpaces);
+
+TYPED_TEST(ControllerInSpace, GivenAHealthyArmThenNothingIsDetected) {
+  ScriptedJointsIn<TypeParam> arm(watchful<TypeParam>());
+  ASSERT_TRUE(arm.start());
+  arm.run(1000);
+  EXPECT_EQ(arm.state(), ControllerState::kArmed);
+  EXPECT_FALSE(arm.data->output.detector.latched);
+  EXPECT_EQ(arm.data->output.psi_hat.norm(), 0);
+}
+
+TYPED_TEST(ControllerInSpace, GivenAFaultOfAJointThenItIsLatchedAndStopsWhereItShall) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    for (const bool stops : {false, true}) {
+      auto config = watchful<TypeParam>();
+      config.stop_at_detection = stops;
+      ScriptedJointsIn<TypeParam> arm(config);
+      ASSERT_TRUE(arm.start());
+      arm.run(20);
+      give_in_vain(arm, joint, 9);
+      arm.run(200);
+      EXPECT_TRUE(arm.data->output.detector.latched) << joint;
+      EXPECT_EQ(arm.fault(), stops ? Fault::kDetected : Fault::kNone) << joint;
+    }
+  }
+}
+
+TYPED_TEST(ControllerInSpace, GivenAPushThenCompensationTakesItAway) {
+  constexpr double kPush = 30;
+  double way[2] = {0, 0};
+  for (const bool acts : {false, true}) {
+    auto config = JointOnDeskIn<TypeParam>::config();
+    if (acts) config.monitor.max_compensation.fill(100);
+    JointOnDeskIn<TypeParam> joint(config);
+    ASSERT_EQ(joint.start(), Fault::kNone);
+    joint.ticks(1500);
+    ASSERT_FALSE(joint.data->output.detector.latched);
+    joint.push_nm = kPush;
+    joint.ticks(4000);
+    EXPECT_TRUE(joint.data->output.detector.latched);
+    way[acts ? 1 : 0] = std::abs(joint.q);
+    const auto given = static_cast<double>(joint.data->output.compensation.torque[0]);
+    // What is beyond the threshold, 10 N m, is learnt.
+    EXPECT_NEAR(given, acts ? -(kPush - 10) : 0, 3);
+  }
+  EXPECT_LT(way[1], 0.5 * way[0]);
+}
+
+using ByJoint = ScriptedJointsIn<TorqueSpace>;
+
+TEST(ControllerInTorqueSpace, SaysWhichJointWasFirst) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    ByJoint arm(watchful<TorqueSpace>());
+    ASSERT_TRUE(arm.start());
+    arm.run(20);
+    give_in_vain(arm, joint, 9);
+    arm.run(200);
+    const auto& detector = arm.data->output.detector;
+    ASSERT_TRUE(detector.latched);
+    EXPECT_EQ(detector.first_joint, joint);
+    EXPECT_TRUE(detector.joints[joint].latched);
+    EXPECT_FALSE(detector.joints[1 - joint].latched);
+    EXPECT_NEAR(std::abs(arm.data->output.error[static_cast<Eigen::Index>(joint)]), 9, 1.5);
+  }
+}
+
+// Between two heartbeats, and in the tick of the detection.
+TEST(ControllerInTorqueSpace, TellsTheBusWhichJointIsOffNominal) {
+  ByJoint arm(watchful<TorqueSpace>());
+  ASSERT_TRUE(arm.start());
+  arm.run(100);
+  const std::size_t before = arm.drives.reports.size();
+  EXPECT_EQ(before, (arm.data->ticks + 5) / 10);
+  EXPECT_EQ(arm.drives.reports.back().first_joint, 0);
+  EXPECT_FALSE(arm.drives.reports.back().level);
+  give_in_vain(arm, 1, 9);
+  while (!arm.data->output.detector.latched) arm.tick();
+  const hal::Diagnosis at_once = arm.drives.reports.back();
+  EXPECT_EQ(arm.bus.sent.back().frame.id, ByJoint::Drives::kReportId);
+  EXPECT_TRUE(at_once.level);
+  EXPECT_EQ(at_once.first_joint, 2);
+  EXPECT_EQ(at_once.worst_joint, 2);
+  EXPECT_GT(at_once.error_to_threshold, 1);
+  EXPECT_LT(at_once.error_to_threshold, 1.2F);
+  arm.drives.reports.clear();
+  arm.run(100);
+  EXPECT_EQ(arm.drives.reports.size(), 10U) << "each crossing is news once";
+  EXPECT_GT(arm.drives.reports.back().error_to_threshold, 2);
+}
+
+TEST(ControllerInTorqueSpace, TellsAfterItHasStoppedWhoWasFirstAndNoMore) {
+  auto config = watchful<TorqueSpace>();
+  config.stop_at_detection = true;
+  ByJoint arm(config);
+  ASSERT_TRUE(arm.start());
+  arm.run(20);
+  give_in_vain(arm, 0, 9);
+  arm.run(200);
+  ASSERT_EQ(arm.fault(), Fault::kDetected);
+  const hal::Diagnosis last = arm.drives.reports.back();
+  EXPECT_EQ(last.first_joint, 1);
+  EXPECT_EQ(last.worst_joint, 0);
+  EXPECT_FALSE(last.level);
+  EXPECT_EQ(last.error_to_threshold, 0);
+  // Another run is another watch.
+  ASSERT_TRUE(arm.clear_fault());
+  arm.follows[0] = true;
+  arm.tick();
+  ASSERT_TRUE(arm.arm());
+  arm.run(20);
+  EXPECT_EQ(arm.drives.reports.back().first_joint, 0);
+}
+
+TEST(ControllerInAccelerationSpace, TellsTheBusNothingOfJoints) {
+  ScriptedJoints arm(watchful<AccelerationSpace>());
+  ASSERT_TRUE(arm.start());
+  give_in_vain(arm, 0, 9);
+  arm.run(200);
+  ASSERT_TRUE(arm.data->output.detector.latched);
+  EXPECT_TRUE(arm.drives.reports.empty());
+}
+
+TEST(DiagnosisOf, NamesTheJointThatIsNearestToItsThreshold) {
+  MonitorOutput<3, float, TorqueSpace> output;
+  output.error = {1, -3, 2};
+  output.thresholds = {2, 4, 8};
+  hal::Diagnosis found = controller::diagnosis_of(output, true);
+  EXPECT_EQ(found.worst_joint, 2);
+  EXPECT_EQ(found.error_to_threshold, 0.75F);
+  EXPECT_EQ(found.first_joint, 0);
+  output.detector.latched = true;
+  output.detector.first_joint = 2;
+  EXPECT_EQ(controller::diagnosis_of(output, true).first_joint, 3);
+  // Thresholds begin at 0.
+  output.thresholds = {0, 0, 0};
+  EXPECT_GT(controller::diagnosis_of(output, true).error_to_threshold, 1e5F);
+  output.error = {0, 0, 0};
+  found = controller::diagnosis_of(output, true);
+  EXPECT_EQ(found.error_to_threshold, 0);
+  EXPECT_EQ(found.worst_joint, 1);
+}
+
+}  // namespace
+}  // namespace offnominal::test
