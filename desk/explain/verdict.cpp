@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/amount.hpp"
 #include "compare/inverse_model.hpp"
 #include "explain/any_shape.hpp"
 #include "explain/change_words.hpp"
@@ -130,8 +131,9 @@ std::string words_of_times(const std::vector<LoudSpan>& when) {
 }
 
 std::string words_of(const Remains& left, const std::string& unit) {
-  std::string words = fmt::format("{:.3g} {}, {:.2g} % of the torque and {:.1f} times the noise",
-                                  left.rms, unit, 100 * left.share_of_torque, left.times_noise);
+  std::string words =
+      fmt::format("{:.3g} {}, {} % of the torque and {:.1f} times the noise", left.rms, unit,
+                  significant(100 * left.share_of_torque, 2), left.times_noise);
   if (left.follows.empty()) return words + ", follows nothing that was looked at";
   if (left.follows != "time") {
     return words + fmt::format(", follows its {} by {:.0f} %", left.follows, 100 * left.share);
@@ -155,6 +157,10 @@ std::string words_of(const OverVariable& shape) {
       100 * std::max(0.0, shape.share));
 }
 
+std::string words_of_place(const EffectAt& one) {
+  return fmt::format("{} on {}", one.name(), at_joint(one.joint));
+}
+
 void advise_on_classes(Explanation& e) {
   for (const auto& same : e.ambiguous) {
     std::vector<std::string> all;
@@ -164,8 +170,8 @@ void advise_on_classes(Explanation& e) {
     e.advice.push_back(fmt::format(
         "to tell {} from {}: {}; `offnominal motion --robot {} --separate {} -o motion.csv` "
         "writes such a motion",
-        same[0].name(), same[1].name(), info_of(same[0].kind)->motion_hint, e.robot_file,
-        fmt::join(all, ",")));
+        words_of_place(same[0]), words_of_place(same[1]), info_of(same[0].kind)->motion_hint,
+        e.robot_file, fmt::join(all, ",")));
   }
 }
 
@@ -173,7 +179,7 @@ void judge_ambiguous(Explanation& e) {
   e.verdict = Verdict::kAmbiguous;
   std::vector<std::string> possible;
   for (const EffectAt& one : e.ambiguous[0]) {
-    possible.push_back(fmt::format("{} on {}", one.name(), at_joint(one.joint)));
+    possible.push_back(words_of_place(one));
   }
   std::vector<std::string> sure;
   for (const Finding& finding : e.found) {
@@ -315,10 +321,14 @@ std::string title_of(const Finding& finding) {
 
 namespace {
 
-std::vector<std::string> names_of(const std::vector<EffectAt>& effects) {
+// As a joint's own answer names them: those of other joints with their number.
+std::vector<std::string> names_of(const std::vector<EffectAt>& effects, Eigen::Index joint) {
   std::vector<std::string> names;
-  std::transform(effects.begin(), effects.end(), std::back_inserter(names),
-                 [](const EffectAt& one) { return std::string(one.name()); });
+  std::transform(
+      effects.begin(), effects.end(), std::back_inserter(names), [&](const EffectAt& one) {
+        return one.joint == joint ? std::string(one.name())
+                                  : fmt::format("{} of {}", one.name(), at_joint(one.joint));
+      });
   return names;
 }
 
@@ -327,8 +337,9 @@ std::string words_of_gain(const JointErrors& errors) {
   if (!(errors.rms_torque > 0)) return "";
   const double before = 100 * errors.rms_before / errors.rms_torque;
   const double after = 100 * errors.rms_after / errors.rms_torque;
-  return fmt::format(" The error falls from {:.3g} to {:.3g} {}, {:.2g} to {:.2g} % of the torque.",
-                     errors.rms_before, errors.rms_after, errors.unit, before, after);
+  return fmt::format(" The error falls from {:.3g} to {:.3g} {}, {} to {} % of the torque.",
+                     errors.rms_before, errors.rms_after, errors.unit, significant(before, 2),
+                     significant(after, 2));
 }
 
 JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
@@ -362,10 +373,11 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
     answer.verdict = !answer.ambiguous.empty() ? Verdict::kAmbiguous
                      : known                   ? Verdict::kParameterShift
                                                : Verdict::kFound;
-    if (!sure.empty()) answer.words = fmt::format("{}.", fmt::join(names_of(sure), ", "));
+    if (!sure.empty())
+      answer.words = fmt::format("{}.", fmt::join(names_of(sure, errors.joint), ", "));
     for (const auto& same : answer.ambiguous) {
       answer.words += fmt::format("{}{} cannot be told apart.", answer.words.empty() ? "" : " ",
-                                  fmt::join(names_of(same), " or "));
+                                  fmt::join(names_of(same, errors.joint), " or "));
     }
     answer.words += words_of_gain(errors);
   } else if (unsure) {
