@@ -138,7 +138,7 @@ class Proposer {
     if (map.position.empty()) look_.missing.push_back("positions, " + each + told);
     if (map.torque.empty()) {
       look_.missing.push_back("torques or currents, " + each + told);
-    } else if (map.torque.size() != map.position.size()) {
+    } else if (!map.position.empty() && map.torque.size() != map.position.size()) {
       look_.missing.push_back(
           fmt::format("{} positions and {} torques", map.position.size(), map.torque.size()));
     }

@@ -57,7 +57,7 @@ std::string lines_of(const char* mark, const std::vector<std::string>& sentences
 // What the robot file's own channels read.
 std::string by_robot_text(const Look& look) {
   if (look.by_robot.empty()) return {};
-  const TextTable table({{"joint", -16},
+  const TextTable table({{"joint", -20},
                          {"quantity", -13},
                          {"unit", -8},
                          {"lowest", 12},
