@@ -40,8 +40,10 @@ void run(const LookOptions& options, const std::string& command_line) {
 void set_up_look(CLI::App& verb, ExitCode& /*exit_code*/) {
   const auto options = std::make_shared<LookOptions>();
   verb.add_option("RECORDING", options->recording, "Recording, " + log_format_names())->required();
-  verb.add_option("--robot", options->robot,
-                  "Robot file, for the number of joints and their limits");
+  verb.add_option(
+      "--robot", options->robot,
+      "Robot file: its [channels] are shown as they read the recording; without them, for the "
+      "number of joints, their names and their limits");
   verb.add_option("--period", options->period_s,
                   "Time between two samples, s, where no column has it")
       ->check(above_zero());
@@ -50,7 +52,9 @@ void set_up_look(CLI::App& verb, ExitCode& /*exit_code*/) {
   verb.footer(
       "Says what was understood of every column: unit, range, step, what rests and what stays at "
       "an end; and prints the [channels] that would read it, to be pasted into a robot file. What "
-      "is taken for what follows from the columns' names alone.");
+      "is taken for what follows from the columns' names; where there is no header, from the "
+      "numbers. With a robot file that has [channels] it shows what these read. FILE+FILE are two "
+      "files of one recording.");
   verb.callback([&verb, options] { run(*options, command_line_of(verb)); });
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -61,6 +62,21 @@ DhConvention settled(const std::filesystem::path& path, std::optional<DhConventi
          "standard where about z of frame i-1");
 }
 
+// Many tables write a, alpha, d, theta, and do not say in what.
+std::string mend_name(const std::string& name, const std::vector<std::string>& known) {
+  std::string small = name;
+  std::transform(small.begin(), small.end(), small.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (small == "a" || small == "d" || small == "r") {
+    return fmt::format("name it {}, in metres", small == "d" ? "d_m" : "a_m");
+  }
+  if (small == "alpha" || small == "theta") {
+    return fmt::format("name it {0}_deg where it is in degrees, {0}_rad where in radians", small);
+  }
+  const std::string meant = nearest(name, known);
+  return meant.empty() ? "remove it" : fmt::format("name it {}", meant);
+}
+
 DhRow row_of(const TomlTable& table, std::size_t index) {
   DhRow row;
   row.name = table.has("name") ? table.text("name") : fmt::format("joint{}", index + 1);
@@ -109,9 +125,8 @@ DhTable read_csv_table(const std::filesystem::path& path, std::optional<DhConven
   for (const std::string& name : read.names) {
     // A count of the joints, as tables have it.
     if (read.columns.contains(name) || name == "joint") continue;
-    const std::string meant = nearest(name, known);
     refuse(path, "column " + name, "a column that is none of a DH table", list_of(known),
-           meant.empty() ? "remove it" : fmt::format("name it {}", meant));
+           mend_name(name, known));
   }
   const auto has = [&](const std::string& name) { return read.columns.contains(name); };
   for (const char* name : {"a_m", "d_m"}) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "common/error.hpp"
@@ -11,6 +13,7 @@
 #include "common/number.hpp"
 #include "robot/effect_text.hpp"
 #include "robot/geometry.hpp"
+#include "robot/transmission.hpp"
 
 namespace offnominal::desk::exchange {
 namespace {
@@ -61,10 +64,7 @@ class Exporter {
 
  private:
   void take(const RobotEffect& effect) {
-    if (effect.of_motor) {
-      result_.not_carried.push_back(words_of(effect, place_of(effect)));
-      return;
-    }
+    if (effect.of_motor) return take_of_motor(effect);
     ExportedJoint& joint = joints_[effect.joint];
     const double first = effect.parameters[0];
     switch (effect.kind) {
@@ -95,6 +95,53 @@ class Exporter {
         break;
     }
     result_.not_carried.push_back(words_of(effect, named(joint)));
+  }
+
+  // The joint that a motor alone moves, and by how much it turns; none where motors are shared.
+  struct Gear {
+    std::size_t joint = 0;
+    double ratio = 1;
+  };
+  std::optional<Gear> gear_of(std::size_t motor) const {
+    if (!robot_.transmission) return Gear{motor, 1};
+    const Eigen::MatrixXd per_joint = motor_per_joint(*robot_.transmission);
+    const auto row = static_cast<Eigen::Index>(motor);
+    Eigen::Index joint = 0;
+    const double ratio = per_joint.row(row).cwiseAbs().maxCoeff(&joint);
+    if ((per_joint.row(row).array() != 0).count() != 1 ||
+        (per_joint.col(joint).array() != 0).count() != 1) {
+      return std::nullopt;
+    }
+    return Gear{static_cast<std::size_t>(joint), ratio};
+  }
+
+  // What acts on a motor's shaft, as it is at the joint behind the gear.
+  void take_of_motor(const RobotEffect& effect) {
+    const std::string words = words_of(effect, place_of(effect));
+    const auto gear = gear_of(effect.joint);
+    if (!gear) {
+      result_.not_carried.push_back(words + ": joints share the motors it moves with");
+      return;
+    }
+    ExportedJoint& joint = joints_[gear->joint];
+    const double first = effect.parameters[0];
+    const double squared = gear->ratio * gear->ratio;
+    const auto at_joint = [&](double& value, double added, const char* how) {
+      value += added;
+      result_.changed.push_back(fmt::format(
+          "{}: {} at {}, {} times the ratio{}", words, shortest(added), named(joint), how,
+          effect.kind == EffectKind::kCoulombFriction ? "; it changes its sign at once"
+                                                      : " squared"));
+    };
+    if (effect.kind == EffectKind::kViscousFriction) {
+      at_joint(joint.damping, squared * first, "damping");
+    } else if (effect.kind == EffectKind::kCoulombFriction) {
+      at_joint(joint.friction, gear->ratio * first, "dry friction");
+    } else if (effect.kind == EffectKind::kRotorInertia && format_.has_armature) {
+      at_joint(joint.armature, squared * first, "armature");
+    } else {
+      result_.not_carried.push_back(words);
+    }
   }
 
   void changed(const RobotEffect& effect, const std::string& how) {
@@ -146,6 +193,15 @@ class Exporter {
 std::vector<ExportedJoint> exported_joints(const RobotDescription& robot,
                                            const FormatTraits& format, ExportedRobot& result) {
   return Exporter(robot, format, result).run();
+}
+
+Eigen::Matrix3d loadable_inertia(const RigidBody& body) {
+  const Eigen::Vector3d moments =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(body.inertia_kg_m2, Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  const double least = std::max(1e-12, 1e-9 * moments[2]);
+  if (moments[0] >= least) return body.inertia_kg_m2;
+  return body.inertia_kg_m2 + least * Eigen::Matrix3d::Identity();
 }
 
 std::string numbers(std::span<const double> values) {

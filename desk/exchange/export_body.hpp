@@ -37,6 +37,10 @@ struct FormatTraits {
                                                          const FormatTraits& format,
                                                          ExportedRobot& result);
 
+/// The tensor; thin and small bodies, of which simulators take none, get moments that no torque
+/// shows: 1e-12 kg m^2, or 1e-9 of the largest.
+[[nodiscard]] Eigen::Matrix3d loadable_inertia(const RigidBody& body);
+
 /// Numbers between blanks, as many digits each as it takes to read the same ones back.
 [[nodiscard]] std::string numbers(std::span<const double> values);
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "common/error.hpp"
@@ -72,14 +71,8 @@ class MjcfWriter {
     write_shape(index);
   }
 
-  // MuJoCo takes no moment of inertia of zero: thin and small bodies get one that no torque shows.
   void write_inertial(const RigidBody& body) {
-    Eigen::Matrix3d tensor = body.inertia_kg_m2;
-    const Eigen::Vector3d moments =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly)
-            .eigenvalues();
-    const double least = std::max(1e-12, 1e-9 * moments[2]);
-    if (moments[0] < least) tensor += least * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d tensor = loadable_inertia(body);
     out_.OpenElement("inertial");
     push(out_, "pos", std::span(body.centre_m.data(), 3));
     push(out_, "mass", body.mass_kg);

@@ -34,7 +34,10 @@ class UrdfWriter {
   ExportedRobot write(const std::string& robot_file) {
     joints_ = exported_joints(robot_, {.name = "URDF"}, result_);
     const bool tilted = look_at_gravity();
-    for (std::size_t i = 0; i < joints_.size(); ++i) look_at_limits(i);
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      look_at_limits(i);
+      look_at_inertia(i);
+    }
     out_.PushHeader(false, true);
     const std::string comment = head_comment(result_, "export-urdf", robot_file);
     out_.PushComment(comment.c_str());
@@ -83,6 +86,17 @@ class UrdfWriter {
       result_.changed.push_back(fmt::format(
           "limits of joint `{}` that are not known stand as 0: URDF asks for numbers", name));
     }
+  }
+
+  void look_at_inertia(std::size_t index) {
+    RigidBody& body = joints_[index].body;
+    const Eigen::Matrix3d tensor = loadable_inertia(body);
+    if (tensor == body.inertia_kg_m2) return;
+    result_.changed.push_back(
+        fmt::format("the inertia of the link of joint `{}`, a point mass or a rod: {} kg m^2 are "
+                    "added, since simulators take none of zero",
+                    joints_[index].name, shortest((tensor - body.inertia_kg_m2)(0, 0))));
+    body.inertia_kg_m2 = tensor;
   }
 
   static bool is_continuous(const Joint<double>& joint) {

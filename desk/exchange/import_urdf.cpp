@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <offnominal/model/effects/friction.hpp>
 #include <utility>
 
@@ -351,6 +352,7 @@ class Importer {
       if (limits.lower < limits.upper) {
         joint.min_position = limits.lower;
         joint.max_position = limits.upper;
+        note_degrees(from);
       } else if (limits.lower == 0 && limits.upper == 0) {
         unknown.emplace_back("position");
       } else {
@@ -376,6 +378,20 @@ class Importer {
          fmt::format("no limit of {} is known of joint `{}`: the URDF has 0", choice_of(unknown),
                      from.name),
          !unknown.empty());
+  }
+
+  // A joint with stops seldom turns twice: beyond that, degrees are the likelier unit.
+  void note_degrees(const urdf::Joint& from) {
+    constexpr double kTwoTurns = 4 * std::numbers::pi;
+    const urdf::JointLimits& limits = *from.limits;
+    const double most = std::max(std::fabs(limits.lower), std::fabs(limits.upper));
+    note(Kind::kAssumed, line_of(from),
+         fmt::format("the range from {} to {} of joint `{}` is in rad, as a URDF has it: {:.3g} "
+                     "turns. Where it is meant in degrees, write {:.6g} and {:.6g}",
+                     shortest(limits.lower), shortest(limits.upper), from.name,
+                     most / (2 * std::numbers::pi), limits.lower * std::numbers::pi / 180,
+                     limits.upper * std::numbers::pi / 180),
+         from.type == urdf::Joint::REVOLUTE && most > kTwoTurns);
   }
 
   void add_friction(const urdf::Joint& from, std::uint8_t joint) {

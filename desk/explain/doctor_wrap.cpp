@@ -170,10 +170,15 @@ void mend_wrapped(Log& log, const RobotDescription& robot, std::vector<DataFault
         "the position of {} is folded into {}: it jumps {} time{}, first at t = {:.6g} s, and goes "
         "on as it came",
         joint_words(joint), range.words, found->count, found->count == 1 ? "" : "s", *fault.at_s);
-    fault.mend = fmt::format(
+    const std::string by_hand = fmt::format(
         "log positions that count turns, or unfold the column before: add {:.6g} after each jump "
         "down and take it off after each jump up",
         fault.size);
+    fault.mend = fault.size == kTurnInDegrees
+                     ? "say unit = \"deg\" in its channel, a turn is then unfolded as it is read; "
+                       "where it is not in degrees, " +
+                           by_hand
+                     : by_hand;
     faults.push_back(std::move(fault));
     log.q.col(joint) = q;
     derived = derived || log.dq_derived[static_cast<std::size_t>(joint)];

@@ -486,8 +486,10 @@ class Adder {
         place(fitted);
         for (const Lookalike& other : lookalikes(regression, last.terms, i, c)) {
           result_.notes.push_back(fmt::format(
-              "{} looks the same in this recording as {}.{}, which the model does not have",
-              desk::name_of(result_.robot, fitted), other.effect->name(), other.parameter));
+              "{} looks the same in this recording as {}.{}{}, which the model does not have",
+              desk::name_of(result_.robot, fitted), other.effect->name(), other.parameter,
+              last.terms[i].effect->of_motor() && !other.effect->of_motor() ? " at the joint"
+                                                                            : ""));
         }
       }
     }

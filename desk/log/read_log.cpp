@@ -20,6 +20,7 @@
 #include "log/joined_files.hpp"
 #include "log/joint_side.hpp"
 #include "log/log_format.hpp"
+#include "log/log_of.hpp"
 #include "log/recording_file.hpp"
 #include "log/sampling.hpp"
 #include "log/seen_by_sensor.hpp"
@@ -368,6 +369,12 @@ Log read_log(const std::filesystem::path& path, int joint_count,
              const std::optional<ChannelMap>& channels, std::optional<double> period_s) {
   if (channels) check_sides(*channels, std::nullopt, shown_name(path));
   return read(path, joint_count, channels, period_s, nullptr);
+}
+
+Log log_of(TimedColumns recording, const RobotDescription& robot, const ChannelMap& channels) {
+  const TransmissionSettings* const transmission =
+      robot.transmission ? &*robot.transmission : nullptr;
+  return Assembler(std::move(recording), robot.joint_count(), transmission).with(channels);
 }
 
 Log read_log_or_hold_map(const std::filesystem::path& path, const RobotDescription& robot,

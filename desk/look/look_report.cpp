@@ -8,7 +8,7 @@
 
 #include "common/number.hpp"
 #include "common/text_table.hpp"
-#include "robot/channel_text.hpp"
+#include "log/read_log.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -24,6 +24,11 @@ std::string step_words(const ColumnFacts& facts) {
 }
 
 std::string role_words(const LookedColumn& column) { return name_of(column.role); }
+
+// Time does not rest, however long the recording is.
+double rests(const LookedColumn& column) {
+  return column.role == Role::kTime ? 0 : column.facts.resting_share;
+}
 
 std::string sampling_words(const Look& look) {
   if (!look.sampling) return "time: none";
@@ -49,29 +54,25 @@ std::string lines_of(const char* mark, const std::vector<std::string>& sentences
   return text;
 }
 
-std::string pasted_lines(const ChannelMap& map, const char* quantity) {
-  std::string text;
-  for (const std::string& line : channel_lines(map, quantity)) text += line + "\n";
+// What the robot file's own channels read.
+std::string by_robot_text(const Look& look) {
+  if (look.by_robot.empty()) return {};
+  const TextTable table({{"joint", -20},
+                         {"quantity", -13},
+                         {"unit", -8},
+                         {"lowest", 12},
+                         {"highest", 12},
+                         {"  from", -6}});
+  std::string text = "\nas the robot file's [channels] read it, at the joints:\n" + table.heading();
+  for (const ReadChannel& channel : look.by_robot) {
+    text +=
+        table.row(channel.joint, channel.quantity, channel.unit, fmt::format("{:.6g}", channel.low),
+                  fmt::format("{:.6g}", channel.high), "  " + channel.from);
+  }
   return text;
 }
 
 }  // namespace
-
-std::string channels_text(const Look& look) {
-  const ChannelMap& map = look.channels;
-  std::string text = "[channels]\n";
-  if (map.period_s > 0) {
-    text += "period_s = " + shortest_real(map.period_s) + "\n";
-  } else {
-    text += look.t_s ? pasted_lines(map, "time") : "period_s = ...\n";
-  }
-  text += map.position.empty() ? "position = [...]\n" : pasted_lines(map, "position");
-  const bool any_velocity = std::any_of(map.velocity.begin(), map.velocity.end(),
-                                        [](const auto& one) { return one.has_value(); });
-  if (any_velocity) text += pasted_lines(map, "velocity");
-  text += map.torque.empty() ? "torque = [...]\n" : pasted_lines(map, "torque");
-  return text + lines_of("# still to be said: ", look.missing);
-}
 
 std::string text_of(const Look& look) {
   const TextTable table({{"column", -24},
@@ -89,7 +90,7 @@ std::string text_of(const Look& look) {
     text += table.row(
         column.name, role_words(column), column.unit, fmt::format("{:.6g}", facts.low),
         fmt::format("{:.6g}", facts.high), facts.is_constant ? "never changes" : step_words(facts),
-        percent(facts.resting_share), percent(facts.held_at_high), percent(facts.held_at_low));
+        percent(rests(column)), percent(facts.held_at_high), percent(facts.held_at_low));
   }
   for (const LookedColumn& column : look.columns) {
     if (column.facts.not_finite == 0) continue;
@@ -98,7 +99,10 @@ std::string text_of(const Look& look) {
   }
   for (const std::string& name : look.unread) text += name + ": no numbers\n";
   text += lines_of("note: ", look.remarks) + lines_of("note: ", look.notes);
-  return text + "\n" + channels_text(look);
+  text += by_robot_text(look);
+  if (look.by_robot.empty()) return text + "\n" + channels_text(look);
+  if (look.to_add.empty()) return text + "\nthe robot file's [channels] read it; nothing to add\n";
+  return text + "\nto add to the robot file's [channels]:\n" + lines_of("", look.to_add);
 }
 
 nlohmann::json to_json(const Look& look) {
@@ -118,7 +122,7 @@ nlohmann::json to_json(const Look& look) {
                                {"step", facts.step},
                                {"step_is_of_digits", facts.is_printed},
                                {"never_changes", facts.is_constant},
-                               {"resting_share", facts.resting_share},
+                               {"resting_share", rests(column)},
                                {"held_at_high", facts.held_at_high},
                                {"held_at_low", facts.held_at_low}});
   }
@@ -132,6 +136,17 @@ nlohmann::json to_json(const Look& look) {
                     {"jitter", look.sampling->jitter},
                     {"largest_gap_s", look.sampling->largest_gap_s},
                     {"largest_gap_at_s", look.sampling->largest_gap_at_s}};
+  }
+  if (!look.by_robot.empty()) {
+    for (const ReadChannel& channel : look.by_robot) {
+      json["read_by_robot"].push_back({{"joint", channel.joint},
+                                       {"quantity", channel.quantity},
+                                       {"unit", channel.unit},
+                                       {"from", channel.from},
+                                       {"low", channel.low},
+                                       {"high", channel.high}});
+    }
+    json["to_add"] = look.to_add;
   }
   json["remarks"] = look.remarks;
   json["notes"] = look.notes;
@@ -161,8 +176,7 @@ report::Page page_of(const Look& look, const std::string& command) {
     const ColumnFacts& facts = column.facts;
     table.rows.push_back({column.name, role_words(column), column.unit, facts.low, facts.high,
                           facts.step > 0 ? report::Cell(facts.step) : report::Cell(),
-                          100 * facts.resting_share, 100 * facts.held_at_high,
-                          100 * facts.held_at_low});
+                          100 * rests(column), 100 * facts.held_at_high, 100 * facts.held_at_low});
   }
   summary.blocks.emplace_back(std::move(table));
   for (const auto* sentences : {&look.remarks, &look.notes}) {

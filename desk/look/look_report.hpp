@@ -8,8 +8,9 @@
 
 namespace offnominal::desk {
 
-// The [channels] that a look proposes, ready to be pasted into a robot file; what it could not tell
-// stands in comments, and in a line that does not read until it is filled in.
+// The [channels] that a look proposes, or the robot file's own, ready to be pasted into a robot
+// file. It is always TOML; what could not be told stands in comments, and what lacks it is refused
+// until somebody says it.
 [[nodiscard]] std::string channels_text(const Look& look);
 
 // `command`: the words of the command line, which a page shows.

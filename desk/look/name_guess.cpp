@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
+#include <initializer_list>
 #include <string_view>
 #include <utility>
 
@@ -15,24 +15,6 @@ char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return small(c) >= 'a' && small(c) <= 'z'; }
 
-// Words and numbers of a name in small letters: "rec.actPos_mot(2,:)" has rec, act, pos, mot, 2.
-std::vector<std::string> words_of(const std::string& name) {
-  std::vector<std::string> words;
-  char before = ' ';
-  for (const char c : name) {
-    const bool is_capital = c >= 'A' && c <= 'Z';
-    const bool begins = is_digit(c) != is_digit(before) ||
-                        !(is_letter(before) || is_digit(before)) ||
-                        (is_capital && before >= 'a' && before <= 'z');
-    if (is_digit(c) || is_letter(c)) {
-      if (begins) words.emplace_back();
-      words.back() += small(c);
-    }
-    before = c;
-  }
-  return words;
-}
-
 using Words = std::vector<std::string>;
 
 bool any_of(const Words& words, std::initializer_list<std::string_view> wanted) {
@@ -41,35 +23,97 @@ bool any_of(const Words& words, std::initializer_list<std::string_view> wanted) 
   });
 }
 
+// Long ones also at the end of a word: "jointposition", "Motorstrom".
+bool any_ends(const Words& words, std::initializer_list<std::string_view> wanted) {
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+    return std::any_of(wanted.begin(), wanted.end(),
+                       [&](std::string_view ending) { return word.ends_with(ending); });
+  });
+}
+
+// What was asked for, and what is derived of it.
+bool is_other(const Words& words) {
+  return any_of(
+             words,
+             {"ref",         "reference", "des",  "desired",  "target",       "cmd",    "command",
+              "commanded",   "goal",      "set",  "setpoint", "error",        "err",    "temp",
+              "temperature", "ddq",       "qdd",  "acc",      "acceleration", "limit",  "max",
+              "min",         "ff",        "init", "mode",     "state",        "status", "enabled",
+              "flag",        "d1",        "d2"}) ||
+         std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return word.starts_with("soll"); });
+}
+
+bool says_velocity(const Words& words) {
+  return any_of(words,
+                {"dq", "qd", "qdot", "qp", "vel", "velocities", "speed", "omega", "rpm", "w"}) ||
+         any_ends(words, {"velocity", "geschwindigkeit", "drehzahl"});
+}
+bool says_position(const Words& words) {
+  return any_of(words, {"q", "pos", "positions", "angle", "angles", "theta", "phi", "encoder",
+                        "enc", "qm", "lage"}) ||
+         any_ends(words, {"position", "winkel"});
+}
+bool says_torque(const Words& words) {
+  return any_of(words, {"tau", "torques", "trq", "tq", "efforts", "force"}) ||
+         any_ends(words, {"torque", "effort", "moment"});
+}
+bool says_current(const Words& words) {
+  return any_of(words, {"currents", "cur", "iq", "i", "amp", "amps"}) ||
+         any_ends(words, {"current", "strom"});
+}
+
+// "torque current", the part of a motor's current that makes its torque.
+bool is_torque_current(const Words& words) {
+  const auto at = std::find(words.begin(), words.end(), "torque");
+  return at != words.end() && at + 1 != words.end() && *(at + 1) == "current";
+}
+
 Role role_of(const Words& words) {
-  if (any_of(words,
-             {"ref",       "reference",   "des", "desired",  "target", "cmd",          "command",
-              "commanded", "goal",        "set", "setpoint", "soll",   "error",        "err",
-              "temp",      "temperature", "ddq", "qdd",      "acc",    "acceleration", "limit",
-              "max",       "min",         "ff",  "init",     "mode",   "state",        "status",
-              "enabled",   "flag",        "d1",  "d2"})) {
-    return Role::kNone;
-  }
-  if (any_of(words, {"dq", "qd", "qdot", "qp", "vel", "velocity", "velocities", "speed", "omega",
-                     "rpm", "w"})) {
-    return Role::kVelocity;
-  }
-  if (any_of(words,
-             {"tau", "torque", "torques", "trq", "tq", "effort", "efforts", "moment", "force"})) {
-    return Role::kTorque;
-  }
-  if (any_of(words, {"current", "currents", "cur", "iq", "i", "amp", "amps"})) {
-    return Role::kCurrent;
-  }
-  if (any_of(words, {"q", "pos", "position", "positions", "angle", "angles", "theta", "phi",
-                     "encoder", "enc", "qm"})) {
-    return Role::kPosition;
-  }
+  if (is_other(words)) return Role::kNone;
+  if (says_velocity(words)) return Role::kVelocity;
+  if (is_torque_current(words)) return Role::kCurrent;
+  if (says_torque(words)) return Role::kTorque;
+  // "current position" is the one of now.
+  if (any_ends(words, {"position"})) return Role::kPosition;
+  if (says_current(words)) return Role::kCurrent;
+  if (says_position(words)) return Role::kPosition;
+  // A drive's signal in volts, as the EMPS benchmark calls it.
+  if (any_of(words, {"vir"})) return Role::kVoltage;
   if (any_of(words, {"t", "time", "timestamp", "stamp", "times", "zeit", "sec", "secs", "seconds",
-                     "secs", "nsec", "clock"})) {
+                     "nsec", "clock"})) {
     return Role::kTime;
   }
   return Role::kNone;
+}
+
+// Of a column that says nothing but its unit. Of time and of voltages there are too many.
+Role role_of_unit(const std::string& name) {
+  const SourceUnit* const unit = find_unit(name);
+  if (unit == nullptr) return Role::kNone;
+  switch (unit->dimension) {
+    case Dimension::kAngle:
+    case Dimension::kLength:
+      return Role::kPosition;
+    case Dimension::kAngularVelocity:
+    case Dimension::kVelocity:
+      return Role::kVelocity;
+    case Dimension::kTorque:
+    case Dimension::kForce:
+      return Role::kTorque;
+    case Dimension::kCurrent:
+      return Role::kCurrent;
+    default:
+      return Role::kNone;
+  }
+}
+
+std::string unit_in_brackets(const std::string& text) {
+  if (text.size() <= 2 || (text.back() != ']' && text.back() != ')')) return {};
+  const auto open = text.find_last_of("[(");
+  if (open == std::string::npos) return {};
+  const std::string inner = text.substr(open + 1, text.size() - open - 2);
+  return find_unit(inner) == nullptr ? std::string() : inner;
 }
 
 // A unit at the name's end: behind an underscore, or in brackets.
@@ -101,62 +145,13 @@ std::string unit_of(const std::string& name) {
       text.find_first_of("0123456789:", bracket) != std::string::npos) {
     text.erase(bracket);
   }
-  if (text.size() > 2 && (text.back() == ']' || text.back() == ')')) {
-    const auto open = text.find_last_of("[(");
-    if (open == std::string::npos) return {};
-    const std::string inner = text.substr(open + 1, text.size() - open - 2);
-    return find_unit(inner) == nullptr ? std::string() : inner;
-  }
+  if (text.size() > 2 && (text.back() == ']' || text.back() == ')')) return unit_in_brackets(text);
   while (!text.empty() && (is_digit(text.back()) || text.back() == '_')) text.pop_back();
   for (char& c : text) c = small(c);
   for (const auto& [ending, unit] : kEndings) {
     if (text.ends_with(ending)) return std::string(unit);
   }
   return {};
-}
-
-struct Family {
-  std::string name;
-  Role role = Role::kNone;
-  std::vector<std::pair<int, std::string>> columns;  // by the joint's number
-};
-
-std::vector<Family> families_of(const std::vector<std::string>& names) {
-  std::vector<Family> families;
-  for (const std::string& name : names) {
-    const NameGuess guess = guess_of(name);
-    if (guess.role == Role::kNone || guess.role == Role::kTime) continue;
-    auto at = std::find_if(families.begin(), families.end(),
-                           [&](const Family& family) { return family.name == guess.family; });
-    if (at == families.end()) {
-      families.push_back({guess.family, guess.role, {}});
-      at = families.end() - 1;
-    }
-    at->columns.emplace_back(guess.number, name);
-  }
-  for (Family& family : families) std::sort(family.columns.begin(), family.columns.end());
-  return families;
-}
-
-// What a name stands in: "rec." of "rec.pos(1,:)".
-std::string holder_of(const std::string& name) {
-  const auto dot = name.find_last_of('.');
-  return dot == std::string::npos ? std::string() : name.substr(0, dot + 1);
-}
-
-// As many joints as the most families of positions and torques have.
-std::size_t joints_of(const std::vector<Family>& families) {
-  std::map<std::size_t, int> votes;
-  for (const Family& family : families) {
-    if (family.role != Role::kVelocity) ++votes[family.columns.size()];
-  }
-  std::size_t best = 0;
-  for (const auto& [joints, count] : votes) {
-    if (joints <= static_cast<std::size_t>(kMaxJoints) && (best == 0 || count >= votes[best])) {
-      best = joints;
-    }
-  }
-  return best;
 }
 
 }  // namespace
@@ -173,19 +168,62 @@ const char* name_of(Role role) {
       return "torque";
     case Role::kCurrent:
       return "current";
+    case Role::kVoltage:
+      return "voltage";
     case Role::kNone:
       break;
   }
   return "";
 }
 
-NameGuess guess_of(const std::string& name) {
+std::vector<NameWord> words_in(const std::string& name) {
+  std::vector<NameWord> words;
+  char before = ' ';
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const char c = name[i];
+    const bool is_capital = c >= 'A' && c <= 'Z';
+    const bool begins = is_digit(c) != is_digit(before) ||
+                        !(is_letter(before) || is_digit(before)) ||
+                        (is_capital && before >= 'a' && before <= 'z');
+    if (is_digit(c) || is_letter(c)) {
+      if (begins) words.push_back({"", i, i});
+      words.back().text += small(c);
+      words.back().end = i + 1;
+    }
+    before = c;
+  }
+  return words;
+}
+
+bool says_quantity(const std::string& word) {
+  const Words one{word};
+  return says_velocity(one) || says_torque(one) || says_current(one) || says_position(one);
+}
+
+NameGuess guess_of(const std::string& name, const std::string& said_unit) {
   NameGuess guess;
-  guess.role = role_of(words_of(name));
-  guess.unit = unit_of(name);
+  Words words;
+  // The "min" of "[1/min]" is no least value.
+  const std::string in_brackets = unit_in_brackets(name);
+  const std::size_t said = in_brackets.empty() ? name.size() : name.find_last_of("[(");
+  for (const NameWord& word : words_in(name.substr(0, said))) words.push_back(word.text);
+  guess.role = role_of(words);
+  guess.unit = said_unit.empty() ? unit_of(name) : said_unit;
+  guess.of_motor = any_of(words, {"motor", "motors", "rotor"}) ||
+                   std::any_of(words.begin(), words.end(),
+                               [](const std::string& word) { return word.starts_with("motor"); });
+  if (guess.role == Role::kNone && !is_other(words)) {
+    guess.role = role_of_unit(said_unit.empty() ? in_brackets : said_unit);
+  }
+  // Whatever it is called, amperes are of a current.
+  if (const SourceUnit* unit = find_unit(guess.unit);
+      guess.role == Role::kTorque && unit != nullptr) {
+    if (unit->dimension == Dimension::kCurrent) guess.role = Role::kCurrent;
+    if (unit->dimension == Dimension::kVoltage) guess.role = Role::kVoltage;
+  }
   if (guess.role == Role::kNone) guess.unit.clear();
   // The last number is the joint's: "axis3_pos", "q[2]", "pos(4,:)".
-  std::size_t end = name.size();
+  std::size_t end = said;
   while (end > 0 && !is_digit(name[end - 1])) --end;
   std::size_t begin = end;
   while (begin > 0 && is_digit(name[begin - 1])) --begin;
@@ -193,47 +231,6 @@ NameGuess guess_of(const std::string& name) {
   guess.number = has_number ? std::stoi(name.substr(begin, end - begin)) : -1;
   guess.family = has_number ? name.substr(0, begin) + "#" + name.substr(end) : name;
   return guess;
-}
-
-Roles roles_of(const std::vector<std::string>& names, int joints) {
-  Roles roles;
-  const std::vector<Family> families = families_of(names);
-  const std::size_t wanted = joints > 0 ? static_cast<std::size_t>(joints) : joints_of(families);
-  std::string holder;
-  // The first; one that stands where the positions stand before any other.
-  const auto best_of = [&](Role role) {
-    const Family* best = nullptr;
-    for (const Family& family : families) {
-      if (family.role != role || family.columns.size() != wanted) continue;
-      if (best == nullptr ||
-          (holder_of(best->name) != holder && holder_of(family.name) == holder)) {
-        best = &family;
-      }
-    }
-    std::vector<std::string> columns;
-    if (best == nullptr) return columns;
-    for (const auto& [number, name] : best->columns) columns.push_back(name);
-    for (const Family& family : families) {
-      if (&family == best || family.role != role || family.columns.size() != wanted) continue;
-      roles.other_families.push_back(family.name);
-    }
-    return columns;
-  };
-  roles.position = best_of(Role::kPosition);
-  if (!roles.position.empty()) holder = holder_of(roles.position[0]);
-  roles.velocity = best_of(Role::kVelocity);
-  roles.torque = best_of(Role::kTorque);
-  if (roles.torque.empty()) {
-    roles.torque = best_of(Role::kCurrent);
-    roles.torque_is_current = !roles.torque.empty();
-  }
-  for (const std::string& name : names) {
-    if (guess_of(name).role != Role::kTime) continue;
-    if (!roles.time || (holder_of(*roles.time) != holder && holder_of(name) == holder)) {
-      roles.time = name;
-    }
-  }
-  return roles;
 }
 
 }  // namespace offnominal::desk

@@ -1,43 +1,43 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "log/named_columns.hpp"
-#include "robot/robot.hpp"
-
-// What the names of columns say of them. Nothing else does: two people call the same thing by other
-// names, and what is guessed here is proposed and never used by itself.
+// What the name of a column says of it. Two people call the same thing by other names, and what is
+// guessed here is proposed and never used by itself.
 
 namespace offnominal::desk {
 
-enum class Role : std::uint8_t { kNone, kTime, kPosition, kVelocity, kTorque, kCurrent };
+// kVoltage: a drive's signal in volts that a scale makes a torque of.
+enum class Role : std::uint8_t { kNone, kTime, kPosition, kVelocity, kTorque, kCurrent, kVoltage };
 
-// "time", "position", "velocity", "torque", "current"; "" for kNone.
+// "time", "position", "velocity", "torque", "current", "voltage"; "" for kNone.
 [[nodiscard]] const char* name_of(Role role);
+
+// A word or a number of a name, in small letters, and where it stands: "rec.actPos(2,:)" has rec,
+// act, pos, 2.
+struct NameWord {
+  std::string text;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+[[nodiscard]] std::vector<NameWord> words_in(const std::string& name);
+
+// Of a position, a velocity, a torque or a current.
+[[nodiscard]] bool says_quantity(const std::string& word);
 
 struct NameGuess {
   Role role = Role::kNone;
-  int number = -1;     // of the joint, as the name counts; -1: none
-  std::string family;  // the name without that number: columns of one quantity share it
-  std::string unit;    // "pos_deg", "t [ms]": as units.hpp has it; empty: none said
+  int number = -1;        // of the joint, as the name counts; -1: none
+  std::string family;     // the name without that number: columns of one quantity share it
+  std::string unit;       // "pos_deg", "t [ms]": as units.hpp has it; empty: none said
+  bool of_motor = false;  // it has the word
 };
 
-// Names of what was asked for (reference, desired, command) and of errors have no role.
-[[nodiscard]] NameGuess guess_of(const std::string& name);
-
-// Columns by role, by the families that have one for each of `joints` joints, or as many as most
-// have where that is 0; the first in the file's order of each role.
-struct Roles {
-  std::optional<std::string> time;
-  std::vector<std::string> position;
-  std::vector<std::string> velocity;
-  std::vector<std::string> torque;
-  bool torque_is_current = false;
-  std::vector<std::string> other_families;  // of the same roles, that would do as well
-};
-[[nodiscard]] Roles roles_of(const std::vector<std::string>& names, int joints);
+// Names of what was asked for (reference, desired, command) and of errors have no role. A unit, in
+// the name's brackets or said by the file, gives one to a name that says none.
+[[nodiscard]] NameGuess guess_of(const std::string& name, const std::string& said_unit = {});
 
 }  // namespace offnominal::desk

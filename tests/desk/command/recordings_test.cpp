@@ -63,6 +63,23 @@ class RecordingsOfVerbs : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+// What look proposes, pasted behind the robot file, is what it then says that this reads.
+TEST_F(RecordingsOfVerbs, AreLookedAtAsTheyComeAndReadAsProposed) {
+  EXPECT_THAT(run({"look", "-"}, path("a.csv")).out, HasSubstr("position = [{source = \"q1\"}"));
+  EXPECT_THAT(run({"look", path("a.csv") + "+" + path("b.csv")}).out,
+              HasSubstr("2 files joined on the samples of"));
+  const CommandResult seen = run({"look", path("a.csv"), "--json"});
+  ASSERT_EQ(seen.exit_code, 0) << seen.err;
+  const nlohmann::json json = nlohmann::json::parse(seen.out);
+  put(folder_ / "arm.toml",
+      test::content_of(folder_ / "arm.toml") + "\n" + json.at("channels").get<std::string>());
+  const CommandResult again = run({"look", path("a.csv")});
+  EXPECT_THAT(again.out, HasSubstr("as the robot file's [channels] read it, at the joints:"));
+  EXPECT_THAT(again.out, HasSubstr("nothing to add"));
+  EXPECT_THAT(run({"look", "-"}, path("b.csv")).out, HasSubstr("nothing to add"));
+  EXPECT_EQ(run({"compare", path("a.csv")}).exit_code, 0);
+}
+
 TEST_F(RecordingsOfVerbs, ComeThroughAPipeAsFromAFile) {
   const CommandResult file = run({"compare", path("a.csv"), "--json"});
   ASSERT_EQ(file.exit_code, 0) << file.err;

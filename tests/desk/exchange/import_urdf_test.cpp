@@ -97,6 +97,23 @@ TEST(ImportUrdf, TurnsAnInertiaIntoTheLinksFrame) {
   }
 }
 
+TEST(ImportUrdf, SaysThatARangeOfManyTurnsMayBeInDegrees) {
+  const auto notes_for = [](const std::string& type, const std::string& limits) {
+    return notes_of(import_urdf(R"(<robot name="r"><link name="ground"/>
+      <link name="arm"><inertial><mass value="1"/>
+        <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+      <joint name="pin" type=")" + type +
+                                    R"("><parent link="ground"/><child link="arm"/>
+        <limit )" + limits + R"( effort="1" velocity="1"/></joint></robot>)",
+                                "r.urdf"));
+  };
+  const auto degrees = HasSubstr("Where it is meant in degrees, write -2.96706 and 2.96706");
+  EXPECT_THAT(notes_for("revolute", "lower=\"-170\" upper=\"170\""), Contains(degrees));
+  const auto any = Contains(HasSubstr("in degrees"));
+  EXPECT_THAT(notes_for("revolute", "lower=\"-6.28\" upper=\"12.5\""), Not(any));
+  EXPECT_THAT(notes_for("prismatic", "lower=\"-170\" upper=\"170\""), Not(any));
+}
+
 TEST(ImportUrdf, KeepsLimitsAndTurnsDynamicsIntoEffects) {
   const desk::RobotDescription robot = imported_arm().robot;
   ASSERT_EQ(robot.joint_count(), 3);

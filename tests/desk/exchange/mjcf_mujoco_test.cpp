@@ -136,6 +136,79 @@ TEST(Mjcf, CarriesFrictionLossDampingArmatureAndLimits) {
   EXPECT_STREQ(mj_id2name(model.get(), mjOBJ_JOINT, 1), "slide");
 }
 
+void add_of_motor(RobotDescription& robot, EffectKind kind, int motor,
+                  std::array<double, kMaxEffectParameters> parameters) {
+  add(robot, kind, motor, parameters);
+  robot.effects.back().of_motor = true;
+}
+
+// By hand: an inertia or damping of the motor is ratio^2 times as large at the joint, its dry
+// friction |ratio| times.
+TEST(Mjcf, CarriesWhatIsAtAMotorThatMovesOneJointAlone) {
+  RobotDescription robot =
+      desk::exchange::import_urdf(sample_arm().text(), "arm.urdf", sample_arm().chain()).robot;
+  robot.effects.clear();
+  robot.transmission.emplace();
+  robot.transmission->ratio = {-50, 200, 1};
+  for (int motor = 0; motor < 2; ++motor) {
+    add_of_motor(robot, EffectKind::kRotorInertia, motor, {1e-4});
+    add_of_motor(robot, EffectKind::kViscousFriction, motor, {2e-4});
+    add_of_motor(robot, EffectKind::kCoulombFriction, motor, {0.01, 0.5});
+  }
+  add(robot, EffectKind::kRotorInertia, 0, {0.5});
+  add_of_motor(robot, EffectKind::kStribeckFriction, 2, {0.5, 0.1, 0.01});
+  const auto exported = export_mjcf(robot, "arm.toml");
+  const Model model = load(exported.text);
+  ASSERT_NE(model, nullptr);
+  EXPECT_NEAR(model->dof_armature[0], 0.25 + 0.5, 1e-12);
+  EXPECT_NEAR(model->dof_armature[1], 4, 1e-12);
+  EXPECT_NEAR(model->dof_damping[0], 0.5, 1e-12);
+  EXPECT_NEAR(model->dof_damping[1], 8, 1e-12);
+  EXPECT_NEAR(model->dof_frictionloss[0], 0.5, 1e-12);
+  EXPECT_NEAR(model->dof_frictionloss[1], 2, 1e-12);
+  using testing::Contains;
+  using testing::HasSubstr;
+  EXPECT_THAT(exported.changed, Contains(HasSubstr("rotor_inertia of motor 1")));
+  EXPECT_THAT(exported.not_carried, Contains(HasSubstr("stribeck_friction of motor 3")));
+}
+
+TEST(Mjcf, NamesWhatIsAtMotorsThatJointsShare) {
+  RobotDescription robot =
+      desk::exchange::import_urdf(sample_arm().text(), "arm.urdf", sample_arm().chain()).robot;
+  robot.transmission.emplace();
+  robot.transmission->matrix = {{0, 30, 0}, {20, 0, 0}, {0, 0, 10}};
+  add_of_motor(robot, EffectKind::kRotorInertia, 0, {1e-4});
+  // Motor 1 moves joint 2, alone.
+  const Model model = load(export_mjcf(robot, "arm.toml").text);
+  ASSERT_NE(model, nullptr);
+  EXPECT_NEAR(model->dof_armature[1], 0.09, 1e-12);
+  robot.transmission->matrix = {{40, 20, 0}, {40, -20, 0}, {0, 0, 10}};
+  const auto shared = export_mjcf(robot, "arm.toml");
+  EXPECT_THAT(shared.not_carried,
+              testing::Contains(testing::HasSubstr("joints share the motors it moves with")));
+  EXPECT_EQ(load(shared.text)->dof_armature[1], 0);
+}
+
+TEST(UrdfInMujoco, OfEveryRobotOfTheProjectIsLoaded) {
+  int point_masses = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kRobots)) {
+    if (entry.path().extension() != ".toml") continue;
+    SCOPED_TRACE(entry.path());
+    const RobotDescription robot = desk::read_robot_file(entry.path());
+    const auto exported = desk::exchange::export_urdf(robot, "robot.toml");
+    const Model model = load(exported.text);
+    ASSERT_NE(model, nullptr);
+    EXPECT_EQ(model->nv, robot.joint_count());
+    point_masses += std::any_of(exported.changed.begin(), exported.changed.end(),
+                                [](const std::string& line) {
+                                  return line.find("a point mass or a rod") != std::string::npos;
+                                })
+                        ? 1
+                        : 0;
+  }
+  EXPECT_GE(point_masses, 3);
+}
+
 TEST(Mjcf, SlowsDownByItsFrictionAsTheModelSays) {
   // A slide without gravity: the friction alone stops it, after v/(friction/mass) seconds.
   RobotDescription robot;

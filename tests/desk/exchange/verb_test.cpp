@@ -82,6 +82,20 @@ TEST(NewVerb, WritesTheGeometryOfATableAndBlanks) {
   EXPECT_THAT(used.err, HasSubstr("joint[1].link.mass_kg: found nothing"));
 }
 
+TEST(NewVerb, SaysWhichNamesATableWithoutUnitsShouldHave) {
+  const TemporaryFolder folder;
+  const auto error_of = [&](const std::string& header) {
+    put(folder / "table.csv", header + "\n0,90,0.4,0\n");
+    return run({"new", "--dh", (folder / "table.csv").string(), "--convention", "standard", "-o",
+                (folder / "arm.toml").string()})
+        .err;
+  };
+  EXPECT_THAT(error_of("a,alpha,d,theta"), HasSubstr("to mend: name it a_m, in metres"));
+  EXPECT_THAT(error_of("a_m,Alpha,d,theta"),
+              HasSubstr("name it alpha_deg where it is in degrees, alpha_rad where in radians"));
+  EXPECT_THAT(error_of("a_m,alpha_deg,d,theta"), HasSubstr("name it d_m, in metres"));
+}
+
 TEST(ExportVerbs, WriteBothFormatsAndListWhatIsNotCarried) {
   const TemporaryFolder folder;
   for (const std::string format : {"mjcf", "urdf"}) {

@@ -408,6 +408,20 @@ TEST(Doctor, SeesThroughFoldedPositionsWhatElseIsWrong) {
   EXPECT_EQ(faults[1].joint, 0);
 }
 
+TEST(Doctor, NamesTheUnitFirstWhereAFoldIsOneOfDegrees) {
+  Log log =
+      test::record_arm({.duration_s = 12, .rate_hz = 500, .torque_noise = 0.05, .amplitude = 2.5});
+  log.q *= 180 / kPi;
+  log.dq *= 180 / kPi;
+  fold(log, 1, 360, -180);
+  for (const DataFault& fault : examined(log)) {
+    if (fault.kind != DataFaultKind::kWrapped) continue;
+    EXPECT_EQ(fault.mend.find("say unit = \"deg\""), 0U) << fault.mend;
+    return;
+  }
+  ADD_FAILURE() << "no fold was found";
+}
+
 TEST(Doctor, TakesNoStepOrSpikeForAFoldedPosition) {
   Log log = recorded();
   log.q(3000, 0) += 2 * kPi;  // one sample, and back

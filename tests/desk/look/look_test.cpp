@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "common/error.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "log/read_log.hpp"
 #include "look/look_report.hpp"
@@ -117,8 +118,10 @@ TEST_F(LookTest, WhatCannotBeToldIsAskedFor) {
   EXPECT_THAT(nameless.missing, Contains(HasSubstr("a column of time")));
   EXPECT_THAT(nameless.missing, Contains(HasSubstr("positions")));
   EXPECT_THAT(channels_text(nameless), HasSubstr("# still to be said: torques or currents"));
+  // TOML all the same, and refused.
+  EXPECT_THROW(read_as(nameless), offnominal::desk::InputError);
   const Look currents = look(recording("t,q1,dq1,iq1,q2,dq2,iq2", {}));
-  EXPECT_THAT(currents.missing, Contains(HasSubstr("the scale of the currents")));
+  EXPECT_THAT(currents.missing, Contains(HasSubstr("the torque constants of the motors")));
 }
 
 TEST_F(LookTest, ThePageHasEveryChannelAndTheAnswerInJsonEveryColumn) {
@@ -137,7 +140,9 @@ TEST_F(LookTest, AnIndustrialArmsStructuresAreFound) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recording at " << file;
   const Look seen = look_at(file, nullptr, std::nullopt);
   ASSERT_EQ(seen.channels.position.size(), 6U);
-  EXPECT_THAT(seen.channels.position[2].source, HasSubstr("rec.act_pos"));
+  // Of the two encoders the one that moves on every axis, and the velocities that go with it.
+  EXPECT_EQ(seen.channels.position[2].source, "rec.act_pos_mot_deg(3,:)");
+  EXPECT_EQ(seen.channels.velocity[2]->source, "rec.act_vel_mot_deg_per_s(3,:)");
   EXPECT_EQ(seen.channels.position[2].unit, "deg");
   EXPECT_EQ(seen.channels.torque[5].source, "rec.act_torque_abs_nm(6,:)");
   EXPECT_EQ(seen.channels.time.source, "rec.time_cont");

@@ -1,16 +1,11 @@
 #include "look/name_guess.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace {
 
 using offnominal::desk::guess_of;
 using offnominal::desk::Role;
-using offnominal::desk::Roles;
-using offnominal::desk::roles_of;
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 TEST(NameGuess, RolesUnitsAndNumbersOfCommonNames) {
   struct Case {
@@ -38,6 +33,20 @@ TEST(NameGuess, RolesUnitsAndNumbersOfCommonNames) {
                           Case{"error_pos_deg(1,:)", Role::kNone, 1, ""},
                           Case{"Reference Velocity", Role::kNone, -1, ""},
                           Case{"temperature1", Role::kNone, 1, ""},
+                          Case{"Zeit [s]", Role::kTime, -1, "s"},
+                          Case{"Geschwindigkeit [\u00b0/s]", Role::kVelocity, -1, "\u00b0/s"},
+                          Case{"A2 Drehmoment [Nm]", Role::kTorque, 2, "Nm"},
+                          Case{"A2 Motorstrom [A]", Role::kCurrent, 2, "A"},
+                          Case{"A1 Soll-Position [\u00b0]", Role::kNone, 1, ""},
+                          Case{"axis 3 [mA]", Role::kCurrent, 3, "mA"},
+                          Case{"axis 3 [1/min]", Role::kVelocity, 3, "1/min"},
+                          Case{"bus [V]", Role::kNone, -1, ""},
+                          Case{"i_mA", Role::kCurrent, -1, "mA"},
+                          Case{"torque_2_mA", Role::kCurrent, 2, "mA"},
+                          Case{"torque_current1", Role::kCurrent, 1, ""},
+                          Case{"current_position1", Role::kPosition, 1, ""},
+                          Case{"field.effort0", Role::kTorque, 0, ""},
+                          Case{"vir", Role::kVoltage, -1, ""},
                           Case{"Vsupply", Role::kNone, -1, ""}}) {
     const auto guess = guess_of(one.name);
     EXPECT_EQ(guess.role, one.role) << one.name;
@@ -46,29 +55,13 @@ TEST(NameGuess, RolesUnitsAndNumbersOfCommonNames) {
   }
 }
 
-TEST(NameGuess, FamiliesHaveOneColumnForEachJoint) {
-  const Roles roles = roles_of({"time", "pos_2", "pos_1", "pos_10", "vel_1", "vel_2", "vel_10",
-                                "i_1", "i_2", "i_10", "pos_gripper"},
-                               0);
-  EXPECT_EQ(roles.time, "time");
-  EXPECT_THAT(roles.position, ElementsAre("pos_1", "pos_2", "pos_10"));
-  EXPECT_THAT(roles.velocity, ElementsAre("vel_1", "vel_2", "vel_10"));
-  EXPECT_THAT(roles.torque, ElementsAre("i_1", "i_2", "i_10"));
-  EXPECT_TRUE(roles.torque_is_current);
-}
-
-TEST(NameGuess, WhatStandsInOneStructureBelongsTogether) {
-  const Roles roles =
-      roles_of({"model.time", "tau_g(1,:)", "tau_g(2,:)", "rec.time", "rec.pos(1,:)",
-                "rec.pos(2,:)", "rec.torque(1,:)", "rec.torque(2,:)"},
-               2);
-  EXPECT_EQ(roles.time, "rec.time");
-  EXPECT_THAT(roles.torque, ElementsAre("rec.torque(1,:)", "rec.torque(2,:)"));
-  EXPECT_THAT(roles.other_families, ElementsAre("tau_g(#,:)"));
-}
-
-TEST(NameGuess, OfAnotherNumberOfJointsNothingIsTaken) {
-  EXPECT_THAT(roles_of({"t", "q1", "q2", "tau1", "tau2"}, 3).position, IsEmpty());
+TEST(NameGuess, AUnitThatTheFileSaysGivesARoleToANameThatSaysNone) {
+  EXPECT_EQ(guess_of("axis1", "mA").role, Role::kCurrent);
+  EXPECT_EQ(guess_of("axis1", "deg").role, Role::kPosition);
+  EXPECT_EQ(guess_of("axis1_ref", "deg").role, Role::kNone);
+  EXPECT_EQ(guess_of("torque1", "mA").role, Role::kCurrent);
+  EXPECT_TRUE(guess_of("motor_pos").of_motor);
+  EXPECT_FALSE(guess_of("act_pos_mot_deg").of_motor);
 }
 
 }  // namespace

@@ -1,0 +1,146 @@
+#include "look/families.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+#include <utility>
+
+#include "robot/units.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+bool is_number_word(const std::string& word) { return word[0] >= '0' && word[0] <= '9'; }
+
+// Words that tell how a value came about, and no joint from another.
+bool is_qualifier(const std::string& word) {
+  static constexpr std::array<std::string_view, 27> kQualifiers{
+      "act",  "actual", "meas",   "measured", "filt", "filtered", "raw",    "mot",  "motor",
+      "load", "link",   "ist",    "se",       "abs",  "joint",    "joints", "axis", "current",
+      "est",  "rec",    "states", "msg",      "data", "field",    "con",    "fric", "side"};
+  return is_number_word(word) ||
+         std::find(kQualifiers.begin(), kQualifiers.end(), word) != kQualifiers.end();
+}
+
+bool is_unit_word(const std::string& word) {
+  static constexpr std::array<std::string_view, 12> kUnitWords{
+      "deg", "rad", "per", "s", "rpm", "nm", "mnm", "ma", "a", "mm", "m", "ms"};
+  return std::find(kUnitWords.begin(), kUnitWords.end(), word) != kUnitWords.end();
+}
+
+Family& family_in(std::vector<Family>& families, const std::string& name, const NameGuess& guess) {
+  const auto at = std::find_if(families.begin(), families.end(), [&](const Family& family) {
+    return family.name == name && family.role == guess.role;
+  });
+  if (at != families.end()) return *at;
+  families.push_back({name, guess.role, guess.of_motor, {}});
+  return families.back();
+}
+
+bool has_quantity_only(const NameGuess& guess) {
+  return guess.role != Role::kNone && guess.role != Role::kTime;
+}
+
+// Without the words that people add to a joint's name, and numbers without leading zeros.
+std::vector<std::string> bare_words(const std::string& name) {
+  std::vector<std::string> words;
+  for (const NameWord& word : words_in(name)) {
+    if (word.text == "joint" || word.text == "link" || word.text == "axis") continue;
+    words.push_back(word.text);
+  }
+  return words;
+}
+
+bool contains_words(const std::vector<std::string>& words, const std::vector<std::string>& part) {
+  return !part.empty() &&
+         std::search(words.begin(), words.end(), part.begin(), part.end()) != words.end();
+}
+
+}  // namespace
+
+std::vector<Family> numbered_families(const std::vector<NamedColumn>& columns) {
+  std::vector<Family> families;
+  for (const NamedColumn& column : columns) {
+    const NameGuess guess = guess_of(column.name, column.said_unit);
+    if (!has_quantity_only(guess)) continue;
+    family_in(families, guess.family, guess)
+        .members.push_back({guess.number, {}, column.name, column.is_constant});
+  }
+  for (Family& family : families) {
+    std::sort(family.members.begin(), family.members.end(),
+              [](const FamilyMember& a, const FamilyMember& b) {
+                return std::pair(a.number, a.column) < std::pair(b.number, b.column);
+              });
+  }
+  return families;
+}
+
+std::vector<Family> families_by_name(const std::vector<NamedColumn>& columns) {
+  std::vector<Family> families;
+  for (const NamedColumn& column : columns) {
+    const NameGuess guess = guess_of(column.name, column.said_unit);
+    if (!has_quantity_only(guess)) continue;
+    const std::vector<NameWord> words = words_in(column.name);
+    for (std::size_t first = 0; first < words.size(); ++first) {
+      std::size_t end = first;
+      bool names_joint = false;
+      while (end < words.size() && !says_quantity(words[end].text) &&
+             !(end > first && is_unit_word(words[end].text))) {
+        names_joint = names_joint || !is_qualifier(words[end].text);
+        ++end;
+      }
+      if (end == first) continue;
+      if (names_joint && !is_unit_word(words[first].text)) {
+        const std::size_t begin_at = words[first].begin;
+        const std::size_t end_at = words[end - 1].end;
+        const std::string pattern =
+            column.name.substr(0, begin_at) + "*" + column.name.substr(end_at);
+        std::string joint = column.name.substr(begin_at, end_at - begin_at);
+        std::transform(joint.begin(), joint.end(), joint.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        family_in(families, pattern, guess)
+            .members.push_back({guess.number, std::move(joint), column.name, column.is_constant});
+      }
+      first = end;
+    }
+  }
+  return families;
+}
+
+Family in_order_of(const Family& family, const std::vector<std::string>& joints) {
+  Family ordered{family.name, family.role, family.of_motor, {}};
+  for (const std::string& joint : joints) {
+    const std::vector<std::string> wanted = bare_words(joint);
+    // The same words before those that are among others: "wrist" and "lower wrist".
+    const FamilyMember* found = nullptr;
+    for (const bool exactly : {true, false}) {
+      int matches = 0;
+      for (const FamilyMember& member : family.members) {
+        const std::vector<std::string> words = bare_words(member.joint);
+        if (exactly ? words != wanted : !contains_words(words, wanted)) continue;
+        found = &member;
+        ++matches;
+      }
+      if (matches == 1) break;
+      found = nullptr;
+    }
+    const bool twice = found != nullptr &&
+                       std::any_of(ordered.members.begin(), ordered.members.end(),
+                                   [&](const auto& one) { return one.column == found->column; });
+    if (found == nullptr || twice) return {family.name, family.role, family.of_motor, {}};
+    ordered.members.push_back(*found);
+  }
+  return ordered;
+}
+
+std::vector<std::string> other_words(const std::string& name) {
+  std::vector<std::string> words;
+  for (const NameWord& word : words_in(name)) {
+    if (says_quantity(word.text) || is_number_word(word.text) || is_unit_word(word.text)) continue;
+    words.push_back(word.text);
+  }
+  return words;
+}
+
+}  // namespace offnominal::desk

@@ -1,0 +1,134 @@
+#include "look/looked_files.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "common/error.hpp"
+#include "common/input_name.hpp"
+#include "log/channel_needs.hpp"
+#include "log/log_format.hpp"
+#include "log/read_log.hpp"
+#include "log/recording_file.hpp"
+#include "look/name_guess.hpp"
+#include "look/nameless.hpp"
+#include "robot/units.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+// Everything that is numeric; a column of a text that is called a time may hold dates.
+Need need_in_text(const std::string& name) {
+  if (guess_of(name).role == Role::kTime) return Need::kAscending;
+  return is_common_name(name) ? Need::kRequired : Need::kWelcome;
+}
+Need need_elsewhere(const std::string& name) {
+  return is_common_name(name) ? Need::kRequired : Need::kWelcome;
+}
+
+NamedColumns read_all(const std::filesystem::path& path, const ChannelMap* channels) {
+  RecordingFile file(path);
+  const LogFormat& format = log_format_of(file);
+  const bool is_text = format.recognises == nullptr;
+  return format.read(file, channels, is_text ? need_in_text : need_elsewhere);
+}
+
+Channel named(const std::string& source) {
+  Channel channel;
+  channel.source = source;
+  return channel;
+}
+
+// By its name; of a file without names, the first column where it is a clock.
+Channel time_in(const NamedColumns& columns) {
+  for (const std::string& name : columns.names) {
+    if (columns.columns.contains(name) && guess_of(name).role == Role::kTime) return named(name);
+  }
+  const auto first = columns.columns.find("1");
+  if (!columns.has_names && first != columns.columns.end() && is_clock(first->second)) {
+    return named("1");
+  }
+  throw InputError({columns.file, "columns", "none that is called a time",
+                    "a time in each of the files that are joined",
+                    "name it in the header: t, s; or say --period, where no file has one"});
+}
+
+}  // namespace
+
+FileTime looked_time(NamedColumns& columns, Channel& channel, double period_s,
+                     std::vector<std::string>& notes) {
+  const auto found = columns.columns.find(channel.source);
+  if (period_s > 0 || found == columns.columns.end() || found->second.size() == 0 ||
+      columns.units.contains(channel.source)) {
+    return time_of(columns, channel, period_s);
+  }
+  const auto origin = columns.origins.find(channel.source);
+  const bool is_date = origin != columns.origins.end() && origin->second.is_date;
+  const double first = origin == columns.origins.end() ? found->second[0] : origin->second.value;
+  for (const char* unit : {"ms", "us", "ns"}) {
+    const double seconds = first * unit_factor(unit);
+    // From 2001 to 2065, as time_of() tells it.
+    if (is_date || !channel.unit.empty() || seconds < 1e9 || seconds >= 3e9) continue;
+    channel.unit = unit;
+    notes.push_back(fmt::format("{} counts {} since 1970, by its size", channel.source, unit));
+  }
+  return time_of(columns, channel, 0);
+}
+
+LookedFiles read_looked_files(const std::filesystem::path& path, const RobotDescription* robot,
+                              std::optional<double> period_s) {
+  const ChannelMap* const channels =
+      robot != nullptr && robot->channels ? &*robot->channels : nullptr;
+  const std::vector<std::filesystem::path> paths = recording_files(path);
+  LookedFiles looked;
+  if (paths.size() == 1) {
+    looked.columns = read_all(path, channels);
+    return looked;
+  }
+  std::vector<TimedColumns> files;
+  for (const auto& one : paths) {
+    TimedColumns file{read_all(one, channels), {}};
+    Channel time = period_s ? Channel{} : time_in(file.columns);
+    file.time = looked_time(file.columns, time, period_s.value_or(0), looked.notes);
+    if (files.empty()) {
+      looked.time_channel = time;
+    } else {
+      looked.more_times.push_back(time);
+    }
+    files.push_back(std::move(file));
+  }
+  TimedColumns joined = joined_files(std::move(files), kMinSamples, kMaxGap);
+  looked.columns = std::move(joined.columns);
+  looked.time = std::move(joined.time);
+  return looked;
+}
+
+ReadFiles read_files_of(const std::filesystem::path& path, const ChannelMap& channels) {
+  const std::vector<std::filesystem::path> paths = recording_files(path);
+  std::vector<TimedColumns> files;
+  ReadFiles read;
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    const NeedOf need_of = needs_of(channels, k, paths.size());
+    const NeedOf also = [&](const std::string& name) {
+      const Need need = need_of(name);
+      return need == Need::kNone ? Need::kWelcome : need;
+    };
+    RecordingFile file(paths[k]);
+    NamedColumns columns = log_format_of(file).read(file, &channels, also);
+    if (paths.size() == 1) read.all = columns;
+    TimedColumns timed{std::move(columns), {}};
+    if (!channels.at_rest) {
+      timed.time = time_of(timed.columns, time_channel(channels, k), channels.period_s);
+    }
+    files.push_back(std::move(timed));
+  }
+  if (files.size() == 1) {
+    read.recording = std::move(files.front());
+    return read;
+  }
+  read.recording = joined_files(std::move(files), kMinSamples, kMaxGap);
+  read.all = read.recording.columns;
+  return read;
+}
+
+}  // namespace offnominal::desk

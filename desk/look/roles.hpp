@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "look/name_guess.hpp"
+
+// Which columns are the joints' positions, velocities and torques, by their names: families of
+// columns that differ in a number (pos_1, pos_2), or in the name of a joint (shoulder_pos,
+// elbow_pos; position.shoulder_pan_joint).
+
+namespace offnominal::desk {
+
+struct NamedColumn {
+  std::string name;
+  std::string said_unit = {};  // by the file; empty: none
+  bool is_constant = false;
+};
+
+// What is known of the robot.
+struct ExpectedJoints {
+  int count = 0;  // 0: not known
+  std::vector<std::string> names = {};
+};
+
+struct Roles {
+  std::optional<std::string> time;
+  std::vector<std::string> position;
+  std::vector<std::string> velocity;
+  std::vector<std::string> torque;
+  Role torque_role = Role::kTorque;  // or kCurrent, kVoltage
+  bool position_of_motor = false;    // by its name
+  bool velocity_of_motor = false;
+  bool torque_of_motor = false;
+  std::vector<std::string> other_families;  // of the same roles, that would do as well
+  std::string order;                        // how joints that have names stand; empty: by number
+};
+
+// The families that have a column for each joint, or for as many as most families have where that
+// is not known. Of several, one whose columns all change, then one that stands where the positions
+// stand, then one that shares most words with them, then the first. Joints with names stand in the
+// robot's order where all of its names are found, else in that of the columns.
+[[nodiscard]] Roles roles_of(const std::vector<NamedColumn>& columns,
+                             const ExpectedJoints& expected);
+
+}  // namespace offnominal::desk

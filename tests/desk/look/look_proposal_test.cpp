@@ -1,0 +1,292 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+
+#include "common/error.hpp"
+#include "desk/support/temporary_folder.hpp"
+#include "log/read_log.hpp"
+#include "look/look.hpp"
+#include "look/look_report.hpp"
+#include "robot/channels.hpp"
+#include "robot/robot_file.hpp"
+
+// What look proposes where names or units alone do not tell, and what it shows of channels that a
+// robot file has.
+
+namespace offnominal::test::look_proposal {
+namespace {
+
+using offnominal::desk::InputError;
+using offnominal::desk::Log;
+using offnominal::desk::Look;
+using offnominal::desk::look_at;
+using offnominal::desk::parse_robot;
+using offnominal::desk::read_log;
+using offnominal::desk::RobotDescription;
+using offnominal::test::put;
+using offnominal::test::TemporaryFolder;
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr int kSamples = 1000;
+constexpr double kPeriodS = 0.01;
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+double position(int joint, double t) { return joint == 0 ? std::sin(2 * t) : std::cos(3 * t); }
+double velocity(int joint, double t) {
+  return joint == 0 ? 2 * std::cos(2 * t) : -3 * std::sin(3 * t);
+}
+double torque(int joint, double t) { return std::sin((5 + joint) * t) + 0.3; }
+
+struct Scale {
+  double q = 1;
+  double dq = 1;
+  double tau = 1;
+};
+
+// Time, the joints' positions, their velocities, their torques.
+std::string rows(int joints, const Scale& scale = {}, int first = 0, int samples = kSamples) {
+  std::string text;
+  const auto number = [&](double value) { text += "," + std::to_string(value); };
+  for (int i = first; i < samples; ++i) {
+    const double t = kPeriodS * i;
+    text += std::to_string(t);
+    for (int k = 0; k < joints; ++k) number(scale.q * position(k, t));
+    for (int k = 0; k < joints; ++k) number(scale.dq * velocity(k, t));
+    for (int k = 0; k < joints; ++k) number(scale.tau * torque(k, t));
+    text += "\n";
+  }
+  return text;
+}
+
+std::string joint_text(const std::string& name) {
+  return "[[joint]]\nname = \"" + name +
+         "\"\ntype = \"revolute\"\naxis = [0.0, 0.0, 1.0]\n[joint.link]\nmass_kg = 1.0\n"
+         "centre_of_mass_m = [0.3, 0.0, 0.0]\n[joint.limits]\nposition = [-3.0, 3.0]\n";
+}
+
+std::string robot_text(std::initializer_list<const char*> joints, const std::string& more = "") {
+  std::string text = "format = 1\nname = \"r\"\ngravity_m_s2 = [0.0, 0.0, -9.81]\n";
+  for (const char* joint : joints) text += joint_text(joint);
+  return text + more;
+}
+
+class LookProposal : public testing::Test {
+ protected:
+  Look look(const std::string& content, const std::optional<std::string>& robot = {}) {
+    put(folder_ / "a.csv", content);
+    if (robot) robot_ = parse_robot(*robot, "r.toml");
+    return look_at(folder_ / "a.csv", robot ? &*robot_ : nullptr, std::nullopt);
+  }
+  // As whoever pastes what is proposed behind a robot file.
+  Log pasted(const Look& look, const std::string& robot) {
+    return read_log(folder_ / "a.csv", parse_robot(robot + channels_text(look), "pasted.toml"));
+  }
+  static void expect_motion(const Log& log, double tolerance = 1e-4) {
+    ASSERT_EQ(log.sample_count(), kSamples);
+    for (int k = 0; k < log.joint_count(); ++k) {
+      for (int i = 0; i < kSamples; i += 37) {
+        EXPECT_NEAR(log.q(i, k), position(k, kPeriodS * i), tolerance);
+        EXPECT_NEAR(log.dq(i, k), velocity(k, kPeriodS * i), tolerance);
+      }
+    }
+  }
+
+  TemporaryFolder folder_;
+  std::optional<RobotDescription> robot_;
+};
+
+TEST_F(LookProposal, CurrentsAreRefusedUntilTheirTorqueConstantsAreSaid) {
+  const std::string robot = robot_text({"a"});
+  const Look seen = look("t,pos,vel,i_mA\n" + rows(1), robot);
+  const std::string text = channels_text(seen);
+  EXPECT_THAT(text, HasSubstr("motor_current = [{source = \"i_mA\", unit = \"mA\"}]"));
+  EXPECT_THAT(text, HasSubstr("# torque_constant = [...]"));
+  EXPECT_THAT(seen.missing, Contains(HasSubstr("torque constants")));
+  EXPECT_THROW(pasted(seen, robot), InputError);
+  const std::string gear = "[transmission]\nratio = [2.0]\n";
+  EXPECT_THROW(pasted(seen, robot + gear), InputError);
+  const Log log = pasted(seen, robot + gear + "torque_constant = [10.0]\n");
+  EXPECT_NEAR(log.tau(100, 0), 0.02 * torque(0, 1), 1e-6);
+  // A robot file that says them leaves nothing to say.
+  const Look known =
+      look("t,pos,vel,i_mA\n" + rows(1), robot + gear + "torque_constant = [10.0]\n");
+  EXPECT_THAT(known.missing, IsEmpty());
+}
+
+TEST_F(LookProposal, VoltagesNeedAScale) {
+  const std::string robot = robot_text({"a"});
+  const Look seen = look("t,pos,vel,vir\n" + rows(1), robot);
+  EXPECT_THAT(channels_text(seen), HasSubstr("unit = \"V\""));
+  EXPECT_THROW(pasted(seen, robot), InputError);
+}
+
+TEST_F(LookProposal, WhatIsCalledAMotorsIsReadAsAMotors) {
+  const Look seen = look("t,motor_pos,motor_vel,motor_torque\n" + rows(1), robot_text({"a"}));
+  EXPECT_THAT(channels_text(seen), HasSubstr("motor_position = "));
+  EXPECT_THAT(channels_text(seen), HasSubstr("motor_velocity = "));
+  EXPECT_THAT(channels_text(seen), HasSubstr("motor_torque = "));
+  EXPECT_THAT(channels_text(seen), HasSubstr("# ratio = [...]"));
+  EXPECT_THROW(pasted(seen, robot_text({"a"})), InputError);
+}
+
+TEST_F(LookProposal, NamesOfJointsStandInTheRobotsOrder) {
+  const std::string robot = robot_text({"shoulder_pan_joint", "elbow_joint"});
+  const Look seen = look(
+      "time,position.elbow_joint,position.shoulder_pan_joint,"
+      "velocity.elbow_joint,velocity.shoulder_pan_joint,effort.elbow_joint,"
+      "effort.shoulder_pan_joint\n" +
+          rows(2),
+      robot);
+  EXPECT_THAT(seen.missing, IsEmpty());
+  EXPECT_THAT(seen.notes, Contains(HasSubstr("in the robot's order")));
+  EXPECT_EQ(seen.channels.position[0].source, "position.shoulder_pan_joint");
+  const Log log = pasted(seen, robot);
+  EXPECT_NEAR(log.q(100, 0), position(1, 1), 1e-4);
+  EXPECT_NEAR(log.tau(100, 1), torque(0, 1), 1e-4);
+}
+
+TEST_F(LookProposal, WithoutAHeaderNumbersTellTimePositionsAndVelocities) {
+  for (const bool with_robot : {true, false}) {
+    const std::string robot = robot_text({"a", "b"});
+    const Look seen = look(rows(2), with_robot ? std::optional<std::string>(robot) : std::nullopt);
+    const std::string text = channels_text(seen);
+    EXPECT_THAT(text, HasSubstr("time = 1   # guessed"));
+    EXPECT_THAT(text, HasSubstr("position = [2, 3]   # guessed"));
+    EXPECT_THAT(text, HasSubstr("velocity = [4, 5]   # guessed"));
+    EXPECT_THAT(text, HasSubstr("torque = [6, 7]   # guessed"));
+    EXPECT_THAT(seen.notes, Contains(HasSubstr("columns go by their numbers")));
+    expect_motion(pasted(seen, robot));
+  }
+}
+
+TEST_F(LookProposal, WithoutAHeaderDegreesAreTold) {
+  const std::string robot = robot_text({"a", "b"});
+  const Look seen = look(rows(2, {kDegrees, kDegrees}), robot);
+  EXPECT_THAT(channels_text(seen), HasSubstr("position = [{source = 2, unit = \"deg\"}, "));
+  expect_motion(pasted(seen, robot));
+}
+
+TEST_F(LookProposal, WhatNumbersDoNotTellIsLeftAndNeverNoToml) {
+  const std::string robot = robot_text({"a", "b", "c"});
+  const Look seen = look(rows(2), robot);
+  EXPECT_THAT(seen.channels.position, IsEmpty());
+  EXPECT_THAT(seen.notes, Contains(HasSubstr("the robot has 3 joints")));
+  EXPECT_THAT(channels_text(seen), HasSubstr("# position = [...]"));
+  EXPECT_THROW(pasted(seen, robot), InputError);
+}
+
+TEST_F(LookProposal, DegreesAreOfPositionAndVelocityAndOfEveryJoint) {
+  const std::string robot = robot_text({"a", "b"});
+  const std::string header = "t,q1,q2,dq1,dq2,tau1,tau2\n";
+  const Look seen = look(header + rows(2, {kDegrees, kDegrees}), robot);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(seen.channels.position[k].unit, "deg");
+    EXPECT_EQ(seen.channels.velocity[k]->unit, "deg/s");
+  }
+  expect_motion(pasted(seen, robot));
+  // A joint a little beyond its limit is not in degrees.
+  const Look beyond = look(header + rows(2, {3.2, 3.2}), robot);
+  EXPECT_EQ(beyond.channels.position[0].unit, "");
+}
+
+TEST_F(LookProposal, AJointThatHardlyMovesTakesTheUnitOfTheOthers) {
+  std::string text = "t,q1,q2,dq1,dq2,tau1,tau2\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    for (const double value :
+         {t, kDegrees * position(0, t), 1.5, kDegrees * velocity(0, t), 0.0, torque(0, t)}) {
+      text += std::to_string(value) + ",";
+    }
+    text += std::to_string(torque(1, t)) + "\n";
+  }
+  const Look seen = look(text, robot_text({"a", "b"}));
+  EXPECT_EQ(seen.channels.position[1].unit, "deg");
+  EXPECT_EQ(seen.channels.velocity[1]->unit, "deg/s");
+  EXPECT_THAT(seen.notes, Contains(HasSubstr("could not be judged, one of them never changes")));
+  EXPECT_THAT(seen.notes, Contains(HasSubstr("in the unit of the other joints")));
+}
+
+TEST_F(LookProposal, AGapDoesNotHideWhatVelocitiesAre) {
+  const Look seen = look("t,q1,dq1,tau1\n" + rows(1, {}, 0, 400) + rows(1, {}, 600), std::nullopt);
+  EXPECT_THAT(seen.notes, Contains(HasSubstr("their units agree")));
+  EXPECT_THAT(seen.notes, Each(Not(HasSubstr("nothing in common"))));
+}
+
+TEST_F(LookProposal, ShowsWhatTheRobotsOwnChannelsRead) {
+  const std::string robot =
+      robot_text({"a"},
+                 "[transmission]\nratio = [-50.0]\ntorque_constant = [0.05]\n[channels]\n"
+                 "motor_position = {source = \"motor_pos\", unit = \"deg\"}\n"
+                 "motor_current = {source = \"i_mA\", unit = \"mA\"}\n");
+  const Look seen =
+      look("t,motor_pos,motor_vel,i_mA\n" + rows(1, {-50 * kDegrees, -50 * kDegrees, 1000}), robot);
+  ASSERT_EQ(seen.by_robot.size(), 3U);
+  EXPECT_THAT(seen.by_robot[0].from, HasSubstr("motor_position `motor_pos` (deg)"));
+  EXPECT_NEAR(seen.by_robot[0].high, 1, 1e-3);
+  EXPECT_NEAR(seen.by_robot[0].low, -1, 1e-3);
+  EXPECT_EQ(seen.by_robot[1].from, "derived from the position");
+  EXPECT_NEAR(seen.by_robot[2].low, -50 * 0.05 * 1.3, 1e-2);
+  EXPECT_EQ(seen.by_robot[2].unit, "N m");
+  // Proposed is what the file does not say, and nothing else.
+  ASSERT_EQ(seen.to_add.size(), 1U);
+  EXPECT_EQ(seen.to_add[0], "motor_velocity = [{source = \"motor_vel\", unit = \"deg/s\"}]");
+  EXPECT_THAT(text_of(seen), HasSubstr("to add to the robot file's [channels]:\nmotor_velocity"));
+  EXPECT_THAT(text_of(seen), Not(HasSubstr("still to be said")));
+  EXPECT_EQ(to_json(seen).at("read_by_robot").size(), 3U);
+}
+
+TEST_F(LookProposal, ChannelsThatDoNotFitAreSaidAndOthersProposed) {
+  const std::string robot =
+      robot_text({"a"}, "[channels]\nposition = \"enc\"\ntorque = \"load\"\n");
+  const Look seen = look("t,q1,dq1,tau1\n" + rows(1), robot);
+  EXPECT_THAT(seen.by_robot, IsEmpty());
+  EXPECT_THAT(seen.notes.front(), HasSubstr("do not read this recording"));
+  EXPECT_EQ(seen.channels.position.size(), 1U);
+}
+
+TEST_F(LookProposal, ColumnsByNumberInTheRobotsChannelsAreRead) {
+  const std::string robot =
+      robot_text({"a"}, "[channels]\ntime = 1\nposition = 2\nvelocity = 3\ntorque = 4\n");
+  EXPECT_EQ(look(rows(1), robot).by_robot.size(), 3U);
+  const Look named = look("zeit,lage,rate,last\n" + rows(1), robot);
+  EXPECT_EQ(named.by_robot.size(), 3U);
+  EXPECT_THAT(text_of(named), HasSubstr("nothing to add"));
+}
+
+TEST_F(LookProposal, FilesOfOneRecordingAreJoined) {
+  const std::string robot = robot_text({"a"});
+  put(folder_ / "q.csv", "t,pos\n0,0\n");
+  std::string q = "t,pos\n";
+  std::string tau = "stamp,torque\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    q += std::to_string(t) + "," + std::to_string(position(0, t)) + "\n";
+    tau += std::to_string(t) + "," + std::to_string(torque(0, t)) + "\n";
+  }
+  put(folder_ / "q.csv", q);
+  put(folder_ / "tau.csv", tau);
+  const std::string both = (folder_ / "q.csv").string() + "+" + (folder_ / "tau.csv").string();
+  const Look seen = look_at(both, nullptr, std::nullopt);
+  EXPECT_THAT(seen.missing, IsEmpty());
+  EXPECT_THAT(channels_text(seen), HasSubstr("time = [{source = \"t\"}, {source = \"stamp\"}]"));
+  const Log log = read_log(both, parse_robot(robot + channels_text(seen), "pasted.toml"));
+  EXPECT_NEAR(log.tau(100, 0), torque(0, 1), 1e-4);
+  put(folder_ / "tau.csv", "load\n1\n2\n");
+  EXPECT_THROW(look_at(both, nullptr, std::nullopt), InputError);
+}
+
+TEST_F(LookProposal, TimeDoesNotRest) {
+  const Look seen = look("t,q1,dq1,tau1\n" + rows(1));
+  EXPECT_EQ(to_json(seen).at("columns").at(0).at("resting_share"), 0);
+}
+
+}  // namespace
+}  // namespace offnominal::test::look_proposal
