@@ -34,8 +34,7 @@ struct DriveCounts {
 // outgoing(c, h, into)     The frames of one tick, one command per joint and, when it is due, the
 //                          heartbeat; returns how many, at most kMaxOutgoing. A command that the
 //                          protocol cannot carry is sent as DriveMode::kOff.
-// report(d, into)          The frame that tells all others what a monitor found that judges joint
-// by
+// report(d, into)          The frame that tells all others what a monitor found that judges by
 //                          joint; false where the protocol has none, or cannot carry it.
 // drive_max_age_us()       How old a drive's status may be before it is stale: a change of its mode
 //                          stays unseen no longer.
