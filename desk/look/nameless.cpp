@@ -143,7 +143,7 @@ class Guesser {
 
   void say_pairs(int joints) {
     std::vector<std::string> words;
-    for (const auto& [q, dq] : pairs_) words.push_back(dq + " of " + q);
+    for (const auto& [q, dq] : pairs_) words.push_back(fmt::format("{} of {}", dq, q));
     if (!words.empty()) {
       guess_.notes.push_back("columns that are the derivative of others: " + list_of(words));
     }

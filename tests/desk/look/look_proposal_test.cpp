@@ -284,7 +284,10 @@ TEST_F(LookProposal, FilesOfOneRecordingAreJoined) {
 }
 
 TEST_F(LookProposal, TimeDoesNotRest) {
-  const Look seen = look("t,q1,dq1,tau1\n" + rows(1));
+  // Of which fifty rows are less than a thousandth.
+  std::string text = "t,q1,tau1\n";
+  for (int i = 0; i < 60'000; ++i) text += std::to_string(i * 1e-3) + ",0,0\n";
+  const Look seen = look(text);
   EXPECT_EQ(to_json(seen).at("columns").at(0).at("resting_share"), 0);
 }
 
