@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "compare/inverse_model.hpp"
 #include "compare/motion.hpp"
@@ -72,6 +73,19 @@ recorded::MotionRequest request_of(Family family, const desk::RobotDescription& 
   return request;
 }
 
+// A coarse encoder, and a computer that stamps what comes from a drive: a quarter of all cases,
+// with draws of their own.
+bool is_rough(int number) { return number % 8 == 2 || number % 8 == 5; }
+
+void roughen(recorded::Recording& recording, recorded::Habits& habits, Draws& draws) {
+  habits.encoder_bits = 12;
+  habits.float_positions = false;
+  const double step = 2 * std::numbers::pi / std::exp2(habits.encoder_bits);
+  recording.q = step * (recording.q / step).array().round().matrix();
+  const double period_s = recording.t_s[1] - recording.t_s[0];
+  for (double& t : recording.t_s) t += draws.uniform(-0.03, 0.03) * period_s;
+}
+
 desk::Log log_of(const recorded::Recording& recording) {
   desk::Log log;
   log.file = "case";
@@ -132,10 +146,14 @@ DoctorCase make_doctor_case(Family family, std::uint64_t seed, int number) {
   const desk::RobotDescription real = as_it_is(made.robot, draws);
   const recorded::MotionRequest request = request_of(family, made.robot, draws);
   const recorded::Motion motion = recorded::draw_motion(request, draws);
-  const recorded::Habits habits = recorded::draw_habits(draws);
+  recorded::Habits habits = recorded::draw_habits(draws);
   const Eigen::MatrixXd tau =
       desk::model_torque(real, desk::Motion{motion.t_s, motion.q, motion.dq, motion.ddq});
   recorded::Recording recording = recorded::record(motion, tau, habits, draws);
+  if (is_rough(number)) {
+    Draws own(seed + 7919U, stream, static_cast<std::uint64_t>(number));
+    roughen(recording, habits, own);
+  }
   const bool faulty = number % 2 == 1;
   if (faulty) {
     const auto defect = static_cast<Defect>(1 + (number / 2) % (recorded::kDefects - 1));
@@ -148,11 +166,11 @@ DoctorCase make_doctor_case(Family family, std::uint64_t seed, int number) {
   made.robot.estimator.period_s = 1 / request.rate_hz;
   made.log = log_of(recording);
   made.words = fmt::format(
-      "motion {} at {:g} Hz, noise {:.3g}, step {:.3g}, {} bits{}{}{}{}",
+      "motion {} at {:g} Hz, noise {:.3g}, step {:.3g}, {} bits{}{}{}{}{}",
       static_cast<int>(request.family), request.rate_hz, habits.torque_noise, habits.torque_step,
       habits.encoder_bits, habits.float_positions ? ", float" : "",
       habits.five_digits ? ", five digits" : "", habits.with_velocity ? ", velocity" : "",
-      habits.late_stamps > 0 ? ", late stamps" : "");
+      habits.late_stamps > 0 ? ", late stamps" : "", is_rough(number) ? ", uneven" : "");
   return made;
 }
 

@@ -162,8 +162,8 @@ void find_gaps(const Log& log, std::vector<DataFault>& faults) {
   Index rows = 0;
   for (const RowSpan& part : log.cut) {
     fault.spans.push_back({{0, -1},
-                           part.first + 1,
-                           part.last + 1,
+                           log.row_number(part.first) + 1,
+                           log.row_number(part.last) + 1,
                            log.stamps_s[part.first],
                            log.stamps_s[part.last]});
     rows += part.count();
@@ -217,17 +217,45 @@ Log held_over_gaps(const Log& log) {
   return held;
 }
 
+// The same of rows that were resampled: a spline and straight lines have no steps of an encoder,
+// and neither repeat a value nor jump.
+std::vector<DataFault> faults_of_rows(const Log& log, const RobotDescription& robot) {
+  const Log rows = rows_as_recorded(log);
+  std::vector<DataFault> local;
+  if (!rows.gaps.empty()) {
+    DataFault gaps;
+    set_spans(rows, rows.gaps, gaps);
+    local.push_back(std::move(gaps));
+  }
+  find_stale_samples(rows, local);
+  find_stuck_values(rows, log, robot, local);
+  find_stuck_encoders(rows, robot, local);
+  find_torque_excursions(rows, log, robot, local);
+  find_jumps(rows, local);
+  find_saturation(rows, robot, local);
+  find_held_torques(rows, log, robot, local);
+  if (!rows.gaps.empty()) local.erase(local.begin());
+  to_samples(log, local);
+  std::vector<DataFault> faults;
+  find_gaps(log, faults);
+  faults.insert(faults.end(), local.begin(), local.end());
+  return faults;
+}
+
 // What is at fault for some stretches.
 std::vector<DataFault> local_faults(const Log& log, const RobotDescription& robot) {
   std::vector<DataFault> faults;
+  if (log.recorded) return faults_of_rows(log, robot);
   const Log held = log.gaps.empty() ? Log{} : held_over_gaps(log);
   const Log& as_recorded = log.gaps.empty() ? log : held;
   find_gaps(log, faults);
   find_stale_samples(as_recorded, faults);
-  find_stuck_values(as_recorded, robot, faults);
+  find_stuck_values(as_recorded, as_recorded, robot, faults);
   find_stuck_encoders(log, robot, faults);
+  find_torque_excursions(as_recorded, as_recorded, robot, faults);
   find_jumps(log, faults);
   find_saturation(as_recorded, robot, faults);
+  find_held_torques(as_recorded, as_recorded, robot, faults);
   return faults;
 }
 

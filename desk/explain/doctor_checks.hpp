@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "explain/data_fault.hpp"
@@ -40,15 +42,35 @@ TimeByTorque time_by_torque(const Log& log, const RobotDescription& robot, doubl
 
 void find_gaps(const Log& log, std::vector<DataFault>& faults);
 void find_stale_samples(const Log& log, std::vector<DataFault>& faults);
-void find_stuck_values(const Log& log, const RobotDescription& robot,
+// `even`: the same recording, evenly sampled; for what the model says of it.
+void find_stuck_values(const Log& log, const Log& even, const RobotDescription& robot,
                        std::vector<DataFault>& faults);
-// Needs the spans of what was found before.
+// Needs the spans of what was found before, as the next one does.
+void find_torque_excursions(const Log& log, const Log& even, const RobotDescription& robot,
+                            std::vector<DataFault>& faults);
 void find_jumps(const Log& log, std::vector<DataFault>& faults);
 void find_stuck_encoders(const Log& log, const RobotDescription& robot,
                          std::vector<DataFault>& faults);
 void find_saturation(const Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
+// Torques that a drive at its limit holds, within its noise, all the time that the joint moves.
+void find_held_torques(const Log& log, const Log& even, const RobotDescription& robot,
+                       std::vector<DataFault>& faults);
 void find_torque_sign(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
 void find_clock_skew(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
+
+// The rows as they were recorded as a log of their own, each a sample, uneven in time; its gaps are
+// the rows on either side. Needs log.recorded.
+Log rows_as_recorded(const Log& log);
+// Faults of that log as faults of `log`.
+void to_samples(const Log& log, std::vector<DataFault>& faults);
+// Changes `log.recorded`, where there is any, which others may share.
+template <typename Change>
+void change_recorded(Log& log, Change&& change) {
+  if (!log.recorded) return;
+  auto rows = std::make_shared<RecordedRows>(*log.recorded);
+  std::forward<Change>(change)(*rows);
+  log.recorded = std::move(rows);
+}
 
 // These mend what they name in `log`, so that what is looked at after them is seen.
 void mend_wrapped(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);

@@ -21,13 +21,14 @@ constexpr Index kAroundRows = 8;
 constexpr double kUsualShare = 0.99;
 constexpr double kNoiseDeviations = 12;  // standard deviations
 constexpr double kDeviationOfMedian = 1.4826;
-constexpr double kOfTopPace = 3;
-constexpr double kOfStep = 4;
+constexpr double kTimesTopPace = 3;
+constexpr double kTimesStep = 4;
 
 double median_of(VectorXd values) { return quantile(std::move(values), 0.5); }
 
-// By how much each change from one row to the next exceeds those around it.
-VectorXd excess_of(const VectorXd& change) {
+// By how much each change from one row to the next exceeds those around it, for the time that
+// passes meanwhile, in rows.
+VectorXd excess_of(const VectorXd& change, const VectorXd& per_row, const VectorXd& passed) {
   VectorXd excess = VectorXd::Zero(change.size());
   for (Index i = 0; i < change.size(); ++i) {
     const Index before = std::min(i, kAroundRows);
@@ -35,14 +36,14 @@ VectorXd excess_of(const VectorXd& change) {
     double pace = 0;
     int sides = 0;
     if (before > 0) {
-      pace += median_of(change.segment(i - before, before));
+      pace += median_of(per_row.segment(i - before, before));
       ++sides;
     }
     if (after > 0) {
-      pace += median_of(change.segment(i + 1, after));
+      pace += median_of(per_row.segment(i + 1, after));
       ++sides;
     }
-    if (sides > 0) excess[i] = change[i] - pace / sides;
+    if (sides > 0) excess[i] = change[i] - pace / sides * passed[i];
   }
   return excess;
 }
@@ -59,22 +60,26 @@ bool holds(const std::vector<RowSpan>& spans, Index row) {
   });
 }
 
-Breaks breaks_of(const VectorXd& q, const std::vector<RowSpan>& known) {
+Breaks breaks_of(const Log& log, const VectorXd& q, const std::vector<RowSpan>& known) {
+  constexpr double kShortestStep = 0.1;
   Breaks jumps;
   const Index steps = q.size() - 1;
   if (steps < 4 * kAroundRows) return jumps;
   const VectorXd change = q.tail(steps) - q.head(steps);
-  const double pace = quantile(change.cwiseAbs(), kUsualShare);
+  const VectorXd passed = rows_passed(log);
+  const VectorXd time = (log.t_s.tail(steps) - log.t_s.head(steps)) / log.period_s;
+  const VectorXd per_row = change.cwiseQuotient(time.cwiseMax(kShortestStep));
+  const double pace = quantile(change.cwiseQuotient(passed).cwiseAbs(), kUsualShare);
   const double step = Rounding(q).at(q.cwiseAbs().maxCoeff());
   if (!std::isfinite(step)) return jumps;
   // Changes that cannot be jumps need no look at their surroundings.
-  const double least = kOfTopPace * pace + kOfStep * step;
+  const double least = kTimesTopPace * pace + kTimesStep * step;
   if (!(change.cwiseAbs().maxCoeff() > least)) return jumps;
-  const VectorXd excess = excess_of(change);
+  const VectorXd excess = excess_of(change, per_row, passed);
   const double limit =
       std::max(least, kNoiseDeviations * kDeviationOfMedian * median_of(excess.cwiseAbs()));
   for (Index i = 0; i < steps; ++i) {
-    if (!(std::abs(excess[i]) > limit) || holds(known, i)) continue;
+    if (!(std::abs(excess[i]) > limit * passed[i]) || holds(known, i)) continue;
     jumps.largest = std::max(jumps.largest, std::abs(excess[i]));
     Index back = -1;
     double off = excess[i];
@@ -105,6 +110,7 @@ std::vector<RowSpan> torque_spikes(const VectorXd& tau, const std::vector<RowSpa
   constexpr Index kLongestTorqueSpike = 3;
   constexpr double kOfLargest = 1.2;
   constexpr double kUnlikeAny = 6;
+  constexpr double kBesidePeak = 0.4;
   std::vector<RowSpan> spikes;
   const Index rows = tau.size();
   if (rows < 8 * kHalfWindow) return spikes;
@@ -124,7 +130,12 @@ std::vector<RowSpan> torque_spikes(const VectorXd& tau, const std::vector<RowSpa
     while (last + 1 < rows && off[last + 1] > limit) ++last;
     const RowSpan span{i, last};
     i = last;
-    if (span.count() <= kLongestTorqueSpike && !holds(known, span.first)) spikes.push_back(span);
+    if (span.count() > kLongestTorqueSpike || holds(known, span.first)) continue;
+    // A blow in the gear rises and falls over some rows.
+    const double peak = off.segment(span.first, span.count()).maxCoeff();
+    const double beside = std::max(span.first > 0 ? off[span.first - 1] : 0,
+                                   span.last + 1 < rows ? off[span.last + 1] : 0);
+    if (beside < kBesidePeak * peak) spikes.push_back(span);
   }
   return spikes;
 }
@@ -143,7 +154,7 @@ Index unsettled_rows(const VectorXd& x, bool position) {
     const VectorXd change = (x.tail(count) - x.head(count)).cwiseAbs();
     const double later = change.tail(count - count / kPart).maxCoeff();
     // It changes most at once, then less and less.
-    if (!(change.head(2).maxCoeff() > kUnlikeLater * later + kOfStep * step)) continue;
+    if (!(change.head(2).maxCoeff() > kUnlikeLater * later + kTimesStep * step)) continue;
     Index i = 0;
     while (i < count / kPart && change[i] > later) ++i;
     unsettled = std::max(unsettled, i + 2 * width);
@@ -198,7 +209,7 @@ void find_position_jumps(const Log& log, Index joint, std::vector<DataFault>& fa
   if (stale) {
     for (const Burst& burst : repeats_of(q)) known.push_back({burst.first, burst.end() + 1});
   }
-  const Breaks jumps = breaks_of(q, known);
+  const Breaks jumps = breaks_of(log, q, known);
   add_jump_fault(log, joint, true, DataFaultKind::kJump, jumps.spikes, jumps.largest,
                  "jumps and comes back", faults);
   std::vector<RowSpan> sides;

@@ -5,9 +5,13 @@
 #include <limits>
 #include <vector>
 
+#include "compare/inverse_model.hpp"
+#include "compare/motion.hpp"
 #include "compare/standstill.hpp"
 #include "explain/doctor_checks.hpp"
 #include "explain/doctor_signal.hpp"
+#include "signal/decimate.hpp"
+#include "signal/quantile.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -62,6 +66,19 @@ class TorqueExtremes {
   }
   [[nodiscard]] bool is_coarse(double end) const { return to_next(end) > 2 * near_; }
 
+  // Whether it comes to an extreme by and by, mostly: what switches between two levels jumps there.
+  [[nodiscard]] bool comes_gradually(double end) const {
+    constexpr double kOfRange = 0.3;
+    Index gradual = 0;
+    const std::vector<RowSpan> stretches = spans(end);
+    for (const RowSpan& stretch : stretches) {
+      if (stretch.first == 0) continue;
+      const double step = std::abs(tau_[stretch.first] - tau_[stretch.first - 1]);
+      if (step < kOfRange * (high_ - low_)) ++gradual;
+    }
+    return 2 * gradual > static_cast<Index>(stretches.size());
+  }
+
   // Stretches of rows at an extreme, with the few between them in which it comes off it.
   [[nodiscard]] std::vector<RowSpan> spans(double end) const {
     constexpr Index kBetween = 3;
@@ -99,7 +116,78 @@ class TorqueExtremes {
   double near_ = 0;
 };
 
+// What nearly all of the values spread over.
+struct Spread {
+  double middle = 0;
+  double width = 0;
+};
+Spread spread_of(const VectorXd& values) {
+  constexpr double kTail = 0.05;
+  return {quantile(values, 0.5), quantile(values, 1 - kTail) - quantile(values, kTail)};
+}
+
+Spread spread_in(const Eigen::Ref<const VectorXd>& values, const std::vector<Index>& rows) {
+  VectorXd those(static_cast<Index>(rows.size()));
+  for (Index i = 0; i < those.size(); ++i) those[i] = values[rows[static_cast<std::size_t>(i)]];
+  return spread_of(those);
+}
+
+// Of the model's torque while the joint moves, by the times of rows.
+Spread expected_spread(const Log& log, const Log& even, const RobotDescription& robot, Index joint,
+                       const std::vector<Index>& rows) {
+  constexpr Index kMostRows = 5000;
+  constexpr double kHz = 10;
+  constexpr double kOfRate = 0.2;
+  FilterPlan plan;
+  plan.sample_rate_hz = even.sample_rate_hz();
+  plan.position_cutoff_hz = std::min(kHz, kOfRate * plan.sample_rate_hz);
+  const Index stride = std::max<Index>(1, even.sample_count() / kMostRows);
+  const Motion full = motion_of(even, plan);
+  const Eigen::MatrixXd torque =
+      model_torque(robot, {every_nth(full.t_s, stride), every_nth_row(full.q, stride),
+                           every_nth_row(full.dq, stride), every_nth_row(full.ddq, stride)});
+  std::vector<Index> thin;
+  for (const Index row : rows) {
+    const auto sample = std::lround((log.t_s[row] - even.t_s[0]) / even.period_s) / stride;
+    thin.push_back(std::clamp<Index>(sample, 0, torque.rows() - 1));
+  }
+  return spread_in(torque.col(joint), thin);
+}
+
 }  // namespace
+
+void find_held_torques(const Log& log, const Log& even, const RobotDescription& robot,
+                       std::vector<DataFault>& faults) {
+  constexpr double kHeld = 0.2;      // of the torque, that it spreads over
+  constexpr double kExpected = 0.5;  // of the torque, that the model's spreads over
+  constexpr double kUnlike = 3;      // times what the torque spreads over
+  constexpr Index kFewestRows = 100;
+  for (Index joint = 0; joint < log.tau.cols(); ++joint) {
+    const std::vector<Index> rows = moving_rows(log, robot, joint);
+    if (static_cast<Index>(rows.size()) < kFewestRows) continue;
+    const Spread torque = spread_in(log.tau.col(joint), rows);
+    const double size = std::abs(torque.middle);
+    if (!(torque.width > 0) || !(torque.width < kHeld * size)) continue;
+    const Spread expected = expected_spread(log, even, robot, joint, rows);
+    if (!(expected.width > std::max(kUnlike * torque.width, kExpected * size))) continue;
+    const bool known = std::any_of(faults.begin(), faults.end(), [joint](const DataFault& fault) {
+      return fault.joint == joint && fault.kind == DataFaultKind::kSaturation;
+    });
+    if (known) continue;
+    DataFault fault;
+    fault.kind = DataFaultKind::kSaturation;
+    fault.joint = joint;
+    fault.signal = FaultySignal::kTorque;
+    fault.size = 1;
+    fault.words = fmt::format(
+        "the torque of joint {} stays at {:.4g} within {:.2g} all the time that the joint moves, "
+        "where the model's changes by {:.3g}: as a drive at its limit, or one that is told a "
+        "torque, while something else moves the joint",
+        joint + 1, torque.middle, torque.width, expected.width);
+    fault.mend = "move more gently, and by the drive alone";
+    faults.push_back(std::move(fault));
+  }
+}
 
 void find_saturation(const Log& log, const RobotDescription& robot,
                      std::vector<DataFault>& faults) {
@@ -109,8 +197,10 @@ void find_saturation(const Log& log, const RobotDescription& robot,
   constexpr double kAgainstNextStep = 10;
   // At the limit that the robot file states, one stretch is enough.
   constexpr Index kShortestAtLimit = 5;
-  // Where torque is at its extremes most of the time, it switches between two levels: dry friction.
+  // Where torque is at its extremes most of the time, it may switch between two levels: dry
+  // friction.
   constexpr double kLargestShareAtExtreme = 0.5;
+  constexpr double kLargestShareOfAll = 0.9;
   constexpr double kAtLimit = 0.98;
   constexpr double kBeyondLimit = 1.02;
   // A drive's limits are not that far apart: a joint that waits where little is asked of it stays
@@ -124,6 +214,7 @@ void find_saturation(const Log& log, const RobotDescription& robot,
     const auto rows = static_cast<double>(torque.rows());
     double share = 0;
     bool at_limit = false;
+    bool gradual = true;
     int extremes_reached = 0;
     ReachedExtreme most;
     std::vector<RowSpan> spans;
@@ -147,6 +238,7 @@ void find_saturation(const Log& log, const RobotDescription& robot,
       if (reached > most.rows) most = {end, reached};
       share += static_cast<double>(reached) / rows;
       at_limit = at_limit || limited;
+      gradual = gradual && torque.comes_gradually(end);
       ++extremes_reached;
       spans.insert(spans.end(), stretches.begin(), stretches.end());
     }
@@ -157,7 +249,8 @@ void find_saturation(const Log& log, const RobotDescription& robot,
       spans.insert(spans.end(), stretches.begin(), stretches.end());
       share += static_cast<double>(torque.reached(other)) / rows;
     }
-    if (!(share > 0) || (share > kLargestShareAtExtreme && !at_limit)) continue;
+    const double most_share = gradual ? kLargestShareOfAll : kLargestShareAtExtreme;
+    if (!(share > 0) || (share > most_share && !at_limit)) continue;
     DataFault fault;
     fault.kind = DataFaultKind::kSaturation;
     fault.joint = joint;

@@ -23,6 +23,16 @@ std::vector<Burst> repeats_of(const VectorXd& x) {
   return bursts;
 }
 
+VectorXd rows_passed(const Log& log) {
+  const Index steps = log.sample_count() - 1;
+  const VectorXd step = ((log.t_s.tail(steps) - log.t_s.head(steps)) / log.period_s).cwiseMax(1);
+  VectorXd passed = step;
+  if (steps < 2) return passed;
+  passed.tail(steps - 1) = passed.tail(steps - 1).cwiseMax(step.head(steps - 1));
+  passed.head(steps - 1) = passed.head(steps - 1).cwiseMax(step.tail(steps - 1));
+  return passed;
+}
+
 bool is_next_to_gap(const Log& log, const Burst& burst) {
   constexpr Index kNear = 64;
   return std::any_of(log.gaps.begin(), log.gaps.end(), [&](const RowSpan& gap) {

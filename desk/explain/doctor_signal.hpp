@@ -23,6 +23,11 @@ std::vector<Burst> repeats_of(const Eigen::VectorXd& x);
 // Rows after which a value that is back was a spike's.
 inline constexpr Eigen::Index kLongestSpike = 5;
 
+// How many rows' time may have passed from each row to the next: 1, or more where one was stamped
+// late. A computer that is kept busy may be so before or behind the measurement: the steps of time
+// on either side count.
+Eigen::VectorXd rows_passed(const Log& log);
+
 // Whether a burst holds a gap, or begins or ends so near to one that the gap makes it look so.
 bool is_next_to_gap(const Log& log, const Burst& burst);
 

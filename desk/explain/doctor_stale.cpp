@@ -84,10 +84,39 @@ struct Stale {
   Index longest = 0;
 };
 
-// Feedback gives the same torque as long as its encoder says the same.
-bool rests(const VectorXd& q, const Burst& burst) {
+// Feedback gives the same torque as long as its encoder says the same, or little else.
+bool rests(const VectorXd& q, const Rounding& rounding, const Burst& burst) {
+  constexpr double kFewSteps = 3;
   const auto during = q.segment(burst.first, burst.length + 1);
-  return during.minCoeff() == during.maxCoeff();
+  const double way = during.maxCoeff() - during.minCoeff();
+  return way == 0 || way <= kFewSteps * rounding.at(during[0]);
+}
+
+// Whether a position moves on between two rows, not by a single change that is more than a step.
+bool moves_steadily(const VectorXd& q, Index from, Index to, double step) {
+  constexpr double kOfWay = 0.5;
+  constexpr double kOneStep = 1.5;
+  const double largest =
+      (q.segment(from + 1, to - from) - q.segment(from, to - from)).cwiseAbs().maxCoeff();
+  return largest <= kOfWay * std::abs(q[to] - q[from]) + kOneStep * step;
+}
+
+// Whether a position goes over a burst, with its jump, by about as much as it moves before and
+// behind it: a joint that rests, or gives way by some steps, goes on by none, or to and fro.
+bool moves_through(const VectorXd& q, const Burst& burst, double step) {
+  constexpr Index kFewestRows = 3;
+  constexpr double kMostOfMissed = 4;
+  const Index from = std::max<Index>(burst.first - kNeighbours, 0);
+  const Index next = burst.end() + 1;
+  const Index to = std::min(next + kNeighbours, q.size() - 1);
+  if (burst.first - from < kFewestRows || to - next < kFewestRows) return false;
+  const double before = (q[burst.first] - q[from]) / static_cast<double>(burst.first - from);
+  const double behind = (q[to] - q[next]) / static_cast<double>(to - next);
+  const double jump = q[next] - q[burst.end()];
+  const double missed = static_cast<double>(burst.length + 1) * (before + behind) / 2;
+  return moves_steadily(q, from, burst.first, step) && moves_steadily(q, next, to, step) &&
+         before * behind > 0 && jump * behind > 0 &&
+         std::abs(jump) < kMostOfMissed * std::abs(missed);
 }
 
 // Of a position or a torque: of a channel free of noise beyond its steps a jump must stand out.
@@ -95,7 +124,9 @@ Stale stale_of(const Log& log, Index joint, bool smooth) {
   const VectorXd q = log.q.col(joint);
   const VectorXd x = smooth ? q : log.tau.col(joint);
   const Rounding rounding(x);
+  const Rounding rounding_of_q(q);
   const std::vector<Burst> bursts = repeats_of(x);
+  const VectorXd passed = rows_passed(log);
   const Index hold = usual_hold(bursts, x.size());
   const std::vector<Index> repeats_before = repeats_before_of(x);
   const double low = x.minCoeff();
@@ -106,10 +137,11 @@ Stale stale_of(const Log& log, Index joint, bool smooth) {
     if (burst.length < kShortestBurst || burst.length <= 2 * hold || end + 1 >= x.size()) continue;
     if (is_next_to_gap(log, burst)) continue;
     // A torque at its limit repeats honestly: find_saturation().
-    if (!smooth && (x[end] == low || x[end] == high || rests(q, burst))) continue;
-    const double jump = std::abs(x[end + 1] - x[end]);
+    if (!smooth && (x[end] == low || x[end] == high || rests(q, rounding_of_q, burst))) continue;
+    const double jump = std::abs(x[end + 1] - x[end]) / passed[end];
     const double step = rounding.at(x[end + 1]);
     if (jump < kJumpSteps * step) continue;
+    if (smooth && !moves_through(x, burst, step)) continue;
     const bool noisy = !smooth && is_noisy_around(x, burst);
     if (!noisy && jump < kJumpPerChange * usual_change(x, burst) + 2 * step) continue;
     // What it missed is what it would have moved at that pace; a joint that stuck only starts anew.

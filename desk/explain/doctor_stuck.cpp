@@ -169,7 +169,9 @@ std::vector<Burst> stuck_positions(const Log& log, Index joint) {
 class ExpectedTorque {
  public:
   ExpectedTorque(const Log& log, const RobotDescription& robot)
-      : stride_(std::max<Index>(1, log.sample_count() / kMostRows)) {
+      : stride_(std::max<Index>(1, log.sample_count() / kMostRows)),
+        from_s_(log.t_s[0]),
+        period_s_(log.period_s) {
     constexpr double kHz = 10;
     constexpr double kOfRate = 0.2;
     FilterPlan plan;
@@ -182,17 +184,23 @@ class ExpectedTorque {
   }
 
   // Between its largest and its smallest during a burst.
-  [[nodiscard]] double change_during(const Burst& burst, Index joint) const {
-    const Index first = std::min(burst.first / stride_ + 1, torque_.rows() - 1);
-    const Index last = std::min(burst.end() / stride_, torque_.rows() - 1);
+  [[nodiscard]] double change_during(double from_s, double to_s, Index joint) const {
+    const Index first = std::min(sample_at(from_s) / stride_ + 1, torque_.rows() - 1);
+    const Index last = std::min(sample_at(to_s) / stride_, torque_.rows() - 1);
     if (last <= first) return 0;
     const auto during = torque_.col(joint).segment(first, last + 1 - first);
     return during.maxCoeff() - during.minCoeff();
   }
 
  private:
+  [[nodiscard]] Index sample_at(double t_s) const {
+    return std::max<Index>(0, std::lround((t_s - from_s_) / period_s_));
+  }
+
   static constexpr Index kMostRows = 5000;
   Index stride_;
+  double from_s_;
+  double period_s_;
   Eigen::MatrixXd torque_;
 };
 
@@ -239,7 +247,8 @@ std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorq
             std::pow(own_repeats(repeats_before, burst), static_cast<double>(burst.length)) >
         kSeldom;
     return by_chance || burst.length < kLonger * usual ||
-           expected.change_during(burst, joint) < kChange * (high - low);
+           expected.change_during(log.t_s[burst.first], log.t_s[burst.end()], joint) <
+               kChange * (high - low);
   });
   return bursts;
 }
@@ -284,9 +293,9 @@ void add_stuck_fault(const Log& log, Index joint, bool position, bool at_start,
 
 }  // namespace
 
-void find_stuck_values(const Log& log, const RobotDescription& robot,
+void find_stuck_values(const Log& log, const Log& even, const RobotDescription& robot,
                        std::vector<DataFault>& faults) {
-  const ExpectedTorque expected(log, robot);
+  const ExpectedTorque expected(even, robot);
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     for (const bool position : {true, false}) {
       auto bursts = position ? stuck_positions(log, joint) : stuck_torques(log, joint, expected);

@@ -56,6 +56,7 @@ void to_radians(Log& log, const RobotDescription& robot, Index joint) {
     if (robot.joints[index].joint.type != JointType::kRevolute) continue;
     const bool with_velocity = log.dq_derived[index] || velocity_in_degrees(log, j);
     log.q.col(j) *= kRadPerDegree;
+    change_recorded(log, [j](RecordedRows& rows) { rows.q.col(j) *= kRadPerDegree; });
     if (index < log.channels.position.size()) log.channels.position[index].scale *= kRadPerDegree;
     if (!with_velocity) continue;
     log.dq.col(j) *= kRadPerDegree;

@@ -202,6 +202,7 @@ void mend_time(Log& log, const RobotDescription& robot, std::vector<DataFault>& 
   log.channels = std::move(mended);
   log.t_s /= unit->per_si;
   log.stamps_s /= unit->per_si;
+  change_recorded(log, [&](RecordedRows& rows) { rows.t_s /= unit->per_si; });
   log.period_s /= unit->per_si;
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     if (log.dq_derived[static_cast<std::size_t>(joint)]) log.dq.col(joint) *= unit->per_si;

@@ -181,6 +181,11 @@ void mend_wrapped(Log& log, const RobotDescription& robot, std::vector<DataFault
                      : by_hand;
     faults.push_back(std::move(fault));
     log.q.col(joint) = q;
+    change_recorded(log, [&](RecordedRows& rows) {
+      VectorXd recorded = rows.q.col(joint);
+      unfolded(recorded, of);
+      rows.q.col(joint) = recorded;
+    });
     derived = derived || log.dq_derived[static_cast<std::size_t>(joint)];
   }
   if (derived) derive_velocities(log);

@@ -26,11 +26,7 @@ constexpr double kLargest = 1e15;
 
 [[noreturn]] void refuse_value(const NamedColumns& columns, double value, const std::string& place,
                                const std::string& what) {
-  const std::string allowed = fmt::format("a finite number up to {:g}", kLargest);
-  if (!std::isfinite(value)) {
-    refuse(columns, place, std::isnan(value) ? "NaN" : "an infinite number", allowed,
-           "cut the recording, or fill the gap where it is made");
-  }
+  const std::string allowed = fmt::format("a number up to {:g}", kLargest);
   refuse(columns, place, fmt::format("{:g}", value), allowed,
          what == kTimeWords
              ? "say its unit, unit = \"ns\" under [channels.time] for nanoseconds"
@@ -81,7 +77,7 @@ VectorXd values_of_source(NamedColumns& columns, const Channel& channel, const s
   if (scale != 1) values *= scale;
   if (channel.offset != 0) values.array() += channel.offset;
   for (Index row = 0; row < values.size(); ++row) {
-    if (std::abs(values[row]) <= kLargest) continue;
+    if (!(std::abs(values[row]) > kLargest) || std::isinf(values[row])) continue;
     refuse_value(columns, values[row], columns.place_of(row) + ", " + channel.source, what);
   }
   return values;
@@ -118,7 +114,7 @@ VectorXd take_values(NamedColumns& columns, const Channel& channel, const std::s
   if (!channel.scale_source.empty()) scale *= scalar(columns, channel.scale_source, what);
   sum = (scale * sum).array() + channel.offset;
   for (Index row = 0; row < sum.size(); ++row) {
-    if (std::abs(sum[row]) > kLargest) {
+    if (std::abs(sum[row]) > kLargest && !std::isinf(sum[row])) {
       refuse_value(columns, sum[row], columns.place_of(row) + ", the sum", what);
     }
   }

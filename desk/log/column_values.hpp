@@ -13,8 +13,8 @@ inline constexpr const char* kTimeWords = "time";
 
 // The values of a channel in SI units; a scalar variable serves where it scales. `what`: the
 // quantity in messages. `last`: nobody asks for these columns again, their memory is handed on.
-// Throws InputError where a column is missing, or a value is not finite or larger than anything
-// that is measured.
+// What is not finite stays so (usable_rows.hpp). Throws InputError where a column is missing, or a
+// value is larger than anything that is measured.
 [[nodiscard]] Eigen::VectorXd take_values(NamedColumns& columns, const Channel& channel,
                                           const std::string& what, bool last);
 

@@ -1,9 +1,11 @@
 #include "log/csv_log.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +25,12 @@ using Eigen::Index;
 // Whether it is none yet, and with more digits would be a number: "-", "1.2e-".
 bool is_begun(std::string_view text) {
   return !number_in(text) && number_in(std::string(text) + "0");
+}
+
+// What stands for a number that there is none of.
+bool is_none(std::string_view text) {
+  constexpr std::array<std::string_view, 6> kNone{"", "NA", "N/A", "null", "None", "<NA>"};
+  return std::find(kNone.begin(), kNone.end(), text) != kNone.end();
 }
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -119,8 +127,8 @@ class CsvReader {
     std::string_view line;
     while (kept_ > 0 && ascending_ && next(line)) {
       make_room();
-      if (blank_line_ == 0 && !unfinished_ && read_row(line)) {
-        ++rows_;
+      if (!unfinished_ && read_row(line)) {
+        end_row();
       } else {
         read_row_slowly(splitter, line);
       }
@@ -222,23 +230,32 @@ class CsvReader {
     return static_cast<double>(a) - static_cast<double>(b);
   }
 
+  // As far as time ascends: single rows that do not are left out later.
   void take_time(double time) {
-    if (rows_ > 0) ascending_ = ascending_ && (!has_time_ || time > last_time_);
+    constexpr std::size_t kFewOutOfTime = 10;
+    if (has_time_ && !(time > last_time_)) {
+      ++out_of_time_;
+      ascending_ = out_of_time_ <= std::max(kFewOutOfTime, rows_ / kFewOutOfTime);
+      return;
+    }
     last_time_ = time;
+  }
+
+  void end_row() {
+    ++rows_;
+    last_line_ = line_number_;
   }
 
   void read_row_slowly(CsvLineSplitter& splitter, std::string_view line) {
     make_room();
     if (is_blank_line(line)) {
-      blank_line_ = blank_line_ == 0 ? line_number_ : blank_line_;
+      skipped_.push_back(line_number_);
+      blank_lines_.push_back(line_number_);
       return;
     }
     if (is_comment(line)) {
       skipped_.push_back(line_number_);
       return;
-    }
-    if (blank_line_ != 0) {
-      fail("line " + std::to_string(blank_line_), "a blank line", "samples without gaps");
     }
     const auto* cells = splitter.split(line);
     // As a writer that was killed leaves it; of a number that ends early nobody can tell.
@@ -260,7 +277,7 @@ class CsvReader {
     double time = last_time_;
     for (std::size_t i = 0; i < columns_.size(); ++i) read_cell(columns_[i], (*cells)[i], time);
     take_time(time);
-    ++rows_;
+    end_row();
   }
 
   void read_cell(Column& column, std::string_view text, double& time) {
@@ -272,6 +289,9 @@ class CsvReader {
     if (!value && layout_.separator != ',') {
       value = number_with_comma(text);
       decimal_comma_ = decimal_comma_ || value.has_value();
+    }
+    if (!value && column.need != Need::kWelcome && column.form == Form::kNumber && is_none(text)) {
+      value = std::numeric_limits<double>::quiet_NaN();
     }
     if (value) {
       if (is_time) time = *value;
@@ -322,6 +342,13 @@ class CsvReader {
     if (cut_off_) {
       result.remarks.push_back("The file's last line is cut off and was left out.");
     }
+    const auto blank = std::count_if(blank_lines_.begin(), blank_lines_.end(),
+                                     [this](std::size_t line) { return line < last_line_; });
+    if (blank > 0) {
+      result.remarks.push_back(
+          (blank == 1 ? "1 blank line" : std::to_string(blank) + " blank lines") +
+          " between the samples left out: line " + std::to_string(blank_lines_.front()) + " first");
+    }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       Column& column = columns_[i];
       if (!column.name.empty()) result.names.push_back(column.name);
@@ -348,14 +375,16 @@ class CsvReader {
   const NeedOf& need_of_;
   CsvLayout layout_;
   std::size_t line_number_ = 0;
-  std::size_t blank_line_ = 0;
+  std::size_t last_line_ = 0;  // that holds a row
+  std::vector<std::size_t> blank_lines_;
   std::size_t rows_ = 0;
   std::size_t room_ = 0;              // rows that the columns have room for
   std::size_t kept_ = 0;              // columns
-  std::vector<std::size_t> skipped_;  // comments between the samples, by line
+  std::vector<std::size_t> skipped_;  // comments and blank lines between the samples
   bool has_time_ = false;
-  bool ascending_ = true;  // time, so far
-  double last_time_ = 0;
+  bool ascending_ = true;                                        // time, so far
+  double last_time_ = -std::numeric_limits<double>::infinity();  // that ascends
+  std::size_t out_of_time_ = 0;                                  // rows
   bool decimal_comma_ = false;
   std::string pointed_;      // a line with points in place of its commas
   bool unfinished_ = false;  // no line end after the newest line

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <string>
@@ -41,36 +42,77 @@ void check_length(const TimedColumns& file) {
   }
 }
 
-void check_gaps(const NamedColumns& columns, const VectorXd& t_s, const Span& shared,
-                double most_gap) {
-  const Index steps = t_s.size() - 1;
-  VectorXd step = t_s.tail(steps) - t_s.head(steps);
+// Of a file's rows those with a number, and where they leave a gap.
+struct Known {
+  VectorXd t_s, values;
+  std::vector<Span> gaps;
+};
+
+Known known_of(const VectorXd& t_s, const VectorXd& values, double most_gap) {
+  Known known{VectorXd(t_s.size()), VectorXd(t_s.size()), {}};
+  Index count = 0;
+  for (Index row = 0; row < values.size(); ++row) {
+    if (!std::isfinite(values[row])) continue;
+    known.t_s[count] = t_s[row];
+    known.values[count++] = values[row];
+  }
+  known.t_s.conservativeResize(count);
+  known.values.conservativeResize(count);
+  const Index steps = count - 1;
+  if (steps < 1) return known;
+  VectorXd step = known.t_s.tail(steps) - known.t_s.head(steps);
   double* const middle = step.data() + steps / 2;
   std::nth_element(step.data(), middle, step.data() + steps);
-  const double median = *middle;
+  const double longest = most_gap * *middle;
   for (Index i = 0; i < steps; ++i) {
-    const double gap = t_s[i + 1] - t_s[i];
-    if (gap <= most_gap * median || t_s[i + 1] <= shared.first || t_s[i] >= shared.last) continue;
-    fail(
-        columns.file, columns.place_of(i), fmt::format("a gap of {:.4g} s", gap),
-        fmt::format("gaps up to {:g} sampling periods, {:.4g} s here", most_gap, most_gap * median),
-        "cut both files at the gap");
+    if (known.t_s[i + 1] - known.t_s[i] > longest)
+      known.gaps.push_back({known.t_s[i], known.t_s[i + 1]});
   }
+  return known;
 }
 
-// A straight line through the jump of an angle would be neither before nor behind it.
-VectorXd values_at(const VectorXd& t_s, VectorXd& values, const VectorXd& at_s,
-                   const std::string& name, std::vector<std::string>& remarks) {
+// Of the gaps of a file, within the time that is shared.
+void remark_gaps(const NamedColumns& columns, const VectorXd& t_s, const Span& shared,
+                 double most_gap, std::vector<std::string>& remarks) {
+  std::vector<Span> gaps = known_of(t_s, t_s, most_gap).gaps;
+  std::erase_if(
+      gaps, [&](const Span& gap) { return gap.last <= shared.first || gap.first >= shared.last; });
+  if (gaps.empty()) return;
+  const Index row = std::lower_bound(t_s.begin(), t_s.end(), gaps[0].first) - t_s.begin();
+  remarks.push_back(
+      fmt::format("{} has {} gap{}, the first of {:.4g} s behind {}: no rows are taken there",
+                  columns.file, gaps.size(), gaps.size() == 1 ? "" : "s",
+                  gaps[0].last - gaps[0].first, columns.place_of(row)));
+}
+
+// NaN in a gap and beyond what the file has. A straight line through the jump of an angle would be
+// neither before nor behind it.
+VectorXd values_at(Known known, const VectorXd& at_s, const std::string& name,
+                   std::vector<std::string>& remarks) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  VectorXd result = VectorXd::Constant(at_s.size(), kNone);
+  if (known.t_s.size() < 2) return result;
   for (const double turn : {2 * std::numbers::pi, 360.0}) {
-    const std::vector<Index> folds = folds_of(values, turn);
+    const std::vector<Index> folds = folds_of(known.values, turn);
     if (folds.empty()) continue;
-    unfold(values, turn, folds);
+    unfold(known.values, turn, folds);
     remarks.push_back(
         fmt::format("{} is folded into a turn of {:.4g}, {} times: unfolded before it was joined",
                     name, turn, folds.size()));
     break;
   }
-  return linear_at(t_s, values, at_s);
+  const double last_s = known.t_s[known.t_s.size() - 1];
+  const Index begin = std::lower_bound(at_s.begin(), at_s.end(), known.t_s[0]) - at_s.begin();
+  const Index end = std::upper_bound(at_s.begin(), at_s.end(), last_s) - at_s.begin();
+  if (end <= begin) return result;
+  result.segment(begin, end - begin) =
+      linear_at(known.t_s, known.values, at_s.segment(begin, end - begin));
+  for (const Span& gap : known.gaps) {
+    const Index from = std::upper_bound(at_s.begin(), at_s.end(), gap.first) - at_s.begin();
+    const Index to = std::lower_bound(at_s.begin(), at_s.end(), gap.last) - at_s.begin();
+    if (to > from) result.segment(from, to - from).setConstant(kNone);
+  }
+  return result;
 }
 
 // Names that one file alone has, without their times.
@@ -126,6 +168,9 @@ TimedColumns joined_files(std::vector<TimedColumns> files, Index fewest, double 
   into.file = list_of(files, [](const TimedColumns& file) { return file.columns.file; });
   joined.time.origin_s = origin_s;
   joined.time.t_s = clock.segment(begin, end - begin);
+  if (!base.time.rows.empty()) {
+    joined.time.rows.assign(base.time.rows.begin() + begin, base.time.rows.begin() + end);
+  }
   into.remarks.push_back(fmt::format(
       "{} files joined on the samples of {}: {} of its {}, from {:.6g} to {:.6g} s; the others by "
       "straight lines between theirs",
@@ -136,7 +181,7 @@ TimedColumns joined_files(std::vector<TimedColumns> files, Index fewest, double 
   };
   for (std::size_t k = 0; k < files.size(); ++k) {
     NamedColumns& from = files[k].columns;
-    if (k > 0) check_gaps(from, files[k].time.t_s, shared, most_gap);
+    if (k > 0) remark_gaps(from, files[k].time.t_s, shared, most_gap, into.remarks);
     into.has_names = into.has_names && from.has_names;
     into.remarks.insert(into.remarks.end(), from.remarks.begin(), from.remarks.end());
     for (const std::string& name : from.names) {
@@ -149,15 +194,10 @@ TimedColumns joined_files(std::vector<TimedColumns> files, Index fewest, double 
     for (const auto& [name, unit] : from.units) put(into.units, name, unit);
     for (const auto& [name, value] : from.scalars) put(into.scalars, name, value);
     for (auto& [name, values] : from.columns) {
-      for (Index row = 0; row < values.size(); ++row) {
-        if (std::isfinite(values[row])) continue;
-        fail(from.file, from.place_of(row) + ", " + name,
-             std::isnan(values[row]) ? "NaN" : "an infinite number", "a finite number",
-             "cut the recording, or fill the gap where it is made");
-      }
-      const VectorXd at = k == 0 ? VectorXd(values.segment(begin, end - begin))
-                                 : values_at(files[k].time.t_s, values, joined.time.t_s,
-                                             from.file + ": " + name, into.remarks);
+      const VectorXd at = k == 0
+                              ? VectorXd(values.segment(begin, end - begin))
+                              : values_at(known_of(files[k].time.t_s, values, most_gap),
+                                          joined.time.t_s, from.file + ": " + name, into.remarks);
       put(into.columns, name, at);
       values.resize(0);
     }

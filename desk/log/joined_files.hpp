@@ -16,8 +16,8 @@ struct TimedColumns {
 // All of them on the samples of the first, as far as the others' times reach: their columns by
 // straight lines, those that are folded into a turn unfolded before, with a remark. Columns keep
 // their names where one file alone has them, and are "2:name" besides, by the file's number from 1.
-// Throws InputError where two times share fewer than `fewest` samples of the first, where a file
-// has a gap of more than `most_gap` of its median steps there, and where a value is not finite.
+// Where one of the others has a gap of more than `most_gap` of its median steps, its columns are
+// NaN. Throws InputError where two times share fewer than `fewest` samples of the first.
 [[nodiscard]] TimedColumns joined_files(std::vector<TimedColumns> files, Eigen::Index fewest,
                                         double most_gap);
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,14 @@ struct LeftOut {
   double spread_periods = 0;
 };
 
+// Rows as they were recorded, uneven in time: what a resampling makes of them has no encoder's
+// step.
+struct RecordedRows {
+  Eigen::VectorXd t_s;
+  Eigen::MatrixXd q, dq, tau;  // as of the log
+  Eigen::Index first = 0;      // of them, among those of the file
+};
+
 // One recording in SI units, evenly sampled, time ascending, every number finite. Or a hold map
 // (hold_map.hpp), where at_rest.
 struct Log {
@@ -49,8 +58,11 @@ struct Log {
   ChannelMap channels;                  // where the columns came from; empty: not read from a file
   bool common_header = false;           // by their names alone, nobody gave the channels
   std::optional<Payload> payload = {};  // that the robot carried (robot/payload.hpp)
-  Eigen::VectorXd stamps_s;       // of the recorded rows, where t_s is another grid; else empty
-  std::vector<RowSpan> gaps;      // samples of the grid where none were recorded
+  Eigen::VectorXd stamps_s;  // of the recorded rows, where t_s is another grid; else empty
+  std::shared_ptr<const RecordedRows> recorded = {};  // where it was resampled; else null
+  std::vector<RowSpan> gaps;  // samples of the grid where none were recorded
+  // Of the rows that were read, where some of the file's had to be left out; else empty.
+  std::vector<Eigen::Index> row_numbers = {};
   std::vector<RowSpan> cut;       // recorded rows beyond a gap that is too long for one grid
   std::vector<LeftOut> left_out;  // of `gaps` and of faults, in any order
 
@@ -63,8 +75,21 @@ struct Log {
   [[nodiscard]] int joint_count() const { return static_cast<int>(q.cols()); }
   [[nodiscard]] Eigen::Index sample_count() const { return t_s.size(); }
   [[nodiscard]] double sample_rate_hz() const { return 1 / period_s; }
-  // The recorded rows, from 0, that a span of samples comes from.
+  // Of a row that was read its number in the file, both from 0.
+  [[nodiscard]] Eigen::Index row_number(Eigen::Index row) const {
+    return row_numbers.empty() ? row : row_numbers[static_cast<std::size_t>(row)];
+  }
+  // The rows of the file, from 0, that a span of samples comes from; of a gap those that were left
+  // out, or the one behind it.
   [[nodiscard]] RowSpan recorded_rows(const RowSpan& samples) const {
+    const RowSpan read = rows_read(samples);
+    const RowSpan rows{row_number(read.first), row_number(read.last)};
+    const bool is_gap = stamps_s.size() > 0 && read.first > 0 &&
+                        stamps_s[read.first] > t_s[samples.last] + period_s / 2;
+    const Eigen::Index before = is_gap ? row_number(read.first - 1) + 1 : rows.first;
+    return is_gap && before < rows.first ? RowSpan{before, rows.first - 1} : rows;
+  }
+  [[nodiscard]] RowSpan rows_read(const RowSpan& samples) const {
     if (stamps_s.size() == 0) return samples;
     const double slack = period_s / 2;
     const auto row_at = [&](double t) {

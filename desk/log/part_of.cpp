@@ -24,6 +24,7 @@ Log part_of(const Log& log, const RowSpan& samples) {
   part.channels = log.channels;
   part.common_header = log.common_header;
   part.stamps_s = log.stamps_s;
+  part.row_numbers = log.row_numbers;
   for (const LeftOut& out : log.left_out) {
     part.left_out.push_back(
         {out.joint, {out.rows.first - first, out.rows.last - first}, out.spread_periods});

@@ -25,6 +25,7 @@
 #include "log/sampling.hpp"
 #include "log/seen_by_sensor.hpp"
 #include "log/time_of.hpp"
+#include "log/usable_rows.hpp"
 #include "robot/channels.hpp"
 #include "robot/payload.hpp"
 #include "robot/transmission.hpp"
@@ -52,6 +53,7 @@ class Assembler {
         t_s_(std::move(recording.time.t_s)),
         joints_(joint_count) {
     log_.file = columns_.file;
+    log_.row_numbers = std::move(recording.time.rows);
     if (recording.time.origin_s != 0) {
       columns_.remarks.push_back(
           fmt::format("t = 0 s is {:.9g} s of the file's own clock", recording.time.origin_s));
@@ -98,7 +100,7 @@ class Assembler {
       t_s_ = values_of(map.position[0], "position of joint 1");
       check_readings();
     } else {
-      check_sample_count();
+      check_sample_count(t_s_.size());
     }
     log_.t_s = std::move(t_s_);
     // Written to column by column, while the columns that were read go.
@@ -108,7 +110,7 @@ class Assembler {
     log_.tau.resize(samples, joints_);
     for (Index i = 0; i < joints_; ++i) {
       const auto joint = static_cast<std::size_t>(i);
-      log_.q.col(i) = position(map, i);
+      log_.q.col(i) = sampled(map.position[joint], words_of("position", map.position_of, i));
       log_.tau.col(i) = sampled(map.torque[joint], words_of("torque", map.torque_of, i));
       const bool measured = joint < map.velocity.size() && map.velocity[joint].has_value();
       log_.dq_derived.push_back(!measured);
@@ -120,7 +122,13 @@ class Assembler {
     }
     read_sensors(map);
     for (const auto& [name, channel] : map.extra) log_.extra[name] = sampled(channel, name);
+    leave_out_rows_without_number(columns_, log_);
+    if (!map.at_rest) {
+      check_sample_count(log_.t_s.size());
+      unfold_positions(map);
+    }
     log_.channels = std::move(map);
+    columns_.remarks.insert(columns_.remarks.end(), log_.remarks.begin(), log_.remarks.end());
     log_.remarks = std::move(columns_.remarks);
     if (transmission_ != nullptr) to_joint_side(log_, *transmission_);
     std::string sensors = words_of_sensors(log_);
@@ -260,26 +268,25 @@ class Assembler {
     return values;
   }
 
-  VectorXd position(const ChannelMap& map, Index joint) {
+  void unfold_positions(const ChannelMap& map) {
     constexpr double kTurn = 2 * std::numbers::pi;
-    VectorXd q = sampled(map.position[static_cast<std::size_t>(joint)],
-                         words_of("position", map.position_of, joint));
-    if (map.at_rest) return q;
-    const std::vector<Index> folds = folds_of(q, kTurn);
-    if (folds.empty()) return q;
-    unfold(q, kTurn, folds);
-    columns_.remarks.push_back(
-        fmt::format("the {} is folded into a turn: it jumps by 2 pi {} time{}, "
-                    "first at t = {:.6g} s, and was unfolded",
-                    words_of("position", map.position_of, joint), folds.size(),
-                    folds.size() == 1 ? "" : "s", log_.t_s[folds.front()]));
-    return q;
+    for (Index joint = 0; joint < joints_; ++joint) {
+      VectorXd q = log_.q.col(joint);
+      const std::vector<Index> folds = folds_of(q, kTurn);
+      if (folds.empty()) continue;
+      unfold(q, kTurn, folds);
+      log_.q.col(joint) = q;
+      columns_.remarks.push_back(
+          fmt::format("the {} is folded into a turn: it jumps by 2 pi {} time{}, "
+                      "first at t = {:.6g} s, and was unfolded",
+                      words_of("position", map.position_of, joint), folds.size(),
+                      folds.size() == 1 ? "" : "s", log_.t_s[folds.front()]));
+    }
   }
 
-  void check_sample_count() const {
-    if (t_s_.size() >= kMinSamples) return;
-    fail("", fmt::format("{} samples", t_s_.size()),
-         fmt::format("{} samples or more", kMinSamples));
+  void check_sample_count(Index samples) const {
+    if (samples >= kMinSamples) return;
+    fail("", fmt::format("{} samples", samples), fmt::format("{} samples or more", kMinSamples));
   }
 
   void check_readings() const {

@@ -22,7 +22,8 @@ namespace offnominal::desk {
 //
 // Throws InputError, with the place in the file, when a column is missing (the message lists those
 // that are there), is not numeric, or differs in length from the time; when the number of joints is
-// not joint_count; when a value is not finite; when time does not ascend; when there are fewer than
+// not joint_count; when in most rows a value is not finite, or time does not ascend in more than a
+// few: rows of that kind are left out otherwise (usable_rows.hpp); when there are fewer than
 // kMinSamples samples, or gaps that leave less than a quarter of the rows (sampling.hpp).
 //
 // "a.csv+b.csv" are two files of one recording (joined_files.hpp). Units that a file says of its

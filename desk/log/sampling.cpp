@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -52,7 +53,7 @@ void keep_rests(const VectorXd& recorded_s, const VectorXd& q, const VectorXd& e
   }
 }
 
-void resample(Log& log, double period_s) {
+RecordedRows resample(Log& log, double period_s) {
   const VectorXd recorded = log.t_s;
   const double span_s = recorded[recorded.size() - 1] - recorded[0];
   const auto steps = static_cast<Index>(std::floor(span_s / period_s * (1 + 1e-12)));
@@ -66,14 +67,17 @@ void resample(Log& log, double period_s) {
       result.col(j) = interpolate(recorded, columns.col(j), even);
       keep_rests(recorded, columns.col(j), even, result.col(j));
     }
-    columns = std::move(result);
+    return std::exchange(columns, std::move(result));
   };
-  resample_columns(log.q, position_at);
-  resample_columns(log.dq, linear_at);
-  resample_columns(log.tau, linear_at);
+  RecordedRows rows;
+  rows.q = resample_columns(log.q, position_at);
+  rows.dq = resample_columns(log.dq, linear_at);
+  rows.tau = resample_columns(log.tau, linear_at);
   if (log.sensor_tau.rows() > 0) resample_columns(log.sensor_tau, linear_at);
   for (auto& [name, values] : log.extra) values = linear_at(recorded, values, even);
+  rows.t_s = recorded;
   log.t_s = std::move(even);
+  return rows;
 }
 
 // Where rows are missing: the last row before, and the first after it.
@@ -314,11 +318,11 @@ void make_even(Log& log) {
   }
   check_size(log, sampling);
   if (log.stamps_s.size() == 0) log.stamps_s = recorded;
+  const Index before = log.cut.empty() || log.cut[0].first > 0 ? 0 : log.cut[0].last + 1;
   const auto grid_s = put_on_grid(log.t_s, period_s);
   if (grid_s) {
     log.remarks.push_back(fmt::format("rows are missing, one each {:.4g} s: filled in", *grid_s));
     recorded = log.t_s;
-    const Index before = log.cut.empty() || log.cut[0].first > 0 ? 0 : log.cut[0].last + 1;
     log.stamps_s.segment(before, recorded.size()) = recorded;
   } else {
     log.remarks.push_back(
@@ -327,7 +331,9 @@ void make_even(Log& log) {
                     period_s, 100 * sampling.jitter, period_s));
   }
   log.period_s = grid_s.value_or(period_s);
-  resample(log, log.period_s);
+  RecordedRows rows = resample(log, log.period_s);
+  rows.first = before;
+  if (!grid_s) log.recorded = std::make_shared<const RecordedRows>(std::move(rows));
   bridge(log, recorded, holes);
 }
 

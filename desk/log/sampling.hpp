@@ -17,12 +17,13 @@ Sampling sampling_of(const Eigen::Ref<const Eigen::VectorXd>& t_s);
 // Sets period_s of a log whose steps are even to within kSamplingJitter (read_log.hpp). Of any
 // other a remark says what was done: up to 1 % of the rows stamped off, by 3 periods at most, are
 // taken as even; rows that are even but for those that are missing are put on their grid with their
-// own values, and the missing ones filled in; all else is resampled to its median step. Positions
-// that are folded into a turn stay so. Where rows are missing, not just late, for more than kMaxGap
-// steps and kShortestGapS, the samples of the grid in between are `gaps` of the log: straight
-// lines, which no analysis may use. Of a recording with a gap of more than kLongestGapS only the
-// longest part between such gaps is kept; the rest is `cut`. Throws InputError where the grid would
-// have more than 4 times the rows that there are, and more than 100 000.
+// own values, and the missing ones filled in; all else is resampled to its median step, and the
+// rows stay as `recorded`. Positions that are folded into a turn stay so. Where rows are missing,
+// not just late, for more than kMaxGap steps and kShortestGapS, the samples of the grid in between
+// are `gaps` of the log: straight lines, which no analysis may use. Of a recording with a gap of
+// more than kLongestGapS only the longest part between such gaps is kept; the rest is `cut`. Throws
+// InputError where the grid would have more than 4 times the rows that there are, and more than 100
+// 000.
 void make_even(Log& log);
 
 // Shorter ones hold nothing that a motion could do meanwhile.

@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "log/column_values.hpp"
+#include "log/usable_rows.hpp"
 #include "robot/units.hpp"
 
 namespace offnominal::desk {
@@ -42,6 +43,36 @@ Index samples_of(const NamedColumns& columns) {
 
 bool says_unit(const Channel& channel) {
   return !channel.unit.empty() || channel.scale != 1 || !channel.scale_source.empty();
+}
+
+void leave_out_rows_out_of_time(NamedColumns& columns, FileTime& time) {
+  const Index rows = time.t_s.size();
+  std::vector<Index> kept = ascending_rows(time.t_s);
+  const Index left_out = rows - static_cast<Index>(kept.size());
+  if (left_out == 0) return;
+  Index first = 0;
+  while (first < static_cast<Index>(kept.size()) &&
+         kept[static_cast<std::size_t>(first)] == first) {
+    ++first;
+  }
+  const std::string place = columns.place_of(first) + ", time";
+  const std::string found =
+      first == 0 ? fmt::format("{:.9g} s", time.t_s[first])
+                 : fmt::format("{:.9g} s after {:.9g} s", time.t_s[first], time.t_s[first - 1]);
+  if (static_cast<double>(left_out) > kMostRowsOutOfTime * static_cast<double>(rows)) {
+    throw InputError({columns.file, place, found, "time that ascends from sample to sample",
+                      "cut the recording where its clock begins anew, or say its step: --period"});
+  }
+  columns.remarks.push_back(
+      fmt::format("{} row{} whose time does not ascend {} left out: {} first, {}", left_out,
+                  left_out == 1 ? "" : "s", left_out == 1 ? "is" : "are", place, found));
+  VectorXd ascending(static_cast<Index>(kept.size()));
+  for (Index i = 0; i < ascending.size(); ++i) {
+    ascending[i] = time.t_s[kept[static_cast<std::size_t>(i)]];
+  }
+  time.t_s = std::move(ascending);
+  keep_rows(columns, rows, kept);
+  time.rows = std::move(kept);
 }
 
 }  // namespace
@@ -84,12 +115,7 @@ FileTime time_of(NamedColumns& columns, const Channel& channel, double period_s)
     }
   }
   time.t_s = take_values(columns, as_said, kTimeWords, true);
-  for (Index row = 1; row < time.t_s.size(); ++row) {
-    if (time.t_s[row] > time.t_s[row - 1]) continue;
-    fail(columns.place_of(row) + ", time",
-         fmt::format("{:.9g} s after {:.9g} s", time.t_s[row], time.t_s[row - 1]),
-         "time that ascends from sample to sample", "");
-  }
+  leave_out_rows_out_of_time(columns, time);
   return time;
 }
 

@@ -20,6 +20,7 @@ using offnominal::desk::read_log;
 using offnominal::test::message_of;
 using offnominal::test::TemporaryFile;
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 
 // `lines` samples of q = t^2 at 100 Hz; `change` may alter the text of one line (from 2).
@@ -131,11 +132,51 @@ TEST(CsvLog, TextInANumberNamesLineAndColumn) {
                                       if (number == 7) line = "0.05,oops,1,2";
                                     })),
               AllOf(HasSubstr("log.csv: line 7, column q1"), HasSubstr("\"oops\"")));
-  EXPECT_THAT(refusal(one_joint_csv(20,
+}
+
+// One bad row costs that row, and the others keep their numbers.
+TEST(CsvLog, ARowWithoutANumberIsLeftOutAndSaidSo) {
+  for (const char* bad : {"0.3,1,,2", "0.3,nan,1,2", "0.3,1,2,inf", "0.3,NA,1,2", "0.3,1,2,"}) {
+    const Log log = read(one_joint_csv(60, [bad](int number, std::string& line) {
+      if (number == 32) line = bad;
+    }));
+    EXPECT_EQ(log.sample_count(), 60) << bad;
+    EXPECT_TRUE(log.q.allFinite() && log.dq.allFinite() && log.tau.allFinite()) << bad;
+    EXPECT_NEAR(log.q(30, 0), 0.09, 1e-3) << bad;
+    EXPECT_THAT(log.remarks, Contains(AllOf(HasSubstr("1 row without a number is left out"),
+                                            HasSubstr("line 32"))))
+        << bad;
+    EXPECT_EQ(log.recorded_rows({40, 40}).first, 40) << bad;
+  }
+}
+
+TEST(CsvLog, ManyRowsWithoutANumberAreAGap) {
+  const Log log = read(one_joint_csv(200, [](int number, std::string& line) {
+    if (number >= 52 && number < 72) line = std::to_string(0.01 * (number - 2)) + ",nan,nan,nan";
+  }));
+  EXPECT_EQ(log.sample_count(), 200);
+  ASSERT_EQ(log.gaps.size(), 1U);
+  EXPECT_EQ(log.gaps[0].first, 50);
+  EXPECT_EQ(log.gaps[0].last, 69);
+  EXPECT_EQ(log.recorded_rows(log.gaps[0]).first, 50);
+  EXPECT_EQ(log.recorded_rows(log.gaps[0]).last, 69);
+  EXPECT_EQ(log.recorded_rows({100, 100}).first, 100);
+}
+
+TEST(CsvLog, MostRowsWithoutANumberAreRefused) {
+  EXPECT_THAT(refusal(one_joint_csv(40,
                                     [](int number, std::string& line) {
-                                      if (number == 9) line = "0.07,1,,2";
+                                      if (number > 15) line = line.substr(0, 9) + "nan,1,2";
                                     })),
-              AllOf(HasSubstr("line 9, column dq1"), HasSubstr("found nothing")));
+              AllOf(HasSubstr("line 16, position of joint 1"), HasSubstr("NaN")));
+}
+
+TEST(CsvLog, ABlankLineBetweenSamplesIsLeftOut) {
+  const Log log = read(one_joint_csv(20, [](int number, std::string& line) {
+    if (number == 4) line = "\n" + line;
+  }));
+  EXPECT_EQ(log.sample_count(), 20);
+  EXPECT_THAT(log.remarks, Contains(AllOf(HasSubstr("1 blank line"), HasSubstr("line 4"))));
 }
 
 // GIVEN a file that its writer could not finish THEN it is read up to its last whole line, wherever
@@ -178,11 +219,6 @@ TEST(CsvLog, RaggedLinesAreRefused) {
                                       if (number == 4) line = "0.02,1,2,3,";
                                     })),
               AllOf(HasSubstr("line 4"), HasSubstr("5 values")));
-  EXPECT_THAT(refusal(one_joint_csv(20,
-                                    [](int number, std::string& line) {
-                                      if (number == 4) line = "";
-                                    })),
-              AllOf(HasSubstr("line 4"), HasSubstr("blank line")));
   EXPECT_THAT(refusal(one_joint_csv(20,
                                     [](int number, std::string& line) {
                                       if (number == 4) line = "\"0.02,1,2,3";
@@ -237,25 +273,19 @@ TEST(CsvLog, NanosecondsOfTheEpochAreNamed) {
                                    HasSubstr("time = {source = \"t\", unit = \"ns\"}")));
 }
 
-TEST(CsvLog, TimeThatDoesNotAscendIsRefused) {
-  EXPECT_THAT(refusal(one_joint_csv(20,
-                                    [](int number, std::string& line) {
-                                      if (number == 12) line = "0.09,1,2,3";
-                                    })),
+TEST(CsvLog, ASingleTimeThatDoesNotAscendIsLeftOutAndMoreAreRefused) {
+  const auto stamped = [](int last) {
+    return one_joint_csv(20, [last](int number, std::string& line) {
+      if (number >= 12 && number <= last) line = "0.09,1,2,3";
+    });
+  };
+  const Log log = read(stamped(12));
+  EXPECT_EQ(log.sample_count(), 20);
+  EXPECT_NEAR(log.q(10, 0), 0.01, 1e-4);
+  EXPECT_THAT(log.remarks,
+              Contains(AllOf(HasSubstr("line 12, time"), HasSubstr("0.09 s after 0.09 s"))));
+  EXPECT_THAT(refusal(stamped(15)),
               AllOf(HasSubstr("line 12, time"), HasSubstr("0.09 s after 0.09 s")));
-}
-
-TEST(CsvLog, NotANumberAndInfinityAreRefusedWithTheirPlace) {
-  EXPECT_THAT(refusal(one_joint_csv(20,
-                                    [](int number, std::string& line) {
-                                      if (number == 5) line = "0.03,nan,2,3";
-                                    })),
-              AllOf(HasSubstr("line 5, q1"), HasSubstr("NaN")));
-  EXPECT_THAT(refusal(one_joint_csv(20,
-                                    [](int number, std::string& line) {
-                                      if (number == 5) line = "0.03,1,2,inf";
-                                    })),
-              AllOf(HasSubstr("line 5, tau1"), HasSubstr("infinite")));
 }
 
 // Without dq the velocity is derived, and of such positions it would be infinite.

@@ -96,11 +96,29 @@ TEST_F(JoinedFiles, AreRefusedWhereTheirClocksDoNotOverlap) {
   EXPECT_THAT(refusal(), HasSubstr("too few samples"));
 }
 
-TEST_F(JoinedFiles, AreRefusedAtAGapOfTheSecond) {
+TEST_F(JoinedFiles, HaveAGapWhereTheSecondHasOne) {
   put(folder_ / "a.csv", ramp("t,q1", 0, 1, 0.01, 1, 2));
   put(folder_ / "b.csv",
       ramp("t,tau1", 0, 0.4, 0.01, 5, 0) + ramp("", 0.6, 1, 0.01, 5, 0).substr(1));
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("b.csv: line 42"), HasSubstr("a gap of 0.2 s")));
+  const Log log = read();
+  EXPECT_EQ(log.sample_count(), 101);
+  ASSERT_EQ(log.gaps.size(), 1U);
+  EXPECT_EQ(log.gaps[0].first, 41);
+  EXPECT_EQ(log.gaps[0].last, 59);
+  EXPECT_EQ(log.recorded_rows(log.gaps[0]).first, 41);
+  EXPECT_EQ(log.recorded_rows(log.gaps[0]).last, 59);
+  EXPECT_THAT(log.remarks, Contains(AllOf(HasSubstr("b.csv has 1 gap"), HasSubstr("0.2 s"),
+                                          HasSubstr("line 42"))));
+}
+
+TEST_F(JoinedFiles, DoWithoutARowThatHasNoNumber) {
+  put(folder_ / "a.csv", ramp("t,q1", 0, 1, 0.01, 1, 2));
+  put(folder_ / "b.csv",
+      ramp("t,tau1", 0, 0.4, 0.01, 5, 0) + "0.41,nan\n" + ramp("", 0.42, 1, 0.01, 5, 0).substr(1));
+  const Log log = read();
+  EXPECT_EQ(log.sample_count(), 101);
+  EXPECT_TRUE(log.gaps.empty());
+  EXPECT_NEAR(log.tau(41, 0), 5, 1e-9);
 }
 
 TEST_F(JoinedFiles, AreRefusedWhereBothHaveAColumnThatIsWanted) {

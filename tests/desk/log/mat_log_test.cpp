@@ -147,10 +147,11 @@ TEST(MatLog, WrongSizesAndKindsAreRefused) {
 
   MatWriter nan("nan.mat");
   auto values = ramp(12, 1);
-  values[4] = std::nan("");
+  for (std::size_t i = 4; i < values.size(); ++i) values[i] = std::nan("");
   nan.doubles("t", 12, 1, ramp(12, 0.01)).doubles("qm", 1, 12, values);
+  nan.doubles("vir", 1, 12, ramp(12, 1)).doubles("gtau", 1, 1, {2});
   EXPECT_THAT(message_of<InputError>([&] { read_log(nan.path(), 1, drive_map()); }),
-              AllOf(HasSubstr("sample 5, qm"), HasSubstr("NaN")));
+              AllOf(HasSubstr("sample 5, position of joint 1"), HasSubstr("NaN")));
 }
 
 TEST(MatLog, DamagedFilesAreRefused) {
