@@ -103,6 +103,7 @@ std::optional<Excursion> excursion_between(const VectorXd& tau, Index from, Inde
   constexpr double kLongestS = 1;  // of a value that stays
   constexpr double kLongestPulseS = 0.25;
   constexpr double kAlike = 0.5;
+  constexpr double kAtOnce = 0.6;
   constexpr double kOfLargest = 1.2;
   constexpr double kUsualShare = 0.99;
   const RowSpan rows{from + 1, to};
@@ -121,6 +122,9 @@ std::optional<Excursion> excursion_between(const VectorXd& tau, Index from, Inde
       std::abs(there + back) > kAlike * std::max(std::abs(there), std::abs(back))) {
     return std::nullopt;
   }
+  // What rises over some rows was there.
+  const double height = (inside.array() - tau[from]).abs().maxCoeff();
+  if (std::min(std::abs(there), std::abs(back)) < kAtOnce * height) return std::nullopt;
   VectorXd others(tau.size() - rows.count());
   others << tau.head(rows.first), tau.tail(tau.size() - rows.last - 1);
   const double large = kOfLargest * quantile(others.cwiseAbs(), kUsualShare);

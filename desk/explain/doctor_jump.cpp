@@ -23,6 +23,8 @@ constexpr double kNoiseDeviations = 12;  // standard deviations
 constexpr double kDeviationOfMedian = 1.4826;
 constexpr double kTimesTopPace = 3;
 constexpr double kTimesStep = 4;
+// A joint that is held gives way by a few steps at once, and stays there.
+constexpr double kStepsOfAnotherZero = 20;
 
 double median_of(VectorXd values) { return quantile(std::move(values), 0.5); }
 
@@ -97,7 +99,7 @@ Breaks breaks_of(const Log& log, const VectorXd& q, const std::vector<RowSpan>& 
       jumps.spikes.push_back({0, i});
     } else if (steps - 1 - i < kLongestSpike) {
       jumps.spikes.push_back({i + 1, steps});
-    } else {
+    } else if (std::abs(excess[i]) > kStepsOfAnotherZero * step) {
       jumps.steps.push_back(i);
     }
   }

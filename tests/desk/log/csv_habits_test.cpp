@@ -293,7 +293,7 @@ TEST(CsvHabits, LinesAreCountedAsTheFileHasThem) {
   std::string text = "# drive 3\n\n" + kHeader + "s,rad,rad/s,Nm\n" + lines({}, 3) +
                      "# the gripper closes\n0.03,oops,1,2\n";
   EXPECT_THAT(refusal(text), HasSubstr("line 9, column q1"));
-  text = kHeader + lines({}, 12) + "# the gripper closes\n0.12,1,1,2\n0.12,1,1,2\n";
+  text = kHeader + lines({}, 12) + "# the gripper closes\n0.12,1,1,2\n0.12,1,1,2\n0.12,1,1,2\n";
   EXPECT_THAT(refusal(text), HasSubstr("line 16, time"));
 }
 
