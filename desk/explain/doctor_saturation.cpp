@@ -154,6 +154,14 @@ Spread expected_spread(const Log& log, const Log& even, const RobotDescription& 
   return spread_in(torque.col(joint), thin);
 }
 
+// Whether it is named already why a torque stays the same.
+bool is_known_to_stay(const std::vector<DataFault>& faults, Index joint) {
+  return std::any_of(faults.begin(), faults.end(), [joint](const DataFault& fault) {
+    return fault.joint == joint && fault.signal == FaultySignal::kTorque &&
+           (fault.kind == DataFaultKind::kSaturation || fault.kind == DataFaultKind::kStuck);
+  });
+}
+
 }  // namespace
 
 void find_held_torques(const Log& log, const Log& even, const RobotDescription& robot,
@@ -170,10 +178,7 @@ void find_held_torques(const Log& log, const Log& even, const RobotDescription& 
     if (!(torque.width > 0) || !(torque.width < kHeld * size)) continue;
     const Spread expected = expected_spread(log, even, robot, joint, rows);
     if (!(expected.width > std::max(kUnlike * torque.width, kExpected * size))) continue;
-    const bool known = std::any_of(faults.begin(), faults.end(), [joint](const DataFault& fault) {
-      return fault.joint == joint && fault.kind == DataFaultKind::kSaturation;
-    });
-    if (known) continue;
+    if (is_known_to_stay(faults, joint)) continue;
     DataFault fault;
     fault.kind = DataFaultKind::kSaturation;
     fault.joint = joint;
@@ -249,7 +254,8 @@ void find_saturation(const Log& log, const RobotDescription& robot,
       spans.insert(spans.end(), stretches.begin(), stretches.end());
       share += static_cast<double>(torque.reached(other)) / rows;
     }
-    const double most_share = gradual ? kLargestShareOfAll : kLargestShareAtExtreme;
+    const double most_share =
+        gradual && !is_known_to_stay(faults, joint) ? kLargestShareOfAll : kLargestShareAtExtreme;
     if (!(share > 0) || (share > most_share && !at_limit)) continue;
     DataFault fault;
     fault.kind = DataFaultKind::kSaturation;

@@ -178,10 +178,13 @@ TEST(DoctorOfRows, ExcusesAHeldPoseThatIsPushedByHand) {
 }
 
 TEST(DoctorOfRows, FindsATorqueThatDropsToZeroWhileTheJointMoves) {
-  for (const Index rows : {50, 150}) {
+  for (const Index rows : {25, 50}) {
     Log log = jittered_arm();
     Index from = 2000;
-    while (std::abs(log.tau(from, 0)) < 10 || std::abs(log.dq(from, 0)) < 0.3) ++from;
+    while (std::min(std::abs(log.tau(from - 1, 0)), std::abs(log.tau(from + rows, 0))) < 50 ||
+           std::abs(log.dq(from, 0)) < 0.3) {
+      ++from;
+    }
     log.tau.col(0).segment(from, rows).setZero();
     const auto faults = examine(log, test::arm_description());
     ASSERT_THAT(faults, testing::SizeIs(1)) << rows << ": " << all_words(faults);
