@@ -573,6 +573,12 @@ void judge_whole(Explanation& e) {
                   "noise, and follows nothing that was looked at.",
                   at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
   }
+  // What something else moves bends the model's own numbers too.
+  std::erase_if(e.shifts, [&](const Shift& shift) {
+    return std::any_of(e.answers.begin(), e.answers.end(), [&](const JointAnswer& one) {
+      return one.joint == shift.joint && one.verdict == Verdict::kUnknownExternal;
+    });
+  });
   const std::string changes = sentence_on_changes(e);
   if (e.verdict != Verdict::kChanged && !changes.empty()) e.words += " " + changes;
   advise_on_changes(e);
