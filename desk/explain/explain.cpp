@@ -385,7 +385,8 @@ class Explainer {
       const double energy =
           std::max(own, weighted_energy(*setting_.data, term, other.fit.coefficients.back(),
                                         found.fit.joint_weights));
-      if (name == same[0] || !as_good(*setting_.data, found.fit, other.fit, energy) ||
+      if (name == same[0] || !takes_its_place(beside, found.fit, other.fit) ||
+          !as_good(*setting_.data, found.fit, other.fit, energy) ||
           is_nested(*setting_.data, found.baseline, mine, term) ||
           is_refuted_by_simpler(*setting_.data, mine, found.fit, term, other.fit)) {
         continue;
@@ -396,6 +397,22 @@ class Explainer {
       add_slow_ripples(found, mine, others, own, same);
     }
     return same;
+  }
+
+  // Whether another model takes at least half of what the chosen one takes, on the joint where that
+  // is most: an offset of the torso is no friction of the elbow, however few samples that is worth.
+  [[nodiscard]] bool takes_its_place(const ModelFit& without, const ModelFit& chosen,
+                                     const ModelFit& other) const {
+    constexpr double kOfIt = 0.5;
+    const RowLayout& layout = setting_.data->layout;
+    const auto energy_of = [&](const ModelFit& fit) {
+      return layout.energy(layout.weighted(fit.residual, chosen.joint_weights));
+    };
+    const VectorXd before = energy_of(without);
+    const VectorXd taken = before - energy_of(chosen);
+    Index most = 0;
+    taken.maxCoeff(&most);
+    return (before - energy_of(other))[most] >= kOfIt * taken[most];
   }
 
   // Ripples slower than the range: a rich motion tells them from an offset or a spring, or has
