@@ -574,9 +574,9 @@ void judge_whole(Explanation& e) {
                   at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
   }
   // What something else moves bends the model's own numbers too.
-  std::erase_if(e.shifts, [&](const Shift& shift) {
+  std::erase_if(e.shifts, [&](const Shift& told) {
     return std::any_of(e.answers.begin(), e.answers.end(), [&](const JointAnswer& one) {
-      return one.joint == shift.joint && one.verdict == Verdict::kUnknownExternal;
+      return one.joint == told.joint && one.verdict == Verdict::kUnknownExternal;
     });
   });
   const std::string changes = sentence_on_changes(e);

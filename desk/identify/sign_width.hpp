@@ -41,9 +41,10 @@ std::vector<Eigen::Index> joints_with_free_width(const RobotDescription& robot,
 
 // The width of one joint at which a fitted model meets the recordings best, between a thousandth of
 // the joint's top speed (narrower than that it would follow the velocity's noise) and three tenths
-// of it (wider, the sign would be viscous friction in disguise): on the grid first, then between its points. What acts on the joints concerned alone is fitted anew
-// for each width, the rest stays as it is. The present width is kept where it is as good to 1e-6 of
-// the error's energy. `robot`: what `data` was made with.
+// of it (wider, the sign would be viscous friction in disguise): on the grid first, then between
+// its points. What acts on the joints concerned alone is fitted anew for each width, the rest stays
+// as it is. The present width is kept where it is as good to 1e-6 of the error's energy. `robot`:
+// what `data` was made with.
 double best_sign_width(const Data& data, const RobotDescription& robot,
                        const std::vector<Term>& terms, const ModelFit& fit, Eigen::Index joint);
 
