@@ -170,7 +170,7 @@ TEST_F(RecordingsOfVerbs, AreReadAsFarAsTimeAscends) {
   const std::string header = "t,q1,q2,tau1,tau2";
   expect_refusal(piped("(echo " + header + "; yes 1,2,3,4,5)", "-"),
                  "line 3, time: found 1 s after 1 s");
-  expect_refusal(piped("(echo " + header + "; yes nan,2,3,4,5)", "-"), "line 2, t: found NaN");
+  expect_refusal(piped("(echo " + header + "; yes nan,2,3,4,5)", "-"), "line 2, time: found nan s");
   put(folder_ / "channels.toml",
       "time = {source = \"t\", scale = 0.001}\nposition = [\"q1\", \"q2\"]\n"
       "torque = [\"tau1\", \"tau2\"]\n");
