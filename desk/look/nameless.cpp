@@ -132,7 +132,7 @@ class Guesser {
     }
     if (moving.empty()) return moving;
     constexpr Index kFewest = 200;
-    const Stretch stretch = longest_stretch(t_s, all);
+    const UnbrokenRows stretch = longest_stretch(t_s, all);
     if (stretch.count < kFewest) return {};
     for (Index i = 0; i < all.cols(); ++i) {
       smoothed_.push_back(smoothed(all.col(i).segment(stretch.first, stretch.count),

@@ -28,8 +28,8 @@ double median_step(const VectorXd& t_s) {
 
 }  // namespace
 
-Stretch longest_stretch(const VectorXd& t_s, const Eigen::MatrixXd& columns) {
-  Stretch longest;
+UnbrokenRows longest_stretch(const VectorXd& t_s, const Eigen::MatrixXd& columns) {
+  UnbrokenRows longest;
   if (t_s.size() < 2) return longest;
   const double most = 2 * median_step(t_s);
   Index first = 0;
@@ -86,7 +86,7 @@ Relation relation_of(const VectorXd& position, const VectorXd& velocity, const V
   }
   Eigen::MatrixXd both(t_s.size(), 2);
   both << position, velocity;
-  const Stretch stretch = longest_stretch(t_s, both);
+  const UnbrokenRows stretch = longest_stretch(t_s, both);
   if (stretch.count < kFewestJudged) {
     const char* const why = stretch.has_not_finite ? "values are missing (NaN): the longest stretch"
                             : stretch.has_gap      ? "time has gaps: the longest stretch"

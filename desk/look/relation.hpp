@@ -22,13 +22,14 @@ struct Relation {
 
 // Rows of the longest stretch in which all of it is finite and no step of time is longer than twice
 // the median.
-struct Stretch {
+struct UnbrokenRows {
   Eigen::Index first = 0;
   Eigen::Index count = 0;
   bool has_not_finite = false;  // anywhere
   bool has_gap = false;
 };
-[[nodiscard]] Stretch longest_stretch(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& columns);
+[[nodiscard]] UnbrokenRows longest_stretch(const Eigen::VectorXd& t_s,
+                                           const Eigen::MatrixXd& columns);
 
 // What is compared: low-passed without phase, on an even clock, and its derivative. Of a stretch.
 struct Smoothed {
