@@ -217,6 +217,19 @@ Log held_over_gaps(const Log& log) {
   return held;
 }
 
+// Every check of a stretch, in the order in which they need each other. `held`: with values held
+// over gaps, where `log` has any; `even`: the same, evenly sampled.
+void find_faults_of_stretches(const Log& held, const Log& log, const Log& even,
+                              const RobotDescription& robot, std::vector<DataFault>& faults) {
+  find_stale_samples(held, faults);
+  find_stuck_values(held, even, robot, faults);
+  find_stuck_encoders(log, robot, faults);
+  find_torque_excursions(held, even, robot, faults);
+  find_jumps(log, faults);
+  find_saturation(held, robot, faults);
+  find_held_torques(held, even, robot, faults);
+}
+
 // The same of rows that were resampled: a spline and straight lines have no steps of an encoder,
 // and neither repeat a value nor jump.
 std::vector<DataFault> faults_of_rows(const Log& log, const RobotDescription& robot) {
@@ -227,13 +240,7 @@ std::vector<DataFault> faults_of_rows(const Log& log, const RobotDescription& ro
     set_spans(rows, rows.gaps, gaps);
     local.push_back(std::move(gaps));
   }
-  find_stale_samples(rows, local);
-  find_stuck_values(rows, log, robot, local);
-  find_stuck_encoders(rows, robot, local);
-  find_torque_excursions(rows, log, robot, local);
-  find_jumps(rows, local);
-  find_saturation(rows, robot, local);
-  find_held_torques(rows, log, robot, local);
+  find_faults_of_stretches(rows, rows, log, robot, local);
   if (!rows.gaps.empty()) local.erase(local.begin());
   to_samples(log, local);
   std::vector<DataFault> faults;
@@ -249,13 +256,7 @@ std::vector<DataFault> local_faults(const Log& log, const RobotDescription& robo
   const Log held = log.gaps.empty() ? Log{} : held_over_gaps(log);
   const Log& as_recorded = log.gaps.empty() ? log : held;
   find_gaps(log, faults);
-  find_stale_samples(as_recorded, faults);
-  find_stuck_values(as_recorded, as_recorded, robot, faults);
-  find_stuck_encoders(log, robot, faults);
-  find_torque_excursions(as_recorded, as_recorded, robot, faults);
-  find_jumps(log, faults);
-  find_saturation(as_recorded, robot, faults);
-  find_held_torques(as_recorded, as_recorded, robot, faults);
+  find_faults_of_stretches(as_recorded, log, as_recorded, robot, faults);
   return faults;
 }
 
