@@ -7,10 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "compare/inverse_model.hpp"
-#include "compare/motion.hpp"
 #include "explain/doctor_checks.hpp"
 #include "explain/doctor_signal.hpp"
+#include "explain/expected_torque.hpp"
 #include "signal/quantile.hpp"
 #include "signal/zero_phase.hpp"
 
@@ -25,8 +24,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr Index kShortest = 4;  // rows; shorter ones: find_jumps()
-constexpr double kCutoffHz = 10;
-constexpr double kOfRate = 0.2;
 
 struct Excursion {
   RowSpan rows;
@@ -36,14 +33,10 @@ struct Excursion {
 // What the model says of the torque, against which a pulse is held.
 class Response {
  public:
-  Response(const Log& even, const RobotDescription& robot) : log_(even) {
-    FilterPlan plan;
-    plan.sample_rate_hz = even.sample_rate_hz();
-    cutoff_hz_ = std::min(kCutoffHz, kOfRate * plan.sample_rate_hz);
-    plan.position_cutoff_hz = cutoff_hz_;
-    const Motion motion = motion_of(even, plan);
-    torque_ = model_torque(robot, motion);
-  }
+  Response(const Log& even, const RobotDescription& robot)
+      : log_(even),
+        cutoff_hz_(ExpectedTorque::cutoff_hz(even)),
+        expected_(even, robot, even.sample_count()) {}
 
   // The share of a pulse between two times that the joint's motion shows: what is not in the
   // difference between the measured torque and the model's.
@@ -63,19 +56,16 @@ class Response {
     const VectorXd measured =
         zero_phase_low_pass(log_.tau.col(joint), cutoff_hz_, log_.sample_rate_hz());
     const VectorXd fit = columns.colPivHouseholderQr().solve(
-        measured.segment(first, count) - torque_.col(joint).segment(first, count));
+        measured.segment(first, count) - expected_.torque().col(joint).segment(first, count));
     return 1 - fit[0];
   }
 
-  [[nodiscard]] Index sample_at(double t_s) const {
-    const auto at = std::lround((t_s - log_.t_s[0]) / log_.period_s);
-    return std::clamp<Index>(at, 0, log_.sample_count() - 1);
-  }
+  [[nodiscard]] Index sample_at(double t_s) const { return expected_.sample_at(t_s); }
 
  private:
   const Log& log_;
-  double cutoff_hz_ = 0;
-  Eigen::MatrixXd torque_;
+  double cutoff_hz_;
+  ExpectedTorque expected_;  // of every sample
 };
 
 // Rows behind which the torque changes as it hardly ever does.

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
-#include "compare/inverse_model.hpp"
 #include "compare/motion.hpp"
 #include "compare/standstill.hpp"
 #include "explain/doctor_checks.hpp"
 #include "explain/doctor_signal.hpp"
-#include "signal/decimate.hpp"
+#include "explain/expected_torque.hpp"
 #include "signal/quantile.hpp"
 
 namespace offnominal::desk {
@@ -126,32 +126,12 @@ Spread spread_of(const VectorXd& values) {
   return {quantile(values, 0.5), quantile(values, 1 - kTail) - quantile(values, kTail)};
 }
 
-Spread spread_in(const Eigen::Ref<const VectorXd>& values, const std::vector<Index>& rows) {
+// Over those rows of a value that each has.
+template <typename ValueOf>
+Spread spread_over(const std::vector<Index>& rows, const ValueOf& value_of) {
   VectorXd those(static_cast<Index>(rows.size()));
-  for (Index i = 0; i < those.size(); ++i) those[i] = values[rows[static_cast<std::size_t>(i)]];
+  for (Index i = 0; i < those.size(); ++i) those[i] = value_of(rows[static_cast<std::size_t>(i)]);
   return spread_of(those);
-}
-
-// Of the model's torque while the joint moves, by the times of rows.
-Spread expected_spread(const Log& log, const Log& even, const RobotDescription& robot, Index joint,
-                       const std::vector<Index>& rows) {
-  constexpr Index kMostRows = 5000;
-  constexpr double kHz = 10;
-  constexpr double kOfRate = 0.2;
-  FilterPlan plan;
-  plan.sample_rate_hz = even.sample_rate_hz();
-  plan.position_cutoff_hz = std::min(kHz, kOfRate * plan.sample_rate_hz);
-  const Index stride = std::max<Index>(1, even.sample_count() / kMostRows);
-  const Motion full = motion_of(even, plan);
-  const Eigen::MatrixXd torque =
-      model_torque(robot, {every_nth(full.t_s, stride), every_nth_row(full.q, stride),
-                           every_nth_row(full.dq, stride), every_nth_row(full.ddq, stride)});
-  std::vector<Index> thin;
-  for (const Index row : rows) {
-    const auto sample = std::lround((log.t_s[row] - even.t_s[0]) / even.period_s) / stride;
-    thin.push_back(std::clamp<Index>(sample, 0, torque.rows() - 1));
-  }
-  return spread_in(torque.col(joint), thin);
 }
 
 // Whether it is named already why a torque stays the same.
@@ -170,13 +150,16 @@ void find_held_torques(const Log& log, const Log& even, const RobotDescription& 
   constexpr double kExpected = 0.5;  // of the torque, that the model's spreads over
   constexpr double kUnlike = 3;      // times what the torque spreads over
   constexpr Index kFewestRows = 100;
+  std::optional<ExpectedTorque> model;  // once a joint asks for it
   for (Index joint = 0; joint < log.tau.cols(); ++joint) {
     const std::vector<Index> rows = moving_rows(log, robot, joint);
     if (static_cast<Index>(rows.size()) < kFewestRows) continue;
-    const Spread torque = spread_in(log.tau.col(joint), rows);
+    const Spread torque = spread_over(rows, [&](Index row) { return log.tau(row, joint); });
     const double size = std::abs(torque.middle);
     if (!(torque.width > 0) || !(torque.width < kHeld * size)) continue;
-    const Spread expected = expected_spread(log, even, robot, joint, rows);
+    if (!model) model.emplace(even, robot);
+    const Spread expected =
+        spread_over(rows, [&](Index row) { return model->at(log.t_s[row], joint); });
     if (!(expected.width > std::max(kUnlike * torque.width, kExpected * size))) continue;
     if (is_known_to_stay(faults, joint)) continue;
     DataFault fault;

@@ -4,11 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "compare/inverse_model.hpp"
-#include "compare/motion.hpp"
 #include "explain/doctor_checks.hpp"
 #include "explain/doctor_signal.hpp"
-#include "signal/decimate.hpp"
+#include "explain/expected_torque.hpp"
 #include "signal/quantile.hpp"
 
 // One value for long, while the joint moves: a dead encoder, a blocked reader, a drive that is not
@@ -164,45 +162,6 @@ std::vector<Burst> stuck_positions(const Log& log, Index joint) {
   });
   return bursts;
 }
-
-// What the model says of the torques, for how they change.
-class ExpectedTorque {
- public:
-  ExpectedTorque(const Log& log, const RobotDescription& robot)
-      : stride_(std::max<Index>(1, log.sample_count() / kMostRows)),
-        from_s_(log.t_s[0]),
-        period_s_(log.period_s) {
-    constexpr double kHz = 10;
-    constexpr double kOfRate = 0.2;
-    FilterPlan plan;
-    plan.sample_rate_hz = log.sample_rate_hz();
-    plan.position_cutoff_hz = std::min(kHz, kOfRate * plan.sample_rate_hz);
-    const Motion full = motion_of(log, plan);
-    torque_ =
-        model_torque(robot, {every_nth(full.t_s, stride_), every_nth_row(full.q, stride_),
-                             every_nth_row(full.dq, stride_), every_nth_row(full.ddq, stride_)});
-  }
-
-  // Between its largest and its smallest during a burst.
-  [[nodiscard]] double change_during(double from_s, double to_s, Index joint) const {
-    const Index first = std::min(sample_at(from_s) / stride_ + 1, torque_.rows() - 1);
-    const Index last = std::min(sample_at(to_s) / stride_, torque_.rows() - 1);
-    if (last <= first) return 0;
-    const auto during = torque_.col(joint).segment(first, last + 1 - first);
-    return during.maxCoeff() - during.minCoeff();
-  }
-
- private:
-  [[nodiscard]] Index sample_at(double t_s) const {
-    return std::max<Index>(0, std::lround((t_s - from_s_) / period_s_));
-  }
-
-  static constexpr Index kMostRows = 5000;
-  Index stride_;
-  double from_s_;
-  double period_s_;
-  Eigen::MatrixXd torque_;
-};
 
 std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorque& expected) {
   constexpr double kShortestS = 0.1;

@@ -1,0 +1,50 @@
+#include "explain/expected_torque.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/inverse_model.hpp"
+#include "compare/motion.hpp"
+#include "signal/decimate.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+
+ExpectedTorque::ExpectedTorque(const Log& even, const RobotDescription& robot, Index most_samples)
+    : samples_(even.sample_count()),
+      stride_(std::max<Index>(1, even.sample_count() / most_samples)),
+      from_s_(even.t_s[0]),
+      period_s_(even.period_s) {
+  FilterPlan plan;
+  plan.sample_rate_hz = even.sample_rate_hz();
+  plan.position_cutoff_hz = cutoff_hz(even);
+  const Motion full = motion_of(even, plan);
+  torque_ =
+      model_torque(robot, {every_nth(full.t_s, stride_), every_nth_row(full.q, stride_),
+                           every_nth_row(full.dq, stride_), every_nth_row(full.ddq, stride_)});
+}
+
+double ExpectedTorque::cutoff_hz(const Log& even) {
+  constexpr double kHz = 10;
+  constexpr double kOfRate = 0.2;
+  return std::min(kHz, kOfRate * even.sample_rate_hz());
+}
+
+double ExpectedTorque::at(double t_s, Index joint) const {
+  return torque_(std::min(sample_at(t_s) / stride_, torque_.rows() - 1), joint);
+}
+
+double ExpectedTorque::change_during(double from_s, double to_s, Index joint) const {
+  const Index first = std::min(sample_at(from_s) / stride_ + 1, torque_.rows() - 1);
+  const Index last = std::min(sample_at(to_s) / stride_, torque_.rows() - 1);
+  if (last <= first) return 0;
+  const auto during = torque_.col(joint).segment(first, last + 1 - first);
+  return during.maxCoeff() - during.minCoeff();
+}
+
+Index ExpectedTorque::sample_at(double t_s) const {
+  return std::clamp<Index>(std::lround((t_s - from_s_) / period_s_), 0, samples_ - 1);
+}
+
+}  // namespace offnominal::desk
