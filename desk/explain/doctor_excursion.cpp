@@ -36,7 +36,14 @@ class Response {
   Response(const Log& even, const RobotDescription& robot)
       : log_(even),
         cutoff_hz_(ExpectedTorque::cutoff_hz(even)),
-        expected_(even, robot, even.sample_count()) {}
+        expected_(even, robot, even.sample_count()),
+        unexplained_(even.tau.rows(), even.tau.cols()) {
+    for (Index joint = 0; joint < even.tau.cols(); ++joint) {
+      unexplained_.col(joint) =
+          zero_phase_low_pass(even.tau.col(joint), cutoff_hz_, even.sample_rate_hz()) -
+          expected_.torque().col(joint);
+    }
+  }
 
   // The share of a pulse between two times that the joint's motion shows: what is not in the
   // difference between the measured torque and the model's.
@@ -53,10 +60,8 @@ class Response {
     Eigen::MatrixXd columns(count, kUnknowns);
     const VectorXd x = VectorXd::LinSpaced(count, -1, 1);
     columns << smooth, VectorXd::Ones(count), x, x.cwiseAbs2();
-    const VectorXd measured =
-        zero_phase_low_pass(log_.tau.col(joint), cutoff_hz_, log_.sample_rate_hz());
-    const VectorXd fit = columns.colPivHouseholderQr().solve(
-        measured.segment(first, count) - expected_.torque().col(joint).segment(first, count));
+    const VectorXd fit =
+        columns.colPivHouseholderQr().solve(unexplained_.col(joint).segment(first, count));
     return 1 - fit[0];
   }
 
@@ -65,7 +70,8 @@ class Response {
  private:
   const Log& log_;
   double cutoff_hz_;
-  ExpectedTorque expected_;  // of every sample
+  ExpectedTorque expected_;      // of every sample
+  Eigen::MatrixXd unexplained_;  // low-passed measured torque less that; columns: joints
 };
 
 // Rows behind which the torque changes as it hardly ever does.

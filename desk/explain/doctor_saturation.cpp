@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "compare/motion.hpp"
 #include "compare/standstill.hpp"
 #include "explain/doctor_checks.hpp"
 #include "explain/doctor_signal.hpp"
