@@ -38,9 +38,7 @@ std::string advice_on(const Change& one) {
 std::string words_of(const Change& change) {
   std::vector<std::string> names{std::string(change.what.name())};
   for (const EffectAt& one : change.alike) {
-    names.push_back(one.joint == change.what.joint
-                        ? std::string(one.name())
-                        : fmt::format("{} of joint {}", one.name(), one.joint + 1));
+    names.push_back(name_seen_from(change.what.joint, one));
   }
   std::vector<std::string> by;
   for (const Estimate& one : change.by) {

@@ -44,6 +44,8 @@ struct EffectAt {
   [[nodiscard]] std::string_view name() const { return info_of(kind)->name; }
   friend bool operator==(const EffectAt&, const EffectAt&) = default;
 };
+// As an answer on a joint names it: "coulomb_friction", "coulomb_friction of joint 5" from another.
+std::string name_seen_from(Eigen::Index joint, const EffectAt& one);
 bool holds(const std::vector<EffectAt>& effects, const EffectAt& one);
 bool holds_in_any(const std::vector<std::vector<EffectAt>>& classes, const EffectAt& one);
 

@@ -300,6 +300,11 @@ std::vector<std::string> verdict_names() {
   return names;
 }
 
+std::string name_seen_from(Eigen::Index joint, const EffectAt& one) {
+  return one.joint == joint ? std::string(one.name())
+                            : fmt::format("{} of {}", one.name(), at_joint(one.joint));
+}
+
 bool holds(const std::vector<EffectAt>& effects, const EffectAt& one) {
   return std::find(effects.begin(), effects.end(), one) != effects.end();
 }
@@ -321,14 +326,10 @@ std::string title_of(const Finding& finding) {
 
 namespace {
 
-// As a joint's own answer names them: those of other joints with their number.
 std::vector<std::string> names_of(const std::vector<EffectAt>& effects, Eigen::Index joint) {
   std::vector<std::string> names;
-  std::transform(
-      effects.begin(), effects.end(), std::back_inserter(names), [&](const EffectAt& one) {
-        return one.joint == joint ? std::string(one.name())
-                                  : fmt::format("{} of {}", one.name(), at_joint(one.joint));
-      });
+  std::transform(effects.begin(), effects.end(), std::back_inserter(names),
+                 [&](const EffectAt& one) { return name_seen_from(joint, one); });
   return names;
 }
 
