@@ -32,8 +32,9 @@ Remainder beside_columns(Remainder at, const MatrixXd& columns) {
   more.applyOnTheLeft(qr.householderQ());
   at.residual -= more * (more.transpose() * at.residual).eval();
   at.energy = at.layout->energy(at.residual);
-  at.basis.conservativeResize(fresh.rows(), at.basis.cols() + rank);
-  at.basis.rightCols(rank) = more;
+  MatrixXd whole(fresh.rows(), at.basis.columns().cols() + rank);
+  whole << at.basis.columns(), more;
+  at.basis = Basis(std::move(whole));
   return at;
 }
 

@@ -17,6 +17,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+const MatrixXd& Basis::columns() const {
+  std::call_once(made_->once, [&] { made_->columns = made_->make(); });
+  return made_->columns;
+}
+
 VectorXd Remainder::weighted(const VectorXd& values) const {
   VectorXd whole = VectorXd::Zero(residual.size());
   whole.head(layout->rows()) = layout->weighted(values, joint_weights);
@@ -24,9 +29,10 @@ VectorXd Remainder::weighted(const VectorXd& values) const {
 }
 
 MatrixXd Remainder::beside_basis(MatrixXd columns) const {
-  if (basis.cols() > 0) {
-    const MatrixXd along = basis.transpose() * columns;
-    columns.noalias() -= basis * along;
+  const MatrixXd& beside = basis.columns();
+  if (beside.cols() > 0) {
+    const MatrixXd along = beside.transpose() * columns;
+    columns.noalias() -= beside * along;
   }
   return columns;
 }
@@ -175,14 +181,15 @@ ActingColumns::ActingColumns(const RowLayout& layout, const MatrixXd& columns) {
   }
 }
 
-Judge::Judge(const Remainder& remainder) : remainder_(remainder) {
+Judge::Judge(const Remainder& remainder)
+    : remainder_(remainder), basis_(remainder.basis.columns()) {
   const RowLayout& layout = *remainder.layout;
-  const Index width = remainder.basis.cols();
+  const Index width = basis_.cols();
   row_weights_ = layout.weighted(VectorXd::Ones(layout.rows()), remainder.joint_weights);
   auto products = std::make_shared<std::vector<MatrixXd>>(
       static_cast<std::size_t>(layout.joint_count()), MatrixXd::Zero(width, width));
   for (const ActingColumns::Span& part : parts_of(layout)) {
-    const auto basis = remainder.basis.middleRows(part.begin, part.count);
+    const auto basis = basis_.middleRows(part.begin, part.count);
     (*products)[static_cast<std::size_t>(part.joint)].noalias() += basis.transpose() * basis;
   }
   basis_by_basis_ = std::move(products);
@@ -191,6 +198,7 @@ Judge::Judge(const Remainder& remainder) : remainder_(remainder) {
 
 Judge::Judge(const Remainder& remainder, const Judge& like)
     : remainder_(remainder),
+      basis_(remainder.basis.columns()),
       row_weights_(like.row_weights_),
       basis_by_basis_(like.basis_by_basis_) {
   take_residual();
@@ -198,18 +206,18 @@ Judge::Judge(const Remainder& remainder, const Judge& like)
 
 void Judge::take_residual() {
   const RowLayout& layout = *remainder_.layout;
-  const Index width = remainder_.basis.cols();
+  const Index width = basis_.cols();
   basis_by_residual_.assign(static_cast<std::size_t>(layout.joint_count()), VectorXd::Zero(width));
   for (const ActingColumns::Span& part : parts_of(layout)) {
     basis_by_residual_[static_cast<std::size_t>(part.joint)] +=
-        remainder_.basis.middleRows(part.begin, part.count).transpose() *
+        basis_.middleRows(part.begin, part.count).transpose() *
         remainder_.residual.segment(part.begin, part.count);
   }
   block_basis_by_residual_ = MatrixXd::Zero(remainder_.blocks.count, width);
   for (Index column = 0; column < width; ++column) {
     for (Index row = 0; row < layout.rows(); ++row) {
       block_basis_by_residual_(remainder_.blocks.of_row[static_cast<std::size_t>(row)], column) +=
-          remainder_.basis(row, column) * remainder_.residual[row];
+          basis_(row, column) * remainder_.residual[row];
     }
   }
 }
@@ -232,14 +240,14 @@ Judge::Fitted Judge::fit(const ActingColumns& columns) const {
   MatrixXd& weighted = fitted.weighted;
   weighted.resizeLike(columns.values());
   MatrixXd& along = fitted.along;
-  along = MatrixXd::Zero(remainder_.basis.cols(), d);
+  along = MatrixXd::Zero(basis_.cols(), d);
   VectorXd by_residual = VectorXd::Zero(d);
   Index at = 0;
   for (const ActingColumns::Span& span : columns.spans()) {
     auto part = weighted.middleRows(at, span.count);
     part = row_weights_.segment(span.begin, span.count).asDiagonal() *
            columns.values().middleRows(at, span.count);
-    along.noalias() += remainder_.basis.middleRows(span.begin, span.count).transpose() * part;
+    along.noalias() += basis_.middleRows(span.begin, span.count).transpose() * part;
     by_residual += part.transpose() * remainder_.residual.segment(span.begin, span.count);
     at += span.count;
   }
@@ -273,7 +281,7 @@ Judge::Fitted Judge::fit(const ActingColumns& columns) const {
   for (const ActingColumns::Span& span : columns.spans()) {
     const VectorXd taken = weighted.middleRows(at, span.count) * fitted.solution;
     const auto residual = remainder_.residual.segment(span.begin, span.count);
-    const VectorXd back = remainder_.basis.middleRows(span.begin, span.count) * z;
+    const VectorXd back = basis_.middleRows(span.begin, span.count) * z;
     fitted.energy[span.joint] +=
         taken.squaredNorm() - 2 * taken.dot(residual) - 2 * taken.dot(back);
     at += span.count;
@@ -320,7 +328,7 @@ Evidence Judge::evidence(const ActingColumns& columns) const {
   Index at = 0;
   for (const ActingColumns::Span& span : columns.spans()) {
     const MatrixXd own = fitted.weighted.middleRows(at, span.count) -
-                         remainder_.basis.middleRows(span.begin, span.count) * fitted.along;
+                         basis_.middleRows(span.begin, span.count) * fitted.along;
     for (Index i = 0; i < span.count; ++i) {
       const Index row = span.begin + i;
       const int block = remainder_.blocks.of_row[static_cast<std::size_t>(row)];
@@ -332,7 +340,7 @@ Evidence Judge::evidence(const ActingColumns& columns) const {
     at += span.count;
   }
   const Index rows = remainder_.layout->rows();
-  const MatrixXd of_priors = -remainder_.basis.bottomRows(remainder_.prior_rows()) * fitted.along;
+  const MatrixXd of_priors = -basis_.bottomRows(remainder_.prior_rows()) * fitted.along;
   evidence.block_scores.row(blocks) =
       remainder_.residual.tail(remainder_.residual.size() - rows).transpose() * of_priors;
   const MatrixXd prior_products = of_priors.transpose() * of_priors;

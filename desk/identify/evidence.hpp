@@ -2,12 +2,37 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "identify/rows.hpp"
 
 namespace offnominal::desk {
+
+// Orthonormal columns, made when they are first asked for: beside most fits nothing is judged.
+// Copies share them.
+class Basis {
+ public:
+  Basis() : Basis(Eigen::MatrixXd()) {}
+  explicit Basis(Eigen::MatrixXd columns) : made_(std::make_shared<Made>()) {
+    std::call_once(made_->once, [&] { made_->columns = std::move(columns); });
+  }
+  explicit Basis(std::function<Eigen::MatrixXd()> make) : made_(std::make_shared<Made>()) {
+    made_->make = std::move(make);
+  }
+  [[nodiscard]] const Eigen::MatrixXd& columns() const;
+
+ private:
+  struct Made {
+    std::once_flag once;
+    std::function<Eigen::MatrixXd()> make;
+    Eigen::MatrixXd columns;
+  };
+  std::shared_ptr<Made> made_;
+};
 
 // What is left of the torque once a model has been fitted, ready for judging columns beside it.
 // Behind the rows of the layout come those of the priors (fit.hpp), where candidates are 0.
@@ -16,7 +41,7 @@ struct Remainder {
   RowLayout::Blocks blocks;
   Eigen::VectorXd joint_weights;
   Eigen::VectorXd residual;             // weighted, orthogonal to the basis
-  Eigen::MatrixXd basis;                // weighted, orthonormal
+  Basis basis;                          // weighted, with the rows of the priors
   Eigen::VectorXd energy;               // per joint, of the weighted residual
   Eigen::VectorXd independent_samples;  // per joint
   double prior_weight = 1;              // standard deviation of the rows of the priors
@@ -89,6 +114,7 @@ class Judge {
   void take_residual();
 
   const Remainder& remainder_;
+  const Eigen::MatrixXd& basis_;
   Eigen::VectorXd row_weights_;
   std::vector<Eigen::VectorXd> basis_by_residual_;  // per joint: basis^T residual
   std::shared_ptr<const std::vector<Eigen::MatrixXd>> basis_by_basis_;  // per joint

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "identify/few_rows.hpp"
+
 namespace offnominal::desk {
 
 using Eigen::Index;
@@ -32,24 +34,19 @@ Scaled scaled(const MatrixXd& columns, const std::vector<Index>& which) {
   return result;
 }
 
-struct Rows {
-  MatrixXd columns;
-  VectorXd target;
-};
-
 // The regression with one more row per informative prior.
-Rows with_prior_rows(const MatrixXd& columns, const VectorXd& target,
-                     const std::vector<Prior>& priors, double prior_weight) {
+RegressionRows with_prior_rows(const MatrixXd& columns, const VectorXd& target,
+                               const std::vector<Prior>& priors, double prior_weight) {
   const auto count = std::count_if(priors.begin(), priors.end(),
                                    [](const Prior& p) { return p.is_informative(); });
-  Rows whole{MatrixXd::Zero(columns.rows() + count, columns.cols()),
-             VectorXd::Zero(columns.rows() + count)};
+  RegressionRows whole{MatrixXd::Zero(columns.rows() + count, columns.cols()),
+                       VectorXd::Zero(columns.rows() + count)};
   whole.columns.topRows(columns.rows()) = columns;
   whole.target.head(columns.rows()) = target;
   Index row = columns.rows();
   for (std::size_t i = 0; i < priors.size(); ++i) {
     if (!priors[i].is_informative()) continue;
-    const double weight = prior_weight / priors[i].deviation;
+    const double weight = row_of(priors[i], prior_weight);
     whole.columns(row, static_cast<Index>(i)) = weight;
     whole.target[row++] = weight * priors[i].mean;
   }
@@ -91,44 +88,26 @@ struct Problem {
   }
 };
 
-// Columns and target turned so that as many rows are left as there are columns: a QR decomposition
-// in pieces that stay in the cache, each on top of what the ones before it left (J. Demmel, L.
-// Grigori, M. Hoemmen, J. Langou, SIAM J. Sci. Comput. 34(1), 2012). As they are where they are
-// few.
-Rows few_rows(const MatrixXd& columns, const VectorXd& target) {
-  constexpr Index kPiece = 512;
-  const Index count = columns.cols();
-  if (columns.rows() < kPiece || columns.rows() < 4 * count) return {columns, target};
-  const Index wide = count + 1;  // the target is the last column
-  MatrixXd upper(0, wide);
-  for (Index row = 0; row < columns.rows(); row += kPiece) {
-    const Index rows = std::min(kPiece, columns.rows() - row);
-    MatrixXd piece(upper.rows() + rows, wide);
-    piece.topRows(upper.rows()) = upper;
-    piece.bottomLeftCorner(rows, count) = columns.middleRows(row, rows);
-    piece.bottomRightCorner(rows, 1) = target.segment(row, rows);
-    const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(piece);
-    upper = qr.matrixQR().topRows(std::min(wide, piece.rows())).triangularView<Eigen::Upper>();
-  }
-  return {upper.topLeftCorner(count, count), upper.topRightCorner(count, 1)};
-}
-
 struct FreeFit {
   Scaled part;
-  Rows few;
+  RegressionRows few;
   Eigen::ColPivHouseholderQR<MatrixXd> qr;  // of the few rows
   VectorXd scaled_x;
 
-  // Orthonormal columns that span those of the fit.
-  [[nodiscard]] MatrixXd basis() const {
+  // What makes an orthonormal basis of the columns that are free; `count`: of all columns.
+  [[nodiscard]] MatrixXd to_basis(const std::vector<Index>& free, Index count) const {
     const Index rank = qr.rank();
-    MatrixXd in_order = part.columns * qr.colsPermutation();
+    MatrixXd in_order = part.length.cwiseInverse().asDiagonal() * MatrixXd(qr.colsPermutation());
     in_order.conservativeResize(Eigen::NoChange, rank);
     qr.matrixQR()
         .topLeftCorner(rank, rank)
         .triangularView<Eigen::Upper>()
         .solveInPlace<Eigen::OnTheRight>(in_order);
-    return in_order;
+    MatrixXd whole = MatrixXd::Zero(count, rank);
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      whole.row(free[i]) = in_order.row(static_cast<Index>(i));
+    }
+    return whole;
   }
 };
 
@@ -182,22 +161,23 @@ FreeFit fit_within_ends(Problem& whole, const std::vector<Prior>& priors) {
 
 PriorFit least_squares_with_priors(const MatrixXd& columns, const VectorXd& target,
                                    const std::vector<Prior>& priors, double prior_weight) {
-  Rows rows = with_prior_rows(columns, target, priors, prior_weight);
+  RegressionRows rows = with_prior_rows(columns, target, priors, prior_weight);
   Problem whole{
       std::move(rows.columns), std::move(rows.target), {}, VectorXd::Zero(columns.cols())};
   whole.free.resize(static_cast<std::size_t>(columns.cols()));
   std::iota(whole.free.begin(), whole.free.end(), 0);
   PriorFit result;
   result.residual = whole.rest;
-  result.basis.resize(whole.rest.size(), 0);
+  result.to_basis.resize(columns.cols(), 0);
   if (!whole.free.empty()) {
     const FreeFit fit = fit_within_ends(whole, priors);
     result.residual = whole.rest;
     if (!whole.free.empty()) {
       result.residual -= fit.part.columns * fit.scaled_x;
-      result.basis = fit.basis();
+      result.to_basis = fit.to_basis(whole.free, columns.cols());
     }
   }
+  result.basis = whole.columns * result.to_basis;
   result.x = whole.x;
   return result;
 }

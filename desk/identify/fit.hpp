@@ -39,7 +39,14 @@ struct PriorFit {
   // Orthonormal basis of the columns that are free, with the same rows: what else is judged is
   // judged beside them.
   Eigen::MatrixXd basis;
+  // The columns, with the rows of the priors, times this are the basis.
+  Eigen::MatrixXd to_basis;
 };
+
+// What a prior weighs in the regression: one row with this in the column of its unknown.
+inline double row_of(const Prior& prior, double prior_weight) {
+  return prior_weight / prior.deviation;
+}
 
 // `columns` and `target` are already weighted to errors of size 1. `prior_weight` is the root of
 // the number of rows that count as one independent observation: a prior is one. Unknowns whose

@@ -4,7 +4,9 @@
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <optional>
+#include <utility>
 
+#include "identify/few_rows.hpp"
 #include "identify/independent_samples.hpp"
 #include "signal/correlation.hpp"
 
@@ -264,15 +266,43 @@ Regression::Design Regression::design(const std::vector<Term>& terms) const {
   return made;
 }
 
+namespace {
+
+// The rows of the priors in the basis.
+MatrixXd rows_of_priors(const std::vector<Prior>& priors, double prior_weight,
+                        const MatrixXd& to_basis) {
+  MatrixXd rows(static_cast<Index>(priors.size()), to_basis.cols());
+  Index count = 0;
+  for (std::size_t i = 0; i < priors.size(); ++i) {
+    if (!priors[i].is_informative()) continue;
+    rows.row(count++) = row_of(priors[i], prior_weight) * to_basis.row(static_cast<Index>(i));
+  }
+  rows.conservativeResize(count, Eigen::NoChange);
+  return rows;
+}
+
+// What a fit of the terms leaves; `row_weights`: of the rows of the data, `to_basis` as in
+// PriorFit.
+Basis basis_of(const Data& data, std::vector<Term> terms, VectorXd row_weights, double prior_weight,
+               MatrixXd to_basis) {
+  return Basis([&data, terms = std::move(terms), row_weights = std::move(row_weights), prior_weight,
+                to_basis = std::move(to_basis)] {
+    const Regression::Design made = Regression(data).design(terms);
+    const MatrixXd of_priors = rows_of_priors(made.priors, prior_weight, to_basis);
+    MatrixXd basis(row_weights.size() + of_priors.rows(), to_basis.cols());
+    basis.topRows(row_weights.size()).noalias() = made.columns * to_basis;
+    basis.topRows(row_weights.size()).array().colwise() *= row_weights.array();
+    basis.bottomRows(of_priors.rows()) = of_priors;
+    return basis;
+  });
+}
+
+}  // namespace
+
 ModelFit Regression::fit(const std::vector<Term>& terms, const std::vector<char>& rows) const {
   const RowLayout& layout = data_.layout;
   const Design made = design(terms);
-  const MatrixXd& columns = made.columns;
-  VectorXd mask = VectorXd::Ones(layout.rows());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i] == 0) mask[static_cast<Index>(i)] = 0;
-  }
-
+  const FewRowsOfJoints turned(layout, made.columns, data_.target, rows);
   ModelFit result;
   PriorFit fitted;
   VectorXd spread = layout.rms(data_.target);
@@ -283,11 +313,10 @@ ModelFit Regression::fit(const std::vector<Term>& terms, const std::vector<char>
     if (pass > 0) {
       result.prior_weight = std::sqrt(static_cast<double>(layout.rows()) / independent.sum());
     }
-    VectorXd row_weights = layout.weighted(mask, result.joint_weights);
-    const MatrixXd weighted = row_weights.asDiagonal() * columns;
-    fitted = least_squares_with_priors(weighted, row_weights.cwiseProduct(data_.target),
-                                       made.priors, result.prior_weight);
-    result.residual = data_.target - columns * fitted.x;
+    const RegressionRows weighted = turned.weighted(result.joint_weights);
+    fitted = least_squares_with_priors(weighted.columns, weighted.target, made.priors,
+                                       result.prior_weight);
+    result.residual = data_.target - made.columns * fitted.x;
     spread = layout.rms(result.residual);
     independent = independent_samples_of(layout, result.residual);
   }
@@ -302,15 +331,23 @@ ModelFit Regression::fit(const std::vector<Term>& terms, const std::vector<char>
       if (terms[i].given[c]) result.coefficients[i][static_cast<Index>(c)] = *terms[i].given[c];
     }
   }
+  VectorXd row_weights = layout.weighted(VectorXd::Ones(layout.rows()), result.joint_weights);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i] == 0) row_weights[static_cast<Index>(i)] = 0;
+  }
   Remainder& remainder = result.remainder;
   remainder.layout = &layout;
   remainder.independent_samples = independent;
   remainder.joint_weights = result.joint_weights;
-  remainder.residual = fitted.residual;
+  const auto of_priors = std::count_if(made.priors.begin(), made.priors.end(),
+                                       [](const Prior& one) { return one.is_informative(); });
+  remainder.residual.resize(layout.rows() + of_priors);
+  remainder.residual << row_weights.cwiseProduct(result.residual), fitted.residual.tail(of_priors);
   remainder.blocks = layout.blocks(kShortestBlockS);
   remainder.prior_weight = result.prior_weight;
-  remainder.basis = fitted.basis;
-  remainder.energy = layout.energy(fitted.residual);
+  remainder.energy = layout.energy(remainder.residual);
+  remainder.basis = basis_of(data_, terms, std::move(row_weights), result.prior_weight,
+                             std::move(fitted.to_basis));
   return result;
 }
 

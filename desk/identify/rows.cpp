@@ -93,7 +93,7 @@ std::vector<int> RowLayout::groups_of_joints(const Blocks& groups) const {
     std::vector<char> seen(static_cast<std::size_t>(groups.count), 0);
     for (std::size_t r = 0; r < samples_.size(); ++r) {
       for (Index row = begin(r, joint); row < begin(r, joint) + samples_[r]; ++row) {
-        if (moving_.size() > 0 && !(moving_[row] > 0)) continue;
+        if (!says_something(row)) continue;
         seen[static_cast<std::size_t>(groups.of_row[static_cast<std::size_t>(row)])] = 1;
       }
     }

@@ -46,6 +46,10 @@ class RowLayout {
       const std::vector<const Eigen::MatrixXd*>& per_recording) const;
   // Rows with a 0 here say nothing from now on, as those of a joint that stands still.
   void leave_out(const std::vector<char>& rows);
+  // Whether a row says something: its joint moves there, and nothing left it out.
+  [[nodiscard]] bool says_something(Eigen::Index row) const {
+    return moving_.size() == 0 || moving_[row] > 0;
+  }
   // Each row as it is, or 0 where its joint stands still (standstill.hpp) and says nothing.
   [[nodiscard]] Eigen::VectorXd while_moving(const Eigen::VectorXd& values) const;
   // How many samples of a joint in a recording are not left out so.
