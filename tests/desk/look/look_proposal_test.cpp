@@ -280,7 +280,7 @@ TEST_F(LookProposal, FilesOfOneRecordingAreJoined) {
   const Log log = read_log(both, parse_robot(robot + channels_text(seen), "pasted.toml"));
   EXPECT_NEAR(log.tau(100, 0), torque(0, 1), 1e-4);
   put(folder_ / "tau.csv", "load\n1\n2\n");
-  EXPECT_THROW(look_at(both, nullptr, std::nullopt), InputError);
+  EXPECT_THROW(static_cast<void>(look_at(both, nullptr, std::nullopt)), InputError);
 }
 
 TEST_F(LookProposal, TimeDoesNotRest) {

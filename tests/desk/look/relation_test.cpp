@@ -64,7 +64,7 @@ TEST(Relation, SaysWhyItWasNotJudged) {
   for (Index i = 0; i < 1000; i += 100) of.q[i] = std::nan("");
   EXPECT_THAT(relation_of(of.q, of.dq, of.t).not_judged, HasSubstr("NaN"));
   of = motion(1000, 0.002);
-  for (Index i = 0; i < 1000; ++i) of.t[i] += 0.1 * static_cast<double>(i / 100);
+  for (Index gap = 100; gap < 1000; gap += 100) of.t.tail(1000 - gap).array() += 0.1;
   EXPECT_THAT(relation_of(of.q, of.dq, of.t).not_judged, HasSubstr("gaps"));
   of = motion(100, 0.002);
   EXPECT_THAT(relation_of(of.q, of.dq, of.t).not_judged, HasSubstr("100 samples"));
