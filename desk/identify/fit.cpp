@@ -193,7 +193,7 @@ ProfileFit::ProfileFit(const MatrixXd& columns, const VectorXd& target, std::vec
   beside_ = target - basis_ * along_;
 }
 
-double ProfileFit::energy_with(const MatrixXd& more) const {
+ProfileFit::Whole ProfileFit::fitted_with(const MatrixXd& more) const {
   const MatrixXd along = basis_.transpose() * more;
   const MatrixXd rest = more - basis_ * along;
   const Eigen::HouseholderQR<MatrixXd> qr(rest);
@@ -210,8 +210,17 @@ double ProfileFit::energy_with(const MatrixXd& more) const {
   target << along_, turned.head(added);
   std::vector<Prior> priors = priors_;
   priors.resize(priors.size() + static_cast<std::size_t>(added));
-  const PriorFit fit = least_squares_with_priors(columns, target, priors, prior_weight_);
-  return fit.residual.squaredNorm() + turned.tail(turned.size() - added).squaredNorm();
+  return {least_squares_with_priors(columns, target, priors, prior_weight_),
+          turned.tail(turned.size() - added).squaredNorm()};
+}
+
+double ProfileFit::energy_with(const MatrixXd& more) const {
+  const Whole whole = fitted_with(more);
+  return whole.fit.residual.squaredNorm() + whole.energy_beside;
+}
+
+VectorXd ProfileFit::unknowns_of(const MatrixXd& more) const {
+  return fitted_with(more).fit.x.tail(more.cols());
 }
 
 }  // namespace offnominal::desk

@@ -64,8 +64,16 @@ class ProfileFit {
 
   // Energy that is left, rows of the priors included, with these columns, weighted as the others.
   [[nodiscard]] double energy_with(const Eigen::MatrixXd& more) const;
+  // Their unknowns.
+  [[nodiscard]] Eigen::VectorXd unknowns_of(const Eigen::MatrixXd& more) const;
 
  private:
+  struct Whole {
+    PriorFit fit;
+    double energy_beside;  // that no column reaches
+  };
+  [[nodiscard]] Whole fitted_with(const Eigen::MatrixXd& more) const;
+
   Eigen::MatrixXd basis_;   // orthonormal
   Eigen::MatrixXd upper_;   // columns = basis * upper
   Eigen::VectorXd along_;   // of the target, in the basis

@@ -400,11 +400,7 @@ void Regression::refine(std::vector<Term>& terms, std::size_t which, const Model
   const bool spectral = terms[which].effect->spectrum() != EffectCandidate::Spectrum::kNone;
   if (!spectral) jump(terms[which], gain);
   slide(data_, terms[which], gain, [&](const MatrixXd& columns) -> std::optional<VectorXd> {
-    MatrixXd all(weighted.rows(), weighted.cols() + columns.cols());
-    all << weighted, weights.asDiagonal() * columns;
-    std::vector<Prior> priors = made.priors;
-    priors.resize(priors.size() + static_cast<std::size_t>(columns.cols()));
-    return least_squares_with_priors(all, target, priors, now.prior_weight).x.tail(columns.cols());
+    return profile.unknowns_of(weights.asDiagonal() * columns);
   });
   climb(terms[which], gain);
 }
