@@ -168,7 +168,7 @@ void find_held_torques(const Log& log, const Log& even, const RobotDescription& 
     fault.size = 1;
     fault.words = fmt::format(
         "the torque of joint {} stays at {:.4g} within {:.2g} all the time that the joint moves, "
-        "where the model's changes by {:.3g}: as a drive at its limit, or one that is told a "
+        "where the model's changes by {:.3g}: as a drive saturated at its limit, or one told a "
         "torque, while something else moves the joint",
         joint + 1, torque.middle, torque.width, expected.width);
     fault.mend = "move more gently, and by the drive alone";

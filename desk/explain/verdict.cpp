@@ -460,6 +460,33 @@ void advise_on_friction(Explanation& e) {
       fmt::join(joints, ", ")));
 }
 
+// What a motor's own friction does shows on all joints that it moves, and is not looked for.
+void advise_on_motors(Explanation& e) {
+  const RobotDescription& robot = e.improved;
+  if (!robot.transmission || e.at_rest) return;
+  const auto is_open = [&](const MovedJoint& moved) {
+    return std::any_of(e.answers.begin(), e.answers.end(), [&](const JointAnswer& one) {
+      return one.joint == moved.joint && one.verdict != Verdict::kExplained &&
+             one.verdict != Verdict::kFound && one.verdict != Verdict::kNotExcited;
+    });
+  };
+  for (std::size_t motor = 0; motor < robot.joints.size(); ++motor) {
+    const std::vector<MovedJoint> moved = joints_of_motor(robot, motor);
+    const bool has_own =
+        std::any_of(robot.effects.begin(), robot.effects.end(), [&](const RobotEffect& one) {
+          return one.of_motor && one.joint == motor && info_of(one.kind)->traits.every_drive_has;
+        });
+    if (moved.size() < 2 || has_own || std::none_of(moved.begin(), moved.end(), is_open)) continue;
+    std::vector<std::string> joints;
+    for (const MovedJoint& one : moved) joints.push_back(std::to_string(one.joint + 1));
+    e.advice.push_back(fmt::format(
+        "joints {} share motor {}, whose own friction shows on each of them and is not looked for: "
+        "`offnominal add coulomb_friction viscous_friction --motor {}` with these recordings fits "
+        "it, then explain again",
+        fmt::join(joints, " and "), motor + 1, motor + 1));
+  }
+}
+
 // A torque over a variable that no other effect describes can be in the model as a curve.
 void advise_on_shapes(Explanation& e) {
   for (const JointAnswer& one : e.answers) {
@@ -530,6 +557,7 @@ void judge_whole(Explanation& e) {
   }
   advise_on_links(e);
   advise_on_friction(e);
+  advise_on_motors(e);
   const JointAnswer* unknown = worst_unknown(e);
   const auto shift = std::find_if(e.answers.begin(), e.answers.end(), [](const JointAnswer& one) {
     return one.verdict == Verdict::kParameterShift;

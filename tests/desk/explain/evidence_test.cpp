@@ -85,7 +85,7 @@ class TwoJoints : public ::testing::Test {
     remainder_.blocks = layout_->blocks(0.5);
     remainder_.joint_weights = VectorXd::Ones(2);
     remainder_.residual = fit.residual;
-    remainder_.basis = fit.basis;
+    remainder_.basis = Basis(fit.basis);
     remainder_.energy = layout_->energy(fit.residual);
     remainder_.independent_samples = VectorXd::Constant(2, 40);
     column_ = MatrixXd::Zero(80, 2);

@@ -86,9 +86,10 @@ TEST(ProfileFit, LeavesWhatTheWholeRegressionLeaves) {
     all << given.columns, more;
     std::vector<Prior> priors = given.priors;
     priors.resize(priors.size() + 2);
-    const double whole =
-        least_squares_with_priors(all, given.target, priors, 1).residual.squaredNorm();
+    const PriorFit fit = least_squares_with_priors(all, given.target, priors, 1);
+    const double whole = fit.residual.squaredNorm();
     EXPECT_NEAR(profile.energy_with(more), whole, 1e-9 * whole);
+    EXPECT_LT((profile.unknowns_of(more) - fit.x.tail(2)).norm(), 1e-9);
   }
 }
 
