@@ -151,24 +151,26 @@ class Explainer {
   FoundModel search_model(bool search, Explanation& result) {
     result.link_share = setting_.nuisance.link_share;
     result.link_share_judged = false;
-    FoundModel usual = find(search, result);
-    if (!search || options_.link_share || result.at_rest) return usual;
+    FoundModel best = find(search, result);
+    if (!search || options_.link_share || result.at_rest) return best;
     tell("asking how far the links' numbers are off");
     NuisanceOptions wider = setting_.nuisance;
-    const auto share = wider_link_share(robot_, *setting_.data, wider.changes, options_.threads);
-    if (!share) return usual;
-    wider.link_share = *share;
     wider.link_geometry = true;
-    // What the fits point to has to stay where it is until one of them is chosen.
-    SearchSetting of_usual = set_beside(wider);
-    FoundModel wide = find(search, result);
-    if (is_clearly_better(*setting_.hold_out, wide, usual)) {
-      result.link_share = *share;
-      result.link_share_judged = true;
-      return wide;
+    for (const double share :
+         wider_link_shares(robot_, *setting_.data, wider.changes, options_.threads)) {
+      wider.link_share = share;
+      // What the fits point to has to stay where it is until one of them is chosen.
+      SearchSetting of_best = set_beside(wider);
+      FoundModel wide = find(search, result);
+      if (is_clearly_better(*setting_.hold_out, wide, best)) {
+        result.link_share = share;
+        result.link_share_judged = true;
+        best = std::move(wide);
+      } else {
+        setting_ = std::move(of_best);
+      }
     }
-    setting_ = std::move(of_usual);
-    return usual;
+    return best;
   }
 
   // Another nuisance from now on; returns the setting that was.

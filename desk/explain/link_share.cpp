@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 namespace {
 
 // Far beyond CAD, and little more than the geometry known.
-constexpr std::array kShares{0.2, 0.6};
+constexpr std::array kShares{0.2, 0.35, 0.6};
 // Log-likelihood that a wider share has to gain, and the share of a joint's error.
 constexpr double kClearly = 10;
 constexpr double kRelevantFall = 0.05;
@@ -67,8 +67,8 @@ HeldOutErrors held_out_of(const Data& data) {
 
 }  // namespace
 
-std::optional<double> wider_link_share(const RobotDescription& robot, const Data& data,
-                                       const std::vector<Term>& changes, int threads) {
+std::vector<double> wider_link_shares(const RobotDescription& robot, const Data& data,
+                                      const std::vector<Term>& changes, int threads) {
   std::array<HeldOutErrors, 1 + kShares.size()> held;
   parallel_for(held.size(), threads, [&](std::size_t i) {
     NuisanceOptions wide;
@@ -81,15 +81,14 @@ std::optional<double> wider_link_share(const RobotDescription& robot, const Data
     wide.changes = changes;
     held[i] = held_out_of(Data(data, robot, wide));
   });
-  std::optional<double> share;
-  const HeldOutErrors* best = held.data();
+  std::size_t best = 0;
   for (std::size_t i = 1; i < held.size(); ++i) {
-    const ShareGain gain = gain_of(best->rms, held[i].rms, held[i].samples);
-    if (gain.log_likelihood < kClearly || gain.fall < kRelevantFall) continue;
-    best = &held[i];
-    share = kShares[i - 1];
+    const ShareGain gain = gain_of(held[best].rms, held[i].rms, held[i].samples);
+    if (gain.log_likelihood >= kClearly && gain.fall >= kRelevantFall) best = i;
   }
-  return share;
+  if (best == 0) return {};
+  if (best == 1) return {kShares[0]};
+  return {kShares[best - 2], kShares[best - 1]};
 }
 
 bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const FoundModel& usual) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "explain/find_model.hpp"
@@ -13,14 +12,15 @@ inline constexpr double kUsualLinkShare = 0.05;
 // Beyond this a link's mass, centre of mass and inertia are off each by itself.
 inline constexpr double kCadShare = 0.1;
 
-// A wider share, as far as the recordings ask for one: with mass, centre of mass and inertia of
+// Wider shares, as far as the recordings ask for one: with mass, centre of mass and inertia of
 // every link each free within it, Coulomb and viscous friction on every joint that moves, and a
 // payload on the last link of an arm of three joints or more, held-out time has to become clearly
-// more likely (at least one joint's error falls by a twentieth). The narrower one of those that are
-// about as good; none where the usual one is. `robot` and `changes`
-// (nuisance.hpp): that `data` was made with, at the usual share.
-std::optional<double> wider_link_share(const RobotDescription& robot, const Data& data,
-                                       const std::vector<Term>& changes, int threads);
+// more likely (at least one joint's error falls by a twentieth). The widest that does is the last
+// of them; before it comes the next narrower one, if there is one above the usual: links that may
+// be off by more than they are take the place of what is carried. Empty where the usual one is as
+// good. `robot` and `changes` (nuisance.hpp): that `data` was made with, at the usual share.
+std::vector<double> wider_link_shares(const RobotDescription& robot, const Data& data,
+                                      const std::vector<Term>& changes, int threads);
 
 // Of two searches, whether the one with the wider share is to be believed: it predicts held-out
 // data clearly better than the one that had to explain the same by effects, or about as well where
