@@ -134,15 +134,14 @@ Screening Search::screen(const std::vector<Term>& terms, const ModelFit& at) con
   return {std::move(screened)};
 }
 
-// Friction of a drive whose file has none at all.
+// Friction that every drive has and the file has not: a little damping is no answer for the rest.
 bool Search::is_asked_first(const Term& term) const {
   if (!term.effect->info().traits.every_drive_has) return false;
   const Workspace& at = data_.recordings[0];
-  return std::none_of(at.known_effects.begin(), at.known_effects.end(),
-                      [&](const RobotEffect& one) {
-                        return info_of(one.kind)->traits.every_drive_has &&
-                               acts_on_joint(at.rigid, one, term.joint);
-                      });
+  return std::none_of(
+      at.known_effects.begin(), at.known_effects.end(), [&](const RobotEffect& one) {
+        return one.kind == term.effect->kind() && acts_on_joint(at.rigid, one, term.joint);
+      });
 }
 
 NullOfSearch Search::null_of(const std::vector<Term>& terms, const ModelFit& fit,

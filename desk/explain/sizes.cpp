@@ -58,9 +58,9 @@ Sizes sizes_of(const ImprovedRobot& improved) {
 
 bool leave_out_unsure(const Sizes& sizes, const Regression& regression, const HoldOut& hold_out,
                       int threads, FoundModel& found) {
-  // Significance was asked before, and these intervals hold more than noise: what reaches twice as
-  // far as the size itself is none.
-  constexpr double kSure = 0.5;
+  // Significance was asked before; what these intervals hold more than noise is what the model
+  // adapts, and a size that they do not tell from nothing is none.
+  constexpr double kSure = 1;
   const std::vector<double>& from_nothing = sizes.from_nothing;
   const auto least = std::min_element(from_nothing.begin(), from_nothing.end());
   if (least == from_nothing.end() || *least >= kSure) return false;

@@ -51,6 +51,9 @@ class Stiffness final : public EffectCandidate {
                               std::span<const double> /*shape*/) const override {
     return {coefficients[0], -coefficients[1] / coefficients[0]};
   }
+  // It pulls to its rest position: what pushes away from one, as a counterweight does, or gravity
+  // that is off, is no spring.
+  bool is_physical(const VectorXd& coefficients) const override { return coefficients[0] > 0; }
   // One whose rest lies far outside of the range moved is a constant torque with a slope.
   bool is_within_reach(const std::vector<Workspace>& at, Index joint, const VectorXd& coefficients,
                        std::span<const double> /*shape*/,
