@@ -51,6 +51,8 @@ const char* name_of(DataFaultKind kind) {
       return "start";
     case DataFaultKind::kNothingLeft:
       return "nothing_left";
+    case DataFaultKind::kGravity:
+      return "gravity";
   }
   return "";
 }
@@ -59,6 +61,7 @@ bool spoils(const DataFault& fault, RestsOn what) {
   if (!fault.certain || fault.overruled || !fault.left_out_of.empty()) return false;
   switch (fault.kind) {
     case DataFaultKind::kNothingLeft:
+    case DataFaultKind::kGravity:
     case DataFaultKind::kDegrees:
     case DataFaultKind::kTorqueSign:
     case DataFaultKind::kTimeUnit:
@@ -289,7 +292,9 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
     mend_strange_velocities(mended, robot, faults);
     mend_velocities(mended, robot, faults);
     if (const auto pair = torque_pair(mended, robot)) {
-      find_torque_sign(mended, *pair, faults);
+      const std::size_t so_far = faults.size();
+      find_gravity(mended, robot, *pair, faults);
+      if (faults.size() == so_far) find_torque_sign(mended, *pair, faults);
       find_clock_skew(mended, *pair, faults);
     }
   }

@@ -146,7 +146,10 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
                       e.holdout_is_apart ? "other recordings"
                       : e.at_rest        ? "stretches of readings"
                                          : "blocks of time");
-  for (const DataFault& fault : e.data_faults) text += "data fault: " + fault.words + "\n";
+  const bool several = names.logs.size() + names.holdout.size() > 1;
+  for (const DataFault& fault : e.data_faults) {
+    text += "data fault: " + (several ? fault.file + ": " : "") + fault.words + "\n";
+  }
   for (const DataFault& fault : e.left_out) text += "left out: " + left_out_line(fault) + "\n";
   text += text_of_joints(e);
   text += text_of_answers(e);

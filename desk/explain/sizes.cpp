@@ -59,12 +59,21 @@ Sizes sizes_of(const ImprovedRobot& improved) {
 bool leave_out_unsure(const Sizes& sizes, const Regression& regression, const HoldOut& hold_out,
                       int threads, FoundModel& found) {
   // Significance was asked before; what these intervals hold more than noise is what the model
-  // adapts, and a size that they do not tell from nothing is none.
+  // adapts, and a size that they do not tell from nothing is none. Of friction that every drive has
+  // half of that is enough.
   constexpr double kSure = 1;
-  const std::vector<double>& from_nothing = sizes.from_nothing;
-  const auto least = std::min_element(from_nothing.begin(), from_nothing.end());
-  if (least == from_nothing.end() || *least >= kSure) return false;
-  const auto goes = found.accepted.begin() + (least - from_nothing.begin());
+  constexpr double kSureOfFriction = 0.5;
+  std::size_t which = found.accepted.size();
+  double least = 1;
+  for (std::size_t i = 0; i < found.accepted.size(); ++i) {
+    const bool expected = found.accepted[i].term.effect->info().traits.every_drive_has;
+    const double reached = sizes.from_nothing[i] / (expected ? kSureOfFriction : kSure);
+    if (reached >= least) continue;
+    least = reached;
+    which = i;
+  }
+  if (which == found.accepted.size()) return false;
+  const auto goes = found.accepted.begin() + static_cast<std::ptrdiff_t>(which);
   found.unsure[static_cast<std::size_t>(goes->term.joint)] = 1;
   if (found.accepted.size() == 1) {
     const RowLayout& layout = regression.data().layout;

@@ -529,7 +529,10 @@ void judge_whole(Explanation& e) {
   std::optional<Suspicion> suspected = std::exchange(e.suspected, std::nullopt);
   if (!e.data_faults.empty()) {
     e.verdict = Verdict::kDataFault;
-    e.words = "The recording itself is at fault: " + e.data_faults[0].words + ".";
+    const bool of_file = e.data_faults[0].kind == DataFaultKind::kGravity;
+    e.words = (of_file ? "The robot file is not of this recording: "
+                       : "The recording itself is at fault: ") +
+              e.data_faults[0].words + ".";
     for (const DataFault& fault : e.data_faults) e.advice.push_back(fault.mend);
     e.found.clear();
     e.ambiguous.clear();

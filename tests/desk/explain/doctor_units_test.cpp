@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -20,6 +21,7 @@
 #include "log/read_log.hpp"
 #include "robot/channels.hpp"
 #include "robot/robot_file.hpp"
+#include "serial_arm.hpp"
 #include "support/places.hpp"
 #include "support/recordings.hpp"
 #include "support/repetitions.hpp"
@@ -580,6 +582,50 @@ TEST(Doctor, NamesNoUnitWrongInRecordingsOfAFreeMotor) {
       EXPECT_FALSE(is_of_units(fault)) << name << ": " << fault.words;
     }
   }
+}
+
+TEST(DoctorOfGravity, SaysWhichWayItPointsWhereTheFileHasItOtherwise) {
+  const RobotDescription file = test::serial_arm(6);
+  for (const std::array<double, 3> mounted : {std::array{0.0, 9.81, 0.0}, {-9.81, 0.0, 0.0}}) {
+    RobotDescription robot = file;
+    robot.gravity_m_s2 = mounted;
+    const std::vector<DataFault> faults = examine(test::record(robot, {.duration_s = 12}), file);
+    ASSERT_EQ(faults.size(), 1U) << words_of(faults);
+    EXPECT_EQ(faults[0].kind, DataFaultKind::kGravity);
+    EXPECT_TRUE(faults[0].certain);
+    EXPECT_NEAR(faults[0].size, 90, 2);
+    EXPECT_THAT(faults[0].mend, HasSubstr(mounted[1] > 0 ? "gravity_m_s2 = [0, 9.81, 0]"
+                                                         : "gravity_m_s2 = [-9.81, 0, 0]"));
+    EXPECT_TRUE(spoils(faults[0], RestsOn::kTorque));
+  }
+}
+
+TEST(DoctorOfGravity, SaysSoOfATiltAndOfAFileWithoutAny) {
+  const RobotDescription file = test::serial_arm(6);
+  RobotDescription tilted = file;
+  tilted.gravity_m_s2 = {0, 9.81 * std::sin(0.8), -9.81 * std::cos(0.8)};
+  const Log log = test::record(tilted, {.duration_s = 12});
+  const std::vector<DataFault> faults = examine(log, file);
+  ASSERT_EQ(faults.size(), 1U) << words_of(faults);
+  EXPECT_NEAR(faults[0].size, 0.8 * 180 / kPi, 2);
+  EXPECT_THAT(faults[0].mend, HasSubstr("gravity_m_s2 = [0"));
+  RobotDescription weightless = file;
+  weightless.gravity_m_s2 = {0, 0, 0};
+  const std::vector<DataFault> none = examine(test::record(file, {.duration_s = 12}), weightless);
+  ASSERT_EQ(none.size(), 1U) << words_of(none);
+  EXPECT_EQ(none[0].kind, DataFaultKind::kGravity);
+  EXPECT_THAT(none[0].mend, HasSubstr("gravity_m_s2 = [0, 0, -9.81]"));
+}
+
+TEST(DoctorOfGravity, SaysNothingOfLinksThatAreOffOrOfWhatIsCarried) {
+  const RobotDescription file = test::serial_arm(6);
+  RobotDescription robot = file;
+  for (RobotJoint& joint : robot.joints) {
+    joint.joint.mass_kg *= 1.4;
+    joint.joint.centre_of_mass_m[1] -= 0.04;
+  }
+  robot.joints.back().joint.mass_kg += 2;
+  EXPECT_EQ(words_of(examine(test::record(robot, {.duration_s = 12}), file)), "");
 }
 
 }  // namespace

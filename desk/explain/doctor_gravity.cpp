@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "compare/inverse_model.hpp"
+#include "explain/doctor_checks.hpp"
+#include "robot/payload.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double kStandard = 9.81;  // m/s^2
+
+Vector3d gravity_of(const RobotDescription& robot) {
+  return {robot.gravity_m_s2[0], robot.gravity_m_s2[1], robot.gravity_m_s2[2]};
+}
+
+// Torques of all joints, one under the other, each in parts of its joint's measured one.
+class InParts {
+ public:
+  explicit InParts(const TorquePair& pair) : pair_(pair) {
+    const VectorXd size = pair.measured.colwise().norm();
+    for (Index joint = 0; joint < size.size(); ++joint) {
+      weights_.push_back(size[joint] > 0 ? 1 / size[joint] : 0);
+    }
+  }
+
+  // Less what friction of each joint takes of it.
+  [[nodiscard]] VectorXd beside_friction(const MatrixXd& torques) const {
+    const Index rows = torques.rows();
+    VectorXd all(torques.size());
+    for (Index joint = 0; joint < torques.cols(); ++joint) {
+      const VectorXd speed = pair_.dq.col(joint);
+      MatrixXd friction(rows, 2);
+      friction << speed, speed.cwiseSign();
+      const VectorXd own = weights_[static_cast<std::size_t>(joint)] * torques.col(joint);
+      const Eigen::ColPivHouseholderQR<MatrixXd> qr(friction);
+      all.segment(joint * rows, rows) = own - friction * qr.solve(own);
+    }
+    return all;
+  }
+
+ private:
+  const TorquePair& pair_;
+  std::vector<double> weights_;
+};
+
+// What gravity of 1 m/s^2 along each axis of the base has the joints carry, one column each.
+MatrixXd torques_of_gravity(const RobotDescription& robot, const std::optional<Payload>& payload,
+                            const TorquePair& pair, const InParts& parts) {
+  RobotDescription rigid = robot;
+  rigid.effects.clear();
+  rigid = carrying(rigid, payload);
+  const MatrixXd still = MatrixXd::Zero(pair.q.rows(), pair.q.cols());
+  MatrixXd columns(pair.q.size(), 3);
+  for (Index axis = 0; axis < 3; ++axis) {
+    rigid.gravity_m_s2 = {0, 0, 0};
+    rigid.gravity_m_s2[static_cast<std::size_t>(axis)] = 1;
+    columns.col(axis) =
+        parts.beside_friction(model_torque(rigid, {pair.t_s, pair.q, still, still}));
+  }
+  return columns;
+}
+
+double angle_deg(const Vector3d& a, const Vector3d& b) {
+  const double cosine = a.dot(b) / (a.norm() * b.norm());
+  return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
+}
+
+// The axis of the base that a direction is near, or itself.
+Vector3d as_mounted(const Vector3d& gravity) {
+  constexpr double kNearDeg = 10;
+  for (Index axis = 0; axis < 3; ++axis) {
+    const Vector3d along = std::copysign(kStandard, gravity[axis]) * Vector3d::Unit(axis);
+    if (angle_deg(gravity, along) < kNearDeg) return along;
+  }
+  return gravity;
+}
+
+}  // namespace
+
+void find_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
+                  std::vector<DataFault>& faults) {
+  constexpr double kBadFit = 0.3;         // as the file has it, rms over the joints' torques
+  constexpr double kGoodFit = 0.5;        // as it would be
+  constexpr double kClearlyBetter = 0.5;  // of the first
+  constexpr double kOff = 0.2;            // from 9.81 m/s^2, links being off the file
+  constexpr double kTurnedDeg = 20;
+  // The other way round is a matter of the torques' signs.
+  constexpr double kReversedDeg = 150;
+  // Of fewer joints another zero of the positions looks the same.
+  constexpr Index kSureJoints = 3;
+  const InParts parts(pair);
+  const VectorXd error = parts.beside_friction(pair.measured - pair.model);
+  const MatrixXd columns = torques_of_gravity(robot, log.payload, pair, parts);
+  // What no joint feels stays as it is.
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(columns);
+  const Vector3d change = solver.solve(error);
+  const Vector3d stated = gravity_of(robot);
+  const Vector3d fitted = stated + change;
+  const double joints = std::sqrt(static_cast<double>(pair.measured.cols()));
+  const double before = error.norm() / joints;
+  const double after = (error - columns * change).norm() / joints;
+  if (!(before > kBadFit) || !(after < kGoodFit) || !(after < kClearlyBetter * before)) return;
+  if (std::abs(fitted.norm() - kStandard) > kOff * kStandard) return;
+  const bool has_one = stated.norm() > 0;
+  const double turned_deg = has_one ? angle_deg(stated, fitted) : 0;
+  if (has_one && (turned_deg < kTurnedDeg || turned_deg > kReversedDeg)) return;
+  const Vector3d mounted = as_mounted(fitted);
+  DataFault fault;
+  fault.kind = DataFaultKind::kGravity;
+  fault.size = turned_deg;
+  fault.unit = "deg";
+  fault.certain = pair.measured.cols() >= kSureJoints;
+  fault.words = fmt::format(
+      "gravity {} where the robot file has it: along [{:.2f}, {:.2f}, {:.2f}] m/s^2 of the base it "
+      "leaves {:.0f} % of the torques unexplained, friction apart, instead of {:.0f} %",
+      fault.certain ? "does not point" : "may not point", fitted[0], fitted[1], fitted[2],
+      100 * after, 100 * before);
+  fault.mend = fmt::format(
+      "write gravity_m_s2 = [{:.4g}, {:.4g}, {:.4g}] into the robot file where the arm is mounted "
+      "so; or the positions of a joint have another zero or sign than the file's",
+      mounted[0] + 0.0, mounted[1] + 0.0, mounted[2] + 0.0);
+  faults.push_back(std::move(fault));
+}
+
+}  // namespace offnominal::desk
