@@ -87,6 +87,9 @@ Vector3d as_mounted(const Vector3d& gravity) {
   return gravity;
 }
 
+// To hundredths, and never -0.
+double rounded(double value) { return std::round(100 * value) / 100 + 0.0; }
+
 }  // namespace
 
 void find_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
@@ -128,9 +131,9 @@ void find_gravity(const Log& log, const RobotDescription& robot, const TorquePai
       fault.certain ? "does not point" : "may not point", fitted[0], fitted[1], fitted[2],
       100 * after, 100 * before);
   fault.mend = fmt::format(
-      "write gravity_m_s2 = [{:.4g}, {:.4g}, {:.4g}] into the robot file where the arm is mounted "
+      "write gravity_m_s2 = [{:g}, {:g}, {:g}] into the robot file where the arm is mounted "
       "so; or the positions of a joint have another zero or sign than the file's",
-      mounted[0] + 0.0, mounted[1] + 0.0, mounted[2] + 0.0);
+      rounded(mounted[0]), rounded(mounted[1]), rounded(mounted[2]));
   faults.push_back(std::move(fault));
 }
 

@@ -490,11 +490,18 @@ class Finder {
     }
   }
 
-  // Whether what is held out is predicted better with the model than without one of its effects.
-  [[nodiscard]] bool predicts(const std::vector<Term>& terms_without, const ModelFit& without,
-                              const VectorXd& held_out) const {
+  // Whether what is held out is predicted better with the model than without one of its effects, on
+  // the joints that it acts on: what wide links do elsewhere meanwhile is not its doing.
+  [[nodiscard]] bool predicts(const Term& term, const std::vector<Term>& terms_without,
+                              const ModelFit& without, const VectorXd& held_out) const {
+    const Data& data = regression_.data();
     const VectorXd before = hold_out_.rms(hold_out_.residual(terms_without, without));
-    return growth_of_log_likelihood(before, held_out, found_.fit.remainder.independent_samples) > 0;
+    VectorXd samples = VectorXd::Zero(before.size());
+    const ActingColumns acting(data.layout, columns_of(data, term));
+    for (const ActingColumns::Span& span : acting.spans()) {
+      samples[span.joint] = found_.fit.remainder.independent_samples[span.joint];
+    }
+    return growth_of_log_likelihood(before, held_out, samples) > 0;
   }
 
   // Every accepted effect must still be needed beside all others, and predict what is held out:
@@ -510,8 +517,8 @@ class Finder {
         const std::vector<Term> terms = found_.terms_without(i);
         const ModelFit without = regression_.fit(terms);
         shares[i] = fall_of(without, found_.fit).share;
-        needed[i] =
-            static_cast<char>(relevant(without, found_.fit) && predicts(terms, without, held_out));
+        needed[i] = static_cast<char>(relevant(without, found_.fit) &&
+                                      predicts(found_.accepted[i].term, terms, without, held_out));
       });
       std::size_t least = shares.size();
       for (std::size_t i = 0; i < shares.size(); ++i) {
