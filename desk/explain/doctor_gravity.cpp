@@ -81,7 +81,7 @@ double angle_deg(const Vector3d& a, const Vector3d& b) {
 Vector3d as_mounted(const Vector3d& gravity) {
   constexpr double kNearDeg = 10;
   for (Index axis = 0; axis < 3; ++axis) {
-    const Vector3d along = std::copysign(kStandard, gravity[axis]) * Vector3d::Unit(axis);
+    Vector3d along = std::copysign(kStandard, gravity[axis]) * Vector3d::Unit(axis);
     if (angle_deg(gravity, along) < kNearDeg) return along;
   }
   return gravity;
