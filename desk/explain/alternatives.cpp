@@ -83,17 +83,17 @@ bool is_nested(const Data& data, const ModelFit& baseline, const Term& inner, co
 std::vector<Term> slow_ripples(const Data& data, Index joint) {
   constexpr std::array kPeriodsInRange{0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5};
   const double range = range_moved(data.recordings, joint);
-  const double period = first_order_period(data.recordings[0].joint_type(joint));
-  const bool is_revolute = data.recordings[0].joint_type(joint) == JointType::kRevolute;
+  const JointType type = data.recordings[0].joint_type(joint);
   std::vector<Term> ripples;
   if (!(range > 0)) return ripples;
   for (const auto& effect : all_candidates()) {
     if (effect->spectrum() != EffectCandidate::Spectrum::kPosition) continue;
     if (!effect->applies_in_any(data.recordings, joint)) continue;
     for (const double periods : kPeriodsInRange) {
+      const double order = periods * first_order_period(type) / range;
       // Nothing that turns is slower than the joint.
-      if (is_revolute && periods * period / range < 1) continue;
-      ripples.push_back({effect.get(), joint, {periods * period / range}});
+      if (type == JointType::kRevolute && order < 1) continue;
+      ripples.push_back({effect.get(), joint, {order}});
     }
   }
   return ripples;

@@ -292,9 +292,7 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
     mend_strange_velocities(mended, robot, faults);
     mend_velocities(mended, robot, faults);
     if (const auto pair = torque_pair(mended, robot)) {
-      const std::size_t so_far = faults.size();
-      find_gravity(mended, robot, *pair, faults);
-      if (faults.size() == so_far) find_torque_sign(mended, *pair, faults);
+      if (!find_gravity(mended, robot, *pair, faults)) find_torque_sign(mended, *pair, faults);
       find_clock_skew(mended, *pair, faults);
     }
   }

@@ -56,8 +56,8 @@ void find_saturation(const Log& log, const RobotDescription& robot, std::vector<
 void find_held_torques(const Log& log, const Log& even, const RobotDescription& robot,
                        std::vector<DataFault>& faults);
 // Gravity that points another way than the robot file says: the arm is mounted otherwise. All that
-// else is held against the model's torque would follow from it.
-void find_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
+// else is held against the model's torque would follow from it. Returns whether it does.
+bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
                   std::vector<DataFault>& faults);
 void find_torque_sign(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
 void find_clock_skew(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);

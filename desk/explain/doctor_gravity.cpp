@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "compare/inverse_model.hpp"
@@ -28,10 +29,14 @@ Vector3d gravity_of(const RobotDescription& robot) {
 // Torques of all joints, one under the other, each in parts of its joint's measured one.
 class InParts {
  public:
-  explicit InParts(const TorquePair& pair) : pair_(pair) {
-    const VectorXd size = pair.measured.colwise().norm();
-    for (Index joint = 0; joint < size.size(); ++joint) {
-      weights_.push_back(size[joint] > 0 ? 1 / size[joint] : 0);
+  explicit InParts(const TorquePair& pair) {
+    for (Index joint = 0; joint < pair.measured.cols(); ++joint) {
+      const double size = pair.measured.col(joint).norm();
+      weights_.push_back(size > 0 ? 1 / size : 0);
+      MatrixXd friction(pair.dq.rows(), 2);
+      friction << pair.dq.col(joint), pair.dq.col(joint).cwiseSign();
+      solvers_.emplace_back(friction);
+      friction_.push_back(std::move(friction));
     }
   }
 
@@ -40,19 +45,17 @@ class InParts {
     const Index rows = torques.rows();
     VectorXd all(torques.size());
     for (Index joint = 0; joint < torques.cols(); ++joint) {
-      const VectorXd speed = pair_.dq.col(joint);
-      MatrixXd friction(rows, 2);
-      friction << speed, speed.cwiseSign();
-      const VectorXd own = weights_[static_cast<std::size_t>(joint)] * torques.col(joint);
-      const Eigen::ColPivHouseholderQR<MatrixXd> qr(friction);
-      all.segment(joint * rows, rows) = own - friction * qr.solve(own);
+      const auto at = static_cast<std::size_t>(joint);
+      const VectorXd own = weights_[at] * torques.col(joint);
+      all.segment(joint * rows, rows) = own - friction_[at] * solvers_[at].solve(own);
     }
     return all;
   }
 
  private:
-  const TorquePair& pair_;
   std::vector<double> weights_;
+  std::vector<MatrixXd> friction_;  // per joint: speed and its sign
+  std::vector<Eigen::ColPivHouseholderQR<MatrixXd>> solvers_;
 };
 
 // What gravity of 1 m/s^2 along each axis of the base has the joints carry, one column each.
@@ -92,7 +95,7 @@ double rounded(double value) { return std::round(100 * value) / 100 + 0.0; }
 
 }  // namespace
 
-void find_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
+bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
                   std::vector<DataFault>& faults) {
   constexpr double kBadFit = 0.3;         // as the file has it, rms over the joints' torques
   constexpr double kGoodFit = 0.5;        // as it would be
@@ -114,11 +117,12 @@ void find_gravity(const Log& log, const RobotDescription& robot, const TorquePai
   const double joints = std::sqrt(static_cast<double>(pair.measured.cols()));
   const double before = error.norm() / joints;
   const double after = (error - columns * change).norm() / joints;
-  if (!(before > kBadFit) || !(after < kGoodFit) || !(after < kClearlyBetter * before)) return;
-  if (std::abs(fitted.norm() - kStandard) > kOff * kStandard) return;
+  if (!(before > kBadFit) || !(after < kGoodFit) || !(after < kClearlyBetter * before))
+    return false;
+  if (std::abs(fitted.norm() - kStandard) > kOff * kStandard) return false;
   const bool has_one = stated.norm() > 0;
   const double turned_deg = has_one ? angle_deg(stated, fitted) : 0;
-  if (has_one && (turned_deg < kTurnedDeg || turned_deg > kReversedDeg)) return;
+  if (has_one && (turned_deg < kTurnedDeg || turned_deg > kReversedDeg)) return false;
   const Vector3d mounted = as_mounted(fitted);
   DataFault fault;
   fault.kind = DataFaultKind::kGravity;
@@ -135,6 +139,7 @@ void find_gravity(const Log& log, const RobotDescription& robot, const TorquePai
       "so; or the positions of a joint have another zero or sign than the file's",
       rounded(mounted[0]), rounded(mounted[1]), rounded(mounted[2]));
   faults.push_back(std::move(fault));
+  return true;
 }
 
 }  // namespace offnominal::desk

@@ -21,16 +21,10 @@ constexpr double kBeats = 3;
 // What of Coulomb and viscous friction neither the file nor the model has on a joint.
 std::vector<EffectKind> lacking(const Data& data, const std::vector<Term>& terms, Index joint) {
   std::vector<EffectKind> missing;
-  const Workspace& at = data.recordings[0];
   for (const EffectInfo& info : kAllEffectInfos) {
     if (!info.traits.every_drive_has) continue;
     const EffectKind kind = info.kind;
-    // A motor's is friction of all joints that it moves.
-    const bool known =
-        std::any_of(at.known_effects.begin(), at.known_effects.end(), [&](const RobotEffect& one) {
-          return one.kind == kind && acts_on_joint(at.rigid, one, joint);
-        });
-    if (!known && !has_term(terms, kind, joint)) missing.push_back(kind);
+    if (!file_has(data, kind, joint) && !has_term(terms, kind, joint)) missing.push_back(kind);
   }
   return missing;
 }
@@ -66,6 +60,13 @@ std::vector<std::vector<EffectKind>> combinations_of(const std::vector<EffectKin
 }
 
 }  // namespace
+
+bool file_has(const Data& data, EffectKind kind, Index joint) {
+  const Workspace& at = data.recordings[0];
+  return std::any_of(at.known_effects.begin(), at.known_effects.end(), [&](const RobotEffect& one) {
+    return one.kind == kind && acts_on_joint(at.rigid, one, joint);
+  });
+}
 
 Term first_on_grid(const Data& data, EffectKind kind, Index joint) {
   const auto& all = all_candidates();

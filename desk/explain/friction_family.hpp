@@ -23,6 +23,10 @@ void put_friction_first(const Search& search, const Regression& regression,
 bool is_refuted_by_simpler(const Data& data, const Term& simpler, const ModelFit& with_simpler,
                            const Term& other, const ModelFit& with_other);
 
+// Whether the robot file has such an effect that acts on a joint: a motor's acts on all joints that
+// it moves.
+bool file_has(const Data& data, EffectKind kind, Eigen::Index joint);
+
 // An effect on a joint, its shape at the first point of its grid.
 Term first_on_grid(const Data& data, EffectKind kind, Eigen::Index joint);
 

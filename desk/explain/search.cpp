@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "compare/inverse_model.hpp"
+#include "explain/friction_family.hpp"
 #include "identify/independent_samples.hpp"
 #include "identify/parallel.hpp"
 #include "identify/shape_search.hpp"
@@ -136,12 +136,8 @@ Screening Search::screen(const std::vector<Term>& terms, const ModelFit& at) con
 
 // Friction that every drive has and the file has not: a little damping is no answer for the rest.
 bool Search::is_asked_first(const Term& term) const {
-  if (!term.effect->info().traits.every_drive_has) return false;
-  const Workspace& at = data_.recordings[0];
-  return std::none_of(
-      at.known_effects.begin(), at.known_effects.end(), [&](const RobotEffect& one) {
-        return one.kind == term.effect->kind() && acts_on_joint(at.rigid, one, term.joint);
-      });
+  return term.effect->info().traits.every_drive_has &&
+         !file_has(data_, term.effect->kind(), term.joint);
 }
 
 NullOfSearch Search::null_of(const std::vector<Term>& terms, const ModelFit& fit,
