@@ -13,6 +13,7 @@
 #include "common/shell_word.hpp"
 #include "compare/measurement.hpp"
 #include "explain/alternatives.hpp"
+#include "explain/beside_free_links.hpp"
 #include "explain/change.hpp"
 #include "explain/describe.hpp"
 #include "explain/find_model.hpp"
@@ -93,6 +94,7 @@ class Explainer {
     const HoldOut& hold_out = *setting_.hold_out;
     result.over_variable =
         leave_out_stand_ins(*setting_.regression, hold_out, options_.threads, found);
+    leave_out_links_in_disguise(setting_, robot_, options_.threads, found);
     ImprovedRobot improved;
     Sizes sizes;
     do {
@@ -120,9 +122,7 @@ class Explainer {
     result.improved = std::move(improved.robot);
     result.unwritable = std::move(improved.unwritable);
     result.held = std::move(improved.held);
-    result.unphysical = std::move(improved.of_other_sign);
-    result.unphysical.insert(result.unphysical.end(), improved.unphysical.begin(),
-                             improved.unphysical.end());
+    result.unphysical = std::move(improved.unphysical);
     tell_errors_of_files(result);
     judge_whole(result);
     if (!result.found.empty()) {

@@ -32,9 +32,7 @@ double chosen_numbers(const Term& term) {
 // What every model adapts in its nuisance is no discovery in another name either.
 bool Search::is_worth_a_name(const Term& term, const VectorXd& coefficients) const {
   const auto& nuisance = data_.nuisance.terms;
-  return term.effect->is_physical(coefficients) &&
-         term.effect->is_within_reach(data_.recordings, term.joint, coefficients, term.shape,
-                                      term.ranges) &&
+  return can_be(term, coefficients, data_.recordings) &&
          std::none_of(nuisance.begin(), nuisance.end(), [&](const NuisanceTerm& one) {
            return takes_place_of(term, one) && coefficients[0] <= one.prior.high;
          });

@@ -44,7 +44,10 @@ Sizes sizes_of(const ImprovedRobot& improved) {
         (*one.ci95)[0] = std::max(0.0, (*one.ci95)[0]);
       }
     }
-    double least = estimates.linear[i].from_nothing();
+    // What the search took, and what cannot be once all is fitted together, is no size at all.
+    const bool possible =
+        can_be(terms[i], improved.last.fit.coefficients[i], improved.last.data->recordings);
+    double least = possible ? estimates.linear[i].from_nothing() : 0;
     for (const VectorXd& shift : shifts[i].linear) {
       LinearPart wider = estimates.linear[i];
       wider.widen(shift);

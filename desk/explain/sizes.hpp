@@ -13,7 +13,7 @@ namespace offnominal::desk {
 // of that (band_shift.hpp).
 struct Sizes {
   std::vector<std::vector<Estimate>> numbers;
-  std::vector<double> from_nothing;  // LinearPart::from_nothing()
+  std::vector<double> from_nothing;  // LinearPart::from_nothing(); 0 of a size that cannot be
 };
 
 Sizes sizes_of(const ImprovedRobot& improved);

@@ -203,19 +203,6 @@ void move_fitted_effects(const Relinearised& found, const std::string& source,
   }
 }
 
-std::vector<std::string> of_other_sign(const Relinearised& last) {
-  std::vector<std::string> all;
-  for (std::size_t i = 0; i < last.terms.size(); ++i) {
-    const Term& term = last.terms[i];
-    if (term.effect->is_physical(last.fit.coefficients[i])) continue;
-    all.push_back(
-        fmt::format("{} of {} {} came out as {:.4g}, which cannot be, once all was fitted together",
-                    term.effect->name(), term.effect->of_motor() ? "motor" : "joint",
-                    term.joint + 1, last.fit.coefficients[i][0]));
-  }
-  return all;
-}
-
 // Friction that all together gives energy, whatever the search saw.
 std::vector<std::string> unphysical(const Relinearised& last, const RobotDescription& improved) {
   std::vector<std::string> objections;
@@ -324,7 +311,6 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
     improved.robot.effects.push_back(std::move(effect));
   }
   improved.unphysical = unphysical(last, improved.robot);
-  improved.of_other_sign = of_other_sign(last);
   improved.found = std::move(found);
   // As whoever reads it will judge it: a mass that is taken away may leave none.
   try {

@@ -34,8 +34,6 @@ struct ImprovedRobot {
   std::vector<std::string> unwritable;
   std::vector<HeldNumber> held;
   std::vector<std::string> unphysical;  // why it must not be used; empty: it may
-  // Coefficients of a sign that the search would not have taken.
-  std::vector<std::string> of_other_sign;
 };
 
 struct FileFitOptions {

@@ -16,6 +16,13 @@ std::string words_of(const TimeSpan& span) {
                      : fmt::format("from {:.4g} s of {} on", span.from_s, files);
 }
 
+bool can_be(const Term& term, const VectorXd& coefficients,
+            const std::vector<Workspace>& recordings) {
+  return term.effect->is_physical(coefficients) &&
+         term.effect->is_within_reach(recordings, term.joint, coefficients, term.shape,
+                                      term.ranges);
+}
+
 std::vector<VectorXd> shares_of(const TimeSpan& span, const std::vector<Workspace>& recordings) {
   std::vector<VectorXd> shares(recordings.size());
   for (std::size_t r = 0; r < recordings.size(); ++r) {

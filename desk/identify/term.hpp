@@ -49,6 +49,11 @@ struct Term {
   }
 };
 
+// Whether an effect with these coefficients can be on a drive (EffectCandidate::is_physical) and is
+// one that the recordings can show (is_within_reach).
+bool can_be(const Term& term, const Eigen::VectorXd& coefficients,
+            const std::vector<Workspace>& recordings);
+
 // Per recording, at its filtered samples, what the low-pass that torques and regressors pass makes
 // of a 1 in the span and a 0 elsewhere; empty where the span is of other recordings. A regressor
 // times this is what the filter makes of one that acts in the span alone, as far as it does not

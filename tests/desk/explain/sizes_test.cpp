@@ -10,6 +10,7 @@
 
 #include "explain/friction_family.hpp"
 #include "explain/treatment.hpp"
+#include "identify/improved_robot.hpp"
 #include "identify/stretches.hpp"
 #include "identify/workspace.hpp"
 #include "serial_arm.hpp"
@@ -117,6 +118,24 @@ TEST_F(UnsureSizes, AloneAreStillSuspected) {
   EXPECT_GT(found_.suspected->share, 0.3);
   EXPECT_LE(found_.suspected->share, 1);
   EXPECT_FALSE(leave_out({})) << "and there is an end";
+}
+
+// Of what pushes away from where it rests.
+TEST(Sizes, OfWhatCannotBeAreNothing) {
+  const RobotDescription robot = test::serial_arm(1);
+  RobotDescription pushed = robot;
+  pushed.effects.push_back(test::effect_of(EffectKind::kJointStiffness, 0, {-2, 0}, true));
+  const std::vector<Log> logs{test::record(pushed, {.duration_s = 12, .seed = 5})};
+  const FilterPlan plan = plan_filter(logs, robot);
+  const NuisanceOptions none;
+  const Data data(make_workspaces(logs, robot, plan, VectorXd::Zero(1)), robot, none);
+  const std::vector<Term> terms{first_on_grid(data, EffectKind::kJointStiffness, 0)};
+  const ModelFit fit = Regression(data).fit(terms);
+  ASSERT_LT(fit.coefficients[0][0], 0);
+  const Sizes sizes = sizes_of(improved_robot(robot, robot, data, {none, {}, {}, ""},
+                                              relinearise(robot, data, none, terms, fit)));
+  ASSERT_EQ(sizes.from_nothing.size(), 1U);
+  EXPECT_EQ(sizes.from_nothing[0], 0);
 }
 
 }  // namespace
