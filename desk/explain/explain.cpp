@@ -27,6 +27,7 @@
 #include "explain/undecided.hpp"
 #include "explain/verdict.hpp"
 #include "identify/file_errors.hpp"
+#include "identify/held_out_errors.hpp"
 #include "identify/improved_robot.hpp"
 #include "identify/parallel.hpp"
 #include "identify/stretches.hpp"
@@ -48,7 +49,12 @@ class Explainer {
   Explainer(const RobotDescription& robot, const std::vector<Log>& logs,
             const std::vector<Log>& holdout, const ExplainOptions& options,
             const OnProgress& on_progress)
-      : file_(robot), robot_(robot), logs_(logs), options_(options), on_progress_(on_progress) {
+      : file_(robot),
+        robot_(robot),
+        logs_(logs),
+        holdout_(holdout),
+        options_(options),
+        on_progress_(on_progress) {
     given_ = part_that_may_differ(logs, options_);
     check_kind(logs, logs.front().at_rest);
     check_kind(holdout, logs.front().at_rest);
@@ -119,11 +125,11 @@ class Explainer {
               changes_},
              result);
     leave_out_undecided(found, result.ambiguous, improved);
+    if (!result.at_rest) tell_errors_of_files(improved, result);
     result.improved = std::move(improved.robot);
     result.unwritable = std::move(improved.unwritable);
     result.held = std::move(improved.held);
     result.unphysical = std::move(improved.unphysical);
-    tell_errors_of_files(result);
     judge_whole(result);
     if (!result.found.empty()) {
       result.advice.insert(result.advice.end(), result.unphysical.begin(), result.unphysical.end());
@@ -231,31 +237,50 @@ class Explainer {
   static void leave_out_undecided(const FoundModel& found,
                                   const std::vector<std::vector<EffectAt>>& classes,
                                   ImprovedRobot& improved) {
-    std::vector<std::size_t> out;
     for (std::size_t i = 0; i < found.accepted.size(); ++i) {
       const Term& term = found.accepted[i].term;
-      if (improved.added[i] == kUnwritten) continue;
-      if (holds_in_any(classes, {term.effect->kind(), term.joint})) {
-        out.push_back(improved.added[i]);
+      const std::size_t at = improved.added[i];
+      if (at == kUnwritten || !holds_in_any(classes, {term.effect->kind(), term.joint})) continue;
+      improved.robot.effects.erase(improved.robot.effects.begin() +
+                                   static_cast<std::ptrdiff_t>(at));
+      improved.added[i] = kUnwritten;
+      for (std::size_t& other : improved.added) {
+        if (other != kUnwritten && other > at) --other;
       }
-    }
-    std::sort(out.rbegin(), out.rend());
-    for (const std::size_t i : out) {
-      improved.robot.effects.erase(improved.robot.effects.begin() + static_cast<std::ptrdiff_t>(i));
     }
   }
 
   // Readings at rest have no filter, and their friction by the direction of approach no file.
-  void tell_errors_of_files(Explanation& result) const {
-    if (result.at_rest) return;
+  void tell_errors_of_files(const ImprovedRobot& improved, Explanation& result) const {
     tell("comparing the models before and after");
     const FileErrors before = file_errors(file_, logs_, plan_);
-    const FileErrors after = file_errors(result.improved, logs_, plan_);
+    const FileErrors after = file_errors(improved.robot, logs_, plan_);
     for (std::size_t joint = 0; joint < result.joints.size(); ++joint) {
       result.joints[joint].rms_torque = before.rms_torque[joint];
       result.joints[joint].rms_before = before.rms_error[joint];
       result.joints[joint].rms_improved = after.rms_error[joint];
     }
+    const HeldOutErrors held_out = held_out_of(improved);
+    for (JointErrors& joint : result.joints) {
+      joint.holdout_before = held_out.before[joint.joint];
+      joint.holdout_after = held_out.after[joint.joint];
+    }
+  }
+
+  [[nodiscard]] HeldOutErrors held_out_of(const ImprovedRobot& improved) const {
+    if (holdout_.empty()) {
+      std::vector<Term> written;
+      for (std::size_t i = 0; i < improved.added.size(); ++i) {
+        if (improved.added[i] != kUnwritten) written.push_back(improved.last.terms[i]);
+      }
+      return held_out_errors(file_, improved.last, written);
+    }
+    const FileErrors before = file_errors(file_, holdout_, plan_);
+    const FileErrors after = file_errors(improved.robot, holdout_, plan_);
+    const auto vector = [](const std::vector<double>& of) -> VectorXd {
+      return Eigen::Map<const VectorXd>(of.data(), static_cast<Index>(of.size()));
+    };
+    return {vector(before.rms_torque), vector(before.rms_error), vector(after.rms_error)};
   }
 
   // A hold map may show one order after the other: as many as robot files have room for.
@@ -435,6 +460,7 @@ class Explainer {
   const RobotDescription& file_;
   RobotDescription robot_;  // the same with signs as wide as the motion can resolve
   const std::vector<Log>& logs_;
+  const std::vector<Log>& holdout_;
   FilterPlan plan_;  // of all of them
   ExplainOptions options_;
   const OnProgress& on_progress_;

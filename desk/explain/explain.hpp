@@ -54,12 +54,19 @@ struct Finding {
   std::string words;
   std::string formula;  // of its torque, in its parameters
   std::vector<Estimate> parameters;
-  double p_value = 1;         // of the whole search, wild block bootstrap
-  double p_replay = 1;        // by playing the model without the effect, 1 where not asked for
-  double holdout_before = 0;  // rms torque error of its joint without it, N m or N
+  double p_value = 1;   // of the whole search, wild block bootstrap
+  double p_replay = 1;  // by playing the model without the effect, 1 where not asked for
+  // Of the regression with all else that was found, rms torque error of its joint without and with
+  // it, N m or N: beside what is each recording's own, which no file has (JointErrors).
+  double holdout_before = 0;
   double holdout_after = 0;
   double simulated_before = 0;  // rms position error of short forward simulations, rad or m
   double simulated_after = 0;
+
+  // Share of the error on held-out data.
+  [[nodiscard]] double takes_of_held_out() const {
+    return holdout_before > 0 ? 1 - holdout_after / holdout_before : 0;
+  }
 };
 
 // "coulomb_friction"; "cogging_torque of order 72" where there may be several of it.

@@ -218,14 +218,15 @@ report::Table rejected_table(const Explanation& e) {
 report::Waterfall waterfall_of(const Explanation& e, Index joint) {
   report::Waterfall waterfall;
   const JointErrors& errors = joint_of(e, joint);
-  waterfall.title = fmt::format("Held-out error of joint {}, effect by effect", joint + 1);
+  waterfall.title =
+      fmt::format("Held-out error of joint {} in the search, effect by effect", joint + 1);
   waterfall.value_axis = {fmt::format("rms {} error", effort_name(errors.unit)), errors.unit};
   // Of other joints' effects only those that show on this one.
   constexpr double kShows = 0.01;
   for (std::size_t i = 0; i < e.waterfall.size(); ++i) {
     const double error = e.waterfall[i][joint];
     if (i == 0) {
-      waterfall.steps.push_back({"model as it is", error});
+      waterfall.steps.push_back({"the file's numbers fitted", error});
       continue;
     }
     const Finding& added = e.found[i - 1];

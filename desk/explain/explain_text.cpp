@@ -22,10 +22,6 @@ std::string words_of(const Estimate& one) {
   return words;
 }
 
-std::string unit_at(const Explanation& e, Eigen::Index joint) {
-  return e.joints[static_cast<std::size_t>(joint)].unit;
-}
-
 std::string text_of_joints(const Explanation& e) {
   const TextTable table({{"joint", -6},
                          {"rms torque", 12},
@@ -60,15 +56,14 @@ std::string text_of_findings(const Explanation& e) {
   std::string text;
   for (std::size_t i = 0; i < e.found.size(); ++i) {
     const Finding& finding = e.found[i];
-    const std::string unit = unit_at(e, finding.what.joint);
     text += fmt::format("\n{}. {} on joint {}: {}\n", i + 1, title_of(finding),
                         finding.what.joint + 1, finding.words);
     text += "   torque: " + finding.formula + "\n";
     for (const Estimate& one : finding.parameters) text += "   " + words_of(one) + "\n";
     text += fmt::format(
-        "   held-out error without it {:.4g} {}, with it {:.4g} {}; p = {:.2g} over the whole "
+        "   takes {:.0f} % off the joint's error on held-out data; p = {:.2g} over the whole "
         "search{}\n",
-        finding.holdout_before, unit, finding.holdout_after, unit, finding.p_value,
+        100 * finding.takes_of_held_out(), finding.p_value,
         finding.p_replay < 1 ? ", and replays of the model without it do not come as far" : "");
   }
   for (const auto& same : e.ambiguous) {

@@ -37,7 +37,7 @@ ShareGain gain_of(const VectorXd& before, const VectorXd& after, const VectorXd&
   return gain;
 }
 
-struct HeldOutErrors {
+struct ErrorsBeside {
   VectorXd rms;
   VectorXd samples;  // independent ones, per joint
 };
@@ -56,7 +56,7 @@ void add_payload(const Regression& regression, std::vector<Term>& terms) {
   refine_over_range(regression, terms, terms.size() - 1);
 }
 
-HeldOutErrors held_out_of(const Data& data) {
+ErrorsBeside held_out_of(const Data& data) {
   const Regression regression(data);
   std::vector<Term> terms = standard_friction(data);
   add_payload(regression, terms);
@@ -69,7 +69,7 @@ HeldOutErrors held_out_of(const Data& data) {
 
 std::vector<double> wider_link_shares(const RobotDescription& robot, const Data& data,
                                       const std::vector<Term>& changes, int threads) {
-  std::array<HeldOutErrors, 1 + kShares.size()> held;
+  std::array<ErrorsBeside, 1 + kShares.size()> held;
   parallel_for(held.size(), threads, [&](std::size_t i) {
     NuisanceOptions wide;
     if (i == 0) {

@@ -199,11 +199,9 @@ void judge_found(Explanation& e) {
   });
   e.verdict = shift ? Verdict::kParameterShift : Verdict::kFound;
   const Finding& first = e.found.front();
-  const double fall =
-      first.holdout_before > 0 ? 100 * (1 - first.holdout_after / first.holdout_before) : 0;
   e.words = fmt::format("{} {} ({}): the error on held-out data of that joint falls by {:.0f} %.",
                         shift ? "Another value of a known quantity:" : "Missing:", words_of(first),
-                        first.words, fall);
+                        first.words, 100 * first.takes_of_held_out());
   if (e.found.size() == 1) return;
   std::vector<std::string> others;
   std::transform(e.found.begin() + 1, e.found.end(), std::back_inserter(others),

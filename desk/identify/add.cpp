@@ -12,7 +12,7 @@
 #include "identify/add_setup.hpp"
 #include "identify/estimates.hpp"
 #include "identify/friction_power.hpp"
-#include "identify/holdout.hpp"
+#include "identify/held_out_errors.hpp"
 #include "identify/improved_robot.hpp"
 #include "identify/indistinct.hpp"
 #include "identify/lookalike.hpp"
@@ -350,28 +350,13 @@ class Adder {
     return {joints.begin(), joints.end()};
   }
 
-  // Parts of the recordings, each predicted by a fit of the others, shapes included; before: by the
-  // file as it is, but for what is the recording's own.
   [[nodiscard]] std::vector<BeforeAfter> parts_held_out() const {
-    NuisanceOptions none = improved_.last.nuisance;
-    none.free_effects = std::vector<std::size_t>{};
-    none.link_share = 0;
-    none.sign_shapes = false;
-    RobotDescription as_it_is = file_;
-    const Data before(memory_.workspaces(as_it_is, improved_.last.data->recordings[0].sign_width),
-                      as_it_is, none);
-    const Regression nothing(before);
-    const HoldOut of_before(nothing, nullptr);
-    const VectorXd was = of_before.rms(of_before.residual({}, nothing.fit({})));
-    const Regression regression(*improved_.last.data);
-    const HoldOut of_after(regression, nullptr);
-    const VectorXd is = of_after.rms(of_after.cross_validated_with_shapes(improved_.last.terms));
-    const VectorXd torque = before.layout.rms(before.torque);
+    const HeldOutErrors of = held_out_errors(file_, improved_.last, improved_.last.terms);
     std::vector<BeforeAfter> errors;
     for (const std::size_t joint : touched_joints()) {
       const auto j = static_cast<Index>(joint);
-      errors.push_back({joint, result_.before.joints[joint].unit, 100 * was[j] / torque[j],
-                        100 * is[j] / torque[j], was[j], is[j]});
+      errors.push_back({joint, result_.before.joints[joint].unit, 100 * of.before[j] / of.torque[j],
+                        100 * of.after[j] / of.torque[j], of.before[j], of.after[j]});
     }
     return errors;
   }

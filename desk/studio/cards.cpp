@@ -42,8 +42,7 @@ ordered_json card_of(const Finding& finding, const Explanation& explanation) {
   card["parameters"] = ordered_json::array();
   for (const Estimate& one : finding.parameters) card["parameters"].push_back(json_of(one));
   card["p_value"] = finding.p_value;
-  card["held_out_before"] = finding.holdout_before;
-  card["held_out_after"] = finding.holdout_after;
+  card["takes_of_held_out"] = finding.takes_of_held_out();
   card["unit"] = "";
   for (const JointErrors& errors : explanation.joints) {
     if (errors.joint == finding.what.joint) card["unit"] = errors.unit;

@@ -23,8 +23,7 @@ function findingCard(card, id, state, actions) {
   const root = element("li", { class: "card finding" });
   const head = element("div", { class: "step-head" }, element("h4", {}, effectTitle(card.title)));
   head.append(addButton(card, `add-${id}`, isAdded(state, card), actions));
-  const error = (value) => withUnit(formatSignificant(value, 4), card.unit);
-  const share = 100 * (1 - card.held_out_after / card.held_out_before);
+  const share = formatNumber(100 * card.takes_of_held_out, ".0f");
   root.append(
     head,
     element("p", {}, `${card.words}. Its torque: `, element("code", {}, card.formula)),
@@ -32,9 +31,7 @@ function findingCard(card, id, state, actions) {
     element(
       "p",
       {},
-      `Error on held-out data without it ${error(card.held_out_before)}, with it ` +
-        `${error(card.held_out_after)}: it takes off ${formatNumber(share, ".0f")} %. ` +
-        chanceWords(card.p_value),
+      `It takes ${share} % off the joint's error on held-out data. ${chanceWords(card.p_value)}`,
     ),
   );
   if (card.alternatives.length > 0) {

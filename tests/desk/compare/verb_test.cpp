@@ -166,6 +166,58 @@ TEST_F(Verbs, CompareAgainstAnOlderFileSaysHowFarTheErrorFell) {
   EXPECT_THAT(text.out, AllOf(HasSubstr("Joint 2: the error falls from"), HasSubstr("arm.toml")));
 }
 
+// One file on one recording has one error, whoever tells it; on parts that no fit has seen, too.
+TEST_F(Verbs, TellTheSameErrorsOfAFile) {
+  put(folder_ / "long.csv", csv(1, 40));
+  const auto json_of_run = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--robot", path("arm.toml"), "--json"});
+    return nlohmann::json::parse(run(arguments).out);
+  };
+  const auto joint_of = [](const nlohmann::json& of) { return of.at("joints").at(1); };
+  const auto errors = [](const nlohmann::json& of, const char* before, const char* after) {
+    return std::pair{of.at(before).get<double>(), of.at(after).get<double>()};
+  };
+  for (const bool apart : {false, true}) {
+    const std::vector<std::string> holdout =
+        apart ? std::vector<std::string>{"--holdout", path("other.csv")}
+              : std::vector<std::string>{};
+    const auto with = [&](std::vector<std::string> arguments) {
+      arguments.insert(arguments.end(), holdout.begin(), holdout.end());
+      return json_of_run(std::move(arguments));
+    };
+    const auto name = [&](const char* file) { return path(file) + (apart ? ".apart" : ".parts"); };
+    const auto explained = with({"explain", path("long.csv")});
+    ASSERT_FALSE(explained.at("found").empty()) << explained.at("words");
+    const auto all = with({"add", "--all-found", "--log", path("long.csv"), "-o", name("all")});
+    std::vector<std::string> each{"add"};
+    for (const auto& found : explained.at("found")) {
+      ASSERT_EQ(found.at("joint"), 2);
+      each.push_back(found.at("effect"));
+    }
+    each.insert(each.end(), {"--joint", "2", "--log", path("long.csv"), "-o", name("each")});
+    const auto one = with(each);
+    const auto [before, after] = errors(joint_of(explained), "rms_error_before", "rms_error_after");
+    EXPECT_NEAR(joint_of(json_of_run({"compare", path("long.csv")})).at("rms_error"), before,
+                1e-12 * before);
+    const auto of_all = joint_of(all.at("recordings").at(0));
+    EXPECT_NEAR(of_all.at("rms_error_before").get<double>(), before, 1e-12 * before);
+    EXPECT_NEAR(of_all.at("rms_error_after").get<double>(), after, 1e-9 * after);
+    const auto [held_before, held_after] =
+        errors(joint_of(explained), "holdout_before", "holdout_after");
+    const auto of_one = [&](const char* when) {
+      return one.at(when).at("holdout").at("rms_error").get<double>();
+    };
+    EXPECT_NEAR(of_one("before"), held_before, 1e-9 * held_before);
+    // `explain` fits the links' masses beside, `add EFFECT` does not.
+    EXPECT_NEAR(of_one("after"), held_after, 0.1 * held_after);
+    if (!apart) continue;
+    EXPECT_NEAR(joint_of(json_of_run({"compare", path("other.csv")})).at("rms_error"), held_before,
+                1e-12 * held_before);
+    const auto of_held = joint_of(all.at("recordings").at(1));
+    EXPECT_NEAR(of_held.at("rms_error_after").get<double>(), held_after, 1e-9 * held_after);
+  }
+}
+
 TEST_F(Verbs, CompareRefusesAnOlderFileOfAnotherRobot) {
   auto other = arm_description();
   other.joints.pop_back();

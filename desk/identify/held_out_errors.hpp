@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "identify/relinearise.hpp"
+#include "robot/robot.hpp"
+
+namespace offnominal::desk {
+
+// Errors of a robot file before and after a fit, rms per joint (N m or N), on parts of the fitted
+// recordings that the fit has not seen: what every verb tells where no recordings are kept apart;
+// where some are, it is compare()'s of them.
+struct HeldOutErrors {
+  Eigen::VectorXd torque;  // measured
+  Eigen::VectorXd before;
+  Eigen::VectorXd after;
+};
+
+// Each part is predicted by a fit of the others, shapes included; before: by the file as it is, but
+// for what is the recording's own. `last`: the fit that the new file was written from; `written`:
+// its terms that the file has.
+HeldOutErrors held_out_errors(const RobotDescription& file, const Relinearised& last,
+                              const std::vector<Term>& written);
+
+}  // namespace offnominal::desk
