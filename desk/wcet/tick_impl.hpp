@@ -90,7 +90,7 @@ class TickOf final : public Tick {
     const State before = work_.data.monitor.estimator;
     run();
     const State& after = work_.data.monitor.estimator;
-    const Scalar radius = work_.controller.config().monitor.estimator.weight_radius;
+    const Scalar radius = work_.controller.monitor().config().estimator.weight_radius;
     TickFacts facts;
     facts.watched = work_.data.fresh && work_.data.state == hal::ControllerState::kArmed;
     facts.learned =
@@ -276,7 +276,7 @@ class TickOf final : public Tick {
   // Weights with the pattern of the start's, scaled as the input says.
   [[nodiscard]] NetworkWeights<N, L, Scalar> weights_of(const TickInput& input,
                                                         const NetworkInput<N, Scalar>& z) const {
-    const EstimatorConfig<Scalar>& config = work_.controller.config().monitor.estimator;
+    const EstimatorConfig<Scalar>& config = work_.controller.monitor().config().estimator;
     const int units = config.hidden_units;
     // Uniform in [-sqrt(3), sqrt(3)]: of root mean square 1.
     const auto pattern = initial_weights<N, L, Scalar>(config.seed, units, std::sqrt(Scalar(3)));

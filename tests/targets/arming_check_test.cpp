@@ -40,7 +40,7 @@ TEST(CheckReference, TakesWhatIsAtALimitAndNothingBeyond) {
     Reference<2, double> reference;
     reference.q << q0, q1;
     reference.dq << dq0, dq1;
-    return check_reference(reference, config, range);
+    return check_reference(reference, config.monitor.chain, range);
   };
   EXPECT_EQ(judged(-1, -2, -4, -4), Fault::kNone);
   EXPECT_EQ(judged(1.5, 0.5, 4, 4), Fault::kNone);
@@ -59,7 +59,7 @@ TEST(CheckArming, AsksEveryJointAndTakesWhatIsAtTheEdge) {
     JointSample<2, double> sample;
     Reference<2, double> reference;
     change(config, sample, reference);
-    return check_arming(config, sample, reference);
+    return check_arming(config, config.monitor.chain, sample, reference);
   };
   for (const int i : {0, 1}) {
     SCOPED_TRACE(i);

@@ -187,7 +187,7 @@ void raise(Counts& worst, const Counts& counts) {
 // The weights at any size that the ball allows.
 void draw_weights(Memory& into) {
   auto& estimator = into.data.monitor.estimator;
-  const Scalar radius = controller->config().monitor.estimator.weight_radius;
+  const Scalar radius = controller->monitor().config().estimator.weight_radius;
   const auto count =
       static_cast<Scalar>(estimator.weights.w1.size() + estimator.weights.w2_transposed.size());
   const Scalar most = Scalar(0.99) * radius / std::sqrt(count);

@@ -13,7 +13,7 @@ namespace offnominal::cortex_m {
 // joint's largest torque beside it.
 inline JointSample<kJoints, Scalar> on_path(const Controller& controller, std::uint32_t tick,
                                             Scalar extra) {
-  const auto& joints = controller.config().monitor.chain.joints;
+  const auto& joints = controller.monitor().config().chain.joints;
   JointSample<kJoints, Scalar> sample;
   Vector<kJoints, Scalar> ddq;
   const Scalar t = static_cast<Scalar>(tick) * static_cast<Scalar>(kPeriodUs * 1e-6);
@@ -59,7 +59,7 @@ class Random {
 
 // Anything that the joints' limits let through, frames too.
 inline JointSample<kJoints, Scalar> anything(const Controller& controller, Random& random) {
-  const auto& joints = controller.config().monitor.chain.joints;
+  const auto& joints = controller.monitor().config().chain.joints;
   constexpr Scalar kMostOfAFrame = 31;
   JointSample<kJoints, Scalar> sample;
   for (Eigen::Index i = 0; i < kJoints; ++i) {

@@ -14,15 +14,15 @@ namespace offnominal::controller {
 
 // kNone for a reference that the joints can follow; otherwise NonFiniteReference or
 // kReferenceOutOfRange.
-template <int N, typename Scalar, typename Space>
+template <int N, typename Scalar>
 [[nodiscard]] Fault check_reference(const Reference<N, Scalar>& reference,
-                                    const ControllerConfig<N, Scalar, Space>& config,
+                                    const Chain<N, Scalar>& chain,
                                     const PositionRange<N, Scalar>& range) {
   if (!all_finite(reference.q) || !all_finite(reference.dq) || !all_finite(reference.ddq)) {
     return fault_of(Status::kNonFiniteReference);
   }
   for (Eigen::Index i = 0; i < reference.q.size(); ++i) {
-    const Scalar most = config.monitor.chain.joints[static_cast<std::size_t>(i)].max_velocity;
+    const Scalar most = chain.joints[static_cast<std::size_t>(i)].max_velocity;
     const bool inside = reference.q[i] >= range.lowest[i] && reference.q[i] <= range.highest[i] &&
                         std::fabs(reference.dq[i]) <= most;
     if (!inside) return Fault::kReferenceOutOfRange;
@@ -38,14 +38,15 @@ template <typename Scalar>
 
 // Whether torque may be commanded that starts at this sample, with `reference` at time 0, which
 // check_reference() has passed: kNone, or why not.
-template <int N, typename Scalar, typename Space>
-[[nodiscard]] Fault check_arming(const ControllerConfig<N, Scalar, Space>& config,
+template <int N, typename Scalar>
+[[nodiscard]] Fault check_arming(const ControlConfig<N, Scalar>& config,
+                                 const Chain<N, Scalar>& chain,
                                  const JointSample<N, Scalar>& sample,
                                  const Reference<N, Scalar>& reference) {
   for (std::size_t j = 0; j < config.gains.kp.size(); ++j) {
     const auto i = static_cast<Eigen::Index>(j);
     if (config.gains.kp[j] <= 0 || config.gains.kd[j] <= 0) return Fault::kNoGains;
-    const Scalar limit = config.monitor.chain.joints[j].max_torque;
+    const Scalar limit = chain.joints[j].max_torque;
     if (!is_finite(limit) || limit >= std::numeric_limits<Scalar>::max())
       return Fault::kNoTorqueLimit;
     const Scalar window = config.arming.position_window[j];

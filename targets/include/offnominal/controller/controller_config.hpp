@@ -15,11 +15,9 @@ namespace offnominal::controller {
 
 using hal::Microseconds;
 
-// Space: as of the Monitor.
-template <int N, typename Scalar, typename Space = AccelerationSpace>
-struct ControllerConfig {
-  // max_compensation zero: the monitor watches and does not act.
-  MonitorConfig<N, Scalar, Space> monitor;
+// What a controller is told beside its monitor.
+template <int N, typename Scalar>
+struct ControlConfig {
   ComputedTorqueGains<N, Scalar> gains;
   ArmingConfig<N, Scalar> arming;
   // No joint can be further from 0 than this, rad or m, whatever its limits: what says that it is
@@ -41,6 +39,13 @@ struct ControllerConfig {
   bool stop_at_detection = false;  // a crossed threshold leads to the safe state
   // Watch in kPassive too: where brakes are open and somebody else moves the joints.
   bool watch_when_passive = false;
+};
+
+// Space: as of the Monitor.
+template <int N, typename Scalar, typename Space = AccelerationSpace>
+struct ControllerConfig : ControlConfig<N, Scalar> {
+  // max_compensation zero: the monitor watches and does not act.
+  MonitorConfig<N, Scalar, Space> monitor;
 };
 
 // A configuration whose times follow from the monitor's period, whatever that is: commands live for

@@ -43,7 +43,7 @@ class JointController {
     if (const Status status = validate(config); status != Status::kOk) return status;
     const Status status = Watch::create(config.monitor, controller.monitor_);
     if (status != Status::kOk) return status;
-    controller.config_ = config;
+    controller.config_ = static_cast<const ControlConfig<N, Scalar>&>(config);
     controller.samples_ = SampleTaker<N, Scalar>(config);
     controller.takeover_ = Takeover<N, Scalar>(config);
     controller.limiter_ = TorqueLimiter<N, Scalar>(config);
@@ -137,7 +137,8 @@ class JointController {
     enter_fault(reason, bus, data);
   }
 
-  [[nodiscard]] const Config& config() const { return config_; }
+  // The monitor has its own: monitor().config().
+  [[nodiscard]] const ControlConfig<N, Scalar>& config() const { return config_; }
   [[nodiscard]] const Watch& monitor() const { return monitor_; }
 
  private:
@@ -150,7 +151,8 @@ class JointController {
   // As many ticks as a silent encoder is borne.
   static constexpr std::uint8_t kImplausibleAllowed = 2;
 
-  [[nodiscard]] std::size_t joints() const { return config_.monitor.chain.joints.size(); }
+  [[nodiscard]] const Chain<N, Scalar>& chain() const { return monitor_.config().chain; }
+  [[nodiscard]] std::size_t joints() const { return chain().joints.size(); }
   // Before the first tick, where the compiler does not know how many joints there are.
   void size_data(Data& data) const {
     size_for(joints(), data.sample.q, data.sample.dq, data.sample.tau, data.implausible_time_us,
@@ -172,7 +174,7 @@ class JointController {
   }
   [[nodiscard]] double run_time_s(const Data& data) const {
     return static_cast<double>(data.run_ticks) *
-           static_cast<double>(config_.monitor.estimator.period_s);
+           static_cast<double>(monitor_.config().estimator.period_s);
   }
 
   // Phases of a tick are not inlined: each gives its stack back before the next one begins.
@@ -306,8 +308,8 @@ class JointController {
 
   [[nodiscard]] Fault check_beginning(const Reference<N, Scalar>& reference,
                                       const Data& data) const {
-    const Fault fault = check_reference(reference, config_, samples_.range());
-    return fault == Fault::kNone ? check_arming(config_, data.sample, reference) : fault;
+    const Fault fault = check_reference(reference, chain(), samples_.range());
+    return fault == Fault::kNone ? check_arming(config_, chain(), data.sample, reference) : fault;
   }
 
   // From here on the drives give what is commanded now; a late one still gives what it was told.
@@ -315,7 +317,7 @@ class JointController {
   [[nodiscard]] Fault begin_control(const ReferenceAt& reference_at, Data& data) const {
     const Reference<N, Scalar> reference = reference_at(0.0);
     // Later samples are of an arm that may be held already, by some of its drives or by all.
-    Fault fault = data.holds ? check_reference(reference, config_, samples_.range())
+    Fault fault = data.holds ? check_reference(reference, chain(), samples_.range())
                              : check_beginning(reference, data);
     if (fault == Fault::kNone) fault = takeover_.hold(data.sample, reference, data);
     if (fault != Fault::kNone) return fault;
@@ -323,7 +325,7 @@ class JointController {
     const Fault refusal = want_torque(reference_at, data, wanted);
     if constexpr (Watch::kRemembers) {
       for (std::size_t j = 0; j < joints(); ++j) {
-        if (delay_of_joint(config_.monitor.chain, j) > 0) continue;
+        if (delay_of_joint(chain(), j) > 0) continue;
         data.sample.tau[static_cast<Eigen::Index>(j)] = wanted[static_cast<Eigen::Index>(j)];
       }
     } else {
@@ -341,7 +343,7 @@ class JointController {
     Reference<N, Scalar> reference;
     if (data.drives_follow) {
       reference = reference_at(time_s);
-      const Fault fault = check_reference(reference, config_, samples_.range());
+      const Fault fault = check_reference(reference, chain(), samples_.range());
       if (fault != Fault::kNone) return fault;
       ramp_in(data.ramp, time_s, config_.arming.ramp_s, reference);
     } else {
@@ -405,7 +407,7 @@ class JointController {
     if (status != hal::Status::kOk) ++data.unsent_frames;
   }
 
-  Config config_{};
+  ControlConfig<N, Scalar> config_{};
   Watch monitor_;
   SampleTaker<N, Scalar> samples_;
   Takeover<N, Scalar> takeover_;

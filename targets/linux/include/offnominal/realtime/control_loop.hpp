@@ -160,8 +160,8 @@ class ControlLoop {
     parts_.controller.step(tick.begin_us, tick.late_ticks, parts_.reference_at, parts_.bus,
                            parts_.drives, parts_.data);
     if (parts_.data.fresh) {
-      parts_.recorder.keep(
-          detail::row_of(parts_.data, tick, parts_.controller.config().monitor.estimator.period_s));
+      parts_.recorder.keep(detail::row_of(parts_.data, tick,
+                                          parts_.controller.monitor().config().estimator.period_s));
     }
     note(tick, parts_.bus.now() - tick.begin_us);
   }
