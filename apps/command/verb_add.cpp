@@ -19,6 +19,7 @@
 #include "command/write_robot.hpp"
 #include "common/nearest.hpp"
 #include "common/output_file.hpp"
+#include "common/text_table.hpp"
 #include "explain/add_found.hpp"
 #include "identify/add_report.hpp"
 #include "log/log_format.hpp"
@@ -196,13 +197,14 @@ void run(const AddOptions& options, const std::string& command_line, ExitCode& e
 }
 
 std::string effects_text() {
+  const TextTable table({{"", -22}, {"", 0}}, "  ");
   std::string text = "Effects, their formulas and parameters:\n";
   for (const EffectInfo* info : file_effects()) {
-    text += fmt::format("  {:<22} {}\n", info->name, info->formula);
+    text += table.row(info->name, info->formula);
     for (const ParameterInfo& parameter : info->parameters) {
-      text +=
-          fmt::format("  {:<22}   {}{}: {}\n", "", parameter.name,
-                      parameter.role == ParameterRole::kShape ? " (shape)" : "", parameter.meaning);
+      text += table.row("", fmt::format("  {}{}: {}", parameter.name,
+                                        parameter.role == ParameterRole::kShape ? " (shape)" : "",
+                                        parameter.meaning));
     }
   }
   return text;

@@ -292,8 +292,8 @@ void add_options(CLI::App& verb, PaperOptions& options) {
       ->check(CLI::IsMember({"continuous", "discontinuous"}));
   verb.add_option("--hidden", options.hidden, "Hidden units of the network, default 35")
       ->check(number_where(
-          [](double x) { return x >= 1 && x <= paper::kMaxHiddenUnits && x == std::floor(x); },
-          "a whole number from 1 to " + std::to_string(paper::kMaxHiddenUnits)));
+          [](double x) { return x >= 1 && x <= kMaxHiddenUnits && x == std::floor(x); },
+          "a whole number from 1 to " + std::to_string(kMaxHiddenUnits)));
   verb.add_option("--step", options.step, "Length of a control tick, s, default 0.001")
       ->check(
           number_where([](double x) { return x >= paper::kMinPeriod && x <= paper::kMaxPeriod; },

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "common/text_table.hpp"
 #include "sil/sil_report.hpp"
 
 namespace offnominal::desk {
@@ -42,9 +43,10 @@ nlohmann::ordered_json to_json(const ControllerOutcome& outcome) {
 std::string text_of(const ControllerOutcome& outcome) {
   const realtime::LoopReport& loop = outcome.report.loop;
   const hal::BusState& bus = outcome.bus;
+  const TextTable table({{"", -46}, {"", 0}});
   std::string text;
   const auto row = [&](const char* name, const std::string& value) {
-    text += fmt::format("{:<46} {}\n", name, value);
+    text += table.row(name, value);
   };
   row("at the end",
       loop.fault == controller::Fault::kNone

@@ -49,9 +49,9 @@ std::string stretches_text(const std::vector<JudgedStretch>& stretches) {
 }
 
 std::string shapes_text(const std::vector<ShapeScore>& shapes) {
-  const TextTable table({{"", 1}, {"", -56}, {"", 6}, {"", 9}, {"", 9}}, "  ");
-  std::string text =
-      fmt::format("  shapes tried {:>53} {:>9} {:>9}\n", "unseen", "widened", "mean mu");
+  const TextTable table(
+      {{"", 1}, {"shapes tried", -56}, {"unseen", 6}, {"widened", 9}, {"mean mu", 9}}, "  ");
+  std::string text = table.heading();
   for (const ShapeScore& shape : shapes) {
     text += table.row(
         shape.chosen ? "*" : " ", shape.words, fmt::format("{:.3f}", shape.largest_unseen_ratio),

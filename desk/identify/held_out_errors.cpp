@@ -21,8 +21,7 @@ HeldOutErrors held_out_errors(const RobotDescription& file, const Relinearised& 
   const HoldOut of_before(nothing, nullptr);
   const Regression regression(*last.data);
   const HoldOut of_after(regression, nullptr);
-  return {before.layout.rms(before.torque),
-          of_before.rms(of_before.residual({}, nothing.fit({}))),
+  return {before.layout.rms(before.torque), of_before.rms(of_before.residual({}, nothing.fit({}))),
           of_after.rms(of_after.cross_validated_with_shapes(written))};
 }
 

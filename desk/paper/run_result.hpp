@@ -13,7 +13,6 @@
 
 namespace offnominal::desk::paper {
 
-inline constexpr int kMaxHiddenUnits = 256;
 inline constexpr double kLongestRunS = 1e5;
 inline constexpr double kMinPeriod = 1e-5;  // s
 inline constexpr double kMaxPeriod = 0.02;  // s; the paper's gains bear little more

@@ -7,6 +7,7 @@
 
 #include "common/file.hpp"
 #include "common/number.hpp"
+#include "common/text_table.hpp"
 #include "common/toml_table.hpp"
 #include "robot/effect_text.hpp"
 #include "robot/read_effect.hpp"
@@ -141,6 +142,7 @@ std::string scenario_text(const Scenario& scenario) {
 }
 
 std::string fault_kinds_text() {
+  const TextTable table({{"", -18}, {"", -30}, {"", 0}}, "  ");
   std::string text;
   for (const sim::FaultEventInfo& info : sim::kFaultEventInfos) {
     std::string keys = info.of_joint == sim::OfJoint::kNever    ? ""
@@ -149,7 +151,7 @@ std::string fault_kinds_text() {
     if (!info.unit.empty()) {
       keys += fmt::format("{}size [{}]", keys.empty() ? "" : ", ", info.unit);
     }
-    text += fmt::format("  {:<18} {:<30} {}\n", info.name, keys, info.words);
+    text += table.row(info.name, keys, info.words);
   }
   return text;
 }

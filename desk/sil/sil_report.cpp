@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/text_table.hpp"
 #include "paper/figures.hpp"
 #include "paper/paper_json.hpp"
 
@@ -172,7 +173,8 @@ std::string sentence_of(const SilResult& result) {
 
 std::string text_of(const SilResult& result) {
   std::string text;
-  for (const Row& row : rows_of(result)) text += fmt::format("{:<46} {}\n", row.name, row.value);
+  const TextTable table({{"", -46}, {"", 0}});
+  for (const Row& row : rows_of(result)) text += table.row(row.name, row.value);
   return text + sentence_of(result) + "\n";
 }
 

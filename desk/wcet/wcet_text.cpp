@@ -167,6 +167,7 @@ std::string extrapolated_words(const WcetResult& result) {
 std::string bars_of(const Histogram& histogram) {
   constexpr int kPerDecade = 20;
   constexpr double kCharactersPerDecade = 6;
+  const TextTable table({{"", 10}, {"", 2}, {"", 10}, {"", 11}, {"", 0}});
   std::string text;
   int empty = 0;
   for (const Histogram::Bin& bin : histogram.log_bins(kPerDecade)) {
@@ -174,12 +175,12 @@ std::string bars_of(const Histogram& histogram) {
       ++empty;
       continue;
     }
-    if (empty > 0) text += fmt::format("{:>24}\n", "...");
+    if (empty > 0) text += table.row("", "", "...");
     empty = 0;
     const double length = 1 + kCharactersPerDecade * std::log10(static_cast<double>(bin.count));
-    text +=
-        fmt::format("{:>10.2f} to {:>10.2f} {:>11} {}\n", in_us(bin.begin_ns), in_us(bin.end_ns),
-                    bin.count, std::string(static_cast<std::size_t>(length), '#'));
+    text += table.row(fmt::format("{:.2f}", in_us(bin.begin_ns)), "to",
+                      fmt::format("{:.2f}", in_us(bin.end_ns)), bin.count,
+                      std::string(static_cast<std::size_t>(length), '#'));
   }
   return text;
 }
