@@ -8,6 +8,7 @@
 #include "arm_recording.hpp"
 #include "arm_robot.hpp"
 #include "arm_sketch.hpp"
+#include "campaign/cad_errors.hpp"
 #include "log/read_log.hpp"
 #include "robot/robot_file.hpp"
 
@@ -66,7 +67,7 @@ std::vector<DetectionFault> detection_faults() {
 
 desk::RobotDescription owners_robot(std::uint64_t seed) {
   Draws draws(seed, Stream::kKnowledge);
-  desk::RobotDescription robot = with_cad_errors(true_robot(), kCadError, draws);
+  desk::RobotDescription robot = desk::campaign::with_cad_errors(true_robot(), kCadError, draws);
   for (desk::RobotEffect& effect : robot.effects) {
     if (effect.kind == EffectKind::kRotorInertia) continue;
     effect.parameters[0] *= 1 + kFrictionError * draws.sign();
@@ -82,8 +83,8 @@ desk::Log arm_recording(std::uint64_t run, double duration_s, const DetectionFau
   if (fault != nullptr && fault->push) rig.pushes.push_back(*fault->push);
   Draws motion_draws(run, Stream::kMotion);
   const std::vector<double> middles{0, 0.2, 0, -1.55, 0, 1.8, 0};
-  const ArmMotion motion =
-      draw_arm_motion(middles, std::vector<bool>(middles.size(), false), duration_s, motion_draws);
+  const sim::hidden::ArmMotion motion = sim::hidden::draw_arm_motion(
+      middles, std::vector<bool>(middles.size(), false), duration_s, motion_draws);
   const ArmRun happened = run_arm(rig, motion, duration_s, 1);
   std::vector<double> noise_nm;
   for (Eigen::Index j = 0; j < happened.tau.cols(); ++j) {
