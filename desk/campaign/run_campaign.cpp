@@ -8,11 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "campaign/detector.hpp"
-#include "campaign/result_file.hpp"
-#include "campaign/score.hpp"
-#include "campaign/simulate.hpp"
-
 namespace offnominal::desk::campaign {
 namespace {
 
@@ -89,32 +84,43 @@ std::vector<std::unique_ptr<Detector>> calibrated_detectors(const Campaign& camp
   return detectors;
 }
 
-CampaignRow row_of(const Campaign& campaign,
-                   const std::vector<std::unique_ptr<Detector>>& detectors) {
-  CampaignRow row{campaign.name, campaign.identity, campaign.run_count(), {}};
-  for (std::size_t i = 0; i < detectors.size(); ++i) {
+}  // namespace
+
+CalibratedCampaign::CalibratedCampaign(const Campaign& campaign, int threads,
+                                       const OnProgress& on_progress)
+    : campaign_(campaign), simulator_(campaign) {
+  const std::vector<Log> logs = calibration_logs(campaign, simulator_, threads, on_progress);
+  detectors_ = calibrated_detectors(campaign, logs, threads, on_progress);
+}
+
+CampaignRow CalibratedCampaign::row() const {
+  CampaignRow row{campaign_.name, campaign_.identity, campaign_.run_count(), {}};
+  for (std::size_t i = 0; i < detectors_.size(); ++i) {
     std::string notes;
-    for (const std::string& note : detectors[i]->notes()) {
+    for (const std::string& note : detectors_[i]->notes()) {
       notes += (notes.empty() ? "" : "\n") + note;
     }
-    row.detectors.push_back({campaign.detectors[i].name, detectors[i]->thresholds(), notes});
+    row.detectors.push_back({campaign_.detectors[i].name, detectors_[i]->thresholds(), notes});
   }
   return row;
 }
 
-}  // namespace
+std::vector<Result> CalibratedCampaign::run(std::int64_t number) const {
+  const Run run = run_of(campaign_, number);
+  const RecordedRun recorded = simulator_.run(run);
+  std::vector<Result> rows;
+  for (std::size_t i = 0; i < detectors_.size(); ++i) {
+    rows.push_back(score_of(campaign_, run, recorded, campaign_.detectors[i].name,
+                            detectors_[i]->judge(recorded.log)));
+  }
+  return rows;
+}
 
 RunOutcome run_campaign(const Campaign& campaign, const RunRequest& request,
                         const OnProgress& on_progress) {
   ResultFile::check(request.output, campaign);
-  const Simulator simulator(campaign);
-  std::vector<std::unique_ptr<Detector>> detectors;
-  {
-    const std::vector<Log> logs =
-        calibration_logs(campaign, simulator, request.threads, on_progress);
-    detectors = calibrated_detectors(campaign, logs, request.threads, on_progress);
-  }
-  ResultFile file = ResultFile::open(request.output, row_of(campaign, detectors));
+  const CalibratedCampaign ready(campaign, request.threads, on_progress);
+  ResultFile file = ResultFile::open(request.output, ready.row());
   std::vector<std::int64_t> numbers = runs_of(campaign, request.shard);
   RunOutcome outcome{static_cast<std::int64_t>(numbers.size()), 0};
   const std::set<std::int64_t> finished = file.finished_runs();
@@ -122,13 +128,7 @@ RunOutcome run_campaign(const Campaign& campaign, const RunRequest& request,
   outcome.skipped = outcome.runs - static_cast<std::int64_t>(numbers.size());
   Counter counter("runs", numbers.size(), on_progress);
   on_threads(numbers.size(), request.threads, [&](std::size_t i) {
-    const Run run = run_of(campaign, numbers[i]);
-    const RecordedRun recorded = simulator.run(run);
-    std::vector<Result> rows;
-    for (std::size_t k = 0; k < detectors.size(); ++k) {
-      rows.push_back(score_of(campaign, run, recorded, campaign.detectors[k].name,
-                              detectors[k]->judge(recorded.log)));
-    }
+    const std::vector<Result> rows = ready.run(numbers[i]);
     counter.count([&] { file.add(rows); });
   });
   return outcome;

@@ -10,28 +10,31 @@ using Eigen::Index;
 
 constexpr double kLookAheadS = 0.02;
 
-void take_fault(const Fault& fault, double fault_s, Result& result) {
-  result.kind = info_of(fault.kind).name;
-  result.fault_s = fault_s;
-  if (fault.kind != FaultKind::kPayload) result.joint = fault.joint + 1;
-  if (*info_of(fault.kind).unit != '\0') result.size = fault.size;
-}
-
 }  // namespace
 
-Result score_of(const Campaign& campaign, const Run& run, const RecordedRun& recorded,
-                const std::string& detector, const Judged& judged) {
+Result row_of(const Campaign& campaign, const Run& run, const std::string& detector) {
   Result result;
   result.run = run.number;
   result.detector = detector;
   result.seed = campaign.seed;
+  if (run.fault == nullptr) return result;
+  const FaultKindInfo& info = info_of(run.fault->kind);
+  result.kind = info.name;
+  result.fault_s = campaign.runs.fault_s;
+  if (run.fault->kind != FaultKind::kPayload) result.joint = run.fault->joint + 1;
+  if (*info.unit != '\0') result.size = run.fault->size;
+  return result;
+}
+
+Result score_of(const Campaign& campaign, const Run& run, const RecordedRun& recorded,
+                const std::string& detector, const Judged& judged) {
+  Result result = row_of(campaign, run, detector);
   result.tracking_before_rad = recorded.tracking_before_rad;
   result.tracking_after_rad = recorded.tracking_after_rad;
   result.ran_away_s = recorded.ran_away_s;
   result.judged_s = static_cast<double>(judged.t_s.size()) * campaign.plant.period_s;
   double before_until_s = std::numeric_limits<double>::infinity();
   if (run.fault != nullptr) {
-    take_fault(*run.fault, campaign.runs.fault_s, result);
     const bool ahead = campaign.plant.velocity == VelocityKind::kDerived;
     before_until_s = campaign.runs.fault_s - (ahead ? kLookAheadS : 1e-9);
   }

@@ -38,6 +38,9 @@ struct Result {
   friend bool operator==(const Result&, const Result&) = default;
 };
 
+/// What follows of a row from the campaign alone.
+[[nodiscard]] Result row_of(const Campaign& campaign, const Run& run, const std::string& detector);
+
 /// Judges one run. Velocities derived without phase see the fault ahead, by a few periods of their
 /// 100 Hz filter: there an alarm up to 20 ms before it is one of the fault, with a delay of 0.
 [[nodiscard]] Result score_of(const Campaign& campaign, const Run& run, const RecordedRun& recorded,

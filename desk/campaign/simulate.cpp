@@ -10,9 +10,11 @@
 #include <offnominal/diagnosis/velocity_observer.hpp>
 #include <offnominal/model/inverse_dynamics.hpp>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "common/error.hpp"
 #include "log/sampling.hpp"
 #include "offnominal/sim/encoder.hpp"
 #include "offnominal/sim/hidden/arm_motion.hpp"
@@ -226,7 +228,6 @@ class Stand {
     const PlantSettings& plant = job_.campaign.plant;
     const Index joints = q_.cols();
     Log log;
-    log.file = fmt::format("run {}", job_.draw);
     log.period_s = plant.period_s;
     log.t_s = t_s_.head(rows);
     log.q = q_.topRows(rows);
@@ -269,21 +270,38 @@ class Stand {
 
 }  // namespace
 
+namespace {
+
+RecordedRun taken(const Job& job, const PlantMaker& plants, const std::string& name) {
+  try {
+    RecordedRun recorded = Stand(job, plants).take();
+    recorded.log.file = name;
+    return recorded;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw InputError({.file = job.campaign.file,
+                      .place = name,
+                      .found = std::string("no motion of a healthy robot: ") + error.what(),
+                      .allowed = "a plant that its model can move",
+                      .mend = "lower [plant] cad_error, or take more encoder_bits or a shorter "
+                              "period_s"});
+  }
+}
+
+}  // namespace
+
 Simulator::Simulator(const Campaign& campaign) : campaign_(campaign), plants_(campaign) {}
 
 RecordedRun Simulator::run(const Run& run) const {
   const Job job{campaign_, run.fault, run.duration_s, static_cast<std::uint64_t>(run.number)};
-  RecordedRun recorded = Stand(job, plants_).take();
-  recorded.log.file = fmt::format("run {}", run.number);
-  return recorded;
+  return taken(job, plants_, fmt::format("run {}", run.number));
 }
 
 Log Simulator::calibration_run(int number) const {
   const Job job{campaign_, nullptr, campaign_.calibration.duration_s,
                 kFirstOfCalibration + static_cast<std::uint64_t>(number)};
-  Log log = Stand(job, plants_).take().log;
-  log.file = fmt::format("calibration run {}", number);
-  return log;
+  return taken(job, plants_, fmt::format("calibration run {}", number)).log;
 }
 
 }  // namespace offnominal::desk::campaign

@@ -29,7 +29,7 @@ class Simulator {
   /// As PlantMaker. The campaign has to outlive it.
   explicit Simulator(const Campaign& campaign);
 
-  /// Throws std::runtime_error where the motion runs away without a fault.
+  /// Throws InputError where the motion runs away without a fault.
   [[nodiscard]] RecordedRun run(const Run& run) const;
   /// Fault-free; 0 <= number < calibration.runs.
   [[nodiscard]] Log calibration_run(int number) const;

@@ -77,18 +77,18 @@ std::vector<SmallestSeen> smallest_of(const std::vector<FaultLine>& lines) {
   return all;
 }
 
-std::vector<RocPoint> roc_of(const std::vector<const Result*>& rows) {
+void add_roc(const std::vector<const Result*>& rows, DetectorSummary& summary) {
   double hours = 0;
   std::int64_t faults = 0;
+  bool has_fault_free = false;
   for (const Result* row : rows) {
     const bool fault_free = row->kind == kFaultFree;
+    has_fault_free = has_fault_free || fault_free;
     hours += (fault_free ? row->judged_s : row->fault_s.value_or(0)) / 3600;
     if (!fault_free) ++faults;
   }
-  const bool has_fault_free = std::any_of(
-      rows.begin(), rows.end(), [](const Result* row) { return row->kind == kFaultFree; });
-  std::vector<RocPoint> points;
-  if (!has_fault_free || faults == 0) return points;
+  if (!has_fault_free || faults == 0) return;
+  summary.roc_hours = hours;
   constexpr int kPerDecade = 30;
   for (int i = -2 * kPerDecade; i <= kPerDecade; ++i) {
     const double scale = std::pow(10.0, static_cast<double>(i) / kPerDecade);
@@ -99,10 +99,9 @@ std::vector<RocPoint> roc_of(const std::vector<const Result*>& rows) {
       if (before) ++alarmed;
       if (row->kind != kFaultFree && !before && row->peak_after > scale) ++seen;
     }
-    points.push_back({scale, static_cast<double>(alarmed) / hours,
-                      static_cast<double>(seen) / static_cast<double>(faults)});
+    summary.roc.push_back({scale, static_cast<double>(alarmed) / hours,
+                           static_cast<double>(seen) / static_cast<double>(faults)});
   }
-  return points;
 }
 
 DetectorSummary summary_of_one(const DetectorRow& detector,
@@ -134,7 +133,7 @@ DetectorSummary summary_of_one(const DetectorRow& detector,
     summary.false_alarms_per_hour = rate_of(summary.false_alarms, summary.fault_free_s / 3600);
   }
   summary.smallest = smallest_of(summary.faults);
-  summary.roc = roc_of(rows);
+  add_roc(rows, summary);
   return summary;
 }
 

@@ -64,7 +64,8 @@ struct DetectorSummary {
   std::int64_t false_alarms = 0;                  // in them
   std::optional<Estimate> false_alarms_per_hour;  // none: there are no fault-free runs
   std::vector<SmallestSeen> smallest;
-  std::vector<RocPoint> roc;  // by ascending scale; empty: no fault-free time, or no fault
+  std::vector<RocPoint> roc;  // by ascending scale; empty: no fault-free runs, or no fault
+  double roc_hours = 0;       // without a fault, on which its false alarms were counted
 };
 
 struct Summary {

@@ -71,7 +71,7 @@ Series roc_series(const DetectorSummary& detector) {
   series.name = detector.name;
   series.kind = SeriesKind::kLine;
   for (auto point = detector.roc.rbegin(); point != detector.roc.rend(); ++point) {
-    const double x = point->false_alarms_per_hour;
+    const double x = std::max(point->false_alarms_per_hour, 0.5 / detector.roc_hours);
     const double y = 100 * point->detected;
     if (!series.x.empty() && series.x.back() == x) {
       series.y.back() = std::max(series.y.back(), y);
@@ -86,7 +86,7 @@ Series roc_series(const DetectorSummary& detector) {
 std::optional<Chart> roc_chart(const Summary& summary) {
   Chart chart;
   chart.title = "Faults seen against false alarms";
-  chart.x = {"runs that alarm without a fault", "1/h", false, {}, {}};
+  chart.x = {"runs that alarm without a fault", "1/h", true, {}, {}};
   chart.y = {{"runs whose fault is seen", "%", false, 0, 100}};
   for (const DetectorSummary& detector : summary.detectors) {
     if (!detector.roc.empty()) chart.series.push_back(roc_series(detector));
@@ -94,7 +94,9 @@ std::optional<Chart> roc_chart(const Summary& summary) {
   if (chart.series.empty()) return std::nullopt;
   chart.note =
       "Receiver operating characteristic over all faults: every detector's thresholds are scaled "
-      "together, from a hundredth to ten times what they were calibrated to.";
+      "together, from a hundredth to ten times what they were calibrated to. None at all is drawn "
+      "as "
+      "half an alarm.";
   return chart;
 }
 

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <vector>
 
+#include "campaign/result_numbers.hpp"
 #include "campaign/score.hpp"
 #include "desk/campaign/small_campaign.hpp"
 
@@ -76,6 +78,21 @@ TEST_F(Score, OfAFaultFreeRunCountsItsAlarms) {
   EXPECT_FALSE(free.detected);
   EXPECT_EQ(free.alarms, 2);
   EXPECT_EQ(free.peak_before, 2);
+}
+
+TEST_F(Score, ComesBackToTheBitFromItsNumbers) {
+  Result seen = score({0, 0.4, 0, 0, 0, 0, 0.9, 1.0 / 0.7, 3, 0.5});
+  Result free = score({0, 1.2}, true);
+  free.run = campaign_.run_count() - 1;
+  seen.run = 4;  // of the fault on joint 2
+  for (Result* one : {&seen, &free}) {
+    one->detector = campaign_.detectors[1].name;
+    EXPECT_EQ(result_of(campaign_, numbers_of(campaign_, *one)), *one);
+  }
+  std::vector<double> wrong = numbers_of(campaign_, seen);
+  wrong[0] = 1e6;
+  EXPECT_THROW(static_cast<void>(result_of(campaign_, wrong)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(result_of(campaign_, {1, 2})), std::invalid_argument);
 }
 
 Result fault_row(std::int64_t run, double size, bool seen, double peak) {
