@@ -8,12 +8,12 @@ namespace offnominal::desk::campaign {
 
 Eigen::MatrixXd momentum_residual(const RobotDescription& robot, double gain_per_s,
                                   const Log& log) {
-  using Joints = Vector<kRuntimeJoints, double>;
+  using Numbers = Vector<kRuntimeJoints, double>;
   const auto model = make_model(chain_of<kRuntimeJoints, double>(robot));
   Eigen::MatrixXd residual(log.q.rows(), log.q.cols());
-  Joints r = Joints::Zero(log.q.cols());
-  Joints integral = r;  // of the model's rate and of r
-  Joints first, rate_before;
+  Numbers r = Numbers::Zero(log.q.cols());
+  Numbers integral = r;  // of the model's rate and of r
+  Numbers first, rate_before;
   for (Eigen::Index row = 0; row < log.q.rows(); ++row) {
     const auto now = momentum_dynamics<kRuntimeJoints, double>(
         model, log.q.row(row).transpose(), log.dq.row(row).transpose(),

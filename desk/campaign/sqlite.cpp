@@ -42,8 +42,9 @@ namespace {
   }
 }
 
+// Reading too: what a process that was killed left half-written is rolled back first. A file that
+// may not be written is opened all the same.
 int flags_of(OpenAs as) {
-  if (as == OpenAs::kRead) return SQLITE_OPEN_READONLY;
   return as == OpenAs::kNew ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READWRITE;
 }
 

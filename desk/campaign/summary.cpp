@@ -64,13 +64,14 @@ std::vector<SmallestSeen> smallest_of(const std::vector<FaultLine>& lines) {
   }
   for (const auto& place : order) {
     auto& sizes = places[place];
-    std::stable_sort(sizes.begin(), sizes.end(), [](const FaultLine* a, const FaultLine* b) {
-      return std::abs(*a->size) < std::abs(*b->size);
+    // The largest first.
+    std::stable_sort(sizes.begin(), sizes.end(), [](const FaultLine* x, const FaultLine* y) {
+      return std::abs(*x->size) > std::abs(*y->size);
     });
-    SmallestSeen one{place.first, sizes.front()->joint, {}, *sizes.back()->size};
-    for (auto line = sizes.rbegin(); line != sizes.rend(); ++line) {
-      if ((*line)->detected.value < kSeenShare) break;
-      one.size = (*line)->size;
+    SmallestSeen one{place.first, sizes.front()->joint, {}, *sizes.front()->size};
+    for (const FaultLine* line : sizes) {
+      if (line->detected.value < kSeenShare) break;
+      one.size = line->size;
     }
     all.push_back(one);
   }
@@ -95,9 +96,8 @@ void add_roc(const std::vector<const Result*>& rows, DetectorSummary& summary) {
     std::int64_t alarmed = 0;
     std::int64_t seen = 0;
     for (const Result* row : rows) {
-      const bool before = row->peak_before > scale;
-      if (before) ++alarmed;
-      if (row->kind != kFaultFree && !before && row->peak_after > scale) ++seen;
+      if (row->peak_before > scale) ++alarmed;
+      if (row->kind != kFaultFree && row->peak_after > scale) ++seen;
     }
     summary.roc.push_back({scale, static_cast<double>(alarmed) / hours,
                            static_cast<double>(seen) / static_cast<double>(faults)});

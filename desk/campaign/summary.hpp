@@ -53,7 +53,7 @@ struct SmallestSeen {
 struct RocPoint {
   double scale = 1;
   double false_alarms_per_hour = 0;  // fault-free runs with an alarm, and early ones, per hour
-  double detected = 0;               // share of all runs with a fault
+  double detected = 0;  // share of the runs with a fault that alarm under it, early or not
 };
 
 struct DetectorSummary {

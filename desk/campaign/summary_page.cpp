@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "campaign/summary_report.hpp"
 #include "common/amount.hpp"
@@ -70,9 +71,10 @@ Series roc_series(const DetectorSummary& detector) {
   Series series;
   series.name = detector.name;
   series.kind = SeriesKind::kLine;
-  for (auto point = detector.roc.rbegin(); point != detector.roc.rend(); ++point) {
-    const double x = std::max(point->false_alarms_per_hour, 0.5 / detector.roc_hours);
-    const double y = 100 * point->detected;
+  const std::vector<RocPoint> points(detector.roc.rbegin(), detector.roc.rend());
+  for (const RocPoint& point : points) {
+    const double x = std::max(point.false_alarms_per_hour, 0.5 / detector.roc_hours);
+    const double y = 100 * point.detected;
     if (!series.x.empty() && series.x.back() == x) {
       series.y.back() = std::max(series.y.back(), y);
     } else {
