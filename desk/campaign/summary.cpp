@@ -90,18 +90,23 @@ void add_roc(const std::vector<const Result*>& rows, DetectorSummary& summary) {
   }
   if (!has_fault_free || faults == 0) return;
   summary.roc_hours = hours;
-  constexpr int kPerDecade = 30;
-  for (int i = -2 * kPerDecade; i <= kPerDecade; ++i) {
-    const double scale = std::pow(10.0, static_cast<double>(i) / kPerDecade);
+  const auto at_scale = [&](double scale) -> RocPoint {
     std::int64_t alarmed = 0;
     std::int64_t seen = 0;
     for (const Result* row : rows) {
       if (row->peak_before > scale) ++alarmed;
       if (row->kind != kFaultFree && row->peak_after > scale) ++seen;
     }
-    summary.roc.push_back({scale, static_cast<double>(alarmed) / hours,
-                           static_cast<double>(seen) / static_cast<double>(faults)});
+    return {scale, static_cast<double>(alarmed) / hours,
+            static_cast<double>(seen) / static_cast<double>(faults)};
+  };
+  constexpr int kPerDecade = 30;
+  double highest = 0;
+  for (const Result* row : rows) highest = std::max(highest, row->peak_before);
+  for (int i = -2 * kPerDecade; i <= kPerDecade; ++i) {
+    summary.roc.push_back(at_scale(std::pow(10.0, static_cast<double>(i) / kPerDecade)));
   }
+  if (std::isfinite(highest)) summary.without_false_alarm = at_scale(highest);
 }
 
 DetectorSummary summary_of_one(const DetectorRow& detector,

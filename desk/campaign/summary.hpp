@@ -66,6 +66,9 @@ struct DetectorSummary {
   std::vector<SmallestSeen> smallest;
   std::vector<RocPoint> roc;  // by ascending scale; empty: no fault-free runs, or no fault
   double roc_hours = 0;       // without a fault, on which its false alarms were counted
+  // With the lowest thresholds that would have had no false alarm in them: detectors compared at
+  // the same count, whatever each was calibrated to. None: as roc.
+  std::optional<RocPoint> without_false_alarm;
 };
 
 struct Summary {

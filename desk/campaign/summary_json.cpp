@@ -32,6 +32,12 @@ ordered_json json_of(const FaultLine& line) {
           {"early", line.early}};
 }
 
+ordered_json json_of(const RocPoint& point) {
+  return {{"threshold_scale", point.scale},
+          {"false_alarms_per_hour", point.false_alarms_per_hour},
+          {"detected", point.detected}};
+}
+
 ordered_json json_of(const DetectorSummary& detector) {
   ordered_json faults = ordered_json::array();
   for (const FaultLine& line : detector.faults) faults.push_back(json_of(line));
@@ -43,11 +49,7 @@ ordered_json json_of(const DetectorSummary& detector) {
                         {"largest_tried", one.largest}});
   }
   ordered_json roc = ordered_json::array();
-  for (const RocPoint& point : detector.roc) {
-    roc.push_back({{"threshold_scale", point.scale},
-                   {"false_alarms_per_hour", point.false_alarms_per_hour},
-                   {"detected", point.detected}});
-  }
+  for (const RocPoint& point : detector.roc) roc.push_back(json_of(point));
   return {
       {"name", detector.name},
       {"notes", detector.notes},

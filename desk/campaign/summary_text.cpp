@@ -45,6 +45,15 @@ std::string false_alarms_text(const DetectorSummary& detector) {
                      detector.fault_free_s / 3600, rate.value, rate.low, rate.high);
 }
 
+std::string quiet_text(const DetectorSummary& detector) {
+  if (!detector.without_false_alarm) return {};
+  const RocPoint& quiet = *detector.without_false_alarm;
+  return fmt::format(
+      "  thresholds times {:.3g} have no alarm in the {:.3g} h without a fault and see {:.1f} % of "
+      "all runs with one\n",
+      quiet.scale, detector.roc_hours, 100 * quiet.detected);
+}
+
 std::string smallest_text(const DetectorSummary& detector) {
   std::string text;
   for (const SmallestSeen& one : detector.smallest) {
@@ -68,7 +77,8 @@ std::string text_of(const Summary& summary) {
   }
   for (const DetectorSummary& detector : summary.detectors) {
     text += fmt::format("\n{}\n", detector.name);
-    text += faults_text(detector) + false_alarms_text(detector) + smallest_text(detector);
+    text += faults_text(detector) + false_alarms_text(detector) + quiet_text(detector) +
+            smallest_text(detector);
     if (!detector.notes.empty()) text += "  note: " + detector.notes + "\n";
   }
   return text;

@@ -148,6 +148,10 @@ TEST(Summary, HasEveryFaultWithItsTimesAndTheSmallestThatIsSeen) {
   EXPECT_EQ(roc.back().detected, 0);
   EXPECT_NEAR(roc.front().false_alarms_per_hour, 1.0 / 8, 1e-12);
   EXPECT_EQ(roc.front().detected, 1);
+  // At 2.5 times the thresholds, below which the fault-free run alarms.
+  EXPECT_EQ(one.without_false_alarm->scale, 2.5);
+  EXPECT_EQ(one.without_false_alarm->false_alarms_per_hour, 0);
+  EXPECT_NEAR(one.without_false_alarm->detected, 2.0 / 6, 1e-12);
 }
 
 }  // namespace
