@@ -5,10 +5,12 @@
 namespace offnominal::desk {
 namespace {
 
-constexpr std::array<Verb, 16> kVerbs = {{
+constexpr std::array<Verb, 17> kVerbs = {{
     {"add", "Fit an effect to a recording and write the robot file that has it", set_up_add},
     {"calibrate", "Find the uncertainty bound from recordings of the healthy robot",
      set_up_calibrate},
+    {"campaign", "Run a robot with faults by the thousand, and say which detector sees what",
+     set_up_campaign},
     {"codegen", "Write a robot file as a C++ header of constants for firmware", set_up_codegen},
     {"compare", "Compare a model with a recording: error per joint, and what it follows",
      set_up_compare},

@@ -17,10 +17,10 @@ namespace {
 
 using bench::ArmEffect;
 using bench::ArmJointScale;
-using bench::ArmMotion;
 using bench::ArmRig;
 using bench::ArmRun;
 using Eigen::Index;
+using sim::hidden::ArmMotion;
 using sim::hidden::Draws;
 using sim::hidden::Stream;
 

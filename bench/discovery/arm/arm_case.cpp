@@ -11,6 +11,7 @@
 #include "arm_recording.hpp"
 #include "arm_robot.hpp"
 #include "arm_sketch.hpp"
+#include "campaign/cad_errors.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::bench {
@@ -70,9 +71,9 @@ class ArmDrawing {
       stands_[static_cast<std::size_t>(arm_.below(static_cast<int>(joints())))] = true;
     }
     Draws draws(request_.seed, Stream::kMotion);
-    motion_ = draw_arm_motion(middles, stands_, truth().duration_s, draws);
+    motion_ = sim::hidden::draw_arm_motion(middles, stands_, truth().duration_s, draws);
     Draws other(request_.seed, Stream::kHoldoutMotion);
-    second_motion_ = draw_arm_motion(middles, stands_, kSecondS, other);
+    second_motion_ = sim::hidden::draw_arm_motion(middles, stands_, kSecondS, other);
     const bool moves = std::any_of(motion_.joints.begin(), motion_.joints.end(),
                                    [](const auto& joint) { return !joint.moves.empty(); });
     truth().motion = moves ? "moves" : "sines";
@@ -354,7 +355,8 @@ class ArmDrawing {
   desk::RobotDescription known_robot() {
     truth().cad_error = knowledge_.log_uniform(0.05, 0.4);
     truth().friction_error = 0.2;
-    desk::RobotDescription known = with_cad_errors(rigid_robot_, truth().cad_error, knowledge_);
+    desk::RobotDescription known =
+        desk::campaign::with_cad_errors(rigid_robot_, truth().cad_error, knowledge_);
     known.name = "arm-" + std::to_string(request_.seed);
     known.source = "Drawn by ./dev bench discovery --arm; a made arm of " + rigid_robot_.name;
     for (std::size_t i = 0; i < joints(); ++i) {
@@ -396,7 +398,7 @@ class ArmDrawing {
   desk::RobotDescription rigid_robot_;  // as it is, bodies alone
   desk::RobotDescription truth_robot_;  // with the friction and rotors that are not hidden
   std::vector<bool> stands_;
-  ArmMotion motion_, second_motion_;
+  sim::hidden::ArmMotion motion_, second_motion_;
   std::vector<double> rotor_;
   std::vector<ArmJointScale> scales_;
   std::vector<bool> in_file_;  // per joint: its friction

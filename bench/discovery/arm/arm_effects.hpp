@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "arm_motion.hpp"
 #include "offnominal/sim/hidden/draws.hpp"
 
 namespace offnominal::bench {

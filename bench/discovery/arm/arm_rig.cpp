@@ -182,7 +182,8 @@ class Stand {
 
 }  // namespace
 
-Eigen::VectorXd joint_inertias(const sim::MujocoPlant& plant, const ArmMotion& motion) {
+Eigen::VectorXd joint_inertias(const sim::MujocoPlant& plant,
+                               const sim::hidden::ArmMotion& motion) {
   sim::DesiredMotion pose = motion.at(0);
   for (Index j = 0; j < pose.q.size(); ++j) {
     pose.q[j] = motion.joints[static_cast<std::size_t>(j)].middle;
@@ -199,7 +200,8 @@ Eigen::VectorXd joint_inertias(const sim::MujocoPlant& plant, const ArmMotion& m
   return inertias;
 }
 
-ArmRun run_arm(const ArmRig& rig, const ArmMotion& motion, double duration_s, int every) {
+ArmRun run_arm(const ArmRig& rig, const sim::hidden::ArmMotion& motion, double duration_s,
+               int every) {
   constexpr double kBandwidth = 30;  // rad/s
   Stand stand(rig, motion.at(0));
   const JointVector inertias = joint_inertias(stand.plant(), motion);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "arm_effects.hpp"
-#include "arm_motion.hpp"
+#include "offnominal/sim/hidden/arm_motion.hpp"
 #include "offnominal/sim/plants/mujoco_plant.hpp"
 
 namespace offnominal::bench {
@@ -39,9 +39,10 @@ struct ArmRun {
 
 // Follows the motion at 1 kHz with computed torque of the arm as it is and a weak feedback; samples
 // every `every` ticks.
-ArmRun run_arm(const ArmRig& rig, const ArmMotion& motion, double duration_s, int every);
+ArmRun run_arm(const ArmRig& rig, const sim::hidden::ArmMotion& motion, double duration_s,
+               int every);
 
 // Inertia that each joint's drive feels with all others held, kg m^2, in the middle of the motion.
-Eigen::VectorXd joint_inertias(const sim::MujocoPlant& plant, const ArmMotion& motion);
+Eigen::VectorXd joint_inertias(const sim::MujocoPlant& plant, const sim::hidden::ArmMotion& motion);
 
 }  // namespace offnominal::bench

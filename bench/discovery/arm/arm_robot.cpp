@@ -80,13 +80,6 @@ void put_tensor(const Matrix3d& tensor, Joint<double>& joint) {
                          tensor(0, 1), tensor(0, 2), tensor(1, 2)};
 }
 
-Matrix3d tensor_of(const Joint<double>& joint) {
-  const auto& i = joint.inertia_kg_m2;
-  Matrix3d tensor;
-  tensor << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
-  return tensor;
-}
-
 // A box from the joint to the next one, a little askew.
 void put_body(const Vector3d& to_next, double mass, double reach, Draws& draws,
               Joint<double>& joint) {
@@ -123,23 +116,6 @@ desk::RobotDescription draw_rigid_arm(Draws& draws) {
     put_body(reach * next, total * own.mass_share * draws.uniform(0.8, 1.2), reach, draws,
              joint.joint);
     robot.joints.push_back(joint);
-  }
-  return robot;
-}
-
-desk::RobotDescription with_cad_errors(desk::RobotDescription robot, double error, Draws& draws) {
-  for (desk::RobotJoint& joint : robot.joints) {
-    Joint<double>& link = joint.joint;
-    const double by_mass = 1 + draws.uniform(-error, error);
-    const double by_shape = 1 + draws.uniform(-error, error);
-    const Matrix3d tensor = tensor_of(link);
-    const double radius = std::sqrt(tensor.trace() / 2 / link.mass_kg);
-    const Vector3d moved = drawn_vector(draws, error * radius);
-    link.mass_kg *= by_mass;
-    for (std::size_t i = 0; i < 3; ++i) {
-      link.centre_of_mass_m[i] += moved[static_cast<Eigen::Index>(i)];
-    }
-    put_tensor(by_mass * by_shape * tensor, link);
   }
   return robot;
 }

@@ -11,11 +11,6 @@ namespace offnominal::bench {
 // there may be. Rigid bodies alone: neither effects nor limits.
 desk::RobotDescription draw_rigid_arm(sim::hidden::Draws& draws);
 
-// What a drawing says of it: each link's mass, centre and inertia off by up to `error` (a share; of
-// a centre, of the link's radius of gyration), still a body that there may be.
-desk::RobotDescription with_cad_errors(desk::RobotDescription robot, double error,
-                                       sim::hidden::Draws& draws);
-
 double total_mass_kg(const desk::RobotDescription& robot);
 
 void add_effect(desk::RobotDescription& robot, EffectKind kind, Eigen::Index joint,

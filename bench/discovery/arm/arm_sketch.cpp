@@ -6,7 +6,8 @@ namespace offnominal::bench {
 
 using Eigen::Index;
 
-ArmSketch arm_sketch_of(const sim::MujocoPlant& plant, const ArmMotion& motion, double duration_s) {
+ArmSketch arm_sketch_of(const sim::MujocoPlant& plant, const sim::hidden::ArmMotion& motion,
+                        double duration_s) {
   constexpr double kGridS = 0.02;
   const auto rows = static_cast<Index>(duration_s / kGridS);
   ArmSketch sketch;

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "arm_motion.hpp"
+#include "offnominal/sim/hidden/arm_motion.hpp"
 #include "offnominal/sim/plants/mujoco_plant.hpp"
 #include "robot/robot.hpp"
 
@@ -13,7 +13,8 @@ namespace offnominal::bench {
 struct ArmSketch {
   Eigen::ArrayXXd q, dq, ddq, tau;
 };
-ArmSketch arm_sketch_of(const sim::MujocoPlant& plant, const ArmMotion& motion, double duration_s);
+ArmSketch arm_sketch_of(const sim::MujocoPlant& plant, const sim::hidden::ArmMotion& motion,
+                        double duration_s);
 
 // The robot in MuJoCo, through the text of `offnominal export-mjcf`; at rest at 0.
 sim::MujocoModel mujoco_model_of(const desk::RobotDescription& robot);

@@ -44,6 +44,10 @@ class OutputFile : public testing::Test {
          {with({"add", "viscous_friction", "--joint", "1", "--log", path("a.csv")}, robot),
           {"-o", "--report"}}},
         {"calibrate", {with({"calibrate", path("a.csv")}, robot), {"-o", "--report"}}},
+        // Results are gone on with, and kept apart by what is in them (desk/campaign).
+        {"campaign", {{"campaign", path("r.toml"), "-o", path("results")}, {"--report"}}},
+        {"campaign merge", {{"campaign", "merge", path("r.toml")}, {"-o", "--report"}}},
+        {"campaign show", {{"campaign", "show", path("r.toml")}, {"--report"}}},
         {"codegen", {{"codegen", path("r.toml")}, {"-o"}}},
         {"compare", {with({"compare", path("a.csv")}, robot), {"--report"}}},
         {"explain", {with({"explain", path("a.csv")}, robot), {"--report"}}},

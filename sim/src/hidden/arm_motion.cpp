@@ -1,29 +1,27 @@
-#include "arm_motion.hpp"
+#include "offnominal/sim/hidden/arm_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace offnominal::bench {
-
-using sim::hidden::Draws;
+namespace offnominal::sim::hidden {
 
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kOneTurn = 2 * std::numbers::pi;
 
 void add_waves(ArmJointMotion& joint, double base_hz, Draws& draws) {
   constexpr int kWaves = 5;
   constexpr int kHighest = 9;  // harmonic
-  const double most_rad = draws.uniform(0.5, 1.2);
+  const double most_rad = draws.uniform(0.5, kArmMotionReachRad);
   const double most_rad_s = draws.uniform(0.7, 1.8);
   double range = 0;
   double speed = 0;
   for (int i = 0; i < kWaves; ++i) {
     const double harmonic = i == 0 ? 1 : 1 + draws.below(kHighest);
-    const double rad_s = kTurn * base_hz * harmonic * draws.uniform(0.97, 1.03);
+    const double rad_s = kOneTurn * base_hz * harmonic * draws.uniform(0.97, 1.03);
     const double size = draws.uniform(0.4, 1.0) / std::sqrt(harmonic);
-    joint.waves.push_back({size, rad_s, draws.uniform(0, kTurn)});
+    joint.waves.push_back({size, rad_s, draws.uniform(0, kOneTurn)});
     range += size;
     speed += size * rad_s;
   }
@@ -67,10 +65,10 @@ void add_move(const ArmJointMotion& joint, double t_s, double& q, double& dq, do
 
 }  // namespace
 
-sim::DesiredMotion ArmMotion::at(double t_s) const {
+DesiredMotion ArmMotion::at(double t_s) const {
   const auto count = static_cast<Eigen::Index>(joints.size());
-  sim::DesiredMotion motion{sim::JointVector::Zero(count), sim::JointVector::Zero(count),
-                            sim::JointVector::Zero(count)};
+  DesiredMotion motion{JointVector::Zero(count), JointVector::Zero(count),
+                       JointVector::Zero(count)};
   for (Eigen::Index j = 0; j < count; ++j) {
     const ArmJointMotion& joint = joints[static_cast<std::size_t>(j)];
     motion.q[j] = joint.middle;
@@ -104,4 +102,4 @@ ArmMotion draw_arm_motion(const std::vector<double>& middles, const std::vector<
   return motion;
 }
 
-}  // namespace offnominal::bench
+}  // namespace offnominal::sim::hidden

@@ -1,0 +1,65 @@
+#include "campaign/monitor_detector.hpp"
+
+#include <Eigen/Core>
+#include <cmath>
+#include <utility>
+
+#include "calibrate/calibrate.hpp"
+#include "calibrate/calibrate_joints.hpp"
+#include "replay/replay.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::desk::campaign {
+namespace {
+
+// No error is within any threshold, be it none yet; as replay counts.
+Eigen::MatrixXd ratio_of(const Eigen::MatrixXd& error, const Eigen::MatrixXd& threshold) {
+  return error.binaryExpr(
+      threshold, [](double e, double mu) { return std::abs(e) > 0 ? std::abs(e) / mu : 0; });
+}
+
+class MonitorDetector final : public Detector {
+ public:
+  MonitorDetector(RobotDescription robot, std::vector<std::string> notes)
+      : robot_(std::move(robot)) {
+    notes_ = std::move(notes);
+  }
+
+  [[nodiscard]] Judged judge(const Log& log) const override {
+    const Replay shown = replay(robot_, log);
+    if (shown.joints.empty()) {
+      return {shown.t_s, ratio_of(shown.error_norm, shown.threshold)};
+    }
+    return {shown.t_s, ratio_of(shown.error, shown.thresholds)};
+  }
+
+  // The robot file's text has every digit of the bound.
+  [[nodiscard]] std::string thresholds() const override {
+    const std::string text = robot_text(robot_);
+    const std::size_t begin = text.find("[uncertainty_bound]");
+    return begin == std::string::npos ? text : text.substr(begin);
+  }
+
+ private:
+  RobotDescription robot_;
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> calibrated_monitor(const DetectorSettings& settings,
+                                             const Campaign& campaign,
+                                             const std::vector<Log>& logs) {
+  RobotDescription robot = campaign.model;
+  robot.estimator.alpha = settings.alpha_per_s;
+  const CalibrateRequest request{campaign.calibration.alarms_per_hour, {}, ""};
+  if (settings.kind == DetectorKind::kTorque) {
+    robot.estimator.space = EstimatorSpace::kTorque;
+    JointsCalibration result = calibrate_joints(robot, request, logs, {});
+    return std::make_unique<MonitorDetector>(std::move(result.robot), std::move(result.objections));
+  }
+  robot.estimator.space = EstimatorSpace::kAcceleration;
+  Calibration result = calibrate(robot, request, logs, {});
+  return std::make_unique<MonitorDetector>(std::move(result.robot), std::move(result.objections));
+}
+
+}  // namespace offnominal::desk::campaign

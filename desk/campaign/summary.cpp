@@ -1,0 +1,195 @@
+#include "campaign/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "common/number.hpp"
+#include "signal/quantile.hpp"
+
+namespace offnominal::desk::campaign {
+namespace {
+
+constexpr double kTail = 0.025;  // on either side of an interval
+constexpr double kSeenShare = 0.95;
+constexpr const char* kFaultFree = "none";
+
+// Rows of one detector and one fault.
+struct Group {
+  FaultLine line;
+  std::vector<double> delays_s;
+};
+
+void take(const Result& row, Group& group) {
+  FaultLine& line = group.line;
+  ++line.runs;
+  if (row.early) ++line.early;
+  if (!row.detected) return;
+  ++line.seen;
+  group.delays_s.push_back(row.delay_s.value_or(0));
+  if (!row.joint_right) return;
+  ++line.named;
+  if (*row.joint_right) ++line.joint_right;
+}
+
+FaultLine finished(Group group) {
+  FaultLine line = std::move(group.line);
+  line.detected = share_of(line.seen, line.runs);
+  if (group.delays_s.empty()) return line;
+  const Eigen::VectorXd delays = Eigen::Map<const Eigen::VectorXd>(
+      group.delays_s.data(), static_cast<Eigen::Index>(group.delays_s.size()));
+  line.median_s = quantile(delays, 0.5);
+  line.p95_s = quantile(delays, 0.95);
+  line.max_s = delays.maxCoeff();
+  return line;
+}
+
+// Lines of a kind in one place stand by ascending size.
+std::vector<SmallestSeen> smallest_of(const std::vector<FaultLine>& lines) {
+  std::vector<SmallestSeen> all;
+  std::map<std::pair<std::string, int>, std::vector<const FaultLine*>> places;
+  std::vector<std::pair<std::string, int>> order;
+  for (const FaultLine& line : lines) {
+    if (!line.size) continue;
+    const std::pair<std::string, int> place{line.kind, line.joint.value_or(0)};
+    if (!places.contains(place)) order.push_back(place);
+    places[place].push_back(&line);
+  }
+  for (const auto& place : order) {
+    auto& sizes = places[place];
+    // The largest first.
+    std::stable_sort(sizes.begin(), sizes.end(), [](const FaultLine* x, const FaultLine* y) {
+      return std::abs(*x->size) > std::abs(*y->size);
+    });
+    SmallestSeen one{place.first, sizes.front()->joint, {}, *sizes.front()->size};
+    for (const FaultLine* line : sizes) {
+      if (line->detected.value < kSeenShare) break;
+      one.size = line->size;
+    }
+    all.push_back(one);
+  }
+  return all;
+}
+
+void add_roc(const std::vector<const Result*>& rows, DetectorSummary& summary) {
+  double hours = 0;
+  std::int64_t faults = 0;
+  bool has_fault_free = false;
+  for (const Result* row : rows) {
+    const bool fault_free = row->kind == kFaultFree;
+    has_fault_free = has_fault_free || fault_free;
+    hours += (fault_free ? row->judged_s : row->fault_s.value_or(0)) / 3600;
+    if (!fault_free) ++faults;
+  }
+  if (!has_fault_free || faults == 0) return;
+  summary.roc_hours = hours;
+  const auto at_scale = [&](double scale) -> RocPoint {
+    std::int64_t alarmed = 0;
+    std::int64_t seen = 0;
+    for (const Result* row : rows) {
+      if (row->peak_before > scale) ++alarmed;
+      if (row->kind != kFaultFree && row->peak_after > scale) ++seen;
+    }
+    return {scale, static_cast<double>(alarmed) / hours,
+            static_cast<double>(seen) / static_cast<double>(faults)};
+  };
+  constexpr int kPerDecade = 30;
+  double highest = 0;
+  for (const Result* row : rows) highest = std::max(highest, row->peak_before);
+  for (int i = -2 * kPerDecade; i <= kPerDecade; ++i) {
+    summary.roc.push_back(at_scale(std::pow(10.0, static_cast<double>(i) / kPerDecade)));
+  }
+  if (std::isfinite(highest)) summary.without_false_alarm = at_scale(highest);
+}
+
+DetectorSummary summary_of_one(const DetectorRow& detector,
+                               const std::vector<const Result*>& rows) {
+  using Key = std::tuple<std::string, int, double>;
+  DetectorSummary summary;
+  summary.name = detector.name;
+  summary.notes = detector.notes;
+  std::map<Key, std::size_t> places;
+  std::vector<Group> groups;  // in the order of the runs, which is the file's
+  for (const Result* row : rows) {
+    if (row->kind == kFaultFree) {
+      summary.fault_free_s += row->judged_s;
+      summary.false_alarms += row->alarms;
+      continue;
+    }
+    const Key key{row->kind, row->joint.value_or(0), row->size.value_or(0)};
+    const auto [at, is_new] = places.try_emplace(key, groups.size());
+    if (is_new) {
+      Group& group = groups.emplace_back();
+      group.line.kind = row->kind;
+      group.line.joint = row->joint;
+      group.line.size = row->size;
+    }
+    take(*row, groups[at->second]);
+  }
+  for (Group& group : groups) summary.faults.push_back(finished(std::move(group)));
+  if (summary.fault_free_s > 0) {
+    summary.false_alarms_per_hour = rate_of(summary.false_alarms, summary.fault_free_s / 3600);
+  }
+  summary.smallest = smallest_of(summary.faults);
+  add_roc(rows, summary);
+  return summary;
+}
+
+const FaultKindInfo* info_named(const std::string& kind) {
+  for (const FaultKindInfo& info : kFaultKinds) {
+    if (kind == info.name) return &info;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Estimate share_of(std::int64_t hits, std::int64_t of) {
+  using boost::math::binomial_distribution;
+  const auto k = static_cast<double>(hits);
+  const auto n = static_cast<double>(of);
+  // Its ends have no quantile.
+  const double low = hits == 0 ? 0 : binomial_distribution<>::find_lower_bound_on_p(n, k, kTail);
+  const double high = hits == of ? 1 : binomial_distribution<>::find_upper_bound_on_p(n, k, kTail);
+  return {k / n, low, high};
+}
+
+Estimate rate_of(std::int64_t count, double hours) {
+  const auto k = static_cast<double>(count);
+  const double low = count == 0 ? 0 : boost::math::gamma_p_inv(k, kTail);
+  const double high = boost::math::gamma_q_inv(k + 1, kTail);
+  return {k / hours, low / hours, high / hours};
+}
+
+Summary summary_of(const Results& results) {
+  Summary summary{results.campaign.name, results.campaign.runs, results.missing, {}};
+  for (const DetectorRow& detector : results.campaign.detectors) {
+    std::vector<const Result*> rows;
+    for (const Result& row : results.rows) {
+      if (row.detector == detector.name) rows.push_back(&row);
+    }
+    summary.detectors.push_back(summary_of_one(detector, rows));
+  }
+  return summary;
+}
+
+std::string place_words(const std::string& kind, const std::optional<int>& joint) {
+  if (!joint) return kind;
+  return fmt::format("{}, {} {}", kind, kind == "push" ? "link" : "joint", *joint);
+}
+
+std::string size_words(const std::string& kind, const std::optional<double>& size) {
+  if (!size) return {};
+  const FaultKindInfo* const info = info_named(kind);
+  const std::string unit = info == nullptr || std::string(info->unit) == "1" ? "" : info->unit;
+  return unit.empty() ? shortest(*size) : shortest(*size) + " " + unit;
+}
+
+}  // namespace offnominal::desk::campaign

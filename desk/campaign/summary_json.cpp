@@ -1,0 +1,76 @@
+#include <nlohmann/json.hpp>
+
+#include "campaign/summary_report.hpp"
+
+namespace offnominal::desk::campaign {
+namespace {
+
+using nlohmann::ordered_json;
+
+template <typename Value>
+ordered_json or_null(const std::optional<Value>& value) {
+  return value ? ordered_json(*value) : ordered_json();
+}
+
+ordered_json json_of(const Estimate& estimate) {
+  return {{"value", estimate.value}, {"low_95", estimate.low}, {"high_95", estimate.high}};
+}
+
+ordered_json json_of(const FaultLine& line) {
+  return {{"kind", line.kind},
+          {"joint", or_null(line.joint)},
+          {"size", or_null(line.size)},
+          {"runs", line.runs},
+          {"seen", line.seen},
+          {"detected", json_of(line.detected)},
+          {"delay_s",
+           {{"median", or_null(line.median_s)},
+            {"p95", or_null(line.p95_s)},
+            {"max", or_null(line.max_s)}}},
+          {"joint_named", line.named},
+          {"joint_right", line.joint_right},
+          {"early", line.early}};
+}
+
+ordered_json json_of(const RocPoint& point) {
+  return {{"threshold_scale", point.scale},
+          {"false_alarms_per_hour", point.false_alarms_per_hour},
+          {"detected", point.detected}};
+}
+
+ordered_json json_of(const DetectorSummary& detector) {
+  ordered_json faults = ordered_json::array();
+  for (const FaultLine& line : detector.faults) faults.push_back(json_of(line));
+  ordered_json smallest = ordered_json::array();
+  for (const SmallestSeen& one : detector.smallest) {
+    smallest.push_back({{"kind", one.kind},
+                        {"joint", or_null(one.joint)},
+                        {"size", or_null(one.size)},
+                        {"largest_tried", one.largest}});
+  }
+  ordered_json roc = ordered_json::array();
+  for (const RocPoint& point : detector.roc) roc.push_back(json_of(point));
+  return {
+      {"name", detector.name},
+      {"notes", detector.notes},
+      {"faults", faults},
+      {"fault_free_s", detector.fault_free_s},
+      {"false_alarms", detector.false_alarms},
+      {"false_alarms_per_hour",
+       detector.false_alarms_per_hour ? json_of(*detector.false_alarms_per_hour) : ordered_json()},
+      {"seen_in_95_of_100", smallest},
+      {"roc", roc}};
+}
+
+}  // namespace
+
+ordered_json to_json(const Summary& summary) {
+  ordered_json detectors = ordered_json::array();
+  for (const DetectorSummary& detector : summary.detectors) detectors.push_back(json_of(detector));
+  return {{"campaign", summary.campaign},
+          {"runs", summary.runs},
+          {"missing", summary.missing},
+          {"detectors", detectors}};
+}
+
+}  // namespace offnominal::desk::campaign

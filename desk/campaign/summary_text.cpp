@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include "campaign/summary_report.hpp"
+#include "common/amount.hpp"
+#include "common/text_table.hpp"
+
+namespace offnominal::desk::campaign {
+namespace {
+
+std::string seconds(const std::optional<double>& value) {
+  return value ? fmt::format("{:.3f}", *value) : "-";
+}
+
+std::string faults_text(const DetectorSummary& detector) {
+  if (detector.faults.empty()) return {};
+  const TextTable table({{"fault", -24},
+                         {"size", -10},
+                         {"runs", 5},
+                         {"seen %", 7},
+                         {"95 % interval", 14},
+                         {"median s", 9},
+                         {"p95 s", 7},
+                         {"max s", 7},
+                         {"joint right", 12},
+                         {"early", 6}},
+                        "  ");
+  std::string text = table.heading();
+  for (const FaultLine& line : detector.faults) {
+    const std::string right =
+        line.named == 0 ? "-" : fmt::format("{} of {}", line.joint_right, line.named);
+    text += table.row(
+        place_words(line.kind, line.joint), size_words(line.kind, line.size), line.runs,
+        fmt::format("{:.1f}", 100 * line.detected.value),
+        fmt::format("{:.1f} to {:.1f}", 100 * line.detected.low, 100 * line.detected.high),
+        seconds(line.median_s), seconds(line.p95_s), seconds(line.max_s), right, line.early);
+  }
+  return text;
+}
+
+std::string false_alarms_text(const DetectorSummary& detector) {
+  if (!detector.false_alarms_per_hour) return "  no fault-free runs\n";
+  const Estimate& rate = *detector.false_alarms_per_hour;
+  return fmt::format("  fault-free: {} in {:.4g} h, {:.3g} per hour (95 %: {:.3g} to {:.3g})\n",
+                     counted(static_cast<std::size_t>(detector.false_alarms), "false alarm"),
+                     detector.fault_free_s / 3600, rate.value, rate.low, rate.high);
+}
+
+std::string quiet_text(const DetectorSummary& detector) {
+  if (!detector.without_false_alarm) return {};
+  const RocPoint& quiet = *detector.without_false_alarm;
+  return fmt::format(
+      "  thresholds times {:.3g} have no alarm in the {:.3g} h without a fault and see {:.1f} % of "
+      "all runs with one\n",
+      quiet.scale, detector.roc_hours, 100 * quiet.detected);
+}
+
+std::string smallest_text(const DetectorSummary& detector) {
+  std::string text;
+  for (const SmallestSeen& one : detector.smallest) {
+    const std::string size = one.size ? "from " + size_words(one.kind, one.size)
+                                      : "not even " + size_words(one.kind, one.largest);
+    text +=
+        fmt::format("  seen in 95 of 100 runs: {} {}\n", place_words(one.kind, one.joint), size);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string text_of(const Summary& summary) {
+  std::string text = fmt::format("campaign {}: {} of {}\n", summary.campaign,
+                                 summary.runs - static_cast<std::int64_t>(summary.missing.size()),
+                                 counted(static_cast<std::size_t>(summary.runs), "run"));
+  if (!summary.missing.empty()) {
+    text += fmt::format("missing: {} ({})\n", counted(summary.missing.size(), "run"),
+                        run_list(summary.missing));
+  }
+  for (const DetectorSummary& detector : summary.detectors) {
+    text += fmt::format("\n{}\n", detector.name);
+    text += faults_text(detector) + false_alarms_text(detector) + quiet_text(detector) +
+            smallest_text(detector);
+    if (!detector.notes.empty()) text += "  note: " + detector.notes + "\n";
+  }
+  return text;
+}
+
+}  // namespace offnominal::desk::campaign

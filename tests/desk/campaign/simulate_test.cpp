@@ -1,0 +1,88 @@
+#include "campaign/simulate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "campaign/momentum_observer.hpp"
+#include "desk/campaign/small_campaign.hpp"
+
+namespace offnominal::desk::campaign {
+namespace {
+
+using test::campaign_of;
+using test::small_campaign;
+
+const std::string kAllFaults =
+    "[[fault]]\nkind = \"payload\"\nsizes = [1.0]\n"
+    "[[fault]]\nkind = \"friction\"\njoint = 2\nsizes = [4.0]\n"
+    "[[fault]]\nkind = \"torque_lost\"\njoint = 1\nsizes = [0.5]\n"
+    "[[fault]]\nkind = \"encoder_stuck\"\njoint = 1\n"
+    "[[fault]]\nkind = \"encoder_jump\"\njoint = 2\nsizes = [0.1]\n"
+    "[[fault]]\nkind = \"locked\"\njoint = 2\n";
+
+Campaign without_errors(const std::string& kind) {
+  Campaign campaign = campaign_of(small_campaign(kAllFaults, kind));
+  campaign.model.joints = campaign.truth.joints;
+  campaign.plant.torque_noise = 0;
+  campaign.plant.encoder_bits = 0;
+  campaign.plant.velocity = VelocityKind::kSent;
+  return campaign;
+}
+
+// Largest torque that the model does not know, N m, from begin_s to end_s.
+double unknown_nm(const Campaign& campaign, const Log& log, double begin_s, double end_s) {
+  const Eigen::MatrixXd residual = momentum_residual(campaign.model, 30, log);
+  double largest = 0;
+  for (Eigen::Index row = 0; row < residual.rows(); ++row) {
+    if (log.t_s[row] < begin_s || log.t_s[row] >= end_s) continue;
+    largest = std::max(largest, residual.row(row).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+class SimulatedRun : public testing::TestWithParam<const char*> {};
+
+TEST_P(SimulatedRun, ShowsNothingOfAHealthyRobotAndEveryFaultFromItsBeginningOn) {
+  const Campaign campaign = without_errors(GetParam());
+  const Simulator simulator(campaign);
+  for (const Fault& fault : campaign.faults) {
+    if (fault.kind == FaultKind::kOffset && fault.size < 1) continue;
+    const RecordedRun run = simulator.run({3, &fault, campaign.runs.duration_s});
+    const double fault_s = campaign.runs.fault_s;
+    EXPECT_LT(unknown_nm(campaign, run.log, 0, fault_s), 0.1) << info_of(fault.kind).name;
+    EXPECT_GT(unknown_nm(campaign, run.log, fault_s, campaign.runs.duration_s), 1)
+        << info_of(fault.kind).name << " of joint " << fault.joint + 1;
+    EXPECT_LT(run.tracking_before_rad.value_or(1), 0.01);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Plants, SimulatedRun, testing::Values("robot", "mujoco"),
+                         [](const auto& instance) { return std::string(instance.param); });
+
+TEST(Simulator, MakesARunOfItsNumberAlone) {
+  const Campaign campaign = campaign_of(small_campaign());
+  const Log first = Simulator(campaign).run(run_of(campaign, 5)).log;
+  const Simulator other(campaign);
+  static_cast<void>(other.run(run_of(campaign, 1)));
+  const Log again = other.run(run_of(campaign, 5)).log;
+  EXPECT_EQ(first.q, again.q);
+  EXPECT_EQ(first.dq, again.dq);
+  EXPECT_EQ(first.tau, again.tau);
+  EXPECT_NE(first.q, other.run(run_of(campaign, 4)).log.q);
+}
+
+TEST(Simulator, RecordsAsLongAsTheRunIsWhateverItsVelocitiesAre) {
+  Campaign campaign = campaign_of(small_campaign());
+  for (const VelocityKind kind :
+       {VelocityKind::kDerived, VelocityKind::kObserved, VelocityKind::kSent}) {
+    campaign.plant.velocity = kind;
+    const Log log = Simulator(campaign).run(run_of(campaign, 0)).log;
+    EXPECT_EQ(log.sample_count(), 750);
+    EXPECT_EQ(log.dq.rows(), 750);
+  }
+}
+
+}  // namespace
+}  // namespace offnominal::desk::campaign
