@@ -44,14 +44,14 @@ std::string what_it_is(const IsolatedFault& fault) {
 }  // namespace
 
 std::string words_of(const IsolatedFault& fault, const Replay& replay) {
-  const std::string how = fmt::format("{:.2f} s after the detection{}",
-                                      fault.time_s - fault.detection_time_s,
-                                      fault.decided ? "" : ", not decided yet");
+  const std::string how =
+      fmt::format("{:.2f} s after the detection{}", fault.time_s - fault.detection_time_s,
+                  fault.decided ? "" : ", not decided yet");
   if (fault.kind == FaultKind::kUnknown) {
-    return fmt::format("unknown: none of the faults of the bank fits, {}", how);
+    return fmt::format("Unknown: none of the faults that it can name fits, {}", how);
   }
   const auto joint = static_cast<std::size_t>(fault.joint);
-  return fmt::format("joint {} ({}): {}, {}, confidence {:.0f} %", joint + 1,
+  return fmt::format("Joint {} ({}): {}, {}, confidence {:.0f} %", joint + 1,
                      replay.joint_names[joint], what_it_is(fault), how, 100 * fault.confidence);
 }
 
