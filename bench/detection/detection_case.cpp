@@ -36,32 +36,103 @@ ArmEffect effect_of(EffectKind kind, Eigen::Index joint, const std::vector<doubl
   return effect;
 }
 
-DetectionFault on_joint(std::string words, EffectKind kind, int joint, double size) {
-  return {std::move(words), effect_of(kind, joint, {size}), {}, joint};
+DetectionFault on_joint(std::string words, EffectKind effect, int joint, double number,
+                        FaultKind kind, double size) {
+  return {.words = std::move(words),
+          .effect = effect_of(effect, joint, {number}),
+          .push = {},
+          .encoder = {},
+          .joint = joint,
+          .kind = kind,
+          .size = size};
+}
+
+DetectionFault friction(int joint, double nm) {
+  return on_joint("friction +" + std::to_string(static_cast<int>(nm)) + " N m, joint " +
+                      std::to_string(joint + 1),
+                  EffectKind::kCoulombFriction, joint, nm, FaultKind::kFriction, nm);
+}
+
+DetectionFault lost_torque(int joint, int percent) {
+  const double share = percent / 100.0;
+  return on_joint(
+      "torque lost " + std::to_string(percent) + " %, joint " + std::to_string(joint + 1),
+      EffectKind::kTorqueScale, joint, 1 / (1 - share) - 1, FaultKind::kLostTorque, share);
+}
+
+DetectionFault offset(int joint, int nm) {
+  return on_joint("offset of " + std::to_string(nm) + " N m, joint " + std::to_string(joint + 1),
+                  EffectKind::kTorqueOffset, joint, nm, FaultKind::kOffset, -nm);
 }
 
 DetectionFault push(std::string words, Eigen::Index link, double force_n) {
   constexpr double kLastsS = 0.2;
-  return {std::move(words),
-          {},
-          ArmPush{kFaultS, kFaultS + kLastsS, link, {0, force_n, 0}, {0, 0, 0.05}},
-          {}};
+  return {.words = std::move(words),
+          .effect = {},
+          .push = ArmPush{kFaultS, kFaultS + kLastsS, link, {0, force_n, 0}, {0, 0, 0.05}},
+          .encoder = {},
+          .joint = {},
+          .kind = FaultKind::kContact,
+          .size = {}};
+}
+
+DetectionFault encoder(std::string words, int joint, std::optional<double> jump) {
+  return {.words = std::move(words),
+          .effect = {},
+          .push = {},
+          .encoder = EncoderFault{joint, jump},
+          .joint = joint,
+          .kind = jump ? FaultKind::kEncoderJump : FaultKind::kEncoderStuck,
+          .size = jump};
+}
+
+DetectionFault payload(std::string words, double mass_kg) {
+  return {.words = std::move(words),
+          .effect = effect_of(EffectKind::kTipPayload, 6, {mass_kg, 0, 0, 0.15}),
+          .push = {},
+          .encoder = {},
+          .joint = {},
+          .kind = FaultKind::kPayload,
+          .size = mass_kg};
+}
+
+void spoil(const EncoderFault& fault, ArmRun& run) {
+  const Eigen::Index first = static_cast<Eigen::Index>(kFaultS * 1000);
+  const auto column = static_cast<Eigen::Index>(fault.joint);
+  for (Eigen::Index row = first; row < run.q.rows(); ++row) {
+    if (fault.jump) {
+      run.q(row, column) += *fault.jump;
+    } else {
+      run.q(row, column) = run.q(first - 1, column);
+    }
+  }
 }
 
 }  // namespace
 
 std::vector<DetectionFault> detection_faults() {
-  const auto payload = [](std::string words, double mass_kg) -> DetectionFault {
-    return {std::move(words), effect_of(EffectKind::kTipPayload, 6, {mass_kg, 0, 0, 0.15}), {}, {}};
-  };
   return {payload("payload 0.5 kg", 0.5),
           payload("payload 0.2 kg", 0.2),
-          on_joint("friction +1 N m, joint 4", EffectKind::kCoulombFriction, 3, 1),
-          on_joint("friction +1 N m, joint 1", EffectKind::kCoulombFriction, 0, 1),
-          on_joint("torque lost 20 %, joint 4", EffectKind::kTorqueScale, 3, 0.25),
-          on_joint("torque lost 10 %, joint 2", EffectKind::kTorqueScale, 1, 1 / 0.9 - 1),
+          friction(3, 1),
+          friction(0, 1),
+          lost_torque(3, 20),
+          lost_torque(1, 10),
           push("push 15 N, link 4", 3, 15),
           push("push 5 N, hand", 6, 5)};
+}
+
+std::vector<DetectionFault> isolation_faults() {
+  std::vector<DetectionFault> faults = detection_faults();
+  for (DetectionFault& fault : std::vector{
+           payload("payload 1 kg", 1), friction(1, 4), friction(5, 1), lost_torque(5, 30),
+           push("push 40 N, link 4", 3, 40), push("push 20 N, hand", 6, 20), offset(3, 3),
+           offset(1, 6), encoder("encoder stuck, joint 2", 1, {}),
+           encoder("encoder stuck, joint 4", 3, {}), encoder("encoder stuck, joint 6", 5, {}),
+           encoder("encoder jump 0.05 rad, joint 2", 1, 0.05),
+           encoder("encoder jump 0.02 rad, joint 6", 5, 0.02)}) {
+    faults.push_back(std::move(fault));
+  }
+  return faults;
 }
 
 desk::RobotDescription owners_robot(std::uint64_t seed) {
@@ -84,7 +155,8 @@ desk::Log arm_recording(std::uint64_t run, double duration_s, const DetectionFau
   const std::vector<double> middles{0, 0.2, 0, -1.55, 0, 1.8, 0};
   const ArmMotion motion =
       draw_arm_motion(middles, std::vector<bool>(middles.size(), false), duration_s, motion_draws);
-  const ArmRun happened = run_arm(rig, motion, duration_s, 1);
+  ArmRun happened = run_arm(rig, motion, duration_s, 1);
+  if (fault != nullptr && fault->encoder) spoil(*fault->encoder, happened);
   std::vector<double> noise_nm;
   for (Eigen::Index j = 0; j < happened.tau.cols(); ++j) {
     noise_nm.push_back(kTorqueNoise * happened.tau.col(j).cwiseAbs().maxCoeff());
