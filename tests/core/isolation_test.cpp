@@ -160,6 +160,59 @@ TEST(Isolation, IsSilentWhereNothingIsPlanted) {
   }
 }
 
+// The same samples with their number of joints known at run time only.
+TEST(Isolation, SaysTheSameToTheBitWhereTheNumberOfJointsIsOneOfRunTime) {
+  std::mt19937_64 generator = seeded_generator();
+  PlantedRobot<7> robot(generator, {FaultKind::kPayload, 6, 1.5});
+  using Fixed = Monitor<7, kFaultUnits, double, WithoutMemory, TorqueSpace>;
+  using AtRunTime = Monitor<kRuntimeJoints, kFaultUnits, double, WithoutMemory, TorqueSpace>;
+  MonitorConfig<kRuntimeJoints, double, TorqueSpace> config;
+  config.chain.joints.assign(7, {});
+  config.bound.joints.assign(7, {});
+  config.max_compensation.assign(7, 0);
+  for (std::size_t i = 0; i < 7; ++i) {
+    config.chain.joints[i] = robot.config.chain.joints[i];
+    config.bound.joints[i] = robot.config.bound.joints[i];
+  }
+  config.chain.gravity_m_s2 = robot.config.chain.gravity_m_s2;
+  config.estimator = robot.config.estimator;
+  Fixed monitor;
+  AtRunTime other;
+  ASSERT_EQ(Fixed::create(robot.config, monitor), Status::kOk);
+  ASSERT_EQ(AtRunTime::create(config, other), Status::kOk);
+  Isolation<7, double> isolation;
+  Isolation<kRuntimeJoints, double> other_isolation;
+  ASSERT_EQ((Isolation<7, double>::create({}, robot.config, isolation)), Status::kOk);
+  ASSERT_EQ((Isolation<kRuntimeJoints, double>::create({}, config, other_isolation)), Status::kOk);
+  Fixed::State state;
+  Fixed::Output output;
+  AtRunTime::State other_state;
+  AtRunTime::Output other_output;
+  IsolationState<7, double> said;
+  IsolationState<kRuntimeJoints, double> other_said;
+  isolation.reset(said);
+  other_isolation.reset(other_said);
+  for (std::uint64_t tick = 0; tick < 4000; ++tick) {
+    const JointSample<7, double> now = robot.sample(tick);
+    const JointSample<kRuntimeJoints, double> same{now.q, now.dq, now.tau};
+    if (tick == 0) {
+      ASSERT_EQ(monitor.reset(now, state), Status::kOk);
+      ASSERT_EQ(other.reset(same, other_state), Status::kOk);
+      continue;
+    }
+    ASSERT_EQ(monitor.step(now, state, output), Status::kOk);
+    ASSERT_EQ(other.step(same, other_state, other_output), Status::kOk);
+    isolation.step(monitor.model(), now, state.tick, output, said);
+    other_isolation.step(other.model(), same, other_state.tick, other_output, other_said);
+  }
+  EXPECT_STREQ(name_of(said.diagnosis.kind), "payload");
+  EXPECT_EQ(other_said.diagnosis.kind, said.diagnosis.kind);
+  EXPECT_EQ(other_said.diagnosis.size, said.diagnosis.size);
+  EXPECT_EQ(other_said.diagnosis.deviation, said.diagnosis.deviation);
+  EXPECT_EQ(other_said.diagnosis.confidence, said.diagnosis.confidence);
+  EXPECT_EQ(other_said.diagnosis.time_s, said.diagnosis.time_s);
+}
+
 TEST(Isolation, RefusesAConfigurationThatMeansNothing) {
   const MonitorConfig<2, double, TorqueSpace> watched;
   Isolation<2, double> isolation;
