@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <offnominal/diagnosis/fault_kind.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +51,21 @@ struct JointReplay {
   std::vector<Alarm> alarms;
 };
 
+// What isolation says after a detection of a monitor that judges joint by joint; fields as of the
+// core's FaultDiagnosis.
+struct IsolatedFault {
+  FaultKind kind = FaultKind::kUnknown;
+  int joint = 0;  // from 0; of kUnknown none
+  double size = 0;
+  double deviation = 0;
+  std::string unit;  // of both; empty where the kind has no size
+  double confidence = 0;
+  double unexplained = 0;
+  double detection_time_s = 0;  // time of the recording
+  double time_s = 0;            // of the answer
+  bool decided = false;         // otherwise the recording ended, or the monitor began afresh
+};
+
 // With EstimatorSpace::kTorque error holds residuals alpha (p - omega) in N m or N, psi_hat too,
 // and error_norm and threshold are those of the joint that is nearest to its threshold.
 struct Replay {
@@ -76,6 +92,8 @@ struct Replay {
   std::vector<Alarm> alarms;
   std::vector<JointReplay> joints;  // empty where there is one threshold of all
   std::optional<int> first_joint;   // from 0, of the first alarm where joints are told apart
+  // Of the first alarm, and of the first after each time that the monitor began afresh.
+  std::vector<IsolatedFault> faults;
   double max_error_to_threshold = 0;
   double max_weight_norm = 0;
   std::map<std::string, Refusals> refused;  // by the status' name
@@ -103,6 +121,10 @@ struct Replay {
 
 // What the replay says, in one sentence or two.
 [[nodiscard]] std::string words_of(const Replay& replay);
+
+// What it is, "Joint 4 (elbow): friction up by 3.00 N m (2.80 to 3.20), 0.32 s after the detection,
+// confidence 99 %".
+[[nodiscard]] std::string words_of(const IsolatedFault& fault, const Replay& replay);
 
 // How the largest ratio is called: of |e| and mu, or of residual and threshold, joint by joint.
 [[nodiscard]] std::string ratio_name(const Replay& replay);

@@ -35,6 +35,26 @@ nlohmann::json time_or_null(const std::optional<double>& time_s) {
   return time_s ? nlohmann::json(*time_s) : nlohmann::json();
 }
 
+nlohmann::json faults_json(const Replay& replay) {
+  nlohmann::json faults = nlohmann::json::array();
+  for (const IsolatedFault& fault : replay.faults) {
+    const bool has_joint = fault.kind != FaultKind::kUnknown;
+    const bool has_size = !fault.unit.empty();
+    faults.push_back({{"kind", name_of(fault.kind)},
+                      {"joint", has_joint ? nlohmann::json(fault.joint + 1) : nlohmann::json()},
+                      {"size", has_size ? finite_or_null(fault.size) : nlohmann::json()},
+                      {"deviation", has_size ? finite_or_null(fault.deviation) : nlohmann::json()},
+                      {"unit", has_size ? nlohmann::json(fault.unit) : nlohmann::json()},
+                      {"confidence", fault.confidence},
+                      {"unexplained", fault.unexplained},
+                      {"detection_time_s", fault.detection_time_s},
+                      {"time_s", fault.time_s},
+                      {"decided", fault.decided},
+                      {"words", words_of(fault, replay)}});
+  }
+  return faults;
+}
+
 // What is said of joints that are judged one by one.
 void add_joints(const Replay& replay, nlohmann::json& json) {
   nlohmann::json joints = nlohmann::json::array();
@@ -57,6 +77,7 @@ void add_joints(const Replay& replay, nlohmann::json& json) {
   json["first_joint"] =
       replay.first_joint ? nlohmann::json(*replay.first_joint + 1) : nlohmann::json();
   json["joints"] = joints;
+  json["faults"] = faults_json(replay);
 }
 
 }  // namespace

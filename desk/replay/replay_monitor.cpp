@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <offnominal/diagnosis/isolation.hpp>
 #include <offnominal/model/effect_list.hpp>
 #include <offnominal/monitor.hpp>
 #include <optional>
@@ -159,6 +160,58 @@ class ReplayCollector {
   std::vector<AlarmCollector> joints_;
 };
 
+// Asks after a detection which fault it is: in torque space, where each joint speaks for itself.
+template <typename Space>
+class FaultNamer {
+ public:
+  FaultNamer(const MonitorConfig<kRuntimeJoints, double, Space>& /*config*/, Replay& /*result*/) {}
+  void begin_afresh() {}
+  template <typename Watch>
+  void take(const Watch& /*monitor*/, const typename Watch::State& /*state*/,
+            const typename Watch::Output& /*output*/, double /*t_s*/) {}
+  void finish() {}
+};
+template <>
+class FaultNamer<TorqueSpace> {
+ public:
+  FaultNamer(const MonitorConfig<kRuntimeJoints, double, TorqueSpace>& config, Replay& result)
+      : result_(result), state_(std::make_unique<IsolationState<kRuntimeJoints, double>>()) {
+    for (const Joint<double>& joint : config.chain.joints) types_.push_back(joint.type);
+    // Defaults, which are valid.
+    static_cast<void>(Isolation<kRuntimeJoints, double>::create({}, config, isolation_));
+    isolation_.reset(*state_);
+  }
+  void begin_afresh() {
+    finish();
+    isolation_.reset(*state_);
+  }
+  template <typename Watch>
+  void take(const Watch& monitor, const typename Watch::State& state,
+            const typename Watch::Output& output, double t_s) {
+    if (!state_->triggered && output.detector.latched) detection_s_ = t_s;
+    isolation_.step(monitor.model(), state.sample, state.tick, output, *state_);
+    if (state_->diagnosis.time_s != answer_at_) answer_s_ = t_s;
+    answer_at_ = state_->diagnosis.time_s;
+  }
+  // An answer that has not been decided yet is the best that there is.
+  void finish() {
+    const FaultDiagnosis<double>& said = state_->diagnosis;
+    if (!state_->triggered || said.time_s <= 0) return;
+    result_.faults.push_back({said.kind, said.joint, said.size, said.deviation,
+                              size_unit_of(said.kind, types_[said.joint]), said.confidence,
+                              said.unexplained, detection_s_, answer_s_, said.decided});
+  }
+
+ private:
+  Replay& result_;
+  Isolation<kRuntimeJoints, double> isolation_;
+  std::unique_ptr<IsolationState<kRuntimeJoints, double>> state_;
+  std::vector<JointType> types_;
+  double detection_s_ = 0;  // times of the recording
+  double answer_s_ = 0;
+  double answer_at_ = 0;  // time of the run
+};
+
 // Of the sample that a run starts with: no error yet.
 template <typename Space>
 MonitorOutput<kRuntimeJoints, double, Space> first_output(std::size_t joints) {
@@ -217,6 +270,7 @@ void replay_in(const RobotDescription& robot, const Log& log, Replay& result) {
   auto output = at_start;
 
   ReplayCollector collector(log.sample_count(), robot.joint_count(), result);
+  FaultNamer<Space> namer(config, result);
   const bool in_time = counts_time(robot);
   for (Eigen::Index i = 0; i < log.sample_count(); ++i) {
     const typename Watch::Sample sample{log.q.row(i).transpose(), log.dq.row(i).transpose(),
@@ -238,10 +292,16 @@ void replay_in(const RobotDescription& robot, const Log& log, Replay& result) {
       collector.refuse(log.t_s[i], status);
       continue;
     }
-    if (afresh) forget(at_start, output);
+    if (afresh) {
+      forget(at_start, output);
+      namer.begin_afresh();
+    } else if (missed == 0) {
+      namer.take(monitor, *state, output, log.t_s[i]);
+    }
     collector.accept<Space>(log.t_s[i], output, std::sqrt(state->estimator.theta_squared_norm));
   }
   collector.finish();
+  namer.finish();
 }
 
 }  // namespace

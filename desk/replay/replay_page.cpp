@@ -148,6 +148,21 @@ Table alarm_table(const Replay& replay) {
   return table;
 }
 
+Table fault_table(const Replay& replay) {
+  Table table;
+  table.caption = "Which fault it is";
+  table.columns = {{"detected", "s", ".3f"},
+                   {"answer", ""},
+                   {"said", "s", ".3f"},
+                   {"confidence", "1", ".2f"},
+                   {"unexplained", "1", ".2f"}};
+  for (const IsolatedFault& fault : replay.faults) {
+    table.rows.push_back({fault.detection_time_s, words_of(fault, replay), fault.time_s,
+                          fault.confidence, fault.unexplained});
+  }
+  return table;
+}
+
 Table blind_table(const Replay& replay) {
   Table table;
   table.caption = fmt::format("Blind for {:.3f} s: what was here nobody saw", replay.blind_s());
@@ -205,6 +220,7 @@ report::Page page_of(const Replay& replay, const std::string& command_line) {
   Section residual{.heading = "Residual", .text = "", .blocks = {}};
   residual.blocks.emplace_back(key_figures(replay));
   add_residuals(replay, residual);
+  if (!replay.faults.empty()) residual.blocks.emplace_back(fault_table(replay));
   if (!replay.alarms.empty()) residual.blocks.emplace_back(alarm_table(replay));
   if (!replay.blind.empty()) residual.blocks.emplace_back(blind_table(replay));
   page.sections.push_back(residual);

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <offnominal/control/computed_torque.hpp>
+#include <offnominal/diagnosis/isolation.hpp>
 #include <offnominal/monitor.hpp>
 
 #include "core/model/random_chain.hpp"
@@ -56,6 +57,32 @@ MonitorConfig<N, Scalar, Space> any_config(std::mt19937_64& generator) {
   return config;
 }
 
+// Beside a monitor in torque space: which fault it is.
+template <int N, typename Scalar, typename Space>
+struct Beside {
+  explicit Beside(const MonitorConfig<N, Scalar, Space>& /*config*/) {}
+  template <typename Watch>
+  void step(const Watch& /*monitor*/, const typename Watch::State& /*state*/,
+            const typename Watch::Output& /*output*/) {}
+  bool has_answered() { return true; }
+};
+template <int N, typename Scalar>
+struct Beside<N, Scalar, TorqueSpace> {
+  explicit Beside(const MonitorConfig<N, Scalar, TorqueSpace>& config) {
+    EXPECT_EQ((Isolation<N, Scalar>::create({}, config, isolation)), Status::kOk);
+    isolation.reset(isolating);
+  }
+  template <typename Watch>
+  void step(const Watch& monitor, const typename Watch::State& state,
+            const typename Watch::Output& output) {
+    isolation.step(monitor.model(), state.sample, state.tick, output, isolating);
+  }
+  bool has_answered() { return isolating.diagnosis.time_s > 0; }
+
+  Isolation<N, Scalar> isolation;
+  IsolationState<N, Scalar> isolating;
+};
+
 // A thousand ticks with learning and projection, and a controller beside them.
 template <int N, int L, typename Scalar, typename Space = AccelerationSpace>
 void expect_no_heap(std::mt19937_64& generator) {
@@ -69,6 +96,7 @@ void expect_no_heap(std::mt19937_64& generator) {
   const ComputedTorqueGains<N, Scalar> gains{};
   const Reference<N, Scalar> reference;
   int learnt = 0;
+  Beside<N, Scalar, Space> beside(config);
   {
     const HeapForbidden forbidden;
     ASSERT_EQ(Watch::create(config, monitor), Status::kOk);
@@ -79,10 +107,12 @@ void expect_no_heap(std::mt19937_64& generator) {
       sample.tau =
           computed_torque(monitor.model(), gains, reference, sample.q, sample.dq, tick * 0.001);
       ASSERT_EQ(monitor.step(sample, state, output), Status::kOk);
+      beside.step(monitor, state, output);
       learnt += output.detector.level ? 1 : 0;
     }
   }
   EXPECT_GT(learnt, 100);
+  EXPECT_TRUE(beside.has_answered());
 }
 
 TEST(Heap, IsNotUsedByATickOfAnyShape) {

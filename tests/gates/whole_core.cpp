@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <offnominal/diagnosis/detectability.hpp>
+#include <offnominal/diagnosis/isolation.hpp>
 #include <offnominal/model/mass_matrix.hpp>
 
 namespace offnominal::gates {
@@ -112,3 +113,6 @@ template class offnominal::Monitor<7, 64, float>;
 template class offnominal::Monitor<7, 64, float, offnominal::WithoutMemory,
                                    offnominal::TorqueSpace>;
 template class offnominal::Monitor<2, 35, double, offnominal::WithMemory, offnominal::TorqueSpace>;
+template class offnominal::Isolation<7, float>;
+template class offnominal::Isolation<2, double>;
+template class offnominal::Isolation<offnominal::kRuntimeJoints, double>;

@@ -124,6 +124,35 @@ TEST(Replay, GivenTorqueSpaceThenTheFaultyJointIsNamedWhenTheFilterSaysSo) {
   EXPECT_EQ(to_json(replay(watched_arm(), recording_with({0, 1}))).count("joints"), 0U);
 }
 
+// Friction of the elbow, from a time on.
+TEST(Replay, GivenTorqueSpaceThenWhichFaultItIsIsSaidWithJointAndSize) {
+  const Log log =
+      record_arm({.duration_s = 12, .torque_noise = 0.01}, [](const ArmInstant& at) -> Vector2d {
+        const double more = at.t_s < kFaultTime ? 0 : 3 * kTorqueBound;
+        return {0, more * std::tanh(at.dq[1] / 0.005)};
+      });
+  const Replay faulty = replay(arm_in_torque_space(), log);
+  ASSERT_EQ(faulty.faults.size(), 1U);
+  const IsolatedFault& fault = faulty.faults.front();
+  EXPECT_STREQ(name_of(fault.kind), "friction");
+  EXPECT_EQ(fault.joint, 1);
+  EXPECT_NEAR(fault.size, 3 * kTorqueBound, 0.15);
+  EXPECT_EQ(fault.unit, "N m");
+  EXPECT_TRUE(fault.decided);
+  EXPECT_EQ(fault.detection_time_s, *faulty.detection_time_s);
+  EXPECT_GT(fault.time_s, fault.detection_time_s);
+  EXPECT_LE(fault.time_s, fault.detection_time_s + 2.1);
+  EXPECT_THAT(words_of(faulty),
+              HasSubstr("Joint 2 (" + faulty.joint_names[1] + "): friction up by "));
+  const nlohmann::json json = to_json(faulty);
+  EXPECT_EQ(json["faults"][0]["kind"], "friction");
+  EXPECT_EQ(json["faults"][0]["joint"], 2);
+  EXPECT_EQ(json["faults"][0]["size"], fault.size);
+  EXPECT_THAT(report::to_json(page_of(faulty, "")).dump(), HasSubstr("Which fault it is"));
+  EXPECT_TRUE(
+      to_json(replay(arm_in_torque_space(), record_arm({.duration_s = 10})))["faults"].empty());
+}
+
 TEST(Replay, GivenTorqueSpaceAndFaultsOnTwoJointsThenTheLaterOneIsSaidWithItsDelay) {
   RobotDescription robot = arm_in_torque_space();
   robot.bound->joints[0].value = {2.5};

@@ -1,0 +1,300 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <offnominal/diagnosis/isolation_config.hpp>
+#include <offnominal/diagnosis/isolation_state.hpp>
+#include <offnominal/diagnosis/isolation_verdict.hpp>
+#include <offnominal/monitor.hpp>
+#include <offnominal/status.hpp>
+
+// Which fault it is, once a monitor in torque space has detected one: kind, joint and size, from a
+// bank of hypotheses (docs/theory.md, "Which fault it is"). Fed beside the monitor, after each of
+// its ticks; a controller that does not use it pays nothing.
+
+namespace offnominal {
+
+// The object is the immutable part; all that changes is in IsolationState. Bounded work per tick,
+// no heap.
+template <int N, typename Scalar>
+class Isolation {
+ public:
+  using State = IsolationState<N, Scalar>;
+  using Sample = JointSample<N, Scalar>;
+  using Output = MonitorOutput<N, Scalar, TorqueSpace>;
+
+  // For a monitor of that configuration, which validate() has accepted. kInvalidLimit: `config`;
+  // `isolation` is then unchanged.
+  [[nodiscard]] static Status create(const IsolationConfig<Scalar>& config,
+                                     const MonitorConfig<N, Scalar, TorqueSpace>& watched,
+                                     Isolation& isolation) {
+    const Status status = validate(config);
+    if (status != Status::kOk) return status;
+    isolation.config_ = config;
+    isolation.alpha_ = watched.estimator.alpha;
+    isolation.period_s_ = watched.estimator.period_s;
+    isolation.block_ticks_ = ticks_of(config.block_s, isolation.period_s_);
+    const Scalar block_s = static_cast<Scalar>(isolation.block_ticks_) * isolation.period_s_;
+    isolation.kept_ = std::exp(-block_s / config.baseline_s);
+    isolation.contact_kept_ = std::exp(-block_s / config.contact_s);
+    isolation.set_scales(watched);
+    return Status::kOk;
+  }
+
+  // Begins anew, as the monitor does with its own reset().
+  void reset(State& state) const {
+    state.started = false;
+    state.newest = state.filled = state.pending = 0;
+    const std::size_t count = thresholds_.size();
+    size_for(count, state.baselines, state.encoders, state.joints);
+    for (std::size_t i = 0; i < count; ++i) {
+      state.encoders[i] = {};
+      state.baselines[i] = {};
+      const Scalar third = thresholds_[i] / 3;
+      state.baselines[i].variance = {third * third, thresholds_[i] * thresholds_[i]};
+      state.baselines[i].correlation = Scalar(0.5);
+    }
+    forget(state);
+  }
+
+  // After each tick that the monitor has accepted: what it was given, has come to and said. `tick`
+  // is MonitorState's. Where ticks are missing, the block that they fall into is left out. The
+  // answer stands in state.diagnosis; it is one where state.triggered.
+  void step(const RigidBodyModel<N, Scalar>& model, const Sample& sample, std::uint64_t tick,
+            const Output& output, State& state) const {
+    const bool gap = !state.started || tick != state.tick + 1;
+    state.tick = tick;
+    state.started = true;
+    for (std::size_t i = 0; i < state.encoders.size(); ++i) {
+      look_at(state.encoders[i], sample.q[static_cast<Eigen::Index>(i)], gap);
+    }
+    const IsolationInstant<N, Scalar> at =
+        isolation_instant<N, Scalar>(model, sample, output, config_.sign_width);
+    bool ended = false;
+    if (gap) {
+      begin_block(at, state.block);
+    } else {
+      add_tick(at, state.block);
+      ended = state.block.ticks >= block_ticks_;
+    }
+    if (ended) {
+      push(finished(state.block, alpha_, period_s_), state);
+      begin_block(at, state.block);
+    }
+    if (!output.detector.latched) {
+      if (state.triggered) forget(state);
+      return;
+    }
+    if (!state.triggered) trigger(output, state);
+    if (state.diagnosis.decided) return;
+    for (int i = 0; i < 2 && state.pending > 0; ++i) take_oldest(state);
+    if (ended && state.pending == 0) judge(state);
+  }
+
+ private:
+  static std::uint16_t ticks_of(Scalar seconds, Scalar period_s) {
+    const Scalar ticks = std::clamp(seconds / period_s, Scalar(1), Scalar(10000));
+    return static_cast<std::uint16_t>(ticks + Scalar(0.5));
+  }
+
+  void set_scales(const MonitorConfig<N, Scalar, TorqueSpace>& watched) {
+    const std::size_t count = watched.chain.joints.size();
+    size_for(count, thresholds_);
+    scales_.own.resize(kOwnRegressors, static_cast<Eigen::Index>(count));
+    Scalar mass{};
+    for (std::size_t i = 0; i < count; ++i) {
+      const Joint<Scalar>& joint = watched.chain.joints[i];
+      const JointBound<Scalar>& bound = watched.bound.joints[i];
+      Scalar threshold = bound.value[0];
+      for (std::size_t k = 1; k < bound.points; ++k) {
+        threshold = std::max(threshold, bound.value[k]);
+      }
+      threshold += 2 * alpha_ * bound.momentum_error;
+      thresholds_[i] = threshold;
+      const Scalar torque = static_cast<Scalar>(kPriorTorque) * threshold;
+      constexpr Scalar kFast = Scalar(100);  // no speed limit
+      const Scalar speed = joint.max_velocity < kFast ? joint.max_velocity : Scalar(1);
+      scales_.own.col(static_cast<Eigen::Index>(i)) << torque, torque / speed,
+          static_cast<Scalar>(kPriorShare), torque;
+      mass += joint.mass_kg;
+    }
+    constexpr Scalar kShareOfMass = Scalar(0.1);
+    constexpr Scalar kDistanceM = Scalar(0.15);  // of a payload from the last joint
+    scales_.tip.setConstant(kShareOfMass * mass * kDistanceM);
+    scales_.tip[0] = kShareOfMass * mass;
+  }
+
+  static void forget(State& state) {
+    state.triggered = false;
+    state.pending = 0;
+    state.blocks = 0;
+    for (JointEvidence<Scalar>& joint : state.joints) joint = {};
+    state.tip = {};
+    state.diagnosis = {};
+  }
+
+  [[nodiscard]] Vector<kOwnRegressors, Scalar> scaled(const IsolationBlock<N, Scalar>& block,
+                                                      std::size_t joint) const {
+    const auto column = static_cast<Eigen::Index>(joint);
+    return block.own.col(column).cwiseProduct(scales_.own.col(column));
+  }
+  [[nodiscard]] static const IsolationBlock<N, Scalar>& block_before(const State& state,
+                                                                     std::size_t blocks) {
+    return state.ring[(state.newest + kIsolationBlocks - blocks) % kIsolationBlocks];
+  }
+
+  [[nodiscard]] BaselineRest<Scalar> rest_at(const IsolationBlock<N, Scalar>& block,
+                                             std::size_t joint, const State& state) const {
+    return rest_of(state.baselines[joint], scaled(block, joint),
+                   block.torque[static_cast<Eigen::Index>(joint)]);
+  }
+  [[nodiscard]] bool is_still(const IsolationBlock<N, Scalar>& block, std::size_t joint) const {
+    return Eigen::numext::abs(block.own(kVelocityRegressor, static_cast<Eigen::Index>(joint))) <
+           kStillWidths * config_.sign_width;
+  }
+  // Of the model's own error.
+  [[nodiscard]] Scalar deviation_at(const IsolationBlock<N, Scalar>& block, std::size_t joint,
+                                    const State& state) const {
+    return std::sqrt(state.baselines[joint].variance[is_still(block, joint) ? 1 : 0]);
+  }
+
+  // A block that leaves unseen was one of a healthy robot: as long as there is no detection.
+  void push(const IsolationBlock<N, Scalar>& block, State& state) const {
+    state.newest = static_cast<std::uint8_t>((state.newest + 1U) % kIsolationBlocks);
+    IsolationBlock<N, Scalar>& place = state.ring[state.newest];
+    if (state.filled == kIsolationBlocks && !state.triggered) {
+      for (std::size_t i = 0; i < thresholds_.size(); ++i) {
+        const Scalar floor = Scalar(0.03) * thresholds_[i];
+        learn(state.baselines[i], scaled(place, i), place.torque[static_cast<Eigen::Index>(i)],
+              is_still(place, i), kept_, floor * floor);
+      }
+    }
+    place = block;
+    if (state.filled < kIsolationBlocks) ++state.filled;
+    if (state.triggered && !state.diagnosis.decided) ++state.pending;
+  }
+
+  // Looks back for the block in which it began: from which on the mean of what the joint shows that
+  // was detected is farthest from nothing, against its deviation.
+  void trigger(const Output& output, State& state) const {
+    state.triggered = true;
+    state.detection_tick = output.detector.detection_tick;
+    const std::size_t joint = output.detector.first_joint;
+    const JointBaseline<Scalar>& baseline = state.baselines[joint];
+    const Scalar correlation = correlation_of(baseline);
+    constexpr Scalar kSeen = Scalar(9);  // three standard deviations
+    Scalar best = kSeen * (1 + correlation) / (1 - correlation);
+    Scalar sum{};
+    for (std::size_t blocks = 1; blocks <= state.filled; ++blocks) {
+      const IsolationBlock<N, Scalar>& block = block_before(state, blocks - 1);
+      sum += rest_at(block, joint, state).rest / deviation_at(block, joint, state);
+      const Scalar score = sum * sum / static_cast<Scalar>(blocks);
+      if (score <= best) continue;
+      best = score;
+      state.pending = static_cast<std::uint8_t>(blocks);
+    }
+    for (std::size_t i = 0; i < thresholds_.size() && state.pending < state.filled; ++i) {
+      const IsolationBlock<N, Scalar>& block = block_before(state, state.pending);
+      state.joints[i].last_rest = rest_at(block, i, state).rest;
+      state.joints[i].last_deviation = deviation_at(block, i, state);
+    }
+    const Scalar back_s = static_cast<Scalar>(state.pending * block_ticks_) * period_s_;
+    state.diagnosis.onset_s = output.time_s - static_cast<double>(back_s);
+  }
+
+  void take_oldest(State& state) const {
+    const IsolationBlock<N, Scalar>& block = block_before(state, state.pending - 1U);
+    --state.pending;
+    // In the first block the fault may have begun at any time.
+    const bool first = state.blocks++ == 0;
+    if (first) return;
+    for (std::size_t i = 0; i < thresholds_.size(); ++i) take_joint(block, i, state);
+    detail::follow_contacts(state);
+  }
+
+  // What is seen and the regressors, less the part of the block before that the model's own error
+  // keeps: what is left of the error is new.
+  void take_joint(const IsolationBlock<N, Scalar>& block, std::size_t joint, State& state) const {
+    const auto column = static_cast<Eigen::Index>(joint);
+    JointEvidence<Scalar>& seen = state.joints[joint];
+    const JointBaseline<Scalar>& baseline = state.baselines[joint];
+    const Vector<kOwnRegressors, Scalar> own = scaled(block, joint);
+    const Vector<kTipParameters, Scalar> tip = block.tip.col(column).cwiseProduct(scales_.tip);
+    const BaselineRest<Scalar> now = rest_at(block, joint, state);
+    const Scalar deviation = deviation_at(block, joint, state);
+    const Scalar lasts = correlation_of(baseline);
+    // Of the last block's error, in this one's size; a still joint's says little of a moving one.
+    const Scalar correlation =
+        seen.last_deviation > 0 ? lasts * std::min(deviation / seen.last_deviation, Scalar(1)) : 0;
+    const Scalar whitened = now.rest - correlation * seen.last_rest;
+    const Scalar before = correlation * seen.last_deviation;
+    // Next to the block that it began in, a velocity that was smoothed still tells of before.
+    // And of a joint that stands still nobody knows what its dry friction takes.
+    const Scalar share = is_still(block, joint) ? Scalar(1)
+                         : state.blocks == 2    ? kNextToOnset
+                                                : config_.relative_error;
+    const Scalar off = share * now.rest;
+    const Scalar noise = deviation * (deviation - 2 * lasts * before) + before * before +
+                         (1 - lasts * lasts) * off * off +
+                         (1 - correlation) * (1 - correlation) * now.variance;
+    const Scalar weight = 1 / noise;
+    take(seen.own, Vector<kOwnRegressors, Scalar>(own - correlation * seen.last_own), whitened,
+         weight);
+    take(state.tip, Vector<kTipParameters, Scalar>(tip - correlation * seen.last_tip), whitened,
+         weight);
+    const Scalar prior = scales_.own(kOneRegressor, column);
+    take(seen.any, whitened, noise, correlation, contact_kept_, prior * prior);
+    if (Eigen::numext::abs(seen.any.torque) > Eigen::numext::abs(seen.largest)) {
+      seen.largest = seen.any.torque;
+    }
+    seen.squares += weight * whitened * whitened;
+    seen.speed_sum += Eigen::numext::abs(block.own(kVelocityRegressor, column));
+    seen.last_rest = now.rest;
+    seen.last_deviation = deviation;
+    seen.last_own = own;
+    seen.last_tip = tip;
+  }
+
+  void judge(State& state) const {
+    const auto since = static_cast<Scalar>(state.tick - state.detection_tick) * period_s_;
+    constexpr Scalar kStillS = Scalar(0.1);
+    const Scalar looked_back = static_cast<Scalar>(kIsolationBlocks * block_ticks_) * period_s_;
+    const auto odd_after = static_cast<std::uint32_t>(kStillS / period_s_);
+    const auto within = static_cast<std::uint32_t>((since + looked_back) / period_s_);
+    const Contest<Scalar> contest = detail::contest_of(state, odd_after, within);
+    const auto measure = detail::measure_of(state, scales_, contest.kind, contest.joint);
+    FaultDiagnosis<Scalar>& diagnosis = state.diagnosis;
+    diagnosis.kind = contest.kind;
+    diagnosis.joint = contest.joint;
+    diagnosis.size = measure.size;
+    diagnosis.deviation = measure.deviation;
+    diagnosis.confidence = contest.share();
+    diagnosis.time_s = static_cast<double>(state.tick) * static_cast<double>(period_s_);
+    Scalar squares{};
+    for (const JointEvidence<Scalar>& joint : state.joints) squares += joint.squares;
+    const Scalar expected =
+        static_cast<Scalar>(state.blocks) * static_cast<Scalar>(state.joints.size());
+    const Scalar whole = std::max(squares - expected, Scalar(1));
+    diagnosis.unexplained =
+        std::clamp((squares - expected - measure.explained) / whole, Scalar(0), Scalar(1));
+    const bool is_clear = diagnosis.confidence >= config_.confidence && since >= config_.least_s;
+    diagnosis.decided = is_clear || since >= config_.limit_s;
+  }
+
+  static constexpr Scalar kStillWidths = Scalar(4);    // smooth_sign() is 1 from there on
+  static constexpr Scalar kNextToOnset = Scalar(0.5);  // relative error
+
+  IsolationConfig<Scalar> config_{};
+  Scalar alpha_{};
+  Scalar period_s_{};
+  Scalar kept_{};          // of the baseline, from block to block
+  Scalar contact_kept_{};  // of an arbitrary torque
+  std::uint16_t block_ticks_ = 1;
+  IsolationScales<N, Scalar> scales_{};
+  PerJoint<N, Scalar> thresholds_{};  // largest of each joint, N m or N
+};
+
+}  // namespace offnominal
