@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <offnominal/diagnosis/fault_kind.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -65,22 +66,32 @@ enum class FaultKind : std::uint8_t {
 
 struct FaultKindInfo {
   FaultKind kind;
-  const char* name;   // in files and tables
-  const char* unit;   // of its size; empty: it has none
-  bool of_joint;      // one joint is at fault, and a detector can name it
-  const char* words;  // for help and pages
+  const char* name;              // in files and tables
+  const char* unit;              // of its size; empty: it has none
+  bool of_joint;                 // one joint is at fault, and a detector can name it
+  offnominal::FaultKind answer;  // what isolation should say that it is
+  bool has_size_of_answer;       // whose size is the same quantity then
+  const char* words;             // for help and pages
 };
 inline constexpr std::array<FaultKindInfo, 9> kFaultKinds{{
-    {FaultKind::kPayload, "payload", "kg", false, "a point mass on the last link"},
-    {FaultKind::kFriction, "friction", "N m", true, "Coulomb friction on top"},
-    {FaultKind::kFrictionShare, "friction_share", "1", true,
-     "Coulomb friction on top, a share of the joint's own"},
-    {FaultKind::kTorqueLost, "torque_lost", "1", true, "share that the drive no longer gives"},
-    {FaultKind::kOffset, "offset", "N m", true, "torque that the drive gives too much"},
-    {FaultKind::kPush, "push", "N", false, "a force on a link for a while"},
-    {FaultKind::kEncoderStuck, "encoder_stuck", "", true, "the reading stays as it was"},
-    {FaultKind::kEncoderJump, "encoder_jump", "rad", true, "the reading is off from then on"},
-    {FaultKind::kLocked, "locked", "", true, "the joint does not move any more"},
+    {FaultKind::kPayload, "payload", "kg", false, offnominal::FaultKind::kPayload, true,
+     "a point mass on the last link"},
+    {FaultKind::kFriction, "friction", "N m", true, offnominal::FaultKind::kFriction, true,
+     "Coulomb friction on top"},
+    {FaultKind::kFrictionShare, "friction_share", "1", true, offnominal::FaultKind::kFriction,
+     false, "Coulomb friction on top, a share of the joint's own"},
+    {FaultKind::kTorqueLost, "torque_lost", "1", true, offnominal::FaultKind::kLostTorque, true,
+     "share that the drive no longer gives"},
+    {FaultKind::kOffset, "offset", "N m", true, offnominal::FaultKind::kOffset, true,
+     "torque that the drive gives too much"},
+    {FaultKind::kPush, "push", "N", false, offnominal::FaultKind::kContact, false,
+     "a force on a link for a while"},
+    {FaultKind::kEncoderStuck, "encoder_stuck", "", true, offnominal::FaultKind::kEncoderStuck,
+     false, "the reading stays as it was"},
+    {FaultKind::kEncoderJump, "encoder_jump", "rad", true, offnominal::FaultKind::kEncoderJump,
+     true, "the reading is off from then on"},
+    {FaultKind::kLocked, "locked", "", true, offnominal::FaultKind::kLockedJoint, false,
+     "the joint does not move any more"},
 }};
 [[nodiscard]] constexpr const FaultKindInfo& info_of(FaultKind kind) {
   return kFaultKinds[static_cast<std::size_t>(kind)];

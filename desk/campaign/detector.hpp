@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <offnominal/diagnosis/fault_kind.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,11 +12,23 @@
 
 namespace offnominal::desk::campaign {
 
+/// What a detector says of the fault behind its first alarm: fields as of the core's
+/// FaultDiagnosis.
+struct Named {
+  offnominal::FaultKind kind = offnominal::FaultKind::kUnknown;
+  int joint = -1;      // from 0; of kUnknown -1
+  double size = 0;     // 0 where the kind has none
+  double after_s = 0;  // from the alarm to the answer
+
+  friend bool operator==(const Named&, const Named&) = default;
+};
+
 /// What a detector says of one recording.
 struct Judged {
   Eigen::VectorXd t_s;    // of the samples that it judged
   Eigen::MatrixXd ratio;  // |residual| / threshold; columns: joints, or one where there is one
                           // threshold of all
+  std::optional<Named> named = {};  // of one that isolates
 };
 
 /// A detector with its thresholds. const calls may come from several threads at once.

@@ -30,7 +30,14 @@ class MonitorDetector final : public Detector {
     if (shown.joints.empty()) {
       return {shown.t_s, ratio_of(shown.error_norm, shown.threshold)};
     }
-    return {shown.t_s, ratio_of(shown.error, shown.thresholds)};
+    Judged judged{shown.t_s, ratio_of(shown.error, shown.thresholds)};
+    if (!shown.faults.empty() && shown.faults.front().detection_time_s == shown.detection_time_s) {
+      const IsolatedFault& said = shown.faults.front();
+      const bool is_known = said.kind != offnominal::FaultKind::kUnknown;
+      judged.named = {said.kind, is_known ? said.joint : -1, said.size,
+                      said.time_s - said.detection_time_s};
+    }
+    return judged;
   }
 
   // The robot file's text has every digit of the bound.

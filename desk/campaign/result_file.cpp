@@ -13,7 +13,7 @@ namespace offnominal::desk::campaign {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x6f666e63;  // "ofnc"
-constexpr std::int64_t kResultFormat = 1;
+constexpr std::int64_t kResultFormat = 2;
 
 constexpr const char* kSchema = R"(
 CREATE TABLE campaign (name TEXT NOT NULL, identity TEXT NOT NULL, runs INTEGER NOT NULL);
@@ -25,14 +25,15 @@ CREATE TABLE result (
   delay_s REAL, first_joint INTEGER, joint_right INTEGER, early INTEGER NOT NULL,
   alarms INTEGER NOT NULL, peak_before REAL NOT NULL, peak_after REAL NOT NULL,
   tracking_before_rad REAL, tracking_after_rad REAL, ran_away_s REAL,
+  named TEXT, named_joint INTEGER, named_size REAL, named_after_s REAL,
   PRIMARY KEY (run, detector)) WITHOUT ROWID;
 )";
 
 constexpr const char* kColumns =
     "run, detector, seed, kind, joint, size, judged_s, fault_s, detected, delay_s, first_joint, "
     "joint_right, early, alarms, peak_before, peak_after, tracking_before_rad, tracking_after_rad, "
-    "ran_away_s";
-constexpr int kColumnCount = 19;
+    "ran_away_s, named, named_joint, named_size, named_after_s";
+constexpr int kColumnCount = 23;
 
 void require_results(Database& database) {
   const auto number = [&](const char* what) {
@@ -94,6 +95,30 @@ void write_campaign_row(Database& database, const CampaignRow& row) {
                            kResultFormat));
 }
 
+void bind_named(const std::optional<Named>& named, int at, Statement& statement) {
+  if (!named) {
+    for (int i = 0; i < 4; ++i) statement.bind_null(at + i);
+    return;
+  }
+  statement.bind(at, std::string(name_of(named->kind)));
+  const bool has_joint = named->joint >= 0;
+  statement.bind(at + 1, has_joint ? std::optional<std::int64_t>(named->joint + 1) : std::nullopt);
+  statement.bind(at + 2, named->size);
+  statement.bind(at + 3, named->after_s);
+}
+
+Named read_named(const Statement& at, int column, const std::string& file) {
+  const std::string name = at.text(column);
+  for (std::size_t kind = 0; kind < offnominal::kFaultKinds; ++kind) {
+    const auto one = static_cast<offnominal::FaultKind>(kind);
+    if (name != name_of(one)) continue;
+    const int joint = at.is_null(column + 1) ? -1 : static_cast<int>(at.integer(column + 1)) - 1;
+    return {one, joint, at.real(column + 2), at.real(column + 3)};
+  }
+  throw InputError({file, "table result, named", name, "a kind of fault that isolation names",
+                    "use the version of offnominal that wrote them"});
+}
+
 void insert(Database& database, const std::vector<Result>& rows) {
   const auto whole = [](const auto& value) {
     return value ? std::optional<std::int64_t>(*value) : std::nullopt;
@@ -123,11 +148,12 @@ void insert(Database& database, const std::vector<Result>& rows) {
     statement.bind(at++, row.tracking_before_rad);
     statement.bind(at++, row.tracking_after_rad);
     statement.bind(at++, row.ran_away_s);
+    bind_named(row.named, at, statement);
     statement.step();
   }
 }
 
-Result read_row(const Statement& at) {
+Result read_row(const Statement& at, const std::string& file) {
   const auto real = [&](int column) {
     return at.is_null(column) ? std::nullopt : std::optional<double>(at.real(column));
   };
@@ -155,6 +181,7 @@ Result read_row(const Statement& at) {
   row.tracking_before_rad = real(16);
   row.tracking_after_rad = real(17);
   row.ran_away_s = real(18);
+  if (!at.is_null(19)) row.named = read_named(at, 19, file);
   return row;
 }
 
@@ -255,7 +282,7 @@ Results read_results(const std::filesystem::path& path) {
   Results results;
   results.campaign = read_campaign_row(database);
   Statement all(database, fmt::format("SELECT {} FROM result", kColumns));
-  while (all.step()) results.rows.push_back(read_row(all));
+  while (all.step()) results.rows.push_back(read_row(all, path.string()));
   sort_rows(results);
   return results;
 }

@@ -8,7 +8,7 @@
 namespace offnominal::desk::campaign {
 namespace {
 
-constexpr std::size_t kNumbers = 14;
+constexpr std::size_t kNumbers = 18;
 
 template <typename Value>
 double or_nan(const std::optional<Value>& value) {
@@ -43,7 +43,11 @@ std::vector<double> numbers_of(const Campaign& campaign, const Result& result) {
           result.peak_after,
           or_nan(result.tracking_before_rad),
           or_nan(result.tracking_after_rad),
-          or_nan(result.ran_away_s)};
+          or_nan(result.ran_away_s),
+          result.named ? static_cast<double>(result.named->kind) : or_nan(std::optional<int>()),
+          result.named ? static_cast<double>(result.named->joint) : 0,
+          result.named ? result.named->size : 0,
+          result.named ? result.named->after_s : 0};
 }
 
 Result result_of(const Campaign& campaign, const std::vector<double>& numbers) {
@@ -69,6 +73,12 @@ Result result_of(const Campaign& campaign, const std::vector<double>& numbers) {
   result.tracking_before_rad = real_of(numbers[11]);
   result.tracking_after_rad = real_of(numbers[12]);
   result.ran_away_s = real_of(numbers[13]);
+  if (!std::isnan(numbers[14])) {
+    if (!is_below(numbers[14], offnominal::kFaultKinds))
+      throw std::invalid_argument("no kind of fault");
+    result.named = {static_cast<offnominal::FaultKind>(static_cast<int>(numbers[14])),
+                    static_cast<int>(numbers[15]), numbers[16], numbers[17]};
+  }
   return result;
 }
 

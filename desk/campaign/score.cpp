@@ -58,6 +58,7 @@ Result score_of(const Campaign& campaign, const Run& run, const RecordedRun& rec
   result.early = result.peak_before > 1;
   result.detected = first_s.has_value() && !result.early;
   if (!result.detected) return result;
+  result.named = judged.named;
   result.delay_s = std::max(*first_s - campaign.runs.fault_s, 0.0);
   if (info_of(run.fault->kind).of_joint && result.first_joint) {
     result.joint_right = *result.first_joint == run.fault->joint + 1;

@@ -24,6 +24,7 @@ struct Result {
   std::optional<double> delay_s;    // from the fault to that alarm
   std::optional<int> first_joint;   // from 1, of the first alarm; none: it names none
   std::optional<bool> joint_right;  // it is the fault's; none: not detected, or there is none
+  std::optional<Named> named;       // of a detection, by a detector that isolates
   bool early = false;               // an alarm before the fault
   std::int64_t alarms = 0;          // stretches above the threshold, of any joint
   // Largest |residual| / threshold before the fault (of a fault-free run: at all), and after. With

@@ -8,6 +8,7 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -25,7 +26,35 @@ constexpr const char* kFaultFree = "none";
 struct Group {
   FaultLine line;
   std::vector<double> delays_s;
+  std::vector<double> sizes_off;
+  std::vector<double> answers_s;
 };
+
+const FaultKindInfo* info_named(const std::string& kind) {
+  for (const FaultKindInfo& info : kFaultKinds) {
+    if (kind == info.name) return &info;
+  }
+  return nullptr;
+}
+
+void take_answer(const Result& row, const Named& named, Group& group) {
+  FaultLine& line = group.line;
+  ++line.named_as.at(static_cast<std::size_t>(named.kind));
+  group.answers_s.push_back(named.after_s);
+  const FaultKindInfo* const info = info_named(row.kind);
+  if (info == nullptr || named.kind != info->answer) return;
+  ++line.kind_right;
+  if (info->of_joint && row.joint == named.joint + 1) ++line.kind_and_joint_right;
+  if (!info->has_size_of_answer || !row.size) return;
+  group.sizes_off.push_back(std::abs(named.size - *row.size) / std::abs(*row.size));
+}
+
+std::optional<double> quantile_of(const std::vector<double>& values, double at) {
+  if (values.empty()) return std::nullopt;
+  return quantile(
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())),
+      at);
+}
 
 void take(const Result& row, Group& group) {
   FaultLine& line = group.line;
@@ -34,6 +63,7 @@ void take(const Result& row, Group& group) {
   if (!row.detected) return;
   ++line.seen;
   group.delays_s.push_back(row.delay_s.value_or(0));
+  if (row.named) take_answer(row, *row.named, group);
   if (!row.joint_right) return;
   ++line.named;
   if (*row.joint_right) ++line.joint_right;
@@ -42,13 +72,31 @@ void take(const Result& row, Group& group) {
 FaultLine finished(Group group) {
   FaultLine line = std::move(group.line);
   line.detected = share_of(line.seen, line.runs);
-  if (group.delays_s.empty()) return line;
-  const Eigen::VectorXd delays = Eigen::Map<const Eigen::VectorXd>(
-      group.delays_s.data(), static_cast<Eigen::Index>(group.delays_s.size()));
-  line.median_s = quantile(delays, 0.5);
-  line.p95_s = quantile(delays, 0.95);
-  line.max_s = delays.maxCoeff();
+  line.median_s = quantile_of(group.delays_s, 0.5);
+  line.p95_s = quantile_of(group.delays_s, 0.95);
+  line.max_s = quantile_of(group.delays_s, 1);
+  line.size_off_median = quantile_of(group.sizes_off, 0.5);
+  line.size_off_p90 = quantile_of(group.sizes_off, 0.9);
+  line.answer_median_s = quantile_of(group.answers_s, 0.5);
   return line;
+}
+
+std::vector<Confusion> confusion_of(const std::vector<FaultLine>& lines) {
+  std::vector<Confusion> rows;
+  std::int64_t answers = 0;
+  for (const FaultLine& line : lines) {
+    auto at = std::find_if(rows.begin(), rows.end(),
+                           [&](const Confusion& row) { return row.kind == line.kind; });
+    if (at == rows.end()) at = rows.insert(at, Confusion{line.kind});
+    at->seen += line.seen;
+    at->right += line.kind_right;
+    for (std::size_t kind = 0; kind < line.named_as.size(); ++kind) {
+      at->named_as.at(kind) += line.named_as.at(kind);
+    }
+    answers += line.answers();
+  }
+  if (answers == 0) rows.clear();
+  return rows;
 }
 
 // Lines of a kind in one place stand by ascending size.
@@ -138,18 +186,16 @@ DetectorSummary summary_of_one(const DetectorRow& detector,
     summary.false_alarms_per_hour = rate_of(summary.false_alarms, summary.fault_free_s / 3600);
   }
   summary.smallest = smallest_of(summary.faults);
+  summary.confusion = confusion_of(summary.faults);
   add_roc(rows, summary);
   return summary;
 }
 
-const FaultKindInfo* info_named(const std::string& kind) {
-  for (const FaultKindInfo& info : kFaultKinds) {
-    if (kind == info.name) return &info;
-  }
-  return nullptr;
-}
-
 }  // namespace
+
+std::int64_t FaultLine::answers() const {
+  return std::accumulate(named_as.begin(), named_as.end(), std::int64_t{0});
+}
 
 Estimate share_of(std::int64_t hits, std::int64_t of) {
   using boost::math::binomial_distribution;

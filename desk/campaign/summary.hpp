@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <offnominal/diagnosis/fault_kind.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +41,17 @@ struct FaultLine {
   std::int64_t named = 0;        // of those seen, in which the detector named a joint at all
   std::int64_t joint_right = 0;  // ... and it was the fault's
   std::int64_t early = 0;        // alarms before the fault
+  // Of those seen, what a detector that isolates said that it is.
+  std::array<std::int64_t, offnominal::kFaultKinds> named_as{};  // per kind
+  std::int64_t kind_right = 0;
+  std::int64_t kind_and_joint_right = 0;  // of faults of one joint
+  // Of those whose kind is right, where its size is the same quantity: how far the size told is
+  // off, as a share, and the time from the alarm to the answer; without interpolation.
+  std::optional<double> size_off_median;
+  std::optional<double> size_off_p90;
+  std::optional<double> answer_median_s;
+
+  [[nodiscard]] std::int64_t answers() const;
 };
 
 /// The smallest size of a kind, in one place, that is seen in 95 of 100 runs, as larger ones are.
@@ -56,10 +69,19 @@ struct RocPoint {
   double detected = 0;  // share of the runs with a fault that alarm under it, early or not
 };
 
+// How often a planted fault was called each kind: a row of the confusion matrix.
+struct Confusion {
+  std::string kind;  // as the campaign's file has it
+  std::int64_t seen = 0;
+  std::array<std::int64_t, offnominal::kFaultKinds> named_as{};
+  std::int64_t right = 0;
+};
+
 struct DetectorSummary {
   std::string name;
   std::string notes;
-  std::vector<FaultLine> faults;  // as the campaign's file has them
+  std::vector<FaultLine> faults;     // as the campaign's file has them
+  std::vector<Confusion> confusion;  // in the order of the file; empty: it does not isolate
   double fault_free_s = 0;
   std::int64_t false_alarms = 0;                  // in them
   std::optional<Estimate> false_alarms_per_hour;  // none: there are no fault-free runs

@@ -16,6 +16,21 @@ ordered_json json_of(const Estimate& estimate) {
   return {{"value", estimate.value}, {"low_95", estimate.low}, {"high_95", estimate.high}};
 }
 
+ordered_json json_of(const std::array<std::int64_t, offnominal::kFaultKinds>& named_as) {
+  ordered_json json = ordered_json::object();
+  for (std::size_t kind = 0; kind < named_as.size(); ++kind) {
+    json[name_of(static_cast<offnominal::FaultKind>(kind))] = named_as.at(kind);
+  }
+  return json;
+}
+
+ordered_json json_of(const Confusion& row) {
+  return {{"kind", row.kind},
+          {"seen", row.seen},
+          {"right", row.right},
+          {"named_as", json_of(row.named_as)}};
+}
+
 ordered_json json_of(const FaultLine& line) {
   return {{"kind", line.kind},
           {"joint", or_null(line.joint)},
@@ -29,7 +44,13 @@ ordered_json json_of(const FaultLine& line) {
             {"max", or_null(line.max_s)}}},
           {"joint_named", line.named},
           {"joint_right", line.joint_right},
-          {"early", line.early}};
+          {"early", line.early},
+          {"named_as", json_of(line.named_as)},
+          {"kind_right", line.kind_right},
+          {"kind_and_joint_right", line.kind_and_joint_right},
+          {"size_off",
+           {{"median", or_null(line.size_off_median)}, {"p90", or_null(line.size_off_p90)}}},
+          {"answer_median_s", or_null(line.answer_median_s)}};
 }
 
 ordered_json json_of(const RocPoint& point) {
@@ -41,6 +62,8 @@ ordered_json json_of(const RocPoint& point) {
 ordered_json json_of(const DetectorSummary& detector) {
   ordered_json faults = ordered_json::array();
   for (const FaultLine& line : detector.faults) faults.push_back(json_of(line));
+  ordered_json confusion = ordered_json::array();
+  for (const Confusion& row : detector.confusion) confusion.push_back(json_of(row));
   ordered_json smallest = ordered_json::array();
   for (const SmallestSeen& one : detector.smallest) {
     smallest.push_back({{"kind", one.kind},
@@ -54,6 +77,7 @@ ordered_json json_of(const DetectorSummary& detector) {
       {"name", detector.name},
       {"notes", detector.notes},
       {"faults", faults},
+      {"confusion", confusion},
       {"fault_free_s", detector.fault_free_s},
       {"false_alarms", detector.false_alarms},
       {"false_alarms_per_hour",

@@ -175,6 +175,27 @@ report::Table smallest_table(const Summary& summary) {
   return table;
 }
 
+report::Table confusion_table(const DetectorSummary& detector) {
+  report::Table table;
+  table.caption = detector.name;
+  table.columns = {
+      {"fault", "", report::kDefaultFormat}, {"seen", "1", "d"}, {"right", "%", ".1f"}};
+  for (std::size_t kind = 0; kind < offnominal::kFaultKinds; ++kind) {
+    table.columns.push_back({name_of(static_cast<offnominal::FaultKind>(kind)), "1", "d"});
+  }
+  for (const Confusion& row : detector.confusion) {
+    std::vector<Cell> cells{row.kind, static_cast<double>(row.seen)};
+    cells.push_back(row.seen > 0 ? Cell(100.0 * share_of(row.right, row.seen).value)
+                                 : Cell(std::monostate{}));
+    for (const std::int64_t count : row.named_as) cells.emplace_back(static_cast<double>(count));
+    table.rows.push_back(std::move(cells));
+  }
+  table.note =
+      "Confusion matrix: what the fault behind a detection was called, in so many of the runs in "
+      "which it was seen. The recording may end before there is an answer.";
+  return table;
+}
+
 }  // namespace
 
 report::Page page_of(const Summary& summary, const std::string& command_line) {
@@ -196,6 +217,11 @@ report::Page page_of(const Summary& summary, const std::string& command_line) {
   Section sizes{.heading = "Over the size of a fault", .text = "", .blocks = {}};
   for (Chart& chart : size_charts(summary)) sizes.blocks.emplace_back(std::move(chart));
   if (!sizes.blocks.empty()) page.sections.push_back(std::move(sizes));
+  Section isolation{.heading = "Which fault it is", .text = "", .blocks = {}};
+  for (const DetectorSummary& detector : summary.detectors) {
+    if (!detector.confusion.empty()) isolation.blocks.emplace_back(confusion_table(detector));
+  }
+  if (!isolation.blocks.empty()) page.sections.push_back(std::move(isolation));
   Section faults{.heading = "Fault by fault", .text = "", .blocks = {}};
   for (const DetectorSummary& detector : summary.detectors) {
     if (!detector.faults.empty()) faults.blocks.emplace_back(faults_table(detector));

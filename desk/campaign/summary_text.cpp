@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "campaign/summary_report.hpp"
 #include "common/amount.hpp"
 #include "common/text_table.hpp"
@@ -33,6 +35,51 @@ std::string faults_text(const DetectorSummary& detector) {
         fmt::format("{:.1f}", 100 * line.detected.value),
         fmt::format("{:.1f} to {:.1f}", 100 * line.detected.low, 100 * line.detected.high),
         seconds(line.median_s), seconds(line.p95_s), seconds(line.max_s), right, line.early);
+  }
+  return text;
+}
+
+// Planted faults down, answers across.
+std::string confusion_text(const DetectorSummary& detector) {
+  if (detector.confusion.empty()) return {};
+  std::vector<TextColumn> columns{{"which fault it is", -24}, {"seen", 5}, {"right %", 8}};
+  for (std::size_t kind = 0; kind < offnominal::kFaultKinds; ++kind) {
+    const std::string name = name_of(static_cast<offnominal::FaultKind>(kind));
+    columns.push_back({name, static_cast<int>(name.size()) + 1});
+  }
+  const TextTable table(std::move(columns), "  ");
+  std::string text = table.heading();
+  for (const Confusion& row : detector.confusion) {
+    std::vector<std::string> cells{row.kind, std::to_string(row.seen), "-"};
+    if (row.seen > 0) cells[2] = fmt::format("{:.1f}", 100.0 * share_of(row.right, row.seen).value);
+    for (const std::int64_t count : row.named_as) cells.push_back(std::to_string(count));
+    text += table.line(cells);
+  }
+  return text;
+}
+
+std::string answers_text(const DetectorSummary& detector) {
+  if (detector.confusion.empty()) return {};
+  const TextTable table({{"its answers", -24},
+                         {"size", -10},
+                         {"seen", 5},
+                         {"kind", 5},
+                         {"and joint", 10},
+                         {"size off %", 11},
+                         {"p90 %", 6},
+                         {"after s", 8}},
+                        "  ");
+  std::string text = table.heading();
+  const auto percent = [](const std::optional<double>& share) {
+    return share ? fmt::format("{:.1f}", 100 * *share) : std::string("-");
+  };
+  for (const FaultLine& line : detector.faults) {
+    if (line.answers() == 0) continue;
+    text += table.row(
+        place_words(line.kind, line.joint), size_words(line.kind, line.size), line.seen,
+        line.kind_right,
+        line.joint && line.kind != "push" ? std::to_string(line.kind_and_joint_right) : "-",
+        percent(line.size_off_median), percent(line.size_off_p90), seconds(line.answer_median_s));
   }
   return text;
 }
@@ -78,7 +125,7 @@ std::string text_of(const Summary& summary) {
   for (const DetectorSummary& detector : summary.detectors) {
     text += fmt::format("\n{}\n", detector.name);
     text += faults_text(detector) + false_alarms_text(detector) + quiet_text(detector) +
-            smallest_text(detector);
+            smallest_text(detector) + confusion_text(detector) + answers_text(detector);
     if (!detector.notes.empty()) text += "  note: " + detector.notes + "\n";
   }
   return text;

@@ -83,6 +83,7 @@ TEST_F(Score, OfAFaultFreeRunCountsItsAlarms) {
 TEST_F(Score, ComesBackToTheBitFromItsNumbers) {
   Result seen = score({0, 0.4, 0, 0, 0, 0, 0.9, 1.0 / 0.7, 3, 0.5});
   Result free = score({0, 1.2}, true);
+  seen.named = {offnominal::FaultKind::kFriction, 1, 1.0 / 3, 0.7};
   free.run = campaign_.run_count() - 1;
   seen.run = 4;  // of the fault on joint 2
   for (Result* one : {&seen, &free}) {
@@ -90,6 +91,9 @@ TEST_F(Score, ComesBackToTheBitFromItsNumbers) {
     EXPECT_EQ(result_of(campaign_, numbers_of(campaign_, *one)), *one);
   }
   std::vector<double> wrong = numbers_of(campaign_, seen);
+  wrong[14] = 9;
+  EXPECT_THROW(static_cast<void>(result_of(campaign_, wrong)), std::invalid_argument);
+  wrong = numbers_of(campaign_, seen);
   wrong[0] = 1e6;
   EXPECT_THROW(static_cast<void>(result_of(campaign_, wrong)), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(result_of(campaign_, {1, 2})), std::invalid_argument);
@@ -110,6 +114,8 @@ Result fault_row(std::int64_t run, double size, bool seen, double peak) {
     row.delay_s = 0.1 * static_cast<double>(run);
     row.first_joint = run == 4 ? 1 : 2;
     row.joint_right = run != 4;
+    row.named = run == 5 ? Named{offnominal::FaultKind::kContact, 0, 1, 2}
+                         : Named{offnominal::FaultKind::kFriction, 1, 1.1 * size, 0.5};
   }
   return row;
 }
@@ -137,6 +143,15 @@ TEST(Summary, HasEveryFaultWithItsTimesAndTheSmallestThatIsSeen) {
   EXPECT_NEAR(*one.faults[1].max_s, 0.3, 1e-12);
   EXPECT_EQ(one.faults[2].joint_right, 1);
   EXPECT_EQ(one.faults[2].named, 2);
+  EXPECT_EQ(one.faults[2].answers(), 2);
+  EXPECT_EQ(one.faults[2].kind_right, 1);
+  EXPECT_EQ(one.faults[2].kind_and_joint_right, 1);
+  EXPECT_NEAR(*one.faults[1].size_off_median, 0.1, 1e-12);
+  ASSERT_EQ(one.confusion.size(), 1U);
+  EXPECT_EQ(one.confusion[0].seen, 5);
+  EXPECT_EQ(one.confusion[0].right, 4);
+  EXPECT_EQ(one.confusion[0].named_as.at(static_cast<std::size_t>(offnominal::FaultKind::kContact)),
+            1);
   ASSERT_EQ(one.smallest.size(), 1U);
   EXPECT_EQ(one.smallest[0].size, 2);
   EXPECT_EQ(one.false_alarms, 3);
