@@ -118,7 +118,7 @@ void judge(const CaseGroup& group, const hidden::Case& made, const Explanation& 
   outcome.holdout_ratio = 0;
   for (const auto& joint : e.joints) {
     outcome.holdout_ratio =
-        std::max(outcome.holdout_ratio, joint.holdout_after / joint.holdout_noise_floor);
+        std::max(outcome.holdout_ratio, joint.holdout_fitted / joint.holdout_noise_floor);
   }
   if (group.kind == CaseGroup::Kind::kOutside) judge_outside(made.truth.outside, e, outcome);
   if (group.kind == CaseGroup::Kind::kDataFault) judge_fault(made.truth.fault, e, outcome);

@@ -40,7 +40,7 @@ void describe_joints(const SearchResult& from, Explanation& to) {
   for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
     to.joints.push_back({joint, effort_unit(from.robot, joint), torque[joint], before[joint],
                          after[joint], fitted[joint], after[joint], held_before[joint],
-                         held_after[joint], floor[joint], held_floor[joint]});
+                         held_after[joint], held_after[joint], floor[joint], held_floor[joint]});
   }
 }
 

@@ -135,9 +135,12 @@ struct JointErrors {
   double rms_improved = 0;       // the same of the robot with what was found
   double rms_fitted_before = 0;  // with its numbers fitted within what they may be off
   double rms_after = 0;          // of the regression, with what is the recordings' own
+  // On what no fit has seen: of the file as it is, and of the robot with what was found
+  // (held_out_errors.hpp); at rest of the regression.
   double holdout_before = 0;
   double holdout_after = 0;
-  double noise_floor = 0;  // of the fitted recordings
+  double holdout_fitted = 0;  // of the regression there, with what is the recordings' own
+  double noise_floor = 0;     // of the fitted recordings
   double holdout_noise_floor =
       0;  // of those that the held-out errors are of: another motion has another
 };

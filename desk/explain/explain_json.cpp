@@ -49,6 +49,7 @@ ordered_json json_of(const JointErrors& joint) {
           {"rms_error_fitted", joint.rms_after},
           {"holdout_before", joint.holdout_before},
           {"holdout_after", joint.holdout_after},
+          {"holdout_fitted", joint.holdout_fitted},
           {"noise_floor", joint.noise_floor},
           {"holdout_noise_floor", joint.holdout_noise_floor}};
 }

@@ -44,9 +44,12 @@ Sizes sizes_of(const ImprovedRobot& improved) {
         (*one.ci95)[0] = std::max(0.0, (*one.ci95)[0]);
       }
     }
-    // What the search took, and what cannot be once all is fitted together, is no size at all.
+    // What the search took, and what clearly cannot be once all is fitted together, is no size.
+    constexpr double kClearly = 0.9;
+    const VectorXd& value = improved.last.fit.coefficients[i];
+    const auto& recordings = improved.last.data->recordings;
     const bool possible =
-        can_be(terms[i], improved.last.fit.coefficients[i], improved.last.data->recordings);
+        can_be(terms[i], value, recordings) || can_be(terms[i], kClearly * value, recordings);
     double least = possible ? estimates.linear[i].from_nothing() : 0;
     for (const VectorXd& shift : shifts[i].linear) {
       LinearPart wider = estimates.linear[i];

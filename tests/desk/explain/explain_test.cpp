@@ -134,7 +134,7 @@ TEST(Explain, GIVEN_nothing_hidden_THEN_nothing_is_found_at_any_noise) {
     EXPECT_THAT(result.found, IsEmpty());
     for (const JointErrors& joint : result.joints) {
       EXPECT_LT(joint.rms_after, 1.5 * joint.noise_floor);
-      EXPECT_LT(joint.holdout_after, 1.2 * joint.holdout_noise_floor);
+      EXPECT_LT(joint.holdout_fitted, 1.2 * joint.holdout_noise_floor);
     }
   }
 }
@@ -369,8 +369,14 @@ TEST(Explain, ThePageHasTheNumbersOfTheJson) {
     EXPECT_THAT(text, HasSubstr(joint["holdout_noise_floor"].dump()));
   }
   ASSERT_EQ(json["waterfall"].size(), result.found.size() + 1);
-  for (const auto& step : json["waterfall"]) {
-    for (const auto& error : step["holdout"]) EXPECT_THAT(text, HasSubstr(error.dump()));
+  // Each joint's picture has the steps of its own effects.
+  for (const auto& error : json["waterfall"][0]["holdout"]) {
+    EXPECT_THAT(text, HasSubstr(error.dump()));
+  }
+  for (std::size_t i = 1; i < json["waterfall"].size(); ++i) {
+    const auto& step = json["waterfall"][i];
+    const std::size_t joint = step["added"]["joint"].get<std::size_t>() - 1;
+    EXPECT_THAT(text, HasSubstr(step["holdout"][joint].dump()));
   }
   for (const auto& [name, parameter] : json["found"][0]["parameters"].items()) {
     EXPECT_THAT(text, HasSubstr(parameter["value"].dump())) << name;

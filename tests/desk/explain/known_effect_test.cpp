@@ -41,7 +41,7 @@ TEST_P(FoundEffect, FitsIntoTheRobotFileAndIsKnownThereafter) {
   }
   const auto joint = static_cast<std::size_t>(before.found[0].what.joint);
   EXPECT_LT(after.joints[joint].rms_before, 0.7 * before.joints[joint].rms_before);
-  EXPECT_LT(after.joints[joint].holdout_after, 1.2 * after.joints[joint].holdout_noise_floor)
+  EXPECT_LT(after.joints[joint].holdout_fitted, 1.2 * after.joints[joint].holdout_noise_floor)
       << after.words;
 }
 
