@@ -45,11 +45,11 @@ Sizes sizes_of(const ImprovedRobot& improved) {
       }
     }
     // What the search took, and what clearly cannot be once all is fitted together, is no size.
-    constexpr double kClearly = 0.9;
+    constexpr double kBarely = 0.9;
     const VectorXd& value = improved.last.fit.coefficients[i];
     const auto& recordings = improved.last.data->recordings;
     const bool possible =
-        can_be(terms[i], value, recordings) || can_be(terms[i], kClearly * value, recordings);
+        can_be(terms[i], value, recordings) || can_be(terms[i], kBarely * value, recordings);
     double least = possible ? estimates.linear[i].from_nothing() : 0;
     for (const VectorXd& shift : shifts[i].linear) {
       LinearPart wider = estimates.linear[i];
