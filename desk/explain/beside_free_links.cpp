@@ -16,10 +16,11 @@ bool gives_way(const Term& term) {
 }
 
 // Of what is left without the effect, the share that it takes, on the joint where that is most.
-double share_taken(const Regression& regression, const FoundModel& found, std::size_t which) {
+// `with`: the regression's fit of all that was found.
+double share_taken(const Regression& regression, const FoundModel& found, const ModelFit& with,
+                   std::size_t which) {
   const RowLayout& layout = regression.data().layout;
   const ModelFit without = regression.fit(found.terms_without(which));
-  const ModelFit with = regression.fit(found.terms());
   return best_fall(layout.rms(without.residual), layout.rms(with.residual)).share;
 }
 
@@ -36,8 +37,8 @@ void leave_out_links_in_disguise(const SearchSetting& setting, const RobotDescri
   const Regression beside_unknown(data);
   for (std::size_t i = found.accepted.size(); i-- > 0;) {
     if (!is_asked(found.accepted[i])) continue;
-    const double own = share_taken(*setting.regression, found, i);
-    const double stays = share_taken(beside_unknown, found, i);
+    const double own = share_taken(*setting.regression, found, found.fit, i);
+    const double stays = share_taken(beside_unknown, found, beside_unknown.fit(found.terms()), i);
     if (stays >= std::max(kRelevantShare, kStaysNeeded * own)) continue;
     found.unsure[static_cast<std::size_t>(found.accepted[i].term.joint)] = 1;
     found.accepted.erase(found.accepted.begin() + static_cast<std::ptrdiff_t>(i));
