@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <deque>
 #include <iostream>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -64,11 +63,8 @@ void work(const MpiWorld& world, const campaign::Campaign& plan,
 void hand_out(const MpiWorld& world, const campaign::Campaign& plan,
               const campaign::CalibratedCampaign& ready, const std::string& output) {
   campaign::ResultFile file = campaign::ResultFile::open(output, ready.row());
-  const std::set<std::int64_t> finished = file.finished_runs();
-  std::deque<std::int64_t> numbers;
-  for (std::int64_t run = 0; run < plan.run_count(); ++run) {
-    if (!finished.contains(run)) numbers.push_back(run);
-  }
+  const std::vector<std::int64_t> all = file.missing_of(runs_of(plan, {}));
+  std::deque<std::int64_t> numbers(all.begin(), all.end());
   if (world.size() == 1) {
     for (const std::int64_t run : numbers) file.add(ready.run(run));
     return;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "common/error.hpp"
@@ -259,10 +260,11 @@ ResultFile ResultFile::open(const std::filesystem::path& path, const CampaignRow
   return ResultFile(std::move(database));
 }
 
-std::set<std::int64_t> ResultFile::finished_runs() {
-  std::set<std::int64_t> runs;
+std::vector<std::int64_t> ResultFile::missing_of(std::vector<std::int64_t> runs) {
+  std::set<std::int64_t> finished;
   Statement all(database_, "SELECT DISTINCT run FROM result");
-  while (all.step()) runs.insert(all.integer(0));
+  while (all.step()) finished.insert(all.integer(0));
+  std::erase_if(runs, [&](std::int64_t run) { return finished.contains(run); });
   return runs;
 }
 

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -54,7 +53,8 @@ class ResultFile {
   /// Throws as open() does, before there are thresholds to compare.
   static void check(const std::filesystem::path& path, const Campaign& campaign);
 
-  [[nodiscard]] std::set<std::int64_t> finished_runs();
+  /// Of these runs, in their order, those that it does not have.
+  [[nodiscard]] std::vector<std::int64_t> missing_of(std::vector<std::int64_t> runs);
   /// All rows of one run, or none of them.
   void add(const std::vector<Result>& rows);
 

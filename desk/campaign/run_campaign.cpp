@@ -121,10 +121,9 @@ RunOutcome run_campaign(const Campaign& campaign, const RunRequest& request,
   ResultFile::check(request.output, campaign);
   const CalibratedCampaign ready(campaign, request.threads, on_progress);
   ResultFile file = ResultFile::open(request.output, ready.row());
-  std::vector<std::int64_t> numbers = runs_of(campaign, request.shard);
-  RunOutcome outcome{static_cast<std::int64_t>(numbers.size()), 0};
-  const std::set<std::int64_t> finished = file.finished_runs();
-  std::erase_if(numbers, [&](std::int64_t number) { return finished.contains(number); });
+  const std::vector<std::int64_t> shard = runs_of(campaign, request.shard);
+  RunOutcome outcome{static_cast<std::int64_t>(shard.size()), 0};
+  const std::vector<std::int64_t> numbers = file.missing_of(shard);
   outcome.skipped = outcome.runs - static_cast<std::int64_t>(numbers.size());
   Counter counter("runs", numbers.size(), on_progress);
   on_threads(numbers.size(), request.threads, [&](std::size_t i) {
