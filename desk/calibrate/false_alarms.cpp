@@ -4,33 +4,52 @@
 #include <boost/math/distributions/poisson.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
-#include <numbers>
+#include <functional>
 #include <stdexcept>
 
 namespace offnominal::desk {
 namespace {
 
-struct LMoments {
-  double mean = 0;
-  double scale = 0;  // half the mean distance of two values
-  double skewness = 0;
+// So many of the largest maxima make the tail: what the rest is like says nothing of it.
+constexpr double kShareOfTail = 0.15;
+// Of the shape, before any maximum is seen: heavy and light tails are as likely, and what
+// hydrologists allow (Martins and Stedinger, Water Resources Research 36(3), 2000) is as wide.
+constexpr double kPriorOfShape = 0.12;
+
+struct Tail {
+  double above = 0;     // where it begins
+  double share = 0;     // of the blocks whose maximum is beyond
+  double mean = 0;      // of what they are beyond by
+  double distance = 0;  // half the mean distance of two of these
+  double count = 0;
 };
 
-LMoments l_moments_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const auto n = static_cast<double>(values.size());
-  double b0 = 0;
-  double b1 = 0;
-  double b2 = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto before = static_cast<double>(i);
-    b0 += values[i] / n;
-    b1 += values[i] * before / (n * (n - 1));
-    b2 += values[i] * before * (before - 1) / (n * (n - 1) * (n - 2));
+Tail tail_of(std::vector<double> maxima) {
+  std::sort(maxima.begin(), maxima.end(), std::greater<>());
+  const auto n = static_cast<double>(maxima.size());
+  const auto count = std::clamp<std::size_t>(static_cast<std::size_t>(kShareOfTail * n),
+                                             kFewestBlocks - 1, maxima.size() - 1);
+  Tail tail;
+  tail.above = maxima[count];
+  tail.count = static_cast<double>(count);
+  tail.share = tail.count / n;
+  double weighted = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double excess = maxima[i] - tail.above;
+    tail.mean += excess / tail.count;
+    weighted += excess * static_cast<double>(count - 1 - i) / (tail.count * (tail.count - 1));
   }
-  const double scale = 2 * b1 - b0;
-  const double third = 6 * b2 - 6 * b1 + b0;
-  return {b0, scale, scale > 0 ? third / scale : 0};
+  tail.distance = 2 * weighted - tail.mean;
+  return tail;
+}
+
+// Above 0: heavier than an exponential tail.
+double heaviness_of(const Tail& tail) {
+  if (!(tail.distance > 0)) return 0;
+  const double found = std::max(0.0, 2 - tail.mean / tail.distance);
+  const double variance = (1 + found) * (1 + found) / tail.count;
+  constexpr double kPrior = kPriorOfShape * kPriorOfShape;
+  return std::min(found * kPrior / (kPrior + variance), 0.9);
 }
 
 }  // namespace
@@ -39,17 +58,14 @@ ExtremeLaw extreme_law_of(std::vector<double> maxima) {
   if (maxima.size() < static_cast<std::size_t>(kFewestBlocks)) {
     throw std::invalid_argument("too few blocks for a law of their maxima");
   }
-  const LMoments moments = l_moments_of(std::move(maxima));
-  // Hosking's approximation of the shape, good to 9e-4,.
-  const double c = 2 / (3 + moments.skewness) - std::numbers::ln2 / std::log(3.0);
-  const double shape = 7.8590 * c + 2.9554 * c * c;
-  if (!(shape < 0) || !(moments.scale > 0)) {
-    const double scale = moments.scale / std::numbers::ln2;
-    return {moments.mean - std::numbers::egamma * scale, scale, 0};
-  }
-  const double gamma = boost::math::tgamma(1 + shape);
-  const double scale = moments.scale * shape / ((1 - std::pow(2.0, -shape)) * gamma);
-  return {moments.mean - scale * (1 - gamma) / shape, scale, shape};
+  const Tail tail = tail_of(std::move(maxima));
+  const double heavy = heaviness_of(tail);
+  const double scale_of_tail = (1 - heavy) * tail.mean;
+  // The law of the maxima that has this tail: exp(-rate) is its share below where the tail begins.
+  const double rate = -std::log1p(-tail.share);
+  if (heavy == 0) return {tail.above + scale_of_tail * std::log(rate), scale_of_tail, 0};
+  const double scale = scale_of_tail * std::pow(rate, heavy);
+  return {tail.above + (scale - scale_of_tail) / heavy, scale, -heavy};
 }
 
 double exceeded_with(const ExtremeLaw& law, double probability) {

@@ -19,10 +19,11 @@ struct ExtremeLaw {
 
 inline constexpr int kFewestBlocks = 10;
 
-/// Fitted by L-moments (Hosking, Wallis and Wood, Technometrics 27(3), 1985) to the maxima of at
-/// least kFewestBlocks blocks. A tail with an end is not believed: a motion that repeats makes
-/// blocks alike, which looks like an end and is none for the next motion. Gumbel's law is fitted
-/// instead.
+/// The law whose tail is that of the largest 15 % of the maxima of at least kFewestBlocks blocks: a
+/// generalised Pareto law by L-moments (Hosking and Wallis, Technometrics 29(3), 1987), its shape
+/// drawn towards an exponential tail as far as so few leave it open. A tail with an end is not
+/// believed: a motion that repeats makes blocks alike, which looks like an end and is none for the
+/// next motion. It is taken for exponential.
 [[nodiscard]] ExtremeLaw extreme_law_of(std::vector<double> maxima);
 
 /// The value that a block's maximum exceeds with this probability, 0 < p < 1.
