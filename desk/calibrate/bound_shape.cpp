@@ -208,31 +208,24 @@ std::vector<BoundShape> joint_bound_shapes(int joint,
   return shapes;
 }
 
-FilteredBasis filtered_basis(const RobotDescription& robot, const BoundShape& shape,
-                             const RecordedError& recording) {
+Eigen::MatrixXd filtered_basis(const RobotDescription& robot, const BoundShape& shape,
+                               const RecordedError& recording) {
   const TickFilter filter = tick_filter(robot.estimator.alpha, recording.period_s);
   const bool held = robot.estimator.torque_signal == TorqueSignal::kHeld;
   // A held torque is over the whole tick what the sample at its end says.
   const Index shift = held && follows_torque(shape) ? 1 : 0;
-  FilteredBasis basis;
-  basis.along = Eigen::MatrixXd::Zero(recording.samples(), shape.size + 1);
-  basis.first_tick = basis.along;
+  Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(recording.samples(), shape.size);
   for (int k = 0; k < shape.size; ++k) {
     const BoundSettings unit = unit_bound(shape, k);
     const auto bound = bound_of<kRuntimeJoints, double>(unit, robot.joints.size());
     const Eigen::VectorXd end = basis_values(bound, recording, 0);
     const Eigen::VectorXd begin = shift == 0 ? end : basis_values(bound, recording, shift);
     for (Index i = 1; i < recording.samples(); ++i) {
-      const double fresh = filter.begin * begin[i - 1] + filter.end * end[i];
-      basis.first_tick(i, k) = fresh;
-      basis.along(i, k) = filter.keep * basis.along(i - 1, k) + fresh;
+      basis(i, k) =
+          filter.keep * basis(i - 1, k) + filter.begin * begin[i - 1] + filter.end * end[i];
     }
   }
-  // The allowance 2 v stands in the threshold from the start.
-  basis.along.col(shape.size).setConstant(2);
-  basis.first_tick.col(shape.size).setConstant(2);
-  basis.along *= recording.scale;
-  basis.first_tick *= recording.scale;
+  basis *= recording.scale;
   return basis;
 }
 

@@ -35,13 +35,10 @@ struct BoundShape {
 [[nodiscard]] std::vector<BoundShape> joint_bound_shapes(
     int joint, const std::vector<RecordedError>& recordings);
 
-/// What the unknown numbers of a shape contribute to the threshold: columns c_1.., then v. Rows:
-/// samples of the recording, row 0 (the start) is not judged.
-struct FilteredBasis {
-  Eigen::MatrixXd along;       // in the run that the recording is
-  Eigen::MatrixXd first_tick;  // after the first tick of a run that starts one sample earlier
-};
-[[nodiscard]] FilteredBasis filtered_basis(const RobotDescription& robot, const BoundShape& shape,
-                                           const RecordedError& recording);
+/// What the c_k of a shape contribute to the threshold in the run that the recording is. Rows:
+/// samples, row 0 (the start) is not judged. The velocity error v adds 2 times the recording's
+/// scale from the start on.
+[[nodiscard]] Eigen::MatrixXd filtered_basis(const RobotDescription& robot, const BoundShape& shape,
+                                             const RecordedError& recording);
 
 }  // namespace offnominal::desk

@@ -23,6 +23,9 @@ struct CalibrateRequest {
   std::string source;                    // what the written bound says beside its level
   // What was left out of the recordings, in words, for where the rest is too short; empty: nothing.
   std::string left_out = {};
+  // Within which a fault has to be seen, for SmallestFault; none: five time constants of the
+  // filter.
+  std::optional<double> fault_window_s = {};
 };
 
 /// How the error and its threshold are called: |e| and mu, or those of one joint.

@@ -89,6 +89,9 @@ JointsCalibration calibrate_joints(const RobotDescription& robot, const Calibrat
   const std::size_t count = robot.joints.size();
   CalibrateRequest of_one = request;
   of_one.alarms_per_hour /= static_cast<double>(count);
+  // What a measured velocity's error does to the momentum is in the residual, and no start has to
+  // be covered by it.
+  of_one.velocity_error = 0;
   JointErrors errors = errors_of(robot, logs, holdout);
   std::vector<CalibrationData> data;
   std::vector<Fitted> fits;
@@ -109,8 +112,8 @@ JointsCalibration calibrate_joints(const RobotDescription& robot, const Calibrat
   for (std::size_t i = 0; i < count; ++i) {
     JointCalibration& joint = result.joints.emplace_back();
     joint.name = robot.joints[i].name;
-    joint.fault =
-        smallest_fault(data[i].recordings, thresholds[i], bound.joints[i], robot.estimator.alpha);
+    joint.fault = smallest_fault(data[i].recordings, thresholds[i], bound.joints[i],
+                                 robot.estimator.alpha, request.fault_window_s);
     joint.calibration = judged_calibration(std::move(fits[i]), of_one, data[i], thresholds[i]);
     const std::string place = fmt::format("joint {} ({})", i + 1, joint.name);
     collect(place, joint.calibration.notes, result.notes);

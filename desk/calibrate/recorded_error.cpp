@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "common/error.hpp"
@@ -40,13 +42,6 @@ std::shared_ptr<const RecordedSignals> signals_of(const Log& log) {
   return std::make_shared<const RecordedSignals>(RecordedSignals{log.q, log.dq, log.tau});
 }
 
-Eigen::VectorXd first_ticks(const Eigen::MatrixXd& error, double keep) {
-  const Eigen::Index ticks = error.rows() - 1;
-  Eigen::VectorXd norms = Eigen::VectorXd::Zero(error.rows());
-  norms.tail(ticks) = (error.bottomRows(ticks) - keep * error.topRows(ticks)).rowwise().norm();
-  return norms;
-}
-
 Eigen::VectorXi loudest_joints(const Eigen::MatrixXd& error) {
   Eigen::VectorXi loudest(error.rows());
   for (Eigen::Index i = 0; i < error.rows(); ++i) {
@@ -72,6 +67,34 @@ TickFilter tick_filter(double alpha_per_s, double period_s) {
   return {step(1, 0, 0), step(0, 1, 0), step(0, 0, 1)};
 }
 
+std::vector<StartBefore> starts_before(const TickFilter& filter) {
+  // Between a start and the next one asked for neither |e| nor its threshold moves far.
+  constexpr double kFurther = 1.5;
+  constexpr double kForgotten = 0.05;
+  std::vector<StartBefore> starts;
+  double kept = 1;
+  for (Eigen::Index ticks = 1; kept > kForgotten;
+       ticks =
+           std::max(ticks + 1, static_cast<Eigen::Index>(kFurther * static_cast<double>(ticks)))) {
+    kept = std::pow(filter.keep, static_cast<double>(ticks));
+    starts.push_back({ticks, kept});
+  }
+  return starts;
+}
+
+Eigen::VectorXd RecordedError::error_norm_after(const StartBefore& start, Eigen::Index begin,
+                                                Eigen::Index end) const {
+  Eigen::VectorXd norms = Eigen::VectorXd::Zero(end - begin);
+  const Eigen::Index first = std::max(begin, start.ticks);
+  if (first >= end) return norms;
+  const Eigen::Index rows = end - first;
+  norms.tail(rows) =
+      (error.middleRows(first, rows) - start.kept * error.middleRows(first - start.ticks, rows))
+          .rowwise()
+          .norm();
+  return norms;
+}
+
 RecordedError recorded_error(const RobotDescription& robot, const Log& log) {
   const Replay run = replay(without_learning(robot), log);
   require_all_accepted(run);
@@ -80,9 +103,8 @@ RecordedError recorded_error(const RobotDescription& robot, const Log& log) {
   recorded.unit = run.unit;
   recorded.period_s = log.period_s;
   recorded.t_s = run.t_s;
+  recorded.error = run.error;
   recorded.error_norm = run.error_norm;
-  recorded.first_tick =
-      first_ticks(run.error, tick_filter(robot.estimator.alpha, log.period_s).keep);
   recorded.loudest_joint = loudest_joints(run.error);
   if (robot.bound) recorded.old_threshold = run.threshold;
   recorded.signals = signals_of(log);
@@ -92,7 +114,6 @@ RecordedError recorded_error(const RobotDescription& robot, const Log& log) {
 std::vector<RecordedError> joint_errors(const RobotDescription& robot, const Log& log) {
   const Replay run = replay(without_learning(robot), log);
   require_all_accepted(run);
-  const double keep = tick_filter(robot.estimator.alpha, log.period_s).keep;
   const auto signals = signals_of(log);
   std::vector<RecordedError> joints;
   for (Eigen::Index joint = 0; joint < run.error.cols(); ++joint) {
@@ -101,13 +122,13 @@ std::vector<RecordedError> joint_errors(const RobotDescription& robot, const Log
     recorded.unit = run.joints[static_cast<std::size_t>(joint)].unit;
     recorded.period_s = log.period_s;
     recorded.t_s = run.t_s;
-    recorded.residual = run.error.col(joint);
-    recorded.error_norm = recorded.residual.cwiseAbs();
-    recorded.first_tick = first_ticks(run.error.col(joint), keep);
+    recorded.error = run.error.col(joint);
+    recorded.error_norm = recorded.error.cwiseAbs();
     recorded.loudest_joint = Eigen::VectorXi::Constant(run.error.rows(), static_cast<int>(joint));
     if (robot.bound) recorded.old_threshold = run.thresholds.col(joint);
     recorded.signals = signals;
     recorded.scale = robot.estimator.alpha;
+    recorded.of_one_joint = true;
   }
   return joints;
 }

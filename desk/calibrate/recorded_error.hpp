@@ -22,6 +22,15 @@ struct TickFilter {
 };
 [[nodiscard]] TickFilter tick_filter(double alpha_per_s, double period_s);
 
+/// A run that starts `ticks` before a sample stands there where this recording's run does, less
+/// `kept` times where that was at the start: the filter is linear, and zero in the beginning.
+struct StartBefore {
+  Eigen::Index ticks = 0;
+  double kept = 0;  // keep^ticks
+};
+/// One tick before a sample, and then ever further, until a run is what the recording's own is.
+[[nodiscard]] std::vector<StartBefore> starts_before(const TickFilter& filter);
+
 /// Rows: samples, columns: joints.
 struct RecordedSignals {
   Eigen::MatrixXd q;
@@ -35,17 +44,21 @@ struct RecordedError {
   // Of e: "rad/s", "m/s", or "1" where joints of both types are mixed; "N m" or "N" of one joint.
   std::string unit;
   double period_s = 0;
-  Eigen::VectorXd t_s;         // as recorded
-  Eigen::VectorXd error_norm;  // |e|, what `offnominal replay` shows before any alarm
-  // |e| after the first tick of a run that starts one sample earlier; entry 0 is 0.
-  Eigen::VectorXd first_tick;
+  Eigen::VectorXd t_s;            // as recorded
+  Eigen::MatrixXd error;          // e with its signs, rows: samples; of one joint a single column
+  Eigen::VectorXd error_norm;     // |e|, what `offnominal replay` shows before any alarm
   Eigen::VectorXi loudest_joint;  // from 0; the one with the largest |e_j| at the sample
   Eigen::VectorXd old_threshold;  // mu of the robot file's own bound; empty: it has none
   std::shared_ptr<const RecordedSignals> signals;  // one for all joints of a recording
 
   // 1, or of one joint's residual alpha: by which the filter's output is multiplied here.
   double scale = 1;
-  Eigen::VectorXd residual;  // of one joint, with its sign; empty of |e|
+  bool of_one_joint = false;
+
+  /// |e| at the samples from `begin` to `end` - 1 of runs that start so many ticks earlier each; 0
+  /// where the recording does not reach back so far.
+  [[nodiscard]] Eigen::VectorXd error_norm_after(const StartBefore& start, Eigen::Index begin,
+                                                 Eigen::Index end) const;
 
   [[nodiscard]] Eigen::Index samples() const { return t_s.size(); }
   [[nodiscard]] double duration_s() const { return static_cast<double>(samples() - 1) * period_s; }

@@ -13,60 +13,87 @@ using Eigen::VectorXd;
 
 // The rows of one fold, as a linear programme asks for them.
 struct FoldRows {
-  MatrixXd along;
-  MatrixXd first_tick;
-  VectorXd error;             // |e| that the unknown numbers have to reach
-  VectorXd first_tick_error;  // the same after a first tick
-  // Rows from apart_begin to apart_end - 1 are only held against the result: their errors.
+  ThresholdRows rows;          // the run's own demand first, then those of starts
+  std::vector<Demand> starts;  // held against the result alone
+  // What is only held against the result; the run's own rows of it from apart_begin to apart_end
+  // - 1.
+  std::vector<Demand> apart;
   Index apart_begin = 0;
   Index apart_end = 0;
-  VectorXd apart_error;
-  VectorXd apart_first_tick_error;
 };
 
-// What stands in these rows is no longer asked for.
-void take_apart(const SampleRange& fold, const SampleRange& apart, FoldRows& rows) {
+// What stands in these samples is no longer asked for, whether a run starts or is judged there.
+void take_apart(const SampleRange& fold, const SampleRange& apart, FoldRows& of_fold) {
   if (apart.recording != fold.recording) return;
   const Index begin = std::max(apart.begin, fold.begin);
   const Index end = std::min(apart.end, fold.end);
-  if (begin >= end) return;
-  rows.apart_begin = begin - fold.begin;
-  rows.apart_end = end - fold.begin;
-  const Index count = end - begin;
-  rows.apart_error = rows.error.segment(rows.apart_begin, count);
-  rows.apart_first_tick_error = rows.first_tick_error.segment(rows.apart_begin, count);
-  rows.error.segment(rows.apart_begin, count).setZero();
-  rows.first_tick_error.segment(rows.apart_begin, count).setZero();
-}
-
-double largest_apart(const FoldRows& fold, const VectorXd& c) {
-  const Index count = fold.apart_end - fold.apart_begin;
-  if (count == 0) return 0;
-  const auto largest = [&](const MatrixXd& rows, const VectorXd& error) {
-    const VectorXd threshold = rows.middleRows(fold.apart_begin, count) * c;
-    return (error.array() > 0).select(error.array() / threshold.array(), 0.0).maxCoeff();
-  };
-  return std::max(largest(fold.along, fold.apart_error),
-                  largest(fold.first_tick, fold.apart_first_tick_error));
+  if (begin < end) {
+    of_fold.apart_begin = begin - fold.begin;
+    of_fold.apart_end = end - fold.begin;
+  }
+  for (std::vector<Demand>* demands : {&of_fold.rows.demands, &of_fold.starts}) {
+    for (Demand& demand : *demands) {
+      const Index last = std::min(apart.end + demand.start.ticks, fold.end);
+      if (begin >= last) continue;
+      const Index from = begin - fold.begin;
+      Demand& kept = of_fold.apart.emplace_back(demand);
+      kept.error.head(from).setZero();
+      kept.error.tail(fold.end - last).setZero();
+      demand.error.segment(from, last - begin).setZero();
+    }
+  }
 }
 
 // A velocity error that is given is no unknown: its 2 v is taken off the error that is left to
-// cover.
-FoldRows fold_rows(const FilteredBasis& basis, const RecordedError& recording,
-                   const SampleRange& fold, const std::optional<double>& velocity_error) {
+// cover. A run may start at any sample. The threshold of |e| is nothing then but 2 v, which has to
+// be found: its first tick is asked for, on which the velocity's own error weighs most. That of one
+// joint is at its largest then, and all its first ticks are only held against it.
+FoldRows fold_rows(const MatrixXd& basis, const std::vector<StartBefore>& starts,
+                   const RecordedError& recording, const SampleRange& fold,
+                   const std::optional<double>& velocity_error) {
   const Index rows = fold.end - fold.begin;
-  const Index columns = basis.along.cols() - (velocity_error ? 1 : 0);
   const double allowance = 2 * velocity_error.value_or(0);
+  const auto demand_of = [&](const StartBefore& start, const VectorXd& error) {
+    return Demand{start, (error.array() - allowance).max(0.0)};
+  };
   FoldRows result;
-  result.along = basis.along.block(fold.begin, 0, rows, columns);
-  result.first_tick = basis.first_tick.block(fold.begin, 0, rows, columns);
-  result.error = (recording.error_norm.segment(fold.begin, rows).array() - allowance).max(0.0);
-  result.first_tick_error =
-      (recording.first_tick.segment(fold.begin, rows).array() - allowance).max(0.0);
+  result.rows.history = std::min(fold.begin, starts.back().ticks);
+  result.rows.filtered =
+      basis.middleRows(fold.begin - result.rows.history, rows + result.rows.history);
+  result.rows.constant = velocity_error ? 0 : 2 * recording.scale;
+  result.rows.starts_at_largest = recording.of_one_joint;
+  VectorXd along = recording.error_norm.segment(fold.begin, rows);
+  if (recording.of_one_joint) {
+    // The recording's own start is one of them.
+    along.head(std::clamp<Index>(starts.back().ticks - fold.begin, 0, rows)).setZero();
+    for (const StartBefore& start : starts) {
+      result.starts.push_back(
+          demand_of(start, recording.error_norm_after(start, fold.begin, fold.end)));
+    }
+  }
+  result.rows.demands.push_back(demand_of({}, along));
+  if (!recording.of_one_joint) {
+    result.rows.demands.push_back(demand_of(
+        starts.front(), recording.error_norm_after(starts.front(), fold.begin, fold.end)));
+  }
   return result;
 }
 
+// The largest of what is demanded over the threshold.
+double demanded_of_threshold(const ThresholdRows& rows, const std::vector<Demand>& demands,
+                             const VectorXd& c) {
+  const VectorXd along = rows.along(c);
+  double largest = 0;
+  for (const auto& [start, error] : demands) {
+    const VectorXd threshold = rows.threshold(start, along, c);
+    const VectorXd ratio = (error.array() > 0).select(error.array() / threshold.array(), 0.0);
+    largest = std::max(largest, ratio.maxCoeff());
+  }
+  return largest;
+}
+
 constexpr double kPriceOfVelocityError = 2;
+constexpr double kNoLimit = 1e30;
 // Which folds are unseen together: every kMostTurns-th, so that many recordings cost no more than
 // few.
 constexpr std::size_t kMostTurns = 5;
@@ -79,23 +106,42 @@ struct Turn {
   }
 };
 
-VectorXd tightest_without(const std::vector<FoldRows>& folds, const Turn& turn,
-                          const VectorXd& lowest, const VectorXd& price) {
-  std::vector<ThresholdRows> parts;
-  for (std::size_t i = 0; i < folds.size(); ++i) {
-    if (turn.leaves_out(i)) continue;
-    parts.push_back({folds[i].along, folds[i].error, true});
-    // A run may start at any sample: its first tick has to hold, on which the velocity's own error
-    // weighs most.
-    parts.push_back({folds[i].first_tick, folds[i].first_tick_error, false});
+// Of the unknown numbers.
+struct Limits {
+  VectorXd lowest;
+  VectorXd price;
+  std::optional<VectorXd> highest;
+};
+
+Limits limits_of(const BoundShape& shape, const CoefficientRange& range, Index unknowns,
+                 bool finds_velocity_error) {
+  Limits limits{VectorXd::Constant(unknowns, range.lowest), VectorXd::Ones(unknowns), {}};
+  if (shape.settings.kind == BoundSettings::Kind::kTable && range.highest > 0) {
+    limits.highest = VectorXd::Constant(unknowns, range.highest);
   }
-  return tightest(parts, lowest, price);
+  if (!finds_velocity_error) return limits;
+  // Once the filter has forgotten its start, 2 v and a constant part of the bound are the same: v
+  // is to be only what the first ticks ask for.
+  limits.lowest[unknowns - 1] = 0;
+  limits.price[unknowns - 1] = kPriceOfVelocityError;
+  if (limits.highest) (*limits.highest)[unknowns - 1] = kNoLimit;
+  return limits;
+}
+
+VectorXd tightest_without(const std::vector<FoldRows>& folds, const Turn& turn,
+                          const Limits& limits) {
+  ThresholdParts parts;
+  for (std::size_t i = 0; i < folds.size(); ++i) {
+    if (!turn.leaves_out(i)) parts.emplace_back(folds[i].rows);
+  }
+  return tightest(parts, limits.lowest, limits.price, limits.highest);
 }
 
 // Row 0 of a recording is the start of its run, where there is no error and may be no threshold.
 VectorXd ratio_of(const FoldRows& fold, const VectorXd& c) {
-  const VectorXd threshold = fold.along * c;
-  VectorXd ratio = (fold.error.array() > 0).select(fold.error.array() / threshold.array(), 0.0);
+  const VectorXd& error = fold.rows.demands.front().error;
+  const VectorXd threshold = fold.rows.threshold({}, fold.rows.along(c), c);
+  VectorXd ratio = (error.array() > 0).select(error.array() / threshold.array(), 0.0);
   ratio.segment(fold.apart_begin, fold.apart_end - fold.apart_begin).setConstant(ShapeFit::kApart);
   return ratio;
 }
@@ -109,47 +155,49 @@ BoundSettings ShapeFit::widened(const BoundShape& shape, double widening,
 }
 
 ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
-                   const std::vector<RecordedError>& recordings, const Split& split, double lowest,
-                   const std::optional<double>& velocity_error,
+                   const std::vector<RecordedError>& recordings, const Split& split,
+                   const CoefficientRange& range, const std::optional<double>& velocity_error,
                    const std::optional<SampleRange>& apart) {
   std::vector<SampleRange> folds = split.folds;
   folds.insert(folds.end(), split.always.begin(), split.always.end());
   std::vector<FoldRows> rows;
   {
-    FilteredBasis basis;
+    MatrixXd basis;
+    std::vector<StartBefore> starts;
     std::optional<std::size_t> held;
     for (const SampleRange& fold : folds) {
       const RecordedError& recording = recordings[fold.recording];
-      if (fold.recording != held) basis = filtered_basis(robot, shape, recording);
+      if (fold.recording != held) {
+        basis = filtered_basis(robot, shape, recording);
+        starts = starts_before(tick_filter(robot.estimator.alpha, recording.period_s));
+      }
       held = fold.recording;
-      rows.push_back(fold_rows(basis, recording, fold, velocity_error));
+      rows.push_back(fold_rows(basis, starts, recording, fold, velocity_error));
       if (apart) take_apart(fold, *apart, rows.back());
     }
   }
-  const Index unknowns = rows.front().along.cols();
-  VectorXd least = VectorXd::Constant(unknowns, lowest);
-  if (!velocity_error) least[unknowns - 1] = 0;
-  // Once the filter has forgotten its start, 2 v and a constant part of the bound are the same: v
-  // is to be only what the first ticks ask for.
-  VectorXd price = VectorXd::Ones(unknowns);
-  if (!velocity_error) price[unknowns - 1] = kPriceOfVelocityError;
-
+  const Index unknowns = rows.front().rows.unknowns();
+  const Limits limits = limits_of(shape, range, unknowns, !velocity_error);
   ShapeFit fit;
-  const VectorXd all = tightest_without(rows, {}, least, price);
+  const VectorXd all = tightest_without(rows, {}, limits);
   const std::size_t judged = split.folds.size();
   std::vector<VectorXd> of_turn;
   for (std::size_t turn = 0; turn < std::min(judged, kMostTurns); ++turn) {
-    of_turn.push_back(tightest_without(rows, {judged, turn}, least, price));
+    of_turn.push_back(tightest_without(rows, {judged, turn}, limits));
   }
   for (std::size_t i = 0; i < judged; ++i) {
-    fit.unseen_ratio.push_back(ratio_of(rows[i], of_turn[i % kMostTurns]));
+    const VectorXd& unseeing = of_turn[i % kMostTurns];
+    fit.unseen_ratio.push_back(ratio_of(rows[i], unseeing));
+    fit.unseen_start_ratio = std::max(
+        fit.unseen_start_ratio, demanded_of_threshold(rows[i].rows, rows[i].starts, unseeing));
   }
   double sum = 0;
   Index count = 0;
   for (std::size_t i = 0; i < folds.size(); ++i) {
-    fit.apart_ratio = std::max(fit.apart_ratio, largest_apart(rows[i], all));
-    sum += (rows[i].along * all).sum();
-    count += rows[i].along.rows();
+    const ThresholdRows& of_fold = rows[i].rows;
+    fit.apart_ratio = std::max(fit.apart_ratio, demanded_of_threshold(of_fold, rows[i].apart, all));
+    sum += of_fold.threshold({}, of_fold.along(all), all).sum();
+    count += of_fold.size();
   }
   fit.mean_threshold = sum / static_cast<double>(count);
   fit.coefficients.resize(shape.size + 1);

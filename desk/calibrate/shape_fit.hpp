@@ -17,7 +17,10 @@ struct ShapeFit {
   // |e| over the threshold that the folds of other turns ask for, sample by sample; one entry per
   // fold. The 2 v of a given v is taken off both. kApart in samples that nothing is fitted to.
   std::vector<Eigen::VectorXd> unseen_ratio;
-  // Largest |e| of these samples, along the run or after a first tick, over the tightest threshold.
+  // Of one joint's residual: largest of runs that start at any sample of a fold, over the threshold
+  // that the folds of other turns ask for.
+  double unseen_start_ratio = 0;
+  // Largest |e| of the samples apart, along the run or after a start, over the tightest threshold.
   double apart_ratio = 0;
   static constexpr double kApart = -1;
 
@@ -26,12 +29,18 @@ struct ShapeFit {
                                       const std::optional<double>& velocity_error) const;
 };
 
+/// What the c_k may be.
+struct CoefficientRange {
+  double lowest = 0;
+  double highest = 0;  // of a table's; 0: no limit
+};
+
 /// Fits to the folds and to what is always calibrated on, but for the samples `apart` of one fold,
-/// where there are some. `lowest` is what no c_k may fall below. A `velocity_error` that is given
-/// is kept as it is.
+/// where there are some. A `velocity_error` that is given is kept as it is.
 [[nodiscard]] ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
                                  const std::vector<RecordedError>& recordings, const Split& split,
-                                 double lowest, const std::optional<double>& velocity_error,
+                                 const CoefficientRange& range,
+                                 const std::optional<double>& velocity_error,
                                  const std::optional<SampleRange>& apart = {});
 
 }  // namespace offnominal::desk

@@ -59,7 +59,7 @@ struct Beginning {
  private:
   [[nodiscard]] double left(std::size_t k) const {
     const Index at = from + 1 + static_cast<Index>(k);
-    return threshold[at] - sign * recording.residual[at];
+    return threshold[at] - sign * recording.error(at, 0);
   }
 };
 
@@ -93,7 +93,8 @@ double largest_threshold(const JointBoundSettings& bound, double alpha_per_s) {
 
 SmallestFault smallest_fault(const std::vector<RecordedError>& recordings,
                              const std::vector<Eigen::VectorXd>& thresholds,
-                             const JointBoundSettings& bound, double alpha_per_s) {
+                             const JointBoundSettings& bound, double alpha_per_s,
+                             std::optional<double> window_s) {
   SmallestFault fault;
   double longest_period_s = 0;
   for (const RecordedError& recording : recordings) {
@@ -103,7 +104,7 @@ SmallestFault smallest_fault(const std::vector<RecordedError>& recordings,
   fault.certain_with = kMargin * fault.certain;
   // The sample that shows it may be a period later.
   fault.certain_s = std::log(kMargin / (kMargin - 1)) / alpha_per_s + longest_period_s;
-  fault.window_s = kWindowTimeConstants / alpha_per_s;
+  fault.window_s = window_s.value_or(kWindowTimeConstants / alpha_per_s);
   std::vector<double> needed =
       over_beginnings(recordings, thresholds, alpha_per_s, fault.window_s,
                       [](const Beginning& one) { return one.least_torque(); });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "calibrate/calibrate.hpp"
@@ -25,8 +26,10 @@ struct SmallestFault {
 };
 
 /// Of one joint with this bound: `recordings`, with residuals, and the bound's thresholds in each.
+/// `window_s`: none for five time constants of the filter, after which it has seen 99 % of a fault.
 [[nodiscard]] SmallestFault smallest_fault(const std::vector<RecordedError>& recordings,
                                            const std::vector<Eigen::VectorXd>& thresholds,
-                                           const JointBoundSettings& bound, double alpha_per_s);
+                                           const JointBoundSettings& bound, double alpha_per_s,
+                                           std::optional<double> window_s = {});
 
 }  // namespace offnominal::desk

@@ -19,6 +19,9 @@ constexpr double kLowestShare = 0.1;
 // Nor the constant bound, where it would fall to nothing because the allowance for the velocity's
 // own error covers everything, below this share of the largest |e|: a bound has to be above 0.
 constexpr double kLowestShareOfError = 1e-3;
+// No number of one joint's table is above this many times its constant bound: where the recordings
+// hardly ever are, any number would cost nothing, and a run starts at the largest.
+constexpr double kHighestTimes = 3;
 // What a transient that was taken out asks for, and a little more: the next one like it is no
 // smaller. How much larger it may be, one event does not say.
 constexpr double kAboveTransient = 1.05;
@@ -47,8 +50,9 @@ Tried judged(const BoundShape& shape, ShapeFit fit, const CalibrationData& data,
   }
   tried.law = extreme_law_of(tried.maxima);
   const double per_block = -std::expm1(-request.alarms_per_hour / 3600 * data.block_s);
-  tried.widening = std::max({1.0, tried.largest, kAboveTransient * tried.fit.apart_ratio,
-                             exceeded_with(tried.law, per_block)});
+  tried.widening =
+      std::max({1.0, tried.largest, tried.fit.unseen_start_ratio,
+                kAboveTransient * tried.fit.apart_ratio, exceeded_with(tried.law, per_block)});
   tried.mean_threshold =
       tried.widening * tried.fit.mean_threshold + 2 * request.velocity_error.value_or(0);
   return tried;
@@ -110,12 +114,12 @@ Tries try_shapes(const RobotDescription& robot, const CalibrationData& data,
   for (std::size_t i = 0; i <= data.split.folds.back().recording; ++i) {
     fitted.push_back(data.recordings[i]);
   }
-  double lowest = 0;
+  CoefficientRange range;
   std::optional<SampleRange> apart;
   const auto try_shape = [&](const BoundShape& shape) {
     Tried tried = judged(
         shape,
-        fit_shape(robot, shape, data.recordings, data.split, lowest, request.velocity_error, apart),
+        fit_shape(robot, shape, data.recordings, data.split, range, request.velocity_error, apart),
         data, request);
     if (on_step) on_step();
     return tried;
@@ -123,7 +127,7 @@ Tries try_shapes(const RobotDescription& robot, const CalibrationData& data,
   const auto try_constant = [&](const BoundShape& shape) {
     Tried tried = try_shape(shape);
     if (tried.fit.coefficients[0] > 0) return tried;
-    lowest = lowest_constant(fitted, robot.estimator.alpha);
+    range.lowest = lowest_constant(fitted, robot.estimator.alpha);
     return try_shape(shape);
   };
   const std::vector<BoundShape> shapes =
@@ -140,7 +144,8 @@ Tries try_shapes(const RobotDescription& robot, const CalibrationData& data,
       apart.reset();
     }
   }
-  lowest = kLowestShare * constant.fit.coefficients[0];
+  range.lowest = kLowestShare * constant.fit.coefficients[0];
+  if (data.joint) range.highest = kHighestTimes * constant.fit.coefficients[0];
   tries.shapes.push_back(std::move(constant));
   for (std::size_t i = 1; i < shapes.size(); ++i) tries.shapes.push_back(try_shape(shapes[i]));
   return tries;

@@ -113,7 +113,7 @@ class Monitor {
     if (status != Status::kOk) return status;
     status = offnominal::reset(config_.estimator, input, state.estimator);
     if (status != Status::kOk) return status;
-    state.estimator.mu = velocity_allowance();
+    state.estimator.mu = Form::first_threshold(config_.bound, config_.estimator.alpha);
     memory_.keep_begin(sample, now, state.memory);
     state.sample = sample;
     Form::keep(nominal, state);

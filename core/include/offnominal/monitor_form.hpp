@@ -21,6 +21,7 @@
 //   look(), fill()            model and input of the estimator at a sample
 //   start()                   of the detector at the first one
 //   allowance(), bound_at()   threshold of a measured velocity's own error, mu_bar
+//   first_threshold()         with which a run begins
 //   jump()                    of the nominal rate, by a jump of the load at the last sample
 //   judge()                   error and threshold of a tick, against each other
 //   compensation()            torque that takes psi_hat away
@@ -59,6 +60,9 @@ struct MonitorForm<AccelerationSpace, N, Scalar> {
   // The velocity's own error e_v enters e directly, through omega(0) and through the filter's
   // input: together at most 2 |e_v|.
   [[nodiscard]] static Scalar allowance(const Bound& bound) { return 2 * bound.velocity_error; }
+  [[nodiscard]] static Scalar first_threshold(const Bound& bound, Scalar /*alpha*/) {
+    return allowance(bound);
+  }
   [[nodiscard]] static Scalar bound_at(const Bound& bound, const Vector<N, Scalar>& q,
                                        const Vector<N, Scalar>& dq, const Vector<N, Scalar>& tau) {
     return evaluate(bound, q, dq, tau);
@@ -120,6 +124,15 @@ struct MonitorForm<TorqueSpace, N, Scalar> {
     values.resize(static_cast<Eigen::Index>(bound.joints.size()));
     for (std::size_t i = 0; i < bound.joints.size(); ++i) {
       values[static_cast<Eigen::Index>(i)] = 2 * bound.joints[i].momentum_error;
+    }
+    return values;
+  }
+  // Where the bound at its largest would have brought it: what the robot did before the run is not
+  // known, and in its first ticks a run may err as much as the bound says at any speed.
+  [[nodiscard]] static Vector<N, Scalar> first_threshold(const Bound& bound, Scalar alpha) {
+    Vector<N, Scalar> values = allowance(bound);
+    for (std::size_t i = 0; i < bound.joints.size(); ++i) {
+      values[static_cast<Eigen::Index>(i)] += largest_value(bound.joints[i]) / alpha;
     }
     return values;
   }

@@ -4,7 +4,9 @@
 
 #include <set>
 
+#include "calibrate/tightest.hpp"
 #include "desk/compare/recorded_arm.hpp"
+#include "log/part_of.hpp"
 #include "replay/replay.hpp"
 #include "robot/monitor_config_of.hpp"
 
@@ -45,10 +47,8 @@ TEST(FilteredBasis, OfEveryShapeGivesTheThresholdOfTheMonitor) {
           c[i] = bounded.bound->table.value[static_cast<std::size_t>(i)];
         }
       }
-      const FilteredBasis basis = filtered_basis(robot, shape, recording);
-      VectorXd all(shape.size + 1);
-      all << c, velocity_error;
-      const VectorXd threshold = basis.along * all;
+      const VectorXd threshold =
+          (filtered_basis(robot, shape, recording) * c).array() + 2 * velocity_error;
       const VectorXd core = recorded_error(bounded, log).old_threshold;
       const Eigen::Index rows = core.size() - 1;
       EXPECT_LT((threshold.tail(rows) - core.tail(rows)).cwiseAbs().maxCoeff(),
@@ -59,7 +59,7 @@ TEST(FilteredBasis, OfEveryShapeGivesTheThresholdOfTheMonitor) {
   }
 }
 
-TEST(FilteredBasis, FirstTickIsThatOfAMonitorThatStartsThere) {
+TEST(FilteredBasis, OfALaterStartIsThatOfAMonitorThatStartsThere) {
   const Log log = noisy_recording();
   RobotDescription robot = watched_arm();
   robot.bound->velocity_error = 0.01;
@@ -67,18 +67,27 @@ TEST(FilteredBasis, FirstTickIsThatOfAMonitorThatStartsThere) {
   BoundShape shape;
   shape.settings = *robot.bound;
   shape.size = 2;
-  const FilteredBasis basis = filtered_basis(robot, shape, recording);
-  for (const Eigen::Index start : {0, 17, 1500}) {
-    Log late = log;
-    late.t_s = log.t_s.segment(start, 20).eval();
-    late.q = log.q.middleRows(start, 20).eval();
-    late.dq = log.dq.middleRows(start, 20).eval();
-    late.tau = log.tau.middleRows(start, 20).eval();
-    const Replay monitor = replay(robot, late);
-    EXPECT_NEAR(recording.first_tick[start + 1], monitor.error_norm[1], 1e-12);
-    const Eigen::Vector3d all(1, 1, 0.01);
-    EXPECT_NEAR(basis.first_tick.row(start + 1) * all, monitor.threshold[1], 1e-12);
+  ThresholdRows rows;
+  rows.filtered = filtered_basis(robot, shape, recording);
+  rows.constant = 2;
+  const Eigen::Vector3d c(1, 1, 0.01);
+  const auto starts = starts_before(tick_filter(robot.estimator.alpha, log.period_s));
+  ASSERT_GT(starts.size(), 8U);
+  ASSERT_EQ(starts.front().ticks, 1);
+  EXPECT_LT(starts.back().kept, 0.05);
+  for (const Eigen::Index from : {0, 17, 1500}) {
+    const Replay monitor = replay(robot, part_of(log, {from, log.sample_count() - 1}));
+    for (const StartBefore& start : starts) {
+      const Eigen::Index at = from + start.ticks;
+      if (at >= log.sample_count()) break;
+      EXPECT_NEAR(recording.error_norm_after(start, at, at + 1)[0], monitor.error_norm[start.ticks],
+                  1e-12);
+      EXPECT_NEAR(rows.threshold(start, rows.along(c), c)[at], monitor.threshold[start.ticks],
+                  1e-12);
+    }
   }
+  EXPECT_EQ(recording.error_norm_after(starts.back(), 0, 5), VectorXd::Zero(5))
+      << "nothing was recorded so far back";
 }
 
 TEST(RecordedError, IsWhatReplayShowsBeforeAnyAlarm) {

@@ -22,7 +22,7 @@ RecordedError with_residual(double duration_s, double period_s,
   recorded.period_s = period_s;
   const auto samples = static_cast<Eigen::Index>(std::lround(duration_s / period_s)) + 1;
   recorded.t_s = Eigen::VectorXd::LinSpaced(samples, 0, duration_s);
-  recorded.residual = recorded.t_s.unaryExpr(residual);
+  recorded.error = recorded.t_s.unaryExpr(residual);
   return recorded;
 }
 

@@ -19,14 +19,21 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using namespace offnominal::desk;
 
-VectorXd cheapest(const std::vector<ThresholdRows>& parts, const VectorXd& lowest) {
-  return tightest(parts, lowest, VectorXd::Ones(lowest.size()));
+ThresholdRows part_of(const MatrixXd& rows, const VectorXd& error) {
+  ThresholdRows part;
+  part.filtered = rows;
+  part.demands = {{{}, error}};
+  return part;
+}
+
+VectorXd cheapest(const ThresholdRows& part, const VectorXd& lowest) {
+  return tightest({part}, lowest, VectorXd::Ones(lowest.size()));
 }
 
 TEST(Tightest, OfOneNumberIsTheLargestRatio) {
   const MatrixXd rows = VectorXd::LinSpaced(1000, 1, 3);
   const VectorXd error = (VectorXd::LinSpaced(1000, 0, 20).array().sin() + 1.5).matrix();
-  const VectorXd c = cheapest({{rows, error}}, VectorXd::Zero(rows.cols()));
+  const VectorXd c = cheapest(part_of(rows, error), VectorXd::Zero(rows.cols()));
   const double largest = (error.array() / rows.col(0).array()).maxCoeff();
   EXPECT_NEAR(c[0], largest, 1e-5 * largest);
   EXPECT_GE(c[0], largest * (1 - 1e-12));
@@ -35,8 +42,8 @@ TEST(Tightest, OfOneNumberIsTheLargestRatio) {
 TEST(Tightest, StaysAtTheLowestWhereThatIsEnough) {
   const MatrixXd rows = MatrixXd::Ones(10, 2);
   const VectorXd lowest = VectorXd::Constant(2, 3);
-  EXPECT_EQ(cheapest({{rows, VectorXd::Ones(10)}}, lowest), lowest);
-  EXPECT_EQ(cheapest({{rows, VectorXd::Zero(10)}}, lowest), lowest);
+  EXPECT_EQ(cheapest(part_of(rows, VectorXd::Ones(10)), lowest), lowest);
+  EXPECT_EQ(cheapest(part_of(rows, VectorXd::Zero(10)), lowest), lowest);
 }
 
 // Least cost over all points where two of the constraints, rows or axes, meet.
@@ -66,7 +73,7 @@ TEST(Tightest, OfTwoNumbersIsTheBestVertex) {
     const double unit = std::pow(10.0, 8 * uniform(generator) - 4);
     const MatrixXd rows = MatrixXd::NullaryExpr(60, 2, [&] { return uniform(generator); });
     const VectorXd error = unit * VectorXd::NullaryExpr(60, [&] { return uniform(generator); });
-    const VectorXd c = cheapest({{rows, error}}, VectorXd::Zero(rows.cols()));
+    const VectorXd c = cheapest(part_of(rows, error), VectorXd::Zero(rows.cols()));
     EXPECT_GE((rows * c - error).minCoeff(), -1e-12 * unit) << run;
     const VectorXd cost = rows.colwise().mean();
     const double best = best_vertex(rows, error, cost);
@@ -74,20 +81,52 @@ TEST(Tightest, OfTwoNumbersIsTheBestVertex) {
   }
 }
 
-TEST(Tightest, PartsThatDoNotCountAreCoveredAllTheSame) {
-  const Eigen::MatrixX2d rows = Eigen::RowVector2d(1, 0.5).replicate(5, 1);
-  const Eigen::MatrixX2d more = Eigen::RowVector2d(0, 1).replicate(5, 1);
-  const VectorXd c =
-      cheapest({{rows, VectorXd::Constant(5, 0.1), true}, {more, VectorXd::Ones(5), false}},
-               VectorXd::Zero(rows.cols()));
-  EXPECT_NEAR(c[0], 0, 1e-5);
-  EXPECT_NEAR(c[1], 1, 1e-5);
+// A run that starts late has of the first column only what came since.
+TEST(Tightest, ARunThatStartsLaterIsCoveredToo) {
+  const StartBefore start{2, 0.25};
+  ThresholdRows part;
+  part.filtered = MatrixXd::Constant(6, 1, 2);
+  part.history = 1;
+  part.constant = 0.5;
+  const VectorXd along = part.along(Eigen::Vector2d(3, 4));
+  EXPECT_EQ(part.threshold({}, along, Eigen::Vector2d(3, 4)), VectorXd::Constant(5, 8));
+  VectorXd late = VectorXd::Constant(5, 6 - 0.25 * 6 + 0.5 * 4);
+  late[0] = 0;
+  EXPECT_EQ(part.threshold(start, along, Eigen::Vector2d(3, 4)), late) << "from row 1 on";
+  EXPECT_EQ(part.row(start, 1), Eigen::Vector2d(1.5, 0.5));
+  part.demands = {{{}, VectorXd::Ones(5)}, {start, VectorXd::Constant(5, 3)}};
+  part.demands[1].error[0] = 0;
+  const VectorXd c = tightest({part}, VectorXd::Zero(2), Eigen::Vector2d(1, 10));
+  EXPECT_NEAR(c[0], 2, 1e-5) << "what the late start asks for";
+  EXPECT_NEAR(c[1], 0, 1e-5);
+}
+
+TEST(Tightest, AThresholdThatStartsAtItsLargestFadesFromThere) {
+  ThresholdRows part;
+  part.filtered = MatrixXd::Ones(3, 2);
+  part.starts_at_largest = true;
+  const Eigen::Vector2d c(1, 3);
+  EXPECT_EQ(part.threshold({}, part.along(c), c), VectorXd::Constant(3, 4));
+  const VectorXd late = part.threshold({1, 0.5}, part.along(c), c);
+  EXPECT_EQ(late, Eigen::Vector3d(0, 4 - 0.5 * 4 + 0.5 * 3, 4 - 0.5 * 4 + 0.5 * 3));
+}
+
+TEST(Tightest, GoesNoHigherThanIsAllowed) {
+  MatrixXd rows(2, 2);
+  rows << 1, 0.001, 0, 1;
+  const ThresholdRows part = part_of(rows, Eigen::Vector2d(1, 1));
+  const VectorXd free = tightest({part}, VectorXd::Zero(2), Eigen::Vector2d(100, 0.01));
+  EXPECT_GT(free[1], 100) << "the first is dear";
+  const VectorXd held =
+      tightest({part}, VectorXd::Zero(2), Eigen::Vector2d(100, 0.01), Eigen::Vector2d(2, 5));
+  EXPECT_LE(held[1], 5 + 1e-4);
+  EXPECT_GE((rows * held - Eigen::Vector2d(1, 1)).minCoeff(), -1e-12);
 }
 
 TEST(Tightest, OfTwoEqualColumnsTheCheaperIsUsed) {
   const Eigen::MatrixX2d rows = Eigen::MatrixX2d::Ones(5, 2);
-  const VectorXd error = VectorXd::Ones(5);
-  const VectorXd c = tightest({{rows, error}}, VectorXd::Zero(2), Eigen::Vector2d(1.5, 1));
+  const ThresholdRows part = part_of(rows, VectorXd::Ones(5));
+  const VectorXd c = tightest({part}, VectorXd::Zero(2), Eigen::Vector2d(1.5, 1));
   EXPECT_NEAR(c[0], 0, 1e-5);
   EXPECT_NEAR(c[1], 1, 1e-5);
 }
@@ -96,7 +135,7 @@ TEST(Tightest, RefusesAnErrorThatNothingReaches) {
   MatrixXd rows = MatrixXd::Ones(3, 1);
   rows(1, 0) = 0;
   EXPECT_THROW(
-      static_cast<void>(cheapest({{rows, VectorXd::Ones(3)}}, VectorXd::Zero(rows.cols()))),
+      static_cast<void>(cheapest(part_of(rows, VectorXd::Ones(3)), VectorXd::Zero(rows.cols()))),
       InputError);
 }
 

@@ -8,6 +8,8 @@
 #include "calibrate/calibrate.hpp"
 #include "calibrate/calibrate_joints.hpp"
 #include "desk/compare/recorded_arm.hpp"
+#include "log/part_of.hpp"
+#include "replay/replay.hpp"
 #include "robot/robot_file.hpp"
 
 // An arm whose model is exact and whose velocity is noisy: all that is bounded is the velocity's
@@ -31,7 +33,7 @@ RobotDescription written_and_read(const RobotDescription& robot) {
   return parse_robot(robot_text(robot), "r.toml");
 }
 
-TEST(CalibrateVelocityNoise, AloneGivesAMomentumErrorAndABoundAboveZero) {
+TEST(CalibrateVelocityNoise, OfOneJointIsInItsBoundAndStartsNeedNoMore) {
   RobotDescription robot = test::arm_description();
   robot.estimator.space = EstimatorSpace::kTorque;
   const JointsCalibration result =
@@ -40,9 +42,14 @@ TEST(CalibrateVelocityNoise, AloneGivesAMomentumErrorAndABoundAboveZero) {
   EXPECT_THAT(result.objections, IsEmpty());
   const RobotDescription again = written_and_read(result.robot);
   for (const std::size_t joint : {0U, 1U}) {
-    EXPECT_GT(again.bound->joints[joint].momentum_error, 0);
+    EXPECT_EQ(again.bound->joints[joint].momentum_error, 0);
     for (const double value : again.bound->joints[joint].value) EXPECT_GT(value, 0);
     EXPECT_EQ(result.joints[joint].calibration.level.held_out_alarms, 0);
+  }
+  const Log other = run_with_noisy_velocity(4);
+  for (Eigen::Index start = 0; start < other.sample_count() - 200; start += 613) {
+    const Replay run = replay(again, part_of(other, {start, start + 199}));
+    EXPECT_THAT(run.alarms, IsEmpty()) << start;
   }
 }
 

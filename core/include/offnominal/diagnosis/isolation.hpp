@@ -108,11 +108,7 @@ class Isolation {
     for (std::size_t i = 0; i < count; ++i) {
       const Joint<Scalar>& joint = watched.chain.joints[i];
       const JointBound<Scalar>& bound = watched.bound.joints[i];
-      Scalar threshold = bound.value[0];
-      for (std::size_t k = 1; k < bound.points; ++k) {
-        threshold = std::max(threshold, bound.value[k]);
-      }
-      threshold += 2 * alpha_ * bound.momentum_error;
+      const Scalar threshold = largest_value(bound) + 2 * alpha_ * bound.momentum_error;
       thresholds_[i] = threshold;
       const Scalar torque = static_cast<Scalar>(kPriorTorque) * threshold;
       constexpr Scalar kFast = Scalar(100);  // no speed limit

@@ -67,6 +67,14 @@ template <typename Scalar>
   return result;
 }
 
+// At whatever speed.
+template <typename Scalar>
+[[nodiscard]] Scalar largest_value(const JointBound<Scalar>& bound) {
+  Scalar largest = bound.value[0];
+  for (std::size_t i = 1; i < bound.points; ++i) largest = std::max(largest, bound.value[i]);
+  return largest;
+}
+
 // mu_bar per joint at one instant, N m or N.
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> evaluate(const TorqueBound<N, Scalar>& bound,
