@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -14,24 +13,20 @@
 #include "calibrate/calibrate_joints.hpp"
 #include "calibrate/calibrate_report.hpp"
 #include "calibrate/joints_report.hpp"
-#include "calibrate/split.hpp"
 #include "command/answer.hpp"
 #include "command/command_line.hpp"
 #include "command/doctor.hpp"
+#include "command/fault_free.hpp"
 #include "command/input_options.hpp"
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "command/write_robot.hpp"
-#include "common/amount.hpp"
 #include "common/error.hpp"
-#include "common/nearest.hpp"
 #include "common/output_file.hpp"
 #include "log/log_format.hpp"
-#include "log/part_of.hpp"
 #include "log/read_log.hpp"
-#include "robot/effect_text.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
@@ -65,75 +60,6 @@ void check_velocity_error(const CalibrateOptions& options, const RobotDescriptio
                             *options.velocity_error, options.files.robot),
                 "none: what it adds to a joint's momentum depends on the others",
                 "leave it out; momentum errors are found with the bounds");
-}
-
-constexpr double kShortestS = 2;
-
-// The monitor starts anew behind what is left out, and its effects in time would too.
-void refuse_late_start(const RobotDescription& robot, const Log& log) {
-  for (const RobotEffect& effect : robot.effects) {
-    if (!info_of(effect.kind)->traits.counts_time) continue;
-    throw InputError({log.file, "", "faults of the recording, which are left out",
-                      fmt::format("none but at its end, as {} of {} counts from its start",
-                                  info_of(effect.kind)->name, place_of(effect)),
-                      "record anew, or say with --keep JOINT:REASON what is no fault"});
-  }
-}
-
-std::vector<Log> parts_left_of(const RobotDescription& robot, const std::vector<Log>& logs) {
-  std::vector<Log> parts;
-  for (const Log& log : logs) {
-    for (Log& part : untouched_parts(log, kShortestS)) {
-      if (part.t_s[0] != log.t_s[0]) refuse_late_start(robot, log);
-      parts.push_back(std::move(part));
-    }
-    if (!parts.empty() && parts.back().file == log.file) continue;
-    std::set<Eigen::Index> stretches;  // each joint's are listed
-    for (const LeftOut& out : log.left_out) stretches.insert(out.rows.first);
-    throw InputError(
-        {log.file, "",
-         fmt::format("{} left out, and no {:g} s between what is left out",
-                     counted(stretches.size(), "stretch", "stretches"), kShortestS),
-         fmt::format("a part of {:g} s or more without a fault of the recording", kShortestS),
-         "record anew, or say with --keep JOINT:REASON what is no fault"});
-  }
-  return parts;
-}
-
-double seconds_of(const std::vector<Log>& logs) {
-  double seconds = 0;
-  for (const Log& log : logs) seconds += static_cast<double>(log.sample_count()) * log.period_s;
-  return seconds;
-}
-
-// What the examination took of the recordings to calibrate on, of which `parts` are left; empty:
-// nothing.
-std::string left_out_words(double recorded_s, const std::vector<Log>& parts,
-                           const std::vector<DataFault>& faults) {
-  struct Taken {
-    std::size_t stretches = 0;
-    Eigen::Index rows = 0;
-  };
-  std::map<std::string, Taken> reasons;
-  for (const DataFault& fault : faults) {
-    if (fault.left_out_of.empty()) continue;
-    Taken& taken = reasons[name_of(fault.kind)];
-    for (const FaultSpan& span : fault.spans) {
-      ++taken.stretches;
-      taken.rows += span.samples.count();
-    }
-  }
-  if (reasons.empty()) return {};
-  const auto words = [](const auto& reason) {
-    return fmt::format("{} of {} in {}",
-                       counted(static_cast<std::size_t>(reason.second.rows), "row"), reason.first,
-                       counted(reason.second.stretches, "stretch", "stretches"));
-  };
-  return fmt::format(
-      "of {:.4g} s recorded {:.4g} s are left, in {} of {:g} s or more between what "
-      "is left out ({})",
-      recorded_s, seconds_of(parts), counted(parts.size(), "part"), kShortestS,
-      list_of(reasons, words));
 }
 
 // Result: a Calibration, or a JointsCalibration.
@@ -172,29 +98,23 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
   check_velocity_error(options, robot);
   FitData data =
       read_fit_data("calibrate", "LOG", options.files, std::move(robot), read_log, progress);
-  const auto faults =
-      treated({data.logs, data.holdout}, data.robot, options.keep, progress, RestsOn::kVelocityToo);
-  const double recorded_s = seconds_of(data.logs);
-  for (std::vector<Log>* group : {&data.logs, &data.holdout}) {
-    *group = parts_left_of(data.robot, *group);
-  }
-  const std::string left_out = left_out_words(recorded_s, data.logs, faults);
-  if (data.holdout.empty()) data.holdout = take_held_out(data.logs, kShortestS);
+  const FaultFree healthy = keep_fault_free(data, options.keep, progress);
   progress.begin("shapes of the bound");
   const CalibrateRequest request{
       options.alarms_per_hour, options.velocity_error,
-      "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + ".", left_out};
+      "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + ".",
+      healthy.left_out};
   require_carried(data.robot, options.files.robot);
   const CalibrateNames names{options.files.robot, options.output, command_line};
   const auto on_step = [&progress] { progress.step(); };
   if (data.robot.estimator.space == EstimatorSpace::kTorque) {
     const auto result = calibrate_joints(data.robot, request, data.logs, data.holdout, on_step);
     progress.end();
-    tell(result, options, names, data, faults, exit_code);
+    tell(result, options, names, data, healthy.faults, exit_code);
   } else {
     const auto result = calibrate(data.robot, request, data.logs, data.holdout, on_step);
     progress.end();
-    tell(result, options, names, data, faults, exit_code);
+    tell(result, options, names, data, healthy.faults, exit_code);
   }
 }
 constexpr const char* kHowItCalibrates =

@@ -5,7 +5,7 @@
 namespace offnominal::desk {
 namespace {
 
-constexpr std::array<Verb, 17> kVerbs = {{
+constexpr std::array<Verb, 18> kVerbs = {{
     {"add", "Fit an effect to a recording and write the robot file that has it", set_up_add},
     {"calibrate", "Find the uncertainty bound from recordings of the healthy robot",
      set_up_calibrate},
@@ -35,6 +35,7 @@ constexpr std::array<Verb, 17> kVerbs = {{
     {"sil", "Run controller and arm at the two ends of a CAN bus, with faults", set_up_sil},
     {"studio", "Look, learn, add and watch the error fall, in one page on this machine",
      set_up_studio},
+    {"tune", "Find the monitor's settings in recordings of the healthy robot", set_up_tune},
 }};
 
 }  // namespace

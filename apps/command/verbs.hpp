@@ -30,6 +30,7 @@ struct Verb {
 
 SetUpVerb set_up_add, set_up_calibrate, set_up_campaign, set_up_codegen, set_up_compare,
     set_up_explain, set_up_export_mjcf, set_up_export_urdf, set_up_identify, set_up_import_urdf,
-    set_up_look, set_up_motion, set_up_new, set_up_paper, set_up_replay, set_up_sil, set_up_studio;
+    set_up_look, set_up_motion, set_up_new, set_up_paper, set_up_replay, set_up_sil, set_up_studio,
+    set_up_tune;
 
 }  // namespace offnominal::desk

@@ -25,6 +25,9 @@ constexpr double kHighestTimes = 3;
 // What a transient that was taken out asks for, and a little more: the next one like it is no
 // smaller. How much larger it may be, one event does not say.
 constexpr double kAboveTransient = 1.05;
+// Of what unseen parts ask for: a motion that repeats makes its parts alike, and the next one is
+// not.
+constexpr double kAboveUnseen = 1.1;
 // One event decides the bound where the bound without it is narrower by this factor.
 constexpr double kDecides = 2;
 
@@ -51,7 +54,7 @@ Tried judged(const BoundShape& shape, ShapeFit fit, const CalibrationData& data,
   tried.law = extreme_law_of(tried.maxima);
   const double per_block = -std::expm1(-request.alarms_per_hour / 3600 * data.block_s);
   tried.widening =
-      std::max({1.0, tried.largest, tried.fit.unseen_start_ratio,
+      std::max({1.0, kAboveUnseen * tried.largest, tried.fit.unseen_start_ratio,
                 kAboveTransient * tried.fit.apart_ratio, exceeded_with(tried.law, per_block)});
   tried.mean_threshold =
       tried.widening * tried.fit.mean_threshold + 2 * request.velocity_error.value_or(0);

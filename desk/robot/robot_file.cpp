@@ -179,7 +179,7 @@ std::optional<std::string> text_with_changes(const RobotDescription& robot,
   RobotDescription effects_only = robot;
   effects_only.bound = parse_robot(old_text, file).bound;
   auto text = text_with_effects(old_text, effects_only, file);
-  if (!text || !robot.bound) return robot.bound ? std::nullopt : text;
+  if (!text) return std::nullopt;
   return text_with_bound(*text, robot, file);
 }
 

@@ -84,6 +84,12 @@ class LineComposer {
     if (!text_.empty() && !text_.ends_with("\n\n")) text_ += "\n";
     text_ += block;
   }
+  // `line`, with its end, in the place of the next.
+  void replace_line(const std::string& line) {
+    text_ += line;
+    ++next_;
+  }
+  void append(const std::string& lines) { text_ += lines; }
   void blank_line_unless_at_end() {
     if (next_ < lines_.size() && !trimmed(lines_[next_]).empty()) text_ += "\n";
   }

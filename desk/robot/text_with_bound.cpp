@@ -89,11 +89,11 @@ std::string with_block(const Lines& lines, const OldBound& old, const std::strin
   LineComposer out(lines);
   for (const LineRange& range : old.ranges) {
     out.copy_until(range.begin);
-    if (old.under_header) out.insert(block);
+    if (old.under_header && !block.empty()) out.insert(block);
     out.skip_to(range.end);
   }
   out.copy_until(lines.size());
-  if (!old.under_header) out.insert(block);
+  if (!old.under_header && !block.empty()) out.insert(block);
   return out.text();
 }
 
@@ -101,11 +101,10 @@ std::string with_block(const Lines& lines, const OldBound& old, const std::strin
 
 std::optional<std::string> text_with_bound(const std::string& old_text,
                                            const RobotDescription& robot, const std::string& file) {
-  if (!robot.bound) return std::nullopt;
   try {
     const RobotDescription old = parse_robot(old_text, file);
-    const std::string block = bound_text(*robot.bound);
-    if (old.bound && bound_text(*old.bound) == block) {
+    const std::string block = robot.bound ? bound_text(*robot.bound) : "";
+    if ((old.bound ? bound_text(*old.bound) : "") == block) {
       return robot_text(old) == robot_text(robot) ? std::optional(old_text) : std::nullopt;
     }
     const Lines lines = lines_of(old_text);

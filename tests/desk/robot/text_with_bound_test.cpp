@@ -78,6 +78,16 @@ TEST(TextWithBound, AFirstBoundFollowsTheLastLine) {
   EXPECT_EQ(text_with_bound(text, with_new_bound(text)), text + kNewBound);
 }
 
+TEST(TextWithBound, OfARobotThatHasNoneItIsTakenOut) {
+  const std::string text = kHead + kOldBound + kTail;
+  RobotDescription robot = parse_robot(text, "r.toml");
+  robot.bound.reset();
+  const auto without = text_with_bound(text, robot);
+  ASSERT_TRUE(without);
+  EXPECT_EQ(without->find("[uncertainty_bound]"), std::string::npos);
+  EXPECT_FALSE(parse_robot(*without, "r.toml").bound);
+}
+
 TEST(TextWithBound, ChangesNothingWhereNothingChanged) {
   const std::string text = kHead + kOldBound + kTail;
   EXPECT_EQ(text_with_bound(text, parse_robot(text, "r.toml")), text);
@@ -87,9 +97,6 @@ TEST(TextWithBound, RefusesOtherChangesAndTextsThatItCannotCut) {
   const std::string text = kHead + kOldBound + kTail;
   RobotDescription robot = with_new_bound(text);
   robot.name = "other";
-  EXPECT_FALSE(text_with_bound(text, robot));
-  robot = with_new_bound(text);
-  robot.bound.reset();
   EXPECT_FALSE(text_with_bound(text, robot));
   EXPECT_FALSE(text_with_bound("format = 1", with_new_bound(text)));
 }
