@@ -5,12 +5,14 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "campaign/campaign_file.hpp"
 #include "campaign/result_file.hpp"
 #include "campaign/run_campaign.hpp"
+#include "campaign/simulate.hpp"
 #include "campaign/summary.hpp"
 #include "campaign/summary_report.hpp"
 #include "command/answer.hpp"
@@ -19,8 +21,11 @@
 #include "command/progress.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
+#include "common/file.hpp"
 #include "common/output_file.hpp"
+#include "log/csv_text.hpp"
 #include "report/page.hpp"
+#include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -96,6 +101,60 @@ void show(const ShowOptions& options, const std::string& command_line) {
   print(summary_of(campaign::read_results(options.file)), options.answer, command_line);
 }
 
+struct RecordOptions {
+  std::string file;
+  std::optional<std::int64_t> run;
+  std::optional<int> calibration;
+  std::string output;
+  std::string model;
+  AnswerOptions answer;
+};
+
+// One of the campaign's recordings, and the file of the model that its detectors have.
+void record(const RecordOptions& options) {
+  if (options.run.has_value() == options.calibration.has_value()) {
+    refuse_option("campaign record", "--run, --calibration", options.run ? "both" : "neither",
+                  "one of them");
+  }
+  const campaign::Campaign plan = campaign::read_campaign(options.file);
+  const std::int64_t count = options.run ? plan.run_count() : plan.calibration.runs;
+  const std::int64_t number = options.run.value_or(options.calibration.value_or(0));
+  if (number < 0 || number >= count) {
+    refuse_option("campaign record", options.run ? "--run" : "--calibration",
+                  std::to_string(number), fmt::format("0 to {}", count - 1));
+  }
+  const campaign::Simulator simulator(plan);
+  const Log log = options.run ? simulator.run(campaign::run_of(plan, number)).log
+                              : simulator.calibration_run(static_cast<int>(number));
+  std::vector<std::string> written{options.output};
+  write_file_atomically(options.output, csv_text(log), options.answer.existing());
+  if (!options.model.empty()) {
+    write_robot_file(plan.model, options.model, options.answer.existing());
+    written.push_back(options.model);
+  }
+  for (const std::string& file : written) std::cout << "written: " << file << '\n';
+}
+
+void set_up_record(CLI::App& verb) {
+  CLI::App& sub = *verb.add_subcommand("record", "Write one run as a recording, to look into");
+  const auto options = std::make_shared<RecordOptions>();
+  sub.add_option("FILE", options->file, "Campaign file (docs/campaigns.md)")->required();
+  sub.add_option("--run", options->run, "Number of a run, as the results have it, from 0");
+  sub.add_option("--calibration", options->calibration,
+                 "Number of a run that is calibrated on, from 0, instead");
+  sub.add_option("-o,--output", options->output, "Recording to write, CSV")
+      ->type_name(kNewFile)
+      ->required();
+  sub.add_option("--model", options->model,
+                 "Robot file to write too: the model that the detectors have, without a bound")
+      ->type_name(kNewRobotFile);
+  add_force_option(sub, options->answer);
+  sub.callback([&sub, options] {
+    check_outputs(sub, report::is_page);
+    record(*options);
+  });
+}
+
 void set_up_merge(CLI::App& verb, ExitCode& exit_code) {
   CLI::App& sub = *verb.add_subcommand("merge", "Join results of one campaign's parts");
   const auto options = std::make_shared<MergeOptions>();
@@ -142,6 +201,7 @@ void set_up_campaign(CLI::App& verb, ExitCode& exit_code) {
   add_json_option(verb, options->answer);
   set_up_merge(verb, exit_code);
   set_up_show(verb);
+  set_up_record(verb);
   verb.require_subcommand(0, 1);
   verb.footer(
       "Simulates one robot without faults, calibrates every detector of FILE on that, then runs "

@@ -46,7 +46,6 @@ std::vector<std::vector<Eigen::VectorXd>> thresholds_of(const RobotDescription& 
 
 JointBoundSettings joint_bound(const BoundSettings& bound) {
   JointBoundSettings joint;
-  joint.momentum_error = bound.velocity_error;
   if (bound.kind == BoundSettings::Kind::kTable) {
     joint.at = bound.table.at;
     joint.value = bound.table.value;

@@ -23,22 +23,6 @@ std::string bound_words(const JointBoundSettings& bound) {
   return fmt::format("{} to {} over its speed", shortest(*least), shortest(*most));
 }
 
-// What a threshold comes of: the bound behind the filter, and what the momentum's own error adds.
-struct ThresholdRule {
-  double momentum_error = 0;  // N m s or N s
-  double share = 0;           // that it has of the mean threshold
-
-  [[nodiscard]] const char* ruler() const { return share > 0.5 ? "momentum error" : "bound"; }
-};
-
-ThresholdRule rule_of(const JointsCalibration& calibration, std::size_t joint) {
-  ThresholdRule rule;
-  rule.momentum_error = calibration.robot.bound->joints[joint].momentum_error;
-  rule.share = 2 * calibration.robot.estimator.alpha * rule.momentum_error /
-               margin_of(calibration.joints[joint].calibration).mean_after;
-  return rule;
-}
-
 struct HeldOut {
   std::int64_t alarms = 0;
   double seconds = 0;
@@ -86,58 +70,34 @@ Table joints_table(const JointsCalibration& calibration) {
 constexpr const char* kExcluded =
     "by itself the count on hold-out data excludes more alarms per hour than that, at 95 %";
 
-Table rules_table(const JointsCalibration& calibration) {
+Table margins_table(const JointsCalibration& calibration) {
   Table table;
-  table.caption = "What rules each threshold, and what the hold-out data exclude";
+  table.caption = "Against the old bound, and what the hold-out data exclude";
   table.columns = {{"joint", ""},
-                   {"ruled by", ""},
-                   {"momentum error", "", ".3g"},
-                   {"unit", ""},
-                   {"its share of the mean threshold", "%", ".0f"},
                    {"mean threshold to the old one's", "1", ".3g"},
                    {"hold-out alarms", "1", "d"},
                    {"excluded from", "1/h", ".3g"}};
-  table.note = fmt::format(
-      "A threshold is the bound behind the filter and, from the first tick on, 2 alpha times the "
-      "momentum error, what the first tick of a run asks for. Excluded from: {}.",
-      kExcluded);
-  for (std::size_t i = 0; i < calibration.joints.size(); ++i) {
-    const JointCalibration& joint = calibration.joints[i];
-    const ThresholdRule rule = rule_of(calibration, i);
+  table.note = fmt::format("Excluded from: {}.", kExcluded);
+  for (const JointCalibration& joint : calibration.joints) {
     const auto to_old = margin_of(joint.calibration).new_to_old;
-    table.rows.push_back({joint.name, std::string(rule.ruler()), rule.momentum_error,
-                          joint.calibration.unit + " s", 100 * rule.share,
-                          to_old ? Cell(*to_old) : Cell(std::string("no old one")),
+    table.rows.push_back({joint.name, to_old ? Cell(*to_old) : Cell(std::string("no old one")),
                           static_cast<double>(joint.calibration.level.held_out_alarms),
                           joint.calibration.level.highest_per_hour});
   }
   return table;
 }
 
-std::string rules_text(const JointsCalibration& calibration) {
-  const TextTable table({{"joint", -16},
-                         {"ruled by", -14},
-                         {"momentum error", 20},
-                         {"of mu", 6},
-                         {"to old mu", 10},
-                         {"excluded, 1/h", 13}},
-                        "  ");
+std::string margins_text(const JointsCalibration& calibration) {
+  const TextTable table({{"joint", -16}, {"to old mu", 10}, {"excluded, 1/h", 13}}, "  ");
   std::string text = "\n" + table.heading();
   for (std::size_t i = 0; i < calibration.joints.size(); ++i) {
     const JointCalibration& joint = calibration.joints[i];
-    const ThresholdRule rule = rule_of(calibration, i);
     const auto to_old = margin_of(joint.calibration).new_to_old;
-    text += table.row(
-        fmt::format("{} {}", i + 1, joint.name), rule.ruler(),
-        fmt::format("{} {} s", significant(rule.momentum_error, 3), joint.calibration.unit),
-        fmt::format("{:.0f} %", 100 * rule.share), to_old ? significant(*to_old, 3) : "none",
-        significant(joint.calibration.level.highest_per_hour, 3));
+    text += table.row(fmt::format("{} {}", i + 1, joint.name),
+                      to_old ? significant(*to_old, 3) : "none",
+                      significant(joint.calibration.level.highest_per_hour, 3));
   }
-  return text +
-         "\nruled by: a threshold is the bound behind the filter and, from the first tick on, 2 "
-         "alpha "
-         "times the momentum\nerror, what the first tick of a run asks for\nexcluded: " +
-         kExcluded + "\n";
+  return text + "\nexcluded: " + kExcluded + "\n";
 }
 
 Chart residual_chart(const JointCalibration& joint, const JudgedStretch& stretch,
@@ -164,28 +124,23 @@ nlohmann::ordered_json joint_json(const JointsCalibration& calibration, std::siz
   const JointCalibration& joint = calibration.joints[i];
   const JointBoundSettings& bound = calibration.robot.bound->joints[i];
   const JointType type = calibration.robot.joints[i].joint.type;
-  const ThresholdRule rule = rule_of(calibration, i);
   nlohmann::ordered_json json = to_json(joint.calibration, names);
   for (const char* key : {"robot", "output", "verdict", "old_bound", "new_bound"}) json.erase(key);
-  nlohmann::ordered_json result = {
-      {"joint", i + 1},
-      {"name", joint.name},
-      {"bound",
-       {{"unit", joint.calibration.unit},
-        {"at", bound.at},
-        {"at_unit", unit_of(Quantity::kVelocity, type)},
-        {"value", bound.value},
-        {"momentum_error", bound.momentum_error},
-        {"momentum_error_unit", joint.calibration.unit + " s"}}},
-      {"threshold", {{"ruled_by", rule.ruler()}, {"momentum_error_share", rule.share}}},
-      {"smallest_fault",
-       {{"unit", joint.calibration.unit},
-        {"seen_in_95_of_100", joint.fault.usual},
-        {"window_s", joint.fault.window_s},
-        {"twice_that_within_s", joint.fault.twice_s},
-        {"certain", joint.fault.certain},
-        {"certain_with", joint.fault.certain_with},
-        {"certain_within_s", joint.fault.certain_s}}}};
+  nlohmann::ordered_json result = {{"joint", i + 1},
+                                   {"name", joint.name},
+                                   {"bound",
+                                    {{"unit", joint.calibration.unit},
+                                     {"at", bound.at},
+                                     {"at_unit", unit_of(Quantity::kVelocity, type)},
+                                     {"value", bound.value}}},
+                                   {"smallest_fault",
+                                    {{"unit", joint.calibration.unit},
+                                     {"seen_in_95_of_100", joint.fault.usual},
+                                     {"window_s", joint.fault.window_s},
+                                     {"twice_that_within_s", joint.fault.twice_s},
+                                     {"certain", joint.fault.certain},
+                                     {"certain_with", joint.fault.certain_with},
+                                     {"certain_within_s", joint.fault.certain_s}}}};
   result.update(json);
   return result;
 }
@@ -241,8 +196,8 @@ std::string text_of(const JointsCalibration& calibration, const CalibrateNames& 
       "of {} blocks of {:g} s\nthat the bounds had not seen (blocks taken as independent, motions "
       "as in these recordings)\n",
       fault.window_s, fault.certain_s, calibration.alarms_per_hour, level.blocks, level.block_s);
-  return text + rules_text(calibration) + remarks_text(calibration.notes, calibration.objections) +
-         verdict_of(calibration) + "\n";
+  return text + margins_text(calibration) +
+         remarks_text(calibration.notes, calibration.objections) + verdict_of(calibration) + "\n";
 }
 
 nlohmann::ordered_json to_json(const JointsCalibration& calibration, const CalibrateNames& names) {
@@ -273,7 +228,7 @@ report::Page page_of(const JointsCalibration& calibration, const CalibrateNames&
   Section result{.heading = "The bounds", .text = "", .blocks = {}};
   add_remarks(calibration.notes, calibration.objections, result);
   result.blocks.emplace_back(joints_table(calibration));
-  result.blocks.emplace_back(rules_table(calibration));
+  result.blocks.emplace_back(margins_table(calibration));
   page.sections.push_back(result);
   Section time{.heading = "Residual against threshold", .text = "", .blocks = {}};
   for (const JointCalibration& joint : calibration.joints) {

@@ -62,6 +62,8 @@ class Programme {
     // Rows of very different size can stop a dual simplex that goes on from the last basis: anew
     // then.
     if (Clp_status(model_.get()) != 0) Clp_initialPrimalSolve(model_.get());
+    // A millionth off what is allowed it calls impossible, and goes on from there when asked to.
+    if (Clp_status(model_.get()) != 0) Clp_primal(model_.get(), 0);
     if (Clp_status(model_.get()) != 0) refuse_programme("no numbers that cover every sample");
     return Eigen::Map<const Eigen::VectorXd>(Clp_primalColumnSolution(model_.get()), size);
   }

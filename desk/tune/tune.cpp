@@ -23,8 +23,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr std::array kRates = {0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 25.0, 50.0, 100.0, 250.0,
-                             500.0, 1000.0, 2500.0};
+constexpr std::array kRates = {0.25, 0.5,   1.0,   2.5,   5.0,    10.0,  25.0,
+                               50.0, 100.0, 250.0, 500.0, 1000.0, 2500.0};
 constexpr std::array kSizes = {8, 16, 24, 35, 48, 64};
 constexpr std::array kTimesBase = {1.0, 2.5, 6.0};
 constexpr std::array kRatesOfRanges = {2.5, 25.0, 250.0};
@@ -154,15 +154,15 @@ std::vector<EstimatorLine> lines_of(const Tuned& tuned, const TuneRequest& reque
   std::vector<EstimatorLine> lines;
   lines.push_back({"space", "\"torque\"", "joint by joint"});
   lines.push_back({"alpha_per_s", shortest_real(settings.alpha), reasons_of_alpha(tuned, request)});
-  lines.push_back({"hidden_units", std::to_string(settings.hidden_units),
-                   reason(fmt::format("misses {} of a torque that it has to learn; {}", missed(*size),
-                                      list_of(tuned.sizes, [&](const LearningTrial& trial) {
-                                        return fmt::format("{}: {}", trial.hidden_units,
-                                                           missed(trial));
-                                      })))});
+  lines.push_back(
+      {"hidden_units", std::to_string(settings.hidden_units),
+       reason(fmt::format("misses {} of a torque that it has to learn; {}", missed(*size),
+                          list_of(tuned.sizes, [&](const LearningTrial& trial) {
+                            return fmt::format("{}: {}", trial.hidden_units, missed(trial));
+                          })))});
   lines.push_back({"learning_rate", shortest_real(settings.learning_rate),
-                   reason(fmt::format("as {:g} for {} units, which miss {}; {}", rate->learning_rate,
-                                      rate->hidden_units, missed(*rate),
+                   reason(fmt::format("as {:g} for {} units, which miss {}; {}",
+                                      rate->learning_rate, rate->hidden_units, missed(*rate),
                                       list_of(tuned.rates, [&](const LearningTrial& trial) {
                                         return fmt::format("{:g}: {}", trial.learning_rate,
                                                            missed(trial));
@@ -171,10 +171,10 @@ std::vector<EstimatorLine> lines_of(const Tuned& tuned, const TuneRequest& reque
                    fmt::format("trials with {:.0f} % of each joint's largest torque came to {}; "
                                "this holds all of it",
                                100 * kShareOfTorque, significant(taken.weight_norm, 3))});
-  lines.push_back({"initial_weight_range", shortest_real(settings.initial_weight_range),
-                   reason(fmt::format("missed {} at the rate {:g}, the least of {}", missed(*range),
-                                      range->learning_rate,
-                                      counted(tuned.ranges.size(), "trial")))});
+  lines.push_back(
+      {"initial_weight_range", shortest_real(settings.initial_weight_range),
+       reason(fmt::format("missed {} at the rate {:g}, the least of {}", missed(*range),
+                          range->learning_rate, counted(tuned.ranges.size(), "trial")))});
   return lines;
 }
 

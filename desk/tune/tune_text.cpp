@@ -49,10 +49,10 @@ std::string trials_text(const std::vector<LearningTrial>& trials) {
                         "  ");
   std::string text = table.heading();
   for (const LearningTrial& trial : trials) {
-    text += table.row(mark(trial.chosen), trial.hidden_units,
-                      fmt::format("{:g}", trial.learning_rate),
-                      fmt::format("{:g}", trial.initial_weight_range), percent(trial.missed),
-                      significant(trial.weight_norm, 3));
+    text +=
+        table.row(mark(trial.chosen), trial.hidden_units, fmt::format("{:g}", trial.learning_rate),
+                  fmt::format("{:g}", trial.initial_weight_range), percent(trial.missed),
+                  significant(trial.weight_norm, 3));
   }
   return text;
 }

@@ -145,7 +145,6 @@ TEST(CalibrateJoints, TellsThemInWordsAndInNumbers) {
   EXPECT_EQ(json["joints"][1]["smallest_fault"]["unit"], "N m");
   EXPECT_EQ(json["joints"][0]["bound"]["unit"], "N m");
   EXPECT_EQ(json["joints"][0]["bound"]["at_unit"], "rad/s");
-  EXPECT_EQ(json["joints"][0]["bound"]["momentum_error_unit"], "N m s");
   EXPECT_GT(json["joints"][0]["smallest_fault"]["seen_in_95_of_100"], 0);
   EXPECT_THAT(text_of(calibrated(), names), HasSubstr("0.1 per hour of all joints"));
   EXPECT_THAT(verdict_of(calibrated()), HasSubstr("N m on joint 2; 0 alarms of 2 joints"));
@@ -156,26 +155,9 @@ std::string page_text(const JointsCalibration& calibration) {
   return report::to_json(page_of(calibration, {"arm.toml", "new.toml", ""})).dump();
 }
 
-TEST(CalibrateJoints, SaysOfEachJointWhatRulesItsThreshold) {
-  const CalibrateNames names{"arm.toml", "new.toml", "offnominal calibrate"};
-  JointsCalibration result = calibrated();
-  const double mean = margin_of(result.joints[0].calibration).mean_after;
-  result.robot.bound->joints[0].momentum_error = 0.75 * mean / (2 * result.robot.estimator.alpha);
-  result.robot.bound->joints[1].momentum_error = 0;
-  const auto json = to_json(result, names);
-  EXPECT_EQ(json["joints"][0]["threshold"]["ruled_by"], "momentum error");
-  EXPECT_NEAR(json["joints"][0]["threshold"]["momentum_error_share"].get<double>(), 0.75, 1e-12);
-  EXPECT_EQ(json["joints"][1]["threshold"]["ruled_by"], "bound");
-  EXPECT_EQ(json["joints"][1]["threshold"]["momentum_error_share"], 0);
-  EXPECT_THAT(text_of(result, names), ContainsRegex("1 shoulder +momentum error .* 75 %"));
-  EXPECT_THAT(text_of(result, names), ContainsRegex("2 elbow +bound +0 N m s +0 %"));
-  EXPECT_THAT(page_text(result), HasSubstr("What rules each threshold"));
-  EXPECT_THAT(page_text(result), HasSubstr("\"momentum error\""));
-}
-
 TEST(CalibrateJoints, ShowsHowEachStandsToTheOldOneAndWhatTheCountExcludes) {
   const CalibrateNames names{"arm.toml", "new.toml", "offnominal calibrate"};
-  EXPECT_THAT(text_of(calibrated(), names), ContainsRegex("1 shoulder .* % +none +359\n"))
+  EXPECT_THAT(text_of(calibrated(), names), ContainsRegex("1 shoulder +none +359\n"))
       << "3 / 30 s by the hour, and there was no bound";
   JointsCalibration result = calibrated();
   for (JointCalibration& joint : result.joints) {
@@ -184,7 +166,7 @@ TEST(CalibrateJoints, ShowsHowEachStandsToTheOldOneAndWhatTheCountExcludes) {
       stretch.mean_threshold_before = 4 * stretch.mean_threshold_after;
     }
   }
-  EXPECT_THAT(text_of(result, names), ContainsRegex("1 shoulder .* % +0\\.250 +359\n"));
+  EXPECT_THAT(text_of(result, names), ContainsRegex("1 shoulder +0\\.250 +359\n"));
   EXPECT_THAT(page_text(result), HasSubstr("mean threshold to the old one's"));
   EXPECT_THAT(page_text(result), HasSubstr("excluded from"));
 }
