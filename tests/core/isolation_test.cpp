@@ -122,6 +122,29 @@ TEST(Isolation, NamesAnEncoderThatSticks) {
 // What tells it from an encoder that sticks is only what the other joints feel.
 TEST(Isolation, NamesAJointThatIsLocked) { expect_named<7>({FaultKind::kLockedJoint, 20, 0, 0.7}); }
 
+// Until a joint stands still, more friction and a constant torque are one. What then acts on it, no
+// more than that friction, its friction holds; a constant torque would have moved it.
+TEST(Isolation, TakesForFrictionWhatHoldsAJointThatStands) {
+  IsolationState<2, double> state;
+  const IsolationScales<2, double> scales{OwnValues<2, double>::Ones(), {}};
+  for (int block = 0; block < 30; ++block) {
+    Vector<kOwnRegressors, double> own = Vector<kOwnRegressors, double>::Zero();
+    own[kSignRegressor] = 1;
+    own[kOneRegressor] = 1;
+    take(state.joints[0].own, own, 2.0, 9.0);
+  }
+  state.blocks = 60;
+  const auto share_of_friction = [&](double largest_held) {
+    state.joints[0].largest_held = largest_held;
+    state.joints[0].held.evidence = 12;
+    const Contest<double> contest = detail::contest_of(state, scales, 100, 1000);
+    EXPECT_EQ(contest.kind, FaultKind::kFriction);
+    return contest.share();
+  };
+  EXPECT_GT(share_of_friction(-1.9), 0.99);
+  EXPECT_LT(share_of_friction(8), 0.9) << "no friction of 2 N m holds 8";
+}
+
 TEST(Isolation, CallsAPushAContactWhicheverLinkItMeets) {
   std::mt19937_64 generator = seeded_generator();
   for (int run = 0; run < repetitions(20); ++run) {

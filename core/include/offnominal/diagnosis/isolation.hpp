@@ -228,26 +228,33 @@ class Isolation {
     const Scalar whitened = now.rest - correlation * seen.last_rest;
     const Scalar before = correlation * seen.last_deviation;
     // Next to the block that it began in, a velocity that was smoothed still tells of before.
-    // And of a joint that stands still nobody knows what its dry friction takes.
-    const Scalar share = is_still(block, joint) ? Scalar(1)
-                         : state.blocks == 2    ? kNextToOnset
-                                                : config_.relative_error;
+    const bool still = is_still(block, joint);
+    const Scalar share = still || state.blocks == 2 ? kNextToOnset : config_.relative_error;
     const Scalar off = share * now.rest;
     const Scalar noise = deviation * (deviation - 2 * lasts * before) + before * before +
                          (1 - lasts * lasts) * off * off +
                          (1 - correlation) * (1 - correlation) * now.variance;
-    const Scalar weight = 1 / noise;
-    take(seen.own, Vector<kOwnRegressors, Scalar>(own - correlation * seen.last_own), whitened,
-         weight);
-    take(state.tip, Vector<kTipParameters, Scalar>(tip - correlation * seen.last_tip), whitened,
-         weight);
     const Scalar prior = scales_.own(kOneRegressor, column);
-    take(seen.any, whitened, noise, correlation, contact_kept_, prior * prior);
-    if (Eigen::numext::abs(seen.any.torque) > Eigen::numext::abs(seen.largest)) {
-      seen.largest = seen.any.torque;
+    if (still) {
+      // Whatever acts on it beside the model, its dry friction takes: which fault moves a joint it
+      // does not say, but that something holds this one.
+      take(seen.held, whitened, noise, correlation, contact_kept_, prior * prior);
+      if (Eigen::numext::abs(now.rest) > Eigen::numext::abs(seen.largest_held)) {
+        seen.largest_held = now.rest;
+      }
+    } else {
+      const Scalar weight = 1 / noise;
+      take(seen.own, Vector<kOwnRegressors, Scalar>(own - correlation * seen.last_own), whitened,
+           weight);
+      take(state.tip, Vector<kTipParameters, Scalar>(tip - correlation * seen.last_tip), whitened,
+           weight);
+      take(seen.any, whitened, noise, correlation, contact_kept_, prior * prior);
+      if (Eigen::numext::abs(seen.any.torque) > Eigen::numext::abs(seen.largest)) {
+        seen.largest = seen.any.torque;
+      }
+      seen.squares += weight * whitened * whitened;
+      seen.speed_sum += Eigen::numext::abs(block.own(kVelocityRegressor, column));
     }
-    seen.squares += weight * whitened * whitened;
-    seen.speed_sum += Eigen::numext::abs(block.own(kVelocityRegressor, column));
     seen.last_rest = now.rest;
     seen.last_deviation = deviation;
     seen.last_own = own;
@@ -260,7 +267,7 @@ class Isolation {
     const Scalar looked_back = static_cast<Scalar>(kIsolationBlocks * block_ticks_) * period_s_;
     const auto odd_after = static_cast<std::uint32_t>(kStillS / period_s_);
     const auto within = static_cast<std::uint32_t>((since + looked_back) / period_s_);
-    const Contest<Scalar> contest = detail::contest_of(state, odd_after, within);
+    const Contest<Scalar> contest = detail::contest_of(state, scales_, odd_after, within);
     const auto measure = detail::measure_of(state, scales_, contest.kind, contest.joint);
     FaultDiagnosis<Scalar>& diagnosis = state.diagnosis;
     diagnosis.kind = contest.kind;

@@ -34,6 +34,9 @@ struct JointEvidence {
   Regression<kOwnRegressors, Scalar> own;
   AnyTorque<Scalar> any;
   Scalar largest{};  // of any.torque, by size, with its sign
+  // While the joint stands still, and the largest that is seen then, N m or N.
+  AnyTorque<Scalar> held;
+  Scalar largest_held{};
   // Of a contact with this joint's link that ended when it fits best, against nothing; nats.
   Scalar contact{};
   bool contact_ended = false;  // before now

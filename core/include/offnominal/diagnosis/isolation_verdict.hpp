@@ -58,7 +58,7 @@ inline constexpr double kOver = 5;
 // Nats that an event of the encoder brings: what no motion does, and what is merely odd.
 inline constexpr double kImpossible = 15;
 inline constexpr double kOdd = -3;
-inline constexpr double kWithinOneTick = 3;
+inline constexpr double kWithinOneTick = 2;
 
 // What the encoder of a joint says: nats for one that sticks and for a joint that is locked, or
 // none of either.
@@ -157,9 +157,28 @@ void enter_own(const JointEvidence<Scalar>& joint, std::size_t index, std::size_
       fit_of(part_of<kOneRegressor>(joint.own)).evidence + log_prior<Scalar>(kPriorOffset, count));
 }
 
+// More friction holds a joint that stands still against what is not much more than it.
+template <int N, typename Scalar>
+void enter_holding_friction(const IsolationState<N, Scalar>& state,
+                            const IsolationScales<N, Scalar>& scales, Contest<Scalar>& contest) {
+  constexpr auto kHolds = static_cast<Scalar>(1.5);
+  const std::size_t count = state.joints.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const JointEvidence<Scalar>& joint = state.joints[i];
+    const auto dry = fit_of(part_of<kSignRegressor>(joint.own));
+    const Scalar size = scales.own(kSignRegressor, static_cast<Eigen::Index>(i)) * dry.theta[0];
+    if (!(joint.held.evidence > 0) || !(Eigen::numext::abs(joint.largest_held) < kHolds * size))
+      continue;
+    contest.enter(
+        FaultKind::kFriction, i,
+        dry.evidence + joint.held.evidence + log_prior<Scalar>(kPriorFriction / 2, count));
+  }
+}
+
 // What an encoder says that sticks or jumps fits no model of the arm: it is as good as the best of
-// the others, `best`, and the event decides. A locked joint is one that alone has an unknown
-// torque; `chosen`: the evidence for any joints that have one.
+// the others, `best`, and the event decides, with what is seen of the joint while it stands. A
+// locked joint is one that alone has an unknown torque; `chosen`: the evidence for any joints that
+// have one.
 template <int N, typename Scalar>
 void enter_encoders(const IsolationState<N, Scalar>& state, Scalar chosen, Scalar best,
                     std::uint32_t odd_after, std::uint32_t within, Contest<Scalar>& contest) {
@@ -169,9 +188,10 @@ void enter_encoders(const IsolationState<N, Scalar>& state, Scalar chosen, Scala
     }
     const StopEvidence<Scalar> stop = stop_evidence(state, i, odd_after, within);
     if (!stop.is_there) continue;
-    contest.enter(FaultKind::kEncoderStuck, i, best + stop.stuck);
+    const Scalar held = std::max(state.joints[i].held.evidence, Scalar(0));
+    contest.enter(FaultKind::kEncoderStuck, i, best + stop.stuck + held);
     contest.enter(FaultKind::kLockedJoint, i,
-                  best + stop.locked + state.joints[i].any.evidence - chosen);
+                  best + stop.locked + held + state.joints[i].any.evidence - chosen);
   }
 }
 
@@ -179,6 +199,7 @@ void enter_encoders(const IsolationState<N, Scalar>& state, Scalar chosen, Scala
 // that does not change while others do, which may be one that sticks.
 template <int N, typename Scalar>
 [[nodiscard]] Contest<Scalar> contest_of(const IsolationState<N, Scalar>& state,
+                                         const IsolationScales<N, Scalar>& scales,
                                          std::uint32_t odd_after, std::uint32_t within) {
   const std::size_t count = state.joints.size();
   Contest<Scalar> contest;
@@ -198,7 +219,9 @@ template <int N, typename Scalar>
                 fit_of(state.tip).evidence + log_prior<Scalar>(kPriorPayload, 1));
   enter_contacts(state, contest);
   for (std::size_t i = 0; i < count; ++i) enter_own(state.joints[i], i, count, contest);
-  enter_encoders(state, chosen, std::max(anything, contest.best), odd_after, within, contest);
+  const Scalar best = std::max(anything, contest.best);
+  enter_holding_friction(state, scales, contest);
+  enter_encoders(state, chosen, best, odd_after, within, contest);
   return contest;
 }
 
@@ -271,8 +294,15 @@ template <int N, typename Scalar>
     }
     case FaultKind::kContact:
       return measure_of_torque(state, 0, joint);
-    case FaultKind::kLockedJoint:
-      return measure_of_torque(state, joint, joint);
+    case FaultKind::kLockedJoint: {
+      Measure<N, Scalar> measure = measure_of_torque(state, joint, joint);
+      const JointEvidence<Scalar>& seen = state.joints[joint];
+      if (Eigen::numext::abs(seen.largest_held) > Eigen::numext::abs(measure.size)) {
+        measure.size = seen.largest_held;
+        measure.deviation = std::sqrt(seen.held.variance);
+      }
+      return measure;
+    }
     case FaultKind::kEncoderJump: {
       Measure<N, Scalar> measure = measure_of_torque(state, 0, last);
       measure.size = state.encoders[joint].jump;
