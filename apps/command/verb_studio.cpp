@@ -262,7 +262,11 @@ void set_up_studio(CLI::App& verb, ExitCode& /*exit_code*/) {
                   "In place of recordings, a live view of a CAN interface (can0, vcan0): the "
                   "monitor over what the drives say. It listens and can send nothing");
   verb.add_option_function<std::vector<std::string>>(
-          "--sil", [options](const std::vector<std::string>& files) { options->sil = files; },
+          "--sil",
+          [options](const std::vector<std::string>& files) {
+            options->sil = files;
+            std::erase(*options->sil, "");  // of an option without a value
+          },
           "In place of recordings, a live view of a run that is simulated: controller and arm of "
           "the robot file on a bus, with faults from the page. A scenario's file may say more")
       ->type_name("[SCENARIO]")

@@ -15,8 +15,9 @@ namespace offnominal::desk::live {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kKeptS = 20;  // of samples; more than what is frozen
+constexpr double kKeptS = kExplainedBeforeS + kExplainedAfterS + 2;  // of samples
 constexpr std::size_t kPeriodSamples = 201;
+constexpr std::uint32_t kBeginsAfresh = kBorneInARow + 1;  // ticks without a sample
 
 // Where a robot file says none: one that nothing exceeds, of which nothing is shown.
 BoundSettings no_bound(const RobotDescription& robot) {
@@ -156,18 +157,18 @@ void Live::judge(const BusSample& sample) {
   if (!begin_us_) begin_us_ = sample.time_us;
   last_sample_us_ = sample.time_us;
   const double t_s = 1e-6 * static_cast<double>(sample.time_us - *begin_us_);
-  if (!sample.driven) {
-    unjudged_ = std::min<std::uint32_t>(unjudged_ + 1 + sample.missing, 1'000'000);
-    const std::lock_guard guard(lock_);
-    now_.t_s = t_s;
-    now_.is_judging = false;
-    return;
+  const bool judges = is_settled(sample, t_s);
+  Status status = Status::kOk;
+  if (judges) {
+    std::uint32_t missing = sample.missing + std::exchange(unjudged_, 0);
+    if (std::exchange(begins_afresh_, false)) missing += kBeginsAfresh;
+    status = watch_->take(sample.sample, t_s, missing);
   }
-  const Status status = watch_->take(sample.sample, t_s, sample.missing + unjudged_);
-  unjudged_ = 0;
   const std::lock_guard guard(lock_);
   now_.t_s = t_s;
-  now_.is_judging = true;
+  now_.is_driven = sample.driven;
+  now_.is_judging = judges;
+  if (!judges) return;
   now_.missing += sample.missing;
   if (status != Status::kOk) {
     ++now_.refused;
@@ -175,6 +176,25 @@ void Live::judge(const BusSample& sample) {
   }
   keep(sample, t_s, watch_->said());
   follow_detection(t_s, watch_->said());
+}
+
+// Whether a sample can be judged. Where brakes may hold the joints it cannot. And a threshold
+// begins at nothing (docs/theory.md, erratum 6): until it is that of a run that has lasted, what is
+// below it is not looked at. The monitor then begins afresh, with the threshold that it has.
+bool Live::is_settled(const BusSample& sample, double t_s) {
+  constexpr std::uint32_t kMost = 1'000'000;
+  if (!sample.driven) {
+    driven_since_s_.reset();
+    unjudged_ = std::min(unjudged_ + 1 + sample.missing, kMost);
+    return false;
+  }
+  if (!driven_since_s_) driven_since_s_ = t_s;
+  constexpr double kTimeConstants = 6;
+  if (t_s >= *driven_since_s_ + kTimeConstants / watched_.estimator.alpha) return true;
+  static_cast<void>(watch_->take(sample.sample, t_s, sample.missing + unjudged_));
+  unjudged_ = 0;
+  begins_afresh_ = true;
+  return false;
 }
 
 void Live::keep(const BusSample& sample, double t_s, const Watched& said) {
@@ -206,17 +226,29 @@ void Live::keep(const BusSample& sample, double t_s, const Watched& said) {
 
 void Live::follow_detection(double t_s, const Watched& said) {
   if (said.latched && !was_latched_) {
-    detection_ = Detection{++detections_, t_s, said.first_joint, std::nullopt, false, {}};
+    detection_.emplace();
+    detection_->number = ++detections_;
+    detection_->t_s = t_s;
+    detection_->joint = said.first_joint;
   }
   was_latched_ = said.latched;
   if (!detection_) return;
   if (said.latched) detection_->answer = watch_->answer();
-  if (!detection_->frozen && t_s >= detection_->t_s + kAfterS) freeze();
+  freeze(t_s);
 }
 
-void Live::freeze() {
-  detection_->rows = history_.between(detection_->t_s - kBeforeS, detection_->t_s + kAfterS);
-  detection_->frozen = true;
+// What is complete by now, and only that, is taken out of the history.
+void Live::freeze(double now_s) {
+  Detection& of = *detection_;
+  if (!of.frozen && now_s >= of.t_s + kAfterS) {
+    of.rows = history_.between(of.t_s - kBeforeS, of.t_s + kAfterS);
+    of.frozen = true;
+  }
+  if (!of.stretch && now_s >= of.t_s + kExplainedAfterS) of.stretch = stretch_of(of);
+}
+
+History::Rows Live::stretch_of(const Detection& detection) const {
+  return history_.between(detection.t_s - kExplainedBeforeS, detection.t_s + kExplainedAfterS);
 }
 
 void Live::after_frames() {
@@ -239,7 +271,7 @@ void Live::after_frames() {
   now_.understood = samples_->understood();
   now_.lost = counts.lost;
   now_.rejected = counts.rejected;
-  if (!ended.empty() && detection_ && !detection_->frozen) freeze();
+  if (!ended.empty() && detection_) freeze(std::numeric_limits<double>::infinity());
 }
 
 std::string Live::what_is_missing(hal::Microseconds now_us) const {
@@ -267,6 +299,7 @@ void Live::forget() {
   set_up();
   period_known_ = known;
   unjudged_ = 0;
+  driven_since_s_.reset();
   was_latched_ = false;
   const std::lock_guard guard(lock_);
   history_.clear();

@@ -30,9 +30,12 @@ struct LiveInput {
   std::filesystem::path folder;    // where recordings are written; empty: the working directory
 };
 
-/// How long before and after a detection what was there is kept, s.
+/// What is kept of before and after a detection, s: to be looked at, and to be explained; of the
+/// latter as much as has come when it is asked for.
 inline constexpr double kBeforeS = 5;
 inline constexpr double kAfterS = 2;
+inline constexpr double kExplainedBeforeS = 10;
+inline constexpr double kExplainedAfterS = 20;
 /// The longest recording, s: it is held in memory until it is written.
 inline constexpr double kLongestRecordingS = 300;
 
@@ -48,8 +51,9 @@ struct Detection {
   double t_s = 0;            // of the live view
   int joint = -1;            // from 0, that was first; -1: joints are not told apart
   std::optional<IsolatedFault> answer;
-  bool frozen = false;  // its surroundings are there
-  History::Rows rows;   // those
+  bool frozen = false;                   // its surroundings are there
+  History::Rows rows;                    // those
+  std::optional<History::Rows> stretch;  // for the analysis; none: more of it is to come
 };
 
 /// What a page shows of one moment. Numbers that there are not are NaN.
@@ -58,7 +62,8 @@ struct Moment {
   std::vector<double> residual;   // |e| of everything that is judged
   std::vector<double> threshold;  // NaN without a bound
   std::vector<bool> beyond;       // its threshold, now
-  bool is_judging = false;        // the drives give torque
+  bool is_driven = false;         // the drives give torque
+  bool is_judging = false;        // and the threshold has settled
   std::string words;              // what keeps samples from coming; empty: nothing
   std::string ended;              // why none come any more; empty: they may
   std::optional<ControllerWord> controller;
@@ -126,13 +131,15 @@ class Live {
   void take(const hal::ReceivedFrame& received);
   bool knows_period(const BusSample& sample);
   void judge(const BusSample& sample);
+  bool is_settled(const BusSample& sample, double t_s);
   void keep(const BusSample& sample, double t_s, const Watched& said);
   void follow_detection(double t_s, const Watched& said);
-  void freeze();
+  void freeze(double now_s);
   void after_frames();
   void forget();
   [[nodiscard]] std::string what_is_missing(hal::Microseconds now_us) const;
   [[nodiscard]] Bench& bench() const;
+  [[nodiscard]] History::Rows stretch_of(const Detection& detection) const;
   [[nodiscard]] std::string write(const Log& log, const std::string& what) const;
 
   LiveInput input_;
@@ -148,7 +155,9 @@ class Live {
   std::unique_ptr<Watch> watch_;
   std::vector<hal::Microseconds> first_us_;  // of samples, until their period is known
   bool period_known_ = false;
-  std::uint32_t unjudged_ = 0;
+  std::uint32_t unjudged_ = 0;            // samples in a row
+  std::optional<double> driven_since_s_;  // the drives have given torque
+  bool begins_afresh_ = false;
   bool was_latched_ = false;
   std::vector<double> residual_, threshold_;
   std::optional<hal::Microseconds> begin_us_;

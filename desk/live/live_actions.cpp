@@ -70,8 +70,12 @@ Moment Live::moment(std::uint64_t from) const {
   Moment moment = now_;
   moment.steps = strip_.since(from);
   if (detection_) {
-    moment.detection = Detection{detection_->number, detection_->t_s,    detection_->joint,
-                                 detection_->answer, detection_->frozen, {}};
+    moment.detection.emplace();
+    moment.detection->number = detection_->number;
+    moment.detection->t_s = detection_->t_s;
+    moment.detection->joint = detection_->joint;
+    moment.detection->answer = detection_->answer;
+    moment.detection->frozen = detection_->frozen;
   }
   if (recording_) {
     const std::size_t stride = 1 + 3 * input_.robot.joints.size();
@@ -189,7 +193,7 @@ Live::Written Live::write_detection() const {
       refuse(Refused::Why::kNotNow,
              "There is nothing to explain yet: a detection, and what follows it for two seconds.");
     }
-    rows = detection_->rows;
+    rows = detection_->stretch ? *detection_->stretch : stretch_of(*detection_);
     written.since_s = detection_->t_s;
     period_s = period_s_;
   }

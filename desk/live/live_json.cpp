@@ -173,6 +173,7 @@ ordered_json setup_json(const Live& live) {
 
 ordered_json moment_json(const Moment& moment, const Live& live) {
   ordered_json json{{"t_s", time_number(moment.t_s)},
+                    {"driven", moment.is_driven},
                     {"judging", moment.is_judging},
                     {"words", moment.words},
                     {"ended", moment.ended},
@@ -204,6 +205,7 @@ ordered_json moment_json(const Moment& moment, const Live& live) {
 nlohmann::json frozen_json(const Live& live, std::size_t pixels) {
   report::Page page;
   page.title = "live";
+  page.verdict.words = "live";
   report::Section section;
   section.heading = "Around the detection";
   for (report::Chart& chart : live.frozen(pixels)) section.blocks.emplace_back(std::move(chart));

@@ -39,7 +39,8 @@ function controllerWords({ controller }) {
 function monitorWords(now) {
   if (now.ended !== "") return now.ended;
   if (now.words !== "") return now.words;
-  if (!now.judging) return "The drives give no torque: nothing is judged.";
+  if (!now.driven) return "The drives give no torque: nothing is judged.";
+  if (!now.judging) return "settling";
   return now.beyond.some((each) => each) ? "beyond its threshold" : "watching";
 }
 
