@@ -194,15 +194,12 @@ std::unique_ptr<live::Live> live_view(const StudioOptions& options) {
 
 // Reads what a live view has written: it is in the common format, whatever [channels] say.
 studio::OpenRecording opener(StudioOptions options, const std::string& more) {
-  return [options = std::move(options), more](const std::string& file, double since_s) {
+  return [options = std::move(options), more](const std::string& file) {
     StudioOptions of_file = options;
     of_file.files.logs = {file};
-    studio::Input input =
-        read_input(of_file, more, [](const auto& path, const auto& robot, const auto&) {
-          return read_log(path, robot.joint_count(), std::nullopt);
-        });
-    input.since_s = since_s;
-    return input;
+    return read_input(of_file, more, [](const auto& path, const auto& robot, const auto&) {
+      return read_log(path, robot.joint_count(), std::nullopt);
+    });
   };
 }
 

@@ -50,7 +50,9 @@ class BenchOfRobot final : public Bench {
   [[nodiscard]] hal::Microseconds now_us() const override { return base_us_ + run_->ends.now_us(); }
   [[nodiscard]] std::string ended() const override { return ended_; }
   [[nodiscard]] std::string remark() const override {
-    return left_out_ == 0 ? "" : "This machine is too slow for real time: the run goes slower.";
+    constexpr std::chrono::seconds kShown{5};
+    const bool is_late = left_out_at_ && Clock::now() - *left_out_at_ < kShown;
+    return is_late ? "This machine is too slow for real time: the run goes slower." : "";
   }
 
   void set_faults(const std::vector<sim::FaultEvent>& faults) override {
@@ -109,7 +111,7 @@ class BenchOfRobot final : public Bench {
     const std::int64_t due = since.count() / period_us_ - ticks_;
     if (due <= kMostBehindTicks) return due;
     ticks_ += due - kMostBehindTicks;
-    ++left_out_;
+    left_out_at_ = Clock::now();
     return kMostBehindTicks;
   }
 
@@ -137,7 +139,7 @@ class BenchOfRobot final : public Bench {
   bool started_ = false;
   Clock::time_point begin_;
   std::int64_t ticks_ = 0;
-  std::int64_t left_out_ = 0;
+  std::optional<Clock::time_point> left_out_at_;
 };
 
 }  // namespace

@@ -50,6 +50,15 @@ Eigen::VectorXd History::Rows::threshold(std::size_t of) const {
   return all.col(static_cast<Index>(1 + 3 * joints + judged + of));
 }
 
+History::Rows History::Rows::since(double from_s) const {
+  const auto earlier = (all.col(0).array() < from_s).count();
+  return {joints, judged, all.bottomRows(all.rows() - earlier)};
+}
+
+History::Rows History::Rows::before(double end_s) const {
+  return {joints, judged, all.topRows((all.col(0).array() < end_s).count())};
+}
+
 Log History::Rows::log(const std::string& file, double period_s) const {
   Log log;
   log.file = file;

@@ -36,6 +36,9 @@ class History {
     [[nodiscard]] Eigen::VectorXd time_s() const { return all.col(0); }
     [[nodiscard]] Eigen::VectorXd residual(std::size_t of) const;
     [[nodiscard]] Eigen::VectorXd threshold(std::size_t of) const;
+    /// Those from that time on, and those before it.
+    [[nodiscard]] Rows since(double from_s) const;
+    [[nodiscard]] Rows before(double end_s) const;
     /// In the common format of recordings.
     [[nodiscard]] Log log(const std::string& file, double period_s) const;
   };

@@ -113,10 +113,10 @@ class Live {
   std::string stop_recording();
 
   struct Written {
-    std::string file;
-    double since_s = 0;  // of the detection, as the recording has its time
+    std::string since;   // the detection: what there is to explain
+    std::string before;  // it, when nothing was wrong yet
   };
-  /// The same of what is around the last detection.
+  /// The same of what is around the last detection, in two files.
   [[nodiscard]] Written write_detection() const;
 
  private:

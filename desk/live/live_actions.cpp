@@ -185,7 +185,7 @@ std::string Live::stop_recording() {
 
 Live::Written Live::write_detection() const {
   History::Rows rows;
-  Written written;
+  double detected_s = 0;
   double period_s = 0;
   {
     const std::lock_guard guard(lock_);
@@ -194,10 +194,12 @@ Live::Written Live::write_detection() const {
              "There is nothing to explain yet: a detection, and what follows it for two seconds.");
     }
     rows = detection_->stretch ? *detection_->stretch : stretch_of(*detection_);
-    written.since_s = detection_->t_s;
+    detected_s = detection_->t_s;
     period_s = period_s_;
   }
-  written.file = write(rows.log("live", period_s), "detection");
+  Written written;
+  written.since = write(rows.since(detected_s).log("live", period_s), "detection");
+  written.before = write(rows.before(detected_s).log("live", period_s), "before_detection");
   return written;
 }
 

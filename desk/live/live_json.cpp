@@ -167,6 +167,7 @@ ordered_json setup_json(const Live& live) {
       {"has_bound", live.has_bound()},
       {"step_s", Strip::kStepS},
       {"kept_s", {kBeforeS, kAfterS}},
+      {"explained_s", {kExplainedBeforeS, kExplainedAfterS}},
       {"longest_recording_s", kLongestRecordingS},
       {"faults", live.is_simulated() ? faults_of(live) : ordered_json::array()}};
 }

@@ -107,7 +107,6 @@ ordered_json Session::start_to_explain() {
   options.threads = bench_.input().threads;
   options.robot_file = bench_.input().robot_file;
   options.source = bench_.input().source;
-  options.since_s = bench_.input().since_s;
   job_.start(bench_.robot(), bench_.input().recordings, std::move(options), revision_);
   return to_json(job_.report());
 }

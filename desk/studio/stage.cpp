@@ -33,13 +33,8 @@ live::Live& Stage::live() const {
 
 nlohmann::ordered_json Stage::explain_detection() {
   const std::lock_guard guard(explaining_);
-  const auto detection = live().moment(0).detection;
-  // Asked once more, of the same file.
-  if (!detection || detection->number != written_number_) {
-    written_ = live().write_detection();
-    written_number_ = detection ? detection->number : 0;
-  }
-  auto made = std::make_shared<Session>(open_(written_.file, written_.since_s));
+  const live::Live::Written written = live().write_detection();
+  auto made = std::make_shared<Session>(open_(written.since));
   static_cast<void>(made->start_to_explain());
   std::shared_ptr<Session> before;
   {
@@ -47,7 +42,7 @@ nlohmann::ordered_json Stage::explain_detection() {
     before = std::exchange(session_, std::move(made));
   }
   if (before) before->leave();
-  return {{"saved", written_.file}};
+  return {{"saved", written.since}, {"before", written.before}};
 }
 
 void Stage::leave() const {

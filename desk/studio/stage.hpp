@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -14,9 +13,8 @@
 
 namespace offnominal::desk::studio {
 
-/// Reads a recording that the live view has written, in which something may have changed since_s,
-/// as the verb reads its own.
-using OpenRecording = std::function<Input(const std::string& file, double since_s)>;
+/// Reads a recording that the live view has written, as the verb reads its own.
+using OpenRecording = std::function<Input(const std::string& file)>;
 
 /// What the server shows: a session over recordings, or a live view that hands stretches over to
 /// one. Every function may be called by any thread.
@@ -32,18 +30,16 @@ class Stage {
   [[nodiscard]] bool is_live() const { return live_ != nullptr; }
   [[nodiscard]] bool is_loaded() const;
 
-  /// What is around the last detection becomes a recording, that one the session's, and the search
-  /// for what has changed in it begins. Throws Refused where nothing was detected, InputError where
-  /// the recording cannot be written or will not do.
+  /// What came since the last detection becomes a recording, that one the session's, and the search
+  /// for what the model lacks there begins. Throws Refused where nothing was detected, InputError
+  /// where the recording cannot be written or will not do; the session before stays.
   nlohmann::ordered_json explain_detection();
   /// The page is gone, or the server ends: no search goes on in the background.
   void leave() const;
 
  private:
   OpenRecording open_;
-  std::mutex explaining_;  // of these two
-  std::uint64_t written_number_ = 0;
-  live::Live::Written written_;
+  std::mutex explaining_;    // one after the other
   mutable std::mutex lock_;  // of the session that is shown
   std::shared_ptr<Session> session_;
   std::unique_ptr<live::Live> live_;  // ends first

@@ -27,7 +27,6 @@ struct Input {
   std::vector<RecordingPayload> payloads;     // what --payload says of some of the recordings
   std::optional<std::string> output;          // the file that -o names; none: beside the robot file
   int threads = 1;                            // of explain
-  std::optional<double> since_s = {};  // of the recording's time: when something may have changed
 };
 
 /// One effect that was switched on.

@@ -16,6 +16,7 @@ const live = {
   told: 0, // and of the one that was said aloud
   saved: "",
   frozen: [],
+  fillTable: null,
 };
 
 function isBench() {
@@ -63,12 +64,17 @@ function picturesASecond() {
   return live.pictures.length;
 }
 
-function liveTable(now) {
-  const rows = live.setup.judged.map(({ name, unit }, at) => {
+/** Of what is judged by itself, a row each. */
+function liveRows(now) {
+  return live.setup.judged.map(({ name, unit }, at) => {
     const [residual, threshold] = [now.residual[at], now.threshold[at]];
     const ratio = residual === null || threshold === null ? null : residual / threshold;
     return [name, unit, residual, threshold, ratio, now.beyond[at] ? "beyond" : ""];
   });
+}
+
+/** Made once: a table that is read keeps its place and its focus. */
+function liveTable(now) {
   const columns = [
     { name: "judged", unit: "" },
     { name: "unit", unit: "" },
@@ -77,7 +83,18 @@ function liveTable(now) {
     { name: "residual / threshold", unit: "1", format: ".2f" },
     { name: "now", unit: "" },
   ];
-  return scrollingTable({ caption: "Residual and threshold now", columns, rows, note: "" });
+  const rows = liveRows(now);
+  const table = scrollingTable({ caption: "Residual and threshold now", columns, rows, note: "" });
+  live.fillTable = (then) => {
+    const lines = table.querySelectorAll("tbody tr");
+    liveRows(then).forEach((row, at) => {
+      row.forEach((value, of) => {
+        const words = typeof value === "string" ? value : formatNumber(value, columns[of].format);
+        lines[at].children[of].textContent = words;
+      });
+    });
+  };
+  return table;
 }
 
 function boundContent() {
@@ -121,8 +138,10 @@ function detectionContent({ detection, ended }) {
       "data-free": "",
     }),
   );
-  if (!detection.frozen) controls.append(element("span", { class: "empty" }, "What follows is still awaited …"));
-  return [note, controls];
+  const words = detection.frozen
+    ? `The analysis gets what came since the detection, up to ${live.setup.explained_s[1]} s: the more of it moves, the more it can tell.`
+    : "What follows is still awaited …";
+  return [note, controls, element("p", { class: "remark" }, words)];
 }
 
 /** Drawn anew only where it says something else. */
@@ -273,8 +292,11 @@ function recordingContent({ recording_s }) {
 
 function showNumbers(now) {
   replaceContent(places.liveStatus, statusContent(now));
-  const table = places.liveNumbers.querySelector(".live-table");
-  table.replaceChildren(liveTable(now));
+  if (live.fillTable === null) {
+    places.liveNumbers.querySelector(".live-table").append(liveTable(now));
+    watchTables(places.liveNumbers);
+  }
+  live.fillTable(now);
   const recording = JSON.stringify([now.recording_s === null ? null : Math.floor(now.recording_s), live.saved]);
   if (recording !== live.recordingWords) {
     live.recordingWords = recording;
@@ -352,8 +374,8 @@ const liveActions = {
   explain: () =>
     act(async () => {
       say("The stretch is handed to the analysis.");
-      const { saved } = await ask("POST", "live/explanation");
-      live.saved = `Written: ${saved}`;
+      const { saved, before } = await ask("POST", "live/explanation");
+      live.saved = `Written: ${saved}, and of before the detection ${before}`;
       await live.onLoaded();
     }),
 };

@@ -126,12 +126,17 @@ TEST(Live, KeepsWhatIsAroundADetectionAndWritesItOverNothing) {
             std::make_unique<RunAsBus>(robot, std::vector{push_on(1, 8.0)}, 12.0));
   const Moment end = wait_for(live, is_over);
   ASSERT_TRUE(is_frozen(end));
+  const double detected_s = end.detection->t_s;
   const Live::Written written = live.write_detection();
-  EXPECT_EQ(std::filesystem::path(written.file), folder / "arm_detection.csv");
-  EXPECT_EQ(live.write_detection().file, (folder / "arm_detection_2.csv").string());
-  const Log log = read_log(written.file, 2, std::nullopt);
+  EXPECT_EQ(std::filesystem::path(written.since), folder / "arm_detection.csv");
+  EXPECT_EQ(std::filesystem::path(written.before), folder / "arm_before_detection.csv");
+  EXPECT_EQ(live.write_detection().since, (folder / "arm_detection_2.csv").string());
+  const Log log = read_log(written.since, 2, std::nullopt);
+  const Log before = read_log(written.before, 2, std::nullopt);
   // From the first sample that was judged on, and as far as the run went.
-  EXPECT_GT(written.since_s - log.t_s[0], kBeforeS);
+  EXPECT_GT(detected_s - before.t_s[0], kBeforeS);
+  EXPECT_NEAR(before.t_s[before.t_s.size() - 1], detected_s - 0.001, 1e-6);
+  EXPECT_NEAR(log.t_s[0], detected_s, 1e-6);
   EXPECT_NEAR(log.t_s[log.t_s.size() - 1], end.t_s, 0.002);
   EXPECT_TRUE(log.gaps.empty());
   const auto charts = live.frozen(400);
@@ -139,8 +144,8 @@ TEST(Live, KeepsWhatIsAroundADetectionAndWritesItOverNothing) {
   EXPECT_EQ(charts[0].series.size(), 2U);
   const std::vector<double>& t_s = charts[0].series[0].x;
   EXPECT_LE(t_s.size(), 800U);
-  EXPECT_NEAR(t_s.front(), written.since_s - kBeforeS, 0.002);
-  EXPECT_NEAR(t_s.back(), written.since_s + kAfterS, 0.002);
+  EXPECT_NEAR(t_s.front(), detected_s - kBeforeS, 0.002);
+  EXPECT_NEAR(t_s.back(), detected_s + kAfterS, 0.002);
   EXPECT_EQ(frozen_json(live, 400).size(), 2U);
 }
 
