@@ -60,6 +60,7 @@ report::Chart chart_of(const History::Rows& rows, std::size_t of, const Judged& 
     chart.series.push_back(series("threshold", rows.threshold(of), report::Tone::kThreshold));
   }
   chart.zoom_group = "live";
+  chart.width = report::Width::kHalf;
   return chart;
 }
 

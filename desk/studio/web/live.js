@@ -380,6 +380,25 @@ const liveActions = {
     }),
 };
 
+/** Colours follow the page's mode, as the curves do. */
+function liveLegend() {
+  const list = element("ul", { class: "legend live-legend", "aria-hidden": "true" });
+  const fill = () => {
+    const { tones } = currentLook();
+    list.replaceChildren(
+      ...["residual", "threshold"].map((tone) => {
+        const item = element("li");
+        item.innerHTML = swatch({ kind: "line", tone }, tones[tone]);
+        item.append(element("span", {}, tone));
+        return item;
+      }),
+    );
+  };
+  fill();
+  darkPreference.addEventListener("change", fill);
+  return list;
+}
+
 function liveSection() {
   const frozen = element(
     "div",
@@ -392,12 +411,25 @@ function liveSection() {
   const what = live.setup.space === "torque"
     ? "Of every joint: the torque that the model does not explain, behind the estimator's filter, and the threshold that a healthy joint stays below."
     : "Measured velocity minus the estimator's, of all joints together, and the threshold that a healthy robot stays below.";
-  const parts = [
+  // What is used stands above what comes and goes: it does not move from under a click.
+  const controls = [];
+  if (isBench()) {
+    controls.push(element("h3", {}, "Faults"), ...benchContent(), accommodationSwitch());
+  } else {
+    controls.push(element("p", { class: "remark" }, "Studio listens on this bus. It has no way to send on it, a torque least of all."));
+  }
+  return sectionWith(
+    "live",
+    liveHeading(),
     element("p", { class: "remark" }, what),
     ...boundContent(),
     place("liveStatus"),
+    ...controls,
+    element("h3", {}, "Recording"),
+    place("recordingRow", { class: "live-row" }),
     place("liveMessage", { role: "alert" }),
     place("detection"),
+    liveLegend(),
     place("livePicture", {
       class: "live-picture",
       role: "img",
@@ -405,14 +437,7 @@ function liveSection() {
     }),
     numbers,
     frozen,
-  ];
-  if (isBench()) {
-    parts.push(element("h3", {}, "Faults"), ...benchContent(), accommodationSwitch());
-  } else {
-    parts.push(element("p", { class: "remark" }, "Studio listens on this bus. It has no way to send on it, a torque least of all."));
-  }
-  parts.push(element("h3", {}, "Recording"), place("recordingRow", { class: "live-row" }));
-  return sectionWith("live", liveHeading(), ...parts);
+  );
 }
 
 /** Puts the live view on the page; `onLoaded`: called when a stretch was handed to the analysis. */

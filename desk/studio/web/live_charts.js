@@ -57,6 +57,7 @@ function liveGrid(at, columns) {
 function liveAxes(at, judged, look) {
   const quiet = { ...axisStyle({ log: false }, look), gridIndex: at, animation: false };
   const x = { ...quiet, min: 0, max: kLiveWindowS, splitNumber: 5, splitLine: { show: false } };
+  x.axisLabel = { ...quiet.axisLabel, showMinLabel: false, showMaxLabel: false };
   const y = {
     ...quiet,
     min: 0,
