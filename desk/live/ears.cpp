@@ -29,6 +29,7 @@ class Ears final : public Feed {
   }
   [[nodiscard]] hal::Microseconds now_us() const override { return bus_.now(); }
   [[nodiscard]] std::string ended() const override { return {}; }
+  [[nodiscard]] std::uint64_t overflow() const override { return bus_.overflow(); }
   [[nodiscard]] std::string remark() const override {
     return bus_.is_up() ? "" : "The interface " + interface_ + " is down.";
   }

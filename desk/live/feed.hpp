@@ -1,6 +1,7 @@
 // Where the frames of a live view come from: a run that is simulated, or a bus that is listened to.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <offnominal/controller/fault.hpp>
@@ -30,6 +31,8 @@ class Feed {
   [[nodiscard]] virtual hal::Microseconds now_us() const = 0;
   /// Why nothing comes any more, in words; empty: something may come.
   [[nodiscard]] virtual std::string ended() const = 0;
+  /// Frames that came and were not handed over, for want of time.
+  [[nodiscard]] virtual std::uint64_t overflow() const { return 0; }
   /// What keeps it from showing all there is, in words; empty: nothing.
   [[nodiscard]] virtual std::string remark() const { return {}; }
 };

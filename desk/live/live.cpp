@@ -86,6 +86,12 @@ Live::~Live() {
 }
 
 void Live::set_up() {
+  if (samples_) {
+    frames_before_ += samples_->frames();
+    understood_before_ += samples_->understood();
+    counts_before_.lost += samples_->counts().lost;
+    counts_before_.rejected += samples_->counts().rejected;
+  }
   samples_ = std::make_unique<BusSamples>(watched_);
   watch_ = make_watch(watched_, watched_.estimator.period_s, {});
   residual_.assign(judged_.size(), 0);
@@ -267,18 +273,19 @@ void Live::after_frames() {
   const std::string remark = feed_->remark();
   now_.words = remark.empty() ? missing : remark;
   now_.controller = controller;
-  now_.frames = samples_->frames();
-  now_.understood = samples_->understood();
-  now_.lost = counts.lost;
-  now_.rejected = counts.rejected;
+  now_.frames = frames_before_ + samples_->frames();
+  now_.understood = understood_before_ + samples_->understood();
+  now_.overflow = feed_->overflow();
+  now_.lost = counts_before_.lost + counts.lost;
+  now_.rejected = counts_before_.rejected + counts.rejected;
   if (!ended.empty() && detection_) freeze(std::numeric_limits<double>::infinity());
 }
 
 std::string Live::what_is_missing(hal::Microseconds now_us) const {
   constexpr hal::Microseconds kPatienceUs = 300'000;
   if (begin_us_ && now_us - last_sample_us_ < kPatienceUs) return {};
-  if (samples_->frames() == 0) return "No frame has come yet.";
-  if (samples_->understood() == 0) {
+  if (frames_before_ + samples_->frames() == 0) return "No frame has come yet.";
+  if (understood_before_ + samples_->understood() == 0) {
     return "Frames come, but none that this robot's drives send: [drives] of the robot file says "
            "how they speak.";
   }

@@ -71,7 +71,8 @@ struct Moment {
   std::vector<sim::FaultEvent> faults;
   bool accommodates = false;
   std::optional<double> recording_s;  // how long a recording is by now
-  std::uint64_t frames = 0, understood = 0, lost = 0, rejected = 0, missing = 0, refused = 0;
+  std::uint64_t frames = 0, understood = 0, lost = 0, rejected = 0, missing = 0, refused = 0,
+                overflow = 0;
   Strip::Steps steps;
 };
 
@@ -120,10 +121,6 @@ class Live {
   [[nodiscard]] Written write_detection() const;
 
  private:
-  struct Counts {
-    std::uint64_t missing = 0, refused = 0;
-  };
-
   void set_up();
   void run();
   void tell(std::function<void()> command);
@@ -158,6 +155,9 @@ class Live {
   std::uint32_t unjudged_ = 0;            // samples in a row
   std::optional<double> driven_since_s_;  // the drives have given torque
   bool begins_afresh_ = false;
+  // Of the frames that samples_ had before it was made anew.
+  std::uint64_t frames_before_ = 0, understood_before_ = 0;
+  hal::DriveCounts counts_before_;
   bool was_latched_ = false;
   std::vector<double> residual_, threshold_;
   std::optional<hal::Microseconds> begin_us_;

@@ -192,7 +192,8 @@ ordered_json moment_json(const Moment& moment, const Live& live) {
                       {"lost", moment.lost},
                       {"rejected", moment.rejected},
                       {"missing", moment.missing},
-                      {"refused", moment.refused}}}};
+                      {"refused", moment.refused},
+                      {"overflow", moment.overflow}}}};
   if (moment.controller) json["controller"] = controller_json(*moment.controller);
   if (moment.detection) json["detection"] = detection_json(*moment.detection, live);
   if (moment.recording_s) json["recording_s"] = number(*moment.recording_s);

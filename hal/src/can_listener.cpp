@@ -1,6 +1,7 @@
 #include <linux/can/error.h>
 #include <net/if.h>
 #include <poll.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +19,11 @@ class CanListener::Port {
  public:
   Port(int socket, const char* interface) : socket_(socket) {
     std::strncpy(interface_.data(), interface, IFNAMSIZ - 1);
+    // Seconds of a full bus, where this process may ask for so much; else what the system allows.
+    constexpr int kRoom = 8 << 20;
+    if (::setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kRoom, sizeof kRoom) != 0) {
+      static_cast<void>(::setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &kRoom, sizeof kRoom));
+    }
     is_up_ = is_interface_up(socket_.get(), interface_.data());
   }
 

@@ -52,9 +52,10 @@ function statusContent(now) {
   add("Monitor", monitorWords(now));
   add("Time", `${formatNumber(now.t_s, ".1f")} s`);
   add("Pictures a second", String(picturesASecond()));
-  const { missing, refused, lost, rejected } = now.counts;
+  const { missing, refused, lost, rejected, overflow } = now.counts;
   add("Samples missing, refused", `${missing}, ${refused}`);
   add("Frames lost, rejected", `${lost}, ${rejected}`);
+  if (overflow > 0) add("Frames that this computer was too slow for", String(overflow));
   return list;
 }
 
