@@ -332,8 +332,8 @@ function takeMoment(now) {
 /** As long as the page is there: thirty times a second, and once where nobody sees it. */
 async function followLive() {
   let failures = 0;
+  let due = performance.now();
   for (;;) {
-    const begun = performance.now();
     try {
       takeMoment(await ask("GET", `live/now?from=${live.next}`));
       if (failures > 0) complainLive("");
@@ -342,7 +342,10 @@ async function followLive() {
       complainLive(error);
       if (++failures > 20) return;
     }
-    const wait = document.hidden || failures > 0 ? 1000 : kLivePictureMs - (performance.now() - begun);
+    // What was late is made up for, but for more than a few pictures.
+    const now = performance.now();
+    due = Math.max(due + kLivePictureMs, now - 3 * kLivePictureMs);
+    const wait = document.hidden || failures > 0 ? 1000 : due - now;
     await new Promise((done) => setTimeout(done, Math.max(0, wait)));
   }
 }

@@ -10,8 +10,8 @@
 namespace offnominal::hal {
 
 // A CAN interface of the Linux kernel for who only listens: no function of this class, nor of the
-// source behind it, writes to the socket or changes the interface (a gate looks at its object). What
-// it does not keep from the bus is the controller's own acknowledgement of frames, which the
+// source behind it, writes to the socket or changes the interface (a gate looks at its object).
+// What it does not keep from the bus is the controller's own acknowledgement of frames, which the
 // interface gives for all of its sockets: `ip link set can0 type can listen-only on` does.
 class CanListener {
  public:
