@@ -80,7 +80,8 @@ Moment Live::moment(std::uint64_t from) const {
   }
   if (recording_) {
     const std::size_t stride = 1 + 3 * input_.robot.joints.size();
-    moment.recording_s = static_cast<double>(recording_->size() / stride) * period_s_;
+    const std::size_t rows = recording_->size() / stride;
+    moment.recording_s = static_cast<double>(rows) * period_s_;
   }
   return moment;
 }

@@ -233,7 +233,7 @@ class WatchOf final : public Watch {
 }  // namespace
 
 std::unique_ptr<Watch> make_watch(const RobotDescription& robot, double period_s,
-                                  Watch::OnFault on_fault) {
+                                  const Watch::OnFault& on_fault) {
   if (robot.estimator.space == EstimatorSpace::kTorque) {
     return std::make_unique<WatchOf<TorqueSpace>>(robot, period_s, on_fault);
   }

@@ -62,6 +62,6 @@ class Watch {
 // Of a robot with a bound, for samples every period_s. Throws InputError where a setting does not
 // go with it.
 [[nodiscard]] std::unique_ptr<Watch> make_watch(const RobotDescription& robot, double period_s,
-                                                Watch::OnFault on_fault);
+                                                const Watch::OnFault& on_fault);
 
 }  // namespace offnominal::desk

@@ -21,6 +21,7 @@ class BothEnds {
 
   BothEnds(const BothEnds&) = delete;
   BothEnds& operator=(const BothEnds&) = delete;
+  ~BothEnds() = default;
 
   /// Ticks until the controller is armed. Throws InputError where that does not come about.
   void start();
