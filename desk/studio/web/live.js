@@ -135,9 +135,6 @@ function detectionContent({ detection, ended }) {
   const waits = detection.frozen ? {} : { "aria-disabled": "true" };
   controls.append(
     button("live-explain", "Explain this", liveActions.explain, { class: "action main", "data-free": "", ...waits }),
-    button("live-again", isBench() ? "Begin the run again" : "Begin the monitor again", liveActions.again, {
-      "data-free": "",
-    }),
   );
   const words = detection.frozen
     ? `The analysis gets what came since the detection, up to ${live.setup.explained_s[1]} s: the more of it moves, the more it can tell.`
@@ -384,6 +381,16 @@ const liveActions = {
     }),
 };
 
+/** What was detected, and where a run has ended, stays until somebody says so. */
+function againRow() {
+  const [label, words] = isBench()
+    ? ["Begin the run again", "from its start, healthy"]
+    : ["Begin the monitor again", "what it has detected is forgotten"];
+  const row = element("div", { class: "live-row" });
+  row.append(button("live-again", label, liveActions.again, { "data-free": "" }), element("span", {}, words));
+  return row;
+}
+
 /** Colours follow the page's mode, as the curves do. */
 function liveLegend() {
   const list = element("ul", { class: "legend live-legend", "aria-hidden": "true" });
@@ -431,6 +438,7 @@ function liveSection() {
     ...controls,
     element("h3", {}, "Recording"),
     place("recordingRow", { class: "live-row" }),
+    againRow(),
     place("liveMessage", { role: "alert" }),
     place("detection"),
     liveLegend(),

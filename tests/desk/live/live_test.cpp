@@ -219,6 +219,21 @@ TEST(LiveBench, DetectsNamesAndKeepsAFaultThatIsInjected) {
   EXPECT_GT(again.t_s, there.t_s);
 }
 
+TEST(LiveBench, SaysWhyARunHasEndedAndBeginsItAgain) {
+  const RobotDescription robot = test::by_joint_robot(2, kBoundNm);
+  Live live(input_of(robot, {}));
+  wait_for(live, [](const Moment& moment) { return moment.is_judging; });
+  live.add_fault("encoder_dropout", 1, 0);
+  const Moment end = wait_for(live, is_over);
+  EXPECT_THAT(end.ended, HasSubstr("safe state"));
+  EXPECT_EQ(end.controller->state, hal::ControllerState::kFault);
+  live.begin_again();
+  const Moment again = wait_for(
+      live, [](const Moment& moment) { return moment.ended.empty() && moment.is_judging; });
+  EXPECT_EQ(again.controller->state, hal::ControllerState::kArmed);
+  EXPECT_GT(again.t_s, end.t_s);
+}
+
 TEST(LiveBench, RefusesInWordsWhatNoFaultIs) {
   const RobotDescription robot = test::by_joint_robot(2, kBoundNm);
   Live live(input_of(robot, {}));
