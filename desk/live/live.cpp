@@ -272,6 +272,8 @@ void Live::after_frames() {
   now_.ended = ended;
   const std::string remark = feed_->remark();
   now_.words = remark.empty() ? missing : remark;
+  // Without samples nobody judges.
+  if (!missing.empty() || !ended.empty()) now_.is_judging = false;
   now_.controller = controller;
   now_.frames = frames_before_ + samples_->frames();
   now_.understood = understood_before_ + samples_->understood();
@@ -312,6 +314,7 @@ void Live::forget() {
   history_.clear();
   detection_.reset();
   now_.beyond.assign(judged_.size(), false);
+  now_.is_driven = now_.is_judging = false;
 }
 
 }  // namespace offnominal::desk::live
