@@ -276,7 +276,7 @@ function recordingContent({ recording_s }) {
     ? `Full: ${most} s are recorded. Stop to write them.`
     : on
       ? `Recording: ${formatNumber(recording_s, ".0f")} s.`
-      : live.saved || `A recording is a CSV beside the robot's others, of ${most} s at most.`;
+      : live.saved || `Into a CSV in the working directory, or beside the file of -o; ${most} s at most.`;
   return [
     button(
       "live-record",
