@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -29,9 +30,12 @@
 #include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "common/shell_word.hpp"
+#include "live/live.hpp"
 #include "log/log_format.hpp"
 #include "log/read_log.hpp"
 #include "log/seen_by_sensor.hpp"
+#include "robot/robot_file.hpp"
+#include "sil/scenario_file.hpp"
 #include "studio/server.hpp"
 
 namespace offnominal::desk {
@@ -39,6 +43,8 @@ namespace {
 
 struct StudioOptions {
   FitFiles files;
+  std::optional<std::string> bus;
+  std::optional<std::vector<std::string>> sil;  // with the scenario's file, or none
   std::vector<KeepFault> keep;
   std::optional<std::string> output;
   int port = 0;
@@ -61,7 +67,7 @@ std::string options_of(const CLI::App& verb) {
   return line;
 }
 
-studio::Input read_input(const StudioOptions& options, const std::string& more) {
+studio::Input read_input(const StudioOptions& options, const std::string& more, ReadOne* read_one) {
   const FitFiles& files = options.files;
   for (const auto* some : {&files.logs, &files.holdout}) {
     for (const std::string& file : *some) {
@@ -72,7 +78,7 @@ studio::Input read_input(const StudioOptions& options, const std::string& more) 
     }
   }
   Progress progress;
-  FitData data = read_fit_data("studio", "RECORDING", files, read_log, progress);
+  FitData data = read_fit_data("studio", "RECORDING", files, read_one, progress);
   for (const std::vector<Log>* some : {&data.logs, &data.holdout}) {
     for (const Log& log : *some) refuse_hidden_from_sensors(data.robot, log);
   }
@@ -121,47 +127,83 @@ void open_browser(const std::string& address) {
   posix_spawnattr_destroy(&attributes);
 }
 
-// Ctrl-C and a request to end, waited for by a thread of their own: a handler may do next to
-// nothing.
-class EndOnSignal {
+// Ctrl-C and a request to end, held back from every thread that is made meanwhile.
+class HeldSignals {
  public:
-  explicit EndOnSignal(studio::Server& server) : server_(server) {
+  HeldSignals() {
     sigemptyset(&signals_);
     sigaddset(&signals_, SIGINT);
     sigaddset(&signals_, SIGTERM);
     sigaddset(&signals_, SIGHUP);
     pthread_sigmask(SIG_BLOCK, &signals_, &before_);
   }
+  HeldSignals(const HeldSignals&) = delete;
+  HeldSignals& operator=(const HeldSignals&) = delete;
+  ~HeldSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+  [[nodiscard]] const sigset_t& all() const { return signals_; }
+
+ private:
+  sigset_t signals_{};
+  sigset_t before_{};
+};
+
+// Waits for them in a thread of its own: a handler may do next to nothing.
+class EndOnSignal {
+ public:
+  EndOnSignal(studio::Server& server, const HeldSignals& held)
+      : thread_([this, &server, &held] {
+          constexpr timespec kQuarter = {0, 250'000'000};
+          while (!over_) {
+            if (sigtimedwait(&held.all(), nullptr, &kQuarter) < 0) continue;
+            server.stop();
+            return;
+          }
+        }) {}
   EndOnSignal(const EndOnSignal&) = delete;
   EndOnSignal& operator=(const EndOnSignal&) = delete;
   ~EndOnSignal() {
     over_ = true;
-    if (thread_.joinable()) thread_.join();
-    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  }
-
-  void watch() {
-    thread_ = std::thread([this] {
-      constexpr timespec kQuarter = {0, 250'000'000};
-      while (!over_) {
-        if (sigtimedwait(&signals_, nullptr, &kQuarter) < 0) continue;
-        server_.stop();
-        return;
-      }
-    });
+    thread_.join();
   }
 
  private:
-  studio::Server& server_;
-  sigset_t signals_{};
-  sigset_t before_{};
   std::atomic<bool> over_ = false;
   std::thread thread_;
 };
 
-void run(const StudioOptions& options, const std::string& more) {
-  studio::Server server(read_input(options, more), options.port);
-  EndOnSignal end(server);
+// Of a run that is simulated: the plant is the robot of the file, as its scenario has it.
+sil::Scenario scenario_of(const StudioOptions& options, const RobotDescription& robot) {
+  sil::Scenario scenario;
+  scenario.plant = robot;
+  if (!options.sil->empty()) scenario = sil::read_scenario(options.sil->front(), robot);
+  scenario.precision = Precision::kFloat;  // as firmware
+  return scenario;
+}
+
+std::unique_ptr<live::Live> live_view(const StudioOptions& options) {
+  live::LiveInput input;
+  input.robot = read_robot_file(options.files.robot);
+  require_carried(input.robot, options.files.robot);
+  input.robot_file = options.files.robot;
+  input.bus = options.bus;
+  if (options.sil) input.scenario = scenario_of(options, input.robot);
+  if (options.output) input.folder = std::filesystem::path(*options.output).parent_path();
+  return std::make_unique<live::Live>(std::move(input));
+}
+
+// Reads what a live view has written: it is in the common format, whatever [channels] say.
+studio::OpenRecording opener(StudioOptions options, const std::string& more) {
+  return [options = std::move(options), more](const std::string& file) {
+    StudioOptions of_file = options;
+    of_file.files.logs = {file};
+    return read_input(of_file, more, [](const auto& path, const auto& robot, const auto&) {
+      return read_log(path, robot.joint_count(), std::nullopt);
+    });
+  };
+}
+
+void serve(studio::Server& server, const StudioOptions& options, const HeldSignals& held) {
   if (options.json) {
     std::cout << json_text(
         nlohmann::ordered_json{{"address", server.address()}, {"port", server.port()}});
@@ -169,9 +211,41 @@ void run(const StudioOptions& options, const std::string& more) {
     std::cout << "Studio is at " << server.address() << "\nCtrl-C ends it.\n";
   }
   std::cout.flush();
-  end.watch();
+  const EndOnSignal end(server, held);
   if (!options.no_open) open_browser(server.address());
   server.run();
+}
+
+// One of three: recordings, a bus, a run that is simulated.
+void check_source(const StudioOptions& options) {
+  const bool live = options.bus || options.sil;
+  if (options.bus && options.sil) {
+    refuse_option("studio", "--bus", "together with --sil", "one of the two", "leave one out");
+  }
+  if (!live && options.files.logs.empty()) {
+    refuse_option("studio", "RECORDING", "nothing to look at",
+                  "a recording or several, --sil [SCENARIO] or --bus INTERFACE",
+                  "give one of them");
+  }
+  if (!live) return;
+  if (!options.files.logs.empty() || !options.files.holdout.empty()) {
+    refuse_option("studio", "RECORDING", "recordings beside a live view", "one of the two",
+                  "what a live view records is opened from its page");
+  }
+}
+
+void run(const StudioOptions& options, const std::string& more) {
+  check_source(options);
+  if (options.bus || options.sil) {
+    const HeldSignals held;
+    studio::Server server(live_view(options), opener(options, more), options.port);
+    serve(server, options, held);
+    return;
+  }
+  studio::Input input = read_input(options, more, read_log);
+  const HeldSignals held;
+  studio::Server server(std::move(input), options.port);
+  serve(server, options, held);
 }
 
 }  // namespace
@@ -179,9 +253,21 @@ void run(const StudioOptions& options, const std::string& more) {
 void set_up_studio(CLI::App& verb, ExitCode& /*exit_code*/) {
   const auto options = std::make_shared<StudioOptions>();
   verb.add_option("RECORDING", options->files.logs,
-                  "One recording to fit or several, " + log_format_names())
-      ->required();
+                  "One recording to fit or several, " + log_format_names());
   verb.add_option("--robot", options->files.robot, "Robot file to start from")->required();
+  verb.add_option("--bus", options->bus,
+                  "In place of recordings, a live view of a CAN interface (can0, vcan0): the "
+                  "monitor over what the drives say. It listens and can send nothing");
+  verb.add_option_function<std::vector<std::string>>(
+          "--sil",
+          [options](const std::vector<std::string>& files) {
+            options->sil = files;
+            std::erase(*options->sil, "");  // of an option without a value
+          },
+          "In place of recordings, a live view of a run that is simulated: controller and arm of "
+          "the robot file on a bus, with faults from the page. A scenario's file may say more")
+      ->type_name("[SCENARIO]")
+      ->expected(0, 1);
   verb.add_option("--holdout", options->files.holdout,
                   "Recordings to judge the fit on: no fit sees them. Without any, parts of the "
                   "others are held out");
@@ -201,7 +287,10 @@ void set_up_studio(CLI::App& verb, ExitCode& /*exit_code*/) {
   verb.footer(
       "One page on this machine: look at the error of every joint, let `explain` say what is "
       "missing, switch effects on and off and watch the error on held-out data, save the robot "
-      "file. The numbers are those of `add`, `compare` and `explain`. Nothing leaves the machine; "
+      "file. The numbers are those of `add`, `compare` and `explain`. With --sil or --bus it shows "
+      "residual and threshold as they happen, keeps what is around a detection, and has it "
+      "explained; recordings are written beside the file of -o, or into the working directory. "
+      "Nothing leaves the machine; "
       "the address holds a token that nobody can guess, and is all that lets one in.");
   verb.callback([&verb, options] { run(*options, options_of(verb)); });
 }

@@ -49,6 +49,9 @@ class SteppedController {
   virtual void step(hal::Microseconds begin_us, BusPort& bus) = 0;
   /// As JointController::arm(), for the motion of the set-up.
   [[nodiscard]] virtual controller::Fault arm() = 0;
+  /// Whether it compensates from the next tick on for what the monitor has learnt; its state and
+  /// what was learnt stay.
+  virtual void set_accommodation(bool on) = 0;
   [[nodiscard]] virtual hal::ControllerState state() const = 0;
   [[nodiscard]] virtual controller::Fault fault() const = 0;
   [[nodiscard]] virtual ControllerView view() const = 0;

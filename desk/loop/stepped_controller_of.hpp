@@ -17,7 +17,9 @@ class SteppedControllerOf final : public SteppedController {
   using Controller =
       controller::JointController<kRuntimeJoints, kControllerCapacity, Scalar, WithMemory, Space>;
   explicit SteppedControllerOf(const SteppedSetup& setup)
-      : motion_(setup.motion),
+      : robot_(setup.robot),
+        settings_(setup.settings),
+        motion_(setup.motion),
         drives_(
             make_drive_port(setup.robot.drive_settings(), setup.robot.joints.size(), setup.link)) {
     create_controller(setup.robot, setup.settings, controller_);
@@ -27,6 +29,11 @@ class SteppedControllerOf final : public SteppedController {
     controller_.step(begin_us, 0, reference(), bus, *drives_, *data_);
   }
   [[nodiscard]] controller::Fault arm() override { return controller_.arm(reference(), *data_); }
+  void set_accommodation(bool on) override {
+    settings_.accommodate = on;
+    // The immutable part alone; data_ is what it has come to.
+    create_controller(robot_, settings_, controller_);
+  }
   [[nodiscard]] hal::ControllerState state() const override { return data_->state; }
   [[nodiscard]] controller::Fault fault() const override { return data_->fault; }
 
@@ -67,6 +74,8 @@ class SteppedControllerOf final : public SteppedController {
     return [this](double time_s) { return reference_of<Scalar>(motion_(time_s)); };
   }
 
+  RobotDescription robot_;
+  ControllerSettings settings_;
   MotionAt motion_;
   std::unique_ptr<DrivePort> drives_;
   Controller controller_;

@@ -14,6 +14,7 @@
 #include "common/number.hpp"
 #include "log/seen_by_sensor.hpp"
 #include "replay/replay_monitor.hpp"
+#include "replay/watch.hpp"
 #include "robot/payload.hpp"
 #include "robot/robot_file.hpp"
 

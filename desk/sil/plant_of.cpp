@@ -83,11 +83,7 @@ std::unique_ptr<sim::Plant> paper_arm(const std::vector<sim::FaultEvent>& faults
 std::unique_ptr<sim::Plant> robot_plant(const Scenario& scenario, const sim::JointState& start,
                                         double period_s) {
   if (scenario.mujoco) return make_mujoco_plant(scenario, start);
-  std::vector<sim::FaultEvent> faults = scenario.faults;
-  for (sim::FaultEvent& fault : faults) {
-    if (fault.kind == sim::FaultEventKind::kMassLoss) fault.joint = std::max(fault.joint, 0);
-  }
-  return make_robot_plant({*scenario.plant, scenario.hidden, faults, start, period_s});
+  return make_robot_plant({*scenario.plant, scenario.hidden, scenario.faults, start, period_s});
 }
 
 bool turns_on(const Joint<double>& joint) {

@@ -77,10 +77,14 @@ class RobotPlant final : public sim::Plant {
         state_(setup.start) {
     memory_.prepare(chain_, healthy_, setup.period_s);
     size_for(setup.robot.joints.size(), memory_state_.remembered);
-    for (const FaultEvent& fault : setup.faults) {
-      if (changes_a_mass(fault)) masses_.push_back(fault);
-      if (fault.kind == FaultEventKind::kFrictionJump) jumps_.push_back(fault);
-    }
+    take_faults(setup.faults);
+  }
+
+  [[nodiscard]] bool set_faults(const std::vector<FaultEvent>& faults) override {
+    take_faults(faults);
+    // Until the next step, which develops them.
+    if (masses_.empty()) model_ = healthy_;
+    return true;
   }
 
   [[nodiscard]] const sim::JointState& state() const override { return state_; }
@@ -110,6 +114,17 @@ class RobotPlant final : public sim::Plant {
   }
 
  private:
+  void take_faults(const std::vector<FaultEvent>& faults) {
+    masses_.clear();
+    jumps_.clear();
+    for (const FaultEvent& fault : faults) {
+      if (changes_a_mass(fault)) masses_.push_back(fault);
+      if (fault.kind == FaultEventKind::kFrictionJump) jumps_.push_back(fault);
+    }
+    // Of no joint in particular: of the first link.
+    for (FaultEvent& fault : masses_) fault.joint = std::max(fault.joint, 0);
+  }
+
   // What is left for the dynamics of a torque that is told now: late drives, friction with a
   // memory.
   Joints remember(const Joints& tau) {

@@ -1,18 +1,15 @@
 #include "studio/routes.hpp"
 
-#include <httplib.h>
-
-#include <charconv>
 #include <cmath>
-#include <exception>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "common/error.hpp"
 #include "report/assets.hpp"
 #include "studio/assets.hpp"
+#include "studio/live_routes.hpp"
 #include "studio/refused.hpp"
-#include "studio/session.hpp"
+#include "studio/requests.hpp"
+#include "studio/stage.hpp"
 
 namespace offnominal::desk::studio {
 namespace {
@@ -20,47 +17,6 @@ namespace {
 using httplib::Request;
 using httplib::Response;
 using nlohmann::json;
-
-constexpr const char* kJson = "application/json; charset=utf-8";
-
-template <typename Json>
-void set_json(Response& response, const Json& value) {
-  response.set_content(value.dump(-1, ' ', false, Json::error_handler_t::replace), kJson);
-}
-
-void refuse(Response& response, int status, const std::string& words, bool confirm = false) {
-  response.status = status;
-  set_json(response, json{{"error", on_one_line(words)}, {"confirm", confirm}});
-}
-
-// What `make` gives, or why there is none.
-template <typename Make>
-void answer(Response& response, const Make& make) {
-  try {
-    set_json(response, make());
-  } catch (const Refused& refused) {
-    const bool bad = refused.why() == Refused::Why::kBadRequest;
-    refuse(response, bad ? 400 : 409, refused.what(), refused.why() == Refused::Why::kMustConfirm);
-  } catch (const json::exception&) {
-    refuse(response, 400, "The request is not understood.");
-  } catch (const InputError& error) {
-    refuse(response, 422, error.what());
-  } catch (const std::exception& error) {
-    refuse(response, 500, error.what());
-  }
-}
-
-template <typename Number>
-Number number_of(const Request& request, const char* name) {
-  const std::string text = request.get_param_value(name);
-  Number value{};
-  const char* end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  if (text.empty() || read.ec != std::errc{} || read.ptr != end) {
-    throw Refused(Refused::Why::kBadRequest, std::string(name) + " has to be a number.");
-  }
-  return value;
-}
 
 // The part of the time that is shown, where the request names one.
 template <typename Any>
@@ -90,13 +46,6 @@ ArmView arm_view_of(const Request& request) {
   return view;
 }
 
-json body_of(const Request& request) {
-  if (!request.get_header_value("Content-Type").starts_with("application/json")) {
-    throw Refused(Refused::Why::kBadRequest, "The body has to be JSON.");
-  }
-  return json::parse(request.body);
-}
-
 void set_up_files(httplib::Server& server, const std::string& path) {
   const auto file = [&](const std::string& name, const std::string& content, const char* type) {
     server.Get(path + name, [content, type](const Request&, Response& response) {
@@ -117,58 +66,60 @@ void set_up_files(httplib::Server& server, const std::string& path) {
   file("three\\.core\\.min\\.js", std::string(assets::three_core()), kScript);
 }
 
-void set_up_model(httplib::Server& server, const std::string& api, Session& session) {
-  server.Get(api + "state", [&session](const Request&, Response& response) {
-    answer(response, [&] { return session.state(); });
+void set_up_model(httplib::Server& server, const std::string& api, Stage& stage) {
+  server.Get(api + "state", [&stage](const Request&, Response& response) {
+    answer(response, [&] { return stage.session()->state(); });
   });
-  server.Get(api + "charts", [&session](const Request& request, Response& response) {
+  server.Get(api + "charts", [&stage](const Request& request, Response& response) {
     answer(response, [&] {
-      return session.charts(view_of(request), request.get_param_value("only") == "time");
+      return stage.session()->charts(view_of(request), request.get_param_value("only") == "time");
     });
   });
-  server.Get(api + "arm", [&session](const Request& request, Response& response) {
-    answer(response, [&] { return session.arm(arm_view_of(request)); });
+  server.Get(api + "arm", [&stage](const Request& request, Response& response) {
+    answer(response, [&] { return stage.session()->arm(arm_view_of(request)); });
   });
-  server.Post(api + "steps", [&session](const Request& request, Response& response) {
+  server.Post(api + "steps", [&stage](const Request& request, Response& response) {
     answer(response, [&] {
       const json body = body_of(request);
-      return session.add(body.at("effect").get<std::string>(), body.at("joint").get<int>());
+      return stage.session()->add(body.at("effect").get<std::string>(),
+                                  body.at("joint").get<int>());
     });
   });
-  server.Delete(api + "steps/([0-9]{1,9})", [&session](const Request& request, Response& response) {
-    answer(response, [&] { return session.undo(std::stoul(request.matches[1])); });
+  server.Delete(api + "steps/([0-9]{1,9})", [&stage](const Request& request, Response& response) {
+    answer(response, [&] { return stage.session()->undo(std::stoul(request.matches[1])); });
   });
-  server.Post(api + "save", [&session](const Request& request, Response& response) {
+  server.Post(api + "save", [&stage](const Request& request, Response& response) {
     answer(response, [&] {
       const json body = body_of(request);
-      return session.save({body.value("name", ""), body.value("replace", false),
-                           body.value("accept_doubts", false)});
+      return stage.session()->save({body.value("name", ""), body.value("replace", false),
+                                    body.value("accept_doubts", false)});
     });
   });
 }
 
-void set_up_search(httplib::Server& server, const std::string& api, Session& session) {
-  server.Get(api + "explanation", [&session](const Request&, Response& response) {
-    answer(response, [&] { return session.explanation(); });
+void set_up_search(httplib::Server& server, const std::string& api, Stage& stage) {
+  server.Get(api + "explanation", [&stage](const Request&, Response& response) {
+    answer(response, [&] { return stage.session()->explanation(); });
   });
-  server.Post(api + "explanation", [&session](const Request&, Response& response) {
-    answer(response, [&] { return session.start_to_explain(); });
+  server.Post(api + "explanation", [&stage](const Request&, Response& response) {
+    answer(response, [&] { return stage.session()->start_to_explain(); });
   });
-  server.Delete(api + "explanation", [&session](const Request&, Response& response) {
-    answer(response, [&] { return session.stop_to_explain(); });
+  server.Delete(api + "explanation", [&stage](const Request&, Response& response) {
+    answer(response, [&] { return stage.session()->stop_to_explain(); });
   });
-  server.Post(api + "leave", [&session](const Request&, Response& response) {
-    session.leave();
+  server.Post(api + "leave", [&stage](const Request&, Response& response) {
+    stage.leave();
     response.status = 204;
   });
 }
 
 }  // namespace
 
-void set_up_routes(httplib::Server& server, const std::string& path, Session& session) {
+void set_up_routes(httplib::Server& server, const std::string& path, Stage& stage) {
   set_up_files(server, path);
-  set_up_model(server, path + "api/", session);
-  set_up_search(server, path + "api/", session);
+  set_up_model(server, path + "api/", stage);
+  set_up_search(server, path + "api/", stage);
+  set_up_live_routes(server, path + "api/", stage);
 }
 
 }  // namespace offnominal::desk::studio

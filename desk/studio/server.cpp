@@ -1,15 +1,14 @@
 #include "studio/server.hpp"
 
-#include <httplib.h>
-
 #include <atomic>
 #include <stdexcept>
 #include <utility>
 
 #include "common/error.hpp"
 #include "studio/guard.hpp"
+#include "studio/http.hpp"
 #include "studio/routes.hpp"
-#include "studio/session.hpp"
+#include "studio/stage.hpp"
 
 namespace offnominal::desk::studio {
 namespace {
@@ -48,11 +47,12 @@ int port_of(httplib::Server& server, int port) {
 }  // namespace
 
 struct Server::Parts {
-  Parts(Input input, int asked_port)
-      : session(std::move(input)),
+  template <typename... Shown>
+  explicit Parts(int asked_port, Shown&&... shown)
+      : stage(std::forward<Shown>(shown)...),
         port((set_up(), port_of(http, asked_port))),
         guard(random_token(), port) {
-    set_up_routes(http, guard.path(), session);
+    set_up_routes(http, guard.path(), stage);
     http.set_pre_routing_handler(
         [this](const httplib::Request& request, httplib::Response& response) {
           return let_in(request, response);
@@ -101,7 +101,7 @@ struct Server::Parts {
     if (!has_stopped.exchange(true)) http.stop();
   }
 
-  Session session;
+  Stage stage;
   httplib::Server http;
   std::atomic<bool> listens = false;
   std::atomic<bool> is_to_stop = false;
@@ -110,7 +110,9 @@ struct Server::Parts {
   Guard guard;
 };
 
-Server::Server(Input input, int port) : parts_(std::make_unique<Parts>(std::move(input), port)) {}
+Server::Server(Input input, int port) : parts_(std::make_unique<Parts>(port, std::move(input))) {}
+Server::Server(std::unique_ptr<live::Live> live, OpenRecording open, int port)
+    : parts_(std::make_unique<Parts>(port, std::move(live), std::move(open))) {}
 Server::~Server() = default;
 
 std::string Server::address() const { return parts_->guard.address(); }
@@ -121,7 +123,7 @@ void Server::run() {
 }
 
 void Server::stop() {
-  parts_->session.leave();
+  parts_->stage.leave();
   parts_->is_to_stop = true;
   if (parts_->listens) parts_->stop_once();
 }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "studio/stage.hpp"
 #include "studio/workbench.hpp"
 
 namespace offnominal::desk::studio {
@@ -13,6 +14,8 @@ class Server {
   /// Takes a port of 127.0.0.1, any free one for 0, and lets nobody in yet. Throws InputError where
   /// the port is taken, or where the recordings and the robot do not fit together.
   Server(Input input, int port);
+  /// The same of a live view, which hands stretches over to a session by `open`.
+  Server(std::unique_ptr<live::Live> live, OpenRecording open, int port);
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
   /// After run() has returned, or where it was never called.

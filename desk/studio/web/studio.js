@@ -355,7 +355,9 @@ function buildStudio() {
     sectionWith("learn", "What is missing?", place("learn")),
     sectionWith("save", "Save", place("save")),
   );
-  main.append(place("head"), element("div", { class: "desk" }, side, pictures));
+  const desk = place("desk", { class: "desk" });
+  desk.append(side, pictures);
+  main.append(place("head"), place("live"), desk);
   const footer = element("footer");
   footer.append(
     element("p", { id: "spoken", class: "hidden-text", role: "status" }),
@@ -371,18 +373,43 @@ function buildStudio() {
   document.getElementById("page").append(main, footer);
 }
 
+/** What the session holds now: at the start, and when a live view hands a stretch over to it. */
+async function loadSession() {
+  state = await ask("GET", "state");
+  found = await ask("GET", "explanation");
+  places.desk.hidden = false;
+  const worst = state.joints.reduce((a, b) => (errorOf(b, "now") > errorOf(a, "now") && b.moves ? b : a));
+  Object.assign(look, { joint: worst.joint, recording: 1 });
+  saving = { words: "", level: "neutral", confirm: null, name: null };
+  show();
+  await drawCharts();
+  if (found.state === "running") follow();
+}
+
+/** Before a live view has handed anything over there is nothing to analyse. */
+function showUnloaded({ robot }) {
+  document.title = `Studio: ${robot.name}`;
+  places.desk.hidden = true;
+  const header = element("header", {}, element("h1", {}, `Studio: ${robot.name}`));
+  header.append(element("p", { class: "subtitle" }, `${robot.file} · no recording is loaded: a detection that is explained is`));
+  replaceContent(places.head, header);
+}
+
 async function start() {
   buildStudio();
   onZoom = (range) => drawFiner(range).catch((error) => complain(error.message));
   try {
-    state = await ask("GET", "state");
-    found = await ask("GET", "explanation");
-    const worst = state.joints.reduce((a, b) => (errorOf(b, "now") > errorOf(a, "now") && b.moves ? b : a));
-    look.joint = worst.joint;
-    show();
-    await drawCharts();
-    if (found.state === "running") follow();
+    const setup = await ask("GET", "live");
+    if (!setup.loaded) showUnloaded(setup);
+    if (setup.source !== null) {
+      startLive(setup, places.live, async () => {
+        await loadSession();
+        document.getElementById("learn").scrollIntoView({ block: "start" });
+      });
+    }
+    if (setup.loaded) await loadSession();
   } catch (error) {
+    places.desk.hidden = false;
     complain(error.message);
   }
 }

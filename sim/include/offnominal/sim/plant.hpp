@@ -1,6 +1,9 @@
 // What drives move: any number of joints behind one face.
 #pragma once
 
+#include <vector>
+
+#include "offnominal/sim/bus/fault_event.hpp"
 #include "offnominal/sim/joint_state.hpp"
 
 namespace offnominal::sim {
@@ -23,6 +26,10 @@ class Plant {
   /// acceleration without them under the drive torque tau, rad/s^2 or m/s^2. Zero where there is
   /// none.
   [[nodiscard]] virtual JointVector fault_function(double t_s, const JointVector& tau) const = 0;
+
+  /// From now on its body has these faults and no others; those of drives, encoders and the bus
+  /// concern it not. False, and nothing changed, where it cannot change them.
+  [[nodiscard]] virtual bool set_faults(const std::vector<FaultEvent>& /*faults*/) { return false; }
 
   [[nodiscard]] Eigen::Index joint_count() const { return state().q.size(); }
 };

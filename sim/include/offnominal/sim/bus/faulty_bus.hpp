@@ -27,13 +27,20 @@ class FaultyBus {
   FaultyBus(Inner& inner, BusEnd end, const Drives& drives, const std::vector<FaultEvent>& events,
             std::uint64_t seed)
       : inner_(inner),
+        end_(end),
         drives_(drives),
         random_(seed),
         node_(0, static_cast<int>(drives.joints()) - 1) {
+    set_events(events);
+  }
+
+  /// From now on the faults of this end among these, and no others.
+  void set_events(const std::vector<FaultEvent>& events) {
+    events_.clear();
     for (const FaultEvent& event : events) {
       const bool controllers =
           event.kind == FaultEventKind::kBlockedBus || event.kind == FaultEventKind::kBusOff;
-      const bool mine = info_of(event.kind).on_bus && controllers == (end == BusEnd::kController);
+      const bool mine = info_of(event.kind).on_bus && controllers == (end_ == BusEnd::kController);
       if (mine) events_.push_back(event);
     }
   }
@@ -214,6 +221,7 @@ class FaultyBus {
   }
 
   Inner& inner_;
+  BusEnd end_;
   const Drives& drives_;
   std::mt19937_64 random_;
   std::uniform_int_distribution<int> node_;

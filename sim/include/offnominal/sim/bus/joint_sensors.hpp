@@ -26,6 +26,9 @@ class JointSensors {
                std::vector<bool> turns_on)
       : encoders_(config), faults_(std::move(faults)), turns_on_(std::move(turns_on)) {}
 
+  /// From now on these and no others.
+  void set_faults(std::vector<FaultEvent> faults) { faults_ = std::move(faults); }
+
   /// At time_s of the run, period_s after the last reading: one entry a joint, until the next call.
   /// None where an encoder has dropped out.
   std::span<const Reading> read(const JointState& truth, double time_s, double period_s,

@@ -73,6 +73,17 @@ class PlantNode {
     return true;
   }
 
+  /// From now on it has these faults and no others, with their times on time_s(). False, and
+  /// nothing changed, where the plant cannot change its own. Throws std::invalid_argument for a
+  /// joint that it has not.
+  [[nodiscard]] bool set_faults(const std::vector<FaultEvent>& faults) {
+    check(faults, *plant_);
+    if (!plant_->set_faults(faults)) return false;
+    config_.faults = faults;
+    sensors_.set_faults(faults);
+    return true;
+  }
+
   [[nodiscard]] const JointState& state() const { return plant_->state(); }
   /// Per joint, N m or N, as the drives have it, and say it.
   [[nodiscard]] const JointVector& applied_nm() const { return applied_; }
@@ -89,13 +100,16 @@ class PlantNode {
   static std::unique_ptr<Plant> checked(std::unique_ptr<Plant> plant,
                                         const PlantNodeConfig& config) {
     if (!plant) throw std::invalid_argument("plant node: no plant");
-    for (const FaultEvent& fault : config.faults) {
-      if (fault.joint < plant->joint_count()) continue;
+    check(config.faults, *plant);
+    return plant;
+  }
+  static void check(const std::vector<FaultEvent>& faults, const Plant& plant) {
+    for (const FaultEvent& fault : faults) {
+      if (fault.joint < plant.joint_count()) continue;
       throw std::invalid_argument(std::string(info_of(fault.kind).name) + ": found joint " +
                                   std::to_string(fault.joint + 1) + ", allowed is 1 to " +
-                                  std::to_string(plant->joint_count()));
+                                  std::to_string(plant.joint_count()));
     }
-    return plant;
   }
   static std::unique_ptr<Drives> checked(std::unique_ptr<Drives> drives, const Plant& plant) {
     const auto joints = static_cast<std::size_t>(plant.joint_count());

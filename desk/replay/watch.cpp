@@ -1,0 +1,243 @@
+#include "replay/watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <offnominal/diagnosis/isolation.hpp>
+#include <offnominal/model/effect_list.hpp>
+#include <offnominal/monitor.hpp>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "common/error.hpp"
+#include "replay/replay_monitor.hpp"
+#include "robot/monitor_config_of.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+template <typename Space>
+using ReplayMonitor = Monitor<kRuntimeJoints, kReplayCapacity, double, WithMemory, Space>;
+
+void require_start(Status status, const RobotDescription& robot) {
+  if (status == Status::kOk) return;
+  throw InputError({.file = "robot " + robot.name,
+                    .place = "monitor",
+                    .found = std::string("status ") + name_of(status),
+                    .allowed = "",
+                    .mend = "docs/troubleshooting.md says what each status asks for"});
+}
+
+// Asks after a detection which fault it is: in torque space, where each joint speaks for itself.
+template <typename Space>
+class FaultNamer {
+ public:
+  FaultNamer(const MonitorConfig<kRuntimeJoints, double, Space>& /*config*/,
+             const Watch::OnFault& /*on_fault*/) {}
+  void begin_afresh() {}
+  template <typename Monitored>
+  void take(const Monitored& /*monitor*/, const typename Monitored::State& /*state*/,
+            const typename Monitored::Output& /*output*/, double /*t_s*/) {}
+  void finish() {}
+  [[nodiscard]] static std::optional<IsolatedFault> answer() { return std::nullopt; }
+};
+template <>
+class FaultNamer<TorqueSpace> {
+ public:
+  FaultNamer(const MonitorConfig<kRuntimeJoints, double, TorqueSpace>& config,
+             Watch::OnFault on_fault)
+      : on_fault_(std::move(on_fault)),
+        state_(std::make_unique<IsolationState<kRuntimeJoints, double>>()) {
+    for (const Joint<double>& joint : config.chain.joints) types_.push_back(joint.type);
+    // Defaults, which are valid.
+    static_cast<void>(Isolation<kRuntimeJoints, double>::create({}, config, isolation_));
+    isolation_.reset(*state_);
+  }
+  void begin_afresh() {
+    finish();
+    isolation_.reset(*state_);
+  }
+  template <typename Monitored>
+  void take(const Monitored& monitor, const typename Monitored::State& state,
+            const typename Monitored::Output& output, double t_s) {
+    if (!state_->triggered && output.detector.latched) detection_s_ = t_s;
+    isolation_.step(monitor.model(), state.sample, state.tick, output, *state_);
+    if (state_->diagnosis.time_s != answer_at_) answer_s_ = t_s;
+    answer_at_ = state_->diagnosis.time_s;
+  }
+  // An answer that has not been decided yet is the best that there is.
+  void finish() {
+    const std::optional<IsolatedFault> last = answer();
+    if (last && on_fault_) on_fault_(*last);
+  }
+  [[nodiscard]] std::optional<IsolatedFault> answer() const {
+    const FaultDiagnosis<double>& said = state_->diagnosis;
+    if (!state_->triggered || said.time_s <= 0) return std::nullopt;
+    return IsolatedFault{said.kind,
+                         said.joint,
+                         said.size,
+                         said.deviation,
+                         size_unit_of(said.kind, types_[said.joint]),
+                         said.confidence,
+                         said.unexplained,
+                         detection_s_,
+                         answer_s_,
+                         said.decided};
+  }
+
+ private:
+  Watch::OnFault on_fault_;
+  Isolation<kRuntimeJoints, double> isolation_;
+  std::unique_ptr<IsolationState<kRuntimeJoints, double>> state_;
+  std::vector<JointType> types_;
+  double detection_s_ = 0;  // times of the samples
+  double answer_s_ = 0;
+  double answer_at_ = 0;  // time of the run
+};
+
+// Of the sample that a run starts with: no error yet.
+template <typename Space>
+MonitorOutput<kRuntimeJoints, double, Space> first_output(std::size_t joints) {
+  MonitorOutput<kRuntimeJoints, double, Space> output;
+  size_for(joints, output.error, output.psi_hat);
+  if constexpr (std::is_same_v<Space, TorqueSpace>) {
+    size_for(joints, output.thresholds, output.detector.joints);
+  }
+  return output;
+}
+
+bool counts_time(const RobotDescription& robot) {
+  return std::any_of(robot.effects.begin(), robot.effects.end(), [](const RobotEffect& effect) {
+    return info_of(effect.kind)->traits.counts_time;
+  });
+}
+
+template <typename Space>
+class WatchOf final : public Watch {
+ public:
+  WatchOf(const RobotDescription& robot, double period_s, const OnFault& on_fault)
+      : robot_(robot),
+        counts_time_(counts_time(robot)),
+        config_(config_of(robot, period_s)),
+        at_start_(first_output<Space>(robot.joints.size())),
+        output_(at_start_),
+        namer_(config_, on_fault) {
+    require_start(Monitored::create(config_, monitor_), robot);
+  }
+
+  Status take(const Sample& sample, double t_s, std::uint32_t missing) override {
+    missed_ += missing;
+    ticks_ += missing;
+    const std::uint64_t tick = ticks_++;
+    // A run starts at the first sample that is good.
+    const bool afresh = !state_->initialised || missed_ > kBorneInARow;
+    Status status = Status::kOk;
+    if (afresh) {
+      status = begin_afresh(sample, tick);
+    } else if (missed_ > 0) {
+      status = monitor_.resume(sample, static_cast<std::uint32_t>(missed_), *state_);
+    } else {
+      status = monitor_.step(sample, *state_, output_);
+    }
+    // A setting that no sample can mend ends it.
+    if (status == Status::kInvalidInitialWeights) require_start(status, robot_);
+    if (status != Status::kOk) {
+      ++missed_;
+      return status;
+    }
+    if (afresh) {
+      forget();
+      namer_.begin_afresh();
+    } else if (missed_ == 0) {
+      namer_.take(monitor_, *state_, output_, t_s);
+    }
+    missed_ = 0;
+    say();
+    return status;
+  }
+
+  [[nodiscard]] const Watched& said() const override { return said_; }
+  [[nodiscard]] std::optional<IsolatedFault> answer() const override { return namer_.answer(); }
+  void finish() override { namer_.finish(); }
+
+ private:
+  using Monitored = ReplayMonitor<Space>;
+  using Output = MonitorOutput<kRuntimeJoints, double, Space>;
+
+  static MonitorConfig<kRuntimeJoints, double, Space> config_of(const RobotDescription& robot,
+                                                                double period_s) {
+    auto config = monitor_config_of<kRuntimeJoints, double, Space>(robot);
+    config.estimator.period_s = period_s;
+    return config;
+  }
+
+  // Begins as at the start of a recording, with two differences. The time that effects count goes
+  // on: `tick` is what the samples have come to. And a threshold that was there stays: one that
+  // begins at nothing is that of the bound at an instant, which a healthy robot may exceed for as
+  // long as the filter forgives it (docs/theory.md, erratum 6).
+  Status begin_afresh(const Sample& sample, std::uint64_t tick) {
+    const auto before = state_->initialised ? std::optional(state_->estimator.mu) : std::nullopt;
+    Status status = monitor_.reset(sample, *state_);
+    if (status != Status::kOk) return status;
+    const auto threshold = before.value_or(state_->estimator.mu);
+    if (counts_time_ && tick > 0) {
+      state_->tick = tick - 1;
+      status = monitor_.resume(sample, 0, *state_);
+    }
+    state_->estimator.mu = threshold;
+    return status;
+  }
+
+  // What is said of the sample that it begins afresh with: no error yet, and the threshold that
+  // was.
+  void forget() {
+    output_.error = at_start_.error;
+    output_.error_norm = at_start_.error_norm;
+    output_.psi_hat = at_start_.psi_hat;
+    output_.detector = at_start_.detector;
+  }
+
+  void say() {
+    said_.error = output_.error;
+    said_.error_norm = output_.error_norm;
+    said_.threshold = output_.threshold;
+    said_.psi_hat = output_.psi_hat;
+    said_.weight_norm = std::sqrt(state_->estimator.theta_squared_norm);
+    said_.level = output_.detector.level;
+    said_.latched = output_.detector.latched;
+    if constexpr (std::is_same_v<Space, TorqueSpace>) {
+      said_.thresholds = output_.thresholds;
+      said_.first_joint = said_.latched ? output_.detector.first_joint : -1;
+      for (std::size_t i = 0; i < output_.detector.joints.size(); ++i) {
+        said_.levels[i] = output_.detector.joints[i].level;
+      }
+    }
+  }
+
+  RobotDescription robot_;
+  bool counts_time_;
+  MonitorConfig<kRuntimeJoints, double, Space> config_;
+  Monitored monitor_;
+  // On the heap: 128 hidden units of 12 joints do not belong on a stack.
+  std::unique_ptr<typename Monitored::State> state_ = std::make_unique<typename Monitored::State>();
+  Output at_start_;
+  Output output_;
+  FaultNamer<Space> namer_;
+  Watched said_;
+  std::int64_t missed_ = 0;  // in a row: refused and missing
+  std::uint64_t ticks_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Watch> make_watch(const RobotDescription& robot, double period_s,
+                                  const Watch::OnFault& on_fault) {
+  if (robot.estimator.space == EstimatorSpace::kTorque) {
+    return std::make_unique<WatchOf<TorqueSpace>>(robot, period_s, on_fault);
+  }
+  return std::make_unique<WatchOf<AccelerationSpace>>(robot, period_s, on_fault);
+}
+
+}  // namespace offnominal::desk
