@@ -28,6 +28,7 @@ constexpr double kAboveTransient = 1.05;
 // Of what unseen parts ask for: a motion that repeats makes its parts alike, and the next one is
 // not.
 constexpr double kAboveUnseen = 1.1;
+constexpr double kAboveUnseenOfJoint = 1.25;  // each has a table of its own
 // One event decides the bound where the bound without it is narrower by this factor.
 constexpr double kDecides = 2;
 
@@ -53,8 +54,9 @@ Tried judged(const BoundShape& shape, ShapeFit fit, const CalibrationData& data,
   }
   tried.law = extreme_law_of(tried.maxima);
   const double per_block = -std::expm1(-request.alarms_per_hour / 3600 * data.block_s);
+  const double above = data.joint ? kAboveUnseenOfJoint : kAboveUnseen;
   tried.widening =
-      std::max({1.0, kAboveUnseen * tried.largest, tried.fit.unseen_start_ratio,
+      std::max({1.0, above * tried.largest, tried.fit.unseen_start_ratio,
                 kAboveTransient * tried.fit.apart_ratio, exceeded_with(tried.law, per_block)});
   tried.mean_threshold =
       tried.widening * tried.fit.mean_threshold + 2 * request.velocity_error.value_or(0);

@@ -30,7 +30,7 @@ class TuneVerb : public testing::Test {
   void SetUp() override {
     for (const std::uint64_t seed : {1U, 2U}) {
       const Log log = offnominal::test::record_arm(
-          {.duration_s = 20, .rate_hz = 200, .torque_noise = 0.1, .seed = seed},
+          {.duration_s = 15, .rate_hz = 100, .torque_noise = 0.1, .seed = seed},
           [](const ArmInstant& at) -> Eigen::Vector2d {
             return {0.2 * std::tanh(20 * at.dq[0]), 0.1 * std::tanh(20 * at.dq[1])};
           });
