@@ -184,9 +184,10 @@ void Live::judge(const BusSample& sample) {
   follow_detection(t_s, watch_->said());
 }
 
-// Whether a sample can be judged. Where brakes may hold the joints it cannot. And the threshold of a
-// run that begins is not what it will be (docs/theory.md: nothing in acceleration space, the largest
-// in torque space): until it is that of a run that has lasted, nothing is judged. The monitor then begins afresh, with the threshold that it has.
+// Whether a sample can be judged. Where brakes may hold the joints it cannot. And the threshold of
+// a run that begins is not what it will be (docs/theory.md: nothing in acceleration space, the
+// largest in torque space): until it is that of a run that has lasted, nothing is judged. The
+// monitor then begins afresh, with the threshold that it has.
 bool Live::is_settled(const BusSample& sample, double t_s) {
   constexpr std::uint32_t kMost = 1'000'000;
   if (!sample.driven) {

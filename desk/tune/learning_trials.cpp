@@ -46,11 +46,30 @@ VectorXd acting(const Log& log, Index joint, Shape shape, double torque, Index f
 }  // namespace
 
 LearningTrials::LearningTrials(const RobotDescription& robot, const std::vector<Log>& logs,
-                               VectorXd torque, std::function<void()> on_step)
+                               std::vector<VectorXd> torques, std::function<void()> on_step)
     : robot_(robot),
       recording_(longest_of(logs)),
-      torque_(std::move(torque)),
+      torques_(std::move(torques)),
       on_step_(std::move(on_step)) {}
+
+// What psi_hat misses of a torque on one joint, rms over rms, and the largest norm of the weights.
+std::pair<double, double> LearningTrials::missed_of(const RobotDescription& robot, Index joint,
+                                                    const VectorXd& extra, double from_s) const {
+  Log log = recording_;
+  log.tau.col(joint) -= extra;
+  const Replay replayed = replay(robot, log);
+  double missed = 0;
+  double squares = 0;
+  Index row = 0;  // of the recording, of which the monitor may have refused some
+  for (Index judged = 0; judged < replayed.t_s.size(); ++judged) {
+    while (row < extra.size() - 1 && recording_.t_s[row] < replayed.t_s[judged]) ++row;
+    if (replayed.t_s[judged] < from_s) continue;
+    const double off = replayed.psi_hat(judged, joint) - extra[row];
+    missed += off * off;
+    squares += extra[row] * extra[row];
+  }
+  return {squares > 0 ? std::sqrt(missed / squares) : 1, replayed.max_weight_norm};
+}
 
 LearningTrial LearningTrials::run(const EstimatorSettings& settings) const {
   RobotDescription robot = robot_;
@@ -61,32 +80,22 @@ LearningTrial LearningTrials::run(const EstimatorSettings& settings) const {
   trial.initial_weight_range = settings.initial_weight_range;
   const auto first =
       static_cast<Index>(kShareBefore * static_cast<double>(recording_.sample_count()));
-  double missed = 0;
+  const double from_s = recording_.t_s[first] + kTimeToLearnS;
+  double sum = 0;
   double trials = 0;
-  for (Index joint = 0; joint < torque_.size(); ++joint) {
-    for (const Shape shape : {Shape::kConstant, Shape::kFriction}) {
-      Log log = recording_;
-      const VectorXd extra = acting(log, joint, shape, torque_[joint], first);
-      log.tau.col(joint) -= extra;
-      const Replay replayed = replay(robot, log);
-      const double from_s = recording_.t_s[first] + kTimeToLearnS;
-      double missed_squares = 0;
-      double squares = 0;
-      Index row = 0;  // of the recording, of which the monitor may have refused some
-      for (Index judged = 0; judged < replayed.t_s.size(); ++judged) {
-        while (row < extra.size() - 1 && recording_.t_s[row] < replayed.t_s[judged]) ++row;
-        if (replayed.t_s[judged] < from_s) continue;
-        const double off = replayed.psi_hat(judged, joint) - extra[row];
-        missed_squares += off * off;
-        squares += extra[row] * extra[row];
+  for (const VectorXd& torques : torques_) {
+    for (Index joint = 0; joint < torques.size(); ++joint) {
+      for (const Shape shape : {Shape::kConstant, Shape::kFriction}) {
+        const auto [missed, norm] = missed_of(
+            robot, joint, acting(recording_, joint, shape, torques[joint], first), from_s);
+        sum += missed;
+        trials += 1;
+        trial.weight_norm = std::max(trial.weight_norm, norm);
+        if (on_step_) on_step_();
       }
-      trial.weight_norm = std::max(trial.weight_norm, replayed.max_weight_norm);
-      missed += squares > 0 ? std::sqrt(missed_squares / squares) : 1;
-      trials += 1;
-      if (on_step_) on_step_();
     }
   }
-  trial.missed = missed / trials;
+  trial.missed = sum / trials;
   return trial;
 }
 

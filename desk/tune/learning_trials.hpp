@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "log/log.hpp"
@@ -15,9 +16,10 @@ namespace offnominal::desk {
 /// recorded torque is what the drive would have had to give beside.
 class LearningTrials {
  public:
-  /// At most 12 s of the longest recording; `torque`: per joint, N m or N. `robot` has bounds.
+  /// At most 12 s of the longest recording; `torques`: sizes to try, each per joint, N m or N.
+  /// `robot` has bounds.
   LearningTrials(const RobotDescription& robot, const std::vector<Log>& logs,
-                 Eigen::VectorXd torque, std::function<void()> on_step);
+                 std::vector<Eigen::VectorXd> torques, std::function<void()> on_step);
 
   /// With these settings in place of the robot's.
   [[nodiscard]] LearningTrial run(const EstimatorSettings& settings) const;
@@ -30,9 +32,14 @@ class LearningTrials {
   [[nodiscard]] double weight_range() const;
 
  private:
+  [[nodiscard]] std::pair<double, double> missed_of(const RobotDescription& robot,
+                                                    Eigen::Index joint,
+                                                    const Eigen::VectorXd& extra,
+                                                    double from_s) const;
+
   RobotDescription robot_;
   Log recording_;
-  Eigen::VectorXd torque_;
+  std::vector<Eigen::VectorXd> torques_;
   std::function<void()> on_step_;
 };
 

@@ -35,7 +35,7 @@ constexpr double kAsWellLearnt = 0.02;
 constexpr double kNoRadius = 1e6;
 // Trials ask for this share of a joint's largest torque; a radius is to hold all of it.
 constexpr double kShareOfTorque = 0.3;
-constexpr double kTimesSeen = 3;
+constexpr double kTimesSeen = 5;
 
 double rounded(double value) { return std::stod(significant(value, 2)); }
 
@@ -43,17 +43,20 @@ std::string unit_of(const RobotJoint& joint) {
   return joint.joint.type == JointType::kPrismatic ? "N" : "N m";
 }
 
-// What a trial lets appear on each joint: seen for sure, and as large as what is worth
-// compensating.
-VectorXd trial_torques(const JointsCalibration& calibration, const std::vector<Log>& logs) {
-  VectorXd torque(static_cast<Index>(calibration.joints.size()));
-  for (Index i = 0; i < torque.size(); ++i) {
+// What trials let appear on each joint: one that is seen for sure, and one of that share of its
+// largest torque, or seen for sure too.
+std::vector<VectorXd> trial_torques(const JointsCalibration& calibration,
+                                    const std::vector<Log>& logs) {
+  const auto joints = static_cast<Index>(calibration.joints.size());
+  VectorXd small(joints);
+  VectorXd large(joints);
+  for (Index i = 0; i < joints; ++i) {
     double largest = 0;
     for (const Log& log : logs) largest = std::max(largest, log.tau.col(i).cwiseAbs().maxCoeff());
-    const double seen = calibration.joints[static_cast<std::size_t>(i)].fault.usual;
-    torque[i] = rounded(std::max(kTimesSeen * seen, kShareOfTorque * largest));
+    small[i] = rounded(kTimesSeen * calibration.joints[static_cast<std::size_t>(i)].fault.usual);
+    large[i] = rounded(std::max(2 * small[i], kShareOfTorque * largest));
   }
-  return torque;
+  return {small, large};
 }
 
 // The first that is as good as the best.
@@ -205,9 +208,11 @@ Tuned tune(const RobotDescription& given, const TuneRequest& request, const std:
   tuned.objections = choice.calibration.objections;
   tuned.robot = robot;
   RobotDescription bounded = choice.calibration.robot;
-  const VectorXd torque = trial_torques(choice.calibration, logs);
-  tuned.trial_torque.assign(torque.begin(), torque.end());
-  const LearningTrials trials(bounded, logs, torque, on_step);
+  const std::vector<VectorXd> torques = trial_torques(choice.calibration, logs);
+  for (const VectorXd& of_joints : torques) {
+    tuned.trial_torques.emplace_back(of_joints.begin(), of_joints.end());
+  }
+  const LearningTrials trials(bounded, logs, torques, on_step);
   tuned.trial_s = trials.seconds();
   learn(trials, bounded.estimator, tuned);
   tuned.robot.bound.reset();

@@ -48,9 +48,9 @@ struct Tuned {
   RobotDescription robot;  // with the new settings and without a bound, which calibrate finds anew
   std::vector<std::string> units;  // of each joint's torque
   std::vector<AlphaTrial> alphas;
-  std::vector<double> trial_torque;   // per joint, N m or N
-  double trial_s = 0;                 // of recording that each trial runs over
-  std::vector<LearningTrial> ranges;  // of the initial weights, at a few rates
+  std::vector<std::vector<double>> trial_torques;  // small and large, per joint, N m or N
+  double trial_s = 0;                              // of recording that each trial runs over
+  std::vector<LearningTrial> ranges;               // of the initial weights, at a few rates
   std::vector<LearningTrial> rates;
   std::vector<LearningTrial> sizes;
   LearningTrial before;              // as the robot file has it, at the new pole; chosen: kept

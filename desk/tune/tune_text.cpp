@@ -95,8 +95,9 @@ nlohmann::ordered_json json_of(const std::vector<AlphaTrial>& trials) {
 
 std::string text_of(const Tuned& tuned, const TuneRequest& request) {
   std::string torques;
-  for (std::size_t i = 0; i < tuned.trial_torque.size(); ++i) {
-    torques += fmt::format("{}{:g} {}", i == 0 ? "" : ", ", tuned.trial_torque[i], tuned.units[i]);
+  for (std::size_t i = 0; i < tuned.units.size(); ++i) {
+    torques += fmt::format("{}{:g} and {:g} {}", i == 0 ? "" : ", ", tuned.trial_torques[0][i],
+                           tuned.trial_torques[1][i], tuned.units[i]);
   }
   std::string text = alphas_text(tuned, request);
   text += fmt::format(
@@ -125,7 +126,7 @@ nlohmann::ordered_json to_json(const Tuned& tuned, const TuneRequest& request) {
           {"alarms_per_hour", request.alarms_per_hour},
           {"units", tuned.units},
           {"alphas", json_of(tuned.alphas)},
-          {"trial_torque", tuned.trial_torque},
+          {"trial_torques", tuned.trial_torques},
           {"trial_s", tuned.trial_s},
           {"before", json_of(std::vector<LearningTrial>{tuned.before})[0]},
           {"initial_weights", json_of(tuned.ranges)},

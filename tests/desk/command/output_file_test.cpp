@@ -47,6 +47,8 @@ class OutputFile : public testing::Test {
         // Results are gone on with, and kept apart by what is in them (desk/campaign).
         {"campaign", {{"campaign", path("r.toml"), "-o", path("results")}, {"--report"}}},
         {"campaign merge", {{"campaign", "merge", path("r.toml")}, {"-o", "--report"}}},
+        {"campaign record",
+         {{"campaign", "record", path("r.toml"), "--run", "0"}, {"-o", "--model"}}},
         {"campaign show", {{"campaign", "show", path("r.toml")}, {"--report"}}},
         {"codegen", {{"codegen", path("r.toml")}, {"-o"}}},
         {"compare", {with({"compare", path("a.csv")}, robot), {"--report"}}},
@@ -62,6 +64,7 @@ class OutputFile : public testing::Test {
         {"replay", {with({"replay", path("a.csv")}, robot), {"--report"}}},
         {"sil", {with({"sil"}, robot), {"--log", "--candump", "--report"}}},
         {"studio", {with({"studio", path("a.csv"), "--no-open"}, robot), {"-o"}}},
+        {"tune", {with({"tune", path("a.csv")}, robot), {"-o"}}},
     };
   }
 
@@ -102,7 +105,8 @@ TEST_F(OutputFile, OfEveryVerbReplacesNoFileThatIsThere) {
 }
 
 TEST_F(OutputFile, OfEveryVerbIsNeverAnInput) {
-  const std::set<std::string> kMayWriteItsRobot = {"add", "calibrate", "identify", "studio"};
+  const std::set<std::string> kMayWriteItsRobot = {"add", "calibrate", "identify", "studio",
+                                                   "tune"};
   put(folder_ / "r.toml", "input");
   std::filesystem::create_symlink("r.toml", folder_ / "link");
   for (const auto& [verb, call] : calls()) {
