@@ -41,13 +41,12 @@ void check_numbers(const TuneRequest& request) {
   }
 }
 
-void run(TuneOptions& options, ExitCode& exit_code) {
+void run(const TuneOptions& options, ExitCode& exit_code) {
   check_numbers(options.request);
   Progress progress;
   FitData data = read_fit_data("tune", "LOG", options.files, read_log, progress);
   require_carried(data.robot, options.files.robot);
   const FaultFree healthy = keep_fault_free(data, options.keep, progress);
-  options.request.source = file_names(options.files.logs);
   progress.begin("filters and networks");
   const Tuned tuned =
       tune(data.robot, options.request, data.logs, data.holdout, [&progress] { progress.step(); });

@@ -1,6 +1,7 @@
 #include "calibrate/shape_fit.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "calibrate/tightest.hpp"
 
@@ -79,6 +80,11 @@ FoldRows fold_rows(const MatrixXd& basis, const std::vector<StartBefore>& starts
   return result;
 }
 
+// 0 where nothing is asked: there may be no threshold.
+VectorXd over(const VectorXd& error, const VectorXd& threshold) {
+  return (error.array() > 0).select(error.array() / threshold.array(), 0.0);
+}
+
 // The largest of what is demanded over the threshold.
 double demanded_of_threshold(const ThresholdRows& rows, const std::vector<Demand>& demands,
                              const VectorXd& c) {
@@ -86,14 +92,12 @@ double demanded_of_threshold(const ThresholdRows& rows, const std::vector<Demand
   double largest = 0;
   for (const auto& [start, error] : demands) {
     const VectorXd threshold = rows.threshold(start, along, c);
-    const VectorXd ratio = (error.array() > 0).select(error.array() / threshold.array(), 0.0);
-    largest = std::max(largest, ratio.maxCoeff());
+    largest = std::max(largest, over(error, threshold).maxCoeff());
   }
   return largest;
 }
 
 constexpr double kPriceOfVelocityError = 2;
-constexpr double kNoLimit = 1e30;
 // Which folds are unseen together: every kMostTurns-th, so that many recordings cost no more than
 // few.
 constexpr std::size_t kMostTurns = 5;
@@ -124,7 +128,7 @@ Limits limits_of(const BoundShape& shape, const CoefficientRange& range, Index u
   // is to be only what the first ticks ask for.
   limits.lowest[unknowns - 1] = 0;
   limits.price[unknowns - 1] = kPriceOfVelocityError;
-  if (limits.highest) (*limits.highest)[unknowns - 1] = kNoLimit;
+  if (limits.highest) (*limits.highest)[unknowns - 1] = std::numeric_limits<double>::infinity();
   return limits;
 }
 
@@ -141,7 +145,7 @@ VectorXd tightest_without(const std::vector<FoldRows>& folds, const Turn& turn,
 VectorXd ratio_of(const FoldRows& fold, const VectorXd& c) {
   const VectorXd& error = fold.rows.demands.front().error;
   const VectorXd threshold = fold.rows.threshold({}, fold.rows.along(c), c);
-  VectorXd ratio = (error.array() > 0).select(error.array() / threshold.array(), 0.0);
+  VectorXd ratio = over(error, threshold);
   ratio.segment(fold.apart_begin, fold.apart_end - fold.apart_begin).setConstant(ShapeFit::kApart);
   return ratio;
 }

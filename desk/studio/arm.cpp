@@ -10,10 +10,10 @@
 #include <offnominal/model/mass_matrix.hpp>
 #include <vector>
 
+#include "common/refused.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/monitor_config_of.hpp"
 #include "studio/link_frames.hpp"
-#include "studio/refused.hpp"
 
 namespace offnominal::desk::studio {
 

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "common/refused.hpp"
 #include "compare/torque_charts.hpp"
 #include "report/decimate.hpp"
 #include "report/page.hpp"
-#include "studio/refused.hpp"
 
 namespace offnominal::desk::studio {
 

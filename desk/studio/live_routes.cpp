@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
+#include "common/refused.hpp"
 #include "live/live_json.hpp"
 #include "studio/charts.hpp"
-#include "studio/refused.hpp"
 #include "studio/requests.hpp"
 #include "studio/stage.hpp"
 

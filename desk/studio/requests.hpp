@@ -8,8 +8,8 @@
 #include <system_error>
 
 #include "common/error.hpp"
+#include "common/refused.hpp"
 #include "studio/http.hpp"
-#include "studio/refused.hpp"
 
 namespace offnominal::desk::studio {
 

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "common/refused.hpp"
 #include "report/assets.hpp"
 #include "studio/assets.hpp"
 #include "studio/live_routes.hpp"
-#include "studio/refused.hpp"
 #include "studio/requests.hpp"
 #include "studio/stage.hpp"
 

@@ -7,8 +7,8 @@
 #include "common/input_name.hpp"
 #include "common/json_text.hpp"
 #include "common/output_file.hpp"
+#include "common/refused.hpp"
 #include "robot/robot_file.hpp"
-#include "studio/refused.hpp"
 
 namespace offnominal::desk::studio {
 namespace {

@@ -5,10 +5,10 @@
 
 #include "common/json_text.hpp"
 #include "common/output_file.hpp"
+#include "common/refused.hpp"
 #include "robot/read_effect.hpp"
 #include "studio/cards.hpp"
 #include "studio/commands.hpp"
-#include "studio/refused.hpp"
 #include "studio/state_json.hpp"
 
 namespace offnominal::desk::studio {

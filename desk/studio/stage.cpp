@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "studio/refused.hpp"
+#include "common/refused.hpp"
 
 namespace offnominal::desk::studio {
 

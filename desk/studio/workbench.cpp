@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/refused.hpp"
 #include "identify/add_report.hpp"
 #include "identify/add_setup.hpp"
-#include "studio/refused.hpp"
 
 namespace offnominal::desk::studio {
 namespace {

@@ -72,8 +72,10 @@ LearningTrial& choose(std::vector<LearningTrial>& trials) {
   return trials.front();
 }
 
-const AlphaTrial& chosen_of(const std::vector<AlphaTrial>& trials) {
-  return *std::find_if(trials.begin(), trials.end(), [](const AlphaTrial& t) { return t.chosen; });
+// Of which one is.
+template <typename Trial>
+const Trial& chosen_of(const std::vector<Trial>& trials) {
+  return *std::find_if(trials.begin(), trials.end(), [](const Trial& one) { return one.chosen; });
 }
 
 // How large the initial weights are, at a few rates: the best of all of them.
@@ -143,29 +145,28 @@ std::string reasons_of_alpha(const Tuned& tuned, const TuneRequest& request) {
 
 std::vector<EstimatorLine> lines_of(const Tuned& tuned, const TuneRequest& request) {
   const EstimatorSettings& settings = tuned.robot.estimator;
-  const auto is_chosen = [](const LearningTrial& trial) { return trial.chosen; };
   const auto missed = [](const LearningTrial& trial) {
     return fmt::format("{:.0f} %", 100 * trial.missed);
   };
-  const auto range = std::find_if(tuned.ranges.begin(), tuned.ranges.end(), is_chosen);
-  const auto rate = std::find_if(tuned.rates.begin(), tuned.rates.end(), is_chosen);
-  const auto size = std::find_if(tuned.sizes.begin(), tuned.sizes.end(), is_chosen);
-  const LearningTrial& taken = tuned.before.chosen ? tuned.before : *size;
+  const LearningTrial& range = chosen_of(tuned.ranges);
+  const LearningTrial& rate = chosen_of(tuned.rates);
+  const LearningTrial& size = chosen_of(tuned.sizes);
+  const LearningTrial& taken = tuned.before.chosen ? tuned.before : size;
   const std::string kept = fmt::format("as it was: it misses {}, the best that was tried {}",
-                                       missed(tuned.before), missed(*size));
+                                       missed(tuned.before), missed(size));
   const auto reason = [&](const std::string& words) { return tuned.before.chosen ? kept : words; };
   std::vector<EstimatorLine> lines;
   lines.push_back({"space", "\"torque\"", "joint by joint"});
   lines.push_back({"alpha_per_s", shortest_real(settings.alpha), reasons_of_alpha(tuned, request)});
   lines.push_back(
       {"hidden_units", std::to_string(settings.hidden_units),
-       reason(fmt::format("misses {} of a torque that it has to learn; {}", missed(*size),
+       reason(fmt::format("misses {} of a torque that it has to learn; {}", missed(size),
                           list_of(tuned.sizes, [&](const LearningTrial& trial) {
                             return fmt::format("{}: {}", trial.hidden_units, missed(trial));
                           })))});
   lines.push_back({"learning_rate", shortest_real(settings.learning_rate),
-                   reason(fmt::format("as {:g} for {} units, which miss {}; {}",
-                                      rate->learning_rate, rate->hidden_units, missed(*rate),
+                   reason(fmt::format("as {:g} for {} units, which miss {}; {}", rate.learning_rate,
+                                      rate.hidden_units, missed(rate),
                                       list_of(tuned.rates, [&](const LearningTrial& trial) {
                                         return fmt::format("{:g}: {}", trial.learning_rate,
                                                            missed(trial));
@@ -176,8 +177,8 @@ std::vector<EstimatorLine> lines_of(const Tuned& tuned, const TuneRequest& reque
                                100 * kShareOfTorque, significant(taken.weight_norm, 3))});
   lines.push_back(
       {"initial_weight_range", shortest_real(settings.initial_weight_range),
-       reason(fmt::format("missed {} at the rate {:g}, the least of {}", missed(*range),
-                          range->learning_rate, counted(tuned.ranges.size(), "trial")))});
+       reason(fmt::format("missed {} at the rate {:g}, the least of {}", missed(range),
+                          range.learning_rate, counted(tuned.ranges.size(), "trial")))});
   return lines;
 }
 

@@ -18,7 +18,6 @@ namespace offnominal::desk {
 struct TuneRequest {
   double within_s = 0.2;         // how soon a fault has to be seen, > 0
   double alarms_per_hour = 0.1;  // that the thresholds of the trials are calibrated to, > 0
-  std::string source;            // which recordings, for the robot file
 };
 
 /// One pole of the filter, with the bounds that calibrate() finds for it.

@@ -10,11 +10,11 @@
 #include <random>
 #include <vector>
 
+#include "common/refused.hpp"
 #include "desk/studio/studio_input.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "robot/chain_of.hpp"
 #include "studio/link_frames.hpp"
-#include "studio/refused.hpp"
 #include "support/seed.hpp"
 
 namespace {

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "common/refused.hpp"
 #include "desk/studio/studio_input.hpp"
 #include "desk/support/temporary_folder.hpp"
-#include "studio/refused.hpp"
 
 namespace {
 

@@ -11,12 +11,12 @@
 #include <utility>
 
 #include "common/json_text.hpp"
+#include "common/refused.hpp"
 #include "compare/compare.hpp"
 #include "desk/studio/studio_input.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "identify/add.hpp"
 #include "studio/commands.hpp"
-#include "studio/refused.hpp"
 #include "studio/state_json.hpp"
 
 namespace {
