@@ -32,8 +32,9 @@ void check_data(const CalibrationData& data, const std::string& left_out) {
     blocks += (fold.end - fold.begin) / data.block_samples(recording);
     longest_s =
         std::max(longest_s, recording.period_s * static_cast<double>(fold.end - fold.begin));
-    largest = std::max(largest,
-                       recording.error_norm.segment(fold.begin, fold.end - fold.begin).maxCoeff());
+    // Of no sample 0: a fifth of a few samples has none.
+    largest = std::max(largest, recording.error_norm.segment(fold.begin, fold.end - fold.begin)
+                                    .lpNorm<Eigen::Infinity>());
   }
   if (blocks < kFewestBlocks) {
     const bool fifths = !data.split.always.empty();
