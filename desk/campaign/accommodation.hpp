@@ -19,6 +19,9 @@ class Accommodation {
   /// decided that the fault is one that this is right for.
   [[nodiscard]] sim::JointVector after(const Watch::Sample& sample, double t_s);
 
+  /// Which fault it is, so far.
+  [[nodiscard]] std::optional<IsolatedFault> answer() const { return watch_->answer(); }
+
  private:
   std::unique_ptr<Watch> watch_;
   Eigen::Index joints_;

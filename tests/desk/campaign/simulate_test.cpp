@@ -121,14 +121,17 @@ TEST(Accommodated, IsTheSameRunUntilItIsDecidedAndThenFollowsBetter) {
   EXPECT_LT(*with.tracking_end_rad, 0.5 * *without.tracking_end_rad);
 }
 
-TEST(Accommodated, OfAnEncoderThatSticksChangesNothing) {
+TEST(Accommodated, OfAnEncoderThatJumpsChangesNothing) {
   const Campaign campaign = long_runs("mujoco");
   const Simulator simulator(campaign);
-  const campaign::Run run{3, &fault_of(campaign, FaultKind::kEncoderStuck),
+  const campaign::Run run{3, &fault_of(campaign, FaultKind::kEncoderJump),
                           campaign.runs.duration_s};
   const RecordedRun without = simulator.run(run);
   Accommodation loop(watching(campaign), campaign.plant.period_s);
   const RecordedRun with = simulator.accommodated(run, without, loop);
+  ASSERT_TRUE(loop.answer());
+  EXPECT_EQ(loop.answer()->kind, offnominal::FaultKind::kEncoderJump)
+      << name_of(loop.answer()->kind);
   EXPECT_EQ(without.log.q, with.log.q);
   EXPECT_EQ(without.log.tau, with.log.tau);
 }

@@ -195,7 +195,8 @@ TEST(Summary, ComparesTrackingWithAccommodationAndWithout) {
   EXPECT_EQ(tracking[0].worse, 2);
   EXPECT_EQ(tracking[0].without_rad, 1);
   EXPECT_EQ(tracking[0].with_rad, kAway);
-  EXPECT_EQ(tracking[0].ratio_p95, kAway);
+  EXPECT_EQ(tracking[0].ratio_median, 0.5);
+  EXPECT_EQ(tracking[0].ratio_p95, 3);
   results.rows.erase(results.rows.begin() + 3);
   EXPECT_NEAR(summary_of(results).detectors.at(0).tracking[0].with_rad,
               std::sqrt((0.25 + 0.0625 + 9) / 3), 1e-12);
