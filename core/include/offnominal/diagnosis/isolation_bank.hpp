@@ -71,7 +71,8 @@ template <int Size, typename Scalar>
 
 // Of some of the parameters, the others 0.
 template <int... Which, int Size, typename Scalar>
-[[nodiscard]] Regression<sizeof...(Which), Scalar> part_of(const Regression<Size, Scalar>& sums) {
+[[nodiscard]] Regression<static_cast<int>(sizeof...(Which)), Scalar> part_of(
+    const Regression<Size, Scalar>& sums) {
   constexpr int kPart = sizeof...(Which);
   constexpr std::array<int, sizeof...(Which)> kWhich{Which...};
   Regression<kPart, Scalar> part;

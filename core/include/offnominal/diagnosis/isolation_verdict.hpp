@@ -135,7 +135,7 @@ void enter_contacts(const IsolationState<N, Scalar>& state, Contest<Scalar>& con
     }
     all = i == 0 ? here : log_sum(all, here);
   }
-  const auto ends = static_cast<Scalar>(std::max(state.blocks, 1U));
+  const auto ends = static_cast<Scalar>(std::max(state.blocks, std::uint32_t{1}));
   contest.enter(FaultKind::kContact, link,
                 all - std::log(ends) + log_prior<Scalar>(kPriorContact, count));
 }
@@ -251,7 +251,8 @@ template <int N, typename Scalar>
   const JointEvidence<Scalar>& seen = state.joints[joint];
   const auto fit = fit_of(part_of<kSignRegressor, kVelocityRegressor>(seen.own));
   const auto column = static_cast<Eigen::Index>(joint);
-  const Scalar speed = seen.speed_sum / static_cast<Scalar>(std::max(state.blocks, 1U));
+  const Scalar speed =
+      seen.speed_sum / static_cast<Scalar>(std::max(state.blocks, std::uint32_t{1}));
   const Scalar dry = scales.own(kSignRegressor, column);
   const Scalar viscous = scales.own(kVelocityRegressor, column) * speed;
   const Scalar variance = dry * dry * fit.covariance(0, 0) +
