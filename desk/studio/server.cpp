@@ -1,12 +1,18 @@
 #include "studio/server.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <charconv>
+#include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "common/error.hpp"
 #include "studio/guard.hpp"
 #include "studio/http.hpp"
+#include "studio/load_routes.hpp"
+#include "studio/requests.hpp"
 #include "studio/routes.hpp"
 #include "studio/stage.hpp"
 
@@ -44,6 +50,25 @@ int port_of(httplib::Server& server, int port) {
                     "a port of 127.0.0.1 that is free", "leave --port out: a free one is chosen"});
 }
 
+// More than any limit where it is no number.
+std::uint64_t length_of(const httplib::Request& request) {
+  if (!request.has_header("Content-Length")) return 0;
+  const std::string text = request.get_header_value("Content-Length");
+  std::uint64_t length = 0;
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, length);
+  return read.ec == std::errc{} && read.ptr == end ? length
+                                                   : std::numeric_limits<std::uint64_t>::max();
+}
+
+void refuse_length(httplib::Response& response, std::uint64_t most) {
+  refuse(response, 413,
+         most == kMostBody
+             ? "A request has at most " + bytes_words(most) + "."
+             : "A file of more than " + bytes_words(most) + "; allowed: " + bytes_words(most) +
+                   " a file on the page; to mend: start Studio with it on the command line.");
+}
+
 }  // namespace
 
 struct Server::Parts {
@@ -66,7 +91,10 @@ struct Server::Parts {
       if (is_to_stop) stop_once();
       return new httplib::ThreadPool(kThreads);
     };
-    http.set_payload_max_length(kMostBody);
+    // Of what may come at all; let_in() knows how much of what.
+    const bool takes_files = stage.takes_files();
+    if (takes_files) most_file = stage.intake().folder().limits().file;
+    http.set_payload_max_length(std::max<std::uint64_t>(most_file, kMostBody));
     http.set_keep_alive_timeout(kIdleS);
     http.set_read_timeout(kReadS);
     http.set_tcp_nodelay(true);
@@ -89,11 +117,23 @@ struct Server::Parts {
         !request.has_header("Transfer-Encoding") &&
         (request.method != "POST" || request.has_header("Content-Length"));
     if (refusal == 0 && !is_of_known_length) refusal = 411;
+    // No body is unpacked: what is packed could be of any length.
+    if (refusal == 0 && request.has_header("Content-Encoding")) refusal = 415;
+    if (refusal == 0 && length_of(request) > most_of(request)) {
+      response.set_header("Connection", "close");
+      refuse_length(response, most_of(request));
+      return httplib::Server::HandlerResponse::Handled;
+    }
     if (refusal == 0) return httplib::Server::HandlerResponse::Unhandled;
     response.status = refusal;
     response.set_header("Connection", "close");
     response.set_content("Not for you.\n", "text/plain; charset=utf-8");
     return httplib::Server::HandlerResponse::Handled;
+  }
+
+  [[nodiscard]] std::uint64_t most_of(const httplib::Request& request) const {
+    const bool is_file = request.path == guard.path() + "api/" + kFilesRoute;
+    return is_file && stage.takes_files() ? most_file : kMostBody;
   }
 
   // httplib does not take it twice.
@@ -103,6 +143,7 @@ struct Server::Parts {
 
   Stage stage;
   httplib::Server http;
+  std::uint64_t most_file = 0;  // that a page may hand over
   std::atomic<bool> listens = false;
   std::atomic<bool> is_to_stop = false;
   std::atomic<bool> has_stopped = false;
@@ -113,6 +154,8 @@ struct Server::Parts {
 Server::Server(Input input, int port) : parts_(std::make_unique<Parts>(port, std::move(input))) {}
 Server::Server(std::unique_ptr<live::Live> live, OpenRecording open, int port)
     : parts_(std::make_unique<Parts>(port, std::move(live), std::move(open))) {}
+Server::Server(std::unique_ptr<Intake> intake, OpenFiles open, int port)
+    : parts_(std::make_unique<Parts>(port, std::move(intake), std::move(open))) {}
 Server::~Server() = default;
 
 std::string Server::address() const { return parts_->guard.address(); }

@@ -26,7 +26,8 @@ struct Input {
   std::string options;                        // of every command that repeats the session, or empty
   std::vector<RecordingPayload> payloads;     // what --payload says of some of the recordings
   std::optional<std::string> output;          // the file that -o names; none: beside the robot file
-  int threads = 1;                            // of explain
+  std::string commands_note;  // what those who repeat the session have to know, or empty
+  int threads = 1;            // of explain
 };
 
 /// One effect that was switched on.
