@@ -158,7 +158,7 @@ function saveContent() {
   return [...content, ...commandsContent(save)];
 }
 
-function commandsContent({ commands }) {
+function commandsContent({ commands, commands_note: note }) {
   if (commands.length === 0) {
     const why = "The robot file that was read is replaced: no command can start from it any more.";
     return [element("p", { class: "remark" }, why)];
@@ -170,6 +170,7 @@ function commandsContent({ commands }) {
       { class: "remark" },
       "The same without Studio, numbers and file alike; each writes a file that is not there yet:",
     ),
+    ...(note === "" ? [] : [element("p", { class: "remark" }, note)]),
     element("pre", { tabindex: "0", "aria-label": "Commands that repeat this session" }, commands.join("\n")),
     button("copy", "Copy the commands", copy, { "data-free": "" }),
   ];
@@ -357,14 +358,14 @@ function buildStudio() {
   );
   const desk = place("desk", { class: "desk" });
   desk.append(side, pictures);
-  main.append(place("head"), place("live"), desk);
+  main.append(place("head"), place("live"), place("load"), desk);
   const footer = element("footer");
   footer.append(
     element("p", { id: "spoken", class: "hidden-text", role: "status" }),
     element("p", {}, "offnominal Studio, diagnostic aid, claims no SIL/PL. Nothing leaves this machine."),
     element(
       "p",
-      {},
+      { class: "chart-help" },
       "Charts: drag to zoom, shift-drag to move, ctrl-wheel to zoom, double click to reset. A chart that " +
         "has the focus takes keys: arrows show values, + and - zoom, 0 resets. The arm: drag to turn, ctrl-wheel to come nearer. " +
         "Drawn with Apache ECharts and three.js.",
@@ -400,7 +401,13 @@ async function start() {
   onZoom = (range) => drawFiner(range).catch((error) => complain(error.message));
   try {
     const setup = await ask("GET", "live");
-    if (!setup.loaded) showUnloaded(setup);
+    places.desk.hidden = !setup.loaded;
+    if (setup.takes_files) {
+      await startLoad(places.load, setup.loaded, async () => {
+        await loadSession();
+        places.head.scrollIntoView({ block: "start" });
+      });
+    } else if (!setup.loaded) showUnloaded(setup);
     if (setup.source !== null) {
       startLive(setup, places.live, async () => {
         await loadSession();
