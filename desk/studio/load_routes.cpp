@@ -44,8 +44,8 @@ SignalEdit edit_of(const json& body) {
 }
 
 // As it comes, into the folder of such files.
-std::filesystem::path received(const Request& request, const httplib::ContentReader& read,
-                               UploadFolder& folder) {
+std::filesystem::path received(const Request& request, const Response& response,
+                               const httplib::ContentReader& read, UploadFolder& folder) {
   if (request.is_multipart_form_data()) {
     throw Refused(Refused::Why::kBadRequest, "A file is handed over as the body itself.");
   }
@@ -60,6 +60,7 @@ std::filesystem::path received(const Request& request, const httplib::ContentRea
     return !refused;
   });
   if (refused) throw InputError(refused->problem());
+  if (!whole && response.status == 413) throw upload.too_long();
   if (!whole) throw Refused(Refused::Why::kBadRequest, "The file broke off.");
   return upload.finish();
 }
@@ -72,7 +73,7 @@ void set_up_files(httplib::Server& server, const std::string& api, Stage& stage)
                                           const httplib::ContentReader& read) {
     answer(response, [&] {
       Intake& intake = stage.intake();
-      return intake.take(received(request, read, intake.folder()));
+      return intake.take(received(request, response, read, intake.folder()));
     });
     // What was not read of a body would be the next request.
     if (response.status >= 400) response.set_header("Connection", "close");

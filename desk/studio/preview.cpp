@@ -21,6 +21,8 @@
 #include "log/sampling.hpp"
 #include "log/time_of.hpp"
 #include "report/decimate.hpp"
+#include "robot/payload.hpp"
+#include "robot/transmission.hpp"
 #include "robot/units.hpp"
 #include "studio/signal_map.hpp"
 
@@ -31,11 +33,16 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using nlohmann::ordered_json;
 
-// As a verb reads it from a file of these channels: `map` is what their text says.
-Log log_from(const NamedColumns& columns, const RobotDescription& robot, const ChannelMap& map) {
+// As a verb reads it from a file of these channels.
+Log log_from(const NamedColumns& columns, const RobotDescription& robot,
+             const ChannelMap& channels) {
+  const ChannelMap map = read_back(channels, "[channels]");
+  check_sides(map, robot.transmission, "[channels]");
   TimedColumns timed{columns, {}};
   timed.time = time_of(timed.columns, map.time, map.period_s);
-  return log_of(std::move(timed), robot, map);
+  Log log = log_of(std::move(timed), robot, map);
+  log.payload = payload_of(map.payloads, columns.file);
+  return log;
 }
 
 ordered_json number(double value) {
@@ -156,7 +163,7 @@ ordered_json preview_of(const NamedColumns& columns, const RobotDescription& rob
     if (!missing.empty()) {
       throw InputError({columns.file, "", "no column for " + list_of(missing), "", "choose them"});
     }
-    const Log log = log_from(columns, robot, read_back(map, "[channels]"));
+    const Log log = log_from(columns, robot, map);
     json["remarks"] = log.remarks;
     json["sampling"] = sampling_words(log);
     json["signals"] = signals_of(log, robot, pixels);
@@ -171,7 +178,7 @@ ordered_json findings_of(const NamedColumns& columns, const RobotDescription& ro
                          const ChannelMap& map, const std::vector<KeepFault>& keep,
                          std::size_t pixels) {
   std::vector<Log> logs;
-  logs.push_back(log_from(columns, robot, read_back(map, "[channels]")));
+  logs.push_back(log_from(columns, robot, map));
   const std::vector<DataFault> faults = treat_all({logs}, robot, keep);
   ordered_json json{
       {"error", nullptr}, {"faults", faults_json(faults)}, {"joints", ordered_json::array()}};

@@ -12,7 +12,6 @@
 #include "studio/guard.hpp"
 #include "studio/http.hpp"
 #include "studio/load_routes.hpp"
-#include "studio/requests.hpp"
 #include "studio/routes.hpp"
 #include "studio/stage.hpp"
 
@@ -61,14 +60,6 @@ std::uint64_t length_of(const httplib::Request& request) {
                                                    : std::numeric_limits<std::uint64_t>::max();
 }
 
-void refuse_length(httplib::Response& response, std::uint64_t most) {
-  refuse(response, 413,
-         most == kMostBody
-             ? "A request has at most " + bytes_words(most) + "."
-             : "A file of more than " + bytes_words(most) + "; allowed: " + bytes_words(most) +
-                   " a file on the page; to mend: start Studio with it on the command line.");
-}
-
 }  // namespace
 
 struct Server::Parts {
@@ -91,10 +82,11 @@ struct Server::Parts {
       if (is_to_stop) stop_once();
       return new httplib::ThreadPool(kThreads);
     };
-    // Of what may come at all; let_in() knows how much of what.
-    const bool takes_files = stage.takes_files();
-    if (takes_files) most_file = stage.intake().folder().limits().file;
-    http.set_payload_max_length(std::max<std::uint64_t>(most_file, kMostBody));
+    // Of what may come at all; let_in() knows of what.
+    http.set_payload_max_length(
+        stage.takes_files()
+            ? std::max<std::uint64_t>(stage.intake().folder().limits().file, kMostBody)
+            : kMostBody);
     http.set_keep_alive_timeout(kIdleS);
     http.set_read_timeout(kReadS);
     http.set_tcp_nodelay(true);
@@ -119,21 +111,14 @@ struct Server::Parts {
     if (refusal == 0 && !is_of_known_length) refusal = 411;
     // No body is unpacked: what is packed could be of any length.
     if (refusal == 0 && request.has_header("Content-Encoding")) refusal = 415;
-    if (refusal == 0 && length_of(request) > most_of(request)) {
-      response.set_header("Connection", "close");
-      refuse_length(response, most_of(request));
-      return httplib::Server::HandlerResponse::Handled;
-    }
+    // A file is received by its own route, which knows what may be too long of it.
+    const bool is_file = request.path == guard.path() + "api/" + kFilesRoute;
+    if (refusal == 0 && !is_file && length_of(request) > kMostBody) refusal = 413;
     if (refusal == 0) return httplib::Server::HandlerResponse::Unhandled;
     response.status = refusal;
     response.set_header("Connection", "close");
     response.set_content("Not for you.\n", "text/plain; charset=utf-8");
     return httplib::Server::HandlerResponse::Handled;
-  }
-
-  [[nodiscard]] std::uint64_t most_of(const httplib::Request& request) const {
-    const bool is_file = request.path == guard.path() + "api/" + kFilesRoute;
-    return is_file && stage.takes_files() ? most_file : kMostBody;
   }
 
   // httplib does not take it twice.
@@ -143,7 +128,6 @@ struct Server::Parts {
 
   Stage stage;
   httplib::Server http;
-  std::uint64_t most_file = 0;  // that a page may hand over
   std::atomic<bool> listens = false;
   std::atomic<bool> is_to_stop = false;
   std::atomic<bool> has_stopped = false;

@@ -18,6 +18,8 @@ namespace offnominal::desk::studio {
 namespace {
 
 constexpr std::size_t kLongestUploadName = 200;  // bytes
+constexpr const char* kMendLimit =
+    "start Studio with it on the command line, where there is no limit";
 
 std::string file_name_of(const std::filesystem::path& path) { return path.filename().string(); }
 
@@ -130,19 +132,21 @@ UploadFolder::Upload::~Upload() {
   std::filesystem::remove_all(path_.parent_path(), ignored);
 }
 
+InputError UploadFolder::Upload::too_long() const {
+  const std::string most = bytes_words(folder_->limits_.file);
+  return InputError({file_name_of(path_), "", "more than " + most, most + " a file on the page",
+                     kMendLimit});
+}
+
 void UploadFolder::Upload::write(const char* data, std::size_t size) {
   const UploadLimits& limits = folder_->limits_;
-  const char* mend = "start Studio with it on the command line: there is no limit";
-  if (size_ + size > limits.file) {
-    throw InputError({file_name_of(path_), "", "more than " + bytes_words(limits.file),
-                      bytes_words(limits.file) + " a file on the page", mend});
-  }
+  if (size_ + size > limits.file) throw too_long();
   folder_->used_ += size;
   size_ += size;
   if (folder_->used_ > limits.all) {
     throw InputError({file_name_of(path_), "",
                       "files of more than " + bytes_words(limits.all) + " together",
-                      bytes_words(limits.all) + " on the page", mend});
+                      bytes_words(limits.all) + " on the page", kMendLimit});
   }
   while (size > 0) {
     const ssize_t written = ::write(file_, data, size);

@@ -38,6 +38,8 @@ class UploadFolder {
 
     /// Throws InputError for more than the limits allow, and where the disk is full.
     void write(const char* data, std::size_t size);
+    /// What write() says of a file beyond the limit.
+    [[nodiscard]] InputError too_long() const;
     /// Where the file is.
     [[nodiscard]] std::filesystem::path finish();
 
