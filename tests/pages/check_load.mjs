@@ -141,7 +141,7 @@ async function checkSession(page, options, folder, files, fault) {
   const written = await page.evaluate(() => load.written);
   const [robot, channels] = written.map((name) => join(folder, name));
   if (written.length !== 2 || !(await readFile(channels, "utf8")).startsWith("[channels]\n")) fault(`written is ${written}`);
-  const text = execFileSync(options.offnominal, ["compare", files.recording, "--robot", robot, "--channels", channels, "--json"], { stdio: ["ignore", "pipe", "ignore"] });
+  const text = execFileSync(resolve(options.offnominal), ["compare", files.recording, "--robot", robot, "--channels", channels, "--json"], { stdio: ["ignore", "pipe", "ignore"] });
   for (const { joint, relative_error_percent: percent } of JSON.parse(text).joints) {
     const shown = await page.evaluate((at) => state.joints[at - 1].now.fitted_percent, joint);
     if (Math.abs(shown - percent) > 1e-9) fault(`joint ${joint}: compare says ${percent} %, the page ${shown} %`);
