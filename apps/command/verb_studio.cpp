@@ -43,6 +43,7 @@ namespace {
 
 struct StudioOptions {
   FitFiles files;
+  std::vector<std::string> campaign;  // results, and the campaign's file
   std::optional<std::string> bus;
   std::optional<std::vector<std::string>> sil;  // with the scenario's file, or none
   std::vector<KeepFault> keep;
@@ -242,11 +243,9 @@ studio::OpenFiles file_opener(StudioOptions options, const std::string& more) {
     }
     studio::Input input = read_input(of_files, with_channels, read_log, names);
     input.robot_file = files.robot.name;
-    if (!files.recordings_are_here) {
-      input.commands_note =
-          "The recordings were dropped on the page: run these where they lie, or write their "
-          "folders before their names.";
-    }
+    input.commands_note = files.commands_note;
+    input.commands_before = files.commands_before;
+    input.marks = files.marks;
     return input;
   };
 }
@@ -285,7 +284,19 @@ void check_nothing_of_recordings(const StudioOptions& options) {
   if (!channels.payloads.empty()) refuse("--payload", "give the recording on the command line");
 }
 
-// One of four: recordings, a bus, a run that is simulated, files that the page is given.
+// The model and the recordings are the campaign's.
+void check_campaign(const StudioOptions& options) {
+  const auto refuse = [](const char* option) {
+    refuse_option("studio", option, "together with --campaign", "one of the two",
+                  "the runs of a campaign are opened from its page, with its model");
+  };
+  if (options.bus) refuse("--bus");
+  if (options.sil) refuse("--sil");
+  if (!options.files.logs.empty()) refuse("RECORDING");
+  if (!options.files.robot.empty()) refuse("--robot");
+}
+
+// One of five: recordings, a bus, a run that is simulated, a campaign, files that the page is given.
 void check_source(const StudioOptions& options) {
   const bool live = options.bus || options.sil;
   const bool has_logs = !options.files.logs.empty();
@@ -297,6 +308,7 @@ void check_source(const StudioOptions& options) {
                   "give one; without recordings too, the page asks for both");
   }
   if (!live && !has_logs) check_nothing_of_recordings(options);
+  if (!options.campaign.empty()) check_campaign(options);
   if (!live) return;
   if (has_logs || !options.files.holdout.empty()) {
     refuse_option("studio", "RECORDING", "recordings beside a live view", "one of the two",
@@ -309,6 +321,15 @@ void run(const StudioOptions& options, const std::string& more) {
   if (options.bus || options.sil) {
     const HeldSignals held;
     studio::Server server(live_view(options), opener(options, more), options.port);
+    serve(server, options, held);
+    return;
+  }
+  if (!options.campaign.empty()) {
+    std::optional<std::string> file;
+    if (options.campaign.size() > 1) file = options.campaign[1];
+    auto view = std::make_unique<studio::CampaignView>(options.campaign[0], file);
+    const HeldSignals held;
+    studio::Server server(std::move(view), file_opener(options, more), options.port);
     serve(server, options, held);
     return;
   }
@@ -346,6 +367,12 @@ void set_up_studio(CLI::App& verb, ExitCode& /*exit_code*/) {
           "the robot file on a bus, with faults from the page. A scenario's file may say more")
       ->type_name("[SCENARIO]")
       ->expected(0, 1);
+  verb.add_option("--campaign", options->campaign,
+                  "In place of recordings, the results of `offnominal campaign`: tables and curves "
+                  "by fault, joint and detector, and every run as a recording. The campaign's file "
+                  "may stand behind them: the commands that repeat a session name it")
+      ->type_name("RESULTS [FILE]")
+      ->expected(1, 2);
   verb.add_option("--holdout", options->files.holdout,
                   "Recordings to judge the fit on: no fit sees them. Without any, parts of the "
                   "others are held out");

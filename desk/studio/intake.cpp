@@ -269,7 +269,11 @@ SessionFiles Intake::files() {
   for (const Recording& recording : recordings_) {
     const std::filesystem::path own = here(recording.name);
     const bool is_here = same_content(recording.path, own);
-    files.recordings_are_here = files.recordings_are_here && is_here;
+    if (!is_here) {
+      files.commands_note =
+          "The recordings were dropped on the page: run these where they lie, or write their "
+          "folders before their names.";
+    }
     auto& group = recording.held_out ? files.holdout : files.logs;
     group.push_back({recording.path.string(), is_here ? own.string() : recording.name});
   }

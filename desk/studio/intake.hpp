@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <list>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
@@ -13,29 +12,11 @@
 #include "explain/data_fault.hpp"
 #include "log/named_columns.hpp"
 #include "robot/robot.hpp"
+#include "studio/session_files.hpp"
 #include "studio/signal_map.hpp"
 #include "studio/upload_folder.hpp"
-#include "studio/workbench.hpp"
 
 namespace offnominal::desk::studio {
-
-/// A file, and the name under which commands and messages speak of it.
-struct NamedFile {
-  std::string path;
-  std::string name;
-};
-
-/// What a session begins with, as a command line would name it.
-struct SessionFiles {
-  NamedFile robot;
-  std::vector<NamedFile> logs;
-  std::vector<NamedFile> holdout;
-  std::optional<NamedFile> channels = {};  // none: the robot file's own
-  bool recordings_are_here = true;         // else the commands run where the recordings lie
-};
-
-/// Reads and examines them, as the verb does with those of its command line.
-using OpenFiles = std::function<Input(const SessionFiles& files)>;
 
 struct IntakeSettings {
   std::optional<std::string> robot_file = {};  // of the command line

@@ -45,7 +45,7 @@ Log log_from(const NamedColumns& columns, const RobotDescription& robot,
   return log;
 }
 
-ordered_json number(double value) {
+ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
@@ -61,8 +61,8 @@ Curve curve_of(const VectorXd& t_s, const Eigen::Ref<const VectorXd>& values, st
   series = report::decimate(series, std::max(2 * pixels, report::kMinDecimatedPoints));
   Curve curve;
   for (std::size_t i = 0; i < series.x.size(); ++i) {
-    curve.t_s.push_back(number(series.x[i]));
-    curve.values.push_back(number(series.y[i]));
+    curve.t_s.push_back(finite_or_null(series.x[i]));
+    curve.values.push_back(finite_or_null(series.y[i]));
   }
   return curve;
 }
@@ -81,8 +81,8 @@ ordered_json signal_of(const char* quantity, std::size_t joint, const std::strin
   return {{"quantity", quantity},
           {"joint", joint + 1},
           {"unit", unit},
-          {"low", number(low)},
-          {"high", number(high)},
+          {"low", finite_or_null(low)},
+          {"high", finite_or_null(high)},
           {"t_s", std::move(curve.t_s)},
           {"values", std::move(curve.values)},
           {"derived", ordered_json::array()}};
@@ -188,7 +188,7 @@ ordered_json findings_of(const NamedColumns& columns, const RobotDescription& ro
       Curve curve =
           curve_of(compared.t_s, compared.model.col(static_cast<Index>(joint.joint)), pixels);
       json["joints"].push_back({{"joint", joint.joint + 1},
-                                {"error_percent", number(joint.relative_error_percent)},
+                                {"error_percent", finite_or_null(joint.relative_error_percent)},
                                 {"t_s", std::move(curve.t_s)},
                                 {"model", std::move(curve.values)}});
     }

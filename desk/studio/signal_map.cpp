@@ -31,7 +31,7 @@ constexpr std::array<Side, 4> kSides{{{"joint", ChannelOf::kJoint},
                                       {"sensor", ChannelOf::kSensor}}};
 constexpr std::array<const char*, 3> kQuantities = {"position", "velocity", "torque"};
 
-[[noreturn]] void refuse(const std::string& words) {
+[[noreturn]] void refuse_edit(const std::string& words) {
   throw Refused(Refused::Why::kBadRequest, words);
 }
 
@@ -128,7 +128,7 @@ void set_side(ChannelMap& map, const SignalEdit& edit, std::size_t joints) {
   const auto end = kSides.begin() + static_cast<std::ptrdiff_t>(count);
   const auto* side =
       std::find_if(kSides.begin(), end, [&](const Side& one) { return *edit.of == one.name; });
-  if (side == end) refuse("A " + edit.quantity + " is of no such side.");
+  if (side == end) refuse_edit("A " + edit.quantity + " is of no such side.");
   std::vector<ChannelOf>& sides = sides_in(map, edit.quantity);
   sides.resize(joints, ChannelOf::kJoint);
   sides[edit.joint] = side->of;
@@ -138,7 +138,7 @@ void set_side(ChannelMap& map, const SignalEdit& edit, std::size_t joints) {
 
 void set_source(Channel& channel, const std::string& source, const NamedColumns& columns) {
   if (source == channel.source && channel.sum.empty()) return;
-  if (!columns.columns.contains(source)) refuse("No recording has a column of that name.");
+  if (!columns.columns.contains(source)) refuse_edit("No recording has a column of that name.");
   channel = {};
   channel.source = source;
 }
@@ -149,14 +149,14 @@ void set_factor(Channel& channel, const SignalEdit& edit, const std::string& own
   if (edit.unit) {
     const bool known = std::find(units.begin(), units.end(), *edit.unit) != units.end();
     if (!known && *edit.unit != channel.unit && *edit.unit != of_file) {
-      refuse("A " + edit.quantity + " has no such unit.");
+      refuse_edit("A " + edit.quantity + " has no such unit.");
     }
     // As it is read without a word.
     channel.unit = *edit.unit == (of_file.empty() ? own : of_file) ? "" : *edit.unit;
   }
   if (edit.scale) {
     if (!std::isfinite(*edit.scale) || *edit.scale == 0) {
-      refuse("A factor has to be a number other than 0.");
+      refuse_edit("A factor has to be a number other than 0.");
     }
     channel.scale = *edit.scale;
   }
@@ -167,7 +167,7 @@ void set_factor(Channel& channel, const SignalEdit& edit, const std::string& own
 void set_time(ChannelMap& map, const SignalEdit& edit, const NamedColumns& columns) {
   if (edit.period_s) {
     if (!std::isfinite(*edit.period_s) || *edit.period_s < 0) {
-      refuse("The time between two samples has to be a number of seconds above 0.");
+      refuse_edit("The time between two samples has to be a number of seconds above 0.");
     }
     map.period_s = *edit.period_s;
   }
@@ -217,8 +217,8 @@ void set_signal(ChannelMap& map, const SignalEdit& edit, const RobotDescription&
     return;
   }
   const auto* known = std::find(kQuantities.begin(), kQuantities.end(), edit.quantity);
-  if (known == kQuantities.end()) refuse("There is no such signal.");
-  if (edit.joint >= robot.joints.size()) refuse("There is no such joint.");
+  if (known == kQuantities.end()) refuse_edit("There is no such signal.");
+  if (edit.joint >= robot.joints.size()) refuse_edit("There is no such joint.");
   const bool is_velocity = edit.quantity == "velocity";
   std::optional<Channel>& velocity = changed.velocity[edit.joint];
   if (is_velocity && edit.source && edit.source->empty()) {
@@ -235,7 +235,7 @@ void set_signal(ChannelMap& map, const SignalEdit& edit, const RobotDescription&
     channel.unit.clear();
   }
   if (edit.source) set_source(channel, *edit.source, columns);
-  if (channel.source.empty() && channel.sum.empty()) refuse("Say its column first.");
+  if (channel.source.empty() && channel.sum.empty()) refuse_edit("Say its column first.");
   const ChannelOf of = side_of(changed, edit.quantity, edit.joint);
   const JointType type = robot.joints[edit.joint].joint.type;
   set_factor(channel, edit, own_unit(edit.quantity, of, type), units_for(edit.quantity, of, type),

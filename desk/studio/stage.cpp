@@ -16,12 +16,18 @@ Stage::Stage(std::unique_ptr<live::Live> live, OpenRecording open)
 Stage::Stage(std::unique_ptr<Intake> intake, OpenFiles open)
     : open_files_(std::move(open)), intake_(std::move(intake)) {}
 
+Stage::Stage(std::unique_ptr<CampaignView> campaign, OpenFiles open)
+    : open_files_(std::move(open)), campaign_(std::move(campaign)) {}
+
 std::shared_ptr<Session> Stage::session() const {
   const std::lock_guard guard(lock_);
   if (session_) return session_;
   if (intake_) {
     throw Refused(Refused::Why::kNotNow,
                   "No recording is loaded yet: drop a recording and a robot file, and use them.");
+  }
+  if (campaign_) {
+    throw Refused(Refused::Why::kNotNow, "No run is open yet: choose one of the campaign's.");
   }
   throw Refused(Refused::Why::kNotNow,
                 "No recording is loaded yet: once something is detected, have it explained.");
@@ -58,10 +64,7 @@ nlohmann::ordered_json Stage::explain_detection() {
 nlohmann::ordered_json Stage::use_files(bool replace) {
   const std::lock_guard guard(making_);
   const SessionFiles files = intake().files();
-  if (!replace && is_loaded() && session()->has_steps()) {
-    throw Refused(Refused::Why::kMustConfirm,
-                  "The session begins anew: what was added and is not saved is lost.");
-  }
+  check_nothing_is_lost(replace);
   try {
     auto made = std::make_shared<Session>(open_files_(files));
     std::vector<std::string> written = intake().write(files);
@@ -70,6 +73,31 @@ nlohmann::ordered_json Stage::use_files(bool replace) {
   } catch (const InputError& error) {
     throw intake().folder().shown(error);
   }
+}
+
+CampaignView& Stage::campaign() const {
+  if (campaign_) return *campaign_;
+  throw Refused(Refused::Why::kNotNow,
+                "This session is over no campaign: start Studio with --campaign RESULTS for one.");
+}
+
+nlohmann::ordered_json Stage::open_run(std::int64_t run, bool replace) {
+  const std::lock_guard guard(making_);
+  CampaignView& view = campaign();
+  check_nothing_is_lost(replace);
+  try {
+    const SessionFiles files = view.record(run);
+    show(std::make_shared<Session>(open_files_(files)));
+  } catch (const InputError& error) {
+    throw view.folder().shown(error);
+  }
+  return {{"run", run}};
+}
+
+void Stage::check_nothing_is_lost(bool replace) const {
+  if (replace || !is_loaded() || !session()->has_steps()) return;
+  throw Refused(Refused::Why::kMustConfirm,
+                "The session begins anew: what was added and is not saved is lost.");
 }
 
 void Stage::show(std::shared_ptr<Session> made) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "live/live.hpp"
+#include "studio/campaign_view.hpp"
 #include "studio/intake.hpp"
 #include "studio/session.hpp"
 #include "studio/workbench.hpp"
@@ -18,12 +20,13 @@ namespace offnominal::desk::studio {
 using OpenRecording = std::function<Input(const std::string& file)>;
 
 /// What the server shows: a session over recordings, or what leads to one: files that the page is
-/// given, or a live view that hands stretches over. Every function may be called by any thread.
+/// given, a campaign's runs, or a live view that hands stretches over. Every function may be called by any thread.
 class Stage {
  public:
   explicit Stage(Input input);
   Stage(std::unique_ptr<live::Live> live, OpenRecording open);
   Stage(std::unique_ptr<Intake> intake, OpenFiles open);
+  Stage(std::unique_ptr<CampaignView> campaign, OpenFiles open);
 
   /// Throws Refused as long as no recording is loaded.
   [[nodiscard]] std::shared_ptr<Session> session() const;
@@ -33,6 +36,9 @@ class Stage {
   /// Throws Refused where the files are those of the command line.
   [[nodiscard]] Intake& intake() const;
   [[nodiscard]] bool takes_files() const { return intake_ != nullptr; }
+  /// Throws Refused where there is none.
+  [[nodiscard]] CampaignView& campaign() const;
+  [[nodiscard]] bool has_campaign() const { return campaign_ != nullptr; }
   [[nodiscard]] bool is_loaded() const;
 
   /// What came since the last detection becomes a recording, that one the session's, and the search
@@ -43,10 +49,13 @@ class Stage {
   /// where something is missing, and where a session with steps would be lost and `replace` does
   /// not say that this is meant; InputError where they will not do; the session before stays.
   nlohmann::ordered_json use_files(bool replace);
+  /// A run of the campaign becomes the session's recording: {run}. Throws as use_files().
+  nlohmann::ordered_json open_run(std::int64_t run, bool replace);
   /// The page is gone, or the server ends: no search goes on in the background.
   void leave() const;
 
  private:
+  void check_nothing_is_lost(bool replace) const;
   // The session that is shown is another one from now on.
   void show(std::shared_ptr<Session> made);
 
@@ -56,6 +65,7 @@ class Stage {
   mutable std::mutex lock_;  // of the session that is shown
   std::shared_ptr<Session> session_;
   std::unique_ptr<Intake> intake_;
+  std::unique_ptr<CampaignView> campaign_;
   std::unique_ptr<live::Live> live_;  // ends first
 };
 

@@ -318,14 +318,14 @@ TEST_F(Loading, NamesFilesThatAreThereAlreadyAndWritesOverNone) {
   const SessionFiles files = intake_.files();
   EXPECT_EQ(files.robot.name, (folder_ / "arm.toml").string());
   EXPECT_EQ(files.logs.at(0).name, (folder_ / "run.csv").string());
-  EXPECT_TRUE(files.recordings_are_here);
+  EXPECT_EQ(files.commands_note, "");
   EXPECT_THAT(intake_.write(files), ElementsAre((folder_ / "arm_channels_2.toml").string()));
   EXPECT_EQ(content_of(folder_ / "arm_channels.toml"), "somebody's");
   // The same names with another content are other files.
   put(folder_ / "run.csv", strange_csv(0.5));
   put(folder_ / "arm.toml", robot_text_of_arm() + "# another\n");
   EXPECT_EQ(intake_.files().logs.at(0).name, "run.csv");
-  EXPECT_FALSE(intake_.files().recordings_are_here);
+  EXPECT_THAT(intake_.files().commands_note, HasSubstr("where they lie"));
   EXPECT_EQ(intake_.files().robot.name, (folder_ / "arm_2.toml").string());
 }
 
@@ -369,7 +369,7 @@ class LoadServer : public ::testing::Test {
 };
 
 TEST_F(LoadServer, BeginsWithNothingAndBecomesASession) {
-  EXPECT_EQ(get("live"), (json{{"source", nullptr}, {"loaded", false}, {"takes_files", true}}));
+  EXPECT_EQ(get("live"), (json{{"source", nullptr}, {"loaded", false}, {"takes_files", true}, {"has_campaign", false}}));
   EXPECT_EQ(client().Get(at("state"))->status, 409);
   EXPECT_EQ(post("load/session", json::object()).first, 409);
   ASSERT_EQ(give("arm.toml", robot_text_of_arm()).first, 200);
