@@ -296,7 +296,8 @@ void check_campaign(const StudioOptions& options) {
   if (!options.files.robot.empty()) refuse("--robot");
 }
 
-// One of five: recordings, a bus, a run that is simulated, a campaign, files that the page is given.
+// One of five: recordings, a bus, a run that is simulated, a campaign, files that the page is
+// given.
 void check_source(const StudioOptions& options) {
   const bool live = options.bus || options.sil;
   const bool has_logs = !options.files.logs.empty();

@@ -33,8 +33,8 @@ Campaign restored_campaign(const std::string& identity, const std::filesystem::p
     refuse(results);
   }
   const auto robot_begin = robot_at + kRobotMark.size();
-  write_file_atomically(folder / "robot.toml",
-                        identity.substr(robot_begin, plant_at - robot_begin), Existing::kReplace);
+  write_file_atomically(folder / "robot.toml", identity.substr(robot_begin, plant_at - robot_begin),
+                        Existing::kReplace);
   write_file_atomically(folder / "plant.toml", identity.substr(plant_at + kPlantMark.size()),
                         Existing::kReplace);
   toml::table keys = parse_toml(identity.substr(keys_at, robot_at - keys_at), results);

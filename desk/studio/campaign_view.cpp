@@ -113,21 +113,17 @@ ordered_json CampaignView::state() const {
     if (std::find(kinds.begin(), kinds.end(), row.kind) == kinds.end()) kinds.push_back(row.kind);
     if (row.joint) joints.insert(*row.joint);
   }
-  return {{"name", results_.campaign.name},
-          {"file", input_name(results_file_)},
-          {"runs", results_.campaign.runs},
-          {"missing", results_.missing.size()},
-          {"detectors", std::move(detectors)},
-          {"kinds", std::move(kinds)},
+  return {{"name", results_.campaign.name},    {"file", input_name(results_file_)},
+          {"runs", results_.campaign.runs},    {"missing", results_.missing.size()},
+          {"detectors", std::move(detectors)}, {"kinds", std::move(kinds)},
           {"joints", std::move(joints)}};
 }
 
 campaign::Results CampaignView::left_by(const RunFilter& filter) const {
   campaign::Results left = results_;
   if (filter.detector) {
-    std::erase_if(left.campaign.detectors, [&](const campaign::DetectorRow& one) {
-      return one.name != *filter.detector;
-    });
+    std::erase_if(left.campaign.detectors,
+                  [&](const campaign::DetectorRow& one) { return one.name != *filter.detector; });
     if (left.campaign.detectors.empty()) refuse_view("There is no such detector.");
   }
   std::erase_if(left.rows, [&](const Result& row) {
@@ -201,9 +197,10 @@ SessionFiles CampaignView::record(std::int64_t run) {
   SessionFiles files;
   files.logs.push_back({folder_.put(recording, csv_text(log)).string(), recording});
   files.robot = {folder_.put(model, robot_text(campaign_->model)).string(), model};
-  files.commands_before.push_back(fmt::format("offnominal campaign record {} --run {} -o {} --model {}",
-                                              campaign_file_ ? shell_word(*campaign_file_) : "CAMPAIGN.toml", run,
-                                              shell_word(recording), shell_word(model)));
+  files.commands_before.push_back(
+      fmt::format("offnominal campaign record {} --run {} -o {} --model {}",
+                  campaign_file_ ? shell_word(*campaign_file_) : "CAMPAIGN.toml", run,
+                  shell_word(recording), shell_word(model)));
   if (!campaign_file_) files.commands_note = "CAMPAIGN.toml stands for the file of the campaign.";
   files.marks = marks_of(run);
   return files;

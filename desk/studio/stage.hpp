@@ -20,7 +20,8 @@ namespace offnominal::desk::studio {
 using OpenRecording = std::function<Input(const std::string& file)>;
 
 /// What the server shows: a session over recordings, or what leads to one: files that the page is
-/// given, a campaign's runs, or a live view that hands stretches over. Every function may be called by any thread.
+/// given, a campaign's runs, or a live view that hands stretches over. Every function may be called
+/// by any thread.
 class Stage {
  public:
   explicit Stage(Input input);

@@ -134,8 +134,8 @@ UploadFolder::Upload::~Upload() {
 
 InputError UploadFolder::Upload::too_long() const {
   const std::string most = bytes_words(folder_->limits_.file);
-  return InputError({file_name_of(path_), "", "more than " + most, most + " a file on the page",
-                     kMendLimit});
+  return InputError(
+      {file_name_of(path_), "", "more than " + most, most + " a file on the page", kMendLimit});
 }
 
 void UploadFolder::Upload::write(const char* data, std::size_t size) {

@@ -31,7 +31,9 @@ function baseName(path) {
 function headerContent() {
   const names = (held) => state.recordings.filter((each) => each.held_out === held).map((each) => baseName(each.name));
   const judged = state.held_out === "recordings" ? names(true).join(", ") : "parts of the same, held out in turn";
-  const header = element("header", {}, element("h1", {}, `Studio: ${state.robot.name}`));
+  // Below a campaign the run is a part of the page.
+  const title = campaign.setup === null ? element("h1", {}, `Studio: ${state.robot.name}`) : element("h2", {}, `Run ${campaign.open}`);
+  const header = element("header", {}, title);
   header.append(
     element(
       "p",
@@ -178,8 +180,9 @@ function commandsContent({ commands, commands_note: note }) {
 
 function show() {
   const joint = currentJoint();
-  document.title = `Studio: ${state.robot.name}`;
-  replaceContent(places.head, headerContent(), ...state.hints.map((hint) => noteWith("warn", hint)));
+  if (campaign.setup === null) document.title = `Studio: ${state.robot.name}`;
+  const host = campaign.setup === null ? places.head : places.run;
+  replaceContent(host, headerContent(), ...state.hints.map((hint) => noteWith("warn", hint)));
   replaceContent(places.joints, jointChoice());
   replaceContent(places.headline, headlineContent());
   document.getElementById("effects-heading").textContent = `Effects of joint ${joint.joint}`;
@@ -357,8 +360,8 @@ function buildStudio() {
     sectionWith("save", "Save", place("save")),
   );
   const desk = place("desk", { class: "desk" });
-  desk.append(side, pictures);
-  main.append(place("head"), place("live"), place("load"), desk);
+  desk.append(place("run", { class: "run" }), side, pictures);
+  main.append(place("head"), place("live"), place("load"), place("campaign"), desk);
   const footer = element("footer");
   footer.append(
     element("p", { id: "spoken", class: "hidden-text", role: "status" }),
@@ -406,6 +409,11 @@ async function start() {
       await startLoad(places.load, setup.loaded, async () => {
         await loadSession();
         places.head.scrollIntoView({ block: "start" });
+      });
+    } else if (setup.has_campaign) {
+      await startCampaign(places.campaign, async () => {
+        await loadSession();
+        places.desk.scrollIntoView({ block: "start" });
       });
     } else if (!setup.loaded) showUnloaded(setup);
     if (setup.source !== null) {
