@@ -12,6 +12,7 @@
 #include "common/nearest.hpp"
 #include "common/refused.hpp"
 #include "common/toml_table.hpp"
+#include "look/name_guess.hpp"
 #include "robot/channel_text.hpp"
 #include "robot/channels.hpp"
 #include "robot/units.hpp"
@@ -136,11 +137,16 @@ void set_side(ChannelMap& map, const SignalEdit& edit, std::size_t joints) {
   if (std::all_of(sides.begin(), sides.end(), is_joint)) sides.clear();
 }
 
-void set_source(Channel& channel, const std::string& source, const NamedColumns& columns) {
+// With the unit that its name says, as it is guessed; what the file says is taken without a word.
+void set_source(Channel& channel, const std::string& source, const NamedColumns& columns,
+                const std::vector<std::string>& units, const std::string& own) {
   if (source == channel.source && channel.sum.empty()) return;
   if (!columns.columns.contains(source)) refuse_edit("No recording has a column of that name.");
   channel = {};
   channel.source = source;
+  const std::string said = guess_of(source).unit;
+  const bool is_unit = std::find(units.begin(), units.end(), said) != units.end();
+  if (unit_of_file(channel, columns).empty() && is_unit && said != own) channel.unit = said;
 }
 
 void set_factor(Channel& channel, const SignalEdit& edit, const std::string& own,
@@ -171,11 +177,11 @@ void set_time(ChannelMap& map, const SignalEdit& edit, const NamedColumns& colum
     }
     map.period_s = *edit.period_s;
   }
+  const auto units = units_for("time", ChannelOf::kJoint, JointType::kRevolute);
   if (edit.source) {
-    set_source(map.time, *edit.source, columns);
+    set_source(map.time, *edit.source, columns, units, "s");
     map.period_s = 0;
   }
-  const auto units = units_for("time", ChannelOf::kJoint, JointType::kRevolute);
   set_factor(map.time, edit, "s", units, columns);
 }
 
@@ -234,12 +240,13 @@ void set_signal(ChannelMap& map, const SignalEdit& edit, const RobotDescription&
     set_side(changed, edit, robot.joints.size());
     channel.unit.clear();
   }
-  if (edit.source) set_source(channel, *edit.source, columns);
-  if (channel.source.empty() && channel.sum.empty()) refuse_edit("Say its column first.");
   const ChannelOf of = side_of(changed, edit.quantity, edit.joint);
   const JointType type = robot.joints[edit.joint].joint.type;
-  set_factor(channel, edit, own_unit(edit.quantity, of, type), units_for(edit.quantity, of, type),
-             columns);
+  const std::string own = own_unit(edit.quantity, of, type);
+  const std::vector<std::string> units = units_for(edit.quantity, of, type);
+  if (edit.source) set_source(channel, *edit.source, columns, units, own);
+  if (channel.source.empty() && channel.sum.empty()) refuse_edit("Say its column first.");
+  set_factor(channel, edit, own, units, columns);
   map = std::move(changed);
 }
 

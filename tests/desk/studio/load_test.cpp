@@ -213,16 +213,35 @@ TEST_F(Loading, HasTheDoctorAndTheErrorOfCompareBesideTheCurves) {
   EXPECT_EQ(intake_.findings(1, 200).at("faults").at(0).at("joint"), 1);
 }
 
-TEST_F(Loading, KeepsTheUnitOfTheFileWhereASignIsTurned) {
+TEST_F(Loading, TakesTheUnitThatTheNameOfAColumnSays) {
   give("arm.toml", robot_text_of_arm());
   std::string text = strange_csv(1);
   text.replace(text.find("actual_pos_1"), 12, "actual_pos_1 [deg]");
   text.replace(text.find("actual_pos_2"), 12, "actual_pos_2 [deg]");
-  give("run.csv", text);
+  const ordered_json state = give("run.csv", text);
   const double before = intake_.preview(1, 200).at("signals").at(0).at("high");
-  const ordered_json turned = intake_.set_signal({.quantity = "position", .joint = 0, .scale = -1});
-  EXPECT_EQ(signal_in(turned, "position", 1).at("unit"), "deg");
+  for (const int joint : {2, 1}) {
+    const std::string source = signal_in(state, "position", joint).at("source");
+    static_cast<void>(intake_.set_signal({.quantity = "position", .source = source}));
+  }
+  EXPECT_EQ(intake_.preview(1, 200).at("signals").at(0).at("high").get<double>(), before);
+  static_cast<void>(intake_.set_signal({.quantity = "position", .joint = 0, .scale = -1}));
   EXPECT_EQ(intake_.preview(1, 200).at("signals").at(0).at("low").get<double>(), -before);
+}
+
+// What the file itself says of a unit does not count beside a scale: it has to be written.
+TEST(SignalMap, WritesTheUnitOfTheFileWhereASignIsTurned) {
+  NamedColumns columns;
+  columns.columns["a"] = Eigen::VectorXd::Ones(3);
+  columns.units["a"] = "deg";
+  const RobotDescription robot = arm_description();
+  ChannelMap map = with_all_joints({}, 2);
+  studio::set_signal(map, {.quantity = "position", .joint = 1, .source = "a"}, robot, columns);
+  EXPECT_EQ(map.position[1].unit, "");
+  EXPECT_EQ(signals_json(map, robot, columns).at(4).at("unit"), "deg");
+  studio::set_signal(map, {.quantity = "position", .joint = 1, .scale = -1}, robot, columns);
+  EXPECT_EQ(map.position[1].unit, "deg");
+  EXPECT_EQ(missing_of(map).size(), 4U);
 }
 
 TEST_F(Loading, RefusesEditsOfWhatThereIsNotAndChangesNothing) {
