@@ -251,7 +251,7 @@ std::filesystem::path Intake::here(const std::string& name) const {
 std::string Intake::free_name(const std::string& stem, const std::string& ending) const {
   for (int number = 1;; ++number) {
     const std::string again = number == 1 ? "" : fmt::format("_{}", number);
-    const std::filesystem::path path = here(stem + again + ending);
+    const std::filesystem::path path = here(fmt::format("{}{}{}", stem, again, ending));
     std::error_code ignored;
     if (!std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) {
       return path.string();

@@ -69,6 +69,7 @@ function watchDrops() {
 
 /** One after the other, the robot first: with it the columns are guessed. What fails is said, the others are taken. */
 async function takeFiles(files) {
+  while (load.doing !== "") await new Promise((done) => setTimeout(done, 100));
   const sorted = [...files].sort((a, b) => Number(isRobotFile(b.name)) - Number(isRobotFile(a.name)));
   const refused = [];
   await loadChange(async () => {
