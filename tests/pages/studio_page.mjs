@@ -82,6 +82,9 @@ export async function look(page, looks, name, { screenshots, axeSource }, fault)
     await page.setViewportSize({ width, height: 900 });
     await page.emulateMedia({ colorScheme: mode });
     await page.waitForTimeout(300);
+    // A busy machine draws anew when it comes to it.
+    const fits = () => document.documentElement.scrollWidth <= document.documentElement.clientWidth;
+    await page.waitForFunction(fits, undefined, { timeout: 10_000 }).catch(() => undefined);
     const inLook = (words) => fault(`${name}, ${mode}, ${width} pixels wide: ${words}`);
     if (screenshots) await page.screenshot({ path: join(screenshots, `${name}_${mode}_${width}.png`), fullPage: true });
     const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);

@@ -1,5 +1,5 @@
 /** What the columns are: of the recording that is shown, as the server last read it. */
-const mapView = { recording: 0, preview: null, findings: null, asked: 0 };
+const mapView = { recording: 0, preview: null, findings: null, failed: null, asked: 0 };
 
 const kSideWords = { joint: "of the joint", motor: "of its motor", current: "current of its motor", sensor: "of a sensor behind the gear" };
 const kPreviewPixels = 300;
@@ -60,16 +60,16 @@ function moreControls(signal, id, change) {
     const value = Number(factor.value);
     if (factor.value !== "" && value > 0) change({ scale: Math.sign(signal.scale) * value });
   });
-  const fold = element("details", { id: `${id}-more` }, element("summary", { id: `${id}-more-summary` }, "More", element("span", { class: "hidden-text" }, ` of ${words}`)));
-  fold.open = Math.abs(signal.scale) !== 1 || signal.of !== "joint" || signal.more !== "";
   const row = element("div", { class: "signal-more" });
   row.append(
     element("label", { for: `${id}-scale` }, "times ", factor),
     selectWith(`${id}-of`, `What ${words} is of`, signal.sides.map((side) => [side, kSideWords[side]]), signal.of, (of) => change({ of })),
   );
-  fold.append(row);
-  if (signal.more !== "") fold.append(element("p", { class: "remark" }, `As the robot file has it: ${signal.more}.`));
-  return fold;
+  if (signal.more !== "") row.append(element("span", { class: "soft" }, `and, as the robot file has it, ${signal.more}`));
+  // What is not as everywhere is seen without a click.
+  if (Math.abs(signal.scale) !== 1 || signal.of !== "joint" || signal.more !== "") return row;
+  const summary = element("summary", { id: `${id}-more-summary` }, "More", element("span", { class: "hidden-text" }, ` of ${words}`));
+  return element("details", { id: `${id}-more` }, summary, row);
 }
 
 /** What the curve should meet. */
@@ -133,8 +133,8 @@ function shownRecording(given) {
 function mapContent(given) {
   const { map, robot } = given;
   const shown = shownRecording(given);
-  const content = [element("h3", { class: "map-heading", id: "map-heading" }, "What the columns are"), shown];
-  content.push(element("p", {}, "Every signal as it is read: at the joint, in SI units. Where a curve does not look like the arm's, choose another column, its unit or its sign: the picture follows."));
+  const content = [element("h3", { class: "map-heading", id: "map-heading" }, "What the columns are")];
+  content.push(element("p", {}, "Every signal as it is read: at the joint, in SI units. Where a curve does not look like the arm's, choose another column, its unit or its sign: the picture follows."), shown);
   const fine = mapView.preview?.error === null;
   if (mapView.preview !== null && !fine) content.push(noteWith("bad", mapView.preview.error));
   const whole = mapView.findings?.faults.filter((fault) => fault.joint === null) ?? [];
@@ -148,7 +148,11 @@ function mapContent(given) {
 /** What the guess, the reader and the doctor have to say. */
 function saidContent(map) {
   const content = [];
-  if (mapView.findings !== null && mapView.findings.faults.length === 0) {
+  const { findings, failed } = mapView;
+  const why = failed ?? findings?.error ?? null;
+  if (why !== null) content.push(noteWith("warn", why));
+  else if (findings === null && mapView.preview?.error === null) content.push(element("p", { class: "soft" }, "The data doctor is looking at it …"));
+  if (findings !== null && findings.faults.length === 0) {
     content.push(noteWith("good", "The data doctor finds nothing wrong: units, signs, gaps, jumps and the like."));
   }
   const lines = [...map.notes, ...(mapView.preview?.remarks ?? [])];
@@ -167,7 +171,7 @@ function useContent(map, fine) {
   );
   if (spoilt) root.append(element("span", { class: "soft" }, "A session refuses what is marked red."));
   const words = map.is_of_robot
-    ? "The robot file's own [channels] read it: nothing is written."
+    ? "The robot file's own [channels] read it, and stay as they are."
     : "Use these writes this file, which every verb takes as --channels; or paste it into the robot file:";
   const text = map.text === null || map.is_of_robot ? "" : element("pre", { tabindex: "0", "aria-label": "The [channels] that are written" }, map.text.trim());
   return element("div", {}, root, element("p", { class: "remark" }, words), text);
@@ -182,6 +186,7 @@ async function showPreview() {
     const answer = await ask("GET", address(what)).catch((error) => ({ failed: error.message }));
     if (asked !== mapView.asked) return false;
     mapView[what] = answer.failed === undefined ? answer : null;
+    mapView.failed = answer.failed ?? null;
     showLoad();
     return answer.failed === undefined;
   };
