@@ -190,6 +190,7 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   await looks("load_used");
   await checkAnew(page, fault);
   await checkNames(page, fault);
+  await page.close();
   await end();
   const left = (await readdir(folder)).filter((name) => name.startsWith("offnominal-studio-"));
   if (left.length > 0) fault(`left behind: ${left}`);
