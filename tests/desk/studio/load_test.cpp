@@ -2,41 +2,33 @@
 // of them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <httplib.h>
 #include <sys/stat.h>
 
 #include <filesystem>
-#include <fstream>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "common/error.hpp"
 #include "common/refused.hpp"
-#include "desk/compare/recorded_arm.hpp"
+#include "desk/studio/strange_files.hpp"
 #include "desk/support/temporary_folder.hpp"
-#include "explain/explain.hpp"
-#include "log/csv_text.hpp"
 #include "log/read_log.hpp"
 #include "look/look.hpp"
 #include "look/look_report.hpp"
 #include "robot/channels.hpp"
 #include "robot/robot_file.hpp"
 #include "studio/intake.hpp"
-#include "studio/server.hpp"
 #include "studio/upload_folder.hpp"
 
 namespace {
 
-using nlohmann::json;
 using nlohmann::ordered_json;
 using offnominal::test::arm_description;
 using offnominal::test::content_of;
 using offnominal::test::put;
-using offnominal::test::record_arm;
+using offnominal::test::robot_text_of_arm;
+using offnominal::test::strange_csv;
 using offnominal::test::TemporaryFolder;
 using namespace offnominal::desk;
 using namespace offnominal::desk::studio;
@@ -45,45 +37,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::StartsWith;
-
-Log recorded(double amplitude) {
-  return record_arm(
-      {.duration_s = 12, .rate_hz = 250, .torque_noise = 0.05, .seed = 1, .amplitude = amplitude});
-}
-
-// As a stranger has it: other names, degrees, the torque of joint 2 with the other sign.
-std::string strange_csv(double amplitude) {
-  Log log = recorded(amplitude);
-  log.q *= 180 / std::numbers::pi;
-  log.tau.col(1) *= -1;
-  const std::string text = csv_text(log);
-  return "time,actual_pos_1,actual_pos_2,actual_vel_1,actual_vel_2,drive_torque_1,drive_torque_2" +
-         text.substr(text.find('\n'));
-}
-
-std::string robot_text_of_arm() { return robot_text(arm_description()); }
-
-// As the verb opens what its command line names.
-Input open_files(const SessionFiles& files) {
-  Input input;
-  input.robot = read_robot_file(files.robot.path);
-  ChannelOptions channels;
-  if (files.channels) channels.file = files.channels->path;
-  Treated treated;
-  for (const NamedFile& file : files.logs) {
-    treated.logs.push_back(read_log(file.path, input.robot, channels));
-    input.log_files.push_back(file.name);
-  }
-  for (const NamedFile& file : files.holdout) {
-    treated.holdout.push_back(read_log(file.path, input.robot, channels));
-    input.holdout_files.push_back(file.name);
-  }
-  treated.faults = treat_all({treated.logs, treated.holdout}, input.robot, {});
-  input.recordings = std::make_shared<const Treated>(std::move(treated));
-  input.robot_file = files.robot.name;
-  if (files.channels) input.options = " --channels " + files.channels->name;
-  return input;
-}
 
 const ordered_json& signal_in(const ordered_json& state, const std::string& quantity, int joint) {
   for (const ordered_json& signal : state.at("map").at("signals")) {
@@ -346,113 +299,6 @@ TEST_F(Loading, NamesFilesThatAreThereAlreadyAndWritesOverNone) {
   EXPECT_EQ(intake_.files().logs.at(0).name, "run.csv");
   EXPECT_THAT(intake_.files().commands_note, HasSubstr("where they lie"));
   EXPECT_EQ(intake_.files().robot.name, (folder_ / "arm_2.toml").string());
-}
-
-class LoadServer : public ::testing::Test {
- protected:
-  void TearDown() override {
-    server_.stop();
-    thread_.join();
-  }
-  [[nodiscard]] std::string at(const std::string& path) const {
-    const std::string address = server_.address();
-    return address.substr(address.find('/', std::string("http://").size())) + "api/" + path;
-  }
-  [[nodiscard]] httplib::Client client() const {
-    httplib::Client made("127.0.0.1", server_.port());
-    made.set_read_timeout(120);
-    return made;
-  }
-  [[nodiscard]] httplib::Headers own() const {
-    return {{"Origin", "http://127.0.0.1:" + std::to_string(server_.port())}};
-  }
-  std::pair<int, json> answer_of(const httplib::Result& result) {
-    EXPECT_TRUE(result);
-    if (!result) return {0, nullptr};
-    return {result->status, json::parse(result->body, nullptr, false)};
-  }
-  std::pair<int, json> give(const std::string& name, const std::string& content) {
-    return answer_of(
-        client().Post(at("load/files?name=" + name), own(), content, "application/octet-stream"));
-  }
-  std::pair<int, json> post(const std::string& path, const json& body) {
-    return answer_of(client().Post(at(path), own(), body.dump(), "application/json"));
-  }
-  json get(const std::string& path) { return answer_of(client().Get(at(path))).second; }
-
-  TemporaryFolder folder_;
-  Server server_{std::make_unique<Intake>(IntakeSettings{
-                     .folder = folder_.path(), .limits = {.file = 2'000'000, .all = 3'000'000}}),
-                 open_files, 0};
-  std::thread thread_{[this] { server_.run(); }};
-};
-
-TEST_F(LoadServer, BeginsWithNothingAndBecomesASession) {
-  EXPECT_EQ(
-      get("live"),
-      (json{
-          {"source", nullptr}, {"loaded", false}, {"takes_files", true}, {"has_campaign", false}}));
-  EXPECT_EQ(client().Get(at("state"))->status, 409);
-  EXPECT_EQ(post("load/session", json::object()).first, 409);
-  ASSERT_EQ(give("arm.toml", robot_text_of_arm()).first, 200);
-  ASSERT_EQ(give("run.csv", strange_csv(1)).first, 200);
-  ASSERT_EQ(give("more.csv", strange_csv(0.7)).first, 200);
-  ASSERT_EQ(post("load/held_out", {{"recording", 2}, {"held_out", true}}).first, 200);
-  ASSERT_EQ(post("load/signal", {{"quantity", "torque"}, {"joint", 2}, {"scale", -1}}).first, 200);
-  const json findings = get("load/findings?recording=1&pixels=300");
-  const auto [status, answer] = post("load/session", json::object());
-  ASSERT_EQ(status, 200) << answer;
-  EXPECT_EQ(answer.at("written").size(), 2U);
-  const json state = get("state");
-  EXPECT_EQ(state.at("held_out"), "recordings");
-  EXPECT_EQ(state.at("joints").at(1).at("now").at("fitted_percent"),
-            findings.at("joints").at(1).at("error_percent"));
-  // Once something was added, another session needs a word.
-  ASSERT_EQ(post("steps", {{"effect", "viscous_friction"}, {"joint", 2}}).first, 200);
-  EXPECT_TRUE(post("load/session", json::object()).second.at("confirm").get<bool>());
-  EXPECT_EQ(post("load/session", {{"replace", true}}).first, 200);
-  EXPECT_TRUE(get("state").at("steps").empty());
-}
-
-TEST_F(LoadServer, TakesLongBodiesForFilesAloneAndSaysTheLimit) {
-  const std::string long_body(20'000, ' ');
-  EXPECT_EQ(post("load/signal", {{"quantity", long_body}}).first, 413);
-  EXPECT_EQ(give("long.csv", long_body).first, 422);  // no recording, but let in
-  const auto [status, answer] = give("huge.csv", std::string(20'000'000, ' '));
-  EXPECT_EQ(status, 422);
-  EXPECT_THAT(answer.at("error").get<std::string>(), HasSubstr("1.91 MiB a file"));
-  EXPECT_EQ(client()
-                .Post(at("load/files?name=a.csv"),
-                      {{"Origin", "http://127.0.0.1:" + std::to_string(server_.port())},
-                       {"Content-Encoding", "gzip"}},
-                      "x", "application/octet-stream")
-                ->status,
-            415);
-  EXPECT_EQ(
-      client().Post(at("load/files?name=a.csv"), "t,q1\n", "application/octet-stream")->status,
-      403);
-  EXPECT_EQ(give("..%2Fa.csv", "x").first, 400);
-  EXPECT_EQ(give("a%00b.csv", "x").first, 400);
-  EXPECT_THAT(get("load").at("recordings"), IsEmpty());
-  EXPECT_EQ(get("load").at("limits").at("used"), 0);
-}
-
-TEST_F(LoadServer, RefusesWhatItDoesNotUnderstand) {
-  give("arm.toml", robot_text_of_arm());
-  give("run.csv", strange_csv(1));
-  for (const char* path : {"load/preview", "load/preview?recording=1&pixels=1",
-                           "load/preview?recording=9&pixels=300", "load/findings?pixels=300"}) {
-    EXPECT_EQ(client().Get(at(path))->status, 400) << path;
-  }
-  for (const json& body :
-       {json::array(), json{{"quantity", 3}}, json{{"quantity", "torque"}, {"joint", -1}},
-        json{{"quantity", "torque"}, {"joint", 0}, {"scale", 1}},
-        json{{"quantity", "torque"}, {"joint", 1}, {"scale", "1"}}}) {
-    EXPECT_EQ(post("load/signal", body).first, 400) << body;
-  }
-  EXPECT_EQ(client().Delete(at("load/files/9"), own())->status, 400);
-  EXPECT_EQ(client().Delete(at("load/files/1"), own())->status, 200);
-  EXPECT_TRUE(get("load").at("map").is_null());
 }
 
 }  // namespace
