@@ -5,7 +5,9 @@ include(GoogleTest)
 #                     [TOGETHER | BUS | REAL_TIME] [LONG])
 #
 # Builds one GoogleTest executable and registers each of its cases with CTest, or with TOGETHER all of
-# them as one test: for cases that share what takes long to compute. With BUS its cases need the CAN
+# them as one test: for cases that share what takes long to compute. Where the sanitizers watch, a
+# process begins so slowly that it takes a quarter of an executable's cases, and what cases share is
+# computed once for them. With BUS its cases need the CAN
 # buses vcan0, vcan1, can0 and can1, one case at a time; they carry the label `bus`, under which
 # `./dev test` runs all of them in one `./dev vcan --controller`. With REAL_TIME its cases need vcan0
 # and a machine that makes nothing late: they carry the label `real_time`, and run in one
@@ -42,7 +44,18 @@ function(offnominal_add_test)
   endif()
   if(arg_TOGETHER)
     add_test(NAME ${arg_NAME} COMMAND ${arg_NAME})
-    set_tests_properties(${arg_NAME} ${properties})
+    set_tests_properties(${arg_NAME} ${properties} ENVIRONMENT GTEST_BRIEF=1)
+    return()
+  endif()
+  if(OFFNOMINAL_SANITIZE AND NOT arg_BUS AND NOT arg_REAL_TIME)
+    set(parts 4)
+    foreach(part RANGE 1 ${parts})
+      math(EXPR index "${part} - 1")
+      set(name "${arg_NAME}.${part}_of_${parts}")
+      add_test(NAME ${name} COMMAND ${arg_NAME})
+      set_tests_properties(
+        ${name} ${properties} ENVIRONMENT "GTEST_BRIEF=1;GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${index}")
+    endforeach()
     return()
   endif()
   # Asked at test time: a test executable that cannot start is then a failed test, not a failed build.

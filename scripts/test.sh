@@ -58,22 +58,33 @@ check() {
   end
 }
 
-# One line per test of a JUnit report: pass, fail or skip, and its name. CTest calls a test that was
-# not built "skipped"; only a test that skipped itself is.
+# One line per test of a JUnit report: pass, fail or skip, how many cases that is, and its name. A test
+# that runs several cases of an executable says how many passed and were skipped. CTest calls a test that
+# was not built "skipped"; only a test that skipped itself is.
 verdicts() {
   awk '
+    function tell() {
+      if (status == "run") print "pass", (cases == "" ? 1 : cases), name
+      else if (status == "disabled") print "skip", 1, name
+      else if (status == "notrun") { if (skip != "") print skip, 1, name }
+      else {
+        if (cases > 0) print "pass", cases, name
+        print "fail", 1, name
+      }
+      if (left_out > 0) print "skip", left_out, name
+    }
     /<testcase / {
       match($0, /name="[^"]*"/)
       name = substr($0, RSTART + 6, RLENGTH - 7)
       match($0, /status="[^"]*"/)
       status = substr($0, RSTART + 8, RLENGTH - 9)
-      if (status == "run") print "pass", name
-      else if (status == "disabled") print "skip", name
-      else if (status != "notrun") print "fail", name
+      cases = skip = ""
+      left_out = 0
     }
-    /<skipped message=/ && status == "notrun" {
-      print (/message="SKIP_/ ? "skip" : "fail"), name
-    }' "$1"
+    /<skipped message=/ { skip = (/message="SKIP_/ ? "skip" : "fail") }
+    status != "notrun" && match($0, /\[  PASSED  \] [0-9]+ test/) { cases = substr($0, RSTART + 13) + 0 }
+    status != "notrun" && match($0, /\[  SKIPPED \] [0-9]+ test/) { left_out = substr($0, RSTART + 13) + 0 }
+    /<\/testcase>/ { tell() }' "$1"
 }
 
 # words_of REPORT NAME: the last that a test said, indented. What failed is told once more at the end: the
@@ -106,7 +117,7 @@ real_time_suite() {
 # run_suite PRESET TITLE JOBS SELECT LABEL [WHERE...]
 run_suite() {
   local preset="$1" title="$2" jobs="$3" select=("${@:4:2}") where=("${@:6}")
-  local report said verdict name outcome before=$failed
+  local report said verdict name cases outcome before=$failed
   report="$root/build/$preset/junit.xml"
   said="$root/build/$preset/said"
   begin "$title"
@@ -122,10 +133,10 @@ run_suite() {
     fail "$title did not run to the end (exit code $outcome): $(tail -n 25 "$said")"
     return
   fi
-  while read -r verdict name; do
+  while read -r verdict cases name; do
     case "$verdict" in
-      pass) passed=$((passed + 1)) ;;
-      skip) skipped=$((skipped + 1)) ;;
+      pass) passed=$((passed + cases)) ;;
+      skip) skipped=$((skipped + cases)) ;;
       *) fail "$preset: $name
 $(words_of "$report" "$name")" ;;
     esac

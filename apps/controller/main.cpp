@@ -244,8 +244,8 @@ int run(const Options& options) {
   loop.join();
   recorder.close();
   if (refused) std::rethrow_exception(refused);
-  const ControllerOutcome outcome{program->report(), options.bus, socket.state(),
-                                  socket.can_take_back(), recorder.lost()};
+  const ControllerOutcome outcome{program->report(), joint_names(robot),     options.bus,
+                                  socket.state(),    socket.can_take_back(), recorder.lost()};
   std::cout << (options.json ? json_text(to_json(outcome)) : text_of(outcome));
   const realtime::LoopReport& report = outcome.report.loop;
   const bool well =

@@ -19,6 +19,10 @@ nlohmann::ordered_json to_json(const ControllerOutcome& outcome) {
                                            : nlohmann::ordered_json(nullptr);
   json["first_joint"] = loop.first_joint < 0 ? nlohmann::ordered_json(nullptr)
                                              : nlohmann::ordered_json(loop.first_joint + 1);
+  json["isolated"] = nullptr;
+  if (outcome.report.isolated) {
+    json["isolated"] = to_json(*outcome.report.isolated, outcome.joint_names);
+  }
   json["ticks"] = loop.ticks;
   json["overruns"] = loop.overruns;
   json["ticks_left_out"] = loop.left_out;
@@ -60,6 +64,9 @@ std::string text_of(const ControllerOutcome& outcome) {
   row("detected", loop.detected ? fmt::format("{:.3f} s after arming", loop.detection_time_s)
                                 : std::string("nothing"));
   if (loop.first_joint >= 0) row("first joint off nominal", std::to_string(loop.first_joint + 1));
+  if (outcome.report.isolated) {
+    row("which fault", words_of(*outcome.report.isolated, outcome.joint_names));
+  }
   row("ticks", std::to_string(loop.ticks));
   row("overruns (ticks a period or more too late)", std::to_string(loop.overruns));
   row("ticks that they cost", std::to_string(loop.left_out));

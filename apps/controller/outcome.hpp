@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <offnominal/hal/bus/bus.hpp>
 #include <string>
+#include <vector>
 
 #include "loop/joint_program.hpp"
 
@@ -11,6 +12,7 @@ namespace offnominal::desk {
 
 struct ControllerOutcome {
   JointProgramReport report;
+  std::vector<std::string> joint_names;
   std::string bus_name;
   hal::BusState bus;
   bool can_take_back = false;

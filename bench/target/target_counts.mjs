@@ -12,10 +12,11 @@ const sevenJoints = { name: "arm7", joints: 7, hidden: 64 };
 const inTorqueSpace = { space: " torque", scalars: ["float"] };
 const twoByJoint = { ...twoJoints, ...inTorqueSpace, name: "two_link_torque" };
 const sevenByJoint = { ...sevenJoints, ...inTorqueSpace, name: "arm7_torque" };
+const sevenIsolating = { ...sevenByJoint, space: " torque, isolation", name: "arm7_isolation" };
 const boards = [
   {
     preset: "cortex-m7", machine: "mps2-an500", scalars: ["float", "double"],
-    robots: [twoJoints, sixJoints, sevenJoints, twoByJoint, sevenByJoint],
+    robots: [twoJoints, sixJoints, sevenJoints, twoByJoint, sevenByJoint, sevenIsolating],
   },
   { preset: "cortex-m4", machine: "mps2-an386", scalars: ["float"], robots: [twoJoints] },
 ];

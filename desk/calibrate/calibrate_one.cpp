@@ -33,8 +33,9 @@ void check_data(const CalibrationData& data, const std::string& left_out) {
     longest_s =
         std::max(longest_s, recording.period_s * static_cast<double>(fold.end - fold.begin));
     // Of no sample 0: a fifth of a few samples has none.
-    largest = std::max(largest, recording.error_norm.segment(fold.begin, fold.end - fold.begin)
-                                    .lpNorm<Eigen::Infinity>());
+    largest = std::max(
+        largest,
+        recording.error_norm.segment(fold.begin, fold.end - fold.begin).lpNorm<Eigen::Infinity>());
   }
   if (blocks < kFewestBlocks) {
     const bool fifths = !data.split.always.empty();

@@ -59,7 +59,7 @@ PlantSettings read_plant(const TomlTable& table) {
   return plant;
 }
 
-DetectorSettings read_detector(const TomlTable& table) {
+DetectorSettings read_detector(const TomlTable& table, const PlantSettings& plant) {
   const std::vector<std::string> kinds{"torque", "acceleration", "momentum_observer", "kdl"};
   DetectorSettings detector;
   const std::size_t kind = table.choice("kind", kinds);
@@ -73,6 +73,16 @@ DetectorSettings read_detector(const TomlTable& table) {
     }
     detector.filter_share = table.number("filter_share", at_most(not_negative("1"), 0.999));
   }
+  detector.accommodates = table.boolean("accommodates", false);
+  if (detector.accommodates && detector.kind != DetectorKind::kTorque) {
+    table.refuse("accommodates", "true of a detector of kind " + kinds[kind],
+                 "it with kind = \"torque\" alone, which says which fault it is", "leave it out");
+  }
+  if (detector.accommodates && plant.velocity == VelocityKind::kDerived) {
+    table.refuse("accommodates", "true beside velocity = \"derived\", which is known afterwards",
+                 "velocities that a controller has: \"observed\" or \"sent\"",
+                 "set [plant] velocity, or leave accommodates out");
+  }
   detector.name = table.text_or_empty("name");
   if (detector.name.empty()) {
     detector.name = fmt::format("{} {}", kinds[kind], shortest(detector.alpha_per_s));
@@ -80,19 +90,20 @@ DetectorSettings read_detector(const TomlTable& table) {
   return detector;
 }
 
-std::vector<DetectorSettings> read_detectors(const TomlTable& root, double period_s) {
+std::vector<DetectorSettings> read_detectors(const TomlTable& root, const PlantSettings& plant) {
   std::vector<DetectorSettings> detectors;
   std::set<std::string> names;
   for (const TomlTable& table :
-       root.tables("detector", {"kind", "name", "alpha_per_s", "filter_share"})) {
-    DetectorSettings detector = read_detector(table);
+       root.tables("detector", {"kind", "name", "alpha_per_s", "accommodates", "filter_share"})) {
+    DetectorSettings detector = read_detector(table, plant);
     if (!names.insert(detector.name).second) {
       table.refuse("", "a second detector called " + detector.name, "a name for each",
                    "give it a name");
     }
-    if (detector.alpha_per_s * period_s > 1) {
+    if (detector.alpha_per_s * plant.period_s > 1) {
       table.refuse("alpha_per_s", shortest(detector.alpha_per_s),
-                   "at most 1 / period_s = " + shortest(1 / period_s), "take a slower filter");
+                   "at most 1 / period_s = " + shortest(1 / plant.period_s),
+                   "take a slower filter");
     }
     detectors.push_back(std::move(detector));
   }
@@ -283,7 +294,7 @@ Campaign read_campaign(const std::filesystem::path& path) {
   campaign.middles_rad = read_middles(root, campaign.truth);
   campaign.model = model_of(campaign, robot);
   campaign.calibration = read_calibration(root);
-  campaign.detectors = read_detectors(root, campaign.plant.period_s);
+  campaign.detectors = read_detectors(root, campaign.plant);
   campaign.runs = read_runs(root);
   campaign.faults = read_faults(root, document, campaign);
   if (campaign.run_count() == 0) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "campaign/accommodation.hpp"
 #include "campaign/campaign.hpp"
 #include "log/log.hpp"
 
@@ -36,6 +37,8 @@ class Detector {
  public:
   virtual ~Detector() = default;
   [[nodiscard]] virtual Judged judge(const Log& log) const = 0;
+  /// Itself in the loop of a run; null: it does not accommodate.
+  [[nodiscard]] virtual std::unique_ptr<Accommodation> accommodation() const { return nullptr; }
   /// All numbers of its thresholds, as text with every digit.
   [[nodiscard]] virtual std::string thresholds() const = 0;
   /// What a reader of its results has to know of its calibration, one sentence each.

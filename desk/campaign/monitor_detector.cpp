@@ -20,8 +20,8 @@ Eigen::MatrixXd ratio_of(const Eigen::MatrixXd& error, const Eigen::MatrixXd& th
 
 class MonitorDetector final : public Detector {
  public:
-  MonitorDetector(RobotDescription robot, std::vector<std::string> notes)
-      : robot_(std::move(robot)) {
+  MonitorDetector(RobotDescription robot, bool accommodates, std::vector<std::string> notes)
+      : robot_(std::move(robot)), accommodates_(accommodates) {
     notes_ = std::move(notes);
   }
 
@@ -40,6 +40,11 @@ class MonitorDetector final : public Detector {
     return judged;
   }
 
+  [[nodiscard]] std::unique_ptr<Accommodation> accommodation() const override {
+    if (!accommodates_) return nullptr;
+    return std::make_unique<Accommodation>(robot_, robot_.estimator.period_s);
+  }
+
   // The robot file's text has every digit of the bound.
   [[nodiscard]] std::string thresholds() const override {
     const std::string text = robot_text(robot_);
@@ -49,6 +54,7 @@ class MonitorDetector final : public Detector {
 
  private:
   RobotDescription robot_;
+  bool accommodates_;
 };
 
 }  // namespace
@@ -62,11 +68,13 @@ std::unique_ptr<Detector> calibrated_monitor(const DetectorSettings& settings,
   if (settings.kind == DetectorKind::kTorque) {
     robot.estimator.space = EstimatorSpace::kTorque;
     JointsCalibration result = calibrate_joints(robot, request, logs, {});
-    return std::make_unique<MonitorDetector>(std::move(result.robot), std::move(result.objections));
+    return std::make_unique<MonitorDetector>(std::move(result.robot), settings.accommodates,
+                                             std::move(result.objections));
   }
   robot.estimator.space = EstimatorSpace::kAcceleration;
   Calibration result = calibrate(robot, request, logs, {});
-  return std::make_unique<MonitorDetector>(std::move(result.robot), std::move(result.objections));
+  return std::make_unique<MonitorDetector>(std::move(result.robot), false,
+                                           std::move(result.objections));
 }
 
 }  // namespace offnominal::desk::campaign

@@ -14,7 +14,7 @@ namespace offnominal::desk::campaign {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x6f666e63;  // "ofnc"
-constexpr std::int64_t kResultFormat = 2;
+constexpr std::int64_t kResultFormat = 3;
 
 constexpr const char* kSchema = R"(
 CREATE TABLE campaign (name TEXT NOT NULL, identity TEXT NOT NULL, runs INTEGER NOT NULL);
@@ -27,14 +27,16 @@ CREATE TABLE result (
   alarms INTEGER NOT NULL, peak_before REAL NOT NULL, peak_after REAL NOT NULL,
   tracking_before_rad REAL, tracking_after_rad REAL, ran_away_s REAL,
   named TEXT, named_joint INTEGER, named_size REAL, named_after_s REAL,
+  tracking_end_rad REAL, tracking_end_accommodated_rad REAL,
   PRIMARY KEY (run, detector)) WITHOUT ROWID;
 )";
 
 constexpr const char* kColumns =
     "run, detector, seed, kind, joint, size, judged_s, fault_s, detected, delay_s, first_joint, "
     "joint_right, early, alarms, peak_before, peak_after, tracking_before_rad, tracking_after_rad, "
-    "ran_away_s, named, named_joint, named_size, named_after_s";
-constexpr int kColumnCount = 23;
+    "ran_away_s, named, named_joint, named_size, named_after_s, tracking_end_rad, "
+    "tracking_end_accommodated_rad";
+constexpr int kColumnCount = 25;
 
 void require_results(Database& database) {
   const auto number = [&](const char* what) {
@@ -150,6 +152,8 @@ void insert(Database& database, const std::vector<Result>& rows) {
     statement.bind(at++, row.tracking_after_rad);
     statement.bind(at++, row.ran_away_s);
     bind_named(row.named, at, statement);
+    statement.bind(at + 4, row.tracking_end_rad);
+    statement.bind(at + 5, row.tracking_end_accommodated_rad);
     statement.step();
   }
 }
@@ -183,6 +187,8 @@ Result read_row(const Statement& at, const std::string& file) {
   row.tracking_after_rad = real(17);
   row.ran_away_s = real(18);
   if (!at.is_null(19)) row.named = read_named(at, 19, file);
+  row.tracking_end_rad = real(23);
+  row.tracking_end_accommodated_rad = real(24);
   return row;
 }
 

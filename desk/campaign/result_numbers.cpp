@@ -8,7 +8,7 @@
 namespace offnominal::desk::campaign {
 namespace {
 
-constexpr std::size_t kNumbers = 18;
+constexpr std::size_t kNumbers = 20;
 
 template <typename Value>
 double or_nan(const std::optional<Value>& value) {
@@ -47,7 +47,9 @@ std::vector<double> numbers_of(const Campaign& campaign, const Result& result) {
           result.named ? static_cast<double>(result.named->kind) : or_nan(std::optional<int>()),
           result.named ? static_cast<double>(result.named->joint) : 0,
           result.named ? result.named->size : 0,
-          result.named ? result.named->after_s : 0};
+          result.named ? result.named->after_s : 0,
+          or_nan(result.tracking_end_rad),
+          or_nan(result.tracking_end_accommodated_rad)};
 }
 
 Result result_of(const Campaign& campaign, const std::vector<double>& numbers) {
@@ -79,6 +81,8 @@ Result result_of(const Campaign& campaign, const std::vector<double>& numbers) {
     result.named = {static_cast<offnominal::FaultKind>(static_cast<int>(numbers[14])),
                     static_cast<int>(numbers[15]), numbers[16], numbers[17]};
   }
+  result.tracking_end_rad = real_of(numbers[18]);
+  result.tracking_end_accommodated_rad = real_of(numbers[19]);
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -112,6 +113,12 @@ std::vector<Result> CalibratedCampaign::run(std::int64_t number) const {
   for (std::size_t i = 0; i < detectors_.size(); ++i) {
     rows.push_back(score_of(campaign_, run, recorded, campaign_.detectors[i].name,
                             detectors_[i]->judge(recorded.log)));
+    const std::unique_ptr<Accommodation> loop =
+        run.fault == nullptr ? nullptr : detectors_[i]->accommodation();
+    if (!loop) continue;
+    const RecordedRun with = simulator_.accommodated(run, recorded, *loop);
+    rows.back().tracking_end_accommodated_rad =
+        with.ran_away_s ? std::numeric_limits<double>::infinity() : with.tracking_end_rad;
   }
   return rows;
 }

@@ -31,6 +31,7 @@ Result score_of(const Campaign& campaign, const Run& run, const RecordedRun& rec
   Result result = row_of(campaign, run, detector);
   result.tracking_before_rad = recorded.tracking_before_rad;
   result.tracking_after_rad = recorded.tracking_after_rad;
+  result.tracking_end_rad = recorded.tracking_end_rad;
   result.ran_away_s = recorded.ran_away_s;
   result.judged_s = static_cast<double>(judged.t_s.size()) * campaign.plant.period_s;
   double before_until_s = std::numeric_limits<double>::infinity();

@@ -34,6 +34,10 @@ struct Result {
   double peak_after = 0;
   std::optional<double> tracking_before_rad;  // RecordedRun
   std::optional<double> tracking_after_rad;
+  std::optional<double> tracking_end_rad;
+  // The same with the detector in the loop, infinite where the motion runs away then; none: it does
+  // not accommodate.
+  std::optional<double> tracking_end_accommodated_rad;
   std::optional<double> ran_away_s;
 
   friend bool operator==(const Result&, const Result&) = default;

@@ -88,14 +88,15 @@ class Controller {
     }
   }
 
+  // `beside`: N m, on top.
   [[nodiscard]] JointVector torque(const sim::DesiredMotion& wanted, const Sensors& is,
-                                   double t_s) const {
+                                   const JointVector& beside, double t_s) const {
     constexpr double kBandwidth = 30;  // rad/s
     const JointVector ddq = wanted.ddq + kBandwidth * kBandwidth * (wanted.q - is.q()) +
                             2 * kBandwidth * (wanted.dq - is.dq());
-    return inverse_dynamics<kRuntimeJoints, double>(model_, wanted.q, wanted.dq, ddq, t_s)
-        .cwiseMin(most_nm_)
-        .cwiseMax(-most_nm_);
+    const JointVector torque =
+        inverse_dynamics<kRuntimeJoints, double>(model_, wanted.q, wanted.dq, ddq, t_s) + beside;
+    return torque.cwiseMin(most_nm_).cwiseMax(-most_nm_);
   }
 
  private:
@@ -116,6 +117,28 @@ struct Job {
   const Fault* fault = nullptr;
   double duration_s = 0;
   std::uint64_t draw = 0;
+  Accommodation* loop = nullptr;
+  JointVector loop_noise_nm{};  // of the torques that it is told
+};
+
+// What a recording has beside what is: the same for a monitor in the loop, row by row.
+class Noise {
+ public:
+  explicit Noise(const Job& job)
+      : plant_(job.campaign.plant), draws_(job.campaign.seed, Stream::kNoise, job.draw) {}
+
+  template <typename Torques, typename Velocities>
+  void add(const JointVector& sigma_nm, Torques&& tau, Velocities&& dq) {
+    for (Index j = 0; j < sigma_nm.size(); ++j) {
+      tau[j] += sigma_nm[j] * draws_.gaussian();
+      if (plant_.velocity != VelocityKind::kSent || plant_.velocity_noise_rad_s == 0) continue;
+      dq[j] += plant_.velocity_noise_rad_s * draws_.gaussian();
+    }
+  }
+
+ private:
+  const PlantSettings& plant_;
+  Draws draws_;
 };
 
 // What is simulated beyond the end of a recording whose velocities are derived, and cut off then:
@@ -132,7 +155,9 @@ class Stand {
         controller_(job.campaign),
         motion_(drawn_motion(job)),
         plant_(plants.make(sim::on_trajectory(motion_.at(0)))),
-        sensors_(job.campaign, plant_->state()) {
+        sensors_(job.campaign, plant_->state()),
+        beside_(JointVector::Zero(job.campaign.truth.joint_count())),
+        loop_noise_(job) {
     const double period_s = job.campaign.plant.period_s;
     kept_ = static_cast<Index>(std::llround(job.duration_s / period_s));
     const Index ticks =
@@ -154,7 +179,8 @@ class Stand {
     }
     run.tracking_before_rad = before_.rms();
     run.tracking_after_rad = after_.rms();
-    run.log = recorded(rows);
+    run.tracking_end_rad = run.ran_away_s ? std::nullopt : end_.rms();
+    recorded(rows, run);
     return run;
   }
 
@@ -198,15 +224,29 @@ class Stand {
     const sim::DesiredMotion wanted = motion_.at(t_s);
     const sim::JointState is = plant_->state();
     sensors_.read(is.q, fault);
-    const JointVector told = controller_.torque(wanted, sensors_, t_s);
+    const JointVector told = controller_.torque(wanted, sensors_, beside_, t_s);
     if (row == 0) before_told_ = told;
     const double share = plant_->share_of_last_torque();
     q_.row(row) = sensors_.q();
     dq_.row(row) = velocities(is.dq, fault);
     tau_.row(row) = share * before_told_ + (1 - share) * told;
     (fault == nullptr ? before_ : after_).add(wanted.q - is.q);
+    if (is_at_end(t_s)) end_.add(wanted.q - is.q);
+    if (job_.loop != nullptr) listen(row);
     before_told_ = told;
     plant_->step(t_s, given_torque(told, fault), job_.campaign.plant.period_s);
+  }
+
+  [[nodiscard]] bool is_at_end(double t_s) const {
+    constexpr double kShare = 0.25;
+    const double behind_s = job_.duration_s - job_.campaign.runs.fault_s;
+    return job_.fault != nullptr && t_s >= job_.duration_s - kShare * behind_s;
+  }
+
+  void listen(Index row) {
+    Watch::Sample sample{q_.row(row), dq_.row(row), tau_.row(row)};
+    loop_noise_.add(job_.loop_noise_nm, sample.tau, sample.dq);
+    beside_ = job_.loop->after(sample, t_s_[row]);
   }
 
   [[nodiscard]] JointVector velocities(JointVector dq, const Fault* fault) const {
@@ -224,7 +264,7 @@ class Stand {
   }
 
   // As an owner's software records.
-  [[nodiscard]] Log recorded(Index rows) {
+  void recorded(Index rows, RecordedRun& run) {
     const PlantSettings& plant = job_.campaign.plant;
     const Index joints = q_.cols();
     Log log;
@@ -233,25 +273,21 @@ class Stand {
     log.q = q_.topRows(rows);
     log.dq = dq_.topRows(rows);
     log.tau = tau_.topRows(rows);
-    Draws noise(job_.campaign.seed, Stream::kNoise, job_.draw);
     const Index healthy =
         std::lower_bound(log.t_s.begin(), log.t_s.end(),
                          job_.fault == nullptr ? std::numeric_limits<double>::max()
                                                : job_.campaign.runs.fault_s - 1e-9) -
         log.t_s.begin();
-    const JointVector sigma_nm =
+    run.torque_noise_nm =
         plant.torque_noise * log.tau.topRows(healthy).cwiseAbs().colwise().maxCoeff().transpose();
+    Noise noise(job_);
     for (Index row = 0; row < rows; ++row) {
-      for (Index j = 0; j < joints; ++j) {
-        log.tau(row, j) += sigma_nm[j] * noise.gaussian();
-        if (plant.velocity != VelocityKind::kSent || plant.velocity_noise_rad_s == 0) continue;
-        log.dq(row, j) += plant.velocity_noise_rad_s * noise.gaussian();
-      }
+      noise.add(run.torque_noise_nm, log.tau.row(row), log.dq.row(row));
     }
     const bool derived = plant.velocity == VelocityKind::kDerived;
     log.dq_derived.assign(static_cast<std::size_t>(joints), derived);
     if (derived) derive_velocities(log);
-    return first_rows(std::move(log), std::min(rows, kept_));
+    run.log = first_rows(std::move(log), std::min(rows, kept_));
   }
 
   const Job& job_;
@@ -263,7 +299,9 @@ class Stand {
   Eigen::MatrixXd q_, dq_, tau_;
   Index kept_ = 0;  // of the ticks
   JointVector before_told_;
-  Squares before_, after_;
+  Squares before_, after_, end_;
+  JointVector beside_;  // N m, that the monitor in the loop has the drives give
+  Noise loop_noise_;
   bool begun_ = false;
   bool ended_ = false;
 };
@@ -296,6 +334,14 @@ Simulator::Simulator(const Campaign& campaign) : campaign_(campaign), plants_(ca
 RecordedRun Simulator::run(const Run& run) const {
   const Job job{campaign_, run.fault, run.duration_s, static_cast<std::uint64_t>(run.number)};
   return taken(job, plants_, fmt::format("run {}", run.number));
+}
+
+RecordedRun Simulator::accommodated(const Run& run, const RecordedRun& without,
+                                    Accommodation& loop) const {
+  const Job job{campaign_,      run.fault,
+                run.duration_s, static_cast<std::uint64_t>(run.number),
+                &loop,          without.torque_noise_nm};
+  return taken(job, plants_, fmt::format("run {}, accommodated", run.number));
 }
 
 Log Simulator::calibration_run(int number) const {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "campaign/accommodation.hpp"
 #include "campaign/campaign.hpp"
 #include "campaign/campaign_plant.hpp"
 #include "log/log.hpp"
@@ -15,6 +16,9 @@ struct RecordedRun {
   // Of all joints' distance to the motion they should make, rms, rad; none: there was no such time.
   std::optional<double> tracking_before_rad;
   std::optional<double> tracking_after_rad;
+  // The same over the last quarter of the time behind the fault.
+  std::optional<double> tracking_end_rad;
+  sim::JointVector torque_noise_nm;  // standard deviation in the log
   // When the plant's motion ran away under the fault: the recording ends there, s.
   std::optional<double> ran_away_s;
 };
@@ -31,6 +35,9 @@ class Simulator {
 
   /// Throws InputError where the motion runs away without a fault.
   [[nodiscard]] RecordedRun run(const Run& run) const;
+  /// The same run, sample for sample, until `loop` has its drives give something beside.
+  [[nodiscard]] RecordedRun accommodated(const Run& run, const RecordedRun& without,
+                                         Accommodation& loop) const;
   /// Fault-free; 0 <= number < calibration.runs.
   [[nodiscard]] Log calibration_run(int number) const;
 

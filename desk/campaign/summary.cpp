@@ -99,6 +99,38 @@ std::vector<Confusion> confusion_of(const std::vector<FaultLine>& lines) {
   return rows;
 }
 
+std::vector<Tracking> tracking_of(const std::vector<const Result*>& rows) {
+  std::vector<Tracking> all;
+  std::vector<std::vector<double>> ratios;
+  for (const Result* row : rows) {
+    if (!row->tracking_end_rad || !row->tracking_end_accommodated_rad) continue;
+    const double without = *row->tracking_end_rad;
+    const double with = *row->tracking_end_accommodated_rad;
+    const auto at = std::find_if(all.begin(), all.end(),
+                                 [&](const Tracking& one) { return one.kind == row->kind; });
+    const auto place = static_cast<std::size_t>(at - all.begin());
+    if (at == all.end()) {
+      all.push_back({row->kind});
+      ratios.emplace_back();
+    }
+    Tracking& one = all[place];
+    ++one.runs;
+    if (with <= 0.5 * without) ++one.halved;
+    if (with > 1.02 * without) ++one.worse;
+    one.without_rad += without * without;
+    one.with_rad += with * with;
+    ratios[place].push_back(with / without);
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Tracking& one = all[i];
+    one.without_rad = std::sqrt(one.without_rad / static_cast<double>(one.runs));
+    one.with_rad = std::sqrt(one.with_rad / static_cast<double>(one.runs));
+    one.ratio_median = *quantile_of(ratios[i], 0.5);
+    one.ratio_p95 = *quantile_of(ratios[i], 0.95);
+  }
+  return all;
+}
+
 // Lines of a kind in one place stand by ascending size.
 std::vector<SmallestSeen> smallest_of(const std::vector<FaultLine>& lines) {
   std::vector<SmallestSeen> all;
@@ -187,6 +219,7 @@ DetectorSummary summary_of_one(const DetectorRow& detector,
   }
   summary.smallest = smallest_of(summary.faults);
   summary.confusion = confusion_of(summary.faults);
+  summary.tracking = tracking_of(rows);
   add_roc(rows, summary);
   return summary;
 }

@@ -77,11 +77,25 @@ struct Confusion {
   std::int64_t right = 0;
 };
 
+// Tracking at the end of the runs with one kind of fault, with the detector in the loop over
+// without. Runs of which both are known.
+struct Tracking {
+  std::string kind;
+  std::int64_t runs = 0;
+  std::int64_t halved = 0;  // with it at most half as far off
+  std::int64_t worse = 0;   // more than 2 % farther off
+  double without_rad = 0;   // rms over the runs
+  double with_rad = 0;
+  double ratio_median = 1;  // with / without of a run
+  double ratio_p95 = 1;
+};
+
 struct DetectorSummary {
   std::string name;
   std::string notes;
   std::vector<FaultLine> faults;     // as the campaign's file has them
   std::vector<Confusion> confusion;  // in the order of the file; empty: it does not isolate
+  std::vector<Tracking> tracking;    // in the order of the file; empty: it does not accommodate
   double fault_free_s = 0;
   std::int64_t false_alarms = 0;                  // in them
   std::optional<Estimate> false_alarms_per_hour;  // none: there are no fault-free runs

@@ -53,6 +53,16 @@ ordered_json json_of(const FaultLine& line) {
           {"answer_median_s", or_null(line.answer_median_s)}};
 }
 
+ordered_json json_of(const Tracking& tracking) {
+  return {{"kind", tracking.kind},
+          {"runs", tracking.runs},
+          {"without_rad", tracking.without_rad},
+          {"with_rad", tracking.with_rad},
+          {"ratio", {{"median", tracking.ratio_median}, {"p95", tracking.ratio_p95}}},
+          {"halved", tracking.halved},
+          {"worse", tracking.worse}};
+}
+
 ordered_json json_of(const RocPoint& point) {
   return {{"threshold_scale", point.scale},
           {"false_alarms_per_hour", point.false_alarms_per_hour},
@@ -71,6 +81,8 @@ ordered_json json_of(const DetectorSummary& detector) {
                         {"size", or_null(one.size)},
                         {"largest_tried", one.largest}});
   }
+  ordered_json tracking = ordered_json::array();
+  for (const Tracking& one : detector.tracking) tracking.push_back(json_of(one));
   ordered_json roc = ordered_json::array();
   for (const RocPoint& point : detector.roc) roc.push_back(json_of(point));
   return {
@@ -83,6 +95,7 @@ ordered_json json_of(const DetectorSummary& detector) {
       {"false_alarms_per_hour",
        detector.false_alarms_per_hour ? json_of(*detector.false_alarms_per_hour) : ordered_json()},
       {"seen_in_95_of_100", smallest},
+      {"accommodated", tracking},
       {"roc", roc}};
 }
 

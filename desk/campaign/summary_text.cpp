@@ -84,6 +84,26 @@ std::string answers_text(const DetectorSummary& detector) {
   return text;
 }
 
+std::string tracking_text(const DetectorSummary& detector) {
+  if (detector.tracking.empty()) return {};
+  const TextTable table({{"accommodated", -24},
+                         {"runs", 5},
+                         {"rms rad", 9},
+                         {"with", 9},
+                         {"ratio", 7},
+                         {"p95", 7},
+                         {"halved", 7},
+                         {"worse", 6}},
+                        "  ");
+  std::string text = table.heading();
+  for (const Tracking& one : detector.tracking) {
+    text += table.row(one.kind, one.runs, fmt::format("{:.5f}", one.without_rad),
+                      fmt::format("{:.5f}", one.with_rad), fmt::format("{:.2f}", one.ratio_median),
+                      fmt::format("{:.2f}", one.ratio_p95), one.halved, one.worse);
+  }
+  return text;
+}
+
 std::string false_alarms_text(const DetectorSummary& detector) {
   if (!detector.false_alarms_per_hour) return "  no fault-free runs\n";
   const Estimate& rate = *detector.false_alarms_per_hour;
@@ -125,7 +145,8 @@ std::string text_of(const Summary& summary) {
   for (const DetectorSummary& detector : summary.detectors) {
     text += fmt::format("\n{}\n", detector.name);
     text += faults_text(detector) + false_alarms_text(detector) + quiet_text(detector) +
-            smallest_text(detector) + confusion_text(detector) + answers_text(detector);
+            smallest_text(detector) + confusion_text(detector) + answers_text(detector) +
+            tracking_text(detector);
     if (!detector.notes.empty()) text += "  note: " + detector.notes + "\n";
   }
   return text;

@@ -252,6 +252,7 @@ std::string head_text(const RobotDescription& robot, const ModelHeaderOptions& o
       "#pragma once\n\n#include <algorithm>\n#include <array>\n#include <concepts>\n"
       "#include <limits>\n#include <offnominal/control/arming.hpp>\n"
       "#include <offnominal/control/computed_torque.hpp>\n"
+      "#include <offnominal/diagnosis/isolation_choice.hpp>\n"
       "#include <offnominal/monitor.hpp>\n#include <offnominal/version.hpp>\n";
   // Without [drives] the core's headers are all that it takes.
   if (robot.drives) text += drive_includes(protocol_of(*robot.drives));
@@ -274,6 +275,7 @@ std::string head_text(const RobotDescription& robot, const ModelHeaderOptions& o
   const bool memory = std::any_of(robot.effects.begin(), robot.effects.end(),
                                   [](const RobotEffect& effect) { return remembers(effect.kind); });
   const bool by_joint = robot.estimator.space == EstimatorSpace::kTorque;
+  const bool isolates = robot.estimator.isolation;
   return text +
          fmt::format("inline constexpr std::array<const char*, kJoints> kJointNames{{{}}};\n\n",
                      names) +
@@ -284,6 +286,10 @@ std::string head_text(const RobotDescription& robot, const ModelHeaderOptions& o
                      by_joint ? "Thresholds joint by joint, N m or N."
                               : "One threshold of the norm over all joints.",
                      by_joint ? "TorqueSpace" : "AccelerationSpace") +
+         fmt::format("// {}\nusing Isolates = offnominal::{};\n",
+                     isolates ? "After a detection the controller says which fault it is."
+                              : "The controller says where, not which fault it is.",
+                     isolates ? "WithIsolation" : "WithoutIsolation") +
          "// Takes kMonitorConfig<Scalar>.\ntemplate <typename Scalar>\n"
          "using Monitor = offnominal::Monitor<kJoints, kHiddenUnits, Scalar, Memory, Space>;\n\n";
 }

@@ -63,7 +63,7 @@ Live::Live(LiveInput input, std::unique_ptr<Feed> feed)
       history_(input_.robot.joints.size(), judged_.size(), rows_of(input_.robot)),
       strip_(judged_.size()) {
   if (!has_bound_) watched_.bound = no_bound(watched_);
-  for (const RobotJoint& joint : input_.robot.joints) names_.joint_names.push_back(joint.name);
+  names_ = joint_names(input_.robot);
   period_s_ = watched_.estimator.period_s;
   set_up();
   now_.beyond.assign(judged_.size(), false);

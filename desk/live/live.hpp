@@ -142,7 +142,7 @@ class Live {
   LiveInput input_;
   bool has_bound_ = false;
   std::vector<Judged> judged_;
-  Replay names_;  // of joints, for words
+  std::vector<std::string> names_;  // of joints, for words
   std::unique_ptr<Feed> feed_;
   Bench* bench_ = nullptr;  // the same, where it is simulated
 

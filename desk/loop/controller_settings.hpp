@@ -36,6 +36,12 @@ struct ControllerSettings {
 /// smaller network.
 inline constexpr int kControllerCapacity = 128;
 
+/// Of every controller here: where a monitor can be asked which fault it is, the robot file says
+/// whether it is.
+template <typename Space>
+using IsolationIn =
+    std::conditional_t<std::is_same_v<Space, TorqueSpace>, WithIsolation, WithoutIsolation>;
+
 namespace detail {
 
 // What a velocity that is wrong by `error`, rad/s or m/s, on any joint adds to a bound.
@@ -63,6 +69,7 @@ template <int N, typename Scalar, typename Space>
                                     gains_of<N, Scalar>(robot), arming_of<N, Scalar>(robot));
   config.safe_mode = settings.safe_mode;
   config.stop_at_detection = settings.stop_at_detection;
+  config.isolates = robot.estimator.isolation;
   if (!settings.accommodate) config.monitor.max_compensation.fill(Scalar(0));
   if (settings.max_acceleration) {
     sim::EncoderConfig encoder;
@@ -78,10 +85,11 @@ template <int N, typename Scalar, typename Space>
 }
 
 /// Throws InputError where the controller refuses what the robot file says.
-template <int N, int L, typename Scalar, typename Memory, typename Space>
-void create_controller(const RobotDescription& robot, const ControllerSettings& settings,
-                       controller::JointController<N, L, Scalar, Memory, Space>& controller) {
-  using Controller = controller::JointController<N, L, Scalar, Memory, Space>;
+template <int N, int L, typename Scalar, typename Memory, typename Space, typename Isolates>
+void create_controller(
+    const RobotDescription& robot, const ControllerSettings& settings,
+    controller::JointController<N, L, Scalar, Memory, Space, Isolates>& controller) {
+  using Controller = controller::JointController<N, L, Scalar, Memory, Space, Isolates>;
   const double least_ramp_s = controller::kLeastRampPeriods * robot.estimator.period_s;
   if (robot.arming.ramp_s + robot.estimator.period_s / 2 < least_ramp_s) {
     throw InputError({.file = "robot " + robot.name,

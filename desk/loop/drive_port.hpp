@@ -35,6 +35,7 @@ class DrivePort {
   virtual std::size_t outgoing(std::span<const hal::TorqueCommand> commands,
                                const hal::Heartbeat& heartbeat, std::span<hal::Frame> into) = 0;
   virtual bool report(const hal::Diagnosis& found, hal::Frame& into) = 0;
+  virtual bool report(const hal::FaultReport& fault, hal::Frame& into) = 0;
   [[nodiscard]] virtual hal::Microseconds drive_max_age_us() const = 0;
   [[nodiscard]] virtual bool stop_seen() const = 0;
   virtual void clear_stop() = 0;
@@ -57,6 +58,9 @@ class DrivePortOf final : public DrivePort {
   }
   bool report(const hal::Diagnosis& found, hal::Frame& into) override {
     return drives_.report(found, into);
+  }
+  bool report(const hal::FaultReport& fault, hal::Frame& into) override {
+    return drives_.report(fault, into);
   }
   [[nodiscard]] hal::Microseconds drive_max_age_us() const override {
     return drives_.drive_max_age_us();

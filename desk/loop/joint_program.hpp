@@ -7,11 +7,13 @@
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/realtime/control_loop.hpp>
 #include <offnominal/realtime/privileges.hpp>
+#include <optional>
 #include <string>
 
 #include "loop/bus_port.hpp"
 #include "loop/controller_settings.hpp"
 #include "loop/motion_at.hpp"
+#include "robot/isolated_fault.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::desk {
@@ -42,6 +44,7 @@ struct JointProgramReport {
   realtime::LoopReport loop;
   realtime::Grant grant;
   hal::DriveCounts counts;
+  std::optional<IsolatedFault> isolated;  // the newest answer, of a robot that asks for one
 };
 
 class JointProgram {

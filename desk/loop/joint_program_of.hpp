@@ -21,8 +21,8 @@ template <typename Space>
 class JointProgramOf final : public JointProgram {
  public:
   using Scalar = float;
-  using Controller =
-      controller::JointController<kRuntimeJoints, kControllerCapacity, Scalar, WithMemory, Space>;
+  using Controller = controller::JointController<kRuntimeJoints, kControllerCapacity, Scalar,
+                                                 WithMemory, Space, IsolationIn<Space>>;
 
   explicit JointProgramOf(const JointProgramSetup& setup)
       : setup_(setup),
@@ -42,6 +42,11 @@ class JointProgramOf final : public JointProgram {
                                      setup_.recorder, setup_.panel, *data_})
                        .run();
     report_.counts = drives_->counts();
+    const realtime::LoopReport& loop = report_.loop;
+    if (loop.isolated.time_s > 0) {
+      report_.isolated = isolated_fault_of(loop.isolated, joint_types(setup_.robot),
+                                           loop.detection_time_s, loop.isolated.time_s);
+    }
   }
 
   [[nodiscard]] const JointProgramReport& report() const override { return report_; }
@@ -58,7 +63,7 @@ class JointProgramOf final : public JointProgram {
 
   template <typename ReferenceAt>
   using Loop = realtime::ControlLoop<kRuntimeJoints, kControllerCapacity, Scalar, Bus, DrivePort,
-                                     TickTimer, ReferenceAt, Space>;
+                                     TickTimer, ReferenceAt, Space, IsolationIn<Space>>;
 
   // Joints at rest, where they can be and a frame can say it, away from the ends that its counts
   // may round to. At 0 where that is such a place.

@@ -7,12 +7,14 @@
 #include <offnominal/hal/drive_description.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/hal/messages.hpp>
+#include <optional>
 
 #include "common/precision.hpp"
 #include "loop/bus_port.hpp"
 #include "loop/controller_settings.hpp"
 #include "loop/motion_at.hpp"
 #include "offnominal/sim/joint_state.hpp"
+#include "robot/isolated_fault.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::desk {
@@ -32,7 +34,8 @@ struct ControllerView {
   sim::JointVector thresholds;  // N m or N
   int first_joint = -1;         // that was detected first, from 0
   double weight_norm = 0;
-  bool detected = false;  // latched
+  bool detected = false;                  // latched
+  std::optional<IsolatedFault> isolated;  // once there is an answer, of a robot that asks for one
 };
 
 /// Counted since the start.

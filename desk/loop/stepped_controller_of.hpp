@@ -14,8 +14,8 @@ namespace offnominal::desk {
 template <typename Scalar, typename Space>
 class SteppedControllerOf final : public SteppedController {
  public:
-  using Controller =
-      controller::JointController<kRuntimeJoints, kControllerCapacity, Scalar, WithMemory, Space>;
+  using Controller = controller::JointController<kRuntimeJoints, kControllerCapacity, Scalar,
+                                                 WithMemory, Space, IsolationIn<Space>>;
   explicit SteppedControllerOf(const SteppedSetup& setup)
       : robot_(setup.robot),
         settings_(setup.settings),
@@ -57,6 +57,11 @@ class SteppedControllerOf final : public SteppedController {
       view.error = doubles(data_->output.error);
       view.thresholds = doubles(data_->output.thresholds);
       if (view.detected) view.first_joint = data_->output.detector.first_joint;
+      const FaultDiagnosis<Scalar>& found = data_->isolation.diagnosis;
+      if (data_->isolation.triggered && found.time_s > 0) {
+        view.isolated = isolated_fault_of(found, joint_types(robot_),
+                                          data_->output.detector.detection_time_s, found.time_s);
+      }
     }
     return view;
   }

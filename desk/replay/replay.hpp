@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
-#include <offnominal/diagnosis/fault_kind.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "log/log.hpp"
 #include "report/page.hpp"
+#include "robot/isolated_fault.hpp"
 #include "robot/robot.hpp"
 
 // The on-board monitor over a recording, tick by tick, in double precision.
@@ -49,21 +49,6 @@ struct JointReplay {
   double max_error_to_threshold = 0;
   std::optional<double> detection_time_s;  // its first alarm, time of the recording
   std::vector<Alarm> alarms;
-};
-
-// What isolation says after a detection of a monitor that judges joint by joint; fields as of the
-// core's FaultDiagnosis.
-struct IsolatedFault {
-  FaultKind kind = FaultKind::kUnknown;
-  int joint = 0;  // from 0; of kUnknown none
-  double size = 0;
-  double deviation = 0;
-  std::string unit;  // of both; empty where the kind has no size
-  double confidence = 0;
-  double unexplained = 0;
-  double detection_time_s = 0;  // time of the recording
-  double time_s = 0;            // of the answer
-  bool decided = false;         // otherwise the recording ended, or the monitor began afresh
 };
 
 // With EstimatorSpace::kTorque error holds residuals alpha (p - omega) in N m or N, psi_hat too,
@@ -121,10 +106,6 @@ struct Replay {
 
 // What the replay says, in one sentence or two.
 [[nodiscard]] std::string words_of(const Replay& replay);
-
-// What it is, "Joint 4 (elbow): friction up by 3.00 N m (2.80 to 3.20), 0.32 s after the detection,
-// confidence 99 %".
-[[nodiscard]] std::string words_of(const IsolatedFault& fault, const Replay& replay);
 
 // How the largest ratio is called: of |e| and mu, or of residual and threshold, joint by joint.
 [[nodiscard]] std::string ratio_name(const Replay& replay);

@@ -38,19 +38,7 @@ nlohmann::json time_or_null(const std::optional<double>& time_s) {
 nlohmann::json faults_json(const Replay& replay) {
   nlohmann::json faults = nlohmann::json::array();
   for (const IsolatedFault& fault : replay.faults) {
-    const bool has_joint = fault.kind != FaultKind::kUnknown;
-    const bool has_size = !fault.unit.empty();
-    faults.push_back({{"kind", name_of(fault.kind)},
-                      {"joint", has_joint ? nlohmann::json(fault.joint + 1) : nlohmann::json()},
-                      {"size", has_size ? finite_or_null(fault.size) : nlohmann::json()},
-                      {"deviation", has_size ? finite_or_null(fault.deviation) : nlohmann::json()},
-                      {"unit", has_size ? nlohmann::json(fault.unit) : nlohmann::json()},
-                      {"confidence", fault.confidence},
-                      {"unexplained", fault.unexplained},
-                      {"detection_time_s", fault.detection_time_s},
-                      {"time_s", fault.time_s},
-                      {"decided", fault.decided},
-                      {"words", words_of(fault, replay)}});
+    faults.push_back(to_json(fault, replay.joint_names));
   }
   return faults;
 }

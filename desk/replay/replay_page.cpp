@@ -157,7 +157,7 @@ Table fault_table(const Replay& replay) {
                    {"confidence", "1", ".2f"},
                    {"unexplained", "1", ".2f"}};
   for (const IsolatedFault& fault : replay.faults) {
-    table.rows.push_back({fault.detection_time_s, words_of(fault, replay), fault.time_s,
+    table.rows.push_back({fault.detection_time_s, words_of(fault, replay.joint_names), fault.time_s,
                           fault.confidence, fault.unexplained});
   }
   return table;

@@ -75,16 +75,7 @@ class FaultNamer<TorqueSpace> {
   [[nodiscard]] std::optional<IsolatedFault> answer() const {
     const FaultDiagnosis<double>& said = state_->diagnosis;
     if (!state_->triggered || said.time_s <= 0) return std::nullopt;
-    return IsolatedFault{said.kind,
-                         said.joint,
-                         said.size,
-                         said.deviation,
-                         size_unit_of(said.kind, types_[said.joint]),
-                         said.confidence,
-                         said.unexplained,
-                         detection_s_,
-                         answer_s_,
-                         said.decided};
+    return isolated_fault_of(said, types_, detection_s_, answer_s_);
   }
 
  private:
@@ -101,7 +92,7 @@ class FaultNamer<TorqueSpace> {
 template <typename Space>
 MonitorOutput<kRuntimeJoints, double, Space> first_output(std::size_t joints) {
   MonitorOutput<kRuntimeJoints, double, Space> output;
-  size_for(joints, output.error, output.psi_hat);
+  size_for(joints, output.error, output.psi_hat, output.compensation.torque);
   if constexpr (std::is_same_v<Space, TorqueSpace>) {
     size_for(joints, output.thresholds, output.detector.joints);
   }
@@ -196,6 +187,7 @@ class WatchOf final : public Watch {
     output_.error = at_start_.error;
     output_.error_norm = at_start_.error_norm;
     output_.psi_hat = at_start_.psi_hat;
+    output_.compensation = at_start_.compensation;
     output_.detector = at_start_.detector;
   }
 
@@ -204,6 +196,7 @@ class WatchOf final : public Watch {
     said_.error_norm = output_.error_norm;
     said_.threshold = output_.threshold;
     said_.psi_hat = output_.psi_hat;
+    said_.compensation = output_.compensation.torque;
     said_.weight_norm = std::sqrt(state_->estimator.theta_squared_norm);
     said_.level = output_.detector.level;
     said_.latched = output_.detector.latched;

@@ -25,11 +25,12 @@ inline constexpr std::int64_t kBorneInARow = 2;
 
 // What the monitor says of the last sample that it accepted; one number per joint in every vector.
 struct Watched {
-  Vector<kRuntimeJoints, double> error;       // e, rad/s or m/s; in torque space N m or N
-  double error_norm = 0;                      // |e|; in torque space of the joint nearest to its
-  double threshold = 0;                       //   threshold, as this
-  Vector<kRuntimeJoints, double> thresholds;  // of each joint; empty where there is one of all
-  Vector<kRuntimeJoints, double> psi_hat;     // rad/s^2 or m/s^2; in torque space N m or N
+  Vector<kRuntimeJoints, double> error;         // e, rad/s or m/s; in torque space N m or N
+  double error_norm = 0;                        // |e|; in torque space of the joint nearest to its
+  double threshold = 0;                         //   threshold, as this
+  Vector<kRuntimeJoints, double> thresholds;    // of each joint; empty where there is one of all
+  Vector<kRuntimeJoints, double> psi_hat;       // rad/s^2 or m/s^2; in torque space N m or N
+  Vector<kRuntimeJoints, double> compensation;  // that would take it away, N m or N
   double weight_norm = 0;
   bool level = false;                                               // beyond the threshold now
   std::array<bool, static_cast<std::size_t>(kMaxJoints)> levels{};  // of each, in torque space

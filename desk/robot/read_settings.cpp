@@ -113,7 +113,7 @@ const std::vector<std::string>& estimator_keys() {
       "period_s",      "alpha_per_s",   "hidden_units",
       "learning_rate", "weight_radius", "initial_weight_range",
       "seed",          "dead_zone",     "torque_signal",
-      "space",         "source"};
+      "space",         "isolation",     "source"};
   return keys;
 }
 
@@ -173,6 +173,14 @@ EstimatorSettings read_estimator(const TomlTable& table) {
     settings.space = table.choice("space", {"acceleration", "torque"}) == 0
                          ? EstimatorSpace::kAcceleration
                          : EstimatorSpace::kTorque;
+  }
+  settings.isolation = table.boolean("isolation", false);
+  if (settings.isolation && settings.space != EstimatorSpace::kTorque) {
+    table.refuse(
+        "isolation", "true beside a monitor that judges all joints by one norm",
+        "false, or estimator.space = \"torque\"",
+        "set estimator.space to \"torque\", which says of each joint what it has, or leave "
+        "isolation out");
   }
   settings.source = table.text_or_empty("source");
   return settings;

@@ -51,6 +51,7 @@ enum class EstimatorSpace : std::uint8_t { kAcceleration, kTorque };
 struct EstimatorSettings : EstimatorConfig<double> {
   EstimatorSpace space = EstimatorSpace::kAcceleration;
   TorqueSignal torque_signal = TorqueSignal::kSampled;
+  bool isolation = false;   // a controller asks which fault it is; in kTorque alone
   std::string source = {};  // where the numbers come from, free text; empty: not said
 };
 

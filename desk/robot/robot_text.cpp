@@ -157,6 +157,7 @@ void write_estimator(Writer& out, const EstimatorSettings& settings) {
   out.value("torque_signal",
             quoted(settings.torque_signal == TorqueSignal::kSampled ? "sampled" : "held"));
   if (settings.space == EstimatorSpace::kTorque) out.value("space", quoted("torque"));
+  if (settings.isolation) out.value("isolation", "true");
   out.text_if_any("source", settings.source);
 }
 

@@ -158,6 +158,8 @@ SilResult gather(const RobotDescription& robot, const Scenario& scenario,
   result.faults = scenario.faults;
   result.state = state_named(recordings.controller.at("state"));
   result.fault = fault_of(recordings.controller);
+  const nlohmann::json& isolated = recordings.controller.at("isolated");
+  if (!isolated.is_null()) result.isolated = isolated_fault_of(isolated);
   result.overruns = recordings.controller.at("overruns");
   result.real_time = time_of(recordings.controller, recordings.plant);
   result.run_time_s = static_cast<double>(result.real_time->ticks) * period_s;

@@ -79,6 +79,7 @@ class LockStepLoop {
     result.state = ends_.controller().state();
     result.fault = ends_.controller().fault();
     result.overruns = totals.overruns;
+    result.isolated = ends_.controller().view().isolated;
     result.run_time_s = static_cast<double>(ends_.now_us()) * 1e-6;
   }
 

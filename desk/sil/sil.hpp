@@ -12,6 +12,7 @@
 #include "loop/motion_at.hpp"
 #include "offnominal/sim/bus/fault_event.hpp"
 #include "paper/run_result.hpp"
+#include "robot/isolated_fault.hpp"
 #include "robot/robot.hpp"
 #include "sil/wire.hpp"
 
@@ -69,6 +70,7 @@ struct SilResult {
   std::optional<double> time_to_safe_state_s;
   std::optional<double> ended_early_s;  // since arming; none: the run went to its end
   std::uint64_t overruns = 0;
+  std::optional<IsolatedFault> isolated;    // the controller's last answer
   double run_time_s = 0;                    // of the bus, from the first tick to the last
   std::optional<RealTimeReport> real_time;  // none for a run in lock-step
 };

@@ -48,6 +48,12 @@ std::string joints_off_nominal(const paper::ExperimentResult& run) {
   return words.empty() ? "none" : words;
 }
 
+std::vector<std::string> names_in(const paper::ExperimentResult& run) {
+  std::vector<std::string> names;
+  for (const paper::JointRun& joint : run.joints) names.push_back(joint.name);
+  return names;
+}
+
 void add_rows_of(const RealTimeReport& time, std::vector<Row>& rows) {
   rows.push_back({"ticks of the controller", std::to_string(time.ticks)});
   rows.push_back({"latest begin of a tick", fmt::format("{} us", time.worst_late_us)});
@@ -94,6 +100,10 @@ std::vector<Row> rows_of(const SilResult& result) {
         run.first_joint ? joint_words(run, static_cast<std::size_t>(*run.first_joint)) : "none";
     rows.insert(rows.begin() + kBehindDetected, {{"first joint off nominal", first},
                                                  {"joints off nominal", joints_off_nominal(run)}});
+    if (result.isolated) {
+      rows.insert(rows.begin() + kBehindDetected + 2,
+                  {"which fault", words_of(*result.isolated, names_in(run))});
+    }
   }
   if (result.real_time) add_rows_of(*result.real_time, rows);
   return rows;
@@ -130,6 +140,10 @@ ordered_json to_json(const SilResult& result) {
   json["controller_state"] = name_of(result.state);
   json["controller_fault"] = controller::name_of(result.fault);
   json["ended_early_s"] = nullable(result.ended_early_s);
+  json["isolated"] =
+      result.isolated
+          ? ordered_json(offnominal::desk::to_json(*result.isolated, names_in(result.run)))
+          : ordered_json(nullptr);
   if (!result.real_time) return json;
   const RealTimeReport& time = *result.real_time;
   json["real_time"] = {{"ticks", time.ticks},

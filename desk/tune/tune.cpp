@@ -127,6 +127,7 @@ void learn(const LearningTrials& trials, EstimatorSettings settings, Tuned& tune
   settings.hidden_units = taken.hidden_units;
   settings.learning_rate = taken.learning_rate;
   settings.weight_radius = radius_for(settings, tuned.robot.joint_count(), taken.weight_norm);
+  settings.isolation = true;
   tuned.robot.estimator = settings;
 }
 
@@ -157,6 +158,9 @@ std::vector<EstimatorLine> lines_of(const Tuned& tuned, const TuneRequest& reque
   const auto reason = [&](const std::string& words) { return tuned.before.chosen ? kept : words; };
   std::vector<EstimatorLine> lines;
   lines.push_back({"space", "\"torque\"", "joint by joint"});
+  lines.push_back({"isolation", "true",
+                   "the controller says which fault it is, and compensates only for what that is "
+                   "right for"});
   lines.push_back({"alpha_per_s", shortest_real(settings.alpha), reasons_of_alpha(tuned, request)});
   lines.push_back(
       {"hidden_units", std::to_string(settings.hidden_units),

@@ -108,6 +108,9 @@ class MarkedDrives {
   [[nodiscard]] bool report(const hal::Diagnosis& found, hal::Frame& into) {
     return drives_.report(found, into);
   }
+  [[nodiscard]] bool report(const hal::FaultReport& fault, hal::Frame& into) {
+    return drives_.report(fault, into);
+  }
   [[nodiscard]] hal::Microseconds drive_max_age_us() const { return drives_.drive_max_age_us(); }
   [[nodiscard]] bool stop_seen() const { return drives_.stop_seen(); }
   void clear_stop() { drives_.clear_stop(); }

@@ -57,10 +57,11 @@ bool divides(const Frame& frame, const Address& address, std::size_t index) {
 }
 
 // What is decoded is what was encoded, to the bit.
-void check_diagnosis(const Frame& frame, const Address& address) {
-  if (address.kind != MessageKind::kDiagnosis) return;
+template <typename Message>
+void check_report(MessageKind kind, const Frame& frame, const Address& address) {
+  if (address.kind != kind) return;
   const std::uint16_t id = data_id_of(address.kind, address.first_node);
-  Diagnosis found;
+  Message found;
   std::uint8_t counter = 0;
   if (decode(record_in(frame, 0), id, found, counter) != Status::kOk) return;
   Record again{};
@@ -114,7 +115,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Address address;
     const bool ours = address_of(frame, address) == Status::kOk;
     if (!ours && (status == Status::kOk || after != before)) std::abort();
-    if (ours) check_diagnosis(frame, address);
+    if (ours) {
+      check_report<Diagnosis>(MessageKind::kDiagnosis, frame, address);
+      check_report<FaultReport>(MessageKind::kFault, frame, address);
+    }
     if (status == Status::kOk && address.kind == MessageKind::kEmergencyStop &&
         !divides(frame, address, 0)) {
       std::abort();

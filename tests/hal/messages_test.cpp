@@ -141,6 +141,37 @@ TEST(Diagnosis, ThatContradictsItselfIsRefused) {
   EXPECT_EQ(decoded<Diagnosis>({0, 1, 0, 0, 0}), Status::kOk);
 }
 
+TEST(FaultReport, ArrivesInItsCounts) {
+  const FaultReport received = round_trip(FaultReport{4, 7, true, 1.0F, -2.5F});
+  EXPECT_EQ(received.kind, 4);
+  EXPECT_EQ(received.joint, 7);
+  EXPECT_TRUE(received.decided);
+  EXPECT_EQ(received.confidence, 1.0F);
+  EXPECT_EQ(received.size, -2.5F);
+  const FaultReport last = round_trip(FaultReport{15, 31, false, 0.5F, 0.0101F});
+  EXPECT_EQ(last.kind, 15);
+  EXPECT_EQ(last.joint, 31);
+  EXPECT_FALSE(last.decided);
+  EXPECT_NEAR(last.confidence, 0.5F, 0.51F / 63);
+  EXPECT_NEAR(last.size, 0.0101F, 0.5F * kFaultSizePerCount);
+  for (const float sign : {-1.0F, 1.0F}) {
+    EXPECT_EQ(round_trip(FaultReport{1, 1, false, 0, sign * 1e30F}).size, sign * 4095.9995F);
+  }
+}
+
+TEST(FaultReport, ThatSaysNothingIsRefused) {
+  EXPECT_EQ(encoded(FaultReport{16, 1, true, 1, 0}), Status::kInvalidValue);
+  EXPECT_EQ(encoded(FaultReport{1, 0, true, 1, 0}), Status::kInvalidValue);
+  EXPECT_EQ(encoded(FaultReport{1, 32, true, 1, 0}), Status::kInvalidValue);
+  for (const float share : {kNan, -0.01F, 1.01F}) {
+    EXPECT_EQ(encoded(FaultReport{1, 1, true, share, 0}), Status::kInvalidValue) << share;
+  }
+  EXPECT_EQ(encoded(FaultReport{1, 1, true, 1, kInfinity}), Status::kInvalidValue);
+  EXPECT_EQ(decoded<FaultReport>({0x01, 0, 0, 0, 0}), Status::kInvalidValue) << "no joint";
+  EXPECT_EQ(decoded<FaultReport>({0x11, 0, 0, 0, 0x80}), Status::kInvalidValue) << "no size";
+  EXPECT_EQ(decoded<FaultReport>({0x11, 0, 0, 0, 0}), Status::kOk);
+}
+
 TEST(EmergencyStop, Arrives) {
   const EmergencyStop received = round_trip(EmergencyStop{31, 42});
   EXPECT_EQ(received.source, 31);

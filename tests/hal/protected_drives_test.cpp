@@ -271,7 +271,7 @@ TEST(ProtectedDrives, ReportWhatTheMonitorFoundCountedOneByOne) {
   Drives arm = drives();
   for (int i = 0; i < 300; ++i) {
     Frame frame;
-    ASSERT_FALSE(arm.report({.worst_joint = 1, .error_to_threshold = -1}, frame));
+    ASSERT_FALSE(arm.report(Diagnosis{.worst_joint = 1, .error_to_threshold = -1}, frame));
     const Diagnosis sent{true, 3, 2, 1.5F};
     ASSERT_TRUE(arm.report(sent, frame));
     ASSERT_EQ(frame.id, 0x73FU);
@@ -282,6 +282,24 @@ TEST(ProtectedDrives, ReportWhatTheMonitorFoundCountedOneByOne) {
               Status::kOk);
     ASSERT_EQ(heard.first_joint, 3);
     ASSERT_EQ(counter, static_cast<std::uint8_t>(i)) << "what is not sent is not counted";
+  }
+}
+
+TEST(ProtectedDrives, ReportWhichFaultItIsCountedByItself) {
+  Drives arm = drives();
+  Frame frame;
+  ASSERT_TRUE(arm.report(Diagnosis{true, 3, 2, 1.5F}, frame));
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_FALSE(arm.report(FaultReport{.joint = 0}, frame));
+    ASSERT_TRUE(arm.report(FaultReport{1, 3, true, 0.99F, 2}, frame));
+    ASSERT_EQ(frame.id, 0x75FU);
+    FaultReport heard;
+    std::uint8_t counter = 0;
+    ASSERT_EQ(decode(record_in(frame, 0), data_id_of(MessageKind::kFault, kControllerNode), heard,
+                     counter),
+              Status::kOk);
+    ASSERT_EQ(heard.joint, 3);
+    ASSERT_EQ(counter, i);
   }
 }
 

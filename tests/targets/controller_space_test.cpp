@@ -179,5 +179,104 @@ TEST(DiagnosisOf, NamesTheJointThatIsNearestToItsThreshold) {
   EXPECT_EQ(found.worst_joint, 1);
 }
 
+using Isolating = JointOnDeskIn<TorqueSpace, WithIsolation>;
+
+// A joint that sways, on a controller that may compensate.
+Isolating swaying() {
+  auto config = Isolating::config();
+  config.monitor.max_compensation.fill(100);
+  config.monitor.bound.joints[0].value[0] = 2;
+  Isolating joint(config);
+  joint.reference_at = [](double t_s) {
+    constexpr double kSpeed = 3;
+    const auto at = static_cast<float>(0.5 * (1 - std::cos(kSpeed * t_s)));
+    const auto speed = static_cast<float>(0.5 * kSpeed * std::sin(kSpeed * t_s));
+    const auto rate = static_cast<float>(0.5 * kSpeed * kSpeed * std::cos(kSpeed * t_s));
+    Reference<1, float> reference;
+    reference.q[0] = at;
+    reference.dq[0] = speed;
+    reference.ddq[0] = rate;
+    return reference;
+  };
+  EXPECT_EQ(joint.start(), Fault::kNone);
+  joint.ticks(4000);
+  EXPECT_FALSE(joint.data->output.detector.latched);
+  EXPECT_TRUE(joint.drive.faults.empty());
+  return joint;
+}
+
+// What the controller asks for beside the torque of its model and gains.
+float compensated(const Isolating& joint) {
+  const auto& found = joint.data->isolation.diagnosis;
+  const bool acts = found.decided && is_compensated(found.kind);
+  return acts ? joint.data->output.compensation.torque[0] : 0;
+}
+
+TEST(ControllerWithIsolation, GivenFrictionThenItSaysSoAndCompensatesOnceItIsDecided) {
+  Isolating joint = swaying();
+  double largest_before = 0;
+  double largest_after = 0;
+  for (int i = 0; i < 3000; ++i) {
+    joint.push_nm = -6 * std::tanh(joint.dq / 0.02);
+    joint.tick();
+    double& largest = joint.data->isolation.diagnosis.decided ? largest_after : largest_before;
+    largest = std::max(largest, std::abs(static_cast<double>(compensated(joint))));
+  }
+  const auto& found = joint.data->isolation.diagnosis;
+  ASSERT_TRUE(found.decided);
+  EXPECT_EQ(found.kind, FaultKind::kFriction) << name_of(found.kind);
+  EXPECT_NEAR(found.size, 6, 0.9);
+  EXPECT_EQ(largest_before, 0);
+  EXPECT_GT(largest_after, 1);
+  ASSERT_FALSE(joint.drive.faults.empty());
+  const hal::FaultReport& told = joint.drive.faults.back();
+  EXPECT_EQ(told.kind, static_cast<std::uint8_t>(FaultKind::kFriction));
+  EXPECT_EQ(told.joint, 1);
+  EXPECT_TRUE(told.decided);
+  EXPECT_EQ(told.size, static_cast<float>(found.size));
+  EXPECT_FALSE(joint.drive.faults.front().decided) << "the best answer so far comes first";
+}
+
+// GIVEN a joint that something holds WHEN that is decided THEN nothing is compensated: the torque
+// is what it would be without any compensation.
+TEST(ControllerWithIsolation, GivenAJointThatIsHeldThenNothingIsCompensated) {
+  std::vector<float> torques[2];
+  for (const bool may : {false, true}) {
+    Isolating joint = swaying();
+    if (!may) {
+      auto config = Isolating::config();
+      config.monitor.bound.joints[0].value[0] = 2;
+      ASSERT_EQ(Isolating::Controller::create(config, joint.controller), Status::kOk);
+    }
+    joint.brake_at = joint.q;
+    for (int i = 0; i < 2500; ++i) {
+      joint.tick();
+      torques[may ? 1 : 0].push_back(joint.torque());
+    }
+    if (!may) continue;
+    const auto& found = joint.data->isolation.diagnosis;
+    EXPECT_TRUE(found.decided);
+    EXPECT_FALSE(is_compensated(found.kind)) << name_of(found.kind);
+    EXPECT_GT(std::abs(joint.data->output.compensation.torque[0]), 0.1)
+        << "it would have something to compensate";
+  }
+  EXPECT_EQ(torques[0], torques[1]);
+}
+
+TEST(ControllerWithIsolation, IsNotAskedWhereTheConfigurationSaysSo) {
+  auto config = Isolating::config();
+  config.isolates = false;
+  config.monitor.max_compensation.fill(100);
+  Isolating joint(config);
+  ASSERT_EQ(joint.start(), Fault::kNone);
+  joint.ticks(1500);
+  joint.push_nm = 30;
+  joint.ticks(1000);
+  EXPECT_TRUE(joint.data->output.detector.latched);
+  EXPECT_FALSE(joint.data->isolation.triggered);
+  EXPECT_TRUE(joint.drive.faults.empty());
+  EXPECT_NE(joint.data->output.compensation.torque[0], 0);
+}
+
 }  // namespace
 }  // namespace offnominal::test

@@ -45,6 +45,11 @@ struct OneDrive {
     return 0;
   }
   static bool report(const hal::Diagnosis& /*found*/, hal::Frame& /*into*/) { return false; }
+  std::vector<hal::FaultReport> faults;
+  bool report(const hal::FaultReport& fault, hal::Frame& /*into*/) {
+    faults.push_back(fault);
+    return false;
+  }
   [[nodiscard]] static hal::Microseconds drive_max_age_us() { return 2500; }
   [[nodiscard]] bool stop_seen() const { return false; }
   void clear_stop() {}
@@ -52,10 +57,10 @@ struct OneDrive {
 };
 
 // The joint turns about an upright axis, without friction: what moves it is its torque alone.
-template <typename Space>
+template <typename Space, typename Isolates = WithoutIsolation>
 class JointOnDeskIn {
  public:
-  using Controller = controller::JointController<1, 4, float, WithoutMemory, Space>;
+  using Controller = controller::JointController<1, 4, float, WithoutMemory, Space, Isolates>;
   using Config = typename Controller::Config;
   static constexpr double kInertia = 2;  // kg m^2
   static constexpr double kPeriod = 0.001;

@@ -65,6 +65,8 @@ class ScriptedDrives {
   hal::Heartbeat heartbeat;
   static constexpr std::uint32_t kReportId = 0x73F;
   std::vector<hal::Diagnosis> reports;
+  static constexpr std::uint32_t kFaultId = 0x75F;
+  std::vector<hal::FaultReport> faults;
 
   hal::Status take(const hal::ReceivedFrame& /*frame*/) {
     return taken < answers.size() ? answers[taken++] : (++taken, hal::Status::kOk);
@@ -83,6 +85,11 @@ class ScriptedDrives {
   bool report(const hal::Diagnosis& found, hal::Frame& into) {
     reports.push_back(found);
     into.id = kReportId;
+    return true;
+  }
+  bool report(const hal::FaultReport& fault, hal::Frame& into) {
+    faults.push_back(fault);
+    into.id = kFaultId;
     return true;
   }
   [[nodiscard]] hal::Microseconds drive_max_age_us() const { return max_age_us; }

@@ -11,6 +11,14 @@ function(offnominal_torque_space robot bounds file)
   file(CONFIGURE OUTPUT "${file}" CONTENT "${text}" @ONLY)
 endfunction()
 
+# offnominal_isolation(<robot file> <file>): the robot in torque space, whose controller says which fault it is.
+function(offnominal_isolation robot file)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${robot}")
+  file(READ "${robot}" text)
+  string(REPLACE "[estimator]" "[estimator]\nisolation = true" text "${text}")
+  file(CONFIGURE OUTPUT "${file}" CONTENT "${text}" @ONLY)
+endfunction()
+
 # offnominal_counted_arm(<joints> <hidden units> <file>): bench/discovery's arm with the first joints
 # only, and the estimator and bound that it lacks.
 function(offnominal_counted_arm joints hidden file)

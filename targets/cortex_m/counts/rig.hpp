@@ -17,8 +17,9 @@ inline constexpr int kJoints = robot_model::kJoints;
 inline constexpr auto kCount = static_cast<std::size_t>(kJoints);
 inline constexpr hal::Microseconds kPeriodUs = 1000;
 
-using Controller = controller::JointController<kJoints, robot_model::kHiddenUnits, Scalar,
-                                               robot_model::Memory, robot_model::Space>;
+using Controller =
+    controller::JointController<kJoints, robot_model::kHiddenUnits, Scalar, robot_model::Memory,
+                                robot_model::Space, robot_model::Isolates>;
 using Drives = hal::ProtectedDrives<kCount>;
 
 // Frames of one tick in, those of its end out: nothing but copies, as from a FIFO in memory.
@@ -47,7 +48,7 @@ class FrameBus {
   hal::Microseconds now_us_ = 0;
   std::size_t next_ = 0, count_ = 0, sent_ = 0;
   std::array<hal::ReceivedFrame, 2 * kCount> in_{};
-  std::array<hal::Frame, kCount + 2> out_{};  // heartbeat and diagnosis too
+  std::array<hal::Frame, kCount + 3> out_{};  // heartbeat, diagnosis and fault too
 };
 static_assert(hal::Bus<FrameBus>);
 

@@ -106,6 +106,13 @@ TEST(CampaignFile, RefusesWhatIsWrongWithFileLineFoundAllowedAndMend) {
               HasSubstr("without Coulomb friction"));
   EXPECT_THAT(refusal_of(small_campaign("[[detector]]\nkind = \"torque\"")),
               HasSubstr("a second detector called torque 10"));
+  const auto accommodating = [&](const std::string& kind) {
+    return replaced(good, "kind = \"" + kind + "\"\n",
+                    "kind = \"" + kind + "\"\naccommodates = true\n");
+  };
+  EXPECT_THAT(refusal_of(accommodating("kdl")), HasSubstr("kind = \"torque\" alone"));
+  EXPECT_THAT(refusal_of(accommodating("torque")),
+              AllOf(HasSubstr("known afterwards"), HasSubstr("observed")));
 }
 
 }  // namespace

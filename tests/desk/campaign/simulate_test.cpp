@@ -84,5 +84,54 @@ TEST(Simulator, RecordsAsLongAsTheRunIsWhateverItsVelocitiesAre) {
   }
 }
 
+// A monitor in the loop of the two-link arm, whose bounds the healthy runs keep.
+RobotDescription watching(const Campaign& campaign) {
+  RobotDescription robot = campaign.model;
+  robot.estimator.space = EstimatorSpace::kTorque;
+  robot.estimator.learning_rate = 50;
+  robot.bound = BoundSettings{};
+  robot.bound->kind = BoundSettings::Kind::kPerJoint;
+  robot.bound->joints = {{.at = {}, .value = {0.5}}, {.at = {}, .value = {0.5}}};
+  return robot;
+}
+
+Campaign long_runs(const std::string& kind) {
+  Campaign campaign = without_errors(kind);
+  campaign.runs = {.per_fault = 1, .duration_s = 8, .fault_s = 2};
+  return campaign;
+}
+
+const Fault& fault_of(const Campaign& campaign, FaultKind kind) {
+  return *std::find_if(campaign.faults.begin(), campaign.faults.end(),
+                       [kind](const Fault& fault) { return fault.kind == kind; });
+}
+
+TEST(Accommodated, IsTheSameRunUntilItIsDecidedAndThenFollowsBetter) {
+  const Campaign campaign = long_runs("mujoco");
+  const Simulator simulator(campaign);
+  const campaign::Run run{3, &fault_of(campaign, FaultKind::kPayload), campaign.runs.duration_s};
+  const RecordedRun without = simulator.run(run);
+  Accommodation loop(watching(campaign), campaign.plant.period_s);
+  const RecordedRun with = simulator.accommodated(run, without, loop);
+  const auto differs = (without.log.q - with.log.q).rowwise().norm().array() > 0;
+  Eigen::Index first = 0;
+  ASSERT_GT(differs.maxCoeff(&first), 0);
+  EXPECT_GT(without.log.t_s[first], campaign.runs.fault_s + 0.3);
+  ASSERT_TRUE(with.tracking_end_rad && without.tracking_end_rad);
+  EXPECT_LT(*with.tracking_end_rad, 0.5 * *without.tracking_end_rad);
+}
+
+TEST(Accommodated, OfAnEncoderThatSticksChangesNothing) {
+  const Campaign campaign = long_runs("mujoco");
+  const Simulator simulator(campaign);
+  const campaign::Run run{3, &fault_of(campaign, FaultKind::kEncoderStuck),
+                          campaign.runs.duration_s};
+  const RecordedRun without = simulator.run(run);
+  Accommodation loop(watching(campaign), campaign.plant.period_s);
+  const RecordedRun with = simulator.accommodated(run, without, loop);
+  EXPECT_EQ(without.log.q, with.log.q);
+  EXPECT_EQ(without.log.tau, with.log.tau);
+}
+
 }  // namespace
 }  // namespace offnominal::desk::campaign

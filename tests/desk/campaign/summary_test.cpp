@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -84,6 +86,8 @@ TEST_F(Score, ComesBackToTheBitFromItsNumbers) {
   Result seen = score({0, 0.4, 0, 0, 0, 0, 0.9, 1.0 / 0.7, 3, 0.5});
   Result free = score({0, 1.2}, true);
   seen.named = {offnominal::FaultKind::kFriction, 1, 1.0 / 3, 0.7};
+  seen.tracking_end_rad = 0.1;
+  seen.tracking_end_accommodated_rad = std::numeric_limits<double>::infinity();
   free.run = campaign_.run_count() - 1;
   seen.run = 4;  // of the fault on joint 2
   for (Result* one : {&seen, &free}) {
@@ -167,6 +171,34 @@ TEST(Summary, HasEveryFaultWithItsTimesAndTheSmallestThatIsSeen) {
   EXPECT_EQ(one.without_false_alarm->scale, 2.5);
   EXPECT_EQ(one.without_false_alarm->false_alarms_per_hour, 0);
   EXPECT_NEAR(one.without_false_alarm->detected, 2.0 / 6, 1e-12);
+}
+
+// Of runs of which both are known: 1 to 1/2, 1 to 1/4, 1 to 3, and one that runs away.
+TEST(Summary, ComparesTrackingWithAccommodationAndWithout) {
+  Results results;
+  results.campaign = {"c", "", 6, {{"d", "", ""}}};
+  constexpr double kAway = std::numeric_limits<double>::infinity();
+  std::int64_t run = 0;
+  for (const double with : {0.5, 0.25, 3.0, kAway}) {
+    results.rows.push_back(fault_row(run++, 1, true, 2));
+    results.rows.back().tracking_end_rad = 1;
+    results.rows.back().tracking_end_accommodated_rad = with;
+  }
+  results.rows.push_back(fault_row(run++, 1, true, 2));
+  results.rows.back().tracking_end_rad = 7;
+  const Summary summary = summary_of(results);
+  const std::vector<Tracking>& tracking = summary.detectors.at(0).tracking;
+  ASSERT_EQ(tracking.size(), 1U);
+  EXPECT_EQ(tracking[0].kind, "friction");
+  EXPECT_EQ(tracking[0].runs, 4);
+  EXPECT_EQ(tracking[0].halved, 2);
+  EXPECT_EQ(tracking[0].worse, 2);
+  EXPECT_EQ(tracking[0].without_rad, 1);
+  EXPECT_EQ(tracking[0].with_rad, kAway);
+  EXPECT_EQ(tracking[0].ratio_p95, kAway);
+  results.rows.erase(results.rows.begin() + 3);
+  EXPECT_NEAR(summary_of(results).detectors.at(0).tracking[0].with_rad,
+              std::sqrt((0.25 + 0.0625 + 9) / 3), 1e-12);
 }
 
 }  // namespace

@@ -126,6 +126,18 @@ TEST(Dbc, SaysOfDiagnosesWhatTheCodeSays) {
   EXPECT_EQ(found.at("error_to_threshold"), 100.25);
 }
 
+TEST(Dbc, SaysOfFaultsWhatTheCodeSays) {
+  const Values found = signals_of(frame_of(
+      hal::MessageKind::kFault, 31,
+      record_of(hal::MessageKind::kFault, 31, hal::FaultReport{8, 29, true, 1.0F, -1234.5F})));
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found.at("kind"), 8);
+  EXPECT_EQ(found.at("joint"), 29);
+  EXPECT_EQ(found.at("decided"), 1);
+  EXPECT_NEAR(found.at("confidence"), 1, 1e-12);
+  EXPECT_EQ(found.at("size"), -1234.5);
+}
+
 // No message beside those of the code, and every bit of a record has a signal, one alone.
 TEST(Dbc, CoversEveryBitOfEveryFrameOnce) {
   std::set<std::uint32_t> ids;

@@ -186,6 +186,73 @@ TEST(TorqueSpace, CompensatesOnTheJointThatIsPushed) {
   EXPECT_EQ(with.run.first_joint, 1);
 }
 
+// GIVEN a controller that is asked which fault it is THEN it says kind, joint and size, to the
+// result and to everybody on the bus.
+TEST(TorqueSpace, SaysWhichFaultItIs) {
+  RobotDescription robot = by_joint_robot(4, kBoundNm);
+  robot.estimator.isolation = true;
+  const auto event = [](FaultEventKind kind, int joint, double size) {
+    return FaultEvent{.kind = kind, .begin_s = 2.0, .joint = joint, .size = size};
+  };
+  const struct {
+    FaultEvent fault;
+    FaultKind kind;
+  } cases[] = {{event(FaultEventKind::kFrictionJump, 1, 6 * kBoundNm), FaultKind::kFriction},
+               {event(FaultEventKind::kEncoderStuck, 2, 0), FaultKind::kEncoderStuck}};
+  for (const auto& [fault, kind] : cases) {
+    std::vector<hal::FaultReport> heard;
+    const auto listen = [&](const hal::Frame& frame, hal::Microseconds /*time_us*/) {
+      hal::Address address;
+      if (address_of(frame, address) != hal::Status::kOk) return;
+      if (address.kind != hal::MessageKind::kFault) return;
+      hal::FaultReport report;
+      std::uint8_t counter = 0;
+      ASSERT_EQ(decode(hal::record_in(frame, 0), data_id_of(address.kind, address.first_node),
+                       report, counter),
+                hal::Status::kOk);
+      heard.push_back(report);
+    };
+    Scenario scenario = scenario_of(robot, {fault});
+    scenario.duration_s = 6.0;
+    const SilResult result = run(robot, scenario, listen);
+    ASSERT_TRUE(result.isolated.has_value());
+    EXPECT_EQ(result.isolated->kind, kind) << name_of(result.isolated->kind);
+    EXPECT_EQ(result.isolated->joint, fault.joint);
+    EXPECT_TRUE(result.isolated->decided);
+    if (kind == FaultKind::kFriction) {
+      EXPECT_NEAR(result.isolated->size, fault.size, 0.2 * fault.size);
+    }
+    ASSERT_FALSE(heard.empty());
+    EXPECT_EQ(heard.back().kind, static_cast<std::uint8_t>(kind));
+    EXPECT_EQ(heard.back().joint, fault.joint + 1);
+    EXPECT_TRUE(heard.back().decided);
+    EXPECT_EQ(to_json(result).at("isolated").at("kind"), name_of(kind));
+    EXPECT_THAT(text_of(result), HasSubstr("which fault"));
+    EXPECT_EQ(result.bus.rejected, 0U) << "the drives take no harm";
+  }
+  robot.estimator.isolation = false;
+  const SilResult silent = run(robot, scenario_of(robot, {cases[0].fault}));
+  EXPECT_FALSE(silent.isolated.has_value());
+}
+
+// GIVEN friction WHEN the controller knows that it is THEN it compensates, and the arm follows
+// better; GIVEN a push that it takes for a contact THEN it gives way as if it could not compensate.
+TEST(TorqueSpace, CompensatesForWhatCompensationIsRightFor) {
+  RobotDescription robot = by_joint_robot(4, kBoundNm);
+  robot.estimator.isolation = true;
+  robot.estimator.learning_rate = 100;
+  Scenario scenario = scenario_of(
+      robot, {{.kind = FaultEventKind::kFrictionJump, .begin_s = 2.0, .joint = 1, .size = 8}});
+  scenario.duration_s = 8.0;
+  const double without = run(robot, scenario).run.tracking_rms_rad;
+  scenario.accommodate = true;
+  EXPECT_LT(run(robot, scenario).run.tracking_rms_rad, 0.5 * without);
+  scenario.faults = {{.kind = FaultEventKind::kEncoderStuck, .begin_s = 2.0, .joint = 1}};
+  const double stuck = run(robot, scenario).run.tracking_rms_rad;
+  scenario.accommodate = false;
+  EXPECT_EQ(stuck, run(robot, scenario).run.tracking_rms_rad);
+}
+
 // GIVEN drives that send positions alone THEN what M makes of the observer's error is in the
 // thresholds: nothing healthy is called a fault, and a fault is still found.
 TEST(TorqueSpace, ObservesVelocitiesThatNobodySends) {

@@ -82,11 +82,13 @@ TEST_F(Tuning, LearnsNoWorseThanWithTheSettingsBefore) {
 }
 
 TEST_F(Tuning, SaysWhyBehindEachSetting) {
-  for (const char* key : {"space", "alpha_per_s", "hidden_units", "learning_rate", "weight_radius",
-                          "initial_weight_range"}) {
+  for (const char* key : {"space", "isolation", "alpha_per_s", "hidden_units", "learning_rate",
+                          "weight_radius", "initial_weight_range"}) {
     EXPECT_FALSE(line_of(key).reason.empty()) << key;
   }
   EXPECT_EQ(line_of("space").value, "\"torque\"");
+  EXPECT_EQ(line_of("isolation").value, "true");
+  EXPECT_TRUE(tuned().robot.estimator.isolation);
   const std::string text = text_of(tuned(), {});
   EXPECT_THAT(text, HasSubstr("alpha_per_s = " + line_of("alpha_per_s").value));
   EXPECT_THAT(text, HasSubstr("seen within 0.2 s"));

@@ -46,6 +46,25 @@ inline constexpr std::size_t kFaultKinds = 9;
   return "unknown";
 }
 
+// Whether a torque of the drives may stand in for what the fault takes away. Not where something
+// touches the arm or holds a joint, nor where an encoder says what is not so.
+[[nodiscard]] constexpr bool is_compensated(FaultKind kind) {
+  switch (kind) {
+    case FaultKind::kUnknown:
+    case FaultKind::kFriction:
+    case FaultKind::kLostTorque:
+    case FaultKind::kOffset:
+    case FaultKind::kPayload:
+      return true;
+    case FaultKind::kContact:
+    case FaultKind::kEncoderStuck:
+    case FaultKind::kEncoderJump:
+    case FaultKind::kLockedJoint:
+      break;
+  }
+  return false;
+}
+
 // Of its size, on a joint of that type; empty where it has none.
 [[nodiscard]] constexpr const char* size_unit_of(FaultKind kind, JointType type) {
   switch (kind) {

@@ -35,7 +35,8 @@ struct DriveCounts {
 //                          heartbeat; returns how many, at most kMaxOutgoing. A command that the
 //                          protocol cannot carry is sent as DriveMode::kOff.
 // report(d, into)          The frame that tells all others what a monitor found that judges by
-//                          joint; false where the protocol has none, or cannot carry it.
+//                          joint, or which fault it is; false where the protocol has none, or
+//                          cannot carry it.
 // drive_max_age_us()       How old a drive's status may be before it is stale: a change of its mode
 //                          stays unseen no longer.
 // stop_seen(), clear_stop()  Whether somebody has asked for an emergency stop; latched until
@@ -46,13 +47,15 @@ concept DriveProtocol = requires(P& drives, const P& seen, const ReceivedFrame& 
                                  std::size_t joint, Microseconds now_us,
                                  std::span<const TorqueCommand> commands,
                                  const Heartbeat& heartbeat, std::span<Frame> into,
-                                 const Diagnosis& diagnosis, Frame& frame) {
+                                 const Diagnosis& diagnosis, const FaultReport& fault,
+                                 Frame& frame) {
   { P::kJoints } -> std::convertible_to<std::size_t>;
   { P::kMaxOutgoing } -> std::convertible_to<std::size_t>;
   { drives.take(received) } -> std::same_as<Status>;
   { seen.feedback(joint, now_us) } -> std::same_as<JointFeedback>;
   { drives.outgoing(commands, heartbeat, into) } -> std::same_as<std::size_t>;
   { drives.report(diagnosis, frame) } -> std::same_as<bool>;
+  { drives.report(fault, frame) } -> std::same_as<bool>;
   { seen.drive_max_age_us() } -> std::same_as<Microseconds>;
   { seen.stop_seen() } -> std::same_as<bool>;
   { drives.clear_stop() } -> std::same_as<void>;

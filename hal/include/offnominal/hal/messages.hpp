@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -88,6 +89,19 @@ struct Diagnosis {
 };
 inline constexpr float kRatioPerCount = 0x1p-8F;
 
+// Controller -> all, of a monitor that was asked which fault it is, from its first answer on.
+struct FaultReport {
+  std::uint8_t kind = 0;   // a number of offnominal::FaultKind, at most 15
+  std::uint8_t joint = 1;  // from 1, at most 31; of a payload the last one
+  bool decided = false;    // latched; before that the best answer so far
+  float confidence = 0;    // 0 to 1, in 63rds on the wire
+  // In the unit of its kind; on the wire in 2^-11 of it, the largest number of either sign standing
+  // for all beyond it: +-4096.
+  float size = 0;
+};
+inline constexpr float kFaultSizePerCount = 0x1p-11F;
+inline constexpr unsigned kFaultConfidenceCounts = 63;
+
 // Anyone -> all. Whoever sees one has to go to its safe state.
 struct EmergencyStop {
   std::uint8_t source = 0;  // node that asks for it
@@ -113,6 +127,9 @@ namespace detail {
 
 inline constexpr std::int32_t kNoPosition = -(1 << 23);
 inline constexpr std::int32_t kNoVelocity = -(1 << 15);
+
+inline constexpr std::uint8_t kMostFaultKind = 15;
+inline constexpr std::uint8_t kMostFaultJoint = 31;
 
 [[nodiscard]] constexpr bool is_mode(unsigned value) {
   return value <= static_cast<unsigned>(DriveMode::kTorque);
@@ -191,6 +208,25 @@ inline constexpr std::int32_t kNoVelocity = -(1 << 15);
   return Status::kOk;
 }
 
+[[nodiscard]] inline Status encode(const FaultReport& report, std::uint8_t counter,
+                                   std::uint16_t data_id, Record& record) {
+  const bool is_share = report.confidence >= 0 && report.confidence <= 1;  // NaN is none
+  const bool has_joint = report.joint >= 1 && report.joint <= detail::kMostFaultJoint;
+  const bool fits = has_joint && report.kind <= detail::kMostFaultKind;
+  if (!is_share || !fits || !is_finite(report.size)) return Status::kInvalidValue;
+  constexpr auto kMost = static_cast<float>((1 << 23) - 1);
+  const float counts = std::clamp(report.size / kFaultSizePerCount, -kMost, kMost);
+  const auto confidence = static_cast<unsigned>(
+      std::lrint(report.confidence * static_cast<float>(kFaultConfidenceCounts)));
+  const unsigned what = unsigned{report.kind} | unsigned{report.joint} << 4U |
+                        (report.decided ? 1U : 0U) << 9U | confidence << 10U;
+  Content content{};
+  to_little_endian(what, std::span(content).first<2>());
+  to_little_endian(static_cast<std::uint32_t>(std::lrint(counts)), std::span(content).last<3>());
+  record = seal(content, counter, data_id);
+  return Status::kOk;
+}
+
 [[nodiscard]] inline Status encode(const EmergencyStop& stop, std::uint8_t counter,
                                    std::uint16_t data_id, Record& record) {
   record = seal({stop.source, stop.reason, 0, 0, 0}, counter, data_id);
@@ -241,6 +277,18 @@ namespace detail {
   if (content[0] > 1 || (!judges && (content[0] != 0 || counts != 0))) return false;
   diagnosis = {content[0] != 0, content[1], content[2],
                static_cast<float>(counts) * kRatioPerCount};
+  return true;
+}
+
+[[nodiscard]] inline bool from_content(const Content& content, FaultReport& report) {
+  const std::uint32_t what = from_little_endian(std::span(content).first<2>());
+  const std::int32_t size = sign_extended(from_little_endian(std::span(content).last<3>()), 24);
+  const auto kind = static_cast<std::uint8_t>(what & kMostFaultKind);
+  const auto joint = static_cast<std::uint8_t>(what >> 4U & kMostFaultJoint);
+  if (joint == 0 || size == -(1 << 23)) return false;
+  report = {kind, joint, (what >> 9U & 1U) != 0,
+            static_cast<float>(what >> 10U) / static_cast<float>(kFaultConfidenceCounts),
+            static_cast<float>(size) * kFaultSizePerCount};
   return true;
 }
 

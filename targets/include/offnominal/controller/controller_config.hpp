@@ -37,6 +37,9 @@ struct ControlConfig {
   // Its period_s is the monitor's.
   VelocityObserverConfig<Scalar> velocity_observer;
   bool stop_at_detection = false;  // a crossed threshold leads to the safe state
+  // Of a controller WithIsolation: whether it asks which fault it is. It then compensates once that
+  // is decided, and only for a kind that compensation is right for; without, from the detection on.
+  bool isolates = true;
   // Watch in kPassive too: where brakes are open and somebody else moves the joints.
   bool watch_when_passive = false;
 };

@@ -4,6 +4,7 @@
 #include <offnominal/controller/fault.hpp>
 #include <offnominal/controller/sample_taker.hpp>
 #include <offnominal/controller/takeover.hpp>
+#include <offnominal/diagnosis/isolation_choice.hpp>
 #include <offnominal/hal/messages.hpp>
 #include <offnominal/monitor.hpp>
 
@@ -15,7 +16,7 @@ using hal::ControllerState;
 
 // Plain data, ready to be logged.
 template <int N, int L, typename Scalar, typename Memory = WithoutMemory,
-          typename Space = AccelerationSpace>
+          typename Space = AccelerationSpace, typename Isolates = WithoutIsolation>
 struct ControllerData : SampleData<N, Scalar>, TakeoverData<N, Scalar> {
   ControllerState state = ControllerState::kInit;
   Fault fault = Fault::kNone;
@@ -31,6 +32,7 @@ struct ControllerData : SampleData<N, Scalar>, TakeoverData<N, Scalar> {
   PerJoint<N, hal::TorqueCommand> commands{};
   MonitorState<N, L, Scalar, Memory, Space> monitor;
   MonitorOutput<N, Scalar, Space> output;
+  [[no_unique_address]] typename Isolates::template Of<N, Scalar>::State isolation{};
 };
 
 }  // namespace offnominal::controller

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <offnominal/diagnosis/isolation_state.hpp>
 #include <offnominal/hal/messages.hpp>
 #include <offnominal/monitor.hpp>
 
@@ -35,6 +36,13 @@ template <int N, typename Scalar>
         static_cast<float>(threshold > 0 ? std::min(error / threshold, kMost) : kMost);
   }
   return diagnosis;
+}
+
+// What the bus is told of an answer.
+template <typename Scalar>
+[[nodiscard]] hal::FaultReport fault_report_of(const FaultDiagnosis<Scalar>& found) {
+  return {static_cast<std::uint8_t>(found.kind), static_cast<std::uint8_t>(found.joint + 1),
+          found.decided, static_cast<float>(found.confidence), static_cast<float>(found.size)};
 }
 
 }  // namespace offnominal::controller

@@ -16,6 +16,7 @@
 #include <offnominal/controller/sample_taker.hpp>
 #include <offnominal/controller/takeover.hpp>
 #include <offnominal/controller/torque_limiter.hpp>
+#include <offnominal/diagnosis/isolation_choice.hpp>
 #include <offnominal/hal/bus/bus.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/monitor.hpp>
@@ -29,20 +30,25 @@
 namespace offnominal::controller {
 
 // Memory, Space: as of the Monitor. In TorqueSpace the bus is told which joint is off nominal
-// (hal::Diagnosis).
+// (hal::Diagnosis), and WithIsolation, from the first answer after a detection on, which fault it
+// is (hal::FaultReport).
 template <int N, int L, typename Scalar, typename Memory = WithoutMemory,
-          typename Space = AccelerationSpace>
+          typename Space = AccelerationSpace, typename Isolates = WithoutIsolation>
 class JointController {
  public:
   using Config = ControllerConfig<N, Scalar, Space>;
-  using Data = ControllerData<N, L, Scalar, Memory, Space>;
+  using Data = ControllerData<N, L, Scalar, Memory, Space, Isolates>;
   using Watch = Monitor<N, L, Scalar, Memory, Space>;
 
   // As Monitor::create().
   [[nodiscard]] static Status create(const Config& config, JointController& controller) {
     if (const Status status = validate(config); status != Status::kOk) return status;
-    const Status status = Watch::create(config.monitor, controller.monitor_);
+    Status status = Watch::create(config.monitor, controller.monitor_);
     if (status != Status::kOk) return status;
+    if constexpr (kIsolates) {
+      status = IsolationOf::create({}, config.monitor, controller.isolation_);
+      if (status != Status::kOk) return status;
+    }
     controller.config_ = static_cast<const ControlConfig<N, Scalar>&>(config);
     controller.samples_ = SampleTaker<N, Scalar>(config);
     controller.takeover_ = Takeover<N, Scalar>(config);
@@ -144,12 +150,17 @@ class JointController {
  private:
   using Feedback = typename SampleTaker<N, Scalar>::Feedback;
   static constexpr bool kByJoint = std::is_same_v<Space, TorqueSpace>;
+  using IsolationOf = typename Isolates::template Of<N, Scalar>;
+  static constexpr bool kIsolates = std::is_same_v<Isolates, WithIsolation>;
+  static_assert(kByJoint || !kIsolates, "which fault it is only a monitor in TorqueSpace can say");
 
   // At most so many frames in one tick: a node that babbles must not keep the controller busy.
   static constexpr std::size_t kBatch = 4;
   static constexpr int kMostBatches = 64;
   // As many ticks as a silent encoder is borne.
   static constexpr std::uint8_t kImplausibleAllowed = 2;
+  // Beside the heartbeat's tick, and the diagnosis' in the middle between two.
+  static constexpr std::uint32_t kTurnOfFault = 7;
 
   [[nodiscard]] const Chain<N, Scalar>& chain() const { return monitor_.config().chain; }
   [[nodiscard]] std::size_t joints() const { return chain().joints.size(); }
@@ -280,11 +291,29 @@ class JointController {
     const bool follows = data.monitor.initialised && data.unseen_ticks == 0;
     const Fault fault = follows ? fault_of(monitor_.step(data.sample, data.monitor, data.output))
                                 : begin_watch(reference_at, armed, data);
+    if (follows && fault == Fault::kNone) isolate(data);
     if (fault != Fault::kNone) {
       enter_fault(fault, bus, data);
     } else if (config_.stop_at_detection && data.output.detector.latched) {
       enter_fault(Fault::kDetected, bus, data);
     }
+  }
+
+  [[gnu::noinline]] void isolate(Data& data) const {
+    if constexpr (kIsolates) {
+      if (!config_.isolates) return;
+      isolation_.step(monitor_.model(), data.sample, data.monitor.tick, data.output,
+                      data.isolation);
+    }
+  }
+
+  // Whether what was learnt is to be taken away by the drives.
+  [[nodiscard]] bool compensates(const Data& data) const {
+    if constexpr (kIsolates) {
+      const auto& found = data.isolation.diagnosis;
+      return !config_.isolates || (found.decided && is_compensated(found.kind));
+    }
+    return true;
   }
 
   // The first sample, or the first one after some that nobody saw.
@@ -299,6 +328,7 @@ class JointController {
       data.monitor.memory = {};  // of another run
       size_for(joints(), data.monitor.memory.remembered);
     }
+    if constexpr (kIsolates) isolation_.reset(data.isolation);
     if (armed) {
       const Fault fault = begin_control(reference_at, data);
       if (fault != Fault::kNone) return fault;
@@ -350,8 +380,8 @@ class JointController {
       reference = takeover_.held(data);
     }
     tau = computed_torque<N, Scalar>(monitor_.model(), config_.gains, reference, data.sample.q,
-                                     data.sample.dq, time_s) +
-          data.output.compensation.torque;
+                                     data.sample.dq, time_s);
+    if (compensates(data)) tau += data.output.compensation.torque;
     if constexpr (Watch::kRemembers) tau += data.monitor.memory.remembered;
     if (!all_finite(tau)) return fault_of(Status::kNumericOverflow);
     limiter_.hold(data.commands, tau, data.torque_is_in);
@@ -390,25 +420,40 @@ class JointController {
     if constexpr (kByJoint) report(begin_us, bus, drives, data);
   }
 
-  // Which joint is off nominal: between two heartbeats, and at once in the tick that says it first.
+  // Between two heartbeats, and at once in the tick that says it first: which joint is off nominal,
+  // and which fault it is.
   template <typename Bus, typename Drives>
   void report(Microseconds begin_us, Bus& bus, Drives& drives, Data& data) const {
     const DetectorState<Scalar>& detector = data.output.detector;
     const bool is_new =
         detector.latched && data.fresh && detector.detection_tick == data.monitor.tick;
     const bool due = data.ticks % hal::kHeartbeatTicks == hal::kHeartbeatTicks / 2;
-    hal::Frame frame;
-    if (!due && !is_new) return;
     const bool watches =
         data.state == ControllerState::kArmed || data.state == ControllerState::kPassive;
     const bool judges = watches && data.monitor.initialised;
-    if (!drives.report(diagnosis_of(data.output, judges), frame)) return;
+    if (due || is_new) tell(begin_us, diagnosis_of(data.output, judges), bus, drives, data);
+    if constexpr (kIsolates) {
+      const FaultDiagnosis<Scalar>& found = data.isolation.diagnosis;
+      const bool is_there = data.isolation.triggered && found.time_s > 0;
+      const bool is_decided = found.decided && data.fresh && found.time_s == data.output.time_s;
+      const bool has_turn = data.ticks % hal::kHeartbeatTicks == kTurnOfFault;
+      if (is_there && (has_turn || is_decided)) {
+        tell(begin_us, fault_report_of(found), bus, drives, data);
+      }
+    }
+  }
+  template <typename Message, typename Bus, typename Drives>
+  void tell(Microseconds begin_us, const Message& message, Bus& bus, Drives& drives,
+            Data& data) const {
+    hal::Frame frame;
+    if (!drives.report(message, frame)) return;
     const hal::Status status = bus.send(frame, begin_us + config_.command_lifetime_us);
     if (status != hal::Status::kOk) ++data.unsent_frames;
   }
 
   ControlConfig<N, Scalar> config_{};
   Watch monitor_;
+  [[no_unique_address]] IsolationOf isolation_{};
   SampleTaker<N, Scalar> samples_;
   Takeover<N, Scalar> takeover_;
   TorqueLimiter<N, Scalar> limiter_;

@@ -30,8 +30,9 @@ class JointFirmware {
   static constexpr auto kPeriodUs =
       static_cast<hal::Microseconds>(robot_model::kEstimatorConfig<double>.period_s * 1e6 + 0.5);
   using Drives = robot_model::DriveProtocol::Drives<static_cast<std::size_t>(kJoints)>;
-  using Controller = JointController<kJoints, robot_model::kHiddenUnits, Scalar,
-                                     robot_model::Memory, robot_model::Space>;
+  using Controller =
+      JointController<kJoints, robot_model::kHiddenUnits, Scalar, robot_model::Memory,
+                      robot_model::Space, robot_model::Isolates>;
   using Data = typename Controller::Data;
 
   explicit JointFirmware(Bus& bus)

@@ -55,6 +55,9 @@ struct LoopReport {
   bool detected = false;
   double detection_time_s = 0;  // since arming
   int first_joint = -1;         // that was detected, from 0; -1: none, or not in TorqueSpace
+  // The newest answer to which fault it is, of a controller WithIsolation; its time_s is 0 where
+  // there was none.
+  FaultDiagnosis<double> isolated;
 };
 
 // The columns of the rows that the loop records, for RecorderConfig::columns. by_joint: of a
@@ -81,9 +84,10 @@ struct LoopReport {
 
 namespace detail {
 
-template <int N, int L, typename Scalar, typename Memory, typename Space>
-[[nodiscard]] Row row_of(const controller::ControllerData<N, L, Scalar, Memory, Space>& data,
-                         const Tick& tick, Scalar period_s) {
+template <int N, int L, typename Scalar, typename Memory, typename Space, typename Isolates>
+[[nodiscard]] Row row_of(
+    const controller::ControllerData<N, L, Scalar, Memory, Space, Isolates>& data, const Tick& tick,
+    Scalar period_s) {
   Row row;
   // When it was due: rows are evenly spaced.
   row.time_us = tick.begin_us - tick.latency_us;
@@ -119,10 +123,11 @@ template <int N, int L, typename Scalar, typename Memory, typename Space>
 // Runs until it is asked to end, or what the configuration says. `timer` is a CycleTimer, or what
 // else has its wait(). The rows are those of the ticks with a fresh sample. No heap.
 template <int N, int L, typename Scalar, hal::Bus Bus, hal::DriveProtocol Drives, typename Timer,
-          typename ReferenceAt, typename Space = AccelerationSpace>
+          typename ReferenceAt, typename Space = AccelerationSpace,
+          typename Isolates = WithoutIsolation>
 class ControlLoop {
  public:
-  using Controller = controller::JointController<N, L, Scalar, WithMemory, Space>;
+  using Controller = controller::JointController<N, L, Scalar, WithMemory, Space, Isolates>;
   using Data = typename Controller::Data;
 
   // What a loop is made of; all of it has to outlive the loop. `data` belongs on the heap.
@@ -207,12 +212,29 @@ class ControlLoop {
         report_.first_joint = parts_.data.output.detector.first_joint;
       }
     }
+    if constexpr (std::is_same_v<Isolates, WithIsolation>) {
+      if (parts_.data.isolation.triggered) note(parts_.data.isolation.diagnosis);
+    }
     const Microseconds period_us = parts_.timer.period_us();
     report_.left_out += tick.late_ticks;
     report_.worst_late_us =
         std::max(report_.worst_late_us, tick.latency_us + tick.late_ticks * period_us);
     report_.worst_step_us = std::max(report_.worst_step_us, step_us);
     sum_step_us_ += step_us;
+  }
+
+  template <typename Found>
+  void note(const Found& found) {
+    const auto number = [](auto value) { return static_cast<double>(value); };
+    report_.isolated = {found.kind,
+                        found.joint,
+                        number(found.size),
+                        number(found.deviation),
+                        number(found.confidence),
+                        number(found.unexplained),
+                        found.time_s,
+                        found.onset_s,
+                        found.decided};
   }
 
   // Nobody arms or clears any more. The drives are told "off" several times, as a frame may be

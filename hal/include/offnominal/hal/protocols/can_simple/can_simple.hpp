@@ -150,6 +150,7 @@ class CanSimpleDrives {
 
   // The protocol has no frame for it.
   [[nodiscard]] static bool report(const Diagnosis& /*found*/, Frame& /*into*/) { return false; }
+  [[nodiscard]] static bool report(const FaultReport& /*fault*/, Frame& /*into*/) { return false; }
 
   // Nobody asks for an emergency stop in this protocol; an axis that stopped says so by its error.
   [[nodiscard]] bool stop_seen() const { return false; }

@@ -21,8 +21,9 @@ enum class MessageKind : std::uint8_t {
   kDriveStatus = 3,
   kHeartbeat = 4,
   kDiagnosis = 5,
+  kFault = 6,
 };
-inline constexpr int kMessageKinds = 6;
+inline constexpr int kMessageKinds = 7;
 
 inline constexpr int kMaxNodes = 32;           // joints, counted from 0; other nodes likewise
 inline constexpr int kMaxRecordsPerFrame = 8;  // CAN FD
@@ -41,8 +42,13 @@ struct KindIds {
   std::uint32_t base;
   std::uint32_t group_base;  // 0: never in groups
 };
-inline constexpr std::array<KindIds, kMessageKinds> kKindIds = {
-    {{0x020, 0}, {0x100, 0x120}, {0x180, 0x1A0}, {0x200, 0x220}, {0x700, 0}, {0x720, 0}}};
+inline constexpr std::array<KindIds, kMessageKinds> kKindIds = {{{0x020, 0},
+                                                                 {0x100, 0x120},
+                                                                 {0x180, 0x1A0},
+                                                                 {0x200, 0x220},
+                                                                 {0x700, 0},
+                                                                 {0x720, 0},
+                                                                 {0x740, 0}}};
 
 }  // namespace detail
 

@@ -132,12 +132,10 @@ class ProtectedDrives {
   }
 
   [[nodiscard]] bool report(const Diagnosis& found, Frame& into) {
-    Record record{};
-    const std::uint16_t id = data_id_of(MessageKind::kDiagnosis, kControllerNode);
-    if (encode(found, diagnosis_counter_, id, record) != Status::kOk) return false;
-    ++diagnosis_counter_;
-    into = frame_of(MessageKind::kDiagnosis, kControllerNode, record);
-    return true;
+    return tell(MessageKind::kDiagnosis, found, diagnosis_counter_, into);
+  }
+  [[nodiscard]] bool report(const FaultReport& fault, Frame& into) {
+    return tell(MessageKind::kFault, fault, fault_counter_, into);
   }
 
   [[nodiscard]] Microseconds drive_max_age_us() const { return drive_config_.max_age_us; }
@@ -163,6 +161,17 @@ class ProtectedDrives {
   }
 
  private:
+  template <typename Message>
+  static bool tell(MessageKind kind, const Message& message, std::uint8_t& counter, Frame& into) {
+    Record record{};
+    if (encode(message, counter, data_id_of(kind, kControllerNode), record) != Status::kOk) {
+      return false;
+    }
+    ++counter;
+    into = frame_of(kind, kControllerNode, record);
+    return true;
+  }
+
   Status take_record(MessageKind kind, std::size_t node,
                      std::span<const std::uint8_t, kRecordLength> record, Microseconds time_us) {
     switch (kind) {
@@ -185,6 +194,7 @@ class ProtectedDrives {
       case MessageKind::kTorqueCommand:
       case MessageKind::kHeartbeat:
       case MessageKind::kDiagnosis:
+      case MessageKind::kFault:
         break;
     }
     return Status::kUnknownId;
@@ -198,6 +208,7 @@ class ProtectedDrives {
   PerJoint<static_cast<int>(Joints), std::uint8_t> torque_counters_{};
   std::uint8_t heartbeat_counter_ = 0;
   std::uint8_t diagnosis_counter_ = 0;
+  std::uint8_t fault_counter_ = 0;
   bool stop_seen_ = false;
 };
 
@@ -246,7 +257,7 @@ struct Protected {
     return frames[0];
   }
 
-  // Stops, readings, statuses; torque commands, heartbeats and diagnoses.
+  // Stops, readings, statuses; torque commands, heartbeats, diagnoses and faults.
   [[nodiscard]] static std::size_t from_drives(const DriveValues& /*values*/,
                                                std::span<IdFilter> into) {
     into[0] = {.id = 0x020, .mask = 0x7E0};
@@ -257,7 +268,7 @@ struct Protected {
   [[nodiscard]] static std::size_t from_controller(const DriveValues& /*values*/,
                                                    std::span<IdFilter> into) {
     into[0] = {.id = 0x100, .mask = 0x7C0};
-    into[1] = {.id = 0x700, .mask = 0x7C0};
+    into[1] = {.id = 0x700, .mask = 0x780};
     return 2;
   }
 
