@@ -43,6 +43,7 @@ namespace {
 
 struct StudioOptions {
   FitFiles files;
+  std::vector<std::string> campaign;  // results, and the campaign's file
   std::optional<std::string> bus;
   std::optional<std::vector<std::string>> sil;  // with the scenario's file, or none
   std::vector<KeepFault> keep;
@@ -67,7 +68,18 @@ std::string options_of(const CLI::App& verb) {
   return line;
 }
 
-studio::Input read_input(const StudioOptions& options, const std::string& more, ReadOne* read_one) {
+void set_names(std::vector<Log>& logs, const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < logs.size(); ++i) logs[i].file = names[i];
+}
+
+// `names`: what commands and messages call the recordings, where that is not where they lie.
+struct ShownNames {
+  std::vector<std::string> logs;
+  std::vector<std::string> holdout;
+};
+
+studio::Input read_input(const StudioOptions& options, const std::string& more, ReadOne* read_one,
+                         const ShownNames& names) {
   const FitFiles& files = options.files;
   for (const auto* some : {&files.logs, &files.holdout}) {
     for (const std::string& file : *some) {
@@ -79,6 +91,8 @@ studio::Input read_input(const StudioOptions& options, const std::string& more, 
   }
   Progress progress;
   FitData data = read_fit_data("studio", "RECORDING", files, read_one, progress);
+  set_names(data.logs, names.logs);
+  set_names(data.holdout, names.holdout);
   for (const std::vector<Log>* some : {&data.logs, &data.holdout}) {
     for (const Log& log : *some) refuse_hidden_from_sensors(data.robot, log);
   }
@@ -91,14 +105,18 @@ studio::Input read_input(const StudioOptions& options, const std::string& more, 
   input.robot = std::move(data.robot);
   input.robot_file = files.robot;
   input.recordings = std::make_shared<const Treated>(std::move(recordings));
-  input.log_files = files.logs;
-  input.holdout_files = files.holdout;
-  input.source = "Fitted to " + file_names(files.logs) + " by offnominal add.";
+  input.log_files = names.logs;
+  input.holdout_files = names.holdout;
+  input.source = "Fitted to " + file_names(names.logs) + " by offnominal add.";
   input.options = more;
   input.payloads = files.channels.payloads;
   input.output = options.output;
   input.threads = options.threads;
   return input;
+}
+
+studio::Input read_input(const StudioOptions& options, const std::string& more, ReadOne* read_one) {
+  return read_input(options, more, read_one, {options.files.logs, options.files.holdout});
 }
 
 // Best effort: the address is printed all the same.
@@ -203,6 +221,43 @@ studio::OpenRecording opener(StudioOptions options, const std::string& more) {
   };
 }
 
+// Reads what the page was given, as if the command line had named it.
+studio::OpenFiles file_opener(StudioOptions options, const std::string& more) {
+  return [options = std::move(options), more](const studio::SessionFiles& files) {
+    StudioOptions of_files = options;
+    ShownNames names;
+    const auto take = [](const std::vector<studio::NamedFile>& some,
+                         std::vector<std::string>& paths, std::vector<std::string>& shown) {
+      for (const studio::NamedFile& file : some) {
+        paths.push_back(file.path);
+        shown.push_back(file.name);
+      }
+    };
+    take(files.logs, of_files.files.logs, names.logs);
+    take(files.holdout, of_files.files.holdout, names.holdout);
+    of_files.files.robot = files.robot.path;
+    std::string with_channels = more;
+    if (files.channels) {
+      of_files.files.channels.file = files.channels->path;
+      with_channels += " --channels " + shell_word(files.channels->name);
+    }
+    studio::Input input = read_input(of_files, with_channels, read_log, names);
+    input.robot_file = files.robot.name;
+    input.commands_note = files.commands_note;
+    input.commands_before = files.commands_before;
+    input.marks = files.marks;
+    return input;
+  };
+}
+
+std::unique_ptr<studio::Intake> intake_of(const StudioOptions& options) {
+  studio::IntakeSettings settings;
+  if (!options.files.robot.empty()) settings.robot_file = options.files.robot;
+  if (options.output) settings.folder = std::filesystem::path(*options.output).parent_path();
+  settings.keep = options.keep;
+  return std::make_unique<studio::Intake>(std::move(settings));
+}
+
 void serve(studio::Server& server, const StudioOptions& options, const HeldSignals& held) {
   if (options.json) {
     std::cout << json_text(
@@ -216,19 +271,47 @@ void serve(studio::Server& server, const StudioOptions& options, const HeldSigna
   server.run();
 }
 
-// One of three: recordings, a bus, a run that is simulated.
+// Of what the page asks for, nothing is said before.
+void check_nothing_of_recordings(const StudioOptions& options) {
+  const ChannelOptions& channels = options.files.channels;
+  const auto refuse = [](const char* option, const char* mend) {
+    refuse_option("studio", option, "no recording that it is of", "a recording beside it", mend);
+  };
+  const char* on_page = "leave it out: the page asks for it once a recording is dropped";
+  if (!options.files.holdout.empty()) refuse("--holdout", on_page);
+  if (channels.file) refuse("--channels", on_page);
+  if (channels.period_s) refuse("--period", on_page);
+  if (!channels.payloads.empty()) refuse("--payload", "give the recording on the command line");
+}
+
+// The model and the recordings are the campaign's.
+void check_campaign(const StudioOptions& options) {
+  const auto refuse = [](const char* option) {
+    refuse_option("studio", option, "together with --campaign", "one of the two",
+                  "the runs of a campaign are opened from its page, with its model");
+  };
+  if (options.bus) refuse("--bus");
+  if (options.sil) refuse("--sil");
+  if (!options.files.logs.empty()) refuse("RECORDING");
+  if (!options.files.robot.empty()) refuse("--robot");
+}
+
+// One of five: recordings, a bus, a run that is simulated, a campaign, files that the page is
+// given.
 void check_source(const StudioOptions& options) {
   const bool live = options.bus || options.sil;
+  const bool has_logs = !options.files.logs.empty();
   if (options.bus && options.sil) {
     refuse_option("studio", "--bus", "together with --sil", "one of the two", "leave one out");
   }
-  if (!live && options.files.logs.empty()) {
-    refuse_option("studio", "RECORDING", "nothing to look at",
-                  "a recording or several, --sil [SCENARIO] or --bus INTERFACE",
-                  "give one of them");
+  if ((live || has_logs) && options.files.robot.empty()) {
+    refuse_option("studio", "--robot", "nothing", "a robot file",
+                  "give one; without recordings too, the page asks for both");
   }
+  if (!live && !has_logs) check_nothing_of_recordings(options);
+  if (!options.campaign.empty()) check_campaign(options);
   if (!live) return;
-  if (!options.files.logs.empty() || !options.files.holdout.empty()) {
+  if (has_logs || !options.files.holdout.empty()) {
     refuse_option("studio", "RECORDING", "recordings beside a live view", "one of the two",
                   "what a live view records is opened from its page");
   }
@@ -239,6 +322,21 @@ void run(const StudioOptions& options, const std::string& more) {
   if (options.bus || options.sil) {
     const HeldSignals held;
     studio::Server server(live_view(options), opener(options, more), options.port);
+    serve(server, options, held);
+    return;
+  }
+  if (!options.campaign.empty()) {
+    std::optional<std::string> file;
+    if (options.campaign.size() > 1) file = options.campaign[1];
+    auto view = std::make_unique<studio::CampaignView>(options.campaign[0], file);
+    const HeldSignals held;
+    studio::Server server(std::move(view), file_opener(options, more), options.port);
+    serve(server, options, held);
+    return;
+  }
+  if (options.files.logs.empty()) {
+    const HeldSignals held;
+    studio::Server server(intake_of(options), file_opener(options, more), options.port);
     serve(server, options, held);
     return;
   }
@@ -253,8 +351,10 @@ void run(const StudioOptions& options, const std::string& more) {
 void set_up_studio(CLI::App& verb, ExitCode& /*exit_code*/) {
   const auto options = std::make_shared<StudioOptions>();
   verb.add_option("RECORDING", options->files.logs,
-                  "One recording to fit or several, " + log_format_names());
-  verb.add_option("--robot", options->files.robot, "Robot file to start from")->required();
+                  "One recording to fit or several, " + log_format_names() +
+                      ". Without any the page asks for them");
+  verb.add_option("--robot", options->files.robot,
+                  "Robot file to start from; needed with recordings and for a live view");
   verb.add_option("--bus", options->bus,
                   "In place of recordings, a live view of a CAN interface (can0, vcan0): the "
                   "monitor over what the drives say. It listens and can send nothing");
@@ -268,6 +368,12 @@ void set_up_studio(CLI::App& verb, ExitCode& /*exit_code*/) {
           "the robot file on a bus, with faults from the page. A scenario's file may say more")
       ->type_name("[SCENARIO]")
       ->expected(0, 1);
+  verb.add_option("--campaign", options->campaign,
+                  "In place of recordings, the results of `offnominal campaign`: tables and curves "
+                  "by fault, joint and detector, and every run as a recording. The campaign's file "
+                  "may stand behind them: the commands that repeat a session name it")
+      ->type_name("RESULTS [FILE]")
+      ->expected(1, 2);
   verb.add_option("--holdout", options->files.holdout,
                   "Recordings to judge the fit on: no fit sees them. Without any, parts of the "
                   "others are held out");
@@ -287,7 +393,10 @@ void set_up_studio(CLI::App& verb, ExitCode& /*exit_code*/) {
   verb.footer(
       "One page on this machine: look at the error of every joint, let `explain` say what is "
       "missing, switch effects on and off and watch the error on held-out data, save the robot "
-      "file. The numbers are those of `add`, `compare` and `explain`. With --sil or --bus it shows "
+      "file. The numbers are those of `add`, `compare` and `explain`. Without recordings they are "
+      "dropped on the page with a robot file or a URDF, their columns guessed, shown and put right "
+      "there, and [channels] written beside the file of -o, or into the working directory. With "
+      "--sil or --bus it shows "
       "residual and threshold as they happen, keeps what is around a detection, and has it "
       "explained; recordings are written beside the file of -o, or into the working directory. "
       "Nothing leaves the machine; "

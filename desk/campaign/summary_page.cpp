@@ -177,7 +177,7 @@ report::Table smallest_table(const Summary& summary) {
 
 report::Table confusion_table(const DetectorSummary& detector) {
   report::Table table;
-  table.caption = detector.name;
+  table.caption = detector.name + ": what its answers call a fault";
   table.columns = {
       {"fault", "", report::kDefaultFormat}, {"seen", "1", "d"}, {"right", "%", ".1f"}};
   for (std::size_t kind = 0; kind < offnominal::kFaultKinds; ++kind) {

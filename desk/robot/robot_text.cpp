@@ -335,6 +335,12 @@ void write_channels(Writer& out, const ChannelMap& channels) {
 
 }  // namespace
 
+std::string channels_table(const ChannelMap& channels) {
+  Writer out;
+  write_channels(out, channels);
+  return out.text().substr(1);  // behind the line that parts it from what comes before
+}
+
 std::vector<std::string> channel_lines(const ChannelMap& channels, std::string_view quantity) {
   std::vector<std::string> lines;
   if (quantity == "time") {

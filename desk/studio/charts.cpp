@@ -102,6 +102,7 @@ std::vector<Chart> time_charts(const Workbench& bench, const View& view) {
   for (Chart& chart : charts) {
     for (Series& series : chart.series) series = seen(series, view);
     chart.max_points = 6 * kMostPixels;
+    if (view.recording == 0) chart.events = bench.input().marks;
   }
   return charts;
 }

@@ -56,6 +56,7 @@ std::vector<std::string> commands_of(const Workbench& bench, const std::string& 
   all_files.insert(all_files.end(), input.holdout_files.begin(), input.holdout_files.end());
   const std::string more = input.options + payloads_of(input, all_files);
   std::vector<std::string> commands;
+  if (count > 0) commands = input.commands_before;
   std::string robot = input.robot_file;
   for (std::size_t i = 0; i < count; ++i) {
     const Step& step = bench.steps()[i];

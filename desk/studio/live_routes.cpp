@@ -33,9 +33,16 @@ void act(Response& response, const Act& do_it) {
 }
 
 ordered_json setup_of(const Stage& stage) {
-  if (!stage.is_live()) return {{"source", nullptr}, {"loaded", true}};
+  if (!stage.is_live()) {
+    return {{"source", nullptr},
+            {"loaded", stage.is_loaded()},
+            {"takes_files", stage.takes_files()},
+            {"has_campaign", stage.has_campaign()}};
+  }
   ordered_json setup = live::setup_json(stage.live());
   setup["loaded"] = stage.is_loaded();
+  setup["takes_files"] = false;
+  setup["has_campaign"] = false;
   return setup;
 }
 

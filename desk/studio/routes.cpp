@@ -7,7 +7,9 @@
 #include "common/refused.hpp"
 #include "report/assets.hpp"
 #include "studio/assets.hpp"
+#include "studio/campaign_routes.hpp"
 #include "studio/live_routes.hpp"
+#include "studio/load_routes.hpp"
 #include "studio/requests.hpp"
 #include "studio/stage.hpp"
 
@@ -120,6 +122,8 @@ void set_up_routes(httplib::Server& server, const std::string& path, Stage& stag
   set_up_model(server, path + "api/", stage);
   set_up_search(server, path + "api/", stage);
   set_up_live_routes(server, path + "api/", stage);
+  set_up_load_routes(server, path + "api/", stage);
+  set_up_campaign_routes(server, path + "api/", stage);
 }
 
 }  // namespace offnominal::desk::studio

@@ -1,12 +1,17 @@
 #include "studio/server.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <charconv>
+#include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "common/error.hpp"
 #include "studio/guard.hpp"
 #include "studio/http.hpp"
+#include "studio/load_routes.hpp"
 #include "studio/routes.hpp"
 #include "studio/stage.hpp"
 
@@ -44,6 +49,17 @@ int port_of(httplib::Server& server, int port) {
                     "a port of 127.0.0.1 that is free", "leave --port out: a free one is chosen"});
 }
 
+// More than any limit where it is no number.
+std::uint64_t length_of(const httplib::Request& request) {
+  if (!request.has_header("Content-Length")) return 0;
+  const std::string text = request.get_header_value("Content-Length");
+  std::uint64_t length = 0;
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, length);
+  return read.ec == std::errc{} && read.ptr == end ? length
+                                                   : std::numeric_limits<std::uint64_t>::max();
+}
+
 }  // namespace
 
 struct Server::Parts {
@@ -66,7 +82,11 @@ struct Server::Parts {
       if (is_to_stop) stop_once();
       return new httplib::ThreadPool(kThreads);
     };
-    http.set_payload_max_length(kMostBody);
+    // Of what may come at all; let_in() knows of what.
+    http.set_payload_max_length(
+        stage.takes_files()
+            ? std::max<std::uint64_t>(stage.intake().folder().limits().file, kMostBody)
+            : kMostBody);
     http.set_keep_alive_timeout(kIdleS);
     http.set_read_timeout(kReadS);
     http.set_tcp_nodelay(true);
@@ -89,6 +109,11 @@ struct Server::Parts {
         !request.has_header("Transfer-Encoding") &&
         (request.method != "POST" || request.has_header("Content-Length"));
     if (refusal == 0 && !is_of_known_length) refusal = 411;
+    // No body is unpacked: what is packed could be of any length.
+    if (refusal == 0 && request.has_header("Content-Encoding")) refusal = 415;
+    // A file is received by its own route, which knows what may be too long of it.
+    const bool is_file = request.path == guard.path() + "api/" + kFilesRoute;
+    if (refusal == 0 && !is_file && length_of(request) > kMostBody) refusal = 413;
     if (refusal == 0) return httplib::Server::HandlerResponse::Unhandled;
     response.status = refusal;
     response.set_header("Connection", "close");
@@ -113,6 +138,10 @@ struct Server::Parts {
 Server::Server(Input input, int port) : parts_(std::make_unique<Parts>(port, std::move(input))) {}
 Server::Server(std::unique_ptr<live::Live> live, OpenRecording open, int port)
     : parts_(std::make_unique<Parts>(port, std::move(live), std::move(open))) {}
+Server::Server(std::unique_ptr<Intake> intake, OpenFiles open, int port)
+    : parts_(std::make_unique<Parts>(port, std::move(intake), std::move(open))) {}
+Server::Server(std::unique_ptr<CampaignView> campaign, OpenFiles open, int port)
+    : parts_(std::make_unique<Parts>(port, std::move(campaign), std::move(open))) {}
 Server::~Server() = default;
 
 std::string Server::address() const { return parts_->guard.address(); }

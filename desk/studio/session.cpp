@@ -35,7 +35,8 @@ ordered_json Session::state_now() {
   json["save"] = {{"name", saved_.empty() ? proposed_name(input) : saved_name_},
                   {"fixed", input.output.has_value()},
                   {"saved", nullptr},
-                  {"commands", commands()}};
+                  {"commands", commands()},
+                  {"commands_note", input.commands_note}};
   if (!saved_.empty() && saved_revision_ == revision_) json["save"]["saved"] = saved_;
   return json;
 }
@@ -114,6 +115,11 @@ ordered_json Session::start_to_explain() {
 ordered_json Session::stop_to_explain() {
   job_.stop();
   return to_json(job_.report());
+}
+
+bool Session::has_steps() {
+  const std::lock_guard guard(lock_);
+  return !bench_.steps().empty();
 }
 
 ordered_json Session::explanation() { return to_json(job_.report()); }

@@ -33,6 +33,8 @@ class Session {
   nlohmann::ordered_json start_to_explain();
   nlohmann::ordered_json stop_to_explain();
   nlohmann::ordered_json explanation();
+  /// Something was added that may not be saved.
+  [[nodiscard]] bool has_steps();
   /// The page is gone, or the server ends: nothing goes on in the background.
   void leave() { job_.stop(); }
 

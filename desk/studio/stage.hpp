@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -8,6 +9,8 @@
 #include <string>
 
 #include "live/live.hpp"
+#include "studio/campaign_view.hpp"
+#include "studio/intake.hpp"
 #include "studio/session.hpp"
 #include "studio/workbench.hpp"
 
@@ -16,32 +19,54 @@ namespace offnominal::desk::studio {
 /// Reads a recording that the live view has written, as the verb reads its own.
 using OpenRecording = std::function<Input(const std::string& file)>;
 
-/// What the server shows: a session over recordings, or a live view that hands stretches over to
-/// one. Every function may be called by any thread.
+/// What the server shows: a session over recordings, or what leads to one: files that the page is
+/// given, a campaign's runs, or a live view that hands stretches over. Every function may be called
+/// by any thread.
 class Stage {
  public:
   explicit Stage(Input input);
   Stage(std::unique_ptr<live::Live> live, OpenRecording open);
+  Stage(std::unique_ptr<Intake> intake, OpenFiles open);
+  Stage(std::unique_ptr<CampaignView> campaign, OpenFiles open);
 
   /// Throws Refused as long as no recording is loaded.
   [[nodiscard]] std::shared_ptr<Session> session() const;
   /// Throws Refused where there is no live view.
   [[nodiscard]] live::Live& live() const;
   [[nodiscard]] bool is_live() const { return live_ != nullptr; }
+  /// Throws Refused where the files are those of the command line.
+  [[nodiscard]] Intake& intake() const;
+  [[nodiscard]] bool takes_files() const { return intake_ != nullptr; }
+  /// Throws Refused where there is none.
+  [[nodiscard]] CampaignView& campaign() const;
+  [[nodiscard]] bool has_campaign() const { return campaign_ != nullptr; }
   [[nodiscard]] bool is_loaded() const;
 
   /// What came since the last detection becomes a recording, that one the session's, and the search
   /// for what the model lacks there begins. Throws Refused where nothing was detected, InputError
   /// where the recording cannot be written or will not do; the session before stays.
   nlohmann::ordered_json explain_detection();
+  /// The files that the page was given become the session's: {written: [names]}. Throws Refused
+  /// where something is missing, and where a session with steps would be lost and `replace` does
+  /// not say that this is meant; InputError where they will not do; the session before stays.
+  nlohmann::ordered_json use_files(bool replace);
+  /// A run of the campaign becomes the session's recording: {run}. Throws as use_files().
+  nlohmann::ordered_json open_run(std::int64_t run, bool replace);
   /// The page is gone, or the server ends: no search goes on in the background.
   void leave() const;
 
  private:
+  void check_nothing_is_lost(bool replace) const;
+  // The session that is shown is another one from now on.
+  void show(std::shared_ptr<Session> made);
+
   OpenRecording open_;
-  std::mutex explaining_;    // one after the other
+  OpenFiles open_files_;
+  std::mutex making_;        // one session after the other
   mutable std::mutex lock_;  // of the session that is shown
   std::shared_ptr<Session> session_;
+  std::unique_ptr<Intake> intake_;
+  std::unique_ptr<CampaignView> campaign_;
   std::unique_ptr<live::Live> live_;  // ends first
 };
 

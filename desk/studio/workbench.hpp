@@ -10,6 +10,7 @@
 #include "compare/compare.hpp"
 #include "explain/explain.hpp"
 #include "identify/add.hpp"
+#include "report/page.hpp"
 #include "robot/payload.hpp"
 #include "robot/robot.hpp"
 
@@ -26,7 +27,10 @@ struct Input {
   std::string options;                        // of every command that repeats the session, or empty
   std::vector<RecordingPayload> payloads;     // what --payload says of some of the recordings
   std::optional<std::string> output;          // the file that -o names; none: beside the robot file
-  int threads = 1;                            // of explain
+  std::vector<std::string> commands_before;   // those that make the files of this session
+  std::vector<report::EventMark> marks;       // in the time of the first recording
+  std::string commands_note;  // what those who repeat the session have to know, or empty
+  int threads = 1;            // of explain
 };
 
 /// One effect that was switched on.

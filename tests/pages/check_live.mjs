@@ -5,37 +5,16 @@
 // R.toml: two joints; its monitor is put into torque space. --measure: R.toml as it is, pictures a second and the
 // server's processor time and memory, and nothing else.
 // Exit 0: all went well. Exit 1: one line per fault on stderr. Exit 2: it could not be checked.
-import { spawn } from "node:child_process";
-import { createRequire } from "node:module";
-import { mkdtemp, readFile, readdir, rm, writeFile } from "node:fs/promises";
-import { tmpdir } from "node:os";
+import { readFile, readdir, writeFile } from "node:fs/promises";
 import { join, resolve } from "node:path";
-import { fileURLToPath } from "node:url";
-import { parseArgs } from "node:util";
-import { checkWithAxe, readAxe } from "./accessible.mjs";
+import { checkNames, kScript, look, openPage, readArguments, runCheck } from "./studio_page.mjs";
 
-const kScript = "<img src=x onerror=window.hacked=1>";
 const kLooks = [
   [1280, "light"],
   [1280, "dark"],
   [400, "light"],
   [2560, "dark"],
 ];
-const web = fileURLToPath(new URL("../../desk/report/web/", import.meta.url));
-
-function readArguments() {
-  const text = { type: "string" };
-  const { values } = parseArgs({
-    options: {
-      offnominal: text, robot: text, screenshots: text, measure: text,
-      chromium: { type: "string", default: process.env.OFFNOMINAL_CHROMIUM ?? "/usr/bin/chromium" },
-    },
-  });
-  for (const name of ["offnominal", "robot"]) {
-    if (values[name] === undefined) throw new Error(`--${name} is needed`);
-  }
-  return values;
-}
 
 /** The robot judged joint by joint, under hostile names. */
 async function hostileRobot(file, folder) {
@@ -47,24 +26,6 @@ async function hostileRobot(file, folder) {
     .replace(/^\[uncertainty_bound\][\s\S]*$/m, '[uncertainty_bound]\nkind = "per_joint"\nvalue = [1.0, 1.0]\n');
   await writeFile(robot, text);
   return robot;
-}
-
-/** Starts Studio where it may write, and waits for its address. */
-function startStudio(options, robot, folder) {
-  const words = ["studio", "--sil", "--robot", robot, "--no-open", "--json"];
-  const program = spawn(resolve(options.offnominal), words, { cwd: folder, stdio: ["ignore", "pipe", "inherit"] });
-  const ended = new Promise((done) => program.on("exit", (code, signal) => done({ code, signal })));
-  const address = new Promise((found, failed) => {
-    let said = "";
-    program.stdout.on("data", (data) => {
-      said += data;
-      const at = said.match(/"address": "([^"]+)"/);
-      if (at) found(at[1]);
-    });
-    program.on("exit", () => failed(new Error("studio ended before it said its address")));
-  });
-  address.catch(() => {}); // who waits for it later hears of it
-  return { program, ended, address };
 }
 
 function pictures(page) {
@@ -150,41 +111,6 @@ async function checkRest(page, folder, fault) {
   if (!words.includes("has to be")) fault(`a size that cannot be is answered with: ${words}`);
 }
 
-async function look(page, options, axeSource, fault) {
-  for (const [width, mode] of kLooks) {
-    await page.setViewportSize({ width, height: 900 });
-    await page.emulateMedia({ colorScheme: mode });
-    await page.waitForTimeout(300);
-    const inLook = (words) => fault(`${mode}, ${width} pixels wide: ${words}`);
-    if (options.screenshots) {
-      await page.screenshot({ path: join(options.screenshots, `live_${mode}_${width}.png`), fullPage: true });
-    }
-    const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-    if (wide > 0) inLook(`the page is ${wide} pixels wider than the window`);
-    await checkWithAxe(page, axeSource, inLook);
-  }
-}
-
-async function openPage(context, address, fault) {
-  await context.route("**/*", (route) => {
-    if (route.request().url().startsWith(address)) return route.continue();
-    fault(`the page asks for ${route.request().url().slice(0, 200)}`);
-    return route.abort();
-  });
-  const page = await context.newPage();
-  page.setDefaultTimeout(120_000);
-  page.on("pageerror", (error) => fault(`script error: ${error.message}`));
-  page.on("console", (message) => {
-    const refused = message.text().includes("400 (Bad Request)"); // a size that cannot be
-    const slow = message.text().includes("GPU stall due to ReadPixels");
-    const readBack = message.text().includes("willReadFrequently");
-    if (["error", "warning"].includes(message.type()) && !refused && !slow && !readBack) fault(`console: ${message.text()}`);
-  });
-  await page.goto(address);
-  await page.waitForSelector("body[data-live]");
-  return page;
-}
-
 /** Processor time, s, and resident memory, MB. */
 async function usage(pid) {
   const fields = (await readFile(`/proc/${pid}/stat`, "utf8")).replace(/^.*\) /, "").split(" ");
@@ -205,44 +131,19 @@ async function measure(page, program, seconds) {
   );
 }
 
-async function check(options, fault) {
-  const { chromium } = createRequire(join(web, "package.json"))("playwright-core");
-  const axeSource = await readAxe(web);
-  const folder = await mkdtemp(join(tmpdir(), "offnominal-live-"));
+async function check({ options, folder, start, newContext, axeSource }, fault) {
   const robot = options.measure ? resolve(options.robot) : await hostileRobot(options.robot, folder);
-  const { program, ended, address } = startStudio(options, robot, folder);
-  let browser;
-  try {
-    browser = await chromium.launch({
-      executablePath: options.chromium,
-      args: ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run", "--disable-background-networking"],
-    });
-    const context = await browser.newContext({ viewport: { width: 1280, height: 900 } });
-    const page = await openPage(context, await address, fault);
-    if (options.measure) return await measure(page, program, Number(options.measure));
-    await checkMoving(page, fault);
-    await checkAlarm(page, fault);
-    await checkExplanation(page, folder, fault);
-    await look(page, options, axeSource, fault);
-    await checkRest(page, folder, fault);
-    if (await page.evaluate(() => window.hacked !== undefined)) fault("a name was taken for markup");
-    console.log("live: a fault was injected, seen, looked at, explained; a recording was written");
-  } finally {
-    await browser?.close();
-    program.kill("SIGINT");
-    const { code, signal } = await ended;
-    if (code !== 0) fault(`Ctrl-C ends it with ${code ?? signal}`);
-    await rm(folder, { recursive: true, force: true });
-  }
+  const { address, program } = await start(["--sil", "--robot", robot]);
+  const expected = ["400 (Bad Request)", "willReadFrequently"]; // a size that cannot be; a picture that is read back
+  const page = await openPage(await newContext(), address, "body[data-live]", expected, fault);
+  if (options.measure) return await measure(page, program, Number(options.measure));
+  await checkMoving(page, fault);
+  await checkAlarm(page, fault);
+  await checkExplanation(page, folder, fault);
+  await look(page, kLooks, "live", { ...options, axeSource }, fault);
+  await checkRest(page, folder, fault);
+  await checkNames(page, fault);
+  console.log("live: a fault was injected, seen, looked at, explained; a recording was written");
 }
 
-const faults = [];
-try {
-  await check(readArguments(), (text) => faults.push(text));
-  for (const text of new Set(faults)) console.error(text);
-  process.exitCode = faults.length === 0 ? 0 : 1;
-} catch (error) {
-  for (const text of new Set(faults)) console.error(text);
-  console.error(`check_live: ${error.message}`);
-  process.exitCode = 2;
-}
+await runCheck("live", () => readArguments(["offnominal", "robot"], { measure: { type: "string" } }), check);

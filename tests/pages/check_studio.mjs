@@ -4,17 +4,12 @@
 //   node check_studio.mjs --offnominal PROGRAM --robot R.toml --recording A.csv [--holdout B.csv] --joint N
 //     --effect NAME [--screenshots FOLDER] [--measure]
 // Exit 0: all went well. Exit 1: one line per fault on stderr. Exit 2: it could not be checked.
-import { execFileSync, spawn } from "node:child_process";
-import { createRequire } from "node:module";
-import { copyFile, mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
-import { tmpdir } from "node:os";
-import { extname, join } from "node:path";
-import { fileURLToPath } from "node:url";
-import { parseArgs } from "node:util";
-import { checkWithAxe, readAxe } from "./accessible.mjs";
+import { execFileSync } from "node:child_process";
+import { copyFile, readFile, writeFile } from "node:fs/promises";
+import { extname, join, resolve } from "node:path";
 import { checkArm, checkWithoutWebgl } from "./studio_arm.mjs";
+import { checkNames, kScript, look, openPage, readArguments, runCheck } from "./studio_page.mjs";
 
-const kScript = "<img src=x onerror=window.hacked=1>";
 const kLooks = [
   [1280, "light"],
   [1280, "dark"],
@@ -22,22 +17,8 @@ const kLooks = [
   [2560, "light"],
   [3840, "dark"],
 ];
-const web = fileURLToPath(new URL("../../desk/report/web/", import.meta.url));
-
-function readArguments() {
-  const text = { type: "string" };
-  const { values } = parseArgs({
-    options: {
-      offnominal: text, robot: text, recording: text, holdout: text, joint: text, effect: text,
-      screenshots: text, measure: { type: "boolean", default: false },
-      chromium: { type: "string", default: process.env.OFFNOMINAL_CHROMIUM ?? "/usr/bin/chromium" },
-    },
-  });
-  for (const name of ["offnominal", "robot", "recording", "joint", "effect"]) {
-    if (values[name] === undefined) throw new Error(`--${name} is needed`);
-  }
-  return values;
-}
+const kReady = "body[data-revision]";
+const kExpected = ["409 (Conflict)"]; // that a file is there, say
 
 /** The inputs under hostile names, in a folder of their own. */
 async function hostileInputs(options, folder) {
@@ -52,25 +33,6 @@ async function hostileInputs(options, folder) {
     return to;
   };
   return { robot, recording: await copy(options.recording, "a"), holdout: await copy(options.holdout, "b") };
-}
-
-/** Starts Studio and waits for its address. */
-function startStudio(options, inputs) {
-  const words = ["studio", inputs.recording, "--robot", inputs.robot, "--no-open", "--json"];
-  if (inputs.holdout) words.push("--holdout", inputs.holdout);
-  const program = spawn(options.offnominal, words, { stdio: ["ignore", "pipe", "inherit"] });
-  const ended = new Promise((done) => program.on("exit", (code, signal) => done({ code, signal })));
-  const address = new Promise((found, failed) => {
-    let said = "";
-    program.stdout.on("data", (data) => {
-      said += data;
-      const at = said.match(/"address": "([^"]+)"/);
-      if (at) found(at[1]);
-    });
-    program.on("exit", () => failed(new Error("studio ended before it said its address")));
-  });
-  address.catch(() => {}); // who waits for it later hears of it
-  return { program, ended, address };
 }
 
 /** The numbers in the page's head, as they are read: [held out, fitted]. */
@@ -88,7 +50,7 @@ async function afterChange(page, act) {
 }
 
 function verb(options, ...words) {
-  return JSON.parse(execFileSync(options.offnominal, [...words, "--json"], { stdio: ["ignore", "pipe", "ignore"] }));
+  return JSON.parse(execFileSync(resolve(options.offnominal), [...words, "--json"], { stdio: ["ignore", "pipe", "ignore"] }));
 }
 
 async function checkSaved(page, options, inputs, fault) {
@@ -120,7 +82,7 @@ async function checkCommands(page, options, saved, fault) {
   const lines = await page.textContent("#place-save pre");
   const script = `set -e\noffnominal() { "$PROGRAM" "$@"; }\n${lines}\n`;
   try {
-    execFileSync("/bin/sh", ["-c", script], { env: { ...process.env, PROGRAM: options.offnominal }, stdio: "pipe" });
+    execFileSync("/bin/sh", ["-c", script], { env: { ...process.env, PROGRAM: resolve(options.offnominal) }, stdio: "pipe" });
   } catch (error) {
     return fault(`the commands of the page fail: ${error.stderr}`);
   }
@@ -211,89 +173,27 @@ async function measure(page) {
   console.log(`click to new charts: median ${at(0.5)} ms, p95 ${at(0.95)} ms, ${times.length} clicks`);
 }
 
-async function look(page, options, axeSource, fault) {
-  for (const [width, mode] of kLooks) {
-    await page.setViewportSize({ width, height: 900 });
-    await page.emulateMedia({ colorScheme: mode });
-    await page.waitForTimeout(150);
-    const inLook = (words) => fault(`${mode}, ${width} pixels wide: ${words}`);
-    if (options.screenshots) {
-      const name = `studio_${mode}_${width}.png`;
-      await page.screenshot({ path: join(options.screenshots, name), fullPage: true });
-    }
-    const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-    if (wide > 0) inLook(`the page is ${wide} pixels wider than the window`);
-    await checkWithAxe(page, axeSource, inLook);
-  }
-}
-
-async function openPage(context, address, fault) {
-  await context.route("**/*", (route) => {
-    if (route.request().url().startsWith(address)) return route.continue();
-    fault(`the page asks for ${route.request().url().slice(0, 200)}`);
-    return route.abort();
-  });
-  const page = await context.newPage();
-  page.setDefaultTimeout(120_000);
-  page.on("pageerror", (error) => fault(`script error: ${error.message}`));
-  page.on("console", (message) => {
-    const refused = message.text().includes("409 (Conflict)"); // that a file is there, say
-    // Chromium's own, of a picture that is read back for a screenshot.
-    const slow = message.text().includes("GPU stall due to ReadPixels");
-    if (["error", "warning"].includes(message.type()) && !refused && !slow) fault(`console: ${message.text()}`);
-  });
-  await page.goto(address);
-  await page.waitForSelector("body[data-revision]");
-  return page;
-}
-
-async function check(options, fault) {
-  const { chromium } = createRequire(join(web, "package.json"))("playwright-core");
-  const axeSource = await readAxe(web);
-  const folder = await mkdtemp(join(tmpdir(), "offnominal-studio-"));
+async function check({ options, folder, start, newContext, axeSource }, fault) {
   const inputs = await hostileInputs(options, folder);
-  const { program, ended, address } = startStudio(options, inputs);
-  let browser;
-  try {
-    browser = await chromium.launch({
-      executablePath: options.chromium,
-      args: ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run", "--disable-background-networking"],
-    });
-    const context = await browser.newContext({ viewport: { width: 1280, height: 900 } });
-    const page = await openPage(context, await address, fault);
-    if (options.measure) return await measure(page);
-    await checkSteps(page, options, inputs, fault);
-    await checkZoom(page, fault);
-    await checkArm(page, fault);
-    const learnt = await checkSearch(page, fault);
-    // axe needs a page whose policy lets its source in: it comes by the debugger, which is let in.
-    await look(page, options, axeSource, fault);
-    const plain = await browser.newContext({ viewport: { width: 1280, height: 900 } });
-    await plain.addInitScript(() => {
-      const { getContext } = HTMLCanvasElement.prototype;
-      HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
-        return kind.startsWith("webgl") ? null : getContext.call(this, kind, ...more);
-      };
-    });
-    await checkWithoutWebgl(await openPage(plain, await address, fault), fault);
-    if (await page.evaluate(() => window.hacked !== undefined)) fault("a name was taken for markup");
-    console.log(`studio: added, undone, saved, searched (${learnt}); the verbs say the same`);
-  } finally {
-    await browser?.close();
-    program.kill("SIGINT");
-    const { code, signal } = await ended;
-    if (code !== 0) fault(`Ctrl-C ends it with ${code ?? signal}`);
-    await rm(folder, { recursive: true, force: true });
-  }
+  const { address } = await start([inputs.recording, "--robot", inputs.robot, ...(inputs.holdout ? ["--holdout", inputs.holdout] : [])]);
+  const page = await openPage(await newContext(), address, kReady, kExpected, fault);
+  if (options.measure) return await measure(page);
+  await checkSteps(page, options, inputs, fault);
+  await checkZoom(page, fault);
+  await checkArm(page, fault);
+  const learnt = await checkSearch(page, fault);
+  await look(page, kLooks, "studio", { ...options, axeSource }, fault);
+  const plain = await newContext();
+  await plain.addInitScript(() => {
+    const { getContext } = HTMLCanvasElement.prototype;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+      return kind.startsWith("webgl") ? null : getContext.call(this, kind, ...more);
+    };
+  });
+  await checkWithoutWebgl(await openPage(plain, address, kReady, kExpected, fault), fault);
+  await checkNames(page, fault);
+  console.log(`studio: added, undone, saved, searched (${learnt}); the verbs say the same`);
 }
 
-const faults = [];
-try {
-  await check(readArguments(), (text) => faults.push(text));
-  for (const text of new Set(faults)) console.error(text);
-  process.exitCode = faults.length === 0 ? 0 : 1;
-} catch (error) {
-  for (const text of new Set(faults)) console.error(text);
-  console.error(`check_studio: ${error.message}`);
-  process.exitCode = 2;
-}
+const kOptions = { holdout: { type: "string" }, measure: { type: "boolean", default: false } };
+await runCheck("studio", () => readArguments(["offnominal", "robot", "recording", "joint", "effect"], kOptions), check);

@@ -63,6 +63,18 @@ function chartAddress(look, range) {
   return `charts?${parts.join("&")}`;
 }
 
+let isDrawn = false;
+/** All figures; from the first time on they follow the window. */
+function drawEverything() {
+  if (!isDrawn) {
+    isDrawn = true;
+    drawAll();
+    return;
+  }
+  shareExtents();
+  for (const figure of shownFigures()) drawFigure(figure);
+}
+
 /** The charts of another model, joint or recording. */
 function showCharts(answer, host, fallHost) {
   const first = drawn.size === 0;
@@ -74,7 +86,7 @@ function showCharts(answer, host, fallHost) {
   if (drawn.has("fall.0")) refill(drawn.get("fall.0"), answer.waterfall);
   else makeFigure(answer.waterfall, "fall.0", fallHost);
   if (first) {
-    drawAll();
+    drawEverything();
     for (const figure of timeFigures()) {
       figure.chart.on("datazoom", zoomed);
       followChart(figure);

@@ -22,6 +22,22 @@ async function ask(method, path, body) {
     options.headers = { "Content-Type": "application/json" };
     options.body = JSON.stringify(body ?? {});
   }
+  return answerTo(path, options);
+}
+
+/**
+ * A file as it lies on the disk, under its name.
+ * @param {File} file
+ */
+function handOver(file) {
+  return answerTo(`load/files?name=${encodeURIComponent(file.name)}`, {
+    method: "POST",
+    headers: { "Content-Type": "application/octet-stream" },
+    body: file,
+  });
+}
+
+async function answerTo(path, options) {
   let answer;
   try {
     answer = await fetch(`api/${path}`, options);

@@ -31,7 +31,9 @@ function baseName(path) {
 function headerContent() {
   const names = (held) => state.recordings.filter((each) => each.held_out === held).map((each) => baseName(each.name));
   const judged = state.held_out === "recordings" ? names(true).join(", ") : "parts of the same, held out in turn";
-  const header = element("header", {}, element("h1", {}, `Studio: ${state.robot.name}`));
+  // Below a campaign the run is a part of the page.
+  const title = campaign.setup === null ? element("h1", {}, `Studio: ${state.robot.name}`) : element("h2", {}, `Run ${campaign.open}`);
+  const header = element("header", {}, title);
   header.append(
     element(
       "p",
@@ -158,7 +160,7 @@ function saveContent() {
   return [...content, ...commandsContent(save)];
 }
 
-function commandsContent({ commands }) {
+function commandsContent({ commands, commands_note: note }) {
   if (commands.length === 0) {
     const why = "The robot file that was read is replaced: no command can start from it any more.";
     return [element("p", { class: "remark" }, why)];
@@ -170,6 +172,7 @@ function commandsContent({ commands }) {
       { class: "remark" },
       "The same without Studio, numbers and file alike; each writes a file that is not there yet:",
     ),
+    ...(note === "" ? [] : [element("p", { class: "remark" }, note)]),
     element("pre", { tabindex: "0", "aria-label": "Commands that repeat this session" }, commands.join("\n")),
     button("copy", "Copy the commands", copy, { "data-free": "" }),
   ];
@@ -177,8 +180,9 @@ function commandsContent({ commands }) {
 
 function show() {
   const joint = currentJoint();
-  document.title = `Studio: ${state.robot.name}`;
-  replaceContent(places.head, headerContent(), ...state.hints.map((hint) => noteWith("warn", hint)));
+  if (campaign.setup === null) document.title = `Studio: ${state.robot.name}`;
+  const host = campaign.setup === null ? places.head : places.run;
+  replaceContent(host, headerContent(), ...state.hints.map((hint) => noteWith("warn", hint)));
   replaceContent(places.joints, jointChoice());
   replaceContent(places.headline, headlineContent());
   document.getElementById("effects-heading").textContent = `Effects of joint ${joint.joint}`;
@@ -356,15 +360,15 @@ function buildStudio() {
     sectionWith("save", "Save", place("save")),
   );
   const desk = place("desk", { class: "desk" });
-  desk.append(side, pictures);
-  main.append(place("head"), place("live"), desk);
+  desk.append(place("run", { class: "run" }), side, pictures);
+  main.append(place("head"), place("live"), place("load"), place("campaign"), desk);
   const footer = element("footer");
   footer.append(
     element("p", { id: "spoken", class: "hidden-text", role: "status" }),
     element("p", {}, "offnominal Studio, diagnostic aid, claims no SIL/PL. Nothing leaves this machine."),
     element(
       "p",
-      {},
+      { class: "chart-help" },
       "Charts: drag to zoom, shift-drag to move, ctrl-wheel to zoom, double click to reset. A chart that " +
         "has the focus takes keys: arrows show values, + and - zoom, 0 resets. The arm: drag to turn, ctrl-wheel to come nearer. " +
         "Drawn with Apache ECharts and three.js.",
@@ -400,7 +404,18 @@ async function start() {
   onZoom = (range) => drawFiner(range).catch((error) => complain(error.message));
   try {
     const setup = await ask("GET", "live");
-    if (!setup.loaded) showUnloaded(setup);
+    places.desk.hidden = !setup.loaded;
+    if (setup.takes_files) {
+      await startLoad(places.load, setup.loaded, async () => {
+        await loadSession();
+        places.head.scrollIntoView({ block: "start" });
+      });
+    } else if (setup.has_campaign) {
+      await startCampaign(places.campaign, async () => {
+        await loadSession();
+        places.desk.scrollIntoView({ block: "start" });
+      });
+    } else if (!setup.loaded) showUnloaded(setup);
     if (setup.source !== null) {
       startLive(setup, places.live, async () => {
         await loadSession();

@@ -237,6 +237,26 @@ TEST(Command, RefusesAnUnknownOptionOfItsOwn) {
   EXPECT_THAT(result.err, HasSubstr("--no-such-option"));
 }
 
+// What Studio shows is one of five, and each has options that the others have no use for.
+TEST(Command, RefusesStudioOfTwoThingsAtOnce) {
+  const std::vector<std::vector<std::string>> wrong = {
+      {"a.csv"},  // without a robot file
+      {"--sil"},
+      {"--bus", "can0", "--sil", "--robot", "r.toml"},
+      {"--holdout", "a.csv"},
+      {"--channels", "c.toml"},
+      {"--period", "0.001"},
+      {"--payload", "a.csv=1@0,0,0"},
+      {"--campaign", "a.sqlite", "--robot", "r.toml"},
+      {"--campaign", "a.sqlite", "--bus", "can0"},
+      {"--campaign", "no_such.sqlite"}};
+  for (std::vector<std::string> words : wrong) {
+    words.insert(words.begin(), {"studio", "--no-open"});
+    const CommandResult result = offnominal(words);
+    expect_one_line_refusal(result);
+  }
+}
+
 TEST(Command, FailsWhereItsOutputCannotBeWritten) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
   const CommandResult result = test::run_command(test::command_file(), {"--help"}, "/dev/full");

@@ -1,0 +1,209 @@
+#include "studio/campaign_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "campaign/campaign_file.hpp"
+#include "campaign/restored_campaign.hpp"
+#include "campaign/summary.hpp"
+#include "campaign/summary_report.hpp"
+#include "common/error.hpp"
+#include "common/input_name.hpp"
+#include "common/refused.hpp"
+#include "common/shell_word.hpp"
+#include "log/csv_text.hpp"
+#include "report/page.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::desk::studio {
+namespace {
+
+using campaign::Result;
+using nlohmann::ordered_json;
+
+constexpr const char* kFaultFree = "none";
+
+[[noreturn]] void refuse_view(const std::string& words) {
+  throw Refused(Refused::Why::kBadRequest, words);
+}
+
+bool is_of_fault(const Result& row, const RunFilter& filter) {
+  if (filter.kind && row.kind != *filter.kind) return false;
+  return !filter.joint || row.joint == filter.joint;
+}
+
+// What became of a run under one detector.
+const char* outcome_of(const Result& row) {
+  if (row.kind == kFaultFree) return row.alarms > 0 ? "false alarm" : "quiet";
+  if (row.early) return "early";
+  return row.detected ? "seen" : "missed";
+}
+
+std::string words_of(const Result& row) {
+  const std::string outcome = outcome_of(row);
+  if (outcome == "early") return "an alarm before the fault";
+  if (outcome == "false alarm") {
+    return fmt::format("{} alarm{} without a fault", row.alarms, row.alarms == 1 ? "" : "s");
+  }
+  if (outcome == "missed") return "not seen";
+  if (outcome == "quiet") return "no alarm";
+  std::string words = row.delay_s ? fmt::format("seen after {:.3f} s", *row.delay_s) : "seen";
+  if (row.named) words += fmt::format(", said to be {}", offnominal::name_of(row.named->kind));
+  return words;
+}
+
+// All that one run says, in the campaign's order of the detectors.
+std::map<std::int64_t, std::vector<const Result*>> by_run(const std::vector<Result>& rows) {
+  std::map<std::int64_t, std::vector<const Result*>> runs;
+  for (const Result& row : rows) runs[row.run].push_back(&row);
+  return runs;
+}
+
+ordered_json run_json(std::int64_t number, const std::vector<const Result*>& rows) {
+  const Result& first = *rows.front();
+  ordered_json outcomes = ordered_json::array();
+  for (const Result* row : rows) {
+    outcomes.push_back(
+        {{"detector", row->detector}, {"outcome", outcome_of(*row)}, {"words", words_of(*row)}});
+  }
+  const bool is_healthy = first.kind == kFaultFree;
+  return {{"run", number},
+          {"fault", is_healthy ? "no fault" : campaign::place_words(first.kind, first.joint)},
+          {"size", campaign::size_words(first.kind, first.size)},
+          {"outcomes", std::move(outcomes)}};
+}
+
+// "run_12", and after it what makes both files of a run's names free here.
+std::string free_stem(const std::string& stem) {
+  for (int number = 1;; ++number) {
+    std::string name = number == 1 ? stem : fmt::format("{}_{}", stem, number);
+    std::error_code ignored;
+    const bool taken = std::filesystem::exists(name + ".csv", ignored) ||
+                       std::filesystem::exists(name + "_model.toml", ignored);
+    if (!taken) return name;
+  }
+}
+
+}  // namespace
+
+CampaignView::CampaignView(const std::string& results, const std::optional<std::string>& file)
+    : results_file_(results), campaign_file_(file), results_(campaign::read_results(results)) {
+  if (!file) return;
+  campaign_ = campaign::read_campaign(*file);
+  if (campaign_->identity == results_.campaign.identity) return;
+  throw InputError({*file, "", "another campaign than that of " + results,
+                    "the campaign file as it was run, with its robot files, by this version",
+                    "leave it out: tables and charts need none; or run the campaign anew"});
+}
+
+ordered_json CampaignView::state() const {
+  ordered_json detectors = ordered_json::array();
+  for (const campaign::DetectorRow& one : results_.campaign.detectors) {
+    detectors.push_back(one.name);
+  }
+  std::vector<std::string> kinds;
+  std::set<int> joints;
+  for (const Result& row : results_.rows) {
+    if (row.kind == kFaultFree) continue;
+    if (std::find(kinds.begin(), kinds.end(), row.kind) == kinds.end()) kinds.push_back(row.kind);
+    if (row.joint) joints.insert(*row.joint);
+  }
+  return {{"name", results_.campaign.name},    {"file", input_name(results_file_)},
+          {"runs", results_.campaign.runs},    {"missing", results_.missing.size()},
+          {"detectors", std::move(detectors)}, {"kinds", std::move(kinds)},
+          {"joints", std::move(joints)}};
+}
+
+campaign::Results CampaignView::left_by(const RunFilter& filter) const {
+  campaign::Results left = results_;
+  if (filter.detector) {
+    std::erase_if(left.campaign.detectors,
+                  [&](const campaign::DetectorRow& one) { return one.name != *filter.detector; });
+    if (left.campaign.detectors.empty()) refuse_view("There is no such detector.");
+  }
+  std::erase_if(left.rows, [&](const Result& row) {
+    if (filter.detector && row.detector != *filter.detector) return true;
+    return row.kind != kFaultFree && !is_of_fault(row, filter);
+  });
+  return left;
+}
+
+nlohmann::json CampaignView::figures(const RunFilter& filter) const {
+  const campaign::Results left = left_by(filter);
+  report::Page page = page_of(campaign::summary_of(left), "");
+  if (auto delays = campaign::delay_chart_of(left)) {
+    std::vector<report::Block>& blocks = page.sections.front().blocks;
+    // Beside the other curve of detectors.
+    const bool has_roc = !blocks.empty() && std::holds_alternative<report::Chart>(blocks.front());
+    if (has_roc) std::get<report::Chart>(blocks.front()).width = report::Width::kHalf;
+    delays->width = has_roc ? report::Width::kHalf : report::Width::kFull;
+    blocks.insert(blocks.begin() + (has_roc ? 1 : 0), std::move(*delays));
+  }
+  return {{"sections", to_json(page).at("sections")}};
+}
+
+ordered_json CampaignView::runs(const RunFilter& filter, std::size_t from) const {
+  if (!filter.outcome.empty() && filter.outcome != "missed" && filter.outcome != "early") {
+    refuse_view("There is no such outcome.");
+  }
+  const campaign::Results left = left_by(filter);
+  const bool of_a_fault = filter.kind || filter.joint;
+  ordered_json runs = ordered_json::array();
+  std::size_t count = 0;
+  for (const auto& [number, rows] : by_run(left.rows)) {
+    if (of_a_fault && rows.front()->kind == kFaultFree) continue;
+    const bool has_outcome = std::any_of(rows.begin(), rows.end(), [&](const Result* row) {
+      const std::string outcome = outcome_of(*row);
+      return filter.outcome == outcome || (filter.outcome == "early" && outcome == "false alarm");
+    });
+    if (!filter.outcome.empty() && !has_outcome) continue;
+    if (count >= from && runs.size() < kMostRunsAtOnce) runs.push_back(run_json(number, rows));
+    ++count;
+  }
+  return {{"count", count}, {"from", from}, {"most", kMostRunsAtOnce}, {"runs", std::move(runs)}};
+}
+
+std::vector<report::EventMark> CampaignView::marks_of(std::int64_t run) const {
+  std::vector<report::EventMark> marks;
+  for (const Result& row : results_.rows) {
+    if (row.run != run || !row.fault_s) continue;
+    if (marks.empty()) marks.push_back({*row.fault_s, row.kind, report::Level::kBad});
+    if (row.detected && row.delay_s) {
+      marks.push_back({*row.fault_s + *row.delay_s, row.detector, report::Level::kGood});
+    }
+  }
+  return marks;
+}
+
+void CampaignView::restore() {
+  campaign_ =
+      campaign::restored_campaign(results_.campaign.identity, folder_.path(), results_file_);
+}
+
+SessionFiles CampaignView::record(std::int64_t run) {
+  const std::lock_guard guard(recording_);
+  if (!campaign_) restore();
+  if (run < 0 || run >= campaign_->run_count()) refuse_view("There is no such run.");
+  if (!simulator_) simulator_ = std::make_unique<campaign::Simulator>(*campaign_);
+  const Log log = simulator_->run(campaign::run_of(*campaign_, run)).log;
+  const std::string stem = free_stem(fmt::format("run_{}", run));
+  const std::string recording = stem + ".csv";
+  const std::string model = stem + "_model.toml";
+  SessionFiles files;
+  files.logs.push_back({folder_.put(recording, csv_text(log)).string(), recording});
+  files.robot = {folder_.put(model, robot_text(campaign_->model)).string(), model};
+  files.commands_before.push_back(
+      fmt::format("offnominal campaign record {} --run {} -o {} --model {}",
+                  campaign_file_ ? shell_word(*campaign_file_) : "CAMPAIGN.toml", run,
+                  shell_word(recording), shell_word(model)));
+  if (!campaign_file_) files.commands_note = "CAMPAIGN.toml stands for the file of the campaign.";
+  files.marks = marks_of(run);
+  return files;
+}
+
+}  // namespace offnominal::desk::studio

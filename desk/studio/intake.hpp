@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <list>
+#include <mutex>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "explain/data_fault.hpp"
+#include "log/named_columns.hpp"
+#include "robot/robot.hpp"
+#include "studio/session_files.hpp"
+#include "studio/signal_map.hpp"
+#include "studio/upload_folder.hpp"
+
+namespace offnominal::desk::studio {
+
+struct IntakeSettings {
+  std::optional<std::string> robot_file = {};  // of the command line
+  std::filesystem::path folder = {};           // where files are written; empty: working directory
+  std::vector<KeepFault> keep = {};
+  UploadLimits limits = {};
+};
+
+/// What a page is given before there is a session: recordings, a robot file, and what the columns
+/// are. Every function may be called by any thread, answers as docs/studio.md has it, and throws
+/// Refused or InputError where it cannot be done; nothing has changed then.
+class Intake {
+ public:
+  /// Throws InputError where the robot file cannot be read.
+  explicit Intake(IntakeSettings settings);
+
+  [[nodiscard]] UploadFolder& folder() { return folder_; }
+  [[nodiscard]] nlohmann::ordered_json state();
+  /// A file that was handed over: a robot file (.toml), a URDF (.urdf) or a recording. One that
+  /// cannot be read is gone. A robot takes the place of the one before, and the columns are
+  /// guessed anew.
+  nlohmann::ordered_json take(const std::filesystem::path& file);
+  /// A recording.
+  nlohmann::ordered_json remove(std::size_t id);
+  nlohmann::ordered_json set_held_out(std::size_t id, bool held_out);
+  nlohmann::ordered_json set_signal(const SignalEdit& edit);
+  /// What was said of the columns is forgotten.
+  nlohmann::ordered_json guess_again();
+  [[nodiscard]] nlohmann::ordered_json preview(std::size_t id, std::size_t pixels);
+  [[nodiscard]] nlohmann::ordered_json findings(std::size_t id, std::size_t pixels);
+
+  /// What a session is to begin with. Throws Refused where something is missing.
+  [[nodiscard]] SessionFiles files();
+  /// Writes what the session's commands name: a robot file that was handed over, and [channels]
+  /// that the robot file does not have. Returns their names.
+  std::vector<std::string> write(const SessionFiles& files);
+
+ private:
+  struct Recording {
+    std::size_t id = 0;
+    std::filesystem::path path;
+    std::string name;
+    bool held_out = false;
+    NamedColumns columns;
+  };
+
+  [[nodiscard]] nlohmann::ordered_json state_now() const;
+  [[nodiscard]] nlohmann::ordered_json map_json() const;
+  void take_robot(const std::filesystem::path& file);
+  void take_urdf(const std::filesystem::path& file);
+  void take_recording(const std::filesystem::path& file);
+  void use_robot(RobotDescription robot, NamedFile file);
+  [[nodiscard]] NamedColumns read_columns(const std::filesystem::path& file) const;
+  void guess();
+  [[nodiscard]] Recording& recording_of(std::size_t id);
+  // Those of all recordings, by the first that has them: a session reads all of them by one map.
+  [[nodiscard]] const NamedColumns& all_columns() const { return recordings_.front().columns; }
+  [[nodiscard]] std::string free_name(const std::string& stem, const std::string& ending) const;
+  [[nodiscard]] std::filesystem::path here(const std::string& name) const;
+
+  std::mutex lock_;
+  IntakeSettings settings_;
+  UploadFolder folder_;
+  std::optional<RobotDescription> robot_;
+  NamedFile robot_file_;
+  std::vector<std::string> robot_notes_;  // of its import
+  std::list<Recording> recordings_;
+  std::optional<ChannelMap> map_;
+  bool map_is_of_robot_ = false;  // the robot file's own, as they are there
+  std::string map_source_;        // where the guess comes from, in words
+  std::vector<std::string> notes_;
+  std::vector<std::string> others_;  // names of columns without numbers
+  std::size_t next_id_ = 1;
+  std::size_t revision_ = 0;
+};
+
+}  // namespace offnominal::desk::studio

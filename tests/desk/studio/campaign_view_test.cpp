@@ -1,0 +1,222 @@
+// A campaign's results behind the server: what its figures and runs say, and a run that is opened.
+#include "studio/campaign_view.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <httplib.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "campaign/campaign_file.hpp"
+#include "campaign/restored_campaign.hpp"
+#include "campaign/run_campaign.hpp"
+#include "campaign/summary.hpp"
+#include "common/error.hpp"
+#include "common/refused.hpp"
+#include "desk/campaign/small_campaign.hpp"
+#include "desk/support/temporary_folder.hpp"
+#include "log/csv_text.hpp"
+#include "log/read_log.hpp"
+#include "robot/robot_file.hpp"
+#include "studio/server.hpp"
+
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+using offnominal::test::content_of;
+using offnominal::test::put;
+using offnominal::test::small_campaign;
+using offnominal::test::TemporaryFolder;
+using namespace offnominal::desk;
+using namespace offnominal::desk::studio;
+using ::testing::HasSubstr;
+
+// Run once for all tests; nobody changes it.
+class SmallResults {
+ public:
+  SmallResults() {
+    put(file(), small_campaign("[[fault]]\nkind = \"payload\"\nsizes = [0.5]\n", "robot"));
+    plan_ = campaign::read_campaign(file());
+    campaign::run_campaign(plan_, {results(), {}, 1}, [](const auto&, auto, auto) {});
+    rows_ = campaign::read_results(results());
+  }
+  [[nodiscard]] std::filesystem::path file() const { return folder_ / "small.toml"; }
+  [[nodiscard]] std::filesystem::path results() const { return folder_ / "small.sqlite"; }
+  [[nodiscard]] const campaign::Campaign& plan() const { return plan_; }
+  [[nodiscard]] const campaign::Results& rows() const { return rows_; }
+
+ private:
+  TemporaryFolder folder_;
+  campaign::Campaign plan_;
+  campaign::Results rows_;
+};
+const SmallResults& small() {
+  static const SmallResults results;
+  return results;
+}
+
+CampaignView view_of(bool with_file) {
+  return {small().results().string(),
+          with_file ? std::optional(small().file().string()) : std::nullopt};
+}
+
+const json* block_titled(const json& figures, const std::string& title) {
+  for (const json& section : figures.at("sections")) {
+    for (const json& block : section.at("blocks")) {
+      if (block.value("title", "") == title || block.value("caption", "") == title) return &block;
+    }
+  }
+  return nullptr;
+}
+
+TEST(CampaignView, SaysWhatTheResultsHold) {
+  const ordered_json state = view_of(false).state();
+  EXPECT_EQ(state.at("name"), "small");
+  EXPECT_EQ(state.at("runs"), small().plan().run_count());
+  EXPECT_EQ(state.at("missing"), 0);
+  EXPECT_EQ(state.at("detectors").size(), 4U);
+  EXPECT_EQ(state.at("kinds"), (ordered_json{"offset", "payload"}));
+  EXPECT_EQ(state.at("joints"), (ordered_json{1, 2}));
+}
+
+TEST(CampaignView, CountsEveryRunWithAFaultInTheTimesToDetect) {
+  const json figures = view_of(false).figures({});
+  const json* delays = block_titled(figures, "Time from fault to alarm");
+  ASSERT_NE(delays, nullptr);
+  const campaign::Summary summary = campaign::summary_of(small().rows());
+  for (std::size_t i = 0; i < summary.detectors.size(); ++i) {
+    const campaign::DetectorSummary& detector = summary.detectors[i];
+    std::int64_t seen = 0;
+    std::int64_t runs = 0;
+    for (const campaign::FaultLine& line : detector.faults) {
+      seen += line.seen;
+      runs += line.runs;
+    }
+    const json& series = delays->at("series").at(i);
+    EXPECT_EQ(series.at("name"), detector.name);
+    EXPECT_NEAR(series.at("y").back().get<double>(),
+                100.0 * static_cast<double>(seen) / static_cast<double>(runs), 1e-4);
+  }
+}
+
+TEST(CampaignView, FiltersFiguresAndRunsByFaultJointAndDetector) {
+  const CampaignView view = view_of(false);
+  const std::string first = small().rows().campaign.detectors.front().name;
+  const RunFilter filter{.detector = first, .kind = "offset", .joint = 2};
+  const json figures = view.figures(filter);
+  const json* table = block_titled(figures, first);
+  ASSERT_NE(table, nullptr);
+  EXPECT_EQ(table->at("rows").size(), 2U);  // two sizes
+  EXPECT_EQ(block_titled(figures, small().rows().campaign.detectors.back().name), nullptr);
+  // Fault-free runs stay: false alarms are of them.
+  EXPECT_NE(block_titled(figures, "False alarms of fault-free runs"), nullptr);
+  const ordered_json runs = view.runs(filter, 0);
+  EXPECT_EQ(runs.at("count"), 4);
+  for (const ordered_json& run : runs.at("runs")) {
+    EXPECT_EQ(run.at("fault"), "offset, joint 2");
+    EXPECT_EQ(run.at("outcomes").size(), 1U);
+  }
+  EXPECT_EQ(view.runs({}, 0).at("count"), small().plan().run_count());
+  EXPECT_EQ(view.runs({}, 3).at("runs").at(0).at("run"), 3);
+  const ordered_json missed = view.runs({.outcome = "missed"}, 0);
+  EXPECT_LT(missed.at("count"), view.runs({}, 0).at("count"));
+  EXPECT_THROW(static_cast<void>(view.figures({.detector = "no_such"})), Refused);
+  EXPECT_THROW(static_cast<void>(view.runs({.outcome = "no_such"}, 0)), Refused);
+}
+
+TEST(CampaignView, RecordsARunAsTheVerbDoesWithTheFileAndWithout) {
+  const campaign::Simulator simulator(small().plan());
+  const std::string same = csv_text(simulator.run(campaign::run_of(small().plan(), 2)).log);
+  for (const bool with_file : {true, false}) {
+    CampaignView view = view_of(with_file);
+    const SessionFiles files = view.record(2);
+    EXPECT_EQ(content_of(files.logs.at(0).path), same) << with_file;
+    EXPECT_EQ(content_of(files.robot.path), robot_text(small().plan().model)) << with_file;
+    EXPECT_EQ(files.logs.at(0).name, "run_2.csv");
+    EXPECT_THAT(files.commands_before.at(0), HasSubstr("campaign record"));
+    EXPECT_THAT(files.commands_before.at(0),
+                HasSubstr(with_file ? small().file().string() : "CAMPAIGN.toml"));
+    ASSERT_FALSE(files.marks.empty());
+    EXPECT_EQ(files.marks.at(0).x, 0.8);
+    EXPECT_THROW(static_cast<void>(view.record(-1)), Refused);
+    EXPECT_THROW(static_cast<void>(view.record(small().plan().run_count())), Refused);
+  }
+}
+
+TEST(CampaignView, RefusesTheFileOfAnotherCampaignAndResultsOfAnotherVersion) {
+  const TemporaryFolder folder;
+  std::string text = content_of(small().file());
+  text.replace(text.find("seed = 7"), 8, "seed = 8");
+  put(folder / "other.toml", text);
+  try {
+    const CampaignView view(small().results().string(), (folder / "other.toml").string());
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("another campaign"));
+  }
+  for (const std::string& identity :
+       {std::string("offnominal 0.0.1"), "x" + small().rows().campaign.identity,
+        std::string("\n\n# robot\n\n# plant\n")}) {
+    EXPECT_THROW(
+        static_cast<void>(campaign::restored_campaign(identity, folder.path(), "a.sqlite")),
+        InputError);
+  }
+  EXPECT_THROW(CampaignView((folder / "other.toml").string(), std::nullopt), InputError);
+}
+
+Input open_run(const SessionFiles& files) {
+  Input input;
+  input.robot = read_robot_file(files.robot.path);
+  Treated recordings;
+  recordings.logs.push_back(read_log(files.logs.at(0).path, input.robot));
+  input.recordings = std::make_shared<const Treated>(std::move(recordings));
+  input.robot_file = files.robot.name;
+  input.log_files = {files.logs.at(0).name};
+  input.commands_before = files.commands_before;
+  input.marks = files.marks;
+  return input;
+}
+
+TEST(CampaignServer, OpensARunAsASession) {
+  Server server(std::make_unique<CampaignView>(small().results().string(), std::nullopt), open_run,
+                0);
+  std::thread thread([&] { server.run(); });
+  const std::string address = server.address();
+  const std::string path = address.substr(address.find('/', std::string("http://").size()));
+  httplib::Client client("127.0.0.1", server.port());
+  client.set_read_timeout(120);
+  const httplib::Headers own{{"Origin", "http://127.0.0.1:" + std::to_string(server.port())}};
+  const auto post = [&](const std::string& what, const json& body) {
+    const auto result = client.Post(path + "api/" + what, own, body.dump(), "application/json");
+    return std::pair(result ? result->status : 0, json::parse(result->body, nullptr, false));
+  };
+  EXPECT_TRUE(json::parse(client.Get(path + "api/live")->body).at("has_campaign").get<bool>());
+  EXPECT_EQ(client.Get(path + "api/state")->status, 409);
+  EXPECT_EQ(client.Get(path + "api/campaign/runs?from=0&kind=offset")->status, 200);
+  for (const char* wrong : {"campaign/runs", "campaign/runs?from=-1", "campaign/figures?joint=x",
+                            "campaign/figures?detector=<img>"}) {
+    EXPECT_EQ(client.Get(path + "api/" + wrong)->status, 400) << wrong;
+  }
+  EXPECT_EQ(post("campaign/session", {{"run", 1'000'000}}).first, 400);
+  EXPECT_EQ(post("campaign/session", json::object()).first, 400);
+  ASSERT_EQ(post("campaign/session", {{"run", 2}}).first, 200);
+  const json state = json::parse(client.Get(path + "api/state")->body);
+  EXPECT_EQ(state.at("recordings").at(0).at("samples"), 750);
+  const json charts =
+      json::parse(client.Get(path + "api/charts?joint=1&recording=1&pixels=300")->body);
+  EXPECT_EQ(charts.at("charts").at(0).at("events").at(0).at("label"), "offset");
+  ASSERT_EQ(post("steps", {{"effect", "torque_offset"}, {"joint", 1}}).first, 200);
+  EXPECT_EQ(post("campaign/session", {{"run", 3}}).first, 409);
+  EXPECT_EQ(post("campaign/session", {{"run", 3}, {"replace", true}}).first, 200);
+  server.stop();
+  thread.join();
+}
+
+}  // namespace

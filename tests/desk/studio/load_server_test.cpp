@@ -1,0 +1,136 @@
+// Files that the page is given behind the server: its routes, and the session that comes of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <httplib.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "desk/studio/strange_files.hpp"
+#include "desk/support/temporary_folder.hpp"
+#include "studio/intake.hpp"
+#include "studio/server.hpp"
+
+namespace {
+
+using nlohmann::json;
+using offnominal::test::open_files;
+using offnominal::test::robot_text_of_arm;
+using offnominal::test::strange_csv;
+using offnominal::test::TemporaryFolder;
+using namespace offnominal::desk;
+using namespace offnominal::desk::studio;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class LoadServer : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    server_.stop();
+    thread_.join();
+  }
+  [[nodiscard]] std::string at(const std::string& path) const {
+    const std::string address = server_.address();
+    return address.substr(address.find('/', std::string("http://").size())) + "api/" + path;
+  }
+  [[nodiscard]] httplib::Client client() const {
+    httplib::Client made("127.0.0.1", server_.port());
+    made.set_read_timeout(120);
+    return made;
+  }
+  [[nodiscard]] httplib::Headers own() const {
+    return {{"Origin", "http://127.0.0.1:" + std::to_string(server_.port())}};
+  }
+  std::pair<int, json> answer_of(const httplib::Result& result) {
+    EXPECT_TRUE(result);
+    if (!result) return {0, nullptr};
+    return {result->status, json::parse(result->body, nullptr, false)};
+  }
+  std::pair<int, json> give(const std::string& name, const std::string& content) {
+    return answer_of(
+        client().Post(at("load/files?name=" + name), own(), content, "application/octet-stream"));
+  }
+  std::pair<int, json> post(const std::string& path, const json& body) {
+    return answer_of(client().Post(at(path), own(), body.dump(), "application/json"));
+  }
+  json get(const std::string& path) { return answer_of(client().Get(at(path))).second; }
+
+  TemporaryFolder folder_;
+  Server server_{std::make_unique<Intake>(IntakeSettings{
+                     .folder = folder_.path(), .limits = {.file = 2'000'000, .all = 3'000'000}}),
+                 open_files, 0};
+  std::thread thread_{[this] { server_.run(); }};
+};
+
+TEST_F(LoadServer, BeginsWithNothingAndBecomesASession) {
+  EXPECT_EQ(
+      get("live"),
+      (json{
+          {"source", nullptr}, {"loaded", false}, {"takes_files", true}, {"has_campaign", false}}));
+  EXPECT_EQ(client().Get(at("state"))->status, 409);
+  EXPECT_EQ(post("load/session", json::object()).first, 409);
+  ASSERT_EQ(give("arm.toml", robot_text_of_arm()).first, 200);
+  ASSERT_EQ(give("run.csv", strange_csv(1)).first, 200);
+  ASSERT_EQ(give("more.csv", strange_csv(0.7)).first, 200);
+  ASSERT_EQ(post("load/held_out", {{"recording", 2}, {"held_out", true}}).first, 200);
+  ASSERT_EQ(post("load/signal", {{"quantity", "torque"}, {"joint", 2}, {"scale", -1}}).first, 200);
+  const json findings = get("load/findings?recording=1&pixels=300");
+  const auto [status, answer] = post("load/session", json::object());
+  ASSERT_EQ(status, 200) << answer;
+  EXPECT_EQ(answer.at("written").size(), 2U);
+  const json state = get("state");
+  EXPECT_EQ(state.at("held_out"), "recordings");
+  EXPECT_EQ(state.at("joints").at(1).at("now").at("fitted_percent"),
+            findings.at("joints").at(1).at("error_percent"));
+  // Once something was added, another session needs a word.
+  ASSERT_EQ(post("steps", {{"effect", "viscous_friction"}, {"joint", 2}}).first, 200);
+  EXPECT_TRUE(post("load/session", json::object()).second.at("confirm").get<bool>());
+  EXPECT_EQ(post("load/session", {{"replace", true}}).first, 200);
+  EXPECT_TRUE(get("state").at("steps").empty());
+}
+
+TEST_F(LoadServer, TakesLongBodiesForFilesAloneAndSaysTheLimit) {
+  const std::string long_body(20'000, ' ');
+  EXPECT_EQ(post("load/signal", {{"quantity", long_body}}).first, 413);
+  EXPECT_EQ(give("long.csv", long_body).first, 422);  // no recording, but let in
+  const auto [status, answer] = give("huge.csv", std::string(20'000'000, ' '));
+  EXPECT_EQ(status, 422);
+  EXPECT_THAT(answer.at("error").get<std::string>(), HasSubstr("1.91 MiB a file"));
+  EXPECT_EQ(client()
+                .Post(at("load/files?name=a.csv"),
+                      {{"Origin", "http://127.0.0.1:" + std::to_string(server_.port())},
+                       {"Content-Encoding", "gzip"}},
+                      "x", "application/octet-stream")
+                ->status,
+            415);
+  EXPECT_EQ(
+      client().Post(at("load/files?name=a.csv"), "t,q1\n", "application/octet-stream")->status,
+      403);
+  EXPECT_EQ(give("..%2Fa.csv", "x").first, 400);
+  EXPECT_EQ(give("a%00b.csv", "x").first, 400);
+  EXPECT_THAT(get("load").at("recordings"), IsEmpty());
+  EXPECT_EQ(get("load").at("limits").at("used"), 0);
+}
+
+TEST_F(LoadServer, RefusesWhatItDoesNotUnderstand) {
+  give("arm.toml", robot_text_of_arm());
+  give("run.csv", strange_csv(1));
+  for (const char* path : {"load/preview", "load/preview?recording=1&pixels=1",
+                           "load/preview?recording=9&pixels=300", "load/findings?pixels=300"}) {
+    EXPECT_EQ(client().Get(at(path))->status, 400) << path;
+  }
+  for (const json& body :
+       {json::array(), json{{"quantity", 3}}, json{{"quantity", "torque"}, {"joint", -1}},
+        json{{"quantity", "torque"}, {"joint", 0}, {"scale", 1}},
+        json{{"quantity", "torque"}, {"joint", 1}, {"scale", "1"}}}) {
+    EXPECT_EQ(post("load/signal", body).first, 400) << body;
+  }
+  EXPECT_EQ(client().Delete(at("load/files/9"), own())->status, 400);
+  EXPECT_EQ(client().Delete(at("load/files/1"), own())->status, 200);
+  EXPECT_TRUE(get("load").at("map").is_null());
+}
+
+}  // namespace

@@ -1,0 +1,200 @@
+// Drives `offnominal studio` without recordings in headless Chromium the whole way: a robot file is chosen, recordings
+// are dropped, their columns are looked at and put right, and the session that comes of it is compared with the verbs.
+//   node check_load.mjs --offnominal PROGRAM --robot R.toml --recording A.csv [--screenshots FOLDER]
+// A.csv: of R.toml's two joints in the common format. It is written anew as a stranger would have it: other names,
+// positions in degrees, the torque of joint 2 with the other sign.
+// Exit 0: all went well. Exit 1: one line per fault on stderr. Exit 2: it could not be checked.
+import { execFileSync } from "node:child_process";
+import { mkdir, readFile, readdir, writeFile } from "node:fs/promises";
+import { join, resolve } from "node:path";
+import { checkNames, kScript, look, openPage, readArguments, runCheck } from "./studio_page.mjs";
+
+const kLooks = [
+  [1400, "light"],
+  [1400, "dark"],
+  [400, "light"],
+  [400, "dark"],
+];
+const kRobotName = `arm${kScript}.toml`;
+const kRecordingName = `run${kScript}.csv`;
+
+/** Robot and recording as somebody else has them, outside of the folder in which Studio writes. */
+async function strangersFiles(options, folder) {
+  const theirs = join(folder, "theirs");
+  await mkdir(theirs);
+  let count = 0; // joints have to have names that differ
+  const robot = (await readFile(options.robot, "utf8")).replace(/^name = ".*"$/gm, () => `name = "${kScript}${++count}"`);
+  const [header, ...rows] = (await readFile(options.recording, "utf8")).trim().split("\n");
+  if (header !== "t,q1,q2,dq1,dq2,tau1,tau2") throw new Error(`the recording has ${header}`);
+  const degrees = (text) => String((Number(text) * 180) / Math.PI);
+  const lines = rows.map((row) => {
+    const [t, q1, q2, dq1, dq2, tau1, tau2] = row.split(",");
+    return [t, degrees(q1), degrees(q2), dq1, dq2, tau1, String(-Number(tau2))].join(",");
+  });
+  const text = ["time,actual_pos_1,actual_pos_2,actual_vel_1,actual_vel_2,drive_torque_1,drive_torque_2", ...lines].join("\n");
+  const files = { robot: join(theirs, kRobotName), recording: join(theirs, kRecordingName), text };
+  await writeFile(files.robot, robot);
+  await writeFile(files.recording, text);
+  return files;
+}
+
+/** Until what was asked for is there and shown. */
+async function settled(page, act) {
+  const before = await page.evaluate(() => mapView.asked);
+  await act();
+  await page.waitForFunction(
+    (asked) => mapView.asked > asked && load.doing === "" && document.body.dataset.load === String(load.state.revision),
+    before,
+  );
+}
+
+async function chooseByKeyboard(page, file, fault) {
+  // Chromium takes a moment to learn that somebody listens.
+  const asked = page.waitForEvent("filechooser");
+  await page.waitForTimeout(500);
+  await page.focus("#load-choose");
+  await page.keyboard.press("Enter");
+  const chooser = await asked;
+  if (!chooser.isMultiple()) fault("only one file can be chosen");
+  await chooser.setFiles(file);
+  await page.waitForFunction(() => load.doing === "" && load.state.robot !== null);
+}
+
+/** As from a file manager. */
+async function drop(page, files) {
+  const data = await page.evaluateHandle((all) => {
+    const transfer = new DataTransfer();
+    for (const [name, text] of all) transfer.items.add(new File([text], name));
+    return transfer;
+  }, files);
+  await page.dispatchEvent("body", "dragover", { dataTransfer: data });
+  await page.dispatchEvent("body", "drop", { dataTransfer: data });
+}
+
+async function checkEmpty(page, looks, fault) {
+  const words = await page.textContent("#load");
+  for (const said of ["Drop recordings", "Choose files", ".urdf", "At most", "offnominal new"]) {
+    if (!words.includes(said)) fault(`the empty page does not say "${said}"`);
+  }
+  if (await page.isVisible("#effects")) fault("without files the analysis is there");
+  await looks("load_empty");
+}
+
+async function checkRefused(page, fault) {
+  await drop(page, [["none.csv", ""], ["broken.toml", "name = 3\n"]]);
+  await page.waitForFunction(() => load.doing === "" && document.querySelectorAll("#place-loadMessage .note.bad").length === 2);
+  const words = await page.textContent("#place-loadMessage");
+  for (const file of ["none.csv", "broken.toml"]) {
+    if (!words.includes(file)) fault(`of ${file} is said: ${words}`);
+  }
+  if (words.includes("/tmp/") || words.includes("offnominal-studio-")) fault(`the message names a folder: ${words}`);
+  if ((await page.evaluate(() => load.state.recordings.length)) !== 0) fault("what cannot be read is there");
+}
+
+function errorOf(page, joint) {
+  return page.evaluate((at) => mapView.findings?.joints.find((each) => each.joint === at)?.error_percent ?? null, joint);
+}
+
+function curve(page, quantity, joint) {
+  return page.evaluate(
+    ([what, of]) => mapView.preview.signals.find((each) => each.quantity === what && each.joint === of).high,
+    [quantity, joint],
+  );
+}
+
+async function checkColumns(page, looks, fault) {
+  const chosen = (id) => page.inputValue(id);
+  if ((await chosen("#signal-position-2-source")) !== "actual_pos_2") fault("the position's column is not guessed");
+  if ((await chosen("#signal-position-2-unit")) !== "deg") fault("that positions are in degrees is not guessed");
+  if ((await chosen("#signal-torque-1-source")) !== "drive_torque_1") fault("the torque's column is not guessed");
+  if ((await page.$$(".sketch svg")).length !== 6) fault("not every signal has its picture");
+  const sign = await page.textContent('[aria-label="Joint 2"] [data-finding="torque_sign"]').catch(() => "");
+  if (!sign.includes("To mend")) fault("that the torque's sign is turned is not said beside it");
+  await looks("load_map");
+  const [wrong, high] = [await errorOf(page, 2), await curve(page, "torque", 2)];
+  // With the keyboard alone; the focus stays where it is.
+  await page.focus("#signal-torque-2-sign");
+  await settled(page, () => page.keyboard.press("Space"));
+  if ((await page.evaluate(() => document.activeElement.id)) !== "signal-torque-2-sign") fault("after a change the focus is lost");
+  if ((await page.$$("[data-finding]")).length > 0) fault(`put right, the doctor says: ${await page.textContent("#place-loadMap .note")}`);
+  const [right, low] = [await errorOf(page, 2), await curve(page, "torque", 2)];
+  if (!(right < wrong / 2) || low === high) fault(`with the right sign the error is ${right}, and was ${wrong}`);
+  await settled(page, () => page.selectOption("#signal-position-1-unit", "rad"));
+  if ((await page.$$("[data-finding]")).length === 0) fault("the doctor has nothing to say of degrees taken for radians");
+  await settled(page, () => page.selectOption("#signal-position-1-unit", "deg"));
+  await settled(page, () => page.selectOption("#signal-velocity-1-source", ""));
+  if (!(await page.textContent("#place-loadMap pre")).includes('velocity = ["", {source = "actual_vel_2"}]')) fault("a velocity that is derived is not written so");
+  await settled(page, () => page.selectOption("#signal-velocity-1-source", "actual_vel_1"));
+}
+
+async function useThese(page, fault) {
+  await page.click("#use-these");
+  await page.waitForFunction(() => load.doing === "" && (load.written.length > 0 || load.message !== null));
+  if (await page.evaluate(() => load.message !== null)) fault(`using them is refused: ${await page.textContent("#place-loadMessage")}`);
+  await page.waitForSelector("body[data-revision]");
+  await page.waitForFunction(() => !document.body.hasAttribute("data-busy"));
+}
+
+/** What was written says the same to `compare`, and what the page prints can be run. */
+async function checkSession(page, options, folder, files, fault) {
+  await useThese(page, fault);
+  const written = await page.evaluate(() => load.written);
+  const [robot, channels] = written.map((name) => join(folder, name));
+  if (written.length !== 2 || !(await readFile(channels, "utf8")).startsWith("[channels]\n")) fault(`written is ${written}`);
+  const text = execFileSync(resolve(options.offnominal), ["compare", files.recording, "--robot", robot, "--channels", channels, "--json"], { stdio: ["ignore", "pipe", "ignore"] });
+  for (const { joint, relative_error_percent: percent } of JSON.parse(text).joints) {
+    const shown = await page.evaluate((at) => state.joints[at - 1].now.fitted_percent, joint);
+    if (Math.abs(shown - percent) > 1e-9) fault(`joint ${joint}: compare says ${percent} %, the page ${shown} %`);
+  }
+  if (await page.isVisible("#load-drop")) fault("with a session the files are not folded up");
+  await page.check("#joint-2");
+  await page.click("#switch-viscous_friction");
+  await page.waitForFunction(() => document.body.dataset.revision === "1" && !document.body.hasAttribute("data-busy"));
+  const lines = await page.textContent("#place-save pre");
+  if (!lines.includes("--channels")) fault(`the commands are ${lines}`);
+  execFileSync("/bin/sh", ["-c", `set -e\noffnominal() { "$PROGRAM" "$@"; }\n${lines}\n`], {
+    // They name the recording alone: it lies elsewhere, as the page says.
+    cwd: await besideRecording(folder, files, written), env: { ...process.env, PROGRAM: resolve(options.offnominal) }, stdio: "pipe",
+  });
+  if (!(await page.textContent("#place-save")).includes("where they lie")) fault("where the commands can be run is not said");
+}
+
+async function besideRecording(folder, files, written) {
+  const theirs = join(folder, "theirs");
+  for (const name of written) await writeFile(join(theirs, name), await readFile(join(folder, name)));
+  return theirs;
+}
+
+/** A session with steps is not lost without a question. */
+async function checkAnew(page, fault) {
+  if (!(await page.isVisible("#use-these"))) await page.click("#load-fold-summary");
+  await page.click("#use-these");
+  await page.waitForSelector("#use-anyway");
+  await page.click("#use-anyway");
+  await page.waitForFunction(() => load.doing === "" && state.steps.length === 0);
+  if (await page.evaluate(() => load.message !== null)) fault("beginning anew is refused");
+}
+
+async function check({ options, folder, start, newContext, axeSource }, fault) {
+  const files = await strangersFiles(options, folder);
+  const { address, end } = await start([]);
+  const page = await openPage(await newContext(), address, "body[data-load]", ["422 (Unprocessable", "409 (Conflict)"], fault);
+  const looks = (name) => look(page, kLooks, name, { ...options, axeSource }, fault);
+  await checkEmpty(page, looks, fault);
+  await page.setViewportSize({ width: 1400, height: 900 });
+  await checkRefused(page, fault);
+  await chooseByKeyboard(page, files.robot, fault);
+  await settled(page, () => drop(page, [[kRecordingName, files.text]]));
+  await checkColumns(page, looks, fault);
+  await checkSession(page, options, folder, files, fault);
+  await looks("load_used");
+  await checkAnew(page, fault);
+  await checkNames(page, fault);
+  await page.close();
+  await end();
+  const left = (await readdir(folder)).filter((name) => name.startsWith("offnominal-studio-"));
+  if (left.length > 0) fault(`left behind: ${left}`);
+  console.log("studio: files dropped, columns put right, a session begun; compare says the same");
+}
+
+await runCheck("load", () => readArguments(["offnominal", "robot", "recording"]), check);
