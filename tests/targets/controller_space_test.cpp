@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <offnominal/controller/diagnosis_of.hpp>
+#include <optional>
+#include <vector>
 
 #include "joint_on_desk.hpp"
 #include "scripted_joints.hpp"
@@ -181,10 +183,10 @@ TEST(DiagnosisOf, NamesTheJointThatIsNearestToItsThreshold) {
 
 using Isolating = JointOnDeskIn<TorqueSpace, WithIsolation>;
 
-// A joint that sways, on a controller that may compensate.
-Isolating swaying() {
+// A joint that sways, on a controller that may compensate or not.
+Isolating swaying(bool may) {
   auto config = Isolating::config();
-  config.monitor.max_compensation.fill(100);
+  if (may) config.monitor.max_compensation.fill(100);
   config.monitor.bound.joints[0].value[0] = 2;
   Isolating joint(config);
   joint.reference_at = [](double t_s) {
@@ -205,29 +207,30 @@ Isolating swaying() {
   return joint;
 }
 
-// What the controller asks for beside the torque of its model and gains.
-float compensated(const Isolating& joint) {
-  const auto& found = joint.data->isolation.diagnosis;
-  const bool acts = found.decided && is_compensated(found.kind);
-  return acts ? joint.data->output.compensation.torque[0] : 0;
-}
-
 TEST(ControllerWithIsolation, GivenFrictionThenItSaysSoAndCompensatesOnceItIsDecided) {
-  Isolating joint = swaying();
-  double largest_before = 0;
-  double largest_after = 0;
+  Isolating joint = swaying(true);
+  Isolating without = swaying(false);
+  std::optional<int> decided_at;
+  std::optional<int> differs_at;
+  float largest = 0;
   for (int i = 0; i < 3000; ++i) {
-    joint.push_nm = -6 * std::tanh(joint.dq / 0.02);
-    joint.tick();
-    double& largest = joint.data->isolation.diagnosis.decided ? largest_after : largest_before;
-    largest = std::max(largest, std::abs(static_cast<double>(compensated(joint))));
+    for (Isolating* one : {&joint, &without}) {
+      one->push_nm = -6 * std::tanh(one->dq / 0.02);
+      one->tick();
+    }
+    if (!decided_at && joint.data->isolation.diagnosis.decided) decided_at = i;
+    if (!differs_at && joint.torque() != without.torque()) differs_at = i;
+    if (decided_at) {
+      largest = std::max(largest, std::abs(joint.data->output.compensation.torque[0]));
+    }
   }
+  ASSERT_TRUE(decided_at && differs_at);
+  EXPECT_GE(*differs_at, *decided_at);
+  EXPECT_GT(largest, 1);
   const auto& found = joint.data->isolation.diagnosis;
   ASSERT_TRUE(found.decided);
   EXPECT_EQ(found.kind, FaultKind::kFriction) << name_of(found.kind);
   EXPECT_NEAR(found.size, 6, 0.9);
-  EXPECT_EQ(largest_before, 0);
-  EXPECT_GT(largest_after, 1);
   ASSERT_FALSE(joint.drive.faults.empty());
   const hal::FaultReport& told = joint.drive.faults.back();
   EXPECT_EQ(told.kind, static_cast<std::uint8_t>(FaultKind::kFriction));
@@ -242,12 +245,7 @@ TEST(ControllerWithIsolation, GivenFrictionThenItSaysSoAndCompensatesOnceItIsDec
 TEST(ControllerWithIsolation, GivenAJointThatIsHeldThenNothingIsCompensated) {
   std::vector<float> torques[2];
   for (const bool may : {false, true}) {
-    Isolating joint = swaying();
-    if (!may) {
-      auto config = Isolating::config();
-      config.monitor.bound.joints[0].value[0] = 2;
-      ASSERT_EQ(Isolating::Controller::create(config, joint.controller), Status::kOk);
-    }
+    Isolating joint = swaying(may);
     joint.brake_at = joint.q;
     for (int i = 0; i < 2500; ++i) {
       joint.tick();
