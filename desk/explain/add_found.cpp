@@ -18,17 +18,17 @@ using nlohmann::ordered_json;
 namespace {
 
 std::vector<std::string> objections_to(const Explanation& e) {
-  const bool sure = std::any_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
-    return !holds_in_any(e.ambiguous, one.what);
-  });
   // What one joint leaves open stops no other's.
-  if (!e.data_faults.empty() || (!is_to_write(e.verdict) && !sure)) {
+  const bool something = changes_the_file(e);
+  if (!e.data_faults.empty() || (!is_to_write(e.verdict) && !something)) {
     return {fmt::format("the verdict is {}: {}", name_of(e.verdict), e.words)};
   }
-  if (e.found.empty()) return {"no effect is missing: fit the one that is there again with add"};
+  if (e.found.empty() && e.shifts.empty()) {
+    return {"no effect is missing: fit the one that is there again with add"};
+  }
   std::vector<std::string> objections;
   for (const HeldNumber& held : e.held) {
-    if (held.contradicted) objections.push_back(held.words);
+    if (held.contradicted && !something) objections.push_back(held.words);
   }
   // A number that is held against the recordings says more of the same joint's friction.
   if (objections.empty()) objections = e.unphysical;
@@ -69,9 +69,13 @@ std::vector<std::string> doubts_of(const AddedFindings& added) {
   for (std::size_t joint = 0; joint < e.joints.size(); ++joint) {
     const HeldOutSquares squares = held_out_squares(added, joint);
     const double fall = 1 - std::sqrt(squares.after / squares.before);
-    const bool asked = std::any_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
-      return one.what.joint == static_cast<Eigen::Index>(joint);
-    });
+    const auto of_joint = [joint](Eigen::Index one) {
+      return one == static_cast<Eigen::Index>(joint);
+    };
+    const bool asked = std::any_of(e.found.begin(), e.found.end(),
+                                   [&](const Finding& one) { return of_joint(one.what.joint); }) ||
+                       std::any_of(e.shifts.begin(), e.shifts.end(),
+                                   [&](const Shift& one) { return of_joint(one.joint); });
     if (asked ? fall > 0 : !(fall < -kRelevant)) continue;
     if (!(squares.before > 0)) {
       doubts.push_back(fmt::format(
@@ -183,13 +187,15 @@ std::string text_of(const AddedFindings& added, const ExplainNames& names, bool 
     text += "\nNothing was written: " + objection + "\n";
   }
   for (const Finding& one : added.explanation.found) {
-    if (!added.objections.empty() || !holds_in_any(added.explanation.ambiguous, one.what)) continue;
-    text += fmt::format(
-        "\nnote: {} of joint {} is not written: the recordings do not tell it from others\n",
-        one.what.name(), one.what.joint + 1);
+    if (!added.objections.empty() || is_written(added.explanation, one.what)) continue;
+    text += fmt::format("\nnote: {} of joint {} is not written: {}\n", one.what.name(),
+                        one.what.joint + 1,
+                        holds_in_any(added.explanation.ambiguous, one.what)
+                            ? "the recordings do not tell it from others"
+                            : "a number of that joint would have to be what cannot be");
   }
   for (const HeldNumber& held : added.explanation.held) {
-    if (!held.contradicted) text += "\nnote: " + held.words + "\n";
+    if (!held.contradicted || added.objections.empty()) text += "\nnote: " + held.words + "\n";
   }
   for (const std::string& doubt : added.doubts) {
     text += fmt::format("\n{}: {}{}\n",

@@ -118,32 +118,6 @@ void ask_each_joint(const SearchResult& from, Explanation& to) {
   }
 }
 
-// Numbers of the file's effects that came out far from what the file says, where it matters.
-void describe_shifts(const SearchResult& from, Explanation& to) {
-  constexpr double kShifted = 0.3;
-  constexpr double kMatters = 0.02;  // of the joint's rms torque
-  const Data& data = from.regression.data();
-  const VectorXd torque = data.layout.rms(data.torque);
-  for (std::size_t i = 0; i < data.nuisance.terms.size(); ++i) {
-    const NuisanceTerm& term = data.nuisance.terms[i];
-    if (term.kind != NuisanceTerm::Kind::kKnownEffect) continue;
-    // What is said of a joint that stands is what is believed of it.
-    if (!to.excitation[static_cast<std::size_t>(term.joint)].moves) continue;
-    const auto column = static_cast<Index>(i);
-    const RobotEffect& effect = from.robot.effects[term.effect];
-    const double file = effect.parameters[term.parameter];
-    const double by = from.found.fit.nuisance[column];
-    const double rms =
-        std::abs(by) * data.layout.rms(data.nuisance.columns.col(column))[term.joint];
-    if (std::abs(by) > kShifted * std::abs(file) && rms > kMatters * torque[term.joint]) {
-      to.shifts.push_back(
-          {term.joint, term.name, file != 0 ? by / file : 1.0, file, file + by,
-           offnominal::unit_of(info_of(effect.kind)->parameters[term.parameter].quantity,
-                               from.robot.type_of(effect))});
-    }
-  }
-}
-
 // Where the loudest stretches of what is left are, per joint.
 void describe_loud(const SearchResult& from, Explanation& to) {
   const Data& data = from.regression.data();
@@ -260,7 +234,6 @@ void describe(const SearchResult& result, Explanation& to) {
   describe_suspicion(result, to);
   describe_rejections(result, to);
   ask_each_joint(result, to);
-  describe_shifts(result, to);
   describe_hold_friction(result, to);
   describe_loud(result, to);
   describe_changes(result, to);

@@ -156,7 +156,9 @@ void mend_wrapped(Log& log, const RobotDescription& robot, std::vector<DataFault
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     const RobotJoint& of = robot.joints[static_cast<std::size_t>(joint)];
     VectorXd q = log.q.col(joint);
-    if (stands_still(q)) continue;
+    // A resampling makes a swing of every step of an encoder.
+    const VectorXd recorded = log.recorded ? VectorXd(log.recorded->q.col(joint)) : q;
+    if (stands_still(recorded)) continue;
     const auto found = unfolded(q, of);
     if (!found) continue;
     DataFault fault;
@@ -182,9 +184,9 @@ void mend_wrapped(Log& log, const RobotDescription& robot, std::vector<DataFault
     faults.push_back(std::move(fault));
     log.q.col(joint) = q;
     change_recorded(log, [&](RecordedRows& rows) {
-      VectorXd recorded = rows.q.col(joint);
-      unfolded(recorded, of);
-      rows.q.col(joint) = recorded;
+      VectorXd of_rows = rows.q.col(joint);
+      unfolded(of_rows, of);
+      rows.q.col(joint) = of_rows;
     });
     derived = derived || log.dq_derived[static_cast<std::size_t>(joint)];
   }

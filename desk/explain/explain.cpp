@@ -15,6 +15,7 @@
 #include "explain/beside_free_links.hpp"
 #include "explain/change.hpp"
 #include "explain/classes.hpp"
+#include "explain/contradicted.hpp"
 #include "explain/describe.hpp"
 #include "explain/find_model.hpp"
 #include "explain/free_function.hpp"
@@ -106,10 +107,14 @@ class Explainer {
     do {
       tell("looking for what else the effects could be");
       result.ambiguous = classes_of(setting_, result.excitation, found);
+      result.shifts = contradicted_numbers(setting_, robot_, found, result.excitation);
       tell("fitting the numbers");
       improved = improved_robot(
           file_, robot_, *setting_.data,
-          {setting_.nuisance, fitted_effects(file_), {}, options_.source},
+          {setting_.nuisance,
+           fitted_effects(with_freed(file_, result.shifts)),
+           {},
+           options_.source},
           relinearise(robot_, *setting_.data, setting_.nuisance, found.terms(), found.fit));
       sizes = sizes_of(improved);
     } while (leave_out_unsure(sizes, *setting_.regression, hold_out, options_.threads, found));
@@ -125,11 +130,15 @@ class Explainer {
     describe({robot_, *setting_.regression, *setting_.search, hold_out, found, improved, sizes,
               changes_},
              result);
-    leave_out_undecided(found, result.ambiguous, improved);
+    result.held = improved.held;
+    leave_out_undecided(found, result, improved);
+    for (Shift& one : result.shifts) {
+      one.came = improved.robot.effects[one.effect].parameters[one.parameter];
+      if (one.file != 0) one.share = one.came / one.file - 1;
+    }
     if (!result.at_rest) tell_errors_of_files(improved, result);
     result.improved = std::move(improved.robot);
     result.unwritable = std::move(improved.unwritable);
-    result.held = std::move(improved.held);
     result.unphysical = std::move(improved.unphysical);
     judge_whole(result);
     if (!result.found.empty()) {
@@ -234,14 +243,18 @@ class Explainer {
     return changes_beside(Regression(plain), found.terms(), setting_.search->options(), given_);
   }
 
-  // What could as well be something else is not written; its numbers were fitted beside it.
-  static void leave_out_undecided(const FoundModel& found,
-                                  const std::vector<std::vector<EffectAt>>& classes,
+  // What could as well be something else is not written, nor what stands beside a number that
+  // cannot be; all numbers were fitted beside it.
+  static void leave_out_undecided(const FoundModel& found, const Explanation& result,
                                   ImprovedRobot& improved) {
+    const bool writes = changes_the_file(result);
     for (std::size_t i = 0; i < found.accepted.size(); ++i) {
       const Term& term = found.accepted[i].term;
+      const EffectAt what{term.effect->kind(), term.joint};
       const std::size_t at = improved.added[i];
-      if (at == kUnwritten || !holds_in_any(classes, {term.effect->kind(), term.joint})) continue;
+      const bool left_out =
+          holds_in_any(result.ambiguous, what) || (writes && !is_written(result, what));
+      if (at == kUnwritten || !left_out) continue;
       improved.robot.effects.erase(improved.robot.effects.begin() +
                                    static_cast<std::ptrdiff_t>(at));
       improved.added[i] = kUnwritten;

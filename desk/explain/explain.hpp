@@ -145,9 +145,11 @@ struct JointErrors {
       0;  // of those that the held-out errors are of: another motion has another
 };
 
-// A known number of the robot file that the recordings contradict.
+// A known number of the robot file that the recordings contradict; `improved` has what they say.
 struct Shift {
   Eigen::Index joint = 0;
+  std::size_t effect = 0;  // of the robot file, as an index, and which of its parameters
+  std::size_t parameter = 0;
   std::string name;
   double share = 0;  // of the file's value
   double file = 0;   // that value
@@ -239,6 +241,12 @@ struct Explanation {
   std::vector<HeldNumber> held;         // of `improved`
   std::vector<std::string> unphysical;  // what physics forbids of it
 };
+
+// Whether `improved` has the finding: not where the recordings do not tell it from another effect,
+// and not beside a number of its joint that was held against what they say.
+bool is_written(const Explanation& e, const EffectAt& finding);
+// Whether `improved` says more than what was fitted beside.
+bool changes_the_file(const Explanation& e);
 
 struct ExplainOptions {
   int threads = 1;

@@ -166,10 +166,7 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
   }
   for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
   for (const std::string& why : e.unwritable) text += "cannot be written: " + why + "\n";
-  const bool sure = std::any_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
-    return !holds_in_any(e.ambiguous, one.what);
-  });
-  if (sure && e.data_faults.empty() && e.unwritable.empty()) {
+  if (changes_the_file(e) && e.data_faults.empty() && e.unwritable.empty()) {
     text += command_to_add(names);
   }
   return text;

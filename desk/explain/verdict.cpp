@@ -281,11 +281,33 @@ void judge_suspected(const Suspicion& one, Explanation& e) {
 
 const char* name_of(Verdict verdict) { return row_of(verdict).name; }
 
+namespace {
+
+// Whether a number of the joint was held at the end of what is possible against the recordings.
+bool holds_what_cannot_be(const Explanation& e, Eigen::Index joint) {
+  return std::any_of(e.held.begin(), e.held.end(), [&](const HeldNumber& held) {
+    return held.contradicted && held.joint == joint;
+  });
+}
+
+}  // namespace
+
 std::string words_of(const Shift& shift) {
   if (std::abs(shift.share) <= 1) {
     return fmt::format("{} is off by {:+.0f} %", shift.name, 100 * shift.share);
   }
   return fmt::format("{} is {:.3g} {}, not {:.3g}", shift.name, shift.came, shift.unit, shift.file);
+}
+
+bool is_written(const Explanation& e, const EffectAt& finding) {
+  return !holds_in_any(e.ambiguous, finding) && !holds_what_cannot_be(e, finding.joint);
+}
+
+bool changes_the_file(const Explanation& e) {
+  return std::any_of(e.shifts.begin(), e.shifts.end(),
+                     [&](const Shift& one) { return !holds_what_cannot_be(e, one.joint); }) ||
+         std::any_of(e.found.begin(), e.found.end(),
+                     [&](const Finding& one) { return is_written(e, one.what); });
 }
 
 bool is_to_write(Verdict verdict) { return row_of(verdict).to_write; }
@@ -359,8 +381,10 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
   for (const OverVariable& one : e.over_variable) {
     if (one.joint == errors.joint) shapes.push_back(words_of(one));
   }
-  const auto shift = std::find_if(e.shifts.begin(), e.shifts.end(),
-                                  [&](const Shift& one) { return one.joint == errors.joint; });
+  std::vector<std::string> shifts;
+  for (const Shift& one : e.shifts) {
+    if (one.joint == errors.joint) shifts.push_back(words_of(one));
+  }
   const bool known = std::all_of(answer.found.begin(), answer.found.end(), [](const EffectAt& one) {
     return info_of(one.kind)->is_known_quantity();
   });
@@ -378,7 +402,11 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
       answer.words += fmt::format("{}{} cannot be told apart.", answer.words.empty() ? "" : " ",
                                   fmt::join(names_of(same, errors.joint), " or "));
     }
+    if (!shifts.empty()) answer.words += fmt::format(" {}.", fmt::join(shifts, ", "));
     answer.words += words_of_gain(errors);
+  } else if (!shifts.empty() && !stands) {
+    answer.verdict = Verdict::kParameterShift;
+    answer.words = fmt::format("{}.", fmt::join(shifts, ", ")) + words_of_gain(errors);
   } else if (unsure) {
     answer.verdict = Verdict::kNotExcited;
     answer.words =
@@ -388,9 +416,6 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
     answer.verdict =
         state || !shapes.empty() ? Verdict::kUnknownStateDependent : Verdict::kUnknownExternal;
     answer.words = "none of the known effects.";
-  } else if (shift != e.shifts.end() && !stands) {
-    answer.verdict = Verdict::kParameterShift;
-    answer.words = words_of(*shift) + ".";
   } else if (poor) {
     answer.verdict = Verdict::kNotExcited;
     answer.words = e.excitation[which].lack + ".";
@@ -603,12 +628,6 @@ void judge_whole(Explanation& e) {
                   "noise, and follows nothing that was looked at.",
                   at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
   }
-  // What something else moves bends the model's own numbers too.
-  std::erase_if(e.shifts, [&](const Shift& told) {
-    return std::any_of(e.answers.begin(), e.answers.end(), [&](const JointAnswer& one) {
-      return one.joint == told.joint && one.verdict == Verdict::kUnknownExternal;
-    });
-  });
   const std::string changes = sentence_on_changes(e);
   if (e.verdict != Verdict::kChanged && !changes.empty()) e.words += " " + changes;
   advise_on_changes(e);

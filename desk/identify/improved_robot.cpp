@@ -48,6 +48,7 @@ HeldNumber held_number(const Relinearised& found, Index column, double asked, do
   const double rms =
       std::abs(beyond) * data.layout.rms(data.nuisance.columns.col(column))[term.joint];
   HeldNumber held;
+  held.joint = term.joint;
   // What is fitted beside the findings has no interval of its own.
   held.contradicted =
       contradicts(range, std::nullopt, rms / data.layout.rms(data.torque)[term.joint]);
@@ -58,7 +59,7 @@ HeldNumber held_number(const Relinearised& found, Index column, double asked, do
   return held;
 }
 
-// A number of the file that is fitted beside the findings.
+// A number of the file that is fitted beside the findings: of the effects that get new ones.
 struct Moved {
   std::size_t effect = 0;
   std::size_t parameter = 0;
@@ -73,7 +74,6 @@ std::vector<Moved> moved_numbers(const Relinearised& found, const RobotDescripti
     const NuisanceTerm& term = found.data->nuisance.terms[i];
     if (term.kind != NuisanceTerm::Kind::kKnownEffect) continue;
     const RobotEffect& effect = robot.effects[term.effect];
-    if (!effect.fitted) continue;
     Moved moved{term.effect, term.parameter, physical_range(effect.kind, term.parameter)};
     moved.factor = factor_of_known(*found.data, found.terms, found.fit, i);
     moved.asked = effect.parameters[term.parameter] +
@@ -198,9 +198,18 @@ void move_fitted_effects(const Relinearised& found, const std::string& source,
   for (const Moved& moved : moved_numbers(found, robot)) {
     RobotEffect& effect = robot.effects[moved.effect];
     // Held ones are at their end but for rounding, and for what the torque scale still moved.
-    effect.parameters[moved.parameter] = std::clamp(moved.asked, moved.range.min, moved.range.max);
-    effect.source = source;
+    double& number = effect.parameters[moved.parameter];
+    const double before = number;
+    number = std::clamp(moved.asked, moved.range.min, moved.range.max);
+    if (effect.fitted) {
+      effect.source = source;
+    } else {
+      effect.source +=
+          fmt::format("{}{} was {:g}: {}", effect.source.empty() ? "" : "; ",
+                      info_of(effect.kind)->parameters[moved.parameter].name, before, source);
+    }
   }
+  for (const Moved& moved : moved_numbers(found, robot)) robot.effects[moved.effect].fitted = true;
 }
 
 // Friction that all together gives energy, whatever the search saw.
@@ -274,6 +283,7 @@ std::vector<std::size_t> fitted_effects(const RobotDescription& robot) {
 ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescription& robot,
                              const Data& data, const FileFitOptions& options, Relinearised found) {
   NuisanceOptions nuisance = options.nuisance;
+  nuisance.free_effects = options.refitted;
   bool as_the_file = true;
   for (std::size_t link = 0; link < found.links.size(); ++link) {
     as_the_file =

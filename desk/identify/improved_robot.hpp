@@ -13,6 +13,7 @@ namespace offnominal::desk {
 // what is possible.
 struct HeldNumber {
   std::string words;
+  Eigen::Index joint = 0;
   // What it asked for beyond the end is more than nothing to the joint's torque: the recordings
   // contradict the end.
   bool contradicted = false;

@@ -116,6 +116,22 @@ TEST(DoctorOfRows, ExcusesACoarseEncoderUnderUnevenStamps) {
   }
 }
 
+// A joint that stands where its encoder is about to count: the spline between uneven stamps swings
+// at each change of the count, which is no position that is folded into one count.
+TEST(DoctorOfRows, HasNothingAgainstOneCountOfAJointThatStandsUnderUnevenStamps) {
+  Log log = jittered_arm();
+  for (Index i = 0; i < log.sample_count(); ++i) {
+    log.q(i, 1) = kTwelveBits * (i > log.sample_count() / 2 && i % 700 < 90 ? 12 : 11);
+  }
+  log.dq_derived = {true, true};
+  jitter_stamps(log, 0.3);
+  ASSERT_TRUE(log.recorded);
+  for (const DataFault& fault : examine(log, test::arm_description())) {
+    EXPECT_NE(fault.kind, DataFaultKind::kWrapped) << fault.words;
+    EXPECT_FALSE(fault.kind == DataFaultKind::kJump && fault.joint == 1) << fault.words;
+  }
+}
+
 TEST(DoctorOfRows, FindsStaleSamplesUnderUnevenStamps) {
   Log log = jittered_arm();
   for (Index start = 500; start + 20 < log.sample_count(); start += 500) {

@@ -154,6 +154,53 @@ TEST(ManyJoints, GIVEN_a_number_that_is_held_THEN_all_else_is_fitted_beside_it) 
   EXPECT_LT(error(0), error(-step));
 }
 
+// A description of somebody else's with friction that nobody measured: what the recordings say is
+// told of each joint and written, though the file does not mark it fitted, and the error falls.
+TEST(ManyJoints, GIVEN_friction_of_the_file_that_is_wrong_THEN_the_new_file_has_what_fits) {
+  RobotDescription real = test::serial_arm(3);
+  RobotDescription robot = real;
+  for (RobotEffect& effect : robot.effects) {
+    effect.fitted = false;
+    effect.source = "a guess";
+    effect.parameters[0] = effect.kind == EffectKind::kViscousFriction ? 10 : 0.1;
+  }
+  const Log log = test::record(real, {.duration_s = 20});
+  const AddedFindings added = add_found(robot, {log}, {}, quick(2), {});
+  const Explanation& told = added.explanation;
+  EXPECT_THAT(told.found, IsEmpty()) << told.words;
+  for (const JointAnswer& answer : told.answers) {
+    EXPECT_EQ(answer.verdict, Verdict::kParameterShift) << answer.words;
+    EXPECT_THAT(answer.words, HasSubstr("viscous_friction.coefficient")) << answer.words;
+  }
+  EXPECT_THAT(added.objections, IsEmpty());
+  EXPECT_TRUE(added.may_be_written(false));
+  for (std::size_t i = 0; i < real.effects.size(); ++i) {
+    const RobotEffect& written = told.improved.effects.at(i);
+    const double truth = real.effects[i].parameters[0];
+    EXPECT_NEAR(written.parameters[0], truth, 0.1 * truth) << i;
+    EXPECT_TRUE(written.fitted);
+    EXPECT_THAT(written.source, HasSubstr("a guess; "));
+  }
+  for (const JointErrors& joint : told.joints) {
+    EXPECT_LT(joint.rms_improved, 0.1 * joint.rms_before) << "joint " << joint.joint + 1;
+  }
+}
+
+// Numbers of the file that are right are neither told nor touched.
+TEST(ManyJoints, GIVEN_friction_of_the_file_that_is_right_THEN_it_stays) {
+  RobotDescription robot = test::serial_arm(2);
+  for (RobotEffect& effect : robot.effects) effect.fitted = false;
+  RobotDescription real = robot;
+  real.effects.push_back(test::effect_of(EffectKind::kJointStiffness, 1, {6, 0.1}, true));
+  const AddedFindings added =
+      add_found(robot, {test::record(real, {.duration_s = 20})}, {}, quick(2), {});
+  EXPECT_THAT(added.explanation.shifts, IsEmpty());
+  for (std::size_t i = 0; i < robot.effects.size(); ++i) {
+    EXPECT_EQ(added.explanation.improved.effects.at(i).parameters, robot.effects[i].parameters);
+    EXPECT_FALSE(added.explanation.improved.effects.at(i).fitted);
+  }
+}
+
 // An owner's file without any friction, on an arm that has Coulomb and viscous friction everywhere:
 // no joint waits for another, and nothing larger than the two is named.
 TEST(ManyJoints, GIVEN_a_file_without_friction_THEN_every_joint_gets_both_and_nothing_else) {

@@ -1,0 +1,89 @@
+#include "explain/contradicted.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "explain/remainder.hpp"
+
+namespace offnominal::desk {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kShifted = 0.3;   // of the file's number
+constexpr double kMatters = 0.02;  // of the joint's rms torque
+// What is left beside a number and is no noise is of something else, that bends the number as well.
+constexpr double kOfWhatIsLeft = 3;  // of its energy
+
+// What one fit says of the file's numbers.
+std::vector<Shift> far_off(const Data& data, const RobotDescription& robot, const ModelFit& fit,
+                           const std::vector<Excitation>& excitation) {
+  std::vector<Shift> shifts;
+  const VectorXd torque = data.layout.rms(data.torque);
+  for (std::size_t i = 0; i < data.nuisance.terms.size(); ++i) {
+    const NuisanceTerm& term = data.nuisance.terms[i];
+    if (term.kind != NuisanceTerm::Kind::kKnownEffect) continue;
+    // What is said of a joint that stands is what is believed of it.
+    if (!excitation[static_cast<std::size_t>(term.joint)].moves) continue;
+    const auto column = static_cast<Index>(i);
+    const RobotEffect& effect = robot.effects[term.effect];
+    const double file = effect.parameters[term.parameter];
+    const double by = fit.nuisance[column];
+    const double rms =
+        std::abs(by) * data.layout.rms(data.nuisance.columns.col(column))[term.joint];
+    if (!(std::abs(by) > kShifted * std::abs(file)) || !(rms > kMatters * torque[term.joint]))
+      continue;
+    shifts.push_back({term.joint, term.effect, term.parameter, term.name,
+                      file != 0 ? by / file : 1.0, file, file + by,
+                      offnominal::unit_of(info_of(effect.kind)->parameters[term.parameter].quantity,
+                                          robot.type_of(effect))});
+  }
+  return shifts;
+}
+
+// Held-out errors per joint with the numbers as the file has them and all else fitted.
+VectorXd held_out_as_the_file(const SearchSetting& setting, const RobotDescription& robot,
+                              const FoundModel& found, const std::vector<Shift>& shifts) {
+  NuisanceOptions as_the_file = setting.nuisance;
+  const Prior none = Prior::at(0);
+  for (const Shift& one : shifts) {
+    as_the_file.known.push_back({one.effect, one.parameter, none.low, none.high});
+  }
+  const Data data(*setting.data, robot, as_the_file);
+  std::unique_ptr<Data> apart;
+  if (setting.held_out) apart = std::make_unique<Data>(*setting.held_out, robot, as_the_file);
+  const Regression regression(data);
+  const HoldOut hold_out(regression, apart.get());
+  const std::vector<Term> terms = found.terms();
+  return hold_out.rms(hold_out.residual(terms, regression.fit(terms)));
+}
+
+}  // namespace
+
+std::vector<Shift> contradicted_numbers(const SearchSetting& setting, const RobotDescription& robot,
+                                        const FoundModel& found,
+                                        const std::vector<Excitation>& excitation) {
+  std::vector<Shift> shifts = far_off(*setting.data, robot, found.fit, excitation);
+  if (shifts.empty()) return shifts;
+  const HoldOut& hold_out = *setting.hold_out;
+  const VectorXd moved = hold_out.rms(found.held_out_after).array().square();
+  const VectorXd noise = noise_floor_of(hold_out.data(), found.held_out_after).array().square();
+  const VectorXd as_the_file = held_out_as_the_file(setting, robot, found, shifts).array().square();
+  std::erase_if(shifts, [&](const Shift& one) {
+    const double taken = as_the_file[one.joint] - moved[one.joint];
+    const double left = std::max(moved[one.joint] - noise[one.joint], 0.0);
+    return !(taken > kRelevantShare * as_the_file[one.joint] && taken > kOfWhatIsLeft * left);
+  });
+  return shifts;
+}
+
+RobotDescription with_freed(RobotDescription robot, const std::vector<Shift>& shifts) {
+  for (const Shift& one : shifts) robot.effects[one.effect].fitted = true;
+  return robot;
+}
+
+}  // namespace offnominal::desk
