@@ -157,8 +157,7 @@ struct Shift {
   std::string unit;
 };
 
-// "viscous_friction.coefficient of joint 3 is off by +44 %"; where it is off by more than itself,
-// both values.
+// "viscous_friction.coefficient of joint 3 is 1.44 N m s/rad, not 1".
 std::string words_of(const Shift& shift);
 
 // What holds a joint where it has come to rest, by the direction from which it came: fitted beside

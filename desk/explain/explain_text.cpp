@@ -161,9 +161,6 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
         "written\n",
         one.joint + 1, one.level, one.unit);
   }
-  for (const Shift& shift : e.shifts) {
-    text += "the file's " + words_of(shift) + "\n";
-  }
   for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
   for (const std::string& why : e.unwritable) text += "cannot be written: " + why + "\n";
   if (changes_the_file(e) && e.data_faults.empty() && e.unwritable.empty()) {

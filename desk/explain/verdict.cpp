@@ -293,10 +293,9 @@ bool holds_what_cannot_be(const Explanation& e, Eigen::Index joint) {
 }  // namespace
 
 std::string words_of(const Shift& shift) {
-  if (std::abs(shift.share) <= 1) {
-    return fmt::format("{} is off by {:+.0f} %", shift.name, 100 * shift.share);
-  }
-  return fmt::format("{} is {:.3g} {}, not {:.3g}", shift.name, shift.came, shift.unit, shift.file);
+  const char* blank = shift.unit.empty() || shift.unit == "1" ? "" : " ";
+  return fmt::format("{} is {:.3g}{}{}, not {:.3g}", shift.name, shift.came, blank,
+                     *blank == '\0' ? "" : shift.unit, shift.file);
 }
 
 bool is_written(const Explanation& e, const EffectAt& finding) {
