@@ -6,7 +6,7 @@ set -euo pipefail
 # shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-readers=(csv mat log dbc robot channels frames)
+readers=(csv mat log dbc robot channels urdf dh frames)
 seconds="${1:-60}"
 [[ "$seconds" =~ ^[1-9][0-9]*$ ]] || die "fuzz: seconds: found '$seconds', allowed: a whole number from 1"
 wanted=("${@:2}")

@@ -27,6 +27,7 @@
 #include "common/output_file.hpp"
 #include "log/log_format.hpp"
 #include "log/read_log.hpp"
+#include "replay/monitor_filter.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
@@ -74,6 +75,7 @@ void tell(const Result& result, const CalibrateOptions& options, const Calibrate
   } else {
     exit_code = ExitCode::kCheckFailed;
   }
+  const MonitorFilter filter = monitor_filter(data.robot, data.logs.front());
   const auto text = [&] {
     std::string notes;
     std::set<std::string> told;  // a recording may be in parts
@@ -85,10 +87,14 @@ void tell(const Result& result, const CalibrateOptions& options, const Calibrate
         }
       }
     }
-    return notes + text_of(result, names);
+    return notes + words_of(filter) + "\n" + text_of(result, names);
   };
-  print_answer(
-      options.answer, [&] { return with_faults(to_json(result, names), faults); }, text, written);
+  const auto json = [&] {
+    auto told = to_json(result, names);
+    told["filter"] = to_json(filter);
+    return with_faults(std::move(told), faults);
+  };
+  print_answer(options.answer, json, text, written);
 }
 
 void run(const CalibrateOptions& options, const std::string& command_line, ExitCode& exit_code) {

@@ -10,6 +10,7 @@
 #include "command/answer.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
+#include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/input_name.hpp"
 #include "common/json_text.hpp"
@@ -31,6 +32,8 @@ struct NewOptions {
 
 void run(const NewOptions& options) {
   using exchange::DhConvention;
+  if (options.name && options.name->empty())
+    refuse_option("new", "--name", "nothing", "a name that is not empty");
   std::optional<DhConvention> convention;
   if (options.convention) {
     convention =
@@ -66,7 +69,8 @@ void run(const NewOptions& options) {
             "blank, may stay so: inertia_kg_m2, limits\nassumed: gravity of 9.81 m/s^2 along -z of "
             "the "
             "base\n",
-            name, count, count == 1 ? "joint" : "joints", exchange::name_of(table.convention));
+            on_one_line(name), count, count == 1 ? "joint" : "joints",
+            exchange::name_of(table.convention));
       },
       {options.output});
 }
@@ -77,7 +81,7 @@ void set_up_new(CLI::App& verb, ExitCode& /*exit_code*/) {
   const auto options = std::make_shared<NewOptions>();
   verb.add_option(
           "--dh", options->table,
-          "Table of Denavit-Hartenberg parameters, CSV or TOML: a_m, alpha_rad or alpha_deg, "
+          "Table of Denavit-Hartenberg parameters, .toml or else CSV: a_m, alpha_rad or alpha_deg, "
           "d_m, theta_rad or theta_deg")
       ->required();
   verb.add_option("--convention", options->convention,

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command/answer.hpp"
@@ -21,6 +22,7 @@
 #include "common/text_table.hpp"
 #include "log/log_format.hpp"
 #include "log/read_log.hpp"
+#include "replay/monitor_filter.hpp"
 #include "replay/replay.hpp"
 #include "robot/robot_file.hpp"
 
@@ -47,11 +49,12 @@ void list(const std::vector<One>& all, const std::string& name, const Words& wor
   if (all.size() > kPrinted) row("", fmt::format("and {} more (--json)", all.size() - kPrinted));
 }
 
-std::string text_of(const Replay& replay) {
+std::string text_of(const Replay& replay, const MonitorFilter& filter) {
   const TextTable table({{"", -28}, {"", 0}}, "  ");
   std::string text = fmt::format("{} on {}: {} samples, tick {:g} ms, {} hidden units, seed {}\n",
                                  replay.robot, replay.log, replay.samples(), 1000 * replay.period_s,
-                                 replay.hidden_units, replay.seed);
+                                 replay.hidden_units, replay.seed) +
+                     words_of(filter) + "\n";
   const auto row = [&](const std::string& name, const std::string& value) {
     text += table.row(name, value);
   };
@@ -122,9 +125,13 @@ void run(const ReplayOptions& options, const std::string& command_line, ExitCode
   write_report(options.answer, [&] { return with_faults(page_of(result, command_line), faults); });
   std::string notes;
   for (const std::string& remark : log.remarks) notes += "note: " + remark + "\n";
-  print_answer(
-      options.answer, [&] { return with_faults(to_json(result), faults); },
-      [&] { return notes + text_of(result); });
+  const MonitorFilter filter = monitor_filter(robot, log);
+  const auto json = [&] {
+    auto told = to_json(result);
+    told["filter"] = to_json(filter);
+    return with_faults(std::move(told), faults);
+  };
+  print_answer(options.answer, json, [&] { return notes + text_of(result, filter); });
   if (options.check && (result.detection_time_s || result.is_blind()))
     exit_code = ExitCode::kCheckFailed;
 }

@@ -55,9 +55,13 @@ nlohmann::ordered_json fall_json(const std::vector<JointComparison>& before,
 }  // namespace
 
 nlohmann::ordered_json to_json(const FilterPlan& plan) {
+  using nlohmann::ordered_json;
+  const bool by_encoder = plan.reason.kind == CutoffReason::Kind::kEncoder;
   return {{"sample_rate_hz", plan.sample_rate_hz},
           {"position_cutoff_hz", plan.position_cutoff_hz},
           {"torque_cutoff_hz", plan.torque_cutoff_hz},
+          {"cutoff_from", name_of(plan.reason.kind)},
+          {"cutoff_joint", by_encoder ? ordered_json(plan.reason.joint + 1) : ordered_json()},
           {"decimation", plan.decimation}};
 }
 

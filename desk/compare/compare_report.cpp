@@ -226,6 +226,24 @@ std::string error_table(const Comparisons& comparisons) {
 
 }  // namespace
 
+std::string name_of(CutoffReason::Kind kind) {
+  switch (kind) {
+    case CutoffReason::Kind::kDefault:
+      return "default";
+    case CutoffReason::Kind::kRate:
+      return "sampling_rate";
+    case CutoffReason::Kind::kEncoder:
+      return "encoder";
+    case CutoffReason::Kind::kCutoff:
+      return "--cutoff";
+    case CutoffReason::Kind::kDecimate:
+      return "--decimate";
+    case CutoffReason::Kind::kAtRest:
+      return "at_rest";
+  }
+  return "";
+}
+
 std::string verdict_of(const Comparisons& comparison, const Comparisons* against) {
   std::string words;
   if (against != nullptr) {
@@ -249,9 +267,21 @@ Level level_of(const Comparisons& comparison) {
   return worst;
 }
 
+namespace {
+
+std::string words_of(const CutoffReason& reason) {
+  if (reason.kind == CutoffReason::Kind::kEncoder)
+    return fmt::format("the encoder of joint {}", reason.joint + 1);
+  return reason.kind == CutoffReason::Kind::kRate ? "the sampling rate" : name_of(reason.kind);
+}
+
+}  // namespace
+
 std::string words_of(const FilterPlan& plan) {
-  std::string words = fmt::format("position low-pass {:.4g} Hz, torque low-pass {:.4g} Hz",
-                                  plan.position_cutoff_hz, plan.torque_cutoff_hz);
+  if (plan.reason.kind == CutoffReason::Kind::kAtRest) return "no low-pass: readings at rest";
+  std::string words =
+      fmt::format("position low-pass {:.4g} Hz, torque low-pass {:.4g} Hz by {}",
+                  plan.position_cutoff_hz, plan.torque_cutoff_hz, words_of(plan.reason));
   if (plan.decimation > 1) words += fmt::format(", one sample of {}", plan.decimation);
   return words + fmt::format(" at {:.6g} Hz", plan.sample_rate_hz);
 }

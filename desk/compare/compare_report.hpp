@@ -35,6 +35,9 @@ report::Level level_of(const Comparisons& comparisons);
 // so in each of the recordings.
 nlohmann::ordered_json to_json(const Comparisons& comparisons, const CompareNames& names,
                                const Comparisons* against = nullptr);
+// {sample_rate_hz, position_cutoff_hz, torque_cutoff_hz, cutoff_from, cutoff_joint, decimation}:
+// the same keys in every verb that filters. No cut-off is null; cutoff_joint is null but for an
+// encoder.
 nlohmann::ordered_json to_json(const FilterPlan& plan);
 nlohmann::ordered_json to_json(const std::optional<Payload>& payload);
 
@@ -42,8 +45,11 @@ nlohmann::ordered_json to_json(const std::optional<Payload>& payload);
 std::string text_of(const Comparisons& comparisons, const CompareNames& names,
                     const Comparisons* against = nullptr);
 
-// "position low-pass 100 Hz, torque low-pass 40 Hz, every 10th sample of 1000 Hz"
+// "position low-pass 20 Hz, torque low-pass 8 Hz by the encoder of joint 1, one sample of 24 at 500
+// Hz"
 std::string words_of(const FilterPlan& plan);
+// "default", "sampling_rate", "encoder", "--cutoff", "--decimate", "at_rest"
+std::string name_of(CutoffReason::Kind kind);
 
 // Measured against model torque over time; the residual over time, position, velocity and
 // acceleration: of the recording that the reader chooses.

@@ -39,22 +39,32 @@ double highest_cutoff_hz(const Log& log, Index joint, double counts_per_unit, do
   return std::pow(f5, 0.2);
 }
 
-double usual_cutoff_hz(const std::vector<Log>& logs, const RobotDescription& robot) {
+struct Cutoff {
+  double hz;
+  CutoffReason reason;
+
+  void lower_to(double other_hz, const CutoffReason& other) {
+    if (other_hz < hz) *this = {other_hz, other};
+  }
+};
+
+Cutoff usual_cutoff(const std::vector<Log>& logs, const RobotDescription& robot) {
   constexpr double kHighestHz = 12;
   constexpr double kLowestHz = 8;
   constexpr double kOfRate = 0.2;
-  double cutoff_hz = kHighestHz;
+  Cutoff cutoff{kHighestHz, {CutoffReason::Kind::kDefault}};
   for (const Log& log : logs) {
-    cutoff_hz = std::min(cutoff_hz, kOfRate * log.sample_rate_hz());
+    cutoff.lower_to(kOfRate * log.sample_rate_hz(), {CutoffReason::Kind::kRate});
     const Index joints = std::min<Index>(log.q.cols(), robot.joint_count());
     for (Index joint = 0; joint < joints; ++joint) {
       const double counts = robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit;
       if (!(counts > 0)) continue;
       const double highest = highest_cutoff_hz(log, joint, counts, kLowestHz);
-      if (highest > 0) cutoff_hz = std::min(cutoff_hz, std::max(highest, kLowestHz));
+      if (highest > 0)
+        cutoff.lower_to(std::max(highest, kLowestHz), {CutoffReason::Kind::kEncoder, joint});
     }
   }
-  return cutoff_hz;
+  return cutoff;
 }
 
 void set_edges(FilterPlan& plan) {
@@ -98,11 +108,14 @@ FilterPlan requested(const Log& log, const FilterRequest& request, const FilterP
   if (plan.decimation < 1) {
     throw InputError({"--decimate", "", std::to_string(plan.decimation), "a number from 1", ""});
   }
-  plan.torque_cutoff_hz = request.cutoff_hz ? plan.position_cutoff_hz : usual.torque_cutoff_hz;
+  Cutoff cutoff{usual.torque_cutoff_hz, usual.reason};
+  if (request.cutoff_hz) cutoff = {plan.position_cutoff_hz, {CutoffReason::Kind::kCutoff}};
   if (plan.decimation > 1) {
-    const double band_hz = kDecimationBand * half_rate_hz / static_cast<double>(plan.decimation);
-    plan.torque_cutoff_hz = std::min(plan.torque_cutoff_hz, band_hz);
+    cutoff.lower_to(kDecimationBand * half_rate_hz / static_cast<double>(plan.decimation),
+                    {request.decimate ? CutoffReason::Kind::kDecimate : CutoffReason::Kind::kRate});
   }
+  plan.torque_cutoff_hz = cutoff.hz;
+  plan.reason = cutoff.reason;
   return plan;
 }
 
@@ -124,9 +137,12 @@ FilterPlan plan_filter(const std::vector<Log>& logs, const RobotDescription& rob
   if (first.at_rest) {
     plan.position_cutoff_hz = std::numeric_limits<double>::infinity();
     plan.torque_cutoff_hz = std::numeric_limits<double>::infinity();
+    plan.reason = {CutoffReason::Kind::kAtRest};
     return plan;
   }
-  plan.torque_cutoff_hz = usual_cutoff_hz(logs, robot);
+  const Cutoff cutoff = usual_cutoff(logs, robot);
+  plan.torque_cutoff_hz = cutoff.hz;
+  plan.reason = cutoff.reason;
   plan.position_cutoff_hz =
       std::min(kPositionPerTorque * plan.torque_cutoff_hz, kMostOfRate * plan.sample_rate_hz);
   plan.decimation = std::max<Index>(
@@ -147,7 +163,10 @@ FilterPlan plan_for(const Log& log, const FilterPlan& plan) {
   }
   const double rates = own.sample_rate_hz / plan.sample_rate_hz;
   own.position_cutoff_hz = std::min(plan.position_cutoff_hz, kMostOfRate * own.sample_rate_hz);
-  own.torque_cutoff_hz = std::min(plan.torque_cutoff_hz, own.position_cutoff_hz);
+  if (own.position_cutoff_hz < plan.torque_cutoff_hz) {
+    own.torque_cutoff_hz = own.position_cutoff_hz;
+    own.reason = {CutoffReason::Kind::kRate};
+  }
   own.decimation = std::max<Index>(
       1, static_cast<Index>(std::floor(static_cast<double>(plan.decimation) * rates)));
   check_length(log, own);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,20 @@ struct FilterRequest {
   std::optional<int> decimate;
 };
 
+// What a cut-off follows from.
+struct CutoffReason {
+  enum class Kind : std::uint8_t {
+    kDefault,   // above it moves no arm
+    kRate,      // the sampling rate
+    kEncoder,   // what the encoder of `joint` leaves of the acceleration
+    kCutoff,    // --cutoff
+    kDecimate,  // --decimate: what so few samples can hold
+    kAtRest,    // readings at rest: there is none
+  };
+  Kind kind = Kind::kDefault;
+  Eigen::Index joint = 0;  // from 0
+};
+
 // How a recording is filtered before model and measurement are compared, by every verb alike. The
 // position passes a low-pass at position_cutoff_hz before it is differentiated. Torque, model
 // torque and every regressor column pass one and the same low-pass at torque_cutoff_hz; then
@@ -25,6 +40,7 @@ struct FilterPlan {
   double sample_rate_hz = 0;
   double position_cutoff_hz = 0;
   double torque_cutoff_hz = 0;  // at most the cut-off, and kDecimationBand of what decimation keeps
+  CutoffReason reason = {};     // of torque_cutoff_hz
   Eigen::Index decimation = 1;
   Eigen::Index edge_samples = 0;
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compare/inverse_model.hpp"
+#include "robot/transmission.hpp"
 #include "signal/differentiate.hpp"
 #include "signal/zero_phase.hpp"
 
@@ -19,6 +20,24 @@ namespace {
 
 bool acts_in_transmission(const RobotEffect& effect) {
   return info_of(effect.kind)->action == EffectAction::kDisplacement;
+}
+
+// Where a spring acts, in joints: its torque is `from_torques` times theirs, and its displacement
+// by 1 is `along` in them. With the matrix A of the transmission, tau = A^T tau_m and dq_m = A dq:
+// of a motor they are row and column of A^-1.
+struct SpringPlace {
+  VectorXd from_torques;
+  VectorXd along;
+};
+
+SpringPlace place_of_spring(const RobotDescription& robot, const RobotEffect& effect) {
+  const auto index = static_cast<Index>(effect.joint);
+  if (!effect.of_motor) {
+    const VectorXd own = VectorXd::Unit(robot.joint_count(), index);
+    return {own, own};
+  }
+  const MatrixXd inverse = motor_per_joint(*robot.transmission).inverse();
+  return {inverse.col(index), inverse.col(index)};
 }
 
 // What the joint's own acceleration asks of it, per sample.
@@ -38,12 +57,12 @@ Displacement displacement_of(VectorXd x, double period_s) {
 }
 
 MatrixXd torque_of_displacement(const RobotDescription& rigid, const Motion& motion,
-                                const MatrixXd& load, Index joint, const Displacement& by,
+                                const MatrixXd& load, const VectorXd& along, const Displacement& by,
                                 double scale) {
   Motion behind = motion;
-  behind.q.col(joint) -= scale * by.x;
-  behind.dq.col(joint) -= scale * by.dx;
-  behind.ddq.col(joint) -= scale * by.ddx;
+  behind.q -= scale * by.x * along.transpose();
+  behind.dq -= scale * by.dx * along.transpose();
+  behind.ddq -= scale * by.ddx * along.transpose();
   return (model_torque(rigid, behind) - load) / scale;
 }
 
@@ -119,15 +138,17 @@ MatrixXd transmission_torque(const RobotDescription& robot, const Motion& motion
   for (const RobotEffect& effect : robot.effects) {
     if (!acts_in_transmission(effect)) continue;
     const auto joint = static_cast<Index>(effect.joint);
+    const SpringPlace place = place_of_spring(robot, effect);
     VectorXd x;
     if (effect.kind == EffectKind::kJointElasticity) {
-      const VectorXd transmitted = measured.col(joint) - (stiff.col(joint) - load.col(joint));
-      x = without_noise(transmitted, density[joint], plan) / effect.parameters[0];
+      const VectorXd transmitted = (measured - (stiff - load)) * place.from_torques;
+      const double noise = density.cwiseProduct(place.from_torques).norm();
+      x = without_noise(transmitted, noise, plan) / effect.parameters[0];
     } else {
       x = play_displacement(load.col(joint), own_inertia(rigid, motion, load, joint),
                             effect.parameters[0], plan);
     }
-    added += torque_of_displacement(rigid, motion, load, joint,
+    added += torque_of_displacement(rigid, motion, load, place.along,
                                     displacement_of(std::move(x), period_s)) *
              told_per_given.asDiagonal();
   }

@@ -20,10 +20,11 @@ struct Displacement {
 // Central differences at `period_s`.
 Displacement displacement_of(Eigen::VectorXd x, double period_s);
 
-// What the displacement of one joint times `scale` changes in the torque of every joint, per scale.
-// `rigid`: the robot without effects, `load` its torque over the motion.
+// What a displacement times `scale` changes in the torque of every joint, per scale. `along`: by
+// how much of it each joint is displaced; of one joint a unit vector. `rigid`: the robot without
+// effects, `load` its torque over the motion.
 Eigen::MatrixXd torque_of_displacement(const RobotDescription& rigid, const Motion& motion,
-                                       const Eigen::MatrixXd& load, Eigen::Index joint,
+                                       const Eigen::MatrixXd& load, const Eigen::VectorXd& along,
                                        const Displacement& by, double scale = 1);
 
 // A transmitted torque in as wide a band as its noise allows: twice differentiated the noise must

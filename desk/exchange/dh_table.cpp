@@ -10,6 +10,7 @@
 
 #include "common/error.hpp"
 #include "common/file.hpp"
+#include "common/input_name.hpp"
 #include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "common/toml_table.hpp"
@@ -20,6 +21,7 @@ namespace offnominal::desk::exchange {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kLargest = 1e5;  // further out no robot file takes a length
 const std::vector<std::string> kConventions{"standard", "modified"};
 const std::vector<std::string> kParameters{"a_m", "alpha_rad", "alpha_deg",
                                            "d_m", "theta_rad", "theta_deg"};
@@ -62,11 +64,15 @@ DhConvention settled(const std::filesystem::path& path, std::optional<DhConventi
          "standard where about z of frame i-1");
 }
 
+std::string in_small_letters(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
 // Many tables write a, alpha, d, theta, and do not say in what.
 std::string mend_name(const std::string& name, const std::vector<std::string>& known) {
-  std::string small = name;
-  std::transform(small.begin(), small.end(), small.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string small = in_small_letters(name);
   if (small == "a" || small == "d" || small == "r") {
     return fmt::format("name it {}, in metres", small == "d" ? "d_m" : "a_m");
   }
@@ -88,7 +94,9 @@ DhRow row_of(const TomlTable& table, std::size_t index) {
     const std::string key = angle_key(
         name, [&](const std::string& one) { return table.has(one); },
         [&](const auto&... words) { table.refuse("", words...); });
-    return in_radians(table.number(key, any_number("")), key);
+    NumberRule rule = any_number(key.ends_with("_deg") ? "deg" : "rad");
+    rule.largest = kLargest;
+    return in_radians(table.number(key, rule), key);
   };
   row.alpha_rad = angle("alpha");
   row.theta_rad = angle("theta");
@@ -115,9 +123,17 @@ DhTable read_toml(const std::filesystem::path& path, std::optional<DhConvention>
   return table;
 }
 
+// In words for a table, not for a recording.
+void require_text(const std::filesystem::path& path) {
+  if (!read_text_file(path).empty()) return;
+  refuse(path, "", "an empty file", "a DH table, as CSV or as .toml",
+         "begin with a line such as a_m,alpha_deg,d_m,theta_deg");
+}
+
 DhTable read_csv_table(const std::filesystem::path& path, std::optional<DhConvention> convention) {
   std::vector<std::string> known = kParameters;
   known.insert(known.end(), {"prismatic"});
+  if (!is_stream(path.string())) require_text(path);
   const NamedColumns read = read_csv(path, [&](const std::string& name) {
     const bool is_known = std::find(known.begin(), known.end(), name) != known.end();
     return is_known ? Need::kRequired : Need::kNone;
@@ -139,7 +155,14 @@ DhTable read_csv_table(const std::filesystem::path& path, std::optional<DhConven
   const std::string theta = key_of("theta");
   DhTable table{settled(path, std::nullopt, convention), {}};
   for (Eigen::Index i = 0; i < read.columns.at("a_m").size(); ++i) {
-    const auto cell = [&](const std::string& name) { return read.columns.at(name)[i]; };
+    const auto cell = [&](const std::string& name) {
+      const double value = read.columns.at(name)[i];
+      if (std::fabs(value) <= kLargest) return value;
+      refuse(path, fmt::format("{}, column {}", read.place_of(i), name),
+             std::isfinite(value) ? shortest(value) : "no finite number",
+             fmt::format("a number of at most {}", shortest(kLargest)),
+             std::isfinite(value) ? "check the unit" : "write 0 where there is nothing");
+    };
     DhRow row;
     row.name = fmt::format("joint{}", i + 1);
     if (has("prismatic") && cell("prismatic") != 0) {
@@ -165,20 +188,12 @@ const char* name_of(DhConvention convention) {
 }
 
 DhTable read_dh_table(const std::filesystem::path& path, std::optional<DhConvention> convention) {
-  DhTable table =
-      path.extension() == ".csv" ? read_csv_table(path, convention) : read_toml(path, convention);
+  const bool is_toml = in_small_letters(path.extension().string()) == ".toml";
+  DhTable table = is_toml ? read_toml(path, convention) : read_csv_table(path, convention);
   if (table.rows.empty() || table.rows.size() > static_cast<std::size_t>(kMaxJoints)) {
     refuse(path, "", fmt::format("{} joints", table.rows.size()),
-           fmt::format("1 to {}, a row each", kMaxJoints), "leave out what no drive moves");
-  }
-  // Further out no robot file takes a length.
-  constexpr double kFarthestM = 1e5;
-  for (const DhRow& row : table.rows) {
-    for (const double value : {row.a_m, row.d_m, row.alpha_rad, row.theta_rad}) {
-      if (std::fabs(value) <= kFarthestM) continue;
-      refuse(path, row.name, shortest(value), fmt::format("at most {}", shortest(kFarthestM)),
-             "check the unit");
-    }
+           fmt::format("1 to {}, a row each", kMaxJoints),
+           table.rows.empty() ? "write a row for each joint" : "leave out what no drive moves");
   }
   return table;
 }

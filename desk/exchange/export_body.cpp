@@ -42,10 +42,15 @@ class Exporter {
       : robot_(robot), format_(format), result_(result) {}
 
   std::vector<ExportedJoint> run() {
-    std::set<std::string> names;
+    std::set<std::string> names{format_.taken};
     for (const RobotJoint& from : robot_.joints) {
       ExportedJoint& to = joints_.emplace_back();
-      to.name = one_of(names, on_one_line(from.name));
+      const std::string asked = on_one_line(from.name);
+      to.name = one_of(names, asked);
+      if (to.name != asked) {
+        result_.changed.push_back(
+            fmt::format("the name of joint `{}`: `{}`, since the other is taken", asked, to.name));
+      }
       names.insert(to.name);
       to.body = body_of(from.joint);
     }

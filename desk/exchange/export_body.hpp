@@ -28,6 +28,7 @@ struct ExportedJoint {
 /// Which effects a format has a place for, beside masses, damping and friction.
 struct FormatTraits {
   const char* name;
+  const char* taken;  // a name that what is written has already, beside the joints'
   bool has_armature = false;
   bool has_springs = false;
 };

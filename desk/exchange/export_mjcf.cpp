@@ -23,8 +23,9 @@ class MjcfWriter {
   explicit MjcfWriter(const RobotDescription& robot) : robot_(robot) {}
 
   ExportedRobot write(const std::string& robot_file) {
-    joints_ = exported_joints(robot_, {.name = "MJCF", .has_armature = true, .has_springs = true},
-                              result_);
+    joints_ = exported_joints(
+        robot_, {.name = "MJCF", .taken = "world", .has_armature = true, .has_springs = true},
+        result_);
     for (std::size_t i = 0; i < joints_.size(); ++i) say_what_stays(i);
     out_.OpenElement("mujoco");
     out_.PushAttribute("model", on_one_line(robot_.name).c_str());

@@ -15,6 +15,8 @@ using tinyxml2::XMLPrinter;
 // What a position is believed up to (docs/robot-file.md), rad or m.
 constexpr double kFarthest = 1000;
 
+constexpr const char* kTilt = "world_to_base";  // the joint on which a tilted base stands
+
 // Roll, pitch, yaw about the fixed axes: R = Rz(yaw) Ry(pitch) Rx(roll). Near a pitch of 90 degrees
 // only roll and yaw together are determined; with the yaw taken out first, the three fit together
 // there too.
@@ -32,7 +34,7 @@ class UrdfWriter {
   explicit UrdfWriter(const RobotDescription& robot) : robot_(robot) {}
 
   ExportedRobot write(const std::string& robot_file) {
-    joints_ = exported_joints(robot_, {.name = "URDF"}, result_);
+    joints_ = exported_joints(robot_, {.name = "URDF", .taken = kTilt}, result_);
     const bool tilted = look_at_gravity();
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       look_at_limits(i);
@@ -132,7 +134,7 @@ class UrdfWriter {
   void write_tilt() {
     write_bare_link("world");
     out_.OpenElement("joint");
-    out_.PushAttribute("name", "world_to_base");
+    out_.PushAttribute("name", kTilt);
     out_.PushAttribute("type", "fixed");
     // Turns the base's upward direction into z.
     const Eigen::Quaterniond turn =

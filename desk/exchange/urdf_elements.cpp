@@ -241,7 +241,9 @@ class Reader {
     const double largest = physical(any_number(rule.unit)).largest;
     if (std::fabs(*value) > largest) {
       refuse(element.GetLineNum(), at, shortest(*value),
-             fmt::format("at most {} {}", shortest(largest), rule.unit), "check the number's unit");
+             fmt::format("at most {}{}{}", shortest(largest), *rule.unit == '\0' ? "" : " ",
+                         rule.unit),
+             "check the number's unit");
     }
     return *value + 0.0;  // no zero below zero
   }

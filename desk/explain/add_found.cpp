@@ -151,8 +151,8 @@ ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
                      const std::string& output_file, bool force) {
   const ordered_json explained = to_json(added.explanation, names);
   ordered_json json;
-  for (const char* key : {"logs", "holdout", "robot", "verdict", "words", "found", "left_out",
-                          "data_faults", "data_hints", "advice"}) {
+  for (const char* key : {"logs", "holdout", "robot", "verdict", "words", "filter", "found",
+                          "left_out", "data_faults", "data_hints", "advice"}) {
     json[key] = explained[key];
   }
   json["recordings"] = ordered_json::array();

@@ -94,6 +94,7 @@ class Explainer {
       result.robot_file = shell_word(options_.robot_file);
     result.at_rest = setting_.data->recordings[0].at_rest;
     result.holdout_is_apart = setting_.hold_out->is_apart();
+    result.filter = plan_;
     result.excitation = excitation_of(setting_.data->recordings);
     result.changes_asked = given_.has_value();
     result.changes_between = given_ && !given_->begins();

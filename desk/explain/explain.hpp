@@ -191,7 +191,8 @@ struct JointAnswer {
 struct Explanation {
   Verdict verdict = Verdict::kExplained;
   std::string words;
-  bool holdout_is_apart = false;  // hold-out recordings, not blocks of time
+  bool holdout_is_apart = false;     // hold-out recordings, not blocks of time
+  std::optional<FilterPlan> filter;  // of the first recording; none: nothing was left to search
   std::vector<JointErrors> joints;
   std::vector<JointAnswer> answers;  // per joint, the one that matters most first
   std::vector<Finding> found;        // what matters most first

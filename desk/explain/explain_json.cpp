@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "compare/compare_report.hpp"
 #include "explain/data_fault_report.hpp"
 #include "explain/explain_report.hpp"
 
@@ -125,6 +126,7 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
   json["robot"] = names.robot_file;
   json["verdict"] = name_of(e.verdict);
   json["words"] = e.words;
+  json["filter"] = e.filter ? to_json(*e.filter) : ordered_json();
   json["noise_floor"] =
       array_of(e.joints, [](const JointErrors& joint) { return ordered_json(joint.noise_floor); });
   json["joints"] = array_of(e.joints, [](const JointErrors& joint) { return json_of(joint); });

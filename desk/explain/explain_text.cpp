@@ -141,6 +141,7 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
                       e.holdout_is_apart ? "other recordings"
                       : e.at_rest        ? "stretches of readings"
                                          : "blocks of time");
+  if (e.filter) text += words_of(*e.filter) + "\n";
   const bool several = names.logs.size() + names.holdout.size() > 1;
   for (const DataFault& fault : e.data_faults) {
     text += "data fault: " + (several ? fault.file + ": " : "") + fault.words + "\n";

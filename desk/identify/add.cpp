@@ -297,7 +297,9 @@ class Adder {
     for (const Estimate& estimate : estimates) {
       for (std::size_t p = 0; p < parameters.size(); ++p) {
         if (estimate.value.name != parameters[p].name) continue;
-        if (p == width_of(setup_.added[i].effect->kind()) && !setup_.added[i].given[p]) continue;
+        const EffectCandidate& of = *setup_.added[i].effect;
+        // The width of a joint is told of all that follow it; of a motor it is the effect's own.
+        if (p == width_of(of.kind()) && !of.of_motor() && !setup_.added[i].given[p]) continue;
         const bool fitted = !setup_.added[i].given[p] && !is_indistinct(effect, p);
         FittedParameter parameter{effect, p, value_of(effect, p), std::nullopt, {}, fitted};
         if (fitted) {

@@ -346,6 +346,7 @@ ordered_json to_json(const AddResult& result, const AddRequest& request, const A
 std::string text_of(const AddResult& result, const AddRequest& request, const AddNames& names) {
   std::string text = fmt::format("{} on {} of {}, fitted to {}\n", names_of_added(result),
                                  place_asked(request), names.robot_file, list_of(names.logs));
+  text += words_of(result.before.recordings[0].plan) + "\n";
   const TextTable parameters({{"", -38}, {"", 0}}, "  ");
   const auto describe = [&](std::size_t effect, bool is_new) {
     for (const ParameterLine& line : lines_of(result, effect)) {

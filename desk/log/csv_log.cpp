@@ -342,6 +342,11 @@ class CsvReader {
     if (cut_off_) {
       result.remarks.push_back("The file's last line is cut off and was left out.");
     }
+    if (!ascending_) {
+      result.remarks.push_back("read as far as line " + std::to_string(last_line_) + ": in " +
+                               std::to_string(out_of_time_) +
+                               " lines the time is not later than before");
+    }
     const auto blank = std::count_if(blank_lines_.begin(), blank_lines_.end(),
                                      [this](std::size_t line) { return line < last_line_; });
     if (blank > 0) {

@@ -337,9 +337,13 @@ void make_even(Log& log) {
   bridge(log, recorded, holes);
 }
 
+double derived_velocity_cutoff_hz(double sample_rate_hz) {
+  return std::min(100.0, sample_rate_hz / 5);
+}
+
 void derive_velocities(Log& log) {
   const double rate_hz = log.sample_rate_hz();
-  const double cutoff_hz = std::min(100.0, rate_hz / 5);
+  const double cutoff_hz = derived_velocity_cutoff_hz(rate_hz);
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     if (!log.dq_derived[static_cast<std::size_t>(joint)]) continue;
     const VectorXd smooth = zero_phase_low_pass(log.q.col(joint), cutoff_hz, rate_hz);

@@ -30,8 +30,12 @@ void make_even(Log& log);
 inline constexpr double kShortestGapS = 0.01;
 inline constexpr double kLongestGapS = 10;
 
-// Fills dq of the joints marked dq_derived: q low-passed without phase at 100 Hz (a fifth of the
-// sampling rate where that is less), then central differences. Needs period_s.
+// The low-pass of the positions that velocities are derived from: 100 Hz, a fifth of the sampling
+// rate where that is less.
+double derived_velocity_cutoff_hz(double sample_rate_hz);
+
+// Fills dq of the joints marked dq_derived: q low-passed without phase, then central differences.
+// Needs period_s.
 void derive_velocities(Log& log);
 
 }  // namespace offnominal::desk

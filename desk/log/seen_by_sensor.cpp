@@ -18,6 +18,8 @@ bool is_hidden(const RobotDescription& robot, const RobotEffect& effect, const L
   if (!effect.of_motor) {
     return log.of_sensor(effect.joint) && info_of(effect.kind)->traits.is_before_sensor;
   }
+  // What gives way moves the links, wherever torques are measured.
+  if (info_of(effect.kind)->action == EffectAction::kDisplacement) return false;
   const Eigen::MatrixXd matrix = motor_per_joint(*robot.transmission);
   for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
     const bool moves = matrix(effect.joint, static_cast<Eigen::Index>(joint)) != 0;

@@ -92,7 +92,10 @@ ColumnFacts facts_of(const VectorXd& column) {
     const auto end = std::remove_if(x.begin(), x.end(), [](double v) { return !std::isfinite(v); });
     x.conservativeResize(end - x.begin());
   }
-  if (x.size() == 0) return facts;
+  if (x.size() == 0) {
+    facts.low = facts.high = std::numeric_limits<double>::quiet_NaN();
+    return facts;
+  }
   facts.low = x.minCoeff();
   facts.high = x.maxCoeff();
   facts.is_constant = facts.low == facts.high;

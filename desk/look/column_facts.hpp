@@ -8,7 +8,7 @@ namespace offnominal::desk {
 struct ColumnFacts {
   Eigen::Index values = 0;
   Eigen::Index not_finite = 0;  // of them; the rest of this is about the others
-  double low = 0;
+  double low = 0;               // NaN, as `high`: no value is finite
   double high = 0;
   // Every change is a multiple of it, as an encoder's are; 0: none, as of floats, or of a column
   // that hardly changes.
@@ -22,6 +22,8 @@ struct ColumnFacts {
   // Of the samples: at the highest or lowest value for kHeldSamples or more.
   double held_at_high = 0;
   double held_at_low = 0;
+
+  [[nodiscard]] bool has_numbers() const { return values > not_finite; }
 };
 
 inline constexpr Eigen::Index kRestSamples = 50;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -21,6 +22,10 @@ std::string percent(double share) { return share > 0 ? fmt::format("{:.3g} %", 1
 std::string step_words(const ColumnFacts& facts) {
   if (facts.step == 0) return "";
   return fmt::format("{:.6g}{}", facts.step, facts.is_printed ? " (digits)" : "");
+}
+
+std::string number_words(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "none";
 }
 
 std::string role_words(const LookedColumn& column) { return name_of(column.role); }
@@ -87,10 +92,10 @@ std::string text_of(const Look& look) {
   std::string text = look.file + "\n" + sampling_words(look) + "\n\n" + table.heading();
   for (const LookedColumn& column : look.columns) {
     const ColumnFacts& facts = column.facts;
-    text += table.row(
-        column.name, role_words(column), column.unit, fmt::format("{:.6g}", facts.low),
-        fmt::format("{:.6g}", facts.high), facts.is_constant ? "never changes" : step_words(facts),
-        percent(rests(column)), percent(facts.held_at_high), percent(facts.held_at_low));
+    text +=
+        table.row(column.name, role_words(column), column.unit, number_words(facts.low),
+                  number_words(facts.high), facts.is_constant ? "never changes" : step_words(facts),
+                  percent(rests(column)), percent(facts.held_at_high), percent(facts.held_at_low));
   }
   for (const LookedColumn& column : look.columns) {
     if (column.facts.not_finite == 0) continue;
@@ -174,7 +179,11 @@ report::Page page_of(const Look& look, const std::string& command) {
                    {"rests", "%"},  {"at its highest", "%"}, {"at its lowest", "%"}};
   for (const LookedColumn& column : look.columns) {
     const ColumnFacts& facts = column.facts;
-    table.rows.push_back({column.name, role_words(column), column.unit, facts.low, facts.high,
+    const auto number = [&](double value) {
+      return facts.has_numbers() ? report::Cell(value) : report::Cell();
+    };
+    table.rows.push_back({column.name, role_words(column), column.unit, number(facts.low),
+                          number(facts.high),
                           facts.step > 0 ? report::Cell(facts.step) : report::Cell(),
                           100 * rests(column), 100 * facts.held_at_high, 100 * facts.held_at_low});
   }

@@ -43,9 +43,9 @@ Look look_of(const NamedColumns& columns) {
     const auto said = columns.units.find(name);
     column.file_says = said != columns.units.end();
     const NameGuess guess = guess_of(name, column.file_says ? said->second : "");
-    column.role = guess.role;
     column.unit = column.file_says ? said->second : guess.unit;
     column.facts = facts_of(found->second);
+    if (column.facts.has_numbers()) column.role = guess.role;
     look.columns.push_back(std::move(column));
     look.values[name] = found->second;
   }
@@ -67,6 +67,7 @@ const LookedColumn* column_in(const Look& look, const std::string& name) {
 std::vector<NamedColumn> columns_of(const Look& look) {
   std::vector<NamedColumn> columns;
   for (const LookedColumn& column : look.columns) {
+    if (!column.facts.has_numbers()) continue;  // read, it would cost every row
     columns.push_back({column.name, column.file_says ? column.unit : "", column.facts.is_constant});
   }
   return columns;

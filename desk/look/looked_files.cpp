@@ -68,7 +68,7 @@ FileTime looked_time(NamedColumns& columns, Channel& channel, double period_s,
   for (const char* unit : {"ms", "us", "ns"}) {
     const double seconds = first * unit_factor(unit);
     // From 2001 to 2065, as time_of() tells it.
-    if (is_date || !channel.unit.empty() || seconds < 1e9 || seconds >= 3e9) continue;
+    if (is_date || !channel.unit.empty() || !(seconds >= 1e9 && seconds < 3e9)) continue;
     channel.unit = unit;
     notes.push_back(fmt::format("{} counts {} since 1970, by its size", channel.source, unit));
   }

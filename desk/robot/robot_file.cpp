@@ -17,6 +17,7 @@
 #include "robot/chain_of.hpp"
 #include "robot/channels.hpp"
 #include "robot/check_mass_matrix.hpp"
+#include "robot/effect_text.hpp"
 #include "robot/read_drives.hpp"
 #include "robot/read_effect.hpp"
 #include "robot/read_joint.hpp"
@@ -192,8 +193,8 @@ void require_carried(const RobotDescription& robot, const std::string& file,
     throw InputError(
         {.file = file,
          .place = "effect",
-         .found = fmt::format("{} on joint {}, which {} cannot carry", info_of(effect.kind)->name,
-                              effect.joint + 1, who),
+         .found = fmt::format("{} on {}, which {} cannot carry", info_of(effect.kind)->name,
+                              place_of(effect), who),
          .allowed = "effects of rigid transmissions",
          .mend = "remove it from this file, and keep it in the one that compare, add and explain "
                  "are given"});

@@ -14,9 +14,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 Regressor of_displacement(const Workspace& at, Index joint, VectorXd x, double scale = 1) {
-  const MatrixXd change =
-      torque_of_displacement(at.rigid, at.motion, at.load_torque, joint,
-                             displacement_of(std::move(x), at.period_s()), scale);
+  const MatrixXd change = torque_of_displacement(
+      at.rigid, at.motion, at.load_torque, VectorXd::Unit(at.joint_count(), joint),
+      displacement_of(std::move(x), at.period_s()), scale);
   Regressor regressor;
   for (Index j = 0; j < at.joint_count(); ++j) regressor.push_back({j, change.col(j)});
   return regressor;

@@ -117,6 +117,64 @@ TEST(TransmissionTorque, OfPlayShowsAtReversalsOfTheLoad) {
   EXPECT_LT(between, 0.5 * at_reversals);
 }
 
+RobotEffect spring_of_motor(std::uint8_t motor, double stiffness) {
+  RobotEffect spring = test::effect_of(EffectKind::kJointElasticity, motor, {stiffness}, false);
+  spring.of_motor = true;
+  return spring;
+}
+
+TEST(TransmissionTorque, OfAnElasticMotorIsThatOfTheJointBehindItsGear) {
+  constexpr double kRatio = -25;
+  constexpr double kStiffness = 2000;  // at the joint
+  RobotDescription at_motor = slide();
+  at_motor.transmission.emplace().ratio = {kRatio};
+  at_motor.effects.push_back(spring_of_motor(0, kStiffness / (kRatio * kRatio)));
+  const Measurement measured = measure(sine(), slide());
+  const Eigen::MatrixXd at_joint =
+      compare(with(EffectKind::kJointElasticity, kStiffness), measured).model;
+  EXPECT_LT((compare(at_motor, measured).model - at_joint).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_GT((compare(slide(), measured).model - at_joint).cwiseAbs().maxCoeff(), 5);
+}
+
+// Two slides across each other, so that each mass asks for a force of its own, and motors that they
+// share: A = [30 0; 20 20], A^-1 = [1/30 0; -1/30 1/20]. Motor 1 gives tau1 / 30 - tau2 / 30, and
+// where its spring gives way by x the slides are behind by x / 30 and -x / 30.
+TEST(TransmissionTorque, OfAnElasticMotorThatJointsShareIsThatOfAllOfThem) {
+  constexpr double kSecondKg = 2.5;
+  constexpr double kStiffness = 3;  // N m/rad
+  RobotDescription robot = slide();
+  robot.joints.push_back(robot.joints[0]);
+  robot.joints[1].name = "y";
+  robot.joints[1].joint.axis = {0, 1, 0};
+  robot.joints[1].joint.mass_kg = kSecondKg;
+  robot.transmission.emplace().matrix = {{30, 0}, {20, 20}};
+  Log log = sine();
+  const VectorXd q = log.q;
+  const VectorXd dq = log.dq;
+  const VectorXd tau = log.tau;
+  log.q.resize(q.size(), 2);
+  log.dq.resize(q.size(), 2);
+  log.tau.resize(q.size(), 2);
+  log.q << q, 0.5 * q;
+  log.dq << dq, 0.5 * dq;
+  log.tau << tau, -2 * tau;
+  log.dq_derived = {false, false};
+  const Measurement measured = measure(log, robot);
+  const Comparison stiff = compare(robot, measured);
+  robot.effects.push_back(spring_of_motor(0, kStiffness));
+  const Comparison soft = compare(robot, measured);
+  double largest = 0;
+  for (Index i = 0; i < stiff.t_s.size(); ++i) {
+    const double gives_way_by =
+        (1 + 2) * kTorqueN / 30 / kStiffness * std::sin(kWave * stiff.t_s[i]);
+    const double less = kWave * kWave * gives_way_by / 30;
+    EXPECT_NEAR(soft.model(i, 0) - stiff.model(i, 0), (kMassKg + kSecondKg) * less, 0.15);
+    EXPECT_NEAR(soft.model(i, 1) - stiff.model(i, 1), -kSecondKg * less, 0.06);
+    largest = std::max(largest, std::abs(less));
+  }
+  EXPECT_GT(largest, 2);
+}
+
 TEST(ModelTorque, TakesTransmissionsForRigid) {
   const Measurement measured = measure(sine(), slide());
   const auto of = [&](const RobotDescription& robot) {

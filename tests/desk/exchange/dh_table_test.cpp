@@ -138,6 +138,37 @@ TEST(DhTable, IsReadAlikeFromCsvAndToml) {
   EXPECT_DOUBLE_EQ(csv.rows[0].alpha_rad, std::numbers::pi / 2);
 }
 
+// By whatever name it comes: only .toml says that it is none.
+TEST(DhTable, IsCsvUnlessItsNameSaysToml) {
+  const std::string csv = "a_m,alpha_deg,d_m,theta_deg\n0.5,90,0,0\n";
+  const std::string toml = "[[joint]]\na_m = 0.5\nalpha_deg = 90\nd_m = 0\ntheta_deg = 0\n";
+  for (const auto& [name, text] : {std::pair("ARM.CSV", csv), std::pair("arm.txt", csv),
+                                   std::pair("arm", csv), std::pair("ARM.TOML", toml)}) {
+    EXPECT_EQ(read(name, text, DhConvention::kModified).rows.at(0).a_m, 0.5) << name;
+  }
+}
+
+TEST(DhTable, SaysWhereANumberIsNone) {
+  const auto refusal = [](const std::string& name, const std::string& text) {
+    return message_of<InputError>(
+        [&] { static_cast<void>(read(name, text, DhConvention::kStandard)); });
+  };
+  const std::string header = "a_m,alpha_deg,d_m,theta_deg\n0.1,90,0,0\n";
+  EXPECT_THAT(refusal("a.csv", header + "0.1,,0,0\n"),
+              HasSubstr("line 3, column alpha_deg: found no finite number; allowed: a number of at "
+                        "most 1e+05; to mend: write 0 where there is nothing"));
+  EXPECT_THAT(refusal("a.csv", header + "inf,0,0,0\n"), HasSubstr("line 3, column a_m: found no"));
+  EXPECT_THAT(
+      refusal("a.csv", header + "0,1e300,0,0\n"),
+      HasSubstr("line 3, column alpha_deg: found 1e+300; allowed: a number of at most 1e+05; "
+                "to mend: check the unit"));
+  EXPECT_THAT(refusal("a.toml", "[[joint]]\na_m = 0\nalpha_deg = 1e300\nd_m = 0\ntheta_deg = 0\n"),
+              HasSubstr("line 3, joint[1].alpha_deg: found 1e+300"));
+  EXPECT_THAT(refusal("a.csv", ""), HasSubstr("found an empty file; allowed: a DH table"));
+  EXPECT_THAT(refusal("a.toml", ""), HasSubstr("found 0 joints; allowed: 1 to 12, a row each; to "
+                                               "mend: write a row for each joint"));
+}
+
 TEST(DhTable, IsRefusedWhereItCanBeReadInTwoWays) {
   const auto refusal = [](const std::string& name, const std::string& text,
                           std::optional<DhConvention> convention = std::nullopt) {

@@ -121,6 +121,17 @@ TEST(UrdfExport, TiltsTheBaseWhereGravityPullsElsewhere) {
   }
 }
 
+TEST(UrdfExport, LeavesTheNameThatItNeedsItself) {
+  RobotDescription robot = desk::read_robot_file(kRobots / "two_link.toml");
+  robot.gravity_m_s2 = {0, -9.81, 0};
+  robot.joints[1].name = "world_to_base";
+  const auto exported = export_urdf(robot, "robot.toml");
+  const ImportedRobot again = import_urdf(exported.text, "again.urdf", {"base", std::nullopt});
+  EXPECT_EQ(again.robot.joints.at(1).name, "world_to_base_2");
+  EXPECT_THAT(exported.changed, Contains(HasSubstr("the name of joint `world_to_base`: "
+                                                   "`world_to_base_2`")));
+}
+
 TEST(UrdfExport, NamesWhatItDoesNotCarryInTheResultAndInTheFile) {
   RobotDescription robot = sample();
   robot.gravity_m_s2 = {0, 0, -1.62};

@@ -144,6 +144,13 @@ void add_of_motor(RobotDescription& robot, EffectKind kind, int motor,
 
 // By hand: an inertia or damping of the motor is ratio^2 times as large at the joint, its dry
 // friction |ratio| times.
+// MuJoCo has a body of that name already.
+TEST(Mjcf, OfAJointThatIsCalledWorldIsLoaded) {
+  RobotDescription robot = desk::read_robot_file(kRobots / "two_link.toml");
+  robot.joints[0].name = "world";
+  expect_same_torques(robot);
+}
+
 TEST(Mjcf, CarriesWhatIsAtAMotorThatMovesOneJointAlone) {
   RobotDescription robot =
       desk::exchange::import_urdf(sample_arm().text(), "arm.urdf", sample_arm().chain()).robot;

@@ -73,6 +73,8 @@ TEST(NewVerb, WritesTheGeometryOfATableAndBlanks) {
               HasSubstr("no word on whether the table is a standard or a modified one"));
   EXPECT_THAT(with({"--convention", "standard", "--joints", "6"}).err,
               testing::StartsWith("offnominal new: --joints: found 6; allowed: 2, the rows of "));
+  EXPECT_THAT(with({"--convention", "standard", "--name", ""}).err,
+              testing::StartsWith("offnominal new: --name: found nothing; allowed: a name"));
   EXPECT_FALSE(std::filesystem::exists(out));
   const CommandResult done = with({"--convention", "standard", "--joints", "2"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
@@ -80,6 +82,17 @@ TEST(NewVerb, WritesTheGeometryOfATableAndBlanks) {
   const CommandResult used = run({"export-urdf", out, "-o", (folder / "arm.urdf").string()});
   EXPECT_EQ(used.exit_code, 2);
   EXPECT_THAT(used.err, HasSubstr("joint[1].link.mass_kg: found nothing"));
+}
+
+TEST(NewVerb, ReadsATableFromStandardInput) {
+  const TemporaryFolder folder;
+  put(folder / "table.csv", "a_m,alpha_deg,d_m,theta_deg\n0,90,0.4,0\n");
+  const std::string out = (folder / "arm.toml").string();
+  const CommandResult result =
+      run_command(command_file(), {"new", "--dh", "-", "--convention", "standard", "-o", out}, {},
+                  (folder / "table.csv").string());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(content_of(out), HasSubstr("standard DH table standard input"));
 }
 
 TEST(NewVerb, SaysWhichNamesATableWithoutUnitsShouldHave) {

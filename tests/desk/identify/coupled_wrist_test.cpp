@@ -214,8 +214,86 @@ TEST(CoupledWrist, CarriesRotorsAsMujocoDoesByConstraints) {
   EXPECT_GT(worst_without, 0.1);
 }
 
+// Rotors that turn beside the arm, each on a spring that its gear turns the other end of.
+constexpr double kSpring[]{0.5, 0.4};  // N m/rad
+std::string with_springs() {
+  const Matrix2d a = wrist_matrix();
+  std::string bodies;
+  std::string tendons;
+  std::string motors;
+  for (int motor = 0; motor < 2; ++motor) {
+    const std::string name = "r" + std::to_string(motor + 1);
+    const std::string inertia = desk::shortest(kRotor[motor]);
+    bodies += "<body pos=\"1 0 0\"><joint name=\"" + name +
+              "\" axis=\"0 0 1\"/><inertial mass=\"1e-3\" pos=\"0 0 0\" diaginertia=\"" + inertia +
+              " " + inertia + " " + inertia + "\"/></body>";
+    tendons += "<fixed stiffness=\"" + desk::shortest(kSpring[motor]) +
+               "\" damping=\"0.002\" springlength=\"0\"><joint joint=\"pitch\" coef=\"" +
+               desk::shortest(a(motor, 0)) + "\"/><joint joint=\"roll\" coef=\"" +
+               desk::shortest(a(motor, 1)) + "\"/><joint joint=\"" + name +
+               "\" coef=\"-1\"/></fixed>";
+    motors += "<motor joint=\"" + name + "\"/>";
+  }
+  return mjcf(bodies, "<tendon>" + tendons + "</tendon><actuator>" + motors + "</actuator>");
+}
+
+// Recorded at the rotors, as joints: what drives of a coupled wrist know.
+Log log_with_springs() {
+  MujocoArm arm(with_springs());
+  constexpr int kEvery = 4;
+  constexpr int kSteps = 16000;
+  constexpr int kSettled = 4000;
+  constexpr Index kRows = (kSteps - kSettled) / kEvery;
+  Log log;
+  log.file = "springs";
+  log.t_s.resize(kRows);
+  log.period_s = kEvery * 0.0005;
+  for (Eigen::MatrixXd* values : {&log.q, &log.dq, &log.tau}) values->resize(kRows, 2);
+  log.dq_derived = {false, false};
+  const Matrix2d joint_per_motor = wrist_matrix().inverse();
+  for (int step = 0; step < kSteps; ++step) {
+    const double t = arm->time;
+    const Vector2d wanted(0.6 * std::sin(4.1 * t), 0.5 * std::sin(6.3 * t));
+    const Vector2d wanted_velocity(2.46 * std::cos(4.1 * t), 3.15 * std::cos(6.3 * t));
+    const Vector2d motors = Vector2d::Map(arm->qpos + 2);
+    const Vector2d velocity = Vector2d::Map(arm->qvel + 2);
+    const Vector2d given = 0.3 * (wrist_matrix() * wanted - motors) +
+                           0.02 * (wrist_matrix() * wanted_velocity - velocity);
+    Vector2d::Map(arm->ctrl) = given;
+    if (step >= kSettled && step % kEvery == 0) {
+      const Index row = (step - kSettled) / kEvery;
+      log.t_s[row] = t;
+      log.q.row(row) = joint_per_motor * motors;
+      log.dq.row(row) = joint_per_motor * velocity;
+      log.tau.row(row) = wrist_matrix().transpose() * given;
+    }
+    mj_step(arm.model(), arm.data());
+  }
+  return log;
+}
+
+TEST(CoupledWrist, GivesWayAtItsMotorsAsMujocosSpringsDo) {
+  std::string springs;
+  for (int motor : {1, 2}) {
+    springs +=
+        effect("joint_elasticity", motor, "stiffness = " + desk::shortest(kSpring[motor - 1]));
+  }
+  const RobotDescription elastic = wrist(rotors() + springs);
+  ASSERT_EQ(elastic.effects.size(), 4U);
+  ASSERT_TRUE(elastic.effects[2].of_motor);
+  const auto measured = desk::measure(log_with_springs(), elastic);
+  const desk::Comparison with = desk::compare(elastic, measured);
+  const desk::Comparison without = desk::compare(wrist(rotors()), measured);
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    EXPECT_LT(with.joints[joint].relative_error_percent,
+              0.2 * without.joints[joint].relative_error_percent)
+        << joint;
+    EXPECT_GT(without.joints[joint].relative_error_percent, 0.5) << joint;
+  }
+}
+
 // What a rig records that knows motors alone: angles in degrees, currents.
-std::string recording() {
+std::string recording(double coulomb = 0, double smoothing = 1) {
   MujocoArm arm(with_tendons());
   std::string csv = "t,m1,m2,i1,i2,s1,s2\n";
   constexpr double kDeg = 180 / 3.14159265358979323846;
@@ -228,11 +306,13 @@ std::string recording() {
     Vector2d::Map(arm->ctrl) = wrist_matrix().transpose().inverse() * tau;
     if (step % 4 == 0) {
       mj_forward(arm.model(), arm.data());
+      const Vector2d turning = wrist_matrix() * Vector2d::Map(arm->qvel);
+      const double dry = coulomb * std::tanh(turning[0] / smoothing);
       const Vector2d sensed =
           tau + Vector2d::Map(arm->qfrc_passive);  // behind the friction of the motors
       for (const double value :
            {t, (arm->ten_length[0] + 0.4) * kDeg, (arm->ten_length[1] - 0.2) * kDeg,
-            arm->ctrl[0] / 0.05, arm->ctrl[1] / 0.08, sensed[0], sensed[1]}) {
+            (arm->ctrl[0] + dry) / 0.05, arm->ctrl[1] / 0.08, sensed[0], sensed[1]}) {
         csv += desk::shortest(value) + ",";
       }
       csv.back() = '\n';
@@ -293,6 +373,29 @@ TEST_F(WristRecording, FrictionOfTheOtherMotorIsFittedAgainWithIt) {
   EXPECT_NEAR(result.robot.effects[1].parameters[0], kViscous[0], 0.03 * kViscous[0]);
   EXPECT_THAT(result.notes,
               ::testing::Contains(::testing::HasSubstr("viscous_friction on motor 2")));
+}
+
+// How wide its change of sign is, is the motor's own number, of its own speed.
+TEST(DryFrictionOfAMotor, IsFoundWithItsSmoothingOnItsShaft) {
+  constexpr double kLevel = 0.02;
+  constexpr double kSmoothing = 0.6;
+  const RobotDescription robot = wrist(frictions());
+  const TemporaryFile file("wrist.csv", recording(kLevel, kSmoothing));
+  desk::AddRequest request;
+  request.effects = {EffectKind::kCoulombFriction};
+  request.of_motor = true;
+  const desk::AddResult result =
+      desk::add(robot, request, {desk::read_log(file.path(), robot)}, {});
+  const std::size_t added = result.added.at(0);
+  const desk::RobotEffect& found = result.robot.effects[added];
+  EXPECT_TRUE(found.of_motor);
+  EXPECT_NEAR(found.parameters[0], kLevel, 0.03 * kLevel);
+  EXPECT_NEAR(found.parameters[1], kSmoothing, 0.2 * kSmoothing);
+  const auto told =
+      std::find_if(result.fit.parameters.begin(), result.fit.parameters.end(),
+                   [&](const auto& one) { return one.effect == added && one.parameter == 1; });
+  ASSERT_NE(told, result.fit.parameters.end()) << "the smoothing is not told";
+  EXPECT_TRUE(told->fitted);
 }
 
 TEST_F(WristRecording, DriveLessSensorIsTheGear) {

@@ -124,6 +124,42 @@ TEST_F(LookTest, WhatCannotBeToldIsAskedFor) {
   EXPECT_THAT(currents.missing, Contains(HasSubstr("the torque constants of the motors")));
 }
 
+// Read, a column of nothing would cost every row.
+TEST_F(LookTest, AColumnWithoutANumberIsTakenForNothing) {
+  std::string text = "t,q1,dq1,tau1\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    text += std::to_string(t) + "," + std::to_string(std::sin(t)) + ",," +
+            std::to_string(std::cos(t)) + "\n";
+  }
+  put(folder_ / "r.csv", text);
+  const Look look = look_at(folder_ / "r.csv", nullptr, std::nullopt);
+  EXPECT_TRUE(look.is_complete());
+  EXPECT_FALSE(look.channels.velocity.at(0).has_value());
+  const std::string shown = text_of(look);
+  EXPECT_THAT(shown, HasSubstr("dq1: 1000 of 1000 values are not finite\n"));
+  EXPECT_THAT(shown, testing::ContainsRegex("dq1 +none +none"));
+  const auto json = to_json(look);
+  EXPECT_EQ(json["columns"][2]["taken_for"], "");
+  EXPECT_TRUE(std::isnan(json["columns"][2]["low"].get<double>()));
+}
+
+TEST_F(LookTest, ATimeThatIsNoneIsNoEpochAndSaysHowFarWasRead) {
+  std::string none = "t,q1,tau1\n";
+  std::string back = none;
+  for (int i = 0; i < kSamples; ++i) {
+    none += "nan,1,2\n";
+    back += std::to_string(-i) + ",1,2\n";
+  }
+  put(folder_ / "none.csv", none);
+  put(folder_ / "back.csv", back);
+  const std::string of_none = text_of(look_at(folder_ / "none.csv", nullptr, std::nullopt));
+  EXPECT_THAT(of_none, testing::Not(HasSubstr("since 1970")));
+  EXPECT_THAT(text_of(look_at(folder_ / "back.csv", nullptr, std::nullopt)),
+              HasSubstr("note: read as far as line 13: in 11 lines the time is not later than "
+                        "before\n"));
+}
+
 TEST_F(LookTest, ThePageHasEveryChannelAndTheAnswerInJsonEveryColumn) {
   const Look seen = look(recording(kNames, {}));
   const auto page = to_json(page_of(seen, "offnominal look a.csv"));
