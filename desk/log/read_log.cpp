@@ -317,6 +317,27 @@ class Assembler {
   Log log_;
 };
 
+// The common header's time by its whole name.
+void shorten_time(NamedColumns& columns) {
+  constexpr const char* kWhole = "time";
+  const bool is_whole =
+      !columns.columns.contains("t") && columns.columns.contains(kWhole) &&
+      std::any_of(columns.names.begin(), columns.names.end(),
+                  [](const std::string& name) { return joint_of(name, "q") > 0; });
+  if (!is_whole) return;
+  const auto rename = [](auto& named) {
+    auto one = named.extract(kWhole);
+    if (one.empty()) return;
+    one.key() = "t";
+    named.insert(std::move(one));
+  };
+  rename(columns.columns);
+  rename(columns.units);
+  rename(columns.origins);
+  std::replace(columns.names.begin(), columns.names.end(), std::string(kWhole), std::string("t"));
+  columns.remarks.emplace_back("column time is the time t");
+}
+
 TimedColumns read_file(const std::filesystem::path& path, const std::optional<ChannelMap>& channels,
                        double period_s, std::size_t file, std::size_t files) {
   const NeedOf need_of = needs_of(channels, file, files);
@@ -324,6 +345,7 @@ TimedColumns read_file(const std::filesystem::path& path, const std::optional<Ch
   TimedColumns read;
   read.columns = log_format_of(recording).read(recording, channels ? &*channels : nullptr, need_of);
   if (channels && channels->at_rest) return read;
+  if (!channels && period_s == 0) shorten_time(read.columns);
   // Without any of the names this would be the least of what is wrong.
   if (!channels && !read.columns.columns.contains("t") && period_s == 0 && files == 1) {
     const auto is_common = [](const std::string& name) { return is_common_name(name); };

@@ -211,6 +211,7 @@ std::vector<Habit> habits() {
       {"trailing commas below a header without", kHeader + trailing},
       {"trailing commas without a header", trailing, kNumbered},
       {"capitals", "T,Q1,DQ1,TAU1\n" + plain, {}, "in capitals"},
+      {"the time by its whole name", "time,q1,dq1,tau1\n" + plain, {}, "column time is the time t"},
       {"everything in quotes", "\"t\",\"q1\",\"dq1\",\"tau1\"\n" + quoted},
       {"separators in quoted names", "\"t, s\",\"q, rad\",\"dq\",\"tau\"\n" + plain,
        "time = 't, s'\nposition = 'q, rad'\nvelocity = 'dq'\ntorque = 'tau'"},
