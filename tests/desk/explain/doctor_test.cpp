@@ -1,15 +1,18 @@
 #include "explain/doctor.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <stdexcept>
 #include <string>
 
 #include "../compare/recorded_arm.hpp"
 #include "hidden_case.hpp"
+#include "serial_arm.hpp"
 #include "support/repetitions.hpp"
 
 namespace offnominal::desk {
@@ -79,6 +82,52 @@ TEST(Doctor, NamesTheJointWhoseTorqueHasTheWrongSign) {
   EXPECT_EQ(faults[0].kind, DataFaultKind::kTorqueSign);
   EXPECT_EQ(faults[0].joint, 1);
   EXPECT_NEAR(faults[0].size, -1, 0.05);
+}
+
+// Damping that somebody guessed for a simulator is more than all the rest of the torque: the signs
+// are still told, and only those that are wrong.
+TEST(Doctor, NamesTorquesOfTheWrongSignBesideAGuessedFriction) {
+  test::ArmRecording settings;
+  settings.torque_noise = 0.05;
+  const Log right = test::record_arm(settings);
+  RobotDescription robot = test::arm_description();
+  for (int joint = 0; joint < 2; ++joint) {
+    const double usual = right.dq.col(joint).norm() / right.tau.col(joint).norm();
+    robot.effects.push_back(
+        test::effect_of(EffectKind::kViscousFriction, joint, {2 / usual}, false));
+  }
+  EXPECT_EQ(found_in(examine(right, robot)), "");
+  Log wrong = right;
+  wrong.tau *= -1;
+  const auto faults = examine(wrong, robot);
+  ASSERT_EQ(faults.size(), 2U) << found_in(faults);
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    EXPECT_EQ(faults[i].kind, DataFaultKind::kTorqueSign);
+    EXPECT_EQ(faults[i].joint, static_cast<Index>(i));
+  }
+}
+
+// A drive that counts torque the other way does so on every joint, also on one that does not tell.
+TEST(Doctor, TurnsAllTorquesWhereEveryJointThatTellsIsTurned) {
+  const RobotDescription robot = test::serial_arm(3);
+  Log log = test::record(robot, {.duration_s = 20});
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> noise(0, 0.02);
+  for (double& torque : log.tau.col(0)) torque = noise(generator);
+  log.tau *= -1;
+  const auto signs_in = [&](Log one) {
+    auto faults = examine(one, robot);
+    std::erase_if(faults,
+                  [](const DataFault& fault) { return fault.kind != DataFaultKind::kTorqueSign; });
+    return faults;
+  };
+  const auto faults = signs_in(log);
+  ASSERT_EQ(faults.size(), 2U);
+  EXPECT_THAT(faults[0].mend, testing::HasSubstr("all are taken for turned"));
+  log.tau.col(1) *= -1;
+  const auto one = signs_in(log);
+  ASSERT_EQ(one.size(), 1U);
+  EXPECT_THAT(one[0].mend, testing::Not(testing::HasSubstr("all are taken for turned")));
 }
 
 TEST(Doctor, KnowsTheJointInDegreesAndStillSeesAnotherFault) {
