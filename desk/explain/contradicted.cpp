@@ -14,10 +14,10 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kShifted = 0.3;   // of the file's number
+constexpr double kShifted = 0.2;   // of the smaller of both numbers
 constexpr double kMatters = 0.02;  // of the joint's rms torque
 // What is left beside a number and is no noise is of something else, that bends the number as well.
-constexpr double kOfWhatIsLeft = 3;  // of its energy
+constexpr double kOfWhatIsLeft = 2;  // of its energy
 
 // What one fit says of the file's numbers.
 std::vector<Shift> far_off(const Data& data, const RobotDescription& robot, const ModelFit& fit,
@@ -35,8 +35,8 @@ std::vector<Shift> far_off(const Data& data, const RobotDescription& robot, cons
     const double by = fit.nuisance[column];
     const double rms =
         std::abs(by) * data.layout.rms(data.nuisance.columns.col(column))[term.joint];
-    if (!(std::abs(by) > kShifted * std::abs(file)) || !(rms > kMatters * torque[term.joint]))
-      continue;
+    const double smaller = std::min(std::abs(file), std::abs(file + by));
+    if (!(std::abs(by) > kShifted * smaller) || !(rms > kMatters * torque[term.joint])) continue;
     shifts.push_back({term.joint, term.effect, term.parameter, term.name,
                       file != 0 ? by / file : 1.0, file, file + by,
                       offnominal::unit_of(info_of(effect.kind)->parameters[term.parameter].quantity,
@@ -66,8 +66,12 @@ VectorXd held_out_as_the_file(const SearchSetting& setting, const RobotDescripti
 
 std::vector<Shift> contradicted_numbers(const SearchSetting& setting, const RobotDescription& robot,
                                         const FoundModel& found,
-                                        const std::vector<Excitation>& excitation) {
+                                        const std::vector<Excitation>& excitation,
+                                        const std::vector<std::vector<EffectAt>>& classes) {
   std::vector<Shift> shifts = far_off(*setting.data, robot, found.fit, excitation);
+  std::erase_if(shifts, [&](const Shift& one) {
+    return holds_in_any(classes, {EffectKind::kTorqueScale, one.joint});
+  });
   if (shifts.empty()) return shifts;
   const HoldOut& hold_out = *setting.hold_out;
   const VectorXd moved = hold_out.rms(found.held_out_after).array().square();

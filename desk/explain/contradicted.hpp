@@ -10,10 +10,13 @@ namespace offnominal::desk {
 
 // Numbers of the file's effects that the recordings contradict: far from what the file says, where
 // that matters to the joint's torque, and data that no fit has seen are predicted better with the
-// number that fits than with the file's. `robot`: what the setting's data were made with.
+// number that fits than with the file's. None of a joint whose torque may have another scale, as
+// one of `classes` has it: its numbers hang on that. `robot`: what the setting's data were made
+// with.
 std::vector<Shift> contradicted_numbers(const SearchSetting& setting, const RobotDescription& robot,
                                         const FoundModel& found,
-                                        const std::vector<Excitation>& excitation);
+                                        const std::vector<Excitation>& excitation,
+                                        const std::vector<std::vector<EffectAt>>& classes);
 
 // The robot with the effects of those numbers marked fitted, so that a fit may move them.
 RobotDescription with_freed(RobotDescription robot, const std::vector<Shift>& shifts);

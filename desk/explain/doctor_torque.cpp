@@ -95,6 +95,26 @@ struct Degrees {
   std::string reason;
 };
 
+// What no dry or viscous friction of the joint has a part in: the file's is often a guess.
+VectorXd beside_friction(const VectorXd& torque, const VectorXd& dq) {
+  constexpr double kSlow = 0.1;  // of the usual speed
+  const double usual = dq.norm() / std::sqrt(static_cast<double>(dq.size()));
+  if (!(usual > 0)) return torque;
+  Eigen::MatrixXd friction(dq.size(), 2);
+  friction << dq, (dq.array() / (kSlow * usual)).tanh().matrix();
+  return torque - friction * friction.colPivHouseholderQr().solve(torque);
+}
+
+// The same pair, of all joints.
+TorquePair beside_friction(TorquePair pair) {
+  for (Index joint = 0; joint < pair.measured.cols(); ++joint) {
+    const VectorXd dq = pair.dq.col(joint);
+    pair.measured.col(joint) = beside_friction(pair.measured.col(joint), dq);
+    pair.model.col(joint) = beside_friction(pair.model.col(joint), dq);
+  }
+  return pair;
+}
+
 std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription& robot,
                                          const std::vector<Index>& revolute) {
   // As degrees it must fit, although effects are missing or a clock is off.
@@ -102,11 +122,14 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
   // And fit far better.
   constexpr double kBetter = 3;
   const auto as_is = torque_pair(log, robot);
-  if (!as_is || !(misfit(*as_is) > kBadFit)) return std::nullopt;
+  if (!as_is) return std::nullopt;
+  // A friction of the file that is a guess is no unit of the positions.
+  const double missed = std::min(misfit(*as_is), misfit(beside_friction(*as_is)));
+  if (!(missed > kBadFit)) return std::nullopt;
   std::vector<Index> choices{-1};
   if (revolute.size() > 1) choices.insert(choices.end(), revolute.begin(), revolute.end());
   std::optional<Degrees> found;
-  double best = std::min(kGoodFit, misfit(*as_is) / kBetter);
+  double best = std::min(kGoodFit, missed / kBetter);
   for (const Index joint : choices) {
     const auto scaled = torque_pair(in_radians(log, robot, joint), robot);
     if (!scaled || !(misfit(*scaled) < best)) continue;
@@ -115,7 +138,7 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
         joint,
         fmt::format("the model misses {:.0f} % of the torque with the positions as they are, "
                     "{:.0f} % with the positions times pi/180",
-                    std::min(100 * misfit(*as_is), 1e4), 100 * best)};
+                    std::min(100 * missed, 1e4), 100 * best)};
   }
   return found;
 }
@@ -239,16 +262,6 @@ namespace {
 
 // Where the model explains less than this share of the torque it has nothing to say about the sign.
 constexpr double kSilentModel = 0.3;
-
-// What no dry or viscous friction of the joint has a part in: the file's is often a guess.
-VectorXd beside_friction(const VectorXd& torque, const VectorXd& dq) {
-  constexpr double kSlow = 0.1;  // of the usual speed
-  const double usual = dq.norm() / std::sqrt(static_cast<double>(dq.size()));
-  if (!(usual > 0)) return torque;
-  Eigen::MatrixXd friction(dq.size(), 2);
-  friction << dq, (dq.array() / (kSlow * usual)).tanh().matrix();
-  return torque - friction * friction.colPivHouseholderQr().solve(torque);
-}
 
 // Measured and model torque of a joint that are of opposite sign.
 struct Opposed {

@@ -108,7 +108,8 @@ class Explainer {
     do {
       tell("looking for what else the effects could be");
       result.ambiguous = classes_of(setting_, result.excitation, found);
-      result.shifts = contradicted_numbers(setting_, robot_, found, result.excitation);
+      result.shifts =
+          contradicted_numbers(setting_, robot_, found, result.excitation, result.ambiguous);
       tell("fitting the numbers");
       improved = improved_robot(
           file_, robot_, *setting_.data,

@@ -352,14 +352,16 @@ std::vector<std::string> names_of(const std::vector<EffectAt>& effects, Eigen::I
   return names;
 }
 
-// How much of the torque the model explains before and after.
-std::string words_of_gain(const JointErrors& errors) {
+// How much of the torque the model explains before and after: as the new file has it, or where that
+// lacks what was found, as it would with it.
+std::string words_of_gain(const JointErrors& errors, bool is_in_the_file) {
   if (!(errors.rms_torque > 0)) return "";
   const double before = 100 * errors.rms_before / errors.rms_torque;
-  const double after = 100 * errors.rms_after / errors.rms_torque;
-  return fmt::format(" The error falls from {:.3g} to {:.3g} {}, {} to {} % of the torque.",
-                     errors.rms_before, errors.rms_after, errors.unit, significant(before, 2),
-                     significant(after, 2));
+  const double left = is_in_the_file ? errors.rms_improved : errors.rms_after;
+  const double after = 100 * left / errors.rms_torque;
+  return fmt::format(" The error {} from {:.3g} to {:.3g} {}, {} to {} % of the torque.",
+                     is_in_the_file ? "falls" : "would fall", errors.rms_before, left, errors.unit,
+                     significant(before, 2), significant(after, 2));
 }
 
 JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
@@ -402,10 +404,12 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
                                   fmt::join(names_of(same, errors.joint), " or "));
     }
     if (!shifts.empty()) answer.words += fmt::format(" {}.", fmt::join(shifts, ", "));
-    answer.words += words_of_gain(errors);
+    const bool all = std::all_of(answer.found.begin(), answer.found.end(),
+                                 [&](const EffectAt& one) { return is_written(e, one); });
+    answer.words += words_of_gain(errors, all && answer.ambiguous.empty());
   } else if (!shifts.empty() && !stands) {
     answer.verdict = Verdict::kParameterShift;
-    answer.words = fmt::format("{}.", fmt::join(shifts, ", ")) + words_of_gain(errors);
+    answer.words = fmt::format("{}.", fmt::join(shifts, ", ")) + words_of_gain(errors, true);
   } else if (unsure) {
     answer.verdict = Verdict::kNotExcited;
     answer.words =

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -40,9 +41,12 @@ std::string why_unwritable(const Effect<double>& effect, JointType type) {
   return {};
 }
 
-// `column`: of the nuisance; `beyond`: how far the number would be outside of its range.
-HeldNumber held_number(const Relinearised& found, Index column, double asked, double beyond,
-                       const PhysicalRange& range) {
+// `column`: of the nuisance; `beyond`: how far the number would be outside of its range, in the
+// fit's units; `start`: what the file has. What asks for little more than the end on its way there
+// from a number that is far off says that the end is right.
+HeldNumber held_number(const Relinearised& found, Index column, double start, double asked,
+                       double beyond, const PhysicalRange& range) {
+  constexpr double kOfTheWay = 0.1;
   const Data& data = *found.data;
   const NuisanceTerm& term = data.nuisance.terms[static_cast<std::size_t>(column)];
   const double rms =
@@ -51,7 +55,8 @@ HeldNumber held_number(const Relinearised& found, Index column, double asked, do
   held.joint = term.joint;
   // What is fitted beside the findings has no interval of its own.
   held.contradicted =
-      contradicts(range, std::nullopt, rms / data.layout.rms(data.torque)[term.joint]);
+      contradicts(range, std::nullopt, rms / data.layout.rms(data.torque)[term.joint]) &&
+      std::abs(asked - range.nearest(asked)) > kOfTheWay * std::abs(range.nearest(asked) - start);
   held.words = fmt::format(
       "{} was held at {:g}, as {} is possible; free it would be {:.4g}: {}", term.name,
       range.nearest(asked), range.words_at(asked), asked,
@@ -175,8 +180,9 @@ class FileFitter {
         if (is_held || moved.range.holds(moved.asked)) continue;
         const double end = moved.range.nearest(moved.asked);
         const double beyond = (moved.asked - end) / moved.factor;
-        held.push_back(held_number(last, column_of(last, moved), moved.asked, beyond, moved.range));
         const double start = file_.effects[moved.effect].parameters[moved.parameter];
+        held.push_back(
+            held_number(last, column_of(last, moved), start, moved.asked, beyond, moved.range));
         const double at_end = (end - start) / moved.factor;
         const double wide = kRounding * std::max(std::abs(at_end), std::abs(beyond));
         nuisance_.known.push_back({moved.effect, moved.parameter, at_end - wide, at_end + wide});
@@ -193,23 +199,27 @@ class FileFitter {
   std::vector<Index> widths_;
 };
 
+// "coefficient was 10, level was 0.1: Fitted to ...", behind what the file said; of what was fitted
+// before the fit is the only source.
 void move_fitted_effects(const Relinearised& found, const std::string& source,
                          RobotDescription& robot) {
+  std::map<std::size_t, std::string> former;  // per effect
   for (const Moved& moved : moved_numbers(found, robot)) {
     RobotEffect& effect = robot.effects[moved.effect];
     // Held ones are at their end but for rounding, and for what the torque scale still moved.
     double& number = effect.parameters[moved.parameter];
-    const double before = number;
+    std::string& words = former[moved.effect];
+    words += fmt::format("{}{} was {:g}", words.empty() ? "" : ", ",
+                         info_of(effect.kind)->parameters[moved.parameter].name, number);
     number = std::clamp(moved.asked, moved.range.min, moved.range.max);
-    if (effect.fitted) {
-      effect.source = source;
-    } else {
-      effect.source +=
-          fmt::format("{}{} was {:g}: {}", effect.source.empty() ? "" : "; ",
-                      info_of(effect.kind)->parameters[moved.parameter].name, before, source);
-    }
   }
-  for (const Moved& moved : moved_numbers(found, robot)) robot.effects[moved.effect].fitted = true;
+  for (const auto& [index, words] : former) {
+    RobotEffect& effect = robot.effects[index];
+    effect.source = effect.fitted ? source
+                                  : fmt::format("{}{}{}: {}", effect.source,
+                                                effect.source.empty() ? "" : "; ", words, source);
+    effect.fitted = true;
+  }
 }
 
 // Friction that all together gives energy, whatever the search saw.

@@ -340,7 +340,13 @@ void shorten_time(NamedColumns& columns) {
 
 TimedColumns read_file(const std::filesystem::path& path, const std::optional<ChannelMap>& channels,
                        double period_s, std::size_t file, std::size_t files) {
-  const NeedOf need_of = needs_of(channels, file, files);
+  NeedOf need_of = needs_of(channels, file, files);
+  if (!channels && period_s > 0) {
+    // Its step is said: what the file has of a clock is nobody's business.
+    need_of = [of_names = std::move(need_of)](const std::string& name) {
+      return name == "t" ? Need::kNone : of_names(name);
+    };
+  }
   RecordingFile recording(path);
   TimedColumns read;
   read.columns = log_format_of(recording).read(recording, channels ? &*channels : nullptr, need_of);
