@@ -107,6 +107,16 @@ TEST(Doctor, NamesTorquesOfTheWrongSignBesideAGuessedFriction) {
   }
 }
 
+// Without gravity the file's friction is all that its torque is compared by.
+TEST(Doctor, TakesNoGuessedFrictionForDegrees) {
+  for (const double times : {10.0, 30.0}) {
+    RobotDescription robot = test::serial_arm(1);
+    const Log log = test::record(robot, {.duration_s = 20});
+    for (RobotEffect& effect : robot.effects) effect.parameters[0] *= times;
+    EXPECT_EQ(found_in(examine(log, robot)), "") << times;
+  }
+}
+
 // A drive that counts torque the other way does so on every joint, also on one that does not tell.
 TEST(Doctor, TurnsAllTorquesWhereEveryJointThatTellsIsTurned) {
   const RobotDescription robot = test::serial_arm(3);

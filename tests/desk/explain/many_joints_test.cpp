@@ -186,6 +186,33 @@ TEST(ManyJoints, GIVEN_friction_of_the_file_that_is_wrong_THEN_the_new_file_has_
   }
 }
 
+// Less than nothing by a little is nothing: the number goes to the end of what is possible.
+TEST(ManyJoints, GIVEN_no_friction_where_the_file_has_some_THEN_the_new_file_has_none) {
+  RobotDescription robot = test::serial_arm(1);
+  RobotDescription real = robot;
+  real.effects.at(0).parameters[0] = -0.01;
+  robot.effects.at(0).parameters[0] = 1;
+  const AddedFindings added = add_found(
+      robot, {test::record(real, {.duration_s = 20, .torque_noise_nm = 0.005})}, {}, quick(2), {});
+  EXPECT_THAT(added.objections, IsEmpty());
+  EXPECT_EQ(added.explanation.improved.effects.at(0).parameters[0], 0);
+  EXPECT_EQ(added.explanation.verdict, Verdict::kParameterShift) << added.explanation.words;
+}
+
+// What a number comes out as hangs on the scale of the torque, which a class leaves open.
+TEST(ManyJoints, GIVEN_a_torque_that_may_have_another_scale_THEN_no_number_of_that_joint_moves) {
+  const RobotDescription robot = test::serial_arm(2);
+  Log log = test::record(robot, {.duration_s = 20});
+  log.tau *= 1.5;
+  const Explanation told = explain(robot, {log}, {}, quick(2));
+  for (const auto& same : told.ambiguous) {
+    for (const EffectAt& what : same) {
+      if (what.kind != EffectKind::kTorqueScale) continue;
+      for (const Shift& shift : told.shifts) EXPECT_NE(shift.joint, what.joint) << told.words;
+    }
+  }
+}
+
 // Numbers of the file that are right are neither told nor touched.
 TEST(ManyJoints, GIVEN_friction_of_the_file_that_is_right_THEN_it_stays) {
   RobotDescription robot = test::serial_arm(2);

@@ -298,6 +298,17 @@ TEST(CsvHabits, LinesAreCountedAsTheFileHasThem) {
   EXPECT_THAT(refusal(text), HasSubstr("line 16, time"));
 }
 
+// A clock of whole seconds, or one that begins anew, under a name that would else be the time.
+TEST(CsvHabits, GivenItsStepAClockThatDoesNotAscendIsNotRead) {
+  for (const auto& stamp :
+       {std::function<std::string(int)>([](int i) { return number(i / 100, '.'); }),
+        std::function<std::string(int)>(
+            [](int i) { return number(kPeriodS * (i % (kSamples / 2)), '.'); })}) {
+    expect_motion(
+        read(kHeader + lines(with([&](Cells& cells) { cells.time = stamp; })), {}, kPeriodS));
+  }
+}
+
 TEST(CsvHabits, DamagedPackedFilesAreRefused) {
   const std::string whole = packed(kHeader + lines({}));
   EXPECT_THAT(refusal(whole.substr(0, whole.size() / 2)), HasSubstr("packed data that end early"));
