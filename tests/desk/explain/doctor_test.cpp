@@ -107,8 +107,8 @@ TEST(Doctor, NamesTorquesOfTheWrongSignBesideAGuessedFriction) {
   }
 }
 
-// Without gravity friction is most of the torque. Positions times pi/180 take the guessed viscous part
-// out of the model and leave the dry one as it is.
+// Without gravity friction is most of the torque. Positions times pi/180 take the guessed viscous
+// part out of the model and leave the dry one as it is.
 TEST(Doctor, TakesNoGuessedFrictionForDegrees) {
   for (const double times : {10.0, 30.0}) {
     RobotDescription robot = test::serial_arm(1);

@@ -300,10 +300,11 @@ TEST(CsvHabits, LinesAreCountedAsTheFileHasThem) {
 
 // A clock of whole seconds, or one that begins anew, under a name that would else be the time.
 TEST(CsvHabits, GivenItsStepAClockThatDoesNotAscendIsNotRead) {
-  for (const auto& stamp :
-       {std::function<std::string(int)>([](int i) { return number(i / 100, '.'); }),
-        std::function<std::string(int)>(
-            [](int i) { return number(kPeriodS * (i % (kSamples / 2)), '.'); })}) {
+  for (const auto& stamp : {std::function<std::string(int)>(
+                                [](int i) { return number(std::floor(kPeriodS * i), '.'); }),
+                            std::function<std::string(int)>([](int i) {
+                              return number(kPeriodS * (i % (kSamples / 2)), '.');
+                            })}) {
     expect_motion(
         read(kHeader + lines(with([&](Cells& cells) { cells.time = stamp; })), {}, kPeriodS));
   }
