@@ -130,16 +130,29 @@ void require_text(const std::filesystem::path& path) {
          "begin with a line such as a_m,alpha_deg,d_m,theta_deg");
 }
 
+// Where the rows are counted, as tables have it, from 0 or 1: a row stands where its joint does.
+// Names of joints in that column say nothing.
+void check_count(const std::filesystem::path& path, const NamedColumns& read, Eigen::Index row) {
+  const auto found = read.columns.find("joint");
+  if (found == read.columns.end() || found->second.size() == 0) return;
+  const double number = found->second[row];
+  const double expected = (found->second[0] == 0 ? 0.0 : 1.0) + static_cast<double>(row);
+  if (!std::isfinite(number) || number == expected) return;
+  refuse(path, fmt::format("{}, column joint", read.place_of(row)), shortest(number),
+         shortest(expected) + ", as the rows stand from the base outwards",
+         "put the rows in the order of the joints");
+}
+
 DhTable read_csv_table(const std::filesystem::path& path, std::optional<DhConvention> convention) {
   std::vector<std::string> known = kParameters;
   known.insert(known.end(), {"prismatic"});
   if (!is_stream(path.string())) require_text(path);
   const NamedColumns read = read_csv(path, [&](const std::string& name) {
     const bool is_known = std::find(known.begin(), known.end(), name) != known.end();
+    if (name == "joint") return Need::kWelcome;
     return is_known ? Need::kRequired : Need::kNone;
   });
   for (const std::string& name : read.names) {
-    // A count of the joints, as tables have it.
     if (read.columns.contains(name) || name == "joint") continue;
     refuse(path, "column " + name, "a column that is none of a DH table", list_of(known),
            mend_name(name, known));
@@ -163,6 +176,7 @@ DhTable read_csv_table(const std::filesystem::path& path, std::optional<DhConven
              fmt::format("a number of at most {}", shortest(kLargest)),
              std::isfinite(value) ? "check the unit" : "write 0 where there is nothing");
     };
+    check_count(path, read, i);
     DhRow row;
     row.name = fmt::format("joint{}", i + 1);
     if (has("prismatic") && cell("prismatic") != 0) {

@@ -169,6 +169,24 @@ TEST(DhTable, SaysWhereANumberIsNone) {
                                                "mend: write a row for each joint"));
 }
 
+// A count of the joints is no order of its own, and may be names.
+TEST(DhTable, StandsInTheOrderOfItsJoints) {
+  const auto with = [](const std::string& first, const std::string& second) {
+    return "joint,a_m,alpha_deg,d_m,theta_deg\n" + first + ",0,90,0.4,0\n" + second +
+           ",0.3,0,0,0\n";
+  };
+  for (const auto& [first, second] : {std::pair{"1", "2"}, {"0", "1"}, {"shoulder", "elbow"}}) {
+    const DhTable table = read("a.csv", with(first, second), DhConvention::kStandard);
+    ASSERT_EQ(table.rows.size(), 2U) << first;
+    EXPECT_EQ(table.rows[1].a_m, 0.3) << first;
+  }
+  EXPECT_THAT(
+      message_of<InputError>(
+          [&] { static_cast<void>(read("a.csv", with("2", "1"), DhConvention::kStandard)); }),
+      HasSubstr("line 2, column joint: found 2; allowed: 1, as the rows stand from the base "
+                "outwards; to mend: put the rows in the order of the joints"));
+}
+
 TEST(DhTable, IsRefusedWhereItCanBeReadInTwoWays) {
   const auto refusal = [](const std::string& name, const std::string& text,
                           std::optional<DhConvention> convention = std::nullopt) {
