@@ -14,7 +14,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kShifted = 0.2;   // of the smaller of both numbers
+constexpr double kShifted = 0.2;  // of the smaller of both numbers
+// A poor motion puts a part of another effect into a number.
+constexpr double kShiftedIfPoor = 0.5;
 constexpr double kMatters = 0.02;  // of the joint's rms torque
 // What is left beside a number and is no noise is of something else, that bends the number as well.
 constexpr double kOfWhatIsLeft = 2;  // of its energy
@@ -28,7 +30,8 @@ std::vector<Shift> far_off(const Data& data, const RobotDescription& robot, cons
     const NuisanceTerm& term = data.nuisance.terms[i];
     if (term.kind != NuisanceTerm::Kind::kKnownEffect) continue;
     // What is said of a joint that stands is what is believed of it.
-    if (!excitation[static_cast<std::size_t>(term.joint)].moves) continue;
+    const Excitation& motion = excitation[static_cast<std::size_t>(term.joint)];
+    if (!motion.moves) continue;
     const auto column = static_cast<Index>(i);
     const RobotEffect& effect = robot.effects[term.effect];
     const double file = effect.parameters[term.parameter];
@@ -36,7 +39,8 @@ std::vector<Shift> far_off(const Data& data, const RobotDescription& robot, cons
     const double rms =
         std::abs(by) * data.layout.rms(data.nuisance.columns.col(column))[term.joint];
     const double smaller = std::min(std::abs(file), std::abs(file + by));
-    if (!(std::abs(by) > kShifted * smaller) || !(rms > kMatters * torque[term.joint])) continue;
+    const double shifted = motion.is_poor() ? kShiftedIfPoor : kShifted;
+    if (!(std::abs(by) > shifted * smaller) || !(rms > kMatters * torque[term.joint])) continue;
     shifts.push_back({term.joint, term.effect, term.parameter, term.name,
                       file != 0 ? by / file : 1.0, file, file + by,
                       offnominal::unit_of(info_of(effect.kind)->parameters[term.parameter].quantity,
