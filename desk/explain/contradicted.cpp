@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "explain/remainder.hpp"
@@ -89,9 +90,12 @@ std::vector<Shift> contradicted_numbers(const SearchSetting& setting, const Robo
   return shifts;
 }
 
-RobotDescription with_freed(RobotDescription robot, const std::vector<Shift>& shifts) {
-  for (const Shift& one : shifts) robot.effects[one.effect].fitted = true;
-  return robot;
+std::vector<std::size_t> refitted_effects(const RobotDescription& file,
+                                          const std::vector<Shift>& shifts) {
+  const std::vector<std::size_t> fitted = fitted_effects(file);
+  std::set<std::size_t> all(fitted.begin(), fitted.end());
+  for (const Shift& one : shifts) all.insert(one.effect);
+  return {all.begin(), all.end()};
 }
 
 }  // namespace offnominal::desk

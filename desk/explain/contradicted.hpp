@@ -18,7 +18,8 @@ std::vector<Shift> contradicted_numbers(const SearchSetting& setting, const Robo
                                         const std::vector<Excitation>& excitation,
                                         const std::vector<std::vector<EffectAt>>& classes);
 
-// The robot with the effects of those numbers marked fitted, so that a fit may move them.
-RobotDescription with_freed(RobotDescription robot, const std::vector<Shift>& shifts);
+// Effects of the file that get new numbers, as indices: those marked fitted, and of those numbers.
+std::vector<std::size_t> refitted_effects(const RobotDescription& file,
+                                          const std::vector<Shift>& shifts);
 
 }  // namespace offnominal::desk

@@ -113,10 +113,7 @@ class Explainer {
       tell("fitting the numbers");
       improved = improved_robot(
           file_, robot_, *setting_.data,
-          {setting_.nuisance,
-           fitted_effects(with_freed(file_, result.shifts)),
-           {},
-           options_.source},
+          {setting_.nuisance, refitted_effects(file_, result.shifts), {}, options_.source},
           relinearise(robot_, *setting_.data, setting_.nuisance, found.terms(), found.fit));
       sizes = sizes_of(improved);
     } while (leave_out_unsure(sizes, *setting_.regression, hold_out, options_.threads, found));

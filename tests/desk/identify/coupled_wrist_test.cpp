@@ -114,6 +114,16 @@ std::string with_tendons() {
                       "</tendon><actuator><motor tendon=\"m1\"/><motor tendon=\"m2\"/></actuator>");
 }
 
+std::string rotor_name(int motor) { return "r" + std::to_string(motor + 1); }
+
+// It turns beside the arm.
+std::string rotor_body(int motor) {
+  const std::string inertia = desk::shortest(kRotor[motor]);
+  return "<body pos=\"1 0 0\"><joint name=\"" + rotor_name(motor) +
+         "\" axis=\"0 0 1\"/><inertial mass=\"1e-3\" pos=\"0 0 0\" diaginertia=\"" + inertia + " " +
+         inertia + " " + inertia + "\"/></body>";
+}
+
 // Rotors that turn beside the arm, held to the tendons by constraints.
 std::string with_rotors() {
   const Matrix2d a = wrist_matrix();
@@ -121,11 +131,8 @@ std::string with_rotors() {
   std::string tendons;
   std::string equalities;
   for (int motor = 0; motor < 2; ++motor) {
-    const std::string name = "r" + std::to_string(motor + 1);
-    const std::string inertia = desk::shortest(kRotor[motor]);
-    bodies += "<body pos=\"1 0 0\"><joint name=\"" + name +
-              "\" axis=\"0 0 1\"/><inertial mass=\"1e-3\" pos=\"0 0 0\" diaginertia=\"" + inertia +
-              " " + inertia + " " + inertia + "\"/></body>";
+    const std::string name = rotor_name(motor);
+    bodies += rotor_body(motor);
     tendons += tendon(("m" + std::to_string(motor + 1)).c_str(), a(motor, 0), a(motor, 1), 0) +
                "<fixed name=\"t" + name + "\"><joint joint=\"" + name + "\" coef=\"1\"/></fixed>";
     equalities += "<tendon tendon1=\"t" + name + "\" tendon2=\"m" + std::to_string(motor + 1) +
@@ -222,11 +229,8 @@ std::string with_springs() {
   std::string tendons;
   std::string motors;
   for (int motor = 0; motor < 2; ++motor) {
-    const std::string name = "r" + std::to_string(motor + 1);
-    const std::string inertia = desk::shortest(kRotor[motor]);
-    bodies += "<body pos=\"1 0 0\"><joint name=\"" + name +
-              "\" axis=\"0 0 1\"/><inertial mass=\"1e-3\" pos=\"0 0 0\" diaginertia=\"" + inertia +
-              " " + inertia + " " + inertia + "\"/></body>";
+    const std::string name = rotor_name(motor);
+    bodies += rotor_body(motor);
     tendons += "<fixed stiffness=\"" + desk::shortest(kSpring[motor]) +
                "\" damping=\"0.002\" springlength=\"0\"><joint joint=\"pitch\" coef=\"" +
                desk::shortest(a(motor, 0)) + "\"/><joint joint=\"roll\" coef=\"" +
