@@ -5,6 +5,7 @@
 #include "explain/explain.hpp"
 #include "explain/find_model.hpp"
 #include "explain/search_setting.hpp"
+#include "identify/improved_robot.hpp"
 
 namespace offnominal::desk {
 
@@ -17,6 +18,11 @@ std::vector<Shift> contradicted_numbers(const SearchSetting& setting, const Robo
                                         const FoundModel& found,
                                         const std::vector<Excitation>& excitation,
                                         const std::vector<std::vector<EffectAt>>& classes);
+
+// Leaves out those of joints one of whose numbers was held at the end of what is possible against
+// the recordings: what they ask for there is no number of the file but something that it lacks.
+// Whether there were any: the rest is then to be fitted again.
+bool leave_out_impossible(const std::vector<HeldNumber>& held, std::vector<Shift>& shifts);
 
 // Effects of the file that get new numbers, as indices: those marked fitted, and of those numbers.
 std::vector<std::size_t> refitted_effects(const RobotDescription& file,

@@ -111,10 +111,12 @@ class Explainer {
       result.shifts =
           contradicted_numbers(setting_, robot_, found, result.excitation, result.ambiguous);
       tell("fitting the numbers");
-      improved = improved_robot(
-          file_, robot_, *setting_.data,
-          {setting_.nuisance, refitted_effects(file_, result.shifts), {}, options_.source},
-          relinearise(robot_, *setting_.data, setting_.nuisance, found.terms(), found.fit));
+      do {
+        improved = improved_robot(
+            file_, robot_, *setting_.data,
+            {setting_.nuisance, refitted_effects(file_, result.shifts), {}, options_.source},
+            relinearise(robot_, *setting_.data, setting_.nuisance, found.terms(), found.fit));
+      } while (leave_out_impossible(improved.held, result.shifts));
       sizes = sizes_of(improved);
     } while (leave_out_unsure(sizes, *setting_.regression, hold_out, options_.threads, found));
     if (search) {
