@@ -115,7 +115,6 @@ void check_kind(const AddOptions& options) {
   if (options.joint != 0) refuse_option("add", "--joint", std::to_string(options.joint), alone);
   if (options.motor != 0) refuse_option("add", "--motor", std::to_string(options.motor), alone);
   if (!options.set.empty()) refuse_option("add", "--set", "\"" + options.set[0] + "\"", alone);
-  if (options.keep_effects) refuse_option("add", "--keep-effects", "given", alone);
   if (options.no_skew) refuse_option("add", "--no-skew", "given", alone);
   if (options.refit_inertia_percent) {
     refuse_option("add", "--refit-inertia", "given", alone, "say --link-share, as for explain");
@@ -161,6 +160,7 @@ void add_all_found(const AddOptions& options, const std::string& command_line,
   FitData data = read_fit_data("add", "--log", files, read_log_or_hold_map, progress);
   ExplainOptions explain;
   explain.threads = options.threads;
+  explain.keep_effects = options.keep_effects;
   explain.link_share = options.link_share;
   explain.robot_file = files.robot;
   explain.keep = options.keep;
@@ -176,7 +176,8 @@ void add_all_found(const AddOptions& options, const std::string& command_line,
                            files.channels.file ? files.channels.file->string() : "",
                            files.channels.payloads,
                            explain.keep,
-                           explain.link_share};
+                           explain.link_share,
+                           explain.keep_effects};
   write_report(options.answer, [&] { return page_of(added.explanation, names); });
   std::vector<std::string> written;
   if (added.may_be_written(force)) {
@@ -221,7 +222,9 @@ constexpr const char* kHowItFits =
     "recordings predicted by a fit of the others.\n"
     "--all-found fits all that explain finds, together with the effects marked `fitted = true`, "
     "those whose numbers the recordings contradict, and mass and inertia of the links within "
-    "--link-share. It writes nothing unless something is sure: an effect that the recordings do "
+    "--link-share; --keep-effects takes the numbers of all effects of the file for right, and fits "
+    "what is found beside them. It writes nothing unless something is sure: an effect that the "
+    "recordings do "
     "not confuse with "
     "another one, or a number of the file that they contradict.\n"
     "Exit code 1, and nothing written, when the recording cannot tell an effect from what the "
@@ -259,7 +262,8 @@ void set_up_add(CLI::App& verb, ExitCode& exit_code) {
       ->take_all()
       ->allow_extra_args(false);
   verb.add_flag("--keep-effects", options->keep_effects,
-                "Leave effects that were fitted before as they are");
+                "Leave effects that were fitted before as they are; with --all-found, all of the "
+                "file's");
   add_keep_option(verb, options->keep);
   verb.add_flag("--no-skew", options->no_skew,
                 "Torque and position are of one time: fit no skew between them beside the effects. "

@@ -64,6 +64,7 @@ void run(const ExplainArguments& options, const std::string& command_line) {
                            files.channels.payloads,
                            settings.keep,
                            settings.link_share,
+                           settings.keep_effects,
                            options.after};
   write_report(options.answer, [&] { return page_of(explanation, names); });
   print_answer(
@@ -105,6 +106,9 @@ void set_up_explain(CLI::App& verb, ExitCode& /*exit_code*/) {
                   "How far mass and inertia of a link may be off the file, as a share; beyond 0.1 "
                   "its centre of mass too [0.05, or more where the recordings ask for it]")
       ->check(CLI::Range(0.0, 1.0));
+  verb.add_flag("--keep-effects", options->explain.keep_effects,
+                "Take the numbers of the file's effects for right: fit none of them beside what is "
+                "looked for");
   verb.add_option("--replays", options->explain.replays,
                   "How often each finding is checked against the model without it; 0: never")
       ->check(CLI::Range(0, 10000))

@@ -67,6 +67,7 @@ class Explainer {
     NuisanceOptions nuisance;
     nuisance.link_share = options.link_share.value_or(kUsualLinkShare);
     nuisance.link_geometry = nuisance.link_share > kCadShare;
+    if (options.keep_effects) nuisance.free_effects.emplace();
     both_ways_ = came_both_ways(logs);
     const auto data_of = [&](const std::vector<Stretch>& some) {
       auto made = searched_workspaces(some, robot_, plan, widths);
@@ -114,7 +115,11 @@ class Explainer {
       do {
         improved = improved_robot(
             file_, robot_, *setting_.data,
-            {setting_.nuisance, refitted_effects(file_, result.shifts), {}, options_.source},
+            {setting_.nuisance,
+             options_.keep_effects ? std::vector<std::size_t>{}
+                                   : refitted_effects(file_, result.shifts),
+             {},
+             options_.source},
             relinearise(robot_, *setting_.data, setting_.nuisance, found.terms(), found.fit));
       } while (leave_out_impossible(improved.held, result.shifts));
       sizes = sizes_of(improved);

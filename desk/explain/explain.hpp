@@ -256,6 +256,8 @@ struct ExplainOptions {
   // How far the links' numbers may be off the file, two standard deviations as a share; none: what
   // the recordings say of it (link_share.hpp).
   std::optional<double> link_share = {};
+  // Whether the numbers of the file's effects are right as they are: nothing is fitted beside them.
+  bool keep_effects = false;
   int most_effects = 6;         // of one joint
   std::string source = {};      // what `improved` says of where its numbers come from
   std::string robot_file = {};  // as the user named it, for commands in the advice; empty: "ROBOT"

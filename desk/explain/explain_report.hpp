@@ -20,6 +20,7 @@ struct ExplainNames {
   std::vector<RecordingPayload> payloads = {};  // of --payload
   std::vector<KeepFault> keep = {};             // of --keep
   std::optional<double> link_share = {};        // of --link-share
+  bool keep_effects = false;                    // --keep-effects
   std::vector<std::string> after = {};          // of --after: the last of `logs`
 };
 

@@ -128,6 +128,7 @@ std::string command_to_add(const ExplainNames& names) {
     command += fmt::format(" --keep {}:{}", joint, name_of(one.kind));
   }
   if (names.link_share) command += " --link-share " + shortest(*names.link_share);
+  if (names.keep_effects) command += " --keep-effects";
   return fmt::format("to write a robot file with it{}: {} -o FILE\n",
                      kept ? "" : ", keep what came through a pipe in a file, and", command);
 }

@@ -186,6 +186,27 @@ TEST(ManyJoints, GIVEN_friction_of_the_file_that_is_wrong_THEN_the_new_file_has_
   }
 }
 
+// Whoever knows his numbers keeps them: what is missing is looked for beside them.
+TEST(ManyJoints, GIVEN_effects_to_keep_THEN_none_of_their_numbers_moves) {
+  RobotDescription robot = test::serial_arm(2);
+  RobotDescription real = robot;
+  for (RobotEffect& effect : robot.effects) {
+    effect.parameters[0] *= effect.kind == EffectKind::kViscousFriction ? 3 : 1;
+  }
+  real.effects.push_back(test::effect_of(EffectKind::kJointStiffness, 1, {6, 0.1}, true));
+  ExplainOptions options = quick(2);
+  const Log log = test::record(real, {.duration_s = 20});
+  ASSERT_NE(add_found(robot, {log}, {}, options, {}).explanation.improved.effects.at(0).parameters,
+            robot.effects.at(0).parameters);
+  options.keep_effects = true;
+  const Explanation told = add_found(robot, {log}, {}, options, {}).explanation;
+  EXPECT_THAT(told.shifts, IsEmpty());
+  for (std::size_t i = 0; i < robot.effects.size(); ++i) {
+    EXPECT_EQ(told.improved.effects.at(i).parameters, robot.effects[i].parameters) << i;
+    EXPECT_EQ(told.improved.effects.at(i).source, robot.effects[i].source) << i;
+  }
+}
+
 // Less than nothing by a little is nothing: the number goes to the end of what is possible.
 TEST(ManyJoints, GIVEN_no_friction_where_the_file_has_some_THEN_the_new_file_has_none) {
   RobotDescription robot = test::serial_arm(1);
