@@ -99,6 +99,22 @@ TEST(AddRefuses, GIVEN_a_trace_of_friction_that_gives_energy_THEN_it_says_that_n
                                                 HasSubstr("none at all fits as well"))));
 }
 
+TEST(AddRefuses, GIVEN_a_mass_that_is_not_the_files_by_far_THEN_it_names_the_unit_of_the_torque) {
+  for (const auto& [factor, refused] : {std::pair{3.0, false}, std::pair{30.0, true}}) {
+    RobotDescription robot = arm_description();
+    const double real_kg = robot.joints[1].joint.mass_kg;
+    robot.joints[1].joint.mass_kg /= factor;
+    const AddResult result = fitted(robot, EffectKind::kLinkMass, viscous(0));
+    EXPECT_NEAR(result.fit.parameters.at(0).value, real_kg * (1 - 1 / factor), 0.2 * real_kg);
+    if (!refused) {
+      EXPECT_THAT(result.objections, IsEmpty());
+      continue;
+    }
+    EXPECT_THAT(result.objections,
+                Contains(AllOf(HasSubstr("link 2 would have "), HasSubstr("unit of the torque"))));
+  }
+}
+
 // Friction that falls with speed, or that a cold joint has less of, is friction all the same.
 TEST(AddRefuses, GIVEN_enough_friction_beside_it_THEN_an_effect_may_be_negative) {
   RobotDescription robot = arm_description();
