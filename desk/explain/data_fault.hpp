@@ -24,10 +24,12 @@ enum class DataFaultKind {
   kStart,
   kNothingLeft,
   kGravity,
+  kTorqueUnit,
 };
 
 // "degrees", "torque_sign", "stale_samples", "clock_skew", "saturation", "gaps", "time_unit",
-// "velocity", "wrapped_position", "stuck", "jump", "start", "nothing_left" or "gravity".
+// "velocity", "wrapped_position", "stuck", "jump", "start", "nothing_left", "gravity" or
+// "torque_unit".
 const char* name_of(DataFaultKind kind);
 
 // Which of a joint's signals a fault is of.
@@ -52,7 +54,8 @@ struct DataFault {
   // torque late where positive. kGaps: longest step of time, s. kTimeUnit: factor on the time.
   // kVelocity: the velocity over the derivative of the position, 0 where they have nothing in
   // common. kWrapped, kJump: the jump, as recorded. kStuck, kStart: share of the samples.
-  // kGravity: between where it points and where the file has it, deg.
+  // kGravity: between where it points and where the file has it, deg. kTorqueUnit: measured over
+  // model torque of the first joint that tells.
   double size = 0;
   std::string unit;                   // of size, empty: none
   std::string words;                  // what was found, with numbers

@@ -53,6 +53,8 @@ const char* name_of(DataFaultKind kind) {
       return "nothing_left";
     case DataFaultKind::kGravity:
       return "gravity";
+    case DataFaultKind::kTorqueUnit:
+      return "torque_unit";
   }
   return "";
 }
@@ -64,6 +66,7 @@ bool spoils(const DataFault& fault, RestsOn what) {
     case DataFaultKind::kGravity:
     case DataFaultKind::kDegrees:
     case DataFaultKind::kTorqueSign:
+    case DataFaultKind::kTorqueUnit:
     case DataFaultKind::kTimeUnit:
     case DataFaultKind::kWrapped:
       return true;
@@ -292,7 +295,9 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
     mend_strange_velocities(mended, robot, faults);
     mend_velocities(mended, robot, faults);
     if (const auto pair = torque_pair(mended, robot)) {
-      if (!find_gravity(mended, robot, *pair, faults)) find_torque_sign(mended, *pair, faults);
+      if (!find_torque_unit(mended, *pair, faults) && !find_gravity(mended, robot, *pair, faults)) {
+        find_torque_sign(mended, *pair, faults);
+      }
       find_clock_skew(mended, *pair, faults);
     }
   }

@@ -35,6 +35,9 @@ struct TorquePair {
 std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& robot,
                                       double cutoff_of_rate = 0);
 
+// What viscous and dry friction of a joint look like over time, two columns: rad/s or m/s, and 1.
+Eigen::MatrixXd friction_columns(const Eigen::VectorXd& dq);
+
 // Whether the model fits the torque better with the time in s or in a unit of which a second has
 // `per_second`; angles may be in degrees and torques of the wrong sign either way.
 enum class TimeByTorque { kSeconds, kUnit, kUnknown };
@@ -59,6 +62,9 @@ void find_held_torques(const Log& log, const Log& even, const RobotDescription& 
 // else is held against the model's torque would follow from it. Returns whether it does.
 bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
                   std::vector<DataFault>& faults);
+// Torques in another unit, before a gear, or currents: many times what the model says, or a small
+// part of it, on every joint that tells. Nothing else is then held against them. Returns whether.
+bool find_torque_unit(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
 void find_torque_sign(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
 void find_clock_skew(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
 

@@ -97,11 +97,7 @@ struct Degrees {
 
 // What no dry or viscous friction of the joint has a part in: the file's is often a guess.
 VectorXd beside_friction(const VectorXd& torque, const VectorXd& dq) {
-  constexpr double kSlow = 0.1;  // of the usual speed
-  const double usual = dq.norm() / std::sqrt(static_cast<double>(dq.size()));
-  if (!(usual > 0)) return torque;
-  Eigen::MatrixXd friction(dq.size(), 2);
-  friction << dq, (dq.array() / (kSlow * usual)).tanh().matrix();
+  const Eigen::MatrixXd friction = friction_columns(dq);
   return torque - friction * friction.colPivHouseholderQr().solve(torque);
 }
 
@@ -201,6 +197,14 @@ std::optional<Degrees> degrees_by_limits(const Log& log, const RobotDescription&
 }
 
 }  // namespace
+
+Eigen::MatrixXd friction_columns(const VectorXd& dq) {
+  constexpr double kSlow = 0.1;  // of the usual speed
+  const double usual = dq.norm() / std::sqrt(static_cast<double>(dq.size()));
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(dq.size(), 2);
+  if (usual > 0) columns << dq, (dq.array() / (kSlow * usual)).tanh().matrix();
+  return columns;
+}
 
 TimeByTorque time_by_torque(const Log& log, const RobotDescription& robot, double per_second) {
   constexpr double kHz = 5;

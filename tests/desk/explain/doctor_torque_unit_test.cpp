@@ -1,0 +1,124 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+
+#include "explain/doctor.hpp"
+#include "robot/payload.hpp"
+#include "serial_arm.hpp"
+
+namespace offnominal::desk {
+namespace {
+
+using Eigen::Index;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+// A description of somebody else's: its friction is a guess, and rotors it has none.
+struct Arm {
+  explicit Arm(std::size_t joints) : real(test::serial_arm(joints)), file(real) {
+    for (std::size_t i = 0; i < joints; ++i) {
+      real.effects.push_back(
+          test::effect_of(EffectKind::kRotorInertia, static_cast<int>(i), {0.2}, true));
+    }
+    for (RobotEffect& effect : file.effects) effect.parameters[0] *= 3;
+  }
+  RobotDescription real;
+  RobotDescription file;
+};
+
+std::optional<DataFault> torque_unit_in(const Log& log, const RobotDescription& robot) {
+  for (DataFault& fault : examine(log, robot)) {
+    if (fault.kind == DataFaultKind::kTorqueUnit) return fault;
+  }
+  return std::nullopt;
+}
+
+TEST(TorqueUnit, IsNamedWhereItFitsAllJoints) {
+  for (const std::size_t joints : {2U, 6U}) {
+    const Arm arm(joints);
+    const Log right = test::record(arm.real, {.duration_s = 20});
+    EXPECT_FALSE(torque_unit_in(right, arm.file));
+    for (const auto& [per_si, words] : {std::pair{1e3, "mN m"}, std::pair{-1e3, "mN m"},
+                                        std::pair{1e2, "N cm"}, std::pair{1e6, "uN m"}}) {
+      Log log = right;
+      log.tau *= per_si;
+      const auto fault = torque_unit_in(log, arm.file);
+      ASSERT_TRUE(fault) << joints << " joints, " << per_si;
+      EXPECT_NEAR(fault->size, per_si, 0.1 * std::abs(per_si));
+      EXPECT_THAT(fault->words, AllOf(HasSubstr("on joint 2"), HasSubstr(words)));
+      EXPECT_TRUE(spoils(*fault, RestsOn::kTorque));
+    }
+  }
+}
+
+// Currents, and torques of motors: every joint by its own factor, and no unit has it.
+TEST(TorqueUnit, IsToldWithoutANameWhereEveryJointHasItsOwnFactor) {
+  const Arm arm(6);
+  Log log = test::record(arm.real, {.duration_s = 20});
+  for (Index joint = 0; joint < log.tau.cols(); ++joint) {
+    log.tau.col(joint) /= 40.0 + 20 * static_cast<double>(joint);
+  }
+  const auto fault = torque_unit_in(log, arm.file);
+  ASSERT_TRUE(fault);
+  EXPECT_NEAR(fault->size, 1.0 / 40, 0.1 / 40);
+  EXPECT_THAT(fault->words, Not(HasSubstr("as in")));
+  EXPECT_THAT(fault->mend, HasSubstr("torque_constant"));
+}
+
+// The lines to write turn the recording into what it should have been.
+TEST(TorqueUnit, ComesWithTheChannelsThatMendIt) {
+  const Arm arm(2);
+  Log log = test::record(arm.real, {.duration_s = 20});
+  log.tau *= -1e3;
+  for (const char* joint : {"1", "2"}) {
+    Channel channel;
+    channel.source = std::string("q") + joint;
+    log.channels.position.push_back(channel);
+    channel.source = std::string("tau") + joint;
+    log.channels.torque.push_back(channel);
+  }
+  const auto fault = torque_unit_in(log, arm.file);
+  ASSERT_TRUE(fault);
+  ASSERT_EQ(fault->channels.size(), 1U);
+  EXPECT_THAT(fault->channels[0], HasSubstr("-0.001"));
+}
+
+// A tool that outweighs the wrist, and a counterweight that carries nearly all of one joint, are
+// no units: some joint beside them tells.
+TEST(TorqueUnit, IsNoToolAndNoCounterweight) {
+  Arm tool(6);
+  const RobotDescription with_tool = carrying(tool.real, Payload{8, {0.2, 0, 0}});
+  EXPECT_FALSE(torque_unit_in(test::record(with_tool, {.duration_s = 20}), tool.file));
+  Arm balanced(4);
+  Log log = test::record(balanced.real, {.duration_s = 20});
+  log.tau.col(1) *= 0.05;
+  EXPECT_FALSE(torque_unit_in(log, balanced.file));
+}
+
+// What one joint alone has may be its mass: only far off is it a unit.
+TEST(TorqueUnit, OfOneJointIsToldOnlyFarOff) {
+  RobotDescription robot = test::serial_arm(1);
+  robot.joints[0].joint.axis = {0, 1, 0};
+  const Log right = test::record(robot, {.duration_s = 20});
+  for (const auto& [factor, told] : {std::pair{10.0, false}, std::pair{0.1, false},
+                                     std::pair{1000.0, true}, std::pair{0.01, true}}) {
+    Log log = right;
+    log.tau *= factor;
+    EXPECT_EQ(torque_unit_in(log, robot).has_value(), told) << factor;
+  }
+}
+
+// Without gravity a rotor that nobody wrote down is no unit.
+TEST(TorqueUnit, IsNotToldByInertiaAndFriction) {
+  const RobotDescription robot = test::serial_arm(1);
+  RobotDescription real = robot;
+  real.effects.push_back(test::effect_of(EffectKind::kRotorInertia, 0, {20}, true));
+  EXPECT_FALSE(torque_unit_in(test::record(real, {.duration_s = 20}), robot));
+}
+
+}  // namespace
+}  // namespace offnominal::desk
