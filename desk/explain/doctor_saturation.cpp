@@ -39,7 +39,8 @@ struct ReachedExtreme {
 
 class TorqueExtremes {
  public:
-  TorqueExtremes(const VectorXd& tau, std::vector<Index> rows) : tau_(tau), rows_(std::move(rows)) {
+  TorqueExtremes(const VectorXd& tau, std::vector<Index> rows)
+      : tau_(tau), rounding_(tau), rows_(std::move(rows)) {
     for (const Index i : rows_) {
       low_ = std::min(low_, tau[i]);
       high_ = std::max(high_, tau[i]);
@@ -58,12 +59,17 @@ class TorqueExtremes {
   // The rows in the band below, with the next value that a coarse torque has: in any motion there
   // are about as many of them.
   [[nodiscard]] Index next(double end) const {
-    return within(end, std::max(2 * near_, 1.5 * to_next(end))) - reached(end);
+    const double band = is_coarse(end) ? std::max(2 * near_, 1.5 * to_next(end)) : 2 * near_;
+    return within(end, band) - reached(end);
   }
   [[nodiscard]] bool has_extreme(double value) const {
     return std::abs(value - low_) <= near_ || std::abs(value - high_) <= near_;
   }
-  [[nodiscard]] bool is_coarse(double end) const { return to_next(end) > 2 * near_; }
+  // Of a torque that is not rounded the value below an extreme may be far off too, where it is left
+  // steeply.
+  [[nodiscard]] bool is_coarse(double end) const {
+    return rounding_.at(end) > near_ && to_next(end) > 2 * near_;
+  }
 
   // Whether it comes to an extreme by and by, mostly: what switches between two levels jumps there.
   [[nodiscard]] bool comes_gradually(double end) const {
@@ -109,6 +115,7 @@ class TorqueExtremes {
   }
 
   const VectorXd& tau_;
+  Rounding rounding_;
   std::vector<Index> rows_;
   double low_ = std::numeric_limits<double>::infinity();
   double high_ = -std::numeric_limits<double>::infinity();
@@ -215,11 +222,14 @@ void find_saturation(const Log& log, const RobotDescription& robot,
           })->count();
       const bool limited =
           std::abs(end) >= kAtLimit * limit && std::abs(end) <= kBeyondLimit * limit;
-      const bool flat = static_cast<double>(reached) >=
-                        (torque.is_coarse(end) ? kAgainstNextStep : kAgainstNext) *
-                            static_cast<double>(torque.next(end) + 1);
-      // A coarse torque may sit at its largest step once.
-      const bool once = torque.is_coarse(end) && stretches.size() < 2;
+      // A drive has the same limit both ways; what is coarse ends at the same steps by chance.
+      const bool coarse = torque.is_coarse(end) && !torque.has_extreme(-end);
+      const bool flat =
+          static_cast<double>(reached) >=
+          (coarse ? kAgainstNextStep : kAgainstNext) * static_cast<double>(torque.next(end) + 1);
+      // A coarse torque may sit at its largest step once, and one that is told steps at any.
+      const bool once =
+          stretches.size() < 2 && (torque.is_coarse(end) || !torque.comes_gradually(end));
       const bool often = !once && static_cast<double>(reached) >= kSmallestShareAtExtreme * rows;
       if (!flat || !(often || (limited && longest >= kShortestAtLimit))) continue;
       if (reached > most.rows) most = {end, reached};
