@@ -128,6 +128,61 @@ bool velocity_moves(const Log& log, Index joint, const Burst& burst) {
          during.cwiseAbs().mean() > kSensorSteps * smallest_step(dq);
 }
 
+// What a joint's torque asks for beyond the model at the positions that were read: how much that
+// changes within half a second, usually and while its position repeats.
+class BeyondModel {
+ public:
+  // `bursts`: of the joint; a coarse encoder's short ones are as usual as any rows.
+  BeyondModel(const Log& log, Index joint, const ExpectedTorque& expected,
+              const std::vector<Burst>& bursts)
+      : torque_(log.tau.col(joint)), beyond_(torque_) {
+    constexpr double kWindowS = 0.5;
+    constexpr Index kFewestRows = 8;
+    constexpr std::size_t kFewestWindows = 4;
+    constexpr double kNearlyAll = 0.95;
+    for (Index i = 0; i < beyond_.size(); ++i) beyond_[i] -= expected.at(log.t_s[i], joint);
+    rows_ = std::max(kFewestRows, static_cast<Index>(std::lround(kWindowS / log.period_s)));
+    std::vector<double> others;
+    for (Index first = 0; first + rows_ <= beyond_.size(); first += rows_ / 2) {
+      const bool repeats = std::any_of(bursts.begin(), bursts.end(), [&](const Burst& burst) {
+        return burst.length >= 2 * rows_ && first <= burst.end() && first + rows_ > burst.first;
+      });
+      if (!repeats) others.push_back(spread(beyond_, first));
+    }
+    if (others.size() < kFewestWindows) return;
+    usual_ = quantile(Eigen::Map<const VectorXd>(others.data(), static_cast<Index>(others.size())),
+                      kNearlyAll);
+  }
+
+  // The torque says that the joint moves: what it asks for changes as it never does where the
+  // position is read, again and again, and the drive gives it. One change would be a brake that
+  // takes over, or a spike.
+  [[nodiscard]] bool moves_during(const Burst& burst) const {
+    constexpr double kUnlike = 2;
+    constexpr double kGiven = 0.5;
+    constexpr int kWindows = 3;
+    if (!(usual_ > 0)) return false;
+    int found = 0;
+    for (Index first = burst.first; first + rows_ <= burst.end() + 1; first += rows_) {
+      const double asked = spread(beyond_, first);
+      if (asked > kUnlike * usual_ && spread(torque_, first) > kGiven * asked) ++found;
+    }
+    return found >= kWindows;
+  }
+
+ private:
+  // Standard deviation over one window.
+  [[nodiscard]] double spread(const VectorXd& x, Index first) const {
+    const auto window = x.segment(first, rows_).array();
+    return std::sqrt((window - window.mean()).square().mean());
+  }
+
+  VectorXd torque_;
+  VectorXd beyond_;
+  Index rows_ = 0;  // of a window
+  double usual_ = 0;
+};
+
 // As a drive or a logger takes to start.
 bool is_short(const Log& log, const Burst& burst) {
   constexpr double kStartS = 1;
@@ -142,14 +197,16 @@ std::vector<Burst> long_bursts(const VectorXd& x) {
   return bursts;
 }
 
-std::vector<Burst> stuck_positions(const Log& log, Index joint) {
+std::vector<Burst> stuck_positions(const Log& log, Index joint, const ExpectedTorque& expected) {
   const VectorXd q = log.q.col(joint);
   std::vector<Burst> bursts = long_bursts(q);
   if (bursts.empty() || stands_still(q)) return {};
   const BurstEnds ends(q);
+  const BeyondModel torque(log, joint, expected, bursts);
   const std::vector<Index> repeats_before = repeats_before_of(q);
   std::erase_if(bursts, [&](const Burst& burst) {
     if (is_next_to_gap(log, burst)) return true;
+    if (torque.moves_during(burst)) return false;
     // A coarse encoder holds its value for as long where the joint is slow.
     const bool usual = static_cast<double>(q.size()) * std::pow(own_repeats(repeats_before, burst),
                                                                 static_cast<double>(burst.length)) >
@@ -257,7 +314,8 @@ void find_stuck_values(const Log& log, const Log& even, const RobotDescription& 
   const ExpectedTorque expected(even, robot);
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     for (const bool position : {true, false}) {
-      auto bursts = position ? stuck_positions(log, joint) : stuck_torques(log, joint, expected);
+      auto bursts =
+          position ? stuck_positions(log, joint, expected) : stuck_torques(log, joint, expected);
       const auto signal = position ? FaultySignal::kPosition : FaultySignal::kTorque;
       std::erase_if(bursts,
                     [&](const Burst& burst) { return is_known(faults, joint, signal, burst); });
