@@ -176,6 +176,18 @@ class Importer {
     std::array<double, 6> tensor{given.ixx, given.iyy, given.izz, given.ixy, given.ixz, given.iyz};
     const bool no_tensor = tensor == std::array<double, 6>{};
     if (given.mass == 0 && no_tensor) return std::nullopt;
+    // What simulators ask of a frame that is no body.
+    constexpr double kOfAFrame = 1e-4;  // kg m^2
+    const double largest =
+        std::abs(*std::max_element(tensor.begin(), tensor.end(), [](double a, double b) {
+          return std::abs(a) < std::abs(b);
+        }));
+    if (given.mass == 0 && largest <= kOfAFrame) {
+      note(Kind::kLeftOut, line_of(link),
+           fmt::format("the inertia of link `{}`, {:g} kg m^2: it has no mass", link.name,
+                       largest));
+      return std::nullopt;
+    }
     if (given.mass == 0) {
       refuse(place, "an inertia and a mass of 0", "both, or neither",
              "give the link's mass, or an inertia of zeros");

@@ -166,6 +166,23 @@ TEST(ImportUrdf, SaysWhatItMergedHeldLeftOutAndAssumed) {
   EXPECT_THAT(notes, Not(Contains(HasSubstr("tip `"))));
 }
 
+// Of a tool's frame simulators ask for an inertia, and it is none of the arm's.
+TEST(ImportUrdf, LeavesOutTheInertiaOfAFrameThatHasNoMass) {
+  std::string text = sample_arm().text();
+  const auto end = text.find("</robot>");
+  ASSERT_NE(end, std::string::npos);
+  text.insert(end,
+              "<link name=\"tcp\"><inertial><mass value=\"0\"/>"
+              "<inertia ixx=\"1e-6\" ixy=\"0\" ixz=\"0\" iyy=\"1e-6\" iyz=\"0\" izz=\"1e-6\"/>"
+              "</inertial></link><joint name=\"tcp_joint\" type=\"fixed\">"
+              "<parent link=\"hand\"/><child link=\"tcp\"/></joint>");
+  const auto with_frame = import_urdf(text, "arm.urdf", sample_arm().chain());
+  EXPECT_THAT(notes_of(with_frame), Contains(HasSubstr("the inertia of link `tcp`, 1e-06 kg m^2")));
+  const auto without = imported_arm();
+  EXPECT_EQ(with_frame.robot.joints.back().joint.inertia_kg_m2,
+            without.robot.joints.back().joint.inertia_kg_m2);
+}
+
 TEST(ImportUrdf, TakesTheRootAndTheOnlyTipAndSaysSo) {
   std::string text = sample_arm().text();
   for (const char* grip : {"\"grip\" type=\"prismatic\"", "\"other_grip\" type=\"prismatic\""}) {
