@@ -87,6 +87,12 @@ class Proposer {
       look_.notes.push_back("these would do as well, by their names: " +
                             list_of(roles_.other_families));
     }
+    if (!roles_.not_measured.empty()) {
+      look_.notes.push_back(
+          "not taken, since by their names they were asked for, act from outside or come from a "
+          "model: " +
+          list_of(roles_.not_measured) + "; what is meant all the same can be named in [channels]");
+    }
   }
 
   // A current is a motor's, and so is what is called so.

@@ -137,6 +137,31 @@ TEST_F(LookProposal, WhatIsCalledAMotorsIsReadAsAMotors) {
   EXPECT_THROW(pasted(seen, robot_text({"a"})), InputError);
 }
 
+// As libfranka writes its log (logToCSV), of two joints; its time is in ms.
+TEST_F(LookProposal, OfALogOfLibfrankaTheMeasuredColumnsAreTaken) {
+  std::string log =
+      "time, success_rate, state.q_d[0], state.q_d[1],state.q[0], state.q[1],state.dq[0], "
+      "state.dq[1],state.dq_d[0], state.dq_d[1],state.tau_J[0], "
+      "state.tau_J[1],state.tau_ext_hat_filtered[0], state.tau_ext_hat_filtered[1],cmd.tau_J_d[0], "
+      "cmd.tau_J_d[1]\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = 0.001 * i;
+    const auto both = [&](double (*of)(int, double), double scale) {
+      return "," + std::to_string(scale * of(0, t)) + "," + std::to_string(scale * of(1, t));
+    };
+    log += std::to_string(i) + ",1" + both(position, 1.01) + both(position, 1) + both(velocity, 1) +
+           both(velocity, 1.01) + both(torque, 1) + both(torque, 0.1) + both(torque, 0.9) + "\n";
+  }
+  const Look seen = look(log, robot_text({"panda_joint1", "panda_joint2"}));
+  EXPECT_THAT(seen.missing, IsEmpty());
+  EXPECT_THAT(channels_text(seen), HasSubstr(R"(time = {source = "time", unit = "ms"})"));
+  EXPECT_EQ(seen.channels.position[1].source, "state.q[1]");
+  EXPECT_EQ(seen.channels.velocity[1]->source, "state.dq[1]");
+  EXPECT_EQ(seen.channels.torque[1].source, "state.tau_J[1]");
+  EXPECT_THAT(seen.notes, Contains(HasSubstr("state.q_d[#], state.dq_d[#], "
+                                             "state.tau_ext_hat_filtered[#], cmd.tau_J_d[#]")));
+}
+
 TEST_F(LookProposal, NamesOfJointsStandInTheRobotsOrder) {
   const std::string robot = robot_text({"shoulder_pan_joint", "elbow_joint"});
   const Look seen = look(
