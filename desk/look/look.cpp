@@ -59,6 +59,7 @@ class Proposer {
     } else if (!guess.left.empty() && !roles_.position.empty()) {
       look_.notes.push_back("torques or currents are among the columns " + list_of(guess.left));
     }
+    left_ = std::move(guess.left);
   }
 
   void taken_for(const std::string& name, Role role) {
@@ -135,15 +136,21 @@ class Proposer {
     const ChannelMap& map = look_.channels;
     const std::string each =
         joints > 0 ? fmt::format("one for each of {} joints", joints) : "one for each joint";
-    const std::string told = look_.has_names ? ", told by their names" : "";
+    const auto told = [&](const char* key, std::size_t count) {
+      return look_.has_names ? ", told by their names" : ": " + line_to_write(key, count);
+    };
+    const auto wanted = static_cast<std::size_t>(std::max(joints, 0));
     if (!look_.t_s) {
       look_.missing.emplace_back(
           "a column of time: name it under [channels], or say period_s, the time between two "
           "samples");
     }
-    if (map.position.empty()) look_.missing.push_back("positions, " + each + told);
+    if (map.position.empty()) {
+      look_.missing.push_back("positions, " + each + told("position", wanted));
+    }
     if (map.torque.empty()) {
-      look_.missing.push_back("torques or currents, " + each + told);
+      look_.missing.push_back("torques or currents, " + each +
+                              told("torque", std::max(wanted, map.position.size())));
     } else if (!map.position.empty() && map.torque.size() != map.position.size()) {
       look_.missing.push_back(
           fmt::format("{} positions and {} torques", map.position.size(), map.torque.size()));
@@ -152,6 +159,17 @@ class Proposer {
       look_.missing.emplace_back("the scale of the voltages, N m per V: scale or scale_source");
     }
     say_transmission();
+  }
+
+  // Of a file without names, where the numbers do not tell: with all that is left, or some of it.
+  std::string line_to_write(const char* key, std::size_t count) const {
+    if (left_.empty()) return "the file has no columns left";
+    if (left_.size() == count) {
+      return fmt::format("{} = [{}] says so", key, fmt::join(left_, ", "));
+    }
+    return fmt::format("{} = [...] with the number{} of {} of the columns {}", key,
+                       count == 1 ? "" : "s", count == 0 ? "some" : std::to_string(count),
+                       list_of(left_));
   }
 
   // What channels of motors are refused without.
@@ -176,6 +194,7 @@ class Proposer {
   LookedFiles files_;
   const RobotDescription* robot_;
   Roles roles_;
+  std::vector<std::string> left_;  // columns of a file without names that are nothing
   Look look_;
 };
 

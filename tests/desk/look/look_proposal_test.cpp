@@ -208,6 +208,55 @@ TEST_F(LookProposal, WhatNumbersDoNotTellIsLeftAndNeverNoToml) {
   EXPECT_THROW(pasted(seen, robot), InputError);
 }
 
+// Time, position, and two columns of what `third` and `fourth` give.
+template <typename Third, typename Fourth>
+std::string four_columns(const Third& third, const Fourth& fourth) {
+  std::string text;
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    text += std::to_string(t) + "," + std::to_string(position(0, t)) + "," +
+            std::to_string(third(t)) + "," + std::to_string(fourth(t)) + "\n";
+  }
+  return text;
+}
+
+// As of a joint whose torque is its viscous friction.
+TEST_F(LookProposal, WithoutAHeaderTwoThatMayBeTheVelocityAreNeither) {
+  const auto dq = [](double t) { return velocity(0, t); };
+  const auto viscous = [](double t) { return 1.02 * velocity(0, t) + 0.01 * std::sin(40 * t); };
+  for (const std::string& content : {four_columns(dq, viscous), four_columns(viscous, dq)}) {
+    const Look seen = look(content);
+    const std::string text = channels_text(seen);
+    EXPECT_THAT(text, HasSubstr("position = [2]   # guessed"));
+    EXPECT_THAT(text, Not(HasSubstr("\nvelocity")));
+    EXPECT_THAT(text, Not(HasSubstr("\ntorque")));
+    EXPECT_THAT(seen.notes, Contains(HasSubstr("which is the velocity")));
+    EXPECT_THAT(text, HasSubstr("torque = [...] with the number of 1 of the columns 3, 4"));
+    EXPECT_THROW(pasted(seen, robot_text({"a"})), InputError);
+  }
+}
+
+TEST_F(LookProposal, WithoutAHeaderNothingIsTakenForATorqueThatIsKnownAlready) {
+  const auto dq = [](double t) { return velocity(0, t); };
+  struct Case {
+    double (*column)(double t);
+    const char* why;
+  };
+  for (const Case& one :
+       {Case{[](double t) { return kDegrees * position(0, t); }, "has 3 as its derivative"},
+        Case{[](double t) { return -4 * velocity(0, t) + 1; }, "is 3 times a factor"},
+        Case{[](double t) { return -4 * position(0, t); }, "is the derivative of 3"},
+        Case{[](double t) { return 0.3 * position(0, t); }, "is 2 times a factor"},
+        Case{[](double) { return 0.0; }, "never changes"},
+        Case{[](double t) { return 3 * t + 1; }, "ascends all the time"}}) {
+    const Look seen = look(four_columns(dq, one.column));
+    EXPECT_THAT(channels_text(seen), HasSubstr("velocity = [3]   # guessed")) << one.why;
+    EXPECT_THAT(channels_text(seen), Not(HasSubstr("\ntorque"))) << one.why;
+    EXPECT_THAT(seen.notes, Contains(HasSubstr(std::string("column 4 ") + one.why)));
+    EXPECT_THAT(seen.missing, Contains(HasSubstr("torque = [4] says so")));
+  }
+}
+
 TEST_F(LookProposal, DegreesAreOfPositionAndVelocityAndOfEveryJoint) {
   const std::string robot = robot_text({"a", "b"});
   const std::string header = "t,q1,q2,dq1,dq2,tau1,tau2\n";
