@@ -58,4 +58,10 @@ std::string input_name(const std::string& file) {
   return std::filesystem::path(file).filename().string();
 }
 
+std::string extension_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension;
+}
+
 }  // namespace offnominal::desk

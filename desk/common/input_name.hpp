@@ -24,4 +24,7 @@ std::string shown_name(const std::filesystem::path& file);
 // "positions.csv+currents.csv".
 std::string input_name(const std::string& file);
 
+/// ".csv", in small letters; empty: none.
+[[nodiscard]] std::string extension_of(const std::filesystem::path& file);
+
 }  // namespace offnominal::desk

@@ -287,7 +287,7 @@ const char* name_of(DhConvention convention) {
 }
 
 DhTable read_dh_table(const std::filesystem::path& path, std::optional<DhConvention> convention) {
-  const bool is_toml = in_small_letters(path.extension().string()) == ".toml";
+  const bool is_toml = extension_of(path) == ".toml";
   DhTable table = is_toml ? read_toml(path, convention) : read_csv_table(path, convention);
   if (table.rows.empty() || table.rows.size() > static_cast<std::size_t>(kMaxJoints)) {
     refuse(path, "", fmt::format("{} joints", table.rows.size()),
