@@ -147,6 +147,11 @@ std::vector<Habit> habits() {
   const std::string dates = lines(with([](Cells& cells) {
     cells.time = [](int i) { return "2026-11-24T23:59:59." + std::to_string(100 + 10 * i) + "Z"; };
   }));
+  const std::string german_dates = lines(with([](Cells& cells) {
+    cells.separator = ";";
+    cells.point = ',';
+    cells.time = [](int i) { return "24.11.2026 23:59:59," + std::to_string(100 + 10 * i); };
+  }));
   const std::string nanoseconds = lines(with([](Cells& cells) {
     cells.time = [](int i) { return std::to_string(1763942400123456789 + 10'000'000LL * i); };
   }));
@@ -224,6 +229,10 @@ std::vector<Habit> habits() {
       {"gzip in two members", packed(kHeader + plain.substr(0, 100)) + packed(plain.substr(100))},
       {"gzip of UTF-16", packed(utf16(kHeader + plain, false))},
       {"dates in ISO 8601", kHeader + dates, {}, "t = 0 s is 2026-11-24T23:59:59.100Z"},
+      {"dates with dots",
+       "t;q1;dq1;tau1\n" + german_dates,
+       {},
+       "t = 0 s is 24.11.2026 23:59:59,100"},
       {"nanoseconds since 1970", kHeader + nanoseconds,
        "time = {source = 't', unit = 'ns'}\nposition = 'q1'\nvelocity = 'dq1'\ntorque = 'tau1'",
        "of the file's own clock"},
@@ -288,6 +297,20 @@ TEST(CsvHabits, WhatHasToBeSaidIsAskedFor) {
                       "time = {source = 't', unit = 'ms'}\nposition = 'q1'\n"
                       "torque = 'tau1'"),
               testing::AllOf(HasSubstr("dates"), HasSubstr("leave unit and scale out")));
+}
+
+TEST(CsvHabits, OfTimesThatMayBeReadInTwoWaysItSaysHowToWriteThem) {
+  for (const char* day : {"11/24/2026 ", "", "24.11.26 "}) {
+    const std::string text =
+        kHeader + lines(with([&](Cells& cells) {
+          cells.time = [day](int i) { return day + ("10:00:00." + std::to_string(100 + i)); };
+        }));
+    EXPECT_THAT(refusal(text),
+                testing::AllOf(HasSubstr("line 2, column t: found \"" + std::string(day) + "10:00"),
+                               HasSubstr("24.11.2026 02:14:30.123"), HasSubstr("--period")));
+  }
+  EXPECT_THAT(refusal(kHeader + "oops,0,0,0\n"),
+              testing::EndsWith("a number with a decimal point"));
 }
 
 TEST(CsvHabits, LinesAreCountedAsTheFileHasThem) {
