@@ -38,8 +38,7 @@ bool has_marks_of_a_clock(std::string_view text) {
   const auto twice = [](std::string_view in, char mark) {
     return std::count(in.begin(), in.end(), mark) > 1;
   };
-  return text.find_first_of(":/") != std::string_view::npos || twice(text, '.') ||
-         twice(text, '-');
+  return text.find_first_of(":/") != std::string_view::npos || twice(text, '.') || twice(text, '-');
 }
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -153,9 +152,16 @@ class CsvReader {
   }
 
   bool next(std::string_view& line) {
-    if (!file_.next_line(line)) return false;
+    if (ahead_ < layout_.ahead.size()) {
+      line = layout_.ahead[ahead_].first;
+      unfinished_ = !layout_.ahead[ahead_].second;
+      ++ahead_;
+    } else if (file_.next_line(line)) {
+      unfinished_ = !file_.line_ended();
+    } else {
+      return false;
+    }
     ++line_number_;
-    unfinished_ = !file_.line_ended();
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     return true;
   }
@@ -396,6 +402,7 @@ class CsvReader {
   RecordingFile& file_;
   const NeedOf& need_of_;
   CsvLayout layout_;
+  std::size_t ahead_ = 0;  // lines of the layout that were taken
   std::size_t line_number_ = 0;
   std::size_t last_line_ = 0;  // that holds a row
   std::vector<std::size_t> blank_lines_;

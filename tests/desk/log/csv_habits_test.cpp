@@ -202,6 +202,22 @@ std::vector<Habit> habits() {
       {"comments before the header", "# drive 3\n# 24 November\n" + kHeader + plain},
       {"comments between samples", kHeader + commented},
       {"comments behind a %", "% drive 3\n" + kHeader + plain},
+      {"a title above the header",
+       "Axis 3, run 7\n" + kHeader + plain,
+       {},
+       "line 1 stands before the header"},
+      {"settings above the header",
+       "Measurement of axis 3\n\nrate: 100 Hz\n7\n\n" + kHeader + plain,
+       {},
+       "lines 1 to 5 stand before the header"},
+      {"settings above a header with units",
+       "Operator;Smith\r\nRate;100\r\nt;q1;dq1;tau1\r\ns;rad;rad/s;Nm\r\n" +
+           lines(with([](Cells& cells) {
+             cells.separator = ";";
+             cells.end = "\r\n";
+           })),
+       {},
+       "lines 1 to 2 stand before the header"},
       {"blank lines before the header", "\n\n" + kHeader + plain},
       {"a line of units", kHeader + "s,rad,rad/s,Nm\n" + plain},
       {"a line of other units",
@@ -319,6 +335,20 @@ TEST(CsvHabits, LinesAreCountedAsTheFileHasThem) {
   EXPECT_THAT(refusal(text), HasSubstr("line 9, column q1"));
   text = kHeader + lines({}, 12) + "# the gripper closes\n0.12,1,1,2\n0.12,1,1,2\n0.12,1,1,2\n";
   EXPECT_THAT(refusal(text), HasSubstr("line 16, time"));
+}
+
+// Nothing that has numbers of its own is passed over.
+TEST(CsvHabits, ARecordingInFrontOfAnotherIsNoPreamble) {
+  EXPECT_THAT(refusal("t,q1,dq1,tau1\n0,1,2\n" + kHeader + lines({})),
+              HasSubstr("line 2: found 3"));
+  EXPECT_THAT(refusal("axis 3\n0,1,2,3\n" + kHeader + lines({})), HasSubstr("the number 3"));
+  EXPECT_THAT(refusal("axis 3\n0,1,2,idle\n" + kHeader + lines({})), HasSubstr("the number 3"));
+  EXPECT_THAT(refusal("axis 3\nand no numbers\n"), HasSubstr("line 1"));
+}
+
+TEST(CsvHabits, LinesBelowAPreambleAreCountedAsTheFileHasThem) {
+  EXPECT_THAT(refusal("Axis 3, run 7\nrate 100 Hz\n" + kHeader + lines({}, 3) + "0.03,oops,1,2\n"),
+              HasSubstr("line 7, column q1"));
 }
 
 // A clock of whole seconds, or one that begins anew, under a name that would else be the time.
