@@ -180,6 +180,13 @@ class Assembler {
            "put one before them, or say the columns' numbers: [channels] with time = 1, position = "
            "[2], torque = [3] in the robot's file, or in one for --channels");
     }
+    if (joints.empty() && prefix == "tau") {
+      fail("columns", names_found(columns_) + ", and no torque",
+           fmt::format("tau1..tau{}, or torques or currents by other names", joints_),
+           std::string(kMendNames) +
+               "; where the drives' torques or currents were not recorded, record them too: "
+               "without them a model has nothing to be compared with");
+    }
     if (joints.empty()) {
       fail("columns", names_found(columns_),
            fmt::format("t, q1..q{0}, dq1..dq{0}, tau1..tau{0}", joints_), kMendNames);

@@ -150,7 +150,8 @@ class Proposer {
     }
     if (map.torque.empty()) {
       look_.missing.push_back("torques or currents, " + each +
-                              told("torque", std::max(wanted, map.position.size())));
+                              told("torque", std::max(wanted, map.position.size())) +
+                              "; without them a model has nothing to be compared with");
     } else if (!map.position.empty() && map.torque.size() != map.position.size()) {
       look_.missing.push_back(
           fmt::format("{} positions and {} torques", map.position.size(), map.torque.size()));
