@@ -326,8 +326,7 @@ class CsvReader {
         fail(place, found,
              "a time in s, or a date with its time: 2026-11-24T02:14:30.123 or 24.11.2026 "
              "02:14:30.123",
-             "write the times so, or take the column away and say the step between two samples: "
-             "--period");
+             "write the times so, or say the step between two samples: --period");
       }
       fail(place, found, "a number with a decimal point");
     }

@@ -345,7 +345,7 @@ void shorten_time(NamedColumns& columns) {
   columns.remarks.emplace_back("column time is the time t");
 }
 
-TimedColumns read_file(const std::filesystem::path& path, const std::optional<ChannelMap>& channels,
+TimedColumns read_file(RecordingFile& recording, const std::optional<ChannelMap>& channels,
                        double period_s, std::size_t file, std::size_t files) {
   NeedOf need_of = needs_of(channels, file, files);
   if (!channels && period_s > 0) {
@@ -354,7 +354,6 @@ TimedColumns read_file(const std::filesystem::path& path, const std::optional<Ch
       return name == "t" ? Need::kNone : of_names(name);
     };
   }
-  RecordingFile recording(path);
   TimedColumns read;
   read.columns = log_format_of(recording).read(recording, channels ? &*channels : nullptr, need_of);
   if (channels && channels->at_rest) return read;
@@ -373,14 +372,18 @@ TimedColumns read_file(const std::filesystem::path& path, const std::optional<Ch
 TimedColumns read_files(const std::filesystem::path& path,
                         const std::optional<ChannelMap>& channels, double period_s) {
   const std::vector<std::filesystem::path> paths = recording_files(path);
-  if (paths.size() == 1) return read_file(path, channels, period_s, 0, 1);
+  if (paths.size() == 1) {
+    RecordingFile recording(path);
+    return read_file(recording, channels, period_s, 0, 1);
+  }
   if (channels && channels->at_rest) {
     throw InputError({path.string(), "", fmt::format("{} files", paths.size()),
                       "one, as the channels' at_rest = true says", "join them before"});
   }
   std::vector<TimedColumns> files;
   for (std::size_t file = 0; file < paths.size(); ++file) {
-    files.push_back(read_file(paths[file], channels, period_s, file, paths.size()));
+    RecordingFile recording(paths[file], path);
+    files.push_back(read_file(recording, channels, period_s, file, paths.size()));
     if (files.back().time.t_s.size() >= 2) continue;
     throw InputError({files.back().columns.file, "",
                       fmt::format("{} samples", files.back().time.t_s.size()),

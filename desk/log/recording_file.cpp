@@ -33,12 +33,18 @@ bool write_all(int file, std::string_view content) {
 
 }  // namespace
 
-RecordingFile::RecordingFile(const std::filesystem::path& path)
+RecordingFile::RecordingFile(const std::filesystem::path& path, const std::filesystem::path& joined)
     : path_(path), name_(shown_name(path)) {
   const int file = names_standard_input(path) ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
                                               : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const int error = errno;
-  if (file < 0 && error == ENOENT) fail("", "no such file", allowed());
+  if (file < 0 && error == ENOENT) {
+    fail("", "no such file", allowed(),
+         joined.empty() || joined == path
+             ? ""
+             : "check the name: " + joined.string() +
+                   " was read as files that + joins, since there is none of that whole name");
+  }
   if (file < 0) {
     fail("", "a file that cannot be opened (" + std::generic_category().message(error) + ")",
          allowed());

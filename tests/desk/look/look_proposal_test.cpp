@@ -357,6 +357,19 @@ TEST_F(LookProposal, FilesOfOneRecordingAreJoined) {
   EXPECT_THROW(static_cast<void>(look_at(both, nullptr, std::nullopt)), InputError);
 }
 
+TEST_F(LookProposal, BesideAPeriodTheTimeMayBeAnything) {
+  std::string text = "t,q1,dq1,tau1\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    text += "11/24/2026," + std::to_string(position(0, t)) + "," + std::to_string(velocity(0, t)) +
+            "," + std::to_string(torque(0, t)) + "\n";
+  }
+  EXPECT_THROW(static_cast<void>(look(text)), InputError);
+  const Look seen = look_at(folder_ / "a.csv", nullptr, kPeriodS);
+  EXPECT_THAT(seen.missing, IsEmpty());
+  EXPECT_THAT(channels_text(seen), HasSubstr("period_s = 0.01"));
+}
+
 TEST_F(LookProposal, TimeDoesNotRest) {
   // Of which fifty rows are less than a thousandth.
   std::string text = "t,q1,tau1\n";
