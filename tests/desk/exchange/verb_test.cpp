@@ -59,6 +59,23 @@ TEST(ImportUrdfVerb, WritesNothingWhereItHasToAsk) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST(ImportUrdfVerb, ReadsStandardInput) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "arm.toml").string();
+  const auto piped = [&](const std::string& input) {
+    return run_command(command_file(), {"import-urdf", "-", "--tip", "hand", "-o", out}, {}, input);
+  };
+  const CommandResult result = piped(sample_arm().file.string());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(desk::read_robot_file(out).joint_count(), 3);
+  EXPECT_THAT(content_of(out), HasSubstr("URDF standard input"));
+  std::filesystem::remove(out);
+  put(folder / "arm.xacro", "<robot name=\"a\"><xacro:include filename=\"b\"/></robot>");
+  EXPECT_THAT(piped((folder / "arm.xacro").string()).err,
+              testing::AllOf(testing::StartsWith("standard input: line 1: found <xacro:include>"),
+                             HasSubstr("xacro FILE | offnominal import-urdf - ")));
+}
+
 TEST(NewVerb, WritesTheGeometryOfATableAndBlanks) {
   const TemporaryFolder folder;
   put(folder / "table.csv", "a_m,alpha_deg,d_m,theta_deg\n0,90,0.4,0\n0.3,0,0,0\n");
