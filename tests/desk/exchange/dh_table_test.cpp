@@ -13,6 +13,7 @@
 #include "desk/support/temporary_folder.hpp"
 #include "exchange/blank_robot.hpp"
 #include "robot/robot_file.hpp"
+#include "support/places.hpp"
 #include "support/repetitions.hpp"
 #include "support/seed.hpp"
 
@@ -181,6 +182,15 @@ TEST(DhTable, IsInTheUnitThatItsNamesSay) {
           .rows[0]
           .a_m,
       17);
+}
+
+TEST(DhTable, TheSampleInMillimetresIsRead) {
+  const DhTable table =
+      read_dh_table(source_dir() / "tests" / "fuzz" / "corpus" / "dh" / "millimetres.csv",
+                    DhConvention::kStandard);
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_DOUBLE_EQ(table.rows[0].d_m, 0.4);
+  EXPECT_DOUBLE_EQ(table.rows[1].a_m, 0.3);
 }
 
 TEST(DhTable, NumbersOfAnotherUnitThanTheNameSaysAreRefused) {

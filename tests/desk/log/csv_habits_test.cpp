@@ -15,6 +15,7 @@
 #include "desk/support/temporary_file.hpp"
 #include "log/read_log.hpp"
 #include "robot/channels.hpp"
+#include "support/places.hpp"
 
 namespace {
 
@@ -279,6 +280,25 @@ TEST(CsvHabits, EachIsReadRight) {
       EXPECT_THAT(log.remarks, testing::Contains(HasSubstr(habit.remark)));
     }
   }
+}
+
+// Files as they come, which the fuzzers begin with too.
+TEST(CsvHabits, SamplesOfTheCorpusAreRead) {
+  const auto read_sample = [](const char* name) {
+    return offnominal::desk::read_log(
+        offnominal::test::source_dir() / "tests" / "fuzz" / "corpus" / "csv" / name, 2,
+        std::nullopt);
+  };
+  const Log common = read_sample("title.csv");
+  const Log dates = read_sample("dates.csv");
+  for (const Log& log : {common, dates}) {
+    ASSERT_EQ(log.sample_count(), 12);
+    EXPECT_NEAR(log.period_s, 0.01, 1e-9);
+    EXPECT_EQ(log.q(11, 1), 0.497);
+    EXPECT_EQ(log.tau(1, 0), 1.49);
+  }
+  EXPECT_THAT(common.remarks, testing::Contains("lines 1 to 4 stand before the header: left out"));
+  EXPECT_THAT(dates.remarks, testing::Contains(HasSubstr("t = 0 s is 24.11.2026 23:59:59,000")));
 }
 
 TEST(CsvHabits, APeriodFromTheCommandLineTakesThePlaceOfTheTime) {

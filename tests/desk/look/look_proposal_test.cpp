@@ -13,6 +13,7 @@
 #include "look/look_report.hpp"
 #include "robot/channels.hpp"
 #include "robot/robot_file.hpp"
+#include "support/places.hpp"
 
 // What look proposes where names or units alone do not tell, and what it shows of channels that a
 // robot file has.
@@ -160,6 +161,17 @@ TEST_F(LookProposal, OfALogOfLibfrankaTheMeasuredColumnsAreTaken) {
   EXPECT_EQ(seen.channels.torque[1].source, "state.tau_J[1]");
   EXPECT_THAT(seen.notes, Contains(HasSubstr("state.q_d[#], state.dq_d[#], "
                                              "state.tau_ext_hat_filtered[#], cmd.tau_J_d[#]")));
+}
+
+// The same with what it has beside: a pose, the commands, and too few rows to judge a velocity.
+TEST_F(LookProposal, TheSampleOfLibfrankaNeedsNothingSaid) {
+  const Look seen =
+      look_at(test::source_dir() / "tests" / "fuzz" / "corpus" / "csv" / "libfranka.csv", nullptr,
+              std::nullopt);
+  EXPECT_THAT(seen.missing, IsEmpty());
+  EXPECT_EQ(seen.channels.time.source, "time");
+  EXPECT_EQ(seen.channels.position[0].source, "state.q[0]");
+  EXPECT_EQ(seen.channels.torque[1].source, "state.tau_J[1]");
 }
 
 TEST_F(LookProposal, NamesOfJointsStandInTheRobotsOrder) {
