@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "common/error.hpp"
 #include "common/file.hpp"
@@ -276,7 +277,8 @@ DhTable read_csv_table(const std::filesystem::path& path, std::optional<DhConven
     row.theta_rad = in_column(kTheta, theta);
     table.rows.push_back(row);
   }
-  table.notes = doubts.notes();
+  table.notes = read.remarks;
+  for (std::string& note : doubts.notes()) table.notes.push_back(std::move(note));
   return table;
 }
 

@@ -32,7 +32,8 @@ struct DhRow {
 struct DhTable {
   DhConvention convention = DhConvention::kStandard;
   std::vector<DhRow> rows;  // 1 to kMaxJoints, from the base outwards
-  // Numbers that look like those of another unit than their name says.
+  // What was left out of the file, and numbers that look like those of another unit than their name
+  // says.
   std::vector<std::string> notes;
 };
 

@@ -211,6 +211,14 @@ TEST(DhTable, NumbersOfAnotherUnitThanTheNameSaysAreRefused) {
               HasSubstr("line 5, joint[1].theta_rad: found 180 rad"));
 }
 
+TEST(DhTable, ATitleAboveItIsLeftOutAndTold) {
+  const DhTable table =
+      read("a.csv", "Arm 7, data sheet\na_m,alpha_deg,d_m,theta_deg\n0,90,0.4,0\n",
+           DhConvention::kStandard);
+  EXPECT_EQ(table.rows.size(), 1U);
+  EXPECT_THAT(table.notes, testing::ElementsAre("line 1 stands before the header: left out"));
+}
+
 TEST(DhTable, NumbersThatMayBeOfAnotherUnitAreTold) {
   const DhTable table =
       read("a.csv", "a_mm,alpha_deg,d_mm,theta_deg\n0,1.5708,0.4,-3.1416\n0.3,-1.5708,0,12\n",
