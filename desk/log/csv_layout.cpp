@@ -58,7 +58,8 @@ class LayoutReader {
   CsvLayout read() {
     std::string line;
     if (!next_content(line)) {
-      fail("", "an empty file", "a header line and one line per sample");
+      fail("", "an empty file", "a header line and one line per sample",
+           "check the name, and whether the recording was saved");
     }
     take_separator_line(line);
     if (layout_.separator == 0) leave_out_preamble(line);

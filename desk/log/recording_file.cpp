@@ -41,7 +41,7 @@ RecordingFile::RecordingFile(const std::filesystem::path& path, const std::files
   if (file < 0 && error == ENOENT) {
     fail("", "no such file", allowed(),
          joined.empty() || joined == path
-             ? ""
+             ? "check the name"
              : "check the name: " + joined.string() +
                    " was read as files that + joins, since there is none of that whole name");
   }
@@ -51,7 +51,11 @@ RecordingFile::RecordingFile(const std::filesystem::path& path, const std::files
   }
   stream_ = stream_of(file);
   struct stat status {};
-  if (::fstat(file, &status) == 0 && S_ISDIR(status.st_mode)) fail("", "a folder", allowed());
+  if (::fstat(file, &status) == 0 && S_ISDIR(status.st_mode)) {
+    fail("", "a folder", allowed(),
+         "name the recordings in it; of a bag of ROS 2, write the topic as CSV: ros2 topic echo "
+         "--csv");
+  }
   try {
     stream_ = plain_stream(std::move(stream_), is_as_stored_);
   } catch (const StreamError& problem) {
