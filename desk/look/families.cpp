@@ -170,6 +170,12 @@ std::vector<std::string> other_words(const std::string& name) {
   return words;
 }
 
+bool may_be_asked_for(const Family& family) {
+  if (family.members.empty() || family.members[0].number < 0) return false;
+  const std::vector<std::string> words = bare_words(family.name);
+  return std::any_of(words.begin(), words.end(), is_letter_of_asked);
+}
+
 std::vector<Family> take_not_measured(std::vector<Family>& families) {
   std::vector<Family> measured;
   std::vector<Family> others;

@@ -43,4 +43,7 @@ struct Family {
 // a letter may be anything.
 [[nodiscard]] std::vector<Family> take_not_measured(std::vector<Family>& families);
 
+// Whether the name of a numbered family has such a letter, alone as it may be.
+[[nodiscard]] bool may_be_asked_for(const Family& family);
+
 }  // namespace offnominal::desk

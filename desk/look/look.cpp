@@ -88,6 +88,12 @@ class Proposer {
       look_.notes.push_back("these would do as well, by their names: " +
                             list_of(roles_.other_families));
     }
+    if (!roles_.may_be_asked_for.empty()) {
+      look_.notes.push_back(
+          "taken for want of a plainer name, and no measurement where d, r or c in it is of "
+          "desired, reference or commanded: " +
+          list_of(roles_.may_be_asked_for));
+    }
     if (!roles_.not_measured.empty()) {
       look_.notes.push_back(
           "not taken, since by their names they were asked for, act from outside or come from a "

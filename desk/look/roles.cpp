@@ -150,6 +150,7 @@ class Chooser {
     if (best == nullptr) return columns;
     for (const FamilyMember& member : best->members) columns.push_back(member.column);
     of_motor = best->of_motor;
+    if (may_be_asked_for(*best)) roles_.may_be_asked_for.push_back(best->name);
     for (const Family& family : families_) {
       if (&family != best && fits(family)) roles_.other_families.push_back(family.name);
     }

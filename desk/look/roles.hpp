@@ -37,6 +37,8 @@ struct Roles {
   std::vector<std::string> other_families;  // of the same roles, that would do as well
   // That are as many, and by their names were asked for, act from outside or come from a model.
   std::vector<std::string> not_measured;
+  // That are taken for want of a plainer name, and may have been asked for: "q_d_#".
+  std::vector<std::string> may_be_asked_for;
   std::string order;  // how joints that have names stand; empty: by number
 };
 

@@ -118,9 +118,10 @@ TEST(Roles, WhatSaysThatItWasMeasuredComesFirst) {
 }
 
 // It may be the name of a joint, or say how it came about.
-TEST(Roles, ALetterAloneSaysNothing) {
-  EXPECT_THAT(roles_of({"t", "q_d_1", "q_d_2", "tau_1", "tau_2"}).position,
-              ElementsAre("q_d_1", "q_d_2"));
+TEST(Roles, ALetterAloneIsTakenAndTold) {
+  const Roles roles = roles_of({"t", "q_d_1", "q_d_2", "tau_1", "tau_2"});
+  EXPECT_THAT(roles.position, ElementsAre("q_d_1", "q_d_2"));
+  EXPECT_THAT(roles.may_be_asked_for, ElementsAre("q_d_#"));
   EXPECT_THAT(roles_of({"t", "pos_b", "pos_d", "tau_b", "tau_d"}).position,
               ElementsAre("pos_b", "pos_d"));
 }
