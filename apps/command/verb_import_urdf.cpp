@@ -6,6 +6,7 @@
 #include "command/answer.hpp"
 #include "command/verbs.hpp"
 #include "common/file.hpp"
+#include "common/input_name.hpp"
 #include "common/output_file.hpp"
 #include "exchange/import_report.hpp"
 #include "exchange/import_urdf.hpp"
@@ -22,8 +23,9 @@ struct ImportOptions {
 };
 
 void run(const ImportOptions& options) {
+  const std::string file = names_standard_input(options.urdf) ? "/dev/stdin" : options.urdf;
   const exchange::ImportedRobot imported =
-      exchange::import_urdf(read_text_file(options.urdf), options.urdf, options.chain);
+      exchange::import_urdf(read_text_file(file), shown_name(options.urdf), options.chain);
   const std::string text = exchange::robot_text_of(imported, options.urdf);
   static_cast<void>(parse_robot(text, options.output + " (to be written)"));
   write_file_atomically(options.output, text, options.answer.existing());
@@ -42,7 +44,9 @@ void run(const ImportOptions& options) {
 
 void set_up_import_urdf(CLI::App& verb, ExitCode& /*exit_code*/) {
   const auto options = std::make_shared<ImportOptions>();
-  verb.add_option("URDF", options->urdf, "URDF file; xacro has to be expanded first")->required();
+  verb.add_option("URDF", options->urdf,
+                  "URDF file, or - for standard input; xacro has to be expanded first")
+      ->required();
   verb.add_option(
       "--base", options->chain.base,
       "Link that stands still, whose frame the robot file's base is. Default: the root");

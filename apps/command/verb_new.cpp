@@ -23,7 +23,7 @@ namespace {
 
 struct NewOptions {
   std::string table;
-  std::optional<std::size_t> joints;
+  std::optional<std::string> joints;  // as it was written
   std::optional<std::string> convention;
   std::optional<std::string> name;
   std::string output;
@@ -41,8 +41,8 @@ void run(const NewOptions& options) {
   }
   const exchange::DhTable table = exchange::read_dh_table(options.table, convention);
   const std::size_t count = table.rows.size();
-  if (options.joints && *options.joints != count) {
-    refuse_option("new", "--joints", std::to_string(*options.joints),
+  if (options.joints && *options.joints != std::to_string(count)) {
+    refuse_option("new", "--joints", *options.joints,
                   fmt::format("{}, the rows of {}", count, options.table),
                   "correct it, or the table");
   }
@@ -58,19 +58,22 @@ void run(const NewOptions& options) {
             {"robot", name},
             {"joints", count},
             {"convention", exchange::name_of(table.convention)},
+            {"notes", table.notes},
             {"blank_needed", {"joint.link.mass_kg", "joint.link.centre_of_mass_m"}},
             {"blank", {"joint.link.inertia_kg_m2", "joint.limits"}},
             {"written", options.output}};
       },
       [&] {
+        std::string notes;
+        for (const std::string& note : table.notes) notes += "note: " + note + "\n";
         return fmt::format(
-            "{}: {} {} of a {} DH table\nblank, needed: mass_kg and centre_of_mass_m of every "
+            "{}: {} {} of a {} DH table\n{}blank, needed: mass_kg and centre_of_mass_m of every "
             "link\n"
             "blank, may stay so: inertia_kg_m2, limits\nassumed: gravity of 9.81 m/s^2 along -z of "
             "the "
             "base\n",
             on_one_line(name), count, count == 1 ? "joint" : "joints",
-            exchange::name_of(table.convention));
+            exchange::name_of(table.convention), notes);
       },
       {options.output});
 }
@@ -81,13 +84,14 @@ void set_up_new(CLI::App& verb, ExitCode& /*exit_code*/) {
   const auto options = std::make_shared<NewOptions>();
   verb.add_option(
           "--dh", options->table,
-          "Table of Denavit-Hartenberg parameters, .toml or else CSV: a_m, alpha_rad or alpha_deg, "
-          "d_m, theta_rad or theta_deg")
+          "Table of Denavit-Hartenberg parameters, .toml or else CSV: a_m or a_mm, alpha_rad or "
+          "alpha_deg, d_m or d_mm, theta_rad or theta_deg")
       ->required();
   verb.add_option("--convention", options->convention,
                   "Of the table, where it does not say: standard (distal) or modified (Craig)")
       ->check(CLI::IsMember({"standard", "modified"}));
-  verb.add_option("--joints", options->joints, "How many joints the table has, as a check");
+  verb.add_option("--joints", options->joints, "How many joints the table has, as a check")
+      ->type_name("UINT");
   verb.add_option("--name", options->name, "The robot's name. Default: that of the file written");
   verb.add_option("-o,--output", options->output, "Robot file to write")
       ->type_name(kNewFile)

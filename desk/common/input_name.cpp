@@ -1,7 +1,7 @@
 #include "common/input_name.hpp"
 
+#include <algorithm>
 #include <filesystem>
-#include <string_view>
 #include <system_error>
 
 namespace offnominal::desk {
@@ -14,6 +14,11 @@ bool is_standard_input(const std::string& file) {
          file == "/proc/self/fd/0";
 }
 
+bool is_there(const std::string& file) {
+  std::error_code failure;
+  return is_standard_input(file) || std::filesystem::exists(file, failure);
+}
+
 }  // namespace
 
 bool names_standard_input(const std::filesystem::path& file) { return file == "-"; }
@@ -24,20 +29,22 @@ std::string shown_name(const std::filesystem::path& file) {
 
 std::vector<std::filesystem::path> recording_files(const std::filesystem::path& recording) {
   const std::string name = recording.string();
-  std::error_code failure;
-  if (name.find('+') == std::string::npos || std::filesystem::exists(recording, failure)) {
-    return {recording};
-  }
+  if (name.find('+') == std::string::npos) return {recording};
   std::vector<std::filesystem::path> files;
-  std::string_view left = name;
-  for (;;) {
-    const std::size_t plus = left.find('+');
-    const std::string_view file = left.substr(0, plus);
-    if (file.empty()) return {recording};
-    files.emplace_back(file);
-    if (plus == std::string_view::npos) return files;
-    left.remove_prefix(plus + 1);
+  for (std::size_t begin = 0; begin <= name.size();) {
+    // The longest that is there, else up to the next '+'.
+    std::size_t end = name.size();
+    while (end != std::string::npos && end > begin && !is_there(name.substr(begin, end - begin))) {
+      end = name.rfind('+', end - 1);
+      if (end != std::string::npos && end < begin) end = std::string::npos;
+    }
+    const bool found = end != std::string::npos && end > begin;
+    if (!found) end = std::min(name.find('+', begin), name.size());
+    if (end == begin) return {recording};
+    files.emplace_back(name.substr(begin, end - begin));
+    begin = end + 1;
   }
+  return files;
 }
 
 bool is_stream(const std::string& file) {
@@ -56,6 +63,12 @@ std::string input_name(const std::string& file) {
     return names;
   }
   return std::filesystem::path(file).filename().string();
+}
+
+std::string extension_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension;
 }
 
 }  // namespace offnominal::desk

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "common/error.hpp"
 #include "common/file.hpp"
@@ -23,8 +25,27 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kLargest = 1e5;  // further out no robot file takes a length
 const std::vector<std::string> kConventions{"standard", "modified"};
-const std::vector<std::string> kParameters{"a_m", "alpha_rad", "alpha_deg",
-                                           "d_m", "theta_rad", "theta_deg"};
+const std::vector<std::string> kParameters{"a_m", "a_mm", "alpha_rad", "alpha_deg",
+                                           "d_m", "d_mm", "theta_rad", "theta_deg"};
+
+// One of the four numbers of a row, which stands in the one unit or in the other.
+struct Parameter {
+  const char* name;
+  const char* unit;   // of the SI
+  const char* other;  // of the same
+  double factor;      // from that one
+  // Beyond it, it is the other unit's number by its size.
+  double largest;
+};
+constexpr double kTurn = 2 * std::numbers::pi + 1e-3;
+// No link of an arm is longer, and hardly a table in mm has none that is.
+constexpr double kLongest = 20;
+constexpr Parameter kA{"a", "m", "mm", 1e-3, kLongest};
+constexpr Parameter kAlpha{"alpha", "rad", "deg", kDegree, kTurn};
+constexpr Parameter kD{"d", "m", "mm", 1e-3, kLongest};
+constexpr Parameter kTheta{"theta", "rad", "deg", kDegree, kTurn};
+
+bool is_angle(const Parameter& parameter) { return parameter.factor == kDegree; }
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& place,
                          const std::string& found, const std::string& allowed,
@@ -32,22 +53,74 @@ const std::vector<std::string> kParameters{"a_m", "alpha_rad", "alpha_deg",
   throw InputError({path.string(), place, found, allowed, mend});
 }
 
-// The key of an angle that is there: "alpha_rad" or "alpha_deg", one of them.
+// The key of the parameter that is there: "alpha_rad" or "alpha_deg", one of them.
 template <typename Has, typename Refuse>
-std::string angle_key(const std::string& angle, const Has& has, const Refuse& refuse_it) {
-  const std::string rad = angle + "_rad";
-  const std::string deg = angle + "_deg";
-  if (has(rad) == has(deg)) {
-    refuse_it(has(rad) ? fmt::format("both {} and {}", rad, deg)
-                       : fmt::format("neither {} nor {}", rad, deg),
-              "one of them", has(rad) ? "remove one" : fmt::format("add {} or {}", rad, deg));
+std::string key_of(const Parameter& parameter, const Has& has, const Refuse& refuse_it) {
+  const std::string si = fmt::format("{}_{}", parameter.name, parameter.unit);
+  const std::string other = fmt::format("{}_{}", parameter.name, parameter.other);
+  if (has(si) == has(other)) {
+    refuse_it(has(si) ? fmt::format("both {} and {}", si, other)
+                      : fmt::format("neither {} nor {}", si, other),
+              "one of them", has(si) ? "remove one" : fmt::format("add {} or {}", si, other));
   }
-  return has(rad) ? rad : deg;
+  return has(si) ? si : other;
 }
 
-double in_radians(double value, const std::string& key) {
-  return key.ends_with("_deg") ? value * kDegree : value;
+// What stands under `key`, in SI units. A number that the unit of the name makes nothing of an arm
+// is refused.
+template <typename Refuse>
+double in_si(const Parameter& parameter, double value, const std::string& key,
+             const Refuse& refuse_it) {
+  if (key.ends_with(std::string("_") + parameter.other)) return value * parameter.factor;
+  if (std::fabs(value) > parameter.largest) {
+    refuse_it(fmt::format("{} {}, which is {} by its size", shortest(value), parameter.unit,
+                          is_angle(parameter) ? "degrees" : "millimetres"),
+              is_angle(parameter) ? "an angle of at most one turn, 2 pi"
+                                  : fmt::format("a length of at most {} m", shortest(kLongest)),
+              fmt::format("name it {0}_{1} where it is in {1}, or write it in {2}", parameter.name,
+                          parameter.other, parameter.unit));
+  }
+  return value;
 }
+
+// Degrees that are radians by their size, and millimetres that are metres, are no error: they are
+// told.
+class UnitDoubts {
+ public:
+  void look_at(const Parameter& parameter, double value, const std::string& key) {
+    if (!key.ends_with(std::string("_") + parameter.other) || value == 0) return;
+    if (is_angle(parameter)) {
+      const double quarters = std::fabs(value) / (std::numbers::pi / 2);
+      const auto nearest_quarter = static_cast<std::size_t>(std::round(quarters));
+      const bool is_of_radians = nearest_quarter > 0 && nearest_quarter <= kQuarters.size() &&
+                                 std::fabs(quarters - std::round(quarters)) < kDigits;
+      if (is_of_radians && said_.insert(key).second) {
+        notes_.push_back(fmt::format(
+            "{} = {} is {}{} as radians: name it {}_rad where that is meant", key, shortest(value),
+            value < 0 ? "-" : "", kQuarters[nearest_quarter - 1], parameter.name));
+      }
+    } else {
+      longest_mm_ = std::max(longest_mm_, std::fabs(value));
+    }
+  }
+
+  std::vector<std::string> notes() {
+    constexpr double kShortestArm = 2;  // mm
+    if (longest_mm_ > 0 && longest_mm_ < kShortestArm) {
+      notes_.push_back(
+          fmt::format("no length is above {} mm: name them a_m and d_m where metres are meant",
+                      shortest(longest_mm_)));
+    }
+    return std::move(notes_);
+  }
+
+ private:
+  static constexpr double kDigits = 1e-3;
+  static constexpr std::array kQuarters{"pi/2", "pi", "3 pi/2", "2 pi"};
+  std::set<std::string> said_;
+  std::vector<std::string> notes_;
+  double longest_mm_ = 0;
+};
 
 DhConvention settled(const std::filesystem::path& path, std::optional<DhConvention> in_file,
                      std::optional<DhConvention> asked) {
@@ -74,7 +147,8 @@ std::string in_small_letters(std::string text) {
 std::string mend_name(const std::string& name, const std::vector<std::string>& known) {
   const std::string small = in_small_letters(name);
   if (small == "a" || small == "d" || small == "r") {
-    return fmt::format("name it {}, in metres", small == "d" ? "d_m" : "a_m");
+    return fmt::format("name it {0}_m where it is in metres, {0}_mm where in millimetres",
+                       small == "d" ? "d" : "a");
   }
   if (small == "alpha" || small == "theta") {
     return fmt::format("name it {0}_deg where it is in degrees, {0}_rad where in radians", small);
@@ -83,23 +157,25 @@ std::string mend_name(const std::string& name, const std::vector<std::string>& k
   return meant.empty() ? "remove it" : fmt::format("name it {}", meant);
 }
 
-DhRow row_of(const TomlTable& table, std::size_t index) {
+DhRow row_of(const TomlTable& table, std::size_t index, UnitDoubts& doubts) {
   DhRow row;
   row.name = table.has("name") ? table.text("name") : fmt::format("joint{}", index + 1);
   const bool slides = table.has("type") && table.choice("type", {"revolute", "prismatic"}) == 1;
   row.type = slides ? JointType::kPrismatic : JointType::kRevolute;
-  row.a_m = table.number("a_m", physical(any_number("m")));
-  row.d_m = table.number("d_m", physical(any_number("m")));
-  const auto angle = [&](const char* name) {
-    const std::string key = angle_key(
-        name, [&](const std::string& one) { return table.has(one); },
+  const auto number = [&](const Parameter& parameter) {
+    const std::string key = key_of(
+        parameter, [&](const std::string& one) { return table.has(one); },
         [&](const auto&... words) { table.refuse("", words...); });
-    NumberRule rule = any_number(key.ends_with("_deg") ? "deg" : "rad");
+    NumberRule rule = any_number(key.substr(key.rfind('_') + 1));
     rule.largest = kLargest;
-    return in_radians(table.number(key, rule), key);
+    const double value = table.number(key, rule);
+    doubts.look_at(parameter, value, key);
+    return in_si(parameter, value, key, [&](const auto&... words) { table.refuse(key, words...); });
   };
-  row.alpha_rad = angle("alpha");
-  row.theta_rad = angle("theta");
+  row.a_m = number(kA);
+  row.d_m = number(kD);
+  row.alpha_rad = number(kAlpha);
+  row.theta_rad = number(kTheta);
   return row;
 }
 
@@ -112,14 +188,16 @@ DhTable read_toml(const std::filesystem::path& path, std::optional<DhConvention>
   }
   std::vector<std::string> keys{"name", "type"};
   keys.insert(keys.end(), kParameters.begin(), kParameters.end());
-  DhTable table{settled(path, in_file, convention), {}};
+  DhTable table{settled(path, in_file, convention), {}, {}};
+  UnitDoubts doubts;
   std::set<std::string> names;
   for (const TomlTable& joint : root.tables("joint", keys)) {
-    table.rows.push_back(row_of(joint, table.rows.size()));
+    table.rows.push_back(row_of(joint, table.rows.size(), doubts));
     if (names.insert(table.rows.back().name).second) continue;
     joint.refuse("name", fmt::format("the name \"{}\" a second time", table.rows.back().name),
                  "names that differ", "give this joint another name");
   }
+  table.notes = doubts.notes();
   return table;
 }
 
@@ -158,16 +236,16 @@ DhTable read_csv_table(const std::filesystem::path& path, std::optional<DhConven
            mend_name(name, known));
   }
   const auto has = [&](const std::string& name) { return read.columns.contains(name); };
-  for (const char* name : {"a_m", "d_m"}) {
-    if (!has(name)) refuse(path, "", fmt::format("no column {}", name), "one", "add it, in metres");
-  }
-  const auto key_of = [&](const char* angle) {
-    return angle_key(angle, has, [&](const auto&... words) { refuse(path, "", words...); });
+  const auto column_of = [&](const Parameter& parameter) {
+    return key_of(parameter, has, [&](const auto&... words) { refuse(path, "", words...); });
   };
-  const std::string alpha = key_of("alpha");
-  const std::string theta = key_of("theta");
-  DhTable table{settled(path, std::nullopt, convention), {}};
-  for (Eigen::Index i = 0; i < read.columns.at("a_m").size(); ++i) {
+  const std::string a = column_of(kA);
+  const std::string d = column_of(kD);
+  const std::string alpha = column_of(kAlpha);
+  const std::string theta = column_of(kTheta);
+  DhTable table{settled(path, std::nullopt, convention), {}, {}};
+  UnitDoubts doubts;
+  for (Eigen::Index i = 0; i < read.columns.at(a).size(); ++i) {
     const auto cell = [&](const std::string& name) {
       const double value = read.columns.at(name)[i];
       if (std::fabs(value) <= kLargest) return value;
@@ -186,12 +264,21 @@ DhTable read_csv_table(const std::filesystem::path& path, std::optional<DhConven
       }
       row.type = JointType::kPrismatic;
     }
-    row.a_m = cell("a_m");
-    row.d_m = cell("d_m");
-    row.alpha_rad = in_radians(cell(alpha), alpha);
-    row.theta_rad = in_radians(cell(theta), theta);
+    const auto in_column = [&](const Parameter& parameter, const std::string& name) {
+      const double value = cell(name);
+      doubts.look_at(parameter, value, name);
+      return in_si(parameter, value, name, [&](const auto&... words) {
+        refuse(path, fmt::format("{}, column {}", read.place_of(i), name), words...);
+      });
+    };
+    row.a_m = in_column(kA, a);
+    row.d_m = in_column(kD, d);
+    row.alpha_rad = in_column(kAlpha, alpha);
+    row.theta_rad = in_column(kTheta, theta);
     table.rows.push_back(row);
   }
+  table.notes = read.remarks;
+  for (std::string& note : doubts.notes()) table.notes.push_back(std::move(note));
   return table;
 }
 
@@ -202,7 +289,7 @@ const char* name_of(DhConvention convention) {
 }
 
 DhTable read_dh_table(const std::filesystem::path& path, std::optional<DhConvention> convention) {
-  const bool is_toml = in_small_letters(path.extension().string()) == ".toml";
+  const bool is_toml = extension_of(path) == ".toml";
   DhTable table = is_toml ? read_toml(path, convention) : read_csv_table(path, convention);
   if (table.rows.empty() || table.rows.size() > static_cast<std::size_t>(kMaxJoints)) {
     refuse(path, "", fmt::format("{} joints", table.rows.size()),

@@ -32,14 +32,18 @@ struct DhRow {
 struct DhTable {
   DhConvention convention = DhConvention::kStandard;
   std::vector<DhRow> rows;  // 1 to kMaxJoints, from the base outwards
+  // What was left out of the file, and numbers that look like those of another unit than their name
+  // says.
+  std::vector<std::string> notes;
 };
 
-/// A CSV file with the columns a_m, alpha_rad or alpha_deg, d_m, theta_rad or theta_deg and, if any
-/// joint slides, prismatic (0 or 1); or a file .toml with a [[joint]] of the same keys each, beside
-/// them name and type, and the key convention. "-" is standard input, as CSV. No two tables are
-/// told apart by their numbers: the convention is said in the file or by `convention`, never
-/// assumed. Throws InputError where it is not, where both differ, where a number is not finite or
-/// beyond 1e5, and as readers of TOML and CSV do.
+/// A CSV file with the columns a_m or a_mm, alpha_rad or alpha_deg, d_m or d_mm, theta_rad or
+/// theta_deg and, if any joint slides, prismatic (0 or 1); or a file .toml with a [[joint]] of the
+/// same keys each, beside them name and type, and the key convention. "-" is standard input, as
+/// CSV. No two tables are told apart by their numbers: the convention is said in the file or by
+/// `convention`, never assumed. Throws InputError where it is not, where both differ, where a
+/// number is not finite or beyond 1e5, where one in rad is beyond a turn or one in m beyond 20, and
+/// as readers of TOML and CSV do.
 [[nodiscard]] DhTable read_dh_table(const std::filesystem::path& path,
                                     std::optional<DhConvention> convention);
 

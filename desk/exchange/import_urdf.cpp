@@ -60,6 +60,7 @@ class Importer {
     robot.gravity_m_s2 = gravity();
     note(Kind::kAssumed, 0, "the link `world`, which joints name, is the ground",
          document_.has_implied_world);
+    say_what_names_lost();
     Isometry3d next = stand_on_base();
     for (std::size_t i = 0; i < chain_.moving.size(); ++i) next = add_joint(i, next);
     for (const auto& [what, entry] : document_.elements.left_out) {
@@ -110,6 +111,28 @@ class Importer {
     }
     robot.source = fmt::format("URDF {}, from {} to {}", as_utf8(input_name(document_.file)),
                                chain_.base->name, chain_.tip->name);
+  }
+
+  // What read_urdf_elements() puts in the place of bytes that are no UTF-8.
+  void say_what_names_lost() {
+    const auto has_lost = [](const std::string& name) {
+      return name.find("\xEF\xBF\xBD") != std::string::npos;
+    };
+    std::vector<std::pair<int, std::string>> lost;
+    for (const auto& [name, line] : document_.elements.link_lines) {
+      if (has_lost(name)) lost.emplace_back(line, name);
+    }
+    for (const auto& joint : document_.elements.joints) {
+      if (has_lost(joint.name)) lost.emplace_back(joint.line, joint.name);
+    }
+    if (lost.empty()) return;
+    const auto& [line, name] = *std::min_element(lost.begin(), lost.end());
+    const std::string more = lost.size() > 1 ? fmt::format(" and {} more", lost.size() - 1) : "";
+    note(Kind::kAssumed, line,
+         fmt::format(
+             "U+FFFD for bytes that are no UTF-8 in the name `{}`{}: saved in UTF-8 the file "
+             "keeps them",
+             name, more));
   }
 
   void say_what_was_chosen(const ChainRequest& request) {

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "common/error.hpp"
+#include "common/input_name.hpp"
 #include "common/json_text.hpp"
 #include "common/nearest.hpp"
 #include "common/number.hpp"
@@ -157,9 +158,14 @@ class Reader {
 
   void parse(std::string_view text) {
     constexpr const char* kAllowed = "a URDF, which is XML";
+    if (text.starts_with("\x1f\x8b")) {
+      refuse(0, "", "data packed with gzip", kAllowed, "unpack it: gzip -d");
+    }
     if (const auto zero = text.find('\0'); zero != std::string_view::npos) {
       const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(zero), '\n');
-      refuse(static_cast<int>(line), "", "a byte of zero", kAllowed, "check the name of the file");
+      const bool is_wide = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+      refuse(static_cast<int>(line), "", is_wide ? "UTF-16" : "a byte of zero", kAllowed,
+             is_wide ? "save it in UTF-8" : "check the name of the file");
     }
     if (document_.Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS) return;
     std::string error = document_.ErrorName();
@@ -198,6 +204,10 @@ class Reader {
       if (name.ends_with(ending)) name.resize(name.size() - ending.size());
       return name;
     };
+    if (file_ == shown_name("-")) {
+      refuse(element.GetLineNum(), "", found + ", which is xacro and not expanded", "plain URDF",
+             "let xacro write it: xacro FILE | offnominal import-urdf - ...");
+    }
     const std::string stem = without(without(file_, ".xacro"), ".urdf");
     const std::string expanded = stem + (file_.ends_with(".xacro") ? ".urdf" : "_expanded.urdf");
     refuse(element.GetLineNum(), "", found + ", which is xacro and not expanded", "plain URDF",

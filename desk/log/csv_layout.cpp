@@ -1,6 +1,7 @@
 #include "log/csv_layout.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -57,9 +58,11 @@ class LayoutReader {
   CsvLayout read() {
     std::string line;
     if (!next_content(line)) {
-      fail("", "an empty file", "a header line and one line per sample");
+      fail("", "an empty file", "a header line and one line per sample",
+           "check the name, and whether the recording was saved");
     }
     take_separator_line(line);
+    if (layout_.separator == 0) leave_out_preamble(line);
     if (layout_.separator == 0) layout_.separator = separator_of(line);
     CsvLineSplitter splitter(layout_.separator);
     const Cells* const split = splitter.split(line);
@@ -79,22 +82,112 @@ class LayoutReader {
       name_by(cells);
       read_first(splitter);
     }
+    for (Line& ahead : ahead_) layout_.ahead.emplace_back(std::move(ahead.text), ahead.ended);
     return std::move(layout_);
   }
 
  private:
+  struct Line {
+    std::string text;
+    bool ended = true;
+  };
+
   [[noreturn]] void fail(const std::string& place, const std::string& found,
                          const std::string& allowed, const std::string& mend = {}) const {
     throw InputError({file_.name(), place, found, allowed, mend});
   }
   std::string place() const { return "line " + std::to_string(line_); }
 
+  bool next_line() {
+    if (!ahead_.empty()) {
+      newest_ = std::move(ahead_.front());
+      ahead_.pop_front();
+      return true;
+    }
+    if (!file_.next_line(newest_.text)) return false;
+    newest_.ended = file_.line_ended();
+    return true;
+  }
+
+  // The line that comes after `index` others, null where there is none; nothing is taken by it.
+  const std::string* line_ahead(std::size_t index) {
+    while (ahead_.size() <= index) {
+      Line line;
+      if (!file_.next_line(line.text)) return nullptr;
+      line.ended = file_.line_ended();
+      ahead_.push_back(std::move(line));
+    }
+    return &ahead_[index].text;
+  }
+
+  static bool says_nothing(std::string_view line) {
+    return is_blank_line(line) || is_comment(line);
+  }
+
+  // The cells of the first line that says something from `index` of those ahead on, empty where
+  // there is none; `index` is behind it then.
+  Cells cells_ahead(std::size_t& index, char separator) {
+    CsvLineSplitter splitter(separator);
+    for (const std::string* line = line_ahead(index); line != nullptr; line = line_ahead(index)) {
+      ++index;
+      const std::string_view view = without_line_end(*line);
+      if (says_nothing(view)) continue;
+      const Cells* const cells = splitter.split(view);
+      return cells == nullptr ? Cells() : *cells;
+    }
+    return {};
+  }
+
+  // Whether a line names the columns of the numbers that follow, from `index` of those ahead on.
+  bool is_header(std::string_view line, std::size_t index) {
+    const char separator = separator_of(line);
+    CsvLineSplitter splitter(separator);
+    const Cells* const split = splitter.split(line);
+    if (split == nullptr || split->size() < 2 || !no_values(*split)) return false;
+    const std::size_t count = split->size();
+    const std::set<std::string> once(split->begin(), split->end());
+    if (once.size() != count) return false;
+    Cells below = cells_ahead(index, separator);
+    if (below.size() == count && no_values(below)) below = cells_ahead(index, separator);
+    return all_values(below) && (below.size() == count || below.size() == count + 1);
+  }
+
+  // What somebody wrote above the header: a title, the date, settings. A row of numbers is none.
+  void leave_out_preamble(std::string& line) {
+    constexpr std::size_t kLongest = 100;  // lines
+    if (is_header(line, 0) || has_numbers(line)) return;
+    const std::size_t first = line_;
+    for (std::size_t i = 0; i < kLongest; ++i) {
+      const std::string* const ahead = line_ahead(i);
+      if (ahead == nullptr) return;
+      const std::string candidate(without_line_end(*ahead));
+      if (says_nothing(candidate)) continue;
+      if (has_numbers(candidate)) return;
+      if (!is_header(candidate, i + 1)) continue;
+      for (std::size_t left_out = 0; left_out < i; ++left_out) static_cast<void>(next_line());
+      line_ += i;
+      static_cast<void>(next_content(line));
+      layout_.remarks.push_back(
+          line_ == first + 1
+              ? "line " + std::to_string(first) + " stands before the header: left out"
+              : "lines " + std::to_string(first) + " to " + std::to_string(line_ - 1) +
+                    " stand before the header: left out");
+      return;
+    }
+  }
+
+  // As a sample has them, its state in words beside it.
+  static bool has_numbers(std::string_view line) {
+    CsvLineSplitter splitter(separator_of(line));
+    const Cells* const cells = splitter.split(line);
+    return cells != nullptr && std::count_if(cells->begin(), cells->end(), is_value) > 1;
+  }
+
   // The next line that is neither blank nor a comment.
   bool next_content(std::string& line) {
-    std::string_view view;
-    while (file_.next_line(view)) {
+    while (next_line()) {
       ++line_;
-      view = without_line_end(view);
+      std::string_view view = without_line_end(newest_.text);
       if (line_ == 1 && view.starts_with("\xEF\xBB\xBF")) view.remove_prefix(3);
       if (is_blank_line(view)) continue;
       if (is_comment(view)) {
@@ -119,7 +212,7 @@ class LayoutReader {
   void take_first(const std::string& line) {
     layout_.first = line;
     layout_.first_line = line_;
-    layout_.first_ended = file_.line_ended();
+    layout_.first_ended = newest_.ended;
   }
 
   void read_first(CsvLineSplitter& splitter) {
@@ -193,6 +286,8 @@ class LayoutReader {
 
   RecordingFile& file_;
   CsvLayout layout_;
+  Line newest_;
+  std::deque<Line> ahead_;  // read, and not taken yet
   std::size_t line_ = 0;
   std::string comment_;
   std::size_t comment_line_ = 0;

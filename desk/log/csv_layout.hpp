@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "log/recording_file.hpp"
@@ -22,6 +23,8 @@ struct CsvLayout {
   std::size_t first_line = 0;   // its number, from 1
   std::size_t header_line = 0;  // 0: none
   bool first_ended = true;      // its line end was there
+  // Lines behind it that were read to find the header, and whether they were ended.
+  std::vector<std::pair<std::string, bool>> ahead;
 
   [[nodiscard]] std::size_t cells() const { return names.size(); }
 };
@@ -30,8 +33,9 @@ struct CsvLayout {
 [[nodiscard]] bool is_comment(std::string_view line);
 [[nodiscard]] bool is_blank_line(std::string_view line);
 
-// Reads up to the first line of samples. Throws InputError, with the line, where a header has a
-// number, the same name twice, or a name missing that is not the first or the last.
+// Reads up to the first line of samples. Lines before a header that fits the numbers below it,
+// where the first line is none, are left out with a remark. Throws InputError, with the line, where
+// a header has a number, the same name twice, or a name missing that is not the first or the last.
 [[nodiscard]] CsvLayout read_csv_layout(RecordingFile& file);
 
 }  // namespace offnominal::desk

@@ -33,6 +33,14 @@ bool is_none(std::string_view text) {
   return std::find(kNone.begin(), kNone.end(), text) != kNone.end();
 }
 
+// "10:00:00.5", "11/24/2026", "24.11.26", and no number with a letter too many.
+bool has_marks_of_a_clock(std::string_view text) {
+  const auto twice = [](std::string_view in, char mark) {
+    return std::count(in.begin(), in.end(), mark) > 1;
+  };
+  return text.find_first_of(":/") != std::string_view::npos || twice(text, '.') || twice(text, '-');
+}
+
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 bool has_small_letter(const std::string& text) {
@@ -144,9 +152,16 @@ class CsvReader {
   }
 
   bool next(std::string_view& line) {
-    if (!file_.next_line(line)) return false;
+    if (ahead_ < layout_.ahead.size()) {
+      line = layout_.ahead[ahead_].first;
+      unfinished_ = !layout_.ahead[ahead_].second;
+      ++ahead_;
+    } else if (file_.next_line(line)) {
+      unfinished_ = !file_.line_ended();
+    } else {
+      return false;
+    }
     ++line_number_;
-    unfinished_ = !file_.line_ended();
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     return true;
   }
@@ -303,10 +318,17 @@ class CsvReader {
     } else {
       const std::string found =
           text.empty() ? "nothing" : "\"" + std::string(text.substr(0, 40)) + "\"";
-      const bool is_date = is_time && column.form == Form::kDate;
-      fail(line_place() + ", column " + column.name, found,
-           is_date ? "a date as in the lines before, 2026-11-24T02:14:30.123"
-                   : "a number with a decimal point");
+      const std::string place = line_place() + ", column " + column.name;
+      if (is_time && column.form == Form::kDate) {
+        fail(place, found, "a date as in the lines before, 2026-11-24T02:14:30.123");
+      }
+      if (is_time && has_marks_of_a_clock(text)) {
+        fail(place, found,
+             "a time in s, or a date with its time: 2026-11-24T02:14:30.123 or 24.11.2026 "
+             "02:14:30.123",
+             "write the times so, or say the step between two samples: --period");
+      }
+      fail(place, found, "a number with a decimal point");
     }
   }
 
@@ -379,6 +401,7 @@ class CsvReader {
   RecordingFile& file_;
   const NeedOf& need_of_;
   CsvLayout layout_;
+  std::size_t ahead_ = 0;  // lines of the layout that were taken
   std::size_t line_number_ = 0;
   std::size_t last_line_ = 0;  // that holds a row
   std::vector<std::size_t> blank_lines_;

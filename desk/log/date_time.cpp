@@ -48,15 +48,45 @@ std::optional<std::chrono::minutes> offset_of(std::string_view text) {
   return west ? -offset : offset;
 }
 
+// Takes one or two digits off the front of `text`.
+int short_number(std::string_view& text) {
+  const bool two = text.size() > 1 && text[1] >= '0' && text[1] <= '9';
+  return digits(text, two ? 2 : 1);
+}
+
+struct Date {
+  int year = -1;
+  int month = -1;
+  int day = -1;
+};
+
+// 2026-11-24, or as it is written in much of Europe, 24.11.2026. With other marks nobody can tell
+// the day from the month.
+std::optional<Date> take_date(std::string_view& text) {
+  Date date;
+  const std::size_t mark = text.find_first_not_of("0123456789");
+  if (mark != std::string_view::npos && text[mark] == '.') {
+    date.day = short_number(text);
+    if (!take(text, ".")) return std::nullopt;
+    date.month = short_number(text);
+    if (!take(text, ".")) return std::nullopt;
+    date.year = digits(text, 4);
+  } else {
+    date.year = digits(text, 4);
+    if (!take(text, "-")) return std::nullopt;
+    date.month = digits(text, 2);
+    if (!take(text, "-")) return std::nullopt;
+    date.day = digits(text, 2);
+  }
+  const bool is_date = date.year >= 1700 && date.year <= 2250 && date.month >= 0 && date.day >= 0;
+  return is_date ? std::optional(date) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::int64_t> date_time_ns(std::string_view text) {
-  const int year = digits(text, 4);
-  if (year < 1700 || year > 2250 || !take(text, "-")) return std::nullopt;
-  const int month = digits(text, 2);
-  if (month < 0 || !take(text, "-")) return std::nullopt;
-  const int day = digits(text, 2);
-  if (day < 0 || !take(text, "Tt ")) return std::nullopt;
+  const std::optional<Date> day = take_date(text);
+  if (!day || !take(text, "Tt ")) return std::nullopt;
   const int hour = digits(text, 2);
   if (hour < 0 || hour > 23 || !take(text, ":")) return std::nullopt;
   const int minute = digits(text, 2);
@@ -69,9 +99,9 @@ std::optional<std::int64_t> date_time_ns(std::string_view text) {
     fraction = fraction_ns(text);
   }
   const auto offset = offset_of(text);
-  const std::chrono::year_month_day date{std::chrono::year(year),
-                                         std::chrono::month(static_cast<unsigned>(month)),
-                                         std::chrono::day(static_cast<unsigned>(day))};
+  const std::chrono::year_month_day date{std::chrono::year(day->year),
+                                         std::chrono::month(static_cast<unsigned>(day->month)),
+                                         std::chrono::day(static_cast<unsigned>(day->day))};
   if (!offset || !date.ok()) return std::nullopt;
   const auto time = std::chrono::sys_days(date).time_since_epoch() + std::chrono::hours(hour) +
                     std::chrono::minutes(minute) + std::chrono::seconds(second) - *offset;

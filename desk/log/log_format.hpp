@@ -23,7 +23,9 @@ struct LogFormat {
 
 [[nodiscard]] std::span<const LogFormat> log_formats();
 
-/// The first of the formats that recognises the file, else the one for all others.
+/// The first of the formats that recognises the file, else the one for all others. Throws
+/// InputError where it is of a kind that is known and not read, with what to export instead: by its
+/// beginning, or by its extension where it is no text.
 [[nodiscard]] const LogFormat& log_format_of(const RecordingFile& file);
 
 /// "CSV, MATLAB .mat or candump -l"

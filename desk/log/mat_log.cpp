@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/input_name.hpp"
 #include "log/mat_claims.hpp"
 
 namespace offnominal::desk {
@@ -246,10 +247,7 @@ class MatReader {
 
 bool is_mat_file(const RecordingFile& file) {
   if (file.beginning().starts_with("MATLAB")) return true;
-  std::string extension = file.path().extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".mat";
+  return extension_of(file.path()) == ".mat";
 }
 
 NamedColumns read_mat(RecordingFile& file, const ChannelMap* /*channels*/, const NeedOf& need_of) {

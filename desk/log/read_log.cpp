@@ -180,6 +180,13 @@ class Assembler {
            "put one before them, or say the columns' numbers: [channels] with time = 1, position = "
            "[2], torque = [3] in the robot's file, or in one for --channels");
     }
+    if (joints.empty() && prefix == "tau") {
+      fail("columns", names_found(columns_) + ", and no torque",
+           fmt::format("tau1..tau{}, or torques or currents by other names", joints_),
+           std::string(kMendNames) +
+               "; where the drives' torques or currents were not recorded, record them too: "
+               "without them a model has nothing to be compared with");
+    }
     if (joints.empty()) {
       fail("columns", names_found(columns_),
            fmt::format("t, q1..q{0}, dq1..dq{0}, tau1..tau{0}", joints_), kMendNames);
@@ -338,7 +345,7 @@ void shorten_time(NamedColumns& columns) {
   columns.remarks.emplace_back("column time is the time t");
 }
 
-TimedColumns read_file(const std::filesystem::path& path, const std::optional<ChannelMap>& channels,
+TimedColumns read_file(RecordingFile& recording, const std::optional<ChannelMap>& channels,
                        double period_s, std::size_t file, std::size_t files) {
   NeedOf need_of = needs_of(channels, file, files);
   if (!channels && period_s > 0) {
@@ -347,7 +354,6 @@ TimedColumns read_file(const std::filesystem::path& path, const std::optional<Ch
       return name == "t" ? Need::kNone : of_names(name);
     };
   }
-  RecordingFile recording(path);
   TimedColumns read;
   read.columns = log_format_of(recording).read(recording, channels ? &*channels : nullptr, need_of);
   if (channels && channels->at_rest) return read;
@@ -366,14 +372,18 @@ TimedColumns read_file(const std::filesystem::path& path, const std::optional<Ch
 TimedColumns read_files(const std::filesystem::path& path,
                         const std::optional<ChannelMap>& channels, double period_s) {
   const std::vector<std::filesystem::path> paths = recording_files(path);
-  if (paths.size() == 1) return read_file(path, channels, period_s, 0, 1);
+  if (paths.size() == 1) {
+    RecordingFile recording(path);
+    return read_file(recording, channels, period_s, 0, 1);
+  }
   if (channels && channels->at_rest) {
     throw InputError({path.string(), "", fmt::format("{} files", paths.size()),
                       "one, as the channels' at_rest = true says", "join them before"});
   }
   std::vector<TimedColumns> files;
   for (std::size_t file = 0; file < paths.size(); ++file) {
-    files.push_back(read_file(paths[file], channels, period_s, file, paths.size()));
+    RecordingFile recording(paths[file], path);
+    files.push_back(read_file(recording, channels, period_s, file, paths.size()));
     if (files.back().time.t_s.size() >= 2) continue;
     throw InputError({files.back().columns.file, "",
                       fmt::format("{} samples", files.back().time.t_s.size()),

@@ -33,19 +33,29 @@ bool write_all(int file, std::string_view content) {
 
 }  // namespace
 
-RecordingFile::RecordingFile(const std::filesystem::path& path)
+RecordingFile::RecordingFile(const std::filesystem::path& path, const std::filesystem::path& joined)
     : path_(path), name_(shown_name(path)) {
   const int file = names_standard_input(path) ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
                                               : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const int error = errno;
-  if (file < 0 && error == ENOENT) fail("", "no such file", allowed());
+  if (file < 0 && error == ENOENT) {
+    fail("", "no such file", allowed(),
+         joined.empty() || joined == path
+             ? "check the name"
+             : "check the name: " + joined.string() +
+                   " was read as files that + joins, since there is none of that whole name");
+  }
   if (file < 0) {
     fail("", "a file that cannot be opened (" + std::generic_category().message(error) + ")",
          allowed());
   }
   stream_ = stream_of(file);
   struct stat status {};
-  if (::fstat(file, &status) == 0 && S_ISDIR(status.st_mode)) fail("", "a folder", allowed());
+  if (::fstat(file, &status) == 0 && S_ISDIR(status.st_mode)) {
+    fail("", "a folder", allowed(),
+         "name the recordings in it; of a bag of ROS 2, write the topic as CSV: ros2 topic echo "
+         "--csv");
+  }
   try {
     stream_ = plain_stream(std::move(stream_), is_as_stored_);
   } catch (const StreamError& problem) {

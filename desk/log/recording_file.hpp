@@ -26,7 +26,9 @@ class RecordingFile {
   static constexpr std::size_t kMostNumbers = 250'000'000;
 
   // Throws InputError where there is nothing to read: no such file, a folder, not readable.
-  explicit RecordingFile(const std::filesystem::path& path);
+  // `joined`: the recording that it is one file of, where that names several.
+  explicit RecordingFile(const std::filesystem::path& path,
+                         const std::filesystem::path& joined = {});
   RecordingFile(const RecordingFile&) = delete;
   RecordingFile& operator=(const RecordingFile&) = delete;
   ~RecordingFile();

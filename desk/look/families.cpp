@@ -29,17 +29,23 @@ bool is_unit_word(const std::string& word) {
   return std::find(kUnitWords.begin(), kUnitWords.end(), word) != kUnitWords.end();
 }
 
+Role role_or_what_it_would_be(const NameGuess& guess) {
+  return guess.role == Role::kNone ? guess.not_measured : guess.role;
+}
+
 Family& family_in(std::vector<Family>& families, const std::string& name, const NameGuess& guess) {
+  const Role role = role_or_what_it_would_be(guess);
   const auto at = std::find_if(families.begin(), families.end(), [&](const Family& family) {
-    return family.name == name && family.role == guess.role;
+    return family.name == name && family.role == role;
   });
   if (at != families.end()) return *at;
-  families.push_back({name, guess.role, guess.of_motor, {}});
+  families.push_back({name, role, guess.of_motor, guess.role != Role::kNone, {}});
   return families.back();
 }
 
-bool has_quantity_only(const NameGuess& guess) {
-  return guess.role != Role::kNone && guess.role != Role::kTime;
+bool is_of_quantity(const NameGuess& guess) {
+  const Role role = role_or_what_it_would_be(guess);
+  return role != Role::kNone && role != Role::kTime;
 }
 
 // Without the words that people add to a joint's name, and numbers without leading zeros.
@@ -50,6 +56,24 @@ std::vector<std::string> bare_words(const std::string& name) {
     words.push_back(word.text);
   }
   return words;
+}
+
+// Desired, reference, commanded; "m" and "s" are of motors and sensors.
+bool is_letter_of_asked(const std::string& word) {
+  return word == "d" || word == "r" || word == "c";
+}
+
+// Whether the words of `name` are those of `plain` and such a letter, and no more.
+bool is_asked_beside(const std::string& name, const std::string& plain) {
+  std::vector<std::string> words = bare_words(name);
+  const std::vector<std::string> wanted = bare_words(plain);
+  for (std::size_t i = 0; i < words.size() && words.size() == wanted.size() + 1; ++i) {
+    if (!is_letter_of_asked(words[i])) continue;
+    std::vector<std::string> left = words;
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
+    if (left == wanted) return true;
+  }
+  return false;
 }
 
 bool contains_words(const std::vector<std::string>& words, const std::vector<std::string>& part) {
@@ -63,7 +87,7 @@ std::vector<Family> numbered_families(const std::vector<NamedColumn>& columns) {
   std::vector<Family> families;
   for (const NamedColumn& column : columns) {
     const NameGuess guess = guess_of(column.name, column.said_unit);
-    if (!has_quantity_only(guess)) continue;
+    if (!is_of_quantity(guess)) continue;
     family_in(families, guess.family, guess)
         .members.push_back({guess.number, {}, column.name, column.is_constant});
   }
@@ -80,7 +104,7 @@ std::vector<Family> families_by_name(const std::vector<NamedColumn>& columns) {
   std::vector<Family> families;
   for (const NamedColumn& column : columns) {
     const NameGuess guess = guess_of(column.name, column.said_unit);
-    if (!has_quantity_only(guess)) continue;
+    if (!is_of_quantity(guess)) continue;
     const std::vector<NameWord> words = words_in(column.name);
     for (std::size_t first = 0; first < words.size(); ++first) {
       std::size_t end = first;
@@ -109,7 +133,7 @@ std::vector<Family> families_by_name(const std::vector<NamedColumn>& columns) {
 }
 
 Family in_order_of(const Family& family, const std::vector<std::string>& joints) {
-  Family ordered{family.name, family.role, family.of_motor, {}};
+  Family ordered{family.name, family.role, family.of_motor, family.is_measured, {}};
   for (const std::string& joint : joints) {
     const std::vector<std::string> wanted = bare_words(joint);
     // The same words before those that are among others: "wrist" and "lower wrist".
@@ -128,7 +152,10 @@ Family in_order_of(const Family& family, const std::vector<std::string>& joints)
     const bool twice = found != nullptr &&
                        std::any_of(ordered.members.begin(), ordered.members.end(),
                                    [&](const auto& one) { return one.column == found->column; });
-    if (found == nullptr || twice) return {family.name, family.role, family.of_motor, {}};
+    if (found == nullptr || twice) {
+      ordered.members.clear();
+      return ordered;
+    }
     ordered.members.push_back(*found);
   }
   return ordered;
@@ -141,6 +168,26 @@ std::vector<std::string> other_words(const std::string& name) {
     words.push_back(word.text);
   }
   return words;
+}
+
+bool may_be_asked_for(const Family& family) {
+  if (family.members.empty() || family.members[0].number < 0) return false;
+  const std::vector<std::string> words = bare_words(family.name);
+  return std::any_of(words.begin(), words.end(), is_letter_of_asked);
+}
+
+std::vector<Family> take_not_measured(std::vector<Family>& families) {
+  std::vector<Family> measured;
+  std::vector<Family> others;
+  for (const Family& family : families) {
+    const bool is_asked = std::any_of(families.begin(), families.end(), [&](const Family& plain) {
+      return plain.role == family.role && plain.members.size() == family.members.size() &&
+             is_asked_beside(family.name, plain.name);
+    });
+    (family.is_measured && !is_asked ? measured : others).push_back(family);
+  }
+  families = std::move(measured);
+  return others;
 }
 
 }  // namespace offnominal::desk

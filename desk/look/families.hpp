@@ -19,6 +19,8 @@ struct Family {
   std::string name;  // with '#' for the number, or '*' for the joint's name
   Role role = Role::kNone;
   bool of_motor = false;
+  // What was asked for, what acts from outside, what a model says: of the role that it would have.
+  bool is_measured = true;
   std::vector<FamilyMember> members;
 };
 
@@ -35,5 +37,13 @@ struct Family {
 
 // The words of a name but those of quantities and numbers.
 [[nodiscard]] std::vector<std::string> other_words(const std::string& name);
+
+// Takes from `families` those that are not measured: by their words, or by a letter that the name
+// of another one of their role lacks ("q_d_1" beside "q_1", "tau_c_1" beside "tau_1"). Alone, such
+// a letter may be anything.
+[[nodiscard]] std::vector<Family> take_not_measured(std::vector<Family>& families);
+
+// Whether the name of a numbered family has such a letter, alone as it may be.
+[[nodiscard]] bool may_be_asked_for(const Family& family);
 
 }  // namespace offnominal::desk

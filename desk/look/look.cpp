@@ -59,6 +59,7 @@ class Proposer {
     } else if (!guess.left.empty() && !roles_.position.empty()) {
       look_.notes.push_back("torques or currents are among the columns " + list_of(guess.left));
     }
+    left_ = std::move(guess.left);
   }
 
   void taken_for(const std::string& name, Role role) {
@@ -86,6 +87,18 @@ class Proposer {
     if (!roles_.other_families.empty()) {
       look_.notes.push_back("these would do as well, by their names: " +
                             list_of(roles_.other_families));
+    }
+    if (!roles_.may_be_asked_for.empty()) {
+      look_.notes.push_back(
+          "taken for want of a plainer name, and no measurement where d, r or c in it is of "
+          "desired, reference or commanded: " +
+          list_of(roles_.may_be_asked_for));
+    }
+    if (!roles_.not_measured.empty()) {
+      look_.notes.push_back(
+          "not taken, since by their names they were asked for, act from outside or come from a "
+          "model: " +
+          list_of(roles_.not_measured) + "; what is meant all the same can be named in [channels]");
     }
   }
 
@@ -129,15 +142,22 @@ class Proposer {
     const ChannelMap& map = look_.channels;
     const std::string each =
         joints > 0 ? fmt::format("one for each of {} joints", joints) : "one for each joint";
-    const std::string told = look_.has_names ? ", told by their names" : "";
+    const auto told = [&](const char* key, std::size_t count) {
+      return look_.has_names ? ", told by their names" : ": " + line_to_write(key, count);
+    };
+    const auto wanted = static_cast<std::size_t>(std::max(joints, 0));
     if (!look_.t_s) {
       look_.missing.emplace_back(
           "a column of time: name it under [channels], or say period_s, the time between two "
           "samples");
     }
-    if (map.position.empty()) look_.missing.push_back("positions, " + each + told);
+    if (map.position.empty()) {
+      look_.missing.push_back("positions, " + each + told("position", wanted));
+    }
     if (map.torque.empty()) {
-      look_.missing.push_back("torques or currents, " + each + told);
+      look_.missing.push_back("torques or currents, " + each +
+                              told("torque", std::max(wanted, map.position.size())) +
+                              "; without them a model has nothing to be compared with");
     } else if (!map.position.empty() && map.torque.size() != map.position.size()) {
       look_.missing.push_back(
           fmt::format("{} positions and {} torques", map.position.size(), map.torque.size()));
@@ -146,6 +166,17 @@ class Proposer {
       look_.missing.emplace_back("the scale of the voltages, N m per V: scale or scale_source");
     }
     say_transmission();
+  }
+
+  // Of a file without names, where the numbers do not tell: with all that is left, or some of it.
+  std::string line_to_write(const char* key, std::size_t count) const {
+    if (left_.empty()) return "the file has no columns left";
+    if (left_.size() == count) {
+      return fmt::format("{} = [{}] says so", key, fmt::join(left_, ", "));
+    }
+    return fmt::format("{} = [...] with the number{} of {} of the columns {}", key,
+                       count == 1 ? "" : "s", count == 0 ? "some" : std::to_string(count),
+                       list_of(left_));
   }
 
   // What channels of motors are refused without.
@@ -170,6 +201,7 @@ class Proposer {
   LookedFiles files_;
   const RobotDescription* robot_;
   Roles roles_;
+  std::vector<std::string> left_;  // columns of a file without names that are nothing
   Look look_;
 };
 

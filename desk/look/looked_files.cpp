@@ -25,12 +25,18 @@ Need need_in_text(const std::string& name) {
 Need need_elsewhere(const std::string& name) {
   return is_common_name(name) ? Need::kRequired : Need::kWelcome;
 }
+// Whatever a column of time has in it where a period stands for it.
+Need need_beside_period(const std::string& name) {
+  return guess_of(name).role == Role::kTime ? Need::kWelcome : need_elsewhere(name);
+}
 
-NamedColumns read_all(const std::filesystem::path& path, const ChannelMap* channels) {
-  RecordingFile file(path);
+NamedColumns read_all(const std::filesystem::path& path, const std::filesystem::path& joined,
+                      const ChannelMap* channels, bool has_period) {
+  RecordingFile file(path, joined);
   const LogFormat& format = log_format_of(file);
   const bool is_text = format.recognises == nullptr;
-  return format.read(file, channels, is_text ? need_in_text : need_elsewhere);
+  const auto need = has_period ? need_beside_period : is_text ? need_in_text : need_elsewhere;
+  return format.read(file, channels, need);
 }
 
 Channel named(const std::string& source) {
@@ -82,12 +88,12 @@ LookedFiles read_looked_files(const std::filesystem::path& path, const RobotDesc
   const std::vector<std::filesystem::path> paths = recording_files(path);
   LookedFiles looked;
   if (paths.size() == 1) {
-    looked.columns = read_all(path, channels);
+    looked.columns = read_all(path, path, channels, period_s.has_value());
     return looked;
   }
   std::vector<TimedColumns> files;
   for (const auto& one : paths) {
-    TimedColumns file{read_all(one, channels), {}};
+    TimedColumns file{read_all(one, path, channels, period_s.has_value()), {}};
     Channel time = period_s ? Channel{} : time_in(file.columns);
     file.time = looked_time(file.columns, time, period_s.value_or(0), looked.notes);
     if (files.empty()) {
@@ -113,7 +119,7 @@ ReadFiles read_files_of(const std::filesystem::path& path, const ChannelMap& cha
       const Need need = need_of(name);
       return need == Need::kNone ? Need::kWelcome : need;
     };
-    RecordingFile file(paths[k]);
+    RecordingFile file(paths[k], path);
     NamedColumns columns = log_format_of(file).read(file, &channels, also);
     if (paths.size() == 1) read.all = columns;
     TimedColumns timed{std::move(columns), {}};

@@ -31,17 +31,22 @@ bool any_ends(const Words& words, std::initializer_list<std::string_view> wanted
   });
 }
 
-// What was asked for, and what is derived of it.
-bool is_other(const Words& words) {
-  return any_of(
-             words,
-             {"ref",         "reference", "des",  "desired",  "target",       "cmd",    "command",
-              "commanded",   "goal",      "set",  "setpoint", "error",        "err",    "temp",
-              "temperature", "ddq",       "qdd",  "acc",      "acceleration", "limit",  "max",
-              "min",         "ff",        "init", "mode",     "state",        "status", "enabled",
-              "flag",        "d1",        "d2"}) ||
+// What was asked for, what acts from outside, what a model says.
+bool is_not_measured(const Words& words) {
+  return any_of(words, {"ref",       "reference", "des",      "desired",  "target",   "cmd",
+                        "command",   "commanded", "goal",     "set",      "setpoint", "demand",
+                        "demanded",  "ff",        "ext",      "external", "contact",  "model",
+                        "predicted", "gravity",   "coriolis", "residual"}) ||
          std::any_of(words.begin(), words.end(),
                      [](const std::string& word) { return word.starts_with("soll"); });
+}
+
+// What is no value of a joint, or another one of it.
+bool is_other(const Words& words) {
+  return is_not_measured(words) ||
+         any_of(words, {"error", "err", "temp", "temperature", "ddq", "qdd", "acc", "acceleration",
+                        "limit", "max", "min", "init", "mode", "state", "status", "enabled", "flag",
+                        "d1", "d2"});
 }
 
 bool says_velocity(const Words& words) {
@@ -69,8 +74,8 @@ bool is_torque_current(const Words& words) {
   return at != words.end() && at + 1 != words.end() && *(at + 1) == "current";
 }
 
-Role role_of(const Words& words) {
-  if (is_other(words)) return Role::kNone;
+// Whatever became of it.
+Role quantity_of(const Words& words) {
   if (says_velocity(words)) return Role::kVelocity;
   if (is_torque_current(words)) return Role::kCurrent;
   if (says_torque(words)) return Role::kTorque;
@@ -86,6 +91,8 @@ Role role_of(const Words& words) {
   }
   return Role::kNone;
 }
+
+Role role_of(const Words& words) { return is_other(words) ? Role::kNone : quantity_of(words); }
 
 // Of a column that says nothing but its unit. Of time and of voltages there are too many.
 Role role_of_unit(const std::string& name) {
@@ -206,7 +213,12 @@ NameGuess guess_of(const std::string& name, const std::string& said_unit) {
   // The "min" of "[1/min]" is no least value.
   const std::string in_brackets = unit_in_brackets(name);
   const std::size_t said = in_brackets.empty() ? name.size() : name.find_last_of("[(");
-  for (const NameWord& word : words_in(name.substr(0, said))) words.push_back(word.text);
+  const std::size_t holder = name.find_last_of("./", said);
+  for (const NameWord& word : words_in(name.substr(0, said))) {
+    // "state.q[0]" is of what is, "gripper_state" of none.
+    const bool in_holder = holder != std::string::npos && word.end <= holder;
+    if (!(in_holder && word.text == "state")) words.push_back(word.text);
+  }
   guess.role = role_of(words);
   guess.unit = said_unit.empty() ? unit_of(name) : said_unit;
   guess.of_motor = any_of(words, {"motor", "motors", "rotor"}) ||
@@ -222,6 +234,7 @@ NameGuess guess_of(const std::string& name, const std::string& said_unit) {
     if (unit->dimension == Dimension::kVoltage) guess.role = Role::kVoltage;
   }
   if (guess.role == Role::kNone) guess.unit.clear();
+  if (is_not_measured(words)) guess.not_measured = quantity_of(words);
   // The last number is the joint's: "axis3_pos", "q[2]", "pos(4,:)".
   std::size_t end = said;
   while (end > 0 && !is_digit(name[end - 1])) --end;

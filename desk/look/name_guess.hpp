@@ -30,14 +30,18 @@ struct NameWord {
 
 struct NameGuess {
   Role role = Role::kNone;
+  // What it would be of, had it been measured: of what was asked for, limited, estimated of the
+  // world or computed, whose role is kNone.
+  Role not_measured = Role::kNone;
   int number = -1;        // of the joint, as the name counts; -1: none
   std::string family;     // the name without that number: columns of one quantity share it
   std::string unit;       // "pos_deg", "t [ms]": as units.hpp has it; empty: none said
   bool of_motor = false;  // it has the word
 };
 
-// Names of what was asked for (reference, desired, command) and of errors have no role. A unit, in
-// the name's brackets or said by the file, gives one to a name that says none.
+// Names of what was asked for (reference, desired, command), of what acts from outside (external)
+// and of errors have no role. A unit, in the name's brackets or said by the file, gives one to a
+// name that says none.
 [[nodiscard]] NameGuess guess_of(const std::string& name, const std::string& said_unit = {});
 
 }  // namespace offnominal::desk

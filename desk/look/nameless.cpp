@@ -33,16 +33,19 @@ class Guesser {
     if (t_s_.size() > 0) take_pairs();
     const auto wanted = joints > 0 ? static_cast<std::size_t>(joints) : pairs_.size();
     if (pairs_.size() == wanted && wanted > 0) {
-      for (const auto& [q, dq] : pairs_) {
-        guess_.roles.position.push_back(q);
-        guess_.roles.velocity.push_back(dq);
+      for (const Pair& pair : pairs_) guess_.roles.position.push_back(name_of(pair.position));
+      // Of all joints or of none.
+      if (std::all_of(pairs_.begin(), pairs_.end(),
+                      [](const Pair& pair) { return pair.is_told(); })) {
+        for (const Pair& pair : pairs_)
+          guess_.roles.velocity.push_back(name_of(pair.velocities[0]));
       }
     }
     say_pairs(joints);
     for (const std::string& name : names_) {
       if (!is_taken(name)) guess_.left.push_back(name);
     }
-    if (guess_.left.size() == wanted && !guess_.roles.position.empty()) {
+    if (guess_.left.size() == wanted && !guess_.roles.velocity.empty() && none_is_known_already()) {
       guess_.roles.torque = guess_.left;
       guess_.left.clear();
     }
@@ -50,6 +53,17 @@ class Guesser {
   }
 
  private:
+  // By their places among the columns that move.
+  struct Pair {
+    Index position = 0;
+    std::vector<Index> velocities;  // the best first, and all that are hardly worse
+    [[nodiscard]] bool is_told() const { return velocities.size() == 1; }
+  };
+
+  const std::string& name_of(Index moving) const {
+    return moving_[static_cast<std::size_t>(moving)];
+  }
+
   void take_time(double period_s) {
     if (names_.empty()) return;
     std::size_t at = 0;
@@ -76,32 +90,102 @@ class Guesser {
            has(guess_.roles.position) || has(guess_.roles.velocity);
   }
 
-  // A pair that fits best on both sides; the derivative of a velocity is left.
+  // A position and what fits best as its velocity; the derivative of a velocity is left.
   void take_pairs() {
-    const std::vector<std::string> moving = moving_columns();
-    if (moving.size() < 2) return;
-    const auto n = static_cast<Index>(moving.size());
-    Eigen::MatrixXd fit = Eigen::MatrixXd::Zero(n, n);  // row: position, column: velocity
+    moving_ = moving_columns();
+    const auto n = static_cast<Index>(moving_.size());
+    fit_ = Eigen::MatrixXd::Zero(n, n);  // row: position, column: velocity
     for (Index i = 0; i < n; ++i) {
       for (Index k = 0; k < n; ++k) {
-        if (i != k) fit(i, k) = fit_of(i, k);
+        if (i != k) fit_(i, k) = fit_of(i, k);
       }
     }
-    std::map<std::string, std::string> velocity_of;
+    std::vector<Pair> pairs;
     for (Index i = 0; i < n; ++i) {
-      Index best = 0;
-      Index back = 0;
-      if (fit.row(i).maxCoeff(&best) <= 0) continue;
-      static_cast<void>(fit.col(best).maxCoeff(&back));
-      if (back == i)
-        velocity_of[moving[static_cast<std::size_t>(i)]] = moving[static_cast<std::size_t>(best)];
+      Pair pair{i, velocities_of(i)};
+      if (!pair.velocities.empty() && is_position_of(i, pair.velocities[0])) {
+        pairs.push_back(std::move(pair));
+      }
     }
-    for (const std::string& name : moving) {
-      const auto found = velocity_of.find(name);
-      const bool is_velocity = std::any_of(velocity_of.begin(), velocity_of.end(),
-                                           [&](const auto& pair) { return pair.second == name; });
-      if (found != velocity_of.end() && !is_velocity) pairs_.emplace_back(name, found->second);
+    for (const Pair& pair : pairs) {
+      const bool is_velocity = std::any_of(pairs.begin(), pairs.end(), [&](const Pair& other) {
+        return std::find(other.velocities.begin(), other.velocities.end(), pair.position) !=
+               other.velocities.end();
+      });
+      if (!is_velocity) pairs_.push_back(pair);
     }
+  }
+
+  // Noise, or a torque of viscous friction, may be what parts them.
+  static bool is_hardly_worse(double fit, double best) {
+    constexpr double kTimesWorse = 5;
+    constexpr double kWorse = 0.005;
+    return fit > 0 && 1 - fit <= kTimesWorse * (1 - best) + kWorse;
+  }
+
+  // The best, and those that are hardly worse.
+  std::vector<Index> velocities_of(Index i) const {
+    std::vector<Index> velocities;
+    Index best = 0;
+    if (fit_.cols() == 0 || fit_.row(i).maxCoeff(&best) <= 0) return velocities;
+    velocities.push_back(best);
+    for (Index k = 0; k < fit_.cols(); ++k) {
+      if (k != best && is_hardly_worse(fit_(i, k), fit_(i, best))) velocities.push_back(k);
+    }
+    return velocities;
+  }
+
+  // Whether no other goes with it clearly better, and none that stands before it as well.
+  bool is_position_of(Index i, Index velocity) const {
+    const double best = fit_.col(velocity).maxCoeff();
+    for (Index k = 0; k < i; ++k) {
+      if (is_hardly_worse(fit_(k, velocity), best)) return false;
+    }
+    return is_hardly_worse(fit_(i, velocity), best);
+  }
+
+  // What is left for torques must not be a position, a velocity or a clock a second time, nor
+  // nothing at all. Says why not.
+  bool none_is_known_already() {
+    const std::size_t before = guess_.notes.size();
+    for (const std::string& name : guess_.left) {
+      if (const std::string known = known_already(name); !known.empty()) {
+        guess_.notes.push_back(fmt::format("column {} {}: it is taken for no torque", name, known));
+      }
+    }
+    return guess_.notes.size() == before;
+  }
+
+  std::string known_already(const std::string& name) const {
+    const VectorXd& x = values_.at(name);
+    if (x.size() > 1 && steps_of(x).minCoeff() > 0) return "ascends all the time";
+    const auto at = std::find(moving_.begin(), moving_.end(), name);
+    if (at == moving_.end()) return "never changes where it was looked at";
+    const auto left = static_cast<Index>(at - moving_.begin());
+    for (const Pair& pair : pairs_) {
+      const Index velocity = pair.velocities[0];
+      if (fit_(left, velocity) > 0) {
+        return fmt::format("has {} as its derivative, as {} does", name_of(velocity),
+                           name_of(pair.position));
+      }
+      if (fit_(velocity, left) > 0) {
+        return fmt::format("is the derivative of {}, an acceleration", name_of(velocity));
+      }
+      for (const Index taken : {pair.position, velocity}) {
+        if (are_alike(left, taken)) return fmt::format("is {} times a factor", name_of(taken));
+      }
+    }
+    return {};
+  }
+
+  // But for a factor and an offset.
+  bool are_alike(Index a, Index b) const {
+    constexpr double kSame = 1 - 1e-6;
+    const VectorXd x = smoothed_[static_cast<std::size_t>(a)].value;
+    const VectorXd y = smoothed_[static_cast<std::size_t>(b)].value;
+    const VectorXd of_x = x.array() - x.mean();
+    const VectorXd of_y = y.array() - y.mean();
+    return std::abs(of_x.dot(of_y)) >= kSame * of_x.norm() * of_y.norm();
   }
 
   // Above 0 where k is the derivative of i, by a factor that units have.
@@ -143,11 +227,24 @@ class Guesser {
 
   void say_pairs(int joints) {
     std::vector<std::string> words;
-    for (const auto& [q, dq] : pairs_) words.push_back(fmt::format("{} of {}", dq, q));
+    for (const Pair& pair : pairs_) {
+      if (pair.is_told()) {
+        words.push_back(
+            fmt::format("{} of {}", name_of(pair.velocities[0]), name_of(pair.position)));
+        continue;
+      }
+      std::vector<std::string> alike;
+      for (const Index velocity : pair.velocities) alike.push_back(name_of(velocity));
+      guess_.notes.push_back(fmt::format(
+          "columns {} go as the derivative of {}, one hardly better than the other: which is the "
+          "velocity and which a torque or of another joint is not told by the numbers; say "
+          "velocity = [...] and torque = [...]",
+          list_of(alike), name_of(pair.position)));
+    }
     if (!words.empty()) {
       guess_.notes.push_back("columns that are the derivative of others: " + list_of(words));
     }
-    if (!words.empty() && guess_.roles.position.empty()) {
+    if (!pairs_.empty() && guess_.roles.position.empty()) {
       guess_.notes.push_back(
           fmt::format("the robot has {} joints: positions and velocities are not guessed", joints));
     }
@@ -158,8 +255,10 @@ class Guesser {
   NamelessGuess guess_;
   std::string counter_;
   VectorXd t_s_;
-  std::vector<Smoothed> smoothed_;
-  std::vector<std::pair<std::string, std::string>> pairs_;
+  std::vector<std::string> moving_;  // columns that may be positions or velocities
+  std::vector<Smoothed> smoothed_;   // of each
+  Eigen::MatrixXd fit_;              // of each as a velocity (column) to each as a position (row)
+  std::vector<Pair> pairs_;
 };
 
 }  // namespace

@@ -12,7 +12,8 @@ namespace offnominal::desk {
 
 // What a file without a header is taken for, by its numbers: the first column is the time where it
 // ascends as a clock does, and columns of which others are the derivative are positions. What is
-// left is a torque for each of them only where it is as many.
+// left is a torque for each of them only where it is as many, and nothing of what was taken over
+// again. What two columns would do for is none of them: it is said, and left.
 struct NamelessGuess {
   Roles roles;
   std::vector<std::string> left;   // columns that are nothing of it

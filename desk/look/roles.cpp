@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -67,13 +68,15 @@ bool is_more_than_numbers(const Family& family, const std::vector<Family>& numbe
 // Families by the names of joints that may be taken, and whether they stand in the robot's order.
 struct ByName {
   std::vector<Family> families;
+  std::vector<Family> not_measured;
   bool in_robots_order = false;
 };
 
 ByName usable_by_name(const std::vector<NamedColumn>& columns, const std::vector<Family>& numbered,
                       const ExpectedJoints& expected) {
-  const std::vector<Family> all = families_by_name(columns);
+  std::vector<Family> all = families_by_name(columns);
   ByName usable;
+  usable.not_measured = take_not_measured(all);
   for (const Family& family : all) {
     Family ordered = in_order_of(family, expected.names);
     if (!ordered.members.empty()) usable.families.push_back(std::move(ordered));
@@ -87,6 +90,18 @@ ByName usable_by_name(const std::vector<NamedColumn>& columns, const std::vector
     if (fits && is_more_than_numbers(family, numbered)) usable.families.push_back(family);
   }
   return usable;
+}
+
+// How far a name is from "measured": below 0 where it says so, above where it was estimated.
+int doubt_of(const std::vector<std::string>& words) {
+  static const std::set<std::string> kMeasured{"meas", "measured", "act", "actual", "ist"};
+  static const std::set<std::string> kEstimated{"est",      "estimate", "estimated", "hat",
+                                                "observer", "sim",      "simulated"};
+  int doubt = 0;
+  for (const std::string& word : words) {
+    doubt += (kEstimated.contains(word) ? 1 : 0) - (kMeasured.contains(word) ? 1 : 0);
+  }
+  return doubt;
 }
 
 class Chooser {
@@ -115,11 +130,12 @@ class Chooser {
     const auto constants = std::count_if(family.members.begin(), family.members.end(),
                                          [](const auto& member) { return member.is_constant; });
     const bool elsewhere = holder_of(family.members[0].column) != holder_;
-    int shared = 0;
-    for (const std::string& word : other_words(family.members[0].column)) {
-      shared += std::find(words_.begin(), words_.end(), word) != words_.end() ? 1 : 0;
-    }
-    return std::tuple(roles_.position.empty() ? false : elsewhere, constants, -shared);
+    const std::vector<std::string> words = other_words(family.members[0].column);
+    const auto shared = std::count_if(words.begin(), words.end(), [&](const auto& word) {
+      return std::find(words_.begin(), words_.end(), word) != words_.end();
+    });
+    return std::tuple(roles_.position.empty() ? false : elsewhere, constants, -shared,
+                      doubt_of(words), words.size());
   }
 
   std::vector<std::string> best_of(Role role, bool& of_motor) {
@@ -134,6 +150,7 @@ class Chooser {
     if (best == nullptr) return columns;
     for (const FamilyMember& member : best->members) columns.push_back(member.column);
     of_motor = best->of_motor;
+    if (may_be_asked_for(*best)) roles_.may_be_asked_for.push_back(best->name);
     for (const Family& family : families_) {
       if (&family != best && fits(family)) roles_.other_families.push_back(family.name);
     }
@@ -147,27 +164,40 @@ class Chooser {
   std::vector<std::string> words_;
 };
 
+// Where the positions stand, then of the fewest words: "time" before "O_T_EE_0".
 std::optional<std::string> time_in(const std::vector<NamedColumn>& columns,
                                    const std::vector<std::string>& position) {
   const std::string holder = position.empty() ? "" : holder_of(position[0]);
+  const auto rank_of = [&](const std::string& name) {
+    return std::pair(holder_of(name) != holder, words_in(name).size());
+  };
   std::optional<std::string> time;
   for (const NamedColumn& column : columns) {
     if (guess_of(column.name, column.said_unit).role != Role::kTime) continue;
-    if (!time || (holder_of(*time) != holder && holder_of(column.name) == holder)) {
-      time = column.name;
-    }
+    if (!time || rank_of(column.name) < rank_of(*time)) time = column.name;
   }
   return time;
+}
+
+// Names of those that have a column for each joint.
+std::vector<std::string> names_of(const std::vector<Family>& families, std::size_t joints) {
+  std::vector<std::string> names;
+  for (const Family& family : families) {
+    if (family.members.size() == joints) names.push_back(family.name);
+  }
+  return names;
 }
 
 }  // namespace
 
 Roles roles_of(const std::vector<NamedColumn>& columns, const ExpectedJoints& expected) {
-  const std::vector<Family> numbered = numbered_families(columns);
+  std::vector<Family> numbered = numbered_families(columns);
+  const std::vector<Family> not_measured = take_not_measured(numbered);
   const ByName by_name = usable_by_name(columns, numbered, expected);
   const std::size_t joints =
       expected.count > 0 ? static_cast<std::size_t>(expected.count) : joints_of(numbered);
   Roles roles = Chooser(numbered, joints).choose();
+  roles.not_measured = names_of(not_measured, joints);
   std::size_t named_joints = joints;
   if (expected.count == 0) {
     for (const Family& family : by_name.families) {
@@ -180,6 +210,7 @@ Roles roles_of(const std::vector<NamedColumn>& columns, const ExpectedJoints& ex
     Roles named = Chooser(by_name.families, named_joints).choose();
     if (!named.position.empty() || roles.position.empty()) {
       roles = std::move(named);
+      roles.not_measured = names_of(by_name.not_measured, named_joints);
       roles.order = by_name.in_robots_order ? "joints by their names, in the robot's order"
                                             : "joints by their names, in the order of the columns";
     }

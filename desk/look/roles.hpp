@@ -35,13 +35,19 @@ struct Roles {
   bool velocity_of_motor = false;
   bool torque_of_motor = false;
   std::vector<std::string> other_families;  // of the same roles, that would do as well
-  std::string order;                        // how joints that have names stand; empty: by number
+  // That are as many, and by their names were asked for, act from outside or come from a model.
+  std::vector<std::string> not_measured;
+  // That are taken for want of a plainer name, and may have been asked for: "q_d_#".
+  std::vector<std::string> may_be_asked_for;
+  std::string order;  // how joints that have names stand; empty: by number
 };
 
 // The families that have a column for each joint, or for as many as most families have where that
-// is not known. Of several, one whose columns all change, then one that stands where the positions
-// stand, then one that shares most words with them, then the first. Joints with names stand in the
-// robot's order where all of its names are found, else in that of the columns.
+// is not known. Of several, one that stands where the positions stand, then one whose columns all
+// change, then one that shares most words with them, then one that is called measured, then one
+// that is not called estimated, then the one of the fewest words ("q_1" before "q_foo_1"), then the
+// first. What was not measured is never taken. Joints with names stand in the robot's order where
+// all of its names are found, else in that of the columns.
 [[nodiscard]] Roles roles_of(const std::vector<NamedColumn>& columns,
                              const ExpectedJoints& expected);
 

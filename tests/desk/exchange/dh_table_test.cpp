@@ -13,6 +13,7 @@
 #include "desk/support/temporary_folder.hpp"
 #include "exchange/blank_robot.hpp"
 #include "robot/robot_file.hpp"
+#include "support/places.hpp"
 #include "support/repetitions.hpp"
 #include "support/seed.hpp"
 
@@ -29,7 +30,7 @@ using testing::HasSubstr;
 
 DhTable random_table(std::mt19937_64& generator, DhConvention convention) {
   std::uniform_real_distribution<double> number(-std::numbers::pi, std::numbers::pi);
-  DhTable table{convention, {}};
+  DhTable table{convention, {}, {}};
   for (int i = 0; i < 6; ++i) {
     const JointType type = generator() % 4 == 0 ? JointType::kPrismatic : JointType::kRevolute;
     table.rows.push_back({"j" + std::to_string(i), type, number(generator), number(generator),
@@ -169,6 +170,66 @@ TEST(DhTable, SaysWhereANumberIsNone) {
                                                "mend: write a row for each joint"));
 }
 
+TEST(DhTable, IsInTheUnitThatItsNamesSay) {
+  const DhTable table =
+      read("a.csv", "a_mm,alpha_deg,d_mm,theta_rad\n300,90,-25.5,0\n", DhConvention::kStandard);
+  EXPECT_DOUBLE_EQ(table.rows[0].a_m, 0.3);
+  EXPECT_DOUBLE_EQ(table.rows[0].d_m, -0.0255);
+  EXPECT_TRUE(table.notes.empty());
+  // The largest that may be meant.
+  EXPECT_EQ(
+      read("a.csv", "a_m,alpha_rad,d_m,theta_rad\n17,6.2832,0,-6.2832\n", DhConvention::kStandard)
+          .rows[0]
+          .a_m,
+      17);
+}
+
+TEST(DhTable, TheSampleInMillimetresIsRead) {
+  const DhTable table =
+      read_dh_table(source_dir() / "tests" / "fuzz" / "corpus" / "dh" / "millimetres.csv",
+                    DhConvention::kStandard);
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_DOUBLE_EQ(table.rows[0].d_m, 0.4);
+  EXPECT_DOUBLE_EQ(table.rows[1].a_m, 0.3);
+}
+
+TEST(DhTable, NumbersOfAnotherUnitThanTheNameSaysAreRefused) {
+  const auto refusal = [](const std::string& name, const std::string& text) {
+    return message_of<InputError>(
+        [&] { static_cast<void>(read(name, text, DhConvention::kStandard)); });
+  };
+  EXPECT_THAT(refusal("a.csv", "a_m,alpha_rad,d_m,theta_rad\n0,0,0,0\n0,-90,0.4,0\n"),
+              HasSubstr("line 3, column alpha_rad: found -90 rad, which is degrees by its size; "
+                        "allowed: an angle of at most one turn, 2 pi; to mend: name it alpha_deg "
+                        "where it is in deg, or write it in rad"));
+  EXPECT_THAT(refusal("a.csv", "a_m,alpha_deg,d_m,theta_deg\n0,90,400,0\n"),
+              HasSubstr("line 2, column d_m: found 400 m, which is millimetres by its size; "
+                        "allowed: a length of at most 20 m; to mend: name it d_mm"));
+  EXPECT_THAT(refusal("a.toml", "[[joint]]\na_m = 400\nalpha_deg = 90\nd_m = 0\ntheta_deg = 0\n"),
+              HasSubstr("line 2, joint[1].a_m: found 400 m"));
+  EXPECT_THAT(refusal("a.toml", "[[joint]]\na_m = 0\nalpha_deg = 90\nd_m = 0\ntheta_rad = 180\n"),
+              HasSubstr("line 5, joint[1].theta_rad: found 180 rad"));
+}
+
+TEST(DhTable, ATitleAboveItIsLeftOutAndTold) {
+  const DhTable table =
+      read("a.csv", "Arm 7, data sheet\na_m,alpha_deg,d_m,theta_deg\n0,90,0.4,0\n",
+           DhConvention::kStandard);
+  EXPECT_EQ(table.rows.size(), 1U);
+  EXPECT_THAT(table.notes, testing::ElementsAre("line 1 stands before the header: left out"));
+}
+
+TEST(DhTable, NumbersThatMayBeOfAnotherUnitAreTold) {
+  const DhTable table =
+      read("a.csv", "a_mm,alpha_deg,d_mm,theta_deg\n0,1.5708,0.4,-3.1416\n0.3,-1.5708,0,12\n",
+           DhConvention::kStandard);
+  EXPECT_THAT(table.notes,
+              testing::ElementsAre(
+                  "alpha_deg = 1.5708 is pi/2 as radians: name it alpha_rad where that is meant",
+                  "theta_deg = -3.1416 is -pi as radians: name it theta_rad where that is meant",
+                  "no length is above 0.4 mm: name them a_m and d_m where metres are meant"));
+}
+
 // A count of the joints is no order of its own, and may be names.
 TEST(DhTable, StandsInTheOrderOfItsJoints) {
   const auto with = [](const std::string& first, const std::string& second) {
@@ -203,7 +264,7 @@ TEST(DhTable, IsRefusedWhereItCanBeReadInTwoWays) {
   EXPECT_THAT(refusal("a.csv", "a_m,alpha_rad,d_m,prismatic" + row, standard),
               HasSubstr("found neither theta_rad nor theta_deg"));
   EXPECT_THAT(refusal("a.csv", "alpha_rad,theta_rad,d_m,prismatic" + row, standard),
-              HasSubstr("found no column a_m"));
+              HasSubstr("found neither a_m nor a_mm"));
   EXPECT_THAT(refusal("a.csv", "a_m,alpha_rad,d_m,theta_rad,prismatic\n0,0,0,0,0.5\n", standard),
               HasSubstr("line 2, column prismatic: found 0.5; allowed: 0 or 1"));
   EXPECT_THAT(refusal("a.toml", "convention = \"modified\"\n", standard),

@@ -175,6 +175,12 @@ TEST(UrdfRefusal, SeesARingThatHangsOnNothing) {
               HasSubstr("found links that lead back to `b`: a closed loop"));
 }
 
+TEST(UrdfRefusal, NamesOtherEncodings) {
+  EXPECT_THAT(refusal_of(std::string("\xFF\xFE<\0r\0", 6), {}),
+              AllOf(HasSubstr("line 1: found UTF-16"), HasSubstr("to mend: save it in UTF-8")));
+  EXPECT_THAT(refusal_of("\x1f\x8b\x08", {}), HasSubstr("found data packed with gzip"));
+}
+
 TEST(UrdfRefusal, NamesOtherFormats) {
   EXPECT_THAT(refusal_of("<mujoco/>", {}), HasSubstr("line 1: found <mujoco> as the root (MJCF)"));
   EXPECT_THAT(refusal_of("<sdf version=\"1.7\"/>", {}), HasSubstr("<sdf> as the root (SDF)"));

@@ -51,6 +51,24 @@ TEST(ImportUrdf, MergesFixedLinksAsWorkedOutByHand) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(joint.inertia_kg_m2[i], by_hand[i], 1e-15) << i;
 }
 
+// As an editor of long ago saves umlauts.
+TEST(ImportUrdf, TellsNamesThatAreNoUtf8) {
+  const ImportedRobot imported = import_urdf(
+      "<robot name=\"a\">\n<link name=\"ground\"/>\n"
+      "<link name=\"bar\"><inertial><mass value=\"1\"/>"
+      "<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>\n"
+      "<joint name=\"Gel\xE4nk\" type=\"continuous\"><parent link=\"ground\"/><child link=\"bar\"/>"
+      "<axis xyz=\"0 0 1\"/></joint></robot>",
+      "bar.urdf");
+  EXPECT_EQ(imported.robot.joints[0].name, "Gel\uFFFDnk");
+  EXPECT_THAT(notes_of(imported),
+              Contains("assumed 4 U+FFFD for bytes that are no UTF-8 in the name "
+                       "`Gel\uFFFDnk`: saved in UTF-8 the file keeps them"));
+  EXPECT_NO_THROW(static_cast<void>(
+      desk::parse_robot(desk::exchange::robot_text_of(imported, "bar.urdf"), "bar.toml")));
+  EXPECT_THAT(notes_of(imported_arm()), Not(Contains(HasSubstr("UTF-8"))));
+}
+
 // 0.1 + 0.2 lack 0.02 of 0.32: both get half of it.
 TEST(ImportUrdf, TakesTheNearestInertiaThatABodyCanHave) {
   const ImportedRobot imported = import_urdf(R"(<robot name="brick">

@@ -59,6 +59,23 @@ TEST(ImportUrdfVerb, WritesNothingWhereItHasToAsk) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST(ImportUrdfVerb, ReadsStandardInput) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "arm.toml").string();
+  const auto piped = [&](const std::string& input) {
+    return run_command(command_file(), {"import-urdf", "-", "--tip", "hand", "-o", out}, {}, input);
+  };
+  const CommandResult result = piped(sample_arm().file.string());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(desk::read_robot_file(out).joint_count(), 3);
+  EXPECT_THAT(content_of(out), HasSubstr("URDF standard input"));
+  std::filesystem::remove(out);
+  put(folder / "arm.xacro", "<robot name=\"a\"><xacro:include filename=\"b\"/></robot>");
+  EXPECT_THAT(piped((folder / "arm.xacro").string()).err,
+              testing::AllOf(testing::StartsWith("standard input: line 1: found <xacro:include>"),
+                             HasSubstr("xacro FILE | offnominal import-urdf - ")));
+}
+
 TEST(NewVerb, WritesTheGeometryOfATableAndBlanks) {
   const TemporaryFolder folder;
   put(folder / "table.csv", "a_m,alpha_deg,d_m,theta_deg\n0,90,0.4,0\n0.3,0,0,0\n");
@@ -71,8 +88,12 @@ TEST(NewVerb, WritesTheGeometryOfATableAndBlanks) {
   };
   EXPECT_THAT(with({}).err,
               HasSubstr("no word on whether the table is a standard or a modified one"));
-  EXPECT_THAT(with({"--convention", "standard", "--joints", "6"}).err,
-              testing::StartsWith("offnominal new: --joints: found 6; allowed: 2, the rows of "));
+  for (const char* joints : {"6", "0", "-1", "99999999999999999999999", "1.5", "two"}) {
+    const CommandResult refused = with({"--convention", "standard", "--joints", joints});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, testing::StartsWith(std::string("offnominal new: --joints: found ") +
+                                                 joints + "; allowed: 2, the rows of "));
+  }
   EXPECT_THAT(with({"--convention", "standard", "--name", ""}).err,
               testing::StartsWith("offnominal new: --name: found nothing; allowed: a name"));
   EXPECT_FALSE(std::filesystem::exists(out));
@@ -82,6 +103,15 @@ TEST(NewVerb, WritesTheGeometryOfATableAndBlanks) {
   const CommandResult used = run({"export-urdf", out, "-o", (folder / "arm.urdf").string()});
   EXPECT_EQ(used.exit_code, 2);
   EXPECT_THAT(used.err, HasSubstr("joint[1].link.mass_kg: found nothing"));
+}
+
+TEST(NewVerb, TellsNumbersThatMayBeOfAnotherUnit) {
+  const TemporaryFolder folder;
+  put(folder / "table.csv", "a_m,alpha_deg,d_m,theta_deg\n0,1.5708,0.4,0\n");
+  const CommandResult result = run({"new", "--dh", (folder / "table.csv").string(), "--convention",
+                                    "standard", "-o", (folder / "arm.toml").string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("note: alpha_deg = 1.5708 is pi/2 as radians"));
 }
 
 TEST(NewVerb, ReadsATableFromStandardInput) {
@@ -103,10 +133,11 @@ TEST(NewVerb, SaysWhichNamesATableWithoutUnitsShouldHave) {
                 (folder / "arm.toml").string()})
         .err;
   };
-  EXPECT_THAT(error_of("a,alpha,d,theta"), HasSubstr("to mend: name it a_m, in metres"));
+  EXPECT_THAT(error_of("a,alpha,d,theta"),
+              HasSubstr("to mend: name it a_m where it is in metres, a_mm where in millimetres"));
   EXPECT_THAT(error_of("a_m,Alpha,d,theta"),
               HasSubstr("name it alpha_deg where it is in degrees, alpha_rad where in radians"));
-  EXPECT_THAT(error_of("a_m,alpha_deg,d,theta"), HasSubstr("name it d_m, in metres"));
+  EXPECT_THAT(error_of("a_m,alpha_deg,d,theta"), HasSubstr("name it d_m where it is in metres"));
 }
 
 TEST(ExportVerbs, WriteBothFormatsAndListWhatIsNotCarried) {

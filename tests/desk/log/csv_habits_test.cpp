@@ -15,6 +15,7 @@
 #include "desk/support/temporary_file.hpp"
 #include "log/read_log.hpp"
 #include "robot/channels.hpp"
+#include "support/places.hpp"
 
 namespace {
 
@@ -147,6 +148,11 @@ std::vector<Habit> habits() {
   const std::string dates = lines(with([](Cells& cells) {
     cells.time = [](int i) { return "2026-11-24T23:59:59." + std::to_string(100 + 10 * i) + "Z"; };
   }));
+  const std::string german_dates = lines(with([](Cells& cells) {
+    cells.separator = ";";
+    cells.point = ',';
+    cells.time = [](int i) { return "24.11.2026 23:59:59," + std::to_string(100 + 10 * i); };
+  }));
   const std::string nanoseconds = lines(with([](Cells& cells) {
     cells.time = [](int i) { return std::to_string(1763942400123456789 + 10'000'000LL * i); };
   }));
@@ -197,6 +203,22 @@ std::vector<Habit> habits() {
       {"comments before the header", "# drive 3\n# 24 November\n" + kHeader + plain},
       {"comments between samples", kHeader + commented},
       {"comments behind a %", "% drive 3\n" + kHeader + plain},
+      {"a title above the header",
+       "Axis 3, run 7\n" + kHeader + plain,
+       {},
+       "line 1 stands before the header"},
+      {"settings above the header",
+       "Measurement of axis 3\n\nrate: 100 Hz\n7\n\n" + kHeader + plain,
+       {},
+       "lines 1 to 5 stand before the header"},
+      {"settings above a header with units",
+       "Operator;Smith\r\nRate;100\r\nt;q1;dq1;tau1\r\ns;rad;rad/s;Nm\r\n" +
+           lines(with([](Cells& cells) {
+             cells.separator = ";";
+             cells.end = "\r\n";
+           })),
+       {},
+       "lines 1 to 2 stand before the header"},
       {"blank lines before the header", "\n\n" + kHeader + plain},
       {"a line of units", kHeader + "s,rad,rad/s,Nm\n" + plain},
       {"a line of other units",
@@ -224,6 +246,10 @@ std::vector<Habit> habits() {
       {"gzip in two members", packed(kHeader + plain.substr(0, 100)) + packed(plain.substr(100))},
       {"gzip of UTF-16", packed(utf16(kHeader + plain, false))},
       {"dates in ISO 8601", kHeader + dates, {}, "t = 0 s is 2026-11-24T23:59:59.100Z"},
+      {"dates with dots",
+       "t;q1;dq1;tau1\n" + german_dates,
+       {},
+       "t = 0 s is 24.11.2026 23:59:59,100"},
       {"nanoseconds since 1970", kHeader + nanoseconds,
        "time = {source = 't', unit = 'ns'}\nposition = 'q1'\nvelocity = 'dq1'\ntorque = 'tau1'",
        "of the file's own clock"},
@@ -254,6 +280,25 @@ TEST(CsvHabits, EachIsReadRight) {
       EXPECT_THAT(log.remarks, testing::Contains(HasSubstr(habit.remark)));
     }
   }
+}
+
+// Files as they come, which the fuzzers begin with too.
+TEST(CsvHabits, SamplesOfTheCorpusAreRead) {
+  const auto read_sample = [](const char* name) {
+    return offnominal::desk::read_log(
+        offnominal::test::source_dir() / "tests" / "fuzz" / "corpus" / "csv" / name, 2,
+        std::nullopt);
+  };
+  const Log common = read_sample("title.csv");
+  const Log dates = read_sample("dates.csv");
+  for (const Log& log : {common, dates}) {
+    ASSERT_EQ(log.sample_count(), 12);
+    EXPECT_NEAR(log.period_s, 0.01, 1e-9);
+    EXPECT_EQ(log.q(11, 1), 0.497);
+    EXPECT_EQ(log.tau(1, 0), 1.49);
+  }
+  EXPECT_THAT(common.remarks, testing::Contains("lines 1 to 4 stand before the header: left out"));
+  EXPECT_THAT(dates.remarks, testing::Contains(HasSubstr("t = 0 s is 24.11.2026 23:59:59,000")));
 }
 
 TEST(CsvHabits, APeriodFromTheCommandLineTakesThePlaceOfTheTime) {
@@ -290,12 +335,40 @@ TEST(CsvHabits, WhatHasToBeSaidIsAskedFor) {
               testing::AllOf(HasSubstr("dates"), HasSubstr("leave unit and scale out")));
 }
 
+TEST(CsvHabits, OfTimesThatMayBeReadInTwoWaysItSaysHowToWriteThem) {
+  for (const char* day : {"11/24/2026 ", "", "24.11.26 "}) {
+    const std::string text =
+        kHeader + lines(with([&](Cells& cells) {
+          cells.time = [day](int i) { return day + ("10:00:00." + std::to_string(100 + i)); };
+        }));
+    EXPECT_THAT(refusal(text),
+                testing::AllOf(HasSubstr("line 2, column t: found \"" + std::string(day) + "10:00"),
+                               HasSubstr("24.11.2026 02:14:30.123"), HasSubstr("--period")));
+  }
+  EXPECT_THAT(refusal(kHeader + "oops,0,0,0\n"),
+              testing::EndsWith("a number with a decimal point"));
+}
+
 TEST(CsvHabits, LinesAreCountedAsTheFileHasThem) {
   std::string text = "# drive 3\n\n" + kHeader + "s,rad,rad/s,Nm\n" + lines({}, 3) +
                      "# the gripper closes\n0.03,oops,1,2\n";
   EXPECT_THAT(refusal(text), HasSubstr("line 9, column q1"));
   text = kHeader + lines({}, 12) + "# the gripper closes\n0.12,1,1,2\n0.12,1,1,2\n0.12,1,1,2\n";
   EXPECT_THAT(refusal(text), HasSubstr("line 16, time"));
+}
+
+// Nothing that has numbers of its own is passed over.
+TEST(CsvHabits, ARecordingInFrontOfAnotherIsNoPreamble) {
+  EXPECT_THAT(refusal("t,q1,dq1,tau1\n0,1,2\n" + kHeader + lines({})),
+              HasSubstr("line 2: found 3"));
+  EXPECT_THAT(refusal("axis 3\n0,1,2,3\n" + kHeader + lines({})), HasSubstr("the number 3"));
+  EXPECT_THAT(refusal("axis 3\n0,1,2,idle\n" + kHeader + lines({})), HasSubstr("the number 3"));
+  EXPECT_THAT(refusal("axis 3\nand no numbers\n"), HasSubstr("line 1"));
+}
+
+TEST(CsvHabits, LinesBelowAPreambleAreCountedAsTheFileHasThem) {
+  EXPECT_THAT(refusal("Axis 3, run 7\nrate 100 Hz\n" + kHeader + lines({}, 3) + "0.03,oops,1,2\n"),
+              HasSubstr("line 7, column q1"));
 }
 
 // A clock of whole seconds, or one that begins anew, under a name that would else be the time.

@@ -47,6 +47,13 @@ std::string refusal(const std::string& content, int joints = 1) {
   return message_of<InputError>([&] { read(content, joints); });
 }
 
+TEST(CsvLog, WithoutATorqueItSaysThatThereIsNone) {
+  EXPECT_THAT(refusal("t,q1,dq1\n0,0,0\n1,0,0\n"),
+              AllOf(HasSubstr("columns: found t, q1, dq1, and no torque; allowed: tau1..tau1, or "
+                              "torques or currents by other names; to mend: map the names"),
+                    HasSubstr("record them too")));
+}
+
 TEST(CsvLog, CommonHeaderIsReadInAnyOrderWithExtras) {
   std::string text = "tau1,temp1,t,q1,note\n";
   for (int i = 0; i < 12; ++i) {

@@ -12,6 +12,7 @@
 
 #include "common/error.hpp"
 #include "common/input_name.hpp"
+#include "desk/support/temporary_file.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "log/read_log.hpp"
 #include "robot/channels.hpp"
@@ -23,6 +24,7 @@ using offnominal::desk::InputError;
 using offnominal::desk::Log;
 using offnominal::desk::parse_channels;
 using offnominal::desk::read_log;
+using offnominal::test::message_of;
 using offnominal::test::put;
 using offnominal::test::TemporaryFolder;
 using ::testing::AllOf;
@@ -142,6 +144,13 @@ TEST_F(JoinedFiles, UnfoldAnglesBeforeTheyDrawLines) {
     EXPECT_NEAR(log.q(i, 0), 5 * log.t_s[i], 1e-4) << i;
   }
   EXPECT_THAT(log.remarks, Contains(HasSubstr("unfolded before it was joined")));
+}
+
+TEST_F(JoinedFiles, OneThatIsMissingSaysThatAPlusJoins) {
+  EXPECT_THAT(message_of<InputError>(
+                  [&] { static_cast<void>(read_log(folder_ / "run+1.csv", 1, std::nullopt)); }),
+              AllOf(HasSubstr("run: found no such file"),
+                    HasSubstr("run+1.csv was read as files that + joins")));
 }
 
 TEST_F(JoinedFiles, AFileWhoseNameHasAPlusIsOne) {

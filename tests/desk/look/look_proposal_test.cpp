@@ -13,6 +13,7 @@
 #include "look/look_report.hpp"
 #include "robot/channels.hpp"
 #include "robot/robot_file.hpp"
+#include "support/places.hpp"
 
 // What look proposes where names or units alone do not tell, and what it shows of channels that a
 // robot file has.
@@ -137,6 +138,42 @@ TEST_F(LookProposal, WhatIsCalledAMotorsIsReadAsAMotors) {
   EXPECT_THROW(pasted(seen, robot_text({"a"})), InputError);
 }
 
+// As libfranka writes its log (logToCSV), of two joints; its time is in ms.
+TEST_F(LookProposal, OfALogOfLibfrankaTheMeasuredColumnsAreTaken) {
+  std::string log =
+      "time, success_rate, state.q_d[0], state.q_d[1],state.q[0], state.q[1],state.dq[0], "
+      "state.dq[1],state.dq_d[0], state.dq_d[1],state.tau_J[0], "
+      "state.tau_J[1],state.tau_ext_hat_filtered[0], state.tau_ext_hat_filtered[1],cmd.tau_J_d[0], "
+      "cmd.tau_J_d[1]\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = 0.001 * i;
+    const auto both = [&](double (*of)(int, double), double scale) {
+      return "," + std::to_string(scale * of(0, t)) + "," + std::to_string(scale * of(1, t));
+    };
+    log += std::to_string(i) + ",1" + both(position, 1.01) + both(position, 1) + both(velocity, 1) +
+           both(velocity, 1.01) + both(torque, 1) + both(torque, 0.1) + both(torque, 0.9) + "\n";
+  }
+  const Look seen = look(log, robot_text({"panda_joint1", "panda_joint2"}));
+  EXPECT_THAT(seen.missing, IsEmpty());
+  EXPECT_THAT(channels_text(seen), HasSubstr(R"(time = {source = "time", unit = "ms"})"));
+  EXPECT_EQ(seen.channels.position[1].source, "state.q[1]");
+  EXPECT_EQ(seen.channels.velocity[1]->source, "state.dq[1]");
+  EXPECT_EQ(seen.channels.torque[1].source, "state.tau_J[1]");
+  EXPECT_THAT(seen.notes, Contains(HasSubstr("state.q_d[#], state.dq_d[#], "
+                                             "state.tau_ext_hat_filtered[#], cmd.tau_J_d[#]")));
+}
+
+// The same with what it has beside: a pose, the commands, and too few rows to judge a velocity.
+TEST_F(LookProposal, TheSampleOfLibfrankaNeedsNothingSaid) {
+  const Look seen =
+      look_at(test::source_dir() / "tests" / "fuzz" / "corpus" / "csv" / "libfranka.csv", nullptr,
+              std::nullopt);
+  EXPECT_THAT(seen.missing, IsEmpty());
+  EXPECT_EQ(seen.channels.time.source, "time");
+  EXPECT_EQ(seen.channels.position[0].source, "state.q[0]");
+  EXPECT_EQ(seen.channels.torque[1].source, "state.tau_J[1]");
+}
+
 TEST_F(LookProposal, NamesOfJointsStandInTheRobotsOrder) {
   const std::string robot = robot_text({"shoulder_pan_joint", "elbow_joint"});
   const Look seen = look(
@@ -181,6 +218,55 @@ TEST_F(LookProposal, WhatNumbersDoNotTellIsLeftAndNeverNoToml) {
   EXPECT_THAT(seen.notes, Contains(HasSubstr("the robot has 3 joints")));
   EXPECT_THAT(channels_text(seen), HasSubstr("# position = [...]"));
   EXPECT_THROW(pasted(seen, robot), InputError);
+}
+
+// Time, position, and two columns of what `third` and `fourth` give.
+template <typename Third, typename Fourth>
+std::string four_columns(const Third& third, const Fourth& fourth) {
+  std::string text;
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    text += std::to_string(t) + "," + std::to_string(position(0, t)) + "," +
+            std::to_string(third(t)) + "," + std::to_string(fourth(t)) + "\n";
+  }
+  return text;
+}
+
+// As of a joint whose torque is its viscous friction.
+TEST_F(LookProposal, WithoutAHeaderTwoThatMayBeTheVelocityAreNeither) {
+  const auto dq = [](double t) { return velocity(0, t); };
+  const auto viscous = [](double t) { return 1.02 * velocity(0, t) + 0.01 * std::sin(40 * t); };
+  for (const std::string& content : {four_columns(dq, viscous), four_columns(viscous, dq)}) {
+    const Look seen = look(content);
+    const std::string text = channels_text(seen);
+    EXPECT_THAT(text, HasSubstr("position = [2]   # guessed"));
+    EXPECT_THAT(text, Not(HasSubstr("\nvelocity")));
+    EXPECT_THAT(text, Not(HasSubstr("\ntorque")));
+    EXPECT_THAT(seen.notes, Contains(HasSubstr("which is the velocity")));
+    EXPECT_THAT(text, HasSubstr("torque = [...] with the number of 1 of the columns 3, 4"));
+    EXPECT_THROW(pasted(seen, robot_text({"a"})), InputError);
+  }
+}
+
+TEST_F(LookProposal, WithoutAHeaderNothingIsTakenForATorqueThatIsKnownAlready) {
+  const auto dq = [](double t) { return velocity(0, t); };
+  struct Case {
+    double (*column)(double t);
+    const char* why;
+  };
+  for (const Case& one :
+       {Case{[](double t) { return kDegrees * position(0, t); }, "has 3 as its derivative"},
+        Case{[](double t) { return -4 * velocity(0, t) + 1; }, "is 3 times a factor"},
+        Case{[](double t) { return -4 * position(0, t); }, "is the derivative of 3"},
+        Case{[](double t) { return 0.3 * position(0, t); }, "is 2 times a factor"},
+        Case{[](double) { return 0.0; }, "never changes"},
+        Case{[](double t) { return 3 * t + 1; }, "ascends all the time"}}) {
+    const Look seen = look(four_columns(dq, one.column));
+    EXPECT_THAT(channels_text(seen), HasSubstr("velocity = [3]   # guessed")) << one.why;
+    EXPECT_THAT(channels_text(seen), Not(HasSubstr("\ntorque"))) << one.why;
+    EXPECT_THAT(seen.notes, Contains(HasSubstr(std::string("column 4 ") + one.why)));
+    EXPECT_THAT(seen.missing, Contains(HasSubstr("torque = [4] says so")));
+  }
 }
 
 TEST_F(LookProposal, DegreesAreOfPositionAndVelocityAndOfEveryJoint) {
@@ -281,6 +367,19 @@ TEST_F(LookProposal, FilesOfOneRecordingAreJoined) {
   EXPECT_NEAR(log.tau(100, 0), torque(0, 1), 1e-4);
   put(folder_ / "tau.csv", "load\n1\n2\n");
   EXPECT_THROW(static_cast<void>(look_at(both, nullptr, std::nullopt)), InputError);
+}
+
+TEST_F(LookProposal, BesideAPeriodTheTimeMayBeAnything) {
+  std::string text = "t,q1,dq1,tau1\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    text += "11/24/2026," + std::to_string(position(0, t)) + "," + std::to_string(velocity(0, t)) +
+            "," + std::to_string(torque(0, t)) + "\n";
+  }
+  EXPECT_THROW(static_cast<void>(look(text)), InputError);
+  const Look seen = look_at(folder_ / "a.csv", nullptr, kPeriodS);
+  EXPECT_THAT(seen.missing, IsEmpty());
+  EXPECT_THAT(channels_text(seen), HasSubstr("period_s = 0.01"));
 }
 
 TEST_F(LookProposal, TimeDoesNotRest) {

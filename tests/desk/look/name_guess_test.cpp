@@ -30,6 +30,10 @@ TEST(NameGuess, RolesUnitsAndNumbersOfCommonNames) {
                           Case{"Velocity [rpm]", Role::kVelocity, -1, "rpm"},
                           Case{"jointPosition[0]", Role::kPosition, 0, ""},
                           Case{"q_ref1", Role::kNone, 1, ""},
+                          Case{"state.q[6]", Role::kPosition, 6, ""},
+                          Case{"cmd.tau_J_d[6]", Role::kNone, 6, ""},
+                          Case{"tau_ext_hat_filtered_3", Role::kNone, 3, ""},
+                          Case{"gripper_state_pos", Role::kNone, -1, ""},
                           Case{"error_pos_deg(1,:)", Role::kNone, 1, ""},
                           Case{"Reference Velocity", Role::kNone, -1, ""},
                           Case{"temperature1", Role::kNone, 1, ""},
@@ -53,6 +57,13 @@ TEST(NameGuess, RolesUnitsAndNumbersOfCommonNames) {
     EXPECT_EQ(guess.number, one.number) << one.name;
     EXPECT_EQ(guess.unit, one.unit) << one.name;
   }
+}
+
+TEST(NameGuess, OfWhatIsNotMeasuredItSaysWhatItWouldBe) {
+  EXPECT_EQ(guess_of("tau_ext_hat_filtered_3").not_measured, Role::kTorque);
+  EXPECT_EQ(guess_of("q_des_3").not_measured, Role::kPosition);
+  EXPECT_EQ(guess_of("q_3").not_measured, Role::kNone);
+  EXPECT_EQ(guess_of("motor_temp_3").not_measured, Role::kNone);
 }
 
 TEST(NameGuess, AUnitThatTheFileSaysGivesARoleToANameThatSaysNone) {

@@ -11,9 +11,11 @@ using offnominal::desk::ExpectedJoints;
 using offnominal::desk::NamedColumn;
 using offnominal::desk::Role;
 using offnominal::desk::Roles;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
 
 Roles roles_of(std::initializer_list<const char*> names, const ExpectedJoints& expected = {}) {
   std::vector<NamedColumn> columns;
@@ -83,6 +85,45 @@ TEST(Roles, WordsOfHowAValueCameAboutAreNoJoints) {
   EXPECT_THAT(roles.velocity, ElementsAre("vel_meas1", "vel_meas2"));
   EXPECT_THAT(roles.torque, ElementsAre("tau_meas1", "tau_meas2"));
   EXPECT_THAT(roles_of({"pos_meas", "pos_filt", "tau_meas", "tau_filt"}).position.size(), 1U);
+}
+
+// Whatever stands first in the file.
+TEST(Roles, WhatWasMeasuredComesBeforeWhatWasAskedFor) {
+  const Roles roles =
+      roles_of({"O_T_EE_0", "O_T_EE_1", "time", "q_d_0", "q_d_1", "q_0", "q_1", "dq_d_0", "dq_d_1",
+                "dq_0", "dq_1", "tau_J_d_0", "tau_J_d_1", "tau_ext_hat_filtered_0",
+                "tau_ext_hat_filtered_1", "tau_est_0", "tau_est_1", "tau_J_0", "tau_J_1"});
+  EXPECT_EQ(roles.time, "time");
+  EXPECT_THAT(roles.position, ElementsAre("q_0", "q_1"));
+  EXPECT_THAT(roles.velocity, ElementsAre("dq_0", "dq_1"));
+  EXPECT_THAT(roles.torque, ElementsAre("tau_J_0", "tau_J_1"));
+  EXPECT_THAT(roles.other_families, ElementsAre("tau_est_#"));
+  EXPECT_THAT(roles.not_measured,
+              UnorderedElementsAre("q_d_#", "dq_d_#", "tau_J_d_#", "tau_ext_hat_filtered_#"));
+}
+
+TEST(Roles, WhatWasNotMeasuredIsNotTakenEvenAlone) {
+  const Roles roles = roles_of({"t", "shoulder_pos_cmd", "elbow_pos_cmd", "shoulder_velocity",
+                                "elbow_velocity", "shoulder_torque", "elbow_torque"});
+  EXPECT_THAT(roles.position, IsEmpty());
+  EXPECT_THAT(roles.torque, ElementsAre("shoulder_torque", "elbow_torque"));
+  EXPECT_THAT(roles.not_measured, Contains("*_pos_cmd"));
+}
+
+TEST(Roles, WhatSaysThatItWasMeasuredComesFirst) {
+  const Roles roles = roles_of({"t", "pos_x_1", "pos_1", "pos_meas_1", "tau_hat_1", "tau_1"});
+  EXPECT_THAT(roles.position, ElementsAre("pos_meas_1"));
+  EXPECT_THAT(roles.torque, ElementsAre("tau_1"));
+  EXPECT_THAT(roles.other_families, ElementsAre("pos_x_#", "pos_#", "tau_hat_#"));
+}
+
+// It may be the name of a joint, or say how it came about.
+TEST(Roles, ALetterAloneIsTakenAndTold) {
+  const Roles roles = roles_of({"t", "q_d_1", "q_d_2", "tau_1", "tau_2"});
+  EXPECT_THAT(roles.position, ElementsAre("q_d_1", "q_d_2"));
+  EXPECT_THAT(roles.may_be_asked_for, ElementsAre("q_d_#"));
+  EXPECT_THAT(roles_of({"t", "pos_b", "pos_d", "tau_b", "tau_d"}).position,
+              ElementsAre("pos_b", "pos_d"));
 }
 
 TEST(Roles, ColumnsThatChangeComeBeforeThoseThatDoNot) {
