@@ -202,13 +202,12 @@ class Importer {
     // What simulators ask of a frame that is no body.
     constexpr double kOfAFrame = 1e-4;  // kg m^2
     const double largest =
-        std::abs(*std::max_element(tensor.begin(), tensor.end(), [](double a, double b) {
-          return std::abs(a) < std::abs(b);
-        }));
+        std::abs(*std::max_element(tensor.begin(), tensor.end(),
+                                   [](double a, double b) { return std::abs(a) < std::abs(b); }));
     if (given.mass == 0 && largest <= kOfAFrame) {
-      note(Kind::kLeftOut, line_of(link),
-           fmt::format("the inertia of link `{}`, {:g} kg m^2: it has no mass", link.name,
-                       largest));
+      note(
+          Kind::kLeftOut, line_of(link),
+          fmt::format("the inertia of link `{}`, {:g} kg m^2: it has no mass", link.name, largest));
       return std::nullopt;
     }
     if (given.mass == 0) {

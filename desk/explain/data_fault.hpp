@@ -22,9 +22,9 @@ enum class DataFaultKind {
   kStuck,
   kJump,
   kStart,
-  kNothingLeft,
   kGravity,
   kTorqueUnit,
+  kNothingLeft,  // the last: the only one that nobody can overrule
 };
 
 // "degrees", "torque_sign", "stale_samples", "clock_skew", "saturation", "gaps", "time_unit",

@@ -38,6 +38,10 @@ std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& ro
 // What viscous and dry friction of a joint look like over time, two columns: rad/s or m/s, and 1.
 Eigen::MatrixXd friction_columns(const Eigen::VectorXd& dq);
 
+// Whether the torques follow the model at a scale that no link, tool or counterweight makes, on
+// every joint that tells.
+bool is_of_another_torque_unit(const TorquePair& pair);
+
 // Whether the model fits the torque better with the time in s or in a unit of which a second has
 // `per_second`; angles may be in degrees and torques of the wrong sign either way.
 enum class TimeByTorque { kSeconds, kUnit, kUnknown };
@@ -101,6 +105,9 @@ inline constexpr double kSameUnit = 1.5;
 // none where the velocity was derived, where the joint stands, or where they have nothing in
 // common.
 std::optional<double> velocity_ratio(const Log& log, Eigen::Index joint);
+// The same of a part of one joint, sampled evenly.
+std::optional<double> velocity_ratio(const Eigen::VectorXd& q, const Eigen::VectorXd& dq,
+                                     double period_s);
 
 // Adds the lines of [channels] that `mended` has to the fault and to its advice; those of `keys`,
 // or all that must be there where the recording was read by its common header.

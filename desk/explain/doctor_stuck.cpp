@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "explain/doctor_checks.hpp"
@@ -113,7 +114,8 @@ class BurstEnds {
   std::vector<double> limits_;  // per width: 1, 2, 4, ...
 };
 
-// Its measured velocity moves on.
+// Its measured velocity moves on: at a pace, or to and fro over more than a part of the joint's
+// way.
 bool velocity_moves(const Log& log, Index joint, const Burst& burst) {
   constexpr double kOfUsual = 0.3;
   constexpr double kOfTop = 0.95;
@@ -124,6 +126,20 @@ bool velocity_moves(const Log& log, Index joint, const Burst& burst) {
   // Where it is filtered it only comes to rest later.
   constexpr double kLateS = 0.15;
   if (static_cast<double>(burst.length) * log.period_s < 2 * kLateS) return false;
+  // By what it is elsewhere, on the longer side of the burst.
+  const Index behind = log.sample_count() - burst.end() - 1;
+  const bool before = burst.first > behind;
+  const auto ratio =
+      velocity_ratio(before ? log.q.col(joint).head(burst.first) : log.q.col(joint).tail(behind),
+                     before ? dq.head(burst.first) : dq.tail(behind), log.period_s);
+  if (ratio) {
+    constexpr double kOfWay = 0.2;
+    VectorXd way(during.size());
+    std::partial_sum(during.begin(), during.end(), way.begin());
+    const double covered = log.period_s * (way.maxCoeff() - way.minCoeff()) / std::abs(*ratio);
+    const auto q = log.q.col(joint);
+    if (covered > kOfWay * (q.maxCoeff() - q.minCoeff())) return true;
+  }
   return during.minCoeff() < during.maxCoeff() && std::abs(during.mean()) > kOfUsual * usual &&
          during.cwiseAbs().mean() > kSensorSteps * smallest_step(dq);
 }
@@ -220,10 +236,19 @@ std::vector<Burst> stuck_positions(const Log& log, Index joint, const ExpectedTo
   return bursts;
 }
 
+bool moves_mostly(const VectorXd& dq, const Burst& burst) {
+  constexpr double kUsual = 0.95;
+  constexpr double kSlow = 0.1;
+  const double slow = kSlow * quantile(dq.cwiseAbs(), kUsual);
+  const auto during = dq.segment(burst.first, burst.length + 1).array().abs();
+  return 2 * (during > slow).count() > during.size();
+}
+
 std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorque& expected) {
   constexpr double kShortestS = 0.1;
   constexpr double kTravel = 0.01;  // of the joint's range
   constexpr double kChange = 0.15;  // of the torque's range
+  constexpr double kChangeWhereLost = 0.4;
   constexpr std::size_t kUsual = 4;
   constexpr Index kLonger = 3;
   constexpr double kAtExtreme = 1e-3;
@@ -254,17 +279,21 @@ std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorq
     const auto during = q.segment(burst.first, burst.length + 1);
     if (during.maxCoeff() - during.minCoeff() < kTravel * range) return true;
     const double value = tau[burst.first];
-    // A drive that is off, or at its limit: find_saturation(). None is there most of the time.
+    const double change = expected.change_during(log.t_s[burst.first], log.t_s[burst.end()], joint);
+    // A drive that is off lets the joint swing as the model says, or fall to where friction holds
+    // it; a torque that is lost does not.
+    if (value == 0) {
+      return change < kChangeWhereLost * (high - low) || !moves_mostly(log.dq.col(joint), burst);
+    }
+    // A drive at its limit: find_saturation(). None is there most of the time.
     const bool at_end = value <= low + near || value >= high - near;
-    if (value == 0 || (at_end && 2 * burst.length < tau.size())) return true;
+    if (at_end && 2 * burst.length < tau.size()) return true;
     if (is_noisy_around(tau, burst)) return false;
     const bool by_chance =
         static_cast<double>(tau.size()) *
             std::pow(own_repeats(repeats_before, burst), static_cast<double>(burst.length)) >
         kSeldom;
-    return by_chance || burst.length < kLonger * usual ||
-           expected.change_during(log.t_s[burst.first], log.t_s[burst.end()], joint) <
-               kChange * (high - low);
+    return by_chance || burst.length < kLonger * usual || change < kChange * (high - low);
   });
   return bursts;
 }

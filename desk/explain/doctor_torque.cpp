@@ -122,6 +122,9 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
   // A friction of the file that is a guess is no unit of the positions.
   const double missed = std::min(misfit(*as_is), misfit(beside_friction(*as_is)));
   if (!(missed > kBadFit)) return std::nullopt;
+  // Torques that are too small are missed by far as well, and by less where nothing weighs
+  // anything.
+  if (is_of_another_torque_unit(*as_is)) return std::nullopt;
   std::vector<Index> choices{-1};
   if (revolute.size() > 1) choices.insert(choices.end(), revolute.begin(), revolute.end());
   std::optional<Degrees> found;
@@ -136,7 +139,12 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
                     "{:.0f} % with the positions times pi/180",
                     std::min(100 * missed, 1e4), 100 * best)};
   }
-  return found;
+  if (found) return found;
+  const auto radians = torque_pair(in_radians(log, robot, -1), robot);
+  if (!radians || !is_of_another_torque_unit(*radians)) return std::nullopt;
+  return Degrees{-1,
+                 "the torques follow the model, at another scale, with the positions times pi/180 "
+                 "and not as they are"};
 }
 
 // Velocities in rad/s beside positions that then cannot be in rad.

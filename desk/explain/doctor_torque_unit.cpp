@@ -92,13 +92,22 @@ bool is_another_unit(const std::vector<TorqueRatio>& told) {
          all([&](double ratio) { return ratio * below < 1; });
 }
 
-}  // namespace
-
-bool find_torque_unit(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults) {
+std::vector<TorqueRatio> torque_ratios(const TorquePair& pair) {
   std::vector<TorqueRatio> told;
   for (Index joint = 0; joint < pair.measured.cols(); ++joint) {
     if (const auto ratio = torque_ratio(pair, joint)) told.push_back(*ratio);
   }
+  return told;
+}
+
+}  // namespace
+
+bool is_of_another_torque_unit(const TorquePair& pair) {
+  return is_another_unit(torque_ratios(pair));
+}
+
+bool find_torque_unit(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults) {
+  const std::vector<TorqueRatio> told = torque_ratios(pair);
   if (!is_another_unit(told)) return false;
   const TorqueUnit* unit = common_unit(told);
   std::vector<std::string> ratios;

@@ -189,7 +189,12 @@ std::string words_of(const Stranger& stranger, const Log& log, Index joint,
 
 std::optional<double> velocity_ratio(const Log& log, Index joint) {
   if (log.dq_derived[static_cast<std::size_t>(joint)]) return std::nullopt;
-  const Match best = best_match(log.q.col(joint), travel_of(log.dq.col(joint), log.period_s));
+  return velocity_ratio(log.q.col(joint), log.dq.col(joint), log.period_s);
+}
+
+std::optional<double> velocity_ratio(const VectorXd& q, const VectorXd& dq, double period_s) {
+  if (q.size() == 0) return std::nullopt;
+  const Match best = best_match(q, travel_of(dq, period_s));
   if (best.correlation < kCorrelated || !std::isfinite(best.ratio) || best.ratio == 0) {
     return std::nullopt;
   }

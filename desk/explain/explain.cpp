@@ -378,8 +378,9 @@ void check_keep(const std::vector<KeepFault>& keep, const RobotDescription& robo
                                     robot.joint_count(), robot.name),
                         ""});
     }
-    if (one.kind == DataFaultKind::kGaps || one.kind == DataFaultKind::kTimeUnit) {
-      throw InputError({"--keep", "", said, "a fault of one joint: the time is of all",
+    if (one.kind == DataFaultKind::kGaps || one.kind == DataFaultKind::kTimeUnit ||
+        one.kind == DataFaultKind::kGravity || one.kind == DataFaultKind::kTorqueUnit) {
+      throw InputError({"--keep", "", said, "a fault of one joint: this one is of all",
                         fmt::format("write all:{}", name_of(one.kind))});
     }
   }

@@ -201,7 +201,7 @@ std::vector<DataFault> treat(Log& log, const RobotDescription& robot,
 
 KeepFault keep_fault_of(const std::string& text) {
   std::vector<std::string> reasons;
-  for (int kind = 0; kind <= static_cast<int>(DataFaultKind::kStart); ++kind) {
+  for (int kind = 0; kind < static_cast<int>(DataFaultKind::kNothingLeft); ++kind) {
     reasons.emplace_back(name_of(static_cast<DataFaultKind>(kind)));
   }
   const std::string form = "JOINT:REASON, such as 2:saturation or all:gaps";

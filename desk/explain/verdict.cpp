@@ -358,9 +358,13 @@ std::string words_of_gain(const JointErrors& errors, bool is_in_the_file) {
   const double before = 100 * errors.rms_before / errors.rms_torque;
   const double left = is_in_the_file ? errors.rms_improved : errors.rms_after;
   const double after = 100 * left / errors.rms_torque;
-  return fmt::format(" The error {} from {:.3g} to {:.3g} {}, {} to {} % of the torque.",
-                     is_in_the_file ? "falls" : "would fall", errors.rms_before, left, errors.unit,
-                     significant(before, 2), significant(after, 2));
+  const bool falls = left <= errors.rms_before;
+  const char* goes = is_in_the_file ? (falls ? "falls" : "rises")
+                     : falls        ? "would fall"
+                                    : "would rise";
+  return fmt::format(" The error {} from {:.3g} to {:.3g} {}, {} to {} % of the torque.", goes,
+                     errors.rms_before, left, errors.unit, significant(before, 2),
+                     significant(after, 2));
 }
 
 JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {

@@ -56,6 +56,39 @@ TEST(StuckPosition, IsNoRestBehindABrake) {
   EXPECT_FALSE(fault_of(log, robot, kJoint, DataFaultKind::kStuck));
 }
 
+// ... or, where that is read, by a velocity that goes to and fro all the while; the torque is next
+// to nothing here.
+TEST(StuckPosition, IsSeenByAVelocityThatGoesOn) {
+  const RobotDescription robot = test::serial_arm(3);
+  Log real = test::record(robot, {.duration_s = 20});
+  real.tau *= 0.01;
+  real.dq_derived.assign(real.dq_derived.size(), false);
+  EXPECT_FALSE(fault_of(real, robot, kJoint, DataFaultKind::kStuck));
+  Log log = with_frozen_position(real);
+  log.dq_derived = real.dq_derived;
+  EXPECT_TRUE(fault_of(log, robot, kJoint, DataFaultKind::kStuck));
+}
+
+// Zeros are what a bus or a drive that was lost leaves; one that is off gives none to a joint that
+// rests.
+TEST(StuckTorque, IsSeenAtZeroWhereTheMotionAsksForMore) {
+  const RobotDescription robot = test::serial_arm(3);
+  Log log = test::record(robot, {.duration_s = 20});
+  const Index rows = log.sample_count() / 4;
+  log.tau.col(kJoint).tail(rows).setZero();
+  const auto fault = fault_of(log, robot, kJoint, DataFaultKind::kStuck);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->signal, FaultySignal::kTorque);
+  for (Index i = log.sample_count() - rows; i < log.sample_count(); ++i) {
+    log.q.row(i) = log.q.row(log.sample_count() - rows - 1);
+    log.dq.row(i).setZero();
+  }
+  for (const DataFault& one : examine(log, robot)) {
+    EXPECT_FALSE(one.kind == DataFaultKind::kStuck && one.signal == FaultySignal::kTorque)
+        << one.words;
+  }
+}
+
 // A recording with the highest peak of a joint's torque cut down to what all else stays below; the
 // first of those whose peak is wide enough.
 Log with_a_peak_cut_off(const RobotDescription& robot) {

@@ -1,8 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "explain/doctor.hpp"
 #include "robot/payload.hpp"
@@ -85,6 +87,38 @@ TEST(TorqueUnit, ComesWithTheChannelsThatMendIt) {
   ASSERT_TRUE(fault);
   ASSERT_EQ(fault->channels.size(), 1U);
   EXPECT_THAT(fault->channels[0], HasSubstr("-0.001"));
+}
+
+// Two units at once: neither fits without the other.
+TEST(TorqueUnit, IsNamedBesidePositionsInDegrees) {
+  const Arm arm(3);
+  Log log = test::record(arm.real, {.duration_s = 20});
+  log.q *= 180 / std::numbers::pi;
+  log.dq *= 180 / std::numbers::pi;
+  log.tau *= 1e3;
+  std::vector<DataFaultKind> kinds;
+  for (const DataFault& fault : examine(log, arm.file)) kinds.push_back(fault.kind);
+  EXPECT_THAT(kinds,
+              ::testing::IsSupersetOf({DataFaultKind::kDegrees, DataFaultKind::kTorqueUnit}));
+}
+
+// Where the torques are next to nothing a model that weighs nothing misses the least.
+TEST(TorqueUnit, OfTorquesThatAreTooSmallIsNoMatterOfDegrees) {
+  const Arm arm(3);
+  Log log = test::record(arm.real, {.duration_s = 20});
+  log.tau /= 100;
+  for (const DataFault& fault : examine(log, arm.file)) {
+    EXPECT_NE(fault.kind, DataFaultKind::kDegrees) << fault.words;
+  }
+  EXPECT_TRUE(torque_unit_in(log, arm.file));
+}
+
+TEST(TorqueUnit, MayBeOverruledAsAllThatStopsAVerb) {
+  const KeepFault keep = keep_fault_of("all:torque_unit");
+  EXPECT_EQ(keep.kind, DataFaultKind::kTorqueUnit);
+  EXPECT_EQ(keep.joint, -1);
+  EXPECT_EQ(keep_fault_of("all:gravity").kind, DataFaultKind::kGravity);
+  EXPECT_ANY_THROW(static_cast<void>(keep_fault_of("all:nothing_left")));
 }
 
 // A tool that outweighs the wrist, and a counterweight that carries nearly all of one joint, are
