@@ -128,6 +128,7 @@ class Proposer {
       look_.channels.more_times = files_.more_times;
       return set_time(look_, files_.time->t_s);
     }
+    take_for_no_time_but(look_, roles_.time.value_or(""));
     if (!period_s && !roles_.time) return;
     try {
       set_time(

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -158,6 +159,36 @@ TEST_F(LookTest, ATimeThatIsNoneIsNoEpochAndSaysHowFarWasRead) {
   EXPECT_THAT(text_of(look_at(folder_ / "back.csv", nullptr, std::nullopt)),
               HasSubstr("note: read as far as line 13: in 11 lines the time is not later than "
                         "before\n"));
+}
+
+// Loop times, temperatures, elements of a pose: what is called like a time is none beside it.
+TEST_F(LookTest, OnlyTheColumnThatIsTheTimeHasToAscend) {
+  const std::string names = "exec_time,time,pos_1,vel_1,torque_1,T1,T_a,O_T_EE[0],time_left,note_t";
+  std::string text = names + "\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    text += std::to_string(i % 7) + "," + std::to_string(t) + "," +
+            std::to_string(std::sin(2 * t)) + "," + std::to_string(2 * std::cos(2 * t)) + "," +
+            std::to_string(3 * std::cos(t)) + ",35," + std::to_string(i % 3) + ",1," +
+            std::to_string(10 - t) + ",idle\n";
+  }
+  const Look seen = look(text);
+  EXPECT_TRUE(seen.is_complete());
+  EXPECT_THAT(seen.remarks, IsEmpty());
+  EXPECT_EQ(seen.channels.time.source, "time");
+  ASSERT_TRUE(seen.t_s);
+  EXPECT_EQ(seen.t_s->size(), kSamples);
+  const auto json = to_json(seen);
+  const auto& columns = json["columns"];
+  EXPECT_EQ(std::count_if(columns.begin(), columns.end(),
+                          [](const auto& column) { return column["taken_for"] == "time"; }),
+            1);
+}
+
+TEST_F(LookTest, WhatIsCalledATimeAndIsNoneIsSaid) {
+  const Look seen = look("stamp,q1,tau1\n10:00:00.5,1,2\n10:00:00.6,2,3\n");
+  EXPECT_THAT(seen.remarks, Contains(HasSubstr("column stamp: \"10:00:00.5\" is no time in s")));
+  EXPECT_THAT(seen.missing, Contains(HasSubstr("a column of time")));
 }
 
 TEST_F(LookTest, ThePageHasEveryChannelAndTheAnswerInJsonEveryColumn) {
