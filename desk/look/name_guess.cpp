@@ -125,25 +125,12 @@ std::string unit_in_brackets(const std::string& text) {
 
 // A unit at the name's end: behind an underscore, or in brackets.
 std::string unit_of(const std::string& name) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 18> kEndings{{
-      {"_deg_per_s", "deg/s"},
-      {"_rad_per_s", "rad/s"},
-      {"_deg_s", "deg/s"},
-      {"_rad_s", "rad/s"},
-      {"_m_s", "m/s"},
-      {"_mm_s", "mm/s"},
-      {"_deg", "deg"},
-      {"_rad", "rad"},
-      {"_rpm", "rpm"},
-      {"_nm", "Nm"},
-      {"_mnm", "mNm"},
-      {"_ms", "ms"},
-      {"_us", "us"},
-      {"_ns", "ns"},
-      {"_mm", "mm"},
-      {"_ma", "mA"},
-      {"_a", "A"},
-      {"_s", "s"},
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 20> kEndings{{
+      {"_deg_per_s", "deg/s"}, {"_rad_per_s", "rad/s"}, {"_deg_s", "deg/s"}, {"_rad_s", "rad/s"},
+      {"_m_s", "m/s"},         {"_mm_s", "mm/s"},       {"_deg", "deg"},     {"_rad", "rad"},
+      {"_rpm", "rpm"},         {"_nm", "Nm"},           {"_mnm", "mNm"},     {"_nmm", "Nmm"},
+      {"_ncm", "Ncm"},         {"_ms", "ms"},           {"_us", "us"},       {"_ns", "ns"},
+      {"_mm", "mm"},           {"_ma", "mA"},           {"_a", "A"},         {"_s", "s"},
   }};
   std::string text = name;
   // "q_deg(2,:)", "q_deg_2", "q_deg2"

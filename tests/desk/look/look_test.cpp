@@ -15,6 +15,7 @@
 #include "look/look_report.hpp"
 #include "report/page.hpp"
 #include "robot/channels.hpp"
+#include "robot/units.hpp"
 #include "support/recordings.hpp"
 
 namespace {
@@ -112,6 +113,35 @@ TEST_F(LookTest, UnitsInNamesAndUnderThemAreTaken) {
                              {1e3, kDegrees, 30 / std::numbers::pi}))));
   expect_motion(read_as(look(
       recording(kNames + "\nms,deg,rpm,Nm,deg,rpm,Nm", {1e3, kDegrees, 30 / std::numbers::pi}))));
+}
+
+TEST_F(LookTest, TorquesInOtherSpellingsOfTheirUnitsAreTaken) {
+  const auto header = [](const std::string& unit) {
+    std::string names = "t,pos_1,vel_1,torque_1*,pos_2,vel_2,torque_2*";
+    for (auto at = names.find('*'); at != std::string::npos; at = names.find('*')) {
+      names.replace(at, 1, unit);
+    }
+    return names;
+  };
+  for (const char* unit : {"mN m", "mN\u00b7m", "Nmm", "N mm", "N cm", "kgf.cm"}) {
+    for (const std::string& in_name :
+         {" [" + std::string(unit) + "]", "(" + std::string(unit) + ")"}) {
+      const Look seen = look(recording(header(in_name), {}));
+      ASSERT_TRUE(seen.is_complete()) << in_name;
+      EXPECT_EQ(seen.channels.torque.at(1).unit, unit);
+      EXPECT_NEAR(read_as(seen).tau(0, 0), 3 * offnominal::desk::unit_factor(unit), 1e-6);
+    }
+  }
+}
+
+TEST_F(LookTest, AUnitThatIsNotKnownIsSaid) {
+  const std::string words = ": \"furlong\" is no unit that is known: taken as N m";
+  const Look named = look(recording("t,q1,dq1,tau1 [furlong],q2,dq2,tau2 [furlong]", {}));
+  EXPECT_THAT(named.notes, Contains(HasSubstr("tau1 [furlong], tau2 [furlong]" + words)));
+  EXPECT_THAT(read_as(named).remarks, Contains(HasSubstr("column tau2 [furlong]" + words)));
+  const Look under = look(recording(kNames + "\ns,rad,rad/s,furlong,rad,rad/s,furlong", {}));
+  EXPECT_THAT(under.notes, Contains(HasSubstr("torque_1, torque_2" + words)));
+  EXPECT_THAT(read_as(under).remarks, Contains(HasSubstr("column torque_1" + words)));
 }
 
 TEST_F(LookTest, WhatCannotBeToldIsAskedFor) {
