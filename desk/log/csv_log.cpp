@@ -253,7 +253,8 @@ class CsvReader {
     constexpr std::size_t kFewOutOfTime = 10;
     if (has_time_ && !(time > last_time_)) {
       ++out_of_time_;
-      ascending_ = out_of_time_ <= std::max(kFewOutOfTime, rows_ / kFewOutOfTime);
+      // More than a tenth, which time_of() refuses, of the rows with this one.
+      ascending_ = out_of_time_ <= kFewOutOfTime || kFewOutOfTime * out_of_time_ <= rows_ + 1;
       return;
     }
     last_time_ = time;

@@ -337,6 +337,17 @@ TEST(CsvLog, ASingleTimeThatDoesNotAscendIsLeftOutAndMoreAreRefused) {
               AllOf(HasSubstr("line 12, time"), HasSubstr("0.09 s after 0.09 s")));
 }
 
+// Read up to a tenth of rows out of time, half of the recording would be gone.
+TEST(CsvLog, AClockThatBeginsAnewIsRefused) {
+  for (const int rows : {179, 180, 181}) {
+    std::string text = "t,q1,tau1\n";
+    for (int i = 0; i < 2 * rows; ++i) {
+      text += std::to_string(0.01 * (i % rows)) + ",1," + std::to_string(i) + "\n";
+    }
+    EXPECT_THAT(refusal(text), HasSubstr("cut the recording where its clock begins anew")) << rows;
+  }
+}
+
 // Without dq the velocity is derived, and of such positions it would be infinite.
 TEST(CsvLog, PositionsTooCloseInTimeToDifferentiateAreRefused) {
   std::string text = "t,q1,tau1\n";
