@@ -182,7 +182,11 @@ class Proposer {
       return look_.has_names ? ", told by their names" : ": " + line_to_write(key, count);
     };
     const auto wanted = static_cast<std::size_t>(std::max(joints, 0));
-    if (!look_.t_s) {
+    const LookedColumn* const time =
+        roles_.time && look_.t_s == std::nullopt ? column_in(look_, *roles_.time) : nullptr;
+    if (time != nullptr && look_.values.at(time->name).size() < 2) {
+      look_.missing.push_back("more samples: the file has one row of numbers");
+    } else if (!look_.t_s) {
       look_.missing.emplace_back(
           "a column of time: name it under [channels], or say period_s, the time between two "
           "samples");

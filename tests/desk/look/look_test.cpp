@@ -215,6 +215,17 @@ TEST_F(LookTest, OnlyTheColumnThatIsTheTimeHasToAscend) {
             1);
 }
 
+TEST_F(LookTest, OneRowIsTooFewAndHasATimeAllTheSame) {
+  const Look seen = look("t,q1,tau1\n0,1,2\n");
+  EXPECT_THAT(seen.missing, testing::ElementsAre("more samples: the file has one row of numbers"));
+}
+
+TEST_F(LookTest, ADurationIsATime) {
+  const Look seen = look(recording("duration,q0,dq0,tau0,q1,dq1,tau1", {}));
+  EXPECT_TRUE(seen.is_complete());
+  EXPECT_EQ(seen.channels.time.source, "duration");
+}
+
 TEST_F(LookTest, WhatIsCalledATimeAndIsNoneIsSaid) {
   const Look seen = look("stamp,q1,tau1\n10:00:00.5,1,2\n10:00:00.6,2,3\n");
   EXPECT_THAT(seen.remarks, Contains(HasSubstr("column stamp: \"10:00:00.5\" is no time in s")));
