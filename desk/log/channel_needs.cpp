@@ -13,22 +13,26 @@ bool is_number(const std::string& name) {
 
 }  // namespace
 
-int joint_of(const std::string& name, const std::string& prefix) {
+std::optional<int> number_behind(const std::string& name, const std::string& prefix) {
   if (!name.starts_with(prefix) || name.size() == prefix.size() ||
       name.size() > prefix.size() + 3) {
-    return 0;
+    return std::nullopt;
   }
-  int joint = 0;
+  int number = 0;
   for (const char digit : name.substr(prefix.size())) {
-    if (digit < '0' || digit > '9') return 0;
-    joint = 10 * joint + (digit - '0');
+    if (digit < '0' || digit > '9') return std::nullopt;
+    number = 10 * number + (digit - '0');
   }
-  return joint;
+  return number;
+}
+
+int joint_of(const std::string& name, const std::string& prefix) {
+  return number_behind(name, prefix).value_or(0);
 }
 
 bool is_common_name(const std::string& name) {
-  return name == "t" || joint_of(name, "q") > 0 || joint_of(name, "dq") > 0 ||
-         joint_of(name, "tau") > 0;
+  return name == "t" || number_behind(name, "q") || number_behind(name, "dq") ||
+         number_behind(name, "tau");
 }
 
 std::string name_in_file(std::size_t file, const std::string& name) {

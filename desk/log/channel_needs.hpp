@@ -8,10 +8,13 @@
 
 namespace offnominal::desk {
 
+// The number behind `prefix` where `name` is these two and no more, of up to three digits.
+[[nodiscard]] std::optional<int> number_behind(const std::string& name, const std::string& prefix);
+
 // The joint's number when `name` is `prefix` and a number from 1, else 0.
 [[nodiscard]] int joint_of(const std::string& name, const std::string& prefix);
 
-// t, q1 .., dq1 .., tau1 ..
+// t, q1 .., dq1 .., tau1 ..; or from 0 (zero_based.hpp)
 [[nodiscard]] bool is_common_name(const std::string& name);
 
 // What `channels` want of the file with that index (from 0) of a recording of so many, or the

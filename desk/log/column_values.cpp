@@ -83,7 +83,57 @@ VectorXd values_of_source(NamedColumns& columns, const Channel& channel, const s
   return values;
 }
 
+const char* si_of(ChannelQuantity quantity) {
+  switch (quantity) {
+    case ChannelQuantity::kTime:
+      return "s";
+    case ChannelQuantity::kPosition:
+      return "rad, or m of a slide";
+    case ChannelQuantity::kVelocity:
+      return "rad/s, or m/s of a slide";
+    case ChannelQuantity::kTorque:
+      return "N m, or N of a slide";
+    case ChannelQuantity::kMotorPosition:
+      return "rad";
+    case ChannelQuantity::kMotorVelocity:
+      return "rad/s";
+    case ChannelQuantity::kMotorTorque:
+      return "N m";
+    case ChannelQuantity::kCurrent:
+      return "A";
+  }
+  return "";
+}
+
+void remark_unit_in_name(NamedColumns& columns, const std::string& name, ChannelQuantity quantity) {
+  const std::string text = unit_in_name(name);
+  if (text.empty()) return;
+  const SourceUnit* const unit = find_unit(text);
+  if (unit == nullptr) {
+    columns.remarks.push_back("column " + name + ": " + words_of_unknown_unit(text, quantity));
+  } else if (unit->factor != 1) {
+    columns.remarks.push_back(
+        fmt::format("column {}: taken as {}, since no unit is said of it; unit = \"{}\" under "
+                    "[channels] takes that of its name",
+                    name, si_of(quantity), text));
+  }
+}
+
 }  // namespace
+
+std::string unit_in_name(const std::string& name) {
+  if (name.size() <= 2 || (name.back() != ']' && name.back() != ')')) return {};
+  const auto open = name.find_last_of("[(");
+  if (open == std::string::npos) return {};
+  std::string inner = name.substr(open + 1, name.size() - open - 2);
+  const bool is_number = inner.empty() || inner.find_first_of(",:") != std::string::npos ||
+                         inner.find_first_not_of("0123456789") == std::string::npos;
+  return is_number ? std::string() : inner;
+}
+
+std::string words_of_unknown_unit(const std::string& unit, ChannelQuantity quantity) {
+  return fmt::format("\"{}\" is no unit that is known: taken as {}", unit, si_of(quantity));
+}
 
 std::string names_found(const NamedColumns& columns) {
   constexpr std::size_t kMost = 40;
@@ -123,16 +173,16 @@ VectorXd take_values(NamedColumns& columns, const Channel& channel, const std::s
 
 void take_unit_of_file(NamedColumns& columns, Channel& channel, ChannelQuantity quantity,
                        const std::string& what) {
-  const auto said = columns.units.find(channel.source);
-  if (said == columns.units.end() || !channel.unit.empty() || channel.scale != 1 ||
-      !channel.scale_source.empty() || !channel.sum.empty()) {
+  if (!channel.unit.empty() || channel.scale != 1 || !channel.scale_source.empty() ||
+      !channel.sum.empty()) {
     return;
   }
+  const auto said = columns.units.find(channel.source);
+  if (said == columns.units.end()) return remark_unit_in_name(columns, channel.source, quantity);
   const SourceUnit* const unit = find_unit(said->second);
   if (unit == nullptr) {
-    columns.remarks.push_back(
-        fmt::format("the file has {} in \"{}\", which is no unit that is known: taken as it stands",
-                    channel.source, said->second));
+    columns.remarks.push_back(fmt::format("column {}: {}", channel.source,
+                                          words_of_unknown_unit(said->second, quantity)));
     return;
   }
   if (!is_unit_of(*unit, quantity)) {

@@ -36,10 +36,11 @@ bool all_values(const Cells& cells) {
          });
 }
 
-bool no_values(const Cells& cells) {
-  return any_text(cells) &&
-         std::none_of(cells.begin(), cells.end(), [](const auto& cell) { return is_value(cell); });
+bool any_value(const Cells& cells) {
+  return std::any_of(cells.begin(), cells.end(), [](const auto& cell) { return is_value(cell); });
 }
+
+bool no_values(const Cells& cells) { return any_text(cells) && !any_value(cells); }
 
 // 0, 1, 2 ... as pandas writes for columns without names, behind the empty one of its index.
 bool is_count_from_zero(const Cells& cells) {
@@ -76,7 +77,9 @@ class LayoutReader {
       read_first(splitter);
     } else if (all_values(cells)) {
       take_first(line);
-      name_without_header(cells);
+      if (!name_by_comment(cells)) name_by_number(cells.size() - (layout_.has_trailing ? 1 : 0));
+    } else if (any_value(cells) && name_by_comment(cells)) {
+      take_first(line);
     } else {
       layout_.header_line = line_;
       name_by(cells);
@@ -243,23 +246,22 @@ class LayoutReader {
     for (std::size_t i = 1; i <= count; ++i) layout_.names.push_back(std::to_string(i));
   }
 
-  // A comment right before the samples may name them, as numpy writes it.
-  void name_without_header(const Cells& first) {
+  // A comment right before the samples may name them, as numpy and rostopic write it.
+  bool name_by_comment(const Cells& first) {
     const std::size_t count = first.size() - (first.size() > 1 && first.back().empty() ? 1 : 0);
     layout_.has_trailing = count < first.size();
-    if (!comment_.empty() && comment_line_ + 1 == layout_.first_line) {
-      for (const char separator : {layout_.separator, separator_of(comment_)}) {
-        CsvLineSplitter other(separator);
-        const Cells* cells = other.split(comment_);
-        if (cells == nullptr || cells->size() != count || !no_values(*cells)) continue;
-        const std::set<std::string> once(cells->begin(), cells->end());
-        if (once.size() != count || once.contains("")) continue;
-        layout_.names = *cells;
-        layout_.header_line = comment_line_;
-        return;
-      }
+    if (comment_.empty() || comment_line_ + 1 != line_) return false;
+    for (const char separator : {layout_.separator, separator_of(comment_)}) {
+      CsvLineSplitter other(separator);
+      const Cells* cells = other.split(comment_);
+      if (cells == nullptr || cells->size() != count || !no_values(*cells)) continue;
+      const std::set<std::string> once(cells->begin(), cells->end());
+      if (once.size() != count || once.contains("")) continue;
+      layout_.names = *cells;
+      layout_.header_line = comment_line_;
+      return true;
     }
-    name_by_number(count);
+    return false;
   }
 
   void name_by(const Cells& cells) {

@@ -41,6 +41,9 @@ bool has_marks_of_a_clock(std::string_view text) {
   return text.find_first_of(":/") != std::string_view::npos || twice(text, '.') || twice(text, '-');
 }
 
+constexpr const char* kTimes =
+    "time in s, or a date with its time: 2026-11-24T02:14:30.123 or 24.11.2026 02:14:30.123";
+
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 bool has_small_letter(const std::string& text) {
@@ -250,7 +253,8 @@ class CsvReader {
     constexpr std::size_t kFewOutOfTime = 10;
     if (has_time_ && !(time > last_time_)) {
       ++out_of_time_;
-      ascending_ = out_of_time_ <= std::max(kFewOutOfTime, rows_ / kFewOutOfTime);
+      // More than a tenth, which time_of() refuses, of the rows with this one.
+      ascending_ = out_of_time_ <= kFewOutOfTime || kFewOutOfTime * out_of_time_ <= rows_ + 1;
       return;
     }
     last_time_ = time;
@@ -297,7 +301,7 @@ class CsvReader {
 
   void read_cell(Column& column, std::string_view text, double& time) {
     if (column.need == Need::kNone) return;
-    const bool is_time = column.need == Need::kAscending;
+    const bool is_time = column.need == Need::kAscending || column.need == Need::kTime;
     if (is_time && rows_ == 0) begin_time(column, text);
     std::optional<double> value =
         is_time && column.form != Form::kNumber ? time_in(column, text) : number_in(text);
@@ -309,9 +313,13 @@ class CsvReader {
       value = std::numeric_limits<double>::quiet_NaN();
     }
     if (value) {
-      if (is_time) time = *value;
+      if (column.need == Need::kAscending) time = *value;
       column.values[static_cast<Index>(rows_)] = *value;
-    } else if (column.need == Need::kWelcome) {
+    } else if (!is_required(column.need)) {
+      if (is_time && has_marks_of_a_clock(text)) {
+        remarks_.push_back(line_place() + ", column " + column.name + ": \"" +
+                           std::string(text.substr(0, 40)) + "\" is no " + kTimes);
+      }
       column.need = Need::kNone;
       column.values.resize(0);
       --kept_;
@@ -323,9 +331,7 @@ class CsvReader {
         fail(place, found, "a date as in the lines before, 2026-11-24T02:14:30.123");
       }
       if (is_time && has_marks_of_a_clock(text)) {
-        fail(place, found,
-             "a time in s, or a date with its time: 2026-11-24T02:14:30.123 or 24.11.2026 "
-             "02:14:30.123",
+        fail(place, found, std::string("a ") + kTimes,
              "write the times so, or say the step between two samples: --period");
       }
       fail(place, found, "a number with a decimal point");
@@ -334,7 +340,7 @@ class CsvReader {
 
   // What the first cell shows of a column of time.
   void begin_time(Column& column, std::string_view text) {
-    has_time_ = true;
+    has_time_ = has_time_ || column.need == Need::kAscending;
     const auto whole = whole_in(text);
     if (whole && std::abs(static_cast<double>(*whole)) >= kLargestWhole) {
       column.form = Form::kLongNumber;

@@ -12,6 +12,7 @@ namespace offnominal::desk {
 enum class Need {
   kRequired,   // a cell that is no number is an error
   kAscending,  // required, and time: what is read as it comes is read as far as it ascends
+  kTime,       // a time, perhaps: left out where it has neither numbers nor dates
   kWelcome,    // left out where it is not numeric
   kNone,       // not read
 };

@@ -26,6 +26,7 @@
 #include "log/seen_by_sensor.hpp"
 #include "log/time_of.hpp"
 #include "log/usable_rows.hpp"
+#include "log/zero_based.hpp"
 #include "robot/channels.hpp"
 #include "robot/payload.hpp"
 #include "robot/transmission.hpp"
@@ -62,6 +63,7 @@ class Assembler {
 
   // `period_s`: where no column is the time.
   Log with_common_header(double period_s) {
+    count_joints_from_one(columns_, t_s_.size(), static_cast<int>(joints_));
     for (const char* prefix : {"q", "tau"}) check_joint_count(prefix);
     ChannelMap map;
     map.time = named("t");

@@ -82,6 +82,12 @@ std::vector<Index> ascending_rows(const VectorXd& t_s) {
   return rows;
 }
 
+bool ascends_as_time(const VectorXd& values) {
+  const auto rows = static_cast<double>(values.size());
+  const auto ascending = static_cast<double>(ascending_rows(values).size());
+  return ascending > 0 && rows - ascending <= kMostRowsOutOfTime * rows;
+}
+
 void keep_rows(NamedColumns& columns, Index rows, const std::vector<Index>& kept) {
   for (auto& [name, values] : columns.columns) {
     if (values.size() == rows) values = those(values, kept);

@@ -19,6 +19,9 @@ inline constexpr double kMostRowsOutOfTime = 0.1;
 // The rows at which time goes on from the last of them, from 0.
 [[nodiscard]] std::vector<Eigen::Index> ascending_rows(const Eigen::VectorXd& t_s);
 
+// Whether so many of the rows ascend that the rest may be left out.
+[[nodiscard]] bool ascends_as_time(const Eigen::VectorXd& values);
+
 // Of every column with `rows` values those of the rows that are kept; place_of() goes with them.
 void keep_rows(NamedColumns& columns, Eigen::Index rows, const std::vector<Eigen::Index>& kept);
 

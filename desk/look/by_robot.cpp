@@ -99,6 +99,7 @@ Look look_by_channels(const std::filesystem::path& path, const RobotDescription&
         "rest, without a time");
   } else {
     set_time(look, read.recording.time.t_s);
+    if (map.more_times.empty()) take_for_no_time_but(look, map.time.source);
   }
   const Log log = log_of(std::move(read.recording), robot, map);
   RobotLooker looker(look, log, robot);

@@ -8,11 +8,13 @@
 #include "common/error.hpp"
 #include "common/input_name.hpp"
 #include "common/nearest.hpp"
+#include "log/column_values.hpp"
 #include "look/by_robot.hpp"
 #include "look/data_units.hpp"
 #include "look/looked_columns.hpp"
 #include "look/looked_files.hpp"
 #include "look/nameless.hpp"
+#include "robot/units.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -33,6 +35,7 @@ class Proposer {
     }
     take_roles();
     take_time(period_s);
+    say_unknown_units();
     take_units_from_data(look_, robot_);
     say_what_is_missing(expected.count);
     return std::move(look_);
@@ -128,6 +131,7 @@ class Proposer {
       look_.channels.more_times = files_.more_times;
       return set_time(look_, files_.time->t_s);
     }
+    take_for_no_time_but(look_, roles_.time.value_or(""));
     if (!period_s && !roles_.time) return;
     try {
       set_time(
@@ -135,6 +139,38 @@ class Proposer {
           looked_time(files_.columns, look_.channels.time, period_s.value_or(0), look_.notes).t_s);
     } catch (const InputError& error) {
       look_.notes.push_back(std::string("the time is none: ") + error.what());
+    }
+  }
+
+  // Of the columns that are taken, once for each unit and quantity.
+  void say_unknown_units() {
+    std::vector<std::pair<std::string, std::vector<std::string>>> unknown;
+    const auto look_at = [&](const Channel& channel, ChannelQuantity quantity) {
+      const LookedColumn* const column = column_in(look_, channel.source);
+      if (column == nullptr) return;
+      const std::string unit = column->file_says ? column->unit : unit_in_name(column->name);
+      if (unit.empty() || find_unit(unit) != nullptr) return;
+      const std::string words = words_of_unknown_unit(unit, quantity);
+      const auto same = std::find_if(unknown.begin(), unknown.end(),
+                                     [&](const auto& one) { return one.first == words; });
+      if (same == unknown.end()) {
+        unknown.push_back({words, {channel.source}});
+      } else {
+        same->second.push_back(channel.source);
+      }
+    };
+    const ChannelMap& map = look_.channels;
+    look_at(map.time, ChannelQuantity::kTime);
+    for (const Channel& channel : map.position) look_at(channel, ChannelQuantity::kPosition);
+    for (const auto& channel : map.velocity) {
+      if (channel) look_at(*channel, ChannelQuantity::kVelocity);
+    }
+    const bool are_currents = roles_.torque_role == Role::kCurrent;
+    for (const Channel& channel : map.torque) {
+      look_at(channel, are_currents ? ChannelQuantity::kCurrent : ChannelQuantity::kTorque);
+    }
+    for (const auto& [words, names] : unknown) {
+      look_.notes.push_back(list_of(names) + ": " + words);
     }
   }
 
@@ -146,7 +182,11 @@ class Proposer {
       return look_.has_names ? ", told by their names" : ": " + line_to_write(key, count);
     };
     const auto wanted = static_cast<std::size_t>(std::max(joints, 0));
-    if (!look_.t_s) {
+    const LookedColumn* const time =
+        roles_.time && look_.t_s == std::nullopt ? column_in(look_, *roles_.time) : nullptr;
+    if (time != nullptr && look_.values.at(time->name).size() < 2) {
+      look_.missing.push_back("more samples: the file has one row of numbers");
+    } else if (!look_.t_s) {
       look_.missing.emplace_back(
           "a column of time: name it under [channels], or say period_s, the time between two "
           "samples");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "log/usable_rows.hpp"
 #include "robot/units.hpp"
 
 namespace offnominal::desk {
@@ -58,6 +59,12 @@ void set_time(Look& look, const Eigen::VectorXd& t_s) {
   look.t_s = t_s;
 }
 
+void take_for_no_time_but(Look& look, const std::string& name) {
+  for (LookedColumn& column : look.columns) {
+    if (column.role == Role::kTime && column.name != name) column.role = Role::kNone;
+  }
+}
+
 const LookedColumn* column_in(const Look& look, const std::string& name) {
   const auto at = std::find_if(look.columns.begin(), look.columns.end(),
                                [&](const LookedColumn& one) { return one.name == name; });
@@ -68,7 +75,9 @@ std::vector<NamedColumn> columns_of(const Look& look) {
   std::vector<NamedColumn> columns;
   for (const LookedColumn& column : look.columns) {
     if (!column.facts.has_numbers()) continue;  // read, it would cost every row
-    columns.push_back({column.name, column.file_says ? column.unit : "", column.facts.is_constant});
+    const bool ascends = column.role != Role::kTime || ascends_as_time(look.values.at(column.name));
+    columns.push_back(
+        {column.name, column.file_says ? column.unit : "", column.facts.is_constant, ascends});
   }
   return columns;
 }

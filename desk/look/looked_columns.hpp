@@ -14,6 +14,7 @@ namespace offnominal::desk {
 [[nodiscard]] Look look_of(const NamedColumns& columns);
 
 void set_time(Look& look, const Eigen::VectorXd& t_s);
+void take_for_no_time_but(Look& look, const std::string& name);
 
 [[nodiscard]] const LookedColumn* column_in(const Look& look, const std::string& name);
 

@@ -10,6 +10,7 @@
 #include "log/log_format.hpp"
 #include "log/read_log.hpp"
 #include "log/recording_file.hpp"
+#include "look/looked_columns.hpp"
 #include "look/name_guess.hpp"
 #include "look/nameless.hpp"
 #include "robot/units.hpp"
@@ -17,9 +18,11 @@
 namespace offnominal::desk {
 namespace {
 
-// Everything that is numeric; a column of a text that is called a time may hold dates.
+// Everything that is numeric; a column of a text that is called a time may hold dates. Which of
+// several is the time shows when all are read.
 Need need_in_text(const std::string& name) {
-  if (guess_of(name).role == Role::kTime) return Need::kAscending;
+  if (name == "t") return Need::kAscending;
+  if (guess_of(name).role == Role::kTime) return Need::kTime;
   return is_common_name(name) ? Need::kRequired : Need::kWelcome;
 }
 Need need_elsewhere(const std::string& name) {
@@ -46,10 +49,9 @@ Channel named(const std::string& source) {
 }
 
 // By its name; of a file without names, the first column where it is a clock.
-Channel time_in(const NamedColumns& columns) {
-  for (const std::string& name : columns.names) {
-    if (columns.columns.contains(name) && guess_of(name).role == Role::kTime) return named(name);
-  }
+Channel time_of_one_file(const NamedColumns& columns) {
+  const std::optional<std::string> time = time_in(columns_of(look_of(columns)), {});
+  if (time) return named(*time);
   const auto first = columns.columns.find("1");
   if (!columns.has_names && first != columns.columns.end() && is_clock(first->second)) {
     return named("1");
@@ -94,7 +96,7 @@ LookedFiles read_looked_files(const std::filesystem::path& path, const RobotDesc
   std::vector<TimedColumns> files;
   for (const auto& one : paths) {
     TimedColumns file{read_all(one, path, channels, period_s.has_value()), {}};
-    Channel time = period_s ? Channel{} : time_in(file.columns);
+    Channel time = period_s ? Channel{} : time_of_one_file(file.columns);
     file.time = looked_time(file.columns, time, period_s.value_or(0), looked.notes);
     if (files.empty()) {
       looked.time_channel = time;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "log/column_values.hpp"
 #include "robot/units.hpp"
 
 namespace offnominal::desk {
@@ -86,7 +87,7 @@ Role quantity_of(const Words& words) {
   // A drive's signal in volts, as the EMPS benchmark calls it.
   if (any_of(words, {"vir"})) return Role::kVoltage;
   if (any_of(words, {"t", "time", "timestamp", "stamp", "times", "zeit", "sec", "secs", "seconds",
-                     "nsec", "clock"})) {
+                     "nsec", "clock", "duration"})) {
     return Role::kTime;
   }
   return Role::kNone;
@@ -115,35 +116,19 @@ Role role_of_unit(const std::string& name) {
   }
 }
 
-std::string unit_in_brackets(const std::string& text) {
-  if (text.size() <= 2 || (text.back() != ']' && text.back() != ')')) return {};
-  const auto open = text.find_last_of("[(");
-  if (open == std::string::npos) return {};
-  const std::string inner = text.substr(open + 1, text.size() - open - 2);
-  return find_unit(inner) == nullptr ? std::string() : inner;
+std::string unit_in_brackets(const std::string& name) {
+  std::string unit = unit_in_name(name);
+  return find_unit(unit) == nullptr ? std::string() : unit;
 }
 
 // A unit at the name's end: behind an underscore, or in brackets.
 std::string unit_of(const std::string& name) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 18> kEndings{{
-      {"_deg_per_s", "deg/s"},
-      {"_rad_per_s", "rad/s"},
-      {"_deg_s", "deg/s"},
-      {"_rad_s", "rad/s"},
-      {"_m_s", "m/s"},
-      {"_mm_s", "mm/s"},
-      {"_deg", "deg"},
-      {"_rad", "rad"},
-      {"_rpm", "rpm"},
-      {"_nm", "Nm"},
-      {"_mnm", "mNm"},
-      {"_ms", "ms"},
-      {"_us", "us"},
-      {"_ns", "ns"},
-      {"_mm", "mm"},
-      {"_ma", "mA"},
-      {"_a", "A"},
-      {"_s", "s"},
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 20> kEndings{{
+      {"_deg_per_s", "deg/s"}, {"_rad_per_s", "rad/s"}, {"_deg_s", "deg/s"}, {"_rad_s", "rad/s"},
+      {"_m_s", "m/s"},         {"_mm_s", "mm/s"},       {"_deg", "deg"},     {"_rad", "rad"},
+      {"_rpm", "rpm"},         {"_nm", "Nm"},           {"_mnm", "mNm"},     {"_nmm", "Nmm"},
+      {"_ncm", "Ncm"},         {"_ms", "ms"},           {"_us", "us"},       {"_ns", "ns"},
+      {"_mm", "mm"},           {"_ma", "mA"},           {"_a", "A"},         {"_s", "s"},
   }};
   std::string text = name;
   // "q_deg(2,:)", "q_deg_2", "q_deg2"

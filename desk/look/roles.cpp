@@ -164,19 +164,20 @@ class Chooser {
   std::vector<std::string> words_;
 };
 
-// Where the positions stand, then of the fewest words: "time" before "O_T_EE_0".
-std::optional<std::string> time_in(const std::vector<NamedColumn>& columns,
-                                   const std::vector<std::string>& position) {
-  const std::string holder = position.empty() ? "" : holder_of(position[0]);
-  const auto rank_of = [&](const std::string& name) {
-    return std::pair(holder_of(name) != holder, words_in(name).size());
-  };
-  std::optional<std::string> time;
-  for (const NamedColumn& column : columns) {
-    if (guess_of(column.name, column.said_unit).role != Role::kTime) continue;
-    if (!time || rank_of(column.name) < rank_of(*time)) time = column.name;
+// "T1", "T_a", "O_T_EE[0]", and neither "t_ms" nor "rec.t".
+bool is_letter_among_others(const std::string& name) {
+  bool has_letter = false;
+  bool has_others = false;
+  for (const std::string& word : other_words(name.substr(holder_of(name).size()))) {
+    if (word == "t") {
+      has_letter = true;
+    } else if (guess_of(word).role == Role::kTime) {
+      return false;
+    } else {
+      has_others = true;
+    }
   }
-  return time;
+  return has_letter && (has_others || guess_of(name).number >= 0);
 }
 
 // Names of those that have a column for each joint.
@@ -189,6 +190,22 @@ std::vector<std::string> names_of(const std::vector<Family>& families, std::size
 }
 
 }  // namespace
+
+std::optional<std::string> time_in(const std::vector<NamedColumn>& columns,
+                                   const std::vector<std::string>& position) {
+  const std::string holder = position.empty() ? "" : holder_of(position[0]);
+  const auto rank_of = [&](const NamedColumn& column) {
+    return std::tuple(!column.ascends, is_letter_among_others(column.name),
+                      holder_of(column.name) != holder, words_in(column.name).size());
+  };
+  const NamedColumn* time = nullptr;
+  for (const NamedColumn& column : columns) {
+    if (guess_of(column.name, column.said_unit).role != Role::kTime) continue;
+    if (!column.ascends && is_letter_among_others(column.name)) continue;
+    if (time == nullptr || rank_of(column) < rank_of(*time)) time = &column;
+  }
+  return time == nullptr ? std::nullopt : std::optional(time->name);
+}
 
 Roles roles_of(const std::vector<NamedColumn>& columns, const ExpectedJoints& expected) {
   std::vector<Family> numbered = numbered_families(columns);

@@ -17,6 +17,7 @@ struct NamedColumn {
   std::string name;
   std::string said_unit = {};  // by the file; empty: none
   bool is_constant = false;
+  bool ascends = true;  // as a time does; asked of those that are called one
 };
 
 // What is known of the robot.
@@ -41,6 +42,13 @@ struct Roles {
   std::vector<std::string> may_be_asked_for;
   std::string order;  // how joints that have names stand; empty: by number
 };
+
+// Of the columns that are called a time one that ascends, then one of which this is more than a
+// letter among others ("T1", "O_T_EE[0]"), then one that stands where the positions stand, then the
+// one of the fewest words ("time" before "exec_time"), then the first. A letter among others alone
+// is none where it does not ascend: a temperature.
+[[nodiscard]] std::optional<std::string> time_in(const std::vector<NamedColumn>& columns,
+                                                 const std::vector<std::string>& position);
 
 // The families that have a column for each joint, or for as many as most families have where that
 // is not known. Of several, one that stands where the positions stand, then one whose columns all

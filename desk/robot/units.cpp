@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <string>
 
 namespace offnominal::desk {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kWholeTurn = 2 * std::numbers::pi;
 constexpr double kRpm = std::numbers::pi / 30;
+constexpr double kKilogramForce = 9.80665;  // N
 
 constexpr auto kUnits = std::to_array<SourceUnit>({
     {"s", Dimension::kTime, 1},
@@ -45,13 +47,13 @@ constexpr auto kUnits = std::to_array<SourceUnit>({
     {"m/min", Dimension::kVelocity, 1.0 / 60},
     {"mm/min", Dimension::kVelocity, 1e-3 / 60},
     {"Nm", Dimension::kTorque, 1},
-    {"N m", Dimension::kTorque, 1},
-    {"N*m", Dimension::kTorque, 1},
-    {"N.m", Dimension::kTorque, 1},
     {"kNm", Dimension::kTorque, 1e3},
     {"Ncm", Dimension::kTorque, 1e-2},
+    {"Nmm", Dimension::kTorque, 1e-3},
     {"mNm", Dimension::kTorque, 1e-3},
     {"uNm", Dimension::kTorque, 1e-6},
+    {"kgfm", Dimension::kTorque, kKilogramForce},
+    {"kgfcm", Dimension::kTorque, kKilogramForce * 1e-2},
     {"N", Dimension::kForce, 1},
     {"kN", Dimension::kForce, 1e3},
     {"mN", Dimension::kForce, 1e-3},
@@ -60,6 +62,29 @@ constexpr auto kUnits = std::to_array<SourceUnit>({
     {"V", Dimension::kVoltage, 1},
     {"mV", Dimension::kVoltage, 1e-3},
 });
+
+const SourceUnit* unit_named(std::string_view name) {
+  const auto* found = std::find_if(kUnits.begin(), kUnits.end(),
+                                   [&](const SourceUnit& unit) { return unit.name == name; });
+  return found == kUnits.end() ? nullptr : found;
+}
+
+// "mN m", "mN*m", "mN\u00b7m" and "mN-m" as "mNm".
+std::string without_product_signs(std::string_view name) {
+  constexpr std::array<std::string_view, 10> kSigns{
+      " ", "*", ".", "-", "\u00b7", "\u22c5", "\u2219", "\u2022", "\u00d7", "\u00a0"};
+  std::string text;
+  while (!name.empty()) {
+    const auto* const sign = std::find_if(
+        kSigns.begin(), kSigns.end(), [&](std::string_view one) { return name.starts_with(one); });
+    if (sign == kSigns.end()) text += name.front();
+    name.remove_prefix(sign == kSigns.end() ? 1 : sign->size());
+  }
+  for (const std::string_view micro : {"\u00b5", "\u03bc"}) {
+    if (text.starts_with(micro)) text.replace(0, micro.size(), "u");
+  }
+  return text;
+}
 
 }  // namespace
 
@@ -95,13 +120,13 @@ const char* units_of(ChannelQuantity quantity) {
     case ChannelQuantity::kVelocity:
       return "rad/s, mrad/s, deg/s, rpm, turns/s, m/s, cm/s, mm/s, m/min, mm/min";
     case ChannelQuantity::kTorque:
-      return "Nm, kNm, Ncm, mNm, uNm, N, kN, mN";
+      return "Nm, kNm, Ncm, Nmm, mNm, uNm, kgfm, kgfcm, N, kN, mN";
     case ChannelQuantity::kMotorPosition:
       return "rad, mrad, deg, turns";
     case ChannelQuantity::kMotorVelocity:
       return "rad/s, mrad/s, deg/s, rpm, turns/s";
     case ChannelQuantity::kMotorTorque:
-      return "Nm, kNm, Ncm, mNm, uNm";
+      return "Nm, kNm, Ncm, Nmm, mNm, uNm, kgfm, kgfcm";
     case ChannelQuantity::kCurrent:
       return "A, mA";
   }
@@ -133,9 +158,11 @@ const char* si_name(Dimension dimension) {
 }
 
 const SourceUnit* find_unit(std::string_view name) {
-  const auto* found = std::find_if(kUnits.begin(), kUnits.end(),
-                                   [&](const SourceUnit& unit) { return unit.name == name; });
-  return found == kUnits.end() ? nullptr : found;
+  const SourceUnit* const plain = unit_named(name);
+  if (plain != nullptr) return plain;
+  // Of a torque alone: "m s" is no millisecond.
+  const SourceUnit* const product = unit_named(without_product_signs(name));
+  return product != nullptr && product->dimension == Dimension::kTorque ? product : nullptr;
 }
 
 double unit_factor(std::string_view name) {

@@ -200,6 +200,7 @@ std::vector<Habit> habits() {
       {"no header, decimal commas", comma, kNumbered},
       {"a header behind a #, as numpy writes it", "# t q1 dq1 tau1\n" + separated(" ")},
       {"a header behind a #, commas", "#t,q1,dq1,tau1\n" + plain},
+      {"a header behind a %, as rostopic writes it", "%t,q1,dq1,tau1\n" + plain},
       {"comments before the header", "# drive 3\n# 24 November\n" + kHeader + plain},
       {"comments between samples", kHeader + commented},
       {"comments behind a %", "% drive 3\n" + kHeader + plain},
@@ -261,6 +262,22 @@ std::vector<Habit> habits() {
        "period_s = 0.01\nposition = 'q1'\nvelocity = 'dq1'\ntorque = 'tau1'"},
       {"plus signs", "t,q1,dq1,tau1\n" + lines(with([](Cells& cells) { cells.before = "+"; }))},
   };
+}
+
+// As rostopic echo -p writes it: no line of samples is all numbers.
+TEST(CsvHabits, AHeaderBehindAPercentSignMayHaveTextUnderIt) {
+  for (const char* sign : {"%", "#"}) {
+    std::string text = std::string(sign) + "t,seq,name0,q1,name1,tau1\n";
+    for (int i = 0; i < kSamples; ++i) {
+      const double t = kPeriodS * i;
+      text += std::to_string(t) + ",1,shoulder," + std::to_string(q_of(t)) + ",elbow," +
+              std::to_string(tau_of(t)) + "\n";
+    }
+    const Log log = read(text);
+    EXPECT_EQ(log.sample_count(), kSamples);
+    EXPECT_NEAR(log.tau(3, 0), tau_of(3 * kPeriodS), 1e-6);
+  }
+  EXPECT_THAT(refusal("# a drive\n1.5,t,q1,tau1\n0,0,1,2\n"), HasSubstr("the number 1.5"));
 }
 
 TEST(CsvHabits, EachIsReadRight) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -260,6 +262,46 @@ TEST(CsvLog, NumberOfJointsMustBeTheRobots) {
   EXPECT_THAT(refusal(text, 3), AllOf(HasSubstr("tau1, tau3"), HasSubstr("add what is missing")));
 }
 
+// Ten samples of columns whose values are their place in the header.
+std::string counted_csv(const std::string& header) {
+  std::string text = header + "\n";
+  const auto columns = std::count(header.begin(), header.end(), ',');
+  for (int i = 0; i < 10; ++i) {
+    text += std::to_string(i);
+    for (std::ptrdiff_t column = 1; column <= columns; ++column) {
+      text += "," + std::to_string(column);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+TEST(CsvLog, JointsThatCountFromZeroAreReadWithARemark) {
+  const Log log = read(counted_csv("t,q0,q1,dq0,dq1,tau0,tau1"), 2);
+  EXPECT_EQ(log.q(0, 0), 1);
+  EXPECT_EQ(log.q(0, 1), 2);
+  EXPECT_EQ(log.dq(0, 0), 3);
+  EXPECT_EQ(log.dq(0, 1), 4);
+  EXPECT_EQ(log.tau(0, 0), 5);
+  EXPECT_EQ(log.tau(0, 1), 6);
+  EXPECT_TRUE(log.extra.empty());
+  EXPECT_THAT(log.remarks, Contains("the joints are numbered from 0: q0 is joint 1"));
+  EXPECT_EQ(read(counted_csv("T,Q0,TAU0")).tau(0, 0), 2);
+}
+
+// Taken by their names they would fit the robot, each of the joint before its own.
+TEST(CsvLog, JointsThatCountFromZeroAreNeverOffByOne) {
+  EXPECT_THAT(refusal(counted_csv("t,q0,q1,q2,tau0,tau1,tau2"), 2),
+              AllOf(HasSubstr("q0 to q2, tau0 to tau2, 3 of q, numbered from 0"),
+                    HasSubstr("the robot's 2 joints")));
+  EXPECT_THAT(refusal(counted_csv("t,q0,q1,tau0,tau1"), 3), HasSubstr("2 of q, numbered from 0"));
+  for (const char* header : {"t,q0,q1,tau1,tau2", "t,q1,q2,dq0,dq1,tau1,tau2",
+                             "t,q0,q1,dq1,dq2,tau0,tau1", "t,q0,q1,q2,tau1,tau2"}) {
+    EXPECT_THAT(refusal(counted_csv(header), 2), HasSubstr("some count from 0, some do not"))
+        << header;
+  }
+}
+
 TEST(CsvLog, ValuesThatNothingMeasuresAreRefused) {
   for (const char* value : {"1e300", "-3.4e38"}) {
     EXPECT_THAT(refusal(one_joint_csv(20,
@@ -293,6 +335,17 @@ TEST(CsvLog, ASingleTimeThatDoesNotAscendIsLeftOutAndMoreAreRefused) {
               Contains(AllOf(HasSubstr("line 12, time"), HasSubstr("0.09 s after 0.09 s"))));
   EXPECT_THAT(refusal(stamped(15)),
               AllOf(HasSubstr("line 12, time"), HasSubstr("0.09 s after 0.09 s")));
+}
+
+// Read up to a tenth of rows out of time, half of the recording would be gone.
+TEST(CsvLog, AClockThatBeginsAnewIsRefused) {
+  for (const int rows : {179, 180, 181}) {
+    std::string text = "t,q1,tau1\n";
+    for (int i = 0; i < 2 * rows; ++i) {
+      text += std::to_string(0.01 * (i % rows)) + ",1," + std::to_string(i) + "\n";
+    }
+    EXPECT_THAT(refusal(text), HasSubstr("cut the recording where its clock begins anew")) << rows;
+  }
 }
 
 // Without dq the velocity is derived, and of such positions it would be infinite.

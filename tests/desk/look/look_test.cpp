@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -14,6 +15,7 @@
 #include "look/look_report.hpp"
 #include "report/page.hpp"
 #include "robot/channels.hpp"
+#include "robot/units.hpp"
 #include "support/recordings.hpp"
 
 namespace {
@@ -113,6 +115,35 @@ TEST_F(LookTest, UnitsInNamesAndUnderThemAreTaken) {
       recording(kNames + "\nms,deg,rpm,Nm,deg,rpm,Nm", {1e3, kDegrees, 30 / std::numbers::pi}))));
 }
 
+TEST_F(LookTest, TorquesInOtherSpellingsOfTheirUnitsAreTaken) {
+  const auto header = [](const std::string& unit) {
+    std::string names = "t,pos_1,vel_1,torque_1*,pos_2,vel_2,torque_2*";
+    for (auto at = names.find('*'); at != std::string::npos; at = names.find('*')) {
+      names.replace(at, 1, unit);
+    }
+    return names;
+  };
+  for (const char* unit : {"mN m", "mN\u00b7m", "Nmm", "N mm", "N cm", "kgf.cm"}) {
+    for (const std::string& in_name :
+         {" [" + std::string(unit) + "]", "(" + std::string(unit) + ")"}) {
+      const Look seen = look(recording(header(in_name), {}));
+      ASSERT_TRUE(seen.is_complete()) << in_name;
+      EXPECT_EQ(seen.channels.torque.at(1).unit, unit);
+      EXPECT_NEAR(read_as(seen).tau(0, 0), 3 * offnominal::desk::unit_factor(unit), 1e-6);
+    }
+  }
+}
+
+TEST_F(LookTest, AUnitThatIsNotKnownIsSaid) {
+  const std::string words = ": \"furlong\" is no unit that is known: taken as N m";
+  const Look named = look(recording("t,q1,dq1,tau1 [furlong],q2,dq2,tau2 [furlong]", {}));
+  EXPECT_THAT(named.notes, Contains(HasSubstr("tau1 [furlong], tau2 [furlong]" + words)));
+  EXPECT_THAT(read_as(named).remarks, Contains(HasSubstr("column tau2 [furlong]" + words)));
+  const Look under = look(recording(kNames + "\ns,rad,rad/s,furlong,rad,rad/s,furlong", {}));
+  EXPECT_THAT(under.notes, Contains(HasSubstr("torque_1, torque_2" + words)));
+  EXPECT_THAT(read_as(under).remarks, Contains(HasSubstr("column torque_1" + words)));
+}
+
 TEST_F(LookTest, WhatCannotBeToldIsAskedFor) {
   const Look nameless = look(recording("a,b,c,d,e,f,g", {}));
   EXPECT_THAT(nameless.missing, Contains(HasSubstr("a column of time")));
@@ -158,6 +189,47 @@ TEST_F(LookTest, ATimeThatIsNoneIsNoEpochAndSaysHowFarWasRead) {
   EXPECT_THAT(text_of(look_at(folder_ / "back.csv", nullptr, std::nullopt)),
               HasSubstr("note: read as far as line 13: in 11 lines the time is not later than "
                         "before\n"));
+}
+
+// Loop times, temperatures, elements of a pose: what is called like a time is none beside it.
+TEST_F(LookTest, OnlyTheColumnThatIsTheTimeHasToAscend) {
+  const std::string names = "exec_time,time,pos_1,vel_1,torque_1,T1,T_a,O_T_EE[0],time_left,note_t";
+  std::string text = names + "\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    text += std::to_string(i % 7) + "," + std::to_string(t) + "," +
+            std::to_string(std::sin(2 * t)) + "," + std::to_string(2 * std::cos(2 * t)) + "," +
+            std::to_string(3 * std::cos(t)) + ",35," + std::to_string(i % 3) + ",1," +
+            std::to_string(10 - t) + ",idle\n";
+  }
+  const Look seen = look(text);
+  EXPECT_TRUE(seen.is_complete());
+  EXPECT_THAT(seen.remarks, IsEmpty());
+  EXPECT_EQ(seen.channels.time.source, "time");
+  ASSERT_TRUE(seen.t_s);
+  EXPECT_EQ(seen.t_s->size(), kSamples);
+  const auto json = to_json(seen);
+  const auto& columns = json["columns"];
+  EXPECT_EQ(std::count_if(columns.begin(), columns.end(),
+                          [](const auto& column) { return column["taken_for"] == "time"; }),
+            1);
+}
+
+TEST_F(LookTest, OneRowIsTooFewAndHasATimeAllTheSame) {
+  const Look seen = look("t,q1,tau1\n0,1,2\n");
+  EXPECT_THAT(seen.missing, testing::ElementsAre("more samples: the file has one row of numbers"));
+}
+
+TEST_F(LookTest, ADurationIsATime) {
+  const Look seen = look(recording("duration,q0,dq0,tau0,q1,dq1,tau1", {}));
+  EXPECT_TRUE(seen.is_complete());
+  EXPECT_EQ(seen.channels.time.source, "duration");
+}
+
+TEST_F(LookTest, WhatIsCalledATimeAndIsNoneIsSaid) {
+  const Look seen = look("stamp,q1,tau1\n10:00:00.5,1,2\n10:00:00.6,2,3\n");
+  EXPECT_THAT(seen.remarks, Contains(HasSubstr("column stamp: \"10:00:00.5\" is no time in s")));
+  EXPECT_THAT(seen.missing, Contains(HasSubstr("a column of time")));
 }
 
 TEST_F(LookTest, ThePageHasEveryChannelAndTheAnswerInJsonEveryColumn) {

@@ -7,6 +7,7 @@
 
 #include "common/error.hpp"
 #include "desk/support/temporary_file.hpp"
+#include "robot/units.hpp"
 
 namespace {
 
@@ -82,6 +83,26 @@ TEST(Channels, AUnitOfTheQuantitysOwnNeedsNoScaleAndAnyOtherDoes) {
               AllOf(HasSubstr("unit \"counts\" without a scale"), HasSubstr("rad, mrad, deg")));
   EXPECT_THAT(refusal("position = 'q'\ntorque = {source = 'i', unit = 'mA'}"),
               AllOf(HasSubstr("unit \"mA\" without a scale"), HasSubstr("what one A is")));
+}
+
+TEST(Channels, UnitsOfTorqueMayBeWrittenAsProducts) {
+  for (const char* unit : {"mNm", "mN m", "mN*m", "mN.m", "mN-m", "mN\u00b7m", "Nmm", "N mm"}) {
+    EXPECT_DOUBLE_EQ(offnominal::desk::unit_factor(unit), 1e-3) << unit;
+  }
+  for (const char* unit : {"Ncm", "N cm", "N\u22c5cm"}) {
+    EXPECT_DOUBLE_EQ(offnominal::desk::unit_factor(unit), 1e-2) << unit;
+  }
+  for (const char* unit : {"kgfcm", "kgf cm", "kgf.cm", "kgf*cm"}) {
+    EXPECT_DOUBLE_EQ(offnominal::desk::unit_factor(unit), 0.0980665) << unit;
+  }
+  for (const char* unit : {"Nm", "N m", "N*m", "N.m", "N-m", "N\u00b7m"}) {
+    ASSERT_NE(offnominal::desk::find_unit(unit), nullptr) << unit;
+  }
+  for (const char* unit : {"m s", "m.m", "rad.s", "N/m", "mn m"}) {
+    EXPECT_EQ(offnominal::desk::find_unit(unit), nullptr) << unit;
+  }
+  const ChannelMap map = parse("position = 'q'\ntorque = {source = 'tau', unit = 'mN m'}");
+  EXPECT_EQ(map.torque[0].unit, "mN m");
 }
 
 // Files of an older kind say the factor of a unit, and that of "deg" must not count twice.
