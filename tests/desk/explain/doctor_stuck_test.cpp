@@ -94,7 +94,7 @@ TEST(StuckTorque, IsSeenAtZeroWhereTheMotionAsksForMore) {
 Log with_a_peak_cut_off(const RobotDescription& robot) {
   constexpr Index kRows = 40;  // of half a peak, at most
   constexpr Index kCut = 15;
-  test::SerialRecording settings{.duration_s = 9, .rate_hz = 100, .torque_noise_nm = 0};
+  test::SerialRecording settings{.duration_s = 9, .rate_hz = 100, .torque_noise_nm = 1e-6};
   for (;; ++settings.seed) {
     Log log = test::record(robot, settings);
     auto tau = log.tau.col(kJoint);
