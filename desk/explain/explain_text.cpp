@@ -7,6 +7,7 @@
 #include "common/number.hpp"
 #include "common/shell_word.hpp"
 #include "common/text_table.hpp"
+#include "compare/compare_report.hpp"
 #include "explain/data_fault_report.hpp"
 #include "explain/explain_report.hpp"
 #include "robot/payload.hpp"
