@@ -91,11 +91,8 @@ std::vector<Shift> contradicted_numbers(const SearchSetting& setting, const Robo
 }
 
 bool leave_out_impossible(const std::vector<HeldNumber>& held, std::vector<Shift>& shifts) {
-  return std::erase_if(shifts, [&](const Shift& one) {
-           return std::any_of(held.begin(), held.end(), [&](const HeldNumber& number) {
-             return number.contradicted && number.joint == one.joint;
-           });
-         }) > 0;
+  return std::erase_if(shifts,
+                       [&](const Shift& one) { return holds_what_cannot_be(held, one.joint); }) > 0;
 }
 
 std::vector<std::size_t> refitted_effects(const RobotDescription& file,

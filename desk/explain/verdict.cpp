@@ -281,17 +281,6 @@ void judge_suspected(const Suspicion& one, Explanation& e) {
 
 const char* name_of(Verdict verdict) { return row_of(verdict).name; }
 
-namespace {
-
-// Whether a number of the joint was held at the end of what is possible against the recordings.
-bool holds_what_cannot_be(const Explanation& e, Eigen::Index joint) {
-  return std::any_of(e.held.begin(), e.held.end(), [&](const HeldNumber& held) {
-    return held.contradicted && held.joint == joint;
-  });
-}
-
-}  // namespace
-
 std::string words_of(const Shift& shift) {
   const char* blank = shift.unit.empty() || shift.unit == "1" ? "" : " ";
   return fmt::format("{} is {:.3g}{}{}, not {:.3g}", shift.name, shift.came, blank,
@@ -299,7 +288,7 @@ std::string words_of(const Shift& shift) {
 }
 
 bool is_written(const Explanation& e, const EffectAt& finding) {
-  return !holds_in_any(e.ambiguous, finding) && !holds_what_cannot_be(e, finding.joint);
+  return !holds_in_any(e.ambiguous, finding) && !holds_what_cannot_be(e.held, finding.joint);
 }
 
 bool changes_the_file(const Explanation& e) {

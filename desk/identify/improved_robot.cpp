@@ -316,6 +316,12 @@ void scale_links(const Relinearised& found, const std::string& source, RobotDesc
 
 }  // namespace
 
+bool holds_what_cannot_be(const std::vector<HeldNumber>& held, Index joint) {
+  return std::any_of(held.begin(), held.end(), [joint](const HeldNumber& one) {
+    return one.contradicted && one.joint == joint;
+  });
+}
+
 std::vector<std::size_t> fitted_effects(const RobotDescription& robot) {
   std::vector<std::size_t> fitted;
   for (std::size_t i = 0; i < robot.effects.size(); ++i) {

@@ -19,6 +19,9 @@ struct HeldNumber {
   bool contradicted = false;
 };
 
+// Whether a number of the joint was held at the end of what is possible against the recordings.
+bool holds_what_cannot_be(const std::vector<HeldNumber>& held, Eigen::Index joint);
+
 // The robot as it was read, with what was found: the effects, marked fitted; the numbers of the
 // effects that were fitted before; mass and inertia of the links. Fitted together, they belong
 // together.
