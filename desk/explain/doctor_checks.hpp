@@ -38,6 +38,9 @@ std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& ro
 // What viscous and dry friction of a joint look like over time, two columns: rad/s or m/s, and 1.
 Eigen::MatrixXd friction_columns(const Eigen::VectorXd& dq);
 
+// Each column of `torques` less what the others take of it by least squares.
+Eigen::MatrixXd beside(const Eigen::MatrixXd& others, const Eigen::MatrixXd& torques);
+
 // Whether the torques follow the model at a scale that no link, tool or counterweight makes, on
 // every joint that tells.
 bool is_of_another_torque_unit(const TorquePair& pair);

@@ -97,8 +97,7 @@ struct Degrees {
 
 // What no dry or viscous friction of the joint has a part in: the file's is often a guess.
 VectorXd beside_friction(const VectorXd& torque, const VectorXd& dq) {
-  const Eigen::MatrixXd friction = friction_columns(dq);
-  return torque - friction * friction.colPivHouseholderQr().solve(torque);
+  return beside(friction_columns(dq), torque);
 }
 
 // The same pair, of all joints.
@@ -205,6 +204,10 @@ std::optional<Degrees> degrees_by_limits(const Log& log, const RobotDescription&
 }
 
 }  // namespace
+
+Eigen::MatrixXd beside(const Eigen::MatrixXd& others, const Eigen::MatrixXd& torques) {
+  return torques - others * others.colPivHouseholderQr().solve(torques);
+}
 
 Eigen::MatrixXd friction_columns(const VectorXd& dq) {
   constexpr double kSlow = 0.1;  // of the usual speed

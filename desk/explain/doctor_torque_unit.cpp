@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,23 +24,19 @@ struct TorqueRatio {
   double ratio = 1;
 };
 
-// What no friction, rotor and offset of the joint has a part in: of those a file may lack all, or
-// have guesses.
-VectorXd beside_drive(const VectorXd& torque, const MatrixXd& dry_and_viscous,
-                      const VectorXd& ddq) {
-  MatrixXd drive(ddq.size(), 4);
-  drive << dry_and_viscous, ddq, VectorXd::Ones(ddq.size());
-  return torque - drive * drive.colPivHouseholderQr().solve(torque);
-}
-
 // None where the model has too little to say of it, or fits it with no factor at all.
 std::optional<TorqueRatio> torque_ratio(const TorquePair& pair, Index joint) {
   constexpr double kLeastShare = 0.15;  // of the torque: what the ratio is seen by
   constexpr double kMostLeft = 0.4;     // of that: what no factor explains
-  const MatrixXd friction = friction_columns(pair.dq.col(joint));
-  const VectorXd ddq = pair.ddq.col(joint);
-  const VectorXd measured = beside_drive(pair.measured.col(joint), friction, ddq);
-  const VectorXd model = beside_drive(pair.model.col(joint), friction, ddq);
+  // Friction, rotor and offset of the joint have no part in it: a file may lack them, or guess.
+  const Index rows = pair.dq.rows();
+  MatrixXd drive(rows, 4);
+  drive << friction_columns(pair.dq.col(joint)), pair.ddq.col(joint), VectorXd::Ones(rows);
+  MatrixXd both(rows, 2);
+  both << pair.measured.col(joint), pair.model.col(joint);
+  both = beside(drive, both);
+  const auto measured = both.col(0);
+  const auto model = both.col(1);
   const double size = pair.measured.col(joint).norm();
   if (!(model.norm() > 1e-9 * pair.model.col(joint).norm()) || !(size > 0)) return std::nullopt;
   const double ratio = measured.dot(model) / model.squaredNorm();
@@ -124,9 +120,8 @@ bool find_torque_unit(const Log& log, const TorquePair& pair, std::vector<DataFa
   if (unit == nullptr) {
     fault.mend =
         "give `torque` its unit under [channels]: `scale` for torques before a gear (its ratio) or "
-        "in parts of a rated torque, `motor_current` with the torque_constant of [transmission] "
-        "for "
-        "currents; or the masses of the robot file are those of another arm";
+        "in parts of a rated torque, `motor_current` with the torque_constant of "
+        "[transmission] for currents; or the masses of the robot file are those of another arm";
     faults.push_back(std::move(fault));
     return true;
   }
