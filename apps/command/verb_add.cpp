@@ -224,9 +224,7 @@ constexpr const char* kHowItFits =
     "those whose numbers the recordings contradict, and mass and inertia of the links within "
     "--link-share; --keep-effects takes the numbers of all effects of the file for right, and fits "
     "what is found beside them. It writes nothing unless something is sure: an effect that the "
-    "recordings do "
-    "not confuse with "
-    "another one, or a number of the file that they contradict.\n"
+    "recordings do not confuse with another one, or a number of the file that they contradict.\n"
     "Exit code 1, and nothing written, when the recording cannot tell an effect from what the "
     "model has already, or when the fit is not physical; so too when the error on data that the "
     "fit has not seen does not fall, which --force overrules.\n\n";

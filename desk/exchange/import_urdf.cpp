@@ -199,20 +199,19 @@ class Importer {
     std::array<double, 6> tensor{given.ixx, given.iyy, given.izz, given.ixy, given.ixz, given.iyz};
     const bool no_tensor = tensor == std::array<double, 6>{};
     if (given.mass == 0 && no_tensor) return std::nullopt;
-    // What simulators ask of a frame that is no body.
-    constexpr double kOfAFrame = 1e-4;  // kg m^2
-    const double largest =
-        std::abs(*std::max_element(tensor.begin(), tensor.end(),
-                                   [](double a, double b) { return std::abs(a) < std::abs(b); }));
-    if (given.mass == 0 && largest <= kOfAFrame) {
+    if (given.mass == 0) {
+      // What simulators ask of a frame that is no body.
+      constexpr double kOfAFrame = 1e-4;  // kg m^2
+      const double largest =
+          Eigen::Map<const Eigen::Array<double, 6, 1>>(tensor.data()).abs().maxCoeff();
+      if (largest > kOfAFrame) {
+        refuse(place, "an inertia and a mass of 0", "both, or neither",
+               "give the link's mass, or an inertia of zeros");
+      }
       note(
           Kind::kLeftOut, line_of(link),
           fmt::format("the inertia of link `{}`, {:g} kg m^2: it has no mass", link.name, largest));
       return std::nullopt;
-    }
-    if (given.mass == 0) {
-      refuse(place, "an inertia and a mass of 0", "both, or neither",
-             "give the link's mass, or an inertia of zeros");
     }
     const std::string fault = inertia_fault(tensor);
     // What is off by rounding, or by a drawing's parts left out, is no reason to have no robot.
