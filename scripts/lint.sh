@@ -13,33 +13,54 @@ sources() { git -c safe.directory="$root" ls-files -z -- '*.hpp' '*.cpp'; }
 check_format() { sources | xargs -0 -r clang-format --dry-run -Werror; }
 rewrite() { sources | xargs -0 -r clang-format -i; }
 
-# Every check walks through all system headers of a unit, and tests are two thirds of the units: there
-# it is the names, and what goes wrong unseen.
+# Tests are more than half of the units: there it is the names, and what goes wrong unseen.
 test_checks='-*,readability-identifier-naming,bugprone-use-after-move,bugprone-dangling-handle'
 test_checks+=',bugprone-integer-division,bugprone-undelegated-constructor,modernize-use-override'
 test_checks+=',performance-for-range-copy,readability-duplicate-include'
+own_code=offnominal-own-code
 
 # analyse_one FILE COMMAND: one unit of the compile commands, unless it is known to be fine. What is
 # fine depends on the tool, its settings and all files of the unit, not on where the tree lies.
 analyse_one() {
-  local unit="$1" command="$2" files stamp checks=()
-  case "${unit#"$root/"}" in tests/* | build/tidy/tests/*) checks=("--checks=$test_checks") ;; esac
+  local unit="$1" command="$2" files stamp checks="$own_code"
+  case "${unit#"$root/"}" in tests/* | build/tidy/tests/*) checks="$test_checks,$own_code" ;; esac
   files="$(cd build/tidy && eval "${command/ -o * -c / -M }" | sed 's/^[^:]*://; s/\\$//')" || return 1
   # shellcheck disable=SC2086  # a list of files without blanks
   stamp="$known/$({
     clang-tidy --version
     find . -name .clang-tidy -not -path './build/*' -print0 | sort -z | xargs -0 cat
-    printf '%s\n' "$command" "${checks[@]}"
+    printf '%s\n' "$command" "$checks"
+    cat scripts/tidy/own_code.cpp
     cd build/tidy && cat $files
   } | sed "s#$root#.#g" | sha256sum | cut -d' ' -f1).fine"
   [[ -e "$stamp" ]] && return 0
   # The compile commands are GCC's, which knows warnings that Clang does not.
-  if clang-tidy -p build/tidy --quiet --warnings-as-errors='*' \
-    --extra-arg=-Wno-unknown-warning-option "${checks[@]}" "$unit" 2>/dev/null; then
+  if clang-tidy -load="$plugin" -p build/tidy --quiet --warnings-as-errors='*' \
+    --extra-arg=-Wno-unknown-warning-option --checks="$checks" "$unit" 2>/dev/null; then
     touch "$stamp"
   else
     echo "clang-tidy: ${unit#"$root/"} has findings" >&2
     return 1
+  fi
+}
+
+# Findings in system headers are never shown: the plugin keeps the checks from walking through them.
+build_plugin() {
+  local source=scripts/tidy/own_code.cpp tool
+  plugin="$root/build/tidy/own_code.so"
+  [[ "$plugin" -nt "$source" ]] && return 0
+  tool="$(dirname "$(readlink -f "$(command -v clang-tidy)")")"
+  "$tool/clang++" -std=c++14 -O1 -fno-rtti -fPIC -shared -isystem "$tool/../include" "$source" -o "$plugin.new" &&
+    mv "$plugin.new" "$plugin" || return 1
+}
+
+# A plugin that left everything out would find nothing anywhere.
+prove_plugin() {
+  local wrong="build/tidy/wrong_name.cpp"
+  printf 'struct wrong_name {};\n' >"$wrong"
+  if clang-tidy -load="$plugin" --quiet --checks="-*,readability-identifier-naming,$own_code" \
+    --warnings-as-errors='*' "$wrong" -- -std=c++20 >/dev/null 2>&1; then
+    die "lint.sh tidy: the analysis does not see $wrong's wrong name: $plugin leaves too much out"
   fi
 }
 
@@ -49,10 +70,12 @@ check_tidy() {
   cmake --preset tidy --log-level=WARNING >/dev/null
   build release generated_headers
   (cd build/release && find tests -name '*.hpp' -exec cp --parents -t ../tidy {} +)
+  build_plugin
+  prove_plugin
   known="$(cache_dir)/tidy"
   mkdir -p "$known"
   find "$known" -name '*.fine' -mtime +60 -delete
-  export root known test_checks
+  export root known test_checks own_code plugin
   export -f analyse_one
   # One pair per unit, file and command; not what is generated. The JSON is CMake's own, a key per line.
   sed -n 's/^ *"command": "\(.*\)",\{0,1\}$/\1/p; s/^ *"file": "\(.*\)",\{0,1\}$/\1/p' \
