@@ -2,7 +2,7 @@ find_package(GTest REQUIRED)
 include(GoogleTest)
 
 # offnominal_add_test(NAME <target> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>]
-#                     [TOGETHER | BUS | REAL_TIME] [LONG])
+#                     [TOGETHER | BUS | REAL_TIME] [LONG] [AS_SHIPPED])
 #
 # Builds one GoogleTest executable and registers each of its cases with CTest, or with TOGETHER all of
 # them as one test: for cases that share what takes long to compute. Where the sanitizers watch, a
@@ -11,10 +11,11 @@ include(GoogleTest)
 # buses vcan0, vcan1, can0 and can1, one case at a time; they carry the label `bus`, under which
 # `./dev test` runs all of them in one `./dev vcan --controller`. With REAL_TIME its cases need vcan0
 # and a machine that makes nothing late: they carry the label `real_time`, and run in one
-# `./dev vcan --in machine --clock instructions`. With LONG its cases start before others, so that none of them is
-# left to run alone at the end. Cases see "support/<header>.hpp" (tests/support).
+# `./dev vcan --in machine --clock instructions`. With LONG its cases compute much: they start before others, so
+# that none of them is left to run alone at the end. With AS_SHIPPED what it includes is optimised as a user's
+# program is. Cases see "support/<header>.hpp" (tests/support).
 function(offnominal_add_test)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER;BUS;REAL_TIME;LONG" "NAME;LABELS" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER;BUS;REAL_TIME;LONG;AS_SHIPPED" "NAME;LABELS" "SOURCES;LIBRARIES")
   if(NOT arg_NAME OR NOT arg_SOURCES)
     message(FATAL_ERROR "offnominal_add_test: NAME and SOURCES are required")
   endif()
@@ -27,6 +28,15 @@ function(offnominal_add_test)
   # Every expectation holds the name of its file. Within the checkout it is the same in every clone:
   # what one has compiled is remembered for the others.
   target_compile_options(${arg_NAME} PRIVATE "-ffile-prefix-map=${PROJECT_SOURCE_DIR}/=")
+  # Expectations are most of what a test compiles, and run once: half of a whole build was their
+  # optimisation. What they test has been compiled as always; a header that is tested as it is shipped says
+  # AS_SHIPPED. Where the sanitizers watch, no optimisation is the quickest to compile; tests that compute
+  # much keep it.
+  if(OFFNOMINAL_SANITIZE AND NOT arg_LONG)
+    target_compile_options(${arg_NAME} PRIVATE -O0)
+  elseif(NOT OFFNOMINAL_SANITIZE AND NOT arg_AS_SHIPPED)
+    target_compile_options(${arg_NAME} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   target_link_libraries(
     ${arg_NAME} PRIVATE offnominal_warnings ${arg_LIBRARIES} offnominal_test_support GTest::gmock
                         GTest::gtest GTest::gtest_main)
