@@ -10,6 +10,7 @@
 
 #include "common/error.hpp"
 #include "identify/friction_power.hpp"
+#include "identify/link_masses.hpp"
 #include "identify/physical_range.hpp"
 #include "identify/sign_width.hpp"
 #include "identify/torque_scale.hpp"
@@ -220,39 +221,6 @@ void move_fitted_effects(const Relinearised& found, const std::string& source,
                                                 effect.source.empty() ? "" : "; ", words, source);
     effect.fitted = true;
   }
-}
-
-// With what the effects of the file add to it, kg.
-double mass_of_link(const RobotDescription& robot, std::size_t link) {
-  double mass_kg = robot.joints[link].joint.mass_kg;
-  for (const RobotEffect& effect : robot.effects) {
-    if (effect.kind == EffectKind::kLinkMass && effect.joint == static_cast<int>(link))
-      mass_kg += effect.parameters[0];
-  }
-  return mass_kg;
-}
-
-// Links that no file is so wrong about: the torque is in another unit. Links that are next to
-// nothing of the arm stand for something else in a file: a frame, a flange.
-std::vector<std::string> masses_beyond_belief(const RobotDescription& file,
-                                              const RobotDescription& improved) {
-  constexpr double kFarOff = 10;
-  constexpr double kOfTheArm = 0.02;
-  std::vector<std::string> objections;
-  double arm_kg = 0;
-  for (std::size_t link = 0; link < file.joints.size(); ++link) arm_kg += mass_of_link(file, link);
-  for (std::size_t link = 0; link < file.joints.size(); ++link) {
-    const double before = mass_of_link(file, link);
-    const double after = mass_of_link(improved, link);
-    if (!(before > kOfTheArm * arm_kg) || (after < kFarOff * before && after * kFarOff > before))
-      continue;
-    objections.push_back(fmt::format(
-        "link {} would have {:.4g} kg instead of {:.4g}: look at the unit of the torque first "
-        "(scale in [channels]: mN m, torque before a gear, a current), then at the mass in the "
-        "robot file",
-        link + 1, after, before));
-  }
-  return objections;
 }
 
 // Friction that all together gives energy, whatever the search saw, and masses beyond belief.

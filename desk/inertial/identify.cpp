@@ -9,6 +9,7 @@
 #include "common/error.hpp"
 #include "common/nearest.hpp"
 #include "identify/file_errors.hpp"
+#include "identify/link_masses.hpp"
 #include "inertial/identified_numbers.hpp"
 #include "inertial/inertial_fit.hpp"
 #include "log/seen_by_sensor.hpp"
@@ -151,8 +152,8 @@ class Identifier {
                        [](const IdentifiedNumber& one) { return one.determined; });
   }
 
-  // On data that the fit has not seen no joint may lose more than what a twentieth is, unless that
-  // is next to nothing of its torque.
+  // No link becomes ten times as heavy. On data that the fit has not seen no joint may lose more
+  // than what a twentieth is, unless that is next to nothing of its torque.
   void doubt() {
     constexpr double kRelevant = 0.05;
     constexpr double kNegligiblePercent = 1;
@@ -162,6 +163,12 @@ class Identifier {
       result_.doubts.push_back(fmt::format(
           "on data not used for the fit the error of joint {} rises from {:.2f} % to {:.2f} %",
           error.joint + 1, error.before_percent, error.after_percent));
+    }
+    // Where the file's links are believed; a payload is as heavy as it is.
+    if (!file_is_whole() || request_.from_geometry || request_.payload) return;
+    for (const std::string& beyond : masses_beyond_belief(file_, result_.robot)) {
+      result_.doubts.push_back(
+          beyond + ", which --from-geometry does not believe where it is a placeholder");
     }
   }
 

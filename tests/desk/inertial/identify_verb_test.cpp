@@ -96,6 +96,29 @@ TEST_F(IdentifyVerb, HasItsNumbersInJsonAndOnAPage) {
   EXPECT_THAT(content_of(folder_ / "page.html"), HasSubstr("Base parameters"));
 }
 
+// What it writes would pass every check but this one: links of a tenth are no error of a drawing.
+TEST_F(IdentifyVerb, DoubtsLinksThatAreTenTimesOffTheirFile) {
+  desk::RobotDescription light = desk::read_robot_file(folder_ / "r.toml");
+  for (desk::RobotJoint& one : light.joints) {
+    one.joint.mass_kg /= 30;
+    for (double& inertia : one.joint.inertia_kg_m2) inertia /= 30;
+  }
+  put(folder_ / "light.toml", desk::robot_text(light));
+  const Words kept = {"--keep", "all:torque_unit", "-o", path("out.toml")};
+  const CommandResult refused = identify_file("light.toml", kept);
+  EXPECT_EQ(refused.exit_code, 1) << refused.err;
+  EXPECT_THAT(refused.out, AllOf(HasSubstr("link 2 would have "), HasSubstr("[channels]"),
+                                 HasSubstr("--from-geometry")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.toml"));
+  Words forced = kept;
+  forced.emplace_back("--force");
+  EXPECT_EQ(identify_file("light.toml", forced).exit_code, 0);
+  Words geometry = kept;
+  geometry.emplace_back("--from-geometry");
+  geometry[3] = path("geometry.toml");
+  EXPECT_EQ(identify_file("light.toml", geometry).exit_code, 0);
+}
+
 TEST_F(IdentifyVerb, ReadsLinksThatAreBlanks) {
   std::string text = content_of(folder_ / "r.toml");
   for (const char* key : {"mass_kg", "centre_of_mass_m", "inertia_kg_m2"}) {
