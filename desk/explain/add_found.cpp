@@ -9,6 +9,7 @@
 #include "common/nearest.hpp"
 #include "compare/inverse_model.hpp"
 #include "compare/measurement.hpp"
+#include "explain/doubts.hpp"
 #include "robot/payload.hpp"
 
 namespace offnominal::desk {
@@ -38,56 +39,22 @@ std::vector<std::string> objections_to(const Explanation& e) {
   return objections;
 }
 
-// Mean square of a joint's error on data that no fit has seen, before and after.
-struct HeldOutSquares {
-  double before = 0;
-  double after = 0;
-};
-
-HeldOutSquares held_out_squares(const AddedFindings& added, std::size_t joint) {
-  const JointErrors& of_parts = added.explanation.joints[joint];
-  HeldOutSquares squares;
-  bool apart = false;
-  for (const Gain& gain : added.gains) {
-    const BeforeAfter& error = gain.joints[joint];
-    // Of a joint of which a recording has nothing, it says nothing.
-    const bool says = std::isfinite(error.before_rms) && std::isfinite(error.after_rms);
-    if (!gain.held_out || !says) continue;
-    apart = true;
-    squares.before += std::pow(error.before_rms, 2);
-    squares.after += std::pow(error.after_rms, 2);
-  }
-  if (apart) return squares;
-  return {std::pow(of_parts.holdout_before, 2), std::pow(of_parts.holdout_after, 2)};
-}
-
-// A joint with a finding must gain, no other may lose more than what a twentieth is.
-std::vector<std::string> doubts_of(const AddedFindings& added) {
-  constexpr double kRelevant = 0.05;
-  std::vector<std::string> doubts;
-  const Explanation& e = added.explanation;
-  for (std::size_t joint = 0; joint < e.joints.size(); ++joint) {
-    const HeldOutSquares squares = held_out_squares(added, joint);
-    const double fall = 1 - std::sqrt(squares.after / squares.before);
-    const auto of_joint = [joint](Eigen::Index one) {
-      return one == static_cast<Eigen::Index>(joint);
-    };
-    const bool asked = std::any_of(e.found.begin(), e.found.end(),
-                                   [&](const Finding& one) { return of_joint(one.what.joint); }) ||
-                       std::any_of(e.shifts.begin(), e.shifts.end(),
-                                   [&](const Shift& one) { return of_joint(one.joint); });
-    if (asked ? fall > 0 : !(fall < -kRelevant)) continue;
-    if (!(squares.before > 0)) {
-      doubts.push_back(fmt::format(
-          "no data that were not used for the fit say anything of joint {}", joint + 1));
-      continue;
+// As the recordings that were held out have it, where they say anything of a joint.
+std::vector<HeldOutSquares> held_out_squares(const AddedFindings& added) {
+  std::vector<HeldOutSquares> all = held_out_squares(added.explanation);
+  for (std::size_t joint = 0; joint < all.size(); ++joint) {
+    HeldOutSquares apart;
+    for (const Gain& gain : added.gains) {
+      const BeforeAfter& error = gain.joints[joint];
+      // Of a joint of which a recording has nothing, it says nothing.
+      const bool says = std::isfinite(error.before_rms) && std::isfinite(error.after_rms);
+      if (!gain.held_out || !says) continue;
+      apart.before += std::pow(error.before_rms, 2);
+      apart.after += std::pow(error.after_rms, 2);
     }
-    doubts.push_back(
-        fmt::format("on data not used for the fit the error of joint {} {}, by {:.1f} %: these "
-                    "data do not support what was found",
-                    joint + 1, asked ? "does not fall but rises" : "rises", -100 * fall));
+    if (apart.before > 0) all[joint] = apart;
   }
-  return doubts;
+  return all;
 }
 
 // Of the readings of a hold map, less the friction that holds by the direction of approach.
@@ -143,7 +110,7 @@ AddedFindings add_found(const RobotDescription& robot, std::vector<Log> logs,
   };
   for (const Log& log : recordings.logs) compare_on(log, false);
   for (const Log& log : recordings.holdout) compare_on(log, true);
-  added.doubts = doubts_of(added);
+  added.doubts = doubts_of(added.explanation, held_out_squares(added));
   return added;
 }
 
@@ -178,7 +145,7 @@ ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
 }
 
 std::string text_of(const AddedFindings& added, const ExplainNames& names, bool force) {
-  std::string text = text_of(added.explanation, names);
+  std::string text = findings_text(added.explanation, names);
   for (const Gain& gain : added.gains) {
     text += fmt::format("\n{}{}\n{}", gain.log, gain.held_out ? ", not used for the fit" : "",
                         text_of(gain.joints));

@@ -2,6 +2,7 @@
 
 #include "compare/compare_report.hpp"
 #include "explain/data_fault_report.hpp"
+#include "explain/doubts.hpp"
 #include "explain/explain_report.hpp"
 
 namespace offnominal::desk {
@@ -181,6 +182,7 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
     return ordered_json{{"joint", one.joint + 1}, {"level", one.level}, {"unit", one.unit}};
   });
   json["advice"] = e.advice;
+  json["doubts"] = doubts_of(e);
   return json;
 }
 

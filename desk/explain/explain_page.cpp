@@ -9,6 +9,7 @@
 #include "common/effort_name.hpp"
 #include "common/nearest.hpp"
 #include "explain/data_fault_report.hpp"
+#include "explain/doubts.hpp"
 #include "explain/explain_report.hpp"
 #include "report/numbers.hpp"
 
@@ -434,6 +435,9 @@ report::Page page_of(const Explanation& e, const ExplainNames& names) {
   if (!e.where.empty()) overview.blocks.emplace_back(where_table(e));
   for (const std::string& advice : e.advice) {
     overview.blocks.emplace_back(report::Note{advice, Level::kNeutral});
+  }
+  for (const std::string& doubt : doubts_of(e)) {
+    overview.blocks.emplace_back(report::Note{"Doubt: " + doubt + ".", Level::kBad});
   }
   page.sections.push_back(std::move(overview));
   const bool alone = e.series.size() == 1;

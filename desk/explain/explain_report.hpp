@@ -31,6 +31,9 @@ report::Level level_of(Verdict verdict);
 nlohmann::ordered_json to_json(const Explanation& explanation, const ExplainNames& names);
 
 // For a terminal: the verdict, then the evidence.
+std::string findings_text(const Explanation& explanation, const ExplainNames& names);
+
+// The same, and how to write what was found.
 std::string text_of(const Explanation& explanation, const ExplainNames& names);
 
 // The same with pictures; every number on it is in to_json().

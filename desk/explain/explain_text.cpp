@@ -9,6 +9,7 @@
 #include "common/text_table.hpp"
 #include "compare/compare_report.hpp"
 #include "explain/data_fault_report.hpp"
+#include "explain/doubts.hpp"
 #include "explain/explain_report.hpp"
 #include "robot/payload.hpp"
 
@@ -130,13 +131,22 @@ std::string command_to_add(const ExplainNames& names) {
   }
   if (names.link_share) command += " --link-share " + shortest(*names.link_share);
   if (names.keep_effects) command += " --keep-effects";
-  return fmt::format("to write a robot file with it{}: {} -o FILE\n",
+  return fmt::format("to write a robot file with it{}: {} -o FILE",
                      kept ? "" : ", keep what came through a pipe in a file, and", command);
+}
+
+// How to write it, and what `add` will say to that.
+std::string how_to_add(const Explanation& e, const ExplainNames& names) {
+  std::string text = command_to_add(names) + "\n";
+  const std::vector<std::string> doubts = doubts_of(e);
+  for (const std::string& doubt : doubts) text += "doubt: " + doubt + "\n";
+  if (!doubts.empty()) text += "so that add writes it only with --force\n";
+  return text;
 }
 
 }  // namespace
 
-std::string text_of(const Explanation& e, const ExplainNames& names) {
+std::string findings_text(const Explanation& e, const ExplainNames& names) {
   std::string text = fmt::format("{}: {}\n", name_of(e.verdict), e.words);
   text += fmt::format("model {}, {} recording{}, held out: {}\n", names.robot_file,
                       names.logs.size(), names.logs.size() == 1 ? "" : "s",
@@ -166,10 +176,13 @@ std::string text_of(const Explanation& e, const ExplainNames& names) {
   }
   for (const std::string& advice : e.advice) text += "advice: " + advice + "\n";
   for (const std::string& why : e.unwritable) text += "cannot be written: " + why + "\n";
-  if (changes_the_file(e) && e.data_faults.empty() && e.unwritable.empty()) {
-    text += command_to_add(names);
-  }
   return text;
+}
+
+std::string text_of(const Explanation& e, const ExplainNames& names) {
+  const bool may =
+      changes_the_file(e) && e.data_faults.empty() && e.unwritable.empty() && e.unphysical.empty();
+  return findings_text(e, names) + (may ? how_to_add(e, names) : "");
 }
 
 }  // namespace offnominal::desk

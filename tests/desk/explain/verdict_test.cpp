@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "explain/explain_report.hpp"
 
@@ -181,6 +182,32 @@ TEST(CommandToAdd, HasWhatTheUserKeptAndHowFarLinksAreOff) {
   names.keep = {keep_fault_of("2:saturation"), keep_fault_of("all:gaps")};
   names.link_share = 0.2;
   EXPECT_THAT(text_of(e, names), HasSubstr("--keep 2:saturation --keep all:gaps --link-share 0.2"));
+}
+
+// What `add` would refuse is said before somebody waits for it.
+TEST(CommandToAdd, SaysWhatAddWillDoubt) {
+  Explanation e = found_with_rest(1.1);
+  e.joints[0].holdout_before = 8;
+  e.joints[0].holdout_after = 4;
+  judge_whole(e);
+  const ExplainNames names{{"log"}, {}, "robot", ""};
+  EXPECT_THAT(text_of(e, names), AllOf(HasSubstr("add --all-found"), Not(HasSubstr("--force"))));
+  JointErrors other = e.joints[0];
+  other.joint = 1;
+  other.holdout_after = 9;
+  e.joints.push_back(other);
+  EXPECT_THAT(text_of(e, names),
+              AllOf(HasSubstr("add --all-found"), HasSubstr("error of joint 2 rises, by 12.5 %"),
+                    HasSubstr("only with --force")));
+  EXPECT_EQ(to_json(e, names)["doubts"].size(), 1U);
+  EXPECT_THAT(findings_text(e, names), Not(HasSubstr("add --all-found")));
+}
+
+TEST(CommandToAdd, IsNotThereWhereAddWouldRefuseWhatNoPhysicsHas) {
+  Explanation e = found_with_rest(1.1);
+  e.unphysical = {"link 1 would have 90 kg instead of 3"};
+  judge_whole(e);
+  EXPECT_THAT(text_of(e, {{"log"}, {}, "robot", ""}), Not(HasSubstr("add --all-found")));
 }
 
 // On a real arm the rest is always far above the sensor's noise: it is told, and deletes nothing.
