@@ -24,12 +24,13 @@ enum class DataFaultKind {
   kStart,
   kGravity,
   kTorqueUnit,
+  kJointOrder,
   kNothingLeft,  // the last: the only one that nobody can overrule
 };
 
 // "degrees", "torque_sign", "stale_samples", "clock_skew", "saturation", "gaps", "time_unit",
-// "velocity", "wrapped_position", "stuck", "jump", "start", "nothing_left", "gravity" or
-// "torque_unit".
+// "velocity", "wrapped_position", "stuck", "jump", "start", "nothing_left", "gravity",
+// "torque_unit" or "joint_order".
 const char* name_of(DataFaultKind kind);
 
 // Which of a joint's signals a fault is of.
@@ -55,7 +56,8 @@ struct DataFault {
   // kVelocity: the velocity over the derivative of the position, 0 where they have nothing in
   // common. kWrapped, kJump: the jump, as recorded. kStuck, kStart: share of the samples.
   // kGravity: between where it points and where the file has it, deg. kTorqueUnit: measured over
-  // model torque of the first joint that tells.
+  // model torque of the first joint that tells. kJointOrder: share of a torque that its model
+  // leaves.
   double size = 0;
   std::string unit;                   // of size, empty: none
   std::string words;                  // what was found, with numbers

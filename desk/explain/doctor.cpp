@@ -55,6 +55,8 @@ const char* name_of(DataFaultKind kind) {
       return "gravity";
     case DataFaultKind::kTorqueUnit:
       return "torque_unit";
+    case DataFaultKind::kJointOrder:
+      return "joint_order";
   }
   return "";
 }
@@ -67,6 +69,7 @@ bool spoils(const DataFault& fault, RestsOn what) {
     case DataFaultKind::kDegrees:
     case DataFaultKind::kTorqueSign:
     case DataFaultKind::kTorqueUnit:
+    case DataFaultKind::kJointOrder:
     case DataFaultKind::kTimeUnit:
     case DataFaultKind::kWrapped:
       return true;
@@ -295,10 +298,14 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
     mend_strange_velocities(mended, robot, faults);
     mend_velocities(mended, robot, faults);
     if (const auto pair = torque_pair(mended, robot)) {
-      if (!find_torque_unit(mended, *pair, faults) && !find_gravity(mended, robot, *pair, faults)) {
-        find_torque_sign(mended, *pair, faults);
+      // The first that all torques follow from: nothing else is then held against them.
+      if (!find_joint_order(mended, robot, *pair, faults)) {
+        if (!find_torque_unit(mended, *pair, faults) &&
+            !find_gravity(mended, robot, *pair, faults)) {
+          find_torque_sign(mended, *pair, faults);
+        }
+        find_clock_skew(mended, *pair, faults);
       }
-      find_clock_skew(mended, *pair, faults);
     }
   }
   faults.insert(faults.begin() + static_cast<std::ptrdiff_t>(before), local.begin(), local.end());

@@ -65,6 +65,9 @@ void find_saturation(const Log& log, const RobotDescription& robot, std::vector<
 // Torques that a drive at its limit holds, within its noise, all the time that the joint moves.
 void find_held_torques(const Log& log, const Log& even, const RobotDescription& robot,
                        std::vector<DataFault>& faults);
+// Torques, or all columns, that stand at another joint than they are of. Returns whether they do.
+bool find_joint_order(const Log& log, const RobotDescription& robot, const TorquePair& pair,
+                      std::vector<DataFault>& faults);
 // Gravity that points another way than the robot file says: the arm is mounted otherwise. All that
 // else is held against the model's torque would follow from it. Returns whether it does.
 bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,

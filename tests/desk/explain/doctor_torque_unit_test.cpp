@@ -8,7 +8,7 @@
 
 #include "explain/doctor.hpp"
 #include "robot/payload.hpp"
-#include "serial_arm.hpp"
+#include "strangers_arm.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -19,19 +19,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-// A description of somebody else's: its friction is a guess, and rotors it has none.
-struct Arm {
-  explicit Arm(std::size_t joints) : real(test::serial_arm(joints)), file(real) {
-    for (std::size_t i = 0; i < joints; ++i) {
-      real.effects.push_back(
-          test::effect_of(EffectKind::kRotorInertia, static_cast<int>(i), {0.2}, true));
-    }
-    for (RobotEffect& effect : file.effects) effect.parameters[0] *= 3;
-  }
-  RobotDescription real;
-  RobotDescription file;
-};
-
 std::optional<DataFault> torque_unit_in(const Log& log, const RobotDescription& robot) {
   for (DataFault& fault : examine(log, robot)) {
     if (fault.kind == DataFaultKind::kTorqueUnit) return fault;
@@ -41,7 +28,7 @@ std::optional<DataFault> torque_unit_in(const Log& log, const RobotDescription& 
 
 TEST(TorqueUnit, IsNamedWhereItFitsAllJoints) {
   for (const std::size_t joints : {2U, 6U}) {
-    const Arm arm(joints);
+    const test::StrangersArm arm(joints);
     const Log right = test::record(arm.real, {.duration_s = 20});
     EXPECT_FALSE(torque_unit_in(right, arm.file));
     for (const auto& [per_si, words] : {std::pair{1e3, "mN m"}, std::pair{-1e3, "mN m"},
@@ -59,7 +46,7 @@ TEST(TorqueUnit, IsNamedWhereItFitsAllJoints) {
 
 // Currents, and torques of motors: every joint by its own factor, and no unit has it.
 TEST(TorqueUnit, IsToldWithoutANameWhereEveryJointHasItsOwnFactor) {
-  const Arm arm(6);
+  const test::StrangersArm arm(6);
   Log log = test::record(arm.real, {.duration_s = 20});
   for (Index joint = 0; joint < log.tau.cols(); ++joint) {
     log.tau.col(joint) /= 40.0 + 20 * static_cast<double>(joint);
@@ -73,7 +60,7 @@ TEST(TorqueUnit, IsToldWithoutANameWhereEveryJointHasItsOwnFactor) {
 
 // The lines to write turn the recording into what it should have been.
 TEST(TorqueUnit, ComesWithTheChannelsThatMendIt) {
-  const Arm arm(2);
+  const test::StrangersArm arm(2);
   Log log = test::record(arm.real, {.duration_s = 20});
   log.tau *= -1e3;
   for (const char* joint : {"1", "2"}) {
@@ -91,7 +78,7 @@ TEST(TorqueUnit, ComesWithTheChannelsThatMendIt) {
 
 // Two units at once: neither fits without the other.
 TEST(TorqueUnit, IsNamedBesidePositionsInDegrees) {
-  const Arm arm(3);
+  const test::StrangersArm arm(3);
   Log log = test::record(arm.real, {.duration_s = 20});
   log.q *= 180 / std::numbers::pi;
   log.dq *= 180 / std::numbers::pi;
@@ -104,7 +91,7 @@ TEST(TorqueUnit, IsNamedBesidePositionsInDegrees) {
 
 // Where the torques are next to nothing a model that weighs nothing misses the least.
 TEST(TorqueUnit, OfTorquesThatAreTooSmallIsNoMatterOfDegrees) {
-  const Arm arm(3);
+  const test::StrangersArm arm(3);
   Log log = test::record(arm.real, {.duration_s = 20});
   log.tau /= 100;
   for (const DataFault& fault : examine(log, arm.file)) {
@@ -124,10 +111,10 @@ TEST(TorqueUnit, MayBeOverruledAsAllThatStopsAVerb) {
 // A tool that outweighs the wrist, and a counterweight that carries nearly all of one joint, are
 // no units: some joint beside them tells.
 TEST(TorqueUnit, IsNoToolAndNoCounterweight) {
-  Arm tool(6);
+  test::StrangersArm tool(6);
   const RobotDescription with_tool = carrying(tool.real, Payload{8, {0.2, 0, 0}});
   EXPECT_FALSE(torque_unit_in(test::record(with_tool, {.duration_s = 20}), tool.file));
-  Arm balanced(4);
+  test::StrangersArm balanced(4);
   Log log = test::record(balanced.real, {.duration_s = 20});
   log.tau.col(1) *= 0.05;
   EXPECT_FALSE(torque_unit_in(log, balanced.file));
