@@ -42,6 +42,13 @@ std::string words_of(const toml::node& node) {
   }
 }
 
+std::string mend_of_size(const std::string& unit) {
+  if (unit == "m" || unit == "m/s^2") {
+    return "write it in " + unit + ": a number in m" + unit + " divided by 1000";
+  }
+  return "look at its unit";
+}
+
 std::string count_words(std::size_t min_count, std::size_t max_count) {
   if (min_count == max_count) return std::to_string(min_count);
   return std::to_string(min_count) + " to " + std::to_string(max_count);
@@ -73,7 +80,7 @@ NumberRule not_negative(std::string unit, std::string mend) {
 }
 
 NumberRule physical(NumberRule rule) {
-  static const std::map<std::string, double> kLargest{{"kg", 1e7}, {"m", 1e5}, {"m/s^2", 1e6}};
+  static const std::map<std::string, double> kLargest{{"kg", 1e7}, {"m", 100}, {"m/s^2", 100}};
   constexpr double kLargestOfOthers = 1e12;
   const auto of_unit = kLargest.find(rule.unit);
   rule.largest = of_unit == kLargest.end() ? kLargestOfOthers : of_unit->second;
@@ -243,7 +250,7 @@ double TomlTable::checked(const toml::node& node, const std::string& path,
     refuse_at(node, path, words_of(node),
               "at most " + shortest(rule.largest) + (rule.unit.empty() ? "" : " " + rule.unit) +
                   ": no robot has more",
-              rule.mend.empty() ? "look at its unit" : rule.mend);
+              rule.mend.empty() ? mend_of_size(rule.unit) : rule.mend);
   }
   return value;
 }

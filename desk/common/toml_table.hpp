@@ -26,8 +26,8 @@ struct NumberRule {
 [[nodiscard]] NumberRule any_number(std::string unit);
 [[nodiscard]] NumberRule positive(std::string unit, std::string mend = {});
 [[nodiscard]] NumberRule not_negative(std::string unit, std::string mend = {});
-/// The same rule for what a robot is made of: far above what there is in that unit, and far below
-/// what makes torques of it that no number holds, it ends.
+/// The same rule for what a robot is made of: above what there is in that unit, in m and m/s^2 also
+/// below its millimetres, and far below what makes torques of it that no number holds, it ends.
 [[nodiscard]] NumberRule physical(NumberRule rule);
 
 /// The document of a file's text. Throws InputError, with the line, where it is not TOML.

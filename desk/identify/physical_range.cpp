@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "robot/friction_sign.hpp"
+
 namespace offnominal::desk {
 std::string PhysicalRange::words_at(double value) const {
   return value < min ? fmt::format("{:g} or more", min) : fmt::format("{:g} or less", max);
@@ -19,10 +21,7 @@ const char* PhysicalRange::usual_cause() const {
 PhysicalRange physical_range(EffectKind kind, std::size_t parameter) {
   const EffectTraits& traits = info_of(kind)->traits;
   const ParameterInfo& info = info_of(kind)->parameters[parameter];
-  // Against the motion at every instant.
-  const bool takes_energy_out = info.role == ParameterRole::kLinear && traits.is_friction &&
-                                traits.sign == CoefficientSign::kPositive;
-  PhysicalRange range{info.min, info.max, takes_energy_out};
+  PhysicalRange range{info.min, info.max, takes_energy_out(traits, info)};
   if (range.is_friction) range.min = std::max(range.min, 0.0);
   return range;
 }

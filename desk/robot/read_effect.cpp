@@ -4,11 +4,13 @@
 #include <cstddef>
 
 #include "common/nearest.hpp"
+#include "robot/friction_sign.hpp"
 
 namespace offnominal::desk {
 namespace {
 
 const std::vector<std::string> kCommonKeys{"kind", "joint", "motor", "fitted", "source"};
+constexpr double kLongestRail = 1e5;
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -31,11 +33,19 @@ void refuse_parameters_of_other_kinds(const TomlTable& table, const EffectInfo& 
   }
 }
 
-NumberRule rule_of(const ParameterInfo& parameter, JointType type) {
+NumberRule rule_of(const EffectInfo& info, const ParameterInfo& parameter, JointType type) {
   NumberRule rule = physical(any_number(unit_of(parameter.quantity, type)));
+  // A rail is longer than a link.
+  if (rule.unit == "m" && parameter.quantity != Quantity::kLength) rule.largest = kLongestRail;
   if (parameter.min > -effects::kAny) rule.min = parameter.min;
   if (parameter.max < effects::kAny) rule.max = parameter.max;
   rule.mend = std::string("give the ") + parameter.meaning;
+  if (takes_energy_out(info.traits, parameter)) {
+    rule.min = 0;
+    rule.mend +=
+        "; below zero it would feed energy in: where a fit gave that, the sign of the torque or of "
+        "the velocity is wrong (scale = -1 in [channels]), or another effect is missing";
+  }
   return rule;
 }
 
@@ -127,7 +137,7 @@ RobotEffect read_effect(const TomlTable& table, const std::vector<RobotJoint>& j
       effect.parameters[i] = read_other_joint(table, parameter, effect, joints.size());
       continue;
     }
-    const NumberRule rule = rule_of(parameter, type);
+    const NumberRule rule = rule_of(info, parameter, type);
     effect.parameters[i] = parameter.required
                                ? table.number(parameter.name, rule)
                                : table.number(parameter.name, rule, parameter.default_value);

@@ -11,6 +11,7 @@
 
 #include "common/file.hpp"
 #include "common/number.hpp"
+#include "robot/friction_sign.hpp"
 #include "robot/read_effect.hpp"
 #include "robot/read_joint.hpp"
 #include "robot/read_settings.hpp"
@@ -56,8 +57,8 @@ TEST(Troubleshooting, HasAParagraphForEveryStatusAndNoOther) {
   }
 }
 
-std::string parameter_row(const ParameterInfo& parameter) {
-  std::string allowed = "any";
+std::string parameter_row(const EffectTraits& traits, const ParameterInfo& parameter) {
+  std::string allowed = takes_energy_out(traits, parameter) ? ">= 0" : "any";
   if (parameter.min > -effects::kAny) allowed = ">= " + shortest(parameter.min);
   if (parameter.max < effects::kAny) allowed += " <= " + shortest(parameter.max);
   const std::string otherwise = parameter.required ? "required" : shortest(parameter.default_value);
@@ -74,7 +75,7 @@ TEST(RobotFileDocument, HasEveryEffectWithItsFormulaAndParameters) {
     ASSERT_NE(section, "\n") << "docs/robot-file.md needs a section ### " << info->name;
     EXPECT_THAT(section, HasSubstr("    " + std::string(info->formula) + "\n")) << info->name;
     for (const ParameterInfo& parameter : info->parameters) {
-      EXPECT_THAT(section, HasSubstr(parameter_row(parameter))) << info->name;
+      EXPECT_THAT(section, HasSubstr(parameter_row(info->traits, parameter))) << info->name;
     }
   }
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "robot/friction_sign.hpp"
 #include "robot/read_joint.hpp"
 #include "robot/robot.hpp"
 
@@ -48,8 +49,10 @@ class RandomRobot {
   int whole(int min, int max) { return std::uniform_int_distribution<int>(min, max)(generator_); }
   double uniform() { return std::uniform_real_distribution<double>(-1, 1)(generator_); }
 
-  // Powers of 2 up to which a robot file takes lengths, gravity and parameters, masses, and bounds.
-  static constexpr int kLargestLength = 15;
+  // Up to which a robot file takes lengths and gravity; powers of 2 up to which it takes
+  // parameters, masses, and bounds.
+  static constexpr double kLongest = 100;
+  static constexpr int kLargestParameter = 15;
   static constexpr int kLargestMass = 22;
   static constexpr int kLargestOfBound = 38;
 
@@ -67,7 +70,7 @@ class RandomRobot {
   double positive(int largest = 30) {
     return std::ldexp(1 + std::fabs(uniform()), whole(-28, largest));
   }
-  double length() { return number(kLargestLength); }
+  double length() { return std::clamp(number(6), -kLongest, kLongest); }
   std::string word() { return "w" + std::to_string(whole(0, 1 << 30)); }
   std::string any_text() {
     const std::string parts[]{"a",      " ", "\"", "\\", "\n",   "\t",
@@ -130,8 +133,10 @@ class RandomRobot {
         result.parameters[i] = other + (other > result.joint ? 1 : 0);
         continue;
       }
-      const double value = length();
-      result.parameters[i] = value >= parameter.min ? value : positive(kLargestLength);
+      const double value =
+          parameter.quantity == Quantity::kLength ? length() : number(kLargestParameter);
+      const double min = desk::takes_energy_out(info.traits, parameter) ? 0 : parameter.min;
+      result.parameters[i] = value >= min ? value : positive(kLargestParameter);
       // A small share of the range: those of one joint may have to add up to no more than its end.
       if (parameter.max < effects::kAny) {
         constexpr double kMost = kEffectsPerJoint * kMaxJoints;

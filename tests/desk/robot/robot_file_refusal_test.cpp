@@ -167,6 +167,16 @@ const std::vector<Mistake> kMistakes{
      "a finite number > 0, in kg", "give the link's mass"},
     {"NotANumberInList", "[0.0, 0.0, -9.81]", "[0.0, nan, -9.81]", "gravity_m_s2",
      "gravity_m_s2[2]", "nan", "a finite number, in m/s^2", "write a number"},
+    // Numbers of another unit, by their size.
+    {"GravityInMillimetres", "[0.0, 0.0, -9.81]", "[0.0, 0.0, -9810.0]", "gravity_m_s2",
+     "gravity_m_s2[3]", "-9810", "at most 100 m/s^2: no robot has more",
+     "write it in m/s^2: a number in mm/s^2 divided by 1000"},
+    {"CentreOfMassInMillimetres", "[0.1, 0.0, -0.05]", "[500.0, 0.0, -0.05]", "500.0",
+     "joint[1].link.centre_of_mass_m[1]", "500", "at most 100 m: no robot has more",
+     "write it in m: a number in mm divided by 1000"},
+    {"OriginInMillimetres", "name = \"slide\"", "name = \"slide\"\norigin_m = [0, 0, 500]",
+     "origin_m = [0, 0, 500]", "joint[2].origin_m[3]", "500", "at most 100 m: no robot has more",
+     "write it in m: a number in mm divided by 1000"},
     // Geometry.
     {"AxisTooShort", "[0.0, 0.0, 1.0]", "[0.0, 0.0, 0.5]", "axis", "joint[1].axis",
      "a vector of length 0.5", "a vector of length 1", "divide the vector by its length"},
@@ -206,7 +216,7 @@ const std::vector<Mistake> kMistakes{
     {"EffectBehindTheLastJoint", "joint = 1", "joint = 3", "joint = 3", "effect[1].joint", "3",
      "a whole number from 1 to 2", "write such a number"},
     {"EffectWithoutParameter", "coefficient = 12\n", "", "[[effect]]\nkind = \"viscous",
-     "effect[2].coefficient", "nothing: the key is missing", "a finite number, in N s/m",
+     "effect[2].coefficient", "nothing: the key is missing", "a finite number >= 0, in N s/m",
      "add `coefficient`"},
     {"ParameterOfAnotherEffect", "coefficient = 12", "coefficient = 12\nlevel = 3", "level = 3",
      "effect[2].level", "a parameter that viscous_friction does not have", "coefficient",
@@ -214,6 +224,13 @@ const std::vector<Mistake> kMistakes{
     {"ParameterOutOfRange", "stribeck_velocity = 0.2", "stribeck_velocity = 0.0",
      "stribeck_velocity", "effect[1].stribeck_velocity", "0", "a finite number >= 1e-09, in rad/s",
      "give the velocity at which"},
+    {"FrictionThatFeedsEnergyIn", "coefficient = 12", "coefficient = -1", "coefficient = -1",
+     "effect[2].coefficient", "-1", "a finite number >= 0, in N s/m",
+     "give the torque per velocity; below zero it would feed energy in: where a fit gave that, the "
+     "sign of the torque or of the velocity is wrong"},
+    {"DryFrictionThatFeedsEnergyIn", "kind = \"viscous_friction\"\njoint = 2\ncoefficient = 12",
+     "kind = \"coulomb_friction\"\njoint = 2\nlevel = -0.5", "level = -0.5", "effect[2].level",
+     "-0.5", "a finite number >= 0, in N", "give the torque against the motion"},
     {"CouplingToItself", "kind = \"viscous_friction\"\njoint = 2\ncoefficient = 12",
      "kind = \"joint_coupling\"\njoint = 2\ncoefficient = 12\nlevel = 0\nsource_joint = 2",
      "source_joint", "effect[2].source_joint", "2, the effect's own joint", "another joint",
@@ -258,6 +275,19 @@ INSTANTIATE_TEST_SUITE_P(RobotFile, Refusal, testing::ValuesIn(kMistakes),
 
 TEST(RobotFile, AcceptsTheSampleThatEveryMistakeStartsFrom) {
   EXPECT_EQ(refusal(test::kSampleRobot), "accepted");
+}
+
+// What is below zero only beside other friction, or either way, stays as it is.
+TEST(RobotFile, TakesNumbersBelowZeroThatFitsFind) {
+  const std::string viscous = "kind = \"viscous_friction\"\njoint = 2\ncoefficient = 12";
+  for (const std::string effect :
+       {"kind = \"viscous_friction\"\njoint = 2\ncoefficient = 0",
+        "kind = \"quadratic_friction\"\njoint = 2\ncoefficient = -0.1",
+        "kind = \"friction_asymmetry\"\njoint = 2\nlevel = -0.2\ncoefficient = -0.1",
+        "kind = \"stribeck_friction\"\njoint = 2\nlevel = -0.1\nstribeck_velocity = 0.1",
+        "kind = \"torque_offset\"\njoint = 2\nlevel = -0.4"}) {
+    EXPECT_EQ(refusal(test::changed(test::kSampleRobot, viscous, effect)), "accepted") << effect;
+  }
 }
 
 TEST(RobotFile, RefusesAKeyThatStandsTwice) {
