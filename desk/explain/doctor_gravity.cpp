@@ -119,16 +119,28 @@ bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePai
   const double after = (error - columns * change).norm() / joints;
   if (!(before > kBadFit) || !(after < kGoodFit) || !(after < kClearlyBetter * before))
     return false;
+  DataFault fault;
+  fault.kind = DataFaultKind::kGravity;
+  fault.certain = pair.measured.cols() >= kSureJoints;
+  if (fitted.norm() < kOff * kStandard && stated.norm() > kOff * kStandard) {
+    fault.words = fmt::format(
+        "the torques {} without gravity: friction apart, the model leaves {:.0f} % of them "
+        "unexplained, and {:.0f} % where nothing weighs anything",
+        fault.certain ? "are" : "may be", 100 * before, 100 * after);
+    fault.mend =
+        "record the whole torque where the controller carries gravity apart; where springs or "
+        "counterweights carry every joint, or the base lies so that none has any, write "
+        "gravity_m_s2 = [0, 0, 0] into the robot file";
+    faults.push_back(std::move(fault));
+    return true;
+  }
   if (std::abs(fitted.norm() - kStandard) > kOff * kStandard) return false;
   const bool has_one = stated.norm() > 0;
   const double turned_deg = has_one ? angle_deg(stated, fitted) : 0;
   if (has_one && (turned_deg < kTurnedDeg || turned_deg > kReversedDeg)) return false;
   const Vector3d mounted = as_mounted(fitted);
-  DataFault fault;
-  fault.kind = DataFaultKind::kGravity;
   fault.size = turned_deg;
   fault.unit = "deg";
-  fault.certain = pair.measured.cols() >= kSureJoints;
   fault.words = fmt::format(
       "gravity {} where the robot file has it: along [{:.2f}, {:.2f}, {:.2f}] m/s^2 of the base it "
       "leaves {:.0f} % of the torques unexplained, friction apart, instead of {:.0f} %",

@@ -617,6 +617,19 @@ TEST(DoctorOfGravity, SaysSoOfATiltAndOfAFileWithoutAny) {
   EXPECT_THAT(none[0].mend, HasSubstr("gravity_m_s2 = [0, 0, -9.81]"));
 }
 
+// A controller that carries gravity apart logs what is left.
+TEST(DoctorOfGravity, SaysThatTheTorquesHaveNone) {
+  const RobotDescription file = test::serial_arm(6);
+  RobotDescription weightless = file;
+  weightless.gravity_m_s2 = {0, 0, 0};
+  const std::vector<DataFault> faults = examine(test::record(weightless, {.duration_s = 12}), file);
+  ASSERT_EQ(faults.size(), 1U) << words_of(faults);
+  EXPECT_EQ(faults[0].kind, DataFaultKind::kGravity);
+  EXPECT_TRUE(faults[0].certain);
+  EXPECT_THAT(faults[0].words, HasSubstr("the torques are without gravity"));
+  EXPECT_THAT(faults[0].mend, HasSubstr("record the whole torque"));
+}
+
 TEST(DoctorOfGravity, SaysNothingOfLinksThatAreOffOrOfWhatIsCarried) {
   const RobotDescription file = test::serial_arm(6);
   RobotDescription robot = file;
