@@ -87,7 +87,7 @@ Role quantity_of(const Words& words) {
   // A drive's signal in volts, as the EMPS benchmark calls it.
   if (any_of(words, {"vir"})) return Role::kVoltage;
   if (any_of(words, {"t", "time", "timestamp", "stamp", "times", "zeit", "sec", "secs", "seconds",
-                     "nsec", "clock", "duration"})) {
+                     "nsec", "clock", "duration", "uhrzeit", "zeitstempel"})) {
     return Role::kTime;
   }
   return Role::kNone;

@@ -1,5 +1,6 @@
 #include "look/look.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
+#include <tuple>
 
 #include "common/error.hpp"
 #include "desk/support/temporary_folder.hpp"
@@ -113,6 +115,21 @@ TEST_F(LookTest, UnitsInNamesAndUnderThemAreTaken) {
                              {1e3, kDegrees, 30 / std::numbers::pi}))));
   expect_motion(read_as(look(
       recording(kNames + "\nms,deg,rpm,Nm,deg,rpm,Nm", {1e3, kDegrees, 30 / std::numbers::pi}))));
+}
+
+TEST_F(LookTest, ADateAndAClockInTwoColumnsAreTheTime) {
+  for (const auto& [header, day, time] : {std::tuple{"date,time", "2026-11-24", "time"},
+                                          std::tuple{"Datum,Uhrzeit", "24.11.2026", "Uhrzeit"}}) {
+    std::string text = std::string(header) + ",q1,dq1,tau1\n";
+    for (int i = 0; i < 200; ++i) {
+      text += fmt::format("{},12:00:0{}.{:02},{},{},1\n", day, i / 100, i % 100, 0.01 * i, 1.0);
+    }
+    const Look seen = look(text);
+    ASSERT_TRUE(seen.is_complete()) << header;
+    EXPECT_EQ(seen.channels.time.source, time);
+    ASSERT_TRUE(seen.t_s);
+    EXPECT_NEAR((*seen.t_s)[199] - (*seen.t_s)[0], 1.99, 1e-9);
+  }
 }
 
 TEST_F(LookTest, TorquesInOtherSpellingsOfTheirUnitsAreTaken) {
