@@ -151,6 +151,42 @@ TEST_F(LookTest, TorquesInOtherSpellingsOfTheirUnitsAreTaken) {
   }
 }
 
+TEST_F(LookTest, JointsMayHaveUnitsOfTheirOwn) {
+  struct Heads {
+    const char *first, *second;  // torques
+    const char *unit, *second_unit;
+  };
+  for (const Heads& heads :
+       {Heads{"tau1 [mN m]", "tau2 [N mm]", "mN m", "N mm"},
+        Heads{"tau1 [N m]", "tau2 [mN m]", "", "mN m"}, Heads{"tau1_Nm", "tau2_mNm", "", "mNm"},
+        Heads{"shoulder torque [N m]", "elbow torque [mN m]", "", "mN m"}}) {
+    SCOPED_TRACE(heads.first);
+    const bool numbered = std::string(heads.first).starts_with("tau1");
+    const Look seen = look(recording(
+        fmt::format(
+            fmt::runtime(numbered ? "t,q1,dq1,{},q2,dq2,{}"
+                                  : "t,shoulder pos,shoulder vel,{},elbow pos,elbow vel,{}"),
+            heads.first, heads.second),
+        {}));
+    ASSERT_TRUE(seen.is_complete());
+    EXPECT_EQ(seen.channels.torque.at(0).unit, heads.unit);
+    EXPECT_EQ(seen.channels.torque.at(1).unit, heads.second_unit);
+    const double factor = offnominal::desk::unit_factor(heads.second_unit);
+    EXPECT_NEAR(read_as(seen).tau(0, 1), 1.5 * factor, 1e-6);
+  }
+}
+
+// The same joints in two units are no joints of one family.
+TEST_F(LookTest, AQuantityInTwoUnitsStaysTwoFamilies) {
+  const Look seen = look(
+      "t,q1 [rad],q2 [rad],q1 [deg],q2 [deg],tau1,tau2\n"
+      "0,0,0,0,0,1,1\n0.1,0.01,0.02,0.573,1.146,1,1\n"
+      "0.2,0.02,0.04,1.146,2.292,1,1\n");
+  ASSERT_EQ(seen.channels.position.size(), 2);
+  EXPECT_EQ(seen.channels.position[0].unit, seen.channels.position[1].unit);
+  EXPECT_THAT(seen.notes, Contains(HasSubstr("these would do as well")));
+}
+
 TEST_F(LookTest, AUnitThatIsNotKnownIsSaid) {
   const std::string words = ": \"furlong\" is no unit that is known: taken as N m";
   const Look named = look(recording("t,q1,dq1,tau1 [furlong],q2,dq2,tau2 [furlong]", {}));
