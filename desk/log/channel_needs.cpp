@@ -48,6 +48,7 @@ NeedOf needs_of(const std::optional<ChannelMap>& channels, std::size_t file, std
   if (!channels) {
     return [](const std::string& name) {
       if (name == "t") return Need::kAscending;
+      if (name == "time") return Need::kTime;
       if (is_common_name(name)) return Need::kRequired;
       // A column without a name is nobody's extra: what has no header is refused before it is read.
       return is_number(name) ? Need::kNone : Need::kWelcome;

@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "log/csv_line.hpp"
+#include "log/split_time.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -179,11 +180,14 @@ class LayoutReader {
     }
   }
 
-  // As a sample has them, its state in words beside it.
+  // As a sample has them, its state in words beside it. A title may have a date and a time of day.
   static bool has_numbers(std::string_view line) {
     CsvLineSplitter splitter(separator_of(line));
     const Cells* const cells = splitter.split(line);
-    return cells != nullptr && std::count_if(cells->begin(), cells->end(), is_value) > 1;
+    const auto is_number = [](const std::string& cell) {
+      return is_value(cell) && !is_day(cell) && !is_clock(cell);
+    };
+    return cells != nullptr && std::count_if(cells->begin(), cells->end(), is_number) > 1;
   }
 
   // The next line that is neither blank nor a comment.

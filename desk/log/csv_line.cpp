@@ -5,6 +5,7 @@
 #include <new>
 
 #include "log/date_time.hpp"
+#include "log/split_time.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -119,7 +120,8 @@ std::optional<double> number_with_comma(std::string_view text) {
 }
 
 bool is_value(std::string_view text) {
-  return number_in(text) || number_with_comma(text) || date_time_ns(text);
+  return number_in(text) || number_with_comma(text) || date_time_ns(text) || is_day(text) ||
+         is_clock(text);
 }
 
 }  // namespace offnominal::desk

@@ -37,7 +37,8 @@ class CsvLineSplitter {
 [[nodiscard]] std::optional<double> number_in(std::string_view text);
 // The same with a decimal comma.
 [[nodiscard]] std::optional<double> number_with_comma(std::string_view text);
-// A number of either kind, or a date: what stands in a line of samples and in no header.
+// A number of either kind, a date, a time of day, or both: what stands in a line of samples and in
+// no header.
 [[nodiscard]] bool is_value(std::string_view text);
 
 }  // namespace offnominal::desk

@@ -16,6 +16,7 @@
 #include "log/csv_layout.hpp"
 #include "log/csv_line.hpp"
 #include "log/date_time.hpp"
+#include "log/split_time.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -42,7 +43,8 @@ bool has_marks_of_a_clock(std::string_view text) {
 }
 
 constexpr const char* kTimes =
-    "time in s, or a date with its time: 2026-11-24T02:14:30.123 or 24.11.2026 02:14:30.123";
+    "time in s, or a date with its time, in one column or two: 2026-11-24T02:14:30.123 or "
+    "24.11.2026 02:14:30.123";
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
@@ -89,6 +91,8 @@ class CsvReader {
     Need need = Need::kNone;
     Form form = Form::kNumber;
     std::int64_t origin = 0;  // of what is no plain number
+    // The cell with the date, where this one has the time of day, or the other way round.
+    std::optional<std::size_t> other_half = std::nullopt;
     // Grows by doubling; what is not written to is not in memory.
     Eigen::VectorXd values;
   };
@@ -125,6 +129,13 @@ class CsvReader {
       renamed = renamed || by_small;
       if (column.need != Need::kNone) ++kept_;
       columns_.push_back(std::move(column));
+    }
+    // Beside the time no other one is looked for.
+    const bool has_time = std::any_of(columns_.begin(), columns_.end(), [](const Column& column) {
+      return column.need == Need::kAscending;
+    });
+    for (Column& column : columns_) {
+      if (has_time && column.need == Need::kTime) column.need = Need::kWelcome;
     }
     if (renamed) remarks_.emplace_back("the file's names are in capitals: T is read as t");
   }
@@ -294,14 +305,18 @@ class CsvReader {
                (layout_.has_names ? "header has names" : "first line has"));
     }
     double time = last_time_;
-    for (std::size_t i = 0; i < columns_.size(); ++i) read_cell(columns_[i], (*cells)[i], time);
+    for (std::size_t i = 0; i < columns_.size(); ++i) read_cell(i, *cells, time);
     take_time(time);
     end_row();
   }
 
-  void read_cell(Column& column, std::string_view text, double& time) {
+  void read_cell(std::size_t index, const std::vector<std::string>& cells, double& time) {
+    Column& column = columns_[index];
     if (column.need == Need::kNone) return;
     const bool is_time = column.need == Need::kAscending || column.need == Need::kTime;
+    std::string text = cells[index];
+    if (is_time && rows_ == 0) column.other_half = other_half_of(cells, index);
+    if (column.other_half) text = whole_time(text, cells[*column.other_half]);
     if (is_time && rows_ == 0) begin_time(column, text);
     std::optional<double> value =
         is_time && column.form != Form::kNumber ? time_in(column, text) : number_in(text);
@@ -317,15 +332,14 @@ class CsvReader {
       column.values[static_cast<Index>(rows_)] = *value;
     } else if (!is_required(column.need)) {
       if (is_time && has_marks_of_a_clock(text)) {
-        remarks_.push_back(line_place() + ", column " + column.name + ": \"" +
-                           std::string(text.substr(0, 40)) + "\" is no " + kTimes);
+        remarks_.push_back(line_place() + ", column " + column.name + ": \"" + text.substr(0, 40) +
+                           "\" is no " + kTimes);
       }
       column.need = Need::kNone;
       column.values.resize(0);
       --kept_;
     } else {
-      const std::string found =
-          text.empty() ? "nothing" : "\"" + std::string(text.substr(0, 40)) + "\"";
+      const std::string found = text.empty() ? "nothing" : "\"" + text.substr(0, 40) + "\"";
       const std::string place = line_place() + ", column " + column.name;
       if (is_time && column.form == Form::kDate) {
         fail(place, found, "a date as in the lines before, 2026-11-24T02:14:30.123");

@@ -15,13 +15,14 @@ namespace offnominal::desk {
 // be asked for by its number in any case, and in small letters where a header has none. Lines
 // behind '#' or '%', blank lines before the samples and after them, quotes, spaces around values, a
 // byte order mark, either kind of line end, a separator behind the last cell, an unnamed first
-// column and row names are understood. A column of time may hold dates in ISO 8601 and numbers too
-// long for a double, such as nanoseconds since 1970: it counts from the first then (TimeOrigin).
-// Throws InputError with the line and the column for text in a number, a line with too few or too
-// many values, a blank line between samples, an unnamed or repeated column, a file that is empty or
-// holds a header only. A last line that has no end and too few values is left out, with a remark: a
-// writer was killed. Where no column is needed the samples are not read. `channels` say nothing
-// that it has to know.
+// column and row names are understood. A column of time may hold dates in ISO 8601, its date or its
+// time of day alone where another column has the other half, and numbers too long for a double,
+// such as nanoseconds since 1970: it counts from the first then (TimeOrigin). Throws InputError
+// with the line and the column for text in a number, a line with too few or too many values, a
+// blank line between samples, an unnamed or repeated column, a file that is empty or holds a header
+// only. A last line that has no end and too few values is left out, with a remark: a writer was
+// killed. Where no column is needed the samples are not read. `channels` say nothing that it has to
+// know.
 NamedColumns read_csv(RecordingFile& file, const ChannelMap* channels, const NeedOf& need_of);
 NamedColumns read_csv(const std::filesystem::path& path, const NeedOf& need_of);
 

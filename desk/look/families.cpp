@@ -81,6 +81,52 @@ bool contains_words(const std::vector<std::string>& words, const std::vector<std
          std::search(words.begin(), words.end(), part.begin(), part.end()) != words.end();
 }
 
+bool has_joint_of(const Family& family, const FamilyMember& member) {
+  return std::any_of(family.members.begin(), family.members.end(), [&](const FamilyMember& one) {
+    return one.number == member.number && one.joint == member.joint;
+  });
+}
+
+// Whether families are one whose joints have units of their own: no joint is in two of them.
+bool are_parts(const std::vector<const Family*>& families) {
+  for (std::size_t i = 0; i < families.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const auto& members = families[i]->members;
+      if (std::any_of(members.begin(), members.end(), [&](const FamilyMember& member) {
+            return has_joint_of(*families[k], member);
+          })) {
+        return false;
+      }
+    }
+  }
+  return families.size() > 1;
+}
+
+// Makes one family of those whose names differ in nothing but the unit, "tau1 [mN m]" and
+// "tau2 [N mm]". Where a joint stands in two of them, as in rad and in deg, they stay apart.
+void join_over_units(std::vector<Family>& families) {
+  std::vector<Family> joined;
+  std::vector<bool> is_taken(families.size());
+  for (std::size_t i = 0; i < families.size(); ++i) {
+    if (is_taken[i]) continue;
+    const std::string name = without_unit(families[i].name);
+    std::vector<const Family*> alike;
+    for (std::size_t k = i; k < families.size(); ++k) {
+      if (families[k].role != families[i].role || without_unit(families[k].name) != name) continue;
+      alike.push_back(&families[k]);
+    }
+    joined.push_back(families[i]);
+    if (!are_parts(alike)) continue;
+    joined.back().name = name;
+    for (std::size_t k = 1; k < alike.size(); ++k) {
+      is_taken[static_cast<std::size_t>(alike[k] - families.data())] = true;
+      joined.back().members.insert(joined.back().members.end(), alike[k]->members.begin(),
+                                   alike[k]->members.end());
+    }
+  }
+  families = std::move(joined);
+}
+
 }  // namespace
 
 std::vector<Family> numbered_families(const std::vector<NamedColumn>& columns) {
@@ -91,6 +137,7 @@ std::vector<Family> numbered_families(const std::vector<NamedColumn>& columns) {
     family_in(families, guess.family, guess)
         .members.push_back({guess.number, {}, column.name, column.is_constant});
   }
+  join_over_units(families);
   for (Family& family : families) {
     std::sort(family.members.begin(), family.members.end(),
               [](const FamilyMember& a, const FamilyMember& b) {
@@ -129,6 +176,7 @@ std::vector<Family> families_by_name(const std::vector<NamedColumn>& columns) {
       first = end;
     }
   }
+  join_over_units(families);
   return families;
 }
 

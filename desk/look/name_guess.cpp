@@ -87,7 +87,7 @@ Role quantity_of(const Words& words) {
   // A drive's signal in volts, as the EMPS benchmark calls it.
   if (any_of(words, {"vir"})) return Role::kVoltage;
   if (any_of(words, {"t", "time", "timestamp", "stamp", "times", "zeit", "sec", "secs", "seconds",
-                     "nsec", "clock", "duration"})) {
+                     "nsec", "clock", "duration", "uhrzeit", "zeitstempel"})) {
     return Role::kTime;
   }
   return Role::kNone;
@@ -121,15 +121,33 @@ std::string unit_in_brackets(const std::string& name) {
   return find_unit(unit) == nullptr ? std::string() : unit;
 }
 
-// A unit at the name's end: behind an underscore, or in brackets.
-std::string unit_of(const std::string& name) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 20> kEndings{{
+struct UnitEnding {
+  std::string_view text;
+  std::string_view unit;
+};
+
+// That `name`, in small letters, has; null: none.
+const UnitEnding* unit_ending_of(const std::string& name) {
+  static constexpr std::array<UnitEnding, 20> kEndings{{
       {"_deg_per_s", "deg/s"}, {"_rad_per_s", "rad/s"}, {"_deg_s", "deg/s"}, {"_rad_s", "rad/s"},
       {"_m_s", "m/s"},         {"_mm_s", "mm/s"},       {"_deg", "deg"},     {"_rad", "rad"},
       {"_rpm", "rpm"},         {"_nm", "Nm"},           {"_mnm", "mNm"},     {"_nmm", "Nmm"},
       {"_ncm", "Ncm"},         {"_ms", "ms"},           {"_us", "us"},       {"_ns", "ns"},
       {"_mm", "mm"},           {"_ma", "mA"},           {"_a", "A"},         {"_s", "s"},
   }};
+  const auto* const found =
+      std::find_if(kEndings.begin(), kEndings.end(),
+                   [&](const UnitEnding& ending) { return name.ends_with(ending.text); });
+  return found == kEndings.end() ? nullptr : found;
+}
+
+std::string in_small_letters(std::string text) {
+  for (char& c : text) c = small(c);
+  return text;
+}
+
+// A unit at the name's end: behind an underscore, or in brackets.
+std::string unit_of(const std::string& name) {
   std::string text = name;
   // "q_deg(2,:)", "q_deg_2", "q_deg2"
   if (const auto bracket = text.find_last_of('(');
@@ -139,11 +157,8 @@ std::string unit_of(const std::string& name) {
   }
   if (text.size() > 2 && (text.back() == ']' || text.back() == ')')) return unit_in_brackets(text);
   while (!text.empty() && (is_digit(text.back()) || text.back() == '_')) text.pop_back();
-  for (char& c : text) c = small(c);
-  for (const auto& [ending, unit] : kEndings) {
-    if (text.ends_with(ending)) return std::string(unit);
-  }
-  return {};
+  const UnitEnding* const ending = unit_ending_of(in_small_letters(text));
+  return ending == nullptr ? std::string() : std::string(ending->unit);
 }
 
 }  // namespace
@@ -185,6 +200,18 @@ std::vector<NameWord> words_in(const std::string& name) {
     before = c;
   }
   return words;
+}
+
+std::string without_unit(const std::string& name) {
+  if (!unit_in_brackets(name).empty()) {
+    const std::size_t end = name.find_last_not_of(' ', name.find_last_of("[(") - 1);
+    return name.substr(0, end + 1);
+  }
+  const std::size_t last = name.find_last_not_of("0123456789_#");
+  const std::size_t end = last == std::string::npos ? 0 : last + 1;
+  const UnitEnding* const ending = unit_ending_of(in_small_letters(name.substr(0, end)));
+  if (ending == nullptr) return name;
+  return name.substr(0, end - ending->text.size()) + name.substr(end);
 }
 
 bool says_quantity(const std::string& word) {

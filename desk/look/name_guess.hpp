@@ -25,6 +25,10 @@ struct NameWord {
 };
 [[nodiscard]] std::vector<NameWord> words_in(const std::string& name);
 
+// The name but for a unit that is known, in brackets or behind an underscore: "tau# [mN m]" and
+// "tau#_Nmm" are "tau#".
+[[nodiscard]] std::string without_unit(const std::string& name);
+
 // Of a position, a velocity, a torque or a current.
 [[nodiscard]] bool says_quantity(const std::string& word);
 

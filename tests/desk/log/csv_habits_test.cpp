@@ -153,6 +153,23 @@ std::vector<Habit> habits() {
     cells.point = ',';
     cells.time = [](int i) { return "24.11.2026 23:59:59," + std::to_string(100 + 10 * i); };
   }));
+  // Over midnight: the clock alone would not ascend.
+  const auto split = [](const char* mark, const char* first, const char* second, char point) {
+    return [=](int i) {
+      const bool is_first = i < kSamples / 2;
+      const int ms = 1000 + 10 * (i - kSamples / 2);  // of 23:59:59, or 1 s more
+      return (is_first ? first : second) + std::string(mark) +
+             (is_first ? "23:59:59" : "00:00:00") + point +
+             std::to_string(ms).substr(is_first ? 0 : 1);
+    };
+  };
+  const std::string date_and_clock =
+      lines(with([&](Cells& cells) { cells.time = split(",", "2026-11-24", "2026-11-25", '.'); }));
+  const std::string german_date_and_clock = lines(with([&](Cells& cells) {
+    cells.separator = ";";
+    cells.point = ',';
+    cells.time = split(";", "24.11.2026", "25.11.2026", ',');
+  }));
   const std::string nanoseconds = lines(with([](Cells& cells) {
     cells.time = [](int i) { return std::to_string(1763942400123456789 + 10'000'000LL * i); };
   }));
@@ -251,6 +268,21 @@ std::vector<Habit> habits() {
        "t;q1;dq1;tau1\n" + german_dates,
        {},
        "t = 0 s is 24.11.2026 23:59:59,100"},
+      {"a title with a date and a time of day in cells of their own",
+       "Date,2026-11-24,Time,12:00:01\n" + kHeader + plain,
+       {},
+       "line 1 stands before the header: left out"},
+      {"a date and a clock in two columns",
+       "date,time,q1,dq1,tau1\n" + date_and_clock,
+       {},
+       "t = 0 s is 2026-11-24 23:59:59.900"},
+      {"a date with dots and a clock in two columns, asked for by the date",
+       "Datum;Uhrzeit;q1;dq1;tau1\n" + german_date_and_clock,
+       "time = 'Datum'\nposition = 'q1'\nvelocity = 'dq1'\ntorque = 'tau1'",
+       "t = 0 s is 24.11.2026 23:59:59,900"},
+      {"a date and a clock without a header", date_and_clock,
+       "time = '2'\nposition = '3'\nvelocity = '4'\ntorque = '5'",
+       "t = 0 s is 2026-11-24 23:59:59.900"},
       {"nanoseconds since 1970", kHeader + nanoseconds,
        "time = {source = 't', unit = 'ns'}\nposition = 'q1'\nvelocity = 'dq1'\ntorque = 'tau1'",
        "of the file's own clock"},

@@ -1,5 +1,6 @@
 #include "look/look.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
+#include <tuple>
 
 #include "common/error.hpp"
 #include "desk/support/temporary_folder.hpp"
@@ -115,6 +117,21 @@ TEST_F(LookTest, UnitsInNamesAndUnderThemAreTaken) {
       recording(kNames + "\nms,deg,rpm,Nm,deg,rpm,Nm", {1e3, kDegrees, 30 / std::numbers::pi}))));
 }
 
+TEST_F(LookTest, ADateAndAClockInTwoColumnsAreTheTime) {
+  for (const auto& [header, day, time] : {std::tuple{"date,time", "2026-11-24", "time"},
+                                          std::tuple{"Datum,Uhrzeit", "24.11.2026", "Uhrzeit"}}) {
+    std::string text = std::string(header) + ",q1,dq1,tau1\n";
+    for (int i = 0; i < 200; ++i) {
+      text += fmt::format("{},12:00:0{}.{:02},{},{},1\n", day, i / 100, i % 100, 0.01 * i, 1.0);
+    }
+    const Look seen = look(text);
+    ASSERT_TRUE(seen.is_complete()) << header;
+    EXPECT_EQ(seen.channels.time.source, time);
+    ASSERT_TRUE(seen.t_s);
+    EXPECT_NEAR((*seen.t_s)[199] - (*seen.t_s)[0], 1.99, 1e-9);
+  }
+}
+
 TEST_F(LookTest, TorquesInOtherSpellingsOfTheirUnitsAreTaken) {
   const auto header = [](const std::string& unit) {
     std::string names = "t,pos_1,vel_1,torque_1*,pos_2,vel_2,torque_2*";
@@ -132,6 +149,42 @@ TEST_F(LookTest, TorquesInOtherSpellingsOfTheirUnitsAreTaken) {
       EXPECT_NEAR(read_as(seen).tau(0, 0), 3 * offnominal::desk::unit_factor(unit), 1e-6);
     }
   }
+}
+
+TEST_F(LookTest, JointsMayHaveUnitsOfTheirOwn) {
+  struct Heads {
+    const char *first, *second;  // torques
+    const char *unit, *second_unit;
+  };
+  for (const Heads& heads :
+       {Heads{"tau1 [mN m]", "tau2 [N mm]", "mN m", "N mm"},
+        Heads{"tau1 [N m]", "tau2 [mN m]", "", "mN m"}, Heads{"tau1_Nm", "tau2_mNm", "", "mNm"},
+        Heads{"shoulder torque [N m]", "elbow torque [mN m]", "", "mN m"}}) {
+    SCOPED_TRACE(heads.first);
+    const bool numbered = std::string(heads.first).starts_with("tau1");
+    const Look seen = look(recording(
+        fmt::format(
+            fmt::runtime(numbered ? "t,q1,dq1,{},q2,dq2,{}"
+                                  : "t,shoulder pos,shoulder vel,{},elbow pos,elbow vel,{}"),
+            heads.first, heads.second),
+        {}));
+    ASSERT_TRUE(seen.is_complete());
+    EXPECT_EQ(seen.channels.torque.at(0).unit, heads.unit);
+    EXPECT_EQ(seen.channels.torque.at(1).unit, heads.second_unit);
+    const double factor = offnominal::desk::unit_factor(heads.second_unit);
+    EXPECT_NEAR(read_as(seen).tau(0, 1), 1.5 * factor, 1e-6);
+  }
+}
+
+// The same joints in two units are no joints of one family.
+TEST_F(LookTest, AQuantityInTwoUnitsStaysTwoFamilies) {
+  const Look seen = look(
+      "t,q1 [rad],q2 [rad],q1 [deg],q2 [deg],tau1,tau2\n"
+      "0,0,0,0,0,1,1\n0.1,0.01,0.02,0.573,1.146,1,1\n"
+      "0.2,0.02,0.04,1.146,2.292,1,1\n");
+  ASSERT_EQ(seen.channels.position.size(), 2);
+  EXPECT_EQ(seen.channels.position[0].unit, seen.channels.position[1].unit);
+  EXPECT_THAT(seen.notes, Contains(HasSubstr("these would do as well")));
 }
 
 TEST_F(LookTest, AUnitThatIsNotKnownIsSaid) {
