@@ -314,9 +314,10 @@ class CsvReader {
     Column& column = columns_[index];
     if (column.need == Need::kNone) return;
     const bool is_time = column.need == Need::kAscending || column.need == Need::kTime;
-    std::string text = cells[index];
+    std::string_view text = cells[index];
     if (is_time && rows_ == 0) column.other_half = other_half_of(cells, index);
-    if (column.other_half) text = whole_time(text, cells[*column.other_half]);
+    std::string of_both;
+    if (column.other_half) text = of_both = whole_time(text, cells[*column.other_half]);
     if (is_time && rows_ == 0) begin_time(column, text);
     std::optional<double> value =
         is_time && column.form != Form::kNumber ? time_in(column, text) : number_in(text);
@@ -332,14 +333,15 @@ class CsvReader {
       column.values[static_cast<Index>(rows_)] = *value;
     } else if (!is_required(column.need)) {
       if (is_time && has_marks_of_a_clock(text)) {
-        remarks_.push_back(line_place() + ", column " + column.name + ": \"" + text.substr(0, 40) +
-                           "\" is no " + kTimes);
+        remarks_.push_back(line_place() + ", column " + column.name + ": \"" +
+                           std::string(text.substr(0, 40)) + "\" is no " + kTimes);
       }
       column.need = Need::kNone;
       column.values.resize(0);
       --kept_;
     } else {
-      const std::string found = text.empty() ? "nothing" : "\"" + text.substr(0, 40) + "\"";
+      const std::string found =
+          text.empty() ? "nothing" : "\"" + std::string(text.substr(0, 40)) + "\"";
       const std::string place = line_place() + ", column " + column.name;
       if (is_time && column.form == Form::kDate) {
         fail(place, found, "a date as in the lines before, 2026-11-24T02:14:30.123");
