@@ -1,5 +1,8 @@
 #include "command/recordings.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -7,6 +10,7 @@
 #include "common/input_name.hpp"
 #include "common/json_text.hpp"
 #include "common/nearest.hpp"
+#include "common/number.hpp"
 #include "common/output_file.hpp"
 #include "robot/payload.hpp"
 #include "robot/robot_file.hpp"
@@ -57,6 +61,25 @@ void check_each_differs(const std::string& verb, const std::string& option,
   }
 }
 
+// What a payload lacks whose text is none.
+std::string mend_of_payload(const std::string& text) {
+  std::vector<std::string> lacks;
+  const std::size_t at = text.rfind('@');
+  const std::size_t equals = text.substr(0, at).rfind('=');
+  if (equals == std::string::npos || equals == 0) {
+    lacks.emplace_back("write the recording and = before the mass");
+  }
+  if (at == std::string::npos) {
+    lacks.emplace_back("write @X,Y,Z behind the mass, its place in the last link's frame");
+  } else if (std::count(text.begin() + static_cast<std::ptrdiff_t>(at), text.end(), ',') != 2) {
+    lacks.emplace_back("write three numbers behind @, its place in the last link's frame");
+  }
+  if (!lacks.empty()) return fmt::format("{}", fmt::join(lacks, ", and "));
+  return fmt::format("write a mass of 0 to {} kg, and numbers from -{} to {} m behind @",
+                     shortest(kMostPayloadKg), shortest(kFurthestPayloadM),
+                     shortest(kFurthestPayloadM));
+}
+
 }  // namespace
 
 void check_all_differ(const std::string& verb, const std::string& option,
@@ -77,7 +100,8 @@ std::vector<RecordingPayload> payloads_of(const std::string& verb,
     if (!payload) {
       refuse_option(verb, "--payload", "\"" + text + "\"",
                     "LOG=KG@X,Y,Z with a mass of 0 kg or more and a place in m, such as "
-                    "run_2.csv=0.8@0,0,0.1");
+                    "run_2.csv=0.8@0,0,0.1",
+                    mend_of_payload(text));
     }
     payloads.push_back(*payload);
   }

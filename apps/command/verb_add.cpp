@@ -83,7 +83,8 @@ AddRequest request_of(const AddOptions& options) {
   if (place < 1)
     refuse_option("add", request.of_motor ? "--motor" : "--joint",
                   place == 0 ? "none" : std::to_string(place),
-                  "the joint that the effects act on, from 1");
+                  "the joint that the effects act on, from 1",
+                  "write --joint N, or --motor N for the shaft of a motor");
   request.joint = static_cast<std::size_t>(place - 1);
   for (const std::string& setting : options.set) read_setting(setting, request);
   if (options.refit_inertia_percent) {

@@ -16,6 +16,7 @@
 #include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "common/toml_table.hpp"
+#include "exchange/angle_text.hpp"
 #include "log/csv_log.hpp"
 #include "robot/robot.hpp"
 
@@ -157,7 +158,25 @@ std::string mend_name(const std::string& name, const std::vector<std::string>& k
   return meant.empty() ? "remove it" : fmt::format("name it {}", meant);
 }
 
-DhRow row_of(const TomlTable& table, std::size_t index, UnitDoubts& doubts) {
+// "pi/2", which is an angle in rad and nothing else; none where `text` is no such thing.
+template <typename Refuse>
+std::optional<double> angle_in(const std::string& key, const std::string& text,
+                               const Refuse& refuse_it) {
+  const std::optional<double> angle = share_of_pi(text);
+  if (!angle || key.ends_with("_rad")) return angle;
+  const bool is_in_deg = key.ends_with("_deg");
+  refuse_it("\"" + text + "\", an angle in rad",
+            is_in_deg ? "a number of degrees" : "a number, in " + key.substr(key.rfind('_') + 1),
+            is_in_deg ? fmt::format("write {}, or name it {}_rad",
+                                    shortest(std::round(*angle / kDegree * 1e9) / 1e9),
+                                    key.substr(0, key.rfind('_')))
+                      : "write the length");
+  return angle;
+}
+
+// `raw`: the same table.
+DhRow row_of(const TomlTable& table, const toml::table& raw, std::size_t index,
+             UnitDoubts& doubts) {
   DhRow row;
   row.name = table.has("name") ? table.text("name") : fmt::format("joint{}", index + 1);
   const bool slides = table.has("type") && table.choice("type", {"revolute", "prismatic"}) == 1;
@@ -168,9 +187,14 @@ DhRow row_of(const TomlTable& table, std::size_t index, UnitDoubts& doubts) {
         [&](const auto&... words) { table.refuse("", words...); });
     NumberRule rule = any_number(key.substr(key.rfind('_') + 1));
     rule.largest = kLargest;
+    const auto refuse_it = [&](const auto&... words) { table.refuse(key, words...); };
+    if (const auto text = raw[key].value<std::string>()) {
+      const auto angle = angle_in(key, *text, refuse_it);
+      if (angle) return in_si(parameter, *angle, key, refuse_it);
+    }
     const double value = table.number(key, rule);
     doubts.look_at(parameter, value, key);
-    return in_si(parameter, value, key, [&](const auto&... words) { table.refuse(key, words...); });
+    return in_si(parameter, value, key, refuse_it);
   };
   row.a_m = number(kA);
   row.d_m = number(kD);
@@ -192,7 +216,9 @@ DhTable read_toml(const std::filesystem::path& path, std::optional<DhConvention>
   UnitDoubts doubts;
   std::set<std::string> names;
   for (const TomlTable& joint : root.tables("joint", keys)) {
-    table.rows.push_back(row_of(joint, table.rows.size(), doubts));
+    const std::size_t index = table.rows.size();
+    const toml::table& raw = *document["joint"][index].as_table();
+    table.rows.push_back(row_of(joint, raw, index, doubts));
     if (names.insert(table.rows.back().name).second) continue;
     joint.refuse("name", fmt::format("the name \"{}\" a second time", table.rows.back().name),
                  "names that differ", "give this joint another name");
@@ -225,11 +251,19 @@ DhTable read_csv_table(const std::filesystem::path& path, std::optional<DhConven
   std::vector<std::string> known = kParameters;
   known.insert(known.end(), {"prismatic"});
   if (!is_stream(path.string())) require_text(path);
-  const NamedColumns read = read_csv(path, [&](const std::string& name) {
-    const bool is_known = std::find(known.begin(), known.end(), name) != known.end();
-    if (name == "joint") return Need::kWelcome;
-    return is_known ? Need::kRequired : Need::kNone;
-  });
+  const auto is_known = [&](const std::string& name) {
+    return std::find(known.begin(), known.end(), name) != known.end();
+  };
+  const NamedColumns read = read_csv(
+      path,
+      [&](const std::string& name) {
+        if (name == "joint") return Need::kWelcome;
+        return is_known(name) ? Need::kRequired : Need::kNone;
+      },
+      [&](const std::string& place, const std::string& column, const std::string& text) {
+        const auto refuse_it = [&](const auto&... words) { refuse(path, place, words...); };
+        return is_known(column) ? angle_in(column, text, refuse_it) : std::nullopt;
+      });
   for (const std::string& name : read.names) {
     if (read.columns.contains(name) || name == "joint") continue;
     refuse(path, "column " + name, "a column that is none of a DH table", list_of(known),

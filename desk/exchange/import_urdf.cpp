@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <numbers>
 #include <offnominal/model/effects/friction.hpp>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "common/error.hpp"
@@ -113,26 +115,44 @@ class Importer {
                                chain_.base->name, chain_.tip->name);
   }
 
-  // What read_urdf_elements() puts in the place of bytes that are no UTF-8.
-  void say_what_names_lost() {
-    const auto has_lost = [](const std::string& name) {
-      return name.find("\xEF\xBF\xBD") != std::string::npos;
-    };
-    std::vector<std::pair<int, std::string>> lost;
+  // Of links and joints that `is_so` is true of, the first with its line and how many more there
+  // are, in words; none where there are none.
+  template <typename IsSo>
+  std::optional<std::pair<int, std::string>> names_that(const IsSo& is_so) const {
+    std::vector<std::pair<int, std::string>> all;
     for (const auto& [name, line] : document_.elements.link_lines) {
-      if (has_lost(name)) lost.emplace_back(line, name);
+      if (is_so(name)) all.emplace_back(line, name);
     }
     for (const auto& joint : document_.elements.joints) {
-      if (has_lost(joint.name)) lost.emplace_back(joint.line, joint.name);
+      if (is_so(joint.name)) all.emplace_back(joint.line, joint.name);
     }
-    if (lost.empty()) return;
-    const auto& [line, name] = *std::min_element(lost.begin(), lost.end());
-    const std::string more = lost.size() > 1 ? fmt::format(" and {} more", lost.size() - 1) : "";
-    note(Kind::kAssumed, line,
+    if (all.empty()) return std::nullopt;
+    const auto& [line, name] = *std::min_element(all.begin(), all.end());
+    const std::string more = all.size() > 1 ? fmt::format(" and {} more", all.size() - 1) : "";
+    return std::pair(line, fmt::format("`{}`{}", name, more));
+  }
+
+  // What read_urdf_elements() made of bytes that are no UTF-8.
+  void say_what_names_lost() {
+    // What it puts in the place of those that it cannot read.
+    const auto lost = names_that(
+        [](const std::string& name) { return name.find("\xEF\xBF\xBD") != std::string::npos; });
+    if (lost) {
+      note(Kind::kAssumed, lost->first,
+           fmt::format("U+FFFD for bytes that are no UTF-8 in the name {}: saved in UTF-8 the file "
+                       "keeps them",
+                       lost->second));
+    }
+    if (document_.elements.assumed_encoding_line == 0) return;
+    const auto read = names_that([](const std::string& name) {
+      return std::any_of(name.begin(), name.end(), [](unsigned char c) { return c > 0x7f; });
+    });
+    if (!read) return;
+    note(Kind::kAssumed, read->first,
          fmt::format(
-             "U+FFFD for bytes that are no UTF-8 in the name `{}`{}: saved in UTF-8 the file "
-             "keeps them",
-             name, more));
+             "Windows-1252 (Latin-1), since the file is no UTF-8 and declares nothing else, "
+             "in the name {}: declare its encoding, or save it in UTF-8, where that is wrong",
+             read->second));
   }
 
   void say_what_was_chosen(const ChainRequest& request) {

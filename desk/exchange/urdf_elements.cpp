@@ -19,6 +19,7 @@
 #include "common/number.hpp"
 #include "common/shell_word.hpp"
 #include "common/toml_table.hpp"
+#include "exchange/xml_encoding.hpp"
 
 namespace offnominal::desk::exchange {
 namespace {
@@ -167,6 +168,9 @@ class Reader {
       refuse(static_cast<int>(line), "", is_wide ? "UTF-16" : "a byte of zero", kAllowed,
              is_wide ? "save it in UTF-8" : "check the name of the file");
     }
+    const XmlText in_utf8 = xml_in_utf8(text, file_);
+    elements_.assumed_encoding_line = in_utf8.assumed_line;
+    text = in_utf8.text;
     if (document_.Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS) return;
     std::string error = document_.ErrorName();
     if (error.starts_with("XML_ERROR_")) error = error.substr(10);

@@ -29,6 +29,8 @@ struct LeftOut {
 
 struct UrdfElements {
   std::string robot_name;  // empty: the file has none
+  // The first line with bytes that were taken for Windows-1252 (xml_encoding.hpp); 0: none.
+  int assumed_encoding_line = 0;
   std::map<std::string, int> link_lines;
   std::vector<JointElement> joints;
   std::map<std::string, LeftOut> left_out;  // "<visual>", "`D` of <dynamics>"

@@ -14,6 +14,15 @@
 namespace offnominal::desk {
 namespace {
 
+// "1 is shoulder, 2 is elbow"
+std::string joints_in_words(const RobotDescription& robot) {
+  std::vector<std::string> words;
+  for (const RobotJoint& joint : robot.joints) {
+    words.push_back(fmt::format("{} is {}", words.size() + 1, joint.name));
+  }
+  return "count from the base outwards: " + list_of(words);
+}
+
 class SetUp {
  public:
   SetUp(const RobotDescription& robot, const AddRequest& request)
@@ -39,7 +48,8 @@ class SetUp {
                         std::to_string(request_.joint + 1),
                         fmt::format("1 to {}, the {} of robot {}", robot.joints.size(),
                                     request_.of_motor ? "motors" : "joints", robot.name),
-                        ""});
+                        request_.of_motor ? "count the motors as the lists of [channels] have them"
+                                          : joints_in_words(robot)});
     }
     if (request_.of_motor) check_motor();
     check_sources();

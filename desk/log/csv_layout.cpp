@@ -284,7 +284,10 @@ class LayoutReader {
              "put the columns' names in the first line");
       }
       if (!name.empty() && !seen.insert(name).second) {
-        fail(place(), "column \"" + name + "\" twice", "one of each");
+        const auto first = std::find(cells.begin(), cells.end(), name) - cells.begin();
+        fail(place(), "column \"" + name + "\" twice", "names that differ",
+             "rename column " + std::to_string(first + 1) + " or column " + std::to_string(i + 1) +
+                 " in the header, or leave one of them out");
       }
       layout_.names.push_back(name);
     }

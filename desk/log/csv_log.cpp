@@ -69,7 +69,8 @@ std::optional<std::int64_t> whole_in(std::string_view text) {
 
 class CsvReader {
  public:
-  CsvReader(RecordingFile& file, const NeedOf& need_of) : file_(file), need_of_(need_of) {}
+  CsvReader(RecordingFile& file, const NeedOf& need_of, const MeaningOf& meaning_of = {})
+      : file_(file), need_of_(need_of), meaning_of_(meaning_of) {}
 
   NamedColumns read() {
     layout_ = read_csv_layout(file_);
@@ -325,6 +326,9 @@ class CsvReader {
       value = number_with_comma(text);
       decimal_comma_ = decimal_comma_ || value.has_value();
     }
+    if (!value && meaning_of_) {
+      value = meaning_of_(line_place() + ", column " + column.name, column.name, std::string(text));
+    }
     if (!value && column.need != Need::kWelcome && column.form == Form::kNumber && is_none(text)) {
       value = std::numeric_limits<double>::quiet_NaN();
     }
@@ -422,6 +426,7 @@ class CsvReader {
 
   RecordingFile& file_;
   const NeedOf& need_of_;
+  MeaningOf meaning_of_;
   CsvLayout layout_;
   std::size_t ahead_ = 0;  // lines of the layout that were taken
   std::size_t line_number_ = 0;
@@ -452,6 +457,12 @@ NamedColumns read_csv(RecordingFile& file, const ChannelMap* /*channels*/, const
 NamedColumns read_csv(const std::filesystem::path& path, const NeedOf& need_of) {
   RecordingFile file(path);
   return read_csv(file, nullptr, need_of);
+}
+
+NamedColumns read_csv(const std::filesystem::path& path, const NeedOf& need_of,
+                      const MeaningOf& meaning_of) {
+  RecordingFile file(path);
+  return CsvReader(file, need_of, meaning_of).read();
 }
 
 }  // namespace offnominal::desk

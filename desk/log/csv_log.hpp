@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
 
 #include "log/named_columns.hpp"
 #include "log/recording_file.hpp"
@@ -25,5 +28,12 @@ namespace offnominal::desk {
 // know.
 NamedColumns read_csv(RecordingFile& file, const ChannelMap* channels, const NeedOf& need_of);
 NamedColumns read_csv(const std::filesystem::path& path, const NeedOf& need_of);
+
+// What a text in a cell of `column` that is no number means all the same; none: nothing. May throw
+// InputError; `place` is where it stands.
+using MeaningOf = std::function<std::optional<double>(
+    const std::string& place, const std::string& column, const std::string& text)>;
+NamedColumns read_csv(const std::filesystem::path& path, const NeedOf& need_of,
+                      const MeaningOf& meaning_of);
 
 }  // namespace offnominal::desk

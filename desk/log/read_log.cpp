@@ -197,7 +197,10 @@ class Assembler {
       fail("columns", words_of_joints(prefix, joints),
            fmt::format("one {} for each of the robot's {} joint{}", prefix, joints_,
                        joints_ == 1 ? "" : "s"),
-           "add what is missing, or take the robot file of the robot that was recorded");
+           *joints.rbegin() > joints_
+               ? "take the robot file of the robot that was recorded, or say with [channels] which "
+                 "columns are those of its joints"
+               : "add what is missing, or take the robot file of the robot that was recorded");
     }
   }
 

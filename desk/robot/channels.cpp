@@ -131,7 +131,12 @@ class Parser {
     }
     const toml::array& array = *node->as_array();
     if (array.size() != static_cast<std::size_t>(joints_)) {
-      fail(*node, place, std::to_string(array.size()) + " entries", allowed);
+      fail(
+          *node, place, std::to_string(array.size()) + " entries", allowed,
+          array.size() > static_cast<std::size_t>(joints_)
+              ? "leave out those that are of none of the robot's joints, or take the robot file of "
+                "the robot that was recorded"
+              : "write one for each joint, from the base outwards");
     }
     std::vector<Entry> entries;
     for (std::size_t i = 0; i < array.size(); ++i) {

@@ -305,6 +305,11 @@ TEST_F(RecordingsOfVerbs, GivenAPayloadThenItIsOfThatRecordingAndSaid) {
   expect_refusal(run({"compare", path("a.csv"), "--payload", "b.csv=0.7@0,0,0"}),
                  "--payload: found a payload of b.csv; allowed: one of the recordings");
   expect_refusal(run({"replay", path("a.csv"), "--payload", "a.csv=0.7"}), "LOG=KG@X,Y,Z");
+  expect_refusal(run({"compare", path("a.csv"), "--payload", "5@0,0"}),
+                 "to mend: write the recording and = before the mass, and write three numbers "
+                 "behind @, its place in the last link's frame");
+  expect_refusal(run({"compare", path("a.csv"), "--payload", "a.csv=-5@0,0,0"}),
+                 "to mend: write a mass of 0 to ");
 }
 
 TEST_F(RecordingsOfVerbs, GivenOneTwiceThenCompareRefusesIt) {

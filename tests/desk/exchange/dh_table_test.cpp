@@ -170,6 +170,41 @@ TEST(DhTable, SaysWhereANumberIsNone) {
                                                "mend: write a row for each joint"));
 }
 
+TEST(DhTable, AnglesMayBeSharesOfPi) {
+  const double pi = std::numbers::pi;
+  const std::pair<const char*, double> angles[] = {
+      {"pi/2", pi / 2},           {"-pi/2", -pi / 2},  {"pi", pi},        {"2*pi/3", 2 * pi / 3},
+      {"-2 pi / 3", -2 * pi / 3}, {"0.5pi", pi / 2},   {"+PI/4", pi / 4}, {"3/4*pi", 3 * pi / 4},
+      {"pi*3/4", 3 * pi / 4},     {"\u03c0/2", pi / 2}};
+  for (const auto& [text, angle] : angles) {
+    const std::string cell = text;
+    const DhTable csv =
+        read("a.csv", "a_m,alpha_rad,d_m,theta_rad\n0," + cell + ",0,0\n", DhConvention::kStandard);
+    EXPECT_DOUBLE_EQ(csv.rows[0].alpha_rad, angle) << text;
+    const DhTable toml =
+        read("a.toml", "[[joint]]\na_m = 0\nalpha_rad = \"" + cell + "\"\nd_m = 0\ntheta_rad = 0\n",
+             DhConvention::kStandard);
+    EXPECT_DOUBLE_EQ(toml.rows[0].alpha_rad, angle) << text;
+  }
+}
+
+TEST(DhTable, SaysWhatToWriteForAnAngleThatIsNone) {
+  const auto refusal = [](const std::string& name, const std::string& text) {
+    return message_of<InputError>(
+        [&] { static_cast<void>(read(name, text, DhConvention::kStandard)); });
+  };
+  EXPECT_THAT(refusal("a.csv", "a_m,alpha_deg,d_m,theta_deg\n0,-pi/2,0,0\n"),
+              HasSubstr("line 2, column alpha_deg: found \"-pi/2\", an angle in rad; allowed: a "
+                        "number of degrees; to mend: write -90, or name it alpha_rad"));
+  EXPECT_THAT(refusal("a.toml", "[[joint]]\na_m = \"pi\"\nalpha_rad = 0\nd_m = 0\ntheta_rad = 0\n"),
+              HasSubstr("joint[1].a_m: found \"pi\", an angle in rad; allowed: a number, in m"));
+  for (const char* wrong : {"pi/0", "pie", "pi/", "2*", "pi/-2", "half"}) {
+    EXPECT_THAT(refusal("a.csv", "a_m,alpha_rad,d_m,theta_rad\n0," + std::string(wrong) + ",0,0\n"),
+                HasSubstr("line 2, column alpha_rad: found \"" + std::string(wrong) + "\""))
+        << wrong;
+  }
+}
+
 TEST(DhTable, IsInTheUnitThatItsNamesSay) {
   const DhTable table =
       read("a.csv", "a_mm,alpha_deg,d_mm,theta_rad\n300,90,-25.5,0\n", DhConvention::kStandard);

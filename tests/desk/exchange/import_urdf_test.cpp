@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tuple>
+
+#include "common/error.hpp"
+#include "desk/support/temporary_file.hpp"
 #include "exchange/import_report.hpp"
 #include "robot/robot_file.hpp"
 #include "urdfs.hpp"
@@ -51,22 +55,89 @@ TEST(ImportUrdf, MergesFixedLinksAsWorkedOutByHand) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(joint.inertia_kg_m2[i], by_hand[i], 1e-15) << i;
 }
 
+std::string urdf_with_joint(const std::string& name, const std::string& declaration = {}) {
+  return declaration +
+         "<robot name=\"a\">\n<link name=\"ground\"/>\n"
+         "<link name=\"bar\"><inertial><mass value=\"1\"/>"
+         "<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" "
+         "izz=\"1\"/></inertial></link>\n"
+         "<joint name=\"" +
+         name +
+         "\" type=\"continuous\"><parent link=\"ground\"/><child link=\"bar\"/>"
+         "<axis xyz=\"0 0 1\"/></joint></robot>";
+}
+
+std::string declared(const std::string& encoding) {
+  return "<?xml version=\"1.0\" encoding=\"" + encoding + "\"?>";
+}
+
 // As an editor of long ago saves umlauts.
-TEST(ImportUrdf, TellsNamesThatAreNoUtf8) {
-  const ImportedRobot imported = import_urdf(
-      "<robot name=\"a\">\n<link name=\"ground\"/>\n"
-      "<link name=\"bar\"><inertial><mass value=\"1\"/>"
-      "<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>\n"
-      "<joint name=\"Gel\xE4nk\" type=\"continuous\"><parent link=\"ground\"/><child link=\"bar\"/>"
-      "<axis xyz=\"0 0 1\"/></joint></robot>",
-      "bar.urdf");
+TEST(ImportUrdf, ReadsLatin1AndSaysWhereNothingDeclaresIt) {
+  for (const std::string& declaration : {std::string(), declared("utf-8")}) {
+    const ImportedRobot imported = import_urdf(urdf_with_joint("Gelenk_H\xFC"
+                                                               "fte",
+                                                               declaration),
+                                               "bar.urdf");
+    EXPECT_EQ(imported.robot.joints[0].name, "Gelenk_H\u00FCfte");
+    EXPECT_THAT(
+        notes_of(imported),
+        Contains("assumed 4 Windows-1252 (Latin-1), since the file is no UTF-8 and declares "
+                 "nothing else, in the name `Gelenk_H\u00FCfte`: declare its encoding, or "
+                 "save it in UTF-8, where that is wrong"));
+    const std::string text = desk::exchange::robot_text_of(imported, "bar.urdf");
+    EXPECT_EQ(desk::parse_robot(text, "bar.toml").joints[0].name, "Gelenk_H\u00FCfte");
+  }
+  EXPECT_THAT(notes_of(imported_arm()), Not(Contains(HasSubstr("UTF-8"))));
+}
+
+TEST(ImportUrdf, ReadsTheEncodingThatIsDeclared) {
+  for (const auto& [encoding, bytes, name] : {std::tuple{"ISO-8859-1",
+                                                         "H\xFC"
+                                                         "fte",
+                                                         "H\u00FCfte"},
+                                              std::tuple{"windows-1252",
+                                                         "H\xFC"
+                                                         "fte",
+                                                         "H\u00FCfte"},
+                                              std::tuple{"ISO-8859-15", "k\xA4", "k\u20AC"}}) {
+    const ImportedRobot imported =
+        import_urdf(urdf_with_joint(bytes, declared(encoding)), "bar.urdf");
+    EXPECT_EQ(imported.robot.joints[0].name, name) << encoding;
+    EXPECT_THAT(notes_of(imported), Not(Contains(HasSubstr("UTF-8")))) << encoding;
+  }
+  // Whatever is declared, UTF-8 is no chance.
+  const ImportedRobot utf8 =
+      import_urdf(urdf_with_joint("H\u00FCfte", declared("ISO-8859-1")), "bar.urdf");
+  EXPECT_EQ(utf8.robot.joints[0].name, "H\u00FCfte");
+}
+
+TEST(ImportUrdf, RefusesBytesOfNoEncodingThatIsDeclared) {
+  const auto refusal = [](const std::string& text) {
+    return message_of<desk::InputError>([&] { static_cast<void>(import_urdf(text, "bar.urdf")); });
+  };
+  for (const char* encoding : {"X-NONE", "../UTF-8", "ISO-8859-1//TRANSLIT"}) {
+    EXPECT_THAT(
+        refusal(urdf_with_joint("H\xFC"
+                                "fte",
+                                declared(encoding))),
+        testing::AllOf(HasSubstr("bar.urdf: line 4: found the byte 0xFC, which is no UTF-8, in "
+                                 "a file that declares " +
+                                 std::string(encoding)),
+                       HasSubstr("to mend: save it in UTF-8, or declare what it is saved in")));
+  }
+  EXPECT_THAT(
+      refusal(urdf_with_joint("a\x81", declared("windows-1252"))),
+      HasSubstr("line 4: found the byte 0x81, which is no windows-1252, as the file declares"));
+}
+
+TEST(ImportUrdf, TellsNamesThatAreInNoEncoding) {
+  const ImportedRobot imported = import_urdf(urdf_with_joint("Gel\x81nk"), "bar.urdf");
   EXPECT_EQ(imported.robot.joints[0].name, "Gel\uFFFDnk");
   EXPECT_THAT(notes_of(imported),
               Contains("assumed 4 U+FFFD for bytes that are no UTF-8 in the name "
                        "`Gel\uFFFDnk`: saved in UTF-8 the file keeps them"));
   EXPECT_NO_THROW(static_cast<void>(
       desk::parse_robot(desk::exchange::robot_text_of(imported, "bar.urdf"), "bar.toml")));
-  EXPECT_THAT(notes_of(imported_arm()), Not(Contains(HasSubstr("UTF-8"))));
 }
 
 // 0.1 + 0.2 lack 0.02 of 0.32: both get half of it.

@@ -334,7 +334,8 @@ TEST(Add, RequestsThatMakeNoSenseAreRefused) {
   };
   const RobotDescription arm = arm_description();
   EXPECT_THAT(refuse(request_for({EffectKind::kViscousFriction}, 2), arm),
-              HasSubstr("found 3; allowed: 1 to 2"));
+              HasSubstr("found 3; allowed: 1 to 2, the joints of robot arm; to mend: count "
+                        "from the base outwards: 1 is shoulder, 2 is elbow"));
   RobotDescription with = arm;
   with.effects = {effect_of(EffectKind::kViscousFriction, 1, {1})};
   EXPECT_THAT(refuse(request_for({EffectKind::kViscousFriction}, 1), with),

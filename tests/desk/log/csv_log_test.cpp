@@ -240,7 +240,9 @@ TEST(CsvLog, HeaderMistakesAreRefused) {
   EXPECT_THAT(refusal("t,q1,tau1\n"), HasSubstr("without samples"));
   EXPECT_THAT(refusal("0.0,1.0,2.0\n0.1,1,2\n"), HasSubstr("header line"));
   EXPECT_THAT(refusal("t,q1,,tau1\n0,1,2,3\n"), HasSubstr("column 3: found no name"));
-  EXPECT_THAT(refusal("t,q1,q1,tau1\n0,1,2,3\n"), HasSubstr("\"q1\" twice"));
+  EXPECT_THAT(refusal("t,q1,q1,tau1\n0,1,2,3\n"),
+              HasSubstr("column \"q1\" twice; allowed: names that differ; to mend: rename column 2 "
+                        "or column 3 in the header, or leave one of them out"));
 }
 
 TEST(CsvLog, MissingColumnsAreListedWithThoseThatAreThere) {
@@ -256,7 +258,8 @@ TEST(CsvLog, NumberOfJointsMustBeTheRobots) {
               AllOf(HasSubstr("q1 only"), HasSubstr("2 joints")));
   std::string text = "t,q1,q2,tau1,tau2\n";
   for (int i = 0; i < 10; ++i) text += std::to_string(i) + ",1,1,1,1\n";
-  EXPECT_THAT(refusal(text, 1), AllOf(HasSubstr("q1 to q2"), HasSubstr("1 joint")));
+  EXPECT_THAT(refusal(text, 1), AllOf(HasSubstr("q1 to q2"), HasSubstr("1 joint"),
+                                      HasSubstr("or say with [channels] which columns are")));
   text = "t,q1,q2,q3,tau1,tau3\n";
   for (int i = 0; i < 10; ++i) text += std::to_string(i) + ",1,1,1,1,1\n";
   EXPECT_THAT(refusal(text, 3), AllOf(HasSubstr("tau1, tau3"), HasSubstr("add what is missing")));

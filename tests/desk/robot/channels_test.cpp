@@ -56,8 +56,13 @@ TEST(Channels, MistakesNameFileLineAndKey) {
   EXPECT_THAT(refusal("position = 'q'\ntorque = 'tau'\nspeed = 'v'"),
               AllOf(HasSubstr("robot.toml: line 3, channels"), HasSubstr("\"speed\"")));
   EXPECT_THAT(refusal("torque = 'tau'"), HasSubstr("channels.position"));
+  EXPECT_THAT(
+      refusal("position = ['a']\ntorque = ['c', 'd']", 2),
+      HasSubstr("1 entries; allowed: a list of 2 channels, one per joint; to mend: write one "
+                "for each joint, from the base outwards"));
   EXPECT_THAT(refusal("position = ['a', 'b']\ntorque = 'tau'"),
-              AllOf(HasSubstr("2 entries"), HasSubstr("1 channel")));
+              AllOf(HasSubstr("2 entries"), HasSubstr("1 channel"),
+                    HasSubstr("to mend: leave out those that are of none of the robot's joints")));
   EXPECT_THAT(refusal("position = 'a'\ntorque = ['c', 'd']", 2),
               AllOf(HasSubstr("line 1"), HasSubstr("a list of 2 channels")));
   EXPECT_THAT(refusal("position = 3.5\ntorque = 'tau'"), HasSubstr("a number"));
