@@ -41,6 +41,11 @@ Eigen::MatrixXd friction_columns(const Eigen::VectorXd& dq);
 // Each column of `torques` less what the others take of it by least squares.
 Eigen::MatrixXd beside(const Eigen::MatrixXd& others, const Eigen::MatrixXd& torques);
 
+// A measured torque and the model's of a joint, two columns, in which the joint's friction, rotor
+// and offset have no part: a file may lack them, or guess.
+Eigen::MatrixXd with_model_beside_drive(const TorquePair& pair, Eigen::Index joint,
+                                        const Eigen::VectorXd& torque);
+
 // Whether the torques follow the model at a scale that no link, tool or counterweight makes, on
 // every joint that tells.
 bool is_of_another_torque_unit(const TorquePair& pair);

@@ -28,13 +28,7 @@ struct TorqueRatio {
 std::optional<TorqueRatio> torque_ratio(const TorquePair& pair, Index joint) {
   constexpr double kLeastShare = 0.15;  // of the torque: what the ratio is seen by
   constexpr double kMostLeft = 0.4;     // of that: what no factor explains
-  // Friction, rotor and offset of the joint have no part in it: a file may lack them, or guess.
-  const Index rows = pair.dq.rows();
-  MatrixXd drive(rows, 4);
-  drive << friction_columns(pair.dq.col(joint)), pair.ddq.col(joint), VectorXd::Ones(rows);
-  MatrixXd both(rows, 2);
-  both << pair.measured.col(joint), pair.model.col(joint);
-  both = beside(drive, both);
+  const MatrixXd both = with_model_beside_drive(pair, joint, pair.measured.col(joint));
   const auto measured = both.col(0);
   const auto model = both.col(1);
   const double size = pair.measured.col(joint).norm();
