@@ -56,8 +56,8 @@ struct DataFault {
   // kVelocity: the velocity over the derivative of the position, 0 where they have nothing in
   // common. kWrapped, kJump: the jump, as recorded. kStuck, kStart: share of the samples.
   // kGravity: between where it points and where the file has it, deg. kTorqueUnit: measured over
-  // model torque of the first joint that tells. kJointOrder: share of a torque that its model
-  // leaves.
+  // model torque, of all joints that of the first one that tells. kJointOrder: share of a torque
+  // that its model leaves.
   double size = 0;
   std::string unit;                   // of size, empty: none
   std::string words;                  // what was found, with numbers

@@ -41,10 +41,10 @@ Eigen::MatrixXd friction_columns(const Eigen::VectorXd& dq);
 // Each column of `torques` less what the others take of it by least squares.
 Eigen::MatrixXd beside(const Eigen::MatrixXd& others, const Eigen::MatrixXd& torques);
 
-// A measured torque and the model's of a joint, two columns, in which the joint's friction, rotor
-// and offset have no part: a file may lack them, or guess.
-Eigen::MatrixXd with_model_beside_drive(const TorquePair& pair, Eigen::Index joint,
-                                        const Eigen::VectorXd& torque);
+// Torques of a joint, one per column, in which its friction, rotor and offset have no part: a file
+// may lack them, or guess.
+Eigen::MatrixXd beside_drive(const TorquePair& pair, Eigen::Index joint,
+                             const Eigen::MatrixXd& torques);
 
 // Whether the torques follow the model at a scale that no link, tool or counterweight makes, on
 // every joint that tells.
@@ -80,6 +80,10 @@ bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePai
 // Torques in another unit, before a gear, or currents: many times what the model says, or a small
 // part of it, on every joint that tells. Nothing else is then held against them. Returns whether.
 bool find_torque_unit(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
+// The same of some joints, while the others follow the model: another unit of theirs, where no mass
+// asks for so much. Returns whether.
+bool find_torque_unit_of_joints(const Log& log, const TorquePair& pair,
+                                std::vector<DataFault>& faults);
 void find_torque_sign(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
 void find_clock_skew(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
 

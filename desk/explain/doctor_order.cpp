@@ -33,7 +33,9 @@ constexpr double kGood = 0.4;
 // where the link's part may be off by what a tool or a wrong mass makes of it.
 double left_by(const TorquePair& pair, Index joint, const VectorXd& torque) {
   constexpr double kMostOff = 3;
-  const MatrixXd both = with_model_beside_drive(pair, joint, torque);
+  MatrixXd both(torque.size(), 2);
+  both << torque, pair.model.col(joint);
+  both = beside_drive(pair, joint, both);
   const double size = (torque.array() - torque.mean()).matrix().norm();
   if (!(size > 0)) return 0;
   const double model = both.col(1).squaredNorm();

@@ -217,14 +217,11 @@ Eigen::MatrixXd friction_columns(const VectorXd& dq) {
   return columns;
 }
 
-Eigen::MatrixXd with_model_beside_drive(const TorquePair& pair, Index joint,
-                                        const VectorXd& torque) {
-  const Index rows = torque.size();
-  Eigen::MatrixXd drive(rows, 4);
-  drive << friction_columns(pair.dq.col(joint)), pair.ddq.col(joint), VectorXd::Ones(rows);
-  Eigen::MatrixXd both(rows, 2);
-  both << torque, pair.model.col(joint);
-  return beside(drive, both);
+Eigen::MatrixXd beside_drive(const TorquePair& pair, Index joint, const Eigen::MatrixXd& torques) {
+  Eigen::MatrixXd drive(torques.rows(), 4);
+  drive << friction_columns(pair.dq.col(joint)), pair.ddq.col(joint),
+      VectorXd::Ones(torques.rows());
+  return beside(drive, torques);
 }
 
 TimeByTorque time_by_torque(const Log& log, const RobotDescription& robot, double per_second) {

@@ -15,7 +15,6 @@ namespace offnominal::desk {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Measured torque over the model's, seen by what only the pose and the other joints ask for.
@@ -28,9 +27,8 @@ struct TorqueRatio {
 std::optional<TorqueRatio> torque_ratio(const TorquePair& pair, Index joint) {
   constexpr double kLeastShare = 0.15;  // of the torque: what the ratio is seen by
   constexpr double kMostLeft = 0.4;     // of that: what no factor explains
-  const MatrixXd both = with_model_beside_drive(pair, joint, pair.measured.col(joint));
-  const auto measured = both.col(0);
-  const auto model = both.col(1);
+  const VectorXd measured = beside_drive(pair, joint, pair.measured.col(joint));
+  const VectorXd model = beside_drive(pair, joint, pair.model.col(joint));
   const double size = pair.measured.col(joint).norm();
   if (!(model.norm() > 1e-9 * pair.model.col(joint).norm()) || !(size > 0)) return std::nullopt;
   const double ratio = measured.dot(model) / model.squaredNorm();
@@ -40,6 +38,12 @@ std::optional<TorqueRatio> torque_ratio(const TorquePair& pair, Index joint) {
   return TorqueRatio{joint, ratio};
 }
 
+// How many times the model a torque is where it may be the tool, a counterweight, or links that
+// the file has wrong; beyond, it is none of them.
+constexpr double kFarOff = 5;
+// Where no other joint can tell.
+constexpr double kFarOffAlone = 50;
+
 // A unit of which an N m (or N) has so many.
 struct TorqueUnit {
   double per_si;
@@ -48,7 +52,7 @@ struct TorqueUnit {
 constexpr std::array<TorqueUnit, 3> kTorqueUnits = {
     {{1e6, "uN m"}, {1e3, "mN m (N mm)"}, {1e2, "N cm"}}};
 
-// One unit fits all joints that tell; null where none does, as before a gear or of a current.
+// One unit fits all of these joints; null where none does, as before a gear or of a current.
 const TorqueUnit* common_unit(const std::vector<TorqueRatio>& told) {
   constexpr double kNear = 1.35;  // as far off as links of a file are
   const auto* unit =
@@ -66,8 +70,6 @@ const TorqueUnit* common_unit(const std::vector<TorqueRatio>& told) {
 bool is_another_unit(const std::vector<TorqueRatio>& told) {
   // A tool multiplies what a light wrist carries, and a counterweight takes most of it away, each
   // on some joints.
-  constexpr double kFarOff = 5;
-  constexpr double kFarOffAlone = 50;
   // Above: a heavy tool on light links reaches all of them.
   constexpr double kFarAbove = 15;
   if (told.empty()) return false;
@@ -89,6 +91,78 @@ std::vector<TorqueRatio> torque_ratios(const TorquePair& pair) {
   }
   return told;
 }
+
+// What a joint before it feels at least, as a share of what is felt at `joint`, where a link behind
+// both is heavier or has its mass elsewhere. 0: nothing, as of gravity about a vertical axis.
+double felt_before(const TorquePair& pair, Index joint, Index before) {
+  constexpr double kMatters = 0.1;  // of what the heaviest link takes
+  std::vector<std::pair<double, double>> here_and_before;
+  double largest = 0;
+  for (Index link = joint; link < pair.measured.cols(); ++link) {
+    const Eigen::MatrixXd& share = pair.links[static_cast<std::size_t>(link)];
+    const double here = beside_drive(pair, joint, share.col(joint)).norm();
+    here_and_before.emplace_back(here, beside_drive(pair, before, share.col(before)).norm());
+    largest = std::max(largest, here);
+  }
+  // A mass moved on its link is felt about as much on either side of it.
+  double least = 1;
+  for (const auto& [here, further] : here_and_before) {
+    if (here > kMatters * largest) least = std::min(least, further / here);
+  }
+  return largest > 0 ? least : 0;
+}
+
+// The joint before that would feel most of what masses would have to be to ask for this torque, and
+// whether it does.
+struct Witness {
+  Index joint = -1;  // none can tell
+  bool denies = false;
+};
+Witness witness_of(const TorquePair& pair, const TorqueRatio& far) {
+  constexpr double kFeels = 0.2;
+  constexpr double kDenies = 0.3;  // of what it would feel: what it lacks
+  const double lacks =
+      (std::abs(far.ratio) - 1) * beside_drive(pair, far.joint, pair.model.col(far.joint)).norm();
+  Witness best;
+  double least = kDenies;
+  for (Index before = 0; before < far.joint; ++before) {
+    const double felt = felt_before(pair, far.joint, before);
+    if (!(felt > kFeels)) continue;
+    if (best.joint < 0) best.joint = before;
+    const VectorXd left = pair.measured.col(before) - pair.model.col(before);
+    const double share = beside_drive(pair, before, left).norm() / (felt * lacks);
+    if (!(share < least)) continue;
+    least = share;
+    best = {before, true};
+  }
+  return best;
+}
+
+// Of some joints alone: a small drive that logs another unit than the large ones.
+struct JointOfAnotherUnit {
+  TorqueRatio told;
+  Witness witness;
+};
+std::vector<JointOfAnotherUnit> joints_of_another_unit(const TorquePair& pair,
+                                                       const std::vector<TorqueRatio>& told) {
+  std::vector<JointOfAnotherUnit> found;
+  for (const TorqueRatio& one : told) {
+    const double ratio = std::abs(one.ratio);
+    const Witness witness = ratio > 1 ? witness_of(pair, one) : Witness{};
+    const bool far = witness.joint < 0 ? ratio > kFarOffAlone || ratio * kFarOffAlone < 1
+                                       : ratio > kFarOff && witness.denies;
+    if (far) found.push_back({one, witness});
+  }
+  // The scale of the others is what theirs is held against.
+  if (found.size() == told.size()) found.clear();
+  return found;
+}
+
+// Every joint with its own factor, where no unit is known for it.
+constexpr const char* kScaleItself =
+    "under [channels]: `scale` for torques before a gear (its ratio) or "
+    "in parts of a rated torque, `motor_current` with the torque_constant of "
+    "[transmission] for currents";
 
 }  // namespace
 
@@ -112,10 +186,9 @@ bool find_torque_unit(const Log& log, const TorquePair& pair, std::vector<DataFa
       "apart, measured over model torque is {}{}",
       fmt::join(ratios, ", "), unit == nullptr ? "" : fmt::format(", as in {}", unit->words));
   if (unit == nullptr) {
-    fault.mend =
-        "give `torque` its unit under [channels]: `scale` for torques before a gear (its ratio) or "
-        "in parts of a rated torque, `motor_current` with the torque_constant of "
-        "[transmission] for currents; or the masses of the robot file are those of another arm";
+    fault.mend = fmt::format(
+        "give `torque` its unit {}; or the masses of the robot file are those of another arm",
+        kScaleItself);
     faults.push_back(std::move(fault));
     return true;
   }
@@ -127,6 +200,43 @@ bool find_torque_unit(const Log& log, const TorquePair& pair, std::vector<DataFa
   propose_channels(log, mended, {"torque"}, fault);
   faults.push_back(std::move(fault));
   return true;
+}
+
+bool find_torque_unit_of_joints(const Log& log, const TorquePair& pair,
+                                std::vector<DataFault>& faults) {
+  const auto found = joints_of_another_unit(pair, torque_ratios(pair));
+  ChannelMap mended = log.channels;
+  bool all_mended = true;
+  for (const auto& [told, witness] : found) {
+    const TorqueUnit* unit = common_unit({told});
+    const auto index = static_cast<std::size_t>(told.joint);
+    all_mended = all_mended && unit != nullptr && index < mended.torque.size();
+    if (all_mended) {
+      mended.torque[index].scale *= std::copysign(1 / unit->per_si, told.ratio);
+    }
+  }
+  for (const auto& [told, witness] : found) {
+    const TorqueUnit* unit = common_unit({told});
+    DataFault fault;
+    fault.kind = DataFaultKind::kTorqueUnit;
+    fault.joint = told.joint;
+    fault.size = told.ratio;
+    fault.words = fmt::format(
+        "the torque of joint {} is in another unit than the others: friction, rotor and offset "
+        "apart, measured over model torque is {:.3g}{}{}",
+        told.joint + 1, told.ratio, unit == nullptr ? "" : fmt::format(", as in {}", unit->words),
+        witness.joint < 0
+            ? ""
+            : fmt::format("; a mass that asks for it would be felt at joint {} too, and is not",
+                          witness.joint + 1));
+    fault.mend = unit == nullptr ? fmt::format("give the torque of joint {} its unit {}",
+                                               told.joint + 1, kScaleItself)
+                                 : fmt::format("log N m, or scale the torque of joint {} by {:g}",
+                                               told.joint + 1, 1 / unit->per_si);
+    if (all_mended) propose_channels(log, mended, {"torque"}, fault);
+    faults.push_back(std::move(fault));
+  }
+  return !found.empty();
 }
 
 }  // namespace offnominal::desk

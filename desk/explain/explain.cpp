@@ -379,8 +379,7 @@ void check_keep(const std::vector<KeepFault>& keep, const RobotDescription& robo
                         ""});
     }
     if (one.kind == DataFaultKind::kGaps || one.kind == DataFaultKind::kTimeUnit ||
-        one.kind == DataFaultKind::kGravity || one.kind == DataFaultKind::kTorqueUnit ||
-        one.kind == DataFaultKind::kJointOrder) {
+        one.kind == DataFaultKind::kGravity || one.kind == DataFaultKind::kJointOrder) {
       throw InputError({"--keep", "", said, "a fault of one joint: this one is of all",
                         fmt::format("write all:{}", name_of(one.kind))});
     }

@@ -120,6 +120,63 @@ TEST(TorqueUnit, IsNoToolAndNoCounterweight) {
   EXPECT_FALSE(torque_unit_in(log, balanced.file));
 }
 
+std::vector<DataFault> torque_units_in(const Log& log, const RobotDescription& robot) {
+  std::vector<DataFault> found;
+  for (DataFault& fault : examine(log, robot)) {
+    if (fault.kind == DataFaultKind::kTorqueUnit) found.push_back(std::move(fault));
+  }
+  return found;
+}
+
+// A small drive logs mN m beside large ones that log N m, or stands before its gear.
+TEST(TorqueUnit, OfOneDriveIsNamedAtItsJoint) {
+  const test::StrangersArm arm(6);
+  const Log right = test::record(arm.real, {.duration_s = 20});
+  // What turns about its own middle says nothing of its scale: the last one.
+  for (Index joint = 1; joint < 5; ++joint) {
+    for (const double factor : {1e3, -1e3, 100.0, 10.0, 0.01, 0.001}) {
+      Log log = right;
+      log.tau.col(joint) *= factor;
+      const auto found = torque_units_in(log, arm.file);
+      ASSERT_EQ(found.size(), 1U) << joint << ", " << factor;
+      EXPECT_EQ(found[0].joint, joint);
+      EXPECT_NEAR(found[0].size, factor, 0.2 * std::abs(factor));
+      EXPECT_TRUE(spoils(found[0], RestsOn::kTorque));
+      EXPECT_EQ(found[0].words.find("mN m") != std::string::npos, std::abs(factor) == 1e3);
+    }
+  }
+}
+
+TEST(TorqueUnit, OfAWristIsNamedAtItsJoints) {
+  const test::StrangersArm arm(6);
+  Log log = test::record(arm.real, {.duration_s = 20});
+  log.tau.middleCols(3, 2) *= 1e3;
+  const auto found = torque_units_in(log, arm.file);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].joint, 3);
+  EXPECT_EQ(found[1].joint, 4);
+  EXPECT_THAT(found[1].mend, HasSubstr("scale the torque of joint 5 by 0.001"));
+}
+
+// Masses that the file has wrong many times over are felt by the joints before as well; as is what
+// lies further out than the file says, although that is next to nothing there.
+TEST(TorqueUnit, OfOneDriveIsNoLinkThatTheFileHasWrong) {
+  const test::StrangersArm arm(6);
+  const Log log = test::record(arm.real, {.duration_s = 20});
+  for (std::size_t first = 1; first < 5; ++first) {
+    for (const double part : {0.1, 0.03, 0.01}) {
+      RobotDescription lighter = arm.file;
+      RobotDescription shorter = arm.file;
+      for (std::size_t link = first; link < 6; ++link) {
+        lighter.joints[link].joint.mass_kg *= part;
+        for (double& along : shorter.joints[link].joint.centre_of_mass_m) along *= part;
+      }
+      EXPECT_THAT(torque_units_in(log, lighter), IsEmpty()) << first << ", " << part;
+      EXPECT_THAT(torque_units_in(log, shorter), IsEmpty()) << first << ", " << part;
+    }
+  }
+}
+
 // What one joint alone has may be its mass: only far off is it a unit.
 TEST(TorqueUnit, OfOneJointIsToldOnlyFarOff) {
   RobotDescription robot = test::serial_arm(1);
