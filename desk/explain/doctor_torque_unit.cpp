@@ -25,8 +25,8 @@ struct TorqueRatio {
 
 // None where the model has too little to say of it, or fits it with no factor at all.
 std::optional<TorqueRatio> torque_ratio(const TorquePair& pair, Index joint) {
-  constexpr double kLeastShare = 0.15;  // of the torque: what the ratio is seen by
-  constexpr double kMostLeft = 0.4;     // of that: what no factor explains
+  constexpr double kLeastSeen = 0.15;  // of the torque: what the ratio is seen by
+  constexpr double kMostLeft = 0.4;    // of that: what no factor explains
   const VectorXd measured = beside_drive(pair, joint, pair.measured.col(joint));
   const VectorXd model = beside_drive(pair, joint, pair.model.col(joint));
   const double size = pair.measured.col(joint).norm();
@@ -34,7 +34,7 @@ std::optional<TorqueRatio> torque_ratio(const TorquePair& pair, Index joint) {
   const double ratio = measured.dot(model) / model.squaredNorm();
   const double seen = std::abs(ratio) * model.norm();
   const double left = (measured - ratio * model).norm();
-  if (!(seen > kLeastShare * size) || !(left < kMostLeft * measured.norm())) return std::nullopt;
+  if (!(seen > kLeastSeen * size) || !(left < kMostLeft * measured.norm())) return std::nullopt;
   return TorqueRatio{joint, ratio};
 }
 

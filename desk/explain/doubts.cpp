@@ -7,6 +7,13 @@
 
 namespace offnominal::desk {
 
+namespace {
+
+// Share of the error that is gone; NaN where there was none.
+double fall_of(const HeldOutSquares& joint) { return 1 - std::sqrt(joint.after / joint.before); }
+
+}  // namespace
+
 std::vector<HeldOutSquares> held_out_squares(const Explanation& e) {
   std::vector<HeldOutSquares> all;
   for (const JointErrors& joint : e.joints) {
@@ -15,13 +22,17 @@ std::vector<HeldOutSquares> held_out_squares(const Explanation& e) {
   return all;
 }
 
+bool is_doubted(const HeldOutSquares& joint, bool is_changed) {
+  constexpr double kRelevant = 0.05;
+  const double fall = fall_of(joint);
+  return is_changed ? !(fall > 0) : fall < -kRelevant;
+}
+
 std::vector<std::string> doubts_of(const Explanation& e,
                                    const std::vector<HeldOutSquares>& joints) {
-  constexpr double kRelevant = 0.05;
   std::vector<std::string> doubts;
   for (std::size_t joint = 0; joint < joints.size(); ++joint) {
     const HeldOutSquares& squares = joints[joint];
-    const double fall = 1 - std::sqrt(squares.after / squares.before);
     const auto of_joint = [joint](Eigen::Index one) {
       return one == static_cast<Eigen::Index>(joint);
     };
@@ -29,16 +40,16 @@ std::vector<std::string> doubts_of(const Explanation& e,
                                    [&](const Finding& one) { return of_joint(one.what.joint); }) ||
                        std::any_of(e.shifts.begin(), e.shifts.end(),
                                    [&](const Shift& one) { return of_joint(one.joint); });
-    if (asked ? fall > 0 : !(fall < -kRelevant)) continue;
+    if (!is_doubted(squares, asked)) continue;
     if (!(squares.before > 0)) {
       doubts.push_back(fmt::format(
           "no data that were not used for the fit say anything of joint {}", joint + 1));
       continue;
     }
-    doubts.push_back(
-        fmt::format("on data not used for the fit the error of joint {} {}, by {:.1f} %: these "
-                    "data do not support what was found",
-                    joint + 1, asked ? "does not fall but rises" : "rises", -100 * fall));
+    doubts.push_back(fmt::format(
+        "on data not used for the fit the error of joint {} {}, by {:.1f} %: these "
+        "data do not support what was found",
+        joint + 1, asked ? "does not fall but rises" : "rises", -100 * fall_of(squares)));
   }
   return doubts;
 }

@@ -16,8 +16,12 @@ struct HeldOutSquares {
 // Those of what explain() held out, per joint.
 std::vector<HeldOutSquares> held_out_squares(const Explanation& e);
 
-// Why what was found should not be written, as far as data say that the fit has not seen: a joint
-// with a finding must gain, no other may lose more than what a twentieth is. One sentence each.
+// Whether data that no fit has seen speak against a change: a joint that is changed itself must
+// gain, no other may lose more than what a twentieth is.
+bool is_doubted(const HeldOutSquares& joint, bool is_changed);
+
+// Why what was found should not be written, as far as data say that the fit has not seen. One
+// sentence each.
 std::vector<std::string> doubts_of(const Explanation& e, const std::vector<HeldOutSquares>& joints);
 
 // By what explain() held out; none where nothing was found, nor of hold maps, which it does not

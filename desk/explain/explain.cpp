@@ -12,6 +12,7 @@
 #include "common/input_name.hpp"
 #include "common/shell_word.hpp"
 #include "compare/measurement.hpp"
+#include "explain/as_written.hpp"
 #include "explain/beside_free_links.hpp"
 #include "explain/change.hpp"
 #include "explain/classes.hpp"
@@ -27,8 +28,6 @@
 #include "explain/sizes.hpp"
 #include "explain/undecided.hpp"
 #include "explain/verdict.hpp"
-#include "identify/file_errors.hpp"
-#include "identify/held_out_errors.hpp"
 #include "identify/improved_robot.hpp"
 #include "identify/parallel.hpp"
 #include "identify/stretches.hpp"
@@ -113,14 +112,7 @@ class Explainer {
           contradicted_numbers(setting_, robot_, found, result.excitation, result.ambiguous);
       tell("fitting the numbers");
       do {
-        improved = improved_robot(
-            file_, robot_, *setting_.data,
-            {setting_.nuisance,
-             options_.keep_effects ? std::vector<std::size_t>{}
-                                   : refitted_effects(file_, result.shifts),
-             {},
-             options_.source},
-            relinearise(robot_, *setting_.data, setting_.nuisance, found.terms(), found.fit));
+        improved = fitted_robot(found, result);
       } while (leave_out_impossible(improved.held, result.shifts));
       sizes = sizes_of(improved);
     } while (leave_out_unsure(sizes, *setting_.regression, hold_out, options_.threads, found));
@@ -142,7 +134,10 @@ class Explainer {
       one.came = improved.robot.effects[one.effect].parameters[one.parameter];
       if (one.file != 0) one.share = one.came / one.file - 1;
     }
-    if (!result.at_rest) tell_errors_of_files(improved, result);
+    if (!result.at_rest) {
+      tell("comparing the models before and after");
+      tell_errors_of_files(judged(), improved, result);
+    }
     result.improved = std::move(improved.robot);
     result.unwritable = std::move(improved.unwritable);
     result.unphysical = std::move(improved.unphysical);
@@ -167,6 +162,34 @@ class Explainer {
                        .room = room_for_effects(),
                        .replays = options_.replays},
                       on_progress_);
+  }
+
+  [[nodiscard]] Judged judged() const { return {file_, logs_, holdout_, plan_}; }
+
+  [[nodiscard]] ImprovedRobot fitted_robot(const FoundModel& found, const Explanation& result,
+                                           bool keeps_links) const {
+    FileFitOptions how{setting_.nuisance, {}, {}, options_.source, keeps_links};
+    if (!options_.keep_effects) how.refitted = refitted_effects(file_, result.shifts);
+    return improved_robot(
+        file_, robot_, *setting_.data, how,
+        relinearise(robot_, *setting_.data, setting_.nuisance, found.terms(), found.fit));
+  }
+
+  // All that is written. Links get other numbers where the recordings support that: where a joint
+  // that nothing was found of would be predicted worse, they stay as the file has them.
+  ImprovedRobot fitted_robot(const FoundModel& found, Explanation& result) const {
+    result.links_kept_for.clear();
+    ImprovedRobot improved = fitted_robot(found, result, false);
+    // How far they are off is then the user's word, or what the whole recording says.
+    if (result.at_rest || options_.link_share || result.link_share_judged) return improved;
+    std::vector<char> changed(robot_.joints.size(), 0);
+    for (const Accepted& one : found.accepted)
+      changed[static_cast<std::size_t>(one.term.joint)] = 1;
+    for (const Shift& one : result.shifts) changed[static_cast<std::size_t>(one.joint)] = 1;
+    std::vector<Index> raised = raised_by_links(judged(), improved, changed);
+    if (raised.empty()) return improved;
+    result.links_kept_for = std::move(raised);
+    return fitted_robot(found, result, true);
   }
 
   // With links as far off as the recordings ask for, where nobody has said how far that is.
@@ -268,39 +291,6 @@ class Explainer {
         if (other != kUnwritten && other > at) --other;
       }
     }
-  }
-
-  // Readings at rest have no filter, and their friction by the direction of approach no file.
-  void tell_errors_of_files(const ImprovedRobot& improved, Explanation& result) const {
-    tell("comparing the models before and after");
-    const FileErrors before = file_errors(file_, logs_, plan_);
-    const FileErrors after = file_errors(improved.robot, logs_, plan_);
-    for (std::size_t joint = 0; joint < result.joints.size(); ++joint) {
-      result.joints[joint].rms_torque = before.rms_torque[joint];
-      result.joints[joint].rms_before = before.rms_error[joint];
-      result.joints[joint].rms_improved = after.rms_error[joint];
-    }
-    const HeldOutErrors held_out = held_out_of(improved);
-    for (JointErrors& joint : result.joints) {
-      joint.holdout_before = held_out.before[joint.joint];
-      joint.holdout_after = held_out.after[joint.joint];
-    }
-  }
-
-  [[nodiscard]] HeldOutErrors held_out_of(const ImprovedRobot& improved) const {
-    if (holdout_.empty()) {
-      std::vector<Term> written;
-      for (std::size_t i = 0; i < improved.added.size(); ++i) {
-        if (improved.added[i] != kUnwritten) written.push_back(improved.last.terms[i]);
-      }
-      return held_out_errors(file_, improved.last, written);
-    }
-    const FileErrors before = file_errors(file_, holdout_, plan_);
-    const FileErrors after = file_errors(improved.robot, holdout_, plan_);
-    const auto vector = [](const std::vector<double>& of) -> VectorXd {
-      return Eigen::Map<const VectorXd>(of.data(), static_cast<Index>(of.size()));
-    };
-    return {vector(before.rms_torque), vector(before.rms_error), vector(after.rms_error)};
   }
 
   // A hold map may show one order after the other: as many as robot files have room for.

@@ -220,6 +220,9 @@ struct Explanation {
   std::vector<Excitation> excitation;
   // Joints on which something shows that these recordings do not tell from the model's own numbers.
   std::vector<Eigen::Index> unsure;
+  // Joints that nothing was found of and that other numbers of the links would predict worse: the
+  // links stay as the robot file has them.
+  std::vector<Eigen::Index> links_kept_for;
   std::vector<std::string> advice;
   std::string robot_file = "ROBOT";         // as commands in the advice name it
   bool at_rest = false;                     // by hold maps

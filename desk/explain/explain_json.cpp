@@ -181,6 +181,8 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
   json["hold_friction"] = array_of(e.hold_friction, [](const HoldFriction& one) {
     return ordered_json{{"joint", one.joint + 1}, {"level", one.level}, {"unit", one.unit}};
   });
+  json["links_kept_for"] =
+      array_of(e.links_kept_for, [](Eigen::Index joint) { return ordered_json(joint + 1); });
   json["advice"] = e.advice;
   json["doubts"] = doubts_of(e);
   return json;

@@ -456,8 +456,17 @@ void judge_joints(Explanation& e) {
                    [&](const JointAnswer& a, const JointAnswer& b) { return share(a) > share(b); });
 }
 
-// How far the links were let off the file, where the recordings said so.
+// How far the links were let off the file, where the recordings said so, or why they were not.
 void advise_on_links(Explanation& e) {
+  if (!e.links_kept_for.empty() && changes_the_file(e)) {
+    std::vector<Eigen::Index> joints;
+    for (const Eigen::Index joint : e.links_kept_for) joints.push_back(joint + 1);
+    e.advice.push_back(fmt::format(
+        "the links stay as the robot file has them: with other masses and inertias the error of "
+        "joint {}, where nothing was found, would rise on data that were not fitted; "
+        "`--link-share {:g}` fits them all the same",
+        fmt::join(joints, ", "), e.link_share));
+  }
   if (!e.link_share_judged) return;
   e.advice.push_back(fmt::format(
       "the links' masses, centres of mass and inertias are off the file by more than CAD usually "

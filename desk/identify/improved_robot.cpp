@@ -307,7 +307,7 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
     as_the_file =
         as_the_file && found.links[link].largest(size_of_link(file, link)) < kWorthWriting;
   }
-  if (as_the_file) nuisance.link_share = 0;
+  if (as_the_file || options.keeps_links) nuisance.link_share = 0;
   ImprovedRobot improved;
   improved.robot = file;
   FileFitter fitter(file, robot, data, std::move(nuisance), options, found.terms);
@@ -348,6 +348,8 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   }
   return improved;
 }
+
+bool moves_links(const ImprovedRobot& improved) { return improved.last.nuisance.link_share > 0; }
 
 Estimates estimates_of(const ImprovedRobot& improved) {
   const Relinearised& last = improved.last;

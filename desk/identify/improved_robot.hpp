@@ -46,7 +46,8 @@ struct FileFitOptions {
   std::vector<std::size_t> refitted;
   // Width of the smoothed sign that is given, per joint; 0 or empty: none.
   Eigen::VectorXd given_widths;
-  std::string source;  // what the effects say of where their numbers come from
+  std::string source;        // what the effects say of where their numbers come from
+  bool keeps_links = false;  // mass and inertia of the links stay as the file has them
 };
 
 // The effects of a robot that are marked fitted, as indices.
@@ -56,6 +57,9 @@ std::vector<std::size_t> fitted_effects(const RobotDescription& robot);
 // fitted to them. Links that differ from the file by less than kWorthWriting stay as they are.
 ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescription& robot,
                              const Data& data, const FileFitOptions& options, Relinearised found);
+
+// Whether its links have other numbers than the file's.
+bool moves_links(const ImprovedRobot& improved);
 
 // Numbers of the last fit. An interval of a term is the wider one of the last fit's and of the
 // model's that has the recordings' own beside it, a skew and other ways to build up at a reversal,

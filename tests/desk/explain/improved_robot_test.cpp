@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include "compare/measurement.hpp"
 #include "explain/explain.hpp"
 #include "explain/explain_report.hpp"
+#include "explain/link_share.hpp"
 #include "hidden_case.hpp"
 #include "robot/robot_file.hpp"
 
@@ -103,6 +105,32 @@ TEST(ImprovedRobot, LinksComeOutTheSameFromFilesThatDiffer) {
     const double mass = a.improved.joints[link].joint.mass_kg;
     EXPECT_NEAR(b.improved.joints[link].joint.mass_kg, mass, 0.01 * mass) << "link " << link + 1;
   }
+}
+
+// What other links gain where they are fitted they lose elsewhere: then they are no better ones.
+TEST(ImprovedRobot, HasTheFilesLinksWhereOthersPredictAnotherJointWorse) {
+  const hidden::Case made = case_of(5, {hidden::HiddenEffect::kViscousFriction});
+  const RobotDescription file = test::to_robot(made.nominal);
+  Log heavier = test::to_log(made.recording);
+  heavier.tau *= 1.04;
+  ExplainOptions options;
+  options.bootstrap_draws = 399;
+  options.replays = 0;
+  options.threads = 2;
+  const auto told = [&] { return explain(file, {heavier}, {test::to_log(made.holdout)}, options); };
+  const Explanation kept = told();
+  ASSERT_FALSE(kept.found.empty()) << kept.words;
+  EXPECT_FALSE(kept.links_kept_for.empty());
+  options.link_share = kUsualLinkShare;
+  const Explanation as_asked = told();
+  EXPECT_THAT(as_asked.links_kept_for, IsEmpty());
+  double furthest = 0;
+  for (std::size_t link = 0; link < file.joints.size(); ++link) {
+    const double mass = file.joints[link].joint.mass_kg;
+    EXPECT_EQ(kept.improved.joints[link].joint.mass_kg, mass);
+    furthest = std::max(furthest, as_asked.improved.joints[link].joint.mass_kg / mass - 1);
+  }
+  EXPECT_GT(furthest, 0.02);
 }
 
 // What is between motor and link: files have it, although no on-board monitor can carry it. The

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "explain/doubts.hpp"
 #include "explain/explain_report.hpp"
 
 // What a search came to, in one word: of explanations made by hand, where simulated recordings
@@ -201,6 +202,25 @@ TEST(CommandToAdd, SaysWhatAddWillDoubt) {
                     HasSubstr("only with --force")));
   EXPECT_EQ(to_json(e, names)["doubts"].size(), 1U);
   EXPECT_THAT(findings_text(e, names), Not(HasSubstr("add --all-found")));
+}
+
+TEST(Doubted, IsAJointThatIsChangedAndDoesNotGainOrAnotherThatLoses) {
+  EXPECT_FALSE(is_doubted({1.0, 0.9}, true));
+  EXPECT_TRUE(is_doubted({1.0, 1.0}, true));
+  EXPECT_FALSE(is_doubted({1.0, 1.1}, false));
+  EXPECT_TRUE(is_doubted({1.0, 1.2}, false));
+}
+
+TEST(Verdict, SaysWhyTheLinksStayAsTheFileHasThem) {
+  Explanation e = found_with_rest(1.1);
+  e.links_kept_for = {1};
+  e.link_share = 0.05;
+  judge_whole(e);
+  const ExplainNames names{{"log"}, {}, "robot", ""};
+  EXPECT_THAT(text_of(e, names),
+              AllOf(HasSubstr("links stay as the robot file has them"),
+                    HasSubstr("error of joint 2"), HasSubstr("--link-share 0.05")));
+  EXPECT_EQ(to_json(e, names)["links_kept_for"].dump(), "[2]");
 }
 
 TEST(CommandToAdd, IsNotThereWhereAddWouldRefuseWhatNoPhysicsHas) {

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "explain/explain.hpp"
+#include "identify/held_out_errors.hpp"
+#include "identify/improved_robot.hpp"
+
+namespace offnominal::desk {
+
+// What a new robot file is judged by: the one that it came from, and the recordings.
+struct Judged {
+  const RobotDescription& file;
+  const std::vector<Log>& logs;
+  const std::vector<Log>& holdout;  // empty: parts of `logs` are held out in turn
+  const FilterPlan& plan;           // of all of them
+};
+
+HeldOutErrors held_out_of(const Judged& by, const ImprovedRobot& improved);
+
+// Fills in the errors of the joints, of both files. Not of readings at rest: they have no filter,
+// and their friction by the direction of approach no file.
+void tell_errors_of_files(const Judged& by, const ImprovedRobot& improved, Explanation& result);
+
+// Joints whose error on data that no fit has seen rises although nothing is changed at them, by
+// more than what a twentieth is: what raises it are the links' numbers that were fitted beside.
+// `changed`: per joint, whether an effect or a number of it is.
+std::vector<Eigen::Index> raised_by_links(const Judged& by, const ImprovedRobot& improved,
+                                          const std::vector<char>& changed);
+
+}  // namespace offnominal::desk
