@@ -148,10 +148,13 @@ std::vector<SmallestSeen> smallest_of(const std::vector<FaultLine>& lines) {
     std::stable_sort(sizes.begin(), sizes.end(), [](const FaultLine* x, const FaultLine* y) {
       return std::abs(*x->size) > std::abs(*y->size);
     });
-    SmallestSeen one{place.first, sizes.front()->joint, {}, *sizes.front()->size};
+    const FaultLine& largest = *sizes.front();
+    SmallestSeen one{place.first, largest.joint, {}, *largest.size, largest.runs, largest.seen};
     for (const FaultLine* line : sizes) {
       if (line->detected.value < kSeenShare) break;
       one.size = line->size;
+      one.runs = line->runs;
+      one.seen = line->seen;
     }
     all.push_back(one);
   }

@@ -54,12 +54,15 @@ struct FaultLine {
   [[nodiscard]] std::int64_t answers() const;
 };
 
-/// The smallest size of a kind, in one place, that is seen in 95 of 100 runs, as larger ones are.
+/// The smallest size of a kind, in one place, that is seen in at least 95 % of its runs, as larger
+/// ones are in theirs. Of few runs that is no probability: they are told beside.
 struct SmallestSeen {
   std::string kind;
   std::optional<int> joint;
   std::optional<double> size;  // none: not even the largest was
   double largest = 0;          // size that was tried
+  std::int64_t runs = 0;       // with that size, or the largest
+  std::int64_t seen = 0;       // of them
 };
 
 /// Detector whose thresholds are `scale` times what they were calibrated to.

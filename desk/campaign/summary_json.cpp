@@ -79,7 +79,9 @@ ordered_json json_of(const DetectorSummary& detector) {
     smallest.push_back({{"kind", one.kind},
                         {"joint", or_null(one.joint)},
                         {"size", or_null(one.size)},
-                        {"largest_tried", one.largest}});
+                        {"largest_tried", one.largest},
+                        {"runs", one.runs},
+                        {"seen", one.seen}});
   }
   ordered_json tracking = ordered_json::array();
   for (const Tracking& one : detector.tracking) tracking.push_back(json_of(one));

@@ -152,7 +152,7 @@ std::vector<Chart> size_charts(const Summary& summary) {
 
 report::Table smallest_table(const Summary& summary) {
   report::Table table;
-  table.caption = "Smallest fault that is seen in 95 of 100 runs, as all larger ones are";
+  table.caption = "Smallest fault that is seen in 95 % of its runs or more, as all larger ones are";
   table.columns = {{"fault", "", report::kDefaultFormat}};
   if (summary.detectors.empty()) return table;
   for (const DetectorSummary& detector : summary.detectors) {
@@ -166,9 +166,13 @@ report::Table smallest_table(const Summary& summary) {
                                      [&](const SmallestSeen& one) {
                                        return one.kind == place.kind && one.joint == place.joint;
                                      });
-      const bool is_seen = same != detector.smallest.end() && same->size.has_value();
-      row.emplace_back(is_seen ? size_words(place.kind, same->size)
-                               : "above " + size_words(place.kind, place.largest));
+      if (same == detector.smallest.end()) {
+        row.emplace_back("");
+        continue;
+      }
+      const std::string size = same->size ? size_words(same->kind, same->size)
+                                          : "above " + size_words(same->kind, same->largest);
+      row.emplace_back(fmt::format("{} ({} of {})", size, same->seen, same->runs));
     }
     table.rows.push_back(std::move(row));
   }

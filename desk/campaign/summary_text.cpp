@@ -126,8 +126,8 @@ std::string smallest_text(const DetectorSummary& detector) {
   for (const SmallestSeen& one : detector.smallest) {
     const std::string size = one.size ? "from " + size_words(one.kind, one.size)
                                       : "not even " + size_words(one.kind, one.largest);
-    text +=
-        fmt::format("  seen in 95 of 100 runs: {} {}\n", place_words(one.kind, one.joint), size);
+    text += fmt::format("  seen in 95 % of the runs: {} {} ({} of {} runs)\n",
+                        place_words(one.kind, one.joint), size, one.seen, one.runs);
   }
   return text;
 }

@@ -158,6 +158,8 @@ TEST(Summary, HasEveryFaultWithItsTimesAndTheSmallestThatIsSeen) {
             1);
   ASSERT_EQ(one.smallest.size(), 1U);
   EXPECT_EQ(one.smallest[0].size, 2);
+  EXPECT_EQ(one.smallest[0].runs, 2);
+  EXPECT_EQ(one.smallest[0].seen, 2);
   EXPECT_EQ(one.false_alarms, 3);
   EXPECT_NEAR(one.false_alarms_per_hour->value, 1.5, 1e-12);
   // 8 h before faults and without any.
