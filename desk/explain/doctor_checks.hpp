@@ -78,12 +78,11 @@ bool find_joint_order(const Log& log, const RobotDescription& robot, const Torqu
 bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
                   std::vector<DataFault>& faults);
 // Torques in another unit, before a gear, or currents: many times what the model says, or a small
-// part of it, on every joint that tells. Nothing else is then held against them. Returns whether.
-bool find_torque_unit(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
-// The same of some joints, while the others follow the model: another unit of theirs, where no mass
-// asks for so much. Returns whether.
-bool find_torque_unit_of_joints(const Log& log, const TorquePair& pair,
-                                std::vector<DataFault>& faults);
+// part of it. On every joint that tells, and nothing else is then held against them; or of some
+// joints while the others follow the model, where no mass asks for so much.
+enum class OfAnotherUnit { kNone, kSomeJoints, kAllJoints };
+OfAnotherUnit find_torque_unit(const Log& log, const TorquePair& pair,
+                               std::vector<DataFault>& faults);
 void find_torque_sign(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
 void find_clock_skew(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
 

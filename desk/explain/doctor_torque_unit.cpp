@@ -164,15 +164,8 @@ constexpr const char* kScaleItself =
     "in parts of a rated torque, `motor_current` with the torque_constant of "
     "[transmission] for currents";
 
-}  // namespace
-
-bool is_of_another_torque_unit(const TorquePair& pair) {
-  return is_another_unit(torque_ratios(pair));
-}
-
-bool find_torque_unit(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults) {
-  const std::vector<TorqueRatio> told = torque_ratios(pair);
-  if (!is_another_unit(told)) return false;
+void add_fault_of_all(const Log& log, const std::vector<TorqueRatio>& told,
+                      std::vector<DataFault>& faults) {
   const TorqueUnit* unit = common_unit(told);
   std::vector<std::string> ratios;
   for (const TorqueRatio& one : told) {
@@ -190,7 +183,7 @@ bool find_torque_unit(const Log& log, const TorquePair& pair, std::vector<DataFa
         "give `torque` its unit {}; or the masses of the robot file are those of another arm",
         kScaleItself);
     faults.push_back(std::move(fault));
-    return true;
+    return;
   }
   fault.mend = fmt::format("log N m, or scale the torques by {:g}", 1 / unit->per_si);
   ChannelMap mended = log.channels;
@@ -199,12 +192,10 @@ bool find_torque_unit(const Log& log, const TorquePair& pair, std::vector<DataFa
   }
   propose_channels(log, mended, {"torque"}, fault);
   faults.push_back(std::move(fault));
-  return true;
 }
 
-bool find_torque_unit_of_joints(const Log& log, const TorquePair& pair,
-                                std::vector<DataFault>& faults) {
-  const auto found = joints_of_another_unit(pair, torque_ratios(pair));
+void add_faults_of_joints(const Log& log, const std::vector<JointOfAnotherUnit>& found,
+                          std::vector<DataFault>& faults) {
   ChannelMap mended = log.channels;
   bool all_mended = true;
   for (const auto& [told, witness] : found) {
@@ -236,7 +227,24 @@ bool find_torque_unit_of_joints(const Log& log, const TorquePair& pair,
     if (all_mended) propose_channels(log, mended, {"torque"}, fault);
     faults.push_back(std::move(fault));
   }
-  return !found.empty();
+}
+
+}  // namespace
+
+bool is_of_another_torque_unit(const TorquePair& pair) {
+  return is_another_unit(torque_ratios(pair));
+}
+
+OfAnotherUnit find_torque_unit(const Log& log, const TorquePair& pair,
+                               std::vector<DataFault>& faults) {
+  const std::vector<TorqueRatio> told = torque_ratios(pair);
+  if (is_another_unit(told)) {
+    add_fault_of_all(log, told, faults);
+    return OfAnotherUnit::kAllJoints;
+  }
+  const std::vector<JointOfAnotherUnit> found = joints_of_another_unit(pair, told);
+  add_faults_of_joints(log, found, faults);
+  return found.empty() ? OfAnotherUnit::kNone : OfAnotherUnit::kSomeJoints;
 }
 
 }  // namespace offnominal::desk
