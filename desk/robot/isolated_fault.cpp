@@ -60,6 +60,12 @@ std::string words_of(const IsolatedFault& fault, const std::vector<std::string>&
   const std::string how =
       fmt::format("{:.2f} s after the detection{}", fault.time_s - fault.detection_time_s,
                   fault.decided ? "" : ", not decided yet");
+  if (fault.kind == FaultKind::kUnknown && !fault.decided) {
+    return fmt::format(
+        "Unknown so far: what is seen does not say which fault it is, {}; an arm that stands says "
+        "little, let it move",
+        how);
+  }
   if (fault.kind == FaultKind::kUnknown) {
     return fmt::format("Unknown: none of the faults that it can name fits, {}", how);
   }

@@ -126,18 +126,21 @@ TEST(Isolation, NamesAJointThatIsLocked) { expect_named<7>({FaultKind::kLockedJo
 // more than that friction, its friction holds; a constant torque would have moved it.
 TEST(Isolation, TakesForFrictionWhatHoldsAJointThatStands) {
   IsolationState<2, double> state;
-  const IsolationScales<2, double> scales{OwnValues<2, double>::Ones(), {}};
+  IsolationScales<2, double> scales{OwnValues<2, double>::Ones(), {}};
+  scales.thresholds = {1, 1};
   for (int block = 0; block < 30; ++block) {
     Vector<kOwnRegressors, double> own = Vector<kOwnRegressors, double>::Zero();
     own[kSignRegressor] = 1;
     own[kOneRegressor] = 1;
     take(state.joints[0].own, own, 2.0, 9.0);
+    state.joints[0].largest_own = own;
   }
   state.blocks = 60;
   const auto share_of_friction = [&](double largest_held) {
     state.joints[0].largest_held = largest_held;
     state.joints[0].held.evidence = 12;
-    const Contest<double> contest = detail::contest_of(state, scales, 100, 1000);
+    const Contest<double> contest =
+        detail::contest_of(state, scales, EncoderTimes<double>{100, 1000, 1e4});
     EXPECT_EQ(contest.kind, FaultKind::kFriction);
     return contest.share();
   };
@@ -170,6 +173,23 @@ TEST(Isolation, LeavesUnknownWhatNoHypothesisOfTheBankExplains) {
         << "run " << run << ": " << name_of(said);
   }
   EXPECT_GE(unknown, 15);
+}
+
+// Two kinds that are one on an arm that stands stay two, for as long as it does.
+TEST(Isolation, IsNotPressedForTimeByAnArmThatStands) {
+  std::mt19937_64 generator = seeded_generator();
+  int open = 0;
+  for (int run = 0; run < 20; ++run) {
+    PlantedRobot<2> robot(generator, {FaultKind::kOffset, run % 2, 3});
+    robot.stand();
+    const IsolationState<2, double> state = isolated(robot);
+    EXPECT_TRUE(state.triggered) << "run " << run;
+    const FaultDiagnosis<double>& said = state.diagnosis;
+    EXPECT_EQ(said.decided, said.kind != FaultKind::kUnknown && said.confidence >= 0.99)
+        << "run " << run << ", " << name_of(said.kind) << " " << said.confidence;
+    open += said.decided ? 0 : 1;
+  }
+  EXPECT_GE(open, 10);
 }
 
 TEST(Isolation, IsSilentWhereNothingIsPlanted) {

@@ -72,6 +72,9 @@ class PlantedRobot {
     return sample;
   }
 
+  // No joint moves, whatever happens.
+  void stand() { rate_.setZero(); }
+
   MonitorConfig<N, double, TorqueSpace> config;
 
  private:

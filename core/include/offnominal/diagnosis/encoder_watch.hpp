@@ -15,6 +15,13 @@ namespace offnominal {
 
 inline constexpr std::size_t kEncoderLag = 8;  // ticks over which a stop is judged
 
+// How long a joint stands while another one moves, samples: now, and at most at an earlier time
+// without a fault. It ends when the joint moves.
+struct Standing {
+  std::uint32_t alone = 0;
+  std::uint32_t longest_alone = 0;
+};
+
 // What is seen of one joint's positions. Plain data.
 template <typename Scalar>
 struct EncoderWatch {
@@ -24,9 +31,11 @@ struct EncoderWatch {
   std::uint8_t window_ticks = 0;  // since the windows of the largest were moved on
   std::uint32_t filled = 0;       // samples in a row, up to the largest number
   std::uint32_t still = 0;        // samples in a row with the same position
+  Standing exact;                 // with the same position
+  Standing slow;                  // with nearly the same: what is held gives way a little
   bool stopped_at_once = false;   // within one tick; while `stopped`
   bool stopped = false;           // too hard for a joint; until it moves again
-  bool moved = false;             // at all, since the watch began
+  std::uint32_t steps = 0;        // other than 0, since the watch began, up to the largest number
   Scalar last_step{};             // the last that was not 0
   // Largest second difference over one tick and over the lag, and largest way over the lag: of this
   // window, of the one before, and of all before that.
@@ -41,6 +50,7 @@ struct EncoderWatch {
 namespace detail {
 
 inline constexpr std::uint32_t kEncoderWarmUp = 200;  // samples
+inline constexpr std::uint32_t kStepsWarmUp = 100;    // of them, with another position
 
 // A second difference this many times larger than any before is no motion.
 template <typename Scalar>
@@ -64,18 +74,24 @@ void move_on(std::array<Scalar, 3>& largest, Scalar kept) {
   largest[0] = Scalar(0);
 }
 
-// Whether the newest second difference takes the candidate back: then it was a jump.
+// Whether the newest second difference takes the candidate back: then it was a jump. Beyond what
+// any force does to a joint, which is the way of a tick or two, that is enough. A smaller one has
+// to leave the joint moving as it moved before, which no knock does.
 template <typename Scalar>
-void judge_jump(EncoderWatch<Scalar>& watch, Scalar second, bool warm) {
+void judge_jump(EncoderWatch<Scalar>& watch, Scalar step, Scalar second, bool warm) {
   const Scalar size = Eigen::numext::abs(watch.candidate);
-  if (size > 0 && Eigen::numext::abs(second + watch.candidate) < Scalar(0.3) * size) {
-    watch.jump = watch.candidate;
-    watch.since_jump = 0;
+  if (size > 0) {
+    const Scalar rest = Eigen::numext::abs(second + watch.candidate);
+    const Scalar steps = 3 * watch.way[2] / static_cast<Scalar>(kEncoderLag);
+    const Scalar usual = 2 * watch.jerk[2];
+    const bool goes_on = rest < usual && Eigen::numext::abs(step) > usual;
+    if (goes_on || (size > steps && rest < Scalar(0.3) * size)) {
+      watch.jump = watch.candidate;
+      watch.since_jump = 0;
+    }
   }
-  // Of a joint that is stopped by force too: no more than the way of a tick or two.
-  const Scalar steps = 3 * watch.way[2] / static_cast<Scalar>(kEncoderLag);
-  const bool beyond = warm && Eigen::numext::abs(second) >
-                                  std::max(2 * kBeyondMotion<Scalar> * watch.jerk[2], steps);
+  const bool beyond =
+      warm && Eigen::numext::abs(second) > 2 * kBeyondMotion<Scalar> * watch.jerk[2];
   watch.candidate = beyond && watch.since_jump > 0 ? second : Scalar(0);
 }
 
@@ -84,7 +100,6 @@ void judge_stop(EncoderWatch<Scalar>& watch, Scalar step, bool warm) {
   if (step != 0) {
     watch.last_step = step;
     watch.still = 0;
-    watch.moved = true;
     watch.stopped = watch.stopped_at_once = false;
     return;
   }
@@ -113,10 +128,12 @@ void look_at(EncoderWatch<Scalar>& watch, Scalar q, bool gap) {
   watch.filled += watch.filled < ~std::uint32_t{0} ? 1U : 0U;
   watch.since_jump += watch.since_jump < ~std::uint32_t{0} ? 1U : 0U;
   if (watch.filled < 3) return;
-  const bool warm = watch.filled > detail::kEncoderWarmUp;
   const Scalar step = q - last;
+  watch.steps += step != 0 && watch.steps < ~std::uint32_t{0} ? 1U : 0U;
+  // Of a joint that stands, one count of its encoder would be beyond all motion.
+  const bool warm = watch.filled > detail::kEncoderWarmUp && watch.steps > detail::kStepsWarmUp;
   const Scalar second = step - (last - position_before(watch, 2));
-  detail::judge_jump(watch, second, warm);
+  detail::judge_jump(watch, step, second, warm);
   detail::widen(watch.jerk, second);
   if (watch.filled > 2 * kEncoderLag) {
     detail::judge_stop(watch, step, warm);
@@ -129,6 +146,24 @@ void look_at(EncoderWatch<Scalar>& watch, Scalar q, bool gap) {
   detail::move_on(watch.jerk, Scalar(0.999));
   detail::move_on(watch.stop, Scalar(0.999));
   detail::move_on(watch.way, Scalar(0.999));
+}
+
+// Slower than it is at its fastest by so much that it may be held.
+template <typename Scalar>
+[[nodiscard]] bool is_slow(const EncoderWatch<Scalar>& watch) {
+  const Scalar way = watch.q[watch.newest] - detail::position_before(watch, kEncoderLag);
+  return Eigen::numext::abs(way) <= watch.way[2] / 50;
+}
+
+// Takes one sample. `healthy`: no fault is known yet; a time counts for the longest when it has
+// ended.
+inline void count_alone(Standing& standing, bool stands, bool others_move, bool healthy) {
+  if (stands) {
+    standing.alone += others_move ? 1U : 0U;
+    return;
+  }
+  if (healthy) standing.longest_alone = std::max(standing.longest_alone, standing.alone);
+  standing.alone = 0;
 }
 
 }  // namespace offnominal

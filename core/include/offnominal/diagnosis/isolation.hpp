@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <offnominal/diagnosis/isolation_config.hpp>
+#include <offnominal/diagnosis/isolation_size.hpp>
 #include <offnominal/diagnosis/isolation_state.hpp>
 #include <offnominal/diagnosis/isolation_verdict.hpp>
 #include <offnominal/monitor.hpp>
@@ -48,13 +49,13 @@ class Isolation {
   void reset(State& state) const {
     state.started = false;
     state.newest = state.filled = state.pending = 0;
-    const std::size_t count = thresholds_.size();
+    const std::size_t count = scales_.thresholds.size();
     size_for(count, state.baselines, state.encoders, state.joints);
     for (std::size_t i = 0; i < count; ++i) {
       state.encoders[i] = {};
       state.baselines[i] = {};
-      const Scalar third = thresholds_[i] / 3;
-      state.baselines[i].variance = {third * third, thresholds_[i] * thresholds_[i]};
+      const Scalar third = scales_.thresholds[i] / 3;
+      state.baselines[i].variance = {third * third, scales_.thresholds[i] * scales_.thresholds[i]};
       state.baselines[i].correlation = Scalar(0.5);
     }
     forget(state);
@@ -68,11 +69,9 @@ class Isolation {
     const bool gap = !state.started || tick != state.tick + 1;
     state.tick = tick;
     state.started = true;
-    for (std::size_t i = 0; i < state.encoders.size(); ++i) {
-      look_at(state.encoders[i], sample.q[static_cast<Eigen::Index>(i)], gap);
-    }
+    watch_encoders(sample, gap, state);
     const IsolationInstant<N, Scalar> at =
-        isolation_instant<N, Scalar>(model, sample, output, config_.sign_width);
+        isolation_instant<N, Scalar>(model, sample, output, scales_.friction);
     bool ended = false;
     if (gap) {
       begin_block(at, state.block);
@@ -95,6 +94,19 @@ class Isolation {
   }
 
  private:
+  static void watch_encoders(const Sample& sample, bool gap, State& state) {
+    std::size_t moving = 0;
+    for (std::size_t i = 0; i < state.encoders.size(); ++i) {
+      look_at(state.encoders[i], sample.q[static_cast<Eigen::Index>(i)], gap);
+      if (!is_slow(state.encoders[i])) ++moving;
+    }
+    for (EncoderWatch<Scalar>& watch : state.encoders) {
+      const bool slow = is_slow(watch);
+      const bool others_move = moving > (slow ? 0U : 1U);
+      count_alone(watch.exact, watch.still > 0, others_move, !state.triggered);
+      count_alone(watch.slow, slow, others_move, !state.triggered);
+    }
+  }
   static std::uint16_t ticks_of(Scalar seconds, Scalar period_s) {
     const Scalar ticks = std::clamp(seconds / period_s, Scalar(1), Scalar(10000));
     return static_cast<std::uint16_t>(ticks + Scalar(0.5));
@@ -102,14 +114,14 @@ class Isolation {
 
   void set_scales(const MonitorConfig<N, Scalar, TorqueSpace>& watched) {
     const std::size_t count = watched.chain.joints.size();
-    size_for(count, thresholds_);
+    size_for(count, scales_.thresholds);
     scales_.own.resize(kOwnRegressors, static_cast<Eigen::Index>(count));
     Scalar mass{};
     for (std::size_t i = 0; i < count; ++i) {
       const Joint<Scalar>& joint = watched.chain.joints[i];
       const JointBound<Scalar>& bound = watched.bound.joints[i];
       const Scalar threshold = largest_value(bound) + 2 * alpha_ * bound.momentum_error;
-      thresholds_[i] = threshold;
+      scales_.thresholds[i] = threshold;
       const Scalar torque = static_cast<Scalar>(kPriorTorque) * threshold;
       constexpr Scalar kFast = Scalar(100);  // no speed limit
       const Scalar speed = joint.max_velocity < kFast ? joint.max_velocity : Scalar(1);
@@ -121,12 +133,26 @@ class Isolation {
     constexpr Scalar kDistanceM = Scalar(0.15);  // of a payload from the last joint
     scales_.tip.setConstant(kShareOfMass * mass * kDistanceM);
     scales_.tip[0] = kShareOfMass * mass;
+    scales_.friction = known_friction<N, Scalar>(watched.chain, config_.sign_width);
+    scales_.last_mass = watched.chain.joints[count - 1].mass_kg + payload_of(watched.chain);
+  }
+
+  // Point masses that the model has beside the last link, kg.
+  static Scalar payload_of(const Chain<N, Scalar>& chain) {
+    Scalar mass{};
+    for (const Effect<Scalar>& effect : chain.effects.view()) {
+      const bool is_mass =
+          effect.kind == EffectKind::kTipPayload || effect.kind == EffectKind::kLinkMass;
+      if (is_mass && effect.joint + 1U == chain.joints.size()) mass += effect.parameters[0];
+    }
+    return mass;
   }
 
   static void forget(State& state) {
     state.triggered = false;
     state.pending = 0;
     state.blocks = 0;
+    state.moved = 0;
     for (JointEvidence<Scalar>& joint : state.joints) joint = {};
     state.tip = {};
     state.diagnosis = {};
@@ -162,8 +188,11 @@ class Isolation {
     state.newest = static_cast<std::uint8_t>((state.newest + 1U) % kIsolationBlocks);
     IsolationBlock<N, Scalar>& place = state.ring[state.newest];
     if (state.filled == kIsolationBlocks && !state.triggered) {
-      for (std::size_t i = 0; i < thresholds_.size(); ++i) {
-        const Scalar floor = Scalar(0.03) * thresholds_[i];
+      for (std::size_t i = 0; i < scales_.thresholds.size(); ++i) {
+        Scalar& told = state.baselines[i].largest_told;
+        told = std::max(
+            told, Eigen::numext::abs(place.own(kTorqueRegressor, static_cast<Eigen::Index>(i))));
+        const Scalar floor = Scalar(0.03) * scales_.thresholds[i];
         learn(state.baselines[i], scaled(place, i), place.torque[static_cast<Eigen::Index>(i)],
               is_still(place, i), kept_, floor * floor);
       }
@@ -192,7 +221,7 @@ class Isolation {
       best = score;
       state.pending = static_cast<std::uint8_t>(blocks);
     }
-    for (std::size_t i = 0; i < thresholds_.size() && state.pending < state.filled; ++i) {
+    for (std::size_t i = 0; i < scales_.thresholds.size() && state.pending < state.filled; ++i) {
       const IsolationBlock<N, Scalar>& block = block_before(state, state.pending);
       state.joints[i].last_rest = rest_at(block, i, state).rest;
       state.joints[i].last_deviation = deviation_at(block, i, state);
@@ -207,7 +236,12 @@ class Isolation {
     // In the first block the fault may have begun at any time.
     const bool first = state.blocks++ == 0;
     if (first) return;
-    for (std::size_t i = 0; i < thresholds_.size(); ++i) take_joint(block, i, state);
+    bool moved = false;
+    for (std::size_t i = 0; i < scales_.thresholds.size(); ++i) {
+      take_joint(block, i, state);
+      moved = moved || !is_still(block, i);
+    }
+    state.moved += moved ? 1U : 0U;
     detail::follow_contacts(state);
   }
 
@@ -231,32 +265,38 @@ class Isolation {
     const bool still = is_still(block, joint);
     const Scalar share = still || state.blocks == 2 ? kNextToOnset : config_.relative_error;
     const Scalar off = share * now.rest;
-    const Scalar noise = deviation * (deviation - 2 * lasts * before) + before * before +
-                         (1 - lasts * lasts) * off * off +
-                         (1 - correlation) * (1 - correlation) * now.variance;
+    const Scalar changed = correlation * (off - seen.last_off);
+    // What its friction holds of whatever acts on a joint that stands nobody knows; and it holds
+    // the same for as long.
+    const Scalar holds = still ? scales_.friction[joint].holding : Scalar(0);
+    const Scalar lasting = still ? kBlocksOfARest : Scalar(1);
+    const Scalar error = deviation * (deviation - 2 * lasts * before) + before * before +
+                         (1 - lasts * lasts) * off * off + changed * changed + holds * holds;
+    const Scalar noise = lasting * error + (1 - correlation) * (1 - correlation) * now.variance;
     const Scalar prior = scales_.own(kOneRegressor, column);
+    const Scalar weight = 1 / noise;
+    take(seen.own, Vector<kOwnRegressors, Scalar>(own - correlation * seen.last_own), whitened,
+         weight);
+    take(state.tip, Vector<kTipParameters, Scalar>(tip - correlation * seen.last_tip), whitened,
+         weight);
+    take(seen.any, whitened, noise, correlation, contact_kept_, prior * prior);
+    if (Eigen::numext::abs(seen.any.torque) > Eigen::numext::abs(seen.largest)) {
+      seen.largest = seen.any.torque;
+    }
+    seen.largest_own = seen.largest_own.cwiseMax(own.cwiseAbs());
+    seen.squares += weight * whitened * whitened;
     if (still) {
-      // Whatever acts on it beside the model, its dry friction takes: which fault moves a joint it
-      // does not say, but that something holds this one.
       take(seen.held, whitened, noise, correlation, contact_kept_, prior * prior);
       if (Eigen::numext::abs(now.rest) > Eigen::numext::abs(seen.largest_held)) {
         seen.largest_held = now.rest;
       }
     } else {
-      const Scalar weight = 1 / noise;
-      take(seen.own, Vector<kOwnRegressors, Scalar>(own - correlation * seen.last_own), whitened,
-           weight);
-      take(state.tip, Vector<kTipParameters, Scalar>(tip - correlation * seen.last_tip), whitened,
-           weight);
-      take(seen.any, whitened, noise, correlation, contact_kept_, prior * prior);
-      if (Eigen::numext::abs(seen.any.torque) > Eigen::numext::abs(seen.largest)) {
-        seen.largest = seen.any.torque;
-      }
-      seen.squares += weight * whitened * whitened;
       seen.speed_sum += Eigen::numext::abs(block.own(kVelocityRegressor, column));
+      ++seen.moved;
     }
     seen.last_rest = now.rest;
-    seen.last_deviation = deviation;
+    seen.last_off = off;
+    seen.last_deviation = std::sqrt(deviation * deviation + holds * holds);
     seen.last_own = own;
     seen.last_tip = tip;
   }
@@ -265,9 +305,10 @@ class Isolation {
     const auto since = static_cast<Scalar>(state.tick - state.detection_tick) * period_s_;
     constexpr Scalar kStillS = Scalar(0.1);
     const Scalar looked_back = static_cast<Scalar>(kIsolationBlocks * block_ticks_) * period_s_;
-    const auto odd_after = static_cast<std::uint32_t>(kStillS / period_s_);
-    const auto within = static_cast<std::uint32_t>((since + looked_back) / period_s_);
-    const Contest<Scalar> contest = detail::contest_of(state, scales_, odd_after, within);
+    const EncoderTimes<Scalar> times{static_cast<std::uint32_t>(kStillS / period_s_),
+                                     static_cast<std::uint32_t>((since + looked_back) / period_s_),
+                                     config_.baseline_s / period_s_};
+    const Contest<Scalar> contest = detail::contest_of(state, scales_, times);
     const auto measure = detail::measure_of(state, scales_, contest.kind, contest.joint);
     FaultDiagnosis<Scalar>& diagnosis = state.diagnosis;
     diagnosis.kind = contest.kind;
@@ -283,12 +324,17 @@ class Isolation {
     const Scalar whole = std::max(squares - expected, Scalar(1));
     diagnosis.unexplained =
         std::clamp((squares - expected - measure.explained) / whole, Scalar(0), Scalar(1));
-    const bool is_clear = diagnosis.confidence >= config_.confidence && since >= config_.least_s;
-    diagnosis.decided = is_clear || since >= config_.limit_s;
+    // That nothing fits may change as long as there is more to come.
+    const bool is_clear = diagnosis.kind != FaultKind::kUnknown &&
+                          diagnosis.confidence >= config_.confidence && since >= config_.least_s;
+    // An arm that stands says little more, however long it does.
+    const Scalar moved = static_cast<Scalar>(state.moved * block_ticks_) * period_s_;
+    diagnosis.decided = is_clear || std::min(moved, since) >= config_.limit_s;
   }
 
-  static constexpr Scalar kStillWidths = Scalar(4);    // smooth_sign() is 1 from there on
-  static constexpr Scalar kNextToOnset = Scalar(0.5);  // relative error
+  static constexpr Scalar kStillWidths = Scalar(4);     // smooth_sign() is 1 from there on
+  static constexpr Scalar kBlocksOfARest = Scalar(10);  // that say as much as one
+  static constexpr Scalar kNextToOnset = Scalar(0.5);   // relative error
 
   IsolationConfig<Scalar> config_{};
   Scalar alpha_{};
@@ -297,7 +343,6 @@ class Isolation {
   Scalar contact_kept_{};  // of an arbitrary torque
   std::uint16_t block_ticks_ = 1;
   IsolationScales<N, Scalar> scales_{};
-  PerJoint<N, Scalar> thresholds_{};  // largest of each joint, N m or N
 };
 
 }  // namespace offnominal

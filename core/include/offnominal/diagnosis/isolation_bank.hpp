@@ -22,6 +22,8 @@ namespace offnominal {
 // A usual size of a fault, in units of the joint's largest threshold; of a lost torque, as a share.
 inline constexpr double kPriorTorque = 1.5;
 inline constexpr double kPriorShare = 0.3;
+// How many times as large a large one is.
+inline constexpr double kLargeFault = 5;
 // How much smaller what the model lacks without a fault is: the threshold covers it.
 inline constexpr double kPriorBaseline = 0.2;
 
@@ -47,10 +49,12 @@ struct RegressionFit {
   Scalar evidence{};   // nats, against nothing
 };
 
+// With parameters of N(0, width^2).
 template <int Size, typename Scalar>
-[[nodiscard]] RegressionFit<Size, Scalar> fit_of(const Regression<Size, Scalar>& sums) {
+[[nodiscard]] RegressionFit<Size, Scalar> fit_with(const Regression<Size, Scalar>& sums,
+                                                   Scalar width) {
   Matrix<Size, Size, Scalar> information = sums.gram;
-  for (int i = 0; i < Size; ++i) information(i, i) += Scalar(1);
+  for (int i = 0; i < Size; ++i) information(i, i) += 1 / (width * width);
   Matrix<Size, Size, Scalar> factor;
   RegressionFit<Size, Scalar> fit;
   if (!cholesky<Size, Scalar>(information, factor)) return fit;
@@ -59,13 +63,25 @@ template <int Size, typename Scalar>
   Scalar log_root{};
   for (int i = 0; i < Size; ++i) {
     fit.explained += sums.product[i] * fit.theta[i];
-    log_root += std::log(factor(i, i));
+    log_root += std::log(width * factor(i, i));
     Vector<Size, Scalar> unit = Vector<Size, Scalar>::Zero();
     unit[i] = Scalar(1);
     solve_in_place<Size, Scalar>(factor, unit);
     fit.covariance.col(i) = unit;
   }
   fit.evidence = fit.explained / 2 - log_root;
+  return fit;
+}
+
+// Nobody knows how large a fault is: the better of a usual size and a large one, half of the time
+// each.
+template <int Size, typename Scalar>
+[[nodiscard]] RegressionFit<Size, Scalar> fit_of(const Regression<Size, Scalar>& sums) {
+  constexpr auto kHalf = static_cast<Scalar>(-0.6931471805599453);  // log(1/2)
+  const RegressionFit<Size, Scalar> usual = fit_with(sums, Scalar(1));
+  const RegressionFit<Size, Scalar> large = fit_with(sums, static_cast<Scalar>(kLargeFault));
+  RegressionFit<Size, Scalar> fit = large.evidence > usual.evidence ? large : usual;
+  fit.evidence += kHalf;
   return fit;
 }
 
@@ -100,6 +116,7 @@ struct JointBaseline {
   Scalar
       correlation{};  // of the rests of two blocks that follow each other, each over its deviation
   Scalar last{};      // rest of the block before over its deviation
+  Scalar largest_told{};  // torque of the drive, by size, N m or N
 };
 
 // What the baseline says of the next block.

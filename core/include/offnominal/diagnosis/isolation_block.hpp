@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <offnominal/diagnosis/known_friction.hpp>
 #include <offnominal/model/smooth_sign.hpp>
 #include <offnominal/model/tip_body.hpp>
 #include <offnominal/monitor.hpp>
@@ -54,13 +55,15 @@ struct IsolationInstant {
 template <int N, typename Scalar>
 [[nodiscard]] IsolationInstant<N, Scalar> isolation_instant(
     const RigidBodyModel<N, Scalar>& model, const JointSample<N, Scalar>& sample,
-    const MonitorOutput<N, Scalar, TorqueSpace>& output, Scalar sign_width) {
+    const MonitorOutput<N, Scalar, TorqueSpace>& output,
+    const PerJoint<N, KnownFriction<Scalar>>& friction) {
   IsolationInstant<N, Scalar> at;
   at.residual = output.error;
   at.psi_hat = output.psi_hat;
   at.own.resize(kOwnRegressors, sample.dq.size());
   for (Eigen::Index i = 0; i < sample.dq.size(); ++i) {
-    at.own(kSignRegressor, i) = -smooth_sign(sample.dq[i], sign_width);
+    at.own(kSignRegressor, i) =
+        -smooth_sign(sample.dq[i], friction[static_cast<std::size_t>(i)].width);
     at.own(kVelocityRegressor, i) = -sample.dq[i];
     at.own(kTorqueRegressor, i) = -sample.tau[i];
     at.own(kOneRegressor, i) = Scalar(1);

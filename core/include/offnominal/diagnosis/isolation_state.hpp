@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -41,9 +43,13 @@ struct JointEvidence {
   Scalar contact{};
   bool contact_ended = false;  // before now
   Scalar squares{};            // of what is seen, each over its variance
-  Scalar speed_sum{};          // of the blocks, rad/s or m/s
-  Scalar last_rest{};          // of the block before
-  Scalar last_deviation{};     // of the model's own error in it
+  // By size, of each regressor, scaled.
+  Vector<kOwnRegressors, Scalar> largest_own = Vector<kOwnRegressors, Scalar>::Zero();
+  Scalar speed_sum{};       // of the blocks in which it moves, rad/s or m/s
+  std::uint32_t moved = 0;  // number of those
+  Scalar last_rest{};       // of the block before
+  Scalar last_off{};        // by which a hypothesis may be off and still be right, in it
+  Scalar last_deviation{};  // of the model's own error in it
   Vector<kOwnRegressors, Scalar> last_own = Vector<kOwnRegressors, Scalar>::Zero();
   Vector<kTipParameters, Scalar> last_tip = Vector<kTipParameters, Scalar>::Zero();
 };
@@ -65,9 +71,17 @@ struct IsolationState {
   bool triggered = false;  // by a detection
   std::uint64_t detection_tick = 0;
   std::uint32_t blocks = 0;  // that the evidence has taken
+  std::uint32_t moved = 0;   // of them, those in which some joint moved
   PerJoint<N, JointEvidence<Scalar>> joints{};
   Regression<kTipParameters, Scalar> tip;
   FaultDiagnosis<Scalar> diagnosis;
 };
+
+// Of the blocks in which the joint moved, rad/s or m/s.
+template <int N, typename Scalar>
+[[nodiscard]] Scalar mean_speed(const IsolationState<N, Scalar>& state, std::size_t joint) {
+  const JointEvidence<Scalar>& seen = state.joints[joint];
+  return seen.speed_sum / static_cast<Scalar>(std::max(seen.moved, std::uint32_t{1}));
+}
 
 }  // namespace offnominal

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <offnominal/diagnosis/isolation_scales.hpp>
 #include <offnominal/diagnosis/isolation_state.hpp>
 
 // Which hypothesis the evidence speaks for. Each has a prior probability and the evidence of its
@@ -13,11 +15,13 @@
 
 namespace offnominal {
 
-// Sizes that turn scaled parameters into units; constants of a robot.
-template <int N, typename Scalar>
-struct IsolationScales {
-  OwnValues<N, Scalar> own = no_values<OwnValues<N, Scalar>>();
-  Vector<kTipParameters, Scalar> tip = Vector<kTipParameters, Scalar>::Ones();
+// Of encoders, in samples.
+template <typename Scalar>
+struct EncoderTimes {
+  std::uint32_t odd_after = 0;  // of a position that does not change while others do
+  std::uint32_t within = 0;     // since the earliest event that counts
+  Scalar history{};             // that a joint has to be known for
+  std::uint32_t standing = 1;   // joints that stand oddly
 };
 
 // The best of the hypotheses and the sum over all, in one way through them.
@@ -50,7 +54,8 @@ inline constexpr double kPriorOffset = 0.05;
 inline constexpr double kPriorPayload = 0.2;
 inline constexpr double kPriorContact = 0.2;
 inline constexpr double kPriorUnknown = 0.01;
-inline constexpr double kPriorNothing = 0.04;
+// That nothing is to be seen of it yet, in odds: before there is evidence, no kind is named.
+inline constexpr double kPriorNothing = 1;
 // A hypothesis has to explain at least this share of what an arbitrary torque on each joint does.
 inline constexpr double kLeastExplained = 0.7;
 // Nats that a contact loses by going on, from which it is taken for over.
@@ -58,35 +63,61 @@ inline constexpr double kOver = 5;
 // Nats that an event of the encoder brings: what no motion does, and what is merely odd.
 inline constexpr double kImpossible = 15;
 inline constexpr double kOdd = -3;
+inline constexpr double kNeverBefore = 1;  // and more, the longer the joint is known
 inline constexpr double kWithinOneTick = 2;
+inline constexpr double kNotACount = 2;
+inline constexpr double kForced = 8;
 
-// What the encoder of a joint says: nats for one that sticks and for a joint that is locked, or
-// none of either.
+// What the encoder of a joint says: nats for one that sticks and for a joint that is locked, each
+// where it is there at all.
 template <typename Scalar>
 struct StopEvidence {
-  bool is_there = false;
+  bool may_stick = false;
+  bool may_lock = false;
   Scalar stuck{};
   Scalar locked{};
 };
 
-template <int N, typename Scalar>
-[[nodiscard]] StopEvidence<Scalar> stop_evidence(const IsolationState<N, Scalar>& state,
-                                                 std::size_t joint, std::uint32_t odd_after,
-                                                 std::uint32_t within) {
-  const EncoderWatch<Scalar>& watch = state.encoders[joint];
-  if (watch.still < kEncoderLag || !watch.moved) return {};
-  if (watch.stopped) {
+// That a joint stands for long while others move, and began to with the fault.
+template <typename Scalar>
+[[nodiscard]] bool stands_oddly(const Standing& standing, const EncoderTimes<Scalar>& times) {
+  return standing.alone >= times.odd_after && standing.alone <= times.within;
+}
+
+// Nats of that: little, unless it is the only one that does and never stood for so long before.
+template <typename Scalar>
+[[nodiscard]] Scalar standing_evidence(const Standing& standing, std::uint32_t known_for,
+                                       const EncoderTimes<Scalar>& times) {
+  if (times.standing > 1 || standing.alone <= 2 * standing.longest_alone) {
+    return static_cast<Scalar>(kOdd);
+  }
+  constexpr auto kLonger = static_cast<Scalar>(3);  // at most, that it goes on
+  const Scalar longer = static_cast<Scalar>(standing.alone) /
+                            static_cast<Scalar>(standing.longest_alone + times.odd_after) -
+                        1;
+  return static_cast<Scalar>(kNeverBefore) +
+         std::log1p(static_cast<Scalar>(known_for) / times.history) +
+         std::clamp(longer, Scalar(0), kLonger);
+}
+
+template <typename Scalar>
+[[nodiscard]] StopEvidence<Scalar> stop_evidence(const EncoderWatch<Scalar>& watch,
+                                                 const EncoderTimes<Scalar>& times) {
+  if (watch.steps == 0) return {};
+  if (watch.stopped && watch.still >= kEncoderLag) {
     const auto sooner =
         static_cast<Scalar>(watch.stopped_at_once ? kWithinOneTick : -kWithinOneTick);
-    return {true, static_cast<Scalar>(kImpossible) + sooner,
+    return {true, true, static_cast<Scalar>(kImpossible) + sooner,
             static_cast<Scalar>(kImpossible) - sooner};
   }
-  bool others_move = false;
-  for (std::size_t i = 0; i < state.encoders.size(); ++i) {
-    others_move = others_move || (i != joint && state.encoders[i].still < kEncoderLag);
-  }
-  if (!others_move || watch.still < odd_after || watch.still > within) return {};
-  return {true, static_cast<Scalar>(kOdd), static_cast<Scalar>(kOdd)};
+  StopEvidence<Scalar> stop;
+  stop.may_stick = stands_oddly(watch.exact, times);
+  stop.may_lock = stands_oddly(watch.slow, times);
+  if (stop.may_stick) stop.stuck = standing_evidence(watch.exact, watch.filled, times);
+  if (stop.may_lock) stop.locked = standing_evidence(watch.slow, watch.filled, times);
+  // What is locked gives way under a torque that changes, by a count of a fine encoder.
+  if (stop.may_stick) stop.locked -= static_cast<Scalar>(kNotACount);
+  return stop;
 }
 
 template <typename Scalar>
@@ -140,67 +171,147 @@ void enter_contacts(const IsolationState<N, Scalar>& state, Contest<Scalar>& con
                 all - std::log(ends) + log_prior<Scalar>(kPriorContact, count));
 }
 
-// Friction is dry, or dry and viscous. Less of it than the model says is rarer than more.
+// Nats that a size costs which is beyond what there can be, `most`: the size that is possible fits
+// worse by so many.
 template <typename Scalar>
-void enter_own(const JointEvidence<Scalar>& joint, std::size_t index, std::size_t count,
-               Contest<Scalar>& contest) {
+[[nodiscard]] Scalar beyond(Scalar size, Scalar most, Scalar variance) {
+  constexpr auto kTolerance = static_cast<Scalar>(1.1);
+  const Scalar off = size - kTolerance * most;
+  return off > 0 ? -off * off / (2 * variance) : Scalar(0);
+}
+
+// Whether a joint's friction, the model's and `more`, N m or N, holds it against a torque.
+template <int N, typename Scalar>
+[[nodiscard]] bool holds(Scalar torque, Scalar more, std::size_t joint,
+                         const IsolationScales<N, Scalar>& scales) {
+  constexpr auto kUncertain = static_cast<Scalar>(1.5);
+  return Eigen::numext::abs(torque) < kUncertain * (more + scales.friction[joint].holding);
+}
+
+// Of the evidence for a hypothesis what counts where its torque on a joint, at most `largest`, was
+// never near the threshold that was crossed: an error of the model, not the fault.
+template <int N, typename Scalar>
+[[nodiscard]] Scalar of_alarm(Scalar evidence, Scalar largest,
+                              const IsolationScales<N, Scalar>& scales, std::size_t joint) {
+  constexpr auto kNear = static_cast<Scalar>(0.05);
+  constexpr auto kMost = static_cast<Scalar>(10);  // nats against it
+  const Scalar least = kNear * scales.thresholds[joint];
+  const Scalar torque = Eigen::numext::abs(largest);
+  if (!(torque < least)) return evidence;
+  const Scalar share = std::max(2 * torque / least - 1, Scalar(0));
+  return share * evidence - (1 - share) * kMost;
+}
+
+// Friction is dry, or dry and viscous. Less of it than the model says is rarer than more, and not
+// less than none.
+template <int N, typename Scalar>
+void enter_friction(const IsolationState<N, Scalar>& state,
+                    const IsolationScales<N, Scalar>& scales, std::size_t index,
+                    Contest<Scalar>& contest) {
+  const JointEvidence<Scalar>& joint = state.joints[index];
   const auto dry = fit_of(part_of<kSignRegressor>(joint.own));
   const auto both = fit_of(part_of<kSignRegressor, kVelocityRegressor>(joint.own));
   const double prior = kPriorFriction / (dry.theta[0] < 0 ? 6 : 2);
-  contest.enter(FaultKind::kFriction, index,
-                log_sum(dry.evidence, both.evidence) + log_prior<Scalar>(prior, count));
-  contest.enter(FaultKind::kLostTorque, index,
-                fit_of(part_of<kTorqueRegressor>(joint.own)).evidence +
-                    log_prior<Scalar>(kPriorLostTorque, count));
+  const Scalar scale = scales.own(kSignRegressor, static_cast<Eigen::Index>(index));
+  const KnownFriction<Scalar>& known = scales.friction[index];
+  const Scalar most = known.dry + known.viscous * mean_speed(state, index);
+  const Scalar evidence = log_sum(dry.evidence, both.evidence) +
+                          beyond(-scale * dry.theta[0], most, scale * scale * dry.covariance(0, 0));
+  const Scalar largest = dry.theta[0] * joint.largest_own[kSignRegressor];
   contest.enter(
-      FaultKind::kOffset, index,
-      fit_of(part_of<kOneRegressor>(joint.own)).evidence + log_prior<Scalar>(kPriorOffset, count));
+      FaultKind::kFriction, index,
+      of_alarm(evidence, largest, scales, index) + log_prior<Scalar>(prior, state.joints.size()));
 }
 
-// More friction holds a joint that stands still against what is not much more than it.
+// No drive loses more than all of its torque.
+template <int N, typename Scalar>
+void enter_drive(const IsolationState<N, Scalar>& state, const IsolationScales<N, Scalar>& scales,
+                 std::size_t index, Contest<Scalar>& contest) {
+  const std::size_t count = state.joints.size();
+  const JointEvidence<Scalar>& joint = state.joints[index];
+  const auto lost = fit_of(part_of<kTorqueRegressor>(joint.own));
+  const Scalar scale = scales.own(kTorqueRegressor, static_cast<Eigen::Index>(index));
+  const Scalar evidence = lost.evidence + beyond(scale * lost.theta[0], Scalar(1),
+                                                 scale * scale * lost.covariance(0, 0));
+  const Scalar largest = lost.theta[0] * joint.largest_own[kTorqueRegressor];
+  contest.enter(
+      FaultKind::kLostTorque, index,
+      of_alarm(evidence, largest, scales, index) + log_prior<Scalar>(kPriorLostTorque, count));
+  const auto offset = fit_of(part_of<kOneRegressor>(joint.own));
+  const Scalar constant = offset.theta[0] * joint.largest_own[kOneRegressor];
+  contest.enter(
+      FaultKind::kOffset, index,
+      of_alarm(offset.evidence, constant, scales, index) + log_prior<Scalar>(kPriorOffset, count));
+}
+
+// Of a payload that is lost no more than the last link has.
+template <int N, typename Scalar>
+void enter_payload(const IsolationState<N, Scalar>& state, const IsolationScales<N, Scalar>& scales,
+                   Contest<Scalar>& contest) {
+  const auto fit = fit_of(state.tip);
+  const Scalar scale = scales.tip[0];
+  contest.enter(
+      FaultKind::kPayload, state.joints.size() - 1,
+      fit.evidence +
+          beyond(-scale * fit.theta[0], scales.last_mass, scale * scale * fit.covariance(0, 0)) +
+          log_prior<Scalar>(kPriorPayload, 1));
+}
+
+// More friction holds a joint that stands, against no more than itself. `stands`: nats of that it
+// does.
 template <int N, typename Scalar>
 void enter_holding_friction(const IsolationState<N, Scalar>& state,
-                            const IsolationScales<N, Scalar>& scales, Contest<Scalar>& contest) {
-  constexpr auto kHolds = static_cast<Scalar>(1.5);
-  const std::size_t count = state.joints.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const JointEvidence<Scalar>& joint = state.joints[i];
-    const auto dry = fit_of(part_of<kSignRegressor>(joint.own));
-    const Scalar size = scales.own(kSignRegressor, static_cast<Eigen::Index>(i)) * dry.theta[0];
-    if (!(joint.held.evidence > 0) || !(Eigen::numext::abs(joint.largest_held) < kHolds * size))
-      continue;
-    contest.enter(
-        FaultKind::kFriction, i,
-        dry.evidence + joint.held.evidence + log_prior<Scalar>(kPriorFriction / 2, count));
-  }
+                            const IsolationScales<N, Scalar>& scales, std::size_t index,
+                            Scalar stands, Contest<Scalar>& contest) {
+  const JointEvidence<Scalar>& joint = state.joints[index];
+  const auto dry = fit_of(part_of<kSignRegressor>(joint.own));
+  const Scalar size = scales.own(kSignRegressor, static_cast<Eigen::Index>(index)) * dry.theta[0];
+  const Scalar more = std::max(joint.held.evidence, Scalar(0)) + std::max(stands, Scalar(0));
+  if (!(more > 0) || !(size > 0) || !holds(joint.largest_held, size, index, scales)) return;
+  contest.enter(FaultKind::kFriction, index,
+                dry.evidence + more + log_prior<Scalar>(kPriorFriction / 2, state.joints.size()));
 }
 
 // What an encoder says that sticks or jumps fits no model of the arm: it is as good as the best of
-// the others, `best`, and the event decides, with what is seen of the joint while it stands. A
-// locked joint is one that alone has an unknown torque; `chosen`: the evidence for any joints that
-// have one.
+// the others, `best`, and the event decides. A locked joint is one that alone has an unknown
+// torque; `chosen`: the evidence for any joints that have one.
 template <int N, typename Scalar>
-void enter_encoders(const IsolationState<N, Scalar>& state, Scalar chosen, Scalar best,
-                    std::uint32_t odd_after, std::uint32_t within, Contest<Scalar>& contest) {
-  for (std::size_t i = 0; i < state.joints.size(); ++i) {
-    if (state.encoders[i].since_jump <= within) {
-      contest.enter(FaultKind::kEncoderJump, i, best + static_cast<Scalar>(kImpossible));
-    }
-    const StopEvidence<Scalar> stop = stop_evidence(state, i, odd_after, within);
-    if (!stop.is_there) continue;
-    const Scalar held = std::max(state.joints[i].held.evidence, Scalar(0));
-    contest.enter(FaultKind::kEncoderStuck, i, best + stop.stuck + held);
-    contest.enter(FaultKind::kLockedJoint, i,
-                  best + stop.locked + held + state.joints[i].any.evidence - chosen);
+void enter_encoder(const IsolationState<N, Scalar>& state, const IsolationScales<N, Scalar>& scales,
+                   std::size_t index, Scalar chosen, Scalar best, const EncoderTimes<Scalar>& times,
+                   Contest<Scalar>& contest) {
+  const EncoderWatch<Scalar>& watch = state.encoders[index];
+  const JointEvidence<Scalar>& joint = state.joints[index];
+  if (watch.since_jump <= times.within) {
+    contest.enter(FaultKind::kEncoderJump, index, best + static_cast<Scalar>(kImpossible));
   }
+  const StopEvidence<Scalar> stop = stop_evidence(watch, times);
+  if (stop.may_stick) contest.enter(FaultKind::kEncoderStuck, index, best + stop.stuck);
+  // Held against more than any motion took: an encoder that sticks leaves the joint to run away,
+  // and the others to feel it.
+  const Scalar held = Eigen::numext::abs(joint.largest_held);
+  const bool forced = held > Scalar(1.5) * state.baselines[index].largest_told;
+  const Scalar locked = stop.locked + static_cast<Scalar>(forced ? kForced : 0.0);
+  enter_holding_friction(state, scales, index, stop.may_lock ? locked : Scalar(0), contest);
+  if (!stop.may_lock || (!stop.may_stick && held < scales.friction[index].holding)) return;
+  const Scalar alone = std::min(joint.any.evidence - chosen, Scalar(0));
+  contest.enter(FaultKind::kLockedJoint, index, best + locked + alone);
 }
 
-// Samples: `within` since the earliest event of an encoder that counts; `odd_after` of a position
-// that does not change while others do, which may be one that sticks.
+// Joints that stand although others move.
+template <int N, typename Scalar>
+[[nodiscard]] std::uint32_t standing_joints(const IsolationState<N, Scalar>& state,
+                                            const EncoderTimes<Scalar>& times) {
+  std::uint32_t standing = 0;
+  for (const EncoderWatch<Scalar>& watch : state.encoders) {
+    standing += stands_oddly(watch.slow, times) ? 1U : 0U;
+  }
+  return standing;
+}
+
 template <int N, typename Scalar>
 [[nodiscard]] Contest<Scalar> contest_of(const IsolationState<N, Scalar>& state,
                                          const IsolationScales<N, Scalar>& scales,
-                                         std::uint32_t odd_after, std::uint32_t within) {
+                                         EncoderTimes<Scalar> times) {
   const std::size_t count = state.joints.size();
   Contest<Scalar> contest;
   Scalar chosen{};    // any torque on some of the joints, until now
@@ -211,110 +322,21 @@ template <int N, typename Scalar>
     anything = std::max(anything, joint.contact);
   }
   anything = std::max(anything, chosen);
-  contest.enter(FaultKind::kUnknown, 0,
-                static_cast<Scalar>(kLeastExplained) * std::max(chosen, Scalar(0)) +
-                    log_prior<Scalar>(kPriorUnknown, 1));
-  contest.enter(FaultKind::kUnknown, 0, log_prior<Scalar>(kPriorNothing, 1));
-  contest.enter(FaultKind::kPayload, count - 1,
-                fit_of(state.tip).evidence + log_prior<Scalar>(kPriorPayload, 1));
+  const Scalar other = static_cast<Scalar>(kLeastExplained) * std::max(chosen, Scalar(0)) +
+                       log_prior<Scalar>(kPriorUnknown, 1);
+  contest.enter(FaultKind::kUnknown, 0, log_sum(other, log_prior<Scalar>(kPriorNothing, 1)));
+  enter_payload(state, scales, contest);
   enter_contacts(state, contest);
-  for (std::size_t i = 0; i < count; ++i) enter_own(state.joints[i], i, count, contest);
+  for (std::size_t i = 0; i < count; ++i) {
+    enter_friction(state, scales, i, contest);
+    enter_drive(state, scales, i, contest);
+  }
   const Scalar best = std::max(anything, contest.best);
-  enter_holding_friction(state, scales, contest);
-  enter_encoders(state, chosen, best, odd_after, within, contest);
+  times.standing = standing_joints(state, times);
+  for (std::size_t i = 0; i < count; ++i) {
+    enter_encoder(state, scales, i, chosen, best, times, contest);
+  }
   return contest;
-}
-
-// Size, deviation and what it explains of the squares, of the hypothesis that is told.
-template <int N, typename Scalar>
-struct Measure {
-  Scalar size{};
-  Scalar deviation{};
-  Scalar explained{};
-};
-
-// Of a hypothesis of one parameter among a joint's own.
-template <int Which, int N, typename Scalar>
-[[nodiscard]] Measure<N, Scalar> measure_of_one(const IsolationState<N, Scalar>& state,
-                                                const IsolationScales<N, Scalar>& scales,
-                                                std::size_t joint) {
-  const auto fit = fit_of(part_of<Which>(state.joints[joint].own));
-  const Scalar scale = scales.own(Which, static_cast<Eigen::Index>(joint));
-  return {scale * fit.theta[0], scale * std::sqrt(fit.covariance(0, 0)), fit.explained};
-}
-
-// Dry and viscous together, at the mean speed.
-template <int N, typename Scalar>
-[[nodiscard]] Measure<N, Scalar> measure_of_friction(const IsolationState<N, Scalar>& state,
-                                                     const IsolationScales<N, Scalar>& scales,
-                                                     std::size_t joint) {
-  const JointEvidence<Scalar>& seen = state.joints[joint];
-  const auto fit = fit_of(part_of<kSignRegressor, kVelocityRegressor>(seen.own));
-  const auto column = static_cast<Eigen::Index>(joint);
-  const Scalar speed =
-      seen.speed_sum / static_cast<Scalar>(std::max(state.blocks, std::uint32_t{1}));
-  const Scalar dry = scales.own(kSignRegressor, column);
-  const Scalar viscous = scales.own(kVelocityRegressor, column) * speed;
-  const Scalar variance = dry * dry * fit.covariance(0, 0) +
-                          2 * dry * viscous * fit.covariance(0, 1) +
-                          viscous * viscous * fit.covariance(1, 1);
-  return {dry * fit.theta[0] + viscous * fit.theta[1], std::sqrt(variance), fit.explained};
-}
-
-// Of any torque on the joints up to `last`: the largest.
-template <int N, typename Scalar>
-[[nodiscard]] Measure<N, Scalar> measure_of_torque(const IsolationState<N, Scalar>& state,
-                                                   std::size_t first, std::size_t last) {
-  Measure<N, Scalar> measure;
-  for (std::size_t i = first; i <= last; ++i) {
-    const JointEvidence<Scalar>& joint = state.joints[i];
-    measure.explained += joint.squares;
-    if (Eigen::numext::abs(joint.largest) <= Eigen::numext::abs(measure.size)) continue;
-    measure.size = joint.largest;
-    measure.deviation = std::sqrt(joint.any.variance);
-  }
-  return measure;
-}
-
-template <int N, typename Scalar>
-[[nodiscard]] Measure<N, Scalar> measure_of(const IsolationState<N, Scalar>& state,
-                                            const IsolationScales<N, Scalar>& scales,
-                                            FaultKind kind, std::size_t joint) {
-  const std::size_t last = state.joints.size() - 1;
-  switch (kind) {
-    case FaultKind::kFriction:
-      return measure_of_friction(state, scales, joint);
-    case FaultKind::kLostTorque:
-      return measure_of_one<kTorqueRegressor>(state, scales, joint);
-    case FaultKind::kOffset:
-      return measure_of_one<kOneRegressor>(state, scales, joint);
-    case FaultKind::kPayload: {
-      const auto fit = fit_of(state.tip);
-      return {scales.tip[0] * fit.theta[0], scales.tip[0] * std::sqrt(fit.covariance(0, 0)),
-              fit.explained};
-    }
-    case FaultKind::kContact:
-      return measure_of_torque(state, 0, joint);
-    case FaultKind::kLockedJoint: {
-      Measure<N, Scalar> measure = measure_of_torque(state, joint, joint);
-      const JointEvidence<Scalar>& seen = state.joints[joint];
-      if (Eigen::numext::abs(seen.largest_held) > Eigen::numext::abs(measure.size)) {
-        measure.size = seen.largest_held;
-        measure.deviation = std::sqrt(seen.held.variance);
-      }
-      return measure;
-    }
-    case FaultKind::kEncoderJump: {
-      Measure<N, Scalar> measure = measure_of_torque(state, 0, last);
-      measure.size = state.encoders[joint].jump;
-      measure.deviation = state.encoders[joint].jerk[2];
-      return measure;
-    }
-    case FaultKind::kEncoderStuck:
-    case FaultKind::kUnknown:
-      break;
-  }
-  return {Scalar(0), Scalar(0), measure_of_torque(state, 0, last).explained};
 }
 
 }  // namespace detail

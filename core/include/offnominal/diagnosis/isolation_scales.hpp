@@ -1,0 +1,21 @@
+#pragma once
+
+#include <limits>
+#include <offnominal/diagnosis/isolation_block.hpp>
+#include <offnominal/diagnosis/known_friction.hpp>
+#include <offnominal/vector.hpp>
+
+namespace offnominal {
+
+// Sizes that turn scaled parameters into units; constants of a robot.
+template <int N, typename Scalar>
+struct IsolationScales {
+  OwnValues<N, Scalar> own = no_values<OwnValues<N, Scalar>>();
+  Vector<kTipParameters, Scalar> tip = Vector<kTipParameters, Scalar>::Ones();
+  PerJoint<N, Scalar> thresholds{};  // largest of each joint, N m or N
+  // The most that can be lost of each joint's friction, dry and viscous, and of the last link, kg.
+  PerJoint<N, KnownFriction<Scalar>> friction{};
+  Scalar last_mass = std::numeric_limits<Scalar>::max();
+};
+
+}  // namespace offnominal
