@@ -327,9 +327,12 @@ class Isolation {
     // That nothing fits may change as long as there is more to come.
     const bool is_clear = diagnosis.kind != FaultKind::kUnknown &&
                           diagnosis.confidence >= config_.confidence && since >= config_.least_s;
-    // An arm that stands says little more, however long it does.
+    // An arm that stands says little more, however long it does, but for a joint that is held.
     const Scalar moved = static_cast<Scalar>(state.moved * block_ticks_) * period_s_;
-    diagnosis.decided = is_clear || std::min(moved, since) >= config_.limit_s;
+    const bool is_held =
+        diagnosis.kind == FaultKind::kEncoderStuck || diagnosis.kind == FaultKind::kLockedJoint;
+    const bool is_late = since >= config_.limit_s && (moved >= config_.limit_s || is_held);
+    diagnosis.decided = is_clear || is_late;
   }
 
   static constexpr Scalar kStillWidths = Scalar(4);     // smooth_sign() is 1 from there on

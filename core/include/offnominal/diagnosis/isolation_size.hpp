@@ -26,7 +26,8 @@ template <int N, typename Scalar>
 [[nodiscard]] Measure<N, Scalar> measure_from(Scalar size, Scalar variance, Scalar explained,
                                               Scalar squares, std::uint32_t observations) {
   constexpr auto kShapeError = static_cast<Scalar>(0.04);
-  const Scalar left = (squares - explained) / static_cast<Scalar>(std::max(observations, 1U));
+  const Scalar left =
+      (squares - explained) / static_cast<Scalar>(std::max(observations, std::uint32_t{1}));
   const Scalar shape = kShapeError * size;
   return {size, std::sqrt(std::max(left, Scalar(1)) * variance + shape * shape), explained};
 }
