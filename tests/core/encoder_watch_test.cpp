@@ -85,7 +85,7 @@ TEST(EncoderWatch, CallsAJointSlowThatCreepsByCounts) {
   EncoderWatch<double> watch = MovingReading{}.watched(10);
   EXPECT_FALSE(is_slow(watch));
   const double held = watch.q[watch.newest];
-  for (int i = 1; i <= 40; ++i) look_at(watch, held + 1e-5 * (i / 5), false);
+  for (int i = 1; i <= 40; ++i) look_at(watch, held + 1e-5 * std::floor(i / 5.0), false);
   EXPECT_LT(watch.still, kEncoderLag);
   EXPECT_TRUE(is_slow(watch));
 }
