@@ -235,8 +235,8 @@ void find_faults_of_stretches(const Log& held, const Log& log, const Log& even,
   find_stuck_encoders(log, robot, faults);
   find_torque_excursions(held, even, robot, faults);
   find_jumps(log, faults);
-  find_saturation(held, robot, faults);
-  find_held_torques(held, even, robot, faults);
+  find_unsettled_torques(held, even, robot, faults);
+  find_saturation(held, even, robot, faults);
 }
 
 // The same of rows that were resampled: a spline and straight lines have no steps of an encoder,

@@ -64,12 +64,15 @@ void find_stuck_values(const Log& log, const Log& even, const RobotDescription& 
 void find_torque_excursions(const Log& log, const Log& even, const RobotDescription& robot,
                             std::vector<DataFault>& faults);
 void find_jumps(const Log& log, std::vector<DataFault>& faults);
+// Torques that come up from nothing, where the model asks for them from the start.
+void find_unsettled_torques(const Log& log, const Log& even, const RobotDescription& robot,
+                            std::vector<DataFault>& faults);
 void find_stuck_encoders(const Log& log, const RobotDescription& robot,
                          std::vector<DataFault>& faults);
-void find_saturation(const Log& log, const RobotDescription& robot, std::vector<DataFault>& faults);
-// Torques that a drive at its limit holds, within its noise, all the time that the joint moves.
-void find_held_torques(const Log& log, const Log& even, const RobotDescription& robot,
-                       std::vector<DataFault>& faults);
+// Torques at a limit time and again, and those that a drive at its limit holds, within its noise,
+// all the time that the joint moves.
+void find_saturation(const Log& log, const Log& even, const RobotDescription& robot,
+                     std::vector<DataFault>& faults);
 // Torques, or all columns, that stand at another joint than they are of. Returns whether they do.
 bool find_joint_order(const Log& log, const RobotDescription& robot, const TorquePair& pair,
                       std::vector<DataFault>& faults);
@@ -131,6 +134,9 @@ void propose_channels(const Log& log, const ChannelMap& mended, std::vector<std:
 // The smallest change from one sample to the next, an encoder's step; infinity where there is none.
 // Rounding of a log that was scaled or printed does not pass for one.
 double smallest_step(const Eigen::VectorXd& x);
+
+// How to record one whose start has not settled.
+std::string mend_of_start();
 
 // "joint 2", or "all joints" for -1.
 std::string joint_words(Eigen::Index joint);

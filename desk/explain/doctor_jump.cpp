@@ -177,7 +177,7 @@ void add_jump_fault(const Log& log, Index joint, bool position, DataFaultKind ki
   fault.words = fmt::format("the {} of joint {} {}: {}", position ? "position" : "torque",
                             joint + 1, what, words_of_spans(fault));
   fault.mend = kind == DataFaultKind::kStart
-                   ? "start to record when the drive is on and its filters have settled"
+                   ? mend_of_start()
                    : "look at the encoder, its cable and the bus; cut the recording there";
   faults.push_back(std::move(fault));
 }
@@ -236,6 +236,10 @@ void find_position_jumps(const Log& log, Index joint, std::vector<DataFault>& fa
 }
 
 }  // namespace
+
+std::string mend_of_start() {
+  return "start to record when the drive is on and its filters have settled";
+}
 
 void find_jumps(const Log& log, std::vector<DataFault>& faults) {
   for (Index joint = 0; joint < log.q.cols(); ++joint) {

@@ -18,16 +18,39 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+// What the model says of the torques, once a joint asks for it.
+class ModelOnDemand {
+ public:
+  ModelOnDemand(const Log& even, const RobotDescription& robot) : even_(even), robot_(robot) {}
+
+  [[nodiscard]] const ExpectedTorque& get() {
+    if (!model_) model_.emplace(even_, robot_);
+    return *model_;
+  }
+
+ private:
+  const Log& even_;
+  const RobotDescription& robot_;
+  std::optional<ExpectedTorque> model_;
+};
+
+std::vector<Index> rows_outside_gaps(const Log& log) {
+  VectorXd inside = VectorXd::Zero(log.sample_count());
+  for (const RowSpan& gap : log.gaps) inside.segment(gap.first, gap.count()).setOnes();
+  std::vector<Index> rows;
+  for (Index i = 0; i < inside.size(); ++i) {
+    if (inside[i] == 0) rows.push_back(i);
+  }
+  return rows;
+}
+
 // Rows in which the joint moves: of one that stands still friction holds a part, and its torque
 // stays what it is, at no limit.
 std::vector<Index> moving_rows(const Log& log, const RobotDescription& robot, Index joint) {
-  VectorXd moving = moving_samples(
+  const VectorXd moving = moving_samples(
       log, joint, robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit);
-  for (const RowSpan& gap : log.gaps) moving.segment(gap.first, gap.count()).setZero();
-  std::vector<Index> rows;
-  for (Index i = 0; i < moving.size(); ++i) {
-    if (moving[i] > 0) rows.push_back(i);
-  }
+  std::vector<Index> rows = rows_outside_gaps(log);
+  std::erase_if(rows, [&](Index i) { return !(moving[i] > 0); });
   return rows;
 }
 
@@ -53,9 +76,41 @@ class TorqueExtremes {
   [[nodiscard]] bool varies() const { return high_ > low_; }
   [[nodiscard]] double largest() const { return std::max(std::abs(low_), std::abs(high_)); }
   [[nodiscard]] auto extremes() const { return std::vector<double>{low_, high_}; }
-  [[nodiscard]] Index rows() const { return static_cast<Index>(rows_.size()); }
+  [[nodiscard]] const std::vector<Index>& rows() const { return rows_; }
 
   [[nodiscard]] Index reached(double end) const { return within(end, near_); }
+
+  // By how much what is expected goes further beyond a coarse torque's extreme than beyond the step
+  // below it, on the average and less the deviation of that, in such steps. Rounding alone makes at
+  // most half a step of it.
+  template <typename Expected>
+  [[nodiscard]] double steps_beyond(double end, const Expected& expected) const {
+    const double step = rounding_.at(end);
+    std::vector<double> beyond;
+    std::vector<double> below;
+    for (const Index i : rows_) {
+      const double distance = std::abs(tau_[i] - end);
+      if (distance > near_ + 1.5 * step) continue;
+      (distance <= near_ ? beyond : below)
+          .push_back(std::copysign(1.0, end) * (expected(i) - tau_[i]));
+    }
+    if (beyond.empty() || below.empty() || !(step > 0)) return 0;
+    const auto values_of = [](const std::vector<double>& values) {
+      return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
+    };
+    const auto variance = [](const auto& values) {
+      return (values.array() - values.mean()).square().mean();
+    };
+    const auto at_end = values_of(beyond);
+    const auto next = values_of(below);
+    // Neighbours are not independent: as many values as there are stretches.
+    const double deviation =
+        std::sqrt((variance(at_end) + variance(next)) / static_cast<double>(spans(end).size()));
+    return (at_end.mean() - next.mean() - deviation) / step;
+  }
+
+  // How many of its steps a coarse torque spreads over.
+  [[nodiscard]] double steps_in_all(double end) const { return (high_ - low_) / rounding_.at(end); }
   // The rows in the band below, with the next value that a coarse torque has: in any motion there
   // are about as many of them.
   [[nodiscard]] Index next(double end) const {
@@ -85,10 +140,11 @@ class TorqueExtremes {
   }
 
   // Stretches of rows at an extreme, with the few between them in which it comes off it.
-  [[nodiscard]] std::vector<RowSpan> spans(double end) const {
+  [[nodiscard]] std::vector<RowSpan> spans(double end) const { return spans(end, rows_); }
+  [[nodiscard]] std::vector<RowSpan> spans(double end, const std::vector<Index>& rows) const {
     constexpr Index kBetween = 3;
     std::vector<RowSpan> found;
-    for (const Index i : rows_) {
+    for (const Index i : rows) {
       if (std::abs(tau_[i] - end) > near_) continue;
       if (!found.empty() && i - found.back().last <= kBetween) {
         found.back().last = i;
@@ -148,24 +204,21 @@ bool is_known_to_stay(const std::vector<DataFault>& faults, Index joint) {
   });
 }
 
-}  // namespace
-
-void find_held_torques(const Log& log, const Log& even, const RobotDescription& robot,
+// Torques that a drive at its limit holds, within its noise, all the time that the joint moves.
+void find_held_torques(const Log& log, const RobotDescription& robot, ModelOnDemand& model,
                        std::vector<DataFault>& faults) {
   constexpr double kHeld = 0.2;      // of the torque, that it spreads over
   constexpr double kExpected = 0.5;  // of the torque, that the model's spreads over
   constexpr double kUnlike = 3;      // times what the torque spreads over
   constexpr Index kFewestRows = 100;
-  std::optional<ExpectedTorque> model;  // once a joint asks for it
   for (Index joint = 0; joint < log.tau.cols(); ++joint) {
     const std::vector<Index> rows = moving_rows(log, robot, joint);
     if (static_cast<Index>(rows.size()) < kFewestRows) continue;
     const Spread torque = spread_over(rows, [&](Index row) { return log.tau(row, joint); });
     const double size = std::abs(torque.middle);
     if (!(torque.width > 0) || !(torque.width < kHeld * size)) continue;
-    if (!model) model.emplace(even, robot);
     const Spread expected =
-        spread_over(rows, [&](Index row) { return model->at(log.t_s[row], joint); });
+        spread_over(rows, [&](Index row) { return model.get().at(log.t_s[row], joint); });
     if (!(expected.width > std::max(kUnlike * torque.width, kExpected * size))) continue;
     if (is_known_to_stay(faults, joint)) continue;
     DataFault fault;
@@ -183,84 +236,148 @@ void find_held_torques(const Log& log, const Log& even, const RobotDescription& 
   }
 }
 
-void find_saturation(const Log& log, const RobotDescription& robot,
-                     std::vector<DataFault>& faults) {
+// Whether the model asks for more while a coarse torque is at its extreme, by more than its
+// rounding makes of it and than the model is wrong elsewhere.
+bool is_asked_for_more(const Log& log, Index joint, const TorqueExtremes& torque, double end,
+                       const ExpectedTorque& model) {
+  // No more than 0.1 in a thousand recordings of no fault.
+  constexpr double kSteps = 0.25;
+  constexpr double kFewestInAll = 8;
+  if (!(torque.steps_in_all(end) > kFewestInAll)) return false;
+  const std::vector<Index>& rows = torque.rows();
+  const auto count = static_cast<Index>(rows.size());
+  VectorXd measured(count);
+  VectorXd asked(count);
+  for (Index i = 0; i < count; ++i) {
+    const Index row = rows[static_cast<std::size_t>(i)];
+    measured[i] = log.tau(row, joint);
+    asked[i] = model.at(log.t_s[row], joint);
+  }
+  const double middle = asked.mean();
+  asked.array() -= middle;
+  measured.array() -= measured.mean();
+  const double size = asked.squaredNorm();
+  if (!(size > 0)) return false;
+  // Of a model that is too large, or has little to do with the torque, no more than follows it.
+  const double scale = std::clamp(asked.dot(measured) / size, 0.0, 1.0);
+  return torque.steps_beyond(end, [&](Index row) {
+    return scale * (model.at(log.t_s[row], joint) - middle);
+  }) > kSteps;
+}
+
+// What speaks for a limit at the extremes of a joint's torque.
+struct Limits {
+  double share = 0;  // of the rows in which the joint moves
+  bool at_stated = false;
+  bool gradual = true;
+  ReachedExtreme most;
+  std::vector<double> ends;
+};
+
+Limits limits_of(const Log& log, const RobotDescription& robot, Index joint,
+                 const TorqueExtremes& torque, bool are_positions_right, ModelOnDemand& model) {
   // A sine spends 2 % of its time so near to its peaks, but a third as much just below.
   constexpr double kSmallestShareAtExtreme = 0.01;
+  constexpr double kSmallestShareByModel = 0.02;
   constexpr double kAgainstNext = 5;
   constexpr double kAgainstNextStep = 10;
   // At the limit that the robot file states, one stretch is enough.
   constexpr Index kShortestAtLimit = 5;
-  // Where torque is at its extremes most of the time, it may switch between two levels: dry
-  // friction.
-  constexpr double kLargestShareAtExtreme = 0.5;
-  constexpr double kLargestShareOfAll = 0.9;
   constexpr double kAtLimit = 0.98;
   constexpr double kBeyondLimit = 1.02;
   // A drive's limits are not that far apart: a joint that waits where little is asked of it stays
   // near zero, and that is the lowest value where all of its torques have one sign.
   constexpr double kSmallestOfLargest = 0.3;
+  const double stated = robot.joints[static_cast<std::size_t>(joint)].joint.max_torque;
+  const auto rows = static_cast<double>(torque.rows().size());
+  Limits limits;
+  for (const double end : torque.extremes()) {
+    if (std::abs(end) < kSmallestOfLargest * torque.largest()) continue;
+    const Index reached = torque.reached(end);
+    const std::vector<RowSpan> stretches = torque.spans(end);
+    const Index longest =
+        std::max_element(stretches.begin(), stretches.end(), [](const auto& a, const auto& b) {
+          return a.count() < b.count();
+        })->count();
+    const bool limited =
+        std::abs(end) >= kAtLimit * stated && std::abs(end) <= kBeyondLimit * stated;
+    // A drive has the same limit both ways; what is coarse ends at the same steps by chance.
+    const bool coarse = torque.is_coarse(end) && !torque.has_extreme(-end);
+    const bool flat = static_cast<double>(reached) >= (coarse ? kAgainstNextStep : kAgainstNext) *
+                                                          static_cast<double>(torque.next(end) + 1);
+    // A coarse torque may sit at its largest step once, and one that is told steps at any.
+    const bool once =
+        stretches.size() < 2 && (torque.is_coarse(end) || !torque.comes_gradually(end));
+    const bool enough = static_cast<double>(reached) >= kSmallestShareAtExtreme * rows;
+    const bool told = flat && ((enough && !once) || (limited && longest >= kShortestAtLimit));
+    const bool often = static_cast<double>(reached) >= kSmallestShareByModel * rows;
+    if (!told && !(often && are_positions_right && torque.is_coarse(end) &&
+                   is_asked_for_more(log, joint, torque, end, model.get()))) {
+      continue;
+    }
+    if (reached > limits.most.rows) limits.most = {end, reached};
+    limits.share += static_cast<double>(reached) / rows;
+    limits.at_stated = limits.at_stated || limited;
+    limits.gradual = limits.gradual && torque.comes_gradually(end);
+    limits.ends.push_back(end);
+  }
+  // A drive has the same limit both ways.
+  const double other = -limits.most.value;
+  if (limits.ends.size() == 1 && torque.has_extreme(other)) {
+    limits.ends.push_back(other);
+    limits.share += static_cast<double>(torque.reached(other)) / rows;
+  }
+  return limits;
+}
+
+void find_reached_limits(const Log& log, const RobotDescription& robot, ModelOnDemand& model,
+                         std::vector<DataFault>& faults) {
+  // Where torque is at its extremes most of the time, it may switch between two levels: dry
+  // friction.
+  constexpr double kLargestShareAtExtreme = 0.5;
+  constexpr double kLargestShareOfAll = 0.9;
+  const std::vector<Index> every_row = rows_outside_gaps(log);
+  // Of any joint: the model's torque follows from all.
+  const bool are_positions_right =
+      std::none_of(faults.begin(), faults.end(), [](const DataFault& fault) {
+        return fault.joint >= 0 && fault.signal == FaultySignal::kPosition;
+      });
   for (Index joint = 0; joint < log.tau.cols(); ++joint) {
     const VectorXd tau = log.tau.col(joint);
     const TorqueExtremes torque(tau, moving_rows(log, robot, joint));
     if (!torque.varies()) continue;
-    const double limit = robot.joints[static_cast<std::size_t>(joint)].joint.max_torque;
-    const auto rows = static_cast<double>(torque.rows());
-    double share = 0;
-    bool at_limit = false;
-    bool gradual = true;
-    int extremes_reached = 0;
-    ReachedExtreme most;
-    std::vector<RowSpan> spans;
-    for (const double end : torque.extremes()) {
-      if (std::abs(end) < kSmallestOfLargest * torque.largest()) continue;
-      const Index reached = torque.reached(end);
-      const std::vector<RowSpan> stretches = torque.spans(end);
-      const Index longest =
-          std::max_element(stretches.begin(), stretches.end(), [](const auto& a, const auto& b) {
-            return a.count() < b.count();
-          })->count();
-      const bool limited =
-          std::abs(end) >= kAtLimit * limit && std::abs(end) <= kBeyondLimit * limit;
-      // A drive has the same limit both ways; what is coarse ends at the same steps by chance.
-      const bool coarse = torque.is_coarse(end) && !torque.has_extreme(-end);
-      const bool flat =
-          static_cast<double>(reached) >=
-          (coarse ? kAgainstNextStep : kAgainstNext) * static_cast<double>(torque.next(end) + 1);
-      // A coarse torque may sit at its largest step once, and one that is told steps at any.
-      const bool once =
-          stretches.size() < 2 && (torque.is_coarse(end) || !torque.comes_gradually(end));
-      const bool often = !once && static_cast<double>(reached) >= kSmallestShareAtExtreme * rows;
-      if (!flat || !(often || (limited && longest >= kShortestAtLimit))) continue;
-      if (reached > most.rows) most = {end, reached};
-      share += static_cast<double>(reached) / rows;
-      at_limit = at_limit || limited;
-      gradual = gradual && torque.comes_gradually(end);
-      ++extremes_reached;
-      spans.insert(spans.end(), stretches.begin(), stretches.end());
-    }
-    // A drive has the same limit both ways.
-    const double other = -most.value;
-    if (most.rows > 0 && extremes_reached < 2 && torque.has_extreme(other)) {
-      const std::vector<RowSpan> stretches = torque.spans(other);
-      spans.insert(spans.end(), stretches.begin(), stretches.end());
-      share += static_cast<double>(torque.reached(other)) / rows;
-    }
-    const double most_share =
-        gradual && !is_known_to_stay(faults, joint) ? kLargestShareOfAll : kLargestShareAtExtreme;
-    if (!(share > 0) || (share > most_share && !at_limit)) continue;
+    const Limits limits = limits_of(log, robot, joint, torque, are_positions_right, model);
+    const double most_share = limits.gradual && !is_known_to_stay(faults, joint)
+                                  ? kLargestShareOfAll
+                                  : kLargestShareAtExtreme;
+    if (!(limits.share > 0) || (limits.share > most_share && !limits.at_stated)) continue;
     DataFault fault;
     fault.kind = DataFaultKind::kSaturation;
     fault.joint = joint;
     fault.signal = FaultySignal::kTorque;
-    fault.size = share;
+    fault.size = limits.share;
+    // A drive at its limit is so where the joint does not move yet, too.
+    std::vector<RowSpan> spans;
+    for (const double end : limits.ends) {
+      const std::vector<RowSpan> stretches = torque.spans(end, every_row);
+      spans.insert(spans.end(), stretches.begin(), stretches.end());
+    }
     set_spans(log, spans, fault);
     fault.words =
         fmt::format("the torque of joint {} stays at {:.4g} in {:.1f} % of the samples: {}",
-                    joint + 1, most.value, 100 * share, words_of_spans(fault));
+                    joint + 1, limits.most.value, 100 * limits.share, words_of_spans(fault));
     fault.mend = "move more gently";
     faults.push_back(std::move(fault));
   }
+}
+
+}  // namespace
+
+void find_saturation(const Log& log, const Log& even, const RobotDescription& robot,
+                     std::vector<DataFault>& faults) {
+  ModelOnDemand model(even, robot);
+  find_reached_limits(log, robot, model, faults);
+  find_held_torques(log, robot, model, faults);
 }
 
 }  // namespace offnominal::desk

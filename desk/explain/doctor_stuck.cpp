@@ -8,6 +8,7 @@
 #include "explain/doctor_checks.hpp"
 #include "explain/doctor_signal.hpp"
 #include "explain/expected_torque.hpp"
+#include "explain/moved_meanwhile.hpp"
 #include "signal/quantile.hpp"
 
 // One value for long, while the joint moves: a dead encoder, a blocked reader, a drive that is not
@@ -229,7 +230,11 @@ std::vector<Burst> stuck_positions(const Log& log, Index joint, const ExpectedTo
                        kSeldom;
     const bool by_velocity = velocity_moves(log, joint, burst);
     const bool at_start = burst.first == 0 && is_short(log, burst);
-    if (ends.ends_in_jump(burst) && (at_start || ends.moves_on(burst))) return false;
+    if (ends.ends_in_jump(burst)) {
+      const MovedMeanwhile moved = moved_meanwhile(log, burst, expected);
+      if (moved != MovedMeanwhile::kUnknown) return moved == MovedMeanwhile::kNo;
+      if (at_start || ends.moves_on(burst)) return false;
+    }
     if (usual && !by_velocity) return true;
     return !by_velocity && !(ends.starts_abruptly(burst) && ends.ends_unlike_a_rest(burst));
   });
