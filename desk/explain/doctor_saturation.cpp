@@ -243,7 +243,10 @@ bool is_asked_for_more(const Log& log, Index joint, const TorqueExtremes& torque
   // No more than 0.1 in a thousand recordings of no fault.
   constexpr double kSteps = 0.25;
   constexpr double kFewestInAll = 8;
-  if (!(torque.steps_in_all(end) > kFewestInAll)) return false;
+  constexpr std::size_t kFewestRows = 100;
+  if (torque.rows().size() < kFewestRows || !(torque.steps_in_all(end) > kFewestInAll)) {
+    return false;
+  }
   const std::vector<Index>& rows = torque.rows();
   const auto count = static_cast<Index>(rows.size());
   VectorXd measured(count);

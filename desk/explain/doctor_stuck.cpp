@@ -254,6 +254,8 @@ std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorq
   constexpr double kTravel = 0.01;  // of the joint's range
   constexpr double kChange = 0.15;  // of the torque's range
   constexpr double kChangeWhereLost = 0.4;
+  constexpr double kChangeOfFine = 0.05;
+  constexpr double kSeldomRepeats = 0.1;
   constexpr std::size_t kUsual = 4;
   constexpr Index kLonger = 3;
   constexpr double kAtExtreme = 1e-3;
@@ -298,7 +300,15 @@ std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorq
         static_cast<double>(tau.size()) *
             std::pow(own_repeats(repeats_before, burst), static_cast<double>(burst.length)) >
         kSeldom;
-    return by_chance || burst.length < kLonger * usual || change < kChange * (high - low);
+    if (burst.length < kLonger * usual) return true;
+    // A torque that never repeats says so where the model asks for little; a coarse one holds its
+    // value for as long by chance, but not while the model asks for many of its steps.
+    if (own_repeats(repeats_before, burst) < kSeldomRepeats) {
+      return by_chance || change < kChangeOfFine * (high - low);
+    }
+    const double lasting =
+        expected.lasting_change_during(log.t_s[burst.first], log.t_s[burst.end()], joint);
+    return lasting < (by_chance ? kChangeWhereLost : kChange) * (high - low);
   });
   return bursts;
 }

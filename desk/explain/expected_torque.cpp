@@ -43,6 +43,20 @@ double ExpectedTorque::change_during(double from_s, double to_s, Index joint) co
   return during.maxCoeff() - during.minCoeff();
 }
 
+double ExpectedTorque::lasting_change_during(double from_s, double to_s, Index joint) const {
+  constexpr Index kParts = 8;
+  const Index first = std::min(sample_at(from_s) / stride_ + 1, torque_.rows() - 1);
+  const Index count = std::min(sample_at(to_s) / stride_, torque_.rows() - 1) + 1 - first;
+  if (count < kParts) return change_during(from_s, to_s, joint);
+  Eigen::Array<double, kParts, 1> means;
+  for (Index part = 0; part < kParts; ++part) {
+    const Index begin = first + part * count / kParts;
+    const Index end = first + (part + 1) * count / kParts;
+    means[part] = torque_.col(joint).segment(begin, end - begin).mean();
+  }
+  return means.maxCoeff() - means.minCoeff();
+}
+
 Index ExpectedTorque::sample_at(double t_s) const {
   return std::clamp<Index>(std::lround((t_s - from_s_) / period_s_), 0, samples_ - 1);
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "signal/quantile.hpp"
 
@@ -27,6 +29,21 @@ class Window {
   Index count_ = 0;
 };
 
+// Within a second outside a burst, mostly: a level that the fault shifts is none.
+double usual_deviation(const VectorXd& x, const Burst& burst, Index rows_of_a_second) {
+  constexpr double kMostly = 0.84;
+  std::vector<double> deviations;
+  for (Index first = 0; first + rows_of_a_second <= x.size(); first += rows_of_a_second) {
+    if (first <= burst.end() + rows_of_a_second && first + rows_of_a_second > burst.first) continue;
+    const auto second = x.segment(first, rows_of_a_second).array();
+    deviations.push_back(std::sqrt((second - second.mean()).square().mean()));
+  }
+  if (deviations.empty()) return std::numeric_limits<double>::infinity();
+  return quantile(
+      Eigen::Map<const VectorXd>(deviations.data(), static_cast<Index>(deviations.size())),
+      kMostly);
+}
+
 }  // namespace
 
 MovedMeanwhile moved_meanwhile(const Log& log, const Burst& burst, const ExpectedTorque& expected) {
@@ -44,14 +61,13 @@ MovedMeanwhile moved_meanwhile(const Log& log, const Burst& burst, const Expecte
       to_s - from_s < 2 * kAwayS + kWindowS) {
     return MovedMeanwhile::kUnknown;
   }
+  const auto rows_of_a_second = std::max<Index>(8, std::lround(1 / log.period_s));
   double most = kTells;
   MovedMeanwhile moved = MovedMeanwhile::kUnknown;
   for (Index joint = 0; joint < log.tau.cols(); ++joint) {
     VectorXd beyond = log.tau.col(joint);
     for (Index i = 0; i < beyond.size(); ++i) beyond[i] -= expected.at(log.t_s[i], joint);
-    // Half of what nearly all of it spreads over: not what the fault makes of it.
-    constexpr double kBelow = 0.16;
-    const double deviation = (quantile(beyond, 1 - kBelow) - quantile(beyond, kBelow)) / 2;
+    const double deviation = usual_deviation(beyond, burst, rows_of_a_second);
     // Of a joint that moved meanwhile the model is wrong at the end of the burst alone; of one that
     // is counted from another zero it is as wrong there as before.
     const double gone = at_end.mean_of(beyond) - behind.mean_of(beyond);

@@ -173,7 +173,7 @@ TEST(Treatment, PartsWithoutFaultsAreWhatIsBetweenThem) {
   EXPECT_TRUE(parts[1].left_out.empty());
 }
 
-// A small share of `./dev bench doctor`, of both families: it is right about 95 to 98 % of
+// A small share of `./dev bench doctor`, of both families: it is right about 98 to 99 % of
 // thousands.
 TEST(Treatment, IsRightAboutRecordingsOfSixJoints) {
   const std::uint64_t seed = test::test_seed();
