@@ -17,8 +17,10 @@ std::string matrix_text(const std::vector<std::vector<double>>& matrix) {
   return "[" + list_of(matrix, list_text) + "]";
 }
 
-// "rad/s" -> "rad/s^2"
-std::string per_second(const std::string& unit) { return unit == "1" ? unit : unit + "^2"; }
+// " rad/s"; of joints that turn and joints that slide together there is none.
+std::string spaced(const std::string& unit) { return unit == "1" ? "" : " " + unit; }
+// "rad/s" -> " rad/s^2"
+std::string per_second(const std::string& unit) { return unit == "1" ? "" : " " + unit + "^2"; }
 
 std::string threshold_text(const std::optional<double>& value) {
   return value ? fmt::format("{:.4g}", *value) : std::string("none");
@@ -67,26 +69,27 @@ std::string words_of(const BoundSettings& bound, const std::string& unit) {
   std::string words;
   switch (bound.kind) {
     case BoundSettings::Kind::kConstant:
-      words = fmt::format("constant {} {}", shortest(bound.constant.value), acceleration);
+      words = fmt::format("constant {}{}", shortest(bound.constant.value), acceleration);
       break;
     case BoundSettings::Kind::kScaledNorm:
-      words = fmt::format("{} (|{} dq| + {}) {}", shortest(bound.scaled_norm.scale),
+      words = fmt::format("{} (|{} dq| + {}){}", shortest(bound.scaled_norm.scale),
                           matrix_text(bound.scaled_norm.matrix), shortest(bound.scaled_norm.offset),
                           acceleration);
       break;
     case BoundSettings::Kind::kTable: {
       const char* const variables[]{"position", "speed", "torque"};
-      words = fmt::format("table over {} of joint {}: {} at {}, {}",
-                          variables[static_cast<std::size_t>(bound.table.variable)],
-                          bound.table.joint + 1, list_text(bound.table.value),
-                          list_text(bound.table.at), acceleration);
+      words =
+          fmt::format("table over {} of joint {}: {} at {}{}",
+                      variables[static_cast<std::size_t>(bound.table.variable)],
+                      bound.table.joint + 1, list_text(bound.table.value),
+                      list_text(bound.table.at), acceleration.empty() ? "" : "," + acceleration);
       break;
     }
     case BoundSettings::Kind::kPerJoint:  // said joint by joint (joints_report.cpp)
       break;
   }
   if (bound.velocity_error > 0) {
-    words += fmt::format("; velocity error {} {}", shortest(bound.velocity_error), unit);
+    words += fmt::format("; velocity error {}{}", shortest(bound.velocity_error), spaced(unit));
   }
   return words;
 }
@@ -104,12 +107,12 @@ std::string verdict_of(const Calibration& calibration) {
     return "These recordings give no bound that can be trusted. " + calibration.objections.front();
   }
   const BoundMargin margin = margin_of(calibration);
-  std::string words =
-      fmt::format("The threshold is {:.3g} {} on average", margin.mean_after, calibration.unit);
+  std::string words = fmt::format("The threshold is {:.3g}{} on average", margin.mean_after,
+                                  spaced(calibration.unit));
   if (margin.mean_before) {
-    words +=
-        fmt::format(", {:.2g} times the old one's {:.3g} {}",
-                    margin.mean_after / *margin.mean_before, *margin.mean_before, calibration.unit);
+    words += fmt::format(", {:.2g} times the old one's {:.3g}{}",
+                         margin.mean_after / *margin.mean_before, *margin.mean_before,
+                         spaced(calibration.unit));
   }
   words += fmt::format("; the recordings reach {:.3g} of it at most", margin.largest_ratio_after);
   if (margin.largest_ratio_before) {
