@@ -22,24 +22,6 @@ bool acts_in_transmission(const RobotEffect& effect) {
   return info_of(effect.kind)->action == EffectAction::kDisplacement;
 }
 
-// Where a spring acts, in joints: its torque is `from_torques` times theirs, and its displacement
-// by 1 is `along` in them. With the matrix A of the transmission, tau = A^T tau_m and dq_m = A dq:
-// of a motor they are row and column of A^-1.
-struct SpringPlace {
-  VectorXd from_torques;
-  VectorXd along;
-};
-
-SpringPlace place_of_spring(const RobotDescription& robot, const RobotEffect& effect) {
-  const auto index = static_cast<Index>(effect.joint);
-  if (!effect.of_motor) {
-    const VectorXd own = VectorXd::Unit(robot.joint_count(), index);
-    return {own, own};
-  }
-  const MatrixXd inverse = motor_per_joint(*robot.transmission).inverse();
-  return {inverse.col(index), inverse.col(index)};
-}
-
 // What the joint's own acceleration asks of it, per sample.
 VectorXd own_inertia(const RobotDescription& rigid, const Motion& motion, const MatrixXd& load,
                      Index joint) {
@@ -49,6 +31,15 @@ VectorXd own_inertia(const RobotDescription& rigid, const Motion& motion, const 
 }
 
 }  // namespace
+
+SpringPlace place_of_spring(const RobotDescription& robot, Index index, bool of_motor) {
+  if (!of_motor) {
+    const VectorXd own = VectorXd::Unit(robot.joint_count(), index);
+    return {own, own};
+  }
+  const MatrixXd inverse = motor_per_joint(*robot.transmission).inverse();
+  return {inverse.col(index), inverse.col(index)};
+}
 
 Displacement displacement_of(VectorXd x, double period_s) {
   const VectorXd dx = central_difference(x, period_s);
@@ -138,7 +129,7 @@ MatrixXd transmission_torque(const RobotDescription& robot, const Motion& motion
   for (const RobotEffect& effect : robot.effects) {
     if (!acts_in_transmission(effect)) continue;
     const auto joint = static_cast<Index>(effect.joint);
-    const SpringPlace place = place_of_spring(robot, effect);
+    const SpringPlace place = place_of_spring(robot, joint, effect.of_motor);
     VectorXd x;
     if (effect.kind == EffectKind::kJointElasticity) {
       const VectorXd transmitted = (measured - (stiff - load)) * place.from_torques;

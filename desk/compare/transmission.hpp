@@ -20,6 +20,15 @@ struct Displacement {
 // Central differences at `period_s`.
 Displacement displacement_of(Eigen::VectorXd x, double period_s);
 
+// Where a spring acts, in joints: its torque is `from_torques` times theirs, and its displacement
+// by 1 is `along` in them. With the matrix A of the transmission, tau = A^T tau_m and dq_m = A dq:
+// of a motor, whose number `index` is then, both are a column of A^-1.
+struct SpringPlace {
+  Eigen::VectorXd from_torques;
+  Eigen::VectorXd along;
+};
+SpringPlace place_of_spring(const RobotDescription& robot, Eigen::Index index, bool of_motor);
+
 // What a displacement times `scale` changes in the torque of every joint, per scale. `along`: by
 // how much of it each joint is displaced; of one joint a unit vector. `rigid`: the robot without
 // effects, `load` its torque over the motion.

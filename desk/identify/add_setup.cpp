@@ -10,6 +10,7 @@
 #include "common/nearest.hpp"
 #include "identify/effects/effects.hpp"
 #include "identify/sign_width.hpp"
+#include "robot/read_effect.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -86,8 +87,8 @@ class SetUp {
     for (const EffectKind kind : request_.effects) {
       if (motor_may_be_searched(kind)) continue;
       std::vector<std::string> allowed;
-      for (const EffectInfo& info : kAllEffectInfos) {
-        if (motor_may_be_searched(info.kind)) allowed.emplace_back(info.name);
+      for (const EffectInfo* info : file_effects()) {
+        if (motor_may_be_searched(info->kind)) allowed.emplace_back(info->name);
       }
       throw InputError({"--motor", "", info_of(kind)->name, list_of(allowed),
                         "say --joint: at the joint it is fitted as well"});

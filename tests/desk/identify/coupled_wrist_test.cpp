@@ -296,6 +296,24 @@ TEST(CoupledWrist, GivesWayAtItsMotorsAsMujocosSpringsDo) {
   }
 }
 
+TEST(CoupledWrist, HasTheSpringOfAMotorFittedAsMujocoHasIt) {
+  for (const int motor : {0, 1}) {
+    const int other = 1 - motor;
+    const RobotDescription robot =
+        wrist(rotors() + effect("joint_elasticity", other + 1,
+                                "stiffness = " + desk::shortest(kSpring[other])));
+    desk::AddRequest request;
+    request.effects = {EffectKind::kJointElasticity};
+    request.joint = static_cast<std::size_t>(motor);
+    request.of_motor = true;
+    const desk::AddResult result = desk::add(robot, request, {log_with_springs()}, {});
+    const desk::RobotEffect& found = result.robot.effects.at(result.added.at(0));
+    EXPECT_TRUE(found.of_motor);
+    EXPECT_EQ(found.joint, static_cast<std::size_t>(motor));
+    EXPECT_NEAR(found.parameters[0], kSpring[motor], 0.1 * kSpring[motor]) << motor;
+  }
+}
+
 // What a rig records that knows motors alone: angles in degrees, currents.
 std::string recording(double coulomb = 0, double smoothing = 1) {
   MujocoArm arm(with_tendons());
