@@ -20,7 +20,7 @@ std::string words_of(const NumberRule& rule) {
   } else if (std::isfinite(rule.max)) {
     text = "a finite number <= " + shortest(rule.max);
   }
-  return rule.unit.empty() ? text : text + ", in " + rule.unit;
+  return rule.unit.empty() || rule.unit == "1" ? text : text + ", in " + rule.unit;
 }
 
 std::string words_of(const toml::node& node) {

@@ -17,7 +17,7 @@ constexpr double kFewest = 0.1;  // of all samples that have to be left
 
 }  // namespace
 
-VectorXd moving_samples(const Log& log, Index joint, double counts_per_unit) {
+VectorXd samples_in_motion(const Log& log, Index joint, double counts_per_unit) {
   constexpr double kCounts = 2;  // that a position flickers by
   constexpr double kSlack = 1e-6;
   VectorXd moving = VectorXd::Ones(log.sample_count());
@@ -42,7 +42,13 @@ VectorXd moving_samples(const Log& log, Index joint, double counts_per_unit) {
     moving.segment(first, last + 1 - first).setZero();
     first = last + 1;
   }
-  return moving.mean() < kFewest ? VectorXd::Ones(moving.size()).eval() : moving;
+  return moving;
+}
+
+VectorXd moving_samples(const Log& log, Index joint, double counts_per_unit) {
+  VectorXd moving = samples_in_motion(log, joint, counts_per_unit);
+  if (moving.mean() < kFewest) moving.setOnes();
+  return moving;
 }
 
 void leave_out_sticking(const VectorXd& speed, double top_speed, double period_s,

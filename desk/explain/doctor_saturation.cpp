@@ -34,23 +34,21 @@ class ModelOnDemand {
   std::optional<ExpectedTorque> model_;
 };
 
-std::vector<Index> rows_outside_gaps(const Log& log) {
-  VectorXd inside = VectorXd::Zero(log.sample_count());
-  for (const RowSpan& gap : log.gaps) inside.segment(gap.first, gap.count()).setOnes();
-  std::vector<Index> rows;
-  for (Index i = 0; i < inside.size(); ++i) {
-    if (inside[i] == 0) rows.push_back(i);
-  }
-  return rows;
-}
-
 // Rows in which the joint moves: of one that stands still friction holds a part, and its torque
 // stays what it is, at no limit.
 std::vector<Index> moving_rows(const Log& log, const RobotDescription& robot, Index joint) {
-  const VectorXd moving = moving_samples(
-      log, joint, robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit);
-  std::vector<Index> rows = rows_outside_gaps(log);
-  std::erase_if(rows, [&](Index i) { return !(moving[i] > 0); });
+  constexpr double kFewest = 20;
+  // Of an encoder that the file does not say, by what it shows.
+  const double stated = robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit;
+  const VectorXd q = log.q.col(joint);
+  const double step = Rounding(q).at(q.cwiseAbs().maxCoeff());
+  VectorXd moving = samples_in_motion(log, joint, stated > 0 ? stated : 1 / step);
+  if (moving.sum() < kFewest) moving.setOnes();
+  for (const RowSpan& gap : log.gaps) moving.segment(gap.first, gap.count()).setZero();
+  std::vector<Index> rows;
+  for (Index i = 0; i < moving.size(); ++i) {
+    if (moving[i] > 0) rows.push_back(i);
+  }
   return rows;
 }
 
@@ -75,7 +73,13 @@ class TorqueExtremes {
 
   [[nodiscard]] bool varies() const { return high_ > low_; }
   [[nodiscard]] double largest() const { return std::max(std::abs(low_), std::abs(high_)); }
-  [[nodiscard]] auto extremes() const { return std::vector<double>{low_, high_}; }
+  // Those that may be limits: what is nearest to zero of torques of one sign is none.
+  [[nodiscard]] std::vector<double> extremes() const {
+    std::vector<double> ends;
+    if (low_ < 0) ends.push_back(low_);
+    if (high_ > 0) ends.push_back(high_);
+    return ends;
+  }
   [[nodiscard]] const std::vector<Index>& rows() const { return rows_; }
 
   [[nodiscard]] Index reached(double end) const { return within(end, near_); }
@@ -139,12 +143,31 @@ class TorqueExtremes {
     return 2 * gradual > static_cast<Index>(stretches.size());
   }
 
+  // Whether it stays at one value for some rows as often anywhere between its extremes: a coarse
+  // torque that a filter, or noise, has made fine again.
+  [[nodiscard]] bool holds_anywhere(double end) const {
+    constexpr std::size_t kFewestRows = 5;
+    constexpr double kStep = 5;  // times what counts as reached, within as many rows
+    Index held = 0;
+    std::size_t run = 1;
+    for (std::size_t k = 1; k + kFewestRows < rows_.size(); ++k) {
+      const double value = tau_[rows_[k - 1]];
+      if (rows_[k] == rows_[k - 1] + 1 && std::abs(tau_[rows_[k]] - value) <= near_ / 10) {
+        ++run;
+        continue;
+      }
+      const bool steps = std::abs(tau_[rows_[k + kFewestRows]] - value) > kStep * near_;
+      if (run >= kFewestRows && steps && !has_extreme(value)) held += static_cast<Index>(run);
+      run = 1;
+    }
+    return held > reached(end);
+  }
+
   // Stretches of rows at an extreme, with the few between them in which it comes off it.
-  [[nodiscard]] std::vector<RowSpan> spans(double end) const { return spans(end, rows_); }
-  [[nodiscard]] std::vector<RowSpan> spans(double end, const std::vector<Index>& rows) const {
+  [[nodiscard]] std::vector<RowSpan> spans(double end) const {
     constexpr Index kBetween = 3;
     std::vector<RowSpan> found;
-    for (const Index i : rows) {
+    for (const Index i : rows_) {
       if (std::abs(tau_[i] - end) > near_) continue;
       if (!found.empty() && i - found.back().last <= kBetween) {
         found.back().last = i;
@@ -312,7 +335,10 @@ Limits limits_of(const Log& log, const RobotDescription& robot, Index joint,
     const bool once =
         stretches.size() < 2 && (torque.is_coarse(end) || !torque.comes_gradually(end));
     const bool enough = static_cast<double>(reached) >= kSmallestShareAtExtreme * rows;
-    const bool told = flat && ((enough && !once) || (limited && longest >= kShortestAtLimit));
+    const bool fine_again =
+        !torque.is_coarse(end) && !torque.has_extreme(-end) && torque.holds_anywhere(end);
+    const bool told =
+        flat && !fine_again && ((enough && !once) || (limited && longest >= kShortestAtLimit));
     const bool often = static_cast<double>(reached) >= kSmallestShareByModel * rows;
     if (!told && !(often && are_positions_right && torque.is_coarse(end) &&
                    is_asked_for_more(log, joint, torque, end, model.get()))) {
@@ -339,7 +365,6 @@ void find_reached_limits(const Log& log, const RobotDescription& robot, ModelOnD
   // friction.
   constexpr double kLargestShareAtExtreme = 0.5;
   constexpr double kLargestShareOfAll = 0.9;
-  const std::vector<Index> every_row = rows_outside_gaps(log);
   // Of any joint: the model's torque follows from all.
   const bool are_positions_right =
       std::none_of(faults.begin(), faults.end(), [](const DataFault& fault) {
@@ -359,10 +384,9 @@ void find_reached_limits(const Log& log, const RobotDescription& robot, ModelOnD
     fault.joint = joint;
     fault.signal = FaultySignal::kTorque;
     fault.size = limits.share;
-    // A drive at its limit is so where the joint does not move yet, too.
     std::vector<RowSpan> spans;
     for (const double end : limits.ends) {
-      const std::vector<RowSpan> stretches = torque.spans(end, every_row);
+      const std::vector<RowSpan> stretches = torque.spans(end);
       spans.insert(spans.end(), stretches.begin(), stretches.end());
     }
     set_spans(log, spans, fault);

@@ -84,7 +84,7 @@ void find_unsettled_torques(const Log& log, const Log& even, const RobotDescript
     fault.words = fmt::format(
         "the torque of joint {} comes up from {:.3g} at the start, where the model asks for "
         "{:.3g}: {}",
-        joint + 1, log.tau(0, joint), model->at(log.t_s[0], joint), words_of_spans(fault));
+        joint + 1, log.tau(0, joint) + 0.0, model->at(log.t_s[0], joint), words_of_spans(fault));
     fault.mend = mend_of_start();
     faults.push_back(std::move(fault));
   }

@@ -120,9 +120,11 @@ class BurstEnds {
 bool velocity_moves(const Log& log, Index joint, const Burst& burst) {
   constexpr double kOfUsual = 0.3;
   constexpr double kOfTop = 0.95;
+  constexpr double kOfFastest = 0.2;  // of one that moves seldom
   if (log.dq_derived[static_cast<std::size_t>(joint)]) return false;
   const VectorXd dq = log.dq.col(joint);
-  const double usual = quantile(dq.cwiseAbs(), kOfTop);
+  const VectorXd speed = dq.cwiseAbs();
+  const double usual = std::max(quantile(speed, kOfTop), kOfFastest * speed.maxCoeff());
   const VectorXd during = dq.segment(burst.first + 1, burst.length);
   // Where it is filtered it only comes to rest later.
   constexpr double kLateS = 0.15;
@@ -249,6 +251,13 @@ bool moves_mostly(const VectorXd& dq, const Burst& burst) {
   return 2 * (during > slow).count() > during.size();
 }
 
+bool goes_on_by_a_step(const VectorXd& x, const Rounding& rounding, const Burst& burst) {
+  constexpr double kSteps = 1.5;
+  if (burst.end() + 1 >= x.size()) return false;
+  const double change = std::abs(x[burst.end() + 1] - x[burst.end()]);
+  return change <= kSteps * rounding.at(x.cwiseAbs().maxCoeff());
+}
+
 std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorque& expected) {
   constexpr double kShortestS = 0.1;
   constexpr double kTravel = 0.01;  // of the joint's range
@@ -271,6 +280,7 @@ std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorq
   const double high = tau.maxCoeff();
   const double near = kAtExtreme * (high - low);
   const BurstEnds ends(tau);
+  const Rounding rounding(tau);
   std::erase_if(bursts, [&](const Burst& burst) {
     if (is_next_to_gap(log, burst)) return true;
     // A drive that gives nothing yet, then all at once, also where it holds the joint.
@@ -287,6 +297,10 @@ std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorq
     if (during.maxCoeff() - during.minCoeff() < kTravel * range) return true;
     const double value = tau[burst.first];
     const double change = expected.change_during(log.t_s[burst.first], log.t_s[burst.end()], joint);
+    const double lasting =
+        expected.lasting_change_during(log.t_s[burst.first], log.t_s[burst.end()], joint);
+    constexpr double kSteps = 2;  // of the torque, that rounding makes of nothing
+    if (lasting < kSteps * rounding.at(value)) return true;
     // A drive that is off lets the joint swing as the model says, or fall to where friction holds
     // it; a torque that is lost does not.
     if (value == 0) {
@@ -306,8 +320,8 @@ std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorq
     if (own_repeats(repeats_before, burst) < kSeldomRepeats) {
       return by_chance || change < kChangeOfFine * (high - low);
     }
-    const double lasting =
-        expected.lasting_change_during(log.t_s[burst.first], log.t_s[burst.end()], joint);
+    // Where it only stayed it goes on by a step.
+    if (goes_on_by_a_step(tau, rounding, burst)) return true;
     return lasting < (by_chance ? kChangeWhereLost : kChange) * (high - low);
   });
   return bursts;

@@ -54,7 +54,8 @@ double ExpectedTorque::lasting_change_during(double from_s, double to_s, Index j
     const Index end = first + (part + 1) * count / kParts;
     means[part] = torque_.col(joint).segment(begin, end - begin).mean();
   }
-  return means.maxCoeff() - means.minCoeff();
+  const auto inner = means.segment<kParts - 2>(1);
+  return inner.maxCoeff() - inner.minCoeff();
 }
 
 Index ExpectedTorque::sample_at(double t_s) const {

@@ -23,7 +23,8 @@ class ExpectedTorque {
   [[nodiscard]] double at(double t_s, Eigen::Index joint) const;
   // Between its largest and its smallest from one time to another.
   [[nodiscard]] double change_during(double from_s, double to_s, Eigen::Index joint) const;
-  // The same of the means of eight parts of that time: not what a coarse encoder makes of it.
+  // The same of the means of eight parts of that time but the first and the last: neither what a
+  // coarse encoder makes of it nor a friction that changes its sign a little earlier than it does.
   [[nodiscard]] double lasting_change_during(double from_s, double to_s, Eigen::Index joint) const;
   // Of the recording, not only of those taken; not beyond its ends.
   [[nodiscard]] Eigen::Index sample_at(double t_s) const;
