@@ -230,13 +230,14 @@ Log held_over_gaps(const Log& log) {
 // over gaps, where `log` has any; `even`: the same, evenly sampled.
 void find_faults_of_stretches(const Log& held, const Log& log, const Log& even,
                               const RobotDescription& robot, std::vector<DataFault>& faults) {
+  const ExpectedTorque expected(even, robot);
   find_stale_samples(held, faults);
-  find_stuck_values(held, even, robot, faults);
+  find_stuck_values(held, expected, faults);
   find_stuck_encoders(log, robot, faults);
   find_torque_excursions(held, even, robot, faults);
   find_jumps(log, faults);
-  find_unsettled_torques(held, even, robot, faults);
-  find_saturation(held, even, robot, faults);
+  find_unsettled_torques(held, expected, faults);
+  find_saturation(held, robot, expected, faults);
 }
 
 // The same of rows that were resampled: a spline and straight lines have no steps of an encoder,

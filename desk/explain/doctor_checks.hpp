@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "explain/data_fault.hpp"
+#include "explain/expected_torque.hpp"
 #include "log/log.hpp"
 #include "robot/robot.hpp"
 
@@ -57,21 +58,21 @@ TimeByTorque time_by_torque(const Log& log, const RobotDescription& robot, doubl
 
 void find_gaps(const Log& log, std::vector<DataFault>& faults);
 void find_stale_samples(const Log& log, std::vector<DataFault>& faults);
-// `even`: the same recording, evenly sampled; for what the model says of it.
-void find_stuck_values(const Log& log, const Log& even, const RobotDescription& robot,
+// `expected`, `model`: what the model says of the same recording, evenly sampled.
+void find_stuck_values(const Log& log, const ExpectedTorque& expected,
                        std::vector<DataFault>& faults);
 // Needs the spans of what was found before, as the next one does.
 void find_torque_excursions(const Log& log, const Log& even, const RobotDescription& robot,
                             std::vector<DataFault>& faults);
 void find_jumps(const Log& log, std::vector<DataFault>& faults);
 // Torques that come up from nothing, where the model asks for them from the start.
-void find_unsettled_torques(const Log& log, const Log& even, const RobotDescription& robot,
+void find_unsettled_torques(const Log& log, const ExpectedTorque& model,
                             std::vector<DataFault>& faults);
 void find_stuck_encoders(const Log& log, const RobotDescription& robot,
                          std::vector<DataFault>& faults);
 // Torques at a limit time and again, and those that a drive at its limit holds, within its noise,
 // all the time that the joint moves.
-void find_saturation(const Log& log, const Log& even, const RobotDescription& robot,
+void find_saturation(const Log& log, const RobotDescription& robot, const ExpectedTorque& model,
                      std::vector<DataFault>& faults);
 // Torques, or all columns, that stand at another joint than they are of. Returns whether they do.
 bool find_joint_order(const Log& log, const RobotDescription& robot, const TorquePair& pair,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "compare/standstill.hpp"
@@ -17,22 +16,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-// What the model says of the torques, once a joint asks for it.
-class ModelOnDemand {
- public:
-  ModelOnDemand(const Log& even, const RobotDescription& robot) : even_(even), robot_(robot) {}
-
-  [[nodiscard]] const ExpectedTorque& get() {
-    if (!model_) model_.emplace(even_, robot_);
-    return *model_;
-  }
-
- private:
-  const Log& even_;
-  const RobotDescription& robot_;
-  std::optional<ExpectedTorque> model_;
-};
 
 // Rows in which the joint moves: of one that stands still friction holds a part, and its torque
 // stays what it is, at no limit.
@@ -85,7 +68,7 @@ bool is_known_to_stay(const std::vector<DataFault>& faults, Index joint) {
 }
 
 // Torques that a drive at its limit holds, within its noise, all the time that the joint moves.
-void find_held_torques(const Log& log, const RobotDescription& robot, ModelOnDemand& model,
+void find_held_torques(const Log& log, const RobotDescription& robot, const ExpectedTorque& model,
                        std::vector<DataFault>& faults) {
   constexpr double kHeld = 0.2;      // of the torque, that it spreads over
   constexpr double kExpected = 0.5;  // of the torque, that the model's spreads over
@@ -98,7 +81,7 @@ void find_held_torques(const Log& log, const RobotDescription& robot, ModelOnDem
     const double size = std::abs(torque.middle);
     if (!(torque.width > 0) || !(torque.width < kHeld * size)) continue;
     const Spread expected =
-        spread_over(rows, [&](Index row) { return model.get().at(log.t_s[row], joint); });
+        spread_over(rows, [&](Index row) { return model.at(log.t_s[row], joint); });
     if (!(expected.width > std::max(kUnlike * torque.width, kExpected * size))) continue;
     if (is_known_to_stay(faults, joint)) continue;
     DataFault fault;
@@ -158,7 +141,8 @@ struct Limits {
 };
 
 Limits limits_of(const Log& log, const RobotDescription& robot, Index joint,
-                 const TorqueExtremes& torque, bool are_positions_right, ModelOnDemand& model) {
+                 const TorqueExtremes& torque, bool are_positions_right,
+                 const ExpectedTorque& model) {
   // A sine spends 2 % of its time so near to its peaks, but a third as much just below.
   constexpr double kSmallestShareAtExtreme = 0.01;
   constexpr double kSmallestShareByModel = 0.02;
@@ -198,7 +182,7 @@ Limits limits_of(const Log& log, const RobotDescription& robot, Index joint,
         flat && !fine_again && ((enough && !once) || (limited && longest >= kShortestAtLimit));
     const bool often = static_cast<double>(reached) >= kSmallestShareByModel * rows;
     if (!told && !(often && are_positions_right && torque.is_coarse(end) &&
-                   is_asked_for_more(log, joint, torque, end, model.get()))) {
+                   is_asked_for_more(log, joint, torque, end, model))) {
       continue;
     }
     if (reached > limits.most.rows) limits.most = {end, reached};
@@ -216,7 +200,7 @@ Limits limits_of(const Log& log, const RobotDescription& robot, Index joint,
   return limits;
 }
 
-void find_reached_limits(const Log& log, const RobotDescription& robot, ModelOnDemand& model,
+void find_reached_limits(const Log& log, const RobotDescription& robot, const ExpectedTorque& model,
                          std::vector<DataFault>& faults) {
   // Where torque is at its extremes most of the time, it may switch between two levels: dry
   // friction.
@@ -257,9 +241,8 @@ void find_reached_limits(const Log& log, const RobotDescription& robot, ModelOnD
 
 }  // namespace
 
-void find_saturation(const Log& log, const Log& even, const RobotDescription& robot,
+void find_saturation(const Log& log, const RobotDescription& robot, const ExpectedTorque& model,
                      std::vector<DataFault>& faults) {
-  ModelOnDemand model(even, robot);
   find_reached_limits(log, robot, model, faults);
   find_held_torques(log, robot, model, faults);
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "explain/doctor_checks.hpp"
@@ -42,8 +41,7 @@ Index unsettled_rows(const Log& log, Index joint, const ExpectedTorque& model) {
   constexpr double kModelsOwn = 1.0 / 3;  // of the torque's rise
   const VectorXd tau = log.tau.col(joint);
   const Index rows = tau.size();
-  VectorXd off(rows);
-  for (Index i = 0; i < rows; ++i) off[i] = tau[i] - model.at(log.t_s[i], joint);
+  VectorXd off = model.torque_beyond(log, joint);
   const VectorXd later = off.tail(rows - rows / kPart);
   const double usual = quantile(later, 0.5);
   off = (off.array() - usual).abs();
@@ -62,18 +60,16 @@ Index unsettled_rows(const Log& log, Index joint, const ExpectedTorque& model) {
 
 }  // namespace
 
-void find_unsettled_torques(const Log& log, const Log& even, const RobotDescription& robot,
+void find_unsettled_torques(const Log& log, const ExpectedTorque& model,
                             std::vector<DataFault>& faults) {
   constexpr Index kFewestRows = 100;
   if (log.sample_count() < kFewestRows) return;
-  std::optional<ExpectedTorque> model;  // once a joint asks for it
   for (Index joint = 0; joint < log.tau.cols(); ++joint) {
     const double most = log.tau.col(joint).cwiseAbs().maxCoeff();
     constexpr double kSmall = 0.1;
     if (!(std::abs(log.tau(0, joint)) < kSmall * most) || is_known_at_start(faults, joint))
       continue;
-    if (!model) model.emplace(even, robot);
-    const Index unsettled = unsettled_rows(log, joint, *model);
+    const Index unsettled = unsettled_rows(log, joint, model);
     if (unsettled == 0) continue;
     DataFault fault;
     fault.kind = DataFaultKind::kStart;
@@ -84,7 +80,7 @@ void find_unsettled_torques(const Log& log, const Log& even, const RobotDescript
     fault.words = fmt::format(
         "the torque of joint {} comes up from {:.3g} at the start, where the model asks for "
         "{:.3g}: {}",
-        joint + 1, log.tau(0, joint) + 0.0, model->at(log.t_s[0], joint), words_of_spans(fault));
+        joint + 1, log.tau(0, joint) + 0.0, model.at(log.t_s[0], joint), words_of_spans(fault));
     fault.mend = mend_of_start();
     faults.push_back(std::move(fault));
   }

@@ -154,12 +154,11 @@ class BeyondModel {
   // `bursts`: of the joint; a coarse encoder's short ones are as usual as any rows.
   BeyondModel(const Log& log, Index joint, const ExpectedTorque& expected,
               const std::vector<Burst>& bursts)
-      : torque_(log.tau.col(joint)), beyond_(torque_) {
+      : torque_(log.tau.col(joint)), beyond_(expected.torque_beyond(log, joint)) {
     constexpr double kWindowS = 0.5;
     constexpr Index kFewestRows = 8;
     constexpr std::size_t kFewestWindows = 4;
     constexpr double kNearlyAll = 0.95;
-    for (Index i = 0; i < beyond_.size(); ++i) beyond_[i] -= expected.at(log.t_s[i], joint);
     rows_ = std::max(kFewestRows, static_cast<Index>(std::lround(kWindowS / log.period_s)));
     std::vector<double> others;
     for (Index first = 0; first + rows_ <= beyond_.size(); first += rows_ / 2) {
@@ -367,9 +366,8 @@ void add_stuck_fault(const Log& log, Index joint, bool position, bool at_start,
 
 }  // namespace
 
-void find_stuck_values(const Log& log, const Log& even, const RobotDescription& robot,
+void find_stuck_values(const Log& log, const ExpectedTorque& expected,
                        std::vector<DataFault>& faults) {
-  const ExpectedTorque expected(even, robot);
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     for (const bool position : {true, false}) {
       auto bursts =

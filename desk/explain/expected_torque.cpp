@@ -35,6 +35,12 @@ double ExpectedTorque::at(double t_s, Index joint) const {
   return torque_(std::min(sample_at(t_s) / stride_, torque_.rows() - 1), joint);
 }
 
+Eigen::VectorXd ExpectedTorque::torque_beyond(const Log& log, Index joint) const {
+  Eigen::VectorXd beyond = log.tau.col(joint);
+  for (Index i = 0; i < beyond.size(); ++i) beyond[i] -= at(log.t_s[i], joint);
+  return beyond;
+}
+
 double ExpectedTorque::change_during(double from_s, double to_s, Index joint) const {
   const Index first = std::min(sample_at(from_s) / stride_ + 1, torque_.rows() - 1);
   const Index last = std::min(sample_at(to_s) / stride_, torque_.rows() - 1);

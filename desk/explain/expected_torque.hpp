@@ -21,6 +21,8 @@ class ExpectedTorque {
   [[nodiscard]] static double cutoff_hz(const Log& even);
   // At the sample before a time, or next to it; N m or N.
   [[nodiscard]] double at(double t_s, Eigen::Index joint) const;
+  // A joint's measured torque less that, per row of `log`, whose rows may be uneven in time.
+  [[nodiscard]] Eigen::VectorXd torque_beyond(const Log& log, Eigen::Index joint) const;
   // Between its largest and its smallest from one time to another.
   [[nodiscard]] double change_during(double from_s, double to_s, Eigen::Index joint) const;
   // The same of the means of eight parts of that time but the first and the last: neither what a

@@ -65,8 +65,7 @@ MovedMeanwhile moved_meanwhile(const Log& log, const Burst& burst, const Expecte
   double most = kTells;
   MovedMeanwhile moved = MovedMeanwhile::kUnknown;
   for (Index joint = 0; joint < log.tau.cols(); ++joint) {
-    VectorXd beyond = log.tau.col(joint);
-    for (Index i = 0; i < beyond.size(); ++i) beyond[i] -= expected.at(log.t_s[i], joint);
+    const VectorXd beyond = expected.torque_beyond(log, joint);
     const double deviation = usual_deviation(beyond, burst, rows_of_a_second);
     // Of a joint that moved meanwhile the model is wrong at the end of the burst alone; of one that
     // is counted from another zero it is as wrong there as before.
