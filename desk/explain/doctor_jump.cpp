@@ -159,6 +159,10 @@ Index unsettled_rows(const VectorXd& x, bool position) {
     if (!(change.head(2).maxCoeff() > kUnlikeLater * later + kTimesStep * step)) continue;
     Index i = 0;
     while (i < count / kPart && change[i] > later) ++i;
+    // Half way down an exponential from three times or more.
+    constexpr double kHalfWay = 0.65;
+    constexpr Index kFewestToTell = 8;
+    if (i >= kFewestToTell && change[i / 2] > kHalfWay * change.head(2).maxCoeff()) continue;
     unsettled = std::max(unsettled, i + 2 * width);
   }
   return std::min(unsettled + unsettled / 2, rows / kPart);

@@ -23,6 +23,8 @@ constexpr double kJumpSteps = 3;
 // After three repeats or more the jump is at least four times the change per sample; an encoder
 // that stands still and is then hit keeps its new pace after the jump.
 constexpr double kJumpPerChange = 2.5;
+// Of what the channel missed, by how it moved before.
+constexpr double kMostOfMissed = 4;
 // Samples on either side of a burst that the usual change is taken from.
 constexpr Index kNeighbours = 8;
 // Repeats that a coarse channel would show by chance less often than this in the whole recording.
@@ -78,6 +80,13 @@ double usual_change(const VectorXd& x, const Burst& burst) {
   return *middle > 0 ? *middle : usual_step(x, burst);
 }
 
+// Mean change per row before a burst.
+double change_before(const VectorXd& x, const Burst& burst) {
+  const Index from = std::max<Index>(burst.first - kNeighbours, 0);
+  const Index rows = burst.first - from;
+  return rows > 0 ? (x.segment(from + 1, rows) - x.segment(from, rows)).cwiseAbs().mean() : 0;
+}
+
 struct Stale {
   std::vector<RowSpan> spans;  // of the rows that repeat
   Index rows = 0;
@@ -105,7 +114,6 @@ bool moves_steadily(const VectorXd& q, Index from, Index to, double step) {
 // behind it: a joint that rests, or gives way by some steps, goes on by none, or to and fro.
 bool moves_through(const VectorXd& q, const Burst& burst, double step) {
   constexpr Index kFewestRows = 3;
-  constexpr double kMostOfMissed = 4;
   const Index from = std::max<Index>(burst.first - kNeighbours, 0);
   const Index next = burst.end() + 1;
   const Index to = std::min(next + kNeighbours, q.size() - 1);
@@ -148,6 +156,10 @@ Stale stale_of(const Log& log, Index joint, bool smooth) {
     constexpr double kOfMissed = 0.3;
     const double missed = static_cast<double>(burst.length + 1) * usual_change(x, burst);
     if (!noisy && jump < kOfMissed * missed) continue;
+    // Nor does it jump by far more than it moved before: a coarse torque that a filter, or a ripple,
+    // has made fine again goes to its next step.
+    const double due = static_cast<double>(burst.length + 1) * change_before(x, burst);
+    if (!smooth && due > 0 && jump > kMostOfMissed * due) continue;
     if (!smooth && !noisy &&
         static_cast<double>(x.size()) *
                 std::pow(own_repeats(repeats_before, burst), static_cast<double>(burst.length)) >

@@ -89,6 +89,15 @@ bool inside_limits(const Log& log, const RobotDescription& robot, Index joint) {
          log.q.col(joint).minCoeff() * kRadPerDegree >= limits.min_position;
 }
 
+// Whether positions may be degrees: an arm that stays within a turn of 0 in radians would hardly
+// have moved in degrees, and a model that hardly moves fits what somebody else's hand has moved.
+bool may_be_degrees(const Log& log, const std::vector<Index>& revolute, Index joint) {
+  return std::any_of(revolute.begin(), revolute.end(), [&](Index j) {
+    return (joint < 0 || j == joint) &&
+           log.q.col(j).cwiseAbs().maxCoeff() > 2 * std::numbers::pi;
+  });
+}
+
 // The joint whose positions are in degrees, -1 for all, and how that shows.
 struct Degrees {
   Index joint = -1;
@@ -129,6 +138,7 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
   std::optional<Degrees> found;
   double best = std::min(kGoodFit, missed / kBetter);
   for (const Index joint : choices) {
+    if (!may_be_degrees(log, revolute, joint)) continue;
     const auto scaled = torque_pair(in_radians(log, robot, joint), robot);
     if (!scaled || !(misfit(*scaled) < best)) continue;
     best = misfit(*scaled);
@@ -138,7 +148,7 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
                     "{:.0f} % with the positions times pi/180",
                     std::min(100 * missed, 1e4), 100 * best)};
   }
-  if (found) return found;
+  if (found || !may_be_degrees(log, revolute, -1)) return found;
   const auto radians = torque_pair(in_radians(log, robot, -1), robot);
   if (!radians || !is_of_another_torque_unit(*radians)) return std::nullopt;
   return Degrees{-1,

@@ -79,6 +79,61 @@ TEST(DoctorByModel, NamesACoarseTorqueThatIsCutOff) {
   }
 }
 
+// A filter behind the steps ends each of them in values that are printed alike.
+TEST(DoctorByModel, ExcusesACoarseTorqueBehindAFilter) {
+  const RobotDescription robot = test::serial_arm(3);
+  Log log = rounded_recording(robot, 2);
+  auto tau = log.tau.col(kSecond);
+  tau = (3 * tau / tau.cwiseAbs().maxCoeff()).array().round().matrix().eval();
+  double filtered = tau[0];
+  for (double& value : tau) {
+    filtered += 0.4 * (value - filtered);
+    value = 1e-4 * std::round(1e4 * filtered);
+  }
+  EXPECT_EQ(fault_in(examine(log, robot), DataFaultKind::kStaleSamples), nullptr);
+}
+
+// The drive only makes up for friction, and somebody's hand moves the mass: in degrees the arm
+// would hardly have moved, and nearly all of the torque were friction's.
+TEST(DoctorByModel, TakesNoHandThatMovesAnArmForDegrees) {
+  RobotDescription robot = test::serial_arm(1);
+  robot.effects.at(0).parameters[0] = 0;
+  robot.joints[0].joint.mass_kg = 0.01;
+  robot.joints[0].joint.inertia_kg_m2 = {1e-4, 1e-4, 1e-4, 0, 0, 0};
+  const Log log = test::record(robot, {.duration_s = 20});
+  ASSERT_LT(log.q.cwiseAbs().maxCoeff(), 2 * std::numbers::pi);
+  robot.joints[0].joint.inertia_kg_m2 = {1, 1, 1, 0, 0, 0};
+  for (const DataFault& fault : examine(log, robot)) {
+    EXPECT_NE(fault.kind, DataFaultKind::kDegrees) << fault.words;
+  }
+}
+
+// It goes at one pace, then slowly: nothing settles.
+TEST(DoctorByModel, TakesNoFastMotionBeforeASlowOneForAStart) {
+  const RobotDescription robot = test::serial_arm(1);
+  constexpr Index kRows = 4000;
+  Motion motion;
+  motion.t_s = VectorXd::LinSpaced(kRows, 0, 0.005 * (kRows - 1));
+  motion.q = Eigen::MatrixXd::Zero(kRows, 1);
+  motion.dq = motion.q;
+  motion.ddq = motion.q;
+  for (Index i = 0; i < kRows; ++i) {
+    const double slow = 0.05 * std::sin(motion.t_s[i]);
+    motion.dq(i, 0) = slow + 0.5 * (1 - std::tanh(5 * (motion.t_s[i] - 1.5)));
+    motion.q(i, 0) = i > 0 ? motion.q(i - 1, 0) + 0.005 * motion.dq(i - 1, 0) : 0;
+    if (i > 0) motion.ddq(i, 0) = (motion.dq(i, 0) - motion.dq(i - 1, 0)) / 0.005;
+  }
+  Log log;
+  log.file = "fast, then slow";
+  log.t_s = motion.t_s;
+  log.period_s = 0.005;
+  log.q = motion.q;
+  log.dq = motion.dq;
+  log.tau = model_torque(robot, motion);
+  log.dq_derived = {true};
+  EXPECT_EQ(all_words(examine(log, robot)), "");
+}
+
 // A joint that moves from one rest to another.
 struct TwoRests {
   Log log;
