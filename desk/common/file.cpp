@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <mutex>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -31,6 +33,31 @@ std::string reason(int error) { return std::generic_category().message(error); }
                     .found = "that it cannot be written (" + reason(error) + ")",
                     .allowed = "",
                     .mend = "name a file in a folder that exists, is writable and has room"});
+}
+
+// Of a process: what any of its threads has read.
+struct Kept {
+  std::mutex mutex;
+  std::set<std::filesystem::path> files;
+};
+
+Kept& kept() {
+  static Kept files;
+  return files;
+}
+
+void refuse_kept(const std::filesystem::path& path, const std::filesystem::path& target) {
+  Kept& files = kept();
+  const std::lock_guard lock(files.mutex);
+  for (const std::filesystem::path& file : files.files) {
+    std::error_code ignored;
+    if (!std::filesystem::equivalent(file, target, ignored)) continue;
+    throw InputError({.file = path.string(),
+                      .place = "",
+                      .found = "what was read: a recording, or what decodes it",
+                      .allowed = "a file of its own",
+                      .mend = "choose another name"});
+  }
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
@@ -197,6 +224,15 @@ void check_can_be_written(const std::filesystem::path& path) {
   if (::access(folder_of(target).c_str(), W_OK | X_OK) != 0) refuse_to_write(path, errno);
 }
 
+void keep_as_it_is(const std::filesystem::path& path) {
+  std::error_code failure;
+  std::filesystem::path file = std::filesystem::canonical(path, failure);
+  if (failure) return;
+  Kept& files = kept();
+  const std::lock_guard lock(files.mutex);
+  files.files.insert(std::move(file));
+}
+
 void write_file_atomically(const std::filesystem::path& path, std::string_view content,
                            Existing existing) {
   const std::filesystem::path target = target_of(path);
@@ -204,6 +240,7 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
   if (existing == Existing::kRefuse && std::filesystem::exists(target, ignored)) {
     refuse_existing(path);
   }
+  refuse_kept(path, target);
   Temporary temporary(target);
   temporary.keep_mode_of_target();
   temporary.write(content);

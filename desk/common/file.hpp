@@ -25,9 +25,14 @@ enum class Existing { kReplace, kRefuse };
 /// temporary file in the same folder, flushed, then moved in one step. A symbolic link is followed.
 /// With Existing::kRefuse a file that is there, even one that appears meanwhile, is left alone.
 /// Throws InputError naming the path when the folder is missing or not writable, the disk is full,
-/// the path is something other than a regular file, or the file exists and must not be replaced.
+/// the path is something other than a regular file, or the file exists and must not be replaced,
+/// or is kept as it is.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content,
                            Existing existing = Existing::kRefuse);
+
+/// Says that a file was read that nobody can make again, as a recording: from then on, for as long
+/// as the process lives, write_file_atomically() refuses to replace it under any of its names.
+void keep_as_it_is(const std::filesystem::path& path);
 
 /// Throws the same InputError, as far as it can be known before there is anything to write; a file
 /// that is there is no reason.

@@ -10,6 +10,7 @@
 
 #include "common/error.hpp"
 #include "common/file.hpp"
+#include "common/input_name.hpp"
 
 namespace offnominal::desk {
 
@@ -76,16 +77,25 @@ class Output {
     throw InputError({name + verb_.get_name(), name_of(option_), found, allowed, mend});
   }
 
+  // Of a recording of several files, one of them.
+  [[nodiscard]] bool is_part_of(const std::string& word) const {
+    const auto files = recording_files(word);
+    return same_file(file_, word) ||
+           std::any_of(files.begin(), files.end(), [&](const std::filesystem::path& file) {
+             return same_file(file_, file.string());
+           });
+  }
+
   void check_apart(const CLI::Option& other) const {
     const auto& words = other.results();
     if (std::none_of(words.begin(), words.end(),
-                     [&](const std::string& word) { return same_file(file_, word); })) {
+                     [&](const std::string& word) { return is_part_of(word); })) {
       return;
     }
     const bool in_place = option_.get_type_name() == kNewRobotFile && other.check_name("--robot");
     if (in_place && forced_) return;
     refuse(fmt::format("{}, which is that of {}", file_, name_of(other)), "a file of its own",
-           in_place ? "choose another name, or add --force to replace it" : "");
+           in_place ? "choose another name, or add --force to replace it" : "choose another name");
   }
 
   const CLI::App& verb_;

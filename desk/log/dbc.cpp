@@ -187,6 +187,7 @@ Dbc parse_dbc(std::string_view text, const std::string& file) {
 }
 
 Dbc read_dbc(const std::filesystem::path& path) {
+  keep_as_it_is(path);
   return parse_dbc(read_text_file(path), path.string());
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/file.hpp"
 #include "common/input_name.hpp"
 #include "log/log_format.hpp"
 
@@ -50,6 +51,7 @@ RecordingFile::RecordingFile(const std::filesystem::path& path, const std::files
          allowed());
   }
   stream_ = stream_of(file);
+  if (!names_standard_input(path)) keep_as_it_is(path);
   struct stat status {};
   if (::fstat(file, &status) == 0 && S_ISDIR(status.st_mode)) {
     fail("", "a folder", allowed(),

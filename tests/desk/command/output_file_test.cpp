@@ -122,6 +122,17 @@ TEST_F(OutputFile, OfEveryVerbIsNeverAnInput) {
   }
 }
 
+TEST_F(OutputFile, IsNoPartOfARecordingOfSeveralFiles) {
+  put(folder_ / "positions.csv", "measured");
+  put(folder_ / "currents.csv", "measured");
+  const std::string both = path("positions.csv") + "+" + path("currents.csv");
+  for (const char* name : {"positions.csv", "currents.csv"}) {
+    expect_refusal({"compare", both, "--robot", path("r.toml"), "--report", path(name), "--force"},
+                   "which is that of ");
+    EXPECT_EQ(content_of(folder_ / name), "measured");
+  }
+}
+
 TEST_F(OutputFile, OfEveryVerbIsRefusedBeforeTheWorkWhereItCannotBeWritten) {
   std::filesystem::create_directory(folder_ / "closed");
   std::filesystem::permissions(folder_ / "closed", std::filesystem::perms::owner_read);

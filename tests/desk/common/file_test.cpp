@@ -52,6 +52,20 @@ TEST(ReadTextFile, RefusesWhatIsNoFile) {
   EXPECT_THROW(static_cast<void>(read_text_file(folder.path())), InputError);
 }
 
+TEST(WriteFileAtomically, ReplacesNothingThatIsKeptAsItIs) {
+  const TemporaryFolder folder;
+  put(folder / "recording", "measured");
+  std::filesystem::create_hard_link(folder / "recording", folder / "other name");
+  std::filesystem::create_symlink("recording", folder / "link");
+  keep_as_it_is(folder / "link");
+  for (const char* name : {"recording", "other name", "link"}) {
+    EXPECT_THAT(refusal(folder / name), HasSubstr("what was read")) << name;
+  }
+  EXPECT_EQ(content_of(folder / "recording"), "measured");
+  put(folder / "another", "old");
+  EXPECT_EQ(refusal(folder / "another"), "written");
+}
+
 TEST(WriteFileAtomically, WritesANewFileAndLeavesNothingElse) {
   const TemporaryFolder folder;
   const std::string content(1 << 20, 'y');
