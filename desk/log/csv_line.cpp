@@ -100,12 +100,30 @@ const std::vector<std::string>* CsvLineSplitter::split(std::string_view line) {
   return &cells_;
 }
 
+namespace {
+
+// As typesetting and Fortran write them: "\u22121.5", "1.5D-03"; none for any other text.
+std::optional<std::string> usual_spelling(std::string_view text) {
+  constexpr std::string_view kMinus = "\u2212";
+  std::string usual(text);
+  for (std::size_t at = usual.find(kMinus); at != std::string::npos; at = usual.find(kMinus)) {
+    usual.replace(at, kMinus.size(), "-");
+  }
+  for (const std::string_view exponent : {"D+", "D-"}) {
+    if (const std::size_t at = usual.find(exponent); at != std::string::npos) usual[at] = 'e';
+  }
+  return usual == text ? std::nullopt : std::optional(usual);
+}
+
+}  // namespace
+
 std::optional<double> number_in(std::string_view text) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  if (error == std::errc() && end == text.data() + text.size()) return value;
+  const auto usual = usual_spelling(text);
+  return usual ? number_in(*usual) : std::nullopt;
 }
 
 std::optional<double> number_with_comma(std::string_view text) {

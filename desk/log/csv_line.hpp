@@ -33,7 +33,8 @@ class CsvLineSplitter {
   bool out_of_memory_ = false;
 };
 
-// A number with a decimal point; none for any other text.
+// A number with a decimal point, also with a typeset minus or Fortran's D of an exponent; none for
+// any other text.
 [[nodiscard]] std::optional<double> number_in(std::string_view text);
 // The same with a decimal comma.
 [[nodiscard]] std::optional<double> number_with_comma(std::string_view text);

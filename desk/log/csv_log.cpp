@@ -190,9 +190,36 @@ class CsvReader {
     }
   }
 
+  // A number with a decimal mark, and its column.
+  struct Mark {
+    std::string column, text;
+  };
+
+  void note_point(const Column& column, std::string_view text) {
+    if (text.find('.') == std::string_view::npos) return;
+    point_ = {column.name, std::string(text)};
+    check_marks();
+  }
+
+  void note_comma(const Column& column, std::string_view text) {
+    if (!comma_) comma_ = {column.name, std::string(text)};
+    check_marks();
+  }
+
+  // 1.234 is another number where the mark is a comma.
+  void check_marks() const {
+    if (!point_ || !comma_) return;
+    fail(line_place(),
+         "numbers with a decimal comma and others with a point: " + comma_->text + " of column " +
+             comma_->column + " and " + point_->text + " of column " + point_->column,
+         "one decimal mark in all that is read",
+         "write the recording with one mark and without marks between thousands");
+  }
+
   // A line of plain numbers at once. False, and nothing done, for any other.
   bool read_row(std::string_view line) {
-    if (decimal_comma_) {
+    const std::string_view written = line;
+    if (comma_) {
       pointed_ = line;
       std::replace(pointed_.begin(), pointed_.end(), ',', '.');
       line = pointed_;
@@ -215,6 +242,10 @@ class CsvReader {
         double value = 0;
         const char* const stop = number_at(column, at, end, value);
         if (stop == nullptr) return false;
+        if (!point_ && layout_.separator != ',') {
+          const auto size = static_cast<std::size_t>(stop - at);
+          note_point(column, written.substr(static_cast<std::size_t>(at - line.data()), size));
+        }
         at = stop;
         if (column.need == Need::kAscending) time = value;
         column.values[static_cast<Index>(rows_)] = value;
@@ -322,9 +353,10 @@ class CsvReader {
     if (is_time && rows_ == 0) begin_time(column, text);
     std::optional<double> value =
         is_time && column.form != Form::kNumber ? time_in(column, text) : number_in(text);
+    if (value && column.form == Form::kNumber && !point_) note_point(column, text);
     if (!value && layout_.separator != ',') {
       value = number_with_comma(text);
-      decimal_comma_ = decimal_comma_ || value.has_value();
+      if (value) note_comma(column, text);
     }
     if (!value && meaning_of_) {
       value = meaning_of_(line_place() + ", column " + column.name, column.name, std::string(text));
@@ -440,7 +472,7 @@ class CsvReader {
   bool ascending_ = true;                                        // time, so far
   double last_time_ = -std::numeric_limits<double>::infinity();  // that ascends
   std::size_t out_of_time_ = 0;                                  // rows
-  bool decimal_comma_ = false;
+  std::optional<Mark> point_, comma_;
   std::string pointed_;      // a line with points in place of its commas
   bool unfinished_ = false;  // no line end after the newest line
   bool cut_off_ = false;     // the last line was left out

@@ -190,6 +190,16 @@ std::vector<Habit> habits() {
   quoted.insert(0, "\"");
   std::string commented = plain;
   commented.insert(commented.find('\n', commented.size() / 2) + 1, "# the gripper closes\n");
+  const auto replaced = [&plain](const std::string& what, const std::string& by) {
+    std::string text = plain;
+    for (std::size_t at = text.find(what); at != std::string::npos;
+         at = text.find(what, at + by.size())) {
+      text.replace(at, what.size(), by);
+    }
+    return text;
+  };
+  const std::string typeset = replaced("-", "\u2212");
+  const std::string fortran = replaced(",", "D+00,");
   std::string row_names;
   int row = 0;
   for (std::size_t at = 0; at < plain.size(); at = plain.find('\n', at) + 1) {
@@ -263,6 +273,8 @@ std::vector<Habit> habits() {
       {"gzip", packed(kHeader + plain)},
       {"gzip in two members", packed(kHeader + plain.substr(0, 100)) + packed(plain.substr(100))},
       {"gzip of UTF-16", packed(utf16(kHeader + plain, false))},
+      {"a typeset minus", kHeader + typeset},
+      {"exponents of Fortran", kHeader + fortran},
       {"dates in ISO 8601", kHeader + dates, {}, "t = 0 s is 2026-11-24T23:59:59.100Z"},
       {"dates with dots",
        "t;q1;dq1;tau1\n" + german_dates,
@@ -382,6 +394,28 @@ TEST(CsvHabits, WhatHasToBeSaidIsAskedFor) {
                       "time = {source = 't', unit = 'ms'}\nposition = 'q1'\n"
                       "torque = 'tau1'"),
               testing::AllOf(HasSubstr("dates"), HasSubstr("leave unit and scale out")));
+}
+
+// Beside a decimal comma a point stands between thousands, or for the decimals of another program.
+TEST(CsvHabits, OfTwoDecimalMarksInOneFileNoneIsRead) {
+  const std::string commas = "t;q1;dq1;tau1\n" + lines(with([](Cells& cells) {
+                               cells.separator = ";";
+                               cells.point = ',';
+                             }));
+  EXPECT_THAT(refusal(commas + "0,2;0,04;0,4;-1.371\n"),
+              testing::AllOf(HasSubstr("line 22: found"), HasSubstr("-1.371 of column tau1"),
+                             HasSubstr("one decimal mark")));
+  const std::string points =
+      "t;q1;dq1;tau1\n" + lines(with([](Cells& cells) { cells.separator = ";"; }));
+  EXPECT_THAT(refusal(points + "0.2;0.04;0.4;-1,371\n"), HasSubstr("-1,371 of column tau1"));
+  // What is not read may be written as it likes.
+  std::string unread = "t;q1;dq1;tau1;version\n";
+  unread += lines(with([](Cells& cells) {
+    cells.separator = ";";
+    cells.point = ',';
+    cells.after = ";v1.2";
+  }));
+  expect_motion(read(unread));
 }
 
 TEST(CsvHabits, OfTimesThatMayBeReadInTwoWaysItSaysHowToWriteThem) {
