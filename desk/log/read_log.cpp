@@ -28,6 +28,7 @@
 #include "log/usable_rows.hpp"
 #include "log/zero_based.hpp"
 #include "robot/channels.hpp"
+#include "robot/joint_units.hpp"
 #include "robot/payload.hpp"
 #include "robot/transmission.hpp"
 #include "robot/units.hpp"
@@ -424,7 +425,9 @@ Log read_log(const std::filesystem::path& path, int joint_count,
 Log log_of(TimedColumns recording, const RobotDescription& robot, const ChannelMap& channels) {
   const TransmissionSettings* const transmission =
       robot.transmission ? &*robot.transmission : nullptr;
-  return Assembler(std::move(recording), robot.joint_count(), transmission).with(channels);
+  Log log = Assembler(std::move(recording), robot.joint_count(), transmission).with(channels);
+  check_units_of_joints(log.channels, robot, log.file);
+  return log;
 }
 
 Log read_log_or_hold_map(const std::filesystem::path& path, const RobotDescription& robot,
@@ -437,6 +440,7 @@ Log read_log_or_hold_map(const std::filesystem::path& path, const RobotDescripti
   const auto said = payload_of(options.payloads, path.string());
   Log log = read(path, robot.joint_count(), channels, options.period_s,
                  robot.transmission ? &*robot.transmission : nullptr);
+  check_units_of_joints(log.channels, robot, log.file);
   log.payload = said || !channels ? said : payload_of(channels->payloads, path.string());
   if (log.payload) log.remarks.push_back("with a payload of " + words_of(*log.payload));
   return log;
