@@ -37,6 +37,7 @@ struct AttributeRule {
   bool required = false;
   bool may_be_negative = true;
   const char* mend = "";
+  double largest = std::numeric_limits<double>::infinity();
 };
 
 struct ElementRule {
@@ -45,8 +46,14 @@ struct ElementRule {
   std::span<const AttributeRule> attributes;
 };
 
+// Whoever writes degrees goes beyond it, and nobody else has to.
+constexpr double kTurnRad = 6.2832;
 constexpr AttributeRule kPose[] = {{.name = "xyz", .holds = Holds::kVector, .unit = "m"},
-                                   {.name = "rpy", .holds = Holds::kVector, .unit = "rad"}};
+                                   {.name = "rpy",
+                                    .holds = Holds::kVector,
+                                    .unit = "rad",
+                                    .mend = "write the three angles in rad: 90 deg is 1.5708",
+                                    .largest = kTurnRad}};
 constexpr AttributeRule kMass[] = {{.name = "value",
                                     .unit = "kg",
                                     .required = true,
@@ -252,12 +259,12 @@ class Reader {
       refuse(element.GetLineNum(), at, fmt::format("\"{}\"", word), allowed,
              *rule.mend == '\0' ? "write a number" : rule.mend);
     }
-    const double largest = physical(any_number(rule.unit)).largest;
+    const double largest = std::min(rule.largest, physical(any_number(rule.unit)).largest);
     if (std::fabs(*value) > largest) {
       refuse(element.GetLineNum(), at, shortest(*value),
              fmt::format("at most {}{}{}", shortest(largest), *rule.unit == '\0' ? "" : " ",
                          rule.unit),
-             "check the number's unit");
+             std::isfinite(rule.largest) ? rule.mend : "check the number's unit");
     }
     return *value + 0.0;  // no zero below zero
   }
