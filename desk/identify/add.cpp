@@ -120,6 +120,31 @@ void doubt_what_held_out_data_say(const AddRequest& request, AddResult& result) 
   }
 }
 
+// What is added may be nothing: of every number that says how strong it is, 0 is as likely as not.
+void doubt_what_may_be_nothing(AddResult& result) {
+  for (const std::size_t effect : result.added) {
+    const EffectInfo& info = *info_of(result.robot.effects[effect].kind);
+    const auto is_strength = [&](std::size_t parameter) {
+      return info.parameters[parameter].role == ParameterRole::kLinear;
+    };
+    bool has_strength = false;
+    for (std::size_t p = 0; p < info.parameters.size(); ++p) {
+      has_strength = has_strength || is_strength(p);
+    }
+    std::vector<std::string> words;
+    bool nothing = true;
+    for (const FittedParameter& parameter : result.fit.parameters) {
+      if (parameter.effect != effect || !parameter.fitted) continue;
+      if (has_strength && !is_strength(parameter.parameter)) continue;
+      nothing = nothing && parameter.ci95 && (*parameter.ci95)[0] <= 0 && (*parameter.ci95)[1] >= 0;
+      words.push_back(name_of(result, parameter) + ": " + value_words(result, parameter));
+    }
+    if (words.empty() || !nothing) continue;
+    result.doubts.push_back(fmt::format(
+        "{}: 0 fits as well, these recordings do not show the effect", fmt::join(words, ", ")));
+  }
+}
+
 class Adder {
  public:
   Adder(const RobotDescription& file, const AddRequest& request, FitMemory& memory,
@@ -460,6 +485,7 @@ class Adder {
     if (result_.objections.empty()) result_.objections = improved_.unphysical;
     if (result_.objections.empty()) result_.objections = improved_.unwritable;
     doubt_what_held_out_data_say(request_, result_);
+    doubt_what_may_be_nothing(result_);
   }
 
   void note() {

@@ -143,6 +143,13 @@ TEST(AddRefuses, GIVEN_a_difference_between_the_directions_THEN_it_is_not_taken_
   EXPECT_THAT(result.objections, IsEmpty());
 }
 
+TEST(AddRefuses, GIVEN_a_number_that_may_be_nothing_THEN_only_force_writes_it) {
+  const AddRequest request = on_joint_2(EffectKind::kRotorInertia);
+  const AddResult result = add(arm_description(), request, {record_arm(kUsualArm)}, {});
+  EXPECT_THAT(result.doubts, Contains(HasSubstr("0 fits as well")));
+  EXPECT_FALSE(result.may_be_written(false));
+}
+
 TEST(AddRefuses, GIVEN_an_error_that_does_not_fall_THEN_only_force_writes_it) {
   const AddRequest request = on_joint_2(EffectKind::kCoggingTorque);
   const AddResult result = add(arm_description(), request, {record_arm(kUsualArm)}, {});
