@@ -156,8 +156,8 @@ Stale stale_of(const Log& log, Index joint, bool smooth) {
     constexpr double kOfMissed = 0.3;
     const double missed = static_cast<double>(burst.length + 1) * usual_change(x, burst);
     if (!noisy && jump < kOfMissed * missed) continue;
-    // Nor does it jump by far more than it moved before: a coarse torque that a filter, or a ripple,
-    // has made fine again goes to its next step.
+    // Nor does it jump by far more than it moved before: a coarse torque that a filter, or a
+    // ripple, has made fine again goes to its next step.
     const double due = static_cast<double>(burst.length + 1) * change_before(x, burst);
     if (!smooth && due > 0 && jump > kMostOfMissed * due) continue;
     if (!smooth && !noisy &&

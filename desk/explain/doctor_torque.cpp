@@ -93,8 +93,7 @@ bool inside_limits(const Log& log, const RobotDescription& robot, Index joint) {
 // have moved in degrees, and a model that hardly moves fits what somebody else's hand has moved.
 bool may_be_degrees(const Log& log, const std::vector<Index>& revolute, Index joint) {
   return std::any_of(revolute.begin(), revolute.end(), [&](Index j) {
-    return (joint < 0 || j == joint) &&
-           log.q.col(j).cwiseAbs().maxCoeff() > 2 * std::numbers::pi;
+    return (joint < 0 || j == joint) && log.q.col(j).cwiseAbs().maxCoeff() > 2 * std::numbers::pi;
   });
 }
 

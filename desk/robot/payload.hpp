@@ -33,7 +33,7 @@ namespace offnominal::desk {
 [[nodiscard]] std::string text_of(const RecordingPayload& payload);
 
 inline constexpr double kMostPayloadKg = 1e5;
-inline constexpr double kFurthestPayloadM = 1e3;
+inline constexpr double kFurthestPayloadM = 100;
 
 /// "0.8 kg at [0, 0, 0.1] m of the last link"
 [[nodiscard]] std::string words_of(const Payload& payload);
