@@ -9,6 +9,7 @@
 #include "common/input_name.hpp"
 #include "common/nearest.hpp"
 #include "log/column_values.hpp"
+#include "look/by_derivative.hpp"
 #include "look/by_robot.hpp"
 #include "look/data_units.hpp"
 #include "look/looked_columns.hpp"
@@ -33,8 +34,9 @@ class Proposer {
     } else {
       guess_by_numbers(expected.count, period_s.value_or(0));
     }
-    take_roles();
     take_time(period_s);
+    if (look_.has_names && look_.t_s) set_names_right();
+    take_roles();
     say_unknown_units();
     take_units_from_data(look_, robot_);
     say_what_is_missing(expected.count);
@@ -65,6 +67,14 @@ class Proposer {
     left_ = std::move(guess.left);
   }
 
+  void set_names_right() {
+    const auto notes = set_right_by_derivative(roles_, look_.values, *look_.t_s);
+    look_.notes.insert(look_.notes.end(), notes.begin(), notes.end());
+    if (notes.empty()) return;
+    for (const std::string& name : roles_.position) taken_for(name, Role::kPosition);
+    for (const std::string& name : roles_.velocity) taken_for(name, Role::kVelocity);
+  }
+
   void taken_for(const std::string& name, Role role) {
     for (LookedColumn& column : look_.columns) {
       if (column.name == name) column.role = role;
@@ -73,8 +83,6 @@ class Proposer {
 
   void take_roles() {
     ChannelMap& map = look_.channels;
-    map.time.source = "t";
-    if (roles_.time) map.time = channel_of(look_, *roles_.time, Role::kTime);
     for (const std::string& name : roles_.position) {
       map.position.push_back(channel_of(look_, name, Role::kPosition));
     }
@@ -125,6 +133,9 @@ class Proposer {
   }
 
   void take_time(std::optional<double> period_s) {
+    Channel& time = look_.channels.time;
+    time.source = "t";
+    if (roles_.time) time = channel_of(look_, *roles_.time, Role::kTime);
     if (period_s) look_.channels.period_s = *period_s;
     if (files_.time) {
       look_.channels.time = files_.time_channel;
@@ -134,9 +145,7 @@ class Proposer {
     take_for_no_time_but(look_, roles_.time.value_or(""));
     if (!period_s && !roles_.time) return;
     try {
-      set_time(
-          look_,
-          looked_time(files_.columns, look_.channels.time, period_s.value_or(0), look_.notes).t_s);
+      set_time(look_, looked_time(files_.columns, time, period_s.value_or(0), look_.notes).t_s);
     } catch (const InputError& error) {
       look_.notes.push_back(std::string("the time is none: ") + error.what());
     }

@@ -42,23 +42,56 @@ bool is_not_measured(const Words& words) {
                      [](const std::string& word) { return word.starts_with("soll"); });
 }
 
+bool is_position_word(std::string_view word) {
+  static constexpr std::array<std::string_view, 14> kWords{
+      "q",   "pos", "positions", "angle", "angles", "theta",    "thetas",
+      "phi", "enc", "encoder",   "qm",    "lage",   "position", "winkel"};
+  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
+}
+
+bool begins_with_position(std::string_view word, std::string_view ending) {
+  return word.ends_with(ending) && is_position_word(word.substr(0, word.size() - ending.size()));
+}
+bool is_position_behind(std::string_view word, std::string_view beginning) {
+  return word.starts_with(beginning) && is_position_word(word.substr(beginning.size()));
+}
+
+// "ddtheta", "thetaddot", "theta_ddot", "theta_dot_dot".
+bool says_second_derivative(const Words& words) {
+  return std::count(words.begin(), words.end(), "dot") > 1 ||
+         std::any_of(words.begin(), words.end(), [](const std::string& word) {
+           return word == "ddot" || is_position_behind(word, "dd") ||
+                  begins_with_position(word, "ddot") || begins_with_position(word, "dotdot");
+         });
+}
+
 // What is no value of a joint, or another one of it.
 bool is_other(const Words& words) {
-  return is_not_measured(words) ||
+  return is_not_measured(words) || says_second_derivative(words) ||
          any_of(words, {"error", "err", "temp", "temperature", "ddq", "qdd", "acc", "acceleration",
                         "limit", "max", "min", "init", "mode", "state", "status", "enabled", "flag",
                         "d1", "d2"});
 }
 
-bool says_velocity(const Words& words) {
-  return any_of(words,
-                {"dq", "qd", "qdot", "qp", "vel", "velocities", "speed", "omega", "rpm", "w"}) ||
-         any_ends(words, {"velocity", "geschwindigkeit", "drehzahl"});
+// "thetadot", "dphi", "actvel", and no "level".
+bool is_velocity_word(const std::string& word) {
+  const bool is_short = word.ends_with("vel") && !word.ends_with("level") && word != "travel";
+  return is_short || is_position_behind(word, "d") || begins_with_position(word, "dot");
 }
+// What makes a velocity of the position beside it: "theta_dot", "angle_rate".
+bool is_rate_word(std::string_view word) {
+  return word == "dot" || word == "rate" || word == "rates" || word == "punkt";
+}
+
 bool says_position(const Words& words) {
-  return any_of(words, {"q", "pos", "positions", "angle", "angles", "theta", "phi", "encoder",
-                        "enc", "qm", "lage"}) ||
+  return std::any_of(words.begin(), words.end(), is_position_word) ||
          any_ends(words, {"position", "winkel"});
+}
+bool says_velocity(const Words& words) {
+  return any_of(words, {"qd", "qp", "velo", "velocities", "speeds", "omega", "rpm", "w"}) ||
+         any_ends(words, {"velocity", "speed", "geschwindigkeit", "drehzahl"}) ||
+         std::any_of(words.begin(), words.end(), is_velocity_word) ||
+         (std::any_of(words.begin(), words.end(), is_rate_word) && says_position(words));
 }
 bool says_torque(const Words& words) {
   return any_of(words, {"tau", "torques", "trq", "tq", "efforts", "force"}) ||
@@ -75,6 +108,14 @@ bool is_torque_current(const Words& words) {
   return at != words.end() && at + 1 != words.end() && *(at + 1) == "current";
 }
 
+// KUKA's "$AXIS_ACT.A1" and "$AXIS_ACT_MEAS.A1".
+bool is_position_of_axis(const Words& words) {
+  if (words.size() < 2 || words[0] != "axis" || words[1] != "act") return false;
+  return std::all_of(words.begin() + 2, words.end(), [](const std::string& word) {
+    return word == "meas" || word == "a" || word == "e" || is_digit(word[0]);
+  });
+}
+
 // Whatever became of it.
 Role quantity_of(const Words& words) {
   if (says_velocity(words)) return Role::kVelocity;
@@ -83,7 +124,7 @@ Role quantity_of(const Words& words) {
   // "current position" is the one of now.
   if (any_ends(words, {"position"})) return Role::kPosition;
   if (says_current(words)) return Role::kCurrent;
-  if (says_position(words)) return Role::kPosition;
+  if (says_position(words) || is_position_of_axis(words)) return Role::kPosition;
   // A drive's signal in volts, as the EMPS benchmark calls it.
   if (any_of(words, {"vir"})) return Role::kVoltage;
   if (any_of(words, {"t", "time", "timestamp", "stamp", "times", "zeit", "sec", "secs", "seconds",
@@ -216,7 +257,8 @@ std::string without_unit(const std::string& name) {
 
 bool says_quantity(const std::string& word) {
   const Words one{word};
-  return says_velocity(one) || says_torque(one) || says_current(one) || says_position(one);
+  return says_velocity(one) || says_torque(one) || says_current(one) || says_position(one) ||
+         is_rate_word(word);
 }
 
 NameGuess guess_of(const std::string& name, const std::string& said_unit) {

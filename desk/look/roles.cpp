@@ -104,6 +104,12 @@ int doubt_of(const std::vector<std::string>& words) {
   return doubt;
 }
 
+std::vector<std::string> member_columns(const Family& family) {
+  std::vector<std::string> columns;
+  for (const FamilyMember& member : family.members) columns.push_back(member.column);
+  return columns;
+}
+
 class Chooser {
  public:
   Chooser(const std::vector<Family>& families, std::size_t joints)
@@ -146,15 +152,17 @@ class Chooser {
     for (const Family& family : families_) {
       if (fits(family) && (best == nullptr || rank_of(family) < rank_of(*best))) best = &family;
     }
-    std::vector<std::string> columns;
-    if (best == nullptr) return columns;
-    for (const FamilyMember& member : best->members) columns.push_back(member.column);
+    if (best == nullptr) return {};
     of_motor = best->of_motor;
     if (may_be_asked_for(*best)) roles_.may_be_asked_for.push_back(best->name);
     for (const Family& family : families_) {
-      if (&family != best && fits(family)) roles_.other_families.push_back(family.name);
+      if (&family == best || !fits(family)) continue;
+      roles_.other_families.push_back(family.name);
+      if (role == Role::kPosition) {
+        roles_.other_positions.push_back({family.name, member_columns(family), family.of_motor});
+      }
     }
-    return columns;
+    return member_columns(*best);
   }
 
   const std::vector<Family>& families_;

@@ -26,6 +26,13 @@ struct ExpectedJoints {
   std::vector<std::string> names = {};
 };
 
+// Columns of one quantity, one for each joint.
+struct FamilyOfJoints {
+  std::string name;
+  std::vector<std::string> columns;
+  bool of_motor = false;
+};
+
 struct Roles {
   std::optional<std::string> time;
   std::vector<std::string> position;
@@ -35,7 +42,8 @@ struct Roles {
   bool position_of_motor = false;    // by its name
   bool velocity_of_motor = false;
   bool torque_of_motor = false;
-  std::vector<std::string> other_families;  // of the same roles, that would do as well
+  std::vector<std::string> other_families;      // of the same roles, that would do as well
+  std::vector<FamilyOfJoints> other_positions;  // of them
   // That are as many, and by their names were asked for, act from outside or come from a model.
   std::vector<std::string> not_measured;
   // That are taken for want of a plainer name, and may have been asked for: "q_d_#".

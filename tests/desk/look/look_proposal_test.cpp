@@ -283,6 +283,62 @@ TEST_F(LookProposal, DegreesAreOfPositionAndVelocityAndOfEveryJoint) {
   EXPECT_EQ(beyond.channels.position[0].unit, "");
 }
 
+// Two joints, each with two tones: of one alone either goes with the other's derivative.
+std::string rows_of_two_tones() {
+  std::string text;
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    text += std::to_string(t);
+    for (const int order : {0, 1}) {
+      for (const int k : {1, 2}) {
+        double sum = 0;
+        for (const double w : {k * 1.0, k * 3.0}) {
+          sum += order == 0 ? std::sin(w * t) / w : std::cos(w * t);
+        }
+        text += "," + std::to_string(sum);
+      }
+    }
+    text += "," + std::to_string(torque(0, t)) + "," + std::to_string(torque(1, t)) + "\n";
+  }
+  return text;
+}
+
+TEST_F(LookProposal, TheDerivativeTellsVelocitiesFromPositionsWhateverTheirNames) {
+  const std::string robot = robot_text({"a", "b"});
+  struct Case {
+    const char* header;
+    const char* note;
+  };
+  for (const Case& one :
+       {Case{"t,pos_a_1,pos_a_2,pos_b_1,pos_b_2,tau_1,tau_2",
+             "pos_b_1, pos_b_2: velocities, since the data show them as the derivative of pos_a_1"},
+        Case{"t,pos_m_1,pos_m_2,pos_1,pos_2,tau_1,tau_2",
+             "pos_1, pos_2: velocities, since the data show them as the derivative of pos_m_1"},
+        Case{"t,dq1,dq2,q1,q2,tau1,tau2",
+             "q1, q2 as the derivative of dq1, dq2, whatever their names say"}}) {
+    const Look seen = look(std::string(one.header) + "\n" + rows_of_two_tones(), robot);
+    EXPECT_THAT(seen.notes, Contains(HasSubstr(one.note))) << one.header;
+    EXPECT_THAT(seen.notes, Each(Not(HasSubstr("would do as well")))) << one.header;
+    EXPECT_THAT(seen.notes, Contains(HasSubstr("their units agree"))) << one.header;
+    EXPECT_EQ(to_json(seen).at("columns").at(1).at("taken_for"), "position");
+    EXPECT_EQ(to_json(seen).at("columns").at(3).at("taken_for"), "velocity");
+    EXPECT_NEAR(pasted(seen, robot).dq(0, 1), 2, 1e-4) << one.header;
+  }
+}
+
+// The derivative of a sine is the sine again, but for a sign: then names are right.
+TEST_F(LookProposal, ASignOfOneToneIsNoOtherQuantity) {
+  std::string text = "t,q1,dq1,tau1\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    text += std::to_string(t) + "," + std::to_string(std::sin(t)) + "," +
+            std::to_string(-std::cos(t)) + ",1\n";
+  }
+  const Look seen = look(text, robot_text({"a"}));
+  EXPECT_EQ(seen.channels.position[0].source, "q1");
+  EXPECT_THAT(seen.notes, Contains(HasSubstr("their signs are opposed")));
+}
+
 TEST_F(LookProposal, AJointThatHardlyMovesTakesTheUnitOfTheOthers) {
   std::string text = "t,q1,q2,dq1,dq2,tau1,tau2\n";
   for (int i = 0; i < kSamples; ++i) {

@@ -117,6 +117,15 @@ TEST(Roles, WhatSaysThatItWasMeasuredComesFirst) {
   EXPECT_THAT(roles.other_families, ElementsAre("pos_x_#", "pos_#", "tau_hat_#"));
 }
 
+TEST(Roles, ARateIsNoJointAndNoPosition) {
+  const Roles roles =
+      roles_of({"t", "theta_1", "theta_2", "theta_dot_1", "theta_dot_2", "u_1", "u_2"}, {2, {}});
+  EXPECT_THAT(roles.position, ElementsAre("theta_1", "theta_2"));
+  EXPECT_THAT(roles.velocity, ElementsAre("theta_dot_1", "theta_dot_2"));
+  EXPECT_THAT(roles.torque, IsEmpty());
+  EXPECT_THAT(roles.other_families, IsEmpty());
+}
+
 // It may be the name of a joint, or say how it came about.
 TEST(Roles, ALetterAloneIsTakenAndTold) {
   const Roles roles = roles_of({"t", "q_d_1", "q_d_2", "tau_1", "tau_2"});
