@@ -187,8 +187,13 @@ class Proposer {
     const ChannelMap& map = look_.channels;
     const std::string each =
         joints > 0 ? fmt::format("one for each of {} joints", joints) : "one for each joint";
-    const auto told = [&](const char* key, std::size_t count) {
-      return look_.has_names ? ", told by their names" : ": " + line_to_write(key, count);
+    const auto told = [&](const char* key, std::size_t count,
+                          const std::vector<std::string>& of_other_count) {
+      if (!look_.has_names) return ": " + line_to_write(key, count);
+      if (of_other_count.empty()) return std::string(", told by their names");
+      return fmt::format(
+          ", told by their names: {} {}; name those of the joints", list_of(of_other_count),
+          of_other_count.size() == 1 ? "is one" : "are " + std::to_string(of_other_count.size()));
     };
     const auto wanted = static_cast<std::size_t>(std::max(joints, 0));
     const LookedColumn* const time =
@@ -201,12 +206,14 @@ class Proposer {
           "samples");
     }
     if (map.position.empty()) {
-      look_.missing.push_back("positions, " + each + told("position", wanted));
+      look_.missing.push_back("positions, " + each +
+                              told("position", wanted, roles_.positions_of_other_count));
     }
     if (map.torque.empty()) {
-      look_.missing.push_back("torques or currents, " + each +
-                              told("torque", std::max(wanted, map.position.size())) +
-                              "; without them a model has nothing to be compared with");
+      look_.missing.push_back(
+          "torques or currents, " + each +
+          told("torque", std::max(wanted, map.position.size()), roles_.torques_of_other_count) +
+          "; without them a model has nothing to be compared with");
     } else if (!map.position.empty() && map.torque.size() != map.position.size()) {
       look_.missing.push_back(
           fmt::format("{} positions and {} torques", map.position.size(), map.torque.size()));

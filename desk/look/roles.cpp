@@ -1,6 +1,7 @@
 #include "look/roles.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <map>
 #include <set>
 #include <tuple>
@@ -127,6 +128,10 @@ class Chooser {
       roles_.torque = best_of(role, roles_.torque_of_motor);
       roles_.torque_role = roles_.torque.empty() ? Role::kTorque : role;
     }
+    if (roles_.position.empty()) roles_.positions_of_other_count = largest_of({Role::kPosition});
+    if (roles_.torque.empty()) {
+      roles_.torques_of_other_count = largest_of({Role::kTorque, Role::kCurrent, Role::kVoltage});
+    }
     return std::move(roles_);
   }
 
@@ -163,6 +168,15 @@ class Chooser {
       }
     }
     return member_columns(*best);
+  }
+
+  std::vector<std::string> largest_of(std::initializer_list<Role> roles) const {
+    const Family* largest = nullptr;
+    for (const Family& family : families_) {
+      if (std::find(roles.begin(), roles.end(), family.role) == roles.end()) continue;
+      if (largest == nullptr || family.members.size() > largest->members.size()) largest = &family;
+    }
+    return largest == nullptr ? std::vector<std::string>() : member_columns(*largest);
   }
 
   const std::vector<Family>& families_;

@@ -44,6 +44,10 @@ struct Roles {
   bool torque_of_motor = false;
   std::vector<std::string> other_families;      // of the same roles, that would do as well
   std::vector<FamilyOfJoints> other_positions;  // of them
+  // Positions and torques or currents that are more or fewer than there are joints, where none are
+  // as many: the largest family; empty: none.
+  std::vector<std::string> positions_of_other_count;
+  std::vector<std::string> torques_of_other_count;
   // That are as many, and by their names were asked for, act from outside or come from a model.
   std::vector<std::string> not_measured;
   // That are taken for want of a plainer name, and may have been asked for: "q_d_#".

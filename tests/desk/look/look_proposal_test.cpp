@@ -129,6 +129,14 @@ TEST_F(LookProposal, VoltagesNeedAScale) {
   EXPECT_THROW(pasted(seen, robot), InputError);
 }
 
+TEST_F(LookProposal, ColumnsOfAnotherNumberThanTheJointsAreNamed) {
+  const Look three = look("t,q1,q2,q3,i1\n0,1,2,3,4\n0.1,1,2,3,4\n", robot_text({"a", "b"}));
+  EXPECT_THAT(three.missing,
+              Contains("positions, one for each of 2 joints, told by their names: q1, q2, q3 are "
+                       "3; name those of the joints"));
+  EXPECT_THAT(three.missing, Contains(HasSubstr("told by their names: i1 is one; name those")));
+}
+
 TEST_F(LookProposal, WhatIsCalledAMotorsIsReadAsAMotors) {
   const Look seen = look("t,motor_pos,motor_vel,motor_torque\n" + rows(1), robot_text({"a"}));
   EXPECT_THAT(channels_text(seen), HasSubstr("motor_position = "));
