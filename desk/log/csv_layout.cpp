@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -81,6 +82,9 @@ class LayoutReader {
       if (!name_by_comment(cells)) name_by_number(cells.size() - (layout_.has_trailing ? 1 : 0));
     } else if (any_value(cells) && name_by_comment(cells)) {
       take_first(line);
+    } else if (is_sample(cells)) {
+      take_first(line);
+      name_by_number(cells.size() - (layout_.has_trailing ? 1 : 0));
     } else {
       layout_.header_line = line_;
       name_by(cells);
@@ -188,6 +192,25 @@ class LayoutReader {
       return is_value(cell) && !is_day(cell) && !is_clock(cell);
     };
     return cells != nullptr && std::count_if(cells->begin(), cells->end(), is_number) > 1;
+  }
+
+  // Words beside numbers, as a frame beside a stamp, where the next line has either in the same
+  // cells. Numbers that count are names.
+  bool is_sample(const Cells& cells) {
+    std::vector<double> numbers;
+    for (const std::string& cell : cells) {
+      if (const auto number = number_in(cell)) numbers.push_back(*number);
+    }
+    const auto counts_on = [](double a, double b) { return b == a + 1; };
+    const bool are_names =
+        std::adjacent_find(numbers.begin(), numbers.end(), std::not_fn(counts_on)) == numbers.end();
+    if (numbers.size() < 2 || are_names) return false;
+    std::size_t index = 0;
+    const Cells below = cells_ahead(index, layout_.separator);
+    return std::equal(cells.begin(), cells.end(), below.begin(), below.end(),
+                      [](const std::string& a, const std::string& b) {
+                        return is_value(a) == is_value(b) && a.empty() == b.empty();
+                      });
   }
 
   // The next line that is neither blank nor a comment.

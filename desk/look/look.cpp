@@ -9,12 +9,15 @@
 #include "common/input_name.hpp"
 #include "common/nearest.hpp"
 #include "log/column_values.hpp"
+#include "log/time_of.hpp"
+#include "log/usable_rows.hpp"
 #include "look/by_derivative.hpp"
 #include "look/by_robot.hpp"
 #include "look/data_units.hpp"
 #include "look/looked_columns.hpp"
 #include "look/looked_files.hpp"
 #include "look/nameless.hpp"
+#include "look/stamp_in_two.hpp"
 #include "robot/units.hpp"
 
 namespace offnominal::desk {
@@ -29,11 +32,9 @@ class Proposer {
 
   Look propose(std::optional<double> period_s) {
     const ExpectedJoints expected = expected_of(robot_);
-    if (look_.has_names) {
-      roles_ = roles_of(columns_of(look_), expected);
-    } else {
-      guess_by_numbers(expected.count, period_s.value_or(0));
-    }
+    if (look_.has_names) roles_ = roles_of(columns_of(look_), expected);
+    if (!period_s && !files_.time) take_time_in_two();
+    if (!look_.has_names) guess_by_numbers(expected.count, period_s.value_or(0));
     take_time(period_s);
     if (look_.has_names && look_.t_s) set_names_right();
     take_roles();
@@ -46,8 +47,11 @@ class Proposer {
  private:
   void guess_by_numbers(int joints, double period_s) {
     std::vector<std::string> names;
-    for (const LookedColumn& column : look_.columns) names.push_back(column.name);
-    NamelessGuess guess = roles_of_nameless(names, look_.values, joints, period_s);
+    for (const LookedColumn& column : look_.columns) {
+      if (column.role != Role::kTime) names.push_back(column.name);
+    }
+    NamelessGuess guess = roles_of_nameless(names, look_.values, joints, period_s,
+                                            look_.t_s.value_or(Eigen::VectorXd()));
     roles_ = std::move(guess.roles);
     look_.guessed = true;
     if (roles_.time) taken_for(*roles_.time, Role::kTime);
@@ -132,7 +136,23 @@ class Proposer {
     }
   }
 
+  // Where no column alone is the time.
+  void take_time_in_two() {
+    if (roles_.time && ascends_as_time(look_.values.at(*roles_.time))) return;
+    const std::optional<Channel> sum = stamp_in_two(files_.columns);
+    if (!sum) return;
+    take_for_no_time_but(look_, "");
+    for (const Channel& term : sum->sum) taken_for(term.source, Role::kTime);
+    look_.channels.time = *sum;
+    look_.notes.push_back(
+        fmt::format("{} has whole seconds, and {} the {} of each: the time is "
+                    "their sum",
+                    sum->sum[0].source, sum->sum[1].source, sum->sum[1].unit));
+    set_time(look_, time_of(files_.columns, *sum, 0).t_s);
+  }
+
   void take_time(std::optional<double> period_s) {
+    if (!look_.channels.time.sum.empty()) return;
     Channel& time = look_.channels.time;
     time.source = "t";
     if (roles_.time) time = channel_of(look_, *roles_.time, Role::kTime);

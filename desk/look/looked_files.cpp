@@ -10,9 +10,11 @@
 #include "log/log_format.hpp"
 #include "log/read_log.hpp"
 #include "log/recording_file.hpp"
+#include "log/usable_rows.hpp"
 #include "look/looked_columns.hpp"
 #include "look/name_guess.hpp"
 #include "look/nameless.hpp"
+#include "look/stamp_in_two.hpp"
 #include "robot/units.hpp"
 
 namespace offnominal::desk {
@@ -51,6 +53,8 @@ Channel named(const std::string& source) {
 // By its name; of a file without names, the first column where it is a clock.
 Channel time_of_one_file(const NamedColumns& columns) {
   const std::optional<std::string> time = time_in(columns_of(look_of(columns)), {});
+  if (time && ascends_as_time(columns.columns.at(*time))) return named(*time);
+  if (const auto stamp = stamp_in_two(columns)) return *stamp;
   if (time) return named(*time);
   const auto first = columns.columns.find("1");
   if (!columns.has_names && first != columns.columns.end() && is_clock(first->second)) {

@@ -127,8 +127,9 @@ Role quantity_of(const Words& words) {
   if (says_position(words) || is_position_of_axis(words)) return Role::kPosition;
   // A drive's signal in volts, as the EMPS benchmark calls it.
   if (any_of(words, {"vir"})) return Role::kVoltage;
-  if (any_of(words, {"t", "time", "timestamp", "stamp", "times", "zeit", "sec", "secs", "seconds",
-                     "nsec", "clock", "duration", "uhrzeit", "zeitstempel"})) {
+  if (any_of(words,
+             {"t", "time", "timestamp", "stamp", "times", "zeit", "sec", "secs", "seconds", "nsec",
+              "nsecs", "nanosec", "nanosecs", "clock", "duration", "uhrzeit", "zeitstempel"})) {
     return Role::kTime;
   }
   return Role::kNone;

@@ -28,8 +28,9 @@ class Guesser {
   Guesser(const std::vector<std::string>& names, const Values& values)
       : names_(names), values_(values) {}
 
-  NamelessGuess guess(int joints, double period_s) {
-    take_time(period_s);
+  NamelessGuess guess(int joints, double period_s, const VectorXd& t_s) {
+    t_s_ = t_s;
+    if (t_s_.size() == 0) take_time(period_s);
     if (t_s_.size() > 0) take_pairs();
     const auto wanted = joints > 0 ? static_cast<std::size_t>(joints) : pairs_.size();
     if (pairs_.size() == wanted && wanted > 0) {
@@ -276,8 +277,8 @@ bool is_clock(const VectorXd& x) {
 }
 
 NamelessGuess roles_of_nameless(const std::vector<std::string>& names, const Values& values,
-                                int joints, double period_s) {
-  return Guesser(names, values).guess(joints, period_s);
+                                int joints, double period_s, const VectorXd& t_s) {
+  return Guesser(names, values).guess(joints, period_s, t_s);
 }
 
 }  // namespace offnominal::desk

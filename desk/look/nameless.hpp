@@ -20,10 +20,12 @@ struct NamelessGuess {
   std::vector<std::string> notes;  // why
 };
 
-// `names` in the file's order. `joints`: of the robot, 0 where that is not known.
+// `names` in the file's order. `joints`: of the robot, 0 where that is not known. `t_s`, where it
+// has values, is the time, and none of the columns.
 [[nodiscard]] NamelessGuess roles_of_nameless(const std::vector<std::string>& names,
                                               const std::map<std::string, Eigen::VectorXd>& values,
-                                              int joints, double period_s);
+                                              int joints, double period_s,
+                                              const Eigen::VectorXd& t_s = {});
 
 // Whether numbers ascend as the stamps of samples do; a count of rows does not.
 [[nodiscard]] bool is_clock(const Eigen::VectorXd& x);

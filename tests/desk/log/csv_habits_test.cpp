@@ -324,6 +324,27 @@ TEST(CsvHabits, AHeaderBehindAPercentSignMayHaveTextUnderIt) {
   EXPECT_THAT(refusal("# a drive\n1.5,t,q1,tau1\n0,0,1,2\n"), HasSubstr("the number 1.5"));
 }
 
+// As ros2 topic echo --csv writes a JointState: no header, and words in every line.
+TEST(CsvHabits, WordsBesideNumbersInEveryLineAreNoHeader) {
+  std::string text;
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    text += "1795600000," + std::to_string(10'000'000 * i) + ",,shoulder," +
+            std::to_string(q_of(t)) + "," + std::to_string(dq_of(t)) + "," +
+            std::to_string(tau_of(t)) + "\n";
+  }
+  const Log log = read(text,
+                       "time = {sum = [1, {source = 2, unit = 'ns'}]}\nposition = 5\n"
+                       "velocity = 6\ntorque = 7");
+  ASSERT_EQ(log.sample_count(), kSamples);
+  EXPECT_NEAR(log.tau(3, 0), tau_of(3 * kPeriodS), 1e-6);
+  EXPECT_THAT(refusal(text), HasSubstr("numbers in 7 columns"));
+  // Numbers that count are names, and what no line below is like is a header.
+  EXPECT_THAT(refusal("joint,1,2\na,0.5,0.2\n"), HasSubstr("the number 1"));
+  EXPECT_THAT(refusal("t,2.5,7\n0,0,1\n"), HasSubstr("the number 2.5"));
+  EXPECT_THAT(refusal("a,2.5,7\n"), HasSubstr("the number 2.5"));
+}
+
 TEST(CsvHabits, EachIsReadRight) {
   for (const Habit& habit : habits()) {
     SCOPED_TRACE(habit.name);

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -429,8 +430,72 @@ TEST_F(LookProposal, FilesOfOneRecordingAreJoined) {
   EXPECT_THAT(channels_text(seen), HasSubstr("time = [{source = \"t\"}, {source = \"stamp\"}]"));
   const Log log = read_log(both, parse_robot(robot + channels_text(seen), "pasted.toml"));
   EXPECT_NEAR(log.tau(100, 0), torque(0, 1), 1e-4);
+  std::string stamped = "sec,nanosec,torque\n";
+  for (int i = 0; i < kSamples; ++i) {
+    stamped += fmt::format("{},{},{}\n", i / 100, 10'000'000 * (i % 100), torque(0, kPeriodS * i));
+  }
+  put(folder_ / "tau.csv", stamped);
+  EXPECT_THAT(channels_text(look_at(both, nullptr, std::nullopt)),
+              HasSubstr("time = [{source = \"t\"}, {sum = [{source = \"sec\"}, "));
   put(folder_ / "tau.csv", "load\n1\n2\n");
   EXPECT_THROW(static_cast<void>(look_at(both, nullptr, std::nullopt)), InputError);
+}
+
+// Seconds and the rest of a stamp, as ROS has it, in front of the rows.
+std::string stamped_rows(double per_second, const std::string& words = {}) {
+  std::string text;
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = kPeriodS * i;
+    text +=
+        fmt::format("{},{:.0f},{}", 1'795'600'000 + i / 100, per_second * 0.01 * (i % 100), words);
+    text += fmt::format("{},{},{}\n", position(0, t), velocity(0, t), torque(0, t));
+  }
+  return text;
+}
+
+TEST_F(LookProposal, SecondsAndTheRestOfEachInTwoColumnsAreOneTime) {
+  struct Case {
+    const char *seconds, *rest;
+    const char* unit;
+    double per_second;
+  };
+  for (const Case& one : {Case{"sec", "nanosec", "ns", 1e9},
+                          Case{"header.stamp.sec", "header.stamp.nanosec", "ns", 1e9},
+                          Case{"secs", "nsecs", "ns", 1e9}, Case{"stamp", "stamp_nsec", "ns", 1e9},
+                          Case{"tv_sec", "tv_usec", "us", 1e6}, Case{"t_s", "t_ms", "ms", 1e3},
+                          Case{"a", "b", "ns", 1e9}}) {
+    const std::string robot = robot_text({"a"});
+    const Look seen = look(
+        fmt::format("{},{},q1,dq1,tau1\n", one.seconds, one.rest) + stamped_rows(one.per_second),
+        robot);
+    EXPECT_THAT(seen.missing, IsEmpty()) << one.rest;
+    EXPECT_THAT(channels_text(seen),
+                HasSubstr(fmt::format("time = {{sum = [{{source = \"{}\"}}, {{source = \"{}\", "
+                                      "unit = \"{}\"}}]}}\n",
+                                      one.seconds, one.rest, one.unit)));
+    expect_motion(pasted(seen, robot));
+  }
+}
+
+TEST_F(LookProposal, TwoColumnsThatAreNoStampAreNoTime) {
+  // The second begins anew where no second begins.
+  std::string text = "a,b,q1,dq1,tau1\n";
+  for (int i = 0; i < kSamples; ++i) {
+    text += fmt::format("{},{},0,0,0\n", i / 100, (i % 70) * 10'000'000);
+  }
+  EXPECT_THAT(look(text).missing, Contains(HasSubstr("a column of time")));
+}
+
+TEST_F(LookProposal, WhatRos2EchoesNeedsNothingSaid) {
+  const std::string robot = robot_text({"a"});
+  for (const char* words : {"base,shoulder,", ",shoulder,"}) {
+    const Look seen = look(stamped_rows(1e9, words), robot);
+    EXPECT_THAT(seen.missing, IsEmpty());
+    const std::string text = channels_text(seen);
+    EXPECT_THAT(text, HasSubstr("time = {sum = [1, {source = 2, unit = \"ns\"}]}   # guessed\n"));
+    EXPECT_THAT(text, HasSubstr("position = [5]   # guessed\n"));
+    expect_motion(pasted(seen, robot));
+  }
 }
 
 TEST_F(LookProposal, BesideAPeriodTheTimeMayBeAnything) {
