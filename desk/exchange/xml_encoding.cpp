@@ -1,49 +1,16 @@
 #include "exchange/xml_encoding.hpp"
 
 #include <fmt/format.h>
-#include <iconv.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cstdint>
-#include <optional>
 #include <utility>
 
+#include "common/encoding.hpp"
 #include "common/error.hpp"
 
 namespace offnominal::desk::exchange {
 namespace {
-
-// Text in UTF-8 as far as the encoding goes, and where it ends.
-struct Converted {
-  std::string text;
-  std::size_t read = 0;   // bytes
-  bool is_known = false;  // the encoding
-};
-
-Converted converted(std::string_view text, const std::string& encoding) {
-  Converted result;
-  // Behind a slash iconv takes more than a name.
-  const bool is_name = std::all_of(encoding.begin(), encoding.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.' || c == ':';
-  });
-  if (!is_name) return result;
-  const iconv_t converter = iconv_open("UTF-8", encoding.c_str());
-  if (reinterpret_cast<std::intptr_t>(converter) == -1) return result;
-  result.is_known = true;
-  constexpr std::size_t kMostBytesOfOne = 8;
-  result.text.resize(kMostBytesOfOne * text.size());
-  std::string source(text);
-  char* from = source.data();
-  std::size_t left = source.size();
-  char* to = result.text.data();
-  std::size_t room = result.text.size();
-  static_cast<void>(iconv(converter, &from, &left, &to, &room));
-  iconv_close(converter);
-  result.text.resize(result.text.size() - room);
-  result.read = text.size() - left;
-  return result;
-}
 
 // What <?xml encoding="..."?> says; empty: nothing.
 std::string declared_encoding(std::string_view text) {
@@ -73,15 +40,15 @@ int line_of(std::string_view text, std::size_t at) {
 }  // namespace
 
 XmlText xml_in_utf8(std::string_view text, const std::string& file) {
-  const std::size_t good = converted(text, "UTF-8").read;
+  const std::size_t good = utf8_bytes(text);
   if (good == text.size()) return {std::string(text)};
   const std::string encoding = declared_encoding(text);
   if (encoding.empty() || is_utf8(encoding)) {
-    Converted latin = converted(text, "WINDOWS-1252");
+    TextInUtf8 latin = text_in_utf8(text, "WINDOWS-1252");
     if (latin.read != text.size()) return {std::string(text)};
     return {std::move(latin.text), line_of(text, good)};
   }
-  Converted declared = converted(text, encoding);
+  TextInUtf8 declared = text_in_utf8(text, encoding);
   if (declared.is_known && declared.read == text.size()) return {std::move(declared.text)};
   const std::size_t at = declared.is_known ? declared.read : good;
   throw InputError({.file = file,

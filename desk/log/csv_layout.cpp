@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/encoding.hpp"
 #include "common/error.hpp"
 #include "log/csv_line.hpp"
 #include "log/split_time.hpp"
@@ -112,8 +113,21 @@ class LayoutReader {
       ahead_.pop_front();
       return true;
     }
-    if (!file_.next_line(newest_.text)) return false;
-    newest_.ended = file_.line_ended();
+    return read_line(newest_);
+  }
+
+  bool read_line(Line& line) {
+    if (!file_.next_line(line.text)) return false;
+    line.ended = file_.line_ended();
+    ++lines_read_;
+    if (utf8_bytes(line.text) == line.text.size()) return true;
+    line.text = from_windows_1252(line.text);
+    if (!is_told_as_windows_) {
+      layout_.remarks.push_back("line " + std::to_string(lines_read_) +
+                                " is no UTF-8: read as Windows-1252 (Latin-1); where that is "
+                                "wrong, save the file in UTF-8");
+    }
+    is_told_as_windows_ = true;
     return true;
   }
 
@@ -121,8 +135,7 @@ class LayoutReader {
   const std::string* line_ahead(std::size_t index) {
     while (ahead_.size() <= index) {
       Line line;
-      if (!file_.next_line(line.text)) return nullptr;
-      line.ended = file_.line_ended();
+      if (!read_line(line)) return nullptr;
       ahead_.push_back(std::move(line));
     }
     return &ahead_[index].text;
@@ -321,6 +334,8 @@ class LayoutReader {
   Line newest_;
   std::deque<Line> ahead_;  // read, and not taken yet
   std::size_t line_ = 0;
+  std::size_t lines_read_ = 0;  // with those ahead
+  bool is_told_as_windows_ = false;
   std::string comment_;
   std::size_t comment_line_ = 0;
 };

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/encoding.hpp"
 #include "common/error.hpp"
 #include "log/csv_layout.hpp"
 #include "log/csv_line.hpp"
@@ -319,6 +320,8 @@ class CsvReader {
       skipped_.push_back(line_number_);
       return;
     }
+    std::string of_windows;
+    if (utf8_bytes(line) < line.size()) line = of_windows = from_windows_1252(line);
     const auto* cells = splitter.split(line);
     // As a writer that was killed leaves it; of a number that ends early nobody can tell.
     const bool is_short = cells == nullptr || cells->size() < columns_.size() ||

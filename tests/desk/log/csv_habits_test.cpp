@@ -140,6 +140,9 @@ std::vector<Habit> habits() {
   constexpr double kDegrees = 180 / std::numbers::pi;
   const std::string plain = lines({});
   const std::string trailing = lines(with([](Cells& cells) { cells.after = ","; }));
+  const std::string in_degrees = lines(with([](Cells& cells) {
+    cells.factors = {1, kDegrees, kDegrees, 1e3};
+  }));
   const std::string indexed = lines(with([](Cells& cells) { cells.index = true; }));
   const std::string comma = lines(with([](Cells& cells) {
     cells.separator = ";";
@@ -270,6 +273,18 @@ std::vector<Habit> habits() {
       {"a byte order mark", "\xEF\xBB\xBF" + kHeader + plain},
       {"UTF-16", utf16(kHeader + plain, false)},
       {"UTF-16, big-endian", utf16(kHeader + plain, true)},
+      {"a header in Windows-1252", "t,q1 [\xB0],dq1 [\xB0/s],M\x80 [mN\xB7m]\n" + in_degrees,
+       "time = 't'\nposition = {source = 'q1 [\u00b0]', unit = '\u00b0'}\n"
+       "velocity = {source = 'dq1 [\u00b0/s]', unit = '\u00b0/s'}\n"
+       "torque = {source = 'M\u20ac [mN\u00b7m]', unit = 'mNm'}",
+       "line 1 is no UTF-8: read as Windows-1252"},
+      {"a line of units in Windows-1252", kHeader + "s,\xB0,\xB0/s,mN\xB7m\n" + in_degrees,
+       "time = 't'\nposition = 'q1'\nvelocity = 'dq1'\ntorque = 'tau1'",
+       "line 2 is no UTF-8: read as Windows-1252"},
+      {"bytes that Windows-1252 has no letter for",
+       "t,q1,dq1,tau1,\x8D\n" + trailing,
+       {},
+       "line 1 is no UTF-8"},
       {"gzip", packed(kHeader + plain)},
       {"gzip in two members", packed(kHeader + plain.substr(0, 100)) + packed(plain.substr(100))},
       {"gzip of UTF-16", packed(utf16(kHeader + plain, false))},
@@ -343,6 +358,10 @@ TEST(CsvHabits, WordsBesideNumbersInEveryLineAreNoHeader) {
   EXPECT_THAT(refusal("joint,1,2\na,0.5,0.2\n"), HasSubstr("the number 1"));
   EXPECT_THAT(refusal("t,2.5,7\n0,0,1\n"), HasSubstr("the number 2.5"));
   EXPECT_THAT(refusal("a,2.5,7\n"), HasSubstr("the number 2.5"));
+}
+
+TEST(CsvHabits, ACellThatIsNoUtf8IsShownAsText) {
+  EXPECT_THAT(refusal(kHeader + "0,0,0,0\n0.01,5\xB0,0,0\n"), HasSubstr("found \"5\u00b0\""));
 }
 
 TEST(CsvHabits, EachIsReadRight) {
