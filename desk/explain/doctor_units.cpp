@@ -119,14 +119,38 @@ bool is_multiple_of(double period_s, double wanted_s, double per_si) {
   return std::abs(std::log(period_s / wanted_s / per_si)) < std::log(kNear);
 }
 
+// Recordings of drives have some 20 Hz to 50 kHz; below 5 Hz nothing is left to judge a motion by.
+constexpr double kShortestPeriodS = 2e-5;
+constexpr double kLongestPeriodS = 0.2;
+
+// A minute, an hour or a day, which every velocity that was measured shows closely: rad/s beside
+// degrees is 5 % off a minute. Null: none, or the torques follow from s.
+const Unit* long_unit_of_time(const Log& log, const RobotDescription& robot) {
+  constexpr double kClosely = 1.02;
+  static constexpr std::array kUnits{Unit{1.0 / 60, "min"}, Unit{1.0 / 3600, "h"},
+                                     Unit{1.0 / 86400, "d"}};
+  for (const Unit& unit : kUnits) {
+    const double period_s = log.period_s / unit.per_si;
+    if (period_s < kShortestPeriodS || period_s > kLongestPeriodS) continue;
+    Index told = 0;
+    Index alike = 0;
+    for (Index joint = 0; joint < log.q.cols(); ++joint) {
+      const auto ratio = velocity_ratio(log, joint);
+      if (!ratio) continue;
+      ++told;
+      if (*ratio > 0 && distance(*ratio, unit.per_si) < std::log(kClosely)) ++alike;
+    }
+    if (told == 0 || alike < told) continue;
+    return time_by_torque(log, robot, unit.per_si) == TimeByTorque::kSeconds ? nullptr : &unit;
+  }
+  return nullptr;
+}
+
 // By the velocities where they are measured, else by a period that hardly any recording has, or
 // that is the robot file's but for the unit. A slow recording may have either: then the torque
 // tells, or nothing does. None: it is s.
 std::optional<TimeUnit> unit_of_time(const Log& log, const RobotDescription& robot) {
-  // Recordings of drives have some 20 Hz to 50 kHz; below 5 Hz nothing is left to judge a motion
-  // by.
-  constexpr double kShortestPeriodS = 2e-5;
-  constexpr double kLongestPeriodS = 0.2;
+  if (const Unit* const unit = long_unit_of_time(log, robot)) return TimeUnit{unit, true};
   static constexpr std::array kUnits{Unit{1e3, "ms"}, Unit{1e6, "us"}, Unit{1e9, "ns"}};
   bool told = false;      // by a velocity
   bool as_it_is = false;  // a velocity is the derivative, to the unit

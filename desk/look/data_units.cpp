@@ -29,6 +29,7 @@ class UnitsFromData {
 
   int take() {
     if (!look_.sampling) return 0;
+    take_long_time_unit();
     for (std::size_t i = 0; i < map_.position.size(); ++i) {
       agrees_ = false;
       if (has_velocity(i)) check_velocity(i);
@@ -126,6 +127,46 @@ class UnitsFromData {
       return true;
     }
     return false;
+  }
+
+  // A minute, an hour or a day, which every velocity shows; a minute closely, since rad/s beside
+  // degrees is 5 % off.
+  void take_long_time_unit() {
+    constexpr double kClosely = 1.02;
+    if (map_.period_s > 0 || !map_.time.unit.empty() || map_.time.scale != 1) return;
+    const std::vector<double> ratios = small_velocity_ratios();
+    for (const char* unit : {"min", "h", "d"}) {
+      const double seconds = unit_factor(unit);
+      const bool all = std::all_of(ratios.begin(), ratios.end(), [&](double ratio) {
+        return ratio > 0 && std::abs(std::log(ratio * seconds)) < std::log(kClosely);
+      });
+      if (!all || ratios.empty() || look_.sampling->median_period_s * seconds > kLongestPeriodS) {
+        continue;
+      }
+      map_.time.unit = unit;
+      say(fmt::format("every velocity is 1/{:g} of the derivative of its position: as a time in {}",
+                      seconds, unit));
+      *look_.t_s *= seconds;
+      look_.sampling = sampling_of(*look_.t_s);
+      return;
+    }
+  }
+
+  // Of the joints whose velocity has one; none where one is no share of the derivative.
+  std::vector<double> small_velocity_ratios() const {
+    constexpr double kSmall = 0.1;
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < map_.position.size(); ++i) {
+      if (!has_velocity(i)) continue;
+      const auto position = in_si(map_.position[i]);
+      const auto velocity = in_si(*map_.velocity[i]);
+      if (!position || !velocity) continue;
+      const Relation relation = relation_of(*position, *velocity, *look_.t_s);
+      if (!relation.ratio) continue;
+      if (*relation.ratio > kSmall) return {};
+      ratios.push_back(*relation.ratio);
+    }
+    return ratios;
   }
 
   void check_range(std::size_t i) {

@@ -60,7 +60,11 @@ Smoothed smoothed(const VectorXd& x, const VectorXd& t_s) {
   const VectorXd even = VectorXd::LinSpaced(count, t_s[0], t_s[count - 1]).cwiseMin(t_s[count - 1]);
   const double rate_hz = 1 / period_s;
   Smoothed of;
-  of.value = zero_phase_low_pass(linear_at(t_s, x, even), std::min(100.0, rate_hz / 10), rate_hz);
+  // A time that is not in s may make milliseconds of a whole motion.
+  constexpr double kFewestPeriods = 100;  // of the cut-off, in the stretch
+  const double cutoff_hz = std::max(100.0, kFewestPeriods / (t_s[count - 1] - t_s[0]));
+  of.value =
+      zero_phase_low_pass(linear_at(t_s, x, even), std::min(cutoff_hz, rate_hz / 10), rate_hz);
   of.slope = central_difference(of.value, period_s);
   return of;
 }

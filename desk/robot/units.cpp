@@ -21,6 +21,8 @@ constexpr auto kUnits = std::to_array<SourceUnit>({
     {"\u00b5s", Dimension::kTime, 1e-6},
     {"ns", Dimension::kTime, 1e-9},
     {"min", Dimension::kTime, 60},
+    {"h", Dimension::kTime, 3600},
+    {"d", Dimension::kTime, 86400},
     {"rad", Dimension::kAngle, 1},
     {"mrad", Dimension::kAngle, 1e-3},
     {"deg", Dimension::kAngle, kDegree},
@@ -114,7 +116,7 @@ bool is_unit_of(const SourceUnit& unit, ChannelQuantity quantity) {
 const char* units_of(ChannelQuantity quantity) {
   switch (quantity) {
     case ChannelQuantity::kTime:
-      return "s, ms, us, ns, min";
+      return "s, ms, us, ns, min, h, d";
     case ChannelQuantity::kPosition:
       return "rad, mrad, deg, turns, m, cm, mm, um";
     case ChannelQuantity::kVelocity:

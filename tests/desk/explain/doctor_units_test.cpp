@@ -83,6 +83,25 @@ TEST(Doctor, NamesTimesThatAreNotInSeconds) {
   }
 }
 
+// 5 % beside rad/s and degrees; Excel counts days.
+TEST(Doctor, NamesTimesInMinutesHoursAndDaysByTheVelocities) {
+  for (const double seconds : {60.0, 3600.0, 86400.0}) {
+    Log log = recorded();
+    log.t_s /= seconds;
+    log.period_s /= seconds;
+    const auto faults = examined(log);
+    ASSERT_EQ(faults.size(), 1U) << seconds << words_of(faults);
+    EXPECT_EQ(faults[0].kind, DataFaultKind::kTimeUnit);
+    EXPECT_DOUBLE_EQ(faults[0].size, 1 / seconds);
+    EXPECT_EQ(faults[0].joint, -1);
+  }
+  // A velocity that is 5 % too small beside positions in degrees.
+  Log degrees = recorded();
+  degrees.q *= 180 / kPi;
+  degrees.dq *= 180 / kPi / 60;
+  EXPECT_THAT(words_of(examined(degrees)), HasSubstr("are in degrees"));
+}
+
 // 10 kHz in ms looks like 10 Hz, which a recording may have: only the velocity tells.
 TEST(Doctor, TellsAFastRecordingInMillisecondsByItsVelocity) {
   Log log = recorded(10000);

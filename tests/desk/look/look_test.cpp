@@ -109,6 +109,39 @@ TEST_F(LookTest, UnitsThatTheDataShowAreProposedAndSaid) {
   expect_motion(read_as(milliseconds));
 }
 
+std::string with_units(std::string header, const std::string& time_unit) {
+  return header.replace(header.find("Time"), 4, "Time [" + time_unit + "]");
+}
+
+TEST_F(LookTest, TimesInMinutesHoursAndDaysAreProposedAndSaid) {
+  for (const auto& [unit, seconds] :
+       {std::pair{"min", 60.0}, std::pair{"h", 3600.0}, std::pair{"d", 86400.0}}) {
+    std::string text = kNames + "\n";
+    std::string of_name = with_units(kNames, unit) + "\n";
+    for (int i = 0; i < kSamples; ++i) {
+      const double t = kPeriodS * i;
+      const std::string row =
+          fmt::format("{:.12f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n", t / seconds + 46353.5,
+                      std::sin(2 * t), 2 * std::cos(2 * t), 3 * std::cos(t), 0.5 * std::sin(2 * t),
+                      std::cos(2 * t), 1.5 * std::cos(t));
+      text += row;
+      of_name += row;
+    }
+    const Look seen = look(text);
+    EXPECT_THAT(seen.notes,
+                Contains(fmt::format("every velocity is 1/{:g} of the derivative of its position: "
+                                     "as a time in {}",
+                                     seconds, unit)));
+    EXPECT_EQ(seen.channels.time.unit, unit);
+    EXPECT_EQ(seen.channels.position[0].unit, "");
+    EXPECT_NEAR(read_as(seen).period_s, kPeriodS, 1e-5);
+    const Look named = look(of_name);
+    EXPECT_EQ(named.channels.time.unit, unit);
+    EXPECT_THAT(named.notes, Contains(HasSubstr("their units agree")));
+    EXPECT_NEAR(read_as(named).period_s, kPeriodS, 1e-5);
+  }
+}
+
 TEST_F(LookTest, UnitsInNamesAndUnderThemAreTaken) {
   expect_motion(
       read_as(look(recording("t [ms],pos_deg_1,vel_rpm_1,torque_1,pos_deg_2,vel_rpm_2,torque_2",
