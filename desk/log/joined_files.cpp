@@ -13,6 +13,8 @@
 #include "common/error.hpp"
 #include "common/nearest.hpp"
 #include "log/channel_needs.hpp"
+#include "robot/channel_text.hpp"
+#include "robot/units.hpp"
 #include "signal/fold.hpp"
 #include "signal/resample.hpp"
 
@@ -115,6 +117,42 @@ VectorXd values_at(Known known, const VectorXd& at_s, const std::string& name,
   return result;
 }
 
+double length_of(const FileTime& time) { return time.t_s[time.t_s.size() - 1] - time.t_s[0]; }
+
+// [channels] with the times of all files as they were read, but for the unit of one, where there is
+// one, or the offset of the last, which is left open.
+std::string time_line(const std::vector<TimedColumns>& files, std::size_t of, const char* unit) {
+  ChannelMap map;
+  for (const TimedColumns& file : files) {
+    Channel& time = &file == files.data() ? map.time : map.more_times.emplace_back();
+    time = file.time.channel;
+    if (unit == nullptr && &file == &files.back()) time.offset = 0;
+    if (unit != nullptr && &file == &files[of]) time.unit = unit;
+  }
+  std::string line = channel_lines(map, "time").front();
+  if (unit == nullptr) line.insert(line.rfind('}'), ", offset = ... ");
+  return "[channels] with " + line;
+}
+
+std::string mend_of_times(const std::vector<TimedColumns>& files) {
+  for (std::size_t k = 1; k < files.size(); ++k) {
+    for (const std::size_t longer : {k, std::size_t{0}}) {
+      const std::size_t shorter = longer == 0 ? k : 0;
+      const char* const unit = unit_by_length(files[longer].time, files[shorter].time);
+      if (unit == nullptr) continue;
+      return fmt::format(
+          "say its unit: the time of {} lasts {:.4g} times as long as that of {}, as one in {} "
+          "does: {}; where its clock counts from another zero, offset = ... beside it, in s",
+          files[longer].columns.file,
+          length_of(files[longer].time) / length_of(files[shorter].time),
+          files[shorter].columns.file, unit, time_line(files, longer, unit));
+    }
+  }
+  return fmt::format(
+      "where the clocks differ, say by how much: {}, the offset of the last file in s",
+      time_line(files, 0, nullptr));
+}
+
 // Names that one file alone has, without their times.
 std::set<std::string> plain_names(const std::vector<TimedColumns>& files) {
   std::set<std::string> once;
@@ -133,6 +171,27 @@ std::set<std::string> plain_names(const std::vector<TimedColumns>& files) {
 }
 
 }  // namespace
+
+const char* unit_by_length(const FileTime& time, const FileTime& other) {
+  constexpr double kNear = 2;
+  constexpr double kNearSteps = 4;
+  const auto says_unit = [](const FileTime& one) {
+    return !one.channel.unit.empty() || one.channel.scale != 1 || !one.channel.sum.empty() ||
+           !one.channel.scale_source.empty();
+  };
+  if (says_unit(time) || time.t_s.size() < 2 || other.t_s.size() < 2) return nullptr;
+  const auto is_near = [](double ratio, double wanted, double factor) {
+    return ratio > wanted / factor && ratio < wanted * factor;
+  };
+  const double ratio = length_of(time) / length_of(other);
+  const double of_steps =
+      ratio * static_cast<double>(other.t_s.size() - 1) / static_cast<double>(time.t_s.size() - 1);
+  for (const char* unit : {"ms", "us", "ns"}) {
+    const double wanted = 1 / unit_factor(unit);
+    if (is_near(ratio, wanted, kNear) && is_near(of_steps, wanted, kNearSteps)) return unit;
+  }
+  return nullptr;
+}
 
 TimedColumns joined_files(std::vector<TimedColumns> files, Index fewest, double most_gap) {
   TimedColumns& base = files.front();
@@ -158,9 +217,7 @@ TimedColumns joined_files(std::vector<TimedColumns> files, Index fewest, double 
     }
     fail(base.columns.file, "",
          "times of which too few samples lie in every file: " + list_of(words),
-         fmt::format("{} samples or more within each other's time", fewest),
-         "where the clocks differ, say by how much: [channels] with time = [\"t\", {source = "
-         "\"t\", offset = ... }], the offset of the second file in s");
+         fmt::format("{} samples or more within each other's time", fewest), mend_of_times(files));
   }
   const std::set<std::string> plain = plain_names(files);
   TimedColumns joined;

@@ -13,6 +13,10 @@ struct TimedColumns {
   FileTime time;
 };
 
+// In which unit a time is that was taken for one in s beside another: "ms", "us", "ns", by how many
+// times it lasts as long, in steps as many times as long; null: s, as the other.
+[[nodiscard]] const char* unit_by_length(const FileTime& time, const FileTime& other);
+
 // All of them on the samples of the first, as far as the others' times reach: their columns by
 // straight lines, those that are folded into a turn unfolded before, with a remark. Columns keep
 // their names where one file alone has them, and are "2:name" besides, by the file's number from 1.

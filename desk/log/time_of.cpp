@@ -115,6 +115,7 @@ FileTime time_of(NamedColumns& columns, const Channel& channel, double period_s)
     }
   }
   time.t_s = take_values(columns, as_said, kTimeWords, true);
+  time.channel = as_said;
   leave_out_rows_out_of_time(columns, time);
   return time;
 }

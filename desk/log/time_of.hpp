@@ -11,7 +11,8 @@ namespace offnominal::desk {
 struct FileTime {
   Eigen::VectorXd t_s;                  // counted from origin_s
   std::vector<Eigen::Index> rows = {};  // that are left, where some do not ascend; empty: all
-  double origin_s = 0;  // not 0 where the file counts from 1970 and a double does not hold that
+  Channel channel = {};  // as it was read, with the file's own unit; none of a period
+  double origin_s = 0;   // not 0 where the file counts from 1970 and a double does not hold that
 };
 
 // As `channel` says, or every `period_s` where that is above 0. Takes the column. Throws InputError

@@ -87,6 +87,30 @@ FileTime looked_time(NamedColumns& columns, Channel& channel, double period_s,
   return time_of(columns, channel, 0);
 }
 
+namespace {
+
+// Of files whose times are in other units, which their lengths tell.
+void take_units_by_length(std::vector<TimedColumns>& files, LookedFiles& looked) {
+  const auto take = [&](std::size_t longer, std::size_t shorter) {
+    FileTime& time = files[longer].time;
+    const char* const unit = unit_by_length(time, files[shorter].time);
+    if (unit == nullptr) return;
+    looked.notes.push_back(
+        fmt::format("{}: {} lasts as many times as long as {} of {} as one in {} does: taken so; "
+                    "where its clock counts from another zero, add offset = ..., in s",
+                    files[longer].columns.file, time.channel.source,
+                    files[shorter].time.channel.source, files[shorter].columns.file, unit));
+    time.channel.unit = unit;
+    time.t_s *= unit_factor(unit);
+    time.origin_s *= unit_factor(unit);
+    (longer == 0 ? looked.time_channel : looked.more_times[longer - 1]).unit = unit;
+  };
+  for (std::size_t k = 1; k < files.size(); ++k) take(0, k);
+  for (std::size_t k = 1; k < files.size(); ++k) take(k, 0);
+}
+
+}  // namespace
+
 LookedFiles read_looked_files(const std::filesystem::path& path, const RobotDescription* robot,
                               std::optional<double> period_s) {
   const ChannelMap* const channels =
@@ -109,6 +133,7 @@ LookedFiles read_looked_files(const std::filesystem::path& path, const RobotDesc
     }
     files.push_back(std::move(file));
   }
+  take_units_by_length(files, looked);
   TimedColumns joined = joined_files(std::move(files), kMinSamples, kMaxGap);
   looked.columns = std::move(joined.columns);
   looked.time = std::move(joined.time);

@@ -98,6 +98,31 @@ TEST_F(JoinedFiles, AreRefusedWhereTheirClocksDoNotOverlap) {
   EXPECT_THAT(refusal(), HasSubstr("too few samples"));
 }
 
+TEST_F(JoinedFiles, NameTheTimesAsTheyAreReadWhereTheirClocksDoNotOverlap) {
+  const std::string channels = "time = ['t', 'stamp']\nposition = '1:value'\ntorque = '2:value'";
+  put(folder_ / "a.csv", ramp("t,value", 0, 1, 0.01, 1, 2));
+  put(folder_ / "b.csv", ramp("stamp,value", 500, 501, 0.01, 5, 0));
+  EXPECT_THAT(refusal(channels),
+              HasSubstr("where the clocks differ, say by how much: [channels] with time = "
+                        "[{source = \"t\"}, {source = \"stamp\", offset = ... }]"));
+  // In ms, at 80 samples where the first has 100.
+  put(folder_ / "b.csv", ramp("stamp,value", 12500, 13500, 12.5, 5, 0));
+  EXPECT_THAT(refusal(channels),
+              AllOf(HasSubstr("say its unit: the time of " + path("b.csv") +
+                              " lasts 1000 times as long as that of " + path("a.csv") +
+                              ", as one in ms does: [channels] with time = [{source = \"t\"}, "
+                              "{source = \"stamp\", unit = \"ms\"}]"),
+                    HasSubstr("offset = ...")));
+  put(folder_ / "a.csv", ramp("t,value", 12500, 13500, 12.5, 1, 2));
+  put(folder_ / "b.csv", ramp("stamp,value", 0, 1, 0.01, 5, 0));
+  EXPECT_THAT(refusal(channels),
+              HasSubstr("[{source = \"t\", unit = \"ms\"}, {source = \"stamp\"}]"));
+  // As long, and no steps of ms: a slow sensor that went on.
+  put(folder_ / "a.csv", ramp("t,value", 0, 1, 0.01, 1, 2));
+  put(folder_ / "b.csv", ramp("stamp,value", 500, 1500, 1, 5, 0));
+  EXPECT_THAT(refusal(channels), HasSubstr("where the clocks differ"));
+}
+
 TEST_F(JoinedFiles, HaveAGapWhereTheSecondHasOne) {
   put(folder_ / "a.csv", ramp("t,q1", 0, 1, 0.01, 1, 2));
   put(folder_ / "b.csv",

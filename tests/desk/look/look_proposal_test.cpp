@@ -430,6 +430,17 @@ TEST_F(LookProposal, FilesOfOneRecordingAreJoined) {
   EXPECT_THAT(channels_text(seen), HasSubstr("time = [{source = \"t\"}, {source = \"stamp\"}]"));
   const Log log = read_log(both, parse_robot(robot + channels_text(seen), "pasted.toml"));
   EXPECT_NEAR(log.tau(100, 0), torque(0, 1), 1e-4);
+  std::string in_ms = "stamp,torque\n";
+  for (int i = 0; i < kSamples; ++i) {
+    in_ms += fmt::format("{},{}\n", 1e3 * kPeriodS * i, torque(0, kPeriodS * i));
+  }
+  put(folder_ / "tau.csv", in_ms);
+  const Look longer = look_at(both, nullptr, std::nullopt);
+  EXPECT_THAT(longer.notes, Contains(HasSubstr("as one in ms does: taken so")));
+  EXPECT_THAT(channels_text(longer),
+              HasSubstr("time = [{source = \"t\"}, {source = \"stamp\", unit = \"ms\"}]"));
+  ASSERT_TRUE(longer.t_s);
+  EXPECT_EQ(longer.t_s->size(), kSamples);
   std::string stamped = "sec,nanosec,torque\n";
   for (int i = 0; i < kSamples; ++i) {
     stamped += fmt::format("{},{},{}\n", i / 100, 10'000'000 * (i % 100), torque(0, kPeriodS * i));
