@@ -211,11 +211,16 @@ class LayoutReader {
   // cells. Numbers that count are names.
   bool is_sample(const Cells& cells) {
     std::vector<double> numbers;
+    bool are_counted = true;
     for (const std::string& cell : cells) {
-      if (const auto number = number_in(cell)) numbers.push_back(*number);
+      const auto number = number_in(cell);
+      if (!number) continue;
+      are_counted = are_counted && cell.find_first_not_of("0123456789") == std::string::npos;
+      numbers.push_back(*number);
     }
     const auto counts_on = [](double a, double b) { return b == a + 1; };
     const bool are_names =
+        are_counted &&
         std::adjacent_find(numbers.begin(), numbers.end(), std::not_fn(counts_on)) == numbers.end();
     if (numbers.size() < 2 || are_names) return false;
     std::size_t index = 0;

@@ -354,7 +354,9 @@ TEST(CsvHabits, WordsBesideNumbersInEveryLineAreNoHeader) {
   ASSERT_EQ(log.sample_count(), kSamples);
   EXPECT_NEAR(log.tau(3, 0), tau_of(3 * kPeriodS), 1e-6);
   EXPECT_THAT(refusal(text), HasSubstr("numbers in 7 columns"));
-  // Numbers that count are names, and what no line below is like is a header.
+  const std::string counting = "0.0,a,1,2\n0.1,a,1,2\n";
+  EXPECT_THAT(refusal(counting), HasSubstr("numbers in 4 columns"));
+  // Whole numbers that count are names, and what no line below is like is a header.
   EXPECT_THAT(refusal("joint,1,2\na,0.5,0.2\n"), HasSubstr("the number 1"));
   EXPECT_THAT(refusal("t,2.5,7\n0,0,1\n"), HasSubstr("the number 2.5"));
   EXPECT_THAT(refusal("a,2.5,7\n"), HasSubstr("the number 2.5"));
