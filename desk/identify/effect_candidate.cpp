@@ -259,8 +259,7 @@ double EffectCandidate::at_place(const VectorXd& of_joints, Index joint) const {
 }
 
 bool motor_may_be_searched(EffectKind kind) {
-  if (kind == EffectKind::kJointElasticity) return true;
-  if (!motor_may_have(kind)) return false;
+  if (!file_motor_may_have(kind)) return false;
   const auto has_own_class = [kind](auto family) { return family(kind) != nullptr; };
   return !has_own_class(drive_candidate) && !has_own_class(ripple_candidate);
 }

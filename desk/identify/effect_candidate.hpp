@@ -154,8 +154,8 @@ class EffectCandidate {
 
 using Candidate = std::unique_ptr<EffectCandidate>;
 
-// Whether a search can look for the effect on a motor's shaft: elasticity, and what
-// motor_may_have() that has no class in effects/.
+// Whether a search can look for the effect on a motor's shaft: what a file's motor may have,
+// without a class in effects/ that asks for the joint's motion.
 bool motor_may_be_searched(EffectKind kind);
 
 // An effect as a search sees it, with the class that it has in effects/.

@@ -34,13 +34,13 @@ class UnitCheck {
     const Dimension wanted = turns ? quantity.turns : quantity.slides;
     const Dimension other = turns ? quantity.slides : quantity.turns;
     if (unit->dimension != other) return;
-    throw InputError({file_,
-                      fmt::format("{} of joint {}{}", quantity.words, joint + 1,
-                                  channel.source.empty() ? "" : ", column " + channel.source),
-                      fmt::format("the unit {} of a joint that {}", channel.unit,
-                                  turns ? "turns" : "slides"),
-                      fmt::format("a unit of {}, or the scale that makes it one", si_name(wanted)),
-                      "look at the joint's type in the robot file and at the unit under [channels]"});
+    throw InputError(
+        {file_,
+         fmt::format("{} of joint {}{}", quantity.words, joint + 1,
+                     channel.source.empty() ? "" : ", column " + channel.source),
+         fmt::format("the unit {} of a joint that {}", channel.unit, turns ? "turns" : "slides"),
+         fmt::format("a unit of {}, or the scale that makes it one", si_name(wanted)),
+         "look at the joint's type in the robot file and at the unit under [channels]"});
   }
 
  private:

@@ -75,9 +75,7 @@ void check_motor(const TomlTable& table, const EffectInfo& info, bool has_transm
                  "joint, or motor beside [transmission]",
                  "add [transmission], or write the effect as it is at the joint");
   }
-  // What gives way behind the motor's shaft is no part of a chain (chain_of.hpp), but of the desk's
-  // model.
-  if (motor_may_have(info.kind) || info.kind == EffectKind::kJointElasticity) return;
+  if (file_motor_may_have(info.kind)) return;
   table.refuse("motor", std::string(info.name) + " of a motor",
                "effects that are a torque of the motor's own motion, its inertia, or elasticity",
                "write `joint`, with the numbers as they are at the joint");
