@@ -27,6 +27,7 @@ Json to_json(const ExperimentResult& result) {
       {"scalar", name_of(result.precision)},
       {"seed", result.seed},
   };
+  if (result.tracking_rms_m) json["tracking_rms_m"] = *result.tracking_rms_m;
   if (result.joints.empty()) return json;
   json["first_joint"] = result.first_joint ? Json(*result.first_joint + 1) : Json(nullptr);
   for (const JointRun& joint : result.joints) {

@@ -11,6 +11,7 @@ namespace offnominal::desk::paper {
 /// fault, accommodate, fault_time_s, detection_time_s, guaranteed_detection_time_s,
 /// max_error_to_threshold_before_fault, max_abs_psi_hat_before_fault, tracking_rms_rad,
 /// fault_estimate_relative_error, max_weight_norm, steps, scalar, seed. Null where there is none.
+/// tracking_rms_m beside them, where joints slide.
 [[nodiscard]] nlohmann::ordered_json to_json(const ExperimentResult& result);
 
 /// resolution, smallest_detected_mass_loss, largest_undetected_mass_loss (shares of mass 1, null

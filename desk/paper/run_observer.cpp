@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <offnominal/model/mass_matrix.hpp>
 
 #include "robot/chain_of.hpp"
@@ -56,7 +57,18 @@ void RunObserver::operator()(const TickRecord& tick) {
 
 ExperimentResult RunObserver::finish() {
   const auto ticks = static_cast<double>(window_.ticks);
-  result_.tracking_rms_rad = std::sqrt(window_.tracking / ticks);
+  const auto rms = [&](double sum, bool any) {
+    return any ? std::sqrt(sum / ticks) : std::numeric_limits<double>::quiet_NaN();
+  };
+  const auto slides = [](const RobotJoint& joint) {
+    return joint.joint.type == JointType::kPrismatic;
+  };
+  const auto& joints = robot_.joints;
+  result_.tracking_rms_rad =
+      rms(window_.tracking_rad2, !std::all_of(joints.begin(), joints.end(), slides));
+  if (std::any_of(joints.begin(), joints.end(), slides)) {
+    result_.tracking_rms_m = rms(window_.tracking_m2, true);
+  }
   if (window_.psi > 0.0) {
     result_.fault_estimate_relative_error = std::sqrt(window_.mismatch / window_.psi);
   }
@@ -103,7 +115,16 @@ void RunObserver::judge_joints(const TickRecord& tick, bool healthy) {
 
 void RunObserver::add_to_window(const TickRecord& tick, const sim::JointVector& psi) {
   ++window_.ticks;
-  window_.tracking += (tick.q_desired - tick.state.q).squaredNorm();
+  const sim::JointVector off = tick.q_desired - tick.state.q;
+  double rad2 = 0;
+  double m2 = 0;
+  for (std::size_t i = 0; i < robot_.joints.size(); ++i) {
+    const bool turns = robot_.joints[i].joint.type == JointType::kRevolute;
+    const double error = off[static_cast<Eigen::Index>(i)];
+    (turns ? rad2 : m2) += error * error;
+  }
+  window_.tracking_rad2 += rad2;
+  window_.tracking_m2 += m2;
   window_.psi += psi.squaredNorm();
   window_.mismatch += (psi - tick.psi_hat).squaredNorm();
 }

@@ -51,7 +51,8 @@ class RunObserver {
  private:
   // Sums of squares over the window in which the paper's figures have settled.
   struct WindowSums {
-    double tracking = 0.0, psi = 0.0, mismatch = 0.0;
+    double tracking_rad2 = 0.0, tracking_m2 = 0.0;  // of joints that turn, and that slide
+    double psi = 0.0, mismatch = 0.0;
     std::int64_t ticks = 0;
   };
 

@@ -67,7 +67,8 @@ struct ExperimentResult {
   double max_error_to_threshold_before_fault = 0.0;
   double max_abs_psi_hat_before_fault = 0.0;  // over joints too, rad/s^2
   // Over the last quarter of the run (15 to 20 s in the paper's runs):
-  double tracking_rms_rad = 0.0;                        // norm over joints
+  double tracking_rms_rad = 0.0;         // norm over the joints that turn; NaN where none does
+  std::optional<double> tracking_rms_m;  // over those that slide; none where none does
   std::optional<double> fault_estimate_relative_error;  // ||psi - psi_hat|| / ||psi||
   double max_weight_norm = 0.0;                         // |theta|
   std::vector<JointRun> joints;                         // empty unless in EstimatorSpace::kTorque

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "common/text_table.hpp"
@@ -29,8 +30,13 @@ std::string seconds(const std::optional<double>& value) {
 
 // Nothing where the run ended before its last quarter.
 std::string tracking(const SilResult& result) {
-  const double rms = result.run.tracking_rms_rad;
-  return std::isfinite(rms) ? fmt::format("{:.4f} rad rms", rms) : "none: the run ended early";
+  std::vector<std::string> words;
+  const auto add = [&](double rms, const char* unit) {
+    if (std::isfinite(rms)) words.push_back(fmt::format("{:.4f} {} rms", rms, unit));
+  };
+  add(result.run.tracking_rms_rad, "rad");
+  if (result.run.tracking_rms_m) add(*result.run.tracking_rms_m, "m");
+  return words.empty() ? "none: the run ended early" : fmt::format("{}", fmt::join(words, ", "));
 }
 
 std::string joint_words(const paper::ExperimentResult& run, std::size_t joint) {

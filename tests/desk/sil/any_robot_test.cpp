@@ -9,6 +9,7 @@
 #include "desk/sil/run_of_robot.hpp"
 #include "desk/sil/serial_robot.hpp"
 #include "paper/recording.hpp"
+#include "sil/sil_report.hpp"
 #include "support/repetitions.hpp"
 
 namespace offnominal::desk::sil {
@@ -38,6 +39,19 @@ TEST_P(AnyRobot, FollowsItsMotionAndIsQuietWhileItIsHealthy) {
   for (Eigen::Index joint = 0; joint < log.q.cols(); ++joint) {
     EXPECT_GT(log.q.col(joint).maxCoeff() - log.q.col(joint).minCoeff(), 0.1) << joint;
   }
+}
+
+// Radians and metres are not one sum.
+TEST(RobotThatTurnsAndSlides, HasATrackingErrorOfEither) {
+  RobotDescription robot = serial_robot(3);
+  robot.joints[2].joint.type = JointType::kPrismatic;
+  const Scenario scenario = scenario_of(robot);
+  const SilResult mixed = run(robot, scenario);
+  ASSERT_TRUE(mixed.run.tracking_rms_m.has_value());
+  EXPECT_GT(*mixed.run.tracking_rms_m, 0);
+  EXPECT_GT(mixed.run.tracking_rms_rad, 0);
+  EXPECT_THAT(text_of(mixed), testing::ContainsRegex("rad rms, [0-9.]+ m rms"));
+  EXPECT_FALSE(run(serial_robot(2), scenario_of(serial_robot(2))).run.tracking_rms_m.has_value());
 }
 
 // GIVEN a fault on its last joint WHEN it begins THEN it is seen soon, and not before.
