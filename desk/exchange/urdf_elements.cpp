@@ -20,6 +20,7 @@
 #include "common/shell_word.hpp"
 #include "common/toml_table.hpp"
 #include "exchange/xml_encoding.hpp"
+#include "robot/geometry.hpp"
 
 namespace offnominal::desk::exchange {
 namespace {
@@ -46,14 +47,12 @@ struct ElementRule {
   std::span<const AttributeRule> attributes;
 };
 
-// Whoever writes degrees goes beyond it, and nobody else has to.
-constexpr double kTurnRad = 6.2832;
 constexpr AttributeRule kPose[] = {{.name = "xyz", .holds = Holds::kVector, .unit = "m"},
                                    {.name = "rpy",
                                     .holds = Holds::kVector,
                                     .unit = "rad",
                                     .mend = "write the three angles in rad: 90 deg is 1.5708",
-                                    .largest = kTurnRad}};
+                                    .largest = kMostAngleRad}};
 constexpr AttributeRule kMass[] = {{.name = "value",
                                     .unit = "kg",
                                     .required = true,

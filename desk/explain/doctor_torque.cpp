@@ -89,9 +89,9 @@ bool inside_limits(const Log& log, const RobotDescription& robot, Index joint) {
          log.q.col(joint).minCoeff() * kRadPerDegree >= limits.min_position;
 }
 
-// Whether positions may be degrees: an arm that stays within a turn of 0 in radians would hardly
-// have moved in degrees, and a model that hardly moves fits what somebody else's hand has moved.
-bool may_be_degrees(const Log& log, const std::vector<Index>& revolute, Index joint) {
+// Whether positions go beyond a turn of 0. An arm that stays within would hardly have moved in
+// degrees, and a model that hardly moves fits what the drive gives while a hand moves the arm.
+bool go_beyond_a_turn(const Log& log, const std::vector<Index>& revolute, Index joint) {
   return std::any_of(revolute.begin(), revolute.end(), [&](Index j) {
     return (joint < 0 || j == joint) && log.q.col(j).cwiseAbs().maxCoeff() > 2 * std::numbers::pi;
   });
@@ -137,9 +137,14 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
   std::optional<Degrees> found;
   double best = std::min(kGoodFit, missed / kBetter);
   for (const Index joint : choices) {
-    if (!may_be_degrees(log, revolute, joint)) continue;
     const auto scaled = torque_pair(in_radians(log, robot, joint), robot);
     if (!scaled || !(misfit(*scaled) < best)) continue;
+    // Within a turn it must be the whole torque that fits, friction or none.
+    constexpr double kWhole = 0.2;
+    if (!go_beyond_a_turn(log, revolute, joint) &&
+        !(misfit(*scaled) < kWhole && misfit(beside_friction(*scaled)) < kWhole)) {
+      continue;
+    }
     best = misfit(*scaled);
     found = Degrees{
         joint,
@@ -147,7 +152,7 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
                     "{:.0f} % with the positions times pi/180",
                     std::min(100 * missed, 1e4), 100 * best)};
   }
-  if (found || !may_be_degrees(log, revolute, -1)) return found;
+  if (found || !go_beyond_a_turn(log, revolute, -1)) return found;
   const auto radians = torque_pair(in_radians(log, robot, -1), robot);
   if (!radians || !is_of_another_torque_unit(*radians)) return std::nullopt;
   return Degrees{-1,

@@ -120,8 +120,15 @@ void doubt_what_held_out_data_say(const AddRequest& request, AddResult& result) 
   }
 }
 
-// What is added may be nothing: of every number that says how strong it is, 0 is as likely as not.
-void doubt_what_may_be_nothing(AddResult& result) {
+// What is added may be nothing: every number that says how strong it is may be 0. Unless data that
+// the fit has not seen say clearly that it is not.
+void doubt_what_may_be_nothing(const AddRequest& request, AddResult& result) {
+  constexpr double kClearly = 0.1;
+  const std::vector<std::size_t> joints = joints_asked(result.robot, request);
+  for (const BeforeAfter& error : result.held_out) {
+    const bool is_asked = std::find(joints.begin(), joints.end(), error.joint) != joints.end();
+    if (is_asked && error.fall() > kClearly) return;
+  }
   for (const std::size_t effect : result.added) {
     const EffectInfo& info = *info_of(result.robot.effects[effect].kind);
     const auto is_strength = [&](std::size_t parameter) {
@@ -485,7 +492,7 @@ class Adder {
     if (result_.objections.empty()) result_.objections = improved_.unphysical;
     if (result_.objections.empty()) result_.objections = improved_.unwritable;
     doubt_what_held_out_data_say(request_, result_);
-    doubt_what_may_be_nothing(result_);
+    doubt_what_may_be_nothing(request_, result_);
   }
 
   void note() {

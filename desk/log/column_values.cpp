@@ -193,8 +193,8 @@ void take_unit_of_file(NamedColumns& columns, Channel& channel, ChannelQuantity 
                     "scale being what one {} is in SI",
                     channel.source, said->second, si_name(unit->dimension)));
   }
-  if (unit->factor == 1) return;
   channel.unit = said->second;
+  if (unit->factor == 1) return;
   columns.remarks.push_back(fmt::format("the {} is read in {}, as the file says of {}", what,
                                         said->second, channel.source));
 }

@@ -109,8 +109,11 @@ std::optional<std::string> usual_spelling(std::string_view text) {
   for (std::size_t at = usual.find(kMinus); at != std::string::npos; at = usual.find(kMinus)) {
     usual.replace(at, kMinus.size(), "-");
   }
-  for (const std::string_view exponent : {"D+", "D-"}) {
-    if (const std::size_t at = usual.find(exponent); at != std::string::npos) usual[at] = 'e';
+  // With a sign and two digits at least: "2D-3" is a name.
+  const std::size_t exponent = usual.find('D');
+  if (exponent != std::string::npos && usual.size() > exponent + 3 &&
+      (usual[exponent + 1] == '+' || usual[exponent + 1] == '-')) {
+    usual[exponent] = 'e';
   }
   return usual == text ? std::nullopt : std::optional(usual);
 }

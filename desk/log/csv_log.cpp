@@ -58,6 +58,29 @@ std::string in_small_letters(std::string text) {
   return text;
 }
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// A mark, and three digits behind it.
+bool has_three_decimals(std::string_view text) {
+  constexpr std::size_t kDecimals = 3;
+  return text.size() > kDecimals + 1 && !is_digit(text[text.size() - kDecimals - 1]);
+}
+
+// "1.371", "-12.345.678", and neither "0.371" nor "1.37".
+bool may_be_thousands(std::string_view text, char mark) {
+  constexpr std::size_t kGroup = 3;
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
+  const std::size_t first = text.find(mark);
+  if (first == std::string_view::npos || first == 0 || first > kGroup || text[0] == '0') {
+    return false;
+  }
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_mark = i >= first && (i - first) % (kGroup + 1) == 0;
+    if (is_mark ? text[i] != mark : !is_digit(text[i])) return false;
+  }
+  return (text.size() - first) % (kGroup + 1) == 0;
+}
+
 // Up to this every whole number is a double.
 constexpr double kLargestWhole = 9007199254740992.0;
 
@@ -191,36 +214,41 @@ class CsvReader {
     }
   }
 
-  // A number with a decimal mark, and its column.
-  struct Mark {
-    std::string column, text;
+  // The first numbers with a decimal mark, and with one that may as well stand before thousands.
+  struct Marks {
+    char mark;
+    std::optional<std::string> any = std::nullopt;
+    std::optional<std::string> thousands = std::nullopt;
   };
 
-  void note_point(const Column& column, std::string_view text) {
-    if (text.find('.') == std::string_view::npos) return;
-    point_ = {column.name, std::string(text)};
-    check_marks();
+  // Of what somebody asked for.
+  void note_marks(const Column& column, std::string_view text) {
+    if (layout_.separator == ',' || !is_required(column.need)) return;
+    for (Marks* const marks : {&points_, &commas_}) {
+      if (text.find(marks->mark) == std::string_view::npos) continue;
+      const std::string words = std::string(text) + " of column " + column.name;
+      if (!marks->any) marks->any = words;
+      if (!marks->thousands && may_be_thousands(text, marks->mark)) marks->thousands = words;
+    }
+    check_marks(points_, commas_);
+    check_marks(commas_, points_);
   }
 
-  void note_comma(const Column& column, std::string_view text) {
-    if (!comma_) comma_ = {column.name, std::string(text)};
-    check_marks();
-  }
-
-  // 1.234 is another number where the mark is a comma.
-  void check_marks() const {
-    if (!point_ || !comma_) return;
+  void check_marks(const Marks& first, const Marks& second) const {
+    if (!first.thousands || !second.any) return;
     fail(line_place(),
-         "numbers with a decimal comma and others with a point: " + comma_->text + " of column " +
-             comma_->column + " and " + point_->text + " of column " + point_->column,
+         "numbers with a decimal comma and others with a point, one of which may stand between "
+         "thousands: " +
+             *first.thousands + " and " + *second.any,
          "one decimal mark in all that is read",
-         "write the recording with one mark and without marks between thousands");
+         "write the recording with one mark and without marks between thousands, or leave such "
+         "columns out of [channels]");
   }
 
   // A line of plain numbers at once. False, and nothing done, for any other.
   bool read_row(std::string_view line) {
     const std::string_view written = line;
-    if (comma_) {
+    if (has_commas_) {
       pointed_ = line;
       std::replace(pointed_.begin(), pointed_.end(), ',', '.');
       line = pointed_;
@@ -242,11 +270,12 @@ class CsvReader {
       } else {
         double value = 0;
         const char* const stop = number_at(column, at, end, value);
-        if (stop == nullptr) return false;
-        if (!point_ && layout_.separator != ',') {
-          const auto size = static_cast<std::size_t>(stop - at);
-          note_point(column, written.substr(static_cast<std::size_t>(at - line.data()), size));
-        }
+        if (stop == nullptr || (stop != end && *stop == '.')) return false;
+        const auto size = static_cast<std::size_t>(stop - at);
+        const std::string_view cell =
+            written.substr(static_cast<std::size_t>(at - line.data()), size);
+        const bool is_first = !points_.any && !has_commas_;
+        if (is_first || has_three_decimals(cell)) note_marks(column, cell);
         at = stop;
         if (column.need == Need::kAscending) time = value;
         column.values[static_cast<Index>(rows_)] = value;
@@ -356,11 +385,11 @@ class CsvReader {
     if (is_time && rows_ == 0) begin_time(column, text);
     std::optional<double> value =
         is_time && column.form != Form::kNumber ? time_in(column, text) : number_in(text);
-    if (value && column.form == Form::kNumber && !point_) note_point(column, text);
     if (!value && layout_.separator != ',') {
       value = number_with_comma(text);
-      if (value) note_comma(column, text);
+      has_commas_ = has_commas_ || value;
     }
+    if (value && column.form == Form::kNumber) note_marks(column, text);
     if (!value && meaning_of_) {
       value = meaning_of_(line_place() + ", column " + column.name, column.name, std::string(text));
     }
@@ -475,7 +504,8 @@ class CsvReader {
   bool ascending_ = true;                                        // time, so far
   double last_time_ = -std::numeric_limits<double>::infinity();  // that ascends
   std::size_t out_of_time_ = 0;                                  // rows
-  std::optional<Mark> point_, comma_;
+  bool has_commas_ = false;                                      // as decimal marks
+  Marks points_{'.'}, commas_{','};
   std::string pointed_;      // a line with points in place of its commas
   bool unfinished_ = false;  // no line end after the newest line
   bool cut_off_ = false;     // the last line was left out

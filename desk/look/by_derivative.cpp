@@ -91,18 +91,28 @@ std::vector<std::string> set_right_by_derivative(Roles& roles, const Values& val
     swap_positions_and_velocities(roles);
     return notes;
   }
-  if (roles.other_positions.empty() || judge.is_derivative(roles.velocity, roles.position)) {
+  if (judge.is_derivative(roles.velocity, roles.position)) return notes;
+  const auto take = [&](const FamilyOfJoints& other) {
+    roles.velocity = other.columns;
+    roles.velocity_of_motor = other.of_motor;
+    std::erase(roles.other_families, other.name);
+  };
+  const auto say = [&] {
+    notes.push_back(fmt::format("{}: velocities, since the data show them as the derivative of {}",
+                                list_of(roles.velocity), list_of(roles.position)));
+  };
+  for (const FamilyOfJoints& other : roles.other_velocities) {
+    if (!judge.is_derivative(other.columns, roles.position)) continue;
+    take(other);
+    say();
     return notes;
   }
   for (const FamilyOfJoints& other : roles.other_positions) {
     const bool is_velocity = judge.is_derivative(other.columns, roles.position);
     if (!is_velocity && !judge.is_derivative(roles.position, other.columns)) continue;
-    roles.velocity = other.columns;
-    roles.velocity_of_motor = other.of_motor;
+    take(other);
     if (!is_velocity) swap_positions_and_velocities(roles);
-    std::erase(roles.other_families, other.name);
-    notes.push_back(fmt::format("{}: velocities, since the data show them as the derivative of {}",
-                                list_of(roles.velocity), list_of(roles.position)));
+    say();
     return notes;
   }
   return notes;

@@ -163,9 +163,10 @@ class Chooser {
     for (const Family& family : families_) {
       if (&family == best || !fits(family)) continue;
       roles_.other_families.push_back(family.name);
-      if (role == Role::kPosition) {
-        roles_.other_positions.push_back({family.name, member_columns(family), family.of_motor});
-      }
+      const bool position = role == Role::kPosition;
+      if (!position && role != Role::kVelocity) continue;
+      (position ? roles_.other_positions : roles_.other_velocities)
+          .push_back({family.name, member_columns(family), family.of_motor});
     }
     return member_columns(*best);
   }

@@ -44,6 +44,7 @@ struct Roles {
   bool torque_of_motor = false;
   std::vector<std::string> other_families;      // of the same roles, that would do as well
   std::vector<FamilyOfJoints> other_positions;  // of them
+  std::vector<FamilyOfJoints> other_velocities;
   // Positions and torques or currents that are more or fewer than there are joints, where none are
   // as many: the largest family; empty: none.
   std::vector<std::string> positions_of_other_count;

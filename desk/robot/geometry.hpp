@@ -10,6 +10,9 @@ namespace offnominal::desk {
 /// last bits stays as it is. None where its length is another.
 [[nodiscard]] std::optional<std::array<double, 3>> unit_vector(const std::array<double, 3>& vector);
 
+/// A turn, as it is rounded up: of angles between frames nobody needs more, and degrees are beyond.
+inline constexpr double kMostAngleRad = 6.2832;
+
 /// The rotation, row by row, of roll, pitch, yaw about the fixed x, y, z axes in this order (rad):
 /// Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
 [[nodiscard]] std::array<double, 9> rotation_of_rpy(const std::array<double, 3>& rpy_rad);

@@ -48,7 +48,7 @@ std::array<double, 9> rotation_of(const TomlTable& table) {
   }
   if (!table.has("rpy_rad")) return Joint<double>{}.rotation;
   NumberRule rule = any_number("rad");
-  rule.max = 2 * std::numbers::pi;
+  rule.max = kMostAngleRad;
   rule.min = -rule.max;
   rule.mend = "give radians: degrees times pi/180";
   return rotation_of_rpy(vector_of(table, "rpy_rad", rule));

@@ -108,6 +108,33 @@ TEST(DoctorByModel, TakesNoHandThatMovesAnArmForDegrees) {
   }
 }
 
+// Some degrees to and fro are less than a turn in radians.
+TEST(DoctorByModel, NamesDegreesOfASmallMotion) {
+  const RobotDescription robot = test::serial_arm(3);
+  Log log = test::record(robot, {.duration_s = 20});
+  const double largest = log.q.cwiseAbs().maxCoeff();
+  log.q *= 4 / largest;
+  log.dq *= 4 / largest;
+  for (Index joint = 0; joint < 3; ++joint) log.dq_derived[static_cast<std::size_t>(joint)] = true;
+  // The torque of that motion in radians, slow enough to be gravity and friction.
+  constexpr double kRadPerDegree = std::numbers::pi / 180;
+  Motion motion;
+  motion.t_s = log.t_s;
+  motion.q = kRadPerDegree * log.q;
+  motion.dq = kRadPerDegree * log.dq;
+  motion.ddq = Eigen::MatrixXd::Zero(log.q.rows(), 3);
+  const Index rows = log.q.rows();
+  for (Index i = 1; i + 1 < rows; ++i) {
+    motion.ddq.row(i) = (motion.dq.row(i + 1) - motion.dq.row(i - 1)) / (2 * log.period_s);
+  }
+  log.tau = model_torque(robot, motion);
+  const auto faults = examine(log, robot);
+  const bool named = std::any_of(faults.begin(), faults.end(), [](const DataFault& fault) {
+    return fault.kind == DataFaultKind::kDegrees;
+  });
+  EXPECT_TRUE(named) << all_words(faults);
+}
+
 // It goes at one pace, then slowly: nothing settles.
 TEST(DoctorByModel, TakesNoFastMotionBeforeASlowOneForAStart) {
   const RobotDescription robot = test::serial_arm(1);

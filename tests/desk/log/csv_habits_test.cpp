@@ -447,15 +447,27 @@ TEST(CsvHabits, OfTwoDecimalMarksInOneFileNoneIsRead) {
   EXPECT_THAT(refusal(commas + "0,2;0,04;0,4;-1.371\n"),
               testing::AllOf(HasSubstr("line 22: found"), HasSubstr("-1.371 of column tau1"),
                              HasSubstr("one decimal mark")));
+  EXPECT_THAT(refusal(commas + "0,2;0,04;0,4;-1.234.567\n"), HasSubstr("-1.234.567"));
   const std::string points =
       "t;q1;dq1;tau1\n" + lines(with([](Cells& cells) { cells.separator = ";"; }));
   EXPECT_THAT(refusal(points + "0.2;0.04;0.4;-1,371\n"), HasSubstr("-1,371 of column tau1"));
+  // A zero, or two digits, stand before no thousands.
+  const std::string both = "0.19;0,361;0,38;-14.0\n";
+  EXPECT_EQ(read("t;q1;dq1;tau1\n" +
+                 lines(with([](Cells& cells) {
+                         cells.separator = ";";
+                         cells.point = ',';
+                       }),
+                       kSamples - 1) +
+                 both)
+                .tau(kSamples - 1, 0),
+            -14);
   // What is not read may be written as it likes.
   std::string unread = "t;q1;dq1;tau1;version\n";
   unread += lines(with([](Cells& cells) {
     cells.separator = ";";
     cells.point = ',';
-    cells.after = ";v1.2";
+    cells.after = ";1.234";
   }));
   expect_motion(read(unread));
 }

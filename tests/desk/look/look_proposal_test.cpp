@@ -509,6 +509,19 @@ TEST_F(LookProposal, WhatRos2EchoesNeedsNothingSaid) {
   }
 }
 
+TEST_F(LookProposal, OfTwoThatAreCalledVelocitiesTheDerivativeIsOne) {
+  // To some "qd" is the velocity, to others what was desired. Of a single tone nothing tells.
+  const auto q = [](double t) { return std::sin(2 * t) + 0.4 * std::sin(7 * t); };
+  const auto dq = [](double t) { return 2 * std::cos(2 * t) + 2.8 * std::cos(7 * t); };
+  std::string text = "t,q1,qd1,dq1,tau1\n";
+  for (int i = 0; i < 1000; ++i) {
+    const double t = kPeriodS * i;
+    text += fmt::format("{},{},{},{},{}\n", t, q(t), q(t - 0.02), dq(t), 3 * q(t));
+  }
+  EXPECT_THAT(channels_text(look(text, robot_text({"a"}))),
+              HasSubstr("velocity = [{source = \"dq1\"}]"));
+}
+
 TEST_F(LookProposal, BesideAPeriodTheTimeMayBeAnything) {
   std::string text = "t,q1,dq1,tau1\n";
   for (int i = 0; i < kSamples; ++i) {
