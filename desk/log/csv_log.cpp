@@ -226,9 +226,11 @@ class CsvReader {
     if (layout_.separator == ',' || !is_required(column.need)) return;
     for (Marks* const marks : {&points_, &commas_}) {
       if (text.find(marks->mark) == std::string_view::npos) continue;
+      const bool is_thousands = !marks->thousands && may_be_thousands(text, marks->mark);
+      if (marks->any && !is_thousands) continue;
       const std::string words = std::string(text) + " of column " + column.name;
       if (!marks->any) marks->any = words;
-      if (!marks->thousands && may_be_thousands(text, marks->mark)) marks->thousands = words;
+      if (is_thousands) marks->thousands = words;
     }
     check_marks(points_, commas_);
     check_marks(commas_, points_);
