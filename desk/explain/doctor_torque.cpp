@@ -138,14 +138,15 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
   double best = std::min(kGoodFit, missed / kBetter);
   for (const Index joint : choices) {
     const auto scaled = torque_pair(in_radians(log, robot, joint), robot);
-    if (!scaled || !(misfit(*scaled) < best)) continue;
+    const double left = scaled ? misfit(*scaled) : best;
+    if (!(left < best)) continue;
     // Within a turn it must be the whole torque that fits, friction or none.
     constexpr double kWhole = 0.2;
     if (!go_beyond_a_turn(log, revolute, joint) &&
-        !(misfit(*scaled) < kWhole && misfit(beside_friction(*scaled)) < kWhole)) {
+        !(left < kWhole && misfit(beside_friction(*scaled)) < kWhole)) {
       continue;
     }
-    best = misfit(*scaled);
+    best = left;
     found = Degrees{
         joint,
         fmt::format("the model misses {:.0f} % of the torque with the positions as they are, "

@@ -98,19 +98,26 @@ std::string value_words(const AddResult& result, const FittedParameter& paramete
   return words;
 }
 
+bool is_one_of(const std::vector<std::size_t>& joints, const BeforeAfter& error) {
+  return std::find(joints.begin(), joints.end(), error.joint) != joints.end();
+}
+
+// Whether one of the joints gains more than that share, on data that the fit has not seen.
+bool falls_by_more_than(double share, const std::vector<std::size_t>& joints,
+                        const AddResult& result) {
+  return std::any_of(result.held_out.begin(), result.held_out.end(), [&](const auto& error) {
+    return is_one_of(joints, error) && error.fall() > share;
+  });
+}
+
 // On data that the fit has not seen: the joint that was asked for must gain, or one of those that
 // the motor moves, no other may lose more than what a twentieth is.
 void doubt_what_held_out_data_say(const AddRequest& request, AddResult& result) {
   constexpr double kRelevant = 0.05;
   const std::vector<std::size_t> joints = joints_asked(result.robot, request);
-  const auto is_asked = [&](const BeforeAfter& error) {
-    return std::find(joints.begin(), joints.end(), error.joint) != joints.end();
-  };
-  const bool falls =
-      std::any_of(result.held_out.begin(), result.held_out.end(),
-                  [&](const BeforeAfter& error) { return is_asked(error) && error.fall() > 0; });
+  const bool falls = falls_by_more_than(0, joints, result);
   for (const BeforeAfter& error : result.held_out) {
-    const bool asked = is_asked(error) && !falls;
+    const bool asked = is_one_of(joints, error) && !falls;
     if (!asked && !(error.fall() < -kRelevant)) continue;
     result.doubts.push_back(
         fmt::format("on data not used for the fit the error of joint {} {}, from {:.2f} % to "
@@ -124,25 +131,19 @@ void doubt_what_held_out_data_say(const AddRequest& request, AddResult& result) 
 // the fit has not seen say clearly that it is not.
 void doubt_what_may_be_nothing(const AddRequest& request, AddResult& result) {
   constexpr double kClearly = 0.1;
-  const std::vector<std::size_t> joints = joints_asked(result.robot, request);
-  for (const BeforeAfter& error : result.held_out) {
-    const bool is_asked = std::find(joints.begin(), joints.end(), error.joint) != joints.end();
-    if (is_asked && error.fall() > kClearly) return;
-  }
+  if (falls_by_more_than(kClearly, joints_asked(result.robot, request), result)) return;
   for (const std::size_t effect : result.added) {
     const EffectInfo& info = *info_of(result.robot.effects[effect].kind);
-    const auto is_strength = [&](std::size_t parameter) {
-      return info.parameters[parameter].role == ParameterRole::kLinear;
+    const auto is_strength = [](const ParameterInfo& parameter) {
+      return parameter.role == ParameterRole::kLinear;
     };
-    bool has_strength = false;
-    for (std::size_t p = 0; p < info.parameters.size(); ++p) {
-      has_strength = has_strength || is_strength(p);
-    }
+    const bool has_strength =
+        std::any_of(info.parameters.begin(), info.parameters.end(), is_strength);
     std::vector<std::string> words;
     bool nothing = true;
     for (const FittedParameter& parameter : result.fit.parameters) {
       if (parameter.effect != effect || !parameter.fitted) continue;
-      if (has_strength && !is_strength(parameter.parameter)) continue;
+      if (has_strength && !is_strength(info.parameters[parameter.parameter])) continue;
       nothing = nothing && parameter.ci95 && (*parameter.ci95)[0] <= 0 && (*parameter.ci95)[1] >= 0;
       words.push_back(name_of(result, parameter) + ": " + value_words(result, parameter));
     }
