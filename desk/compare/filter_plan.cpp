@@ -89,29 +89,45 @@ void check_length(const Log& log, const FilterPlan& plan) {
                  : "record for longer, or choose a smaller --decimate"});
 }
 
+// Every so many-th sample of a rate leaves at least those that are to be kept.
+Index decimation_of(double sample_rate_hz, double kept_rate_hz) {
+  constexpr double kRounding = 1e-9;  // of a rate divided and multiplied again
+  return std::max<Index>(
+      1, static_cast<Index>(std::floor(sample_rate_hz / kept_rate_hz * (1 + kRounding))));
+}
+
+// Whether any of the recordings has more samples than those that are to be kept.
+bool any_is_decimated(const std::vector<Log>& logs, double kept_rate_hz) {
+  return std::any_of(logs.begin(), logs.end(), [&](const Log& log) {
+    return decimation_of(sample_rate_of(log), kept_rate_hz) > 1;
+  });
+}
+
 // As the user has it: a cut-off for the position, and every so many-th sample.
-FilterPlan requested(const Log& log, const FilterRequest& request, const FilterPlan& usual) {
+FilterPlan requested(const std::vector<Log>& logs, const FilterRequest& request,
+                     const FilterPlan& usual) {
   constexpr double kUsualRateHz = 100;
+  const Log& log = logs.front();
   FilterPlan plan;
   plan.sample_rate_hz = usual.sample_rate_hz;
   const double half_rate_hz = plan.sample_rate_hz / 2;
   plan.position_cutoff_hz = request.cutoff_hz.value_or(usual.position_cutoff_hz);
+  plan.common_position_cutoff_hz = request.cutoff_hz.value_or(usual.common_position_cutoff_hz);
   if (!(plan.position_cutoff_hz > 0) || !(plan.position_cutoff_hz < half_rate_hz)) {
     throw InputError({"--cutoff", "", fmt::format("{:g} Hz", plan.position_cutoff_hz),
                       fmt::format("more than 0 and less than {:g} Hz, half the sampling rate of {}",
                                   half_rate_hz, log.file),
                       ""});
   }
-  const int by_rate =
-      std::max(1, static_cast<int>(std::lround(plan.sample_rate_hz / kUsualRateHz)));
-  plan.decimation = request.decimate.value_or(by_rate);
-  if (plan.decimation < 1) {
-    throw InputError({"--decimate", "", std::to_string(plan.decimation), "a number from 1", ""});
+  if (request.decimate && *request.decimate < 1) {
+    throw InputError({"--decimate", "", std::to_string(*request.decimate), "a number from 1", ""});
   }
+  plan.kept_rate_hz = request.decimate ? plan.sample_rate_hz / *request.decimate : kUsualRateHz;
+  plan.decimation = decimation_of(plan.sample_rate_hz, plan.kept_rate_hz);
   Cutoff cutoff{usual.torque_cutoff_hz, usual.reason};
   if (request.cutoff_hz) cutoff = {plan.position_cutoff_hz, {CutoffReason::Kind::kCutoff}};
-  if (plan.decimation > 1) {
-    cutoff.lower_to(kDecimationBand * half_rate_hz / static_cast<double>(plan.decimation),
+  if (any_is_decimated(logs, plan.kept_rate_hz)) {
+    cutoff.lower_to(kDecimationBand * plan.kept_rate_hz / 2,
                     {request.decimate ? CutoffReason::Kind::kDecimate : CutoffReason::Kind::kRate});
   }
   plan.torque_cutoff_hz = cutoff.hz;
@@ -143,12 +159,12 @@ FilterPlan plan_filter(const std::vector<Log>& logs, const RobotDescription& rob
   const Cutoff cutoff = usual_cutoff(logs, robot);
   plan.torque_cutoff_hz = cutoff.hz;
   plan.reason = cutoff.reason;
+  plan.common_position_cutoff_hz = kPositionPerTorque * plan.torque_cutoff_hz;
   plan.position_cutoff_hz =
-      std::min(kPositionPerTorque * plan.torque_cutoff_hz, kMostOfRate * plan.sample_rate_hz);
-  plan.decimation = std::max<Index>(
-      1, static_cast<Index>(
-             std::floor(plan.sample_rate_hz / (kSamplesPerCutoff * plan.torque_cutoff_hz))));
-  if (request.cutoff_hz || request.decimate) plan = requested(first, request, plan);
+      std::min(plan.common_position_cutoff_hz, kMostOfRate * plan.sample_rate_hz);
+  plan.kept_rate_hz = kSamplesPerCutoff * plan.torque_cutoff_hz;
+  plan.decimation = decimation_of(plan.sample_rate_hz, plan.kept_rate_hz);
+  if (request.cutoff_hz || request.decimate) plan = requested(logs, request, plan);
   check_length(first, plan);
   set_edges(plan);
   return plan;
@@ -161,14 +177,13 @@ FilterPlan plan_for(const Log& log, const FilterPlan& plan) {
     if (!log.at_rest) check_length(log, own);
     return own;
   }
-  const double rates = own.sample_rate_hz / plan.sample_rate_hz;
-  own.position_cutoff_hz = std::min(plan.position_cutoff_hz, kMostOfRate * own.sample_rate_hz);
+  own.position_cutoff_hz =
+      std::min(plan.common_position_cutoff_hz, kMostOfRate * own.sample_rate_hz);
   if (own.position_cutoff_hz < plan.torque_cutoff_hz) {
     own.torque_cutoff_hz = own.position_cutoff_hz;
     own.reason = {CutoffReason::Kind::kRate};
   }
-  own.decimation = std::max<Index>(
-      1, static_cast<Index>(std::floor(static_cast<double>(plan.decimation) * rates)));
+  own.decimation = decimation_of(own.sample_rate_hz, plan.kept_rate_hz);
   check_length(log, own);
   set_edges(own);
   return own;

@@ -41,13 +41,18 @@ struct FilterPlan {
   double position_cutoff_hz = 0;
   double torque_cutoff_hz = 0;  // at most the cut-off, and kDecimationBand of what decimation keeps
   CutoffReason reason = {};     // of torque_cutoff_hz
+  // What all recordings that are analysed together have alike; position_cutoff_hz and decimation
+  // are what a recording's own rate makes of them.
+  double common_position_cutoff_hz = 0;
+  double kept_rate_hz = 0;  // at least so many samples per second are kept
   Eigen::Index decimation = 1;
   Eigen::Index edge_samples = 0;
 
   [[nodiscard]] double period_s() const { return static_cast<double>(decimation) / sample_rate_hz; }
 };
 
-// The filter of recordings that are analysed together, at the rate of the first. Torque cut-off
+// The filter of recordings that are analysed together, at the rate of the first; that of any other
+// does not depend on which is the first, unless --decimate counts samples of it. Torque cut-off
 // unless asked for: 8 to 12 Hz, by what the coarsest encoder leaves of the acceleration (what moves
 // an arm is slower), at most a fifth of the sampling rate; the position's is 2.5 times that. A
 // cut-off that is asked for is the position's, and the torque's as far as the decimation lets it

@@ -59,6 +59,21 @@ TEST(FilterPlan, ARecordingAtAnotherRateGetsTheSameFilter) {
   EXPECT_NEAR(slower.period_s(), plan.period_s(), 0.1 * plan.period_s());
 }
 
+TEST(FilterPlan, OfARecordingIsTheSameWhicheverOthersComeFirst) {
+  const Log fast = log_at(1000);
+  const Log slow = log_at(60);
+  for (const offnominal::desk::FilterRequest& request :
+       {offnominal::desk::FilterRequest{},
+        offnominal::desk::FilterRequest{.cutoff_hz = 20, .decimate = {}}}) {
+    const FilterPlan after = plan_for(slow, plan_filter({fast, slow}, arm_description(), request));
+    const FilterPlan first = plan_filter({slow, fast}, arm_description(), request);
+    EXPECT_EQ(after.decimation, first.decimation);
+    EXPECT_EQ(after.edge_samples, first.edge_samples);
+    EXPECT_DOUBLE_EQ(after.torque_cutoff_hz, first.torque_cutoff_hz);
+    EXPECT_DOUBLE_EQ(after.position_cutoff_hz, first.position_cutoff_hz);
+  }
+}
+
 TEST(FilterPlan, RequestIsTakenOrRefusedWithWords) {
   const FilterPlan plan =
       plan_filter({log_at(1000)}, arm_description(), {.cutoff_hz = 20, .decimate = 5});
