@@ -329,7 +329,7 @@ class FittedNumbers {
       if (length > 0) columns.col(i) /= length;
     }
     if (columns.cols() == 0) return kNaN;
-    const VectorXd sizes = Eigen::BDCSVD<MatrixXd>(columns).singularValues();
+    const VectorXd sizes = Eigen::JacobiSVD<MatrixXd>(columns).singularValues();
     const double least = sizes[sizes.size() - 1];
     if (columns.rows() < columns.cols() || !(least > 0)) {
       return std::numeric_limits<double>::infinity();
