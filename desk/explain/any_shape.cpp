@@ -22,6 +22,9 @@ namespace {
 constexpr double kFarAboveNoise = 1.5;
 constexpr double kFollowing = 0.15;
 constexpr double kAlmostAll = 0.9;
+constexpr double kNearlyTheCurve = 0.95;
+// Of the error's energy: a name that leaves so many times what a curve leaves is another's.
+constexpr double kFarMore = 10;
 // How much more likely, in log-likelihood, it has to make the recordings than anything simpler.
 constexpr double kMoreLikely = 3;
 
@@ -60,9 +63,9 @@ class Curve {
         terms_(found.terms()),
         curve_(std::move(curve)) {
     for (std::size_t i = 0; i < terms_.size(); ++i) {
-      const bool of_variable =
-          terms_[i].joint == curve_.joint && terms_[i].effect->info().traits.follows == variable();
-      if (of_variable) own_.push_back(i);
+      if (terms_[i].joint != curve_.joint) continue;
+      const bool of_variable = terms_[i].effect->info().traits.follows == variable();
+      if (of_variable || is_held(terms_[i])) own_.push_back(i);
     }
   }
 
@@ -75,7 +78,7 @@ class Curve {
                                               curve_.joint, name_of(variable()));
     if (!(taken > 0) || taken < kAlmostAll * (taken + more)) return std::nullopt;
     if (!describe_replaced(taken, shape) || !beats_the_simpler(shape.proposal)) return std::nullopt;
-    if (variable() == EffectVariable::kPosition && is_a_stop(shape)) return std::nullopt;
+    if (variable() == EffectVariable::kPosition && is_a_stop(taken, shape)) return std::nullopt;
     return shape;
   }
 
@@ -94,46 +97,77 @@ class Curve {
   }
 
   // Whether a stop, which acts on one side of a place and is proportional to how far beyond, takes
-  // as much as the curve: what has a kink is no smooth curve, however well one goes round it.
-  [[nodiscard]] bool is_a_stop(const AnyShape& shape) const {
-    constexpr int kPlaces = 60;
-    constexpr double kNearly = 0.95;  // between two places
+  // as much as the curve, and leaves about as little: what has a kink is no smooth curve, however
+  // well one goes round it.
+  [[nodiscard]] bool is_a_stop(double taken, const AnyShape& shape) const {
+    constexpr double kAboutAsLittle = 1.5;
     const Judge judge(shape.without.remainder);
-    const double enough = kNearly * evidence_for(judge, data_, curve_).gain;
-    const auto [low, high] = positions_seen(data_.recordings, curve_.joint);
-    for (const double side : {1.0, -1.0}) {
-      for (int i = 1; i < kPlaces; ++i) {
-        const double place = low + (high - low) * i / kPlaces;
-        std::vector<Regressor> beyond;
-        for (const Workspace& at : data_.recordings) {
-          const Eigen::ArrayXd q = at.motion.q.col(curve_.joint).array();
-          beyond.push_back({{curve_.joint, (side * (q - place)).max(0.0).matrix()}});
-        }
-        if (judge.gain(data_.layout.stack(data_.recordings, beyond)) >= enough) return true;
-      }
-    }
-    return false;
+    const double of_stop = most_of_a_stop(judge) / evidence_for(judge, data_, curve_).gain;
+    if (of_stop < kNearlyTheCurve) return false;
+    const double left = energy(shape.without) - of_stop * taken;
+    return left <= kAboutAsLittle * energy(shape.proposal.fit);
   }
 
-  // What the curve holds as it is: a spring.
+  // What the best stop takes, wherever it is: on a grid first, then about the best of that.
+  [[nodiscard]] double most_of_a_stop(const Judge& judge) const {
+    constexpr int kPlaces = 60;
+    constexpr int kFiner = 10;
+    const auto [low, high] = positions_seen(data_.recordings, curve_.joint);
+    const double step = (high - low) / kPlaces;
+    double most = 0;
+    for (const double side : {1.0, -1.0}) {
+      double best = low + step;
+      double of_best = 0;
+      const auto try_at = [&](double place) {
+        const double gain = judge.gain(beyond(side, place));
+        if (gain > of_best) {
+          of_best = gain;
+          best = place;
+        }
+      };
+      for (int i = 1; i < kPlaces; ++i) try_at(low + step * i);
+      const double about = best;
+      for (int i = 1 - kFiner; i < kFiner; ++i) try_at(about + step * i / kFiner);
+      most = std::max(most, of_best);
+    }
+    return most;
+  }
+
+  // How far the joint is beyond a place, on one side of it, stacked.
+  [[nodiscard]] Eigen::VectorXd beyond(double side, double place) const {
+    std::vector<Regressor> beyond;
+    for (const Workspace& at : data_.recordings) {
+      const Eigen::ArrayXd q = at.motion.q.col(curve_.joint).array();
+      beyond.push_back({{curve_.joint, (side * (q - place)).max(0.0).matrix()}});
+    }
+    return data_.layout.stack(data_.recordings, beyond);
+  }
+
+  // Whether the curve holds an effect as it is: a spring, a constant torque.
+  [[nodiscard]] bool is_held(const Term& term) const {
+    return is_nested(data_, found_.baseline, term, curve_);
+  }
+
   [[nodiscard]] std::vector<std::size_t> held() const {
     std::vector<std::size_t> held;
     for (const std::size_t i : own_) {
-      if (is_nested(data_, found_.baseline, terms_[i], curve_)) held.push_back(i);
+      if (is_held(terms_[i])) held.push_back(i);
     }
     return held;
   }
 
-  // What the replaced are of what the curve takes, in words; false where one of them is nearly all.
+  // What the replaced are of what the curve takes, in words; false where one of them is nearly all,
+  // and does not leave far more than the curve.
   [[nodiscard]] bool describe_replaced(double taken, AnyShape& shape) const {
     const char* name = nullptr;
     double most = 0;
     for (const std::size_t i : shape.replaced) {
       std::vector<Term> alone = without(terms_, shape.replaced);
       alone.push_back(terms_[i]);
-      const double own =
-          explained_on(data_, shape.without, regression_.fit(alone), curve_.joint) / taken;
-      if (own >= kAlmostAll) return false;
+      const ModelFit fit = regression_.fit(alone);
+      const double own = explained_on(data_, shape.without, fit, curve_.joint) / taken;
+      const bool leaves_far_more = energy(fit) > kFarMore * energy(shape.proposal.fit);
+      if (own >= kAlmostAll && !leaves_far_more) return false;
       if (name != nullptr && own <= most) continue;
       most = own;
       name = terms_[i].effect->name();
@@ -169,7 +203,8 @@ class Curve {
   const FoundModel& found_;
   std::vector<Term> terms_;
   Term curve_;
-  std::vector<std::size_t> own_;  // of the terms: effects of the variable on the joint
+  std::vector<std::size_t>
+      own_;  // of the terms on the joint: of the variable, or held by the curve
 };
 
 }  // namespace

@@ -19,12 +19,13 @@ struct AnyShape {
 };
 
 // What such a curve may be on a joint where all other effects have been tried. It takes the place
-// of the effects of its variable that were found: of all where it takes more than they do,
-// otherwise of those that it holds as they are. Empty unless what is left follows the variable,
-// none of the replaced alone takes nine tenths of what the curve takes, the curve takes nine tenths
-// of what a free function takes, it makes the recordings more likely than the best other
-// candidate beside all that was found, and no end stop takes as much. What is significant, relevant
-// and holds on other data is for find_model() to say.
+// of the effects that were found of its variable, or that it can be, as a constant torque: of all
+// where it takes more than they do, otherwise of those that it holds as they are. Empty unless what
+// is left follows the variable, none of the replaced alone takes nine tenths of what the curve
+// takes (or leaves ten times what it leaves), the curve takes nine tenths of what a free function
+// takes, it makes the recordings more likely than the best other candidate beside all that was
+// found, and no end stop takes as much and leaves as little. What is significant, relevant and
+// holds on other data is for find_model() to say.
 std::optional<AnyShape> any_shape_on(Eigen::Index joint, const Search& search,
                                      const Regression& regression, const FoundModel& found);
 

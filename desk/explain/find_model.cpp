@@ -440,7 +440,7 @@ class Finder {
         continue;
       }
       auto curve = any_shape_on(static_cast<Index>(joint), search_, regression_, found_);
-      if (!curve || !relevant(found_.fit, curve->proposal.fit)) continue;
+      if (!curve || !relevant(curve->without, curve->proposal.fit)) continue;
       if (curve->replaced.empty() && !has_room_for(1)) continue;
       const Proposal& one = curve->proposal;
       const std::size_t before = found_.accepted.size();
