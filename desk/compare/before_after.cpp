@@ -6,6 +6,13 @@
 
 namespace offnominal::desk {
 
+bool rises(double before, double after, double torque) {
+  constexpr double kNegligible = 0.005;  // of the torque
+  return after > (1 + kWorthAnEffect) * before && after - before > kNegligible * torque;
+}
+
+bool BeforeAfter::rises() const { return desk::rises(before_percent, after_percent, 100); }
+
 std::vector<BeforeAfter> before_after(const std::vector<JointComparison>& before,
                                       const std::vector<JointComparison>& after) {
   std::vector<BeforeAfter> result;

@@ -24,7 +24,7 @@ std::vector<std::string> objections_to(const Explanation& e) {
   if (!e.data_faults.empty() || (!is_to_write(e.verdict) && !something)) {
     return {fmt::format("the verdict is {}: {}", name_of(e.verdict), e.words)};
   }
-  if (e.found.empty() && e.shifts.empty()) {
+  if (e.found.empty() && e.shifts.empty() && !gains_by_links(e)) {
     return {"no effect is missing: fit the one that is there again with add"};
   }
   std::vector<std::string> objections;
@@ -51,6 +51,7 @@ std::vector<HeldOutSquares> held_out_squares(const AddedFindings& added) {
       if (!gain.held_out || !says) continue;
       apart.before += std::pow(error.before_rms, 2);
       apart.after += std::pow(error.after_rms, 2);
+      if (std::isfinite(error.rms_torque())) apart.torque += std::pow(error.rms_torque(), 2);
     }
     if (apart.before > 0) all[joint] = apart;
   }

@@ -16,7 +16,7 @@ HeldOutErrors held_out_of(const Judged& by, const ImprovedRobot& improved) {
     for (std::size_t i = 0; i < improved.added.size(); ++i) {
       if (improved.added[i] != kUnwritten) written.push_back(improved.last.terms[i]);
     }
-    return held_out_errors(by.file, improved.last, written);
+    return held_out_errors(by.file, improved, written);
   }
   const FileErrors before = file_errors(by.file, by.holdout, by.plan);
   const FileErrors after = file_errors(improved.robot, by.holdout, by.plan);
@@ -48,7 +48,8 @@ std::vector<Index> raised_by_links(const Judged& by, const ImprovedRobot& improv
   const HeldOutErrors held_out = held_out_of(by, improved);
   for (Index joint = 0; joint < held_out.before.size(); ++joint) {
     const HeldOutSquares squares{std::pow(held_out.before[joint], 2),
-                                 std::pow(held_out.after[joint], 2)};
+                                 std::pow(held_out.after[joint], 2),
+                                 std::pow(held_out.torque[joint], 2)};
     const bool is_changed = changed[static_cast<std::size_t>(joint)] != 0;
     if (!is_changed && is_doubted(squares, false)) raised.push_back(joint);
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/before_after.hpp"
+
 namespace offnominal::desk {
 
 namespace {
@@ -17,15 +19,15 @@ double fall_of(const HeldOutSquares& joint) { return 1 - std::sqrt(joint.after /
 std::vector<HeldOutSquares> held_out_squares(const Explanation& e) {
   std::vector<HeldOutSquares> all;
   for (const JointErrors& joint : e.joints) {
-    all.push_back({std::pow(joint.holdout_before, 2), std::pow(joint.holdout_after, 2)});
+    all.push_back({std::pow(joint.holdout_before, 2), std::pow(joint.holdout_after, 2),
+                   std::pow(joint.rms_torque, 2)});
   }
   return all;
 }
 
 bool is_doubted(const HeldOutSquares& joint, bool is_changed) {
-  constexpr double kRelevant = 0.05;
-  const double fall = fall_of(joint);
-  return is_changed ? !(fall > 0) : fall < -kRelevant;
+  if (is_changed) return !(fall_of(joint) > 0);
+  return rises(std::sqrt(joint.before), std::sqrt(joint.after), std::sqrt(joint.torque));
 }
 
 std::vector<std::string> doubts_of(const Explanation& e,

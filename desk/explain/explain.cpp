@@ -62,23 +62,28 @@ class Explainer {
     const FilterPlan& plan = plan_;
     check(logs, plan);
     check(holdout, plan);
-    const VectorXd widths = set_sign_widths(robot_, logs, plan);
     NuisanceOptions nuisance;
     nuisance.link_share = options.link_share.value_or(kUsualLinkShare);
     nuisance.link_geometry = nuisance.link_share > kCadShare;
     if (options.keep_effects) nuisance.free_effects.emplace();
     both_ways_ = came_both_ways(logs);
-    const auto data_of = [&](const std::vector<Stretch>& some) {
+    const auto recordings_of = [&](const std::vector<Stretch>& some, const VectorXd& widths) {
       auto made = searched_workspaces(some, robot_, plan, widths);
       for (Workspace& at : made) at.came_both_ways = both_ways_;
-      return std::make_unique<Data>(std::move(made), robot_, nuisance);
+      return made;
     };
     const std::vector<Stretch> searched = stretches_of(logs, robot_, plan);
     left_out_ = words_of(searched, logs);
-    std::unique_ptr<Data> data = data_of(searched);
+    const VectorXd resolved = resolved_sign_widths(logs, plan);
+    std::vector<Workspace> recordings = recordings_of(searched, resolved);
+    const VectorXd widths = settle_sign_widths(resolved, robot_, recordings);
+    auto data = std::make_unique<Data>(std::move(recordings), robot_, nuisance);
     nuisance.ranges_moved = ranges_moved(data->recordings);
     std::unique_ptr<Data> held_out;
-    if (!holdout.empty()) held_out = data_of(stretches_of(holdout, robot_, plan));
+    if (!holdout.empty()) {
+      held_out = std::make_unique<Data>(recordings_of(stretches_of(holdout, robot_, plan), widths),
+                                        robot_, nuisance);
+    }
     tell("preparing the candidates' regressors");
     setting_ = setting_of(std::move(nuisance), std::move(data), std::move(held_out),
                           {.bootstrap_draws = options_.bootstrap_draws,

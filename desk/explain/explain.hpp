@@ -248,6 +248,11 @@ struct Explanation {
 // Whether `improved` has the finding: not where the recordings do not tell it from another effect,
 // and not beside a number of its joint that was held against what they say.
 bool is_written(const Explanation& e, const EffectAt& finding);
+// Whether the recordings say that the robot file's links are off by more than CAD is, and
+// `improved`, which has others, leaves at most half of the joint's error on data that no fit has
+// seen; of any joint. Not where a joint moves too little to tell, nor where another's error rises.
+bool gains_by_links(const Explanation& e, const JointErrors& joint);
+bool gains_by_links(const Explanation& e);
 // Whether `improved` says more than what was fitted beside.
 bool changes_the_file(const Explanation& e);
 

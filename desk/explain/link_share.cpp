@@ -21,6 +21,8 @@ constexpr std::array kShares{0.2, 0.35, 0.6};
 // Log-likelihood that a wider share has to gain, and the share of a joint's error.
 constexpr double kClearly = 10;
 constexpr double kRelevantFall = 0.05;
+// Of a joint's torque: what less is said for one mass that is wrong.
+constexpr double kLittleOfTorque = 0.01;
 
 // How much more likely the errors that are left make the data, and the largest fall of one.
 struct ShareGain {
@@ -65,6 +67,28 @@ ErrorsBeside held_out_of(const Data& data) {
   return {parts.rms(parts.residual(terms, fit)), fit.remainder.independent_samples};
 }
 
+// Accepted effects that are a mass at a place, and the others.
+struct Counted {
+  std::size_t masses = 0;
+  std::size_t others = 0;
+};
+
+Counted counted(const FoundModel& found) {
+  Counted count;
+  for (const Accepted& one : found.accepted) {
+    const bool is_mass = one.term.effect->info().action == EffectAction::kPointMass;
+    ++(is_mass ? count.masses : count.others);
+  }
+  return count;
+}
+
+// Whether the mass of a link, or what is carried, is in the usual model where the wide one has
+// links that are off everywhere, and nothing else more.
+bool one_mass_explains(const FoundModel& wide, const FoundModel& usual) {
+  return counted(usual).masses > counted(wide).masses &&
+         counted(usual).others <= counted(wide).others;
+}
+
 }  // namespace
 
 std::vector<double> wider_link_shares(const RobotDescription& robot, const Data& data,
@@ -95,7 +119,11 @@ bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const Fo
   const VectorXd after = hold_out.rms(wide.held_out_after);
   const VectorXd before = hold_out.rms(usual.held_out_after);
   const ShareGain gain = gain_of(before, after, wide.fit.remainder.independent_samples);
-  if (gain.log_likelihood > kClearly && gain.fall > kRelevantFall) return true;
+  if (gain.log_likelihood > kClearly && gain.fall > kRelevantFall) {
+    const VectorXd torque = hold_out.data().layout.rms(hold_out.data().torque);
+    const bool is_little = ((before - after).array() < kLittleOfTorque * torque.array()).all();
+    return !(is_little && one_mass_explains(wide, usual));
+  }
   constexpr std::size_t kManyEffects = 3;
   return gain.log_likelihood > -kClearly &&
          usual.accepted.size() >= wide.accepted.size() + kManyEffects;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/amount.hpp"
+#include "compare/before_after.hpp"
 #include "compare/inverse_model.hpp"
 #include "explain/any_shape.hpp"
 #include "explain/change_words.hpp"
@@ -193,15 +194,27 @@ void judge_ambiguous(Explanation& e) {
   advise_on_classes(e);
 }
 
+// By how much the robot file that is written predicts a joint better, as the table has it.
+std::string words_of_held_out(const Explanation& e, const JointErrors& errors) {
+  const bool all = std::all_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
+    return one.what.joint != errors.joint || is_written(e, one.what);
+  });
+  const double after = all ? errors.holdout_after : errors.holdout_fitted;
+  if (!(errors.holdout_before > 0)) return "";
+  const double fall = 1 - after / errors.holdout_before;
+  return fmt::format(": the error on held-out data of that joint {} by {:.0f} %",
+                     fall < 0 ? "rises" : "falls", 100 * std::abs(fall));
+}
+
 void judge_found(Explanation& e) {
   const bool shift = std::all_of(e.found.begin(), e.found.end(), [](const Finding& f) {
     return info_of(f.what.kind)->is_known_quantity();
   });
   e.verdict = shift ? Verdict::kParameterShift : Verdict::kFound;
   const Finding& first = e.found.front();
-  e.words = fmt::format("{} {} ({}): the error on held-out data of that joint falls by {:.0f} %.",
+  e.words = fmt::format("{} {} ({}){}.",
                         shift ? "Another value of a known quantity:" : "Missing:", words_of(first),
-                        first.words, 100 * first.takes_of_held_out());
+                        first.words, words_of_held_out(e, errors_of(e, first.what.joint)));
   if (e.found.size() == 1) return;
   std::vector<std::string> others;
   std::transform(e.found.begin() + 1, e.found.end(), std::back_inserter(others),
@@ -291,10 +304,25 @@ bool is_written(const Explanation& e, const EffectAt& finding) {
   return !holds_in_any(e.ambiguous, finding) && !holds_what_cannot_be(e.held, finding.joint);
 }
 
-bool changes_the_file(const Explanation& e) {
-  return !e.shifts.empty() || std::any_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
-    return is_written(e, one.what);
+bool gains_by_links(const Explanation& e, const JointErrors& joint) {
+  constexpr double kHalf = 0.5;
+  if (!e.link_share_judged || !all_sufficient(e.excitation)) return false;
+  const bool another_loses = std::any_of(e.joints.begin(), e.joints.end(), [](const auto& one) {
+    return rises(one.holdout_before, one.holdout_after, one.rms_torque);
   });
+  return !another_loses && joint.holdout_after <= kHalf * joint.holdout_before &&
+         rises(joint.holdout_after, joint.holdout_before, joint.rms_torque);
+}
+
+bool gains_by_links(const Explanation& e) {
+  return std::any_of(e.joints.begin(), e.joints.end(),
+                     [&](const JointErrors& joint) { return gains_by_links(e, joint); });
+}
+
+bool changes_the_file(const Explanation& e) {
+  return !e.shifts.empty() || gains_by_links(e) ||
+         std::any_of(e.found.begin(), e.found.end(),
+                     [&](const Finding& one) { return is_written(e, one.what); });
 }
 
 bool is_to_write(Verdict verdict) { return row_of(verdict).to_write; }
@@ -417,6 +445,10 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
   } else if (e.suspected && e.suspected->what.joint == errors.joint) {
     answer.verdict = Verdict::kNotExcited;
     answer.words = fmt::format("{} may hide in the noise.", e.suspected->what.name());
+  } else if (gains_by_links(e, errors)) {
+    answer.verdict = Verdict::kParameterShift;
+    answer.words =
+        "masses, centres of mass or inertias of the links." + words_of_gain(errors, true);
   } else {
     answer.words = "no known effect is missing.";
   }

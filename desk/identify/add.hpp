@@ -31,7 +31,11 @@ struct AddRequest {
   std::string source;  // what the written effects say of where their numbers come from
 };
 
-// The joints whose torque has what is asked for: that joint, or those that the motor moves.
+// The joints whose torque an effect of that kind on that joint, or motor, changes, ascending: a
+// mass shows on every joint before it, and on its own not where it hangs in that joint's axis.
+std::vector<std::size_t> joints_of(const RobotDescription& robot, EffectKind kind,
+                                   std::size_t joint, bool of_motor);
+// Of everything that is asked for.
 std::vector<std::size_t> joints_asked(const RobotDescription& robot, const AddRequest& request);
 
 // What a sensor behind the gear does not see cannot be fitted to its torques: throws InputError

@@ -26,13 +26,16 @@ const BeforeAfter& of_joint(const std::vector<BeforeAfter>& all, std::size_t joi
                        [&](const BeforeAfter& entry) { return entry.joint == joint; });
 }
 
-// The joint that is told of: the one asked for, or of those that the motor moves the one whose
-// error falls most.
+// The joint that is told of: of those that have what is asked for the one whose error falls most,
+// as a share of its torque.
 std::size_t joint_told(const AddResult& result, const AddRequest& request) {
   const std::vector<std::size_t> joints = joints_asked(result.robot, request);
-  return *std::max_element(joints.begin(), joints.end(), [&](std::size_t a, std::size_t b) {
-    return of_joint(result.held_out, a).fall() < of_joint(result.held_out, b).fall();
-  });
+  const auto fall_of = [&](std::size_t joint) {
+    const BeforeAfter& error = of_joint(result.held_out, joint);
+    return error.before_percent - error.after_percent;
+  };
+  return *std::max_element(joints.begin(), joints.end(),
+                           [&](std::size_t a, std::size_t b) { return fall_of(a) < fall_of(b); });
 }
 
 std::string effect_name(const AddResult& result, std::size_t effect) {
@@ -298,12 +301,10 @@ std::string verdict_of(const AddResult& result, const AddRequest& request, bool 
 }
 
 Level level_of(const AddResult& result, const AddRequest& request) {
-  // A twentieth of the error is what an effect has to take away to be worth its place.
-  constexpr double kRelevant = 0.05;
   if (!result.objections.empty()) return Level::kBad;
   const double fall = of_joint(result.held_out, joint_told(result, request)).fall();
   if (!result.doubts.empty()) return Level::kBad;
-  return fall < kRelevant ? Level::kWarn : Level::kGood;
+  return fall < kWorthAnEffect ? Level::kWarn : Level::kGood;
 }
 
 ordered_json to_json(const AddResult& result, const AddRequest& request, const AddNames& names) {

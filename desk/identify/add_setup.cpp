@@ -187,28 +187,13 @@ class SetUp {
     throw InputError({"--set " + name, "", fmt::format("{:g}", value), allowed, ""});
   }
 
-  // Joints whose torque an effect of that kind on that joint, or motor, changes.
-  [[nodiscard]] std::set<std::size_t> joints_of(EffectKind kind, std::size_t joint,
-                                                bool of_motor) const {
-    if (of_motor) {
-      std::set<std::size_t> joints;
-      for (const MovedJoint& moved : joints_of_motor(robot_, joint)) {
-        joints.insert(static_cast<std::size_t>(moved.joint));
-      }
-      return joints;
-    }
-    if (info_of(kind)->action != EffectAction::kPointMass) return {joint};
-    std::set<std::size_t> joints;
-    for (std::size_t j = 0; j <= joint; ++j) joints.insert(j);
-    return joints;
-  }
-
   // Effects marked fitted that act on a joint whose torque is being fitted, and then those that act
   // on the joints that these act on.
   void refit_coupled() {
     std::set<std::size_t> joints;
     for (const EffectKind kind : request_.effects) {
-      joints.merge(joints_of(kind, request_.joint, request_.of_motor));
+      const auto own = joints_of(robot_, kind, request_.joint, request_.of_motor);
+      joints.insert(own.begin(), own.end());
     }
     for (std::size_t j = 0; request_.inertia_deviation && j < robot_.joints.size(); ++j) {
       joints.insert(j);
@@ -219,13 +204,13 @@ class SetUp {
       for (std::size_t effect = 0; effect < robot_.effects.size(); ++effect) {
         const RobotEffect& one = robot_.effects[effect];
         if (!one.fitted || chosen.contains(effect)) continue;
-        std::set<std::size_t> of_effect = joints_of(one.kind, one.joint, one.of_motor);
+        const auto of_effect = joints_of(robot_, one.kind, one.joint, one.of_motor);
         if (std::none_of(of_effect.begin(), of_effect.end(),
                          [&](std::size_t joint) { return joints.contains(joint); })) {
           continue;
         }
         chosen.insert(effect);
-        joints.merge(of_effect);
+        joints.insert(of_effect.begin(), of_effect.end());
         grew = true;
       }
     }

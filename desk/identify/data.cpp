@@ -56,6 +56,45 @@ void set_sign_widths(RobotDescription& robot, const VectorXd& widths) {
   }
 }
 
+namespace {
+
+// Error of the robot file as it is, rms per joint.
+VectorXd errors_of(const RobotDescription& robot, std::vector<Workspace> recordings) {
+  for (Workspace& at : recordings) at.set_model(robot);
+  NuisanceOptions none;
+  none.free_effects = std::vector<std::size_t>{};
+  none.link_share = 0;
+  none.skew_samples = 0;
+  none.sign_shapes = false;
+  const Data data(std::move(recordings), robot, none);
+  return data.layout.rms(data.target);
+}
+
+}  // namespace
+
+VectorXd settle_sign_widths(const VectorXd& resolved, RobotDescription& robot,
+                            std::vector<Workspace>& recordings) {
+  constexpr double kClearly = 0.9;
+  VectorXd widths = resolved;
+  const VectorXd own = settled_sign_widths(robot, {});
+  if ((own.array() > 0).any()) {
+    RobotDescription other = robot;
+    set_sign_widths(other, resolved);
+    const VectorXd with_own = errors_of(robot, recordings);
+    const VectorXd with_resolved = errors_of(other, recordings);
+    for (Index joint = 0; joint < widths.size(); ++joint) {
+      const bool better = with_own[joint] < kClearly * with_resolved[joint];
+      if (own[joint] > 0 && better) widths[joint] = own[joint];
+    }
+  }
+  set_sign_widths(robot, widths);
+  for (Workspace& at : recordings) {
+    at.set_model(robot);
+    at.set_sign_width(widths);
+  }
+  return widths;
+}
+
 VectorXd set_sign_widths(RobotDescription& robot, const std::vector<Log>& logs,
                          const FilterPlan& plan) {
   VectorXd widths = resolved_sign_widths(logs, plan);

@@ -33,6 +33,12 @@ Eigen::VectorXd resolved_sign_widths(const std::vector<Log>& logs, const FilterP
 // Sets it, where it is above 0, in every effect that has one.
 void set_sign_widths(RobotDescription& robot, const Eigen::VectorXd& widths);
 
+// The width that a fit of these recordings begins with, per joint, which robot and recordings have
+// from now on: that of the robot file's own effects where the file meets the recordings clearly
+// better with it, otherwise what the motion resolves. `recordings`: of this robot.
+Eigen::VectorXd settle_sign_widths(const Eigen::VectorXd& resolved, RobotDescription& robot,
+                                   std::vector<Workspace>& recordings);
+
 // Sets the width of the smoothed sign of every effect that has one to what the motion can resolve,
 // and returns it per joint. The shape of the build-up at a reversal is a nuisance.
 Eigen::VectorXd set_sign_widths(RobotDescription& robot, const std::vector<Log>& logs,

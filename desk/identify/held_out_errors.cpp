@@ -8,21 +8,19 @@
 
 namespace offnominal::desk {
 
-HeldOutErrors held_out_errors(const RobotDescription& file, const Relinearised& last,
+HeldOutErrors held_out_errors(const RobotDescription& file, const ImprovedRobot& improved,
                               const std::vector<Term>& written) {
-  NuisanceOptions none = last.nuisance;
-  none.free_effects = std::vector<std::size_t>{};
-  none.link_share = 0;
-  none.sign_shapes = false;
+  const Relinearised& last = improved.last;
+  NuisanceOptions no_skew = last.nuisance;
+  no_skew.skew_samples = 0;
   std::vector<Workspace> recordings = last.data->recordings;
   for (Workspace& at : recordings) at.set_model(file);
-  const Data before(std::move(recordings), file, none);
-  const Regression nothing(before);
-  const HoldOut of_before(nothing, nullptr);
-  const Regression regression(*last.data);
-  const HoldOut of_after(regression, nullptr);
-  return {before.layout.rms(before.torque), of_before.rms(of_before.residual({}, nothing.fit({}))),
-          of_after.rms(of_after.cross_validated_with_shapes(written))};
+  const Data of_file(std::move(recordings), file, no_skew);
+  const Data data(*last.data, improved.made_with, no_skew);
+  const Regression regression(data);
+  const HoldOut parts(regression, nullptr);
+  return {of_file.layout.rms(of_file.torque), of_file.layout.rms(of_file.target),
+          parts.rms(parts.cross_validated_with_shapes(written))};
 }
 
 }  // namespace offnominal::desk

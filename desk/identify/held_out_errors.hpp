@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "identify/relinearise.hpp"
+#include "identify/improved_robot.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::desk {
@@ -17,10 +17,10 @@ struct HeldOutErrors {
   Eigen::VectorXd after;
 };
 
-// Each part is predicted by a fit of the others, shapes included; before: by the file as it is, but
-// for what is the recording's own. `last`: the fit that the new file was written from; `written`:
-// its terms that the file has.
-HeldOutErrors held_out_errors(const RobotDescription& file, const Relinearised& last,
+// Each part is predicted by a fit of the others, shapes included, of what the new file has: not of
+// the skew of its clocks. Before: by the file as it is, on the same samples. `written`: the terms
+// of the last fit that the new file has.
+HeldOutErrors held_out_errors(const RobotDescription& file, const ImprovedRobot& improved,
                               const std::vector<Term>& written);
 
 }  // namespace offnominal::desk

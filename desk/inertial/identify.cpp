@@ -153,13 +153,10 @@ class Identifier {
   }
 
   // No link becomes ten times as heavy. On data that the fit has not seen no joint may lose more
-  // than what a twentieth is, unless that is next to nothing of its torque.
+  // than rises() allows.
   void doubt() {
-    constexpr double kRelevant = 0.05;
-    constexpr double kNegligiblePercent = 1;
     for (const BeforeAfter& error : result_.held_out) {
-      if (!(error.fall() < -kRelevant)) continue;
-      if (!(error.after_percent - error.before_percent > kNegligiblePercent)) continue;
+      if (!error.rises()) continue;
       result_.doubts.push_back(fmt::format(
           "on data not used for the fit the error of joint {} rises from {:.2f} % to {:.2f} %",
           error.joint + 1, error.before_percent, error.after_percent));

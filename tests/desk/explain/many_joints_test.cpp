@@ -292,6 +292,81 @@ TEST(ManyJoints, GIVEN_coulomb_and_viscous_friction_THEN_no_larger_member_of_the
   }
 }
 
+// Links that may all be off would explain the same: the one that is off has the name.
+TEST(ManyJoints, GIVEN_one_link_of_another_mass_THEN_it_is_named_and_written) {
+  const RobotDescription robot = test::serial_arm(4);
+  RobotDescription real = robot;
+  real.joints[2].joint.mass_kg *= 0.7;
+  const AddedFindings added =
+      add_found(robot, {test::record(real, {.duration_s = 20})}, {}, quick(2), {});
+  const Explanation& told = added.explanation;
+  EXPECT_EQ(told.verdict, Verdict::kParameterShift) << told.words;
+  ASSERT_THAT(told.found, Not(IsEmpty())) << told.words;
+  EXPECT_EQ(told.found[0].what, (EffectAt{EffectKind::kLinkMass, 2}));
+  EXPECT_FALSE(told.link_share_judged);
+  EXPECT_TRUE(added.may_be_written(false)) << added.doubts.size();
+  EXPECT_LT(told.joints[2].holdout_after, 0.1 * told.joints[2].holdout_before);
+}
+
+// Everywhere by a third, each its own way: no one link nor effect is that, and the file gets
+// others.
+TEST(ManyJoints, GIVEN_links_that_are_all_off_THEN_the_new_file_has_others) {
+  const RobotDescription robot = test::serial_arm(3);
+  RobotDescription real = robot;
+  const std::vector<double> factors{1.3, 0.75, 1.3};
+  for (std::size_t link = 0; link < factors.size(); ++link) {
+    Joint<double>& one = real.joints[link].joint;
+    one.mass_kg *= factors[link];
+    one.centre_of_mass_m[1] += 0.02;
+    one.centre_of_mass_m[2] -= 0.02;
+    for (double& inertia : one.inertia_kg_m2) inertia *= 1.3;
+  }
+  const AddedFindings added =
+      add_found(robot, {test::record(real, {.duration_s = 20})}, {}, quick(2), {});
+  const Explanation& told = added.explanation;
+  EXPECT_TRUE(told.link_share_judged) << told.words;
+  EXPECT_EQ(told.verdict, Verdict::kParameterShift) << told.words;
+  EXPECT_THAT(told.words, HasSubstr("of the links"));
+  EXPECT_THAT(told.found, IsEmpty());
+  EXPECT_TRUE(added.may_be_written(false));
+  for (const JointErrors& joint : told.joints) {
+    EXPECT_LT(joint.holdout_after, 0.3 * joint.holdout_before) << joint.joint;
+  }
+}
+
+// Half of a joint's torque, and most of it constant or a spring where the joint moves.
+TEST(ManyJoints, GIVEN_a_counterweight_THEN_a_curve_over_the_position_is_named) {
+  const RobotDescription robot = test::serial_arm(4);
+  Log log = test::record(robot, {.duration_s = 20});
+  const Log unseen = [&] {
+    Log other = test::record(robot, {.duration_s = 20, .seed = 2});
+    other.tau.col(1).array() -= 12 * (other.q.col(1).array() - 0.4).cos();
+    return other;
+  }();
+  log.tau.col(1).array() -= 12 * (log.q.col(1).array() - 0.4).cos();
+  const AddedFindings added = add_found(robot, {log}, {unseen}, quick(2), {});
+  const Explanation& told = added.explanation;
+  ASSERT_THAT(told.found, Not(IsEmpty())) << told.words;
+  EXPECT_EQ(told.found.size(), 1U) << told.words;
+  EXPECT_EQ(told.found[0].what, (EffectAt{EffectKind::kPositionTorque, 1})) << told.words;
+  EXPECT_TRUE(added.may_be_written(false));
+  EXPECT_LT(told.joints[1].holdout_after, 0.1 * told.joints[1].holdout_before);
+}
+
+// The width of the file's smoothed sign is another than what the motion would resolve, and right.
+TEST(ManyJoints, GIVEN_a_slow_motion_and_the_right_width_of_friction_THEN_nothing_is_missing) {
+  RobotDescription robot = test::serial_arm(2);
+  for (RobotEffect& effect : robot.effects) {
+    if (effect.kind == EffectKind::kCoulombFriction) effect.parameters[1] = 0.3;
+  }
+  const Log log = test::record(robot, {.duration_s = 20, .torque_noise_nm = 0.001});
+  const Explanation told = explain(robot, {log}, {}, quick(2));
+  EXPECT_EQ(told.verdict, Verdict::kExplained) << told.words;
+  for (const JointErrors& joint : told.joints) {
+    EXPECT_LT(joint.rms_after, 2 * joint.rms_before) << joint.joint;
+  }
+}
+
 TEST(ManyJoints, TheNumberOfThreadsChangesNothing) {
   const ExplainNames names{{"log"}, {}, "robot", "explain"};
   EXPECT_EQ(to_json(explained(6, 9, 1), names), to_json(explained(6, 9, 2), names));

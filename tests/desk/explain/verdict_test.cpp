@@ -205,10 +205,12 @@ TEST(CommandToAdd, SaysWhatAddWillDoubt) {
 }
 
 TEST(Doubted, IsAJointThatIsChangedAndDoesNotGainOrAnotherThatLoses) {
-  EXPECT_FALSE(is_doubted({1.0, 0.9}, true));
-  EXPECT_TRUE(is_doubted({1.0, 1.0}, true));
-  EXPECT_FALSE(is_doubted({1.0, 1.1}, false));
-  EXPECT_TRUE(is_doubted({1.0, 1.2}, false));
+  EXPECT_FALSE(is_doubted({1.0, 0.9, 100}, true));
+  EXPECT_TRUE(is_doubted({1.0, 1.0, 100}, true));
+  EXPECT_FALSE(is_doubted({1.0, 1.1, 100}, false));
+  EXPECT_TRUE(is_doubted({1.0, 1.2, 100}, false));
+  // Next to nothing of the torque is no loss.
+  EXPECT_FALSE(is_doubted({1.0, 1.2, 1000}, false));
 }
 
 TEST(Verdict, SaysWhyTheLinksStayAsTheFileHasThem) {
@@ -317,6 +319,30 @@ TEST(Verdict, SaysHowFarTheLinksWereLetOffTheFileWhereTheRecordingsSaidSo) {
   e.link_share_judged = true;
   judge_whole(e);
   EXPECT_THAT(e.advice, Contains(AllOf(HasSubstr("within 60 %"), HasSubstr("--link-share"))));
+}
+
+// Where the recordings say that links are off, and a robot file with others predicts unseen data.
+TEST(Verdict, OfLinksThatAreOffIsThatAKnownQuantityHasAnotherValue) {
+  Explanation e = nothing_found(1.1);
+  e.joints[0].rms_before = 5;
+  e.joints[0].holdout_before = 5;
+  e.joints[0].holdout_after = 1;
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kExplained) << e.words;
+  EXPECT_FALSE(changes_the_file(e));
+  e.link_share_judged = true;
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kParameterShift) << e.words;
+  EXPECT_THAT(e.words, HasSubstr("of the links"));
+  EXPECT_TRUE(changes_the_file(e));
+  // Not where it costs another joint.
+  JointErrors other = e.joints[0];
+  other.joint = 1;
+  other.holdout_after = 6;
+  e.joints.push_back(other);
+  e.excitation.push_back(e.excitation[0]);
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kExplained) << e.words;
 }
 
 // Friction is there beside it.

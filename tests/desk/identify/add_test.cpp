@@ -144,6 +144,19 @@ TEST(Add, GivenAPayloadThenItsMassIsFoundThroughBothJoints) {
   const AddResult result = add(arm_description(), request, {record_arm(heavy)}, {});
   EXPECT_NEAR(value_of(result, EffectKind::kTipPayload, "mass"), 0.4, 0.01);
   EXPECT_EQ(result.held_out.size(), 2U);
+  // Before is what the file has as it is, in every verb the same.
+  for (const BeforeAfter& error : result.held_out) {
+    const JointComparison& file = result.before.joints[error.joint];
+    EXPECT_NEAR(error.before_rms, file.rms_error, 1e-3 * file.rms_error);
+  }
+}
+
+TEST(Add, JudgesAMassByEveryJointThatCarriesIt) {
+  const RobotDescription arm = arm_description();
+  EXPECT_EQ(joints_asked(arm, request_for({EffectKind::kTipPayload}, 1)),
+            (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(joints_asked(arm, request_for({EffectKind::kViscousFriction}, 1)),
+            (std::vector<std::size_t>{1}));
 }
 
 TEST(Add, GivenAStiffSpringThenStiffnessAndRestPositionAreFound) {

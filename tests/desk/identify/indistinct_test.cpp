@@ -162,6 +162,7 @@ TEST(JointsAsked, OfAMotorAreThoseThatItMoves) {
   robot.transmission.emplace();
   robot.transmission->matrix = {{10, 10}, {0, 10}};
   AddRequest request;
+  request.effects = {EffectKind::kViscousFriction};
   EXPECT_EQ(joints_asked(robot, request), (std::vector<std::size_t>{0}));
   request.of_motor = true;
   EXPECT_EQ(joints_asked(robot, request), (std::vector<std::size_t>{0, 1}));
