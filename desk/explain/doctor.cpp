@@ -189,13 +189,19 @@ void find_gaps(const Log& log, std::vector<DataFault>& faults) {
 
 namespace {
 
+// A torque that is at fault from the first row to the last says nothing; all the rest may be right.
+bool is_unrecorded(const DataFault& fault, const Log& log) {
+  return fault.kind == DataFaultKind::kStuck && fault.signal == FaultySignal::kTorque &&
+         fault.spans.size() == 1 && fault.spans.front().samples.count() == log.sample_count();
+}
+
 // The longest part of a recording that no fault touches for longer than a filter forgives; none
 // where that is nothing, the recording itself where it is all of it.
 Log longest_good_part(const Log& log, const std::vector<DataFault>& faults) {
   constexpr double kForgivenS = 0.1;
   std::vector<char> bad(static_cast<std::size_t>(log.sample_count()), 0);
   for (const DataFault& fault : faults) {
-    if (fault.kind == DataFaultKind::kSaturation) continue;
+    if (fault.kind == DataFaultKind::kSaturation || is_unrecorded(fault, log)) continue;
     for (const FaultSpan& span : fault.spans) {
       if (static_cast<double>(span.samples.count()) * log.period_s < kForgivenS) continue;
       for (Index i = span.samples.first; i <= span.samples.last; ++i)
@@ -231,6 +237,7 @@ Log held_over_gaps(const Log& log) {
 void find_faults_of_stretches(const Log& held, const Log& log, const Log& even,
                               const RobotDescription& robot, std::vector<DataFault>& faults) {
   const ExpectedTorque expected(even, robot);
+  find_unrecorded_torques(held, even, robot, faults);
   find_stale_samples(held, faults);
   find_stuck_values(held, expected, faults);
   find_stuck_encoders(log, robot, faults);
@@ -285,7 +292,10 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
   const std::size_t before = faults.size();
   const Log whole = mended;
   std::vector<DataFault> local = local_faults(mended, robot);
-  for (const DataFault& fault : local) bridge(fault, mended);
+  for (const DataFault& fault : local) {
+    bridge(fault, mended);
+    if (is_unrecorded(fault, mended)) mended.tau.col(fault.joint).setZero();
+  }
   mended = longest_good_part(mended, local);
   if (mended.sample_count() >= kFewestSamples) {
     mend_degrees(mended, robot, faults);

@@ -61,6 +61,10 @@ void find_stale_samples(const Log& log, std::vector<DataFault>& faults);
 // `expected`, `model`: what the model says of the same recording, evenly sampled.
 void find_stuck_values(const Log& log, const ExpectedTorque& expected,
                        std::vector<DataFault>& faults);
+// One value in every row of a joint that moves as no constant torque has it move: kStuck
+// throughout. A joint that rests, or that its drive lets swing or run out freely, has none.
+void find_unrecorded_torques(const Log& log, const Log& even, const RobotDescription& robot,
+                             std::vector<DataFault>& faults);
 // Needs the spans of what was found before, as the next one does.
 void find_torque_excursions(const Log& log, const Log& even, const RobotDescription& robot,
                             std::vector<DataFault>& faults);

@@ -135,6 +135,7 @@ CommonLag common_lag(const TorquePair& pair, Index first, Index count, double ho
     const VectorXd measured = pair.measured.col(joint).segment(first, count);
     const double change = (load.array() - load.mean()).matrix().norm();
     const double measured_change = (measured.array() - measured.mean()).matrix().norm();
+    if (!(measured_change > 0)) continue;
     if (!(change > kChanges * load.norm()) || !(change > kOfMeasured * measured_change)) continue;
     const LagEstimate lag = estimate_lag(pair, joint, first, count, honest_s);
     if (lag.independence < kIndependent) continue;
