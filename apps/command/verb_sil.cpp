@@ -127,7 +127,7 @@ sil::SilResult lock_step(const SilOptions& options, const RobotDescription& robo
   return result;
 }
 
-void run(const SilOptions& options, const std::string& command_line) {
+ExitCode run(const SilOptions& options, const std::string& command_line) {
   const RobotDescription robot =
       options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
   if (options.robot) require_bound(robot, *options.robot);
@@ -151,19 +151,23 @@ void run(const SilOptions& options, const std::string& command_line) {
   }
   print_answer(
       options.answer, [&] { return to_json(result); }, [&] { return text_of(result); }, written);
+  return sil::is_unasked_stop(result) ? ExitCode::kCheckFailed : ExitCode::kDone;
 }
 
 std::string footer() {
   return "In lock-step every run repeats exactly; in real time none does, and the table says how "
          "the controller kept its time. The controller knows of the plant what comes over the bus, "
          "the drives know what it sends.\n"
+         "Exit code 1 where the controller went to its safe state and nobody had asked for that: "
+         "no "
+         "fault of the scenario had begun, and it was not told to stop at a detection.\n"
          "Faults of a scenario's file (docs/sil.md has its keys; all have begin_s):\n" +
          sil::fault_kinds_text();
 }
 
 }  // namespace
 
-void set_up_sil(CLI::App& verb, ExitCode& /*exit_code*/) {
+void set_up_sil(CLI::App& verb, ExitCode& exit_code) {
   const auto options = std::make_shared<SilOptions>();
   verb.add_option("--fault", options->fault, "The paper's: mass_loss, nonlinear or none")
       ->check(CLI::IsMember({"none", "mass_loss", "nonlinear"}));
@@ -205,7 +209,7 @@ void set_up_sil(CLI::App& verb, ExitCode& /*exit_code*/) {
   add_report_option(verb, options->answer);
   add_json_option(verb, options->answer);
   verb.footer(footer());
-  verb.callback([&verb, options] { run(*options, command_line_of(verb)); });
+  verb.callback([&verb, options, &exit_code] { exit_code = run(*options, command_line_of(verb)); });
 }
 
 }  // namespace offnominal::desk

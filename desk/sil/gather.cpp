@@ -8,6 +8,7 @@
 #include "drives/drive_table.hpp"
 #include "log/csv_log.hpp"
 #include "paper/run_observer.hpp"
+#include "sil/not_held.hpp"
 #include "sil/plant_of.hpp"
 
 namespace offnominal::desk::sil {
@@ -96,6 +97,18 @@ std::optional<double> safe_since_s(const Table& plant) {
   return std::nullopt;
 }
 
+// The plant's rows are those since its brakes opened.
+std::optional<NotHeld> not_held_in(const Table& plant, const RobotDescription& robot,
+                                   const Scenario& scenario) {
+  if (plant.rows() == 0) return std::nullopt;
+  Index last = 0;
+  while (last + 1 < plant.rows() && plant.at("torque_mode", last) != 0) ++last;
+  const auto state = [&](Index row) {
+    return sim::JointState{plant.all("q", row), plant.all("dq", row)};
+  };
+  return not_held(robot, scenario, state(0), state(last));
+}
+
 controller::Fault fault_of(const nlohmann::json& controller) {
   return static_cast<controller::Fault>(controller.at("fault_number").get<int>());
 }
@@ -158,6 +171,9 @@ SilResult gather(const RobotDescription& robot, const Scenario& scenario,
   result.faults = scenario.faults;
   result.state = state_named(recordings.controller.at("state"));
   result.fault = fault_of(recordings.controller);
+  if (result.fault == controller::Fault::kArmNotHeld) {
+    result.not_held = not_held_in(plant, robot, scenario);
+  }
   const nlohmann::json& isolated = recordings.controller.at("isolated");
   if (!isolated.is_null()) result.isolated = isolated_fault_of(isolated);
   result.overruns = recordings.controller.at("overruns");

@@ -1,8 +1,10 @@
 #include "sil/lock_step.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include "sil/both_ends.hpp"
+#include "sil/not_held.hpp"
 #include "sil/plant_of.hpp"
 
 namespace offnominal::desk::sil {
@@ -12,23 +14,31 @@ class LockStepLoop {
  public:
   LockStepLoop(const RobotDescription& robot, const Scenario& scenario, Wire& wire,
                const TappedPort::OnFrame& on_frame)
-      : scenario_(scenario),
+      : robot_(robot),
+        scenario_(scenario),
         period_s_(robot.estimator.period_s),
         ticks_(std::llround(scenario.duration_s / period_s_)),
-        first_fault_s_(first_begin_s(scenario.faults).value_or(0.0)),
+        first_fault_s_(first_begin_s(scenario.faults)),
         ends_(robot, scenario, wire, on_frame) {}
 
   void run(const paper::TickObserver& observe, SilResult& result) {
     ends_.start();
+    const sim::JointState held = ends_.plant().state();
     // Both ends have a tick in which they do what time 0 asks for.
     ends_.tick();
     std::optional<double> safe_since_s;
     for (std::int64_t i = 1; i <= ticks_; ++i) {
       ends_.tick();
       if (ends_.controller().state() == hal::ControllerState::kArmed) observe(record());
+      if (!result.not_held && ends_.controller().fault() == controller::Fault::kArmNotHeld) {
+        result.not_held = not_held(robot_, scenario_, held, ends_.plant().state());
+      }
       if (!safe_since_s && ends_.is_safe()) {
         safe_since_s = ends_.plant().time_s();
-        result.time_to_safe_state_s = *safe_since_s - first_fault_s_;
+        // What came before the first fault was not its doing.
+        if (first_fault_s_ && *safe_since_s >= *first_fault_s_) {
+          result.time_to_safe_state_s = *safe_since_s - *first_fault_s_;
+        }
       }
       constexpr double kAfterwards = 0.1;
       if (safe_since_s && ends_.plant().time_s() > *safe_since_s + kAfterwards) {
@@ -83,10 +93,11 @@ class LockStepLoop {
     result.run_time_s = static_cast<double>(ends_.now_us()) * 1e-6;
   }
 
+  const RobotDescription& robot_;
   const Scenario& scenario_;
   double period_s_;
   std::int64_t ticks_;
-  double first_fault_s_;
+  std::optional<double> first_fault_s_;
   BothEnds ends_;
 };
 

@@ -96,6 +96,14 @@ SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenar
   return result;
 }
 
+bool is_unasked_stop(const SilResult& result) {
+  if (result.fault == controller::Fault::kNone || result.fault == controller::Fault::kDetected) {
+    return false;
+  }
+  const std::optional<double>& begin_s = result.run.fault_time_s;
+  return !begin_s || (result.ended_early_s && *result.ended_early_s < *begin_s);
+}
+
 std::string words_of(const std::vector<sim::FaultEvent>& faults) {
   if (faults.empty()) return "none";
   std::string words;

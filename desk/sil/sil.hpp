@@ -1,6 +1,7 @@
 // Software-in-the-loop: the joint controller of a robot and a plant at the two ends of a bus.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <offnominal/controller/fault.hpp>
 #include <offnominal/hal/drive_description.hpp>
@@ -58,6 +59,18 @@ struct RealTimeReport {
   std::uint64_t recording_lost = 0;  // entries, at both ends
 };
 
+/// An arm that its controller could not hold before the motion began.
+struct NotHeld {
+  std::size_t joint = 0;  // that went furthest beyond its window, or was the fastest; from 0
+  std::string name;
+  std::string unit;                 // of its position
+  double moved = 0;                 // since the brakes opened, rad or m
+  double window = 0;                // position_window, rad or m
+  double speed = 0;                 // when it was let go of, rad/s or m/s
+  double speed_limit = 0;           // rad/s or m/s
+  std::vector<std::string> causes;  // what it may be and what to change; may be none
+};
+
 struct SilResult {
   paper::ExperimentResult run;  // as far as it got
   std::string bus_name;
@@ -69,6 +82,7 @@ struct SilResult {
   /// what happened.
   std::optional<double> time_to_safe_state_s;
   std::optional<double> ended_early_s;  // since arming; none: the run went to its end
+  std::optional<NotHeld> not_held;      // of Fault::kArmNotHeld
   std::uint64_t overruns = 0;
   std::optional<IsolatedFault> isolated;    // the controller's last answer
   double run_time_s = 0;                    // of the bus, from the first tick to the last
@@ -84,6 +98,10 @@ void check_scenario(const RobotDescription& robot, const Scenario& scenario);
 [[nodiscard]] SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenario,
                                          Wire& wire, const std::string& bus_name,
                                          const TappedPort::OnFrame& on_frame = {});
+
+/// Whether the controller went to its safe state although nobody asked for that: no detection that
+/// it was told to stop at, and no fault of the scenario that had begun.
+[[nodiscard]] bool is_unasked_stop(const SilResult& result);
 
 /// "mass_loss at 10 s": every fault of the run; "none".
 [[nodiscard]] std::string words_of(const std::vector<sim::FaultEvent>& faults);

@@ -9,6 +9,7 @@
 #include "common/text_table.hpp"
 #include "paper/figures.hpp"
 #include "paper/paper_json.hpp"
+#include "sil/not_held.hpp"
 
 namespace offnominal::desk::sil {
 namespace {
@@ -26,6 +27,26 @@ struct Row {
 
 std::string seconds(const std::optional<double>& value) {
   return value ? fmt::format("{:.3f} s", *value) : "none";
+}
+
+ordered_json to_json(const NotHeld& arm) {
+  return {{"joint", arm.joint + 1},
+          {"name", arm.name},
+          {"unit", arm.unit},
+          {"moved", arm.moved},
+          {"position_window", arm.window},
+          {"speed", arm.speed},
+          {"arming_speed", arm.speed_limit},
+          {"causes", arm.causes}};
+}
+
+std::string why(const NotHeld& arm) {
+  if (!arm.causes.empty()) {
+    return fmt::format("It may be that {}", fmt::join(arm.causes, "; or that "));
+  }
+  return "Neither weight, torque limits, torque_rate, gains nor friction of the robot file say "
+         "why: "
+         "look at what pushes the arm, and raise kp_per_s2 and kd_per_s of [joint.control]";
 }
 
 // Nothing where the run ended before its last quarter.
@@ -146,6 +167,9 @@ ordered_json to_json(const SilResult& result) {
   json["controller_state"] = name_of(result.state);
   json["controller_fault"] = controller::name_of(result.fault);
   json["ended_early_s"] = nullable(result.ended_early_s);
+  json["unasked_stop"] = is_unasked_stop(result);
+  json["not_held"] = result.not_held ? to_json(*result.not_held) : ordered_json(nullptr);
+  json["verdict"] = sentence_of(result);
   json["isolated"] =
       result.isolated
           ? ordered_json(offnominal::desk::to_json(*result.isolated, names_in(result.run)))
@@ -166,7 +190,17 @@ ordered_json to_json(const SilResult& result) {
 std::string sentence_of(const SilResult& result) {
   const paper::ExperimentResult& run = result.run;
   std::string words;
-  if (run.detection_time_s && run.fault_time_s && *run.detection_time_s >= *run.fault_time_s) {
+  if (result.not_held) {
+    words = fmt::format("The arm was not held: {}. {}.", words_of(*result.not_held),
+                        why(*result.not_held));
+  } else if (is_unasked_stop(result)) {
+    words =
+        fmt::format("The run failed: {}. What it asks for is number {} of docs/troubleshooting.md.",
+                    run.fault_time_s ? "it ended before the first fault of the scenario began"
+                                     : "the scenario has no fault that could have ended it",
+                    static_cast<int>(result.fault));
+  } else if (run.detection_time_s && run.fault_time_s &&
+             *run.detection_time_s >= *run.fault_time_s) {
     words = fmt::format("The fault is detected {:.3f} s after it began.",
                         *run.detection_time_s - *run.fault_time_s);
   } else if (run.detection_time_s) {

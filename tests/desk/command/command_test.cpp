@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "desk/sil/serial_robot.hpp"
 #include "desk/support/run_command.hpp"
 #include "desk/support/verbs.hpp"
 #include "explain/explain.hpp"
@@ -23,6 +24,7 @@ namespace {
 using test::CommandResult;
 using test::verbs;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 CommandResult offnominal(const std::vector<std::string>& arguments) {
@@ -208,6 +210,21 @@ TEST(Command, NamesTheVerbAndTheTableThatAreMeant) {
     EXPECT_THAT(result.err, StartsWith(robot + ": uncertainty_bound: found nothing"));
     EXPECT_THAT(result.err, HasSubstr("a table [uncertainty_bound]"));
   }
+}
+
+// GIVEN an arm that its controller cannot hold WHEN it runs without a fault THEN that is no run in
+// which nothing is wrong.
+TEST(Command, FailsWhereSilEndsInASafeStateThatNobodyAskedFor) {
+  const test::TemporaryFolder folder;
+  std::string text = test::serial_robot_text(2);
+  text += "[arming]\ntorque_rate = [50.0, 50.0]\n";
+  test::put(folder / "r.toml", text);
+  const std::vector<std::string> call{"sil", "--duration", "1", "--robot",
+                                      (folder / "r.toml").string()};
+  const CommandResult result = offnominal(call);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, HasSubstr("The arm was not held: joint "));
+  EXPECT_THAT(result.out, Not(HasSubstr("Nothing is wrong")));
 }
 
 TEST(Command, NamesTheVerbWhereARoomKnowsTheOptionOnly) {
