@@ -175,7 +175,9 @@ SilResult gather(const RobotDescription& robot, const Scenario& scenario,
     result.not_held = not_held_in(plant, robot, scenario);
   }
   const nlohmann::json& isolated = recordings.controller.at("isolated");
-  if (!isolated.is_null()) result.isolated = isolated_fault_of(isolated);
+  if (!isolated.is_null()) {
+    result.isolated = on_the_runs_clock(isolated_fault_of(isolated), result, period_s);
+  }
   result.overruns = recordings.controller.at("overruns");
   result.real_time = time_of(recordings.controller, recordings.plant);
   result.run_time_s = static_cast<double>(result.real_time->ticks) * period_s;

@@ -93,7 +93,19 @@ SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenar
   result.run = observer.finish();
   if (result.run_time_s > 0) result.bus.load = busy_s / result.run_time_s;
   result.run.fault_time_s = first_s;
+  if (result.isolated) {
+    result.isolated = on_the_runs_clock(*result.isolated, result, robot.estimator.period_s);
+  }
   return result;
+}
+
+IsolatedFault on_the_runs_clock(IsolatedFault fault, const SilResult& result, double period_s) {
+  if (!result.run.detection_time_s) return fault;
+  // Ticks, whatever a float makes of their time.
+  const double later = std::round((fault.time_s - fault.detection_time_s) / period_s) * period_s;
+  fault.detection_time_s = *result.run.detection_time_s;
+  fault.time_s = fault.detection_time_s + later;
+  return fault;
 }
 
 bool is_unasked_stop(const SilResult& result) {

@@ -84,7 +84,7 @@ struct SilResult {
   std::optional<double> ended_early_s;  // since arming; none: the run went to its end
   std::optional<NotHeld> not_held;      // of Fault::kArmNotHeld
   std::uint64_t overruns = 0;
-  std::optional<IsolatedFault> isolated;    // the controller's last answer
+  std::optional<IsolatedFault> isolated;    // the controller's last answer, on the run's clock
   double run_time_s = 0;                    // of the bus, from the first tick to the last
   std::optional<RealTimeReport> real_time;  // none for a run in lock-step
 };
@@ -98,6 +98,11 @@ void check_scenario(const RobotDescription& robot, const Scenario& scenario);
 [[nodiscard]] SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenario,
                                          Wire& wire, const std::string& bus_name,
                                          const TappedPort::OnFrame& on_frame = {});
+
+/// The controller's answer in times of the run, as run.detection_time_s is: since the arm was free
+/// to move. The controller counts from when it holds the arm.
+[[nodiscard]] IsolatedFault on_the_runs_clock(IsolatedFault fault, const SilResult& result,
+                                              double period_s);
 
 /// Whether the controller went to its safe state although nobody asked for that: no detection that
 /// it was told to stop at, and no fault of the scenario that had begun.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <offnominal/hal/protocols/protected/address.hpp>
 #include <optional>
@@ -219,6 +220,12 @@ TEST(TorqueSpace, SaysWhichFaultItIs) {
     EXPECT_EQ(result.isolated->kind, kind) << name_of(result.isolated->kind);
     EXPECT_EQ(result.isolated->joint, fault.joint);
     EXPECT_TRUE(result.isolated->decided);
+    // One clock: that of the run, in which the fault begins.
+    EXPECT_EQ(result.isolated->detection_time_s, result.run.detection_time_s);
+    EXPECT_GT(result.isolated->time_s, result.isolated->detection_time_s);
+    const double period_s = robot.estimator.period_s;
+    const double ticks = (result.isolated->time_s - result.isolated->detection_time_s) / period_s;
+    EXPECT_NEAR(ticks, std::round(ticks), 1e-6);
     if (kind == FaultKind::kFriction) {
       EXPECT_NEAR(result.isolated->size, fault.size, 0.2 * fault.size);
     }
