@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
@@ -9,6 +11,7 @@
 #include "command/progress.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
+#include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/output_file.hpp"
 #include "log/candump_text.hpp"
@@ -57,6 +60,17 @@ std::optional<std::string> plant_file(const SilOptions& options, const RobotDesc
   return paper::is_two_link_arm(robot) ? std::nullopt : options.robot;
 }
 
+// Of the plant's file, a robot with the controller's joints.
+RobotDescription plant_from(const std::string& file, const RobotDescription& robot) {
+  RobotDescription plant = read_robot_file(file);
+  if (plant.joint_count() == robot.joint_count()) return plant;
+  throw InputError({file, "[[joint]]",
+                    fmt::format("robot {} with {} joint(s)", plant.name, plant.joint_count()),
+                    fmt::format("a plant with {}, as many as robot {} of the controller has",
+                                robot.joint_count(), robot.name),
+                    "give --plant and --robot files of the same arm"});
+}
+
 sil::Scenario scenario_of(const SilOptions& options, const RobotDescription& robot) {
   sil::Scenario scenario;
   const auto mujoco = mujoco_file(options);
@@ -64,18 +78,24 @@ sil::Scenario scenario_of(const SilOptions& options, const RobotDescription& rob
     refuse_option("sil", "--plant", *options.plant + " without --robot",
                   "a robot file that says its joints", "give --robot FILE.toml");
   }
-  if (const auto file = plant_file(options, robot)) scenario.plant = read_robot_file(*file);
+  if (const auto file = plant_file(options, robot)) scenario.plant = plant_from(*file, robot);
   if (options.scenario) {
     if (options.fault) {
       refuse_option("sil", "--fault", "together with --scenario", "one of the two",
                     "write the fault into the scenario's file");
     }
-    scenario = sil::read_scenario(*options.scenario, scenario.plant);
+    scenario = sil::read_scenario(*options.scenario, scenario.plant, options.duration);
   } else if (options.fault == "mass_loss") {
     // Section 5.1 of the paper.
     scenario.faults.push_back(
         {.kind = sim::FaultEventKind::kMassLoss, .begin_s = 10.0, .size = 0.75, .rate_per_s = 0.5});
   } else if (options.fault == "nonlinear") {
+    if (scenario.plant) {
+      refuse_option("sil", "--fault", "nonlinear, for robot " + scenario.plant->name,
+                    "mass_loss or none: nonlinear is a fault of the paper's arm",
+                    "write friction_jump, payload or another fault into a file for --scenario, or "
+                    "give --plant paper");
+    }
     scenario.faults.push_back(
         {.kind = sim::FaultEventKind::kNonlinear, .begin_s = 10.0, .rate_per_s = 0.5});
   }

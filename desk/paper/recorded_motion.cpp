@@ -24,6 +24,14 @@ RecordedMotion RecordedMotion::read(const std::filesystem::path& file, int joint
     }
     return found->second;
   };
+  int there = joints;
+  while (columns.columns.contains("q" + std::to_string(there + 1))) ++there;
+  if (there > joints) {
+    throw InputError({columns.file, "",
+                      fmt::format("q1 to q{}: the motion of another robot", there),
+                      fmt::format("q, dq, ddq of joints 1 to {}, and no more", joints),
+                      "write the motion with offnominal motion, for the same robot"});
+  }
   RecordedMotion motion;
   motion.t_s_ = column("t").array() - column("t")[0];
   const auto of_all = [&](const std::string& name) {

@@ -59,10 +59,31 @@ sim::FaultEvent read_fault(const TomlTable& table, int joints) {
   return fault;
 }
 
+// A fault that this plant can have, in this run.
+void check_in_run(const TomlTable& table, const sim::FaultEvent& fault, const Scenario& scenario) {
+  if (fault.begin_s > scenario.duration_s) {
+    table.refuse("begin_s", fmt::format("{:g} s, behind the end of the run", fault.begin_s),
+                 fmt::format("0 to {:g} s, the run's length", scenario.duration_s),
+                 "begin earlier, or lengthen the run by duration_s (--duration)");
+  }
+  if (!(fault.end_s > fault.begin_s)) {
+    table.refuse("end_s", fmt::format("{:g} s", fault.end_s),
+                 fmt::format("after its begin_s, {:g} s", fault.begin_s),
+                 "end later, or leave it out for a fault that stays: times count from where the "
+                 "arm is free to move");
+  }
+  if (scenario.plant && fault.kind == sim::FaultEventKind::kNonlinear) {
+    table.refuse("kind", "nonlinear, for robot " + scenario.plant->name,
+                 "every kind but this one, which is a fault of the paper's arm",
+                 "take friction_jump, payload or disturbance_torque, or --plant paper");
+  }
+}
+
 }  // namespace
 
 Scenario read_scenario(const std::filesystem::path& path,
-                       const std::optional<RobotDescription>& plant) {
+                       const std::optional<RobotDescription>& plant,
+                       std::optional<double> duration_s) {
   const std::string file = path.string();
   const toml::table document = parse_toml(read_text_file(path), file);
   const TomlTable root(
@@ -78,6 +99,7 @@ Scenario read_scenario(const std::filesystem::path& path,
   NumberRule duration = positive("s");
   duration.max = paper::kLongestRunS;
   scenario.duration_s = root.number("duration_s", duration, scenario.duration_s);
+  scenario.duration_s = duration_s.value_or(scenario.duration_s);
   scenario.accommodate = root.boolean("accommodate", false);
   scenario.stop_at_detection = root.boolean("stop_at_detection", false);
   if (root.has("frames")) {
@@ -96,6 +118,7 @@ Scenario read_scenario(const std::filesystem::path& path,
   const std::vector<std::string> keys = {"kind", "begin_s", "end_s", "joint", "size", "rate_per_s"};
   for (const TomlTable& table : root.tables("fault", keys)) {
     scenario.faults.push_back(read_fault(table, joint_count_of(scenario)));
+    check_in_run(table, scenario.faults.back(), scenario);
   }
   for (const TomlTable& table : root.tables("hidden", effect_keys())) {
     if (!plant) {

@@ -10,10 +10,12 @@
 namespace offnominal::desk::sil {
 
 /// A scenario as a TOML file says it (docs/sil.md has every key), for a plant, of the paper's arm
-/// where that is none. Throws InputError with file, line and key; of what the numbers mean together
+/// where that is none; `duration_s`: of a run that somebody wants to be of another length than the
+/// file says. Throws InputError with file, line and key; of what else the numbers mean together
 /// check_scenario() judges.
 [[nodiscard]] Scenario read_scenario(const std::filesystem::path& path,
-                                     const std::optional<RobotDescription>& plant = std::nullopt);
+                                     const std::optional<RobotDescription>& plant = std::nullopt,
+                                     std::optional<double> duration_s = std::nullopt);
 
 /// The scenario, but for its plant, as a file that read_scenario() reads as the same.
 [[nodiscard]] std::string scenario_text(const Scenario& scenario);

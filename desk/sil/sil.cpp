@@ -16,9 +16,9 @@ namespace offnominal::desk::sil {
 namespace {
 
 [[noreturn]] void refuse(const std::string& place, const std::string& found,
-                         const std::string& allowed) {
+                         const std::string& allowed, const std::string& mend = "") {
   throw InputError(
-      {.file = "offnominal sil", .place = place, .found = found, .allowed = allowed, .mend = ""});
+      {.file = "offnominal sil", .place = place, .found = found, .allowed = allowed, .mend = mend});
 }
 
 void check_fault(const sim::FaultEvent& fault, int joints, double duration_s) {
@@ -35,10 +35,12 @@ void check_fault(const sim::FaultEvent& fault, int joints, double duration_s) {
   }
   if (!(fault.begin_s >= 0 && fault.begin_s <= duration_s)) {
     refuse(name + ", begin", fmt::format("{:g} s", fault.begin_s),
-           fmt::format("0 s to the run's end, {:g} s", duration_s));
+           fmt::format("0 s to the run's end, {:g} s", duration_s),
+           "begin earlier, or lengthen the run by --duration");
   }
   if (!(fault.end_s > fault.begin_s)) {
-    refuse(name + ", end", fmt::format("{:g} s", fault.end_s), "after its begin");
+    refuse(name + ", end", fmt::format("{:g} s", fault.end_s),
+           fmt::format("after its begin, {:g} s", fault.begin_s), "end later, or leave it out");
   }
   if (!(fault.rate_per_s > 0)) {
     refuse(name + ", rate", fmt::format("{:g} 1/s", fault.rate_per_s), "above 0");
@@ -56,10 +58,13 @@ void check_scenario(const RobotDescription& robot, const Scenario& scenario) {
   const int joints = joint_count_of(scenario);
   if (robot.joint_count() != joints) {
     refuse("plant", std::to_string(joints) + " joint(s)",
-           std::to_string(robot.joint_count()) + ", as many as robot " + robot.name + " has");
+           std::to_string(robot.joint_count()) + ", as many as robot " + robot.name + " has",
+           "give the files of the same arm at both ends");
   }
   if (const auto wanted = motion_of(scenario)(0.0).q.size(); wanted != joints) {
-    refuse("motion", std::to_string(wanted) + " joint(s)", std::to_string(joints));
+    refuse("motion", std::to_string(wanted) + " joint(s)",
+           std::to_string(joints) + ", as many as the arm has",
+           "write it with offnominal motion, for this robot");
   }
   if (scenario.encoder_bits_per_turn < 0 || scenario.encoder_bits_per_turn > 32) {
     refuse("encoder bits per turn", std::to_string(scenario.encoder_bits_per_turn), "0 to 32");

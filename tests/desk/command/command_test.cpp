@@ -23,6 +23,7 @@ namespace {
 
 using test::CommandResult;
 using test::verbs;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -225,6 +226,23 @@ TEST(Command, FailsWhereSilEndsInASafeStateThatNobodyAskedFor) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.out, HasSubstr("The arm was not held: joint "));
   EXPECT_THAT(result.out, Not(HasSubstr("Nothing is wrong")));
+}
+
+TEST(Command, SaysWhichFileOfSilIsOfAnotherArm) {
+  const test::TemporaryFolder folder;
+  const std::string two = (folder / "two.toml").string();
+  const std::string three = (folder / "three.toml").string();
+  test::put(folder / "two.toml", test::serial_robot_text(2));
+  test::put(folder / "three.toml", test::serial_robot_text(3));
+  const auto told = [&](const std::vector<std::string>& more, const std::string& start) {
+    std::vector<std::string> call{"sil", "--robot", two};
+    call.insert(call.end(), more.begin(), more.end());
+    const CommandResult result = offnominal(call);
+    expect_one_line_refusal(result);
+    EXPECT_THAT(result.err, AllOf(StartsWith(start), HasSubstr("to mend: ")));
+  };
+  told({"--plant", three}, three + ": [[joint]]: found robot serial with 3 joint(s); allowed: ");
+  told({"--fault", "nonlinear"}, "offnominal sil: --fault: found nonlinear, for robot serial");
 }
 
 TEST(Command, NamesTheVerbWhereARoomKnowsTheOptionOnly) {

@@ -83,6 +83,14 @@ TEST_F(Recorded, WhatIsNoMotionIsRefused) {
   EXPECT_THAT(refusal("t,q1,q2,dq1,dq2,ddq1,ddq2\n0,0,0,0,0,0,0\n"), HasSubstr("one row"));
 }
 
+// Its first joints would move as if they were those of this robot.
+TEST_F(Recorded, MotionOfARobotWithMoreJointsIsRefused) {
+  const std::string text =
+      "t,q1,q2,q3,dq1,dq2,dq3,ddq1,ddq2,ddq3\n0,0,0,0,0,0,0,0,0,0\n1,0,0,0,0,0,0,0,0,0\n";
+  EXPECT_THAT(refusal(text), ::testing::AllOf(HasSubstr("motion.csv"), HasSubstr("found q1 to q3"),
+                                              HasSubstr("joints 1 to 2, and no more")));
+}
+
 TEST_F(Recorded, TheArmFollowsItInPlaceOfThePapersMotion) {
   Experiment experiment;
   experiment.fault.kind = offnominal::sim::FaultKind::kNone;

@@ -22,9 +22,10 @@ Scenario read(const std::string& text,
   return read_scenario(folder / "s.toml", plant);
 }
 
-std::string refusal(const std::string& text) {
+std::string refusal(const std::string& text,
+                    const std::optional<RobotDescription>& plant = std::nullopt) {
   try {
-    read(text);
+    read(text, plant);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -122,6 +123,29 @@ TEST(ScenarioFile, SaysWhereItIsWrong) {
               HasSubstr("joint"));
   EXPECT_THAT(refusal("format = 1\nfault = 3\n"), HasSubstr("fault"));
   EXPECT_THAT(refusal("format = \n"), HasSubstr("line 1"));
+}
+
+TEST(ScenarioFile, SaysWhereAFaultIsOutsideOfTheRun) {
+  using testing::AllOf;
+  using testing::HasSubstr;
+  const std::string late =
+      "format = 1\nduration_s = 2\n[[fault]]\nkind = \"payload\"\nbegin_s = 3\nsize = 1\n";
+  EXPECT_THAT(refusal(late), AllOf(HasSubstr("line 5, fault[1].begin_s"), HasSubstr("0 to 2 s"),
+                                   HasSubstr("to mend: begin earlier")));
+  EXPECT_THAT(refusal("format = 1\n[[fault]]\nkind = \"bus_off\"\nbegin_s = 3\nend_s = 2\n"),
+              AllOf(HasSubstr("line 5, fault[1].end_s"), HasSubstr("after its begin_s, 3 s"),
+                    HasSubstr("to mend:")));
+  // A run of another length than the file's.
+  const test::TemporaryFolder folder;
+  write_file_atomically(folder / "s.toml", late);
+  EXPECT_EQ(read_scenario(folder / "s.toml", std::nullopt, 4.0).duration_s, 4.0);
+}
+
+TEST(ScenarioFile, SaysWhichFaultThePlantCannotHave) {
+  EXPECT_THAT(
+      refusal("format = 1\n[[fault]]\nkind = \"nonlinear\"\nbegin_s = 3\n", test::serial_robot(2)),
+      testing::AllOf(testing::HasSubstr("line 3, fault[1].kind: found nonlinear, for robot serial"),
+                     testing::HasSubstr("to mend:")));
 }
 
 TEST(ScenarioFile, KindsStandInTheOrderOfTheirNumbers) {
