@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <offnominal/hal/drive_description.hpp>
+#include <offnominal/hal/messages.hpp>
 #include <span>
 #include <vector>
 
@@ -21,10 +22,12 @@ struct DriveProtocol {
   std::span<const hal::DriveKey> joint_keys;
   bool has_fd;
   bool has_positions_alone;
+  bool has_dbc;
   hal::DriveFault (*fault_of)(const hal::DriveValues& values, double period_s);
   double (*busy_share)(const hal::DriveValues& values, std::size_t joints, hal::FrameFormat format,
                        double period_s);
   hal::Frame (*reading_frame)(std::size_t joints, hal::FrameFormat format);
+  bool (*heartbeat_in)(const hal::Frame& frame, hal::Heartbeat& into);
   std::size_t (*from_drives)(const hal::DriveValues& values, std::span<hal::IdFilter> into);
   std::size_t (*from_controller)(const hal::DriveValues& values, std::span<hal::IdFilter> into);
   std::unique_ptr<sim::Drives> (*emulate)(const hal::DriveValues& values,

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <offnominal/controller/sample_taker.hpp>
 #include <offnominal/hal/bus/frame.hpp>
 #include <offnominal/hal/messages.hpp>
@@ -10,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "loop/drive_port.hpp"
+#include "drives/bus_readings.hpp"
+#include "drives/drive_table.hpp"
 #include "replay/watch.hpp"
 #include "robot/robot.hpp"
 
@@ -25,10 +25,8 @@ struct BusSample {
       false;  // every drive says that it gives the torque it is told: else brakes may hold
 };
 
-/// From the frames on a bus to samples, for somebody who only listens: what the drives say is put
-/// together as the controller does it. A sample is complete when every joint has been read since
-/// the one before; it is handed over with the first reading behind it, so that the torques that
-/// belong to it have come whatever their order.
+/// From the frames on a bus to samples, for somebody who only listens: readings (bus_readings.hpp)
+/// that the controller would have used.
 class BusSamples {
  public:
   /// Of a robot whose period_s is that of the readings, and with a bound, whatever it is.
@@ -42,27 +40,21 @@ class BusSamples {
   [[nodiscard]] const std::optional<hal::Heartbeat>& heartbeat() const { return heartbeat_; }
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
   [[nodiscard]] std::uint64_t understood() const { return understood_; }
-  [[nodiscard]] hal::DriveCounts counts() const { return drives_->counts(); }
+  [[nodiscard]] hal::DriveCounts counts() const { return readings_.counts(); }
   /// From 0, the joints that have no valid reading at that time.
   [[nodiscard]] std::vector<std::size_t> silent_joints(hal::Microseconds now_us) const;
 
  private:
   using Taker = controller::SampleTaker<kRuntimeJoints, double>;
 
-  void heed(const hal::Frame& frame);
-  void look(hal::Microseconds now_us);
-  [[nodiscard]] bool is_next(const Taker::Feedback& before) const;
-  bool hand_over();
+  bool hand_over(const Taker::Feedback& readings);
 
   std::size_t joints_;
   hal::Microseconds period_us_;
-  bool has_heartbeats_;
-  std::unique_ptr<DrivePort> drives_;
+  const DriveProtocol& protocol_;
+  BusReadings readings_;
   Taker taker_;
   Taker::Data data_;
-  Taker::Feedback feedback_;  // now
-  Taker::Feedback complete_;  // of the sample that waits
-  bool waits_ = false;
   std::optional<hal::Microseconds> last_us_;  // of the sample before
   BusSample sample_;
   std::optional<hal::Heartbeat> heartbeat_;

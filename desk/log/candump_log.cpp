@@ -105,24 +105,8 @@ class CandumpReader {
   }
 
   NamedColumns read(RecordingFile& file) {
-    std::string content;
-    // Of another form; the last line may be.
-    std::optional<std::string> odd;
-    std::size_t line = 0;
-    while (file.next_line(content)) {
-      if (odd) {
-        throw InputError({file_, fmt::format("line {}", line), odd->substr(0, 60),
-                          "a line of candump -l: (seconds) interface ID#DATA", ""});
-      }
-      ++line;
-      if (content.ends_with('\r')) content.pop_back();
-      if (content.empty()) continue;
-      if (const auto frame = parse_candump_line(content)) {
-        take(*frame, line);
-      } else {
-        odd = content;
-      }
-    }
+    each_candump_frame(file,
+                       [&](const CandumpFrame& frame, std::size_t line) { take(frame, line); });
     return columns();
   }
 
@@ -293,6 +277,28 @@ std::optional<CandumpFrame> parse_candump_line(std::string_view line) {
   if (rest.ends_with(" R") || rest.ends_with(" T")) rest.remove_suffix(2);
   if (!parse_frame(rest, result.frame)) return std::nullopt;
   return result;
+}
+
+void each_candump_frame(RecordingFile& file,
+                        const std::function<void(const CandumpFrame&, std::size_t line)>& take) {
+  std::string content;
+  // Of another form; the last line may be.
+  std::optional<std::string> odd;
+  std::size_t line = 0;
+  while (file.next_line(content)) {
+    if (odd) {
+      throw InputError({file.name(), fmt::format("line {}", line), odd->substr(0, 60),
+                        "a line of candump -l: (seconds) interface ID#DATA", ""});
+    }
+    ++line;
+    if (content.ends_with('\r')) content.pop_back();
+    if (content.empty()) continue;
+    if (const auto frame = parse_candump_line(content)) {
+      take(*frame, line);
+    } else {
+      odd = content;
+    }
+  }
 }
 
 bool is_candump_file(const RecordingFile& file) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <offnominal/hal/bus/frame.hpp>
 #include <optional>
 #include <string>
@@ -20,6 +22,11 @@ struct CandumpFrame {
 
 /// One line without its end; none for a line of another form.
 [[nodiscard]] std::optional<CandumpFrame> parse_candump_line(std::string_view line);
+
+/// Every frame of a `candump -l` log with its line, from 1. Throws InputError for a line of another
+/// form, but for the last one, which a killed program may have left short.
+void each_candump_frame(RecordingFile& file,
+                        const std::function<void(const CandumpFrame&, std::size_t line)>& take);
 
 /// Whether the file's first line is one of a `candump -l` log.
 [[nodiscard]] bool is_candump_file(const RecordingFile& file);

@@ -22,9 +22,9 @@ bool has_bytes_of_no_text(std::string_view bytes) {
 }
 
 constexpr std::array<LogFormat, 3> kFormats = {{
-    {"CSV", nullptr, read_csv},
-    {"MATLAB .mat", is_mat_file, read_mat},
-    {"candump -l", is_candump_file, read_candump},
+    {"CSV", nullptr, read_csv, nullptr},
+    {"MATLAB .mat", is_mat_file, read_mat, nullptr},
+    {"candump -l", is_candump_file, read_candump, read_drive_frames},
 }};
 
 // What recordings come in and this does not read, with what to do instead.
@@ -98,6 +98,13 @@ void refuse_other_format(const RecordingFile& file) {
 }
 
 }  // namespace
+
+NamedColumns read_in(const LogFormat& format, RecordingFile& file, const ChannelMap* channels,
+                     const RobotBus* bus, const NeedOf& need_of) {
+  const bool has_dbc = channels != nullptr && !channels->dbc.empty();
+  if (bus != nullptr && format.read_bus != nullptr && !has_dbc) return format.read_bus(file, *bus);
+  return format.read(file, channels, need_of);
+}
 
 std::span<const LogFormat> log_formats() { return kFormats; }
 

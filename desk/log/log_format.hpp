@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "log/drive_frames.hpp"
 #include "log/named_columns.hpp"
 #include "log/recording_file.hpp"
 #include "robot/robot.hpp"
@@ -19,7 +20,14 @@ struct LogFormat {
   /// Reads what `need_of` wants of the file, under its own names or those that `channels`, where
   /// they are not null, tell the reader to find. Throws InputError with the place in the file.
   NamedColumns (*read)(RecordingFile& file, const ChannelMap* channels, const NeedOf& need_of);
+  /// Reads a log of a robot's bus, without a DBC file, under the common names; null: of no bus.
+  NamedColumns (*read_bus)(RecordingFile& file, const RobotBus& bus) = nullptr;
 };
+
+/// By the format: of the robot's bus where that is not null, and the channels name no DBC file.
+[[nodiscard]] NamedColumns read_in(const LogFormat& format, RecordingFile& file,
+                                   const ChannelMap* channels, const RobotBus* bus,
+                                   const NeedOf& need_of);
 
 [[nodiscard]] std::span<const LogFormat> log_formats();
 

@@ -352,7 +352,7 @@ void shorten_time(NamedColumns& columns) {
 }
 
 TimedColumns read_file(RecordingFile& recording, const std::optional<ChannelMap>& channels,
-                       double period_s, std::size_t file, std::size_t files) {
+                       const RobotBus* bus, double period_s, std::size_t file, std::size_t files) {
   NeedOf need_of = needs_of(channels, file, files);
   if (!channels && period_s > 0) {
     // Its step is said: what the file has of a clock is nobody's business.
@@ -361,7 +361,8 @@ TimedColumns read_file(RecordingFile& recording, const std::optional<ChannelMap>
     };
   }
   TimedColumns read;
-  read.columns = log_format_of(recording).read(recording, channels ? &*channels : nullptr, need_of);
+  read.columns =
+      read_in(log_format_of(recording), recording, channels ? &*channels : nullptr, bus, need_of);
   if (channels && channels->at_rest) return read;
   if (!channels && period_s == 0) shorten_time(read.columns);
   // Without any of the names this would be the least of what is wrong.
@@ -376,11 +377,12 @@ TimedColumns read_file(RecordingFile& recording, const std::optional<ChannelMap>
 }
 
 TimedColumns read_files(const std::filesystem::path& path,
-                        const std::optional<ChannelMap>& channels, double period_s) {
+                        const std::optional<ChannelMap>& channels, const RobotBus* bus,
+                        double period_s) {
   const std::vector<std::filesystem::path> paths = recording_files(path);
   if (paths.size() == 1) {
     RecordingFile recording(path);
-    return read_file(recording, channels, period_s, 0, 1);
+    return read_file(recording, channels, bus, period_s, 0, 1);
   }
   if (channels && channels->at_rest) {
     throw InputError({path.string(), "", fmt::format("{} files", paths.size()),
@@ -389,7 +391,7 @@ TimedColumns read_files(const std::filesystem::path& path,
   std::vector<TimedColumns> files;
   for (std::size_t file = 0; file < paths.size(); ++file) {
     RecordingFile recording(paths[file], path);
-    files.push_back(read_file(recording, channels, period_s, file, paths.size()));
+    files.push_back(read_file(recording, channels, bus, period_s, file, paths.size()));
     if (files.back().time.t_s.size() >= 2) continue;
     throw InputError({files.back().columns.file, "",
                       fmt::format("{} samples", files.back().time.t_s.size()),
@@ -400,12 +402,13 @@ TimedColumns read_files(const std::filesystem::path& path,
 
 Log read(const std::filesystem::path& path, int joint_count,
          const std::optional<ChannelMap>& channels, std::optional<double> period_s,
-         const TransmissionSettings* transmission) {
+         const TransmissionSettings* transmission, const std::optional<RobotBus>& bus) {
   try {
     std::optional<ChannelMap> map = channels;
     if (map && period_s && !map->at_rest) map->period_s = *period_s;
     const double period = map ? map->period_s : period_s.value_or(0);
-    Assembler assembler(read_files(path, map, period), joint_count, transmission);
+    Assembler assembler(read_files(path, map, bus ? &*bus : nullptr, period), joint_count,
+                        transmission);
     return map ? assembler.with(*std::move(map)) : assembler.with_common_header(period);
   } catch (const std::bad_alloc&) {
     throw InputError({shown_name(path), "", "more than this machine has memory for",
@@ -419,7 +422,7 @@ Log read(const std::filesystem::path& path, int joint_count,
 Log read_log(const std::filesystem::path& path, int joint_count,
              const std::optional<ChannelMap>& channels, std::optional<double> period_s) {
   if (channels) check_sides(*channels, std::nullopt, shown_name(path));
-  return read(path, joint_count, channels, period_s, nullptr);
+  return read(path, joint_count, channels, period_s, nullptr, std::nullopt);
 }
 
 Log log_of(TimedColumns recording, const RobotDescription& robot, const ChannelMap& channels) {
@@ -439,7 +442,7 @@ Log read_log_or_hold_map(const std::filesystem::path& path, const RobotDescripti
   }
   const auto said = payload_of(options.payloads, path.string());
   Log log = read(path, robot.joint_count(), channels, options.period_s,
-                 robot.transmission ? &*robot.transmission : nullptr);
+                 robot.transmission ? &*robot.transmission : nullptr, bus_of(robot));
   check_units_of_joints(log.channels, robot, log.file);
   log.payload = said || !channels ? said : payload_of(channels->payloads, path.string());
   if (log.payload) log.remarks.push_back("with a payload of " + words_of(*log.payload));

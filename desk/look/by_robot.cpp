@@ -91,7 +91,7 @@ Look look_by_channels(const std::filesystem::path& path, const RobotDescription&
                       std::optional<double> period_s) {
   ChannelMap map = *robot.channels;
   if (period_s && !map.at_rest) map.period_s = *period_s;
-  ReadFiles read = read_files_of(path, map);
+  ReadFiles read = read_files_of(path, map, bus_of(robot));
   Look look = look_of(read.all);
   if (map.at_rest) {
     look.notes.emplace_back(

@@ -7,6 +7,7 @@
 #include "common/error.hpp"
 #include "common/input_name.hpp"
 #include "log/channel_needs.hpp"
+#include "log/drive_frames.hpp"
 #include "log/log_format.hpp"
 #include "log/read_log.hpp"
 #include "log/recording_file.hpp"
@@ -36,12 +37,12 @@ Need need_beside_period(const std::string& name) {
 }
 
 NamedColumns read_all(const std::filesystem::path& path, const std::filesystem::path& joined,
-                      const ChannelMap* channels, bool has_period) {
+                      const ChannelMap* channels, const RobotBus* bus, bool has_period) {
   RecordingFile file(path, joined);
   const LogFormat& format = log_format_of(file);
   const bool is_text = format.recognises == nullptr;
   const auto need = has_period ? need_beside_period : is_text ? need_in_text : need_elsewhere;
-  return format.read(file, channels, need);
+  return read_in(format, file, channels, bus, need);
 }
 
 Channel named(const std::string& source) {
@@ -115,15 +116,17 @@ LookedFiles read_looked_files(const std::filesystem::path& path, const RobotDesc
                               std::optional<double> period_s) {
   const ChannelMap* const channels =
       robot != nullptr && robot->channels ? &*robot->channels : nullptr;
+  const std::optional<RobotBus> robot_bus = robot != nullptr ? bus_of(*robot) : std::nullopt;
+  const RobotBus* const bus = robot_bus ? &*robot_bus : nullptr;
   const std::vector<std::filesystem::path> paths = recording_files(path);
   LookedFiles looked;
   if (paths.size() == 1) {
-    looked.columns = read_all(path, path, channels, period_s.has_value());
+    looked.columns = read_all(path, path, channels, bus, period_s.has_value());
     return looked;
   }
   std::vector<TimedColumns> files;
   for (const auto& one : paths) {
-    TimedColumns file{read_all(one, path, channels, period_s.has_value()), {}};
+    TimedColumns file{read_all(one, path, channels, bus, period_s.has_value()), {}};
     Channel time = period_s ? Channel{} : time_of_one_file(file.columns);
     file.time = looked_time(file.columns, time, period_s.value_or(0), looked.notes);
     if (files.empty()) {
@@ -140,7 +143,8 @@ LookedFiles read_looked_files(const std::filesystem::path& path, const RobotDesc
   return looked;
 }
 
-ReadFiles read_files_of(const std::filesystem::path& path, const ChannelMap& channels) {
+ReadFiles read_files_of(const std::filesystem::path& path, const ChannelMap& channels,
+                        const std::optional<RobotBus>& bus) {
   const std::vector<std::filesystem::path> paths = recording_files(path);
   std::vector<TimedColumns> files;
   ReadFiles read;
@@ -151,7 +155,8 @@ ReadFiles read_files_of(const std::filesystem::path& path, const ChannelMap& cha
       return need == Need::kNone ? Need::kWelcome : need;
     };
     RecordingFile file(paths[k], path);
-    NamedColumns columns = log_format_of(file).read(file, &channels, also);
+    NamedColumns columns =
+        read_in(log_format_of(file), file, &channels, bus ? &*bus : nullptr, also);
     if (paths.size() == 1) read.all = columns;
     TimedColumns timed{std::move(columns), {}};
     if (!channels.at_rest) {

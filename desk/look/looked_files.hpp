@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "log/drive_frames.hpp"
 #include "log/joined_files.hpp"
 #include "robot/robot.hpp"
 
@@ -27,13 +28,13 @@ struct LookedFiles {
                                             std::optional<double> period_s);
 
 // The same for channels that are known: what they want has to be there, the rest is welcome, and
-// the time is theirs.
+// the time is theirs. `bus`: of the robot (drive_frames.hpp).
 struct ReadFiles {
   NamedColumns all;        // its time included, where there is one file
   TimedColumns recording;  // what the channels want
 };
-[[nodiscard]] ReadFiles read_files_of(const std::filesystem::path& path,
-                                      const ChannelMap& channels);
+[[nodiscard]] ReadFiles read_files_of(const std::filesystem::path& path, const ChannelMap& channels,
+                                      const std::optional<RobotBus>& bus);
 
 // The time of `channel`; where it counts from 1970 in no seconds, the channel gets the unit, with a
 // note. Throws InputError where it is no time.

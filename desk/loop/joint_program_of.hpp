@@ -10,8 +10,8 @@
 #include <span>
 
 #include "common/error.hpp"
+#include "drives/drive_port.hpp"
 #include "drives/drive_table.hpp"
-#include "loop/drive_port.hpp"
 #include "loop/joint_program.hpp"
 #include "loop/rehearsal_timer.hpp"
 

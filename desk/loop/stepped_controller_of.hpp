@@ -6,7 +6,7 @@
 #include <offnominal/controller/joint_controller.hpp>
 #include <type_traits>
 
-#include "loop/drive_port.hpp"
+#include "drives/drive_port.hpp"
 #include "loop/stepped_controller.hpp"
 
 namespace offnominal::desk {

@@ -1,6 +1,6 @@
 // Every row of the list of drive protocols: its driver and its emulation understand each other, and
 // are what its description says.
-#include "loop/drive_port.hpp"
+#include "drives/drive_port.hpp"
 
 #include <gtest/gtest.h>
 

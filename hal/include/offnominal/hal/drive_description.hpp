@@ -14,6 +14,7 @@
 //   kKeys, kJointKeys         std::arrays of DriveKey: of all drives, and of the drive of a joint
 //   kHasFd                    whether it carries several joints in a frame of CAN FD
 //   kHasPositionsAlone        whether its drives may leave out velocities
+//   kHasDbc                   whether hal/offnominal.dbc has its messages
 //   Drives<N>                 its DriveProtocol for N joints, or for kAnyJoints
 //   drives<N>(values, link, joints)   makes one of values that fault_of() does not refuse; joints:
 //                             of kAnyJoints
@@ -22,6 +23,8 @@
 //   busy_share(values, joints, format, period)  share of a bus's time that its frames take at
 //                             most, at BitRates
 //   reading_frame(joints, format)  a frame as its drives send most of them
+//   heartbeat_in(frame, into)  whether that is a controller's own word on itself, and what it says;
+//                             false throughout where the protocol has none
 //   from_drives(values, into), from_controller(values, into)  filters of what either end sends;
 //                             returns how many, at most kMostDriveFilters
 

@@ -30,6 +30,9 @@ struct DriveCounts {
 //
 // take(f)                  A frame that has come. kOk: used. kUnknownId: none of this protocol's.
 //                          Otherwise why it was refused; it has changed no more than the counters.
+// overhear(f)              Of somebody who only listens: a frame of the controller's that tells
+// what
+//                          drives do not say themselves. As take(); kUnknownId where there is none.
 // feedback(j, now)         Joint j, from 0.
 // outgoing(c, h, into)     The frames of one tick, one command per joint and, when it is due, the
 //                          heartbeat; returns how many, at most kMaxOutgoing. A command that the
@@ -52,6 +55,7 @@ concept DriveProtocol = requires(P& drives, const P& seen, const ReceivedFrame& 
   { P::kJoints } -> std::convertible_to<std::size_t>;
   { P::kMaxOutgoing } -> std::convertible_to<std::size_t>;
   { drives.take(received) } -> std::same_as<Status>;
+  { drives.overhear(received) } -> std::same_as<Status>;
   { seen.feedback(joint, now_us) } -> std::same_as<JointFeedback>;
   { drives.outgoing(commands, heartbeat, into) } -> std::same_as<std::size_t>;
   { drives.report(diagnosis, frame) } -> std::same_as<bool>;

@@ -98,6 +98,25 @@ class CanSimpleDrives {
     return Status::kUnknownId;
   }
 
+  // Where axes send no torque: the one that they are told, which is taken for the one applied, and
+  // the state that they are asked for. Until the next heartbeat nobody knows which is in.
+  [[nodiscard]] Status overhear(const ReceivedFrame& received) {
+    if (configuration_ != Status::kOk) return configuration_;
+    const Frame& frame = received.frame;
+    const std::uint32_t command = frame.id & kCommandMask;
+    const bool tells = command == kTorqueCommand || command == kStateCommand;
+    if (frame.extended || frame.fd || frame.remote || !tells || config_.torque_interval_us > 0) {
+      return Status::kUnknownId;
+    }
+    for (std::size_t j = 0; j < axes_.size(); ++j) {
+      if (axes_[j].node != frame.id >> kCommandBits) continue;
+      if (frame.length != kMaxClassicLength) return Status::kWrongLength;
+      const Data data = std::span<const std::uint8_t>(frame.data).first<kMaxClassicLength>();
+      return overhear_of(j, command, data, received.time_us);
+    }
+    return Status::kUnknownId;
+  }
+
   // The status' mode is kTorque where a heartbeat says closed loop that came kStateTimeUs or more
   // after this axis was last asked for it: an older one may be about what was before.
   [[nodiscard]] JointFeedback feedback(std::size_t joint, Microseconds now_us) const {
@@ -224,6 +243,24 @@ class CanSimpleDrives {
     return take_torque(joint, data, time_us);
   }
 
+  Status overhear_of(std::size_t joint, std::uint32_t command, Data data, Microseconds time_us) {
+    Axis& axis = state_[joint];
+    if (command == kTorqueCommand) {
+      const float torque = first_float(data) / motor_torque_per_joint_torque(joint);
+      if (!is_finite(torque)) return Status::kInvalidValue;
+      axis.commanded_torque = torque;
+      return Status::kOk;
+    }
+    const bool drives = from_little_endian(data.first<4>()) == kClosedLoop;
+    const DriveMode asked = drives ? DriveMode::kTorque : DriveMode::kOff;
+    axis.told_to_drive = drives;
+    axis.asked_us = time_us;
+    if (axis.mode == asked) return Status::kOk;
+    axis.mode = asked;
+    axis.heartbeat.seen = false;
+    return Status::kOk;
+  }
+
   // Bytes 5 to 7 are errors of motor, encoder and controller in firmware 0.5 (none before 0.5.6),
   // the result of the last procedure and "trajectory done" in 0.6.
   Status take_heartbeat(std::size_t joint, Data data, Microseconds time_us) {
@@ -300,6 +337,7 @@ struct CanSimple {
   static constexpr const char* kType = "offnominal::hal::CanSimple";
   static constexpr bool kHasFd = false;
   static constexpr bool kHasPositionsAlone = false;
+  static constexpr bool kHasDbc = false;
 
   // CanSimpleFirmware in their order.
   static constexpr std::array<const char*, 2> kFirmwares{"0.5", "0.6"};
@@ -413,6 +451,10 @@ struct CanSimple {
     }
     return static_cast<double>(joints) * frames_per_s *
            longest_wire_time_s(reading_frame(joints, format));
+  }
+
+  [[nodiscard]] static bool heartbeat_in(const Frame& /*frame*/, Heartbeat& /*into*/) {
+    return false;
   }
 
   [[nodiscard]] static Frame reading_frame(std::size_t /*joints*/, FrameFormat /*format*/) {

@@ -131,6 +131,11 @@ class ProtectedDrives {
     return count;
   }
 
+  // Its drives say all that there is.
+  [[nodiscard]] static Status overhear(const ReceivedFrame& /*received*/) {
+    return Status::kUnknownId;
+  }
+
   [[nodiscard]] bool report(const Diagnosis& found, Frame& into) {
     return tell(MessageKind::kDiagnosis, found, diagnosis_counter_, into);
   }
@@ -223,6 +228,7 @@ struct Protected {
   static constexpr std::array<DriveKey, 0> kJointKeys{};
   static constexpr bool kHasFd = true;
   static constexpr bool kHasPositionsAlone = true;
+  static constexpr bool kHasDbc = true;
 
   template <std::size_t Joints>
   using Drives = ProtectedDrives<Joints>;
@@ -255,6 +261,15 @@ struct Protected {
     std::array<Frame, kMaxNodes> frames;
     static_cast<void>(packed(MessageKind::kEncoder, joints, format, frames));
     return frames[0];
+  }
+
+  [[nodiscard]] static bool heartbeat_in(const Frame& frame, Heartbeat& into) {
+    Address address;
+    if (address_of(frame, address) != Status::kOk) return false;
+    if (address.kind != MessageKind::kHeartbeat) return false;
+    std::uint8_t counter = 0;
+    const std::uint16_t id = data_id_of(address.kind, address.first_node);
+    return decode(record_in(frame, 0), id, into, counter) == Status::kOk;
   }
 
   // Stops, readings, statuses; torque commands, heartbeats, diagnoses and faults.

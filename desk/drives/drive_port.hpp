@@ -30,6 +30,7 @@ class DrivePort {
 
   virtual ~DrivePort() = default;
   virtual hal::Status take(const hal::ReceivedFrame& received) = 0;
+  virtual hal::Status overhear(const hal::ReceivedFrame& received) = 0;
   [[nodiscard]] virtual hal::JointFeedback feedback(std::size_t joint,
                                                     hal::Microseconds now_us) const = 0;
   virtual std::size_t outgoing(std::span<const hal::TorqueCommand> commands,
@@ -48,6 +49,9 @@ class DrivePortOf final : public DrivePort {
  public:
   explicit DrivePortOf(Drives drives) : drives_(std::move(drives)) {}
   hal::Status take(const hal::ReceivedFrame& received) override { return drives_.take(received); }
+  hal::Status overhear(const hal::ReceivedFrame& received) override {
+    return drives_.overhear(received);
+  }
   [[nodiscard]] hal::JointFeedback feedback(std::size_t joint,
                                             hal::Microseconds now_us) const override {
     return drives_.feedback(joint, now_us);
@@ -73,29 +77,9 @@ class DrivePortOf final : public DrivePort {
   Drives drives_;
 };
 
-namespace detail {
-template <typename... Rows>
-std::unique_ptr<DrivePort> make_drive_port(const DriveSettings& settings, std::size_t joints,
-                                           const hal::DriveLink& link,
-                                           std::tuple<Rows...>* /*rows*/) {
-  using Port = std::unique_ptr<DrivePort>;
-  using Make =
-      Port (*)(const hal::DriveValues& values, const hal::DriveLink& link, std::size_t joints);
-  constexpr std::array<Make, sizeof...(Rows)> kMakers{
-      [](const hal::DriveValues& values, const hal::DriveLink& of, std::size_t count) -> Port {
-        using Protocol = typename Rows::Protocol;
-        return std::make_unique<DrivePortOf<typename Protocol::template Drives<hal::kAnyJoints>>>(
-            Protocol::template drives<hal::kAnyJoints>(values, of, count));
-      }...};
-  return kMakers.at(settings.protocol)(values_of(settings), link, joints);
-}
-}  // namespace detail
-
 /// Of settings of as many joints, 1 to kMaxJoints.
-[[nodiscard]] inline std::unique_ptr<DrivePort> make_drive_port(const DriveSettings& settings,
-                                                                std::size_t joints,
-                                                                const hal::DriveLink& link) {
-  return detail::make_drive_port(settings, joints, link, static_cast<DriveProtocols*>(nullptr));
-}
+[[nodiscard]] std::unique_ptr<DrivePort> make_drive_port(const DriveSettings& settings,
+                                                         std::size_t joints,
+                                                         const hal::DriveLink& link);
 
 }  // namespace offnominal::desk
