@@ -18,8 +18,8 @@ enum class ExitCode : int {
 /// when it ends in something other than kDone and throws InputError on a bad input.
 using SetUpVerb = void(CLI::App& verb, ExitCode& exit_code);
 
-/// A verb of the command: the file verb_<name>.cpp, which defines set_up_<name>(), and a row of the
-/// table in verbs.cpp. Dispatch, help and suggestions follow from it.
+/// A verb of the command: the file verb_<name>.cpp, which defines set_up_<name>(), its declaration
+/// below, and a row of the table in verbs.cpp. Dispatch, help and suggestions follow from it.
 struct Verb {
   const char* name;
   const char* words;  // what it does, one line of help

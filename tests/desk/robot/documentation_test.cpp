@@ -57,6 +57,36 @@ TEST(Troubleshooting, HasAParagraphForEveryStatusAndNoOther) {
   }
 }
 
+// docs/README.md has a line for every page and for nothing else, and the README leads to it.
+TEST(Documents, StandInTheirIndex) {
+  const std::string index = document("README.md");
+  std::set<std::string> pages;
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() / "docs")) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() != ".md" || name == "README.md") continue;
+    pages.insert(name);
+    EXPECT_THAT(index, HasSubstr("\n| [" + name + "](" + name + ") | "))
+        << "docs/README.md needs a row for it";
+  }
+  EXPECT_GT(pages.size(), 20U);
+  const std::string row = "\n| [";
+  for (auto at = index.find(row); at != std::string::npos; at = index.find(row, at + 1)) {
+    const auto begin = at + row.size();
+    const std::string name = index.substr(begin, index.find(']', begin) - begin);
+    EXPECT_TRUE(pages.contains(name)) << name << " is no page";
+  }
+  EXPECT_THAT(read_text_file(test::source_dir() / "README.md"), HasSubstr("](docs/README.md)"));
+}
+
+// Whatever is built of apps/ is known to the page that says what lies where.
+TEST(Architecture, KnowsEveryProgram) {
+  const std::string text = document("architecture.md");
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() / "apps")) {
+    if (!entry.is_directory()) continue;
+    EXPECT_THAT(text, HasSubstr("`" + entry.path().filename().string() + "`"));
+  }
+}
+
 std::string parameter_row(const EffectTraits& traits, const ParameterInfo& parameter) {
   std::string allowed = takes_energy_out(traits, parameter) ? ">= 0" : "any";
   if (parameter.min > -effects::kAny) allowed = ">= " + shortest(parameter.min);
