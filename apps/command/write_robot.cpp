@@ -11,8 +11,10 @@ void write_robot(const RobotDescription& robot, const std::string& from, const s
                  const AnswerOptions& answer) {
   if (write_robot_file(robot, to, answer.existing()) == KeptComments::kAll) return;
   std::cerr << on_one_line("hint: " + to + " has none of the comments of " + from +
-                           ": what changed is written there in a way that cannot be cut by lines; "
-                           "write it under [uncertainty_bound] and [[effect]] to keep them")
+                           ": a number that changed stands there over several lines, in a table "
+                           "within braces, or not at all; write [joint.link], [[effect]] and "
+                           "[uncertainty_bound] a key a line, as docs/robot-file.md does, to keep "
+                           "them")
             << '\n';
 }
 

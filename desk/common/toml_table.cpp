@@ -1,7 +1,9 @@
 #include "common/toml_table.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "common/error.hpp"
@@ -40,6 +42,17 @@ std::string words_of(const toml::node& node) {
     default:
       return "a date or time";
   }
+}
+
+// With or without a point; none of any other value.
+std::optional<std::int64_t> whole_number(const toml::node& node) {
+  if (const auto* integer = node.as_integer()) return integer->get();
+  const auto* real = node.as_floating_point();
+  constexpr double kExact = 9007199254740992;  // 2^53
+  if (real == nullptr || std::abs(real->get()) > kExact) return std::nullopt;
+  const double value = real->get();
+  if (value != std::floor(value)) return std::nullopt;
+  return static_cast<std::int64_t>(value);
 }
 
 std::string mend_of_size(const std::string& unit) {
@@ -110,11 +123,11 @@ std::int64_t TomlTable::integer(const std::string& key, std::int64_t min, std::i
   const std::string allowed =
       "a whole number from " + std::to_string(min) + " to " + std::to_string(max);
   const toml::node& node = require(key, allowed);
-  const auto* value = node.as_integer();
-  if (value == nullptr || value->get() < min || value->get() > max) {
-    refuse_at(node, path_of(key), words_of(node), allowed, "write such a number, without a point");
+  const std::optional<std::int64_t> value = whole_number(node);
+  if (!value || *value < min || *value > max) {
+    refuse_at(node, path_of(key), words_of(node), allowed, "write such a number");
   }
-  return value->get();
+  return *value;
 }
 
 std::int64_t TomlTable::integer(const std::string& key, std::int64_t min, std::int64_t max,

@@ -381,7 +381,9 @@ class Parser {
       payload.payload.mass_kg = number_of(*table, place, "mass_kg", 0);
       if (payload.payload.mass_kg < 0 || payload.payload.mass_kg > kMostPayloadKg) {
         fail(*table->get("mass_kg"), place + ".mass_kg", shortest(payload.payload.mass_kg),
-             "0 to " + shortest(kMostPayloadKg) + " kg");
+             "0 to " + shortest(kMostPayloadKg) + " kg",
+             "write what the robot carried, in kg; of a recording without a payload leave the "
+             "entry out");
       }
       read_place(*table->get("place_m"), place + ".place_m", payload.payload);
       map.payloads.push_back(std::move(payload));

@@ -1,5 +1,7 @@
 #include "robot/geometry.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <cmath>
 #include <limits>
@@ -84,9 +86,7 @@ std::string inertia_fault(const std::array<double, 6>& inertia_kg_m2) {
                                       tensor_of(inertia_kg_m2), Eigen::EigenvaluesOnly)
                                       .eigenvalues();
   // Six digits are enough to see what is wrong.
-  const auto rounded = [](double x) {
-    return shortest(static_cast<double>(static_cast<float>(x)));
-  };
+  const auto rounded = [](double x) { return fmt::format("{:.6g}", x); };
   const std::string list =
       rounded(moments[0]) + ", " + rounded(moments[1]) + ", " + rounded(moments[2]);
   if (moments[0] < moments[2] * kTolerance) {

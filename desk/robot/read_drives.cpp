@@ -1,10 +1,13 @@
 #include "robot/read_drives.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "common/number.hpp"
 #include "common/toml_table.hpp"
@@ -76,6 +79,24 @@ std::vector<double> read_per_joint(const TomlTable& table, const hal::DriveKey& 
   return values;
 }
 
+// The first joint with that fault, from 0; none where it is not of one.
+std::optional<std::size_t> joint_at_fault(const DriveProtocol& protocol,
+                                          const DriveSettings& settings,
+                                          const hal::DriveFault& fault, double period_s) {
+  const std::size_t keys = protocol.joint_keys.size();
+  const auto is_fault = [&](const hal::DriveKey& key) {
+    return std::string_view(key.name) == fault.key;
+  };
+  if (std::none_of(protocol.joint_keys.begin(), protocol.joint_keys.end(), is_fault)) {
+    return std::nullopt;
+  }
+  for (std::size_t joint = 0; joint * keys < settings.of_joints.size(); ++joint) {
+    const auto alone = std::span<const double>(settings.of_joints).subspan(joint * keys, keys);
+    if (protocol.fault_of({settings.shared, alone}, period_s).key != nullptr) return joint;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 const std::vector<std::string>& drives_keys() {
@@ -102,8 +123,12 @@ DriveSettings read_drives(const toml::table& raw, const std::string& file, int j
   }
   const hal::DriveFault fault = protocol.fault_of(values_of(settings), period_s);
   if (fault.key == nullptr) return settings;
-  table.refuse(fault.key, fault.found, fault.allowed,
-               "docs/robot-file.md has what every key means");
+  const auto joint = joint_at_fault(protocol, settings, fault, period_s);
+  table.refuse(fault.key,
+               joint ? fmt::format("{} for joint {}", fault.found, *joint + 1) : fault.found,
+               fault.allowed,
+               joint ? fmt::format("correct number {} of the list", *joint + 1)
+                     : "docs/robot-file.md has what every key means");
 }
 
 }  // namespace offnominal::desk

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <offnominal/diagnosis/network.hpp>
 #include <offnominal/model/effect_memory.hpp>
@@ -25,6 +26,7 @@
 #include "robot/text_lines.hpp"
 #include "robot/text_with_bound.hpp"
 #include "robot/text_with_effects.hpp"
+#include "robot/text_with_joints.hpp"
 #include "robot/transmission.hpp"
 
 namespace offnominal::desk {
@@ -104,14 +106,20 @@ void check_initial_weights(const TomlTable& root, const RobotDescription& robot)
 
 void check_delays(const TomlTable& root, const RobotDescription& robot) {
   const double most_s = kMaxDelayTicks * robot.estimator.period_s;
+  const std::vector<TomlTable> tables = root.tables("effect", effect_keys());
   const auto chain = chain_of<kRuntimeJoints, double>(robot);
   for (std::size_t i = 0; i < chain.joints.size(); ++i) {
     const double delay_s = delay_of_joint(chain, i);
     if (delay_s <= most_s) continue;
-    root.refuse(
-        "effect", fmt::format("a delay of {:g} s on joint {}", delay_s, i + 1),
+    const auto is_its_delay = [&](const RobotEffect& effect) {
+      return effect.kind == EffectKind::kTimeDelay && effect.joint == i;
+    };
+    const auto effect = std::find_if(robot.effects.begin(), robot.effects.end(), is_its_delay);
+    tables[static_cast<std::size_t>(effect - robot.effects.begin())].refuse(
+        info_of(EffectKind::kTimeDelay)->parameters.front().name,
+        fmt::format("a delay of {:g} s on joint {}", delay_s, i + 1),
         fmt::format("at most {:g} s, {} ticks of estimator.period_s", most_s, kMaxDelayTicks),
-        "correct the delay of time_delay, or estimator.period_s");
+        "correct the delay, or estimator.period_s");
   }
 }
 
@@ -176,9 +184,16 @@ std::string with_dbc(const std::string& text, const RobotDescription& robot,
 std::optional<std::string> text_with_changes(const RobotDescription& robot,
                                              const std::string& file) {
   if (robot.file_text == nullptr) return std::nullopt;
-  const std::string old_text = with_dbc(without_returns(*robot.file_text), robot, file);
+  const auto with_joints =
+      text_with_joints(with_dbc(without_returns(*robot.file_text), robot, file), robot, file);
+  if (!with_joints) return std::nullopt;
+  const std::string& old_text = *with_joints;
   RobotDescription effects_only = robot;
-  effects_only.bound = parse_robot(old_text, file).bound;
+  try {
+    effects_only.bound = parse_robot(old_text, file).bound;
+  } catch (const InputError&) {
+    return std::nullopt;  // a change of a joint in the wrong place
+  }
   auto text = text_with_effects(old_text, effects_only, file);
   if (!text) return std::nullopt;
   return text_with_bound(*text, robot, file);
@@ -186,13 +201,28 @@ std::optional<std::string> text_with_changes(const RobotDescription& robot,
 
 }  // namespace
 
+namespace {
+
+// "line 40, effect[3]", of a robot that was read; one that was changed since has another order.
+std::string place_in_file(const RobotDescription& robot, std::size_t effect) {
+  const std::string path = fmt::format("effect[{}]", effect + 1);
+  if (robot.file_text == nullptr) return path;
+  const toml::table document = toml::parse(*robot.file_text);
+  const toml::node* node = document["effect"][effect].node();
+  if (node == nullptr) return path;
+  return fmt::format("line {}, {}", node->source().begin.line, path);
+}
+
+}  // namespace
+
 void require_carried(const RobotDescription& robot, const std::string& file,
                      const std::string& who) {
-  for (const RobotEffect& effect : robot.effects) {
+  for (std::size_t i = 0; i < robot.effects.size(); ++i) {
+    const RobotEffect& effect = robot.effects[i];
     if (chain_may_have(effect.kind)) continue;
     throw InputError(
         {.file = file,
-         .place = "effect",
+         .place = place_in_file(robot, i),
          .found = fmt::format("{} on {}, which {} cannot carry", info_of(effect.kind)->name,
                               place_of(effect), who),
          .allowed = "effects of rigid transmissions",

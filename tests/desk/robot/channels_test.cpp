@@ -27,6 +27,12 @@ std::string refusal(const std::string& text, int joints = 1) {
   return message_of<InputError>([&] { parse(text, joints); });
 }
 
+TEST(Channels, SayHowToMendAPayloadThatWeighsLessThanNothing) {
+  EXPECT_THAT(refusal("position = \"q\"\ntorque = \"tau\"\npayload = [{recording = \"a.csv\", "
+                      "mass_kg = -1, place_m = [0, 0, 0]}]\n"),
+              AllOf(HasSubstr("line 3"), HasSubstr("found -1"), HasSubstr("to mend: write what")));
+}
+
 TEST(Channels, ShortAndLongFormSayTheSame) {
   const ChannelMap map = parse(R"(
     position = "qm"

@@ -243,6 +243,15 @@ const std::vector<Mistake> kMistakes{
      "kind = \"joint_coupling\"\njoint = 2\ncoefficient = 12\nlevel = 0\nsource_joint = 1.5",
      "source_joint", "effect[2].source_joint", "1.5", "a whole number from 1 to 2",
      "write such a number"},
+    {"FormatWithAPart", "format = 1\n", "format = 1.5\n", "format = 1.5", "format", "1.5",
+     "a whole number from 1 to", "write such a number"},
+    {"DelayThatIsTooLong", "kind = \"viscous_friction\"\njoint = 2\ncoefficient = 12",
+     "kind = \"time_delay\"\njoint = 2\ndelay = 0.5", "delay = 0.5", "effect[2].delay",
+     "a delay of 0.5 s on joint 2", "at most ", "correct the delay"},
+    {"MomentsThatARobotFileCouldHave", "zz = 0.025, xy = 0.001, xz = 0.0, yz = -0.002",
+     "zz = 0.009, xy = 0.0, xz = 0.0, yz = 0.0", "inertia_kg_m2", "joint[1].link.inertia_kg_m2",
+     "a tensor that breaks the triangle inequality (principal moments 0.009, 0.02, 0.03;",
+     "a positive definite tensor", "check the signs"},
     {"FrictionThatLocks", "kind = \"viscous_friction\"\njoint = 2\ncoefficient = 12",
      "kind = \"load_dependent_friction\"\njoint = 2\nfactor = 1.0", "factor", "effect[2].factor",
      "1", "a number from 0 to 0.95", "give the friction per torque"},
@@ -386,6 +395,13 @@ TEST(RobotFile, RefusesChannelsThatDoNotFitTheJoints) {
   const std::string text =
       test::changed(test::kSampleRobot, "position = [\"a\", \"b\"]", "position = [\"a\"]");
   EXPECT_THAT(refusal(text), HasSubstr("channels.position: found 1 entries"));
+}
+
+// A number may be written with or without a point.
+TEST(WholeNumber, MayHaveAPoint) {
+  std::string text = test::changed(test::kSampleRobot, "format = 1\n", "format = 1.0\n");
+  text = test::changed(text, "joint = 2\ncoefficient", "joint = 2.0\ncoefficient");
+  EXPECT_EQ(refusal(text), "accepted");
 }
 
 }  // namespace

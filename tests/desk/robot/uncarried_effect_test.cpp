@@ -57,7 +57,7 @@ TEST(UncarriedEffect, IsRefusedInOneSentenceWhereAMonitorIsToRun) {
     FAIL() << "the monitor would have left the elasticity out";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(),
-                AllOf(HasSubstr("arm.toml: effect: found joint_elasticity on joint 1, which the "
+                AllOf(HasSubstr("effect[3]: found joint_elasticity on joint 1, which the "
                                 "on-board monitor cannot carry"),
                       HasSubstr("remove it from this file")));
   }
