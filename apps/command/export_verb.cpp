@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "command/answer.hpp"
+#include "command/read_robot.hpp"
 #include "common/file.hpp"
 #include "common/output_file.hpp"
-#include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -21,7 +21,7 @@ struct ExportOptions {
 };
 
 void run(const ExportOptions& options, const ExportFormat& format) {
-  const RobotDescription robot = read_robot_file(options.robot);
+  const RobotDescription robot = read_robot(options.robot);
   const exchange::ExportedRobot exported = format.write(robot, options.robot);
   write_file_atomically(options.output, exported.text, options.answer.existing());
   for (const std::string& what : exported.changed) std::cerr << "changed: " << what << '\n';

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "command/read_robot.hpp"
 #include "command/refuse_option.hpp"
 #include "common/input_name.hpp"
 #include "common/json_text.hpp"
@@ -13,7 +14,6 @@
 #include "common/number.hpp"
 #include "common/output_file.hpp"
 #include "robot/payload.hpp"
-#include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
 
@@ -145,7 +145,7 @@ FitData read_fit_data(const std::string& verb, const std::string& option, const 
 
 FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
                       ReadOne* read_one, Progress& progress) {
-  return read_fit_data(verb, option, files, read_robot_file(files.robot), read_one, progress);
+  return read_fit_data(verb, option, files, read_robot(files.robot), read_one, progress);
 }
 
 std::string file_names(const std::vector<std::string>& files) {

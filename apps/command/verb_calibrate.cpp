@@ -19,6 +19,7 @@
 #include "command/fault_free.hpp"
 #include "command/input_options.hpp"
 #include "command/progress.hpp"
+#include "command/read_robot.hpp"
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
@@ -100,7 +101,7 @@ void tell(const Result& result, const CalibrateOptions& options, const Calibrate
 void run(const CalibrateOptions& options, const std::string& command_line, ExitCode& exit_code) {
   check_numbers(options);
   Progress progress;
-  RobotDescription robot = read_robot_file(options.files.robot);
+  RobotDescription robot = read_robot(options.files.robot);
   check_velocity_error(options, robot);
   FitData data =
       read_fit_data("calibrate", "LOG", options.files, std::move(robot), read_log, progress);

@@ -9,11 +9,11 @@
 
 #include "codegen/model_header.hpp"
 #include "command/answer.hpp"
+#include "command/read_robot.hpp"
 #include "command/verbs.hpp"
 #include "common/amount.hpp"
 #include "common/file.hpp"
 #include "common/output_file.hpp"
-#include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -41,7 +41,7 @@ nlohmann::ordered_json to_json(const CodegenOptions& options, const RobotDescrip
 }
 
 void run(const CodegenOptions& options) {
-  const RobotDescription robot = read_robot_file(options.robot);
+  const RobotDescription robot = read_robot(options.robot);
   const ModelHeader header =
       model_header(robot, {.robot_file = options.robot, .name_space = options.name_space});
   write_file_atomically(options.output, header.text, options.answer.existing());

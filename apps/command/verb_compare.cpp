@@ -13,6 +13,7 @@
 #include "command/doctor.hpp"
 #include "command/input_options.hpp"
 #include "command/progress.hpp"
+#include "command/read_robot.hpp"
 #include "command/recordings.hpp"
 #include "command/verbs.hpp"
 #include "common/error.hpp"
@@ -48,7 +49,7 @@ void run(const CompareOptions& options, const std::string& command_line) {
   Progress progress;
   check_all_differ("compare", "LOG", options.logs);
   check_payloads("compare", options.channels, options.logs);
-  const RobotDescription robot = read_robot_file(options.robot);
+  const RobotDescription robot = read_robot(options.robot);
   const std::optional<RobotDescription> older = read_older(options, robot);
   std::vector<Log> logs =
       read_recordings(options.logs, robot, options.channels, read_log, progress);

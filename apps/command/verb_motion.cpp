@@ -13,6 +13,7 @@
 #include "command/doctor.hpp"
 #include "command/input_options.hpp"
 #include "command/progress.hpp"
+#include "command/read_robot.hpp"
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
@@ -20,7 +21,6 @@
 #include "common/output_file.hpp"
 #include "log/read_log.hpp"
 #include "motion/design_report.hpp"
-#include "robot/robot_file.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -68,7 +68,7 @@ std::vector<Contender> effects_of(const MotionOptions& options, const RobotDescr
 
 void run(const MotionOptions& options, const std::string& command_line, ExitCode& exit_code) {
   using namespace motion;
-  const RobotDescription robot = read_robot_file(options.robot);
+  const RobotDescription robot = read_robot(options.robot);
   DesignRequest request = options.design;
   request.effects = effects_of(options, robot);
   request.margin = options.margin_percent / 100;

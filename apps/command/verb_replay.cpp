@@ -15,6 +15,7 @@
 #include "command/doctor.hpp"
 #include "command/input_options.hpp"
 #include "command/progress.hpp"
+#include "command/read_robot.hpp"
 #include "command/recordings.hpp"
 #include "command/verbs.hpp"
 #include "common/amount.hpp"
@@ -114,7 +115,7 @@ void require_whole(const Log& log) {
 }
 
 void run(const ReplayOptions& options, const std::string& command_line, ExitCode& exit_code) {
-  const RobotDescription robot = read_robot_file(options.robot);
+  const RobotDescription robot = read_robot(options.robot);
   require_bound(robot, options.robot);
   check_payloads("replay", options.channels, {options.log});
   const Log log = read_log(options.log, robot, options.channels);

@@ -9,6 +9,7 @@
 #include "command/answer.hpp"
 #include "command/command_line.hpp"
 #include "command/progress.hpp"
+#include "command/read_robot.hpp"
 #include "command/refuse_option.hpp"
 #include "command/verbs.hpp"
 #include "common/error.hpp"
@@ -149,7 +150,7 @@ sil::SilResult lock_step(const SilOptions& options, const RobotDescription& robo
 
 ExitCode run(const SilOptions& options, const std::string& command_line) {
   const RobotDescription robot =
-      options.robot ? read_robot_file(*options.robot) : paper::two_link_robot();
+      options.robot ? read_robot(*options.robot) : paper::two_link_robot();
   if (options.robot) require_bound(robot, *options.robot);
   const sil::Scenario scenario = scenario_of(options, robot);
   hal::VirtualCan made;

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include "robot/doubts_of_limits.hpp"
 #include "robot/robot_file.hpp"
 #include "sample_robot.hpp"
 
@@ -107,6 +108,27 @@ TEST(RobotFileContent, MakesAnAxisThatIsNearlyAUnitVectorOne) {
   const auto axis = parse_robot(text, "r.toml").joints[0].joint.axis;
   EXPECT_DOUBLE_EQ(axis[0], std::sqrt(0.5));
   EXPECT_DOUBLE_EQ(axis[2], std::sqrt(0.5));
+}
+
+// Radians that are round as degrees are, and more turns than most joints make; 6.28 is a turn, 1000
+// an axis that turns on and on.
+TEST(RobotFileContent, LeavesDoubtsWhereLimitsLookLikeDegrees) {
+  const auto doubts_with = [](const std::string& limits) {
+    return doubts_of_limits(parse_robot(
+        test::changed(test::kSampleRobot, "position = [-3.0, 3.0]", "position = " + limits),
+        "sample.toml"));
+  };
+  for (const char* limits : {"[-180.0, 180.0]", "[-170, 170]", "[0.0, 90.0]", "[-360, 360]"}) {
+    EXPECT_EQ(doubts_with(limits).size(), 1U) << limits;
+  }
+  for (const char* limits : {"[-3.0, 3.0]", "[-20.0, 20.0]", "[-62.83185, 62.83185]",
+                             "[-1000.0, 1000.0]", "[-100.5, 100.5]"}) {
+    EXPECT_TRUE(doubts_with(limits).empty()) << limits;
+  }
+  const std::string doubt = doubts_with("[-180.0, 180.0]").front();
+  EXPECT_NE(doubt.find("joint 1 (turn)"), std::string::npos) << doubt;
+  EXPECT_NE(doubt.find("57.3 turns"), std::string::npos) << doubt;
+  EXPECT_NE(doubt.find("write [-3.14159, 3.14159]"), std::string::npos) << doubt;
 }
 
 }  // namespace
