@@ -42,9 +42,9 @@ class DrivePort {
   virtual void clear_stop() = 0;
   [[nodiscard]] virtual hal::DriveCounts counts() const = 0;
 };
-static_assert(hal::DriveProtocol<DrivePort>);
+static_assert(hal::OverheardProtocol<DrivePort>);
 
-template <hal::DriveProtocol Drives>
+template <hal::OverheardProtocol Drives>
 class DrivePortOf final : public DrivePort {
  public:
   explicit DrivePortOf(Drives drives) : drives_(std::move(drives)) {}

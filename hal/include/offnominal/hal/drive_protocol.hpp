@@ -30,9 +30,6 @@ struct DriveCounts {
 //
 // take(f)                  A frame that has come. kOk: used. kUnknownId: none of this protocol's.
 //                          Otherwise why it was refused; it has changed no more than the counters.
-// overhear(f)              Of somebody who only listens: a frame of the controller's that tells
-// what
-//                          drives do not say themselves. As take(); kUnknownId where there is none.
 // feedback(j, now)         Joint j, from 0.
 // outgoing(c, h, into)     The frames of one tick, one command per joint and, when it is due, the
 //                          heartbeat; returns how many, at most kMaxOutgoing. A command that the
@@ -55,7 +52,6 @@ concept DriveProtocol = requires(P& drives, const P& seen, const ReceivedFrame& 
   { P::kJoints } -> std::convertible_to<std::size_t>;
   { P::kMaxOutgoing } -> std::convertible_to<std::size_t>;
   { drives.take(received) } -> std::same_as<Status>;
-  { drives.overhear(received) } -> std::same_as<Status>;
   { seen.feedback(joint, now_us) } -> std::same_as<JointFeedback>;
   { drives.outgoing(commands, heartbeat, into) } -> std::same_as<std::size_t>;
   { drives.report(diagnosis, frame) } -> std::same_as<bool>;
@@ -64,6 +60,15 @@ concept DriveProtocol = requires(P& drives, const P& seen, const ReceivedFrame& 
   { seen.stop_seen() } -> std::same_as<bool>;
   { drives.clear_stop() } -> std::same_as<void>;
   { seen.counts() } -> std::same_as<DriveCounts>;
+};
+
+// One that serves somebody who only listens, too:
+//
+// overhear(f)              A frame of the controller's that tells what no drive says itself. As
+//                          take(); kUnknownId where the protocol has none.
+template <typename P>
+concept OverheardProtocol = DriveProtocol<P> && requires(P& drives, const ReceivedFrame& received) {
+  { drives.overhear(received) } -> std::same_as<Status>;
 };
 
 // A heartbeat goes out every so many ticks, and half as many later a diagnosis; where their 32 bits

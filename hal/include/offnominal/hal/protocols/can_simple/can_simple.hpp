@@ -328,7 +328,7 @@ class CanSimpleDrives {
   Microseconds newest_us_ = 0;  // when the newest of the axes' frames came: this side has no clock
 };
 
-static_assert(DriveProtocol<CanSimpleDrives<2>>);
+static_assert(OverheardProtocol<CanSimpleDrives<2>>);
 
 // Programs choose them by this (drive_description.hpp).
 struct CanSimple {

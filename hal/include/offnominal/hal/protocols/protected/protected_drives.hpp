@@ -217,7 +217,7 @@ class ProtectedDrives {
   bool stop_seen_ = false;
 };
 
-static_assert(DriveProtocol<ProtectedDrives<2>>);
+static_assert(OverheardProtocol<ProtectedDrives<2>>);
 
 // Programs choose them by this (drive_description.hpp).
 struct Protected {
