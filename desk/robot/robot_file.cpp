@@ -199,13 +199,9 @@ std::optional<std::string> text_with_changes(const RobotDescription& robot,
   return text_with_bound(*text, robot, file);
 }
 
-}  // namespace
-
-namespace {
-
 // "line 40, effect[3]", of a robot that was read; one that was changed since has another order.
 std::string place_in_file(const RobotDescription& robot, std::size_t effect) {
-  const std::string path = fmt::format("effect[{}]", effect + 1);
+  std::string path = fmt::format("effect[{}]", effect + 1);
   if (robot.file_text == nullptr) return path;
   const toml::table document = toml::parse(*robot.file_text);
   const toml::node* node = document["effect"][effect].node();

@@ -61,7 +61,7 @@ std::string text_at(const Lines& lines, const Place& place) {
 
 // A robot as it is written, and where its values stand.
 struct Written {
-  explicit Written(std::string text) : document(toml::parse(text)), lines(lines_of(text)) {}
+  explicit Written(const std::string& text) : document(toml::parse(text)), lines(lines_of(text)) {}
   toml::table document;
   Lines lines;
 };
