@@ -91,9 +91,9 @@ void check_length(const Log& log, const FilterPlan& plan) {
 
 // Every so many-th sample of a rate leaves at least those that are to be kept.
 Index decimation_of(double sample_rate_hz, double kept_rate_hz) {
-  constexpr double kRounding = 1e-9;  // of a rate divided and multiplied again
+  constexpr double kOfAClock = 1e-3;  // 499.9 Hz are 500 Hz
   return std::max<Index>(
-      1, static_cast<Index>(std::floor(sample_rate_hz / kept_rate_hz * (1 + kRounding))));
+      1, static_cast<Index>(std::floor(sample_rate_hz / kept_rate_hz * (1 + kOfAClock))));
 }
 
 // Whether any of the recordings has more samples than those that are to be kept.

@@ -76,7 +76,11 @@ VectorXd settle_sign_widths(const VectorXd& resolved, RobotDescription& robot,
                             std::vector<Workspace>& recordings) {
   constexpr double kClearly = 0.9;
   VectorXd widths = resolved;
-  const VectorXd own = settled_sign_widths(robot, {});
+  std::vector<std::size_t> fitted;
+  for (std::size_t i = 0; i < robot.effects.size(); ++i) {
+    if (robot.effects[i].fitted) fitted.push_back(i);
+  }
+  const VectorXd own = settled_sign_widths(robot, fitted);
   if ((own.array() > 0).any()) {
     RobotDescription other = robot;
     set_sign_widths(other, resolved);

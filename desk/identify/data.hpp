@@ -34,8 +34,9 @@ Eigen::VectorXd resolved_sign_widths(const std::vector<Log>& logs, const FilterP
 void set_sign_widths(RobotDescription& robot, const Eigen::VectorXd& widths);
 
 // The width that a fit of these recordings begins with, per joint, which robot and recordings have
-// from now on: that of the robot file's own effects where the file meets the recordings clearly
-// better with it, otherwise what the motion resolves. `recordings`: of this robot.
+// from now on: that of the robot file's own effects that no fit has made (a fit without all effects
+// bends it) where the file meets the recordings clearly better with it, otherwise what the motion
+// resolves. `recordings`: of this robot.
 Eigen::VectorXd settle_sign_widths(const Eigen::VectorXd& resolved, RobotDescription& robot,
                                    std::vector<Workspace>& recordings);
 
