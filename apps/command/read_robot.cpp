@@ -1,5 +1,7 @@
 #include "command/read_robot.hpp"
 
+#include <fmt/format.h>
+
 #include <iostream>
 
 #include "common/error.hpp"
@@ -11,7 +13,7 @@ namespace offnominal::desk {
 RobotDescription read_robot(const std::string& file) {
   RobotDescription robot = read_robot_file(file);
   for (const std::string& doubt : doubts_of_limits(robot)) {
-    std::cerr << on_one_line("hint: " + file + ": " + doubt) << '\n';
+    std::cerr << on_one_line(fmt::format("hint: {}: {}", file, doubt)) << '\n';
   }
   return robot;
 }

@@ -36,7 +36,7 @@ AtRest at_rest(const RobotDescription& robot, const std::vector<RobotEffect>& hi
   RobotDescription whole = robot;
   whole.effects.insert(whole.effects.end(), hidden.begin(), hidden.end());
   const auto model = make_model(chain_of<kRuntimeJoints, double>(whole));
-  const Joints q = pose;
+  const Joints& q = pose;
   const Joints none = Joints::Zero(q.size());
   AtRest arm;
   arm.weight = inverse_dynamics(model, q, none, none, 0.0);
