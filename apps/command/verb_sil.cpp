@@ -180,8 +180,7 @@ std::string footer() {
          "the controller kept its time. The controller knows of the plant what comes over the bus, "
          "the drives know what it sends.\n"
          "Exit code 1 where the controller went to its safe state and nobody had asked for that: "
-         "no "
-         "fault of the scenario had begun, and it was not told to stop at a detection.\n"
+         "no fault of the scenario had begun, and it was not told to stop at a detection.\n"
          "Faults of a scenario's file (docs/sil.md has its keys; all have begin_s):\n" +
          sil::fault_kinds_text();
 }

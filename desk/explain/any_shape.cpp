@@ -64,14 +64,15 @@ class Curve {
         curve_(std::move(curve)) {
     for (std::size_t i = 0; i < terms_.size(); ++i) {
       if (terms_[i].joint != curve_.joint) continue;
-      const bool of_variable = terms_[i].effect->info().traits.follows == variable();
-      if (of_variable || is_held(terms_[i])) own_.push_back(i);
+      const bool is_held = is_nested(data_, found_.baseline, terms_[i], curve_);
+      if (is_held) held_.push_back(i);
+      if (is_held || terms_[i].effect->info().traits.follows == variable()) own_.push_back(i);
     }
   }
 
   [[nodiscard]] std::optional<AnyShape> judged() const {
     AnyShape shape = in_place_of(own_);
-    if (energy(shape.proposal.fit) >= energy(found_.fit)) shape = in_place_of(held());
+    if (energy(shape.proposal.fit) >= energy(found_.fit)) shape = in_place_of(held_);
     const double taken = explained_on(data_, shape.without, shape.proposal.fit, curve_.joint);
     const double more =
         energy(shape.proposal.fit) * share_of(structure_of(data_, shape.proposal.fit.residual),
@@ -143,19 +144,6 @@ class Curve {
     return data_.layout.stack(data_.recordings, beyond);
   }
 
-  // Whether the curve holds an effect as it is: a spring, a constant torque.
-  [[nodiscard]] bool is_held(const Term& term) const {
-    return is_nested(data_, found_.baseline, term, curve_);
-  }
-
-  [[nodiscard]] std::vector<std::size_t> held() const {
-    std::vector<std::size_t> held;
-    for (const std::size_t i : own_) {
-      if (is_held(terms_[i])) held.push_back(i);
-    }
-    return held;
-  }
-
   // What the replaced are of what the curve takes, in words; false where one of them is nearly all,
   // and does not leave far more than the curve.
   [[nodiscard]] bool describe_replaced(double taken, AnyShape& shape) const {
@@ -203,8 +191,10 @@ class Curve {
   const FoundModel& found_;
   std::vector<Term> terms_;
   Term curve_;
-  std::vector<std::size_t>
-      own_;  // of the terms on the joint: of the variable, or held by the curve
+  // Of the terms on the joint: those that the curve can be (a spring, a constant torque), and with
+  // them those of its variable.
+  std::vector<std::size_t> held_;
+  std::vector<std::size_t> own_;
 };
 
 }  // namespace

@@ -194,12 +194,17 @@ void judge_ambiguous(Explanation& e) {
   advise_on_classes(e);
 }
 
+// Whether the new robot file has all that was found of a joint.
+bool is_all_written(const Explanation& e, Eigen::Index joint) {
+  return std::all_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
+    return one.what.joint != joint || is_written(e, one.what);
+  });
+}
+
 // By how much the robot file that is written predicts a joint better, as the table has it.
 std::string words_of_held_out(const Explanation& e, const JointErrors& errors) {
-  const bool all = std::all_of(e.found.begin(), e.found.end(), [&](const Finding& one) {
-    return one.what.joint != errors.joint || is_written(e, one.what);
-  });
-  const double after = all ? errors.holdout_after : errors.holdout_fitted;
+  const double after =
+      is_all_written(e, errors.joint) ? errors.holdout_after : errors.holdout_fitted;
   if (!(errors.holdout_before > 0)) return "";
   const double fall = 1 - after / errors.holdout_before;
   return fmt::format(": the error on held-out data of that joint {} by {:.0f} %",
@@ -424,9 +429,8 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
                                   fmt::join(names_of(same, errors.joint), " or "));
     }
     if (!shifts.empty()) answer.words += fmt::format(" {}.", fmt::join(shifts, ", "));
-    const bool all = std::all_of(answer.found.begin(), answer.found.end(),
-                                 [&](const EffectAt& one) { return is_written(e, one); });
-    answer.words += words_of_gain(errors, all && answer.ambiguous.empty());
+    answer.words +=
+        words_of_gain(errors, is_all_written(e, errors.joint) && answer.ambiguous.empty());
   } else if (!shifts.empty() && !stands) {
     answer.verdict = Verdict::kParameterShift;
     answer.words = fmt::format("{}.", fmt::join(shifts, ", ")) + words_of_gain(errors, true);

@@ -1,6 +1,5 @@
 #include "identify/held_out_errors.hpp"
 
-#include <utility>
 #include <vector>
 
 #include "identify/holdout.hpp"
@@ -13,13 +12,17 @@ HeldOutErrors held_out_errors(const RobotDescription& file, const ImprovedRobot&
   const Relinearised& last = improved.last;
   NuisanceOptions no_skew = last.nuisance;
   no_skew.skew_samples = 0;
-  std::vector<Workspace> recordings = last.data->recordings;
-  for (Workspace& at : recordings) at.set_model(file);
-  const Data of_file(std::move(recordings), file, no_skew);
   const Data data(*last.data, improved.made_with, no_skew);
+  std::vector<Workspace> recordings = data.recordings;
+  std::vector<const Eigen::MatrixXd*> model;
+  for (Workspace& at : recordings) {
+    at.set_model(file);
+    model.push_back(&at.model_torque);
+  }
   const Regression regression(data);
   const HoldOut parts(regression, nullptr);
-  return {of_file.layout.rms(of_file.torque), of_file.layout.rms(of_file.target),
+  return {data.layout.rms(data.torque),
+          data.layout.rms(data.torque - data.layout.stack_all(recordings, model)),
           parts.rms(parts.cross_validated_with_shapes(written))};
 }
 

@@ -33,8 +33,8 @@ std::vector<std::string> doubts_of_limits(const RobotDescription& robot) {
     constexpr double kPerDegree = std::numbers::pi / 180;
     doubts.push_back(fmt::format(
         "joint {} ({}): `position` of its [joint.limits], [{:g}, {:g}] rad, is {:.3g} turns from "
-        "end "
-        "to end, and round numbers of degrees; to mend: write [{:.6g}, {:.6g}] where degrees were "
+        "end to end, and round numbers of degrees; to mend: write [{:.6g}, {:.6g}] where degrees "
+        "were "
         "meant, else leave it",
         i + 1, robot.joints[i].name, low, high, (high - low) / (2 * std::numbers::pi),
         kPerDegree * low, kPerDegree * high));

@@ -162,8 +162,7 @@ class Causes {
       found_.push_back(fmt::format(
           "the controller adds friction to {} that the plant has less of, changes its sign over so "
           "small a speed that a period of {} s is too long for it ({} times what the inertia "
-          "bears), "
-          "and shakes the joint: widen `smoothing` of its friction, or shorten period_s of "
+          "bears), and shakes the joint: widen `smoothing` of its friction, or shorten period_s of "
           "[estimator]",
           name(at), significant(robot_.estimator.period_s, kDigits), significant(times, kDigits)));
     }

@@ -11,8 +11,8 @@
 namespace offnominal::desk::sil {
 
 /// Of an arm that its controller let go of by Fault::kArmNotHeld. `before`: where its brakes
-/// opened; `after`: when it was let go of. What it may be is computed from the files of both ends,
-/// and is never empty.
+/// opened; `after`: when it was let go of. What it may be is computed from the files of both ends;
+/// nothing where they do not say.
 [[nodiscard]] NotHeld not_held(const RobotDescription& robot, const Scenario& scenario,
                                const sim::JointState& before, const sim::JointState& after);
 

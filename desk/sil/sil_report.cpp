@@ -45,8 +45,7 @@ std::string why(const NotHeld& arm) {
     return fmt::format("It may be that {}", fmt::join(arm.causes, "; or that "));
   }
   return "Neither weight, torque limits, torque_rate, gains nor friction of the robot file say "
-         "why: "
-         "look at what pushes the arm, and raise kp_per_s2 and kd_per_s of [joint.control]";
+         "why: look at what pushes the arm, and raise kp_per_s2 and kd_per_s of [joint.control]";
 }
 
 // Nothing where the run ended before its last quarter.
