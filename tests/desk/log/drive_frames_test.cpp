@@ -83,7 +83,7 @@ TEST(DriveFrames, AreReadByTheProtocolOfTheRobotFile) {
     // The row in which the last one that was seen stands.
     const Eigen::Index end = log.sample_count();
     double least = 1e9;
-    for (Eigen::Index shift = 0; shift < 4; ++shift) {
+    for (Eigen::Index shift = 0; shift <= std::min<Eigen::Index>(3, end - rows); ++shift) {
       const auto q = log.q.middleRows(end - shift - rows, rows);
       const auto dq = log.dq.middleRows(end - shift - rows, rows);
       const double off = std::max((q - run.seen.q.bottomRows(rows)).cwiseAbs().maxCoeff(),
