@@ -171,7 +171,7 @@ bool Regression::has_dry_friction(const std::vector<Term>& terms, Index joint) c
   return data_.recordings[0].knows_dry_friction(joint) ||
          std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
            return !term.effect->of_motor() && term.joint == joint &&
-                  term.effect->info().traits.is_dry;
+                  term.effect->info().traits.part == FrictionPart::kDry;
          });
 }
 

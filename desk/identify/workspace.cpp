@@ -157,7 +157,8 @@ bool Workspace::knows(EffectKind kind, Index joint) const {
 
 bool Workspace::knows_dry_friction(Index joint) const {
   return std::any_of(known_effects.begin(), known_effects.end(), [&](const RobotEffect& effect) {
-    return info_of(effect.kind)->traits.is_dry && is_of_joint(rigid, effect, joint);
+    return info_of(effect.kind)->traits.part == FrictionPart::kDry &&
+           is_of_joint(rigid, effect, joint);
   });
 }
 

@@ -141,9 +141,12 @@ class Isolation {
   static Scalar payload_of(const Chain<N, Scalar>& chain) {
     Scalar mass{};
     for (const Effect<Scalar>& effect : chain.effects.view()) {
-      const bool is_mass =
-          effect.kind == EffectKind::kTipPayload || effect.kind == EffectKind::kLinkMass;
-      if (is_mass && effect.joint + 1U == chain.joints.size()) mass += effect.parameters[0];
+      if (effect.joint + 1U != chain.joints.size()) continue;
+      visit_effect(effect.kind, [&]<typename E>() {
+        if constexpr (detail::action_of<E>() == EffectAction::kPointMass) {
+          mass += effect.parameters[0];
+        }
+      });
     }
     return mass;
   }

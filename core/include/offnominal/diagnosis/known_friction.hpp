@@ -6,6 +6,7 @@
 #include <offnominal/joint_count.hpp>
 #include <offnominal/model/chain.hpp>
 #include <offnominal/model/effect_list.hpp>
+#include <offnominal/model/quantity.hpp>
 
 namespace offnominal {
 
@@ -37,12 +38,17 @@ template <int N, typename Scalar>
         continue;
       }
       const Scalar size = ratio * effect.parameters[0];
-      if (effect.kind == EffectKind::kViscousFriction) friction.viscous += ratio * size;
-      if (effect.kind == EffectKind::kStribeckFriction) friction.holding += size;
-      if (effect.kind != EffectKind::kCoulombFriction) continue;
-      friction.dry += size;
-      friction.holding += size;
-      if (ratio > 0) friction.width = std::max(friction.width, effect.parameters[1] / ratio);
+      visit_effect(effect.kind, [&]<typename E>() {
+        constexpr FrictionPart kPart = E::kTraits.part;
+        if constexpr (kPart == FrictionPart::kPerVelocity) friction.viscous += ratio * size;
+        if constexpr (kPart == FrictionPart::kAtRest) friction.holding += size;
+        if constexpr (kPart == FrictionPart::kDry) {
+          friction.dry += size;
+          friction.holding += size;
+          const Scalar smoothing = effect.parameters[kPlaceOf<E, Quantity::kVelocity>];
+          if (ratio > 0) friction.width = std::max(friction.width, smoothing / ratio);
+        }
+      });
     }
     // What a fit made less than nothing is none.
     for (Scalar* part : {&friction.dry, &friction.holding, &friction.viscous}) {

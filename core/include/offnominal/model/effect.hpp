@@ -101,13 +101,21 @@ enum class CoefficientSign : std::uint8_t {
   kPositive,  // the torque is against the motion at every instant
 };
 
+// What the first parameter of a friction is of all that its joint has.
+enum class FrictionPart : std::uint8_t {
+  kOther,        // none of these
+  kDry,          // of one level, whose shape at a reversal nobody knows
+  kAtRest,       // what a joint that stands still has above its dry friction
+  kPerVelocity,  // proportional to speed
+};
+
 // What an effect is, beside its formula.
 struct EffectTraits {
   // Takes energy out of its own joint, together with the joint's other friction. What tells two
   // directions apart is none, since no recording tells that from a constant torque; nor is what
   // another joint's motion causes.
   bool is_friction = false;
-  bool is_dry = false;           // friction of one level, whose shape at a reversal nobody knows
+  FrictionPart part = FrictionPart::kOther;
   bool acts_at_rest = false;     // where nothing moves
   bool counts_time = false;      // by the time since the run began
   bool needs_no_motion = false;  // a joint that never moves shows it

@@ -186,13 +186,17 @@ struct EffectList {
   }
 };
 
-// Which of an effect's parameters names another joint; its parameter count where none does.
-template <typename E>
-inline constexpr std::size_t kSourceParameter = [] {
+// Which of an effect's parameters is the first of that quantity; its parameter count where none is.
+template <typename E, Quantity kQuantity>
+inline constexpr std::size_t kPlaceOf = [] {
   std::size_t i = 0;
-  while (i < E::kParameters.size() && E::kParameters[i].quantity != Quantity::kJointNumber) ++i;
+  while (i < E::kParameters.size() && E::kParameters[i].quantity != kQuantity) ++i;
   return i;
 }();
+
+// Which of them names another joint.
+template <typename E>
+inline constexpr std::size_t kSourceParameter = kPlaceOf<E, Quantity::kJointNumber>;
 template <typename E>
 inline constexpr bool kHasSource = kSourceParameter<E> < E::kParameters.size();
 

@@ -34,6 +34,7 @@ struct ViscousFriction {
   static constexpr const char* kWords = "friction proportional to speed";
   static constexpr const char* kMotionHint = "move at several constant speeds";
   static constexpr EffectTraits kTraits{.is_friction = true,
+                                        .part = FrictionPart::kPerVelocity,
                                         .sign = CoefficientSign::kPositive,
                                         .follows = EffectVariable::kVelocity,
                                         .every_drive_has = true,
@@ -56,7 +57,7 @@ struct CoulombFriction {
   static constexpr const char* kWords = "dry friction, independent of speed";
   static constexpr const char* kMotionHint = "reverse often at moderate speed";
   static constexpr EffectTraits kTraits{.is_friction = true,
-                                        .is_dry = true,
+                                        .part = FrictionPart::kDry,
                                         .sign = CoefficientSign::kPositive,
                                         .follows = EffectVariable::kVelocity,
                                         .every_drive_has = true,
@@ -113,6 +114,7 @@ struct StribeckFriction {
   static constexpr const char* kMotionHint =
       "hold at least four low speeds between a third and three times the Stribeck velocity";
   static constexpr EffectTraits kTraits{.is_friction = true,
+                                        .part = FrictionPart::kAtRest,
                                         .sign = CoefficientSign::kMostlyPositive,
                                         .follows = EffectVariable::kVelocity,
                                         .passes_for_friction = true};
