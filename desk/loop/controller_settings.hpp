@@ -32,10 +32,6 @@ struct ControllerSettings {
   return std::max<hal::Microseconds>(1, std::llround(1e6 * period_s));
 }
 
-/// Of every controller here, whatever its number of joints; fewer hidden units are exactly a
-/// smaller network.
-inline constexpr int kControllerCapacity = 128;
-
 /// Of every controller here: where a monitor can be asked which fault it is, the robot file says
 /// whether it is.
 template <typename Space>

@@ -14,6 +14,7 @@
 #include "drives/drive_table.hpp"
 #include "loop/joint_program.hpp"
 #include "loop/rehearsal_timer.hpp"
+#include "robot/robot.hpp"
 
 namespace offnominal::desk {
 
@@ -21,7 +22,7 @@ template <typename Space>
 class JointProgramOf final : public JointProgram {
  public:
   using Scalar = float;
-  using Controller = controller::JointController<kRuntimeJoints, kControllerCapacity, Scalar,
+  using Controller = controller::JointController<kRuntimeJoints, kMaxHiddenUnits, Scalar,
                                                  WithMemory, Space, IsolationIn<Space>>;
 
   explicit JointProgramOf(const JointProgramSetup& setup)
@@ -62,7 +63,7 @@ class JointProgramOf final : public JointProgram {
   }
 
   template <typename ReferenceAt>
-  using Loop = realtime::ControlLoop<kRuntimeJoints, kControllerCapacity, Scalar, Bus, DrivePort,
+  using Loop = realtime::ControlLoop<kRuntimeJoints, kMaxHiddenUnits, Scalar, Bus, DrivePort,
                                      TickTimer, ReferenceAt, Space, IsolationIn<Space>>;
 
   // Joints at rest, where they can be and a frame can say it, away from the ends that its counts

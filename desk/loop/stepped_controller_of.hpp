@@ -8,13 +8,14 @@
 
 #include "drives/drive_port.hpp"
 #include "loop/stepped_controller.hpp"
+#include "robot/robot.hpp"
 
 namespace offnominal::desk {
 
 template <typename Scalar, typename Space>
 class SteppedControllerOf final : public SteppedController {
  public:
-  using Controller = controller::JointController<kRuntimeJoints, kControllerCapacity, Scalar,
+  using Controller = controller::JointController<kRuntimeJoints, kMaxHiddenUnits, Scalar,
                                                  WithMemory, Space, IsolationIn<Space>>;
   explicit SteppedControllerOf(const SteppedSetup& setup)
       : robot_(setup.robot),

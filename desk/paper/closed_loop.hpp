@@ -5,10 +5,12 @@
 #include <functional>
 #include <offnominal/control/computed_torque.hpp>
 #include <offnominal/monitor.hpp>
+#include <type_traits>
 
 #include "offnominal/sim/trajectory.hpp"
 #include "offnominal/sim/two_link_plant.hpp"
 #include "paper/run_observer.hpp"
+#include "robot/robot.hpp"
 
 namespace offnominal::desk::paper {
 
@@ -35,14 +37,16 @@ void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPla
                      const LoopTiming& timing, const DesiredAt& desired_at,
                      const TickObserver& observe);
 
-/// Calls `use` with the smallest capacity that holds `hidden_units`, which must be at most 256, as
-/// a std::integral_constant.
+inline constexpr int kPaperHiddenUnits = 35;  // section 5
+
+/// Calls `use` with the smallest capacity that holds `hidden_units`, which must be at most
+/// kMaxHiddenUnits, as a std::integral_constant.
 template <typename Use>
 void with_capacity(int hidden_units, Use&& use) {
-  if (hidden_units <= 35) return use(std::integral_constant<int, 35>{});
-  if (hidden_units <= 64) return use(std::integral_constant<int, 64>{});
-  if (hidden_units <= 128) return use(std::integral_constant<int, 128>{});
-  return use(std::integral_constant<int, 256>{});
+  if (hidden_units <= kPaperHiddenUnits) {
+    return use(std::integral_constant<int, kPaperHiddenUnits>{});
+  }
+  return use(std::integral_constant<int, kMaxHiddenUnits>{});
 }
 
 }  // namespace offnominal::desk::paper

@@ -2,9 +2,7 @@
 
 namespace offnominal::desk::paper {
 
-OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(35, double);
-OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(64, double);
-OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(128, double);
-OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(256, double);
+OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(kPaperHiddenUnits, double);
+OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(kMaxHiddenUnits, double);
 
 }  // namespace offnominal::desk::paper

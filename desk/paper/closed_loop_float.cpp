@@ -2,9 +2,7 @@
 
 namespace offnominal::desk::paper {
 
-OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(35, float);
-OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(64, float);
-OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(128, float);
-OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(256, float);
+OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(kPaperHiddenUnits, float);
+OFFNOMINAL_INSTANTIATE_CLOSED_LOOP(kMaxHiddenUnits, float);
 
 }  // namespace offnominal::desk::paper

@@ -40,11 +40,11 @@ void check_settings(const RobotDescription& robot, const Log& log) {
          .allowed = "at most " + shortest(kMaxPolePerTick),
          .mend = "lower alpha_per_s in the robot file, or take a recording with faster sampling"});
   }
-  if (robot.estimator.hidden_units > kReplayCapacity) {
+  if (robot.estimator.hidden_units > kMaxHiddenUnits) {
     throw InputError({.file = "robot " + robot.name,
                       .place = "estimator.hidden_units",
                       .found = std::to_string(robot.estimator.hidden_units),
-                      .allowed = "at most " + std::to_string(kReplayCapacity),
+                      .allowed = "at most " + std::to_string(kMaxHiddenUnits),
                       .mend = "use fewer hidden units"});
   }
 }

@@ -14,12 +14,13 @@
 #include "common/error.hpp"
 #include "replay/replay_monitor.hpp"
 #include "robot/monitor_config_of.hpp"
+#include "robot/robot.hpp"
 
 namespace offnominal::desk {
 namespace {
 
 template <typename Space>
-using ReplayMonitor = Monitor<kRuntimeJoints, kReplayCapacity, double, WithMemory, Space>;
+using ReplayMonitor = Monitor<kRuntimeJoints, kMaxHiddenUnits, double, WithMemory, Space>;
 
 void require_start(Status status, const RobotDescription& robot) {
   if (status == Status::kOk) return;

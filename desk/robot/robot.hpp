@@ -20,7 +20,8 @@
 
 namespace offnominal::desk {
 
-inline constexpr int kMaxHiddenUnits = 256;
+// Of every monitor and controller on the desk: fewer are exactly a smaller network.
+inline constexpr int kMaxHiddenUnits = 128;
 
 struct Encoder {
   double counts_per_unit = 0;  // counts per rad or m; 0: no quantisation is known

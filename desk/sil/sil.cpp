@@ -51,10 +51,6 @@ void check_fault(const sim::FaultEvent& fault, int joints, double duration_s) {
 
 void check_scenario(const RobotDescription& robot, const Scenario& scenario) {
   paper::check_run(robot, scenario, "sil");
-  if (robot.estimator.hidden_units > kControllerCapacity) {
-    refuse("hidden units", std::to_string(robot.estimator.hidden_units),
-           "1 to " + std::to_string(kControllerCapacity));
-  }
   const int joints = joint_count_of(scenario);
   if (robot.joint_count() != joints) {
     refuse("plant", std::to_string(joints) + " joint(s)",

@@ -218,7 +218,7 @@ TEST(Replay, RefusesWhatItCannotReplay) {
   robot.estimator.alpha = 2000;
   EXPECT_THAT(refusal(robot, log), HasSubstr("alpha_per_s * period = 2"));
   robot = watched_arm();
-  robot.estimator.hidden_units = kMaxHiddenUnits;
+  robot.estimator.hidden_units = kMaxHiddenUnits + 1;
   EXPECT_THAT(refusal(robot, log), HasSubstr("estimator.hidden_units"));
   robot = watched_arm();
   robot.joints[1].joint.max_position = -5;
