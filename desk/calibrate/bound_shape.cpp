@@ -10,6 +10,7 @@
 
 #include "common/nearest.hpp"
 #include "common/number.hpp"
+#include "robot/bound_names.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/monitor_config_of.hpp"
 
@@ -146,9 +147,7 @@ void add_table(BoundVariable variable, int joint, const std::vector<RecordedErro
   shape.settings.table = {variable, joint, points_over(std::move(values)), {}};
   shape.size = static_cast<int>(shape.settings.table.at.size());
   if (shape.size < 3) return;
-  const char* const names[]{"position", "speed", "torque"};
-  shape.words = fmt::format("table over {} of joint {}", names[static_cast<std::size_t>(variable)],
-                            joint + 1);
+  shape.words = fmt::format("table over {} of joint {}", names_of(variable).name, joint + 1);
   shapes.push_back(std::move(shape));
 }
 

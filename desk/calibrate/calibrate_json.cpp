@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibrate/calibrate_report.hpp"
+#include "robot/bound_names.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -15,25 +16,24 @@ ordered_json optional(const std::optional<double>& value) {
 ordered_json calibration_json(const BoundSettings& bound, const std::string& velocity_unit) {
   const bool plain = velocity_unit == "1";
   ordered_json json;
+  const char* const kind = name_of(bound.kind);
   switch (bound.kind) {
     case BoundSettings::Kind::kConstant:
-      json = {{"kind", "constant"}, {"value", bound.constant.value}};
+      json = {{"kind", kind}, {"value", bound.constant.value}};
       break;
     case BoundSettings::Kind::kScaledNorm:
-      json = {{"kind", "scaled_norm"},
+      json = {{"kind", kind},
               {"scale", bound.scaled_norm.scale},
               {"offset", bound.scaled_norm.offset},
               {"matrix", bound.scaled_norm.matrix}};
       break;
-    case BoundSettings::Kind::kTable: {
-      const char* const variables[]{"position", "speed", "torque"};
-      json = {{"kind", "table"},
-              {"variable", variables[static_cast<std::size_t>(bound.table.variable)]},
+    case BoundSettings::Kind::kTable:
+      json = {{"kind", kind},
+              {"variable", names_of(bound.table.variable).name},
               {"joint", bound.table.joint + 1},
               {"at", bound.table.at},
               {"value", bound.table.value}};
       break;
-    }
     case BoundSettings::Kind::kPerJoint:  // said joint by joint (joints_report.cpp)
       break;
   }

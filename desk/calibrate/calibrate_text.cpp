@@ -5,6 +5,7 @@
 #include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "common/text_table.hpp"
+#include "robot/bound_names.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -76,15 +77,12 @@ std::string words_of(const BoundSettings& bound, const std::string& unit) {
                           matrix_text(bound.scaled_norm.matrix), shortest(bound.scaled_norm.offset),
                           acceleration);
       break;
-    case BoundSettings::Kind::kTable: {
-      const char* const variables[]{"position", "speed", "torque"};
+    case BoundSettings::Kind::kTable:
       words =
-          fmt::format("table over {} of joint {}: {} at {}{}",
-                      variables[static_cast<std::size_t>(bound.table.variable)],
+          fmt::format("table over {} of joint {}: {} at {}{}", names_of(bound.table.variable).name,
                       bound.table.joint + 1, list_text(bound.table.value),
                       list_text(bound.table.at), acceleration.empty() ? "" : "," + acceleration);
       break;
-    }
     case BoundSettings::Kind::kPerJoint:  // said joint by joint (joints_report.cpp)
       break;
   }

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "codegen/cpp_text.hpp"
+#include "robot/bound_names.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -25,18 +26,16 @@ std::string norm_unit(const RobotDescription& robot, Quantity quantity) {
 
 std::string table_text(const UncertaintyBound<kRuntimeJoints, double>& bound,
                        const RobotDescription& robot) {
-  constexpr std::array kVariables{"kPosition", "kSpeed", "kTorque"};
-  constexpr std::array kQuantities{Quantity::kPosition, Quantity::kVelocity, Quantity::kEffort};
-  const auto variable = static_cast<std::size_t>(bound.variable);
+  const BoundVariableName& variable = names_of(bound.variable);
   const JointType type = robot.joints[bound.joint].joint.type;
   const auto in_use = [&](const auto& values) {
     return cpp_text::numbers(std::span<const double>(values.data(), bound.points));
   };
   std::string text =
-      member("variable", fmt::format("offnominal::BoundVariable::{}", kVariables.at(variable)));
+      member("variable", fmt::format("offnominal::BoundVariable::{}", variable.enumerator));
   text += member("joint", std::to_string(bound.joint), "from 0");
   text += member("points", std::to_string(bound.points));
-  text += member("at", in_use(bound.at), unit_of(kQuantities.at(variable), type));
+  text += member("at", in_use(bound.at), unit_of(variable.quantity, type));
   return text + member("value", in_use(bound.value), "mu_bar");
 }
 

@@ -9,6 +9,7 @@
 
 #include "common/nearest.hpp"
 #include "common/number.hpp"
+#include "robot/bound_names.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -81,8 +82,10 @@ void refuse_keys_other_than(const TomlTable& table, const std::vector<std::strin
 
 TableBoundSettings read_table_bound(const TomlTable& table, int joint_count) {
   TableBoundSettings bound;
-  const std::size_t variable = table.choice("variable", {"position", "speed", "torque"});
-  bound.variable = static_cast<BoundVariable>(variable);
+  std::vector<std::string> variables;
+  for (const BoundVariableName& variable : kBoundVariableNames)
+    variables.emplace_back(variable.name);
+  bound.variable = static_cast<BoundVariable>(table.choice("variable", variables));
   bound.joint = static_cast<int>(table.integer("joint", 1, joint_count)) - 1;
   bound.at = table.numbers("at", physical(any_number("")), 1, kMaxTablePoints);
   require_rising(table, bound.at);
@@ -95,7 +98,7 @@ TableBoundSettings read_table_bound(const TomlTable& table, int joint_count) {
 // (robot_file.cpp).
 BoundSettings::Kind read_kind(const TomlTable& table, EstimatorSpace space) {
   using Kind = BoundSettings::Kind;
-  static const std::vector<std::string> kKinds{"constant", "scaled_norm", "table", "per_joint"};
+  static const std::vector<std::string> kKinds(kBoundKindNames.begin(), kBoundKindNames.end());
   const std::string found = table.text_or_empty("kind");
   for (std::size_t i = 0; i < kKinds.size(); ++i) {
     if (found == kKinds[i]) return static_cast<Kind>(i);

@@ -7,6 +7,7 @@
 #include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "drives/drive_table.hpp"
+#include "robot/bound_names.hpp"
 #include "robot/bound_text.hpp"
 #include "robot/channel_text.hpp"
 #include "robot/channels.hpp"
@@ -175,26 +176,22 @@ void write_arming(Writer& out, const ArmingSettings& settings) {
 
 void write_bound(Writer& out, const BoundSettings& bound) {
   out.line("[uncertainty_bound]");
+  if (bound.kind != BoundSettings::Kind::kPerJoint) out.value("kind", quoted(name_of(bound.kind)));
   switch (bound.kind) {
     case BoundSettings::Kind::kConstant:
-      out.value("kind", quoted("constant"));
       out.value("value", shortest_real(bound.constant.value));
       break;
     case BoundSettings::Kind::kScaledNorm:
-      out.value("kind", quoted("scaled_norm"));
       out.value("scale", shortest_real(bound.scaled_norm.scale));
       out.value("offset", shortest_real(bound.scaled_norm.offset));
       out.value("matrix", rows(bound.scaled_norm.matrix));
       break;
-    case BoundSettings::Kind::kTable: {
-      const char* const variables[]{"position", "speed", "torque"};
-      out.value("kind", quoted("table"));
-      out.value("variable", quoted(variables[static_cast<std::size_t>(bound.table.variable)]));
+    case BoundSettings::Kind::kTable:
+      out.value("variable", quoted(names_of(bound.table.variable).name));
       out.value("joint", std::to_string(bound.table.joint + 1));
       out.value("at", list(bound.table.at));
       out.value("value", list(bound.table.value));
       break;
-    }
     case BoundSettings::Kind::kPerJoint:
       out.line(joint_bounds_text(bound.joints));
       break;
