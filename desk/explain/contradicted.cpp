@@ -19,6 +19,8 @@ constexpr double kShifted = 0.2;  // of the smaller of both numbers
 // A poor motion puts a part of another effect into a number.
 constexpr double kShiftedIfPoor = 0.5;
 constexpr double kMatters = 0.02;  // of the joint's rms torque
+// So much of it that the number is to be mended however near it is.
+constexpr double kMattersAnyway = 0.05;
 // What is left beside a number and is no noise is of something else, that bends the number as well.
 constexpr double kOfWhatIsLeft = 2;  // of its energy
 
@@ -41,7 +43,9 @@ std::vector<Shift> far_off(const Data& data, const RobotDescription& robot, cons
         std::abs(by) * data.layout.rms(data.nuisance.columns.col(column))[term.joint];
     const double smaller = std::min(std::abs(file), std::abs(file + by));
     const double shifted = motion.is_poor() ? kShiftedIfPoor : kShifted;
-    if (!(std::abs(by) > shifted * smaller) || !(rms > kMatters * torque[term.joint])) continue;
+    const bool far = std::abs(by) > shifted * smaller && rms > kMatters * torque[term.joint];
+    const bool large = !motion.is_poor() && rms > kMattersAnyway * torque[term.joint];
+    if (!far && !large) continue;
     shifts.push_back({term.joint, term.effect, term.parameter, term.name,
                       file != 0 ? by / file : 1.0, file, file + by,
                       offnominal::unit_of(info_of(effect.kind)->parameters[term.parameter].quantity,
