@@ -44,30 +44,45 @@ void describe_joints(const SearchResult& from, Explanation& to) {
   }
 }
 
+// Which joint's error says most of it, relative to that joint's torque.
+Index seen_on(const EffectAt& what, const VectorXd& without, const VectorXd& with,
+              const VectorXd& torque) {
+  Index joint = what.joint;
+  const auto gain = [&](Index of) {
+    return torque[of] > 0 ? (without[of] - with[of]) / torque[of] : 0;
+  };
+  for (Index other = 0; other < torque.size(); ++other) {
+    if (shows_on(what, other) && gain(other) > gain(joint)) joint = other;
+  }
+  return joint;
+}
+
 void describe_findings(const SearchResult& from, Explanation& to) {
   const Data& data = from.regression.data();
   if (from.found.accepted.empty()) return;
   const VectorXd simulated_after = simulated_position_error(data, from.found.fit.residual);
   const VectorXd held_after = from.hold_out.rms(from.found.held_out_after);
+  const VectorXd torque = data.layout.rms(data.torque);
   std::vector<Finding> findings(from.found.accepted.size());
   parallel_for(findings.size(), from.search.options().threads, [&](std::size_t i) {
     const Accepted& accepted = from.found.accepted[i];
     const EffectCandidate& effect = *accepted.term.effect;
-    const Index joint = accepted.term.joint;
     const std::vector<Term> without = from.found.terms_without(i);
     const ModelFit fit = from.regression.fit(without);
     Finding& finding = findings[i];
-    finding.what = {effect.kind(), joint};
+    finding.what = {effect.kind(), accepted.term.joint};
     finding.words = effect.info().words;
     if (!accepted.stands_for.empty()) finding.words += "; " + accepted.stands_for;
     finding.formula = effect.info().formula;
     finding.parameters = from.sizes.numbers[i];
     finding.p_value = accepted.p;
     finding.p_replay = accepted.p_replay;
-    finding.holdout_before = from.hold_out.rms(from.hold_out.residual(without, fit))[joint];
-    finding.holdout_after = held_after[joint];
-    finding.simulated_before = simulated_position_error(data, fit.residual)[joint];
-    finding.simulated_after = simulated_after[joint];
+    const VectorXd held_before = from.hold_out.rms(from.hold_out.residual(without, fit));
+    finding.seen_on = seen_on(finding.what, held_before, held_after, torque);
+    finding.holdout_before = held_before[finding.seen_on];
+    finding.holdout_after = held_after[finding.seen_on];
+    finding.simulated_before = simulated_position_error(data, fit.residual)[finding.seen_on];
+    finding.simulated_after = simulated_after[finding.seen_on];
   });
   to.found = std::move(findings);
 }

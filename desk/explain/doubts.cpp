@@ -14,6 +14,39 @@ namespace {
 // Share of the error that is gone; NaN where there was none.
 double fall_of(const HeldOutSquares& joint) { return 1 - std::sqrt(joint.after / joint.before); }
 
+bool falls(const HeldOutSquares& joint) {
+  return rises(std::sqrt(joint.after), std::sqrt(joint.before), std::sqrt(joint.torque));
+}
+
+// Something of that joint's own has changed. What it carries is another matter: others may show it.
+bool is_changed_itself(const Explanation& e, Eigen::Index joint) {
+  return std::any_of(e.found.begin(), e.found.end(),
+                     [&](const Finding& one) {
+                       return one.what.joint == joint &&
+                              info_of(one.what.kind)->action != EffectAction::kPointMass;
+                     }) ||
+         std::any_of(e.shifts.begin(), e.shifts.end(),
+                     [&](const Shift& one) { return one.joint == joint; });
+}
+
+// Of masses that no joint gains by.
+void add_doubts_of_masses(const Explanation& e, const std::vector<HeldOutSquares>& joints,
+                          std::vector<std::string>& doubts) {
+  for (const Finding& one : e.found) {
+    if (info_of(one.what.kind)->action != EffectAction::kPointMass) continue;
+    bool gains = false;
+    for (std::size_t joint = 0; joint < joints.size(); ++joint) {
+      gains =
+          gains || (shows_on(one.what, static_cast<Eigen::Index>(joint)) && falls(joints[joint]));
+    }
+    if (gains) continue;
+    doubts.push_back(fmt::format(
+        "on data not used for the fit the error of no joint that carries {} of joint {} "
+        "falls: these data do not support what was found",
+        one.what.name(), one.what.joint + 1));
+  }
+}
+
 }  // namespace
 
 std::vector<HeldOutSquares> held_out_squares(const Explanation& e) {
@@ -35,13 +68,7 @@ std::vector<std::string> doubts_of(const Explanation& e,
   std::vector<std::string> doubts;
   for (std::size_t joint = 0; joint < joints.size(); ++joint) {
     const HeldOutSquares& squares = joints[joint];
-    const auto of_joint = [joint](Eigen::Index one) {
-      return one == static_cast<Eigen::Index>(joint);
-    };
-    const bool asked = std::any_of(e.found.begin(), e.found.end(),
-                                   [&](const Finding& one) { return of_joint(one.what.joint); }) ||
-                       std::any_of(e.shifts.begin(), e.shifts.end(),
-                                   [&](const Shift& one) { return of_joint(one.joint); });
+    const bool asked = is_changed_itself(e, static_cast<Eigen::Index>(joint));
     if (!is_doubted(squares, asked)) continue;
     if (!(squares.before > 0)) {
       doubts.push_back(fmt::format(
@@ -53,6 +80,7 @@ std::vector<std::string> doubts_of(const Explanation& e,
         "data do not support what was found",
         joint + 1, asked ? "does not fall but rises" : "rises", -100 * fall_of(squares)));
   }
+  add_doubts_of_masses(e, joints, doubts);
   return doubts;
 }
 

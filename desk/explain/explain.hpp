@@ -49,14 +49,19 @@ std::string name_seen_from(Eigen::Index joint, const EffectAt& one);
 bool holds(const std::vector<EffectAt>& effects, const EffectAt& one);
 bool holds_in_any(const std::vector<std::vector<EffectAt>>& classes, const EffectAt& one);
 
+// A mass shows on every joint that carries it: on its own not where it hangs in that joint's axis.
+bool shows_on(const EffectAt& one, Eigen::Index joint);
+
 struct Finding {
   EffectAt what;
+  // Whose error says most of it: its own joint, or of a mass one that carries it.
+  Eigen::Index seen_on = 0;
   std::string words;
   std::string formula;  // of its torque, in its parameters
   std::vector<Estimate> parameters;
   double p_value = 1;   // of the whole search, wild block bootstrap
   double p_replay = 1;  // by playing the model without the effect, 1 where not asked for
-  // Of the regression with all else that was found, rms torque error of its joint without and with
+  // Of the regression with all else that was found, rms torque error of `seen_on` without and with
   // it, N m or N: beside what is each recording's own, which no file has (JointErrors).
   double holdout_before = 0;
   double holdout_after = 0;

@@ -35,6 +35,7 @@ ordered_json json_of(const Finding& finding) {
   json["parameters"] = parameters_of(finding.parameters);
   json["p_value"] = finding.p_value;
   json["p_value_replay"] = finding.p_replay;
+  json["holdout_error_of_joint"] = finding.seen_on + 1;
   json["holdout_error_before"] = finding.holdout_before;
   json["holdout_error_after"] = finding.holdout_after;
   json["simulated_position_error_before"] = finding.simulated_before;

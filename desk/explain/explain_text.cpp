@@ -63,9 +63,12 @@ std::string text_of_findings(const Explanation& e) {
     text += "   torque: " + finding.formula + "\n";
     for (const Estimate& one : finding.parameters) text += "   " + words_of(one) + "\n";
     text += fmt::format(
-        "   beside all else takes {:.0f} % off the joint's error on held-out data; p = {:.2g} over "
+        "   beside all else takes {:.0f} % off {} error on held-out data; p = {:.2g} over "
         "the whole search{}\n",
-        100 * finding.takes_of_held_out(), finding.p_value,
+        100 * finding.takes_of_held_out(),
+        finding.seen_on == finding.what.joint ? "the joint's"
+                                              : fmt::format("joint {}'s", finding.seen_on + 1),
+        finding.p_value,
         finding.p_replay < 1 ? ", and replays of the model without it do not come as far" : "");
   }
   for (const auto& same : e.ambiguous) {

@@ -202,12 +202,15 @@ bool is_all_written(const Explanation& e, Eigen::Index joint) {
 }
 
 // By how much the robot file that is written predicts a joint better, as the table has it.
-std::string words_of_held_out(const Explanation& e, const JointErrors& errors) {
+std::string words_of_held_out(const Explanation& e, const Finding& finding) {
+  const JointErrors& errors = errors_of(e, finding.seen_on);
   const double after =
-      is_all_written(e, errors.joint) ? errors.holdout_after : errors.holdout_fitted;
+      is_all_written(e, finding.what.joint) ? errors.holdout_after : errors.holdout_fitted;
   if (!(errors.holdout_before > 0)) return "";
   const double fall = 1 - after / errors.holdout_before;
-  return fmt::format(": the error on held-out data of that joint {} by {:.0f} %",
+  const std::string joint =
+      finding.seen_on == finding.what.joint ? "that joint" : at_joint(finding.seen_on);
+  return fmt::format(": the error on held-out data of {} {} by {:.0f} %", joint,
                      fall < 0 ? "rises" : "falls", 100 * std::abs(fall));
 }
 
@@ -219,7 +222,7 @@ void judge_found(Explanation& e) {
   const Finding& first = e.found.front();
   e.words = fmt::format("{} {} ({}){}.",
                         shift ? "Another value of a known quantity:" : "Missing:", words_of(first),
-                        first.words, words_of_held_out(e, errors_of(e, first.what.joint)));
+                        first.words, words_of_held_out(e, first));
   if (e.found.size() == 1) return;
   std::vector<std::string> others;
   std::transform(e.found.begin() + 1, e.found.end(), std::back_inserter(others),
@@ -345,6 +348,11 @@ std::string name_seen_from(Eigen::Index joint, const EffectAt& one) {
                             : fmt::format("{} of {}", one.name(), at_joint(one.joint));
 }
 
+bool shows_on(const EffectAt& one, Eigen::Index joint) {
+  const bool is_mass = info_of(one.kind)->action == EffectAction::kPointMass;
+  return one.joint == joint || (is_mass && joint < one.joint);
+}
+
 bool holds(const std::vector<EffectAt>& effects, const EffectAt& one) {
   return std::find(effects.begin(), effects.end(), one) != effects.end();
 }
@@ -380,6 +388,11 @@ std::string words_of_gain(const JointErrors& errors, bool is_in_the_file) {
   const double before = 100 * errors.rms_before / errors.rms_torque;
   const double left = is_in_the_file ? errors.rms_improved : errors.rms_after;
   const double after = 100 * left / errors.rms_torque;
+  constexpr double kSame = 0.02;
+  if (std::abs(left - errors.rms_before) <= kSame * errors.rms_before) {
+    return fmt::format(" Its own error is {:.3g} {} with it and without, {} % of the torque.", left,
+                       errors.unit, significant(after, 2));
+  }
   const bool falls = left <= errors.rms_before;
   const char* goes = is_in_the_file ? (falls ? "falls" : "rises")
                      : falls        ? "would fall"
@@ -454,7 +467,16 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
     answer.words =
         "masses, centres of mass or inertias of the links." + words_of_gain(errors, true);
   } else {
-    answer.words = "no known effect is missing.";
+    std::vector<EffectAt> carried;
+    for (const Finding& one : e.found) {
+      if (shows_on(one.what, errors.joint)) carried.push_back(one.what);
+    }
+    const bool gains =
+        !carried.empty() && rises(errors.rms_improved, errors.rms_before, errors.rms_torque);
+    answer.words = gains ? fmt::format("nothing is missing but {}.",
+                                       fmt::join(names_of(carried, errors.joint), ", ")) +
+                               words_of_gain(errors, true)
+                         : "no known effect is missing.";
   }
   if (const auto changes = changes_on(e, errors.joint); !changes.empty()) {
     const bool alone = answer.verdict == Verdict::kExplained;

@@ -43,6 +43,7 @@ ordered_json card_of(const Finding& finding, const Explanation& explanation) {
   for (const Estimate& one : finding.parameters) card["parameters"].push_back(json_of(one));
   card["p_value"] = finding.p_value;
   card["takes_of_held_out"] = finding.takes_of_held_out();
+  card["seen_on"] = finding.seen_on + 1;
   card["unit"] = "";
   for (const JointErrors& errors : explanation.joints) {
     if (errors.joint == finding.what.joint) card["unit"] = errors.unit;

@@ -24,6 +24,7 @@ function findingCard(card, id, state, actions) {
   const head = element("div", { class: "step-head" }, element("h4", {}, effectTitle(card.title)));
   head.append(addButton(card, `add-${id}`, isAdded(state, card), actions));
   const share = formatNumber(100 * card.takes_of_held_out, ".0f");
+  const whose = card.seen_on === card.joint ? "the joint's" : `joint ${card.seen_on}'s`;
   root.append(
     head,
     element("p", {}, `${card.words}. Its torque: `, element("code", {}, card.formula)),
@@ -31,7 +32,7 @@ function findingCard(card, id, state, actions) {
     element(
       "p",
       {},
-      `It takes ${share} % off the joint's error on held-out data. ${chanceWords(card.p_value)}`,
+      `It takes ${share} % off ${whose} error on held-out data. ${chanceWords(card.p_value)}`,
     ),
   );
   if (card.alternatives.length > 0) {

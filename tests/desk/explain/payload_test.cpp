@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "explain/doubts.hpp"
 #include "explain/explain.hpp"
 #include "identify/regression.hpp"
 #include "serial_arm.hpp"
@@ -16,9 +17,12 @@ namespace offnominal::desk {
 namespace {
 
 using Eigen::Index;
+using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
+using ::testing::SizeIs;
 
 constexpr int kJoints = 5;
 
@@ -74,6 +78,26 @@ TEST(Payload, BesideTheAxisOfTheLastLinkIsNamedWithItsMassAndPlace) {
   for (const auto& same : told.ambiguous) {
     EXPECT_FALSE(same.size() > 2) << "a heavier last link at most comes as near: " << told.words;
   }
+}
+
+// Its own joint does not feel it: the joints that carry it say whether it is there.
+TEST(Payload, InTheAxisOfTheLastLinkIsSeenOnTheJointsThatCarryIt) {
+  const RobotDescription file = test::serial_arm(kJoints);
+  RobotDescription real = file;
+  const auto& axis = file.joints.back().joint.axis;
+  real.effects.push_back(test::effect_of(EffectKind::kTipPayload, kJoints - 1,
+                                         {1.5, 0.15 * axis[0], 0.15 * axis[1], 0.15 * axis[2]}));
+  const Explanation told = explained(file, real, 5);
+  ASSERT_THAT(told.found, SizeIs(1)) << told.words;
+  const Finding& payload = told.found.front();
+  EXPECT_EQ(payload.what, (EffectAt{EffectKind::kTipPayload, kJoints - 1})) << told.words;
+  EXPECT_NEAR(number(payload, "mass"), 1.5, 0.1);
+  EXPECT_LT(payload.seen_on, kJoints - 1);
+  EXPECT_GT(payload.takes_of_held_out(), 0.8);
+  EXPECT_THAT(told.words, AllOf(HasSubstr("the error on held-out data of joint " +
+                                          std::to_string(payload.seen_on + 1) + " falls by"),
+                                Not(HasSubstr("falls by 0 %"))));
+  EXPECT_THAT(doubts_of(told), IsEmpty());
 }
 
 // A payload at the centre of mass is nothing else: the simpler name is the right one.
