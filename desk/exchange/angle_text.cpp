@@ -1,10 +1,11 @@
 #include "exchange/angle_text.hpp"
 
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numbers>
 #include <string>
+
+#include "common/small_letters.hpp"
 
 namespace offnominal::desk::exchange {
 namespace {
@@ -39,9 +40,7 @@ std::optional<double> take_divisor(std::string_view& text) {
 std::optional<double> share_of_pi(std::string_view text) {
   std::string small;
   for (const char c : text) {
-    if (c != ' ' && c != '\t') {
-      small += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
+    if (c != ' ' && c != '\t') small += in_small_letter(c);
   }
   std::string_view rest = small;
   const double sign = take(rest, "-") ? -1 : 1;

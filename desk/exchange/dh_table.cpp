@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -15,6 +14,7 @@
 #include "common/input_name.hpp"
 #include "common/nearest.hpp"
 #include "common/number.hpp"
+#include "common/small_letters.hpp"
 #include "common/toml_table.hpp"
 #include "exchange/angle_text.hpp"
 #include "log/csv_log.hpp"
@@ -136,12 +136,6 @@ DhConvention settled(const std::filesystem::path& path, std::optional<DhConventi
          choice_of(kConventions),
          "add --convention modified where joint i turns about z of frame i (Craig), --convention "
          "standard where about z of frame i-1");
-}
-
-std::string in_small_letters(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 // Many tables write a, alpha, d, theta, and do not say in what.

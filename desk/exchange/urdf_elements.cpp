@@ -18,6 +18,7 @@
 #include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "common/shell_word.hpp"
+#include "common/small_letters.hpp"
 #include "common/toml_table.hpp"
 #include "exchange/xml_encoding.hpp"
 #include "robot/geometry.hpp"
@@ -182,10 +183,9 @@ class Reader {
     if (error.starts_with("XML_ERROR_")) error = error.substr(10);
     if (error.starts_with("XML_")) error = error.substr(4);
     std::replace(error.begin(), error.end(), '_', ' ');
-    std::transform(error.begin(), error.end(), error.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    refuse(document_.ErrorLineNum(), "", fmt::format("XML that is not well formed ({})", error),
-           kAllowed, "close every element and quote every attribute there");
+    refuse(document_.ErrorLineNum(), "",
+           fmt::format("XML that is not well formed ({})", in_small_letters(error)), kAllowed,
+           "close every element and quote every attribute there");
   }
 
   const XMLElement& root() const {

@@ -14,6 +14,7 @@
 
 #include "common/encoding.hpp"
 #include "common/error.hpp"
+#include "common/small_letters.hpp"
 #include "log/csv_layout.hpp"
 #include "log/csv_line.hpp"
 #include "log/date_time.hpp"
@@ -51,11 +52,6 @@ bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 bool has_small_letter(const std::string& text) {
   return std::any_of(text.begin(), text.end(), [](char c) { return c >= 'a' && c <= 'z'; });
-}
-
-std::string in_small_letters(std::string text) {
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
 }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 #include <utility>
 
+#include "common/small_letters.hpp"
 #include "robot/units.hpp"
 
 namespace offnominal::desk {
@@ -167,9 +167,7 @@ std::vector<Family> families_by_name(const std::vector<NamedColumn>& columns) {
         const std::size_t end_at = words[end - 1].end;
         const std::string pattern =
             column.name.substr(0, begin_at) + "*" + column.name.substr(end_at);
-        std::string joint = column.name.substr(begin_at, end_at - begin_at);
-        std::transform(joint.begin(), joint.end(), joint.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        std::string joint = in_small_letters(column.name.substr(begin_at, end_at - begin_at));
         family_in(families, pattern, guess)
             .members.push_back({guess.number, std::move(joint), column.name, column.is_constant});
       }

@@ -6,15 +6,15 @@
 #include <string_view>
 #include <utility>
 
+#include "common/small_letters.hpp"
 #include "log/column_values.hpp"
 #include "robot/units.hpp"
 
 namespace offnominal::desk {
 namespace {
 
-char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) { return small(c) >= 'a' && small(c) <= 'z'; }
+bool is_letter(char c) { return in_small_letter(c) >= 'a' && in_small_letter(c) <= 'z'; }
 
 using Words = std::vector<std::string>;
 
@@ -183,11 +183,6 @@ const UnitEnding* unit_ending_of(const std::string& name) {
   return found == kEndings.end() ? nullptr : found;
 }
 
-std::string in_small_letters(std::string text) {
-  for (char& c : text) c = small(c);
-  return text;
-}
-
 // A unit at the name's end: behind an underscore, or in brackets.
 std::string unit_of(const std::string& name) {
   std::string text = name;
@@ -236,7 +231,7 @@ std::vector<NameWord> words_in(const std::string& name) {
                         (is_capital && before >= 'a' && before <= 'z');
     if (is_digit(c) || is_letter(c)) {
       if (begins) words.push_back({"", i, i});
-      words.back().text += small(c);
+      words.back().text += in_small_letter(c);
       words.back().end = i + 1;
     }
     before = c;
