@@ -9,6 +9,7 @@
 
 #include "explain/doctor_checks.hpp"
 #include "robot/channel_text.hpp"
+#include "robot/units.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -110,7 +111,7 @@ namespace {
 
 // The unit that the time is in where it is not s.
 struct TimeUnit {
-  const Unit* unit;
+  Unit unit;
   bool certain;  // by velocities, or by torques
 };
 
@@ -123,13 +124,11 @@ bool is_multiple_of(double period_s, double wanted_s, double per_si) {
 constexpr double kShortestPeriodS = 2e-5;
 constexpr double kLongestPeriodS = 0.2;
 
-// A minute, an hour or a day, which every velocity that was measured shows closely: rad/s beside
-// degrees is 5 % off a minute. Null: none, or the torques follow from s.
-const Unit* long_unit_of_time(const Log& log, const RobotDescription& robot) {
-  constexpr double kClosely = 1.02;
-  static constexpr std::array kUnits{Unit{1.0 / 60, "min"}, Unit{1.0 / 3600, "h"},
-                                     Unit{1.0 / 86400, "d"}};
-  for (const Unit& unit : kUnits) {
+// A minute, an hour or a day, which every velocity that was measured shows. None: no such unit, or
+// the torques follow from s.
+std::optional<Unit> long_unit_of_time(const Log& log, const RobotDescription& robot) {
+  for (const char* name : kLongTimeUnits) {
+    const Unit unit{1 / unit_factor(name), name};
     const double period_s = log.period_s / unit.per_si;
     if (period_s < kShortestPeriodS || period_s > kLongestPeriodS) continue;
     Index told = 0;
@@ -138,19 +137,20 @@ const Unit* long_unit_of_time(const Log& log, const RobotDescription& robot) {
       const auto ratio = velocity_ratio(log, joint);
       if (!ratio) continue;
       ++told;
-      if (*ratio > 0 && distance(*ratio, unit.per_si) < std::log(kClosely)) ++alike;
+      if (shows_long_time_unit(*ratio, name)) ++alike;
     }
     if (told == 0 || alike < told) continue;
-    return time_by_torque(log, robot, unit.per_si) == TimeByTorque::kSeconds ? nullptr : &unit;
+    if (time_by_torque(log, robot, unit.per_si) == TimeByTorque::kSeconds) return std::nullopt;
+    return unit;
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 // By the velocities where they are measured, else by a period that hardly any recording has, or
 // that is the robot file's but for the unit. A slow recording may have either: then the torque
 // tells, or nothing does. None: it is s.
 std::optional<TimeUnit> unit_of_time(const Log& log, const RobotDescription& robot) {
-  if (const Unit* const unit = long_unit_of_time(log, robot)) return TimeUnit{unit, true};
+  if (const auto unit = long_unit_of_time(log, robot)) return TimeUnit{*unit, true};
   static constexpr std::array kUnits{Unit{1e3, "ms"}, Unit{1e6, "us"}, Unit{1e9, "ns"}};
   bool told = false;      // by a velocity
   bool as_it_is = false;  // a velocity is the derivative, to the unit
@@ -184,14 +184,14 @@ std::optional<TimeUnit> unit_of_time(const Log& log, const RobotDescription& rob
     }
   }
   if (best == nullptr) return std::nullopt;
-  if (told) return TimeUnit{best, true};
+  if (told) return TimeUnit{*best, true};
   switch (time_by_torque(log, robot, best->per_si)) {
     case TimeByTorque::kSeconds:
       return std::nullopt;
     case TimeByTorque::kUnit:
-      return TimeUnit{best, true};
+      return TimeUnit{*best, true};
     default:
-      return TimeUnit{best, false};
+      return TimeUnit{*best, false};
   }
 }
 
@@ -200,14 +200,14 @@ std::optional<TimeUnit> unit_of_time(const Log& log, const RobotDescription& rob
 void mend_time(Log& log, const RobotDescription& robot, std::vector<DataFault>& faults) {
   const auto found = unit_of_time(log, robot);
   if (!found) return;
-  const Unit* const unit = found->unit;
+  const Unit& unit = found->unit;
   DataFault fault;
   fault.kind = DataFaultKind::kTimeUnit;
-  fault.size = unit->per_si;
+  fault.size = unit.per_si;
   fault.words = fmt::format(
       "the time {} in {}: taken for s, there is a sample every {:.4g} s, where the robot file's "
       "period_s is {:.4g}",
-      found->certain ? "is" : "may be", unit->name, log.period_s, robot.estimator.period_s);
+      found->certain ? "is" : "may be", unit.name, log.period_s, robot.estimator.period_s);
   fault.certain = found->certain;
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
     const auto ratio = velocity_ratio(log, joint);
@@ -219,17 +219,17 @@ void mend_time(Log& log, const RobotDescription& robot, std::vector<DataFault>& 
   }
   fault.mend = "log seconds, or scale the time";
   ChannelMap mended = log.channels;
-  mended.time.scale /= unit->per_si;
+  mended.time.scale /= unit.per_si;
   propose_channels(log, mended, {"time"}, fault);
   faults.push_back(std::move(fault));
   if (!found->certain) return;
   log.channels = std::move(mended);
-  log.t_s /= unit->per_si;
-  log.stamps_s /= unit->per_si;
-  change_recorded(log, [&](RecordedRows& rows) { rows.t_s /= unit->per_si; });
-  log.period_s /= unit->per_si;
+  log.t_s /= unit.per_si;
+  log.stamps_s /= unit.per_si;
+  change_recorded(log, [&](RecordedRows& rows) { rows.t_s /= unit.per_si; });
+  log.period_s /= unit.per_si;
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
-    if (log.dq_derived[static_cast<std::size_t>(joint)]) log.dq.col(joint) *= unit->per_si;
+    if (log.dq_derived[static_cast<std::size_t>(joint)]) log.dq.col(joint) *= unit.per_si;
   }
 }
 

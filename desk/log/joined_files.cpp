@@ -186,7 +186,7 @@ const char* unit_by_length(const FileTime& time, const FileTime& other) {
   const double ratio = length_of(time) / length_of(other);
   const double of_steps =
       ratio * static_cast<double>(other.t_s.size() - 1) / static_cast<double>(time.t_s.size() - 1);
-  for (const char* unit : {"ms", "us", "ns"}) {
+  for (const char* unit : kShortTimeUnits) {
     const double wanted = 1 / unit_factor(unit);
     if (is_near(ratio, wanted, kNear) && is_near(of_steps, wanted, kNearSteps)) return unit;
   }

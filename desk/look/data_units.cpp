@@ -114,7 +114,7 @@ class UnitsFromData {
   }
 
   bool take_time_unit(double ratio, const std::string& is) {
-    for (const char* unit : {"ms", "us", "ns"}) {
+    for (const char* unit : kShortTimeUnits) {
       if (!is_near(ratio * unit_factor(unit), 1) || map_.period_s > 0 || !map_.time.unit.empty() ||
           look_.sampling->median_period_s < kLongestPeriodS) {
         continue;
@@ -129,17 +129,14 @@ class UnitsFromData {
     return false;
   }
 
-  // A minute, an hour or a day, which every velocity shows; a minute closely, since rad/s beside
-  // degrees is 5 % off.
+  // A minute, an hour or a day, which every velocity shows.
   void take_long_time_unit() {
-    constexpr double kClosely = 1.02;
     if (map_.period_s > 0 || !map_.time.unit.empty() || map_.time.scale != 1) return;
     const std::vector<double> ratios = small_velocity_ratios();
-    for (const char* unit : {"min", "h", "d"}) {
+    for (const char* unit : kLongTimeUnits) {
       const double seconds = unit_factor(unit);
-      const bool all = std::all_of(ratios.begin(), ratios.end(), [&](double ratio) {
-        return ratio > 0 && std::abs(std::log(ratio * seconds)) < std::log(kClosely);
-      });
+      const bool all = std::all_of(ratios.begin(), ratios.end(),
+                                   [&](double ratio) { return shows_long_time_unit(ratio, unit); });
       if (!all || ratios.empty() || look_.sampling->median_period_s * seconds > kLongestPeriodS) {
         continue;
       }

@@ -78,7 +78,7 @@ FileTime looked_time(NamedColumns& columns, Channel& channel, double period_s,
   const auto origin = columns.origins.find(channel.source);
   const bool is_date = origin != columns.origins.end() && origin->second.is_date;
   const double first = origin == columns.origins.end() ? found->second[0] : origin->second.value;
-  for (const char* unit : {"ms", "us", "ns"}) {
+  for (const char* unit : kShortTimeUnits) {
     const double seconds = first * unit_factor(unit);
     // From 2001 to 2065, as time_of() tells it.
     if (is_date || !channel.unit.empty() || !(seconds >= 1e9 && seconds < 3e9)) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <string>
 
@@ -170,6 +171,11 @@ const SourceUnit* find_unit(std::string_view name) {
 double unit_factor(std::string_view name) {
   const SourceUnit* unit = find_unit(name);
   return unit == nullptr ? 1 : unit->factor;
+}
+
+bool shows_long_time_unit(double ratio, const char* unit) {
+  constexpr double kClosely = 1.02;
+  return ratio > 0 && std::abs(std::log(ratio * unit_factor(unit))) < std::log(kClosely);
 }
 
 }  // namespace offnominal::desk

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -51,5 +52,14 @@ enum class ChannelQuantity : std::uint8_t {
 
 /// Its factor; 1 for a unit that is not known, and for none.
 [[nodiscard]] double unit_factor(std::string_view name);
+
+/// Units that a time may be in where s was said or taken for them, the one nearest to s first.
+inline constexpr std::array<const char*, 3> kShortTimeUnits{"ms", "us", "ns"};
+inline constexpr std::array<const char*, 3> kLongTimeUnits{"min", "h", "d"};
+
+/// Whether a velocity that is `ratio` times the derivative of its position, the time taken for s,
+/// shows that the time is in `unit`, a long one: closely, since rad/s beside degrees is 5 % off a
+/// minute.
+[[nodiscard]] bool shows_long_time_unit(double ratio, const char* unit);
 
 }  // namespace offnominal::desk
