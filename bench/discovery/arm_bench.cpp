@@ -11,7 +11,7 @@
 
 #include "arm_outcome.hpp"
 #include "arm_summary.hpp"
-#include "identify/parallel.hpp"
+#include "common/parallel.hpp"
 
 namespace offnominal::bench {
 

@@ -14,7 +14,7 @@
 
 #include "arm_bench.hpp"
 #include "case_groups.hpp"
-#include "identify/parallel.hpp"
+#include "common/parallel.hpp"
 #include "outcome.hpp"
 #include "scale.hpp"
 #include "tables.hpp"

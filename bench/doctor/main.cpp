@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "common/parallel.hpp"
 #include "doctor_case.hpp"
-#include "identify/parallel.hpp"
 
 namespace offnominal::bench {
 namespace {

@@ -1,41 +1,14 @@
 #include "campaign/run_campaign.hpp"
 
-#include <algorithm>
-#include <atomic>
-#include <exception>
 #include <limits>
 #include <mutex>
-#include <thread>
 #include <utility>
 #include <vector>
 
+#include "common/parallel.hpp"
+
 namespace offnominal::desk::campaign {
 namespace {
-
-// Calls work(i) for i = 0 .. count-1 on `threads` threads until one throws; that is thrown again.
-template <typename Work>
-void on_threads(std::size_t count, int threads, const Work& work) {
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr error;
-  std::mutex error_mutex;
-  const auto run = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      try {
-        work(i);
-      } catch (...) {
-        const std::lock_guard lock(error_mutex);
-        if (!error) error = std::current_exception();
-        next = count;
-      }
-    }
-  };
-  std::vector<std::jthread> others;
-  const std::size_t helpers = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
-  for (std::size_t i = 1; i < helpers; ++i) others.emplace_back(run);
-  run();
-  others.clear();
-  if (error) std::rethrow_exception(error);
-}
 
 // Says how far it is, one thread at a time.
 class Counter {
@@ -65,7 +38,7 @@ std::vector<Log> calibration_logs(const Campaign& campaign, const Simulator& sim
                                   const OnProgress& on_progress) {
   std::vector<Log> logs(static_cast<std::size_t>(campaign.calibration.runs));
   Counter counter("fault-free runs to calibrate on", logs.size(), on_progress);
-  on_threads(logs.size(), threads, [&](std::size_t i) {
+  parallel_for(logs.size(), threads, [&](std::size_t i) {
     logs[i] = simulator.calibration_run(static_cast<int>(i));
     counter.count([] {});
   });
@@ -78,7 +51,7 @@ std::vector<std::unique_ptr<Detector>> calibrated_detectors(const Campaign& camp
                                                             const OnProgress& on_progress) {
   std::vector<std::unique_ptr<Detector>> detectors(campaign.detectors.size());
   Counter counter("detectors calibrated", detectors.size(), on_progress);
-  on_threads(detectors.size(), threads, [&](std::size_t i) {
+  parallel_for(detectors.size(), threads, [&](std::size_t i) {
     detectors[i] = calibrated(campaign.detectors[i], campaign, logs);
     counter.count([] {});
   });
@@ -133,7 +106,7 @@ RunOutcome run_campaign(const Campaign& campaign, const RunRequest& request,
   const std::vector<std::int64_t> numbers = file.missing_of(shard);
   outcome.skipped = outcome.runs - static_cast<std::int64_t>(numbers.size());
   Counter counter("runs", numbers.size(), on_progress);
-  on_threads(numbers.size(), request.threads, [&](std::size_t i) {
+  parallel_for(numbers.size(), request.threads, [&](std::size_t i) {
     const std::vector<Result> rows = ready.run(numbers[i]);
     counter.count([&] { file.add(rows); });
   });

@@ -7,12 +7,12 @@
 #include <string>
 #include <utility>
 
+#include "common/parallel.hpp"
 #include "explain/alternatives.hpp"
 #include "explain/change_questions.hpp"
 #include "explain/moments.hpp"
 #include "explain/questions.hpp"
 #include "identify/independent_samples.hpp"
-#include "identify/parallel.hpp"
 
 namespace offnominal::desk {
 

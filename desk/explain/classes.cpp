@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "common/parallel.hpp"
 #include "explain/alternatives.hpp"
 #include "explain/friction_family.hpp"
 #include "explain/questions.hpp"
-#include "identify/parallel.hpp"
 
 namespace offnominal::desk {
 

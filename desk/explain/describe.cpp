@@ -8,11 +8,11 @@
 #include <iterator>
 #include <string>
 
+#include "common/parallel.hpp"
 #include "compare/inverse_model.hpp"
 #include "explain/confirm.hpp"
 #include "explain/questions.hpp"
 #include "explain/remainder.hpp"
-#include "identify/parallel.hpp"
 
 namespace offnominal::desk {
 

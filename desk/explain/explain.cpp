@@ -29,7 +29,6 @@
 #include "explain/undecided.hpp"
 #include "explain/verdict.hpp"
 #include "identify/improved_robot.hpp"
-#include "identify/parallel.hpp"
 #include "identify/stretches.hpp"
 #include "log/seen_by_sensor.hpp"
 

@@ -8,13 +8,13 @@
 #include <numeric>
 #include <utility>
 
+#include "common/parallel.hpp"
 #include "explain/alternatives.hpp"
 #include "explain/any_shape.hpp"
 #include "explain/confirm.hpp"
 #include "explain/friction_family.hpp"
 #include "explain/questions.hpp"
 #include "explain/replay_null.hpp"
-#include "identify/parallel.hpp"
 
 namespace offnominal::desk {
 

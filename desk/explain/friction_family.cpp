@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "common/parallel.hpp"
 #include "compare/inverse_model.hpp"
 #include "explain/questions.hpp"
-#include "identify/parallel.hpp"
 
 namespace offnominal::desk {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "common/parallel.hpp"
 #include "explain/friction_family.hpp"
 #include "explain/questions.hpp"
-#include "identify/parallel.hpp"
 
 namespace offnominal::desk {
 

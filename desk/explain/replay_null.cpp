@@ -6,7 +6,7 @@
 #include <random>
 #include <span>
 
-#include "identify/parallel.hpp"
+#include "common/parallel.hpp"
 
 namespace offnominal::desk {
 

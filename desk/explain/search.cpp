@@ -5,9 +5,9 @@
 #include <limits>
 #include <map>
 
+#include "common/parallel.hpp"
 #include "explain/friction_family.hpp"
 #include "identify/independent_samples.hpp"
-#include "identify/parallel.hpp"
 #include "identify/shape_search.hpp"
 
 namespace offnominal::desk {

@@ -9,7 +9,7 @@
 #include <memory>
 #include <random>
 
-#include "identify/parallel.hpp"
+#include "common/parallel.hpp"
 
 namespace offnominal::desk {
 

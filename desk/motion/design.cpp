@@ -11,7 +11,7 @@
 #include <numeric>
 
 #include "common/error.hpp"
-#include "identify/parallel.hpp"
+#include "common/parallel.hpp"
 #include "motion/plan_space.hpp"
 
 namespace offnominal::desk::motion {

@@ -10,8 +10,9 @@
 
 namespace offnominal::desk {
 
-// Calls work(i) for i = 0 .. count-1 on `threads` threads. Every call writes to its own place, so
-// that results do not depend on the number of threads. The first exception is thrown again.
+/// Calls work(i) for i = 0 .. count-1 on `threads` threads until one throws: that exception is
+/// thrown again, and what had not begun is left. Every call has to write to a place of its own, so
+/// that results do not depend on the number of threads.
 template <typename Work>
 void parallel_for(std::size_t count, int threads, const Work& work) {
   std::atomic<std::size_t> next{0};
@@ -24,6 +25,7 @@ void parallel_for(std::size_t count, int threads, const Work& work) {
       } catch (...) {
         const std::lock_guard lock(error_mutex);
         if (!error) error = std::current_exception();
+        next = count;
       }
     }
   };
