@@ -7,7 +7,6 @@
 #include "common/effort_name.hpp"
 #include "common/nearest.hpp"
 #include "common/text_table.hpp"
-#include "compare/before_after.hpp"
 #include "compare/torque_charts.hpp"
 
 namespace offnominal::desk {
@@ -134,18 +133,29 @@ report::Table table_of(const Comparisons& comparisons) {
   return table;
 }
 
+// Of one error, before and after: what columns hold it, and its cells.
+std::vector<report::Column> columns_of_error() {
+  return {{"joint", "", "d"},  {"rms before", "", ".4g"},       {"rms after", "", ".4g"},
+          {"unit", "", ".4g"}, {"relative before", "%", ".2f"}, {"relative after", "%", ".2f"}};
+}
+std::vector<report::Cell> cells_of(const BeforeAfter& error) {
+  return {static_cast<double>(error.joint + 1),
+          error.before_rms,
+          error.after_rms,
+          error.unit,
+          error.before_percent,
+          error.after_percent};
+}
+
 report::Table fall_table(const Comparisons& comparisons, const Comparisons& against,
                          const CompareNames& names) {
   report::Table table;
   table.caption = "Fall of the error";
-  table.columns = {
-      {"joint", "", "d"},  {"rms before", "", ".4g"},       {"rms after", "", ".4g"},
-      {"unit", "", ".4g"}, {"relative before", "%", ".2f"}, {"relative after", "%", ".2f"},
-      {"fall", "%", ".1f"}};
+  table.columns = columns_of_error();
+  table.columns.push_back({"fall", "%", ".1f"});
   for (const BeforeAfter& error : before_after(against.joints, comparisons.joints)) {
-    table.rows.push_back({static_cast<double>(error.joint + 1), error.before_rms, error.after_rms,
-                          error.unit, error.before_percent, error.after_percent,
-                          100 * error.fall()});
+    table.rows.push_back(cells_of(error));
+    table.rows.back().emplace_back(100 * error.fall());
   }
   table.note = "Before: " + names.against_file + ". Fall of the rms error; negative: it has grown.";
   if (are_several(comparisons)) table.note += " All recordings together.";
@@ -305,6 +315,21 @@ std::string text_of(const Comparisons& comparisons, const CompareNames& names,
     text += "before: " + names.against_file + "\n";
   }
   return text + verdict_of(comparisons, against) + "\n";
+}
+
+report::Table before_after_table(const std::vector<NamedErrors>& errors, const FilterPlan& plan) {
+  report::Table table;
+  table.caption = "Error before and after";
+  table.columns = columns_of_error();
+  table.columns.insert(table.columns.begin(), report::Column{"data", "", ".4g"});
+  for (const NamedErrors& of : errors) {
+    for (const BeforeAfter& error : of.joints) {
+      table.rows.push_back(cells_of(error));
+      table.rows.back().insert(table.rows.back().begin(), of.data);
+    }
+  }
+  table.note = words_of(plan) + ".";
+  return table;
 }
 
 report::Page page_of(const Comparisons& comparisons, const CompareNames& names,

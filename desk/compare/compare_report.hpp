@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "compare/before_after.hpp"
 #include "compare/compare.hpp"
 #include "report/page.hpp"
 
@@ -50,6 +51,14 @@ std::string text_of(const Comparisons& comparisons, const CompareNames& names,
 std::string words_of(const FilterPlan& plan);
 // "default", "sampling_rate", "encoder", "--cutoff", "--decimate", "at_rest"
 std::string name_of(CutoffReason::Kind kind);
+
+// Errors before and after on some of the data, and what these are called.
+struct NamedErrors {
+  std::string data;
+  std::vector<BeforeAfter> joints;
+};
+// A line per joint of each; `plan`: the filter of all of them.
+report::Table before_after_table(const std::vector<NamedErrors>& errors, const FilterPlan& plan);
 
 // Measured against model torque over time; the residual over time, position, velocity and
 // acceleration: of the recording that the reader chooses.

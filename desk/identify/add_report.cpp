@@ -196,35 +196,23 @@ report::Table parameter_table(const AddResult& result) {
   return table;
 }
 
-report::Table error_table(const AddResult& result, const AddNames& names) {
-  report::Table table;
-  table.caption = "Error before and after";
-  table.columns = {{"data", "", ".4g"},           {"joint", "", "d"},
-                   {"rms before", "", ".4g"},     {"rms after", "", ".4g"},
-                   {"unit", "", ".4g"},           {"relative before", "%", ".2f"},
-                   {"relative after", "%", ".2f"}};
-  const auto rows = [&](const std::string& what, const std::vector<BeforeAfter>& errors) {
-    for (const BeforeAfter& error : errors) {
-      table.rows.push_back({what, static_cast<double>(error.joint + 1), error.before_rms,
-                            error.after_rms, error.unit, error.before_percent,
-                            error.after_percent});
-    }
-  };
+std::vector<NamedErrors> named_errors(const AddResult& result, const AddNames& names) {
+  std::vector<NamedErrors> errors;
   // One recording of its kind is all of them.
   const auto each = [&](bool held_out) {
     for (const AddResult::OfRecording& one : result.recordings) {
-      if (one.held_out == held_out) rows(one.file, one.joints);
+      if (one.held_out == held_out) errors.push_back({one.file, one.joints});
     }
   };
   if (names.logs.size() > 1) each(false);
-  rows("fitted: " + (names.logs.size() > 1 ? "all together" : names.logs[0]), result.fitted_logs);
+  errors.push_back(
+      {"fitted: " + (names.logs.size() > 1 ? "all together" : names.logs[0]), result.fitted_logs});
   if (names.holdout.size() > 1) each(true);
-  rows(names.holdout.empty()       ? held_out_words(result)
-       : names.holdout.size() == 1 ? "not used for the fit: " + names.holdout[0]
-                                   : "not used for the fit: all together",
-       result.held_out);
-  table.note = words_of(result.before.recordings[0].plan) + ".";
-  return table;
+  errors.push_back({names.holdout.empty()       ? held_out_words(result)
+                    : names.holdout.size() == 1 ? "not used for the fit: " + names.holdout[0]
+                                                : "not used for the fit: all together",
+                    result.held_out});
+  return errors;
 }
 
 report::KeyFigures key_figures(const AddResult& result, const AddRequest& request) {
@@ -404,7 +392,8 @@ report::Page page_of(const AddResult& result, const AddRequest& request, const A
   report::Section numbers;
   numbers.heading = "Error and parameters";
   numbers.blocks.emplace_back(key_figures(result, request));
-  numbers.blocks.emplace_back(error_table(result, names));
+  numbers.blocks.emplace_back(
+      before_after_table(named_errors(result, names), result.before.recordings[0].plan));
   numbers.blocks.emplace_back(parameter_table(result));
   for (const std::string& note : result.notes) {
     numbers.blocks.emplace_back(report::Note{note, Level::kNeutral});

@@ -1,7 +1,8 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "common/nearest.hpp"
 #include "compare/compare_report.hpp"
@@ -11,13 +12,9 @@
 namespace offnominal::desk {
 namespace {
 
-report::Cell cell(double value) {
-  return std::isfinite(value) ? report::Cell(value) : report::Cell();
-}
-
 void put_interval(const IdentifiedNumber& number, std::vector<report::Cell>& row) {
-  row.push_back(number.ci95 ? cell((*number.ci95)[0]) : report::Cell());
-  row.push_back(number.ci95 ? cell((*number.ci95)[1]) : report::Cell());
+  row.push_back(number.ci95 ? report::Cell((*number.ci95)[0]) : report::Cell());
+  row.push_back(number.ci95 ? report::Cell((*number.ci95)[1]) : report::Cell());
   row.emplace_back(std::string(number.determined ? "yes" : "no"));
 }
 
@@ -32,8 +29,8 @@ std::vector<report::Column> with_number_columns(std::vector<report::Column> colu
 
 std::vector<report::Cell> number_row(std::vector<report::Cell> row,
                                      const IdentifiedNumber& number) {
-  row.push_back(cell(number.after));
-  row.push_back(cell(number.before));
+  row.emplace_back(number.after);
+  row.emplace_back(number.before);
   put_interval(number, row);
   row.emplace_back(number.unit);
   return row;
@@ -93,26 +90,6 @@ report::Table base_table(const Identification& result) {
   return table;
 }
 
-report::Table error_table(const Identification& result) {
-  report::Table table;
-  table.caption = "Error before and after";
-  table.columns = {{"data", "", ".4g"},           {"joint", "", "d"},
-                   {"rms before", "", ".4g"},     {"rms after", "", ".4g"},
-                   {"unit", "", ".4g"},           {"relative before", "%", ".2f"},
-                   {"relative after", "%", ".2f"}};
-  const auto rows = [&](const std::string& what, const std::vector<BeforeAfter>& errors) {
-    for (const BeforeAfter& error : errors) {
-      table.rows.push_back({what, static_cast<double>(error.joint + 1), cell(error.before_rms),
-                            cell(error.after_rms), error.unit, cell(error.before_percent),
-                            cell(error.after_percent)});
-    }
-  };
-  rows("fitted", result.fitted);
-  rows(result.cross_validated ? "held-out parts" : "held-out recordings", result.held_out);
-  table.note = words_of(result.after.plan) + ".";
-  return table;
-}
-
 report::KeyFigures key_figures(const Identification& result) {
   report::KeyFigures keys;
   const auto add = [&](const std::string& label, report::Cell value, const std::string& unit,
@@ -126,12 +103,12 @@ report::KeyFigures key_figures(const Identification& result) {
     keys.figures.push_back(figure);
   };
   if (result.payload) {
-    add("payload", cell(result.payload->mass.after), "kg", ".3g",
+    add("payload", result.payload->mass.after, "kg", ".3g",
         result.payload->mass.determined ? "beyond what the file says" : "not determined");
   }
   add("determined", static_cast<double>(result.determined_count()), "", "d",
       fmt::format("of {} base parameters", result.base.size()));
-  add("condition number", cell(result.condition), "", ".3g", "columns of length 1");
+  add("condition number", result.condition, "", ".3g", "columns of length 1");
   add("links believed within", 100 * result.share, "%", ".3g", "as held-out parts say");
   return keys;
 }
@@ -148,7 +125,9 @@ report::Page page_of(const Identification& result, const IdentifyNames& names) {
   report::Section numbers;
   numbers.heading = "Error and numbers";
   numbers.blocks.emplace_back(key_figures(result));
-  numbers.blocks.emplace_back(error_table(result));
+  const std::string held_out = result.cross_validated ? "held-out parts" : "held-out recordings";
+  numbers.blocks.emplace_back(before_after_table(
+      {{"fitted", result.fitted}, {held_out, result.held_out}}, result.after.plan));
   if (result.payload) {
     numbers.blocks.emplace_back(payload_table(*result.payload));
   } else {
