@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calibrate/calibrate_report.hpp"
+#include "replay/residual_chart.hpp"
 #include "report/numbers.hpp"
 
 namespace offnominal::desk {
@@ -66,24 +67,18 @@ Waterfall bars_of(const Calibration& calibration) {
 
 Chart threshold_chart(const Calibration& calibration, const JudgedStretch& stretch,
                       std::size_t index) {
-  Chart chart;
+  Chart chart =
+      chart_against_threshold(EstimatorSpace::kAcceleration, calibration.unit,
+                              {.x = numbers(stretch.t_s), .y = numbers(stretch.error_norm)},
+                              {.x = numbers(stretch.t_s), .y = numbers(stretch.threshold_after)});
   chart.title = stretch.file + (stretch.held_out ? ", hold-out" : "");
-  chart.x = {.name = "time", .unit = "s"};
-  chart.y = {{.name = "velocity", .unit = calibration.unit}};
-  chart.series.push_back({.name = "|e|",
-                          .x = numbers(stretch.t_s),
-                          .y = numbers(stretch.error_norm),
-                          .tone = Tone::kResidual});
+  chart.series.back().name += ", new";
   if (stretch.threshold_before.size() > 0) {
-    chart.series.push_back({.name = "threshold mu, old",
-                            .x = numbers(stretch.t_s),
-                            .y = numbers(stretch.threshold_before),
-                            .tone = Tone::kFaint});
+    chart.series.insert(chart.series.end() - 1, Series{.name = "threshold mu, old",
+                                                       .x = numbers(stretch.t_s),
+                                                       .y = numbers(stretch.threshold_before),
+                                                       .tone = Tone::kFaint});
   }
-  chart.series.push_back({.name = "threshold mu, new",
-                          .x = numbers(stretch.t_s),
-                          .y = numbers(stretch.threshold_after),
-                          .tone = Tone::kThreshold});
   chart.zoom_group = fmt::format("recording {}", index);
   chart.slider = true;
   return chart;

@@ -10,6 +10,7 @@
 #include "common/amount.hpp"
 #include "common/number.hpp"
 #include "common/text_table.hpp"
+#include "replay/residual_chart.hpp"
 #include "report/numbers.hpp"
 
 namespace offnominal::desk {
@@ -102,19 +103,12 @@ std::string margins_text(const JointsCalibration& calibration) {
 
 Chart residual_chart(const JointCalibration& joint, const JudgedStretch& stretch,
                      std::size_t index) {
-  Chart chart;
+  Chart chart =
+      chart_against_threshold(EstimatorSpace::kTorque, joint.calibration.unit,
+                              {.x = numbers(stretch.t_s), .y = numbers(stretch.error_norm)},
+                              {.x = numbers(stretch.t_s), .y = numbers(stretch.threshold_after)});
   chart.title =
       fmt::format("{}, {}{}", joint.name, stretch.file, stretch.held_out ? ", hold-out" : "");
-  chart.x = {.name = "time", .unit = "s"};
-  chart.y = {{.name = "torque", .unit = joint.calibration.unit}};
-  chart.series = {{.name = "|residual|",
-                   .x = numbers(stretch.t_s),
-                   .y = numbers(stretch.error_norm),
-                   .tone = Tone::kResidual},
-                  {.name = "threshold",
-                   .x = numbers(stretch.t_s),
-                   .y = numbers(stretch.threshold_after),
-                   .tone = Tone::kThreshold}};
   chart.zoom_group = fmt::format("recording {}", index);
   return chart;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "replay/replay.hpp"
+#include "replay/residual_chart.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -14,10 +15,9 @@ using namespace report;  // a page is written in its own words
 
 constexpr std::size_t kMarkedAlarms = 20;
 
-// A line over time that is broken where the monitor was blind.
-Series line_of(const Replay& replay, const std::string& name,
-               const Eigen::Ref<const Eigen::VectorXd>& values, Tone tone) {
-  Series line{.name = name, .tone = tone};
+// Values over time, broken where the monitor was blind.
+Series line_of(const Replay& replay, const Eigen::Ref<const Eigen::VectorXd>& values) {
+  Series line;
   std::size_t next = 0;
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     for (; next < replay.blind.size() && replay.blind[next].start_s < replay.t_s[i]; ++next) {
@@ -40,16 +40,20 @@ std::vector<EventMark> alarm_marks(const std::optional<double>& detection_time_s
   return marks;
 }
 
-Chart residual_chart(const Replay& replay) {
-  Chart chart;
-  chart.title = "Residual against its threshold";
-  chart.x = {.name = "time", .unit = "s"};
-  chart.y = {{.name = "velocity", .unit = replay.unit}};
-  chart.series = {line_of(replay, "|e|", replay.error_norm, Tone::kResidual),
-                  line_of(replay, "threshold mu", replay.threshold, Tone::kThreshold)};
+// Its detection on its time, which all charts of the page share.
+void put_on_time(const Replay& replay, const std::optional<double>& detection_time_s,
+                 Chart& chart) {
   chart.note = note_on_blind(replay);
-  chart.events = alarm_marks(replay.detection_time_s);
+  chart.events = alarm_marks(detection_time_s);
   chart.zoom_group = "time";
+}
+
+Chart residual_chart(const Replay& replay) {
+  Chart chart = chart_against_threshold(EstimatorSpace::kAcceleration, replay.unit,
+                                        line_of(replay, replay.error_norm),
+                                        line_of(replay, replay.threshold));
+  chart.title = "Residual against its threshold";
+  put_on_time(replay, replay.detection_time_s, chart);
   chart.slider = true;
   return chart;
 }
@@ -57,16 +61,11 @@ Chart residual_chart(const Replay& replay) {
 Chart joint_chart(const Replay& replay, Eigen::Index joint) {
   const auto index = static_cast<std::size_t>(joint);
   const JointReplay& of_joint = replay.joints[index];
-  Chart chart;
+  Chart chart = chart_against_threshold(EstimatorSpace::kTorque, of_joint.unit,
+                                        line_of(replay, replay.error.col(joint).cwiseAbs()),
+                                        line_of(replay, replay.thresholds.col(joint)));
   chart.title = "Residual against its threshold, " + replay.joint_names[index];
-  chart.x = {.name = "time", .unit = "s"};
-  chart.y = {{.name = "torque", .unit = of_joint.unit}};
-  chart.series = {
-      line_of(replay, "|residual|", replay.error.col(joint).cwiseAbs(), Tone::kResidual),
-      line_of(replay, "threshold", replay.thresholds.col(joint), Tone::kThreshold)};
-  chart.note = note_on_blind(replay);
-  chart.events = alarm_marks(of_joint.detection_time_s);
-  chart.zoom_group = "time";
+  put_on_time(replay, of_joint.detection_time_s, chart);
   chart.slider = joint == 0;
   return chart;
 }
@@ -123,7 +122,9 @@ Chart estimate_chart(const Replay& replay, Eigen::Index joint) {
   chart.x = {.name = "time", .unit = "s"};
   const bool in_torque = replay.space == EstimatorSpace::kTorque;
   chart.y = {{.name = in_torque ? "torque" : "acceleration", .unit = replay.psi_hat_units[index]}};
-  chart.series = {line_of(replay, "psi_hat", replay.psi_hat.col(joint), Tone::kModel)};
+  chart.series = {line_of(replay, replay.psi_hat.col(joint))};
+  chart.series[0].name = "psi_hat";
+  chart.series[0].tone = Tone::kModel;
   chart.events =
       alarm_marks(in_torque ? replay.joints[index].detection_time_s : replay.detection_time_s);
   chart.zoom_group = "time";
