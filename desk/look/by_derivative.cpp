@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -13,18 +12,14 @@
 namespace offnominal::desk {
 namespace {
 
-using Eigen::Index;
 using Eigen::VectorXd;
 using Values = std::map<std::string, VectorXd>;
 using Columns = std::vector<std::string>;
 
 class DerivativeJudge {
  public:
-  DerivativeJudge(const Values& values, const VectorXd& t_s) : values_(values), t_s_(t_s) {
-    constexpr Index kMostJudged = 20'000;  // rows, in the middle of the recording
-    count_ = std::min(kMostJudged, t_s.size());
-    first_ = (t_s.size() - count_) / 2;
-  }
+  DerivativeJudge(const Values& values, const VectorXd& t_s)
+      : values_(values), t_s_(t_s), rows_(judged_rows(t_s.size())) {}
 
   // Of every joint whose two columns move, and of one at least.
   bool is_derivative(const Columns& velocity, const Columns& position) const {
@@ -44,11 +39,8 @@ class DerivativeJudge {
  private:
   // Of what has a narrow band each goes with the derivative of the other, with a sign.
   static bool is_clear(double correlation, double other_way) {
-    constexpr double kAlike = 0.95;
-    constexpr double kTimesWorse = 5;
-    constexpr double kWorse = 0.005;
-    return correlation >= kAlike &&
-           1 - std::abs(other_way) > kTimesWorse * (1 - correlation) + kWorse;
+    return correlation >= kDerivativeCorrelation &&
+           !is_hardly_worse(std::abs(other_way), correlation);
   }
 
   std::optional<double> correlation_of(const std::string& position,
@@ -59,16 +51,14 @@ class DerivativeJudge {
         dq->second.size() != t_s_.size()) {
       return std::nullopt;
     }
-    const Relation relation =
-        relation_of(q->second.segment(first_, count_), dq->second.segment(first_, count_),
-                    t_s_.segment(first_, count_));
+    const auto judged = [this](const VectorXd& x) { return x.segment(rows_.first, rows_.count); };
+    const Relation relation = relation_of(judged(q->second), judged(dq->second), judged(t_s_));
     return relation.not_judged.empty() ? std::optional(relation.correlation) : std::nullopt;
   }
 
   const Values& values_;
   const VectorXd& t_s_;
-  Index first_ = 0;
-  Index count_ = 0;
+  JudgedRows rows_;
 };
 
 void swap_positions_and_velocities(Roles& roles) {

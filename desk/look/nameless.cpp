@@ -17,8 +17,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using Values = std::map<std::string, VectorXd>;
 
-constexpr Index kMostJudged = 20'000;  // rows, in the middle of the recording
-
 VectorXd steps_of(const VectorXd& x) { return x.tail(x.size() - 1) - x.head(x.size() - 1); }
 
 bool is_row_count(const VectorXd& x) { return x.size() > 1 && (steps_of(x).array() == 1).all(); }
@@ -117,13 +115,6 @@ class Guesser {
     }
   }
 
-  // Noise, or a torque of viscous friction, may be what parts them.
-  static bool is_hardly_worse(double fit, double best) {
-    constexpr double kTimesWorse = 5;
-    constexpr double kWorse = 0.005;
-    return fit > 0 && 1 - fit <= kTimesWorse * (1 - best) + kWorse;
-  }
-
   // The best, and those that are hardly worse.
   std::vector<Index> velocities_of(Index i) const {
     std::vector<Index> velocities;
@@ -191,10 +182,9 @@ class Guesser {
 
   // Above 0 where k is the derivative of i, by a factor that units have.
   double fit_of(Index i, Index k) const {
-    constexpr double kAlike = 0.95;
     const Relation relation =
         relation_of(smoothed_[static_cast<std::size_t>(i)], smoothed_[static_cast<std::size_t>(k)]);
-    if (!relation.ratio || relation.correlation < kAlike) return 0;
+    if (!relation.ratio || relation.correlation < kDerivativeCorrelation) return 0;
     return is_near(*relation.ratio, 1) || unit_ratio_of(*relation.ratio) != nullptr
                ? relation.correlation
                : 0;
@@ -202,8 +192,7 @@ class Guesser {
 
   std::vector<std::string> moving_columns() {
     std::vector<std::string> moving;
-    const Index count = std::min(kMostJudged, t_s_.size());
-    const Index first = (t_s_.size() - count) / 2;
+    const auto [first, count] = judged_rows(t_s_.size());
     const VectorXd t_s = t_s_.segment(first, count);
     Eigen::MatrixXd all(count, 0);
     for (const std::string& name : names_) {
@@ -216,9 +205,8 @@ class Guesser {
       moving.push_back(name);
     }
     if (moving.empty()) return moving;
-    constexpr Index kFewest = 200;
     const UnbrokenRows stretch = longest_stretch(t_s, all);
-    if (stretch.count < kFewest) return {};
+    if (stretch.count < kFewestJudged) return {};
     for (Index i = 0; i < all.cols(); ++i) {
       smoothed_.push_back(smoothed(all.col(i).segment(stretch.first, stretch.count),
                                    t_s.segment(stretch.first, stretch.count)));

@@ -17,8 +17,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr Index kFewestJudged = 200;  // samples
-
 double median_step(const VectorXd& t_s) {
   VectorXd steps = t_s.tail(t_s.size() - 1) - t_s.head(t_s.size() - 1);
   double* const middle = steps.data() + steps.size() / 2;
@@ -27,6 +25,18 @@ double median_step(const VectorXd& t_s) {
 }
 
 }  // namespace
+
+bool is_hardly_worse(double correlation, double best) {
+  constexpr double kTimesWorse = 5;
+  constexpr double kWorse = 0.005;
+  return correlation > 0 && 1 - correlation <= kTimesWorse * (1 - best) + kWorse;
+}
+
+JudgedRows judged_rows(Index rows) {
+  constexpr Index kMostJudged = 20'000;
+  const Index count = std::min(kMostJudged, rows);
+  return {(rows - count) / 2, count};
+}
 
 UnbrokenRows longest_stretch(const VectorXd& t_s, const Eigen::MatrixXd& columns) {
   UnbrokenRows longest;

@@ -15,6 +15,23 @@ struct Relation {
   std::string not_judged;  // why; empty: it was judged
 };
 
+// Correlation of a velocity with the derivative of its position, at least.
+inline constexpr double kDerivativeCorrelation = 0.95;
+
+// Whether a correlation is hardly worse than the best: noise, or a torque of viscous friction, may
+// be what parts them. Of nothing in common (0 or below) it is none.
+[[nodiscard]] bool is_hardly_worse(double correlation, double best);
+
+// Rows that are judged, where a recording has more of them: in its middle.
+struct JudgedRows {
+  Eigen::Index first = 0;
+  Eigen::Index count = 0;
+};
+[[nodiscard]] JudgedRows judged_rows(Eigen::Index rows);
+
+// Fewer samples of a stretch are not judged.
+inline constexpr Eigen::Index kFewestJudged = 200;
+
 // Over the longest stretch of rows without gap, NaN or infinity. Lengths may differ, time need not
 // be even, and a position may be folded into a turn.
 [[nodiscard]] Relation relation_of(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity,
