@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "signal/norm_about_mean.hpp"
+
 namespace offnominal::desk {
 namespace {
 
@@ -144,7 +146,7 @@ JointComparison compare_joint(const JointSamples& samples, std::size_t joint,
   result.rms_error = error.norm() / root_n;
   result.rms_torque = measured.norm() / root_n;
   result.relative_error_percent = percent_of(error.norm(), measured.norm());
-  const double spread = (measured.array() - measured.mean()).matrix().norm();
+  const double spread = norm_about_mean(measured);
   // Rounding makes the spread of a constant a little more than 0.
   const bool constant = spread <= 1e-12 * measured.norm();
   result.fit_percent = 100 - percent_of(error.norm(), constant ? 0 : spread);

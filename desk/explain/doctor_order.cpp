@@ -11,6 +11,7 @@
 
 #include "explain/doctor_checks.hpp"
 #include "log/part_of.hpp"
+#include "signal/norm_about_mean.hpp"
 
 // Columns of a recording that stand at another joint than they are of.
 
@@ -36,7 +37,7 @@ double left_by(const TorquePair& pair, Index joint, const VectorXd& torque) {
   MatrixXd both(torque.size(), 2);
   both << torque, pair.model.col(joint);
   both = beside_drive(pair, joint, both);
-  const double size = (torque.array() - torque.mean()).matrix().norm();
+  const double size = norm_about_mean(torque);
   if (!(size > 0)) return 0;
   const double model = both.col(1).squaredNorm();
   const double ratio = model > 0 ? both.col(0).dot(both.col(1)) / model : 1;

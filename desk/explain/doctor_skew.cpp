@@ -7,6 +7,7 @@
 
 #include "explain/doctor_checks.hpp"
 #include "signal/differentiate.hpp"
+#include "signal/norm_about_mean.hpp"
 #include "signal/resample.hpp"
 
 namespace offnominal::desk {
@@ -133,8 +134,8 @@ CommonLag common_lag(const TorquePair& pair, Index first, Index count, double ho
   for (Index joint = 0; joint < pair.q.cols(); ++joint) {
     const VectorXd load = pair.load.col(joint).segment(first, count);
     const VectorXd measured = pair.measured.col(joint).segment(first, count);
-    const double change = (load.array() - load.mean()).matrix().norm();
-    const double measured_change = (measured.array() - measured.mean()).matrix().norm();
+    const double change = norm_about_mean(load);
+    const double measured_change = norm_about_mean(measured);
     if (!(measured_change > 0)) continue;
     if (!(change > kChanges * load.norm()) || !(change > kOfMeasured * measured_change)) continue;
     const LagEstimate lag = estimate_lag(pair, joint, first, count, honest_s);

@@ -12,6 +12,7 @@
 #include "explain/doctor_signal.hpp"
 #include "robot/payload.hpp"
 #include "robot/robot.hpp"
+#include "signal/norm_about_mean.hpp"
 
 // Torques that nobody recorded: one value in every row of a joint that moves.
 
@@ -30,8 +31,6 @@ bool is_moved(const VectorXd& q) {
   return way_of(q) > kWay && !stands_still(q);
 }
 
-double deviation_of(const VectorXd& x) { return (x.array() - x.mean()).matrix().norm(); }
-
 // Whether no joint moves so under a constant torque, whatever its friction: gravity and inertia ask
 // for a torque that changes. Of a joint that swings or runs out freely they take each other off.
 bool is_impossible(const TorquePair& pair, const MatrixXd& gravity, Index joint) {
@@ -41,7 +40,7 @@ bool is_impossible(const TorquePair& pair, const MatrixXd& gravity, Index joint)
   const VectorXd asked = pair.load.col(joint);
   const VectorXd left = asked - friction * friction.colPivHouseholderQr().solve(asked);
   const double part =
-      std::max(deviation_of(gravity.col(joint)), deviation_of(asked - gravity.col(joint)));
+      std::max(norm_about_mean(gravity.col(joint)), norm_about_mean(asked - gravity.col(joint)));
   return part > 0 && left.norm() > kUnlike * part;
 }
 
