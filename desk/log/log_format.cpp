@@ -100,9 +100,9 @@ void refuse_other_format(const RecordingFile& file) {
 }  // namespace
 
 NamedColumns read_in(const LogFormat& format, RecordingFile& file, const ChannelMap* channels,
-                     const RobotBus* bus, const NeedOf& need_of) {
+                     const std::optional<RobotBus>& bus, const NeedOf& need_of) {
   const bool has_dbc = channels != nullptr && !channels->dbc.empty();
-  if (bus != nullptr && format.read_bus != nullptr && !has_dbc) return format.read_bus(file, *bus);
+  if (bus && format.read_bus != nullptr && !has_dbc) return format.read_bus(file, *bus);
   return format.read(file, channels, need_of);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -24,9 +25,9 @@ struct LogFormat {
   NamedColumns (*read_bus)(RecordingFile& file, const RobotBus& bus) = nullptr;
 };
 
-/// By the format: of the robot's bus where that is not null, and the channels name no DBC file.
+/// By the format: of the robot's bus where there is one, and the channels name no DBC file.
 [[nodiscard]] NamedColumns read_in(const LogFormat& format, RecordingFile& file,
-                                   const ChannelMap* channels, const RobotBus* bus,
+                                   const ChannelMap* channels, const std::optional<RobotBus>& bus,
                                    const NeedOf& need_of);
 
 [[nodiscard]] std::span<const LogFormat> log_formats();

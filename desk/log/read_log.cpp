@@ -352,7 +352,8 @@ void shorten_time(NamedColumns& columns) {
 }
 
 TimedColumns read_file(RecordingFile& recording, const std::optional<ChannelMap>& channels,
-                       const RobotBus* bus, double period_s, std::size_t file, std::size_t files) {
+                       const std::optional<RobotBus>& bus, double period_s, std::size_t file,
+                       std::size_t files) {
   NeedOf need_of = needs_of(channels, file, files);
   if (!channels && period_s > 0) {
     // Its step is said: what the file has of a clock is nobody's business.
@@ -377,8 +378,8 @@ TimedColumns read_file(RecordingFile& recording, const std::optional<ChannelMap>
 }
 
 TimedColumns read_files(const std::filesystem::path& path,
-                        const std::optional<ChannelMap>& channels, const RobotBus* bus,
-                        double period_s) {
+                        const std::optional<ChannelMap>& channels,
+                        const std::optional<RobotBus>& bus, double period_s) {
   const std::vector<std::filesystem::path> paths = recording_files(path);
   if (paths.size() == 1) {
     RecordingFile recording(path);
@@ -407,8 +408,7 @@ Log read(const std::filesystem::path& path, int joint_count,
     std::optional<ChannelMap> map = channels;
     if (map && period_s && !map->at_rest) map->period_s = *period_s;
     const double period = map ? map->period_s : period_s.value_or(0);
-    Assembler assembler(read_files(path, map, bus ? &*bus : nullptr, period), joint_count,
-                        transmission);
+    Assembler assembler(read_files(path, map, bus, period), joint_count, transmission);
     return map ? assembler.with(*std::move(map)) : assembler.with_common_header(period);
   } catch (const std::bad_alloc&) {
     throw InputError({shown_name(path), "", "more than this machine has memory for",

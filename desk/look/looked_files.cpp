@@ -37,7 +37,8 @@ Need need_beside_period(const std::string& name) {
 }
 
 NamedColumns read_all(const std::filesystem::path& path, const std::filesystem::path& joined,
-                      const ChannelMap* channels, const RobotBus* bus, bool has_period) {
+                      const ChannelMap* channels, const std::optional<RobotBus>& bus,
+                      bool has_period) {
   RecordingFile file(path, joined);
   const LogFormat& format = log_format_of(file);
   const bool is_text = format.recognises == nullptr;
@@ -116,8 +117,7 @@ LookedFiles read_looked_files(const std::filesystem::path& path, const RobotDesc
                               std::optional<double> period_s) {
   const ChannelMap* const channels =
       robot != nullptr && robot->channels ? &*robot->channels : nullptr;
-  const std::optional<RobotBus> robot_bus = robot != nullptr ? bus_of(*robot) : std::nullopt;
-  const RobotBus* const bus = robot_bus ? &*robot_bus : nullptr;
+  const std::optional<RobotBus> bus = robot != nullptr ? bus_of(*robot) : std::nullopt;
   const std::vector<std::filesystem::path> paths = recording_files(path);
   LookedFiles looked;
   if (paths.size() == 1) {
@@ -155,8 +155,7 @@ ReadFiles read_files_of(const std::filesystem::path& path, const ChannelMap& cha
       return need == Need::kNone ? Need::kWelcome : need;
     };
     RecordingFile file(paths[k], path);
-    NamedColumns columns =
-        read_in(log_format_of(file), file, &channels, bus ? &*bus : nullptr, also);
+    NamedColumns columns = read_in(log_format_of(file), file, &channels, bus, also);
     if (paths.size() == 1) read.all = columns;
     TimedColumns timed{std::move(columns), {}};
     if (!channels.at_rest) {
