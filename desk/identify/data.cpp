@@ -14,20 +14,24 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+VectorXd stacked_torque(const RowLayout& layout, const std::vector<Workspace>& recordings,
+                        MatrixXd Workspace::*torque) {
+  std::vector<const MatrixXd*> torques;
+  for (const Workspace& at : recordings) torques.push_back(&(at.*torque));
+  return layout.stack_all(recordings, torques);
+}
+
+}  // namespace
+
 Data::Data(std::vector<Workspace> made, const RobotDescription& robot,
            const NuisanceOptions& options)
     : recordings(std::move(made)),
       layout(recordings),
-      nuisance(make_nuisance(robot, recordings, layout, options)) {
-  std::vector<const MatrixXd*> measured;
-  std::vector<const MatrixXd*> model;
-  for (const Workspace& at : recordings) {
-    measured.push_back(&at.torque);
-    model.push_back(&at.model_torque);
-  }
-  torque = layout.stack_all(recordings, measured);
-  target = torque - layout.stack_all(recordings, model);
-}
+      nuisance(make_nuisance(robot, recordings, layout, options)),
+      torque(stacked_torque(layout, recordings, &Workspace::torque)),
+      target(torque - stacked_torque(layout, recordings, &Workspace::model_torque)) {}
 
 Data::Data(const Data& same, const RobotDescription& robot, const NuisanceOptions& options)
     : recordings(same.recordings),
@@ -36,6 +40,16 @@ Data::Data(const Data& same, const RobotDescription& robot, const NuisanceOption
       torque(same.torque),
       target(same.target),
       cache(same.cache) {}
+
+VectorXd errors_as_it_is(const RobotDescription& file, const Data& data) {
+  return errors_as_it_is(file, data.recordings, data.layout, data.torque);
+}
+
+VectorXd errors_as_it_is(const RobotDescription& file, std::vector<Workspace> recordings,
+                         const RowLayout& layout, const VectorXd& torque) {
+  for (Workspace& at : recordings) at.set_model(file);
+  return layout.rms(torque - stacked_torque(layout, recordings, &Workspace::model_torque));
+}
 
 VectorXd resolved_sign_widths(const std::vector<Log>& logs, const FilterPlan& plan) {
   constexpr double kShareOfTopSpeed = 0.004;
@@ -56,22 +70,6 @@ void set_sign_widths(RobotDescription& robot, const VectorXd& widths) {
   }
 }
 
-namespace {
-
-// Error of the robot file as it is, rms per joint.
-VectorXd errors_of(const RobotDescription& robot, std::vector<Workspace> recordings) {
-  for (Workspace& at : recordings) at.set_model(robot);
-  NuisanceOptions none;
-  none.free_effects = std::vector<std::size_t>{};
-  none.link_share = 0;
-  none.skew_samples = 0;
-  none.sign_shapes = false;
-  const Data data(std::move(recordings), robot, none);
-  return data.layout.rms(data.target);
-}
-
-}  // namespace
-
 VectorXd settle_sign_widths(const VectorXd& resolved, RobotDescription& robot,
                             std::vector<Workspace>& recordings) {
   constexpr double kClearly = 0.9;
@@ -84,8 +82,10 @@ VectorXd settle_sign_widths(const VectorXd& resolved, RobotDescription& robot,
   if ((own.array() > 0).any()) {
     RobotDescription other = robot;
     set_sign_widths(other, resolved);
-    const VectorXd with_own = errors_of(robot, recordings);
-    const VectorXd with_resolved = errors_of(other, recordings);
+    const RowLayout layout(recordings);
+    const VectorXd torque = stacked_torque(layout, recordings, &Workspace::torque);
+    const VectorXd with_own = errors_as_it_is(robot, recordings, layout, torque);
+    const VectorXd with_resolved = errors_as_it_is(other, recordings, layout, torque);
     for (Index joint = 0; joint < widths.size(); ++joint) {
       const bool better = with_own[joint] < kClearly * with_resolved[joint];
       if (own[joint] > 0 && better) widths[joint] = own[joint];

@@ -28,6 +28,13 @@ struct Data {
   Data(const Data& same, const RobotDescription& robot, const NuisanceOptions& options);
 };
 
+// The error of a robot file as it is, rms per joint (N m or N), on the data's rows that say
+// something.
+Eigen::VectorXd errors_as_it_is(const RobotDescription& file, const Data& data);
+// The same of recordings of the robot, whatever model they have; `torque`: measured, stacked.
+Eigen::VectorXd errors_as_it_is(const RobotDescription& file, std::vector<Workspace> recordings,
+                                const RowLayout& layout, const Eigen::VectorXd& torque);
+
 // The width of the smoothed sign that the motion can resolve, per joint; 0 where it does not move.
 Eigen::VectorXd resolved_sign_widths(const std::vector<Log>& logs, const FilterPlan& plan);
 // Sets it, where it is above 0, in every effect that has one.

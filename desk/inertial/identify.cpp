@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/nearest.hpp"
+#include "identify/data.hpp"
 #include "identify/file_errors.hpp"
 #include "identify/link_masses.hpp"
 #include "inertial/identified_numbers.hpp"
@@ -18,7 +19,6 @@
 namespace offnominal::desk {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
@@ -87,17 +87,10 @@ class Identifier {
   [[nodiscard]] std::vector<BeforeAfter> parts_held_out() const {
     const Data& data = fit_.data();
     if (fit_.held_out_energy().size() == 0) return {};
-    VectorXd was =
-        VectorXd::Constant(data.layout.joint_count(), std::numeric_limits<double>::quiet_NaN());
-    if (file_is_whole()) {
-      std::vector<Workspace> recordings = data.recordings;
-      std::vector<const MatrixXd*> torques;
-      for (Workspace& at : recordings) {
-        at.set_model(file_);
-        torques.push_back(&at.model_torque);
-      }
-      was = data.layout.rms(data.torque - data.layout.stack_all(recordings, torques));
-    }
+    const VectorXd was =
+        file_is_whole() ? errors_as_it_is(file_, data)
+                        : VectorXd(VectorXd::Constant(data.layout.joint_count(),
+                                                      std::numeric_limits<double>::quiet_NaN()));
     const VectorXd torque = data.layout.rms(data.torque);
     std::vector<BeforeAfter> errors;
     for (Index joint = 0; joint < data.layout.joint_count(); ++joint) {
