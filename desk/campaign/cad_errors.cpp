@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
+#include <offnominal/model/effect_list.hpp>
 
 namespace offnominal::desk::campaign {
 
@@ -46,7 +47,7 @@ RobotDescription with_cad_errors(RobotDescription robot, double error, Draws& dr
 
 RobotDescription with_friction_errors(RobotDescription robot, double error, Draws& draws) {
   for (RobotEffect& effect : robot.effects) {
-    if (effect.kind == EffectKind::kRotorInertia) continue;
+    if (info_of(effect.kind)->action == EffectAction::kReflectedInertia) continue;
     effect.parameters[0] *= 1 + error * draws.sign();
   }
   return robot;
