@@ -25,12 +25,13 @@ enum class DataFaultKind {
   kGravity,
   kTorqueUnit,
   kJointOrder,
+  kJointZero,
   kNothingLeft,  // the last: the only one that nobody can overrule
 };
 
 // "degrees", "torque_sign", "stale_samples", "clock_skew", "saturation", "gaps", "time_unit",
 // "velocity", "wrapped_position", "stuck", "jump", "start", "nothing_left", "gravity",
-// "torque_unit" or "joint_order".
+// "torque_unit", "joint_order" or "joint_zero".
 const char* name_of(DataFaultKind kind);
 
 // Which of a joint's signals a fault is of.
@@ -57,7 +58,8 @@ struct DataFault {
   // common. kWrapped, kJump: the jump, as recorded. kStuck, kStart: share of the samples.
   // kGravity: between where it points and where the file has it, deg. kTorqueUnit: measured over
   // model torque, of all joints that of the first one that tells. kJointOrder: share of a torque
-  // that its model leaves.
+  // that its model leaves. kJointZero: what is to be added to the positions, of the last joint,
+  // rad.
   double size = 0;
   std::string unit;                   // of size, empty: none
   std::string words;                  // what was found, with numbers

@@ -57,6 +57,8 @@ const char* name_of(DataFaultKind kind) {
       return "torque_unit";
     case DataFaultKind::kJointOrder:
       return "joint_order";
+    case DataFaultKind::kJointZero:
+      return "joint_zero";
   }
   return "";
 }
@@ -70,6 +72,7 @@ bool spoils(const DataFault& fault, RestsOn what) {
     case DataFaultKind::kTorqueSign:
     case DataFaultKind::kTorqueUnit:
     case DataFaultKind::kJointOrder:
+    case DataFaultKind::kJointZero:
     case DataFaultKind::kTimeUnit:
     case DataFaultKind::kWrapped:
       return true;
@@ -313,7 +316,8 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
       if (!find_joint_order(mended, robot, *pair, faults)) {
         const OfAnotherUnit unit = find_torque_unit(mended, *pair, faults);
         if (unit == OfAnotherUnit::kSomeJoints ||
-            (unit == OfAnotherUnit::kNone && !find_gravity(mended, robot, *pair, faults))) {
+            (unit == OfAnotherUnit::kNone && !find_gravity(mended, robot, *pair, faults) &&
+             !find_joint_zero(mended, robot, *pair, faults))) {
           find_torque_sign(mended, *pair, faults);
         }
         find_clock_skew(mended, *pair, faults);

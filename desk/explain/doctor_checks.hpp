@@ -85,6 +85,10 @@ bool find_joint_order(const Log& log, const RobotDescription& robot, const Torqu
 // else is held against the model's torque would follow from it. Returns whether it does.
 bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
                   std::vector<DataFault>& faults);
+// Positions that are counted from another zero than the file's, or the other way round, of one
+// joint or several. Returns whether they are.
+bool find_joint_zero(const Log& log, const RobotDescription& robot, const TorquePair& pair,
+                     std::vector<DataFault>& faults);
 // Torques in another unit, before a gear, or currents: many times what the model says, or a small
 // part of it. On every joint that tells, and nothing else is then held against them; or of some
 // joints while the others follow the model, where no mass asks for so much.

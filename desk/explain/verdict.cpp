@@ -614,7 +614,8 @@ void judge_whole(Explanation& e) {
   std::optional<Suspicion> suspected = std::exchange(e.suspected, std::nullopt);
   if (!e.data_faults.empty()) {
     e.verdict = Verdict::kDataFault;
-    const bool of_file = e.data_faults[0].kind == DataFaultKind::kGravity;
+    const bool of_file = e.data_faults[0].kind == DataFaultKind::kGravity ||
+                         e.data_faults[0].kind == DataFaultKind::kJointZero;
     e.words = (of_file ? "The robot file is not of this recording: "
                        : "The recording itself is at fault: ") +
               e.data_faults[0].words + ".";

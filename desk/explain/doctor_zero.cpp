@@ -1,0 +1,281 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compare/inverse_model.hpp"
+#include "explain/doctor_checks.hpp"
+#include "robot/payload.hpp"
+#include "signal/decimate.hpp"
+
+// Positions that are counted from another zero than the robot file's, or the other way round.
+
+namespace offnominal::desk {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// How a joint's columns are to be read: the file's position is zero + (or minus) the recorded one.
+struct Reading {
+  double zero = 0;  // rad
+  bool position_turned = false;
+  bool torque_turned = false;
+
+  [[nodiscard]] bool is_as_it_is() const {
+    return zero == 0 && !position_turned && !torque_turned;
+  }
+};
+using Readings = std::vector<Reading>;
+
+constexpr std::array kWays{Reading{0, false, false}, Reading{0, false, true},
+                           Reading{0, true, true}, Reading{0, true, false}};
+
+constexpr double kStep = std::numbers::pi / 12;  // of the zeros that are tried
+
+double in_a_turn(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
+
+// The samples of a recording, few of them, and what the model says of them read in another way.
+class Rereading {
+ public:
+  Rereading(const Log& log, const RobotDescription& robot, const TorquePair& pair)
+      : rigid_(robot), rows_(thinned(pair)), of_effects_(rows_.model - rows_.load) {
+    rigid_.effects.clear();
+    rigid_ = carrying(rigid_, log.payload);
+    constexpr double kMoves = 1e-3;  // rad or m, rms
+    for (Index joint = 0; joint < rows_.q.cols(); ++joint) {
+      const auto about_mean = [](const auto& values) {
+        return (values.array() - values.mean()).matrix().norm();
+      };
+      const double root = std::sqrt(static_cast<double>(rows_.q.rows()));
+      const bool tells = about_mean(rows_.q.col(joint)) > kMoves * root;
+      sizes_.push_back(tells ? about_mean(rows_.measured.col(joint)) : 0);
+    }
+  }
+
+  // Share of the torques that is left with any friction, rotor and offset, rms over the joints that
+  // move.
+  [[nodiscard]] double left_by(const Readings& readings) const {
+    constexpr double kMost = 1.5;  // of one joint: it must not hide all others
+    Motion motion{rows_.t_s, rows_.q, rows_.dq, rows_.ddq};
+    for (Index joint = 0; joint < motion.q.cols(); ++joint) {
+      const Reading& one = readings[static_cast<std::size_t>(joint)];
+      if (one.position_turned) {
+        for (MatrixXd* of : {&motion.q, &motion.dq, &motion.ddq}) of->col(joint) *= -1;
+      }
+      motion.q.col(joint).array() += one.zero;
+    }
+    const MatrixXd load = model_torque(rigid_, motion);
+    double squares = 0;
+    Index telling = 0;
+    for (Index joint = 0; joint < load.cols(); ++joint) {
+      const auto at = static_cast<std::size_t>(joint);
+      if (!(sizes_[at] > 0)) continue;
+      const double sign = readings[at].torque_turned ? -1 : 1;
+      // Its own friction turns with it.
+      const double way = readings[at].position_turned ? -1 : 1;
+      const VectorXd error =
+          sign * rows_.measured.col(joint) - load.col(joint) - way * of_effects_.col(joint);
+      const double left = beside_drive(rows_, joint, error).norm() / sizes_[at];
+      squares += std::pow(std::min(left, kMost), 2);
+      ++telling;
+    }
+    return telling > 0 ? std::sqrt(squares / static_cast<double>(telling)) : 0;
+  }
+
+  [[nodiscard]] bool turns(Index joint) const {
+    return rigid_.joints[static_cast<std::size_t>(joint)].joint.type == JointType::kRevolute;
+  }
+
+ private:
+  static TorquePair thinned(const TorquePair& pair) {
+    constexpr Index kMostRows = 300;
+    const Index stride = std::max<Index>(1, pair.q.rows() / kMostRows);
+    TorquePair rows;
+    rows.t_s = every_nth(pair.t_s, stride);
+    rows.q = every_nth_row(pair.q, stride);
+    rows.dq = every_nth_row(pair.dq, stride);
+    rows.ddq = every_nth_row(pair.ddq, stride);
+    rows.measured = every_nth_row(pair.measured, stride);
+    rows.model = every_nth_row(pair.model, stride);
+    rows.load = every_nth_row(pair.load, stride);
+    return rows;
+  }
+
+  RobotDescription rigid_;
+  TorquePair rows_;
+  MatrixXd of_effects_;        // as the recording stands
+  std::vector<double> sizes_;  // per joint, of the torque about its mean; 0: it tells nothing
+};
+
+// The zero near `readings` at which least is left, by thirds.
+void refine_zero(const Rereading& rereading, Index joint, Readings& readings) {
+  constexpr int kCuts = 14;  // to a thousandth of a radian
+  double& zero = readings[static_cast<std::size_t>(joint)].zero;
+  double low = zero - kStep;
+  double high = zero + kStep;
+  const auto left_at = [&](double at) {
+    zero = at;
+    return rereading.left_by(readings);
+  };
+  for (int i = 0; i < kCuts; ++i) {
+    const double third = (high - low) / 3;
+    if (left_at(low + third) < left_at(high - third)) {
+      high -= third;
+    } else {
+      low += third;
+    }
+  }
+  zero = in_a_turn((low + high) / 2);
+  constexpr double kNone = 0.01;  // rad
+  if (std::abs(zero) < kNone) zero = 0;
+}
+
+// Zeros hang on each other: each anew beside the others.
+void refine_zeros(const Rereading& rereading, Readings& readings) {
+  constexpr int kSweeps = 3;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (std::size_t joint = 0; joint < readings.size(); ++joint) {
+      if (readings[joint].zero != 0) refine_zero(rereading, static_cast<Index>(joint), readings);
+    }
+  }
+}
+
+// Changes the reading of the joint that gains most, if any gains clearly. Returns what is left.
+std::optional<double> reread_one(const Rereading& rereading, double left, Readings& readings) {
+  constexpr double kClearly = 0.95;
+  constexpr double kSimpler = 0.98;  // what another way has to gain on one before it
+  constexpr int kZeros = 24;
+  double best = kClearly * left;
+  std::optional<std::pair<Index, Readings>> found;
+  for (Index joint = 0; joint < static_cast<Index>(readings.size()); ++joint) {
+    for (const Reading& way : kWays) {
+      for (int i = 0; i < (rereading.turns(joint) ? kZeros : 1); ++i) {
+        Readings other = readings;
+        Reading& changed = other[static_cast<std::size_t>(joint)];
+        changed.position_turned = changed.position_turned != way.position_turned;
+        changed.torque_turned = changed.torque_turned != way.torque_turned;
+        changed.zero = in_a_turn(changed.zero + i * kStep);
+        const double now = rereading.left_by(other);
+        if (!(now < kSimpler * best)) continue;
+        best = now;
+        found = {joint, std::move(other)};
+      }
+    }
+  }
+  if (!found) return std::nullopt;
+  readings = std::move(found->second);
+  if (rereading.turns(found->first)) refine_zero(rereading, found->first, readings);
+  return rereading.left_by(readings);
+}
+
+// Takes back what the others do without.
+void leave_out_needless(const Rereading& rereading, Readings& readings) {
+  constexpr double kNeeds = 1.3;
+  constexpr double kLeast = 0.005;  // of the torques
+  const double left = rereading.left_by(readings);
+  for (Reading& one : readings) {
+    const Reading was = std::exchange(one, {});
+    if (rereading.left_by(readings) > kNeeds * left + kLeast) one = was;
+  }
+}
+
+std::string angle_words(double angle) {
+  return fmt::format("{:.4g} rad ({:.3g} deg)", std::abs(angle),
+                     std::abs(angle) * 180 / std::numbers::pi);
+}
+
+std::string words_of(const Reading& one, Index joint) {
+  std::string words =
+      !one.position_turned ? fmt::format("those of joint {}", joint + 1)
+                           : fmt::format("those of joint {} turned about{}", joint + 1,
+                                         one.torque_turned ? ", as its torques," : "");
+  if (one.zero != 0) {
+    words += fmt::format(" and {} {}", angle_words(one.zero), one.zero > 0 ? "added" : "taken off");
+  }
+  return words;
+}
+
+void turn(Channel& channel) {
+  channel.scale *= -1;
+  channel.offset *= -1;
+  for (Channel& term : channel.sum) term.scale *= -1;
+}
+
+ChannelMap reread(ChannelMap channels, const Readings& readings) {
+  for (std::size_t joint = 0; joint < readings.size(); ++joint) {
+    const Reading& one = readings[joint];
+    if (joint >= channels.position.size()) break;
+    if (one.position_turned) {
+      turn(channels.position[joint]);
+      if (joint < channels.velocity.size() && channels.velocity[joint]) {
+        turn(*channels.velocity[joint]);
+      }
+    }
+    channels.position[joint].offset += one.zero;
+    if (one.torque_turned && joint < channels.torque.size()) turn(channels.torque[joint]);
+  }
+  return channels;
+}
+
+}  // namespace
+
+bool find_joint_zero(const Log& log, const RobotDescription& robot, const TorquePair& pair,
+                     std::vector<DataFault>& faults) {
+  constexpr double kBad = 0.05;
+  constexpr double kGood = 0.25;
+  // No missing effect or mass is made up for by another zero: that takes little of an error away,
+  // and where it is the zero hardly anything is left.
+  constexpr double kClearlyBetter = 0.35;  // of the first
+  // Of fewer joints a centre of mass elsewhere looks the same.
+  constexpr Index kSureJoints = 3;
+  const Rereading rereading(log, robot, pair);
+  Readings readings(robot.joints.size());
+  const double before = rereading.left_by(readings);
+  if (!(before > kBad)) return false;
+  double after = before;
+  for (std::size_t i = 0; i < 2 * readings.size(); ++i) {
+    const auto left = reread_one(rereading, after, readings);
+    if (!left) break;
+    after = *left;
+  }
+  leave_out_needless(rereading, readings);
+  refine_zeros(rereading, readings);
+  after = rereading.left_by(readings);
+  if (!(after < kGood) || !(after < kClearlyBetter * before)) return false;
+  std::vector<std::string> words;
+  DataFault fault;
+  fault.kind = DataFaultKind::kJointZero;
+  for (std::size_t joint = 0; joint < readings.size(); ++joint) {
+    const Reading& one = readings[joint];
+    if (one.is_as_it_is()) continue;
+    // A torque of the wrong sign is a fault of its own.
+    if (!one.position_turned && one.torque_turned && one.zero == 0) return false;
+    words.push_back(words_of(one, static_cast<Index>(joint)));
+    fault.joint = words.size() == 1 ? static_cast<Index>(joint) : -1;
+    fault.size = one.zero;
+  }
+  if (words.empty()) return false;
+  fault.unit = "rad";
+  fault.certain = static_cast<Index>(readings.size()) >= kSureJoints;
+  fault.words = fmt::format(
+      "positions {} counted from another zero than the robot file's, or the other way round: with "
+      "{} the model leaves {:.0f} % of the torques unexplained, friction apart, instead of {:.0f} %",
+      fault.certain ? "are" : "may be", fmt::join(words, ", "), 100 * after, 100 * before);
+  fault.mend =
+      "turn the joint's frame in the robot file by its rpy_rad, or its axis about, or read the "
+      "positions as the file has them";
+  propose_channels(log, reread(log.channels, readings), {"position", "velocity", "torque"}, fault);
+  faults.push_back(std::move(fault));
+  return true;
+}
+
+}  // namespace offnominal::desk
