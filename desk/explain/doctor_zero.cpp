@@ -30,9 +30,7 @@ struct Reading {
   bool position_turned = false;
   bool torque_turned = false;
 
-  [[nodiscard]] bool is_as_it_is() const {
-    return zero == 0 && !position_turned && !torque_turned;
-  }
+  [[nodiscard]] bool is_as_it_is() const { return zero == 0 && !position_turned && !torque_turned; }
 };
 using Readings = std::vector<Reading>;
 
@@ -194,10 +192,10 @@ std::string angle_words(double angle) {
 }
 
 std::string words_of(const Reading& one, Index joint) {
-  std::string words =
-      !one.position_turned ? fmt::format("those of joint {}", joint + 1)
-                           : fmt::format("those of joint {} turned about{}", joint + 1,
-                                         one.torque_turned ? ", as its torques," : "");
+  std::string words = !one.position_turned
+                          ? fmt::format("those of joint {}", joint + 1)
+                          : fmt::format("those of joint {} turned about{}", joint + 1,
+                                        one.torque_turned ? ", as its torques," : "");
   if (one.zero != 0) {
     words += fmt::format(" and {} {}", angle_words(one.zero), one.zero > 0 ? "added" : "taken off");
   }
@@ -268,7 +266,8 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   fault.certain = static_cast<Index>(readings.size()) >= kSureJoints;
   fault.words = fmt::format(
       "positions {} counted from another zero than the robot file's, or the other way round: with "
-      "{} the model leaves {:.0f} % of the torques unexplained, friction apart, instead of {:.0f} %",
+      "{} the model leaves {:.0f} % of the torques unexplained, friction apart, instead of {:.0f} "
+      "%",
       fault.certain ? "are" : "may be", fmt::join(words, ", "), 100 * after, 100 * before);
   fault.mend =
       "turn the joint's frame in the robot file by its rpy_rad, or its axis about, or read the "

@@ -145,7 +145,7 @@ TEST(EffectTraits, SayWhatTheStructsTorqueDoes) {
 
 TEST(EffectTraits, OnlyFrictionHasASignOfItsCoefficients) {
   for (const EffectInfo& info : kAllEffectInfos) {
-    if (info.traits.sign != CoefficientSign::kEither || info.traits.is_dry) {
+    if (info.traits.sign != CoefficientSign::kEither || info.traits.part == FrictionPart::kDry) {
       EXPECT_TRUE(info.traits.is_friction) << info.name;
     }
   }
