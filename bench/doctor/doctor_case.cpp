@@ -181,6 +181,11 @@ Judgement judge(const DoctorCase& made, const std::vector<desk::DataFault>& faul
   bool other = false;
   for (const desk::DataFault& fault : faults) {
     if (fault.kind == DataFaultKind::kNothingLeft) continue;  // follows from the others
+    // The longer side of a step may be the one that is off: then it has another zero indeed.
+    if (fault.kind == DataFaultKind::kJointZero && made.truth.kind == Defect::kPositionStep &&
+        fault.joint == made.truth.joint) {
+      continue;
+    }
     judgement.said +=
         fmt::format("{}{}@{}{}", judgement.said.empty() ? "" : " ", name_of(fault.kind),
                     fault.joint + 1, fault.at_s ? fmt::format(" {:.3f} s", *fault.at_s) : "");

@@ -181,8 +181,14 @@ void leave_out_needless(const Rereading& rereading, Readings& readings) {
   constexpr double kLeast = 0.005;  // of the torques
   const double left = rereading.left_by(readings);
   for (Reading& one : readings) {
-    const Reading was = std::exchange(one, {});
-    if (rereading.left_by(readings) > kNeeds * left + kLeast) one = was;
+    const Reading was = one;
+    Reading without_zero = was;
+    without_zero.zero = 0;
+    for (const Reading& simpler : {Reading{}, without_zero}) {
+      one = simpler;
+      if (rereading.left_by(readings) <= kNeeds * left + kLeast) break;
+      one = was;
+    }
   }
 }
 
@@ -256,7 +262,7 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
     const Reading& one = readings[joint];
     if (one.is_as_it_is()) continue;
     // A torque of the wrong sign is a fault of its own.
-    if (!one.position_turned && one.torque_turned && one.zero == 0) return false;
+    if (!one.position_turned && one.torque_turned) return false;
     words.push_back(words_of(one, static_cast<Index>(joint)));
     fault.joint = words.size() == 1 ? static_cast<Index>(joint) : -1;
     fault.size = one.zero;
