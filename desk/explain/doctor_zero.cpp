@@ -234,8 +234,8 @@ ChannelMap reread(ChannelMap channels, const Readings& readings) {
 
 bool find_joint_zero(const Log& log, const RobotDescription& robot, const TorquePair& pair,
                      std::vector<DataFault>& faults) {
-  constexpr double kBad = 0.05;
-  constexpr double kGood = 0.25;
+  constexpr double kLeastWrong = 0.05;
+  constexpr double kMostLeft = 0.25;
   // No missing effect or mass is made up for by another zero: that takes little of an error away,
   // and where it is the zero hardly anything is left.
   constexpr double kClearlyBetter = 0.35;  // of the first
@@ -244,7 +244,7 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   const Rereading rereading(log, robot, pair);
   Readings readings(robot.joints.size());
   const double before = rereading.left_by(readings);
-  if (!(before > kBad)) return false;
+  if (!(before > kLeastWrong)) return false;
   double after = before;
   for (std::size_t i = 0; i < 2 * readings.size(); ++i) {
     const auto left = reread_one(rereading, after, readings);
@@ -254,7 +254,7 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   leave_out_needless(rereading, readings);
   refine_zeros(rereading, readings);
   after = rereading.left_by(readings);
-  if (!(after < kGood) || !(after < kClearlyBetter * before)) return false;
+  if (!(after < kMostLeft) || !(after < kClearlyBetter * before)) return false;
   std::vector<std::string> words;
   DataFault fault;
   fault.kind = DataFaultKind::kJointZero;
