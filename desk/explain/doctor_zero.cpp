@@ -238,7 +238,7 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   constexpr double kMostLeft = 0.25;
   // No missing effect or mass is made up for by another zero: that takes little of an error away,
   // and where it is the zero hardly anything is left.
-  constexpr double kClearlyBetter = 0.35;  // of the first
+  constexpr double kOfWhatWasLeft = 0.35;  // of the first
   // Of fewer joints a centre of mass elsewhere looks the same.
   constexpr Index kSureJoints = 3;
   const Rereading rereading(log, robot, pair);
@@ -254,7 +254,7 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   leave_out_needless(rereading, readings);
   refine_zeros(rereading, readings);
   after = rereading.left_by(readings);
-  if (!(after < kMostLeft) || !(after < kClearlyBetter * before)) return false;
+  if (!(after < kMostLeft) || !(after < kOfWhatWasLeft * before)) return false;
   std::vector<std::string> words;
   DataFault fault;
   fault.kind = DataFaultKind::kJointZero;
