@@ -59,10 +59,9 @@ class Rereading {
     }
   }
 
-  // Share of the torques that is left with any friction, rotor and offset, rms over the joints that
-  // move.
-  [[nodiscard]] double left_by(const Readings& readings) const {
-    constexpr double kMost = 1.5;  // of one joint: it must not hide all others
+  // Share of each joint's torque that is left with any friction, rotor and offset; 0 of one that
+  // does not move.
+  [[nodiscard]] VectorXd left_of_each(const Readings& readings) const {
     Motion motion{rows_.t_s, rows_.q, rows_.dq, rows_.ddq};
     for (Index joint = 0; joint < motion.q.cols(); ++joint) {
       const Reading& one = readings[static_cast<std::size_t>(joint)];
@@ -72,8 +71,7 @@ class Rereading {
       motion.q.col(joint).array() += one.zero;
     }
     const MatrixXd load = model_torque(rigid_, motion);
-    double squares = 0;
-    Index telling = 0;
+    VectorXd left = VectorXd::Zero(load.cols());
     for (Index joint = 0; joint < load.cols(); ++joint) {
       const auto at = static_cast<std::size_t>(joint);
       if (!(sizes_[at] > 0)) continue;
@@ -82,11 +80,18 @@ class Rereading {
       const double way = readings[at].position_turned ? -1 : 1;
       const VectorXd error =
           sign * rows_.measured.col(joint) - load.col(joint) - way * of_effects_.col(joint);
-      const double left = beside_drive(rows_, joint, error).norm() / sizes_[at];
-      squares += std::pow(std::min(left, kMost), 2);
-      ++telling;
+      left[joint] = beside_drive(rows_, joint, error).norm() / sizes_[at];
     }
-    return telling > 0 ? std::sqrt(squares / static_cast<double>(telling)) : 0;
+    return left;
+  }
+
+  // Rms over the joints that move.
+  [[nodiscard]] double left_by(const Readings& readings) const {
+    constexpr double kMost = 1.5;  // of one joint: it must not hide all others
+    const auto telling =
+        std::count_if(sizes_.begin(), sizes_.end(), [](double size) { return size > 0; });
+    if (telling == 0) return 0;
+    return left_of_each(readings).cwiseMin(kMost).norm() / std::sqrt(static_cast<double>(telling));
   }
 
   [[nodiscard]] bool turns(Index joint) const {
@@ -239,10 +244,13 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   // No missing effect or mass is made up for by another zero: that takes little of an error away,
   // and where it is the zero hardly anything is left.
   constexpr double kOfWhatWasLeft = 0.35;  // of the first
-  // Of fewer joints a centre of mass elsewhere looks the same.
-  constexpr Index kSureJoints = 3;
+  // Of fewer joints, or where one alone shows it, a centre of mass elsewhere looks the same.
+  constexpr std::size_t kSureJoints = 3;
+  constexpr int kShownBy = 2;
+  constexpr double kLeastWrongUnsure = 0.3;
   const Rereading rereading(log, robot, pair);
   Readings readings(robot.joints.size());
+  const VectorXd left_before = rereading.left_of_each(readings);
   const double before = rereading.left_by(readings);
   if (!(before > kLeastWrong)) return false;
   double after = before;
@@ -255,6 +263,12 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   refine_zeros(rereading, readings);
   after = rereading.left_by(readings);
   if (!(after < kMostLeft) || !(after < kOfWhatWasLeft * before)) return false;
+  const VectorXd left_after = rereading.left_of_each(readings);
+  const auto shown_by = (left_before.array() > kLeastWrong &&
+                         left_after.array() < kOfWhatWasLeft * left_before.array())
+                            .count();
+  const bool certain = readings.size() >= kSureJoints && shown_by >= kShownBy;
+  if (!certain && !(before > kLeastWrongUnsure)) return false;
   std::vector<std::string> words;
   DataFault fault;
   fault.kind = DataFaultKind::kJointZero;
@@ -269,7 +283,7 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   }
   if (words.empty()) return false;
   fault.unit = "rad";
-  fault.certain = static_cast<Index>(readings.size()) >= kSureJoints;
+  fault.certain = certain;
   fault.words = fmt::format(
       "positions {} counted from another zero than the robot file's, or the other way round: with "
       "{} the model leaves {:.0f} % of the torques unexplained, friction apart, instead of {:.0f} "
