@@ -11,8 +11,8 @@
 namespace offnominal::desk {
 
 /// Calls work(i) for i = 0 .. count-1 on `threads` threads until one throws: that exception is
-/// thrown again, and what had not begun is left. Every call has to write to a place of its own, so
-/// that results do not depend on the number of threads.
+/// thrown again, and what had not begun is left. Every call has to write to a place of its own, or
+/// to lock, so that results do not depend on the number of threads.
 template <typename Work>
 void parallel_for(std::size_t count, int threads, const Work& work) {
   std::atomic<std::size_t> next{0};

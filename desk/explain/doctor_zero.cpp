@@ -14,6 +14,7 @@
 #include "explain/doctor_checks.hpp"
 #include "robot/payload.hpp"
 #include "signal/decimate.hpp"
+#include "signal/norm_about_mean.hpp"
 
 // Positions that are counted from another zero than the robot file's, or the other way round.
 
@@ -45,17 +46,17 @@ double in_a_turn(double angle) { return std::remainder(angle, 2 * std::numbers::
 class Rereading {
  public:
   Rereading(const Log& log, const RobotDescription& robot, const TorquePair& pair)
-      : rigid_(robot), rows_(thinned(pair)), of_effects_(rows_.model - rows_.load) {
-    rigid_.effects.clear();
+      : rigid_(robot), rows_(thinned(pair)) {
+    std::erase_if(rigid_.effects, [](const RobotEffect& effect) {
+      return info_of(effect.kind)->action != EffectAction::kPointMass;
+    });
     rigid_ = carrying(rigid_, log.payload);
+    of_effects_ = rows_.model - model_torque(rigid_, {rows_.t_s, rows_.q, rows_.dq, rows_.ddq});
     constexpr double kMoves = 1e-3;  // rad or m, rms
     for (Index joint = 0; joint < rows_.q.cols(); ++joint) {
-      const auto about_mean = [](const auto& values) {
-        return (values.array() - values.mean()).matrix().norm();
-      };
       const double root = std::sqrt(static_cast<double>(rows_.q.rows()));
-      const bool tells = about_mean(rows_.q.col(joint)) > kMoves * root;
-      sizes_.push_back(tells ? about_mean(rows_.measured.col(joint)) : 0);
+      const bool tells = norm_about_mean(rows_.q.col(joint)) > kMoves * root;
+      sizes_.push_back(tells ? norm_about_mean(rows_.measured.col(joint)) : 0);
     }
   }
 
@@ -100,8 +101,8 @@ class Rereading {
 
  private:
   static TorquePair thinned(const TorquePair& pair) {
-    constexpr Index kMostRows = 300;
-    const Index stride = std::max<Index>(1, pair.q.rows() / kMostRows);
+    constexpr Index kMostRows = 200;
+    const Index stride = std::max<Index>(1, (pair.q.rows() + kMostRows - 1) / kMostRows);
     TorquePair rows;
     rows.t_s = every_nth(pair.t_s, stride);
     rows.q = every_nth_row(pair.q, stride);
@@ -109,7 +110,6 @@ class Rereading {
     rows.ddq = every_nth_row(pair.ddq, stride);
     rows.measured = every_nth_row(pair.measured, stride);
     rows.model = every_nth_row(pair.model, stride);
-    rows.load = every_nth_row(pair.load, stride);
     return rows;
   }
 
@@ -160,8 +160,8 @@ std::optional<double> reread_one(const Rereading& rereading, double left, Readin
   double best = kClearly * left;
   std::optional<std::pair<Index, Readings>> found;
   for (Index joint = 0; joint < static_cast<Index>(readings.size()); ++joint) {
-    for (const Reading& way : kWays) {
-      for (int i = 0; i < (rereading.turns(joint) ? kZeros : 1); ++i) {
+    for (int i = 0; i < (rereading.turns(joint) ? kZeros : 1); ++i) {
+      for (const Reading& way : kWays) {
         Readings other = readings;
         Reading& changed = other[static_cast<std::size_t>(joint)];
         changed.position_turned = changed.position_turned != way.position_turned;
@@ -178,6 +178,20 @@ std::optional<double> reread_one(const Rereading& rereading, double left, Readin
   readings = std::move(found->second);
   if (rereading.turns(found->first)) refine_zero(rereading, found->first, readings);
   return rereading.left_by(readings);
+}
+
+// Whether torques of the wrong sign say the same: of all joints, or of those whose model is worse
+// than none.
+bool is_by_torque_signs(const Rereading& rereading, const VectorXd& left_as_it_is, double left) {
+  constexpr double kAlike = 1.3;
+  constexpr double kLeast = 0.005;  // of the torques
+  const auto joints = static_cast<std::size_t>(left_as_it_is.size());
+  Readings all(joints, Reading{0, false, true});
+  Readings opposed(joints);
+  for (std::size_t joint = 0; joint < joints; ++joint) {
+    opposed[joint].torque_turned = left_as_it_is[static_cast<Index>(joint)] > 1;
+  }
+  return std::min(rereading.left_by(all), rereading.left_by(opposed)) <= kAlike * left + kLeast;
 }
 
 // Takes back what the others do without.
@@ -216,7 +230,17 @@ std::string words_of(const Reading& one, Index joint) {
 void turn(Channel& channel) {
   channel.scale *= -1;
   channel.offset *= -1;
-  for (Channel& term : channel.sum) term.scale *= -1;
+}
+
+// Channels of motors have zeros and senses of their own, which lead to the joints' through the
+// transmission.
+bool has_motors(const ChannelMap& channels) {
+  for (const auto* of : {&channels.position_of, &channels.velocity_of, &channels.torque_of}) {
+    for (const ChannelOf one : *of) {
+      if (one == ChannelOf::kMotor || one == ChannelOf::kCurrent) return true;
+    }
+  }
+  return false;
 }
 
 ChannelMap reread(ChannelMap channels, const Readings& readings) {
@@ -230,7 +254,11 @@ ChannelMap reread(ChannelMap channels, const Readings& readings) {
       }
     }
     channels.position[joint].offset += one.zero;
-    if (one.torque_turned && joint < channels.torque.size()) turn(channels.torque[joint]);
+    if (!one.torque_turned) continue;
+    if (joint < channels.torque.size()) turn(channels.torque[joint]);
+    if (joint < channels.sensor_torque.size() && channels.sensor_torque[joint]) {
+      turn(*channels.sensor_torque[joint]);
+    }
   }
   return channels;
 }
@@ -244,7 +272,8 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   // No missing effect or mass is made up for by another zero: that takes little of an error away,
   // and where it is the zero hardly anything is left.
   constexpr double kOfWhatWasLeft = 0.35;  // of the first
-  // Of fewer joints, or where one alone shows it, a centre of mass elsewhere looks the same.
+  // Of fewer joints, where one alone shows it, or of the last one, a centre of mass elsewhere looks
+  // the same.
   constexpr std::size_t kSureJoints = 3;
   constexpr int kShownBy = 2;
   constexpr double kLeastWrongUnsure = 0.3;
@@ -263,11 +292,14 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   refine_zeros(rereading, readings);
   after = rereading.left_by(readings);
   if (!(after < kMostLeft) || !(after < kOfWhatWasLeft * before)) return false;
+  if (is_by_torque_signs(rereading, left_before, after)) return false;
   const VectorXd left_after = rereading.left_of_each(readings);
   const auto shown_by = (left_before.array() > kLeastWrong &&
                          left_after.array() < kOfWhatWasLeft * left_before.array())
                             .count();
-  const bool certain = readings.size() >= kSureJoints && shown_by >= kShownBy;
+  const bool is_before_others = std::any_of(readings.begin(), readings.end() - 1,
+                                            [](const Reading& one) { return !one.is_as_it_is(); });
+  const bool certain = readings.size() >= kSureJoints && shown_by >= kShownBy && is_before_others;
   if (!certain && !(before > kLeastWrongUnsure)) return false;
   std::vector<std::string> words;
   DataFault fault;
@@ -286,13 +318,18 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   fault.certain = certain;
   fault.words = fmt::format(
       "positions {} counted from another zero than the robot file's, or the other way round: with "
-      "{} the model leaves {:.0f} % of the torques unexplained, friction apart, instead of {:.0f} "
+      "{}, the model leaves {:.0f} % of the torques unexplained, friction apart, instead of {:.0f} "
       "%",
       fault.certain ? "are" : "may be", fmt::join(words, ", "), 100 * after, 100 * before);
   fault.mend =
       "turn the joint's frame in the robot file by its rpy_rad, or its axis about, or read the "
       "positions as the file has them";
-  propose_channels(log, reread(log.channels, readings), {"position", "velocity", "torque"}, fault);
+  if (has_motors(log.channels)) {
+    fault.mend += "; what is recorded of motors hangs on offset_rad and signs of [transmission]";
+  } else {
+    propose_channels(log, reread(log.channels, readings), {"position", "velocity", "torque"},
+                     fault);
+  }
   faults.push_back(std::move(fault));
   return true;
 }

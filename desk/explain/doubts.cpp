@@ -33,7 +33,8 @@ bool is_changed_itself(const Explanation& e, Eigen::Index joint) {
 void add_doubts_of_masses(const Explanation& e, const std::vector<HeldOutSquares>& joints,
                           std::vector<std::string>& doubts) {
   for (const Finding& one : e.found) {
-    if (info_of(one.what.kind)->action != EffectAction::kPointMass) continue;
+    const bool is_mass = info_of(one.what.kind)->action == EffectAction::kPointMass;
+    if (!is_mass || !is_written(e, one.what)) continue;
     bool gains = false;
     for (std::size_t joint = 0; joint < joints.size(); ++joint) {
       gains =
@@ -42,7 +43,7 @@ void add_doubts_of_masses(const Explanation& e, const std::vector<HeldOutSquares
     if (gains) continue;
     doubts.push_back(fmt::format(
         "on data not used for the fit the error of no joint that carries {} of joint {} "
-        "falls: these data do not support what was found",
+        "falls clearly: these data do not support what was found",
         one.what.name(), one.what.joint + 1));
   }
 }

@@ -18,7 +18,7 @@ struct HeldOutSquares {
 std::vector<HeldOutSquares> held_out_squares(const Explanation& e);
 
 // Whether data that no fit has seen speak against a change: a joint that is changed itself must
-// gain, at no other may it rise (before_after.hpp).
+// gain, at no other may it rise (before_after.hpp). Of a mass one of those that carry it must gain.
 bool is_doubted(const HeldOutSquares& joint, bool is_changed);
 
 // Why what was found should not be written, as far as data say that the fit has not seen. One

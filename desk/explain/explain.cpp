@@ -187,8 +187,11 @@ class Explainer {
     // How far they are off is then the user's word, or what the whole recording says.
     if (result.at_rest || options_.link_share || result.link_share_judged) return improved;
     std::vector<char> changed(robot_.joints.size(), 0);
-    for (const Accepted& one : found.accepted)
-      changed[static_cast<std::size_t>(one.term.joint)] = 1;
+    for (const Accepted& one : found.accepted) {
+      // By what it carries its own joint need not gain (doubts.cpp).
+      const bool is_mass = one.term.effect->info().action == EffectAction::kPointMass;
+      if (!is_mass) changed[static_cast<std::size_t>(one.term.joint)] = 1;
+    }
     for (const Shift& one : result.shifts) changed[static_cast<std::size_t>(one.joint)] = 1;
     std::vector<Index> raised = raised_by_links(judged(), improved, changed);
     if (raised.empty()) return improved;
@@ -373,7 +376,8 @@ void check_keep(const std::vector<KeepFault>& keep, const RobotDescription& robo
                         ""});
     }
     if (one.kind == DataFaultKind::kGaps || one.kind == DataFaultKind::kTimeUnit ||
-        one.kind == DataFaultKind::kGravity || one.kind == DataFaultKind::kJointOrder) {
+        one.kind == DataFaultKind::kGravity || one.kind == DataFaultKind::kJointOrder ||
+        one.kind == DataFaultKind::kJointZero) {
       throw InputError({"--keep", "", said, "a fault of one joint: this one is of all",
                         fmt::format("write all:{}", name_of(one.kind))});
     }

@@ -49,7 +49,7 @@ std::string name_seen_from(Eigen::Index joint, const EffectAt& one);
 bool holds(const std::vector<EffectAt>& effects, const EffectAt& one);
 bool holds_in_any(const std::vector<std::vector<EffectAt>>& classes, const EffectAt& one);
 
-// A mass shows on every joint that carries it: on its own not where it hangs in that joint's axis.
+// Whether its torque can be one of that joint: a mass has one on every joint that carries it.
 bool shows_on(const EffectAt& one, Eigen::Index joint);
 
 struct Finding {
@@ -65,7 +65,7 @@ struct Finding {
   // it, N m or N: beside what is each recording's own, which no file has (JointErrors).
   double holdout_before = 0;
   double holdout_after = 0;
-  double simulated_before = 0;  // rms position error of short forward simulations, rad or m
+  double simulated_before = 0;  // the same of positions in short forward simulations, rad or m
   double simulated_after = 0;
 
   // Share of the error on held-out data.

@@ -390,7 +390,7 @@ std::string words_of_gain(const JointErrors& errors, bool is_in_the_file) {
   const double after = 100 * left / errors.rms_torque;
   constexpr double kSame = 0.02;
   if (std::abs(left - errors.rms_before) <= kSame * errors.rms_before) {
-    return fmt::format(" Its own error is {:.3g} {} with it and without, {} % of the torque.", left,
+    return fmt::format(" The joint's own error stays at {:.3g} {}, {} % of the torque.", left,
                        errors.unit, significant(after, 2));
   }
   const bool falls = left <= errors.rms_before;

@@ -3,7 +3,7 @@
 
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "explain/doctor.hpp"
@@ -18,6 +18,7 @@ using Eigen::Index;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr std::size_t kJoints = 5;
@@ -50,7 +51,7 @@ TEST(JointZero, OfAJointThatIsCountedTheOtherWayRoundIsNamed) {
   const auto faults = examine(log, robot);
   ASSERT_THAT(faults, SizeIs(1));
   EXPECT_EQ(faults[0].kind, DataFaultKind::kJointZero) << faults[0].words;
-  EXPECT_THAT(faults[0].words, HasSubstr("those of joint 2 turned about the model"));
+  EXPECT_THAT(faults[0].words, HasSubstr("those of joint 2 turned about, the model"));
 }
 
 TEST(JointZero, OfSeveralJointsIsNamedJointByJoint) {
@@ -79,6 +80,54 @@ TEST(JointZero, IsNotMadeOfAPayloadASpringOrAHeavyLink) {
   for (const RobotDescription& real : reals) {
     EXPECT_THAT(examine(recorded(real), file), IsEmpty());
   }
+}
+
+// Their model turned upside down says nearly the same.
+TEST(JointZero, IsNotMadeOfTorquesOfTheWrongSign) {
+  for (const std::size_t joints : {1U, 3U}) {
+    const RobotDescription robot = test::serial_arm(joints);
+    Log log = recorded(robot);
+    log.tau *= -1;
+    const auto faults = examine(log, robot);
+    ASSERT_THAT(faults, Not(IsEmpty()));
+    for (const DataFault& fault : faults) {
+      EXPECT_EQ(fault.kind, DataFaultKind::kTorqueSign) << fault.words;
+    }
+  }
+}
+
+TEST(JointZero, OfAnArmWhoseFileHasAPayloadIsNamed) {
+  RobotDescription robot = test::serial_arm(kJoints);
+  robot.effects.push_back(
+      test::effect_of(EffectKind::kTipPayload, kJoints - 1, {3.0, 0.1, 0.05, 0.1}));
+  Log log = recorded(robot);
+  log.q.col(1).array() -= 0.4;
+  const auto faults = examine(log, robot);
+  ASSERT_THAT(faults, SizeIs(1));
+  EXPECT_EQ(faults[0].kind, DataFaultKind::kJointZero) << faults[0].words;
+  EXPECT_NEAR(faults[0].size, 0.4, 0.01);
+}
+
+// The sum's terms stand as they are: scale and offset are of what they come to.
+TEST(JointZero, IsMendedByLinesOfChannels) {
+  const RobotDescription robot = test::serial_arm(kJoints);
+  Log log = recorded(robot);
+  for (const char* quantity : {"q", "tau"}) {
+    for (std::size_t joint = 1; joint <= kJoints; ++joint) {
+      Channel channel;
+      channel.source = quantity + std::to_string(joint);
+      (*quantity == 'q' ? log.channels.position : log.channels.torque).push_back(channel);
+    }
+  }
+  Channel& second = log.channels.position[1];
+  second.sum = {second, second};
+  second.source = "";
+  turn(log, 1);
+  const auto faults = examine(log, robot);
+  ASSERT_THAT(faults, SizeIs(1));
+  ASSERT_THAT(faults[0].channels, Not(IsEmpty()));
+  EXPECT_THAT(faults[0].channels[0],
+              HasSubstr("{sum = [{source = \"q2\"}, {source = \"q2\"}], scale = -1"));
 }
 
 // Of one joint or two a centre of mass elsewhere looks the same: said, and nothing refused for it.
