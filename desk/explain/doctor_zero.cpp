@@ -180,24 +180,27 @@ std::optional<double> reread_one(const Rereading& rereading, double left, Readin
   return rereading.left_by(readings);
 }
 
+// Of shares of the torques that two readings leave.
+bool is_hardly_more(double left, double than) {
+  constexpr double kTimes = 1.3;
+  constexpr double kLeast = 0.005;
+  return left <= kTimes * than + kLeast;
+}
+
 // Whether torques of the wrong sign say the same: of all joints, or of those whose model is worse
 // than none.
 bool is_by_torque_signs(const Rereading& rereading, const VectorXd& left_as_it_is, double left) {
-  constexpr double kAlike = 1.3;
-  constexpr double kLeast = 0.005;  // of the torques
   const auto joints = static_cast<std::size_t>(left_as_it_is.size());
   Readings all(joints, Reading{0, false, true});
   Readings opposed(joints);
   for (std::size_t joint = 0; joint < joints; ++joint) {
     opposed[joint].torque_turned = left_as_it_is[static_cast<Index>(joint)] > 1;
   }
-  return std::min(rereading.left_by(all), rereading.left_by(opposed)) <= kAlike * left + kLeast;
+  return is_hardly_more(std::min(rereading.left_by(all), rereading.left_by(opposed)), left);
 }
 
 // Takes back what the others do without.
 void leave_out_needless(const Rereading& rereading, Readings& readings) {
-  constexpr double kNeeds = 1.3;
-  constexpr double kLeast = 0.005;  // of the torques
   const double left = rereading.left_by(readings);
   for (Reading& one : readings) {
     const Reading was = one;
@@ -205,7 +208,7 @@ void leave_out_needless(const Rereading& rereading, Readings& readings) {
     without_zero.zero = 0;
     for (const Reading& simpler : {Reading{}, without_zero}) {
       one = simpler;
-      if (rereading.left_by(readings) <= kNeeds * left + kLeast) break;
+      if (is_hardly_more(rereading.left_by(readings), left)) break;
       one = was;
     }
   }
@@ -263,6 +266,18 @@ ChannelMap reread(ChannelMap channels, const Readings& readings) {
   return channels;
 }
 
+// With which as little as possible is left, as far as one joint after the other finds them.
+Readings best_readings(const Rereading& rereading, std::size_t joints, double left_as_it_is) {
+  Readings readings(joints);
+  std::optional<double> left = left_as_it_is;
+  for (std::size_t i = 0; i < 2 * joints && left; ++i) {
+    left = reread_one(rereading, *left, readings);
+  }
+  leave_out_needless(rereading, readings);
+  refine_zeros(rereading, readings);
+  return readings;
+}
+
 }  // namespace
 
 bool find_joint_zero(const Log& log, const RobotDescription& robot, const TorquePair& pair,
@@ -278,19 +293,12 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   constexpr int kShownBy = 2;
   constexpr double kLeastWrongUnsure = 0.3;
   const Rereading rereading(log, robot, pair);
-  Readings readings(robot.joints.size());
-  const VectorXd left_before = rereading.left_of_each(readings);
-  const double before = rereading.left_by(readings);
+  const std::size_t joints = robot.joints.size();
+  const VectorXd left_before = rereading.left_of_each(Readings(joints));
+  const double before = rereading.left_by(Readings(joints));
   if (!(before > kLeastWrong)) return false;
-  double after = before;
-  for (std::size_t i = 0; i < 2 * readings.size(); ++i) {
-    const auto left = reread_one(rereading, after, readings);
-    if (!left) break;
-    after = *left;
-  }
-  leave_out_needless(rereading, readings);
-  refine_zeros(rereading, readings);
-  after = rereading.left_by(readings);
+  const Readings readings = best_readings(rereading, joints, before);
+  const double after = rereading.left_by(readings);
   if (!(after < kMostLeft) || !(after < kOfWhatWasLeft * before)) return false;
   if (is_by_torque_signs(rereading, left_before, after)) return false;
   const VectorXd left_after = rereading.left_of_each(readings);
