@@ -147,7 +147,8 @@ void add_table(BoundVariable variable, int joint, const std::vector<RecordedErro
   shape.settings.table = {variable, joint, points_over(std::move(values)), {}};
   shape.size = static_cast<int>(shape.settings.table.at.size());
   if (shape.size < 3) return;
-  shape.words = fmt::format("table over {} of joint {}", names_of(variable).name, joint + 1);
+  shape.words =
+      fmt::format("table over {} of joint {}", bound_variable_names(variable).name, joint + 1);
   shapes.push_back(std::move(shape));
 }
 

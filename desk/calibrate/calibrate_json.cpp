@@ -29,7 +29,7 @@ ordered_json calibration_json(const BoundSettings& bound, const std::string& vel
       break;
     case BoundSettings::Kind::kTable:
       json = {{"kind", kind},
-              {"variable", names_of(bound.table.variable).name},
+              {"variable", bound_variable_names(bound.table.variable).name},
               {"joint", bound.table.joint + 1},
               {"at", bound.table.at},
               {"value", bound.table.value}};

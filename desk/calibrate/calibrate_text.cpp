@@ -78,10 +78,10 @@ std::string words_of(const BoundSettings& bound, const std::string& unit) {
                           acceleration);
       break;
     case BoundSettings::Kind::kTable:
-      words =
-          fmt::format("table over {} of joint {}: {} at {}{}", names_of(bound.table.variable).name,
-                      bound.table.joint + 1, list_text(bound.table.value),
-                      list_text(bound.table.at), acceleration.empty() ? "" : "," + acceleration);
+      words = fmt::format("table over {} of joint {}: {} at {}{}",
+                          bound_variable_names(bound.table.variable).name, bound.table.joint + 1,
+                          list_text(bound.table.value), list_text(bound.table.at),
+                          acceleration.empty() ? "" : "," + acceleration);
       break;
     case BoundSettings::Kind::kPerJoint:  // said joint by joint (joints_report.cpp)
       break;

@@ -26,7 +26,7 @@ std::string norm_unit(const RobotDescription& robot, Quantity quantity) {
 
 std::string table_text(const UncertaintyBound<kRuntimeJoints, double>& bound,
                        const RobotDescription& robot) {
-  const BoundVariableName& variable = names_of(bound.variable);
+  const BoundVariableName& variable = bound_variable_names(bound.variable);
   const JointType type = robot.joints[bound.joint].joint.type;
   const auto in_use = [&](const auto& values) {
     return cpp_text::numbers(std::span<const double>(values.data(), bound.points));

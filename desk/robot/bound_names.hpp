@@ -31,7 +31,7 @@ inline constexpr std::array<BoundVariableName, 3> kBoundVariableNames{{
   return kBoundKindNames[static_cast<std::size_t>(kind)];
 }
 
-[[nodiscard]] constexpr const BoundVariableName& names_of(BoundVariable variable) {
+[[nodiscard]] constexpr const BoundVariableName& bound_variable_names(BoundVariable variable) {
   return kBoundVariableNames[static_cast<std::size_t>(variable)];
 }
 

@@ -187,7 +187,7 @@ void write_bound(Writer& out, const BoundSettings& bound) {
       out.value("matrix", rows(bound.scaled_norm.matrix));
       break;
     case BoundSettings::Kind::kTable:
-      out.value("variable", quoted(names_of(bound.table.variable).name));
+      out.value("variable", quoted(bound_variable_names(bound.table.variable).name));
       out.value("joint", std::to_string(bound.table.joint + 1));
       out.value("at", list(bound.table.at));
       out.value("value", list(bound.table.value));
