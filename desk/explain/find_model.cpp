@@ -240,7 +240,7 @@ class Finder {
     constexpr double kWorthAWord = 0.02;
     // Regression only screens what remembers: its columns hold the noise that they explain.
     if (!found_.accepted.empty() || one.terms.back().effect->is_only_screened()) return;
-    if (one.added > 1 || !excitation_[joint_of(one)].moves) return;
+    if (one.added > 1 || !motion_of(one.terms.back()).moves) return;
     const Fall fall = fall_of(found_.fit, one.fit);
     if (fall.share < kWorthAWord || !matters(fall)) return;
     const double before = hold_out_.rms(found_.held_out_after)[fall.joint];
@@ -253,6 +253,23 @@ class Finder {
 
   static std::size_t joint_of(const Proposal& one) {
     return static_cast<std::size_t>(one.terms.back().joint);
+  }
+
+  // The joint whose error says most of it: its own, or of a mass one that carries it.
+  [[nodiscard]] std::size_t shown_on(const Proposal& one) const {
+    if (one.terms.back().effect->info().action != EffectAction::kPointMass) return joint_of(one);
+    return static_cast<std::size_t>(fall_of(found_.fit, one.fit).joint);
+  }
+
+  // The motion that shows a term: of its joint, or of a mass the richest of those that carry it,
+  // whether the joint of its own link moves or not.
+  [[nodiscard]] const Excitation& motion_of(const Term& term) const {
+    const auto own = excitation_.begin() + term.joint;
+    if (term.effect->info().action != EffectAction::kPointMass) return *own;
+    return *std::max_element(
+        excitation_.begin(), own + 1, [](const Excitation& a, const Excitation& b) {
+          return std::pair{a.moves, a.separation} < std::pair{b.moves, b.separation};
+        });
   }
 
   // Every joint that is not done, with what it may lack, best first.
@@ -283,7 +300,7 @@ class Finder {
       const auto& failed = joints_[joint].failed;
       if (std::find(failed.begin(), failed.end(), kinds_of(one)) != failed.end()) continue;
       if (!has_room_for(one.added) || !relevant(found_.fit, one.fit)) continue;
-      if (!excitation_[joint].moves) continue;
+      if (!motion_of(one.terms.back()).moves) continue;
       if (is_misfit_of_a_curve(one.terms.back())) continue;
       return &one;
     }
@@ -386,9 +403,9 @@ class Finder {
         return false;
       }
       if (!shown(regression_.data(), one.terms, i, one.fit, without)
-               .is_enough(excitation_[joint_of(one)], one.terms[i].effect->kind()) ||
+               .is_enough(motion_of(one.terms[i]), one.terms[i].effect->kind()) ||
           repeats_with_motion(regression_.data(), one.terms[i])) {
-        found_.unsure[joint_of(one)] = 1;
+        found_.unsure[shown_on(one)] = 1;
         return false;
       }
       fresh.push_back({one.terms[i], p, 1});

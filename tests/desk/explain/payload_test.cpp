@@ -62,6 +62,22 @@ TEST(Payload, HasTheTorqueOfAMassAtItsPlace) {
   }
 }
 
+// A gripper that holds something while its wrist stands: the other joints carry it.
+TEST(Payload, OnALinkWhoseOwnJointStandsIsNamedByThoseThatCarryIt) {
+  const RobotDescription file = test::serial_arm(kJoints);
+  RobotDescription real = file;
+  real.effects.push_back(
+      test::effect_of(EffectKind::kTipPayload, kJoints - 1, {1.5, 0.02, -0.03, 0.06}));
+  ExplainOptions options;
+  options.bootstrap_draws = 499;
+  options.threads = 2;
+  const Log log = test::record(real, {.duration_s = 15, .seed = 5, .held = kJoints - 1});
+  const Explanation told = explain(file, {log}, {}, options);
+  ASSERT_THAT(told.found, SizeIs(1)) << told.words;
+  EXPECT_EQ(told.found[0].what, (EffectAt{EffectKind::kTipPayload, kJoints - 1}));
+  EXPECT_NEAR(number(told.found[0], "mass"), 1.5, 0.15);
+}
+
 TEST(Payload, BesideTheAxisOfTheLastLinkIsNamedWithItsMassAndPlace) {
   const RobotDescription file = test::serial_arm(kJoints);
   RobotDescription real = file;

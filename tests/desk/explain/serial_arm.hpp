@@ -46,9 +46,11 @@ struct SerialRecording {
   double rate_hz = 250;
   double torque_noise_nm = 0.02;
   std::uint64_t seed = 1;
+  Eigen::Index held = -1;  // joint that stands, at 0.4 rad; none
 };
 
-// Every joint moves in five sines of its own; the torque is what `robot` needs, and noise.
+// Every joint but one that is held moves in five sines of its own; the torque is what `robot`
+// needs, and noise.
 inline desk::Log record(const desk::RobotDescription& robot, const SerialRecording& settings) {
   const auto samples = static_cast<Eigen::Index>(settings.duration_s * settings.rate_hz) + 1;
   const auto joints = static_cast<Eigen::Index>(robot.joints.size());
@@ -66,11 +68,13 @@ inline desk::Log record(const desk::RobotDescription& robot, const SerialRecordi
       const double w =
           2 * std::numbers::pi * frequency_hz * (1 + 0.07 * static_cast<double>(joint));
       const Eigen::ArrayXd angle = w * motion.t_s.array() + phase(generator);
+      if (joint == settings.held) continue;
       motion.q.col(joint).array() += size * angle.sin();
       motion.dq.col(joint).array() += size * w * angle.cos();
       motion.ddq.col(joint).array() -= size * w * w * angle.sin();
     }
   }
+  if (settings.held >= 0) motion.q.col(settings.held).setConstant(0.4);
   std::normal_distribution<double> noise(0, settings.torque_noise_nm);
   desk::Log log;
   log.file = "serial arm";
