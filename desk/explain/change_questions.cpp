@@ -64,7 +64,7 @@ bool is_sudden(const Moments& moments, std::size_t recorded, const MatrixXd& col
 }
 
 bool is_no_other_motion(const Data& data, const Remainder& remainder, const MatrixXd& columns) {
-  constexpr double kStays = 0.5;
+  constexpr double kStays = 0.33;
   constexpr double kActsOn = 0.2;  // of the energy of the effect
   const VectorXd energy =
       data.layout.energy(data.layout.weighted(columns.rowwise().sum(), remainder.joint_weights));
