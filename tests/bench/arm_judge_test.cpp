@@ -138,5 +138,24 @@ TEST(ArmScore, AsksWhenItBeganAndOnWhichJoint) {
   EXPECT_EQ(arm_score_of(pushed, told).moment, false);
 }
 
+TEST(ArmScore, AsksForThePushesAndCountsThoseThatAreNone) {
+  ArmTruth truth = nothing();
+  truth.pushes.emplace_back();
+  truth.pushes.front().from_s = 4;
+  truth.pushes.front().to_s = 4.5;
+  truth.pushes.front().link = 2;
+  Explanation told;
+  EXPECT_FALSE(*arm_score_of(truth, told).moment);
+  told.pushes = {{"a.csv", 4.05, 4.46, {{0, 3, "N m"}, {2, 1, "N m"}}, 4, 4.5}};
+  ArmScore score = arm_score_of(truth, told);
+  EXPECT_TRUE(*score.moment);
+  EXPECT_EQ(score.false_pushes, 0);
+  told.pushes.push_back({"a.csv", 4.4, 5, {{1, 3, "N m"}}, 4.4, 5});
+  score = arm_score_of(truth, told);
+  EXPECT_EQ(score.false_pushes, 1);
+  EXPECT_TRUE(score.joints[1].is_wrong);
+  EXPECT_FALSE(score.joints[0].is_wrong);
+}
+
 }  // namespace
 }  // namespace offnominal::test

@@ -87,6 +87,7 @@ ordered_json json_of(const ArmGroup& group, const ArmOutcome& outcome) {
   for (const auto& same : outcome.classes) json["classes"].push_back(names_at(same));
   json["asked"] = list_of(outcome.score.asked);
   json["wrong"] = names_at(outcome.score.wrong);
+  json["false_pushes"] = outcome.score.false_pushes;
   json["payload_within_tenth"] = maybe(outcome.score.payload);
   json["moment_within_tenth_s"] = maybe(outcome.score.moment);
   json["time_s"] = outcome.time_s;

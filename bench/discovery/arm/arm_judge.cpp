@@ -49,6 +49,11 @@ class ArmJudge {
     for (const desk::Change& one : told_.changes) {
       if (!is_true(one)) count_wrong(one.what);
     }
+    for (const desk::Push& one : told_.pushes) {
+      if (is_true(one)) continue;
+      for (const desk::Push::OnJoint& on : one.joints) at(on.joint).is_wrong = true;
+      ++score_.false_pushes;
+    }
     judge_moments();
     return std::move(score_);
   }
@@ -129,6 +134,14 @@ class ArmJudge {
     });
   }
 
+  // Something pushes half of that time or longer, on a link that the joint carries.
+  [[nodiscard]] bool is_true(const desk::Push& told) const {
+    return std::any_of(truth_.pushes.begin(), truth_.pushes.end(), [&](const ArmPush& one) {
+      const double both_s = std::min(told.to_s, one.to_s) - std::max(told.from_s, one.from_s);
+      return both_s >= (told.to_s - told.from_s) / 2 && told.joints.front().joint <= one.link;
+    });
+  }
+
   void count_wrong(const EffectAt& one) {
     at(one.joint).is_wrong = true;
     score_.wrong.push_back(one);
@@ -140,6 +153,12 @@ class ArmJudge {
     return std::any_of(told_.loud.begin(), told_.loud.end(),
                        [&](const desk::LoudSpan& span) {
                          return span.joint == joint && (near(span.from_s) || near(span.to_s));
+                       }) ||
+           std::any_of(told_.pushes.begin(), told_.pushes.end(),
+                       [&](const desk::Push& one) {
+                         const auto is_here = [&](const auto& on) { return on.joint == joint; };
+                         return std::any_of(one.joints.begin(), one.joints.end(), is_here) &&
+                                (near(one.from_s) || near(one.to_s));
                        }) ||
            std::any_of(told_.changes.begin(), told_.changes.end(), [&](const desk::Change& one) {
              return one.what.joint == joint && near(one.at_s);

@@ -30,6 +30,7 @@ struct ArmScore {
   std::vector<ArmAsked> asked;
   std::vector<ArmJointScore> joints;
   std::vector<desk::EffectAt> wrong;
+  int false_pushes = 0;         // told where nothing pushes
   std::optional<bool> payload;  // its mass within 10 %; none where none is asked for
   // The moment of the change, or the begin and the end of every push, within 0.1 s on a joint that
   // has it.

@@ -92,14 +92,20 @@ class Stand {
       plant_.set_friction_loss(j, std::max(loss[j], 0.0));
       plant_.set_damping(j, damping[j]);
     }
+    // One link may be pushed more than once: only what acts now is told to the plant last.
     for (const ArmPush& push : rig_.pushes) {
-      const bool acts = t_s >= push.from_s && t_s < push.to_s;
-      plant_.push(push.link, acts ? push.force_n : Eigen::Vector3d::Zero(), push.at_m);
+      if (!acts(push, t_s)) plant_.push(push.link, Eigen::Vector3d::Zero(), push.at_m);
+    }
+    for (const ArmPush& push : rig_.pushes) {
+      if (acts(push, t_s)) plant_.push(push.link, push.force_n, push.at_m);
     }
     plant_.step(t_s, given, kSubstepS);
     load_ = plant_.gear_torque();
   }
 
+  static bool acts(const ArmPush& push, double t_s) {
+    return t_s >= push.from_s && t_s < push.to_s;
+  }
   [[nodiscard]] double speed(Index joint) const { return plant_.state().dq[joint]; }
 
   [[nodiscard]] double loss_of(const ArmEffect& effect, double t_s) const {

@@ -18,6 +18,10 @@ Value median_of(std::vector<Value> values) {
   return values[values.size() / 2];
 }
 
+bool names_what_is_not_there(const ArmScore& score) {
+  return !score.wrong.empty() || score.false_pushes > 0;
+}
+
 void count_outcome(const ArmOutcome& one, ArmSummary& line) {
   ++line.cases;
   if (!one.refused.empty()) {
@@ -29,7 +33,7 @@ void count_outcome(const ArmOutcome& one, ArmSummary& line) {
     if (joint.is_asked) line.answered.count(joint.is_answered);
     line.wrong.count(joint.is_wrong);
   }
-  line.wrong_cases.count(!one.score.wrong.empty());
+  line.wrong_cases.count(names_what_is_not_there(one.score));
   if (one.score.payload) line.payload.count(*one.score.payload);
   if (one.score.moment) line.moment.count(*one.score.moment);
   for (const ArmAsked& asked : one.score.asked) {
@@ -52,8 +56,8 @@ std::string line_of(const ArmSummary& line) {
 }
 
 bool is_right(const ArmOutcome& one) {
-  return one.failed.empty() && one.score.wrong.empty() && one.score.payload.value_or(true) &&
-         one.score.moment.value_or(true) &&
+  return one.failed.empty() && !names_what_is_not_there(one.score) &&
+         one.score.payload.value_or(true) && one.score.moment.value_or(true) &&
          std::all_of(one.score.joints.begin(), one.score.joints.end(),
                      [](const ArmJointScore& joint) { return joint.is_answered; });
 }
@@ -181,6 +185,7 @@ std::string failures_of(const ArmGroup& group, const std::vector<ArmOutcome>& ou
                         text_of(one.truth), one.verdict, names_of(one.named));
     for (const auto& same : one.classes) text += "; class {" + names_of(same) + "}";
     if (!one.score.wrong.empty()) text += "; wrong " + names_of(one.score.wrong);
+    if (one.score.false_pushes > 0) text += "; told of a push that is none";
     if (!one.failed.empty()) text += "; " + one.failed;
     text += "\n";
   }
