@@ -98,7 +98,8 @@ AddedFindings add_found(const RobotDescription& robot, std::vector<Log> logs,
   added.objections = objections_to(added.explanation);
   if (!added.objections.empty()) return added;
   const FilterPlan plan = plan_filter(recordings.logs, robot);
-  const auto compare_on = [&](const Log& log, bool held_out) {
+  const auto compare_on = [&](Log log, bool held_out) {
+    leave_out(added.explanation.pushes, log);
     if (on_progress) on_progress("comparing both models on " + log.file);
     if (log.at_rest) {
       added.gains.push_back({log.file, held_out, at_rest(robot, added.explanation.improved, log)});
@@ -120,7 +121,7 @@ ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
   const ordered_json explained = to_json(added.explanation, names);
   ordered_json json;
   for (const char* key : {"logs", "holdout", "robot", "verdict", "words", "filter", "found",
-                          "left_out", "data_faults", "data_hints", "advice"}) {
+                          "pushes", "left_out", "data_faults", "data_hints", "advice"}) {
     json[key] = explained[key];
   }
   json["recordings"] = ordered_json::array();

@@ -36,8 +36,8 @@ AddedFindings add_found(const RobotDescription& robot, std::vector<Log> logs,
                         std::vector<Log> holdout, const ExplainOptions& options,
                         const OnProgress& on_progress);
 
-// {logs, holdout, robot, verdict, words, found, data_faults, data_hints, left_out and advice as of
-// explain,
+// {logs, holdout, robot, verdict, words, found, pushes, data_faults, data_hints, left_out and
+// advice as of explain,
 //  recordings: [{log, held_out, joints: [{joint, unit, rms_error_before,
 //  rms_error_after, relative_error_before_percent, relative_error_after_percent}]}], objections,
 //  doubts, held, written}. `written` is null where nothing was; `force`: doubts are overruled.

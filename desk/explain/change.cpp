@@ -11,6 +11,7 @@
 #include "explain/alternatives.hpp"
 #include "explain/change_questions.hpp"
 #include "explain/moments.hpp"
+#include "explain/pushes.hpp"
 #include "explain/questions.hpp"
 #include "identify/independent_samples.hpp"
 
@@ -172,7 +173,6 @@ class ChangeFinder {
   // What comes and goes again: from or to the moment that was found, where that makes the
   // recordings clearly more likely.
   void end_it(Scanned& one, const ModelFit& at) const {
-    constexpr double kShortestS = 2;  // what is shorter is a push, or another event
     if (moments_.are_given()) return;
     const Remainder remainder = beside_effect(at, one.term, all_samples());
     const Judge judge(remainder);
@@ -181,7 +181,7 @@ class ChangeFinder {
     best.log_likelihood += kClearly;
     const double moment = one.term.during->from_s;
     for (const double other : recorded(one).grid) {
-      if (std::abs(other - moment) < kShortestS) continue;
+      if (std::abs(other - moment) < kLongestPushS) continue;
       const TimeSpan part{one.term.during->files, std::min(moment, other), std::max(moment, other)};
       const double likely = likelihood_of(judge, moments_.inside(columns, part));
       if (likely <= best.log_likelihood) continue;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <offnominal/model/effect_memory.hpp>
 #include <string>
@@ -23,6 +24,7 @@
 #include "explain/friction_family.hpp"
 #include "explain/given_part.hpp"
 #include "explain/link_share.hpp"
+#include "explain/pushes.hpp"
 #include "explain/questions.hpp"
 #include "explain/search_setting.hpp"
 #include "explain/sizes.hpp"
@@ -38,6 +40,13 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
+
+// Whether a recording that is given twice has told of it already.
+bool is_told(const std::vector<Push>& pushes, const Push& one) {
+  return std::any_of(pushes.begin(), pushes.end(), [&](const Push& other) {
+    return one.file == other.file && one.from_s <= other.to_s && one.to_s >= other.from_s;
+  });
+}
 
 void check_joints(const std::vector<Log>& logs, const RobotDescription& robot) {
   for (const Log& log : logs) require_joints(log, robot);
@@ -91,9 +100,10 @@ class Explainer {
   }
 
   // A recording at fault tells nothing of effects: then there is no search, and what the model
-  // leaves of the recording is still shown.
-  Explanation run(bool search) {
+  // leaves of the recording is still shown. `pushes`: that the recordings are without.
+  Explanation run(bool search, std::vector<Push> pushes) {
     Explanation result;
+    result.pushes = std::move(pushes);
     if (!options_.robot_file.empty() && !is_stream(options_.robot_file))
       result.robot_file = shell_word(options_.robot_file);
     result.at_rest = setting_.data->recordings[0].at_rest;
@@ -150,6 +160,22 @@ class Explainer {
       result.advice.insert(result.advice.end(), result.unphysical.begin(), result.unphysical.end());
     }
     return result;
+  }
+
+  // Of what is searched and of what is held out.
+  [[nodiscard]] std::vector<Push> pushes() const {
+    std::vector<Push> all;
+    // What has changed at a moment that is given is asked there.
+    if (given_ || setting_.data->recordings[0].at_rest) return all;
+    tell("looking for pushes");
+    for (const Data* data : {setting_.data.get(), setting_.held_out.get()}) {
+      if (data == nullptr) continue;
+      std::vector<Push> own = pushes_in(*data, robot_, excitation_of(data->recordings));
+      for (Push& one : own) {
+        if (!is_told(all, one)) all.push_back(std::move(one));
+      }
+    }
+    return all;
   }
 
   // What was not searched, in words; empty where all was.
@@ -435,7 +461,30 @@ Explanation explain_as_it_is(const RobotDescription& robot, Treated recordings,
   for (std::vector<Log>* group : {&recordings.logs, &recordings.holdout}) {
     for (Log& log : *group) log.left_out.clear();
   }
-  return Explainer(robot, recordings.logs, recordings.holdout, options, on_progress).run(false);
+  return Explainer(robot, recordings.logs, recordings.holdout, options, on_progress).run(false, {});
+}
+
+struct Explained {
+  Explanation result;
+  std::string left_out;  // what was not searched, in words; empty where all was
+};
+
+// What pushes the arm for a moment is told by itself, and left out of everything else.
+Explained explain_beside_pushes(const RobotDescription& robot, const Treated& recordings,
+                                const ExplainOptions& options, bool search,
+                                const OnProgress& on_progress) {
+  auto explainer =
+      std::make_unique<Explainer>(robot, recordings.logs, recordings.holdout, options, on_progress);
+  std::vector<Push> pushes;
+  if (search) pushes = explainer->pushes();
+  if (pushes.empty()) return {explainer->run(search, {}), explainer->left_out()};
+  explainer.reset();
+  Treated others{recordings.logs, recordings.holdout, {}};
+  for (std::vector<Log>* group : {&others.logs, &others.holdout}) {
+    for (Log& log : *group) leave_out(pushes, log);
+  }
+  explainer = std::make_unique<Explainer>(robot, others.logs, others.holdout, options, on_progress);
+  return {explainer->run(search, std::move(pushes)), explainer->left_out()};
 }
 
 }  // namespace
@@ -455,14 +504,12 @@ Explanation explain(const RobotDescription& robot, const Treated& recordings,
     auto& list = hint ? hints : !fault.left_out_of.empty() ? left_out : faults;
     list.push_back(fault);
   }
-  Explanation result;
-  std::string searched;
+  Explained explained;
+  Explanation& result = explained.result;
   if (nothing_left) {
     result = explain_as_it_is(robot, recordings, options, on_progress);
   } else {
-    Explainer explainer(robot, recordings.logs, recordings.holdout, options, on_progress);
-    result = explainer.run(faults.empty());
-    searched = explainer.left_out();
+    explained = explain_beside_pushes(robot, recordings, options, faults.empty(), on_progress);
   }
   if (!faults.empty()) {
     result.data_faults = std::move(faults);
@@ -479,10 +526,10 @@ Explanation explain(const RobotDescription& robot, const Treated& recordings,
   }
   result.data_hints = std::move(hints);
   result.left_out = std::move(left_out);
-  if (!searched.empty()) result.advice.push_back(std::move(searched));
+  if (!explained.left_out.empty()) result.advice.push_back(std::move(explained.left_out));
   say_what_was_carried(recordings.logs, result);
   say_what_was_carried(recordings.holdout, result);
-  return result;
+  return std::move(result);
 }
 
 }  // namespace offnominal::desk

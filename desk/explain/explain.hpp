@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "explain/excitation.hpp"
+#include "explain/pushes.hpp"
 #include "explain/remainder.hpp"
 #include "explain/treatment.hpp"
 #include "identify/effect_candidate.hpp"
@@ -203,6 +204,8 @@ struct Explanation {
   std::vector<Finding> found;        // what matters most first
   std::vector<OverVariable> over_variable;
   std::vector<LoudSpan> loud;
+  // What acts on the arm from outside for a moment; left out of all else that is said.
+  std::vector<Push> pushes;
   std::vector<Change> changes;  // the likeliest first
   // Whether it was asked what has changed since a given time or recording, and whether that is
   // what is in one recording and not in another.

@@ -98,6 +98,16 @@ ordered_json json_of(const OverVariable& one) {
           {"torque", one.torque}};
 }
 
+ordered_json json_of(const Push& one) {
+  return {{"file", one.file},
+          {"from_s", one.from_s},
+          {"to_s", one.to_s},
+          {"joints", array_of(one.joints, [](const Push::OnJoint& on) {
+             return ordered_json{
+                 {"joint", on.joint + 1}, {"rms_torque", on.rms_torque}, {"unit", on.unit}};
+           })}};
+}
+
 ordered_json json_of(const Change& one) {
   ordered_json json = effect_at(one.what);
   json["alike"] = array_of(one.alike, effect_at);
@@ -136,6 +146,7 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
   json["over_variable"] =
       array_of(e.over_variable, [](const OverVariable& one) { return json_of(one); });
   json["found"] = array_of(e.found, [](const Finding& finding) { return json_of(finding); });
+  json["pushes"] = array_of(e.pushes, [](const Push& one) { return json_of(one); });
   json["changes"] = array_of(e.changes, [](const Change& one) { return json_of(one); });
   json["waterfall"] = ordered_json::array();
   for (std::size_t i = 0; i < e.waterfall.size(); ++i) {

@@ -172,6 +172,21 @@ report::Table change_table(const Explanation& e) {
   return table;
 }
 
+report::Table push_table(const Explanation& e) {
+  report::Table table;
+  table.caption = "What acts on the arm from outside";
+  table.columns = {{"recording", "", ".4g"}, {"from", "s", ".2f"},      {"to", "s", ".2f"},
+                   {"joint", "", "d"},       {"rms torque", "", ".3g"}, {"unit", "", ".4g"}};
+  for (const Push& one : e.pushes) {
+    for (const Push::OnJoint& on : one.joints) {
+      table.rows.push_back({one.file, one.from_s, one.to_s, static_cast<double>(on.joint + 1),
+                            on.rms_torque, on.unit});
+    }
+  }
+  table.note = "Left out of all else that is said here.";
+  return table;
+}
+
 report::Table where_table(const Explanation& e) {
   constexpr std::size_t kMost = 8;
   report::Table table;
@@ -429,6 +444,7 @@ report::Page page_of(const Explanation& e, const ExplainNames& names) {
   if (!e.left_out.empty()) overview.blocks.emplace_back(table_of_left_out(e.left_out));
   if (!e.answers.empty()) overview.blocks.emplace_back(answer_table(e));
   if (!e.found.empty()) overview.blocks.emplace_back(finding_table(e));
+  if (!e.pushes.empty()) overview.blocks.emplace_back(push_table(e));
   if (!e.changes.empty()) overview.blocks.emplace_back(change_table(e));
   if (!e.ambiguous.empty()) overview.blocks.emplace_back(class_table(e));
   overview.blocks.emplace_back(error_table(e));

@@ -162,6 +162,7 @@ std::string findings_text(const Explanation& e, const ExplainNames& names) {
     text += "data fault: " + (several ? fault.file + ": " : "") + fault.words + "\n";
   }
   for (const DataFault& fault : e.left_out) text += "left out: " + left_out_line(fault) + "\n";
+  for (const Push& push : e.pushes) text += "push: " + words_of(push) + ", left out\n";
   text += text_of_joints(e);
   text += text_of_answers(e);
   text += text_of_findings(e);

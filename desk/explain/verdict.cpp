@@ -606,6 +606,15 @@ void advise_on_rest(Explanation& e) {
   }
 }
 
+// Empty where there are none.
+std::string sentence_on_pushes(const Explanation& e) {
+  if (e.pushes.empty()) return "";
+  std::vector<std::string> all;
+  std::transform(e.pushes.begin(), e.pushes.end(), std::back_inserter(all),
+                 [](const Push& one) { return words_of(one); });
+  return fmt::format("Something pushes the arm from outside: {}.", fmt::join(all, "; "));
+}
+
 }  // namespace
 
 void judge_whole(Explanation& e) {
@@ -624,6 +633,7 @@ void judge_whole(Explanation& e) {
     e.ambiguous.clear();
     e.over_variable.clear();
     e.changes.clear();
+    e.pushes.clear();
     e.waterfall.resize(std::min<std::size_t>(1, e.waterfall.size()));
     return;
   }
@@ -648,6 +658,7 @@ void judge_whole(Explanation& e) {
   advise_on_friction(e);
   advise_on_motors(e);
   const JointAnswer* unknown = worst_unknown(e);
+  const std::string pushes = sentence_on_pushes(e);
   const auto shift = std::find_if(e.answers.begin(), e.answers.end(), [](const JointAnswer& one) {
     return one.verdict == Verdict::kParameterShift;
   });
@@ -663,6 +674,9 @@ void judge_whole(Explanation& e) {
   } else if (!e.changes.empty()) {
     e.verdict = Verdict::kChanged;
     e.words = sentence_on_changes(e);
+  } else if (!pushes.empty()) {
+    e.verdict = Verdict::kUnknownExternal;
+    e.words = pushes;
   } else if (poor) {
     e.verdict = Verdict::kNotExcited;
     e.words = e.unsure.empty()
@@ -690,6 +704,11 @@ void judge_whole(Explanation& e) {
                   "No known effect stands out. What is left on {} stands {:.1f} times above the "
                   "noise, and follows nothing that was looked at.",
                   at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
+  }
+  if (!pushes.empty()) {
+    if (e.words != pushes) e.words += " " + pushes;
+    e.advice.emplace_back(
+        "look at the recording at the times of the pushes: contact, a cable, a person");
   }
   const std::string changes = sentence_on_changes(e);
   if (e.verdict != Verdict::kChanged && !changes.empty()) e.words += " " + changes;
