@@ -93,13 +93,14 @@ AddedFindings add_found(const RobotDescription& robot, std::vector<Log> logs,
                         const OnProgress& on_progress) {
   AddedFindings added;
   if (on_progress) on_progress("examining the recordings");
-  const Treated recordings = treated(robot, std::move(logs), std::move(holdout), options.keep);
+  Treated recordings = treated(robot, std::move(logs), std::move(holdout), options.keep);
   added.explanation = explain(robot, recordings, options, on_progress);
   added.objections = objections_to(added.explanation);
   if (!added.objections.empty()) return added;
   const FilterPlan plan = plan_filter(recordings.logs, robot);
-  const auto compare_on = [&](Log log, bool held_out) {
-    leave_out(added.explanation.pushes, log);
+  leave_out(added.explanation.pushes, recordings.logs);
+  leave_out(added.explanation.pushes, recordings.holdout);
+  const auto compare_on = [&](const Log& log, bool held_out) {
     if (on_progress) on_progress("comparing both models on " + log.file);
     if (log.at_rest) {
       added.gains.push_back({log.file, held_out, at_rest(robot, added.explanation.improved, log)});

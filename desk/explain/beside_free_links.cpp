@@ -36,10 +36,7 @@ void leave_out_links_in_disguise(const SearchSetting& setting, const RobotDescri
                                  int threads, FoundModel& found) {
   const auto is_asked = [](const Accepted& one) { return gives_way(one.term); };
   if (std::none_of(found.accepted.begin(), found.accepted.end(), is_asked)) return;
-  NuisanceOptions unknown = setting.nuisance;
-  unknown.link_share = kUnknownLinkShare;
-  unknown.link_geometry = true;
-  const Data data(*setting.data, robot, unknown);
+  const Data data(*setting.data, robot, beside_unknown_links(setting.nuisance));
   const Regression beside_unknown(data);
   const VectorXd torque = data.layout.rms(data.torque);
   for (std::size_t i = found.accepted.size(); i-- > 0;) {

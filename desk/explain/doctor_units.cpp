@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "explain/doctor_checks.hpp"
+#include "explain/list_of_joints.hpp"
 #include "robot/channel_text.hpp"
 #include "robot/units.hpp"
 
@@ -59,14 +60,6 @@ bool fits_a_unit(double ratio, bool revolute) {
   if (is_near(ratio, 1) || unit_of_velocity(ratio, revolute) != nullptr) return true;
   // Positions in degrees beside velocities in rad/s or in rpm.
   return revolute && (is_near(ratio, 1 / kDegreesPerRad) || is_near(ratio, 1.0 / 6));
-}
-
-std::string list_of_joints(const std::vector<Index>& joints) {
-  std::string words = joints.size() == 1 ? "joint " : "joints ";
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    words += (i == 0 ? "" : ", ") + std::to_string(joints[i] + 1);
-  }
-  return words;
 }
 
 void scale_velocity(Log& log, ChannelMap& channels, Index joint, double factor) {

@@ -480,9 +480,8 @@ Explained explain_beside_pushes(const RobotDescription& robot, const Treated& re
   if (pushes.empty()) return {explainer->run(search, {}), explainer->left_out()};
   explainer.reset();
   Treated others{recordings.logs, recordings.holdout, {}};
-  for (std::vector<Log>* group : {&others.logs, &others.holdout}) {
-    for (Log& log : *group) leave_out(pushes, log);
-  }
+  leave_out(pushes, others.logs);
+  leave_out(pushes, others.holdout);
   explainer = std::make_unique<Explainer>(robot, others.logs, others.holdout, options, on_progress);
   return {explainer->run(search, std::move(pushes)), explainer->left_out()};
 }

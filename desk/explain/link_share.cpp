@@ -91,6 +91,13 @@ bool one_mass_explains(const FoundModel& wide, const FoundModel& usual) {
 
 }  // namespace
 
+NuisanceOptions beside_unknown_links(NuisanceOptions options) {
+  constexpr double kUnknown = 2;
+  options.link_share = kUnknown;
+  options.link_geometry = true;
+  return options;
+}
+
 std::vector<double> wider_link_shares(const RobotDescription& robot, const Data& data,
                                       const std::vector<Term>& changes, int threads) {
   std::array<ErrorsBeside, 1 + kShares.size()> held;

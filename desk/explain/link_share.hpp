@@ -11,8 +11,9 @@ namespace offnominal::desk {
 inline constexpr double kUsualLinkShare = 0.05;
 // Beyond this a link's mass, centre of mass and inertia are off each by itself.
 inline constexpr double kCadShare = 0.1;
-// Where nothing is known of them.
-inline constexpr double kUnknownLinkShare = 2;
+
+// The same beside links of which nothing is known.
+NuisanceOptions beside_unknown_links(NuisanceOptions options);
 
 // Wider shares, as far as the recordings ask for one: with mass, centre of mass and inertia of
 // every link each free within it, Coulomb and viscous friction on every joint that moves, and a

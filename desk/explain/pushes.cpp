@@ -1,7 +1,6 @@
 #include "explain/pushes.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "explain/friction_family.hpp"
 #include "explain/link_share.hpp"
+#include "explain/list_of_joints.hpp"
 #include "explain/remainder.hpp"
 #include "identify/regression.hpp"
 #include "signal/quantile.hpp"
@@ -41,13 +41,6 @@ struct LoudStretch {
   }
 };
 
-NuisanceOptions links_unknown() {
-  NuisanceOptions options;
-  options.link_share = kUnknownLinkShare;
-  options.link_geometry = true;
-  return options;
-}
-
 // Nine tenths of the values stay below it; 0 where there are none.
 double usual_of(const std::vector<double>& values) {
   constexpr double kUsual = 0.9;
@@ -59,7 +52,7 @@ class PushFinder {
  public:
   PushFinder(const Data& data, const RobotDescription& robot,
              const std::vector<Excitation>& excitation)
-      : data_(data, robot, links_unknown()),
+      : data_(data, robot, beside_unknown_links({})),
         layout_(data_.layout),
         regression_(data_),
         terms_(standard_friction(data_)),
@@ -151,13 +144,14 @@ class PushFinder {
   // Mean square of a joint's error in the window around every sample.
   [[nodiscard]] VectorXd power_of(std::size_t recording, Index joint) const {
     const Index n = layout_.samples(recording);
+    const Index half = half_window(recording);
     const auto own = left_.segment(layout_.begin(recording, joint), n);
     VectorXd sum = VectorXd::Zero(n + 1);
     for (Index i = 0; i < n; ++i) sum[i + 1] = sum[i] + own[i] * own[i];
     VectorXd power(n);
     for (Index i = 0; i < n; ++i) {
-      const Index from = std::max<Index>(0, i - half_window(recording));
-      const Index to = std::min(n, i + half_window(recording) + 1);
+      const Index from = std::max<Index>(0, i - half);
+      const Index to = std::min(n, i + half + 1);
       power[i] = (sum[to] - sum[from]) / static_cast<double>(to - from);
     }
     return power;
@@ -345,11 +339,14 @@ class PushFinder {
         const MatrixXd bins = bins_over(data_, joint, variable);
         VectorXd sum = VectorXd::Zero(bins.cols());
         VectorXd count = VectorXd::Zero(bins.cols());
-        for (Index row = 0; row < bins.rows(); ++row) {
-          if (outside_[static_cast<std::size_t>(row)] == 0 || !layout_.says_something(row))
-            continue;
-          sum += left_[row] * bins.row(row).transpose();
-          count += bins.row(row).transpose();
+        for (std::size_t r = 0; r < layout_.recording_count(); ++r) {
+          const Index begin = layout_.begin(r, joint);
+          for (Index row = begin; row < begin + layout_.samples(r); ++row) {
+            const bool is_out = outside_[static_cast<std::size_t>(row)] == 0;
+            if (is_out || !layout_.says_something(row)) continue;
+            sum += left_[row] * bins.row(row).transpose();
+            count += bins.row(row).transpose();
+          }
         }
         const VectorXd mean = sum.cwiseQuotient(count.cwiseMax(1));
         for (Index i = one.samples.first; i < one.end(); ++i) {
@@ -433,20 +430,24 @@ std::vector<Push> pushes_in(const Data& data, const RobotDescription& robot,
 }
 
 std::string words_of(const Push& push) {
-  std::vector<std::string> joints;
+  std::vector<Index> joints;
   const Push::OnJoint* most = nullptr;
   for (const Push::OnJoint& one : push.joints) {
-    joints.push_back(std::to_string(one.joint + 1));
+    joints.push_back(one.joint);
     if (most == nullptr || one.rms_torque > most->rms_torque) most = &one;
   }
   std::string where;
-  if (joints.size() == 1) {
-    where = fmt::format("joint {}: {:.3g} {}", joints[0], most->rms_torque, most->unit);
-  } else if (most != nullptr) {
-    where = fmt::format("joints {}; most on joint {}: {:.3g} {}", fmt::join(joints, ", "),
-                        most->joint + 1, most->rms_torque, most->unit);
+  if (most != nullptr) {
+    const std::string on =
+        joints.size() == 1 ? "" : fmt::format("; most on joint {}", most->joint + 1);
+    where =
+        fmt::format("{}{}: {:.3g} {}", list_of_joints(joints), on, most->rms_torque, most->unit);
   }
   return fmt::format("{:.2f} to {:.2f} s of {} ({})", push.from_s, push.to_s, push.file, where);
+}
+
+void leave_out(const std::vector<Push>& pushes, std::vector<Log>& logs) {
+  for (Log& log : logs) leave_out(pushes, log);
 }
 
 void leave_out(const std::vector<Push>& pushes, Log& log) {

@@ -45,5 +45,6 @@ std::vector<Push> pushes_in(const Data& data, const RobotDescription& robot,
 
 // Leaves the pushes of a recording out of every joint of it.
 void leave_out(const std::vector<Push>& pushes, Log& log);
+void leave_out(const std::vector<Push>& pushes, std::vector<Log>& logs);
 
 }  // namespace offnominal::desk

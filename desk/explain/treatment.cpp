@@ -12,6 +12,7 @@
 #include "compare/usable.hpp"
 #include "explain/doctor.hpp"
 #include "explain/doctor_signal.hpp"
+#include "explain/list_of_joints.hpp"
 #include "log/sampling.hpp"
 #include "signal/decimate.hpp"
 
@@ -134,14 +135,6 @@ void leave_out(const DataFault& fault, Log& log) {
   }
 }
 
-std::string listed(const std::vector<Index>& joints) {
-  std::string words = joints.size() == 1 ? "joint " : "joints ";
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    words += fmt::format("{}{}", i == 0 ? "" : ", ", joints[i] + 1);
-  }
-  return words;
-}
-
 // A recording of which nothing is left, or some joints of it.
 void say_what_is_left(const Log& log, std::vector<DataFault>& faults) {
   constexpr double kFewestS = 0.5;
@@ -163,7 +156,7 @@ void say_what_is_left(const Log& log, std::vector<DataFault>& faults) {
   fault.certain = all;
   fault.file = log.file;
   fault.words = fmt::format("nothing is left of {}: {}",
-                            all ? std::string("the recording") : listed(lost), why);
+                            all ? std::string("the recording") : list_of_joints(lost), why);
   fault.mend = "record anew, or say with --keep JOINT:REASON what is no fault";
   faults.push_back(std::move(fault));
 }
