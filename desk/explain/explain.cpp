@@ -70,9 +70,8 @@ class Explainer {
     const FilterPlan& plan = plan_;
     check(logs, plan);
     check(holdout, plan);
-    NuisanceOptions nuisance;
-    nuisance.link_share = options.link_share.value_or(kUsualLinkShare);
-    nuisance.link_geometry = nuisance.link_share > kCadShare;
+    NuisanceOptions nuisance =
+        with_link_share({}, options.link_share.value_or(kUsualLinkShare));
     if (options.keep_effects) nuisance.free_effects.emplace();
     both_ways_ = came_both_ways(logs);
     const auto recordings_of = [&](const std::vector<Stretch>& some, const VectorXd& widths) {
@@ -232,15 +231,13 @@ class Explainer {
     FoundModel best = find(search, result);
     if (!search || options_.link_share || result.at_rest) return best;
     tell("asking how far the links' numbers are off");
-    NuisanceOptions wider = setting_.nuisance;
-    wider.link_geometry = true;
+    const NuisanceOptions usual = setting_.nuisance;
     for (const double share :
-         wider_link_shares(robot_, *setting_.data, wider.changes, options_.threads)) {
-      wider.link_share = share;
+         wider_link_shares(robot_, *setting_.data, usual.changes, options_.threads)) {
       // What the fits point to has to stay where it is until one of them is chosen.
-      SearchSetting of_best = set_beside(wider);
+      SearchSetting of_best = set_beside(with_link_share(usual, share));
       FoundModel wide = find(search, result);
-      if (is_clearly_better(*setting_.hold_out, wide, best)) {
+      if (is_clearly_better(*setting_.hold_out, wide, best, result.link_share_judged)) {
         result.link_share = share;
         result.link_share_judged = true;
         best = std::move(wide);

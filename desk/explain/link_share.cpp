@@ -16,8 +16,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Far beyond CAD, and little more than the geometry known.
-constexpr std::array kShares{0.2, 0.35, 0.6};
+// Beyond CAD, far beyond it, and little more than the geometry known.
+constexpr std::array kShares{0.12, 0.3, 0.6};
 // Log-likelihood that a wider share has to gain, and the share of a joint's error.
 constexpr double kClearly = 10;
 constexpr double kRelevantFall = 0.05;
@@ -91,6 +91,13 @@ bool one_mass_explains(const FoundModel& wide, const FoundModel& usual) {
 
 }  // namespace
 
+NuisanceOptions with_link_share(NuisanceOptions options, double share) {
+  options.link_share = share;
+  options.link_geometry = share > kCadShare;
+  options.torque_constant = options.link_geometry ? kUsualConstantShare : 0;
+  return options;
+}
+
 NuisanceOptions beside_unknown_links(NuisanceOptions options) {
   constexpr double kUnknown = 2;
   options.link_share = kUnknown;
@@ -102,13 +109,11 @@ std::vector<double> wider_link_shares(const RobotDescription& robot, const Data&
                                       const std::vector<Term>& changes, int threads) {
   std::array<ErrorsBeside, 1 + kShares.size()> held;
   parallel_for(held.size(), threads, [&](std::size_t i) {
-    NuisanceOptions wide;
     if (i == 0) {
       held[i] = held_out_of(data);
       return;
     }
-    wide.link_share = kShares[i - 1];
-    wide.link_geometry = true;
+    NuisanceOptions wide = with_link_share({}, kShares[i - 1]);
     wide.changes = changes;
     held[i] = held_out_of(Data(data, robot, wide));
   });
@@ -117,19 +122,18 @@ std::vector<double> wider_link_shares(const RobotDescription& robot, const Data&
     const ShareGain gain = gain_of(held[best].rms, held[i].rms, held[i].samples);
     if (gain.log_likelihood >= kClearly && gain.fall >= kRelevantFall) best = i;
   }
-  if (best == 0) return {};
-  if (best == 1) return {kShares[0]};
-  return {kShares[best - 2], kShares[best - 1]};
+  return {kShares.begin(), kShares.begin() + static_cast<std::ptrdiff_t>(best)};
 }
 
-bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const FoundModel& usual) {
+bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const FoundModel& usual,
+                       bool both_wide) {
   const VectorXd after = hold_out.rms(wide.held_out_after);
   const VectorXd before = hold_out.rms(usual.held_out_after);
   const ShareGain gain = gain_of(before, after, wide.fit.remainder.independent_samples);
   if (gain.log_likelihood > kClearly && gain.fall > kRelevantFall) {
     const VectorXd torque = hold_out.data().layout.rms(hold_out.data().torque);
     const bool is_little = ((before - after).array() < kLittleOfTorque * torque.array()).all();
-    return !(is_little && one_mass_explains(wide, usual));
+    return both_wide || !is_little || !one_mass_explains(wide, usual);
   }
   constexpr std::size_t kManyEffects = 3;
   return gain.log_likelihood > -kClearly &&

@@ -360,6 +360,27 @@ class PushFinder {
     return false;
   }
 
+  // Whether a fit that sees it too has most of it: where the arm is as it is nowhere else, what links
+  // of which nothing is known say without it is a guess. Of a push a half and more is left.
+  [[nodiscard]] bool is_guessed(const LoudStretch& one, const LoudStretch& rough,
+                                const std::vector<Index>& joints) const {
+    constexpr double kMost = 0.7;
+    std::vector<char> rows = outside_;
+    for (Index joint = 0; joint < layout_.joint_count(); ++joint) {
+      std::fill_n(rows.begin() + layout_.begin(rough.recording, joint) + rough.samples.first,
+                  rough.samples.count, 1);
+    }
+    const VectorXd seen = layout_.while_moving(regression_.fit(terms_, rows).residual);
+    double without = 0;
+    double with = 0;
+    for (const Index joint : joints) {
+      const Index from = layout_.begin(one.recording, joint) + one.samples.first;
+      without += left_.segment(from, one.samples.count).squaredNorm() / usual_[joint];
+      with += seen.segment(from, one.samples.count).squaredNorm() / usual_[joint];
+    }
+    return with < (1 - kMost) * without;
+  }
+
   [[nodiscard]] double duration_s(const LoudStretch& one) const {
     return static_cast<double>(one.samples.count) * layout_.period_s(one.recording);
   }
@@ -401,7 +422,8 @@ class PushFinder {
       push.joints.push_back(
           {joint, std::sqrt(power), offnominal::unit_of(Quantity::kEffort, at.joint_type(joint))});
     }
-    if (stands_out < kStandsOut || share < kOfTorque || comes_back(one, joints)) {
+    if (stands_out < kStandsOut || share < kOfTorque || comes_back(one, joints) ||
+        is_guessed(one, rough, joints)) {
       return std::nullopt;
     }
     return push;

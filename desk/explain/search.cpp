@@ -34,7 +34,8 @@ bool Search::is_worth_a_name(const Term& term, const VectorXd& coefficients) con
   const auto& nuisance = data_.nuisance.terms;
   return can_be(term, coefficients, data_.recordings) &&
          std::none_of(nuisance.begin(), nuisance.end(), [&](const NuisanceTerm& one) {
-           return takes_place_of(term, one) && coefficients[0] <= one.prior.high;
+           return takes_place_of(term, one) && coefficients[0] >= one.prior.low &&
+                  coefficients[0] <= one.prior.high;
          });
 }
 

@@ -17,6 +17,7 @@
 #include "explain/change_words.hpp"
 #include "explain/explain_report.hpp"
 #include "explain/find_model.hpp"
+#include "explain/link_share.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -528,9 +529,9 @@ void advise_on_links(Explanation& e) {
   if (!e.link_share_judged) return;
   e.advice.push_back(fmt::format(
       "the links' masses, centres of mass and inertias are off the file by more than CAD usually "
-      "is: they were fitted within {:.0f} % of it, which predicts time that was not fitted better; "
-      "`--link-share 0.05` holds them",
-      100 * e.link_share));
+      "is: they were fitted within {:.0f} % of it, and the torque constants within {:.0f} %, which "
+      "predicts time that was not fitted better; `--link-share 0.05` holds them",
+      100 * e.link_share, 100 * kUsualConstantShare));
 }
 
 // A file without any friction on a joint, in one sentence.

@@ -282,6 +282,21 @@ void scale_links(const Relinearised& found, const std::string& source, RobotDesc
   }
 }
 
+// Torque constants that were fitted beside the links' numbers are numbers of the drives as masses
+// are of the links.
+void put_torque_constants(const Relinearised& found, const std::string& source,
+                          RobotDescription& robot) {
+  for (std::size_t i = 0; i < found.data->nuisance.terms.size(); ++i) {
+    const NuisanceTerm& term = found.data->nuisance.terms[i];
+    const double error = found.fit.nuisance[static_cast<Index>(i)];
+    if (term.kind != NuisanceTerm::Kind::kConstant || std::abs(error) < kWorthWriting) continue;
+    robot.effects.push_back(
+        {{EffectKind::kTorqueScale, static_cast<std::uint8_t>(term.joint), {error}, false},
+         true,
+         "Beside the links' numbers: " + source});
+  }
+}
+
 }  // namespace
 
 bool holds_what_cannot_be(const std::vector<HeldNumber>& held, Index joint) {
@@ -322,6 +337,7 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   for (const Index joint : improved.widths) {
     set_fitted_width(improved.robot, options.refitted, joint, sign_width[joint]);
   }
+  put_torque_constants(last, options.source, improved.robot);
   for (std::size_t i = 0; i < last.terms.size(); ++i) {
     const Term& term = last.terms[i];
     const double factor = factor_of_term(*last.data, last.terms, last.fit, i);

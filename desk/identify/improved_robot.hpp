@@ -66,7 +66,7 @@ bool moves_links(const ImprovedRobot& improved);
 // and as much more as the two values are apart: what a file leaves out makes no number surer.
 Estimates estimates_of(const ImprovedRobot& improved);
 
-inline constexpr double kWorthWriting = 0.005;  // share of a link's mass
+inline constexpr double kWorthWriting = 0.005;  // share of a link's mass, or of a torque constant
 inline constexpr auto kUnwritten = static_cast<std::size_t>(-1);
 
 }  // namespace offnominal::desk

@@ -40,6 +40,9 @@ class Builder {
     for (Index link = 0; options_.link_share > 0 && link < layout_.joint_count(); ++link) {
       add_link(link);
     }
+    for (Index joint = 0; options_.torque_constant > 0 && joint < layout_.joint_count(); ++joint) {
+      if (!recordings_[0].knows(EffectKind::kTorqueScale, joint)) add_constant(joint);
+    }
     for (std::size_t effect = 0; effect < robot_.effects.size(); ++effect) {
       if (is_free(effect)) add_effect(effect);
     }
@@ -121,6 +124,16 @@ class Builder {
             regressor.push_back({joint, torque.col(joint)});
           }
           return regressor;
+        });
+  }
+
+  // Of what the model has, as the candidate is. Of what is measured it would take a share of any
+  // error, and of a held-out one too.
+  void add_constant(Index joint) {
+    add({NuisanceTerm::Kind::kConstant, joint, 0, 0, within(options_.torque_constant),
+         fmt::format("torque constant of joint {}", joint + 1)},
+        [&](const Workspace& at) -> Regressor {
+          return {{joint, at.model_torque.col(joint)}};
         });
   }
 

@@ -21,6 +21,7 @@ struct NuisanceTerm {
     kLink,         // mass and inertia of a link, as a share
     kLinkCentre,   // centre of mass of a link along axis `parameter` of its frame, m
     kLinkInertia,  // inertia of a link about its centre of mass, as a share
+    kConstant,     // torque constant of a joint's drive, as the error of torque_scale
     kKnownEffect,  // a linear parameter of an effect of the robot file, as a difference
     kSignShape,    // how dry friction builds up at a reversal; only beside dry friction
     kSkew,         // time skew between torque and position, s
@@ -64,6 +65,9 @@ struct NuisanceOptions {
   // Mass, centre of mass and inertia of a link each by itself, for numbers that are little more
   // than a guess: one factor for a link is right where its geometry is.
   bool link_geometry = false;
+  // Torque constants, as a share; 0: they are right. One that the file has a torque_scale for is
+  // a number of the file.
+  double torque_constant = 0;
   double skew_samples = 1.0;  // torque against position; 0: they are of one time
   // By which each link of the robot differs from what the prior is about; empty: by nothing.
   std::vector<LinkChange> links = {};

@@ -196,8 +196,11 @@ Evidence evidence_for(const Judge& judge, const Data& data, const Term& term) {
 }
 
 bool takes_place_of(const Term& term, const NuisanceTerm& nuisance) {
-  return nuisance.kind == NuisanceTerm::Kind::kSkew && term.joint == nuisance.joint &&
-         term.effect->replaces_skew();
+  if (term.joint != nuisance.joint || term.effect->of_motor() || term.during) return false;
+  if (nuisance.kind == NuisanceTerm::Kind::kConstant) {
+    return term.effect->info().action == EffectAction::kToldPerGiven;
+  }
+  return nuisance.kind == NuisanceTerm::Kind::kSkew && term.effect->replaces_skew();
 }
 
 namespace {

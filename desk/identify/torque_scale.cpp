@@ -23,9 +23,12 @@ Scale scale_of(const Data& data, const std::vector<Term>& terms, const ModelFit&
   scale.fitted = scale.made_with;
   for (std::size_t i = 0; i < data.nuisance.terms.size(); ++i) {
     const NuisanceTerm& term = data.nuisance.terms[i];
-    if (term.kind == NuisanceTerm::Kind::kKnownEffect && term.joint == joint &&
-        is_scale(known[term.effect].kind)) {
-      scale.fitted += fit.nuisance[static_cast<Index>(i)];
+    if (term.joint != joint) continue;
+    const double by = fit.nuisance[static_cast<Index>(i)];
+    if (term.kind == NuisanceTerm::Kind::kKnownEffect && is_scale(known[term.effect].kind)) {
+      scale.fitted += by;
+    } else if (term.kind == NuisanceTerm::Kind::kConstant) {
+      scale.fitted *= 1 + by;
     }
   }
   for (std::size_t i = 0; i < terms.size(); ++i) {

@@ -334,6 +334,38 @@ TEST(ManyJoints, GIVEN_links_that_are_all_off_THEN_the_new_file_has_others) {
   }
 }
 
+// Of constants that nobody doubts only the ratios would show, and the drive that is right would be
+// the wrong one.
+TEST(ManyJoints, GIVEN_links_and_torque_constants_that_are_off_THEN_no_constant_is_named) {
+  const RobotDescription robot = test::serial_arm(4);
+  RobotDescription real = robot;
+  const std::vector<double> factors{1.2, 0.85, 1.2, 0.85};
+  for (std::size_t link = 0; link < factors.size(); ++link) {
+    Joint<double>& one = real.joints[link].joint;
+    one.mass_kg *= factors[link];
+    one.centre_of_mass_m[1] += 0.015;
+    one.centre_of_mass_m[2] -= 0.015;
+    for (double& inertia : one.inertia_kg_m2) inertia *= factors[link];
+  }
+  Log log = test::record(real, {.duration_s = 20});
+  const std::vector<double> constants{1.04, 1, 1.04, 1.04};
+  for (std::size_t joint = 0; joint < constants.size(); ++joint) {
+    log.tau.col(static_cast<Eigen::Index>(joint)) *= constants[joint];
+  }
+  const AddedFindings added = add_found(robot, {log}, {}, quick(2), {});
+  const Explanation& told = added.explanation;
+  EXPECT_TRUE(told.link_share_judged) << told.words;
+  EXPECT_THAT(told.found, IsEmpty()) << told.words;
+  EXPECT_TRUE(added.may_be_written(false));
+  const auto& effects = told.improved.effects;
+  EXPECT_TRUE(std::any_of(effects.begin(), effects.end(), [](const RobotEffect& one) {
+    return one.kind == EffectKind::kTorqueScale && one.fitted;
+  }));
+  for (const JointErrors& joint : told.joints) {
+    EXPECT_LT(joint.holdout_after, 0.2 * joint.holdout_before) << joint.joint;
+  }
+}
+
 // Half of a joint's torque, and most of it constant or a spring where the joint moves.
 TEST(ManyJoints, GIVEN_a_counterweight_THEN_a_curve_over_the_position_is_named) {
   const RobotDescription robot = test::serial_arm(4);
