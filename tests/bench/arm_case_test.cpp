@@ -143,5 +143,22 @@ TEST(ArmBench, FindsTheFrictionThatAFileLacks) {
   EXPECT_GE(static_cast<double>(there), 0.5 * asked);
 }
 
+// GIVEN an arm that is in a posture once, and a spring that no file knows WHEN pushes are looked for
+// THEN what links of which nothing is known guess there without having seen it is none.
+TEST(ArmBench, TakesAPostureThatComesOnceForNoPush) {
+#ifdef OFFNOMINAL_SANITIZE
+  GTEST_SKIP() << "minutes under the sanitizers; the analysis has tests of its own";
+#endif
+  constexpr std::uint64_t kSeed = 1317791056;
+  desk::ExplainOptions options;
+  options.replays = 0;
+  options.most_effects = 0;
+  options.link_share = 0.05;
+  const bench::ArmOutcome outcome = bench::run_arm_case({ArmHides::kEffects, kSeed}, options);
+  ASSERT_EQ(outcome.refused + outcome.failed, "");
+  ASSERT_THAT(outcome.truth.pushes, ::testing::IsEmpty());
+  EXPECT_THAT(outcome.score.false_pushes, ::testing::Eq(0));
+}
+
 }  // namespace
 }  // namespace offnominal::test
