@@ -70,8 +70,7 @@ class Explainer {
     const FilterPlan& plan = plan_;
     check(logs, plan);
     check(holdout, plan);
-    NuisanceOptions nuisance =
-        with_link_share({}, options.link_share.value_or(kUsualLinkShare));
+    NuisanceOptions nuisance = with_link_share({}, options.link_share.value_or(kUsualLinkShare));
     if (options.keep_effects) nuisance.free_effects.emplace();
     both_ways_ = came_both_ways(logs);
     const auto recordings_of = [&](const std::vector<Stretch>& some, const VectorXd& widths) {

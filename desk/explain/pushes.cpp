@@ -360,8 +360,8 @@ class PushFinder {
     return false;
   }
 
-  // Whether a fit that sees it too has most of it: where the arm is as it is nowhere else, what links
-  // of which nothing is known say without it is a guess. Of a push a half and more is left.
+  // Whether a fit that sees it too has most of it: where the arm is as it is nowhere else, what
+  // links of which nothing is known say without it is a guess. Of a push a half and more is left.
   [[nodiscard]] bool is_guessed(const LoudStretch& one, const LoudStretch& rough,
                                 const std::vector<Index>& joints) const {
     constexpr double kMost = 0.7;

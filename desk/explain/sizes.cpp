@@ -20,6 +20,19 @@ bool is_positive(const Term& term, const std::string& parameter) {
   });
 }
 
+// A wave whose order or frequency may as well be half of it, or none, repeats with nothing.
+bool repeats_with_something(const Term& term, const std::vector<Estimate>& numbers) {
+  constexpr double kHalf = 0.5;
+  if (term.effect->spectrum() == EffectCandidate::Spectrum::kNone) return true;
+  return std::none_of(numbers.begin(), numbers.end(), [&](const Estimate& one) {
+    const bool is_searched =
+        std::any_of(term.ranges.begin(), term.ranges.end(),
+                    [&](const ShapeRange& range) { return range.name == one.value.name; });
+    return is_searched && one.ci95 &&
+           (*one.ci95)[1] - (*one.ci95)[0] > 2 * kHalf * std::abs(one.value.value);
+  });
+}
+
 void widen(Estimate& estimate, double deviation) {
   constexpr double kTwoSided95 = 1.96;
   if (!estimate.ci95) return;
@@ -49,7 +62,8 @@ Sizes sizes_of(const ImprovedRobot& improved) {
     const VectorXd& value = improved.last.fit.coefficients[i];
     const auto& recordings = improved.last.data->recordings;
     const bool possible =
-        can_be(terms[i], value, recordings) || can_be(terms[i], kBarely * value, recordings);
+        (can_be(terms[i], value, recordings) || can_be(terms[i], kBarely * value, recordings)) &&
+        repeats_with_something(terms[i], estimates.terms[i]);
     double least = possible ? estimates.linear[i].from_nothing() : 0;
     for (const VectorXd& shift : shifts[i].linear) {
       LinearPart wider = estimates.linear[i];

@@ -13,7 +13,8 @@ namespace offnominal::desk {
 // of that (band_shift.hpp).
 struct Sizes {
   std::vector<std::vector<Estimate>> numbers;
-  std::vector<double> from_nothing;  // LinearPart::from_nothing(); 0 of a size that cannot be
+  std::vector<double> from_nothing;  // LinearPart::from_nothing(); 0 of a size that cannot be, and
+                                     // of a wave whose order or frequency is unknown by half of it
 };
 
 Sizes sizes_of(const ImprovedRobot& improved);

@@ -143,8 +143,8 @@ TEST(ArmBench, FindsTheFrictionThatAFileLacks) {
   EXPECT_GE(static_cast<double>(there), 0.5 * asked);
 }
 
-// GIVEN an arm that is in a posture once, and a spring that no file knows WHEN pushes are looked for
-// THEN what links of which nothing is known guess there without having seen it is none.
+// GIVEN an arm that is in a posture once, and a spring that no file knows WHEN pushes are looked
+// for THEN what links of which nothing is known guess there without having seen it is none.
 TEST(ArmBench, TakesAPostureThatComesOnceForNoPush) {
 #ifdef OFFNOMINAL_SANITIZE
   GTEST_SKIP() << "minutes under the sanitizers; the analysis has tests of its own";

@@ -138,5 +138,21 @@ TEST(Sizes, OfWhatCannotBeAreNothing) {
   EXPECT_EQ(sizes.from_nothing[0], 0);
 }
 
+// Of a ripple on a joint that has none.
+TEST(Sizes, OfAWaveThatRepeatsWithNothingAreNothing) {
+  const RobotDescription robot = test::serial_arm(1);
+  const std::vector<Log> logs{test::record(robot, {.duration_s = 12, .seed = 5})};
+  const FilterPlan plan = plan_filter(logs, robot);
+  const NuisanceOptions none;
+  const Data data(make_workspaces(logs, robot, plan, VectorXd::Zero(1)), robot, none);
+  const std::vector<Term> terms{first_on_grid(data, EffectKind::kCoggingTorque, 0)};
+  const ModelFit fit = Regression(data).fit(terms);
+  ASSERT_GT(fit.coefficients[0].norm(), 0);
+  const Sizes sizes = sizes_of(improved_robot(robot, robot, data, {none, {}, {}, ""},
+                                              relinearise(robot, data, none, terms, fit)));
+  ASSERT_EQ(sizes.from_nothing.size(), 1U);
+  EXPECT_EQ(sizes.from_nothing[0], 0);
+}
+
 }  // namespace
 }  // namespace offnominal::desk
