@@ -104,7 +104,8 @@ void set_up_explain(CLI::App& verb, ExitCode& /*exit_code*/) {
   add_keep_option(verb, options->explain.keep);
   verb.add_option("--link-share", options->explain.link_share,
                   "How far mass and inertia of a link may be off the file, as a share; beyond 0.1 "
-                  "its centre of mass too [0.05, or more where the recordings ask for it]")
+                  "its centre of mass, and torque constants by 5 %, too [0.05, or more where the "
+                  "recordings ask for it]")
       ->check(CLI::Range(0.0, 1.0));
   verb.add_flag("--keep-effects", options->explain.keep_effects,
                 "Take the numbers of the file's effects for right: fit none of them beside what is "

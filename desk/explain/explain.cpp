@@ -141,6 +141,7 @@ class Explainer {
               changes_},
              result);
     result.held = improved.held;
+    result.torque_constants = improved.constants;
     leave_out_undecided(found, result, improved);
     for (Shift& one : result.shifts) {
       one.came = improved.robot.effects[one.effect].parameters[one.parameter];
@@ -231,8 +232,7 @@ class Explainer {
     if (!search || options_.link_share || result.at_rest) return best;
     tell("asking how far the links' numbers are off");
     const NuisanceOptions usual = setting_.nuisance;
-    for (const double share :
-         wider_link_shares(robot_, *setting_.data, usual.changes, options_.threads)) {
+    for (const double share : wider_link_shares(robot_, *setting_.data, usual, options_.threads)) {
       // What the fits point to has to stay where it is until one of them is chosen.
       SearchSetting of_best = set_beside(with_link_share(usual, share));
       FoundModel wide = find(search, result);
@@ -328,7 +328,8 @@ class Explainer {
                                                 : options_.most_effects;
   }
 
-  // Of a robot file, and with what is carried in a recording, which is one more.
+  // Of a robot file, and with what is carried in a recording, which is one more, and the torque
+  // constants that are written with the links.
   [[nodiscard]] int room_for_effects() const {
     const auto is_loaded = [](const Data* data) {
       return data != nullptr &&
@@ -336,8 +337,12 @@ class Explainer {
                          [](const Workspace& at) { return at.payload.has_value(); });
     };
     const bool loaded = is_loaded(setting_.data.get()) || is_loaded(setting_.held_out.get());
+    const auto& fitted = setting_.data->nuisance.terms;
+    const auto constants = std::count_if(fitted.begin(), fitted.end(), [](const auto& one) {
+      return one.kind == NuisanceTerm::Kind::kConstant;
+    });
     return kEffectsPerJoint * static_cast<int>(robot_.joints.size()) -
-           static_cast<int>(robot_.effects.size()) - (loaded ? 1 : 0);
+           static_cast<int>(robot_.effects.size()) - (loaded ? 1 : 0) - static_cast<int>(constants);
   }
 
   // What is held is not what moves, and a model of what happens at rest knows neither time nor what

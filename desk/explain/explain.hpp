@@ -250,6 +250,8 @@ struct Explanation {
   RobotDescription improved;
   std::vector<std::string> unwritable;  // what of the findings is not in it, and why
   std::vector<HeldNumber> held;         // of `improved`
+  // Fitted beside the links' numbers and written with them; empty: none.
+  std::vector<FittedConstant> torque_constants;
   std::vector<std::string> unphysical;  // what physics forbids of it
 };
 

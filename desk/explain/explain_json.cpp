@@ -181,6 +181,10 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
         {"file_value", shift.file}, {"value", shift.came},     {"unit", shift.unit}};
   });
   json["link_share"] = {{"value", e.link_share}, {"judged", e.link_share_judged}};
+  json["torque_constants"] = nlohmann::json::array();
+  for (const FittedConstant& one : e.torque_constants) {
+    json["torque_constants"].push_back({{"joint", one.joint + 1}, {"error", one.error}});
+  }
   json["data_faults"] = to_json(e.data_faults);
   json["data_hints"] = to_json(e.data_hints);
   json["left_out"] = to_json(e.left_out);

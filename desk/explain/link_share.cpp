@@ -67,17 +67,26 @@ ErrorsBeside held_out_of(const Data& data) {
   return {parts.rms(parts.residual(terms, fit)), fit.remainder.independent_samples};
 }
 
-// Accepted effects that are a mass at a place, and the others.
+// Accepted effects that are a mass at a place, a torque constant that is off by no more than is
+// fitted beside wide links, and the others.
 struct Counted {
   std::size_t masses = 0;
+  std::size_t constants = 0;
   std::size_t others = 0;
 };
 
 Counted counted(const FoundModel& found) {
   Counted count;
-  for (const Accepted& one : found.accepted) {
-    const bool is_mass = one.term.effect->info().action == EffectAction::kPointMass;
-    ++(is_mass ? count.masses : count.others);
+  for (std::size_t i = 0; i < found.accepted.size(); ++i) {
+    const EffectAction action = found.accepted[i].term.effect->info().action;
+    if (action == EffectAction::kPointMass) {
+      ++count.masses;
+    } else if (action == EffectAction::kToldPerGiven &&
+               std::abs(found.fit.coefficients[i][0]) <= kUsualConstantShare) {
+      ++count.constants;
+    } else {
+      ++count.others;
+    }
   }
   return count;
 }
@@ -106,16 +115,14 @@ NuisanceOptions beside_unknown_links(NuisanceOptions options) {
 }
 
 std::vector<double> wider_link_shares(const RobotDescription& robot, const Data& data,
-                                      const std::vector<Term>& changes, int threads) {
+                                      const NuisanceOptions& usual, int threads) {
   std::array<ErrorsBeside, 1 + kShares.size()> held;
   parallel_for(held.size(), threads, [&](std::size_t i) {
     if (i == 0) {
       held[i] = held_out_of(data);
       return;
     }
-    NuisanceOptions wide = with_link_share({}, kShares[i - 1]);
-    wide.changes = changes;
-    held[i] = held_out_of(Data(data, robot, wide));
+    held[i] = held_out_of(Data(data, robot, with_link_share(usual, kShares[i - 1])));
   });
   std::size_t best = 0;
   for (std::size_t i = 1; i < held.size(); ++i) {
@@ -137,7 +144,7 @@ bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const Fo
   }
   constexpr std::size_t kManyEffects = 3;
   return gain.log_likelihood > -kClearly &&
-         usual.accepted.size() >= wide.accepted.size() + kManyEffects;
+         usual.accepted.size() - counted(usual).constants >= wide.accepted.size() + kManyEffects;
 }
 
 }  // namespace offnominal::desk

@@ -27,14 +27,15 @@ NuisanceOptions beside_unknown_links(NuisanceOptions options);
 // payload on the last link of an arm of three joints or more, held-out time has to become clearly
 // more likely (at least one joint's error falls by a twentieth). The widest that does is the last
 // of them, after all that are narrower: links that may be off by more than they are take the place
-// of what is carried, and of springs. Empty where the usual one is as good. `robot` and `changes`
-// (nuisance.hpp): that `data` was made with, at the usual share.
+// of what is carried, and of springs. Empty where the usual one is as good. `robot` and `usual`:
+// that `data` was made with.
 std::vector<double> wider_link_shares(const RobotDescription& robot, const Data& data,
-                                      const std::vector<Term>& changes, int threads);
+                                      const NuisanceOptions& usual, int threads);
 
 // Of two searches, whether the one with the wider share is to be believed: it predicts held-out
 // data clearly better than the one that had to explain the same by effects, or about as well where
-// that one needed at least three effects more. A link of another mass is an effect, and named: one
+// that one needed at least three effects more; a torque constant that the wide one fits is none of
+// them. A link of another mass is an effect, and named: one
 // mass that is wrong is believed rather than all links off a little, where a hundredth of a torque
 // is at stake. `both_wide`: the narrower one has all links off already.
 bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const FoundModel& usual,

@@ -361,7 +361,8 @@ class PushFinder {
   }
 
   // Whether a fit that sees it too has most of it: where the arm is as it is nowhere else, what
-  // links of which nothing is known say without it is a guess. Of a push a half and more is left.
+  // links of which nothing is known say without it is a guess. Of a push half and more was left
+  // where it was tried.
   [[nodiscard]] bool is_guessed(const LoudStretch& one, const LoudStretch& rough,
                                 const std::vector<Index>& joints) const {
     constexpr double kMost = 0.7;

@@ -465,8 +465,9 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
     answer.words = fmt::format("{} may hide in the noise.", e.suspected->what.name());
   } else if (gains_by_links(e, errors)) {
     answer.verdict = Verdict::kParameterShift;
-    answer.words =
-        "masses, centres of mass or inertias of the links." + words_of_gain(errors, true);
+    const char* const drives = e.torque_constants.empty() ? "" : ", or torque constants";
+    answer.words = fmt::format("masses, centres of mass or inertias of the links{}.{}", drives,
+                               words_of_gain(errors, true));
   } else {
     std::vector<EffectAt> carried;
     for (const Finding& one : e.found) {
@@ -526,12 +527,22 @@ void advise_on_links(Explanation& e) {
         "`--link-share {:g}` fits them all the same",
         fmt::join(joints, ", "), e.link_share));
   }
-  if (!e.link_share_judged) return;
+  if (e.link_share_judged) {
+    e.advice.push_back(fmt::format(
+        "the links' masses, centres of mass and inertias{} are off the file by more than CAD "
+        "usually is: they were fitted within {:.0f} % of it, which predicts time that was not "
+        "fitted better; `--link-share 0.05` holds them",
+        e.torque_constants.empty() ? "" : ", or the torque constants,", 100 * e.link_share));
+  }
+  if (e.torque_constants.empty()) return;
+  std::vector<std::string> constants;
+  for (const FittedConstant& one : e.torque_constants) {
+    constants.push_back(fmt::format("joint {} {:+.1f} %", one.joint + 1, 100 * one.error));
+  }
   e.advice.push_back(fmt::format(
-      "the links' masses, centres of mass and inertias are off the file by more than CAD usually "
-      "is: they were fitted within {:.0f} % of it, and the torque constants within {:.0f} %, which "
-      "predicts time that was not fitted better; `--link-share 0.05` holds them",
-      100 * e.link_share, 100 * kUsualConstantShare));
+      "torque constants were fitted beside the links, within {:.0f} %, and are written with them: "
+      "{}; what is below that gets no name",
+      100 * kUsualConstantShare, fmt::join(constants, ", ")));
 }
 
 // A file without any friction on a joint, in one sentence.

@@ -282,18 +282,33 @@ void scale_links(const Relinearised& found, const std::string& source, RobotDesc
   }
 }
 
-// Torque constants that were fitted beside the links' numbers are numbers of the drives as masses
-// are of the links.
-void put_torque_constants(const Relinearised& found, const std::string& source,
-                          RobotDescription& robot) {
+// Errors of the torque constants that were fitted beside the links' numbers.
+std::vector<FittedConstant> constants_of(const Relinearised& found) {
+  std::vector<FittedConstant> constants;
   for (std::size_t i = 0; i < found.data->nuisance.terms.size(); ++i) {
     const NuisanceTerm& term = found.data->nuisance.terms[i];
     const double error = found.fit.nuisance[static_cast<Index>(i)];
-    if (term.kind != NuisanceTerm::Kind::kConstant || std::abs(error) < kWorthWriting) continue;
+    if (term.kind == NuisanceTerm::Kind::kConstant && error != 0) {
+      constants.push_back({term.joint, error});
+    }
+  }
+  return constants;
+}
+
+bool are_worth_writing(const std::vector<FittedConstant>& constants) {
+  return std::any_of(constants.begin(), constants.end(), [](const FittedConstant& one) {
+    return std::abs(one.error) >= kWorthWriting;
+  });
+}
+
+// Numbers of the drives as masses are of the links.
+void put_constants(const std::vector<FittedConstant>& constants, const std::string& source,
+                   RobotDescription& robot) {
+  for (const FittedConstant& one : constants) {
     robot.effects.push_back(
-        {{EffectKind::kTorqueScale, static_cast<std::uint8_t>(term.joint), {error}, false},
+        {{EffectKind::kTorqueScale, static_cast<std::uint8_t>(one.joint), {one.error}, false},
          true,
-         "Beside the links' numbers: " + source});
+         "Fitted beside all else: " + source});
   }
 }
 
@@ -323,6 +338,7 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
         as_the_file && found.links[link].largest(size_of_link(file, link)) < kWorthWriting;
   }
   if (as_the_file || options.keeps_links) nuisance.link_share = 0;
+  if (!are_worth_writing(constants_of(found))) nuisance.torque_constant = 0;
   ImprovedRobot improved;
   improved.robot = file;
   FileFitter fitter(file, robot, data, std::move(nuisance), options, found.terms);
@@ -337,7 +353,8 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   for (const Index joint : improved.widths) {
     set_fitted_width(improved.robot, options.refitted, joint, sign_width[joint]);
   }
-  put_torque_constants(last, options.source, improved.robot);
+  improved.constants = constants_of(last);
+  put_constants(improved.constants, options.source, improved.robot);
   for (std::size_t i = 0; i < last.terms.size(); ++i) {
     const Term& term = last.terms[i];
     const double factor = factor_of_term(*last.data, last.terms, last.fit, i);

@@ -22,6 +22,12 @@ struct HeldNumber {
 // Whether a number of the joint was held at the end of what is possible against the recordings.
 bool holds_what_cannot_be(const std::vector<HeldNumber>& held, Eigen::Index joint);
 
+// Error of a joint's torque constant, as of torque_scale, that no search was about.
+struct FittedConstant {
+  Eigen::Index joint = 0;
+  double error = 0;
+};
+
 // The robot as it was read, with what was found: the effects, marked fitted; the numbers of the
 // effects that were fitted before; mass and inertia of the links. Fitted together, they belong
 // together.
@@ -34,6 +40,8 @@ struct ImprovedRobot {
   Relinearised found;          // the same terms beside what no robot file can say: for intervals
   RobotDescription made_with;  // what the data of `last` were made with
   std::vector<Eigen::Index> widths;  // joints whose width was fitted
+  // Written too, all of them where one is worth it: what else is fitted belongs to them.
+  std::vector<FittedConstant> constants;
   // Found, but not among the effects that a robot file can say; the rest is then of no use alone.
   std::vector<std::string> unwritable;
   std::vector<HeldNumber> held;

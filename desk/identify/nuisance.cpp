@@ -40,7 +40,7 @@ class Builder {
     for (Index link = 0; options_.link_share > 0 && link < layout_.joint_count(); ++link) {
       add_link(link);
     }
-    for (Index joint = 0; options_.torque_constant > 0 && joint < layout_.joint_count(); ++joint) {
+    for (Index joint = 0; has_constants() && joint < layout_.joint_count(); ++joint) {
       if (!recordings_[0].knows(EffectKind::kTorqueScale, joint)) add_constant(joint);
     }
     for (std::size_t effect = 0; effect < robot_.effects.size(); ++effect) {
@@ -125,6 +125,11 @@ class Builder {
           }
           return regressor;
         });
+  }
+
+  // One joint alone, or gravity alone, does not tell them from masses.
+  [[nodiscard]] bool has_constants() const {
+    return options_.torque_constant > 0 && layout_.joint_count() > 1 && !recordings_[0].at_rest;
   }
 
   // Of what the model has, as the candidate is. Of what is measured it would take a share of any

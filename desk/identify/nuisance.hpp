@@ -65,8 +65,8 @@ struct NuisanceOptions {
   // Mass, centre of mass and inertia of a link each by itself, for numbers that are little more
   // than a guess: one factor for a link is right where its geometry is.
   bool link_geometry = false;
-  // Torque constants, as a share; 0: they are right. One that the file has a torque_scale for is
-  // a number of the file.
+  // Torque constants, as a share; 0: they are right, as on one joint and at rest, which do not
+  // tell them from masses. One that the file has a torque_scale for is a number of the file.
   double torque_constant = 0;
   double skew_samples = 1.0;  // torque against position; 0: they are of one time
   // By which each link of the robot differs from what the prior is about; empty: by nothing.

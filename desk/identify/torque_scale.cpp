@@ -39,13 +39,22 @@ Scale scale_of(const Data& data, const std::vector<Term>& terms, const ModelFit&
   return scale;
 }
 
+// The joint whose torque says most of a term: of a mass not its own, which may hardly feel it.
+Index joint_of(const Data& data, const Term& term, const ModelFit& fit) {
+  if (term.effect->info().action != EffectAction::kPointMass) return term.joint;
+  Index joint = term.joint;
+  data.layout.energy(data.layout.weighted(columns_of(data, term).col(0), fit.joint_weights))
+      .maxCoeff(&joint);
+  return joint;
+}
+
 }  // namespace
 
 double factor_of_term(const Data& data, const std::vector<Term>& terms, const ModelFit& fit,
                       std::size_t i) {
   const Term& term = terms[i];
   if (term.effect->info().acts_on_whole_drive()) return 1;
-  return 1 / scale_of(data, terms, fit, term.joint).fitted;
+  return 1 / scale_of(data, terms, fit, joint_of(data, term, fit)).fitted;
 }
 
 double factor_of_known(const Data& data, const std::vector<Term>& terms, const ModelFit& fit,
