@@ -338,10 +338,19 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
         as_the_file && found.links[link].largest(size_of_link(file, link)) < kWorthWriting;
   }
   if (as_the_file || options.keeps_links) nuisance.link_share = 0;
-  if (!are_worth_writing(constants_of(found))) nuisance.torque_constant = 0;
+  // The last fit has them as the file will: what is carried is scaled by every joint's own.
+  nuisance.torque_constant = 0;
   ImprovedRobot improved;
   improved.robot = file;
-  FileFitter fitter(file, robot, data, std::move(nuisance), options, found.terms);
+  RobotDescription start = robot;
+  if (auto constants = constants_of(found); are_worth_writing(constants)) {
+    put_constants(constants, options.source, improved.robot);
+    put_constants(constants, options.source, start);
+    improved.constants = std::move(constants);
+  }
+  const RobotDescription with_constants = improved.robot;
+  FileFitter fitter(with_constants, std::move(start), data, std::move(nuisance), options,
+                    found.terms);
   FileFit file_fit = fitter.run(improved.held);
   improved.made_with = std::move(file_fit.made_with);
   improved.widths = std::move(file_fit.widths);
@@ -353,8 +362,6 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   for (const Index joint : improved.widths) {
     set_fitted_width(improved.robot, options.refitted, joint, sign_width[joint]);
   }
-  improved.constants = constants_of(last);
-  put_constants(improved.constants, options.source, improved.robot);
   for (std::size_t i = 0; i < last.terms.size(); ++i) {
     const Term& term = last.terms[i];
     const double factor = factor_of_term(*last.data, last.terms, last.fit, i);

@@ -8,6 +8,7 @@
 
 #include "identify/few_rows.hpp"
 #include "identify/independent_samples.hpp"
+#include "identify/torque_scale.hpp"
 #include "signal/correlation.hpp"
 
 namespace offnominal::desk {
@@ -222,6 +223,16 @@ MatrixXd columns_of_all(const Data& data, const Term& term) {
 
 MatrixXd columns_of(const Data& data, const Term& term) {
   MatrixXd columns = columns_of_all(data, term);
+  if (term.effect->info().action == EffectAction::kPointMass) {
+    // Every joint tells of it by its own torque constant.
+    const RowLayout& layout = data.layout;
+    for (Index joint = 0; joint < layout.joint_count(); ++joint) {
+      const double scale = scale_known(data.recordings[0], joint);
+      for (std::size_t r = 0; scale != 1 && r < layout.recording_count(); ++r) {
+        columns.middleRows(layout.begin(r, joint), layout.samples(r)) *= scale;
+      }
+    }
+  }
   if (term.during) {
     columns = within(shares_of(*term.during, data.recordings), data.layout, columns);
   }

@@ -17,9 +17,7 @@ struct Scale {
 Scale scale_of(const Data& data, const std::vector<Term>& terms, const ModelFit& fit, Index joint) {
   Scale scale;
   const auto& known = data.recordings[0].known_effects;
-  for (const RobotEffect& effect : known) {
-    if (effect.joint == joint && is_scale(effect.kind)) scale.made_with *= 1 + effect.parameters[0];
-  }
+  scale.made_with = scale_known(data.recordings[0], joint);
   scale.fitted = scale.made_with;
   for (std::size_t i = 0; i < data.nuisance.terms.size(); ++i) {
     const NuisanceTerm& term = data.nuisance.terms[i];
@@ -50,11 +48,22 @@ Index joint_of(const Data& data, const Term& term, const ModelFit& fit) {
 
 }  // namespace
 
+double scale_known(const Workspace& at, Index joint) {
+  double scale = 1;
+  for (const RobotEffect& effect : at.known_effects) {
+    if (effect.joint == joint && is_scale(effect.kind)) scale *= 1 + effect.parameters[0];
+  }
+  return scale;
+}
+
 double factor_of_term(const Data& data, const std::vector<Term>& terms, const ModelFit& fit,
                       std::size_t i) {
   const Term& term = terms[i];
   if (term.effect->info().acts_on_whole_drive()) return 1;
-  return 1 / scale_of(data, terms, fit, joint_of(data, term, fit)).fitted;
+  const Scale scale = scale_of(data, terms, fit, joint_of(data, term, fit));
+  // What is carried is scaled already by what the model knows (columns_of()).
+  const bool is_mass = term.effect->info().action == EffectAction::kPointMass;
+  return (is_mass ? scale.made_with : 1) / scale.fitted;
 }
 
 double factor_of_known(const Data& data, const std::vector<Term>& terms, const ModelFit& fit,

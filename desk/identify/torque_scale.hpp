@@ -17,4 +17,7 @@ double factor_of_term(const Data& data, const std::vector<Term>& terms, const Mo
 double factor_of_known(const Data& data, const std::vector<Term>& terms, const ModelFit& fit,
                        std::size_t i);
 
+// 1 + the error of a joint's torque constant as the model of these recordings has it.
+double scale_known(const Workspace& at, Eigen::Index joint);
+
 }  // namespace offnominal::desk
