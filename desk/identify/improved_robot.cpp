@@ -338,12 +338,16 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
         as_the_file && found.links[link].largest(size_of_link(file, link)) < kWorthWriting;
   }
   if (as_the_file || options.keeps_links) nuisance.link_share = 0;
-  // The last fit has them as the file will: what is carried is scaled by every joint's own.
-  nuisance.torque_constant = 0;
+  // What is carried is scaled by every joint's own: then the last fit has them as the file will.
+  const bool carries = std::any_of(found.terms.begin(), found.terms.end(), [](const Term& one) {
+    return one.effect->info().action == EffectAction::kPointMass;
+  });
+  auto constants = constants_of(found);
+  if (carries || !are_worth_writing(constants)) nuisance.torque_constant = 0;
   ImprovedRobot improved;
   improved.robot = file;
   RobotDescription start = robot;
-  if (auto constants = constants_of(found); are_worth_writing(constants)) {
+  if (carries && are_worth_writing(constants)) {
     put_constants(constants, options.source, improved.robot);
     put_constants(constants, options.source, start);
     improved.constants = std::move(constants);
@@ -356,6 +360,10 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   improved.widths = std::move(file_fit.widths);
   improved.last = std::move(file_fit.last);
   const Relinearised& last = improved.last;
+  if (constants = constants_of(last); !constants.empty()) {
+    put_constants(constants, options.source, improved.robot);
+    improved.constants = std::move(constants);
+  }
   const VectorXd& sign_width = last.data->recordings[0].sign_width;
   scale_links(last, options.source, improved.robot);
   move_fitted_effects(last, options.source, improved.robot);
