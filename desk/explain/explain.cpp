@@ -214,8 +214,7 @@ class Explainer {
     std::vector<char> changed(robot_.joints.size(), 0);
     for (const Accepted& one : found.accepted) {
       // By what it carries its own joint need not gain (doubts.cpp).
-      const bool is_mass = one.term.effect->info().action == EffectAction::kPointMass;
-      if (!is_mass) changed[static_cast<std::size_t>(one.term.joint)] = 1;
+      if (!one.term.effect->is_mass()) changed[static_cast<std::size_t>(one.term.joint)] = 1;
     }
     for (const Shift& one : result.shifts) changed[static_cast<std::size_t>(one.joint)] = 1;
     std::vector<Index> raised = raised_by_links(judged(), improved, changed);

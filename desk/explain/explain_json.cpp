@@ -181,10 +181,9 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
         {"file_value", shift.file}, {"value", shift.came},     {"unit", shift.unit}};
   });
   json["link_share"] = {{"value", e.link_share}, {"judged", e.link_share_judged}};
-  json["torque_constants"] = nlohmann::json::array();
-  for (const FittedConstant& one : e.torque_constants) {
-    json["torque_constants"].push_back({{"joint", one.joint + 1}, {"error", one.error}});
-  }
+  json["torque_constants"] = array_of(e.torque_constants, [](const FittedConstant& one) {
+    return ordered_json{{"joint", one.joint + 1}, {"error", one.error}};
+  });
   json["data_faults"] = to_json(e.data_faults);
   json["data_hints"] = to_json(e.data_hints);
   json["left_out"] = to_json(e.left_out);

@@ -257,7 +257,7 @@ class Finder {
 
   // The joint whose error says most of it: its own, or of a mass one that carries it.
   [[nodiscard]] std::size_t shown_on(const Proposal& one) const {
-    if (one.terms.back().effect->info().action != EffectAction::kPointMass) return joint_of(one);
+    if (!one.terms.back().effect->is_mass()) return joint_of(one);
     return static_cast<std::size_t>(fall_of(found_.fit, one.fit).joint);
   }
 
@@ -265,7 +265,7 @@ class Finder {
   // whether the joint of its own link moves or not.
   [[nodiscard]] const Excitation& motion_of(const Term& term) const {
     const auto own = excitation_.begin() + term.joint;
-    if (term.effect->info().action != EffectAction::kPointMass) return *own;
+    if (!term.effect->is_mass()) return *own;
     return *std::max_element(
         excitation_.begin(), own + 1, [](const Excitation& a, const Excitation& b) {
           return std::pair{a.moves, a.separation} < std::pair{b.moves, b.separation};

@@ -78,10 +78,10 @@ struct Counted {
 Counted counted(const FoundModel& found) {
   Counted count;
   for (std::size_t i = 0; i < found.accepted.size(); ++i) {
-    const EffectAction action = found.accepted[i].term.effect->info().action;
-    if (action == EffectAction::kPointMass) {
+    const EffectCandidate& effect = *found.accepted[i].term.effect;
+    if (effect.is_mass()) {
       ++count.masses;
-    } else if (action == EffectAction::kToldPerGiven &&
+    } else if (effect.is_torque_constant() &&
                std::abs(found.fit.coefficients[i][0]) <= kUsualConstantShare) {
       ++count.constants;
     } else {

@@ -35,9 +35,9 @@ std::vector<double> wider_link_shares(const RobotDescription& robot, const Data&
 // Of two searches, whether the one with the wider share is to be believed: it predicts held-out
 // data clearly better than the one that had to explain the same by effects, or about as well where
 // that one needed at least three effects more; a torque constant that the wide one fits is none of
-// them. A link of another mass is an effect, and named: one
-// mass that is wrong is believed rather than all links off a little, where a hundredth of a torque
-// is at stake. `both_wide`: the narrower one has all links off already.
+// them. A link of another mass is an effect, and named: one mass that is wrong is believed rather
+// than all links off a little, where a hundredth of a torque is at stake. `both_wide`: the narrower
+// one has all links off already.
 bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const FoundModel& usual,
                        bool both_wide);
 

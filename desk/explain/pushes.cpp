@@ -127,13 +127,16 @@ class PushFinder {
 
   [[nodiscard]] std::vector<char> rows_outside() const {
     std::vector<char> rows(static_cast<std::size_t>(layout_.rows()), 1);
-    for (const LoudStretch& one : loud_) {
-      for (Index joint = 0; joint < layout_.joint_count(); ++joint) {
-        std::fill_n(rows.begin() + layout_.begin(one.recording, joint) + one.samples.first,
-                    one.samples.count, 0);
-      }
-    }
+    for (const LoudStretch& one : loud_) mark(one, 0, rows);
     return rows;
+  }
+
+  // The rows of a stretch, of all joints.
+  void mark(const LoudStretch& one, char value, std::vector<char>& rows) const {
+    for (Index joint = 0; joint < layout_.joint_count(); ++joint) {
+      std::fill_n(rows.begin() + layout_.begin(one.recording, joint) + one.samples.first,
+                  one.samples.count, value);
+    }
   }
 
   [[nodiscard]] Index half_window(std::size_t recording) const {
@@ -367,10 +370,7 @@ class PushFinder {
                                 const std::vector<Index>& joints) const {
     constexpr double kMost = 0.7;
     std::vector<char> rows = outside_;
-    for (Index joint = 0; joint < layout_.joint_count(); ++joint) {
-      std::fill_n(rows.begin() + layout_.begin(rough.recording, joint) + rough.samples.first,
-                  rough.samples.count, 1);
-    }
+    mark(rough, 1, rows);
     const VectorXd seen = layout_.while_moving(regression_.fit(terms_, rows).residual);
     double without = 0;
     double with = 0;

@@ -108,6 +108,12 @@ class EffectCandidate {
   // Takes the place of the nuisance time skew (nuisance.hpp) once it is in the model. Its only
   // coefficient is a time then, and no discovery within what the skew may be.
   [[nodiscard]] bool replaces_skew() const { return info_.action == EffectAction::kDelay; }
+  // A mass at a place, which every joint that carries it feels.
+  [[nodiscard]] bool is_mass() const { return info_.action == EffectAction::kPointMass; }
+  // Scales all that the drive of a joint gives.
+  [[nodiscard]] bool is_torque_constant() const {
+    return info_.action == EffectAction::kToldPerGiven;
+  }
   // The grid is a spectrum: it is screened by a periodogram over this variable.
   enum class Spectrum { kNone, kPosition, kTime };
   [[nodiscard]] Spectrum spectrum() const;

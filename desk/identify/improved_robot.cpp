@@ -339,9 +339,8 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   }
   if (as_the_file || options.keeps_links) nuisance.link_share = 0;
   // What is carried is scaled by every joint's own: then the last fit has them as the file will.
-  const bool carries = std::any_of(found.terms.begin(), found.terms.end(), [](const Term& one) {
-    return one.effect->info().action == EffectAction::kPointMass;
-  });
+  const bool carries = std::any_of(found.terms.begin(), found.terms.end(),
+                                   [](const Term& one) { return one.effect->is_mass(); });
   auto constants = constants_of(found);
   if (carries || !are_worth_writing(constants)) nuisance.torque_constant = 0;
   ImprovedRobot improved;

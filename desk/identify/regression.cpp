@@ -199,7 +199,7 @@ Evidence evidence_for(const Judge& judge, const Data& data, const Term& term) {
 bool takes_place_of(const Term& term, const NuisanceTerm& nuisance) {
   if (term.joint != nuisance.joint || term.effect->of_motor() || term.during) return false;
   if (nuisance.kind == NuisanceTerm::Kind::kConstant) {
-    return term.effect->info().action == EffectAction::kToldPerGiven;
+    return term.effect->is_torque_constant();
   }
   return nuisance.kind == NuisanceTerm::Kind::kSkew && term.effect->replaces_skew();
 }
@@ -207,8 +207,7 @@ bool takes_place_of(const Term& term, const NuisanceTerm& nuisance) {
 namespace {
 
 MatrixXd columns_of_all(const Data& data, const Term& term) {
-  const EffectAction action = term.effect->info().action;
-  const bool of_whole_arm = action == EffectAction::kPointMass || term.effect->is_only_screened();
+  const bool of_whole_arm = term.effect->is_mass() || term.effect->is_only_screened();
   const auto& all = all_candidates();
   const bool is_common = std::any_of(all.begin(), all.end(), [&](const auto& one) {
     return one.get() == term.effect;  // any other may have values of its own
@@ -223,7 +222,7 @@ MatrixXd columns_of_all(const Data& data, const Term& term) {
 
 MatrixXd columns_of(const Data& data, const Term& term) {
   MatrixXd columns = columns_of_all(data, term);
-  if (term.effect->info().action == EffectAction::kPointMass) {
+  if (term.effect->is_mass()) {
     // Every joint tells of it by its own torque constant.
     const RowLayout& layout = data.layout;
     for (Index joint = 0; joint < layout.joint_count(); ++joint) {

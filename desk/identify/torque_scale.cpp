@@ -30,7 +30,7 @@ Scale scale_of(const Data& data, const std::vector<Term>& terms, const ModelFit&
     }
   }
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    if (terms[i].joint == joint && is_scale(terms[i].effect->kind())) {
+    if (terms[i].joint == joint && terms[i].effect->is_torque_constant()) {
       scale.fitted *= 1 + fit.coefficients[i][0];
     }
   }
@@ -39,7 +39,7 @@ Scale scale_of(const Data& data, const std::vector<Term>& terms, const ModelFit&
 
 // The joint whose torque says most of a term: of a mass not its own, which may hardly feel it.
 Index joint_of(const Data& data, const Term& term, const ModelFit& fit) {
-  if (term.effect->info().action != EffectAction::kPointMass) return term.joint;
+  if (!term.effect->is_mass()) return term.joint;
   Index joint = term.joint;
   data.layout.energy(data.layout.weighted(columns_of(data, term).col(0), fit.joint_weights))
       .maxCoeff(&joint);
@@ -62,8 +62,7 @@ double factor_of_term(const Data& data, const std::vector<Term>& terms, const Mo
   if (term.effect->info().acts_on_whole_drive()) return 1;
   const Scale scale = scale_of(data, terms, fit, joint_of(data, term, fit));
   // What is carried is scaled already by what the model knows (columns_of()).
-  const bool is_mass = term.effect->info().action == EffectAction::kPointMass;
-  return (is_mass ? scale.made_with : 1) / scale.fitted;
+  return (term.effect->is_mass() ? scale.made_with : 1) / scale.fitted;
 }
 
 double factor_of_known(const Data& data, const std::vector<Term>& terms, const ModelFit& fit,

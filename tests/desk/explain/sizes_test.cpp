@@ -120,38 +120,41 @@ TEST_F(UnsureSizes, AloneAreStillSuspected) {
   EXPECT_FALSE(leave_out({})) << "and there is an end";
 }
 
-// Of what pushes away from where it rests.
-TEST(Sizes, OfWhatCannotBeAreNothing) {
+// One effect, fitted to a recording of a joint, and its sizes.
+struct OfOneEffect {
+  VectorXd coefficients;
+  Sizes sizes;
+};
+
+OfOneEffect sizes_of_one(const RobotDescription& real, EffectKind kind) {
   const RobotDescription robot = test::serial_arm(1);
-  RobotDescription pushed = robot;
-  pushed.effects.push_back(test::effect_of(EffectKind::kJointStiffness, 0, {-2, 0}, true));
-  const std::vector<Log> logs{test::record(pushed, {.duration_s = 12, .seed = 5})};
+  const std::vector<Log> logs{test::record(real, {.duration_s = 12, .seed = 5})};
   const FilterPlan plan = plan_filter(logs, robot);
   const NuisanceOptions none;
   const Data data(make_workspaces(logs, robot, plan, VectorXd::Zero(1)), robot, none);
-  const std::vector<Term> terms{first_on_grid(data, EffectKind::kJointStiffness, 0)};
+  const std::vector<Term> terms{first_on_grid(data, kind, 0)};
   const ModelFit fit = Regression(data).fit(terms);
-  ASSERT_LT(fit.coefficients[0][0], 0);
-  const Sizes sizes = sizes_of(improved_robot(robot, robot, data, {none, {}, {}, ""},
-                                              relinearise(robot, data, none, terms, fit)));
-  ASSERT_EQ(sizes.from_nothing.size(), 1U);
-  EXPECT_EQ(sizes.from_nothing[0], 0);
+  return {fit.coefficients[0],
+          sizes_of(improved_robot(robot, robot, data, {none, {}, {}, ""},
+                                  relinearise(robot, data, none, terms, fit)))};
+}
+
+// Of what pushes away from where it rests.
+TEST(Sizes, OfWhatCannotBeAreNothing) {
+  RobotDescription pushed = test::serial_arm(1);
+  pushed.effects.push_back(test::effect_of(EffectKind::kJointStiffness, 0, {-2, 0}, true));
+  const OfOneEffect one = sizes_of_one(pushed, EffectKind::kJointStiffness);
+  ASSERT_LT(one.coefficients[0], 0);
+  ASSERT_EQ(one.sizes.from_nothing.size(), 1U);
+  EXPECT_EQ(one.sizes.from_nothing[0], 0);
 }
 
 // Of a ripple on a joint that has none.
 TEST(Sizes, OfAWaveThatRepeatsWithNothingAreNothing) {
-  const RobotDescription robot = test::serial_arm(1);
-  const std::vector<Log> logs{test::record(robot, {.duration_s = 12, .seed = 5})};
-  const FilterPlan plan = plan_filter(logs, robot);
-  const NuisanceOptions none;
-  const Data data(make_workspaces(logs, robot, plan, VectorXd::Zero(1)), robot, none);
-  const std::vector<Term> terms{first_on_grid(data, EffectKind::kCoggingTorque, 0)};
-  const ModelFit fit = Regression(data).fit(terms);
-  ASSERT_GT(fit.coefficients[0].norm(), 0);
-  const Sizes sizes = sizes_of(improved_robot(robot, robot, data, {none, {}, {}, ""},
-                                              relinearise(robot, data, none, terms, fit)));
-  ASSERT_EQ(sizes.from_nothing.size(), 1U);
-  EXPECT_EQ(sizes.from_nothing[0], 0);
+  const OfOneEffect one = sizes_of_one(test::serial_arm(1), EffectKind::kCoggingTorque);
+  ASSERT_GT(one.coefficients.norm(), 0);
+  ASSERT_EQ(one.sizes.from_nothing.size(), 1U);
+  EXPECT_EQ(one.sizes.from_nothing[0], 0);
 }
 
 }  // namespace
