@@ -1,5 +1,10 @@
 #include "identify/relinearise.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
 namespace offnominal::desk {
 
 RobotDescription with_link_changes(RobotDescription robot, const std::vector<LinkChange>& links) {
@@ -33,13 +38,12 @@ std::vector<LinkChange> fitted_changes(const Data& data, const ModelFit& fit,
   return links;
 }
 
-}  // namespace
-
-Relinearised relinearise(const RobotDescription& robot, const Data& data,
-                         const NuisanceOptions& options, const std::vector<Term>& terms,
-                         const ModelFit& fit) {
+// The model fitted anew about the robot with these links.
+Relinearised fitted_about(std::vector<LinkChange> links, const RobotDescription& robot,
+                          const Data& data, const NuisanceOptions& options,
+                          const std::vector<Term>& terms) {
   Relinearised anew;
-  anew.links = fitted_changes(data, fit, std::vector<LinkChange>(robot.joints.size()));
+  anew.links = std::move(links);
   const RobotDescription closer = with_link_changes(robot, anew.links);
   std::vector<Workspace> recordings = data.recordings;
   for (Workspace& at : recordings) at.set_model(closer);
@@ -52,6 +56,60 @@ Relinearised relinearise(const RobotDescription& robot, const Data& data,
   anew.fit = regression.fit(anew.terms);
   anew.links = fitted_changes(*anew.data, anew.fit, anew.links);
   return anew;
+}
+
+// Part of the way from one to the other.
+std::vector<LinkChange> on_the_way(const std::vector<LinkChange>& from,
+                                   const std::vector<LinkChange>& to, double part) {
+  std::vector<LinkChange> links = from;
+  for (std::size_t link = 0; link < to.size(); ++link) {
+    links[link].factor *= std::pow(to[link].factor / from[link].factor, part);
+    links[link].inertia_factor *=
+        std::pow(to[link].inertia_factor / from[link].inertia_factor, part);
+    for (std::size_t axis = 0; axis < from[link].centre_m.size(); ++axis) {
+      links[link].centre_m[axis] += part * (to[link].centre_m[axis] - from[link].centre_m[axis]);
+    }
+  }
+  return links;
+}
+
+// The largest change from one to the other, as a share of the link's numbers.
+double largest_step(const RobotDescription& robot, const std::vector<LinkChange>& from,
+                    const std::vector<LinkChange>& to) {
+  double largest = 0;
+  for (std::size_t link = 0; link < to.size(); ++link) {
+    LinkChange step{to[link].factor / from[link].factor,
+                    to[link].inertia_factor / from[link].inertia_factor, to[link].centre_m};
+    for (std::size_t axis = 0; axis < step.centre_m.size(); ++axis) {
+      step.centre_m[axis] -= from[link].centre_m[axis];
+    }
+    largest = std::max(largest, step.largest(size_of_link(robot, link)));
+  }
+  return largest;
+}
+
+}  // namespace
+
+Relinearised relinearise(const RobotDescription& robot, const Data& data,
+                         const NuisanceOptions& options, const std::vector<Term>& terms,
+                         const ModelFit& fit) {
+  // A step leaves out the product of a mass and its centre: less than a thousandth of both then.
+  constexpr double kSmallStep = 0.03;
+  // Where recordings hardly tell the two apart, whole steps go to and fro for ever.
+  constexpr double kShrinks = 0.7;
+  constexpr int kMostSteps = 12;
+  std::vector<LinkChange> from =
+      fitted_changes(data, fit, std::vector<LinkChange>(robot.joints.size()));
+  double part = 1;
+  double before = std::numeric_limits<double>::infinity();
+  for (int step = 1;; ++step) {
+    Relinearised anew = fitted_about(from, robot, data, options, terms);
+    const double now = largest_step(robot, from, anew.links);
+    if (step == kMostSteps || now < kSmallStep) return anew;
+    if (now > kShrinks * before) part /= 2;
+    before = now;
+    from = on_the_way(from, anew.links, part);
+  }
 }
 
 }  // namespace offnominal::desk
