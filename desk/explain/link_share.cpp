@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/parallel.hpp"
+#include "explain/excitation.hpp"
 #include "explain/friction_family.hpp"
 #include "explain/questions.hpp"
 
@@ -33,10 +34,20 @@ struct ShareGain {
 ShareGain gain_of(const VectorXd& before, const VectorXd& after, const VectorXd& samples) {
   ShareGain gain{growth_of_log_likelihood(before, after, samples), 0};
   for (Index joint = 0; joint < before.size(); ++joint) {
-    if (!(before[joint] > 0)) continue;
+    if (!(before[joint] > 0) || !(samples[joint] > 0)) continue;
     gain.fall = std::max(gain.fall, 1 - after[joint] / before[joint]);
   }
   return gain;
+}
+
+// Of each joint, 0 of those that do not move: friction holds them at any torque within it, and wide
+// links would follow that.
+VectorXd samples_of_moving(const Data& data, VectorXd samples) {
+  const std::vector<Excitation> motions = excitation_of(data.recordings);
+  for (Index joint = 0; joint < samples.size(); ++joint) {
+    if (!motions[static_cast<std::size_t>(joint)].moves) samples[joint] = 0;
+  }
+  return samples;
 }
 
 struct ErrorsBeside {
@@ -64,7 +75,8 @@ ErrorsBeside held_out_of(const Data& data) {
   add_payload(regression, terms);
   const ModelFit fit = regression.fit(terms);
   const HoldOut parts(regression, nullptr);
-  return {parts.rms(parts.residual(terms, fit)), fit.remainder.independent_samples};
+  return {parts.rms(parts.residual(terms, fit)),
+          samples_of_moving(data, fit.remainder.independent_samples)};
 }
 
 // Accepted effects that are a mass at a place, a torque constant that is off by no more than is
@@ -136,7 +148,9 @@ bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const Fo
                        bool both_wide) {
   const VectorXd after = hold_out.rms(wide.held_out_after);
   const VectorXd before = hold_out.rms(usual.held_out_after);
-  const ShareGain gain = gain_of(before, after, wide.fit.remainder.independent_samples);
+  const ShareGain gain = gain_of(
+      before, after,
+      samples_of_moving(hold_out.data(), wide.fit.remainder.independent_samples));
   if (gain.log_likelihood > kClearly && gain.fall > kRelevantFall) {
     const VectorXd torque = hold_out.data().layout.rms(hold_out.data().torque);
     const bool is_little = ((before - after).array() < kLittleOfTorque * torque.array()).all();
