@@ -149,6 +149,8 @@ std::vector<CaseGroup> case_groups(std::uint64_t base_seed, bool quick) {
   groups.push_back(none("none-0.2", "none, 0.2 % / 19 bit", base_seed, count(300, 6), 0.002, 19));
   groups.push_back(none("none-1", "none, 1 % / 16 bit", base_seed, count(300, 6), 0.01, 16));
   groups.push_back(none("none-3", "none, 3 % / 13 bit", base_seed, count(300, 6), 0.03, 13));
+  groups.push_back(none("none-poor", "none, poor motion", base_seed, count(100, 6), 0.002, 19));
+  for (Request& request : groups.back().requests) request.excitation = Excitation::kPoor;
   groups.push_back(one_effect("noisy", "one effect, 3 % / 13 bit", base_seed, count(5, 1)));
   for (Request& request : groups.back().requests) {
     request.torque_noise_share = 0.03;

@@ -93,7 +93,8 @@ class Classes {
       const double energy =
           std::max(own, weighted_energy(*setting_.data, term, other.fit.coefficients.back(),
                                         found.fit.joint_weights));
-      if (name == same[0] || !takes_its_place(beside, found.fit, other.fit) ||
+      if (name == same[0] || repeats_with_motion(*setting_.data, term) ||
+          !takes_its_place(beside, found.fit, other.fit) ||
           !as_good(*setting_.data, found.fit, other.fit, energy) ||
           is_nested(*setting_.data, found.baseline, mine, term) ||
           is_refuted_by_simpler(*setting_.data, mine, found.fit, term, other.fit)) {

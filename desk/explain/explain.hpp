@@ -213,6 +213,8 @@ struct Explanation {
   bool changes_between = false;
   // Joints whose model has neither Coulomb nor viscous friction.
   std::vector<Eigen::Index> without_friction;
+  // Effects of which one is missing, per class; of a class of one it is that or the model's own
+  // numbers.
   std::vector<std::vector<EffectAt>> ambiguous;
   std::optional<Suspicion> suspected;  // only where it makes the verdict
   std::vector<Rejection> rejected;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "explain/alternatives.hpp"
+#include "explain/questions.hpp"
 #include "explain/remainder.hpp"
 
 namespace offnominal::desk {
@@ -12,12 +13,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-// How far above its noise a joint's error has to stand; joints with nothing missing reach 2.1.
-constexpr double kStandsOut = 3;
+// How far above its noise a joint's error has to stand. On a motion that shows little the model's
+// own numbers take most of any effect; that what is left is no chance is asked of the best effect.
+constexpr double kStandsOut = 1.5;
 // Share of the error's energy on that joint that the best effect has to explain ...
-constexpr double kExplains = 0.8;
+constexpr double kExplains = 0.65;
 // ... and what share of the best one's makes another one possible.
-constexpr double kPossible = 0.5;
+constexpr double kPossible = 0.75;
 
 struct Possible {
   EffectAt what;
@@ -66,13 +68,31 @@ std::vector<Index> joints_that_show(const Regression& regression, const std::vec
   return shows;
 }
 
+// What comes with the motion follows the motion: its time says nothing, unless it is all that shows
+// and the state explains far less.
+void leave_out_times_of_motion(const Data& data, const std::vector<Proposal>& proposals,
+                               std::vector<Possible>& possible) {
+  constexpr double kNearlyAll = 0.9;
+  for (const Proposal& one : proposals) {
+    const Term& term = one.terms.back();
+    if (!repeats_with_motion(data, term)) continue;
+    const EffectAt what{term.effect->kind(), term.joint};
+    const auto here = std::find_if(possible.begin(), possible.end(),
+                                   [&](const Possible& other) { return other.what == what; });
+    if (here == possible.end()) continue;
+    const bool another = std::any_of(possible.begin(), possible.end(), [&](const Possible& other) {
+      return !(other.what == what) && other.share >= kPossible * here->share;
+    });
+    if (another || here->share < kNearlyAll) possible.erase(here);
+  }
+}
+
 // What every proposal and every slow ripple explains on a joint, the most first.
 std::vector<Possible> explained_on(Index joint, const Regression& regression,
                                    const std::vector<Term>& found, const VectorXd& before,
                                    const std::vector<Proposal>& proposals) {
   std::vector<Possible> possible;
-  const auto add = [&](const Term& term, const ModelFit& fit) {
-    const EffectAt what{term.effect->kind(), term.joint};
+  const auto add = [&](const EffectAt& what, const ModelFit& fit) {
     const double left = regression.data().layout.rms(fit.residual)[joint];
     const double share = explained_share(before[joint], left);
     const auto same = std::find_if(possible.begin(), possible.end(),
@@ -86,21 +106,27 @@ std::vector<Possible> explained_on(Index joint, const Regression& regression,
   for (const Term& ripple : slow_ripples(regression.data(), joint)) {
     std::vector<Term> terms = found;
     terms.push_back(ripple);
-    add(ripple, regression.fit(terms));
+    const ModelFit fit = regression.fit(terms);
+    add({ripple.effect->kind(), joint}, fit);
+    // A ripple longer than the range is a bow there, as any curve over the position is.
+    add({EffectKind::kPositionTorque, joint}, fit);
   }
-  for (const Proposal& one : proposals) add(one.terms.back(), one.fit);
+  for (const Proposal& one : proposals) {
+    add({one.terms.back().effect->kind(), one.terms.back().joint}, one.fit);
+  }
+  leave_out_times_of_motion(regression.data(), proposals, possible);
   std::stable_sort(possible.begin(), possible.end(),
                    [](const Possible& a, const Possible& b) { return a.share > b.share; });
   return possible;
 }
 
-// Empty where even the best explains too little. At least two otherwise: a motion as poor as this
-// one does not leave a single effect.
+// Empty where even the best explains too little. Of one alone the model's own numbers take most: it
+// gets no name either.
 std::vector<EffectAt> class_of(const std::vector<Possible>& possible) {
   std::vector<EffectAt> names;
-  if (possible.size() < 2 || possible.front().share < kExplains) return names;
+  if (possible.empty() || possible.front().share < kExplains) return names;
   for (const Possible& one : possible) {
-    if (names.size() >= 2 && one.share < kPossible * possible.front().share) break;
+    if (one.share < kPossible * possible.front().share) break;
     names.push_back(one.what);
   }
   return names;

@@ -163,11 +163,22 @@ std::string words_of_place(const EffectAt& one) {
   return fmt::format("{} on {}", one.name(), at_joint(one.joint));
 }
 
+// What stands beside the effect of a class of one.
+constexpr const char* kOwnNumbers = "the model's own numbers";
+
 void advise_on_classes(Explanation& e) {
   for (const auto& same : e.ambiguous) {
     std::vector<std::string> all;
     for (const EffectAt& one : same) {
       all.push_back(fmt::format("{}@{}", one.name(), one.joint + 1));
+    }
+    if (same.size() == 1) {
+      e.advice.push_back(
+          fmt::format("to tell {} from the model's own numbers: {}; `offnominal motion --robot {} "
+                      "--excite {} -o motion.csv` writes such a motion",
+                      words_of_place(same[0]), info_of(same[0].kind)->motion_hint, e.robot_file,
+                      all[0]));
+      continue;
     }
     e.advice.push_back(fmt::format(
         "to tell {} from {}: {}; `offnominal motion --robot {} --separate {} -o motion.csv` "
@@ -183,6 +194,7 @@ void judge_ambiguous(Explanation& e) {
   for (const EffectAt& one : e.ambiguous[0]) {
     possible.push_back(words_of_place(one));
   }
+  if (possible.size() == 1) possible.emplace_back(kOwnNumbers);
   std::vector<std::string> sure;
   for (const Finding& finding : e.found) {
     if (!holds_in_any(e.ambiguous, finding.what)) sure.push_back(words_of(finding));
@@ -439,8 +451,10 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
     if (!sure.empty())
       answer.words = fmt::format("{}.", fmt::join(names_of(sure, errors.joint), ", "));
     for (const auto& same : answer.ambiguous) {
+      auto names = names_of(same, errors.joint);
+      if (names.size() == 1) names.emplace_back(kOwnNumbers);
       answer.words += fmt::format("{}{} cannot be told apart.", answer.words.empty() ? "" : " ",
-                                  fmt::join(names_of(same, errors.joint), " or "));
+                                  fmt::join(names, " or "));
     }
     if (!shifts.empty()) answer.words += fmt::format(" {}.", fmt::join(shifts, ", "));
     answer.words +=
