@@ -212,7 +212,9 @@ report::Table class_table(const Explanation& e) {
                             static_cast<double>(one.joint + 1)});
     }
   }
-  table.note = "One effect of each class is missing, the likeliest stands first. Beside one that stands alone, "
+  table.note =
+      "One effect of each class is missing, the likeliest stands first. Beside one that stands "
+      "alone, "
       "it may be the model's own numbers.";
   return table;
 }
