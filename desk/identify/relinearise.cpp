@@ -38,10 +38,10 @@ std::vector<LinkChange> fitted_changes(const Data& data, const ModelFit& fit,
   return links;
 }
 
-// The model fitted anew about the robot with these links.
+// The model fitted anew about the robot with these links, with these shapes or refined ones.
 Relinearised fitted_about(std::vector<LinkChange> links, const RobotDescription& robot,
                           const Data& data, const NuisanceOptions& options,
-                          const std::vector<Term>& terms) {
+                          const std::vector<Term>& terms, bool refines) {
   Relinearised anew;
   anew.links = std::move(links);
   const RobotDescription closer = with_link_changes(robot, anew.links);
@@ -52,7 +52,7 @@ Relinearised fitted_about(std::vector<LinkChange> links, const RobotDescription&
   anew.data = std::make_unique<Data>(std::move(recordings), closer, anew.nuisance);
   const Regression regression(*anew.data);
   anew.terms = terms;
-  for (std::size_t i = 0; i < terms.size(); ++i) regression.refine(anew.terms, i);
+  for (std::size_t i = 0; refines && i < terms.size(); ++i) regression.refine(anew.terms, i);
   anew.fit = regression.fit(anew.terms);
   anew.links = fitted_changes(*anew.data, anew.fit, anew.links);
   return anew;
@@ -100,14 +100,17 @@ Relinearised relinearise(const RobotDescription& robot, const Data& data,
   constexpr int kMostSteps = 12;
   std::vector<LinkChange> from =
       fitted_changes(data, fit, std::vector<LinkChange>(robot.joints.size()));
+  // Refined again and again, the place of what is carried would drift against the links' masses.
+  std::vector<Term> shaped = terms;
   double part = 1;
   double before = std::numeric_limits<double>::infinity();
   for (int step = 1;; ++step) {
-    Relinearised anew = fitted_about(from, robot, data, options, terms);
+    Relinearised anew = fitted_about(from, robot, data, options, shaped, step == 1);
     const double now = largest_step(robot, from, anew.links);
     if (step == kMostSteps || now < kSmallStep) return anew;
     if (now > kShrinks * before) part /= 2;
     before = now;
+    shaped = anew.terms;
     from = on_the_way(from, anew.links, part);
   }
 }
