@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "explain/alternatives.hpp"
-#include "explain/questions.hpp"
 #include "explain/remainder.hpp"
 
 namespace offnominal::desk {
@@ -68,14 +67,14 @@ std::vector<Index> joints_that_show(const Regression& regression, const std::vec
   return shows;
 }
 
-// What comes with the motion follows the motion: its time says nothing, unless it is all that shows
-// and the state explains far less.
-void leave_out_times_of_motion(const Data& data, const std::vector<Proposal>& proposals,
-                               std::vector<Possible>& possible) {
+// A wave in time may stand for what follows the state, as waves are what motions are made of: it
+// is possible only where it is nearly all that shows, and the state explains far less.
+void leave_out_stand_ins_in_time(const std::vector<Proposal>& proposals,
+                                 std::vector<Possible>& possible) {
   constexpr double kNearlyAll = 0.9;
   for (const Proposal& one : proposals) {
     const Term& term = one.terms.back();
-    if (!repeats_with_motion(data, term)) continue;
+    if (term.effect->spectrum() != EffectCandidate::Spectrum::kTime) continue;
     const EffectAt what{term.effect->kind(), term.joint};
     const auto here = std::find_if(possible.begin(), possible.end(),
                                    [&](const Possible& other) { return other.what == what; });
@@ -114,7 +113,7 @@ std::vector<Possible> explained_on(Index joint, const Regression& regression,
   for (const Proposal& one : proposals) {
     add({one.terms.back().effect->kind(), one.terms.back().joint}, one.fit);
   }
-  leave_out_times_of_motion(regression.data(), proposals, possible);
+  leave_out_stand_ins_in_time(proposals, possible);
   std::stable_sort(possible.begin(), possible.end(),
                    [](const Possible& a, const Possible& b) { return a.share > b.share; });
   return possible;
