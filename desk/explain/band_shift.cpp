@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "identify/estimates.hpp"
 #include "identify/torque_scale.hpp"
 
 namespace offnominal::desk {
@@ -24,7 +25,7 @@ std::vector<NamedValue> numbers_of(const Data& data, const std::vector<Term>& te
 // The same terms fitted in a band of that share of the first one.
 struct NarrowFit {
   std::vector<std::vector<NamedValue>> numbers;
-  std::vector<Eigen::VectorXd> coefficients;
+  std::vector<Eigen::VectorXd> linear;
 };
 
 NarrowFit fitted_in(double share, const Relinearised& fitted) {
@@ -37,8 +38,9 @@ NarrowFit fitted_in(double share, const Relinearised& fitted) {
   std::vector<Term> terms = fitted.terms;
   for (std::size_t i = 0; i < terms.size(); ++i) regression.refine(terms, i);
   const ModelFit fit = regression.fit(terms);
-  NarrowFit result{{}, fit.coefficients};
+  NarrowFit result;
   for (std::size_t i = 0; i < terms.size(); ++i) {
+    result.linear.push_back(linear_numbers(terms[i], fit.coefficients[i]));
     result.numbers.push_back(numbers_of(narrow, terms, fit, i));
   }
   return result;
@@ -58,7 +60,8 @@ std::vector<BandShift> shifts_in_narrower_bands(const Relinearised& fitted) {
   for (const double share : kBands) {
     const NarrowFit narrow = fitted_in(share, fitted);
     for (std::size_t i = 0; i < shifts.size(); ++i) {
-      shifts[i].linear.emplace_back(narrow.coefficients[i] - fitted.fit.coefficients[i]);
+      shifts[i].linear.emplace_back(narrow.linear[i] -
+                                    linear_numbers(fitted.terms[i], fitted.fit.coefficients[i]));
       std::vector<double>& largest = shifts[i].numbers;
       for (std::size_t p = 0; p < largest.size(); ++p) {
         const double moved = std::abs(narrow.numbers[i][p].value - whole[i][p].value);

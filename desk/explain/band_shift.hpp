@@ -11,7 +11,7 @@ namespace offnominal::desk {
 // bands.
 struct BandShift {
   std::vector<double> numbers;          // in the order of EffectCandidate::parameters()
-  std::vector<Eigen::VectorXd> linear;  // per band, of the regression's coefficients
+  std::vector<Eigen::VectorXd> linear;  // per band, of linear_numbers()
 };
 
 // Of every term. The numbers of a right model do not depend on the band but for noise; those of one

@@ -109,17 +109,32 @@ double region_over_interval(Index numbers) {
   return std::sqrt(of(static_cast<double>(numbers)) / of(1));
 }
 
+// How linear_numbers() change with all unknowns; one row per number.
+MatrixXd slopes_of_linear(const Term& term, const VectorXd& coefficients, const Place& place,
+                          Index unknowns) {
+  const Index count = linear_numbers(term, coefficients).size();
+  MatrixXd slopes = MatrixXd::Zero(count, unknowns);
+  slopes.block(0, place.first, place.linear, place.linear).setIdentity();
+  Index row = place.linear;
+  for (std::size_t axis = 0; row < count; ++axis) {
+    if (place.shape[axis] < 0) continue;
+    slopes(row, place.first) = term.shape[axis];
+    slopes(row++, place.shape[axis]) = coefficients[0];
+  }
+  return slopes;
+}
+
 // Of the ways to group the samples the one that is least sure of the term.
-LinearPart linear_part(const VectorXd& coefficients, const std::vector<Covariance>& covariances,
-                       const Place& place) {
-  LinearPart least{coefficients, {}};
+LinearPart linear_part(const Term& term, const VectorXd& coefficients,
+                       const std::vector<Covariance>& covariances, const Place& place) {
+  const VectorXd value = linear_numbers(term, coefficients);
+  LinearPart least{value, {}};
   for (const Covariance& one : covariances) {
     const Freedom& freedom = one.of_joint[static_cast<std::size_t>(place.joint)];
-    if (!freedom.suffices()) return {coefficients, {}};
-    const double width = half_width_per_deviation(freedom) * region_over_interval(place.linear);
-    const LinearPart part{
-        coefficients,
-        width * width * one.matrix.block(place.first, place.first, place.linear, place.linear)};
+    if (!freedom.suffices()) return {value, {}};
+    const double width = half_width_per_deviation(freedom) * region_over_interval(value.size());
+    const MatrixXd slopes = slopes_of_linear(term, coefficients, place, one.matrix.rows());
+    const LinearPart part{value, width * width * slopes * one.matrix * slopes.transpose()};
     if (least.region.size() == 0 || part.from_nothing() < least.from_nothing()) least = part;
   }
   return least;
@@ -310,6 +325,15 @@ void LinearPart::widen(const VectorXd& deviation) {
   region += width * width * deviation * deviation.transpose();
 }
 
+VectorXd linear_numbers(const Term& term, const VectorXd& coefficients) {
+  if (!term.effect->is_mass()) return coefficients;
+  std::vector<double> numbers(coefficients.begin(), coefficients.end());
+  for (std::size_t axis = 0; axis < term.ranges.size(); ++axis) {
+    if (term.ranges[axis].is_searched()) numbers.push_back(coefficients[0] * term.shape[axis]);
+  }
+  return Eigen::Map<const VectorXd>(numbers.data(), static_cast<Index>(numbers.size()));
+}
+
 Estimates estimates_of(const Regression& regression, const RobotDescription& robot,
                        const std::vector<Term>& terms, const ModelFit& fit,
                        const std::vector<Index>& widths) {
@@ -324,7 +348,7 @@ Estimates estimates_of(const Regression& regression, const RobotDescription& rob
     const double factor = factor_of_term(data, terms, fit, i);
     all.terms.push_back(
         of_term(data, terms[i], fit.coefficients[i], factor, covariances, model.places[i]));
-    all.linear.push_back(linear_part(fit.coefficients[i], covariances, model.places[i]));
+    all.linear.push_back(linear_part(terms[i], fit.coefficients[i], covariances, model.places[i]));
   }
   const auto of_column = [&](Index column, double value, Index joint) {
     Estimate estimate{{"", value, ""}, std::nullopt};

@@ -19,7 +19,7 @@ struct Estimate {
 
 // What a term is linear in: of a drive's loss two numbers, of which one may well be nothing.
 struct LinearPart {
-  Eigen::VectorXd value;  // as the regression has it
+  Eigen::VectorXd value;  // linear_numbers() of the term
   // Its 95 % region about the value, all numbers together: nothing lies on its edge where
   // value' region^-1 value is 1. Empty where the samples do not suffice to say.
   Eigen::MatrixXd region;
@@ -29,6 +29,12 @@ struct LinearPart {
   // Makes the region as much wider as one standard deviation of this says.
   void widen(const Eigen::VectorXd& deviation);
 };
+
+// The numbers that a term's torque is linear in: the regression's coefficients; of a mass whose place
+// is searched the mass and its first moments, kg and kg m. Such a mass is nothing only where all of
+// them are: recordings may know the moments well where they hardly tell a heavy mass near the joint
+// from a light one far off.
+Eigen::VectorXd linear_numbers(const Term& term, const Eigen::VectorXd& coefficients);
 
 // Numbers of a fitted model with 95 % intervals: a covariance that is robust to errors correlated
 // within a block of time (K.-Y. Liang, S. L. Zeger, Biometrika 73(1), 1986), shapes linearised

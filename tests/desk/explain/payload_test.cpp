@@ -10,6 +10,8 @@
 
 #include "explain/doubts.hpp"
 #include "explain/explain.hpp"
+#include "explain/friction_family.hpp"
+#include "identify/estimates.hpp"
 #include "identify/regression.hpp"
 #include "serial_arm.hpp"
 
@@ -93,6 +95,40 @@ TEST(Payload, BesideTheAxisOfTheLastLinkIsNamedWithItsMassAndPlace) {
   EXPECT_NEAR(number(payload, "z"), 0.11, 0.02);
   for (const auto& same : told.ambiguous) {
     EXPECT_FALSE(same.size() > 2) << "a heavier last link at most comes as near: " << told.words;
+  }
+}
+
+// Beside links that may be far off, a heavy mass near the joint and a light one far off do the
+// same: how much it weighs is hardly known, that it is there is.
+TEST(Payload, IsNoLessThereWhereOnlyItsMomentsAreKnown) {
+  const RobotDescription file = test::serial_arm(kJoints);
+  RobotDescription real = file;
+  const ShapePoint place{0.03, -0.09, 0.11};
+  real.effects.push_back(
+      test::effect_of(EffectKind::kTipPayload, kJoints - 1, {0.4, place[0], place[1], place[2]}));
+  const std::vector<Log> logs{test::record(real, {.duration_s = 15, .seed = 3})};
+  const FilterPlan plan = plan_filter(logs, file);
+  NuisanceOptions nuisance;
+  nuisance.link_share = 0.6;
+  nuisance.link_geometry = true;
+  const Data data(make_workspaces(logs, file, plan, Eigen::VectorXd::Zero(kJoints)), file,
+                  nuisance);
+  Term payload = first_on_grid(data, EffectKind::kTipPayload, kJoints - 1);
+  payload.shape = place;
+  const Regression regression(data);
+  const ModelFit fit = regression.fit({payload});
+  const Estimates told = estimates_of(regression, file, {payload}, fit);
+  const Estimate& mass = told.terms[0][0];
+  ASSERT_EQ(mass.value.name, "mass");
+  ASSERT_TRUE(mass.ci95);
+  const double of_mass = mass.value.value / (((*mass.ci95)[1] - (*mass.ci95)[0]) / 2);
+  EXPECT_GT(told.linear[0].from_nothing(), 2 * of_mass) << of_mass;
+  EXPECT_GT(told.linear[0].from_nothing(), 1);
+  // Mass and first moments, kg and kg m.
+  const Eigen::VectorXd& numbers = told.linear[0].value;
+  ASSERT_EQ(numbers.size(), 4);
+  for (Index axis = 0; axis < 3; ++axis) {
+    EXPECT_DOUBLE_EQ(numbers[1 + axis], numbers[0] * place[static_cast<std::size_t>(axis)]);
   }
 }
 
