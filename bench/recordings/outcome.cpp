@@ -134,6 +134,7 @@ JointOutcome outcome_of(const Explanation& e, const desk::JointErrors& joint) {
     if (same.front().joint != joint.joint) continue;
     named.push_back(list_of(same, [](const EffectAt& one) { return std::string(one.name()); }));
     std::replace(named.back().begin(), named.back().end(), ',', '|');
+    if (same.size() == 1) named.back() += "|own numbers";
   }
   outcome.found = desk::list_of(named);
   return outcome;

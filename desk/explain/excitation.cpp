@@ -38,6 +38,24 @@ double smallest_singular_value(const MatrixXd& products) {
   return std::sqrt(std::max(0.0, eigen.eigenvalues()[0]));
 }
 
+// Between the extreme positions, rad or m.
+double range_of(const std::vector<Workspace>& recordings, Index joint) {
+  double low = recordings[0].motion.q(0, joint);
+  double high = low;
+  for (const Workspace& at : recordings) {
+    low = std::min(low, at.motion.q.col(joint).minCoeff());
+    high = std::max(high, at.motion.q.col(joint).maxCoeff());
+  }
+  return high - low;
+}
+
+bool moves_by(const Workspace& at, Index joint, double range) {
+  const RobotJoint& of = at.rigid.joints[static_cast<std::size_t>(joint)];
+  const double counts = of.encoder.counts_per_unit;
+  const double still = of.joint.type == JointType::kRevolute ? kStillRad : kStillM;
+  return range > still && (!(counts > 0) || range * counts > kFewestCounts);
+}
+
 }  // namespace
 
 std::vector<Regressor> standard_regressors(const Workspace& at, Index joint) {
@@ -56,26 +74,23 @@ std::vector<Regressor> standard_regressors(const Workspace& at, Index joint) {
   return standard;
 }
 
+bool moves(const std::vector<Workspace>& recordings, Index joint) {
+  return moves_by(recordings[0], joint, range_of(recordings, joint));
+}
+
 std::vector<Excitation> excitation_of(const std::vector<Workspace>& recordings) {
   std::vector<Excitation> all;
   for (Index joint = 0; joint < recordings[0].joint_count(); ++joint) {
     Excitation one;
-    double low = recordings[0].motion.q(0, joint);
-    double high = low;
     MatrixXd products = MatrixXd::Zero(kColumns, kColumns);
     for (const Workspace& at : recordings) {
-      low = std::min(low, at.motion.q.col(joint).minCoeff());
-      high = std::max(high, at.motion.q.col(joint).maxCoeff());
       one.top_speed = std::max(one.top_speed, at.top_speed[joint]);
       if (!at.at_rest) add_products(at, joint, products);
     }
-    one.range = high - low;
+    one.range = range_of(recordings, joint);
     const bool at_rest = recordings[0].at_rest;
     one.separation = at_rest ? 0 : smallest_singular_value(products);
-    const RobotJoint& of = recordings[0].rigid.joints[static_cast<std::size_t>(joint)];
-    const double counts = of.encoder.counts_per_unit;
-    const double still = of.joint.type == JointType::kRevolute ? kStillRad : kStillM;
-    one.moves = one.range > still && (!(counts > 0) || one.range * counts > kFewestCounts);
+    one.moves = moves_by(recordings[0], joint, one.range);
     one.sufficient = one.moves;
     if (!one.moves) {
       one.lack = at_rest ? "the joint was held at one position only" : "the joint does not move";

@@ -31,6 +31,9 @@ struct Excitation {
 // 1, q, dq, ddq, sgn dq and dq |dq| of a joint: what any motion should tell apart.
 std::vector<Regressor> standard_regressors(const Workspace& at, Eigen::Index joint);
 
+// Whether a joint leaves its place, by more than encoder counts, in or between the recordings.
+bool moves(const std::vector<Workspace>& recordings, Eigen::Index joint);
+
 // Where no effect has been asked for yet, a joint that moves is sufficient.
 std::vector<Excitation> excitation_of(const std::vector<Workspace>& recordings);
 

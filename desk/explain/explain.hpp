@@ -184,6 +184,9 @@ struct Remains {
   std::vector<LoudSpan> when = {};  // where it follows time
 };
 
+// What stands beside the effect of a class of one.
+inline constexpr const char* kOwnNumbers = "the model's own numbers";
+
 // What is said of one joint; the joint counts from 0.
 struct JointAnswer {
   Eigen::Index joint = 0;

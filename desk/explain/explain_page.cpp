@@ -212,10 +212,11 @@ report::Table class_table(const Explanation& e) {
                             static_cast<double>(one.joint + 1)});
     }
   }
-  table.note =
-      "One effect of each class is missing, the likeliest stands first. Beside one that stands "
-      "alone, "
-      "it may be the model's own numbers.";
+  table.note = "One effect of each class is missing, the likeliest stands first.";
+  if (std::any_of(e.ambiguous.begin(), e.ambiguous.end(),
+                  [](const auto& same) { return same.size() == 1; })) {
+    table.note += fmt::format(" Where a class has one effect, it is that or {}.", kOwnNumbers);
+  }
   return table;
 }
 

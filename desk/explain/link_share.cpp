@@ -43,9 +43,8 @@ ShareGain gain_of(const VectorXd& before, const VectorXd& after, const VectorXd&
 // Of each joint, 0 of those that do not move: friction holds them at any torque within it, and wide
 // links would follow that.
 VectorXd samples_of_moving(const Data& data, VectorXd samples) {
-  const std::vector<Excitation> motions = excitation_of(data.recordings);
   for (Index joint = 0; joint < samples.size(); ++joint) {
-    if (!motions[static_cast<std::size_t>(joint)].moves) samples[joint] = 0;
+    if (!moves(data.recordings, joint)) samples[joint] = 0;
   }
   return samples;
 }
@@ -148,12 +147,13 @@ bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const Fo
                        bool both_wide) {
   const VectorXd after = hold_out.rms(wide.held_out_after);
   const VectorXd before = hold_out.rms(usual.held_out_after);
-  const ShareGain gain = gain_of(
-      before, after,
-      samples_of_moving(hold_out.data(), wide.fit.remainder.independent_samples));
+  const VectorXd samples =
+      samples_of_moving(hold_out.data(), wide.fit.remainder.independent_samples);
+  const ShareGain gain = gain_of(before, after, samples);
   if (gain.log_likelihood > kClearly && gain.fall > kRelevantFall) {
     const VectorXd torque = hold_out.data().layout.rms(hold_out.data().torque);
-    const bool is_little = ((before - after).array() < kLittleOfTorque * torque.array()).all();
+    const bool is_little =
+        (samples.array() <= 0 || (before - after).array() < kLittleOfTorque * torque.array()).all();
     return both_wide || !is_little || !one_mass_explains(wide, usual);
   }
   constexpr std::size_t kManyEffects = 3;

@@ -107,8 +107,10 @@ std::vector<Possible> explained_on(Index joint, const Regression& regression,
     terms.push_back(ripple);
     const ModelFit fit = regression.fit(terms);
     add({ripple.effect->kind(), joint}, fit);
-    // A ripple longer than the range is a bow there, as any curve over the position is.
-    add({EffectKind::kPositionTorque, joint}, fit);
+    // One or two bows over the range are as any curve over the position is.
+    if (!regression.data().recordings[0].knows(EffectKind::kPositionTorque, joint)) {
+      add({EffectKind::kPositionTorque, joint}, fit);
+    }
   }
   for (const Proposal& one : proposals) {
     add({one.terms.back().effect->kind(), one.terms.back().joint}, one.fit);
@@ -119,8 +121,8 @@ std::vector<Possible> explained_on(Index joint, const Regression& regression,
   return possible;
 }
 
-// Empty where even the best explains too little. Of one alone the model's own numbers take most: it
-// gets no name either.
+// Empty where even the best explains too little, and where masses and torque constants are all that
+// is possible: those are the model's own numbers. One alone gets no name either.
 std::vector<EffectAt> class_of(const std::vector<Possible>& possible) {
   std::vector<EffectAt> names;
   if (possible.empty() || possible.front().share < kExplains) return names;
@@ -128,7 +130,10 @@ std::vector<EffectAt> class_of(const std::vector<Possible>& possible) {
     if (one.share < kPossible * possible.front().share) break;
     names.push_back(one.what);
   }
-  return names;
+  const bool all_own = std::all_of(names.begin(), names.end(), [](const EffectAt& one) {
+    return info_of(one.kind)->is_known_quantity();
+  });
+  return all_own ? std::vector<EffectAt>{} : names;
 }
 
 bool share_an_effect(const std::vector<EffectAt>& a, const std::vector<EffectAt>& b) {

@@ -163,28 +163,23 @@ std::string words_of_place(const EffectAt& one) {
   return fmt::format("{} on {}", one.name(), at_joint(one.joint));
 }
 
-// What stands beside the effect of a class of one.
-constexpr const char* kOwnNumbers = "the model's own numbers";
-
 void advise_on_classes(Explanation& e) {
   for (const auto& same : e.ambiguous) {
     std::vector<std::string> all;
     for (const EffectAt& one : same) {
       all.push_back(fmt::format("{}@{}", one.name(), one.joint + 1));
     }
-    if (same.size() == 1) {
-      e.advice.push_back(
-          fmt::format("to tell {} from the model's own numbers: {}; `offnominal motion --robot {} "
-                      "--excite {} -o motion.csv` writes such a motion",
-                      words_of_place(same[0]), info_of(same[0].kind)->motion_hint, e.robot_file,
-                      all[0]));
+    if (e.at_rest) {
+      e.advice.push_back(fmt::format("to tell them apart, {}", kMorePositions));
       continue;
     }
+    const bool alone = same.size() == 1;
     e.advice.push_back(fmt::format(
-        "to tell {} from {}: {}; `offnominal motion --robot {} --separate {} -o motion.csv` "
-        "writes such a motion",
-        words_of_place(same[0]), words_of_place(same[1]), info_of(same[0].kind)->motion_hint,
-        e.robot_file, fmt::join(all, ",")));
+        "to tell {} from {}: {}; `offnominal motion --robot {} --{} {} -o motion.csv` writes such "
+        "a motion",
+        words_of_place(same[0]), alone ? kOwnNumbers : words_of_place(same[1]),
+        info_of(same[0].kind)->motion_hint, e.robot_file, alone ? "excite" : "separate",
+        fmt::join(all, ",")));
   }
 }
 
@@ -194,16 +189,21 @@ void judge_ambiguous(Explanation& e) {
   for (const EffectAt& one : e.ambiguous[0]) {
     possible.push_back(words_of_place(one));
   }
-  if (possible.size() == 1) possible.emplace_back(kOwnNumbers);
   std::vector<std::string> sure;
   for (const Finding& finding : e.found) {
     if (!holds_in_any(e.ambiguous, finding.what)) sure.push_back(words_of(finding));
   }
-  e.words = sure.empty()
-                ? "Something is missing"
-                : fmt::format("Missing: {}. Something else is missing too", fmt::join(sure, ", "));
-  e.words +=
-      fmt::format(", but these recordings cannot tell which: {}.", fmt::join(possible, ", or "));
+  const std::string missing =
+      sure.empty() ? "" : fmt::format("Missing: {}. ", fmt::join(sure, ", "));
+  if (possible.size() == 1) {
+    e.words =
+        fmt::format("{}Something {}, and these recordings cannot tell what: {}, or {}.", missing,
+                    sure.empty() ? "shows" : "else shows too", possible[0], kOwnNumbers);
+  } else {
+    e.words = fmt::format("{}Something {} missing{}, but these recordings cannot tell which: {}.",
+                          missing, sure.empty() ? "is" : "else is", sure.empty() ? "" : " too",
+                          fmt::join(possible, ", or "));
+  }
   advise_on_classes(e);
 }
 

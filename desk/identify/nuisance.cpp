@@ -18,6 +18,27 @@ using Eigen::VectorXd;
 
 namespace {
 
+// Of a link, as a length: how far its centre of mass is, or its radius of gyration.
+double size_of(const Joint<double>& joint) {
+  const auto& c = joint.centre_of_mass_m;
+  const auto& inertia = joint.inertia_kg_m2;
+  const double trace = inertia[0] + inertia[1] + inertia[2];
+  const double gyration =
+      joint.mass_kg > 0 ? std::sqrt(std::max(0.0, trace) / (2 * joint.mass_kg)) : 0;
+  constexpr double kSmallestM = 0.01;
+  return std::max({std::hypot(c[0], c[1], c[2]), gyration, kSmallestM});
+}
+
+// The link that was changed so.
+Joint<double> unchanged(Joint<double> joint, const LinkChange& by) {
+  joint.mass_kg /= by.factor;
+  for (double& inertia : joint.inertia_kg_m2) inertia /= by.factor * by.inertia_factor;
+  for (std::size_t axis = 0; axis < by.centre_m.size(); ++axis) {
+    joint.centre_of_mass_m[axis] -= by.centre_m[axis];
+  }
+  return joint;
+}
+
 constexpr std::array<double, 3> kPreslidingShares{0.0002, 0.0006, 0.002};
 
 // Not beyond +-most, which is two standard deviations.
@@ -96,14 +117,15 @@ class Builder {
           return of_link(link_torque(robot, which, at.motion));
         });
     for (std::size_t axis = 0; axis < change.centre_m.size(); ++axis) {
-      add_centre(link, axis, change.centre_m[axis]);
+      add_centre(link, axis, change);
     }
   }
 
-  // `moved`: by which the robot's is off what the prior is about.
-  void add_centre(Index link, std::size_t axis, double moved) {
+  // `change`: by which the robot's link is off what the prior is about.
+  void add_centre(Index link, std::size_t axis, const LinkChange& change) {
+    const double moved = change.centre_m[axis];
     const auto which = static_cast<std::size_t>(link);
-    const double size = size_of_link(robot_, which);
+    const double size = size_of(unchanged(robot_.joints[which].joint, change));
     Prior prior = within(options_.link_share * size);
     prior.mean -= moved;
     prior.low -= moved;
@@ -272,14 +294,7 @@ double LinkChange::largest(double size_m) const {
 }
 
 double size_of_link(const RobotDescription& robot, std::size_t link) {
-  const Joint<double>& joint = robot.joints[link].joint;
-  const auto& c = joint.centre_of_mass_m;
-  const auto& inertia = joint.inertia_kg_m2;
-  const double trace = inertia[0] + inertia[1] + inertia[2];
-  const double gyration =
-      joint.mass_kg > 0 ? std::sqrt(std::max(0.0, trace) / (2 * joint.mass_kg)) : 0;
-  constexpr double kSmallestM = 0.01;
-  return std::max({std::hypot(c[0], c[1], c[2]), gyration, kSmallestM});
+  return size_of(robot.joints[link].joint);
 }
 
 Nuisance make_nuisance(const RobotDescription& robot, const std::vector<Workspace>& recordings,

@@ -95,8 +95,10 @@ Relinearised relinearise(const RobotDescription& robot, const Data& data,
                          const ModelFit& fit) {
   // A step leaves out the product of a mass and its centre: less than a thousandth of both then.
   constexpr double kSmallStep = 0.03;
-  // Where recordings hardly tell the two apart, whole steps go to and fro for ever.
-  constexpr double kShrinks = 0.7;
+  // Where recordings hardly tell the two apart, whole steps go to and fro for ever. One of which
+  // only a part is taken cannot shrink by more than that part.
+  constexpr double kShrinks = 0.3;
+  constexpr double kLeastPart = 1.0 / 16;
   constexpr int kMostSteps = 12;
   std::vector<LinkChange> from =
       fitted_changes(data, fit, std::vector<LinkChange>(robot.joints.size()));
@@ -104,14 +106,20 @@ Relinearised relinearise(const RobotDescription& robot, const Data& data,
   std::vector<Term> shaped = terms;
   double part = 1;
   double before = std::numeric_limits<double>::infinity();
+  double least = before;
+  Relinearised best;
   for (int step = 1;; ++step) {
     Relinearised anew = fitted_about(from, robot, data, options, shaped, step == 1);
     const double now = largest_step(robot, from, anew.links);
-    if (step == kMostSteps || now < kSmallStep) return anew;
-    if (now > kShrinks * before) part /= 2;
+    if (now > (1 - kShrinks * part) * before) part = std::max(kLeastPart, part / 2);
     before = now;
     shaped = anew.terms;
     from = on_the_way(from, anew.links, part);
+    if (step == 1 || now < least) {
+      least = now;
+      best = std::move(anew);
+    }
+    if (step == kMostSteps || least < kSmallStep) return best;
   }
 }
 

@@ -393,6 +393,11 @@ TEST(Report, ThePageHasEveryClass) {
                       {{EffectKind::kHysteresis, 1}, {EffectKind::kJointElasticity, 1}}};
   EXPECT_THAT(text(), HasSubstr(R"([2.0,"joint_elasticity",2.0])"));
   EXPECT_THAT(text(), HasSubstr(R"([1.0,"time_delay",2.0])"));
+  EXPECT_THAT(text(), Not(HasSubstr(kOwnNumbers)));
+  // One effect alone stands beside the model's own numbers.
+  result.ambiguous = {{{EffectKind::kViscousFriction, 0}}};
+  EXPECT_THAT(text(), HasSubstr(kOwnNumbers));
+  EXPECT_THAT(text_of(result, {}), HasSubstr(kOwnNumbers));
 }
 
 }  // namespace

@@ -68,8 +68,18 @@ TEST(PoorMotion, GIVEN_one_effect_that_the_models_numbers_nearly_take_THEN_it_is
   EXPECT_THAT(told.advice, ::testing::Contains(HasSubstr("--excite coulomb_friction@2")));
 }
 
+// A wave in time does on one sine what friction does.
+TEST(PoorMotion, GIVEN_friction_that_a_wave_could_be_THEN_no_wave_is_in_its_class) {
+  const auto made = poor_case(1546668349, hidden::HiddenEffect::kViscousFriction);
+  const Explanation told = explained(made, 0);
+  ASSERT_THAT(told.ambiguous, SizeIs(1)) << told.words;
+  EXPECT_TRUE(holds_in_any(told.ambiguous, {EffectKind::kViscousFriction, 0})) << told.words;
+  EXPECT_FALSE(holds_in_any(told.ambiguous, {EffectKind::kPeriodicDisturbance, 0})) << told.words;
+}
+
 // What fits a curve over the position on a short range may be any such curve.
-TEST(PoorMotion, GIVEN_a_ripple_longer_than_the_range_THEN_a_torque_over_the_position_is_as_likely) {
+TEST(PoorMotion,
+     GIVEN_a_ripple_longer_than_the_range_THEN_a_torque_over_the_position_is_as_likely) {
   const auto made = poor_case(899444813, hidden::HiddenEffect::kPositionTorque);
   const Explanation told = explained(made, 0);
   ASSERT_THAT(told.ambiguous, SizeIs(1)) << told.words;

@@ -63,12 +63,13 @@ void expect_found(const Explanation& e, const hidden::TrueEffect& truth) {
   EXPECT_EQ(e.found[0].what.joint, truth.joint);
 }
 
-// The effects that a sentence of advice asks to separate.
+// The effects that a sentence of advice asks to separate, or the one that it asks to excite.
 std::vector<std::string> advised(const Explanation& e) {
   for (const std::string& advice : e.advice) {
-    const auto begin = advice.find("--separate ");
-    if (begin == std::string::npos) continue;
-    std::istringstream list(advice.substr(begin + 11, advice.find(' ', begin + 11) - begin - 11));
+    if (!advice.starts_with("to tell ")) continue;
+    const auto option = advice.find(" --", advice.find("--robot"));
+    const auto begin = advice.find(' ', option + 1) + 1;
+    std::istringstream list(advice.substr(begin, advice.find(' ', begin) - begin));
     std::vector<std::string> effects;
     for (std::string one; std::getline(list, one, ',');) effects.push_back(one);
     return effects;
