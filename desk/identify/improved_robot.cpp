@@ -312,6 +312,30 @@ void put_constants(const std::vector<FittedConstant>& constants, const std::stri
   }
 }
 
+// Fits them about what they are, as effects from `first` on, within `share` of the file's.
+void free_constants(const std::vector<FittedConstant>& constants, std::size_t first, double share,
+                    NuisanceOptions& nuisance) {
+  for (const FittedConstant& one : constants) {
+    nuisance.known.push_back({first, 0, -share - one.error, share - one.error});
+    nuisance.free_effects->push_back(first++);
+  }
+}
+
+// Moves them half the way to what the fit asks for, since whole steps may go to and fro between the
+// ends; whether one of them moves by more than that.
+bool move_constants(const Relinearised& fitted, const RobotDescription& robot, std::size_t first,
+                    double than, std::vector<FittedConstant>& constants) {
+  bool moves = false;
+  for (const Moved& moved : moved_numbers(fitted, robot)) {
+    if (moved.effect < first || moved.effect >= first + constants.size()) continue;
+    double& error = constants[moved.effect - first].error;
+    const double step = (moved.asked - error) / 2;
+    moves = moves || std::abs(step) > than;
+    error += step;
+  }
+  return moves;
+}
+
 }  // namespace
 
 bool holds_what_cannot_be(const std::vector<HeldNumber>& held, Index joint) {
@@ -338,7 +362,8 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
         as_the_file && found.links[link].largest(size_of_link(file, link)) < kWorthWriting;
   }
   if (as_the_file || options.keeps_links) nuisance.link_share = 0;
-  // What is carried is scaled by every joint's own: then the last fit has them as the file will.
+  // What is carried is scaled by every joint's own: then the last fit has them as the file will, as
+  // numbers of effects. Held at what the search found they would bend its mass.
   const bool carries = std::any_of(found.terms.begin(), found.terms.end(),
                                    [](const Term& one) { return one.effect->is_mass(); });
   auto constants = constants_of(found);
@@ -347,14 +372,35 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   improved.robot = file;
   RobotDescription start = robot;
   if (carries && are_worth_writing(constants)) {
-    put_constants(constants, options.source, improved.robot);
-    put_constants(constants, options.source, start);
     improved.constants = std::move(constants);
   }
-  const RobotDescription with_constants = improved.robot;
-  FileFitter fitter(with_constants, std::move(start), data, std::move(nuisance), options,
-                    found.terms);
-  FileFit file_fit = fitter.run(improved.held);
+  FileFit file_fit;
+  RobotDescription with_constants;
+  // What is carried is scaled by constants as they were: until they stay, and then by what they
+  // are.
+  constexpr int kMostTurns = 5;
+  constexpr double kStays = 0.001;
+  bool is_last = improved.constants.empty();
+  for (int turn = 0;; ++turn) {
+    with_constants = file;
+    RobotDescription begun = start;
+    NuisanceOptions fitted = nuisance;
+    put_constants(improved.constants, options.source, with_constants);
+    put_constants(improved.constants, options.source, begun);
+    if (!is_last) {
+      free_constants(improved.constants, file.effects.size(), options.nuisance.torque_constant,
+                     fitted);
+    }
+    improved.held.clear();
+    FileFitter fitter(with_constants, std::move(begun), data, std::move(fitted), options,
+                      found.terms);
+    file_fit = fitter.run(improved.held);
+    if (is_last) break;
+    is_last = !move_constants(file_fit.last, with_constants, file.effects.size(), kStays,
+                              improved.constants) ||
+              turn + 1 == kMostTurns;
+  }
+  improved.robot = with_constants;
   improved.made_with = std::move(file_fit.made_with);
   improved.widths = std::move(file_fit.widths);
   improved.last = std::move(file_fit.last);
