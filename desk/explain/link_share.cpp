@@ -54,20 +54,6 @@ struct ErrorsBeside {
   VectorXd samples;  // independent ones, per joint
 };
 
-// What is carried is no error of the links: a payload anywhere on the last one, where the search
-// looks for it there.
-void add_payload(const Regression& regression, std::vector<Term>& terms) {
-  const Data& data = regression.data();
-  const Index last = data.layout.joint_count() - 1;
-  if (data.recordings[0].knows(EffectKind::kTipPayload, last)) return;
-  Term payload = first_on_grid(data, EffectKind::kTipPayload, last);
-  const auto searched = std::count_if(payload.ranges.begin(), payload.ranges.end(),
-                                      [](const ShapeRange& one) { return one.is_searched(); });
-  if (searched < 3) return;
-  terms.push_back(std::move(payload));
-  refine_over_range(regression, terms, terms.size() - 1);
-}
-
 ErrorsBeside held_out_of(const Data& data) {
   const Regression regression(data);
   std::vector<Term> terms = standard_friction(data);
@@ -110,6 +96,18 @@ bool one_mass_explains(const FoundModel& wide, const FoundModel& usual) {
 }
 
 }  // namespace
+
+void add_payload(const Regression& regression, std::vector<Term>& terms) {
+  const Data& data = regression.data();
+  const Index last = data.layout.joint_count() - 1;
+  if (data.recordings[0].knows(EffectKind::kTipPayload, last)) return;
+  Term payload = first_on_grid(data, EffectKind::kTipPayload, last);
+  const auto searched = std::count_if(payload.ranges.begin(), payload.ranges.end(),
+                                      [](const ShapeRange& one) { return one.is_searched(); });
+  if (searched < 3) return;
+  terms.push_back(std::move(payload));
+  refine_over_range(regression, terms, terms.size() - 1);
+}
 
 NuisanceOptions with_link_share(NuisanceOptions options, double share) {
   options.link_share = share;

@@ -22,6 +22,11 @@ NuisanceOptions with_link_share(NuisanceOptions options, double share);
 // The same beside links of which nothing is known.
 NuisanceOptions beside_unknown_links(NuisanceOptions options);
 
+// What is carried is no error of the links: appends a payload anywhere on the last one to `terms`,
+// its place fitted, where the search looks for it there (an arm of three joints or more whose file
+// has none).
+void add_payload(const Regression& regression, std::vector<Term>& terms);
+
 // Wider shares, as far as the recordings ask for one: with mass, centre of mass and inertia of
 // every link each free within it, Coulomb and viscous friction on every joint that moves, and a
 // payload on the last link of an arm of three joints or more, held-out time has to become clearly

@@ -57,7 +57,10 @@ class PushFinder {
         regression_(data_),
         terms_(standard_friction(data_)),
         excitation_(excitation),
-        torque_(layout_.rms(data_.torque)) {}
+        torque_(layout_.rms(data_.torque)) {
+    // Far heavier than its link, it is none of what links of another mass do.
+    add_payload(regression_, terms_);
+  }
 
   std::vector<Push> run() {
     settle();
