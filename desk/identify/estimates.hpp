@@ -30,10 +30,10 @@ struct LinearPart {
   void widen(const Eigen::VectorXd& deviation);
 };
 
-// The numbers that a term's torque is linear in: the regression's coefficients; of a mass whose place
-// is searched the mass and its first moments, kg and kg m. Such a mass is nothing only where all of
-// them are: recordings may know the moments well where they hardly tell a heavy mass near the joint
-// from a light one far off.
+// The numbers that a term's torque is linear in: the regression's coefficients; of a mass whose
+// place is searched the mass and its first moments, kg and kg m. Such a mass is nothing only where
+// all of them are: recordings may know the moments well where they hardly tell a heavy mass near
+// the joint from a light one far off.
 Eigen::VectorXd linear_numbers(const Term& term, const Eigen::VectorXd& coefficients);
 
 // Numbers of a fitted model with 95 % intervals: a covariance that is robust to errors correlated

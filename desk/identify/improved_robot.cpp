@@ -370,7 +370,6 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   if (carries || !are_worth_writing(constants)) nuisance.torque_constant = 0;
   ImprovedRobot improved;
   improved.robot = file;
-  RobotDescription start = robot;
   if (carries && are_worth_writing(constants)) {
     improved.constants = std::move(constants);
   }
@@ -383,7 +382,7 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   bool is_last = improved.constants.empty();
   for (int turn = 0;; ++turn) {
     with_constants = file;
-    RobotDescription begun = start;
+    RobotDescription begun = robot;
     NuisanceOptions fitted = nuisance;
     put_constants(improved.constants, options.source, with_constants);
     put_constants(improved.constants, options.source, begun);
