@@ -336,6 +336,35 @@ bool move_constants(const Relinearised& fitted, const RobotDescription& robot, s
   return moves;
 }
 
+// The last fit, beside the constants that `improved` has so far. What is carried is scaled by them
+// as they were: they are fitted until they stay, and all else then by what they are. Sets the
+// robot, its constants and what was held.
+FileFit fit_with_constants(const RobotDescription& file, const RobotDescription& robot,
+                           const Data& data, const NuisanceOptions& nuisance,
+                           const FileFitOptions& options, const std::vector<Term>& terms,
+                           ImprovedRobot& improved) {
+  constexpr int kMostTurns = 5;
+  constexpr double kStays = 0.001;
+  std::vector<FittedConstant>& constants = improved.constants;
+  bool is_last = constants.empty();
+  for (int turn = 1;; ++turn) {
+    improved.robot = file;
+    RobotDescription start = robot;
+    put_constants(constants, options.source, improved.robot);
+    put_constants(constants, options.source, start);
+    NuisanceOptions free = nuisance;
+    if (!is_last) {
+      free_constants(constants, file.effects.size(), options.nuisance.torque_constant, free);
+    }
+    improved.held.clear();
+    FileFitter fitter(improved.robot, std::move(start), data, std::move(free), options, terms);
+    FileFit fit = fitter.run(improved.held);
+    if (is_last) return fit;
+    is_last = !move_constants(fit.last, improved.robot, file.effects.size(), kStays, constants) ||
+              turn == kMostTurns;
+  }
+}
+
 }  // namespace
 
 bool holds_what_cannot_be(const std::vector<HeldNumber>& held, Index joint) {
@@ -369,37 +398,11 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
   auto constants = constants_of(found);
   if (carries || !are_worth_writing(constants)) nuisance.torque_constant = 0;
   ImprovedRobot improved;
-  improved.robot = file;
   if (carries && are_worth_writing(constants)) {
     improved.constants = std::move(constants);
   }
-  FileFit file_fit;
-  RobotDescription with_constants;
-  // What is carried is scaled by constants as they were: until they stay, and then by what they
-  // are.
-  constexpr int kMostTurns = 5;
-  constexpr double kStays = 0.001;
-  bool is_last = improved.constants.empty();
-  for (int turn = 0;; ++turn) {
-    with_constants = file;
-    RobotDescription begun = robot;
-    NuisanceOptions fitted = nuisance;
-    put_constants(improved.constants, options.source, with_constants);
-    put_constants(improved.constants, options.source, begun);
-    if (!is_last) {
-      free_constants(improved.constants, file.effects.size(), options.nuisance.torque_constant,
-                     fitted);
-    }
-    improved.held.clear();
-    FileFitter fitter(with_constants, std::move(begun), data, std::move(fitted), options,
-                      found.terms);
-    file_fit = fitter.run(improved.held);
-    if (is_last) break;
-    is_last = !move_constants(file_fit.last, with_constants, file.effects.size(), kStays,
-                              improved.constants) ||
-              turn + 1 == kMostTurns;
-  }
-  improved.robot = with_constants;
+  FileFit file_fit =
+      fit_with_constants(file, robot, data, nuisance, options, found.terms, improved);
   improved.made_with = std::move(file_fit.made_with);
   improved.widths = std::move(file_fit.widths);
   improved.last = std::move(file_fit.last);

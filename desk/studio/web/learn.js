@@ -66,13 +66,11 @@ function jointAnswer(answer, state, actions) {
   );
   if (answer.cards.length > 0) root.append(cards);
   answer.classes.forEach((members, index) => {
-    root.append(element(
-        "p",
-        {},
-        members.length === 1
-          ? "This is missing, or the model's own numbers are off; the recordings do not tell:"
-          : "One of these is missing; the recordings do not tell which:",
-      ),);
+    const words =
+      members.length === 1
+        ? "This is missing, or the model's own numbers are off; the recordings do not tell:"
+        : "One of these is missing; the recordings do not tell which:";
+    root.append(element("p", {}, words));
     root.append(choiceList(members, `${answer.joint}-class-${index}`, state, actions));
   });
   return root;
