@@ -36,14 +36,23 @@ DesiredPositions at_rest(const Nominal& nominal, double duration_s) {
   return still;
 }
 
-void add_sine(DesiredPositions& to, Index joint, double amplitude_rad, double hz, Draws& draws) {
+struct Range {
+  double low;
+  double high;
+};
+
+void add_sine(DesiredPositions& to, Index joint, Range amplitude_rad, Range hz, Draws& draws) {
+  const double turns = kTurn * draws.uniform(hz.low, hz.high);
+  const double amplitude = draws.uniform(amplitude_rad.low, amplitude_rad.high);
   const double phase = draws.uniform(0, kTurn);
-  to.q.col(joint).array() += amplitude_rad * (kTurn * hz * to.t_s.array() + phase).sin();
+  to.q.col(joint).array() += amplitude * (turns * to.t_s.array() + phase).sin();
 }
 
 // A triangle whose corners are rounded over a twentieth of its period.
-void add_one_speed(DesiredPositions& to, Index joint, double amplitude_rad, double speed_rad_s) {
+void add_one_speed(DesiredPositions& to, Index joint, Draws& draws) {
   constexpr double kRound = 0.97;
+  const double speed_rad_s = draws.uniform(0.1, 0.4);
+  const double amplitude_rad = draws.uniform(0.2, 0.5);
   const double hz = speed_rad_s / (4 * amplitude_rad);
   to.q.col(joint).array() +=
       amplitude_rad / std::asin(kRound) * (kRound * (kTurn * hz * to.t_s.array()).sin()).asin();
@@ -57,22 +66,22 @@ DesiredPositions poor_positions(const Nominal& nominal, std::uint64_t seed, int 
   switch (draws.below(4)) {
     case 0:  // one speed
       for (Index j = 0; j < 2; ++j) {
-        add_one_speed(motion, j, draws.uniform(0.2, 0.5), draws.uniform(0.1, 0.4));
+        add_one_speed(motion, j, draws);
       }
       break;
     case 1:  // a small range
       for (Index j = 0; j < 2; ++j) {
-        add_sine(motion, j, draws.uniform(0.02, 0.05), draws.uniform(0.3, 0.8), draws);
+        add_sine(motion, j, {0.02, 0.05}, {0.3, 0.8}, draws);
       }
       break;
     case 2:  // one slow sinusoid
       for (Index j = 0; j < 2; ++j) {
-        add_sine(motion, j, draws.uniform(0.2, 0.5), draws.uniform(0.08, 0.2), draws);
+        add_sine(motion, j, {0.2, 0.5}, {0.08, 0.2}, draws);
       }
       break;
     default:  // one load
-      motion.q.col(0).array() += draws.uniform(0.3, 1.0) * draws.sign();
-      add_sine(motion, 1, draws.uniform(0.05, 0.2), draws.uniform(0.1, 0.4), draws);
+      motion.q.col(0).array() += draws.either_sign(0.3, 1.0);
+      add_sine(motion, 1, {0.05, 0.2}, {0.1, 0.4}, draws);
       break;
   }
   return motion;
@@ -82,8 +91,8 @@ DesiredPositions short_positions(const Nominal& nominal, std::uint64_t seed, int
   Draws draws = draws_for(seed, attempt);
   DesiredPositions motion = at_rest(nominal, draws.uniform(7, 11));
   for (Index j = 0; j < 2; ++j) {
-    add_sine(motion, j, draws.uniform(0.4, 0.8), draws.uniform(0.12, 0.3), draws);
-    add_sine(motion, j, draws.uniform(0.1, 0.3), draws.uniform(0.5, 1.0), draws);
+    add_sine(motion, j, {0.4, 0.8}, {0.12, 0.3}, draws);
+    add_sine(motion, j, {0.1, 0.3}, {0.5, 1.0}, draws);
   }
   return motion;
 }

@@ -212,11 +212,11 @@ class ArmDrawing {
         break;
       case 2:
         change.kind = EffectKind::kTorqueOffset;
-        change.numbers = {{"level", hidden_.sign() * torque * hidden_.uniform(0.1, 0.25)}};
+        change.numbers = {{"level", torque * hidden_.either_sign(0.1, 0.25)}};
         break;
       default:
         change.kind = EffectKind::kTorqueScale;
-        change.numbers = {{"error", 1 / (1 + hidden_.sign() * hidden_.uniform(0.1, 0.25)) - 1}};
+        change.numbers = {{"error", 1 / (1 + hidden_.either_sign(0.1, 0.25)) - 1}};
     }
     // On a tick of the drive.
     change.from_s = std::round(1000 * truth().duration_s * hidden_.uniform(0.3, 0.7)) / 1000;

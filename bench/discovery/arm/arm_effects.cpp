@@ -56,9 +56,9 @@ Numbers draw_other(EffectKind kind, const ArmJointScale& joint, double other_spe
     case EffectKind::kRotorInertia:
       return {{"inertia", joint.torque * share / joint.acceleration}};
     case EffectKind::kTorqueOffset:
-      return {{"level", draws.sign() * joint.torque * draws.uniform(0.05, 0.12)}};
+      return {{"level", joint.torque * draws.either_sign(0.05, 0.12)}};
     case EffectKind::kTorqueScale:
-      return {{"error", 1 / (1 + draws.sign() * draws.uniform(0.08, 0.2)) - 1}};
+      return {{"error", 1 / (1 + draws.either_sign(0.08, 0.2)) - 1}};
     case EffectKind::kJointStiffness: {
       const double rest = joint.middle + draws.uniform(-0.4, 0.4);
       const double reach = std::hypot(joint.spread, joint.middle - rest);

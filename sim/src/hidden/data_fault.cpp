@@ -55,7 +55,7 @@ LogFault draw_log_fault(DataFault kind, Draws draws) {
   if (draws.below(2) == 0) {
     fault.skew_s = draws.uniform(0.015, 0.04);
   } else {
-    fault.clock_rate = 1.0 + draws.sign() * draws.uniform(1.5e-3, 3e-3);
+    fault.clock_rate = 1.0 + draws.either_sign(1.5e-3, 3e-3);
   }
   return fault;
 }

@@ -35,6 +35,11 @@ double Draws::from(const DrawnNumber& number) {
 
 double Draws::sign() { return (generator_() >> 63U) != 0U ? 1.0 : -1.0; }
 
+double Draws::either_sign(double low, double high) {
+  const double side = sign();
+  return side * uniform(low, high);
+}
+
 int Draws::below(int count) { return static_cast<int>(uniform(0.0, static_cast<double>(count))); }
 
 double Draws::gaussian() {

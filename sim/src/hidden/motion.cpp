@@ -125,9 +125,11 @@ Motion poor_motion(const Eigen::Vector2d& centre_rad, Draws& draws) {
     case 0:  // one slow small sinusoid, the other joint at rest
       sines[one] = {drawn_sine(0.2, 0.1, 0.3, draws)};
       break;
-    case 1:  // one speed
-      sines[one] = to_and_fro(draws.uniform(0.2, 0.4), draws.uniform(0.1, 0.3));
+    case 1: {  // one speed
+      const double speed_rad_s = draws.uniform(0.1, 0.3);
+      sines[one] = to_and_fro(draws.uniform(0.2, 0.4), speed_rad_s);
       break;
+    }
     default:  // a tiny range
       for (auto& joint : sines) joint = {drawn_sine(0.035, 0.3, 0.8, draws)};
       break;

@@ -73,8 +73,8 @@ Values hide_saturation(const HidingPlace& place, const Drawn& drawn) {
 
 Values hide_contact(const HidingPlace& place, const Drawn& drawn) {
   place.robot.contact_joint = place.joint;
-  place.robot.contact_peak_nm = place.size * place.draws.from(drawn[0]) * place.draws.sign() *
-                                place.survey.rms_nm[place.joint];
+  const double share = place.size * place.draws.from(drawn[0]);
+  place.robot.contact_peak_nm = share * place.draws.sign() * place.survey.rms_nm[place.joint];
   return {place.robot.contact_peak_nm};
 }
 

@@ -107,7 +107,8 @@ TrueDefect saturation(Place place) {
 
 TrueDefect position_step(Place place) {
   const Index first = place.row();
-  const double by = place.draws.sign() * place.draws.log_uniform(0.1, 1);
+  const double side = place.draws.sign();
+  const double by = side * place.draws.log_uniform(0.1, 1);
   place.recording.q.col(place.joint).tail(place.rows() - first).array() += by;
   return place.at(Defect::kPositionStep, first, first);
 }
@@ -120,7 +121,7 @@ TrueDefect spikes(Place place, bool position) {
   for (int k = 0; k < count; ++k) {
     const Index first = place.row();
     const Index rows = 1 + place.draws.below(2);
-    const double by = place.draws.sign() * size * place.draws.uniform(position ? 0.3 : 1.5, 4);
+    const double by = size * place.draws.either_sign(position ? 0.3 : 1.5, 4);
     x.segment(first, rows).array() += by;
     if (k == 0) {
       defect = place.at(position ? Defect::kPositionSpike : Defect::kTorqueSpike, first,

@@ -31,6 +31,8 @@ struct DrawnNumber {
   bool per_octave = false;
 };
 
+/// Two draws in one expression come in an order that the compiler chooses: each wants a statement,
+/// or a place in braces.
 class Draws {
  public:
   /// `index` tells draws for the same purpose apart: the effect, or the run.
@@ -42,6 +44,8 @@ class Draws {
   double from(const DrawnNumber& number);
   /// -1 or 1.
   double sign();
+  /// Of that size, with either sign.
+  double either_sign(double low, double high);
   /// 0 to count - 1; count > 0.
   int below(int count);
   /// Mean 0, standard deviation 1 (Box-Muller).
