@@ -95,7 +95,8 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
 enum class OfAnotherUnit { kNone, kSomeJoints, kAllJoints };
 OfAnotherUnit find_torque_unit(const Log& log, const TorquePair& pair,
                                std::vector<DataFault>& faults);
-void find_torque_sign(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
+void find_torque_sign(const Log& log, const RobotDescription& robot, const TorquePair& pair,
+                      std::vector<DataFault>& faults);
 void find_clock_skew(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);
 
 // The rows as they were recorded as a log of their own, each a sample, uneven in time; its gaps are

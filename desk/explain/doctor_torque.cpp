@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -293,126 +292,6 @@ void mend_degrees(Log& log, const RobotDescription& robot, std::vector<DataFault
   to_radians(log, robot, found->joint);
   propose_channels(log, log.channels, keys, fault);
   faults.push_back(std::move(fault));
-}
-
-namespace {
-
-// Where the model explains less than this share of the torque it has nothing to say about the sign.
-constexpr double kSilentModel = 0.3;
-
-// Measured and model torque of a joint that are of opposite sign.
-struct Opposed {
-  double slope = 0;   // of the one against the other
-  double turned = 0;  // unexplained with the opposite sign, as a share
-  double as_is = 0;
-};
-
-// The model with the opposite sign must fit: missing effects and a clock that is off leave less.
-constexpr double kGoodFit = 0.6;
-// Friction of any kind has +0.8.
-constexpr double kClearBraking = 0.6;
-
-std::optional<Opposed> opposed(const VectorXd& tau, const VectorXd& model) {
-  const double size = tau.norm();
-  if (!(model.norm() > kSilentModel * size)) return std::nullopt;
-  const Opposed found{tau.dot(model) / model.squaredNorm(), (tau + model).norm() / size,
-                      (tau - model).norm() / size};
-  if (!(found.turned < kGoodFit) || !(found.as_is > 1)) return std::nullopt;
-  return found;
-}
-
-// As the model has it, or where friction is only a part of the torque, beside whatever friction.
-std::optional<Opposed> opposed_to_model(const TorquePair& pair, Index joint) {
-  const VectorXd tau = pair.measured.col(joint);
-  if (auto found = opposed(tau, pair.model.col(joint))) return found;
-  const VectorXd dq = pair.dq.col(joint);
-  const VectorXd rest = beside_friction(tau, dq);
-  if (!(rest.norm() > kSilentModel * tau.norm())) return std::nullopt;
-  return opposed(rest, beside_friction(pair.model.col(joint), dq));
-}
-
-// The correlation with the velocity of what the rigid body does not explain, where that is nearly
-// all: friction's power is never negative. None where the rigid body has something to say.
-std::optional<double> braking_of(const TorquePair& pair, Index joint) {
-  const VectorXd tau = pair.measured.col(joint);
-  if (pair.load.col(joint).norm() > kSilentModel * tau.norm()) return std::nullopt;
-  const VectorXd rest = tau - pair.load.col(joint);
-  const VectorXd speed = pair.dq.col(joint);
-  const double product = rest.norm() * speed.norm();
-  if (!(product > 0)) return std::nullopt;
-  return rest.dot(speed) / product;
-}
-
-// A sign that is right: the model as it is fits, or friction takes power.
-bool is_right(const TorquePair& pair, Index joint) {
-  const VectorXd tau = pair.measured.col(joint);
-  const bool fits = (tau - pair.model.col(joint)).norm() < kGoodFit * tau.norm();
-  return fits || braking_of(pair, joint).value_or(0) > kClearBraking;
-}
-
-// Of several joints that tell, all are turned: then so are those that do not.
-bool are_all_turned(const TorquePair& pair, const std::vector<Index>& turned) {
-  if (turned.size() < 2) return false;
-  for (Index joint = 0; joint < pair.measured.cols(); ++joint) {
-    const bool is_turned = std::find(turned.begin(), turned.end(), joint) != turned.end();
-    if (!is_turned && is_right(pair, joint)) return false;
-  }
-  return static_cast<Index>(turned.size()) < pair.measured.cols();
-}
-
-}  // namespace
-
-void find_torque_sign(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults) {
-  const Index joints = pair.measured.cols();
-  std::vector<DataFault> found;
-  std::vector<Index> turned_channels;
-  for (Index joint = 0; joint < joints; ++joint) {
-    if (!(pair.measured.col(joint).norm() > 0)) continue;
-    DataFault fault;
-    fault.kind = DataFaultKind::kTorqueSign;
-    fault.joint = joint;
-    if (const auto turned = opposed_to_model(pair, joint)) {
-      fault.size = turned->slope;
-      fault.words = fmt::format(
-          "the torque of joint {} has the wrong sign: measured against model torque has slope "
-          "{:.2f}, and the opposite sign leaves {:.0f} % of it unexplained instead of {:.0f} %",
-          joint + 1, fault.size, 100 * turned->turned, 100 * turned->as_is);
-    } else if (const auto braking = braking_of(pair, joint); braking && *braking < -kClearBraking) {
-      const VectorXd speed = pair.dq.col(joint);
-      fault.size =
-          (pair.measured.col(joint) - pair.load.col(joint)).dot(speed) / speed.squaredNorm();
-      fault.words = fmt::format(
-          "the torque of joint {} has the wrong sign: it acts against the motion (correlation with "
-          "the velocity {:.2f}), as if friction gave power",
-          joint + 1, *braking);
-    } else {
-      continue;
-    }
-    fault.mend = fmt::format(
-        "turn the sign of the torque of joint {} (scale = -1), or its position's; or gravity in "
-        "the robot file points the wrong way",
-        joint + 1);
-    turned_channels.push_back(joint);
-    found.push_back(std::move(fault));
-  }
-  const bool all = are_all_turned(pair, turned_channels);
-  if (all) {
-    turned_channels.resize(static_cast<std::size_t>(joints));
-    std::iota(turned_channels.begin(), turned_channels.end(), 0);
-  }
-  ChannelMap mended = log.channels;
-  for (const Index joint : turned_channels) {
-    const auto index = static_cast<std::size_t>(joint);
-    if (index < mended.torque.size()) mended.torque[index].scale *= -1;
-  }
-  for (DataFault& fault : found) {
-    if (all) {
-      fault.mend +=
-          "; every joint that tells its sign has it wrong, so that all are taken for turned";
-    }
-    propose_channels(log, mended, {"torque"}, fault);
-    faults.push_back(std::move(fault));
-  }
 }
 
 }  // namespace offnominal::desk

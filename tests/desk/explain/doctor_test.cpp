@@ -84,6 +84,26 @@ TEST(Doctor, NamesTheJointWhoseTorqueHasTheWrongSign) {
   EXPECT_NEAR(faults[0].size, -1, 0.05);
 }
 
+// A tool that no file knows of weighs against a light last link, and turns its torque round. The
+// sign is told by what the others carry; one that is wrong still is, with the tool or without.
+TEST(Doctor, TakesNoToolForATorqueOfTheWrongSign) {
+  RobotDescription robot = test::serial_arm(2);
+  for (RobotEffect& effect : robot.effects) effect.parameters[0] *= 0.2;
+  RobotDescription real = robot;
+  // The last link has 2.1 kg at 0.086 m along x and 0.03 m along z.
+  real.effects.push_back(test::effect_of(EffectKind::kTipPayload, 1, {4, -0.11, 0, -0.04}, false));
+  const Log with_tool = test::record(real, {.duration_s = 20});
+  EXPECT_EQ(found_in(examine(with_tool, robot)), "");
+  for (const RobotDescription& one : {robot, real}) {
+    Log turned = test::record(one, {.duration_s = 20});
+    turned.tau.col(1) *= -1;
+    const auto faults = examine(turned, one);
+    ASSERT_EQ(faults.size(), 1U) << found_in(faults);
+    EXPECT_EQ(faults[0].kind, DataFaultKind::kTorqueSign);
+    EXPECT_EQ(faults[0].joint, 1);
+  }
+}
+
 // Damping that somebody guessed for a simulator is more than all the rest of the torque: the signs
 // are still told, and only those that are wrong.
 TEST(Doctor, NamesTorquesOfTheWrongSignBesideAGuessedFriction) {
