@@ -17,32 +17,6 @@ std::optional<MatrixXd> ColumnCache::known(const Key& key) {
   return at->second;
 }
 
-std::shared_ptr<const MatrixXd> ColumnCache::of_link(const RowLayout& layout,
-                                                     const std::vector<Workspace>& recordings,
-                                                     Index link) {
-  const std::lock_guard lock(mutex_);
-  auto& known = of_links_[link];
-  if (known) return known;
-  std::vector<std::vector<MatrixXd>> torques;
-  for (const Workspace& at : recordings) {
-    torques.push_back(inertial_regressor(at.rigid, static_cast<std::size_t>(link), at.motion));
-  }
-  MatrixXd columns(layout.rows(), kInertialNumbers);
-  for (Index number = 0; number < kInertialNumbers; ++number) {
-    std::vector<Regressor> regressors;
-    for (const std::vector<MatrixXd>& of_recording : torques) {
-      Regressor regressor;
-      for (Index joint = 0; joint <= link; ++joint) {
-        regressor.push_back({joint, of_recording[static_cast<std::size_t>(number)].col(joint)});
-      }
-      regressors.push_back(std::move(regressor));
-    }
-    columns.col(number) = layout.stack(recordings, regressors);
-  }
-  known = std::make_shared<const MatrixXd>(std::move(columns));
-  return known;
-}
-
 MatrixXd ColumnCache::columns(const RowLayout& layout, const std::vector<Workspace>& recordings,
                               const EffectCandidate& effect, Index joint, const ShapePoint& shape) {
   // A mass at a place that is looked for: each costs ten products, not the dynamics of the arm.
@@ -53,7 +27,7 @@ MatrixXd ColumnCache::columns(const RowLayout& layout, const std::vector<Workspa
     Joint<double> body;
     body.mass_kg = point.mass_kg;
     body.centre_of_mass_m = point.position_m;
-    return *of_link(layout, recordings, joint) * inertial_numbers_of(body);
+    return *inertial_->of_link(layout, recordings, joint) * inertial_numbers_of(body);
   }
   // 64 MB; beyond that all is forgotten, which changes no result.
   constexpr std::size_t kMostNumbers = std::size_t{8} << 20U;

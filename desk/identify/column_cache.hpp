@@ -6,9 +6,11 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "identify/effect_candidate.hpp"
+#include "identify/inertial_columns.hpp"
 #include "identify/rows.hpp"
 
 namespace offnominal::desk {
@@ -18,6 +20,9 @@ namespace offnominal::desk {
 // comes back is what would be computed anew. Any number of threads may ask at once.
 class ColumnCache {
  public:
+  // `inertial`: of the same recordings.
+  explicit ColumnCache(std::shared_ptr<InertialColumns> inertial) : inertial_(std::move(inertial)) {}
+
   // Columns of `effect`, which is one of all_candidates(), on a joint.
   [[nodiscard]] Eigen::MatrixXd columns(const RowLayout& layout,
                                         const std::vector<Workspace>& recordings,
@@ -32,13 +37,9 @@ class ColumnCache {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
   [[nodiscard]] std::optional<Eigen::MatrixXd> known(const Key& key);
-  // Stacked, of each of a link's ten numbers (inertial_regressor.hpp), in which the torque of a
-  // mass anywhere on it is linear.
-  [[nodiscard]] std::shared_ptr<const Eigen::MatrixXd> of_link(
-      const RowLayout& layout, const std::vector<Workspace>& recordings, Eigen::Index link);
 
+  std::shared_ptr<InertialColumns> inertial_;
   std::mutex mutex_;
-  std::map<Eigen::Index, std::shared_ptr<const Eigen::MatrixXd>> of_links_;
   std::map<Key, Eigen::MatrixXd> known_;
   std::size_t numbers_ = 0;  // in known_
 };

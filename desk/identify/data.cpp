@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "compare/standstill.hpp"
 #include "identify/effects/effects.hpp"
@@ -25,21 +26,35 @@ VectorXd stacked_torque(const RowLayout& layout, const std::vector<Workspace>& r
 
 }  // namespace
 
-Data::Data(std::vector<Workspace> made, const RobotDescription& robot,
-           const NuisanceOptions& options)
+Data::Data(std::vector<Workspace> made, std::shared_ptr<InertialColumns> inertial_columns,
+           const RobotDescription& robot, const NuisanceOptions& options)
     : recordings(std::move(made)),
       layout(recordings),
-      nuisance(make_nuisance(robot, recordings, layout, options)),
+      inertial(std::move(inertial_columns)),
+      nuisance(make_nuisance(robot, recordings, layout, options, *inertial)),
       torque(stacked_torque(layout, recordings, &Workspace::torque)),
-      target(torque - stacked_torque(layout, recordings, &Workspace::model_torque)) {}
+      target(torque - stacked_torque(layout, recordings, &Workspace::model_torque)),
+      cache(std::make_shared<ColumnCache>(inertial)) {}
+
+Data::Data(std::vector<Workspace> made, const RobotDescription& robot,
+           const NuisanceOptions& options)
+    : Data(std::move(made), std::make_shared<InertialColumns>(), robot, options) {}
 
 Data::Data(const Data& same, const RobotDescription& robot, const NuisanceOptions& options)
     : recordings(same.recordings),
       layout(same.layout),
-      nuisance(make_nuisance(robot, recordings, layout, options)),
+      inertial(same.inertial),
+      nuisance(make_nuisance(robot, recordings, layout, options, *inertial)),
       torque(same.torque),
       target(same.target),
       cache(same.cache) {}
+
+Data Data::of_robot(const Data& same, const RobotDescription& robot,
+                    const NuisanceOptions& options) {
+  std::vector<Workspace> recordings = same.recordings;
+  for (Workspace& at : recordings) at.set_model(robot);
+  return {std::move(recordings), same.inertial, robot, options};
+}
 
 VectorXd errors_as_it_is(const RobotDescription& file, const Data& data) {
   return errors_as_it_is(file, data.recordings, data.layout, data.torque);

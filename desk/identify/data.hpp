@@ -17,15 +17,23 @@ namespace offnominal::desk {
 struct Data {
   std::vector<Workspace> recordings;
   RowLayout layout;
+  std::shared_ptr<InertialColumns> inertial;  // of `recordings`
   Nuisance nuisance;
   Eigen::VectorXd torque;  // measured, filtered, stacked
   Eigen::VectorXd target;  // measured minus model torque
   // Of `recordings`, which do not change: copies of these data share it.
-  std::shared_ptr<ColumnCache> cache = std::make_shared<ColumnCache>();
+  std::shared_ptr<ColumnCache> cache;
 
   Data(std::vector<Workspace> made, const RobotDescription& robot, const NuisanceOptions& options);
   // The same recordings of the same robot beside another nuisance.
   Data(const Data& same, const RobotDescription& robot, const NuisanceOptions& options);
+  // The same recordings of a robot with other masses or effects.
+  static Data of_robot(const Data& same, const RobotDescription& robot,
+                       const NuisanceOptions& options);
+
+ private:
+  Data(std::vector<Workspace> made, std::shared_ptr<InertialColumns> inertial_columns,
+       const RobotDescription& robot, const NuisanceOptions& options);
 };
 
 // The error of a robot file as it is, rms per joint (N m or N), on the data's rows that say

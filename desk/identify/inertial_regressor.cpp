@@ -71,21 +71,24 @@ std::vector<MatrixXd> inertial_regressor(const RobotDescription& robot, std::siz
   if (motion.q.cols() != robot.joint_count()) {
     throw std::invalid_argument("the motion has another number of joints than the robot");
   }
+  // What is behind the link has no part in it.
   RobotDescription rigid = robot;
   rigid.effects.clear();
+  rigid.joints.resize(link + 1);
   using Joints = Vector<kRuntimeJoints, double>;
   auto model = make_model(chain_of<kRuntimeJoints, double>(rigid));
   for (auto& body : model.bodies) body.link = {};
   std::vector<MatrixXd> torques(static_cast<std::size_t>(kInertialNumbers),
-                                MatrixXd(motion.sample_count(), robot.joint_count()));
+                                MatrixXd::Zero(motion.sample_count(), robot.joint_count()));
+  const auto joints = static_cast<Index>(link + 1);
   for (Index i = 0; i < motion.sample_count(); ++i) {
-    const Joints q = motion.q.row(i);
-    const Joints dq = motion.dq.row(i);
-    const Joints ddq = motion.ddq.row(i);
+    const Joints q = motion.q.row(i).head(joints);
+    const Joints dq = motion.dq.row(i).head(joints);
+    const Joints ddq = motion.ddq.row(i).head(joints);
     const auto transforms = joint_transforms(model, q);
     for (Index number = 0; number < kInertialNumbers; ++number) {
       model.bodies[link].link = unit_body(number);
-      torques[static_cast<std::size_t>(number)].row(i) =
+      torques[static_cast<std::size_t>(number)].row(i).head(joints) =
           rigid_body_torque(model, transforms, dq, ddq);
     }
   }

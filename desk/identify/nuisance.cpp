@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
-#include "compare/inverse_model.hpp"
+#include "identify/inertial_regressor.hpp"
 #include "identify/unknown.hpp"
 #include "signal/differentiate.hpp"
 
@@ -54,8 +55,13 @@ Prior counted_from(const Prior& prior, double factor) {
 class Builder {
  public:
   Builder(const RobotDescription& robot, const std::vector<Workspace>& recordings,
-          const RowLayout& layout, const NuisanceOptions& options)
-      : robot_(robot), recordings_(recordings), layout_(layout), options_(options) {}
+          const RowLayout& layout, const NuisanceOptions& options, InertialColumns& inertial)
+      : robot_(robot),
+        recordings_(recordings),
+        layout_(layout),
+        options_(options),
+        inertial_(inertial),
+        told_(recordings.size()) {}
 
   Nuisance build() {
     for (Index link = 0; options_.link_share > 0 && link < layout_.joint_count(); ++link) {
@@ -93,60 +99,63 @@ class Builder {
     columns_.push_back(std::move(column));
   }
 
+  // `change`: of the link's numbers, in each recording.
+  template <typename Change>
+  void add_of_link(NuisanceTerm term, const MatrixXd& of_link, const Change& change) {
+    VectorXd column(layout_.rows());
+    for (std::size_t r = 0; r < recordings_.size(); ++r) {
+      const auto& joints = recordings_[r].rigid.joints;
+      const InertialNumbers numbers = change(joints[static_cast<std::size_t>(term.joint)].joint);
+      const Index rows = layout_.samples(r) * layout_.joint_count();
+      column.segment(layout_.begin(r, 0), rows) =
+          of_link.middleRows(layout_.begin(r, 0), rows) * numbers;
+    }
+    terms_.push_back(std::move(term));
+    columns_.push_back(std::move(column));
+  }
+
   void add_link(Index link) {
-    const auto which = static_cast<std::size_t>(link);
-    const LinkChange change = options_.links.empty() ? LinkChange{} : options_.links[which];
-    const auto of_link = [&](const MatrixXd& torque) {
-      Regressor regressor;
-      for (Index joint = 0; joint <= link; ++joint) {
-        regressor.push_back({joint, torque.col(joint)});
-      }
-      return regressor;
-    };
-    add({NuisanceTerm::Kind::kLink, link, 0, 0,
-         counted_from(within(options_.link_share), change.factor),
-         fmt::format("mass and inertia of link {}", link + 1)},
-        [&](const Workspace& at) { return of_link(link_torque(at.rigid, which, at.motion)); });
+    const LinkChange change =
+        options_.links.empty() ? LinkChange{} : options_.links[static_cast<std::size_t>(link)];
+    const auto of_link = inertial_.of_link(layout_, recordings_, link);
+    add_of_link({NuisanceTerm::Kind::kLink, link, 0, 0,
+                 counted_from(within(options_.link_share), change.factor),
+                 fmt::format("mass and inertia of link {}", link + 1)},
+                *of_link, inertial_numbers_of);
     if (!options_.link_geometry) return;
-    add({NuisanceTerm::Kind::kLinkInertia, link, 0, 0,
-         counted_from(within(options_.link_share), change.inertia_factor),
-         fmt::format("inertia of link {}", link + 1)},
-        [&](const Workspace& at) {
-          RobotDescription robot = at.rigid;
-          robot.joints[which].joint.mass_kg = 0;
-          return of_link(link_torque(robot, which, at.motion));
-        });
+    add_of_link({NuisanceTerm::Kind::kLinkInertia, link, 0, 0,
+                 counted_from(within(options_.link_share), change.inertia_factor),
+                 fmt::format("inertia of link {}", link + 1)},
+                *of_link, [](Joint<double> joint) {
+                  joint.mass_kg = 0;
+                  return inertial_numbers_of(joint);
+                });
     for (std::size_t axis = 0; axis < change.centre_m.size(); ++axis) {
-      add_centre(link, axis, change);
+      add_centre(link, axis, change, *of_link);
     }
   }
 
   // `change`: by which the robot's link is off what the prior is about.
-  void add_centre(Index link, std::size_t axis, const LinkChange& change) {
+  void add_centre(Index link, std::size_t axis, const LinkChange& change, const MatrixXd& of_link) {
     const double moved = change.centre_m[axis];
-    const auto which = static_cast<std::size_t>(link);
-    const double size = size_of(unchanged(robot_.joints[which].joint, change));
+    const double size =
+        size_of(unchanged(robot_.joints[static_cast<std::size_t>(link)].joint, change));
     Prior prior = within(options_.link_share * size);
     prior.mean -= moved;
     prior.low -= moved;
     prior.high -= moved;
-    add({NuisanceTerm::Kind::kLinkCentre, link, 0, axis, prior,
-         fmt::format("centre of mass of link {}", link + 1)},
-        [&](const Workspace& at) {
-          // The torque is quadratic in the centre of mass: a central difference is its derivative.
-          const double step = 0.1 * size;
-          const auto torque_at = [&](double by) {
-            RobotDescription robot = at.rigid;
-            robot.joints[which].joint.centre_of_mass_m[axis] += by;
-            return link_torque(robot, which, at.motion);
-          };
-          const MatrixXd torque = (torque_at(step) - torque_at(-step)) / (2 * step);
-          Regressor regressor;
-          for (Index joint = 0; joint <= link; ++joint) {
-            regressor.push_back({joint, torque.col(joint)});
-          }
-          return regressor;
-        });
+    add_of_link({NuisanceTerm::Kind::kLinkCentre, link, 0, axis, prior,
+                 fmt::format("centre of mass of link {}", link + 1)},
+                of_link, [&](const Joint<double>& joint) -> InertialNumbers {
+                  // Quadratic in the centre of mass: a central difference is the derivative.
+                  const double step = 0.1 * size;
+                  const auto numbers_at = [&](double by) {
+                    Joint<double> there = joint;
+                    there.centre_of_mass_m[axis] += by;
+                    return inertial_numbers_of(there);
+                  };
+                  return (numbers_at(step) - numbers_at(-step)) / (2 * step);
+                });
   }
 
   // One joint alone, or gravity alone, does not tell them from masses.
@@ -185,7 +194,9 @@ class Builder {
            unknown.parameter, prior_of(effect, unknown.parameter), name_of(robot_, unknown)},
           [&](const Workspace& at) {
             Regressor columns;
-            for (JointColumn& column : regressor(at.as_recorded(robot_), unknown, at.motion)) {
+            auto& told = told_[static_cast<std::size_t>(&at - recordings_.data())];
+            for (JointColumn& column :
+                 regressor(at.as_recorded(robot_), unknown, at.motion, told)) {
               columns.push_back({static_cast<Index>(column.joint), std::move(column.values)});
             }
             return columns;
@@ -279,6 +290,8 @@ class Builder {
   const std::vector<Workspace>& recordings_;
   const RowLayout& layout_;
   const NuisanceOptions& options_;
+  InertialColumns& inertial_;
+  std::vector<std::optional<ToldTorque>> told_;  // per recording, where it was needed
   std::vector<NuisanceTerm> terms_;
   std::vector<VectorXd> columns_;
 };
@@ -298,8 +311,9 @@ double size_of_link(const RobotDescription& robot, std::size_t link) {
 }
 
 Nuisance make_nuisance(const RobotDescription& robot, const std::vector<Workspace>& recordings,
-                       const RowLayout& layout, const NuisanceOptions& options) {
-  return Builder(robot, recordings, layout, options).build();
+                       const RowLayout& layout, const NuisanceOptions& options,
+                       InertialColumns& inertial) {
+  return Builder(robot, recordings, layout, options, inertial).build();
 }
 
 }  // namespace offnominal::desk

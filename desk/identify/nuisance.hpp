@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "identify/fit.hpp"
+#include "identify/inertial_columns.hpp"
 #include "identify/rows.hpp"
 #include "identify/term.hpp"
 #include "identify/workspace.hpp"
@@ -88,7 +89,9 @@ struct NuisanceOptions {
 // radius of gyration where this is more.
 double size_of_link(const RobotDescription& robot, std::size_t link);
 
+// `inertial`: of the recordings.
 Nuisance make_nuisance(const RobotDescription& robot, const std::vector<Workspace>& recordings,
-                       const RowLayout& layout, const NuisanceOptions& options);
+                       const RowLayout& layout, const NuisanceOptions& options,
+                       InertialColumns& inertial);
 
 }  // namespace offnominal::desk

@@ -45,11 +45,9 @@ Relinearised fitted_about(std::vector<LinkChange> links, const RobotDescription&
   Relinearised anew;
   anew.links = std::move(links);
   const RobotDescription closer = with_link_changes(robot, anew.links);
-  std::vector<Workspace> recordings = data.recordings;
-  for (Workspace& at : recordings) at.set_model(closer);
   anew.nuisance = options;
   anew.nuisance.links = anew.links;
-  anew.data = std::make_unique<Data>(std::move(recordings), closer, anew.nuisance);
+  anew.data = std::make_unique<Data>(Data::of_robot(data, closer, anew.nuisance));
   const Regression regression(*anew.data);
   anew.terms = terms;
   for (std::size_t i = 0; refines && i < terms.size(); ++i) regression.refine(anew.terms, i);

@@ -117,11 +117,20 @@ void pass_path(const RobotDescription& robot, const Unknown& unknown, const Told
 
 std::vector<JointColumn> regressor(const RobotDescription& robot, const Unknown& unknown,
                                    const Motion& motion) {
+  std::optional<ToldTorque> told;
+  return regressor(robot, unknown, motion, told);
+}
+
+std::vector<JointColumn> regressor(const RobotDescription& robot, const Unknown& unknown,
+                                   const Motion& motion, std::optional<ToldTorque>& told) {
   const bool of_path = unknown.kind == Unknown::Kind::kEffectParameter &&
                        is_path_effect(robot.effects[unknown.effect].kind);
   if (of_path) return {{unknown.joint, of_path_effect(robot, unknown, motion)}};
   std::vector<JointColumn> columns = regressor_before_path(robot, unknown, motion);
-  if (has_path_effect(robot)) pass_path(robot, unknown, told_torque(robot, motion), columns);
+  if (has_path_effect(robot)) {
+    if (!told) told = told_torque(robot, motion);
+    pass_path(robot, unknown, *told, columns);
+  }
   return columns;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ struct JointColumn {
 // effects scale the torque the derivative is the one at the values of `robot`.
 std::vector<JointColumn> regressor(const RobotDescription& robot, const Unknown& unknown,
                                    const Motion& motion);
+// The same of several unknowns in turn; `told`: of the robot and the motion, made where it is
+// needed and there is none yet.
+std::vector<JointColumn> regressor(const RobotDescription& robot, const Unknown& unknown,
+                                   const Motion& motion, std::optional<ToldTorque>& told);
 
 // True where the unknown changes inertia or weight: its torque passes the gear.
 bool is_load(const RobotDescription& robot, const Unknown& unknown);
