@@ -408,6 +408,10 @@ class Finder {
         found_.unsure[shown_on(one)] = 1;
         return false;
       }
+      if (!is_more_likely_at_any_speed(regression_.data(), without, one.fit,
+                                       fall_of(without, one.fit).joint)) {
+        return false;
+      }
       fresh.push_back({one.terms[i], p, 1});
     }
     const auto joint = static_cast<Index>(joint_of(one));

@@ -30,6 +30,30 @@ double growth_of_log_likelihood(const VectorXd& before, const VectorXd& after,
   return sum;
 }
 
+bool is_more_likely_at_any_speed(const Data& data, const ModelFit& without, const ModelFit& with,
+                                 Index joint) {
+  constexpr double kNextToReversal = 0.1;  // of the top speed
+  const RowLayout& layout = data.layout;
+  // Next to a reversal, and where the joint moves.
+  VectorXd before = VectorXd::Zero(2);
+  VectorXd after = VectorXd::Zero(2);
+  VectorXd rows = VectorXd::Zero(2);
+  for (std::size_t r = 0; r < data.recordings.size(); ++r) {
+    const Workspace& at = data.recordings[r];
+    const VectorXd speed = kept_samples(at.plan, at.motion.dq.col(joint)).cwiseAbs();
+    for (Index i = 0; i < speed.size(); ++i) {
+      const Index row = layout.begin(r, joint) + i;
+      if (!layout.says_something(row)) continue;
+      const Index regime = speed[i] < kNextToReversal * at.top_speed[joint] ? 0 : 1;
+      before[regime] += without.residual[row] * without.residual[row];
+      after[regime] += with.residual[row] * with.residual[row];
+      rows[regime] += 1;
+    }
+  }
+  const VectorXd samples = with.remainder.independent_samples[joint] / rows.sum() * rows;
+  return growth_of_log_likelihood(before.cwiseSqrt(), after.cwiseSqrt(), samples) > 0;
+}
+
 Shown shown(const Data& data, const std::vector<Term>& terms, std::size_t which,
             const ModelFit& fit, const ModelFit& without) {
   const RowLayout& layout = data.layout;

@@ -36,6 +36,12 @@ struct Shown {
 double growth_of_log_likelihood(const Eigen::VectorXd& before, const Eigen::VectorXd& after,
                                 const Eigen::VectorXd& samples);
 
+// Whether a joint's recordings are more likely with an effect than without where errors next to a
+// reversal have a size of their own. How friction builds up there no formula has quite, and what
+// stands for that alone, as a delay may, is worse wherever the joint moves.
+bool is_more_likely_at_any_speed(const Data& data, const ModelFit& without, const ModelFit& with,
+                                 Eigen::Index joint);
+
 // `which`: one of the terms that `fit` is of; `without`: the fit of the others.
 Shown shown(const Data& data, const std::vector<Term>& terms, std::size_t which,
             const ModelFit& fit, const ModelFit& without);
