@@ -95,6 +95,29 @@ bool one_mass_explains(const FoundModel& wide, const FoundModel& usual) {
          counted(usual).others <= counted(wide).others;
 }
 
+// What is in one model and not in the other.
+std::vector<const Accepted*> not_in(const FoundModel& one, const FoundModel& other) {
+  std::vector<const Accepted*> missing;
+  for (const Accepted& here : one.accepted) {
+    const bool there =
+        std::any_of(other.accepted.begin(), other.accepted.end(), [&](const Accepted& accepted) {
+          return accepted.term.effect->kind() == here.term.effect->kind() &&
+                 accepted.term.joint == here.term.joint;
+        });
+    if (!there) missing.push_back(&here);
+  }
+  return missing;
+}
+
+// Whether the wide model only adds to what the usual one names, or has taken masses into its links:
+// wider links blur the numbers of all else, and a mass is soon one of theirs.
+bool tells_no_better(const FoundModel& wide, const FoundModel& usual) {
+  const auto lost = not_in(usual, wide);
+  const bool only_masses = std::all_of(
+      lost.begin(), lost.end(), [](const Accepted* one) { return one->term.effect->is_mass(); });
+  return only_masses && (lost.empty() || not_in(wide, usual).empty());
+}
+
 }  // namespace
 
 void add_payload(const Regression& regression, std::vector<Term>& terms) {
@@ -152,7 +175,8 @@ bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const Fo
     const VectorXd torque = hold_out.data().layout.rms(hold_out.data().torque);
     const bool is_little =
         (samples.array() <= 0 || (before - after).array() < kLittleOfTorque * torque.array()).all();
-    return both_wide || !is_little || !one_mass_explains(wide, usual);
+    if (!is_little) return true;
+    return both_wide ? !tells_no_better(wide, usual) : !one_mass_explains(wide, usual);
   }
   constexpr std::size_t kManyEffects = 3;
   return gain.log_likelihood > -kClearly &&

@@ -21,7 +21,8 @@ namespace offnominal::desk {
 class ColumnCache {
  public:
   // `inertial`: of the same recordings.
-  explicit ColumnCache(std::shared_ptr<InertialColumns> inertial) : inertial_(std::move(inertial)) {}
+  explicit ColumnCache(std::shared_ptr<InertialColumns> inertial)
+      : inertial_(std::move(inertial)) {}
 
   // Columns of `effect`, which is one of all_candidates(), on a joint.
   [[nodiscard]] Eigen::MatrixXd columns(const RowLayout& layout,
