@@ -25,18 +25,27 @@ constexpr double kRelevantFall = 0.05;
 // Of a joint's torque: what less is said for one mass that is wrong.
 constexpr double kLittleOfTorque = 0.01;
 
-// How much more likely the errors that are left make the data, and the largest fall of one.
+// How much more likely the errors that are left make the data, the largest fall of one, and whether
+// those of most joints fall: links are off all over an arm.
 struct ShareGain {
   double log_likelihood = 0;
   double fall = 0;
+  bool on_most = false;
 };
 
 ShareGain gain_of(const VectorXd& before, const VectorXd& after, const VectorXd& samples) {
-  ShareGain gain{growth_of_log_likelihood(before, after, samples), 0};
+  constexpr double kClearFall = 0.1;
+  ShareGain gain{growth_of_log_likelihood(before, after, samples), 0, false};
+  int joints = 0;
+  int fallen = 0;
   for (Index joint = 0; joint < before.size(); ++joint) {
     if (!(before[joint] > 0) || !(samples[joint] > 0)) continue;
-    gain.fall = std::max(gain.fall, 1 - after[joint] / before[joint]);
+    const double fall = 1 - after[joint] / before[joint];
+    gain.fall = std::max(gain.fall, fall);
+    ++joints;
+    if (fall > kClearFall) ++fallen;
   }
+  gain.on_most = 2 * fallen > joints;
   return gain;
 }
 
@@ -176,7 +185,8 @@ bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const Fo
     const bool is_little =
         (samples.array() <= 0 || (before - after).array() < kLittleOfTorque * torque.array()).all();
     if (!is_little) return true;
-    return both_wide ? !tells_no_better(wide, usual) : !one_mass_explains(wide, usual);
+    return both_wide ? gain.on_most || !tells_no_better(wide, usual)
+                     : !one_mass_explains(wide, usual);
   }
   constexpr std::size_t kManyEffects = 3;
   return gain.log_likelihood > -kClearly &&
