@@ -9,6 +9,7 @@
 
 #include "explain/alternatives.hpp"
 #include "explain/remainder.hpp"
+#include "identify/shape_grid.hpp"
 
 namespace offnominal::desk {
 
@@ -25,6 +26,8 @@ constexpr double kAlmostAll = 0.9;
 constexpr double kNearlyTheCurve = 0.95;
 // Of the error's energy: a name that leaves so many times what a curve leaves is another's.
 constexpr double kFarMore = 10;
+// Of the curve's, what something simpler may leave that takes nearly as much.
+constexpr double kAboutAsLittle = 1.5;
 // How much more likely, in log-likelihood, it has to make the recordings than anything simpler.
 constexpr double kMoreLikely = 3;
 
@@ -79,7 +82,12 @@ class Curve {
                                               curve_.joint, name_of(variable()));
     if (!(taken > 0) || taken < kAlmostAll * (taken + more)) return std::nullopt;
     if (!describe_replaced(taken, shape) || !beats_the_simpler(shape.proposal)) return std::nullopt;
-    if (variable() == EffectVariable::kPosition && is_a_stop(taken, shape)) return std::nullopt;
+    if (variable() != EffectVariable::kPosition) return shape;
+    if (is_a_stop(taken, shape)) return std::nullopt;
+    if (auto ripple = as_a_ripple(taken, shape)) {
+      shape.proposal = std::move(*ripple);
+      shape.words.clear();
+    }
     return shape;
   }
 
@@ -97,11 +105,57 @@ class Curve {
     return shape;
   }
 
+  // A ripple that takes as much as the curve with two numbers instead of many, and leaves about as
+  // little, if there is one. Ripples are searched from two periods per range on, as less than one
+  // is any curve.
+  [[nodiscard]] std::optional<Proposal> as_a_ripple(double taken, const AnyShape& shape) const {
+    std::vector<Term> terms = without(terms_, shape.replaced);
+    std::optional<Term> ripple = best_ripple(Judge(shape.without.remainder));
+    if (!ripple) return std::nullopt;
+    terms.push_back(std::move(*ripple));
+    regression_.refine(terms, terms.size() - 1);
+    Proposal proposal = search_.proposal_of(terms, terms.size() - 1);
+    const double of_ripple = explained_on(data_, shape.without, proposal.fit, curve_.joint);
+    const bool as_little = energy(proposal.fit) <= kAboutAsLittle * energy(shape.proposal.fit);
+    if (of_ripple < kNearlyTheCurve * taken || !as_little) return std::nullopt;
+    return proposal;
+  }
+
+  // Of one to a little more than two periods over the range.
+  [[nodiscard]] std::optional<Term> best_ripple(const Judge& judge) const {
+    constexpr double kFewest = 1;
+    constexpr double kMost = 2.2;
+    constexpr int kSteps = 12;
+    const double range = range_moved(data_.recordings, curve_.joint);
+    if (!(range > 0)) return std::nullopt;
+    const double per_period =
+        first_order_period(data_.recordings[0].joint_type(curve_.joint)) / range;
+    ShapeRange orders;
+    for (int i = 0; i <= kSteps; ++i) {
+      orders.grid.push_back(per_period * (kFewest + (kMost - kFewest) * i / kSteps));
+    }
+    std::optional<Term> best;
+    double most = 0;
+    for (const auto& effect : all_candidates()) {
+      if (effect->spectrum() != EffectCandidate::Spectrum::kPosition ||
+          !effect->applies_in_any(data_.recordings, curve_.joint)) {
+        continue;
+      }
+      for (const double order : orders.grid) {
+        Term term{effect.get(), curve_.joint, {order}, {orders}};
+        const double gain = evidence_for(judge, data_, term).gain;
+        if (gain <= most) continue;
+        most = gain;
+        best = std::move(term);
+      }
+    }
+    return best;
+  }
+
   // Whether a stop, which acts on one side of a place and is proportional to how far beyond, takes
   // as much as the curve, and leaves about as little: what has a kink is no smooth curve, however
   // well one goes round it.
   [[nodiscard]] bool is_a_stop(double taken, const AnyShape& shape) const {
-    constexpr double kAboutAsLittle = 1.5;
     const Judge judge(shape.without.remainder);
     const double of_stop = most_of_a_stop(judge) / evidence_for(judge, data_, curve_).gain;
     if (of_stop < kNearlyTheCurve) return false;

@@ -12,7 +12,9 @@ namespace offnominal::desk {
 // An effect that is a curve of any shape over one variable of its joint (EffectTraits), which can
 // stand for every other effect of that variable.
 struct AnyShape {
-  Proposal proposal;                  // the curve in the place of what it replaces
+  // The curve in the place of what it replaces, or a ripple of one or two periods over the range
+  // that says the same with fewer numbers.
+  Proposal proposal;
   ModelFit without;                   // the same without the curve
   std::vector<std::size_t> replaced;  // of what was found, ascending
   std::string words;  // "joint_stiffness is 60 % of it"; empty where it replaces nothing
