@@ -142,6 +142,7 @@ class Explainer {
              result);
     result.held = improved.held;
     result.torque_constants = improved.constants;
+    with_all_found_ = improved.robot;
     leave_out_undecided(found, result, improved);
     for (Shift& one : result.shifts) {
       one.came = improved.robot.effects[one.effect].parameters[one.parameter];
@@ -179,6 +180,10 @@ class Explainer {
 
   // What was not searched, in words; empty where all was.
   [[nodiscard]] const std::string& left_out() const { return left_out_; }
+
+  // The robot with all that run() has found, also what the recordings do not tell from another
+  // effect: Explanation::improved is without that.
+  [[nodiscard]] const RobotDescription& with_all_found() const { return with_all_found_; }
 
  private:
   void tell(const std::string& doing) const {
@@ -379,6 +384,7 @@ class Explainer {
 
   const RobotDescription& file_;
   RobotDescription robot_;  // the same with signs as wide as the motion can resolve
+  RobotDescription with_all_found_;
   const std::vector<Log>& logs_;
   const std::vector<Log>& holdout_;
   FilterPlan plan_;  // of all of them
@@ -469,21 +475,53 @@ struct Explained {
   std::string left_out;  // what was not searched, in words; empty where all was
 };
 
-// What pushes the arm for a moment is told by itself, and left out of everything else.
-Explained explain_beside_pushes(const RobotDescription& robot, const Treated& recordings,
-                                const ExplainOptions& options, bool search,
-                                const OnProgress& on_progress) {
-  auto explainer =
-      std::make_unique<Explainer>(robot, recordings.logs, recordings.holdout, options, on_progress);
-  std::vector<Push> pushes;
-  if (search) pushes = explainer->pushes();
-  if (pushes.empty()) return {explainer->run(search, {}), explainer->left_out()};
-  explainer.reset();
+// The same with pushes left out of the recordings.
+struct ExplainedWithout {
+  Explained explained;
+  RobotDescription with_all_found;
+};
+
+ExplainedWithout explain_without(const std::vector<Push>& pushes, const RobotDescription& robot,
+                                 const Treated& recordings, const ExplainOptions& options,
+                                 const OnProgress& on_progress) {
   Treated others{recordings.logs, recordings.holdout, {}};
   leave_out(pushes, others.logs);
   leave_out(pushes, others.holdout);
-  explainer = std::make_unique<Explainer>(robot, others.logs, others.holdout, options, on_progress);
-  return {explainer->run(search, std::move(pushes)), explainer->left_out()};
+  Explainer explainer(robot, others.logs, others.holdout, options, on_progress);
+  Explanation result = explainer.run(true, pushes);
+  return {{std::move(result), explainer.left_out()}, explainer.with_all_found()};
+}
+
+// Those of the pushes that this robot does not explain.
+std::vector<Push> unexplained_by(const RobotDescription& robot, const Treated& recordings,
+                                 const ExplainOptions& options, const OnProgress& on_progress,
+                                 std::vector<Push> pushes) {
+  const std::vector<Push> left =
+      Explainer(robot, recordings.logs, recordings.holdout, options, on_progress).pushes();
+  std::erase_if(pushes, [&](const Push& one) { return !is_told(left, one); });
+  return pushes;
+}
+
+// What pushes the arm for a moment is told by itself, and left out of everything else. What is
+// missing may stand out for a moment too, where a joint is at its fastest: then it is no push.
+Explained explain_beside_pushes(const RobotDescription& robot, const Treated& recordings,
+                                const ExplainOptions& options, bool search,
+                                const OnProgress& on_progress) {
+  std::vector<Push> pushes;
+  {
+    Explainer explainer(robot, recordings.logs, recordings.holdout, options, on_progress);
+    if (search) pushes = explainer.pushes();
+    if (pushes.empty()) {
+      Explanation result = explainer.run(search, {});
+      return {std::move(result), explainer.left_out()};
+    }
+  }
+  ExplainedWithout told = explain_without(pushes, robot, recordings, options, on_progress);
+  if (told.explained.result.found.empty()) return std::move(told.explained);
+  std::vector<Push> still =
+      unexplained_by(told.with_all_found, recordings, options, on_progress, pushes);
+  if (still.size() == pushes.size()) return std::move(told.explained);
+  return explain_without(still, robot, recordings, options, on_progress).explained;
 }
 
 }  // namespace
