@@ -42,7 +42,9 @@ std::vector<double> wider_link_shares(const RobotDescription& robot, const Data&
 // that one needed at least three effects more; a torque constant that the wide one fits is none of
 // them. A link of another mass is an effect, and named: one mass that is wrong is believed rather
 // than all links off a little, where a hundredth of a torque is at stake. `both_wide`: the narrower
-// one has all links off already.
+// one has all links off already; where so little is at stake the errors of most joints have to
+// fall, or other names have to come, as wide links blur the numbers of what is found and take
+// masses for their own.
 bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const FoundModel& usual,
                        bool both_wide);
 

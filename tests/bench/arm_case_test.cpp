@@ -160,5 +160,21 @@ TEST(ArmBench, TakesAPostureThatComesOnceForNoPush) {
   EXPECT_THAT(outcome.score.false_pushes, ::testing::Eq(0));
 }
 
+// GIVEN drag that no file knows of, and half a second in which its joint is faster than ever before
+// WHEN the recordings are explained THEN the drag is found, and the half second is no push.
+TEST(ArmBench, TakesDragAtTheHighestSpeedForNoPush) {
+#ifdef OFFNOMINAL_SANITIZE
+  GTEST_SKIP() << "minutes under the sanitizers; the analysis has tests of its own";
+#endif
+  constexpr std::uint64_t kSeed = 1572603511;
+  desk::ExplainOptions options;
+  options.replays = 0;
+  options.link_share = 0.3;
+  const bench::ArmOutcome outcome = bench::run_arm_case({ArmHides::kEffects, kSeed}, options);
+  ASSERT_EQ(outcome.refused + outcome.failed, "");
+  ASSERT_THAT(outcome.truth.pushes, ::testing::IsEmpty());
+  EXPECT_THAT(outcome.score.false_pushes, ::testing::Eq(0));
+}
+
 }  // namespace
 }  // namespace offnominal::test

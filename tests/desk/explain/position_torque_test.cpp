@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <string>
 
 #include "explain/add_found.hpp"
@@ -9,6 +10,7 @@
 #include "explain/verdict.hpp"
 #include "hidden_case.hpp"
 #include "identify/add.hpp"
+#include "serial_arm.hpp"
 
 // A curve over the position can stand for a spring, a weight or a constant torque: it has a name
 // only where none of them is what the recordings show. What hides it is a gas spring of the
@@ -62,6 +64,23 @@ TEST(PositionTorque, LeavesEverySimplerEffectItsName) {
     EXPECT_FALSE(names_a_curve(told)) << hidden::name(effect) << ": " << told.words;
     ASSERT_THAT(told.found, Not(IsEmpty())) << hidden::name(effect) << ": " << told.words;
     EXPECT_EQ(told.found[0].what.name(), hidden::name(effect));
+  }
+}
+
+// Ripples are searched from two periods over the range on, and a curve follows one period as well.
+TEST(PositionTorque, IsNotNamedForARippleOfLittleMoreThanAPeriod) {
+  const RobotDescription robot = test::serial_arm(2);
+  const Log plain = test::record(robot, {.duration_s = 25});
+  const double range = plain.q.col(1).maxCoeff() - plain.q.col(1).minCoeff();
+  for (const double periods : {1.2, 1.6}) {
+    const double order = periods * 2 * std::numbers::pi / range;
+    RobotDescription real = robot;
+    real.effects.push_back(
+        test::effect_of(EffectKind::kCoggingTorque, 1, {1.5, -0.8, order}, true));
+    const Explanation told = explain(robot, {test::record(real, {.duration_s = 25})}, {}, quick());
+    EXPECT_FALSE(names_a_curve(told)) << periods << ": " << told.words;
+    ASSERT_THAT(told.found, SizeIs(1)) << periods << ": " << told.words;
+    EXPECT_EQ(told.found[0].what, (EffectAt{EffectKind::kCoggingTorque, 1}));
   }
 }
 
