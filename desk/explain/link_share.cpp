@@ -26,16 +26,17 @@ constexpr double kRelevantFall = 0.05;
 constexpr double kLittleOfTorque = 0.01;
 
 // How much more likely the errors that are left make the data, the largest fall of one, and whether
-// those of most joints fall: links are off all over an arm.
+// those of most joints fall (links are off all over an arm) or that of any rises.
 struct ShareGain {
   double log_likelihood = 0;
   double fall = 0;
   bool on_most = false;
+  bool one_rises = false;
 };
 
 ShareGain gain_of(const VectorXd& before, const VectorXd& after, const VectorXd& samples) {
-  constexpr double kClearFall = 0.1;
-  ShareGain gain{growth_of_log_likelihood(before, after, samples), 0, false};
+  constexpr double kClearChange = 0.1;
+  ShareGain gain{growth_of_log_likelihood(before, after, samples), 0, false, false};
   int joints = 0;
   int fallen = 0;
   for (Index joint = 0; joint < before.size(); ++joint) {
@@ -43,7 +44,8 @@ ShareGain gain_of(const VectorXd& before, const VectorXd& after, const VectorXd&
     const double fall = 1 - after[joint] / before[joint];
     gain.fall = std::max(gain.fall, fall);
     ++joints;
-    if (fall > kClearFall) ++fallen;
+    if (fall > kClearChange) ++fallen;
+    if (fall < -kClearChange) gain.one_rises = true;
   }
   gain.on_most = 2 * fallen > joints;
   return gain;
@@ -118,13 +120,14 @@ std::vector<const Accepted*> not_in(const FoundModel& one, const FoundModel& oth
   return missing;
 }
 
-// Whether the wide model only adds to what the usual one names, or has taken masses into its links:
-// wider links blur the numbers of all else, and a mass is soon one of theirs.
-bool tells_no_better(const FoundModel& wide, const FoundModel& usual) {
+// Whether the wide model only adds to what the usual one names, or has taken masses into its links
+// at the price of another joint: wider links blur the numbers of all else.
+bool tells_no_better(const FoundModel& wide, const FoundModel& usual, const ShareGain& gain) {
   const auto lost = not_in(usual, wide);
+  if (lost.empty()) return true;
   const bool only_masses = std::all_of(
       lost.begin(), lost.end(), [](const Accepted* one) { return one->term.effect->is_mass(); });
-  return only_masses && (lost.empty() || not_in(wide, usual).empty());
+  return only_masses && gain.one_rises && not_in(wide, usual).empty();
 }
 
 }  // namespace
@@ -185,7 +188,7 @@ bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const Fo
     const bool is_little =
         (samples.array() <= 0 || (before - after).array() < kLittleOfTorque * torque.array()).all();
     if (!is_little) return true;
-    return both_wide ? gain.on_most || !tells_no_better(wide, usual)
+    return both_wide ? gain.on_most || !tells_no_better(wide, usual, gain)
                      : !one_mass_explains(wide, usual);
   }
   constexpr std::size_t kManyEffects = 3;

@@ -107,8 +107,12 @@ TEST_F(WiderLinks, GIVEN_little_on_one_joint_and_the_same_names_THEN_they_are_no
   EXPECT_FALSE(widens(found({payload_, friction_}, {0.004, 0.004, 0.004, 0.004}), usual_));
 }
 
-TEST_F(WiderLinks, GIVEN_a_payload_that_vanishes_into_them_THEN_they_are_not_taken) {
-  EXPECT_FALSE(widens(found({friction_}, {0.004, 0.004, 0.004, 0.004}), usual_));
+TEST_F(WiderLinks, GIVEN_a_payload_that_vanishes_at_the_price_of_a_joint_THEN_they_are_not_taken) {
+  EXPECT_FALSE(widens(found({friction_}, {0.004, 0.004, 0.006, 0.002}), usual_));
+}
+
+TEST_F(WiderLinks, GIVEN_a_payload_that_nothing_misses_THEN_they_are_taken) {
+  EXPECT_TRUE(widens(found({friction_}, {0.004, 0.004, 0.004, 0.002}), usual_));
 }
 
 TEST_F(WiderLinks, GIVEN_little_on_most_joints_THEN_they_are_taken) {
