@@ -102,7 +102,9 @@ class Classes {
       }
       same.push_back(name);
     }
-    if (excitation_[static_cast<std::size_t>(mine.joint)].is_poor()) {
+    const EffectTraits& traits = mine.effect->info().traits;
+    const bool is_curve = traits.has_any_shape && traits.follows == EffectVariable::kPosition;
+    if (is_curve || excitation_[static_cast<std::size_t>(mine.joint)].is_poor()) {
       add_slow_ripples(found, mine, others, own, same);
     }
     return same;
@@ -125,7 +127,7 @@ class Classes {
   }
 
   // Ripples slower than the range: a rich motion tells them from an offset or a spring, or has
-  // none.
+  // none; a curve of any shape may be one on any motion.
   void add_slow_ripples(const FoundModel& found, const Term& mine, const std::vector<Term>& others,
                         double energy, std::vector<EffectAt>& same) const {
     for (const Term& ripple : slow_ripples(*setting_.data, mine.joint)) {
