@@ -110,19 +110,21 @@ class Curve {
   // is any curve.
   [[nodiscard]] std::optional<Proposal> as_a_ripple(double taken, const AnyShape& shape) const {
     std::vector<Term> terms = without(terms_, shape.replaced);
-    std::optional<Term> ripple = best_ripple(Judge(shape.without.remainder));
+    std::optional<Term> ripple = best_ripple(terms, Judge(shape.without.remainder));
     if (!ripple) return std::nullopt;
     terms.push_back(std::move(*ripple));
     regression_.refine(terms, terms.size() - 1);
     Proposal proposal = search_.proposal_of(terms, terms.size() - 1);
     const double of_ripple = explained_on(data_, shape.without, proposal.fit, curve_.joint);
     const bool as_little = energy(proposal.fit) <= kAboutAsLittle * energy(shape.proposal.fit);
-    if (of_ripple < kNearlyTheCurve * taken || !as_little) return std::nullopt;
+    if (of_ripple < kNearlyTheCurve * taken || !as_little || !proposal.physical)
+      return std::nullopt;
     return proposal;
   }
 
-  // Of one to a little more than two periods over the range.
-  [[nodiscard]] std::optional<Term> best_ripple(const Judge& judge) const {
+  // Of one to a little more than two periods over the range, beside these terms.
+  [[nodiscard]] std::optional<Term> best_ripple(const std::vector<Term>& terms,
+                                                const Judge& judge) const {
     constexpr double kFewest = 1;
     constexpr double kMost = 2.2;
     constexpr int kSteps = 12;
@@ -138,6 +140,7 @@ class Curve {
     double most = 0;
     for (const auto& effect : all_candidates()) {
       if (effect->spectrum() != EffectCandidate::Spectrum::kPosition ||
+          has_effect(data_, terms, effect->kind(), curve_.joint) ||
           !effect->applies_in_any(data_.recordings, curve_.joint)) {
         continue;
       }

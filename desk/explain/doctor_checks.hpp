@@ -42,6 +42,9 @@ Eigen::MatrixXd friction_columns(const Eigen::VectorXd& dq);
 // Each column of `torques` less what the others take of it by least squares.
 Eigen::MatrixXd beside(const Eigen::MatrixXd& others, const Eigen::MatrixXd& torques);
 
+// What no dry or viscous friction of the joint has a part in: the file's is often a guess.
+Eigen::VectorXd beside_friction(const Eigen::VectorXd& torque, const Eigen::VectorXd& dq);
+
 // Torques of a joint, one per column, in which its friction, rotor and offset have no part: a file
 // may lack them, or guess.
 Eigen::MatrixXd beside_drive(const TorquePair& pair, Eigen::Index joint,

@@ -47,10 +47,9 @@ std::optional<Opposed> opposed_to_model(const TorquePair& pair, Index joint) {
   const VectorXd tau = pair.measured.col(joint);
   if (auto found = opposed(tau, pair.model.col(joint))) return found;
   const VectorXd dq = pair.dq.col(joint);
-  const MatrixXd friction = friction_columns(dq);
-  const VectorXd rest = beside(friction, tau);
+  const VectorXd rest = beside_friction(tau, dq);
   if (!(rest.norm() > kSilentModel * tau.norm())) return std::nullopt;
-  return opposed(rest, beside(friction, pair.model.col(joint)));
+  return opposed(rest, beside_friction(pair.model.col(joint), dq));
 }
 
 // The correlation with the velocity of what the rigid body does not explain, where that is nearly
@@ -121,14 +120,69 @@ class Carried {
   Eigen::ColPivHouseholderQR<MatrixXd> solver_;
 };
 
-// Whether something carried, with the torque of a joint as it is, explains all torques better than
-// the opposite sign does, whatever is carried then.
-bool is_rather_carried(const RobotDescription& robot, const TorquePair& pair, Index joint) {
+// Joints whose torque something that is carried turns round, of those whose torque is opposed to
+// the model's: with their torques as they are it explains all torques better than the opposite
+// signs do, whatever is carried then. Several signs may be wrong at once, so that each is judged
+// beside the others, and then all of them together.
+std::vector<char> turned_by_what_is_carried(const RobotDescription& robot, const TorquePair& pair,
+                                            const std::vector<char>& opposed) {
   const Carried carried(robot, pair);
-  MatrixXd error = pair.measured - pair.model;
-  const double as_is = carried.left_of(error);
-  error.col(joint) = -pair.measured.col(joint) - pair.model.col(joint);
-  return as_is < carried.left_of(error);
+  const auto left_with = [&](const std::vector<char>& wrong) {
+    MatrixXd error = pair.measured - pair.model;
+    for (Index joint = 0; joint < error.cols(); ++joint) {
+      if (wrong[static_cast<std::size_t>(joint)] == 0) continue;
+      error.col(joint) = -pair.measured.col(joint) - pair.model.col(joint);
+    }
+    return carried.left_of(error);
+  };
+  std::vector<char> wrong = opposed;
+  double left = left_with(wrong);
+  for (std::size_t joint = 0; joint < opposed.size(); ++joint) {
+    if (opposed[joint] == 0) continue;
+    wrong[joint] = 0;
+    const double as_it_is = left_with(wrong);
+    if (as_it_is < left) {
+      left = as_it_is;
+    } else {
+      wrong[joint] = 1;
+    }
+  }
+  const std::vector<char> none(opposed.size(), 0);
+  if (left_with(none) < left) wrong = none;
+  std::vector<char> by_carried(opposed.size(), 0);
+  for (std::size_t joint = 0; joint < opposed.size(); ++joint) {
+    by_carried[joint] = static_cast<char>(opposed[joint] != 0 && wrong[joint] == 0);
+  }
+  return by_carried;
+}
+
+// What speaks for a wrong sign of a joint's torque; none where nothing does.
+std::optional<DataFault> wrong_sign_of(const TorquePair& pair, Index joint) {
+  DataFault fault;
+  fault.kind = DataFaultKind::kTorqueSign;
+  fault.joint = joint;
+  if (!(pair.measured.col(joint).norm() > 0)) return std::nullopt;
+  if (const auto turned = opposed_to_model(pair, joint)) {
+    fault.size = turned->slope;
+    fault.words = fmt::format(
+        "the torque of joint {} has the wrong sign: measured against model torque has slope "
+        "{:.2f}, and the opposite sign leaves {:.0f} % of it unexplained instead of {:.0f} %",
+        joint + 1, fault.size, 100 * turned->turned, 100 * turned->as_is);
+  } else if (const auto braking = braking_of(pair, joint); braking && *braking < -kClearBraking) {
+    const VectorXd speed = pair.dq.col(joint);
+    fault.size = (pair.measured.col(joint) - pair.load.col(joint)).dot(speed) / speed.squaredNorm();
+    fault.words = fmt::format(
+        "the torque of joint {} has the wrong sign: it acts against the motion (correlation with "
+        "the velocity {:.2f}), as if friction gave power",
+        joint + 1, *braking);
+  } else {
+    return std::nullopt;
+  }
+  fault.mend = fmt::format(
+      "turn the sign of the torque of joint {} (scale = -1), or its position's; or gravity in "
+      "the robot file points the wrong way",
+      joint + 1);
+  return fault;
 }
 
 }  // namespace
@@ -137,38 +191,22 @@ void find_torque_sign(const Log& log, const RobotDescription& robot, const Torqu
                       std::vector<DataFault>& faults) {
   const Index joints = pair.measured.cols();
   std::vector<DataFault> found;
-  std::vector<Index> turned_channels;
+  std::vector<char> opposed(static_cast<std::size_t>(joints), 0);
   for (Index joint = 0; joint < joints; ++joint) {
-    if (!(pair.measured.col(joint).norm() > 0)) continue;
-    DataFault fault;
-    fault.kind = DataFaultKind::kTorqueSign;
-    fault.joint = joint;
-    if (const auto turned = opposed_to_model(pair, joint)) {
-      if (is_rather_carried(robot, pair, joint)) continue;
-      fault.size = turned->slope;
-      fault.words = fmt::format(
-          "the torque of joint {} has the wrong sign: measured against model torque has slope "
-          "{:.2f}, and the opposite sign leaves {:.0f} % of it unexplained instead of {:.0f} %",
-          joint + 1, fault.size, 100 * turned->turned, 100 * turned->as_is);
-    } else if (const auto braking = braking_of(pair, joint); braking && *braking < -kClearBraking) {
-      const VectorXd speed = pair.dq.col(joint);
-      fault.size =
-          (pair.measured.col(joint) - pair.load.col(joint)).dot(speed) / speed.squaredNorm();
-      fault.words = fmt::format(
-          "the torque of joint {} has the wrong sign: it acts against the motion (correlation with "
-          "the velocity {:.2f}), as if friction gave power",
-          joint + 1, *braking);
-    } else {
-      continue;
+    if (auto fault = wrong_sign_of(pair, joint)) found.push_back(*std::move(fault));
+    if (pair.measured.col(joint).norm() > 0 && opposed_to_model(pair, joint)) {
+      opposed[static_cast<std::size_t>(joint)] = 1;
     }
-    fault.mend = fmt::format(
-        "turn the sign of the torque of joint {} (scale = -1), or its position's; or gravity in "
-        "the robot file points the wrong way",
-        joint + 1);
-    turned_channels.push_back(joint);
-    found.push_back(std::move(fault));
   }
-  const bool all = are_all_turned(pair, turned_channels);
+  if (found.empty()) return;
+  const std::vector<char> carried = turned_by_what_is_carried(robot, pair, opposed);
+  const std::size_t before = found.size();
+  std::erase_if(found, [&](const DataFault& fault) {
+    return carried[static_cast<std::size_t>(fault.joint)] != 0;
+  });
+  std::vector<Index> turned_channels;
+  for (const DataFault& fault : found) turned_channels.push_back(fault.joint);
+  const bool all = found.size() == before && are_all_turned(pair, turned_channels);
   if (all) {
     turned_channels.resize(static_cast<std::size_t>(joints));
     std::iota(turned_channels.begin(), turned_channels.end(), 0);

@@ -102,13 +102,8 @@ struct Degrees {
   std::string reason;
 };
 
-// What no dry or viscous friction of the joint has a part in: the file's is often a guess.
-VectorXd beside_friction(const VectorXd& torque, const VectorXd& dq) {
-  return beside(friction_columns(dq), torque);
-}
-
 // The same pair, of all joints.
-TorquePair beside_friction(TorquePair pair) {
+TorquePair all_beside_friction(TorquePair pair) {
   for (Index joint = 0; joint < pair.measured.cols(); ++joint) {
     const VectorXd dq = pair.dq.col(joint);
     pair.measured.col(joint) = beside_friction(pair.measured.col(joint), dq);
@@ -126,7 +121,7 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
   const auto as_is = torque_pair(log, robot);
   if (!as_is) return std::nullopt;
   // A friction of the file that is a guess is no unit of the positions.
-  const double missed = std::min(misfit(*as_is), misfit(beside_friction(*as_is)));
+  const double missed = std::min(misfit(*as_is), misfit(all_beside_friction(*as_is)));
   if (!(missed > kBadFit)) return std::nullopt;
   // Torques that are too small are missed by far as well, and by less where nothing weighs
   // anything.
@@ -142,7 +137,7 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
     // Within a turn it must be the whole torque that fits, friction or none.
     constexpr double kWhole = 0.2;
     if (!go_beyond_a_turn(log, revolute, joint) &&
-        !(left < kWhole && misfit(beside_friction(*scaled)) < kWhole)) {
+        !(left < kWhole && misfit(all_beside_friction(*scaled)) < kWhole)) {
       continue;
     }
     best = left;
@@ -229,6 +224,10 @@ Eigen::MatrixXd friction_columns(const VectorXd& dq) {
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(dq.size(), 2);
   if (usual > 0) columns << dq, (dq.array() / (kSlow * usual)).tanh().matrix();
   return columns;
+}
+
+VectorXd beside_friction(const VectorXd& torque, const VectorXd& dq) {
+  return beside(friction_columns(dq), torque);
 }
 
 Eigen::MatrixXd beside_drive(const TorquePair& pair, Index joint, const Eigen::MatrixXd& torques) {

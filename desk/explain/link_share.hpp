@@ -43,7 +43,7 @@ std::vector<double> wider_link_shares(const RobotDescription& robot, const Data&
 // them. A link of another mass is an effect, and named: one mass that is wrong is believed rather
 // than all links off a little, where a hundredth of a torque is at stake. `both_wide`: the narrower
 // one has all links off already; where so little is at stake the errors of most joints have to
-// fall, or other names have to come, as wide links blur the numbers of what is found. A mass
+// fall, or a name has to give way, as wide links blur the numbers of what is found. A mass
 // that vanishes into them at the price of another joint is no error of theirs.
 bool is_clearly_better(const HoldOut& hold_out, const FoundModel& wide, const FoundModel& usual,
                        bool both_wide);

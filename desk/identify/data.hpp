@@ -27,7 +27,7 @@ struct Data {
   Data(std::vector<Workspace> made, const RobotDescription& robot, const NuisanceOptions& options);
   // The same recordings of the same robot beside another nuisance.
   Data(const Data& same, const RobotDescription& robot, const NuisanceOptions& options);
-  // The same recordings of a robot with other masses or effects.
+  // The same recordings of a robot with other masses or effects, and the same joints and gravity.
   static Data of_robot(const Data& same, const RobotDescription& robot,
                        const NuisanceOptions& options);
 

@@ -12,8 +12,8 @@ namespace offnominal::desk {
 
 // Stacked columns of each link's ten numbers (inertial_regressor.hpp), of one set of recordings:
 // the torque of any mass, place and inertia of a link is linear in them. They follow from the
-// motion and the joints' places alone, so that whatever a model says of masses may share them. Any
-// number of threads may ask at once.
+// motion, the joints' places and gravity alone, so that whatever a model says of masses may share
+// them. Any number of threads may ask at once.
 class InertialColumns {
  public:
   [[nodiscard]] std::shared_ptr<const Eigen::MatrixXd> of_link(

@@ -173,6 +173,12 @@ TEST(ArmBench, TakesDragAtTheHighestSpeedForNoPush) {
   const bench::ArmOutcome outcome = bench::run_arm_case({ArmHides::kEffects, kSeed}, options);
   ASSERT_EQ(outcome.refused + outcome.failed, "");
   ASSERT_THAT(outcome.truth.pushes, ::testing::IsEmpty());
+  ASSERT_TRUE(std::any_of(outcome.score.asked.begin(), outcome.score.asked.end(),
+                          [](const auto& one) {
+                            return one.what.kind == EffectKind::kQuadraticFriction &&
+                                   one.class_size > 0;
+                          }))
+      << "the drag is there, and in what was found or not told apart";
   EXPECT_THAT(outcome.score.false_pushes, ::testing::Eq(0));
 }
 

@@ -104,6 +104,23 @@ TEST(Doctor, TakesNoToolForATorqueOfTheWrongSign) {
   }
 }
 
+// A body far behind the flange would explain two or three of a wrist at once.
+TEST(Doctor, NamesEveryTorqueOfTheWrongSignOfAWrist) {
+  RobotDescription robot = test::serial_arm(5);
+  for (RobotEffect& effect : robot.effects) effect.parameters[0] *= 0.1;
+  const Log right = test::record(robot, {.duration_s = 20});
+  for (const std::vector<Index>& wrong :
+       {std::vector<Index>{3, 4}, std::vector<Index>{2, 4}, std::vector<Index>{2, 3, 4}}) {
+    Log log = right;
+    for (const Index joint : wrong) log.tau.col(joint) *= -1;
+    std::vector<Index> told;
+    for (const DataFault& fault : examine(log, robot)) {
+      if (fault.kind == DataFaultKind::kTorqueSign) told.push_back(fault.joint);
+    }
+    EXPECT_EQ(told, wrong) << found_in(examine(log, robot));
+  }
+}
+
 // Damping that somebody guessed for a simulator is more than all the rest of the torque: the signs
 // are still told, and only those that are wrong.
 TEST(Doctor, NamesTorquesOfTheWrongSignBesideAGuessedFriction) {
