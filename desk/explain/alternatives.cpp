@@ -80,21 +80,27 @@ bool is_nested(const Data& data, const ModelFit& baseline, const Term& inner, co
   return true;
 }
 
-std::vector<Term> slow_ripples(const Data& data, Index joint) {
-  constexpr std::array kPeriodsInRange{0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5};
+std::vector<Term> ripples_of(const Data& data, Index joint, std::span<const double> periods) {
   const double range = range_moved(data.recordings, joint);
-  const JointType type = data.recordings[0].joint_type(joint);
+  const double per_period = first_order_period(data.recordings[0].joint_type(joint));
   std::vector<Term> ripples;
   if (!(range > 0)) return ripples;
   for (const auto& effect : all_candidates()) {
     if (effect->spectrum() != EffectCandidate::Spectrum::kPosition) continue;
     if (!effect->applies_in_any(data.recordings, joint)) continue;
-    for (const double periods : kPeriodsInRange) {
-      const double order = periods * first_order_period(type) / range;
-      // Nothing that turns is slower than the joint.
-      if (type == JointType::kRevolute && order < 1) continue;
-      ripples.push_back({effect.get(), joint, {order}});
+    for (const double count : periods) {
+      ripples.push_back({effect.get(), joint, {count * per_period / range}});
     }
+  }
+  return ripples;
+}
+
+std::vector<Term> slow_ripples(const Data& data, Index joint) {
+  constexpr std::array kPeriodsInRange{0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5};
+  std::vector<Term> ripples = ripples_of(data, joint, kPeriodsInRange);
+  if (data.recordings[0].joint_type(joint) == JointType::kRevolute) {
+    // Nothing that turns is slower than the joint.
+    std::erase_if(ripples, [](const Term& one) { return one.shape[0] < 1; });
   }
   return ripples;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "identify/data.hpp"
@@ -22,6 +23,10 @@ bool as_good(const Data& data, const ModelFit& chosen, const ModelFit& alternati
 // Whether all columns of `inner` lie in the span of those of `outer` beside what `baseline` fits:
 // then the larger group cannot but explain as much.
 bool is_nested(const Data& data, const ModelFit& baseline, const Term& inner, const Term& outer);
+
+// Ripples of so many periods over the range that a joint moves over, of every candidate that has a
+// spectrum over the position.
+std::vector<Term> ripples_of(const Data& data, Eigen::Index joint, std::span<const double> periods);
 
 // Candidates of a spectrum over the position are searched from two periods per range on: what
 // repeats over more than the range of a joint is a curve, and looks like an offset or a spring.

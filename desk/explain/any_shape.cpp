@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "explain/alternatives.hpp"
 #include "explain/remainder.hpp"
-#include "identify/shape_grid.hpp"
 
 namespace offnominal::desk {
 
@@ -125,32 +125,21 @@ class Curve {
   // Of one to a little more than two periods over the range, beside these terms.
   [[nodiscard]] std::optional<Term> best_ripple(const std::vector<Term>& terms,
                                                 const Judge& judge) const {
-    constexpr double kFewest = 1;
-    constexpr double kMost = 2.2;
-    constexpr int kSteps = 12;
-    const double range = range_moved(data_.recordings, curve_.joint);
-    if (!(range > 0)) return std::nullopt;
-    const double per_period =
-        first_order_period(data_.recordings[0].joint_type(curve_.joint)) / range;
+    constexpr std::array kPeriods{1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0, 2.1, 2.2};
+    const std::vector<Term> ripples = ripples_of(data_, curve_.joint, kPeriods);
     ShapeRange orders;
-    for (int i = 0; i <= kSteps; ++i) {
-      orders.grid.push_back(per_period * (kFewest + (kMost - kFewest) * i / kSteps));
+    for (const Term& one : ripples) {
+      if (one.effect == ripples.front().effect) orders.grid.push_back(one.shape[0]);
     }
     std::optional<Term> best;
     double most = 0;
-    for (const auto& effect : all_candidates()) {
-      if (effect->spectrum() != EffectCandidate::Spectrum::kPosition ||
-          has_effect(data_, terms, effect->kind(), curve_.joint) ||
-          !effect->applies_in_any(data_.recordings, curve_.joint)) {
-        continue;
-      }
-      for (const double order : orders.grid) {
-        Term term{effect.get(), curve_.joint, {order}, {orders}};
-        const double gain = evidence_for(judge, data_, term).gain;
-        if (gain <= most) continue;
-        most = gain;
-        best = std::move(term);
-      }
+    for (const Term& ripple : ripples) {
+      if (has_effect(data_, terms, ripple.effect->kind(), curve_.joint)) continue;
+      const double gain = evidence_for(judge, data_, ripple).gain;
+      if (gain <= most) continue;
+      most = gain;
+      best = ripple;
+      best->ranges = {orders};
     }
     return best;
   }

@@ -156,13 +156,21 @@ std::vector<char> turned_by_what_is_carried(const RobotDescription& robot, const
   return by_carried;
 }
 
-// What speaks for a wrong sign of a joint's torque; none where nothing does.
-std::optional<DataFault> wrong_sign_of(const TorquePair& pair, Index joint) {
+// What speaks for a wrong sign of a joint's torque, the model or friction that gives power.
+struct WrongSign {
   DataFault fault;
+  bool by_model = false;
+};
+
+// None where nothing does.
+std::optional<WrongSign> wrong_sign_of(const TorquePair& pair, Index joint) {
+  WrongSign wrong;
+  DataFault& fault = wrong.fault;
   fault.kind = DataFaultKind::kTorqueSign;
   fault.joint = joint;
   if (!(pair.measured.col(joint).norm() > 0)) return std::nullopt;
   if (const auto turned = opposed_to_model(pair, joint)) {
+    wrong.by_model = true;
     fault.size = turned->slope;
     fault.words = fmt::format(
         "the torque of joint {} has the wrong sign: measured against model torque has slope "
@@ -182,7 +190,7 @@ std::optional<DataFault> wrong_sign_of(const TorquePair& pair, Index joint) {
       "turn the sign of the torque of joint {} (scale = -1), or its position's; or gravity in "
       "the robot file points the wrong way",
       joint + 1);
-  return fault;
+  return wrong;
 }
 
 }  // namespace
@@ -193,17 +201,18 @@ void find_torque_sign(const Log& log, const RobotDescription& robot, const Torqu
   std::vector<DataFault> found;
   std::vector<char> opposed(static_cast<std::size_t>(joints), 0);
   for (Index joint = 0; joint < joints; ++joint) {
-    if (auto fault = wrong_sign_of(pair, joint)) found.push_back(*std::move(fault));
-    if (pair.measured.col(joint).norm() > 0 && opposed_to_model(pair, joint)) {
-      opposed[static_cast<std::size_t>(joint)] = 1;
-    }
+    auto wrong = wrong_sign_of(pair, joint);
+    if (!wrong) continue;
+    opposed[static_cast<std::size_t>(joint)] = static_cast<char>(wrong->by_model);
+    found.push_back(std::move(wrong->fault));
   }
-  if (found.empty()) return;
-  const std::vector<char> carried = turned_by_what_is_carried(robot, pair, opposed);
   const std::size_t before = found.size();
-  std::erase_if(found, [&](const DataFault& fault) {
-    return carried[static_cast<std::size_t>(fault.joint)] != 0;
-  });
+  if (std::any_of(opposed.begin(), opposed.end(), [](char one) { return one != 0; })) {
+    const std::vector<char> carried = turned_by_what_is_carried(robot, pair, opposed);
+    std::erase_if(found, [&](const DataFault& fault) {
+      return carried[static_cast<std::size_t>(fault.joint)] != 0;
+    });
+  }
   std::vector<Index> turned_channels;
   for (const DataFault& fault : found) turned_channels.push_back(fault.joint);
   const bool all = found.size() == before && are_all_turned(pair, turned_channels);

@@ -143,6 +143,13 @@ TEST(ArmBench, FindsTheFrictionThatAFileLacks) {
   EXPECT_GE(static_cast<double>(there), 0.5 * asked);
 }
 
+// Of a case that hides none.
+void expect_no_push(const bench::ArmOutcome& outcome) {
+  ASSERT_EQ(outcome.refused + outcome.failed, "");
+  ASSERT_THAT(outcome.truth.pushes, ::testing::IsEmpty());
+  EXPECT_THAT(outcome.score.false_pushes, ::testing::Eq(0));
+}
+
 // GIVEN an arm that is in a posture once, and a spring that no file knows WHEN pushes are looked
 // for THEN what links of which nothing is known guess there without having seen it is none.
 TEST(ArmBench, TakesAPostureThatComesOnceForNoPush) {
@@ -155,9 +162,7 @@ TEST(ArmBench, TakesAPostureThatComesOnceForNoPush) {
   options.most_effects = 0;
   options.link_share = 0.05;
   const bench::ArmOutcome outcome = bench::run_arm_case({ArmHides::kEffects, kSeed}, options);
-  ASSERT_EQ(outcome.refused + outcome.failed, "");
-  ASSERT_THAT(outcome.truth.pushes, ::testing::IsEmpty());
-  EXPECT_THAT(outcome.score.false_pushes, ::testing::Eq(0));
+  ASSERT_NO_FATAL_FAILURE(expect_no_push(outcome));
 }
 
 // GIVEN drag that no file knows of, and half a second in which its joint is faster than ever before
@@ -171,15 +176,13 @@ TEST(ArmBench, TakesDragAtTheHighestSpeedForNoPush) {
   options.replays = 0;
   options.link_share = 0.3;
   const bench::ArmOutcome outcome = bench::run_arm_case({ArmHides::kEffects, kSeed}, options);
-  ASSERT_EQ(outcome.refused + outcome.failed, "");
-  ASSERT_THAT(outcome.truth.pushes, ::testing::IsEmpty());
+  ASSERT_NO_FATAL_FAILURE(expect_no_push(outcome));
   ASSERT_TRUE(std::any_of(outcome.score.asked.begin(), outcome.score.asked.end(),
                           [](const auto& one) {
                             return one.what.kind == EffectKind::kQuadraticFriction &&
                                    one.class_size > 0;
                           }))
       << "the drag is there, and in what was found or not told apart";
-  EXPECT_THAT(outcome.score.false_pushes, ::testing::Eq(0));
 }
 
 }  // namespace
