@@ -115,6 +115,35 @@ TEST(Isolation, NamesAnEncoderThatJumpsItsJointAndByHowMuch) {
   expect_named<2>({FaultKind::kEncoderJump, 0.3, 0.01});
   expect_named<7>({FaultKind::kEncoderJump, -0.3, 0.01});
 }
+// No torque shows it: the bound allows any.
+TEST(Isolation, SeesAnEncoderThatJumpsWhereNoTorqueTellsOfIt) {
+  std::mt19937_64 generator = seeded_generator();
+  for (Eigen::Index joint = 0; joint < 7; ++joint) {
+    const PlantedFault fault{FaultKind::kEncoderJump, joint, joint % 2 == 0 ? 0.03 : -0.03};
+    PlantedRobot<7> robot(generator, fault);
+    for (auto& bound : robot.config.bound.joints) bound.value[0] = 1e6;
+    const IsolationState<7, double> state = isolated(robot);
+    ASSERT_TRUE(state.triggered) << "joint " << joint + 1;
+    EXPECT_NEAR(static_cast<double>(state.detection_tick) * kPlantedPeriodS, kPlantedAtS, 0.0011);
+    EXPECT_EQ(state.diagnosis.kind, FaultKind::kEncoderJump);
+    check(state.diagnosis, fault, 0.05);
+  }
+}
+// Detected before the first block that shows it has ended, and after a small error of the model
+// that has lasted for as long as is looked back: that error is not the fault's beginning.
+TEST(Isolation, TakesNoSmallErrorFromBeforeForTheBeginning) {
+  std::mt19937_64 generator = seeded_generator();
+  int named = 0;
+  for (int run = 0; run < 14; ++run) {
+    PlantedRobot<7> robot(generator, {FaultKind::kFriction, run % 7, 4});
+    robot.error_before = 0.08;
+    const IsolationState<7, double> state = isolated(robot);
+    if (!is_seen_soon(state)) continue;
+    EXPECT_GE(state.diagnosis.onset_s, kPlantedAtS - 0.05) << "run " << run;
+    named += state.diagnosis.kind == FaultKind::kFriction ? 1 : 0;
+  }
+  EXPECT_GE(named, 12);
+}
 // A joint that hardly moves when its encoder sticks does not show it.
 TEST(Isolation, NamesAnEncoderThatSticks) {
   expect_named<7>({FaultKind::kEncoderStuck, 0, 0, 0.85});

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <offnominal/diagnosis/position_step.hpp>
 #include <offnominal/monitor.hpp>
+#include <vector>
 
 #include "core/monitor_of.hpp"
 #include "core/print_status.hpp"
@@ -172,6 +174,58 @@ TEST(Monitor, FloatAndDoubleDetectWithinTwoTicksOfEachOtherAndAgreeOnTheFault) {
   EXPECT_NEAR(static_cast<double>(output_double.detector.detection_tick),
               static_cast<double>(output_float.detector.detection_tick), 2);
   EXPECT_LE(worst, 0.01 * largest);
+}
+
+// A joint whose position is elsewhere from one tick to the next, farther than it ever comes.
+TYPED_TEST(MonitorOf, GivenAPositionToWhichNoMotionComesThenThatTickIsBeyond) {
+  WatchedArm<TypeParam> arm;
+  auto config = arm_config<TypeParam>();
+  config.bound.offset = 1000;
+  typename WatchedArm<TypeParam>::Watch blind;
+  ASSERT_EQ(WatchedArm<TypeParam>::Watch::create(config, blind), Status::kOk);
+  ASSERT_EQ(blind.reset(arm.sample(), this->state), Status::kOk);
+  const auto step_is_beyond = [&](TypeParam away) {
+    auto sample = arm.move(0.001, 0.0);
+    sample.q[1] += away;
+    EXPECT_EQ(blind.step(sample, this->state, this->output), Status::kOk);
+    return this->output.detector.level;
+  };
+  for (int tick = 0; tick < 100; ++tick) ASSERT_FALSE(step_is_beyond(0));
+  EXPECT_TRUE(step_is_beyond(TypeParam(0.05)));
+  EXPECT_FALSE(step_is_beyond(TypeParam(0.05)));
+  EXPECT_TRUE(this->output.detector.latched);
+  EXPECT_EQ(this->output.detector.detection_tick, 101U);
+}
+
+using Steps = LargestSteps<1, double>;
+
+// Of a joint that stays below 1 rad/s, tick by tick of 1 ms: which of these positions are jumps.
+std::vector<bool> jumps_of(const std::vector<double>& positions, double max_velocity = 1) {
+  PerJoint<1, Joint<double>> joints{};
+  joints[0].max_velocity = max_velocity;
+  Steps largest{};
+  std::vector<bool> jumps;
+  for (std::size_t i = 1; i < positions.size(); ++i) {
+    const Vector<1, double> before = Vector<1, double>::Constant(positions[i - 1]);
+    const Vector<1, double> now = Vector<1, double>::Constant(positions[i]);
+    jumps.push_back(take_steps<1, double>(joints, before, now, 0.001, largest) != kNoJoint);
+  }
+  return jumps;
+}
+
+TEST(PositionStep, IsAJumpWhereTheJointCannotComeSoFar) {
+  const std::vector<double> positions{0, 0.001, 0.0019, 0.006, 0.0055};
+  EXPECT_EQ(jumps_of(positions), (std::vector<bool>{false, false, true, false}));
+  EXPECT_EQ(jumps_of(positions, 2), (std::vector<bool>{false, false, false, false}));
+}
+TEST(PositionStep, IsNoneOfAJointWithoutALargestVelocity) {
+  const double none = Joint<double>{}.max_velocity;
+  EXPECT_EQ(jumps_of({0, 0.001, 5, -5}, none), (std::vector<bool>{false, false, false}));
+}
+// Counts of 0.01 rad, of which a slow joint takes one in many ticks.
+TEST(PositionStep, IsNoneWhereACoarseEncoderGoesOnByACount) {
+  EXPECT_EQ(jumps_of({0, 0, 0.01, 0.01, 0.02, 0.01, 0.05}),
+            (std::vector<bool>{false, false, false, false, false, true}));
 }
 
 }  // namespace

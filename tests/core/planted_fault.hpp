@@ -67,6 +67,7 @@ class PlantedRobot {
     const Values needed = inverse_dynamics(model_, q, dq, ddq, t);
     JointSample<N, double> sample{q, dq, needed};
     if (t >= kPlantedAtS) spoil(t, ddq, sample);
+    if (t >= kPlantedAtS - 0.4) sample.tau[fault_.joint] += error_before;
     std::normal_distribution<double> noise(0, 0.01);
     for (double& torque : sample.tau) torque += noise(generator_);
     return sample;
@@ -76,6 +77,7 @@ class PlantedRobot {
   void stand() { rate_.setZero(); }
 
   MonitorConfig<N, double, TorqueSpace> config;
+  double error_before = 0;  // of the model, from 0.4 s before the fault on, N m or N
 
  private:
   void spoil(double t, const Values& ddq, JointSample<N, double>& sample) {

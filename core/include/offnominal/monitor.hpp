@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <offnominal/diagnosis/estimator.hpp>
+#include <offnominal/diagnosis/position_step.hpp>
 #include <offnominal/finite.hpp>
 #include <offnominal/model/chain.hpp>
 #include <offnominal/model/effect_memory.hpp>
@@ -52,6 +53,7 @@ struct MonitorState : MonitorForm<Space, N, Scalar>::Kept {
   JointSample<N, Scalar> sample;
   EstimatorState<N, L, Scalar, Space> estimator;
   typename MonitorForm<Space, N, Scalar>::Detector detector;
+  LargestSteps<N, Scalar> largest_steps{};
   [[no_unique_address]] typename Memory::template Of<N, Scalar>::State memory{};
 };
 
@@ -118,6 +120,8 @@ class Monitor {
     state.sample = sample;
     Form::keep(nominal, state);
     Form::start(config_.chain.joints.size(), state.detector);
+    size_for(config_.chain.joints.size(), state.largest_steps);
+    for (Scalar& step : state.largest_steps) step = Scalar(0);
     state.tick = 0;
     state.initialised = true;
     return Status::kOk;
@@ -161,10 +165,13 @@ class Monitor {
 
     memory_.keep(sample, 0, now, state.memory);
     ++state.tick;
+    const Eigen::Index jumped =
+        take_steps<N, Scalar>(config_.chain.joints, state.sample.q, sample.q,
+                              config_.estimator.period_s, state.largest_steps);
     state.sample = sample;
     Form::keep(nominal, state);
     output.time_s = end_s;
-    Form::judge(config_.estimator.alpha, state, output);
+    Form::judge(config_.estimator.alpha, jumped, state, output);
     output.psi_hat = state.estimator.psi_hat;
     output.detector = state.detector;
     output.compensation = Form::compensation(nominal, output.psi_hat, max_compensation_);

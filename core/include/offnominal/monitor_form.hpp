@@ -8,6 +8,7 @@
 #include <offnominal/diagnosis/detector.hpp>
 #include <offnominal/diagnosis/estimator_state.hpp>
 #include <offnominal/diagnosis/joint_bound.hpp>
+#include <offnominal/diagnosis/position_step.hpp>
 #include <offnominal/diagnosis/space.hpp>
 #include <offnominal/model/cholesky.hpp>
 #include <offnominal/model/forward_dynamics.hpp>
@@ -23,7 +24,8 @@
 //   allowance(), bound_at()   threshold of a measured velocity's own error, mu_bar
 //   first_threshold()         with which a run begins
 //   jump()                    of the nominal rate, by a jump of the load at the last sample
-//   judge()                   error and threshold of a tick, against each other
+//   judge()                   error and threshold of a tick, against each other; and a joint whose
+//                             position is where no motion brings it (position_step.hpp)
 //   compensation()            torque that takes psi_hat away
 
 namespace offnominal {
@@ -76,11 +78,13 @@ struct MonitorForm<AccelerationSpace, N, Scalar> {
   }
 
   template <typename State, typename Output>
-  static EIGEN_ALWAYS_INLINE void judge(Scalar /*alpha*/, State& state, Output& output) {
+  static EIGEN_ALWAYS_INLINE void judge(Scalar /*alpha*/, Eigen::Index jumped, State& state,
+                                        Output& output) {
     output.error = state.estimator.error;
     output.error_norm = detail::length(state.estimator.error);
     output.threshold = state.estimator.mu;
-    update(state.detector, output.error_norm, output.threshold, state.tick, output.time_s);
+    const bool beyond = output.error_norm > output.threshold || jumped != kNoJoint;
+    update(state.detector, beyond, state.tick, output.time_s);
   }
   [[nodiscard]] static CompensatingTorque<N, Scalar> compensation(const Dynamics& nominal,
                                                                   const Vector<N, Scalar>& psi_hat,
@@ -150,12 +154,13 @@ struct MonitorForm<TorqueSpace, N, Scalar> {
 
   // In N m: alpha e and alpha mu, what a lasting torque and a lasting bound tend to.
   template <typename State, typename Output>
-  static EIGEN_ALWAYS_INLINE void judge(Scalar alpha, State& state, Output& output) {
+  static EIGEN_ALWAYS_INLINE void judge(Scalar alpha, Eigen::Index jumped, State& state,
+                                        Output& output) {
     const Vector<N, Scalar>& e = state.estimator.error;
     const Vector<N, Scalar>& mu = state.estimator.mu;
     output.error = alpha * e;
     output.thresholds = alpha * mu;
-    const Eigen::Index worst = update(state.detector, e, mu, state.tick, output.time_s);
+    const Eigen::Index worst = update(state.detector, e, mu, jumped, state.tick, output.time_s);
     output.error_norm = Eigen::numext::abs(output.error[worst]);
     output.threshold = output.thresholds[worst];
   }

@@ -37,7 +37,7 @@ class MomentumRobot {
     p_ += config_.period_s * unmodelled;
     ASSERT_EQ(step(config_, input(), state), Status::kOk);
     ++ticks_;
-    update(detectors, state.error, state.mu, ticks_,
+    update(detectors, state.error, state.mu, kNoJoint, ticks_,
            config_.period_s * static_cast<double>(ticks_));
   }
 

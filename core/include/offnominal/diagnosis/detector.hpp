@@ -3,11 +3,13 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <offnominal/diagnosis/position_step.hpp>
 #include <offnominal/vector.hpp>
 
 namespace offnominal {
 
-// Whether the robot still behaves as its model says. `level` follows |e| > mu from tick to tick;
+// Whether the robot still behaves as its model says. `level` follows from tick to tick whether it
+// is beyond: |e| > mu, or a position to which no motion comes (position_step.hpp);
 // `latched` keeps the first crossing until clear_latch().
 template <typename Scalar>
 struct DetectorState {
@@ -17,12 +19,10 @@ struct DetectorState {
   double detection_time_s = 0;       // the same in seconds
 };
 
-// Judges one tick. error_norm = |e| >= 0 and mu >= 0 in rad/s or m/s. At |e| = mu, and so at
-// |e| = mu = 0, there is no detection.
+// Takes what one tick was judged to be. At |e| = mu, and so at |e| = mu = 0, there is no detection.
 template <typename Scalar>
-inline void update(DetectorState<Scalar>& state, Scalar error_norm, Scalar mu, std::uint64_t tick,
-                   double time_s) {
-  state.level = error_norm > mu;
+inline void update(DetectorState<Scalar>& state, bool beyond, std::uint64_t tick, double time_s) {
+  state.level = beyond;
   if (state.level && !state.latched) {
     state.latched = true;
     state.detection_tick = tick;
@@ -37,24 +37,25 @@ struct JointDetectors : DetectorState<Scalar> {
   std::uint8_t first_joint = 0;  // that latched first, from 0; valid while latched
 };
 
-// Judges one tick: joint i by |e_i| > mu_i >= 0, in the same unit. The joint with the largest
-// |e_i| / mu_i; of several that cross first in the same tick it is the one that is said.
+// Judges one tick: joint i by |e_i| > mu_i >= 0, in the same unit; `jumped`, which may be kNoJoint,
+// is beyond whatever its error. The joint with the largest |e_i| / mu_i; of several that cross
+// first in the same tick it is the one that is said, but for one that jumped.
 template <int N, typename Scalar>
 inline Eigen::Index update(JointDetectors<N, Scalar>& state, const Vector<N, Scalar>& e,
-                           const Vector<N, Scalar>& mu, std::uint64_t tick, double time_s) {
+                           const Vector<N, Scalar>& mu, Eigen::Index jumped, std::uint64_t tick,
+                           double time_s) {
   Eigen::Index worst = 0;
   bool any = false;
   for (Eigen::Index i = 0; i < e.size(); ++i) {
     const Scalar size = Eigen::numext::abs(e[i]);
     DetectorState<Scalar>& joint = state.joints[static_cast<std::size_t>(i)];
-    update(joint, size, mu[i], tick, time_s);
+    update(joint, size > mu[i] || i == jumped, tick, time_s);
     any = any || joint.level;
     if (size * mu[worst] > Eigen::numext::abs(e[worst]) * mu[i]) worst = i;
   }
   const bool first = any && !state.latched;
-  if (first) state.first_joint = static_cast<std::uint8_t>(worst);
-  update(static_cast<DetectorState<Scalar>&>(state), any ? Scalar(1) : Scalar(0), Scalar(0), tick,
-         time_s);
+  if (first) state.first_joint = static_cast<std::uint8_t>(jumped == kNoJoint ? worst : jumped);
+  update(static_cast<DetectorState<Scalar>&>(state), any, tick, time_s);
   return worst;
 }
 

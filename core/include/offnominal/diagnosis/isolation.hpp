@@ -87,8 +87,17 @@ class Isolation {
       if (state.triggered) forget(state);
       return;
     }
-    if (!state.triggered) trigger(output, state);
+    if (!state.triggered) {
+      state.triggered = true;
+      state.detection_tick = output.detector.detection_tick;
+    }
     if (state.diagnosis.decided) return;
+    if (!state.looked_back) {
+      // In the blocks that had ended by then a fault that was seen at once does not show.
+      const std::uint64_t since = state.tick - state.detection_tick;
+      if (!ended || 2 * since < block_ticks_) return;
+      look_back(output, state);
+    }
     for (int i = 0; i < 2 && state.pending > 0; ++i) take_oldest(state);
     if (ended && state.pending == 0) judge(state);
   }
@@ -152,7 +161,7 @@ class Isolation {
   }
 
   static void forget(State& state) {
-    state.triggered = false;
+    state.triggered = state.looked_back = false;
     state.pending = 0;
     state.blocks = 0;
     state.moved = 0;
@@ -202,14 +211,13 @@ class Isolation {
     }
     place = block;
     if (state.filled < kIsolationBlocks) ++state.filled;
-    if (state.triggered && !state.diagnosis.decided) ++state.pending;
+    if (state.looked_back && !state.diagnosis.decided) ++state.pending;
   }
 
-  // Looks back for the block in which it began: from which on the mean of what the joint shows that
-  // was detected is farthest from nothing, against its deviation.
-  void trigger(const Output& output, State& state) const {
-    state.triggered = true;
-    state.detection_tick = output.detector.detection_tick;
+  // For the block in which it began: from which on the mean of what the joint shows that was
+  // detected is farthest from nothing, against its deviation.
+  void look_back(const Output& output, State& state) const {
+    state.looked_back = true;
     const std::size_t joint = output.detector.first_joint;
     const JointBaseline<Scalar>& baseline = state.baselines[joint];
     const Scalar correlation = correlation_of(baseline);

@@ -68,7 +68,8 @@ struct IsolationState {
   PerJoint<N, JointBaseline<Scalar>> baselines{};
   PerJoint<N, EncoderWatch<Scalar>> encoders{};
 
-  bool triggered = false;  // by a detection
+  bool triggered = false;    // by a detection
+  bool looked_back = false;  // for where it began
   std::uint64_t detection_tick = 0;
   std::uint32_t blocks = 0;  // that the evidence has taken
   std::uint32_t moved = 0;   // of them, those in which some joint moved
