@@ -83,11 +83,11 @@ TEST(EncoderWatch, CountsHowLongAJointStandsWhileOthersMove) {
 // What is locked gives way by a count now and then: it stands, though not to the count.
 TEST(EncoderWatch, CallsAJointSlowThatCreepsByCounts) {
   EncoderWatch<double> watch = MovingReading{}.watched(10);
-  EXPECT_FALSE(is_slow(watch));
+  EXPECT_EQ(watch.slow_for, 0U);
   const double held = watch.q[watch.newest];
   for (int i = 1; i <= 40; ++i) look_at(watch, held + 1e-5 * std::floor(i / 5.0), false);
   EXPECT_LT(watch.still, kEncoderLag);
-  EXPECT_TRUE(is_slow(watch));
+  EXPECT_GT(watch.slow_for, 0U);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <random>
 #include <string>
 
+#include "core/contest_of.hpp"
 #include "core/planted_fault.hpp"
 #include "core/print_status.hpp"
 #include "support/repetitions.hpp"
@@ -169,7 +170,7 @@ TEST(Isolation, TakesForFrictionWhatHoldsAJointThatStands) {
     state.joints[0].largest_held = largest_held;
     state.joints[0].held.evidence = 12;
     const Contest<double> contest =
-        detail::contest_of(state, scales, EncoderTimes<double>{100, 1000, 1e4});
+        contest_of(state, scales, EncoderTimes<double>{100, 0, 0, 1000, 1e4});
     EXPECT_EQ(contest.kind, FaultKind::kFriction);
     return contest.share();
   };

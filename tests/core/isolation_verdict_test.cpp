@@ -5,6 +5,8 @@
 #include <offnominal/diagnosis/isolation_verdict.hpp>
 #include <offnominal/diagnosis/known_friction.hpp>
 
+#include "core/contest_of.hpp"
+
 // What a verdict is made of: no kind without evidence, no size that cannot be.
 
 namespace offnominal::test {
@@ -13,7 +15,7 @@ namespace {
 using SeenState = IsolationState<2, double>;
 using TwoScales = IsolationScales<2, double>;
 
-constexpr EncoderTimes<double> kTimes{100, 1000, 1e4};
+constexpr EncoderTimes<double> kTimes{100, 0, 0, 1000, 1e4};
 
 TwoScales scales_of(double holding) {
   TwoScales scales;
@@ -46,7 +48,7 @@ Vector<kOwnRegressors, double> only(OwnRegressor which, double value) {
 }
 
 TEST(IsolationVerdict, NamesNoKindBeforeThereIsEvidence) {
-  const Contest<double> contest = detail::contest_of(SeenState{}, scales_of(1), kTimes);
+  const Contest<double> contest = contest_of(SeenState{}, scales_of(1), kTimes);
   EXPECT_EQ(contest.kind, FaultKind::kUnknown);
   EXPECT_GT(contest.share(), 0.4);
 }
@@ -54,7 +56,7 @@ TEST(IsolationVerdict, NamesNoKindBeforeThereIsEvidence) {
 TEST(IsolationVerdict, KnowsThatADriveLosesNoMoreThanItsTorque) {
   const auto share = [](double lost) {
     const SeenState state = seen(only(kTorqueRegressor, -4), -4 * lost);
-    const Contest<double> contest = detail::contest_of(state, scales_of(1), kTimes);
+    const Contest<double> contest = contest_of(state, scales_of(1), kTimes);
     return contest.kind == FaultKind::kLostTorque && contest.joint == 1 ? contest.share() : 0;
   };
   EXPECT_GT(share(0.4), 0.99);
@@ -65,7 +67,7 @@ TEST(IsolationVerdict, KnowsThatADriveLosesNoMoreThanItsTorque) {
 TEST(IsolationVerdict, KnowsThatAJointLosesNoMoreThanItsFriction) {
   const auto kind = [](double size, double known) {
     const SeenState state = seen(only(kSignRegressor, 1), size);
-    return detail::contest_of(state, scales_of(known), kTimes).kind;
+    return contest_of(state, scales_of(known), kTimes).kind;
   };
   EXPECT_EQ(kind(2, 0.5), FaultKind::kFriction);
   EXPECT_EQ(kind(-2, 3), FaultKind::kFriction);
@@ -76,7 +78,7 @@ TEST(IsolationVerdict, KnowsThatAJointLosesNoMoreThanItsFriction) {
 TEST(IsolationVerdict, DoesNotTakeForTheFaultWhatIsTooSmallForTheAlarm) {
   const auto kind = [](double size) {
     const SeenState state = seen(only(kSignRegressor, 1), size, 600);
-    return detail::contest_of(state, scales_of(1), kTimes).kind;
+    return contest_of(state, scales_of(1), kTimes).kind;
   };
   EXPECT_EQ(kind(0.5), FaultKind::kFriction);
   EXPECT_EQ(kind(0.02), FaultKind::kUnknown);
@@ -94,12 +96,31 @@ TEST(IsolationVerdict, WidensTheRangeOfASizeThatLeavesMoreThanNoise) {
 TEST(IsolationVerdict, WeighsAJointThatStandsByWhatIsKnownOfIt) {
   const auto evidence = [](Standing standing, std::uint32_t joints) {
     return detail::standing_evidence(standing, 60'000,
-                                     EncoderTimes<double>{100, 1000, 1e4, joints});
+                                     EncoderTimes<double>{100, 0, 0, 1000, 1e4, joints});
   };
   EXPECT_GT(evidence({400, 20}, 1), 3);
   EXPECT_LT(evidence({400, 300}, 1), 0);
   EXPECT_LT(evidence({400, 20}, 2), 0);
   EXPECT_GT(evidence({400, 20}, 1), evidence({150, 20}, 1)) << "the longer, the more";
+}
+
+// What stopped when the fault had long been seen is its effect, not its cause; and what stopped
+// long before it is a program's.
+TEST(IsolationVerdict, BlamesNoEncoderThatStoppedAfterTheDetectionOrLongBefore) {
+  EncoderWatch<double> watch;
+  watch.steps = 1000;
+  watch.filled = 60'000;
+  watch.stopped = watch.stopped_at_once = true;
+  watch.still = watch.slow_for = 300;
+  watch.exact = watch.slow = {300, 20};
+  const auto evidence = [&](std::uint32_t least, std::uint32_t within) {
+    return detail::stop_evidence(watch, EncoderTimes<double>{100, least, 0, within, 1e4});
+  };
+  EXPECT_TRUE(evidence(250, 800).may_stick);
+  EXPECT_TRUE(evidence(250, 800).may_lock);
+  EXPECT_FALSE(evidence(350, 800).may_stick);
+  EXPECT_FALSE(evidence(350, 800).may_lock);
+  EXPECT_FALSE(evidence(250, 299).may_stick);
 }
 
 TEST(KnownFriction, IsOfTheJointsWithTheirMotors) {

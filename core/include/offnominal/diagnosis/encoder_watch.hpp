@@ -31,6 +31,7 @@ struct EncoderWatch {
   std::uint8_t window_ticks = 0;  // since the windows of the largest were moved on
   std::uint32_t filled = 0;       // samples in a row, up to the largest number
   std::uint32_t still = 0;        // samples in a row with the same position
+  std::uint32_t slow_for = 0;     // samples in a row with nearly the same
   Standing exact;                 // with the same position
   Standing slow;                  // with nearly the same: what is held gives way a little
   bool stopped_at_once = false;   // within one tick; while `stopped`
@@ -60,6 +61,18 @@ template <typename Scalar>
 [[nodiscard]] Scalar position_before(const EncoderWatch<Scalar>& watch, std::size_t ticks) {
   const std::size_t size = watch.q.size();
   return watch.q[(watch.newest + size - ticks) % size];
+}
+
+// Up to the largest number.
+[[nodiscard]] constexpr std::uint32_t one_more(std::uint32_t count) {
+  return count + (count < ~std::uint32_t{0} ? 1U : 0U);
+}
+
+// Slower than it is at its fastest by so much that it may be held.
+template <typename Scalar>
+[[nodiscard]] bool is_slow(const EncoderWatch<Scalar>& watch) {
+  const Scalar way = watch.q[watch.newest] - position_before(watch, kEncoderLag);
+  return Eigen::numext::abs(way) <= watch.way[2] / 50;
 }
 
 template <typename Scalar>
@@ -103,7 +116,7 @@ void judge_stop(EncoderWatch<Scalar>& watch, Scalar step, bool warm) {
     watch.stopped = watch.stopped_at_once = false;
     return;
   }
-  watch.still += watch.still < ~std::uint32_t{0} ? 1U : 0U;
+  watch.still = one_more(watch.still);
   if (watch.still != kEncoderLag || !warm) return;
   const Scalar before =
       position_before(watch, kEncoderLag) - position_before(watch, 2 * kEncoderLag);
@@ -125,11 +138,11 @@ void look_at(EncoderWatch<Scalar>& watch, Scalar q, bool gap) {
   const Scalar last = watch.q[watch.newest];
   watch.newest = static_cast<std::uint8_t>((watch.newest + 1U) % watch.q.size());
   watch.q[watch.newest] = q;
-  watch.filled += watch.filled < ~std::uint32_t{0} ? 1U : 0U;
-  watch.since_jump += watch.since_jump < ~std::uint32_t{0} ? 1U : 0U;
+  watch.filled = detail::one_more(watch.filled);
+  watch.since_jump = detail::one_more(watch.since_jump);
   if (watch.filled < 3) return;
   const Scalar step = q - last;
-  watch.steps += step != 0 && watch.steps < ~std::uint32_t{0} ? 1U : 0U;
+  if (step != 0) watch.steps = detail::one_more(watch.steps);
   // Of a joint that stands, one count of its encoder would be beyond all motion.
   const bool warm = watch.filled > detail::kEncoderWarmUp && watch.steps > detail::kStepsWarmUp;
   const Scalar second = step - (last - position_before(watch, 2));
@@ -141,18 +154,12 @@ void look_at(EncoderWatch<Scalar>& watch, Scalar q, bool gap) {
     detail::widen(watch.way, q - middle);
     detail::widen(watch.stop, (q - middle) - (middle - position_before(watch, 2 * kEncoderLag)));
   }
+  watch.slow_for = detail::is_slow(watch) ? detail::one_more(watch.slow_for) : 0;
   if (++watch.window_ticks < 3 * kEncoderLag) return;
   watch.window_ticks = 0;
   detail::move_on(watch.jerk, Scalar(0.999));
   detail::move_on(watch.stop, Scalar(0.999));
   detail::move_on(watch.way, Scalar(0.999));
-}
-
-// Slower than it is at its fastest by so much that it may be held.
-template <typename Scalar>
-[[nodiscard]] bool is_slow(const EncoderWatch<Scalar>& watch) {
-  const Scalar way = watch.q[watch.newest] - detail::position_before(watch, kEncoderLag);
-  return Eigen::numext::abs(way) <= watch.way[2] / 50;
 }
 
 // Takes one sample. `healthy`: no fault is known yet; a time counts for the longest when it has

@@ -35,7 +35,6 @@ class Isolation {
     const Status status = validate(config);
     if (status != Status::kOk) return status;
     isolation.config_ = config;
-    isolation.alpha_ = watched.estimator.alpha;
     isolation.period_s_ = watched.estimator.period_s;
     isolation.block_ticks_ = ticks_of(config.block_s, isolation.period_s_);
     const Scalar block_s = static_cast<Scalar>(isolation.block_ticks_) * isolation.period_s_;
@@ -80,7 +79,7 @@ class Isolation {
       ended = state.block.ticks >= block_ticks_;
     }
     if (ended) {
-      push(finished(state.block, alpha_, period_s_), state);
+      push(finished(state.block, scales_.alpha, period_s_), state);
       begin_block(at, state.block);
     }
     if (!output.detector.latched) {
@@ -92,6 +91,8 @@ class Isolation {
       state.detection_tick = output.detector.detection_tick;
     }
     if (state.diagnosis.decided) return;
+    for (int i = 0; i < parts_per_tick_ && state.judging; ++i) judge_part(model, sample.q, state);
+    if (state.diagnosis.decided) return;
     if (!state.looked_back) {
       // In the blocks that had ended by then a fault that was seen at once does not show.
       const std::uint64_t since = state.tick - state.detection_tick;
@@ -99,7 +100,9 @@ class Isolation {
       look_back(output, state);
     }
     for (int i = 0; i < 2 && state.pending > 0; ++i) take_oldest(state);
-    if (ended && state.pending == 0) judge(state);
+    if (!ended || state.pending > 0) return;
+    state.judging = true;
+    state.next_part = 0;
   }
 
  private:
@@ -107,10 +110,10 @@ class Isolation {
     std::size_t moving = 0;
     for (std::size_t i = 0; i < state.encoders.size(); ++i) {
       look_at(state.encoders[i], sample.q[static_cast<Eigen::Index>(i)], gap);
-      if (!is_slow(state.encoders[i])) ++moving;
+      if (state.encoders[i].slow_for == 0) ++moving;
     }
     for (EncoderWatch<Scalar>& watch : state.encoders) {
-      const bool slow = is_slow(watch);
+      const bool slow = watch.slow_for > 0;
       const bool others_move = moving > (slow ? 0U : 1U);
       count_alone(watch.exact, watch.still > 0, others_move, !state.triggered);
       count_alone(watch.slow, slow, others_move, !state.triggered);
@@ -123,17 +126,21 @@ class Isolation {
 
   void set_scales(const MonitorConfig<N, Scalar, TorqueSpace>& watched) {
     const std::size_t count = watched.chain.joints.size();
-    size_for(count, scales_.thresholds);
+    size_for(count, scales_.thresholds, scales_.speeds);
+    scales_.alpha = watched.estimator.alpha;
+    const std::size_t parts = count + 3;  // judge_part()
+    parts_per_tick_ = static_cast<int>((parts + block_ticks_ - 1) / block_ticks_);
     scales_.own.resize(kOwnRegressors, static_cast<Eigen::Index>(count));
     Scalar mass{};
     for (std::size_t i = 0; i < count; ++i) {
       const Joint<Scalar>& joint = watched.chain.joints[i];
       const JointBound<Scalar>& bound = watched.bound.joints[i];
-      const Scalar threshold = largest_value(bound) + 2 * alpha_ * bound.momentum_error;
+      const Scalar threshold = largest_value(bound) + 2 * scales_.alpha * bound.momentum_error;
       scales_.thresholds[i] = threshold;
       const Scalar torque = static_cast<Scalar>(kPriorTorque) * threshold;
       constexpr Scalar kFast = Scalar(100);  // no speed limit
       const Scalar speed = joint.max_velocity < kFast ? joint.max_velocity : Scalar(1);
+      scales_.speeds[i] = speed;
       scales_.own.col(static_cast<Eigen::Index>(i)) << torque, torque / speed,
           static_cast<Scalar>(kPriorShare), torque;
       mass += joint.mass_kg;
@@ -161,7 +168,7 @@ class Isolation {
   }
 
   static void forget(State& state) {
-    state.triggered = state.looked_back = false;
+    state.triggered = state.looked_back = state.judging = false;
     state.pending = 0;
     state.blocks = 0;
     state.moved = 0;
@@ -312,14 +319,50 @@ class Isolation {
     seen.last_tip = tip;
   }
 
-  void judge(State& state) const {
-    const auto since = static_cast<Scalar>(state.tick - state.detection_tick) * period_s_;
+  // One part of the verdict: some of the hypotheses, or in the end the answer.
+  void judge_part(const RigidBodyModel<N, Scalar>& model, const Vector<N, Scalar>& q,
+                  State& state) const {
+    const std::size_t count = state.joints.size();
+    const std::size_t part = state.next_part++;
+    if (part == 0) {
+      state.contest = detail::begin_contest(state, scales_);
+    } else if (part <= count) {
+      detail::enter_joint(state, scales_, part - 1, state.contest);
+    } else if (part == count + 1) {
+      enter_encoders(model, q, state);
+    } else {
+      answer(state);
+      state.judging = false;
+    }
+  }
+
+  void enter_encoders(const RigidBodyModel<N, Scalar>& model, const Vector<N, Scalar>& q,
+                      State& state) const {
     constexpr Scalar kStillS = Scalar(0.1);
+    constexpr Scalar kBrakingS = Scalar(0.05);
     const Scalar looked_back = static_cast<Scalar>(kIsolationBlocks * block_ticks_) * period_s_;
-    const EncoderTimes<Scalar> times{static_cast<std::uint32_t>(kStillS / period_s_),
-                                     static_cast<std::uint32_t>((since + looked_back) / period_s_),
-                                     config_.baseline_s / period_s_};
-    const Contest<Scalar> contest = detail::contest_of(state, scales_, times);
+    const Scalar since = since_detection(state);
+    const auto ticks = [&](Scalar seconds) {
+      return static_cast<std::uint32_t>(seconds / period_s_);
+    };
+    const EncoderTimes<Scalar> times{ticks(kStillS), ticks(since), ticks(kBrakingS),
+                                     ticks(since + looked_back), config_.baseline_s / period_s_};
+    const Matrix<N, N, Scalar> inertia = mass_matrix<N, Scalar>(model, q);
+    PerJoint<N, bool> felt{};
+    size_for(state.joints.size(), felt);
+    for (std::size_t i = 0; i < felt.size(); ++i) {
+      felt[i] = detail::runs_away_felt<N, Scalar>(inertia, i, scales_);
+    }
+    detail::enter_encoders(state, scales_, times, felt, state.contest);
+  }
+
+  [[nodiscard]] Scalar since_detection(const State& state) const {
+    return static_cast<Scalar>(state.tick - state.detection_tick) * period_s_;
+  }
+
+  void answer(State& state) const {
+    const Contest<Scalar>& contest = state.contest;
+    const Scalar since = since_detection(state);
     const auto measure = detail::measure_of(state, scales_, contest.kind, contest.joint);
     FaultDiagnosis<Scalar>& diagnosis = state.diagnosis;
     diagnosis.kind = contest.kind;
@@ -351,11 +394,11 @@ class Isolation {
   static constexpr Scalar kNextToOnset = Scalar(0.5);   // relative error
 
   IsolationConfig<Scalar> config_{};
-  Scalar alpha_{};
   Scalar period_s_{};
   Scalar kept_{};          // of the baseline, from block to block
   Scalar contact_kept_{};  // of an arbitrary torque
   std::uint16_t block_ticks_ = 1;
+  int parts_per_tick_ = 1;  // of a verdict: it is made before the next block has ended
   IsolationScales<N, Scalar> scales_{};
 };
 

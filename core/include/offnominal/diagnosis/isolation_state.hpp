@@ -9,6 +9,7 @@
 #include <offnominal/diagnosis/fault_kind.hpp>
 #include <offnominal/diagnosis/isolation_bank.hpp>
 #include <offnominal/diagnosis/isolation_block.hpp>
+#include <offnominal/diagnosis/isolation_contest.hpp>
 
 namespace offnominal {
 
@@ -75,6 +76,10 @@ struct IsolationState {
   std::uint32_t moved = 0;   // of them, those in which some joint moved
   PerJoint<N, JointEvidence<Scalar>> joints{};
   Regression<kTipParameters, Scalar> tip;
+  // A verdict in the making: which of its parts is next, none where it is made.
+  std::uint8_t next_part = 0;
+  bool judging = false;
+  Contest<Scalar> contest;
   FaultDiagnosis<Scalar> diagnosis;
 };
 

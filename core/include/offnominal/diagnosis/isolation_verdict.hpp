@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <offnominal/diagnosis/isolation_contest.hpp>
 #include <offnominal/diagnosis/isolation_scales.hpp>
 #include <offnominal/diagnosis/isolation_state.hpp>
 
@@ -19,30 +19,11 @@ namespace offnominal {
 template <typename Scalar>
 struct EncoderTimes {
   std::uint32_t odd_after = 0;  // of a position that does not change while others do
+  std::uint32_t since = 0;      // the detection, which what stopped before has caused
+  std::uint32_t braking = 0;    // that a joint which is locked may take until it stands
   std::uint32_t within = 0;     // since the earliest event that counts
   Scalar history{};             // that a joint has to be known for
   std::uint32_t standing = 1;   // joints that stand oddly
-};
-
-// The best of the hypotheses and the sum over all, in one way through them.
-template <typename Scalar>
-struct Contest {
-  FaultKind kind = FaultKind::kUnknown;
-  std::uint8_t joint = 0;
-  Scalar best = -std::numeric_limits<Scalar>::infinity();  // log of prior times evidence
-  Scalar total = Scalar(0);                                // of all, over that of the best
-
-  void enter(FaultKind of, std::size_t on, Scalar logarithm) {
-    if (logarithm > best) {
-      total = total * std::exp(best - logarithm) + Scalar(1);
-      best = logarithm;
-      kind = of;
-      joint = static_cast<std::uint8_t>(on);
-    } else {
-      total += std::exp(logarithm - best);
-    }
-  }
-  [[nodiscard]] Scalar share() const { return Scalar(1) / total; }
 };
 
 namespace detail {
@@ -104,15 +85,21 @@ template <typename Scalar>
 [[nodiscard]] StopEvidence<Scalar> stop_evidence(const EncoderWatch<Scalar>& watch,
                                                  const EncoderTimes<Scalar>& times) {
   if (watch.steps == 0) return {};
+  // Its last step may come with the tick in which it was seen.
+  const bool stuck = watch.still + kEncoderLag >= times.since;
+  const std::uint32_t locked_for = times.since - std::min(times.since, times.braking);
+  StopEvidence<Scalar> stop;
   if (watch.stopped && watch.still >= kEncoderLag) {
     const auto sooner =
         static_cast<Scalar>(watch.stopped_at_once ? kWithinOneTick : -kWithinOneTick);
-    return {true, true, static_cast<Scalar>(kImpossible) + sooner,
-            static_cast<Scalar>(kImpossible) - sooner};
+    stop.may_stick = stuck && watch.still <= times.within;
+    stop.may_lock = watch.still >= locked_for && watch.still <= times.within;
+    stop.stuck = static_cast<Scalar>(kImpossible) + sooner;
+    stop.locked = static_cast<Scalar>(kImpossible) - sooner;
+    if (stop.may_lock) return stop;
   }
-  StopEvidence<Scalar> stop;
-  stop.may_stick = stands_oddly(watch.exact, times);
-  stop.may_lock = stands_oddly(watch.slow, times);
+  stop.may_stick = stuck && stands_oddly(watch.exact, times);
+  stop.may_lock = watch.slow_for >= locked_for && stands_oddly(watch.slow, times);
   if (stop.may_stick) stop.stuck = standing_evidence(watch.exact, watch.filled, times);
   if (stop.may_lock) stop.locked = standing_evidence(watch.slow, watch.filled, times);
   // What is locked gives way under a torque that changes, by a count of a fine encoder.
@@ -264,12 +251,28 @@ void enter_holding_friction(const IsolationState<N, Scalar>& state,
                             const IsolationScales<N, Scalar>& scales, std::size_t index,
                             Scalar stands, Contest<Scalar>& contest) {
   const JointEvidence<Scalar>& joint = state.joints[index];
+  const Scalar more = std::max(joint.held.evidence, Scalar(0)) + std::max(stands, Scalar(0));
+  if (!(more > 0)) return;
   const auto dry = fit_of(part_of<kSignRegressor>(joint.own));
   const Scalar size = scales.own(kSignRegressor, static_cast<Eigen::Index>(index)) * dry.theta[0];
-  const Scalar more = std::max(joint.held.evidence, Scalar(0)) + std::max(stands, Scalar(0));
-  if (!(more > 0) || !(size > 0) || !holds(joint.largest_held, size, index, scales)) return;
+  if (!(size > 0) || !holds(joint.largest_held, size, index, scales)) return;
   contest.enter(FaultKind::kFriction, index,
                 dry.evidence + more + log_prior<Scalar>(kPriorFriction / 2, state.joints.size()));
+}
+
+// Whether the others would feel a joint that runs away, of the joint-space inertia M: its momentum
+// on them is M_ji dq_i, and a residual alpha times that.
+template <int N, typename Scalar>
+[[nodiscard]] bool runs_away_felt(const Matrix<N, N, Scalar>& inertia, std::size_t index,
+                                  const IsolationScales<N, Scalar>& scales) {
+  constexpr auto kRunsAway = static_cast<Scalar>(2);  // times its largest velocity
+  const auto column = static_cast<Eigen::Index>(index);
+  for (Eigen::Index j = 0; j < inertia.rows(); ++j) {
+    const Scalar residual =
+        scales.alpha * kRunsAway * scales.speeds[index] * Eigen::numext::abs(inertia(j, column));
+    if (j != column && residual > scales.thresholds[static_cast<std::size_t>(j)]) return true;
+  }
+  return false;
 }
 
 // What an encoder says that sticks or jumps fits no model of the arm: it is as good as the best of
@@ -277,8 +280,8 @@ void enter_holding_friction(const IsolationState<N, Scalar>& state,
 // torque; `chosen`: the evidence for any joints that have one.
 template <int N, typename Scalar>
 void enter_encoder(const IsolationState<N, Scalar>& state, const IsolationScales<N, Scalar>& scales,
-                   std::size_t index, Scalar chosen, Scalar best, const EncoderTimes<Scalar>& times,
-                   Contest<Scalar>& contest) {
+                   std::size_t index, bool felt, Scalar chosen, Scalar best,
+                   const EncoderTimes<Scalar>& times, Contest<Scalar>& contest) {
   const EncoderWatch<Scalar>& watch = state.encoders[index];
   const JointEvidence<Scalar>& joint = state.joints[index];
   if (watch.since_jump <= times.within) {
@@ -289,7 +292,7 @@ void enter_encoder(const IsolationState<N, Scalar>& state, const IsolationScales
   // Held against more than any motion took: an encoder that sticks leaves the joint to run away,
   // and the others to feel it.
   const Scalar held = Eigen::numext::abs(joint.largest_held);
-  const bool forced = held > Scalar(1.5) * state.baselines[index].largest_told;
+  const bool forced = felt && held > Scalar(1.5) * state.baselines[index].largest_told;
   const Scalar locked = stop.locked + static_cast<Scalar>(forced ? kForced : 0.0);
   enter_holding_friction(state, scales, index, stop.may_lock ? locked : Scalar(0), contest);
   if (!stop.may_lock || (!stop.may_stick && held < scales.friction[index].holding)) return;
@@ -308,35 +311,58 @@ template <int N, typename Scalar>
   return standing;
 }
 
-template <int N, typename Scalar>
-[[nodiscard]] Contest<Scalar> contest_of(const IsolationState<N, Scalar>& state,
-                                         const IsolationScales<N, Scalar>& scales,
-                                         EncoderTimes<Scalar> times) {
-  const std::size_t count = state.joints.size();
-  Contest<Scalar> contest;
-  Scalar chosen{};    // any torque on some of the joints, until now
+// What the hypotheses of encoders stand against: the evidence for any torque on some of the joints.
+template <typename Scalar>
+struct AnyTorques {
+  Scalar chosen{};    // until now
   Scalar anything{};  // the same, or until some earlier time
+};
+
+template <int N, typename Scalar>
+[[nodiscard]] AnyTorques<Scalar> any_torques(const IsolationState<N, Scalar>& state) {
+  AnyTorques<Scalar> any;
   const Scalar half = std::log(Scalar(0.5));
   for (const JointEvidence<Scalar>& joint : state.joints) {
-    chosen += half + log_sum(joint.any.evidence, Scalar(0));
-    anything = std::max(anything, joint.contact);
+    any.chosen += half + log_sum(joint.any.evidence, Scalar(0));
+    any.anything = std::max(any.anything, joint.contact);
   }
-  anything = std::max(anything, chosen);
-  const Scalar other = static_cast<Scalar>(kLeastExplained) * std::max(chosen, Scalar(0)) +
-                       log_prior<Scalar>(kPriorUnknown, 1);
+  any.anything = std::max(any.anything, any.chosen);
+  return any;
+}
+
+// A verdict is reached in parts: first what is of no one joint, then of each joint what is no event
+// of its encoder, in the end what is. All of the same evidence, but each as soon as there is time.
+template <int N, typename Scalar>
+[[nodiscard]] Contest<Scalar> begin_contest(const IsolationState<N, Scalar>& state,
+                                            const IsolationScales<N, Scalar>& scales) {
+  Contest<Scalar> contest;
+  const Scalar chosen = std::max(any_torques(state).chosen, Scalar(0));
+  const Scalar other =
+      static_cast<Scalar>(kLeastExplained) * chosen + log_prior<Scalar>(kPriorUnknown, 1);
   contest.enter(FaultKind::kUnknown, 0, log_sum(other, log_prior<Scalar>(kPriorNothing, 1)));
   enter_payload(state, scales, contest);
   enter_contacts(state, contest);
-  for (std::size_t i = 0; i < count; ++i) {
-    enter_friction(state, scales, i, contest);
-    enter_drive(state, scales, i, contest);
-  }
-  const Scalar best = std::max(anything, contest.best);
-  times.standing = standing_joints(state, times);
-  for (std::size_t i = 0; i < count; ++i) {
-    enter_encoder(state, scales, i, chosen, best, times, contest);
-  }
   return contest;
+}
+
+template <int N, typename Scalar>
+void enter_joint(const IsolationState<N, Scalar>& state, const IsolationScales<N, Scalar>& scales,
+                 std::size_t index, Contest<Scalar>& contest) {
+  enter_friction(state, scales, index, contest);
+  enter_drive(state, scales, index, contest);
+}
+
+// `felt`: as runs_away_felt() says, of each joint.
+template <int N, typename Scalar>
+void enter_encoders(const IsolationState<N, Scalar>& state,
+                    const IsolationScales<N, Scalar>& scales, EncoderTimes<Scalar> times,
+                    const PerJoint<N, bool>& felt, Contest<Scalar>& contest) {
+  const AnyTorques<Scalar> any = any_torques(state);
+  const Scalar best = std::max(any.anything, contest.best);
+  times.standing = standing_joints(state, times);
+  for (std::size_t i = 0; i < state.joints.size(); ++i) {
+    enter_encoder(state, scales, i, felt[i], any.chosen, best, times, contest);
+  }
 }
 
 }  // namespace detail
