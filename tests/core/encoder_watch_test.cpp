@@ -22,7 +22,7 @@ struct MovingReading {
   }
   [[nodiscard]] EncoderWatch<double> watched(double seconds) const {
     EncoderWatch<double> watch;
-    for (std::uint32_t i = 0; i < seconds * rate_hz; ++i) look_at(watch, reading(i), false);
+    for (std::uint32_t i = 0; i < seconds * rate_hz; ++i) look_at(watch, reading(i));
     return watch;
   }
 };
@@ -48,7 +48,7 @@ TEST(EncoderWatch, TellsASmallJumpFromAKnock) {
   const MovingReading joint{.rate_hz = 100};
   for (std::uint32_t i = 0; i < 1040; ++i) {
     const double knocked = i < 1025 ? 0.0 : 0.004 * std::min(i - 1024U, 2U);
-    look_at(watch, joint.reading(i) + knocked, false);
+    look_at(watch, joint.reading(i) + knocked);
   }
   EXPECT_FALSE(has_jumped(watch));
 }
@@ -57,7 +57,7 @@ TEST(EncoderWatch, TellsASmallJumpFromAKnock) {
 TEST(EncoderWatch, DoesNotTakeTheCountsOfAJointThatRestsForJumps) {
   EncoderWatch<double> watch;
   for (std::uint32_t i = 0; i < 3000; ++i) {
-    look_at(watch, i % 500 == 499 ? 1e-5 : 0.0, false);
+    look_at(watch, i % 500 == 499 ? 1e-5 : 0.0);
     EXPECT_FALSE(has_jumped(watch)) << "sample " << i;
   }
 }
@@ -80,12 +80,28 @@ TEST(EncoderWatch, CountsHowLongAJointStandsWhileOthersMove) {
   EXPECT_EQ(standing.longest_alone, 30) << "after a detection nothing is learnt";
 }
 
+// Where samples are refused, as those of an arm that runs away are, time goes on for what stands.
+TEST(EncoderWatch, CountsTheTicksWithoutASampleOfAJointThatStands) {
+  EncoderWatch<double> watch = MovingReading{}.watched(10);
+  const double held = watch.q[watch.newest];
+  for (int i = 0; i < 20; ++i) look_at(watch, held);
+  EXPECT_TRUE(watch.stopped);
+  const std::uint32_t before = watch.still;
+  look_at(watch, held, 300);
+  look_at(watch, held);
+  EXPECT_EQ(watch.still, before + 301);
+  EXPECT_TRUE(watch.stopped);
+  look_at(watch, held + 0.01, 5);
+  EXPECT_EQ(watch.still, 0U);
+  EXPECT_FALSE(watch.stopped);
+}
+
 // What is locked gives way by a count now and then: it stands, though not to the count.
 TEST(EncoderWatch, CallsAJointSlowThatCreepsByCounts) {
   EncoderWatch<double> watch = MovingReading{}.watched(10);
   EXPECT_EQ(watch.slow_for, 0U);
   const double held = watch.q[watch.newest];
-  for (int i = 1; i <= 40; ++i) look_at(watch, held + 1e-5 * std::floor(i / 5.0), false);
+  for (int i = 1; i <= 40; ++i) look_at(watch, held + 1e-5 * std::floor(i / 5.0));
   EXPECT_LT(watch.still, kEncoderLag);
   EXPECT_GT(watch.slow_for, 0U);
 }

@@ -18,7 +18,7 @@ namespace offnominal::test {
 namespace {
 
 constexpr int kFaultUnits = 6;
-constexpr int kRunTicks = 6000;
+constexpr int kRunTicks = 8000;
 
 template <int N>
 IsolationState<N, double> isolated(PlantedRobot<N>& robot) {
@@ -64,7 +64,7 @@ void check(const FaultDiagnosis<double>& said, const PlantedFault& fault, double
   EXPECT_TRUE(said.decided);
   EXPECT_EQ(said.joint, fault.joint);
   EXPECT_GT(said.time_s, kPlantedAtS);
-  EXPECT_LE(said.time_s, kPlantedAtS + 2.5);
+  EXPECT_LE(said.time_s, kPlantedAtS + 4.5);
   EXPECT_GE(said.onset_s, kPlantedAtS - 0.1);
   if (size_within <= 0) return;
   EXPECT_NEAR(said.size, fault.size, size_within * std::abs(fault.size));
@@ -170,7 +170,7 @@ TEST(Isolation, TakesForFrictionWhatHoldsAJointThatStands) {
     state.joints[0].largest_held = largest_held;
     state.joints[0].held.evidence = 12;
     const Contest<double> contest =
-        contest_of(state, scales, EncoderTimes<double>{100, 0, 0, 1000, 1e4});
+        contest_of(state, scales, EncoderTimes<double>{100, 0, 0, 0, 1000, 1e4});
     EXPECT_EQ(contest.kind, FaultKind::kFriction);
     return contest.share();
   };
@@ -293,7 +293,7 @@ TEST(Isolation, RefusesAConfigurationThatMeansNothing) {
   config.block_s = 0;
   EXPECT_EQ((Isolation<2, double>::create(config, watched, isolation)), Status::kInvalidLimit);
   config = {};
-  config.least_s = 3;
+  config.least_s = 5;
   EXPECT_EQ((Isolation<2, double>::create(config, watched, isolation)), Status::kInvalidLimit);
   config = {};
   config.confidence = 1;

@@ -15,7 +15,7 @@ namespace {
 using SeenState = IsolationState<2, double>;
 using TwoScales = IsolationScales<2, double>;
 
-constexpr EncoderTimes<double> kTimes{100, 0, 0, 1000, 1e4};
+constexpr EncoderTimes<double> kTimes{100, 0, 0, 0, 1000, 1e4};
 
 TwoScales scales_of(double holding) {
   TwoScales scales;
@@ -96,7 +96,7 @@ TEST(IsolationVerdict, WidensTheRangeOfASizeThatLeavesMoreThanNoise) {
 TEST(IsolationVerdict, WeighsAJointThatStandsByWhatIsKnownOfIt) {
   const auto evidence = [](Standing standing, std::uint32_t joints) {
     return detail::standing_evidence(standing, 60'000,
-                                     EncoderTimes<double>{100, 0, 0, 1000, 1e4, joints});
+                                     EncoderTimes<double>{100, 0, 0, 0, 1000, 1e4, joints});
   };
   EXPECT_GT(evidence({400, 20}, 1), 3);
   EXPECT_LT(evidence({400, 300}, 1), 0);
@@ -109,12 +109,12 @@ TEST(IsolationVerdict, WeighsAJointThatStandsByWhatIsKnownOfIt) {
 TEST(IsolationVerdict, BlamesNoEncoderThatStoppedAfterTheDetectionOrLongBefore) {
   EncoderWatch<double> watch;
   watch.steps = 1000;
-  watch.filled = 60'000;
+  watch.known_for = 60'000;
   watch.stopped = watch.stopped_at_once = true;
   watch.still = watch.slow_for = 300;
   watch.exact = watch.slow = {300, 20};
   const auto evidence = [&](std::uint32_t least, std::uint32_t within) {
-    return detail::stop_evidence(watch, EncoderTimes<double>{100, least, 0, within, 1e4});
+    return detail::stop_evidence(watch, EncoderTimes<double>{100, least, 0, 0, within, 1e4});
   };
   EXPECT_TRUE(evidence(250, 800).may_stick);
   EXPECT_TRUE(evidence(250, 800).may_lock);

@@ -30,8 +30,9 @@ struct EncoderWatch {
   std::uint8_t newest = 0;
   std::uint8_t window_ticks = 0;  // since the windows of the largest were moved on
   std::uint32_t filled = 0;       // samples in a row, up to the largest number
-  std::uint32_t still = 0;        // samples in a row with the same position
-  std::uint32_t slow_for = 0;     // samples in a row with nearly the same
+  std::uint32_t known_for = 0;    // samples in all, up to the largest number
+  std::uint32_t still = 0;        // ticks with the same position
+  std::uint32_t slow_for = 0;     // ticks with nearly the same
   Standing exact;                 // with the same position
   Standing slow;                  // with nearly the same: what is held gives way a little
   bool stopped_at_once = false;   // within one tick; while `stopped`
@@ -64,8 +65,8 @@ template <typename Scalar>
 }
 
 // Up to the largest number.
-[[nodiscard]] constexpr std::uint32_t one_more(std::uint32_t count) {
-  return count + (count < ~std::uint32_t{0} ? 1U : 0U);
+[[nodiscard]] constexpr std::uint32_t more(std::uint32_t count, std::uint32_t by = 1) {
+  return count + std::min(by, ~std::uint32_t{0} - count);
 }
 
 // Slower than it is at its fastest by so much that it may be held.
@@ -109,14 +110,18 @@ void judge_jump(EncoderWatch<Scalar>& watch, Scalar step, Scalar second, bool wa
 }
 
 template <typename Scalar>
-void judge_stop(EncoderWatch<Scalar>& watch, Scalar step, bool warm) {
-  if (step != 0) {
-    watch.last_step = step;
-    watch.still = 0;
-    watch.stopped = watch.stopped_at_once = false;
+void count_stop(EncoderWatch<Scalar>& watch, Scalar step, std::uint32_t ticks) {
+  if (step == 0) {
+    watch.still = more(watch.still, ticks);
     return;
   }
-  watch.still = one_more(watch.still);
+  watch.last_step = step / static_cast<Scalar>(ticks);
+  watch.still = 0;
+  watch.stopped = watch.stopped_at_once = false;
+}
+
+template <typename Scalar>
+void judge_stop(EncoderWatch<Scalar>& watch, bool warm) {
   if (watch.still != kEncoderLag || !warm) return;
   const Scalar before =
       position_before(watch, kEncoderLag) - position_before(watch, 2 * kEncoderLag);
@@ -129,32 +134,34 @@ void judge_stop(EncoderWatch<Scalar>& watch, Scalar step, bool warm) {
 
 }  // namespace detail
 
-// Takes the next sample's position, rad or m. `gap`: samples are missing before it, and what spans
-// them is not judged.
+// Takes the next sample's position, rad or m, `ticks` >= 1 after the last one. Where samples are
+// missing between them, what spans them is not judged.
 template <typename Scalar>
-void look_at(EncoderWatch<Scalar>& watch, Scalar q, bool gap) {
+void look_at(EncoderWatch<Scalar>& watch, Scalar q, std::uint32_t ticks = 1) {
   using detail::position_before;
-  if (gap) watch.filled = 0;
+  if (ticks != 1) watch.filled = 0;
   const Scalar last = watch.q[watch.newest];
   watch.newest = static_cast<std::uint8_t>((watch.newest + 1U) % watch.q.size());
   watch.q[watch.newest] = q;
-  watch.filled = detail::one_more(watch.filled);
-  watch.since_jump = detail::one_more(watch.since_jump);
-  if (watch.filled < 3) return;
+  watch.filled = detail::more(watch.filled);
+  watch.since_jump = detail::more(watch.since_jump, ticks);
   const Scalar step = q - last;
-  if (step != 0) watch.steps = detail::one_more(watch.steps);
+  if (watch.known_for > 0) detail::count_stop(watch, step, ticks);
+  watch.slow_for = detail::is_slow(watch) ? detail::more(watch.slow_for, ticks) : 0;
+  watch.known_for = detail::more(watch.known_for);
+  if (watch.filled < 3) return;
+  if (step != 0) watch.steps = detail::more(watch.steps);
   // Of a joint that stands, one count of its encoder would be beyond all motion.
-  const bool warm = watch.filled > detail::kEncoderWarmUp && watch.steps > detail::kStepsWarmUp;
+  const bool warm = watch.known_for > detail::kEncoderWarmUp && watch.steps > detail::kStepsWarmUp;
   const Scalar second = step - (last - position_before(watch, 2));
   detail::judge_jump(watch, step, second, warm);
   detail::widen(watch.jerk, second);
   if (watch.filled > 2 * kEncoderLag) {
-    detail::judge_stop(watch, step, warm);
+    detail::judge_stop(watch, warm);
     const Scalar middle = position_before(watch, kEncoderLag);
     detail::widen(watch.way, q - middle);
     detail::widen(watch.stop, (q - middle) - (middle - position_before(watch, 2 * kEncoderLag)));
   }
-  watch.slow_for = detail::is_slow(watch) ? detail::one_more(watch.slow_for) : 0;
   if (++watch.window_ticks < 3 * kEncoderLag) return;
   watch.window_ticks = 0;
   detail::move_on(watch.jerk, Scalar(0.999));

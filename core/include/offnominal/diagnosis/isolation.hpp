@@ -65,10 +65,12 @@ class Isolation {
   // answer stands in state.diagnosis; it is one where state.triggered.
   void step(const RigidBodyModel<N, Scalar>& model, const Sample& sample, std::uint64_t tick,
             const Output& output, State& state) const {
-    const bool gap = !state.started || tick != state.tick + 1;
+    const std::uint64_t ticks = state.started ? tick - state.tick : 1;
+    const bool gap = !state.started || ticks != 1;
     state.tick = tick;
     state.started = true;
-    watch_encoders(sample, gap, state);
+    constexpr std::uint32_t kMost = ~std::uint32_t{0};
+    watch_encoders(sample, ticks < kMost ? static_cast<std::uint32_t>(ticks) : kMost, state);
     const IsolationInstant<N, Scalar> at =
         isolation_instant<N, Scalar>(model, sample, output, scales_.friction);
     bool ended = false;
@@ -106,10 +108,10 @@ class Isolation {
   }
 
  private:
-  static void watch_encoders(const Sample& sample, bool gap, State& state) {
+  static void watch_encoders(const Sample& sample, std::uint32_t ticks, State& state) {
     std::size_t moving = 0;
     for (std::size_t i = 0; i < state.encoders.size(); ++i) {
-      look_at(state.encoders[i], sample.q[static_cast<Eigen::Index>(i)], gap);
+      look_at(state.encoders[i], sample.q[static_cast<Eigen::Index>(i)], ticks);
       if (state.encoders[i].slow_for == 0) ++moving;
     }
     for (EncoderWatch<Scalar>& watch : state.encoders) {
@@ -293,8 +295,8 @@ class Isolation {
     const Scalar noise = lasting * error + (1 - correlation) * (1 - correlation) * now.variance;
     const Scalar prior = scales_.own(kOneRegressor, column);
     const Scalar weight = 1 / noise;
-    take(seen.own, Vector<kOwnRegressors, Scalar>(own - correlation * seen.last_own), whitened,
-         weight);
+    take(still ? seen.own_still : seen.own,
+         Vector<kOwnRegressors, Scalar>(own - correlation * seen.last_own), whitened, weight);
     take(state.tip, Vector<kTipParameters, Scalar>(tip - correlation * seen.last_tip), whitened,
          weight);
     take(seen.any, whitened, noise, correlation, contact_kept_, prior * prior);
@@ -339,14 +341,19 @@ class Isolation {
   void enter_encoders(const RigidBodyModel<N, Scalar>& model, const Vector<N, Scalar>& q,
                       State& state) const {
     constexpr Scalar kStillS = Scalar(0.1);
+    constexpr Scalar kAheadS = Scalar(0.02);
     constexpr Scalar kBrakingS = Scalar(0.05);
     const Scalar looked_back = static_cast<Scalar>(kIsolationBlocks * block_ticks_) * period_s_;
     const Scalar since = since_detection(state);
     const auto ticks = [&](Scalar seconds) {
       return static_cast<std::uint32_t>(seconds / period_s_);
     };
-    const EncoderTimes<Scalar> times{ticks(kStillS), ticks(since), ticks(kBrakingS),
-                                     ticks(since + looked_back), config_.baseline_s / period_s_};
+    const EncoderTimes<Scalar> times{ticks(kStillS),
+                                     ticks(since),
+                                     ticks(kAheadS),
+                                     ticks(kBrakingS),
+                                     ticks(since + looked_back),
+                                     config_.baseline_s / period_s_};
     const Matrix<N, N, Scalar> inertia = mass_matrix<N, Scalar>(model, q);
     PerJoint<N, bool> felt{};
     size_for(state.joints.size(), felt);

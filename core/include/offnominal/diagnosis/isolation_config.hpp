@@ -16,7 +16,7 @@ struct IsolationConfig {
   Scalar contact_s = Scalar(0.5);       // how long a push stays what it is, where it goes on
   Scalar confidence = Scalar(0.99);     // from which on it is decided
   Scalar least_s = Scalar(0.3);         // after the detection, before which it is not
-  Scalar limit_s = Scalar(2);           // after the detection, at which it is in any case
+  Scalar limit_s = Scalar(4);           // after the detection, at which it is in any case
 };
 
 // kInvalidLimit where a time is not above 0, least_s is above limit_s, or a share is not inside

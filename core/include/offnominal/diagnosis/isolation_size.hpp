@@ -38,7 +38,7 @@ template <int Which, int N, typename Scalar>
                                                 const IsolationScales<N, Scalar>& scales,
                                                 std::size_t joint) {
   const JointEvidence<Scalar>& seen = state.joints[joint];
-  const auto fit = fit_of(part_of<Which>(seen.own));
+  const auto fit = fit_of(own_of<Which>(seen));
   const Scalar scale = scales.own(Which, static_cast<Eigen::Index>(joint));
   return measure_from<N, Scalar>(scale * fit.theta[0], scale * scale * fit.covariance(0, 0),
                                  fit.explained, seen.squares, state.blocks);

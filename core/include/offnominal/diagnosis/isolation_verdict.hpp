@@ -20,10 +20,11 @@ template <typename Scalar>
 struct EncoderTimes {
   std::uint32_t odd_after = 0;  // of a position that does not change while others do
   std::uint32_t since = 0;      // the detection, which what stopped before has caused
-  std::uint32_t braking = 0;    // that a joint which is locked may take until it stands
-  std::uint32_t within = 0;     // since the earliest event that counts
-  Scalar history{};             // that a joint has to be known for
-  std::uint32_t standing = 1;   // joints that stand oddly
+  std::uint32_t ahead = 0;     // that a velocity which was smoothed both ways may tell of it before
+  std::uint32_t braking = 0;   // that a joint which is locked may take until it stands
+  std::uint32_t within = 0;    // since the earliest event that counts
+  Scalar history{};            // that a joint has to be known for
+  std::uint32_t standing = 1;  // joints that stand oddly
 };
 
 namespace detail {
@@ -85,8 +86,7 @@ template <typename Scalar>
 [[nodiscard]] StopEvidence<Scalar> stop_evidence(const EncoderWatch<Scalar>& watch,
                                                  const EncoderTimes<Scalar>& times) {
   if (watch.steps == 0) return {};
-  // Its last step may come with the tick in which it was seen.
-  const bool stuck = watch.still + kEncoderLag >= times.since;
+  const bool stuck = watch.still >= times.since - std::min(times.since, times.ahead);
   const std::uint32_t locked_for = times.since - std::min(times.since, times.braking);
   StopEvidence<Scalar> stop;
   if (watch.stopped && watch.still >= kEncoderLag) {
@@ -100,8 +100,8 @@ template <typename Scalar>
   }
   stop.may_stick = stuck && stands_oddly(watch.exact, times);
   stop.may_lock = watch.slow_for >= locked_for && stands_oddly(watch.slow, times);
-  if (stop.may_stick) stop.stuck = standing_evidence(watch.exact, watch.filled, times);
-  if (stop.may_lock) stop.locked = standing_evidence(watch.slow, watch.filled, times);
+  if (stop.may_stick) stop.stuck = standing_evidence(watch.exact, watch.known_for, times);
+  if (stop.may_lock) stop.locked = standing_evidence(watch.slow, watch.known_for, times);
   // What is locked gives way under a torque that changes, by a count of a fine encoder.
   if (stop.may_stick) stop.locked -= static_cast<Scalar>(kNotACount);
   return stop;
@@ -216,7 +216,7 @@ void enter_drive(const IsolationState<N, Scalar>& state, const IsolationScales<N
                  std::size_t index, Contest<Scalar>& contest) {
   const std::size_t count = state.joints.size();
   const JointEvidence<Scalar>& joint = state.joints[index];
-  const auto lost = fit_of(part_of<kTorqueRegressor>(joint.own));
+  const auto lost = fit_of(own_of<kTorqueRegressor>(joint));
   const Scalar scale = scales.own(kTorqueRegressor, static_cast<Eigen::Index>(index));
   const Scalar evidence = lost.evidence + beyond(scale * lost.theta[0], Scalar(1),
                                                  scale * scale * lost.covariance(0, 0));
@@ -224,7 +224,7 @@ void enter_drive(const IsolationState<N, Scalar>& state, const IsolationScales<N
   contest.enter(
       FaultKind::kLostTorque, index,
       of_alarm(evidence, largest, scales, index) + log_prior<Scalar>(kPriorLostTorque, count));
-  const auto offset = fit_of(part_of<kOneRegressor>(joint.own));
+  const auto offset = fit_of(own_of<kOneRegressor>(joint));
   const Scalar constant = offset.theta[0] * joint.largest_own[kOneRegressor];
   contest.enter(
       FaultKind::kOffset, index,
