@@ -104,6 +104,22 @@ TEST(IsolationVerdict, WeighsAJointThatStandsByWhatIsKnownOfIt) {
   EXPECT_GT(evidence({400, 20}, 1), evidence({150, 20}, 1)) << "the longer, the more";
 }
 
+// A moment of 1 kg m and some mass: nobody carries 0.1 kg ten metres away.
+TEST(IsolationVerdict, TakesForAPayloadOnlyWhatAToolReaches) {
+  const auto against = [](double mass, double deviation) {
+    RegressionFit<kTipParameters, double> fit;
+    fit.theta << mass, 0.6, 0, -0.8;
+    fit.covariance *= deviation * deviation;
+    const Vector<kTipParameters, double> ones = Vector<kTipParameters, double>::Ones();
+    return detail::beyond_reach(fit, ones);
+  };
+  EXPECT_EQ(against(2, 0.01), 0);
+  EXPECT_EQ(against(-2, 0.01), 0) << "nor of one that is lost";
+  EXPECT_LT(against(0.1, 0.01), -100);
+  EXPECT_LT(against(-0.1, 0.01), -100);
+  EXPECT_GT(against(0.1, 2), -1) << "its mass may as well be another";
+}
+
 // What stopped when the fault had long been seen is its effect, not its cause; and what stopped
 // long before it is a program's.
 TEST(IsolationVerdict, BlamesNoEncoderThatStoppedAfterTheDetectionOrLongBefore) {

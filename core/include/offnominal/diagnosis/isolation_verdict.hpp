@@ -231,6 +231,21 @@ void enter_drive(const IsolationState<N, Scalar>& state, const IsolationScales<N
       of_alarm(offset.evidence, constant, scales, index) + log_prior<Scalar>(kPriorOffset, count));
 }
 
+// Of a body on the last link that is farther from its frame than any tool reaches: nats against it.
+template <typename Scalar>
+[[nodiscard]] Scalar beyond_reach(const RegressionFit<kTipParameters, Scalar>& fit,
+                                  const Vector<kTipParameters, Scalar>& scale) {
+  constexpr auto kReachM = static_cast<Scalar>(0.6);
+  const Vector<kTipParameters, Scalar> body = scale.cwiseProduct(fit.theta);
+  const Scalar moment = body.template tail<3>().norm();
+  if (!(moment > 0)) return Scalar(0);
+  Vector<kTipParameters, Scalar> off;  // of moment - reach * mass, per parameter
+  off << (body[0] < 0 ? kReachM : -kReachM), body.template tail<3>() / moment;
+  off = off.cwiseProduct(scale);
+  const Scalar variance = off.dot(fit.covariance.lazyProduct(off));
+  return beyond(moment, kReachM * Eigen::numext::abs(body[0]), variance);
+}
+
 // Of a payload that is lost no more than the last link has.
 template <int N, typename Scalar>
 void enter_payload(const IsolationState<N, Scalar>& state, const IsolationScales<N, Scalar>& scales,
@@ -241,7 +256,7 @@ void enter_payload(const IsolationState<N, Scalar>& state, const IsolationScales
       FaultKind::kPayload, state.joints.size() - 1,
       fit.evidence +
           beyond(-scale * fit.theta[0], scales.last_mass, scale * scale * fit.covariance(0, 0)) +
-          log_prior<Scalar>(kPriorPayload, 1));
+          beyond_reach(fit, scales.tip) + log_prior<Scalar>(kPriorPayload, 1));
 }
 
 // More friction holds a joint that stands, against no more than itself. `stands`: nats of that it
