@@ -18,6 +18,21 @@ Eigen::MatrixXd ratio_of(const Eigen::MatrixXd& error, const Eigen::MatrixXd& th
       threshold, [](double e, double mu) { return std::abs(e) > 0 ? std::abs(e) / mu : 0; });
 }
 
+// Whatever the threshold is scaled with: a joint whose position is where no motion brings it is
+// beyond, and no residual says so.
+void add_jumps(const Replay& shown, Eigen::MatrixXd& ratio) {
+  const double beyond = std::nextafter(1.0, 2.0);
+  for (std::size_t joint = 0; joint < shown.joints.size(); ++joint) {
+    for (const Alarm& alarm : shown.joints[joint].alarms) {
+      if (alarm.max_error_to_threshold > 1) continue;
+      const auto* const begin = shown.t_s.data();
+      const auto* const at = std::lower_bound(begin, begin + shown.t_s.size(), alarm.start_s);
+      double& there = ratio(at - begin, static_cast<Eigen::Index>(joint));
+      there = std::max(there, beyond);
+    }
+  }
+}
+
 class MonitorDetector final : public Detector {
  public:
   MonitorDetector(RobotDescription robot, bool accommodates, std::vector<std::string> notes)
@@ -31,6 +46,7 @@ class MonitorDetector final : public Detector {
       return {shown.t_s, ratio_of(shown.error_norm, shown.threshold)};
     }
     Judged judged{shown.t_s, ratio_of(shown.error, shown.thresholds)};
+    add_jumps(shown, judged.ratio);
     if (!shown.faults.empty() && shown.faults.front().detection_time_s == shown.detection_time_s) {
       const IsolatedFault& said = shown.faults.front();
       const bool is_known = said.kind != offnominal::FaultKind::kUnknown;

@@ -121,11 +121,13 @@ std::string joints_words(const Replay& replay) {
     if (i != first && joint.detection_time_s) later.emplace_back(*joint.detection_time_s, i);
   }
   std::sort(later.begin(), later.end());
-  std::string words = fmt::format(
-      "Off nominal: joint {} ({}) first, its residual crosses its threshold at {:.3f} s, up to "
-      "{:.3g} {}",
-      first + 1, replay.joint_names[first], at_s, replay.joints[first].max_residual,
-      replay.joints[first].unit);
+  const JointReplay& crossed = replay.joints[first];
+  std::string words =
+      fmt::format("Off nominal: joint {} ({}) first, ", first + 1, replay.joint_names[first]);
+  const bool jumped = !crossed.alarms.empty() && crossed.alarms.front().max_error_to_threshold <= 1;
+  words += jumped ? fmt::format("at {:.3f} s its position is where no motion brings it", at_s)
+                  : fmt::format("its residual crosses its threshold at {:.3f} s, up to {:.3g} {}",
+                                at_s, crossed.max_residual, crossed.unit);
   for (std::size_t k = 0; k < later.size(); ++k) {
     const auto& [time_s, joint] = later[k];
     words += fmt::format("{} joint {} ({}) ", k == 0 ? "; then" : ",", joint + 1,

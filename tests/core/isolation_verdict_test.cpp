@@ -111,13 +111,28 @@ TEST(IsolationVerdict, TakesForAPayloadOnlyWhatAToolReaches) {
     fit.theta << mass, 0.6, 0, -0.8;
     fit.covariance *= deviation * deviation;
     const Vector<kTipParameters, double> ones = Vector<kTipParameters, double>::Ones();
-    return detail::beyond_reach(fit, ones);
+    return detail::beyond_reach(fit, ones, 0.6);
   };
   EXPECT_EQ(against(2, 0.01), 0);
   EXPECT_EQ(against(-2, 0.01), 0) << "nor of one that is lost";
   EXPECT_LT(against(0.1, 0.01), -100);
   EXPECT_LT(against(-0.1, 0.01), -100);
   EXPECT_GT(against(0.1, 2), -1) << "its mass may as well be another";
+}
+
+// A wrist that turns about the axis of the joint before it, and one whose inertia that hardly
+// feels.
+TEST(IsolationVerdict, KnowsWhoseRunningAwayTheOthersWouldFeel) {
+  TwoScales scales = scales_of(1);
+  scales.alpha = 10;
+  scales.speeds = {2, 2};
+  Matrix<2, 2, double> inertia = Matrix<2, 2, double>::Identity();
+  inertia(0, 1) = inertia(1, 0) = 0.02;
+  EXPECT_FALSE((detail::runs_away_felt<2, double>(inertia, 1, scales)));
+  inertia(0, 1) = inertia(1, 0) = -0.03;
+  EXPECT_TRUE((detail::runs_away_felt<2, double>(inertia, 1, scales)));
+  scales.thresholds = {2, 2};
+  EXPECT_FALSE((detail::runs_away_felt<2, double>(inertia, 1, scales)));
 }
 
 // What stopped when the fault had long been seen is its effect, not its cause; and what stopped

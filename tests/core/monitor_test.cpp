@@ -3,6 +3,7 @@
 #include <cmath>
 #include <offnominal/diagnosis/position_step.hpp>
 #include <offnominal/monitor.hpp>
+#include <random>
 #include <vector>
 
 #include "core/monitor_of.hpp"
@@ -190,25 +191,31 @@ TYPED_TEST(MonitorOf, GivenAPositionToWhichNoMotionComesThenThatTickIsBeyond) {
     EXPECT_EQ(blind.step(sample, this->state, this->output), Status::kOk);
     return this->output.detector.level;
   };
-  for (int tick = 0; tick < 100; ++tick) ASSERT_FALSE(step_is_beyond(0));
+  for (int tick = 0; tick < 110; ++tick) ASSERT_FALSE(step_is_beyond(0));
   EXPECT_TRUE(step_is_beyond(TypeParam(0.05)));
   EXPECT_FALSE(step_is_beyond(TypeParam(0.05)));
   EXPECT_TRUE(this->output.detector.latched);
-  EXPECT_EQ(this->output.detector.detection_tick, 101U);
+  EXPECT_EQ(this->output.detector.detection_tick, 111U);
 }
 
-using Steps = LargestSteps<1, double>;
-
-// Of a joint that stays below 1 rad/s, tick by tick of 1 ms: which of these positions are jumps.
-std::vector<bool> jumps_of(const std::vector<double>& positions, double max_velocity = 1) {
+// Of a joint that stays below 1 rad/s, tick by tick of 1 ms, after a hundred ticks to and fro by
+// `count`: which of these positions are jumps.
+std::vector<bool> jumps_of(const std::vector<double>& positions, double max_velocity = 1,
+                           double count = 0.0005) {
   PerJoint<1, Joint<double>> joints{};
   joints[0].max_velocity = max_velocity;
-  Steps largest{};
+  PerJoint<1, KnownSteps<double>> known{};
+  const auto is_jump = [&](double from, double to) {
+    const Vector<1, double> before = Vector<1, double>::Constant(from);
+    const Vector<1, double> now = Vector<1, double>::Constant(to);
+    return take_steps<1, double>(joints, before, now, 0.001, known) != kNoJoint;
+  };
+  for (int tick = 0; tick < 100; ++tick) {
+    EXPECT_FALSE(is_jump(tick % 2 == 0 ? 0 : count, tick % 2 == 0 ? count : 0));
+  }
   std::vector<bool> jumps;
   for (std::size_t i = 1; i < positions.size(); ++i) {
-    const Vector<1, double> before = Vector<1, double>::Constant(positions[i - 1]);
-    const Vector<1, double> now = Vector<1, double>::Constant(positions[i]);
-    jumps.push_back(take_steps<1, double>(joints, before, now, 0.001, largest) != kNoJoint);
+    jumps.push_back(is_jump(positions[i - 1], positions[i]));
   }
   return jumps;
 }
@@ -218,14 +225,31 @@ TEST(PositionStep, IsAJumpWhereTheJointCannotComeSoFar) {
   EXPECT_EQ(jumps_of(positions), (std::vector<bool>{false, false, true, false}));
   EXPECT_EQ(jumps_of(positions, 2), (std::vector<bool>{false, false, false, false}));
 }
+TEST(PositionStep, IsOneAgainWhereItJumpsAgain) {
+  EXPECT_EQ(jumps_of({0, 0.03, 0, 0.03}), (std::vector<bool>{true, true, true}));
+}
 TEST(PositionStep, IsNoneOfAJointWithoutALargestVelocity) {
   const double none = Joint<double>{}.max_velocity;
   EXPECT_EQ(jumps_of({0, 0.001, 5, -5}, none), (std::vector<bool>{false, false, false}));
 }
 // Counts of 0.01 rad, of which a slow joint takes one in many ticks.
 TEST(PositionStep, IsNoneWhereACoarseEncoderGoesOnByACount) {
-  EXPECT_EQ(jumps_of({0, 0, 0.01, 0.01, 0.02, 0.01, 0.05}),
+  EXPECT_EQ(jumps_of({0, 0, 0.01, 0.01, 0.02, 0.01, 0.05}, 1, 0.01),
             (std::vector<bool>{false, false, false, false, false, true}));
+}
+// A wire's length to a tenth of a millimetre, of a joint that moves 0.03 m/s at most.
+TEST(PositionStep, IsNoneOfANoisySensor) {
+  std::mt19937_64 generator = seeded_generator();
+  std::normal_distribution<double> noise(0, 1e-4);
+  PerJoint<1, Joint<double>> joints{};
+  joints[0].max_velocity = 0.03;
+  PerJoint<1, KnownSteps<double>> known{};
+  Vector<1, double> before = Vector<1, double>::Zero();
+  for (int tick = 0; tick < 200'000; ++tick) {
+    const Vector<1, double> now = Vector<1, double>::Constant(noise(generator));
+    ASSERT_EQ((take_steps<1, double>(joints, before, now, 0.001, known)), kNoJoint) << tick;
+    before = now;
+  }
 }
 
 }  // namespace

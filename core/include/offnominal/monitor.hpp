@@ -53,7 +53,7 @@ struct MonitorState : MonitorForm<Space, N, Scalar>::Kept {
   JointSample<N, Scalar> sample;
   EstimatorState<N, L, Scalar, Space> estimator;
   typename MonitorForm<Space, N, Scalar>::Detector detector;
-  LargestSteps<N, Scalar> largest_steps{};
+  PerJoint<N, KnownSteps<Scalar>> steps{};
   [[no_unique_address]] typename Memory::template Of<N, Scalar>::State memory{};
 };
 
@@ -120,8 +120,8 @@ class Monitor {
     state.sample = sample;
     Form::keep(nominal, state);
     Form::start(config_.chain.joints.size(), state.detector);
-    size_for(config_.chain.joints.size(), state.largest_steps);
-    for (Scalar& step : state.largest_steps) step = Scalar(0);
+    size_for(config_.chain.joints.size(), state.steps);
+    for (KnownSteps<Scalar>& steps : state.steps) steps = {};
     state.tick = 0;
     state.initialised = true;
     return Status::kOk;
@@ -150,7 +150,7 @@ class Monitor {
 
   // One control tick: the sample at its end. Any refusal leaves `state` and `output` unchanged; the
   // next good sample is then taken as if it followed the last good one by one tick, unless resume()
-  // is told of the gap.
+  // is told of the gap: what a joint went in several ticks may then be a fault.
   [[nodiscard]] Status step(const Sample& sample, State& state, Output& output) const {
     if (!ready_ || !state.initialised) return Status::kNotInitialised;
     const double end_s = time_at(state.tick + 1);
@@ -165,9 +165,8 @@ class Monitor {
 
     memory_.keep(sample, 0, now, state.memory);
     ++state.tick;
-    const Eigen::Index jumped =
-        take_steps<N, Scalar>(config_.chain.joints, state.sample.q, sample.q,
-                              config_.estimator.period_s, state.largest_steps);
+    const Eigen::Index jumped = take_steps<N, Scalar>(
+        config_.chain.joints, state.sample.q, sample.q, config_.estimator.period_s, state.steps);
     state.sample = sample;
     Form::keep(nominal, state);
     output.time_s = end_s;

@@ -12,22 +12,22 @@ namespace {
 
 TEST(Detector, GivenAnErrorBelowOrAtTheThresholdThenNothingIsDetected) {
   DetectorState<double> state;
-  update(state, 0.0, 0.0, 1U, 0.001);
+  update(state, 0.0 > 0.0, 1U, 0.001);
   EXPECT_FALSE(state.level);
-  update(state, 0.5, 0.5, 2U, 0.002);
+  update(state, 0.5 > 0.5, 2U, 0.002);
   EXPECT_FALSE(state.level);
   EXPECT_FALSE(state.latched);
 }
 
 TEST(Detector, GivenACrossingThenTheLevelFallsBackAndTheLatchStaysWithTheFirstTime) {
   DetectorState<double> state;
-  update(state, 0.6, 0.5, 7U, 0.007);
+  update(state, 0.6 > 0.5, 7U, 0.007);
   EXPECT_TRUE(state.level);
   EXPECT_TRUE(state.latched);
-  update(state, 0.4, 0.5, 8U, 0.008);
+  update(state, 0.4 > 0.5, 8U, 0.008);
   EXPECT_FALSE(state.level);
   EXPECT_TRUE(state.latched);
-  update(state, 0.9, 0.5, 9U, 0.009);
+  update(state, 0.9 > 0.5, 9U, 0.009);
   EXPECT_TRUE(state.level);
   EXPECT_EQ(state.detection_tick, 7U);
   EXPECT_EQ(state.detection_time_s, 0.007);
@@ -35,13 +35,13 @@ TEST(Detector, GivenACrossingThenTheLevelFallsBackAndTheLatchStaysWithTheFirstTi
 
 TEST(Detector, GivenAClearedLatchThenTheNextCrossingLatchesWithItsOwnTime) {
   DetectorState<float> state;
-  update(state, 0.6F, 0.5F, 7U, 0.007);
+  update(state, 0.6F > 0.5F, 7U, 0.007);
   clear_latch(state);
   EXPECT_FALSE(state.latched);
   EXPECT_TRUE(state.level) << "clearing the latch does not deny what is so now";
-  update(state, 0.4F, 0.5F, 8U, 0.008);
+  update(state, 0.4F > 0.5F, 8U, 0.008);
   EXPECT_FALSE(state.latched);
-  update(state, 0.6F, 0.5F, 9U, 0.009);
+  update(state, 0.6F > 0.5F, 9U, 0.009);
   EXPECT_TRUE(state.latched);
   EXPECT_EQ(state.detection_tick, 9U);
   EXPECT_EQ(state.detection_time_s, 0.009);
@@ -49,9 +49,9 @@ TEST(Detector, GivenAClearedLatchThenTheNextCrossingLatchesWithItsOwnTime) {
 
 TEST(Detector, GivenAClearedLatchWhileTheFaultLastsThenTheNextTickLatchesAgain) {
   DetectorState<double> state;
-  update(state, 0.6, 0.5, 7U, 0.007);
+  update(state, 0.6 > 0.5, 7U, 0.007);
   clear_latch(state);
-  update(state, 0.6, 0.5, 8U, 0.008);
+  update(state, 0.6 > 0.5, 8U, 0.008);
   EXPECT_TRUE(state.latched);
   EXPECT_EQ(state.detection_tick, 8U);
 }
@@ -64,7 +64,7 @@ TEST(Detector, FollowsItsRulesUnderRandomUse) {
   for (std::uint32_t tick = 1; tick <= 100000; ++tick) {
     const double error = uniform(generator, 0, 1);
     const double mu = uniform(generator, 0.5, 1.2);
-    update(state, error, mu, tick, 0.001 * tick);
+    update(state, error > mu, tick, 0.001 * tick);
     if (error > mu && first_crossing == 0) first_crossing = tick;
     ASSERT_EQ(state.level, error > mu);
     ASSERT_EQ(state.latched, first_crossing != 0);

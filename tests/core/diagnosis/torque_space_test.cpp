@@ -266,18 +266,29 @@ TEST(JointDeadZone, IsZeroWithinEachThresholdAndTakesItOffOutside) {
 TEST(JointDetectors, SayOfJointsThatCrossTogetherTheOneThatIsFarthestBeyond) {
   JointDetectors<3, float> detectors;
   using Three = Vector<3, float>;
-  EXPECT_EQ(update<3>(detectors, Three(0, 0, 0), Three(0, 0, 0), 0, 0.0), 0);
+  EXPECT_EQ(update<3>(detectors, Three(0, 0, 0), Three(0, 0, 0), kNoJoint, 0, 0.0), 0);
   EXPECT_FALSE(detectors.level);
-  EXPECT_EQ(update<3>(detectors, Three(1.5F, -6, 1), Three(1, 2, 1), 4, 0.004), 1);
+  EXPECT_EQ(update<3>(detectors, Three(1.5F, -6, 1), Three(1, 2, 1), kNoJoint, 4, 0.004), 1);
   EXPECT_TRUE(detectors.latched && detectors.joints[0].latched && detectors.joints[1].latched);
   EXPECT_FALSE(detectors.joints[2].latched);
   EXPECT_EQ(detectors.first_joint, 1);
-  EXPECT_EQ(update<3>(detectors, Three(0, 0, 9), Three(1, 2, 1), 5, 0.005), 2);
+  EXPECT_EQ(update<3>(detectors, Three(0, 0, 9), Three(1, 2, 1), kNoJoint, 5, 0.005), 2);
   EXPECT_EQ(detectors.first_joint, 1) << "the first one stays";
   EXPECT_FALSE(detectors.joints[1].level);
   EXPECT_EQ(detectors.joints[2].detection_tick, 5U);
   clear_latch(detectors);
   EXPECT_FALSE(detectors.latched || detectors.joints[0].latched);
+}
+
+TEST(JointDetectors, SayTheJointWhosePositionNoMotionBringsWhateverTheErrors) {
+  JointDetectors<3, float> detectors;
+  using Three = Vector<3, float>;
+  EXPECT_EQ(update<3>(detectors, Three(0.5F, 3, 0), Three(1, 2, 1), 2, 4, 0.004), 1);
+  EXPECT_TRUE(detectors.joints[1].latched && detectors.joints[2].latched);
+  EXPECT_EQ(detectors.first_joint, 2);
+  EXPECT_EQ(update<3>(detectors, Three(0, 0, 0), Three(1, 2, 1), kNoJoint, 5, 0.005), 0);
+  EXPECT_FALSE(detectors.level || detectors.joints[2].level);
+  EXPECT_TRUE(detectors.latched);
 }
 
 }  // namespace

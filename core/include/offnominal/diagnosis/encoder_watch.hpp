@@ -15,7 +15,7 @@ namespace offnominal {
 
 inline constexpr std::size_t kEncoderLag = 8;  // ticks over which a stop is judged
 
-// How long a joint stands while another one moves, samples: now, and at most at an earlier time
+// How long a joint stands while another one moves, ticks: now, and at most at an earlier time
 // without a fault. It ends when the joint moves.
 struct Standing {
   std::uint32_t alone = 0;
@@ -32,7 +32,8 @@ struct EncoderWatch {
   std::uint32_t filled = 0;       // samples in a row, up to the largest number
   std::uint32_t known_for = 0;    // samples in all, up to the largest number
   std::uint32_t still = 0;        // ticks with the same position
-  std::uint32_t slow_for = 0;     // ticks with nearly the same
+  std::uint32_t slow_for = 0;     // ticks with nearly the same, but for a count now and then
+  std::uint8_t fast_for = 0;      // samples in a row without, up to 255
   Standing exact;                 // with the same position
   Standing slow;                  // with nearly the same: what is held gives way a little
   bool stopped_at_once = false;   // within one tick; while `stopped`
@@ -46,7 +47,7 @@ struct EncoderWatch {
   std::array<Scalar, 3> way{};
   Scalar candidate{};                            // a step that may be a jump: the next sample tells
   Scalar jump{};                                 // the last one that was, rad or m
-  std::uint32_t since_jump = ~std::uint32_t{0};  // samples
+  std::uint32_t since_jump = ~std::uint32_t{0};  // ticks
 };
 
 namespace detail {
@@ -74,6 +75,15 @@ template <typename Scalar>
 [[nodiscard]] bool is_slow(const EncoderWatch<Scalar>& watch) {
   const Scalar way = watch.q[watch.newest] - position_before(watch, kEncoderLag);
   return Eigen::numext::abs(way) <= watch.way[2] / 50;
+}
+
+// One count is on its way for a lag, and by itself no motion.
+template <typename Scalar>
+void count_slow(EncoderWatch<Scalar>& watch, std::uint32_t ticks) {
+  const bool slow = is_slow(watch);
+  watch.fast_for = slow ? 0 : static_cast<std::uint8_t>(std::min(watch.fast_for + 1, 255));
+  const bool moves = watch.fast_for > kEncoderLag + 2;
+  watch.slow_for = moves ? 0 : more(watch.slow_for, slow || watch.slow_for > 0 ? ticks : 0);
 }
 
 template <typename Scalar>
@@ -147,7 +157,7 @@ void look_at(EncoderWatch<Scalar>& watch, Scalar q, std::uint32_t ticks = 1) {
   watch.since_jump = detail::more(watch.since_jump, ticks);
   const Scalar step = q - last;
   if (watch.known_for > 0) detail::count_stop(watch, step, ticks);
-  watch.slow_for = detail::is_slow(watch) ? detail::more(watch.slow_for, ticks) : 0;
+  detail::count_slow(watch, ticks);
   watch.known_for = detail::more(watch.known_for);
   if (watch.filled < 3) return;
   if (step != 0) watch.steps = detail::more(watch.steps);
@@ -169,11 +179,12 @@ void look_at(EncoderWatch<Scalar>& watch, Scalar q, std::uint32_t ticks = 1) {
   detail::move_on(watch.way, Scalar(0.999));
 }
 
-// Takes one sample. `healthy`: no fault is known yet; a time counts for the longest when it has
-// ended.
-inline void count_alone(Standing& standing, bool stands, bool others_move, bool healthy) {
+// Takes one sample, `ticks` after the last one. `healthy`: no fault is known yet; a time counts for
+// the longest when it has ended.
+inline void count_alone(Standing& standing, bool stands, bool others_move, bool healthy,
+                        std::uint32_t ticks = 1) {
   if (stands) {
-    standing.alone += others_move ? 1U : 0U;
+    if (others_move) standing.alone = detail::more(standing.alone, ticks);
     return;
   }
   if (healthy) standing.longest_alone = std::max(standing.longest_alone, standing.alone);

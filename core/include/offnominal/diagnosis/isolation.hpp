@@ -62,7 +62,7 @@ class Isolation {
 
   // After each tick that the monitor has accepted: what it was given, has come to and said. `tick`
   // is MonitorState's. Where ticks are missing, the block that they fall into is left out. The
-  // answer stands in state.diagnosis; it is one where state.triggered.
+  // answer stands in state.diagnosis; it is one where its time is above 0.
   void step(const RigidBodyModel<N, Scalar>& model, const Sample& sample, std::uint64_t tick,
             const Output& output, State& state) const {
     const std::uint64_t ticks = state.started ? tick - state.tick : 1;
@@ -88,6 +88,8 @@ class Isolation {
       if (state.triggered) forget(state);
       return;
     }
+    // Cleared and latched anew in between: another one.
+    if (state.triggered && state.detection_tick != output.detector.detection_tick) forget(state);
     if (!state.triggered) {
       state.triggered = true;
       state.detection_tick = output.detector.detection_tick;
@@ -112,13 +114,13 @@ class Isolation {
     std::size_t moving = 0;
     for (std::size_t i = 0; i < state.encoders.size(); ++i) {
       look_at(state.encoders[i], sample.q[static_cast<Eigen::Index>(i)], ticks);
-      if (state.encoders[i].slow_for == 0) ++moving;
+      if (state.encoders[i].fast_for > 0) ++moving;
     }
     for (EncoderWatch<Scalar>& watch : state.encoders) {
-      const bool slow = watch.slow_for > 0;
+      const bool slow = watch.fast_for == 0;
       const bool others_move = moving > (slow ? 0U : 1U);
-      count_alone(watch.exact, watch.still > 0, others_move, !state.triggered);
-      count_alone(watch.slow, slow, others_move, !state.triggered);
+      count_alone(watch.exact, watch.still > 0, others_move, !state.triggered, ticks);
+      count_alone(watch.slow, slow, others_move, !state.triggered, ticks);
     }
   }
   static std::uint16_t ticks_of(Scalar seconds, Scalar period_s) {
@@ -152,6 +154,9 @@ class Isolation {
     scales_.tip.setConstant(kShareOfMass * mass * kDistanceM);
     scales_.tip[0] = kShareOfMass * mass;
     scales_.friction = known_friction<N, Scalar>(watched.chain, config_.sign_width);
+    // Of a tool, beyond a link of the size that its centre of mass tells of.
+    const auto& centre = watched.chain.joints[count - 1].centre_of_mass_m;
+    scales_.reach_m = Scalar(0.6) + 2 * Vector<3, Scalar>(centre[0], centre[1], centre[2]).norm();
     scales_.last_mass = watched.chain.joints[count - 1].mass_kg + payload_of(watched.chain);
   }
 
@@ -241,13 +246,16 @@ class Isolation {
       best = score;
       state.pending = static_cast<std::uint8_t>(blocks);
     }
+    // One that no torque shows has begun in the last.
+    state.pending = std::max(state.pending, std::min<std::uint8_t>(state.filled, 1));
     for (std::size_t i = 0; i < scales_.thresholds.size() && state.pending < state.filled; ++i) {
       const IsolationBlock<N, Scalar>& block = block_before(state, state.pending);
       state.joints[i].last_rest = rest_at(block, i, state).rest;
       state.joints[i].last_deviation = deviation_at(block, i, state);
     }
     const Scalar back_s = static_cast<Scalar>(state.pending * block_ticks_) * period_s_;
-    state.diagnosis.onset_s = output.time_s - static_cast<double>(back_s);
+    state.diagnosis.onset_s =
+        std::min(output.time_s - static_cast<double>(back_s), output.detector.detection_time_s);
   }
 
   void take_oldest(State& state) const {
@@ -305,6 +313,7 @@ class Isolation {
     }
     seen.largest_own = seen.largest_own.cwiseMax(own.cwiseAbs());
     seen.squares += weight * whitened * whitened;
+    if (!still) seen.moving_squares += weight * whitened * whitened;
     if (still) {
       take(seen.held, whitened, noise, correlation, contact_kept_, prior * prior);
       if (Eigen::numext::abs(now.rest) > Eigen::numext::abs(seen.largest_held)) {
@@ -344,15 +353,17 @@ class Isolation {
     constexpr Scalar kAheadS = Scalar(0.02);
     constexpr Scalar kBrakingS = Scalar(0.05);
     const Scalar looked_back = static_cast<Scalar>(kIsolationBlocks * block_ticks_) * period_s_;
-    const Scalar since = since_detection(state);
     const auto ticks = [&](Scalar seconds) {
       return static_cast<std::uint32_t>(seconds / period_s_);
     };
+    const std::uint64_t detected_for = state.tick - state.detection_tick;
+    constexpr std::uint64_t kMost = 1U << 30U;
+    const auto since = static_cast<std::uint32_t>(std::min(detected_for, kMost));
     const EncoderTimes<Scalar> times{ticks(kStillS),
-                                     ticks(since),
+                                     since,
                                      ticks(kAheadS),
                                      ticks(kBrakingS),
-                                     ticks(since + looked_back),
+                                     since + ticks(looked_back),
                                      config_.baseline_s / period_s_};
     const Matrix<N, N, Scalar> inertia = mass_matrix<N, Scalar>(model, q);
     PerJoint<N, bool> felt{};

@@ -13,7 +13,8 @@ struct IsolationScales {
   OwnValues<N, Scalar> own = no_values<OwnValues<N, Scalar>>();
   Vector<kTipParameters, Scalar> tip = Vector<kTipParameters, Scalar>::Ones();
   PerJoint<N, Scalar> thresholds{};  // largest of each joint, N m or N
-  PerJoint<N, Scalar> speeds{};      // rad/s or m/s
+  PerJoint<N, Scalar> speeds{};      // largest velocities, rad/s or m/s; 1 where there is no limit
+  Scalar reach_m = Scalar(0.6);      // of a payload's centre from the last link's frame, at most
   Scalar alpha{};                    // of the monitor, 1/s
   // The most that can be lost of each joint's friction, dry and viscous, and of the last link, kg.
   PerJoint<N, KnownFriction<Scalar>> friction{};

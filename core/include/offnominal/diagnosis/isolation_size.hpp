@@ -58,8 +58,12 @@ template <int N, typename Scalar>
   const Scalar variance = dry * dry * fit.covariance(0, 0) +
                           2 * dry * viscous * fit.covariance(0, 1) +
                           viscous * viscous * fit.covariance(1, 1);
-  return measure_from<N, Scalar>(dry * fit.theta[0] + viscous * fit.theta[1], variance,
-                                 fit.explained, seen.squares, state.blocks);
+  Measure<N, Scalar> measure =
+      measure_from<N, Scalar>(dry * fit.theta[0] + viscous * fit.theta[1], variance, fit.explained,
+                              seen.moving_squares, seen.moved);
+  // Of a rest it explains whatever is held.
+  measure.explained += seen.squares - seen.moving_squares;
+  return measure;
 }
 
 // Of any torque on the joints up to `last`: the largest.

@@ -46,6 +46,7 @@ struct JointEvidence {
   Scalar contact{};
   bool contact_ended = false;  // before now
   Scalar squares{};            // of what is seen, each over its variance
+  Scalar moving_squares{};     // of them, those of the blocks in which it moves
   // By size, of each regressor, scaled.
   Vector<kOwnRegressors, Scalar> largest_own = Vector<kOwnRegressors, Scalar>::Zero();
   Scalar speed_sum{};       // of the blocks in which it moves, rad/s or m/s

@@ -15,7 +15,7 @@
 
 namespace offnominal {
 
-// Of encoders, in samples.
+// Of encoders, in ticks.
 template <typename Scalar>
 struct EncoderTimes {
   std::uint32_t odd_after = 0;  // of a position that does not change while others do
@@ -231,19 +231,20 @@ void enter_drive(const IsolationState<N, Scalar>& state, const IsolationScales<N
       of_alarm(offset.evidence, constant, scales, index) + log_prior<Scalar>(kPriorOffset, count));
 }
 
-// Of a body on the last link that is farther from its frame than any tool reaches: nats against it.
+// Of a body on the last link that is farther than `reach_m` from its frame: nats against it.
 template <typename Scalar>
 [[nodiscard]] Scalar beyond_reach(const RegressionFit<kTipParameters, Scalar>& fit,
-                                  const Vector<kTipParameters, Scalar>& scale) {
-  constexpr auto kReachM = static_cast<Scalar>(0.6);
+                                  const Vector<kTipParameters, Scalar>& scale, Scalar reach_m) {
   const Vector<kTipParameters, Scalar> body = scale.cwiseProduct(fit.theta);
   const Scalar moment = body.template tail<3>().norm();
   if (!(moment > 0)) return Scalar(0);
   Vector<kTipParameters, Scalar> off;  // of moment - reach * mass, per parameter
-  off << (body[0] < 0 ? kReachM : -kReachM), body.template tail<3>() / moment;
+  off << (body[0] < 0 ? reach_m : -reach_m), body.template tail<3>() / moment;
   off = off.cwiseProduct(scale);
-  const Scalar variance = off.dot(fit.covariance.lazyProduct(off));
-  return beyond(moment, kReachM * Eigen::numext::abs(body[0]), variance);
+  constexpr auto kRounding = static_cast<Scalar>(1e-6);
+  const Scalar least = kRounding * off.squaredNorm() * fit.covariance.trace();
+  const Scalar variance = std::max(off.dot(fit.covariance.lazyProduct(off)), least);
+  return beyond(moment, reach_m * Eigen::numext::abs(body[0]), variance);
 }
 
 // Of a payload that is lost no more than the last link has.
@@ -256,7 +257,7 @@ void enter_payload(const IsolationState<N, Scalar>& state, const IsolationScales
       FaultKind::kPayload, state.joints.size() - 1,
       fit.evidence +
           beyond(-scale * fit.theta[0], scales.last_mass, scale * scale * fit.covariance(0, 0)) +
-          beyond_reach(fit, scales.tip) + log_prior<Scalar>(kPriorPayload, 1));
+          beyond_reach(fit, scales.tip, scales.reach_m) + log_prior<Scalar>(kPriorPayload, 1));
 }
 
 // More friction holds a joint that stands, against no more than itself. `stands`: nats of that it
