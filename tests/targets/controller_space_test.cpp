@@ -247,7 +247,7 @@ TEST(ControllerWithIsolation, GivenAJointThatIsHeldThenNothingIsCompensated) {
   for (const bool may : {false, true}) {
     Isolating joint = swaying(may);
     joint.brake_at = joint.q;
-    for (int i = 0; i < 2500; ++i) {
+    for (int i = 0; i < 4500; ++i) {
       joint.tick();
       torques[may ? 1 : 0].push_back(joint.torque());
     }

@@ -214,7 +214,7 @@ TEST(TorqueSpace, SaysWhichFaultItIs) {
       heard.push_back(report);
     };
     Scenario scenario = scenario_of(robot, {fault});
-    scenario.duration_s = 6.0;
+    scenario.duration_s = 7.0;
     const SilResult result = run(robot, scenario, listen);
     ASSERT_TRUE(result.isolated.has_value());
     EXPECT_EQ(result.isolated->kind, kind) << name_of(result.isolated->kind);

@@ -303,8 +303,8 @@ class Isolation {
     const Scalar noise = lasting * error + (1 - correlation) * (1 - correlation) * now.variance;
     const Scalar prior = scales_.own(kOneRegressor, column);
     const Scalar weight = 1 / noise;
-    take(still ? seen.own_still : seen.own,
-         Vector<kOwnRegressors, Scalar>(own - correlation * seen.last_own), whitened, weight);
+    take(seen.own, Vector<kOwnRegressors, Scalar>(own - correlation * seen.last_own), whitened,
+         weight);
     take(state.tip, Vector<kTipParameters, Scalar>(tip - correlation * seen.last_tip), whitened,
          weight);
     take(seen.any, whitened, noise, correlation, contact_kept_, prior * prior);
@@ -313,7 +313,6 @@ class Isolation {
     }
     seen.largest_own = seen.largest_own.cwiseMax(own.cwiseAbs());
     seen.squares += weight * whitened * whitened;
-    if (!still) seen.moving_squares += weight * whitened * whitened;
     if (still) {
       take(seen.held, whitened, noise, correlation, contact_kept_, prior * prior);
       if (Eigen::numext::abs(now.rest) > Eigen::numext::abs(seen.largest_held)) {

@@ -40,15 +40,6 @@ void take(Regression<Size, Scalar>& sums, const Vector<Size, Scalar>& x, Scalar 
   sums.product += (weight * y) * x;
 }
 
-// Of the same parameters, from other observations.
-template <int Size, typename Scalar>
-[[nodiscard]] Regression<Size, Scalar> sum_of(Regression<Size, Scalar> sums,
-                                              const Regression<Size, Scalar>& more) {
-  sums.gram += more.gram;
-  sums.product += more.product;
-  return sums;
-}
-
 // What a regression has come to.
 template <int Size, typename Scalar>
 struct RegressionFit {

@@ -38,7 +38,7 @@ template <int Which, int N, typename Scalar>
                                                 const IsolationScales<N, Scalar>& scales,
                                                 std::size_t joint) {
   const JointEvidence<Scalar>& seen = state.joints[joint];
-  const auto fit = fit_of(own_of<Which>(seen));
+  const auto fit = fit_of(part_of<Which>(seen.own));
   const Scalar scale = scales.own(Which, static_cast<Eigen::Index>(joint));
   return measure_from<N, Scalar>(scale * fit.theta[0], scale * scale * fit.covariance(0, 0),
                                  fit.explained, seen.squares, state.blocks);
@@ -58,12 +58,8 @@ template <int N, typename Scalar>
   const Scalar variance = dry * dry * fit.covariance(0, 0) +
                           2 * dry * viscous * fit.covariance(0, 1) +
                           viscous * viscous * fit.covariance(1, 1);
-  Measure<N, Scalar> measure =
-      measure_from<N, Scalar>(dry * fit.theta[0] + viscous * fit.theta[1], variance, fit.explained,
-                              seen.moving_squares, seen.moved);
-  // Of a rest it explains whatever is held.
-  measure.explained += seen.squares - seen.moving_squares;
-  return measure;
+  return measure_from<N, Scalar>(dry * fit.theta[0] + viscous * fit.theta[1], variance,
+                                 fit.explained, seen.squares, state.blocks);
 }
 
 // Of any torque on the joints up to `last`: the largest.

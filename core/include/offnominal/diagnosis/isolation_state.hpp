@@ -34,9 +34,7 @@ struct FaultDiagnosis {
 // The evidence on one joint since the fault began.
 template <typename Scalar>
 struct JointEvidence {
-  // While the joint moves, and while it stands still, when dry friction is anything that holds it.
   Regression<kOwnRegressors, Scalar> own;
-  Regression<kOwnRegressors, Scalar> own_still;
   AnyTorque<Scalar> any;
   Scalar largest{};  // of any.torque, by size, with its sign
   // While the joint stands still, and the largest that is seen then, N m or N.
@@ -46,7 +44,6 @@ struct JointEvidence {
   Scalar contact{};
   bool contact_ended = false;  // before now
   Scalar squares{};            // of what is seen, each over its variance
-  Scalar moving_squares{};     // of them, those of the blocks in which it moves
   // By size, of each regressor, scaled.
   Vector<kOwnRegressors, Scalar> largest_own = Vector<kOwnRegressors, Scalar>::Zero();
   Scalar speed_sum{};       // of the blocks in which it moves, rad/s or m/s
@@ -57,12 +54,6 @@ struct JointEvidence {
   Vector<kOwnRegressors, Scalar> last_own = Vector<kOwnRegressors, Scalar>::Zero();
   Vector<kTipParameters, Scalar> last_tip = Vector<kTipParameters, Scalar>::Zero();
 };
-
-// Of one of a joint's own parameters, moving and still.
-template <int Which, typename Scalar>
-[[nodiscard]] Regression<1, Scalar> own_of(const JointEvidence<Scalar>& joint) {
-  return sum_of(part_of<Which>(joint.own), part_of<Which>(joint.own_still));
-}
 
 // Everything that changes from tick to tick; plain data.
 template <int N, typename Scalar>

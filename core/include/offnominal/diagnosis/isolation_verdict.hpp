@@ -92,8 +92,8 @@ template <typename Scalar>
   if (watch.stopped && watch.still >= kEncoderLag) {
     const auto sooner =
         static_cast<Scalar>(watch.stopped_at_once ? kWithinOneTick : -kWithinOneTick);
-    stop.may_stick = stuck && watch.still <= times.within;
-    stop.may_lock = watch.still >= locked_for && watch.still <= times.within;
+    stop.may_stick = stuck;
+    stop.may_lock = watch.still >= locked_for;
     stop.stuck = static_cast<Scalar>(kImpossible) + sooner;
     stop.locked = static_cast<Scalar>(kImpossible) - sooner;
     if (stop.may_lock) return stop;
@@ -216,7 +216,7 @@ void enter_drive(const IsolationState<N, Scalar>& state, const IsolationScales<N
                  std::size_t index, Contest<Scalar>& contest) {
   const std::size_t count = state.joints.size();
   const JointEvidence<Scalar>& joint = state.joints[index];
-  const auto lost = fit_of(own_of<kTorqueRegressor>(joint));
+  const auto lost = fit_of(part_of<kTorqueRegressor>(joint.own));
   const Scalar scale = scales.own(kTorqueRegressor, static_cast<Eigen::Index>(index));
   const Scalar evidence = lost.evidence + beyond(scale * lost.theta[0], Scalar(1),
                                                  scale * scale * lost.covariance(0, 0));
@@ -224,7 +224,7 @@ void enter_drive(const IsolationState<N, Scalar>& state, const IsolationScales<N
   contest.enter(
       FaultKind::kLostTorque, index,
       of_alarm(evidence, largest, scales, index) + log_prior<Scalar>(kPriorLostTorque, count));
-  const auto offset = fit_of(own_of<kOneRegressor>(joint));
+  const auto offset = fit_of(part_of<kOneRegressor>(joint.own));
   const Scalar constant = offset.theta[0] * joint.largest_own[kOneRegressor];
   contest.enter(
       FaultKind::kOffset, index,
