@@ -1,6 +1,7 @@
 #include "campaign/monitor_detector.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -24,7 +25,7 @@ void add_jumps(const Replay& shown, Eigen::MatrixXd& ratio) {
   const double beyond = std::nextafter(1.0, 2.0);
   for (std::size_t joint = 0; joint < shown.joints.size(); ++joint) {
     for (const Alarm& alarm : shown.joints[joint].alarms) {
-      if (alarm.max_error_to_threshold > 1) continue;
+      if (!alarm.is_jump()) continue;
       const auto* const begin = shown.t_s.data();
       const auto* const at = std::lower_bound(begin, begin + shown.t_s.size(), alarm.start_s);
       double& there = ratio(at - begin, static_cast<Eigen::Index>(joint));

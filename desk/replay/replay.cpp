@@ -124,7 +124,7 @@ std::string joints_words(const Replay& replay) {
   const JointReplay& crossed = replay.joints[first];
   std::string words =
       fmt::format("Off nominal: joint {} ({}) first, ", first + 1, replay.joint_names[first]);
-  const bool jumped = !crossed.alarms.empty() && crossed.alarms.front().max_error_to_threshold <= 1;
+  const bool jumped = !crossed.alarms.empty() && crossed.alarms.front().is_jump();
   words += jumped ? fmt::format("at {:.3f} s its position is where no motion brings it", at_s)
                   : fmt::format("its residual crosses its threshold at {:.3f} s, up to {:.3g} {}",
                                 at_s, crossed.max_residual, crossed.unit);

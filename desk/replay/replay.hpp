@@ -25,6 +25,9 @@ struct Alarm {
   // From 0, in the order in which they crossed; of several in one tick the farthest beyond first.
   // Empty where there is one threshold of all.
   std::vector<int> joints = {};
+
+  // Of a position to which no motion comes, not of a residual.
+  [[nodiscard]] bool is_jump() const { return max_error_to_threshold <= 1; }
 };
 
 // More samples refused in a row than the monitor bears: it sees nothing from the first of them to
