@@ -50,6 +50,7 @@ struct StudioOptions {
   std::optional<std::string> output;
   int port = 0;
   bool no_open = false;
+  bool no_session = false;
   bool json = false;
   bool force = false;
   int threads = 1;
@@ -70,6 +71,16 @@ std::string options_of(const CLI::App& verb) {
 
 void set_names(std::vector<Log>& logs, const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < logs.size(); ++i) logs[i].file = names[i];
+}
+
+// Beside the recording that is named first, also where it was dropped on a page: then the command
+// line's folder is where it is. -o says another.
+std::filesystem::path place_of_session(const StudioOptions& options, const std::string& recording) {
+  std::filesystem::path place = recording_files(recording).front();
+  if (options.output) {
+    place = std::filesystem::path(*options.output).replace_filename(place.filename());
+  }
+  return place;
 }
 
 // `names`: what commands and messages call the recordings, where that is not where they lie.
@@ -112,6 +123,7 @@ studio::Input read_input(const StudioOptions& options, const std::string& more, 
   input.payloads = files.channels.payloads;
   input.output = options.output;
   input.threads = options.threads;
+  if (!options.no_session) input.keep_beside = place_of_session(options, names.logs.front());
   return input;
 }
 
@@ -386,6 +398,10 @@ void set_up_studio(CLI::App& verb, ExitCode& /*exit_code*/) {
   verb.add_option("--port", options->port, "Port of 127.0.0.1 [a free one]")
       ->check(CLI::Range(1, 65535));
   verb.add_flag("--no-open", options->no_open, "Print the address and open no browser");
+  verb.add_flag("--no-session", options->no_session,
+                "Begin anew, and keep nothing of it but what is saved [what was added and found is "
+                "kept beside the first recording, or beside the file of -o, as "
+                "RECORDING.studio.json, and taken up when the same files are opened again]");
   add_channels_option(verb, options->files.channels, "recordings'");
   add_keep_option(verb, options->keep);
   add_threads_option(verb, options->threads, "Threads of the search for missing effects");

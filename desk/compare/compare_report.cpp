@@ -176,9 +176,9 @@ report::Section joint_section(const Comparison& comparison, const Comparison* ag
   section.text.back() = '.';
   section.blocks.emplace_back(torque_over_time(models, joint));
   section.blocks.emplace_back(residual_over_time(models, joint));
-  for (const MotionVariable variable :
-       {MotionVariable::kVelocity, MotionVariable::kPosition, MotionVariable::kAcceleration}) {
-    section.blocks.emplace_back(residual_over(models, joint, variable));
+  for (const ErrorVariable variable :
+       {ErrorVariable::kVelocity, ErrorVariable::kPosition, ErrorVariable::kAcceleration}) {
+    section.blocks.emplace_back(residual_over(models, joint, {variable, joint}));
   }
   return section;
 }

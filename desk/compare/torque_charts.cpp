@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 
 #include "common/effort_name.hpp"
 #include "report/numbers.hpp"
@@ -51,30 +51,6 @@ Chart time_chart(const Comparison& comparison, std::size_t joint, const std::str
   return chart;
 }
 
-Series binned_mean(const std::string& name, Tone tone, const VectorXd& variable,
-                   const VectorXd& residual) {
-  constexpr Index kBins = 40;
-  std::vector<Index> order(static_cast<std::size_t>(variable.size()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return variable[a] < variable[b]; });
-  Series result = series(name, SeriesKind::kLine, tone, {}, {});
-  for (Index bin = 0; bin < kBins; ++bin) {
-    const Index first = variable.size() * bin / kBins;
-    const Index end = variable.size() * (bin + 1) / kBins;
-    if (first == end) continue;
-    double x = 0;
-    double y = 0;
-    for (Index i = first; i < end; ++i) {
-      x += variable[order[static_cast<std::size_t>(i)]];
-      y += residual[order[static_cast<std::size_t>(i)]];
-    }
-    result.x.push_back(x / static_cast<double>(end - first));
-    result.y.push_back(y / static_cast<double>(end - first));
-  }
-  return result;
-}
-
 }  // namespace
 
 Chart torque_over_time(const std::vector<NamedComparison>& models, std::size_t joint) {
@@ -100,33 +76,52 @@ Chart residual_over_time(const std::vector<NamedComparison>& models, std::size_t
     const Tone tone = models.size() == 1 ? Tone::kResidual : model.tone;
     chart.series.push_back(series(models.size() == 1 ? "residual" : model.name, SeriesKind::kLine,
                                   tone, numbers(any.t_s),
-                                  numbers(model.comparison->residual().col(column))));
+                                  numbers(model.comparison->measured.col(column) -
+                                          model.comparison->model.col(column))));
   }
   return chart;
 }
 
+Series binned_mean(const std::string& name, Tone tone, const Eigen::Ref<const VectorXd>& variable,
+                   const Eigen::Ref<const VectorXd>& values) {
+  constexpr std::size_t kBins = 40;
+  std::vector<Index> order;
+  for (Index i = 0; i < variable.size(); ++i) {
+    if (!std::isnan(variable[i]) && !std::isnan(values[i])) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return variable[a] < variable[b]; });
+  Series result = series(name, SeriesKind::kLine, tone, {}, {});
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    const std::size_t first = order.size() * bin / kBins;
+    const std::size_t end = order.size() * (bin + 1) / kBins;
+    if (first == end) continue;
+    double x = 0;
+    double y = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      x += variable[order[i]];
+      y += values[order[i]];
+    }
+    result.x.push_back(x / static_cast<double>(end - first));
+    result.y.push_back(y / static_cast<double>(end - first));
+  }
+  return result;
+}
+
 Chart residual_over(const std::vector<NamedComparison>& models, std::size_t joint,
-                    MotionVariable variable) {
+                    const ErrorOver& over) {
   const Comparison& any = *models.front().comparison;
   const auto column = static_cast<Index>(joint);
-  const bool slides = effort_unit(any, joint) == "N";
-  const std::string length = slides ? "m" : "rad";
-  VectorXd x = any.q.col(column);
+  const VectorXd x = values_of(any, over);
   Chart chart;
-  chart.x = axis("position", length);
-  if (variable == MotionVariable::kVelocity) {
-    x = any.dq.col(column);
-    chart.x = axis("velocity", length + "/s");
-  } else if (variable == MotionVariable::kAcceleration) {
-    x = any.ddq.col(column);
-    chart.x = axis("acceleration", length + "/s^2");
-  }
+  chart.x = axis_of(any, over, joint);
   chart.title = fmt::format("Joint {}: residual over {}", joint + 1, chart.x.name);
   chart.y = {axis(effort_name(effort_unit(any, joint)), effort_unit(any, joint))};
   chart.width = report::Width::kHalf;
   for (const NamedComparison& model : models) {
     const bool alone = models.size() == 1;
-    const VectorXd residual = model.comparison->residual().col(column);
+    const VectorXd residual =
+        model.comparison->measured.col(column) - model.comparison->model.col(column);
     const Tone tone = alone ? Tone::kResidual : model.tone;
     chart.series.push_back(series(alone ? "residual" : model.name, SeriesKind::kPoints, tone,
                                   numbers(x), numbers(residual)));

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
 #include "compare/compare.hpp"
+#include "compare/error_variable.hpp"
 #include "report/page.hpp"
 
 namespace offnominal::desk {
@@ -22,10 +24,15 @@ report::Chart torque_over_time(const std::vector<NamedComparison>& models, std::
 // The residual of every model over time.
 report::Chart residual_over_time(const std::vector<NamedComparison>& models, std::size_t joint);
 
-// The residuals over a variable of the motion, sample by sample, with the mean of each over 40
-// equally filled bins.
-enum class MotionVariable { kPosition, kVelocity, kAcceleration };
+// The residuals of a joint over a variable, sample by sample where it has a value, with the mean of
+// each over 40 equally filled bins.
 report::Chart residual_over(const std::vector<NamedComparison>& models, std::size_t joint,
-                            MotionVariable variable);
+                            const ErrorOver& over);
+
+// A line through the means of `values` over 40 equally filled bins of `variable`; samples of which
+// one is NaN are none.
+report::Series binned_mean(const std::string& name, report::Tone tone,
+                           const Eigen::Ref<const Eigen::VectorXd>& variable,
+                           const Eigen::Ref<const Eigen::VectorXd>& values);
 
 }  // namespace offnominal::desk

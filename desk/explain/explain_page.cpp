@@ -8,6 +8,7 @@
 
 #include "common/effort_name.hpp"
 #include "common/nearest.hpp"
+#include "compare/error_map.hpp"
 #include "explain/data_fault_report.hpp"
 #include "explain/doubts.hpp"
 #include "explain/explain_report.hpp"
@@ -330,45 +331,12 @@ report::Chart residual_chart(const Pictured& e, Index joint) {
 
 // Mean error of the model as it is over two variables.
 report::Heatmap error_map(const Pictured& e, Index joint) {
-  constexpr Index kCells = 20;
   const JointErrors& errors = e.errors(joint);
-  report::Heatmap map;
-  map.title = fmt::format("Mean error of joint {}, model as it is", joint + 1);
-  map.x = {"position", position_unit(errors)};
-  map.y = {"velocity", velocity_unit(errors)};
-  map.value_axis = {fmt::format("{} error", effort_name(errors.unit)), errors.unit};
-  map.diverging = true;
-  const VectorXd q = e.series.q.col(joint);
-  const VectorXd dq = e.series.dq.col(joint);
-  const VectorXd error = e.series.measured.col(joint) - e.series.model_before.col(joint);
-  const auto edges = [](const VectorXd& values) {
-    std::vector<double> at;
-    const double low = values.minCoeff();
-    const double width = std::max(values.maxCoeff() - low, 1e-9);
-    for (Index i = 0; i <= kCells; ++i) {
-      at.push_back(low + width * static_cast<double>(i) / kCells);
-    }
-    return at;
-  };
-  map.x_edges = edges(q);
-  map.y_edges = edges(dq);
-  std::vector<double> sum(static_cast<std::size_t>(kCells * kCells), 0.0);
-  std::vector<double> count(sum.size(), 0.0);
-  const auto cell = [](const std::vector<double>& at, double value) {
-    const double part = (value - at.front()) / (at.back() - at.front());
-    return std::clamp<Index>(static_cast<Index>(part * kCells), 0, kCells - 1);
-  };
-  for (Index i = 0; i < q.size(); ++i) {
-    const auto place =
-        static_cast<std::size_t>(cell(map.y_edges, dq[i]) * kCells + cell(map.x_edges, q[i]));
-    sum[place] += error[i];
-    count[place] += 1;
-  }
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    map.value.push_back(count[i] > 0 ? sum[i] / count[i]
-                                     : std::numeric_limits<double>::quiet_NaN());
-  }
-  return map;
+  return mean_map(fmt::format("Mean error of joint {}, model as it is", joint + 1),
+                  {{"position", position_unit(errors)}, e.series.q.col(joint)},
+                  {{"velocity", velocity_unit(errors)}, e.series.dq.col(joint)},
+                  {{fmt::format("{} error", effort_name(errors.unit)), errors.unit},
+                   e.series.measured.col(joint) - e.series.model_before.col(joint)});
 }
 
 // The error over one variable, before and after.

@@ -244,9 +244,9 @@ report::Section pictures_of(const AddResult& result, const AddRequest& request,
       {"after", &result.after.recordings[recording], report::Tone::kModel}};
   pictures.blocks.emplace_back(torque_over_time(models, joint));
   pictures.blocks.emplace_back(residual_over_time(models, joint));
-  for (const MotionVariable variable :
-       {MotionVariable::kVelocity, MotionVariable::kPosition, MotionVariable::kAcceleration}) {
-    pictures.blocks.emplace_back(residual_over(models, joint, variable));
+  for (const ErrorVariable variable :
+       {ErrorVariable::kVelocity, ErrorVariable::kPosition, ErrorVariable::kAcceleration}) {
+    pictures.blocks.emplace_back(residual_over(models, joint, {variable, joint}));
   }
   return pictures;
 }

@@ -42,6 +42,25 @@ std::vector<Workspace> FitMemory::workspaces(const RobotDescription& robot,
   return made;
 }
 
+// In ascending order of the recordings.
+const Measurement& FitMemory::measured(const std::vector<Log>& logs, std::size_t recording,
+                                       const RobotDescription& robot, Known& known) {
+  if (known.measured.size() == recording) {
+    known.measured.push_back(measure(logs[recording], robot, plan(robot)));
+  }
+  return known.measured[recording];
+}
+
+Comparisons FitMemory::compare_one(const RobotDescription& robot, const std::vector<Log>& logs,
+                                   Known& known) {
+  std::vector<Comparison> all;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    all.push_back(compare(robot, measured(logs, i, robot, known)));
+  }
+  if (for_ == For::kOneFit) known.measured.clear();
+  return together(std::move(all));
+}
+
 FitMemory::Two FitMemory::compare_two(const RobotDescription& before, const RobotDescription& after,
                                       const std::vector<Log>& logs, Known& known) {
   const std::string text = for_ == For::kMany ? robot_text(before) : "";
@@ -50,11 +69,9 @@ FitMemory::Two FitMemory::compare_two(const RobotDescription& before, const Robo
   std::vector<Comparison> first;
   std::vector<Comparison> second;
   for (std::size_t i = 0; i < logs.size(); ++i) {
-    if (known.measured.size() == i) {
-      known.measured.push_back(measure(logs[i], before, plan(before)));
-    }
-    if (!is_known) first.push_back(compare(before, known.measured[i]));
-    second.push_back(compare(after, known.measured[i]));
+    const Measurement& of = measured(logs, i, before, known);
+    if (!is_known) first.push_back(compare(before, of));
+    second.push_back(compare(after, of));
     if (for_ == For::kOneFit) known.measured[i] = {};
   }
   Two two{is_known ? std::move(known.result) : together(std::move(first)),

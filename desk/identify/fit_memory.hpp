@@ -45,6 +45,11 @@ class FitMemory {
   };
   Two compared(const RobotDescription& before, const RobotDescription& after);
   Two compared_held_out(const RobotDescription& before, const RobotDescription& after);
+  // The same of one robot, which the next two are not compared with.
+  Comparisons compared(const RobotDescription& robot) { return compare_one(robot, logs_, fitted_); }
+  Comparisons compared_held_out(const RobotDescription& robot) {
+    return compare_one(robot, holdout_, held_out_);
+  }
 
  private:
   struct Known {
@@ -52,6 +57,10 @@ class FitMemory {
     std::string robot;  // the text of the one that was compared last
     Comparisons result;
   };
+  const Measurement& measured(const std::vector<Log>& logs, std::size_t recording,
+                              const RobotDescription& robot, Known& known);
+  Comparisons compare_one(const RobotDescription& robot, const std::vector<Log>& logs,
+                          Known& known);
   Two compare_two(const RobotDescription& before, const RobotDescription& after,
                   const std::vector<Log>& logs, Known& known);
 

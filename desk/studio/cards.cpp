@@ -1,6 +1,7 @@
 #include "studio/cards.hpp"
 
-#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace offnominal::desk::studio {
@@ -10,7 +11,8 @@ using nlohmann::ordered_json;
 namespace {
 
 ordered_json json_of(const EffectAt& what) {
-  return {{"effect", what.name()}, {"joint", what.joint + 1}, {"words", info_of(what.kind)->words}};
+  return {{"effect", what.name()}, {"joint", what.joint + 1}, {"words", info_of(what.kind)->words},
+          {"motion", info_of(what.kind)->motion_hint}};
 }
 
 ordered_json json_of(const Estimate& one) {
@@ -49,6 +51,9 @@ ordered_json card_of(const Finding& finding, const Explanation& explanation) {
     if (errors.joint == finding.what.joint) card["unit"] = errors.unit;
   }
   card["alternatives"] = alternatives_to(finding.what, explanation);
+  const auto number = static_cast<std::size_t>(&finding - explanation.found.data());
+  card["finding"] = nullptr;
+  if (improved_effect(explanation, number)) card["finding"] = number;
   return card;
 }
 
@@ -67,6 +72,19 @@ ordered_json joint_of(const JointAnswer& answer, const Explanation& explanation)
     json["classes"].push_back(std::move(members));
   }
   return json;
+}
+
+// Of several effects of one kind on a joint, how far the numbers of one are from a finding's.
+double distance(const RobotEffect& effect, const Finding& finding) {
+  double sum = 0;
+  const auto parameters = info_of(effect.kind)->parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    for (const Estimate& one : finding.parameters) {
+      if (one.value.name != parameters[i].name) continue;
+      sum += std::abs(one.value.value - effect.parameters[i]) / (1e-12 + std::abs(one.value.value));
+    }
+  }
+  return sum;
 }
 
 const char* word_of(Job::State state) {
@@ -96,6 +114,30 @@ ordered_json cards_of(const Explanation& explanation) {
     json["joints"].push_back(joint_of(answer, explanation));
   }
   return json;
+}
+
+std::optional<std::size_t> improved_effect(const Explanation& explanation, std::size_t finding) {
+  if (finding >= explanation.found.size()) return std::nullopt;
+  const Finding& found = explanation.found[finding];
+  if (!is_written(explanation, found.what)) return std::nullopt;
+  std::optional<std::size_t> best;
+  double least = std::numeric_limits<double>::infinity();
+  const std::vector<RobotEffect>& effects = explanation.improved.effects;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const bool is_same = effects[i].kind == found.what.kind && !effects[i].of_motor &&
+                         effects[i].joint == static_cast<std::size_t>(found.what.joint);
+    if (!is_same || !(distance(effects[i], found) < least)) continue;
+    least = distance(effects[i], found);
+    best = i;
+  }
+  return best;
+}
+
+void without_pictures(ordered_json& answer) {
+  if (!answer.at("answer").is_object()) return;
+  for (ordered_json& joint : answer.at("answer").at("joints")) {
+    for (ordered_json& card : joint.at("cards")) card["finding"] = nullptr;
+  }
 }
 
 ordered_json to_json(const Job::Report& report) {

@@ -6,42 +6,24 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "common/effort_name.hpp"
 #include "common/refused.hpp"
 #include "compare/torque_charts.hpp"
 #include "report/decimate.hpp"
+#include "report/numbers.hpp"
 #include "report/page.hpp"
 
 namespace offnominal::desk::studio {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
+using Eigen::VectorXd;
 using report::Chart;
 using report::Series;
 using report::Tone;
 
 namespace {
 
-constexpr const char* kFittedName = "fitted data";
-constexpr const char* kHeldOutName = "held-out data";
-constexpr Tone kFittedTone = Tone::kModel;
-constexpr Tone kHeldOutTone = Tone::kResidual;
 constexpr std::size_t kMostPoints = 3000;  // of a cloud
-
-const std::vector<Comparison>* held_out(const Compared& compared) {
-  return compared.held_out ? &compared.held_out->recordings : nullptr;
-}
-
-void check(const Workbench& bench, const View& view) {
-  const Treated& all = *bench.input().recordings;
-  const auto refuse = [](const std::string& words) {
-    throw Refused(Refused::Why::kBadRequest, words);
-  };
-  if (view.joint >= bench.robot().joints.size()) refuse("There is no such joint.");
-  if (view.recording >= all.logs.size() + all.holdout.size()) refuse("No such recording.");
-  if (view.pixels < kFewestPixels || view.pixels > kMostPixels) {
-    refuse(fmt::format("The width has to be {} to {} pixels.", kFewestPixels, kMostPixels));
-  }
-}
 
 // Points `first` to `end`, that one left out, two per pixel at most.
 void append_part(const Series& whole, std::size_t first, std::size_t end, std::size_t pixels,
@@ -79,24 +61,22 @@ Series seen(const Series& whole, const View& view) {
   return result;
 }
 
-std::vector<Chart> time_charts(const Workbench& bench, const View& view) {
-  const Comparison& now = recording_of(bench.now(), view.recording);
-  const bool is_fitted = view.recording < bench.now().fitted.recordings.size();
-  const std::string role = is_fitted ? kFittedName : kHeldOutName;
+std::vector<Chart> time_charts(const Workbench& bench, const Compared& now, const View& view) {
+  const Role& role = role_of(bench, view.recording);
   std::vector<NamedComparison> models;
   if (!bench.steps().empty()) {
     models.push_back({"model as read", &recording_of(bench.start(), view.recording), Tone::kFaint});
   }
-  models.push_back({"model now, " + role, &now, is_fitted ? kFittedTone : kHeldOutTone});
+  models.push_back({std::string("model now, ") + role.name, &recording_of(now, view.recording),
+                    role.tone});
   Chart torque = torque_over_time(models, view.joint);
   Chart error = residual_over_time(models, view.joint);
   error.title = fmt::format("Joint {}: error (measured minus model)", view.joint + 1);
+  error.series.back().name = std::string("error now, ") + role.name;
   if (models.size() == 1) {
-    error.series[0].name = "error now, " + role;
     error.series[0].tone = models[0].tone;
   } else {
     error.series[0].name = "error as read";
-    error.series[1].name = "error now, " + role;
   }
   std::vector<Chart> charts{std::move(torque), std::move(error)};
   for (Chart& chart : charts) {
@@ -107,42 +87,64 @@ std::vector<Chart> time_charts(const Workbench& bench, const View& view) {
   return charts;
 }
 
-// All samples of recordings as those of one, of which only a cloud is made.
-Comparison joined(const std::vector<Comparison>& recordings) {
-  Comparison all = recordings.front();
-  const auto stack = [&](MatrixXd Comparison::*what) {
-    Index rows = 0;
-    for (const Comparison& one : recordings) rows += (one.*what).rows();
-    MatrixXd stacked(rows, (recordings.front().*what).cols());
-    Index row = 0;
-    for (const Comparison& one : recordings) {
-      stacked.middleRows(row, (one.*what).rows()) = one.*what;
-      row += (one.*what).rows();
-    }
-    all.*what = std::move(stacked);
-  };
-  for (MatrixXd Comparison::*what : {&Comparison::measured, &Comparison::model, &Comparison::q,
-                                     &Comparison::dq, &Comparison::ddq}) {
-    stack(what);
+// Error over a variable, of all samples of some recordings.
+struct Cloud {
+  VectorXd at;
+  VectorXd error;
+};
+
+Cloud cloud_of(const Comparison& one, std::size_t joint, const ErrorOver& over,
+               const Shown& shown) {
+  const auto column = static_cast<Index>(joint);
+  return {values_of(one, over).segment(shown.first, shown.count),
+          (one.measured.col(column) - one.model.col(column)).segment(shown.first, shown.count)};
+}
+
+Cloud cloud_of(const std::vector<Comparison>& recordings, std::size_t joint,
+               const ErrorOver& over) {
+  std::vector<Cloud> parts;
+  Index count = 0;
+  for (const Comparison& one : recordings) {
+    parts.push_back(cloud_of(one, joint, over, {0, one.t_s.size()}));
+    count += one.t_s.size();
+  }
+  Cloud all{VectorXd(count), VectorXd(count)};
+  Index row = 0;
+  for (const Cloud& part : parts) {
+    all.at.segment(row, part.at.size()) = part.at;
+    all.error.segment(row, part.at.size()) = part.error;
+    row += part.at.size();
   }
   return all;
 }
 
-Chart cloud(const Compared& now, std::size_t joint, MotionVariable variable) {
-  const Comparison fitted = joined(now.fitted.recordings);
-  Chart chart = residual_over({{kFittedName, &fitted, kFittedTone}}, joint, variable);
-  chart.title = fmt::format("Joint {}: error over {}", joint + 1, chart.x.name);
-  chart.series[0].name = kFittedName;
-  chart.series[0].tone = kFittedTone;
-  chart.series[1].name = std::string(kFittedName) + ", mean of bins";
-  if (const auto* others = held_out(now)) {
-    const Comparison apart = joined(*others);
-    Chart beside = residual_over({{kHeldOutName, &apart, kHeldOutTone}}, joint, variable);
-    beside.series[0].name = kHeldOutName;
-    beside.series[0].tone = kHeldOutTone;
-    chart.series.insert(chart.series.begin() + 1, std::move(beside.series[0]));
-  }
+Chart cloud_chart(const Workbench& bench, const Compared& now, const View& view,
+                  ErrorVariable variable) {
+  const ErrorOver over{variable, view.joint};
+  const Comparison& any = now.fitted.recordings.front();
+  const std::string& unit = any.joints[view.joint].unit;
+  const bool is_part = view.from_s && view.to_s;
+  const auto tone = [&](const Role& role) { return is_part ? Tone::kFaint : role.tone; };
+  Chart chart;
+  chart.x = axis_of(any, over, view.joint);
+  chart.y = {{effort_name(unit), unit}};
+  chart.title = fmt::format("Joint {}: error over {}", view.joint + 1, chart.x.name);
+  chart.width = report::Width::kHalf;
   chart.max_points = kMostPoints;
+  const Cloud fitted = cloud_of(now.fitted.recordings, view.joint, over);
+  chart.series.push_back(points_of(kFitted.name, tone(kFitted), fitted.at, fitted.error));
+  if (now.held_out) {
+    const Cloud others = cloud_of(now.held_out->recordings, view.joint, over);
+    chart.series.push_back(points_of(kHeldOut.name, tone(kHeldOut), others.at, others.error));
+  }
+  if (is_part) {
+    const Comparison& seen = recording_of(now, view.recording);
+    const Cloud part = cloud_of(seen, view.joint, over, shown_of(seen, view));
+    chart.series.push_back(points_of("the time that is shown", role_of(bench, view.recording).tone,
+                                     part.at, part.error));
+  }
+  chart.series.push_back(binned_mean(std::string(kFitted.name) + ", mean of bins",
+                                     Tone::kThreshold, fitted.at, fitted.error));
   return chart;
 }
 
@@ -159,19 +161,48 @@ nlohmann::json blocks_of(std::vector<report::Block> blocks) {
 
 }  // namespace
 
-nlohmann::json time_charts_of(const Workbench& bench, const View& view) {
-  check(bench, view);
-  std::vector<report::Block> blocks;
-  for (Chart& chart : time_charts(bench, view)) blocks.emplace_back(std::move(chart));
-  return blocks_of(std::move(blocks));
+void check(const Workbench& bench, const View& view) {
+  const Treated& all = *bench.input().recordings;
+  const auto refuse = [](const std::string& words) {
+    throw Refused(Refused::Why::kBadRequest, words);
+  };
+  if (view.joint >= bench.robot().joints.size()) refuse("There is no such joint.");
+  if (view.recording >= all.logs.size() + all.holdout.size()) refuse("No such recording.");
+  if (view.pixels < kFewestPixels || view.pixels > kMostPixels) {
+    refuse(fmt::format("The width has to be {} to {} pixels.", kFewestPixels, kMostPixels));
+  }
 }
 
-nlohmann::json charts_of(const Workbench& bench, const View& view) {
+const Role& role_of(const Workbench& bench, std::size_t recording) {
+  return recording < bench.input().recordings->logs.size() ? kFitted : kHeldOut;
+}
+
+Shown shown_of(const Comparison& recording, const View& view) {
+  const VectorXd& t_s = recording.t_s;
+  if (!view.from_s || !view.to_s) return {0, t_s.size()};
+  const auto first = std::lower_bound(t_s.begin(), t_s.end(), *view.from_s);
+  const auto end = std::upper_bound(first, t_s.end(), *view.to_s);
+  return {first - t_s.begin(), end - first};
+}
+
+Series points_of(const std::string& name, Tone tone, const VectorXd& x, const VectorXd& y) {
+  Series series;
+  series.name = name;
+  series.kind = report::SeriesKind::kPoints;
+  series.tone = tone;
+  series.x = report::numbers(x);
+  series.y = report::numbers(y);
+  return series;
+}
+
+nlohmann::json block_of(report::Block block) { return blocks_of({std::move(block)}).at(0); }
+
+nlohmann::json charts_of(const Workbench& bench, const Compared& now, const View& view) {
   check(bench, view);
   std::vector<report::Block> blocks;
-  for (Chart& chart : time_charts(bench, view)) blocks.emplace_back(std::move(chart));
-  blocks.emplace_back(cloud(bench.now(), view.joint, MotionVariable::kVelocity));
-  blocks.emplace_back(cloud(bench.now(), view.joint, MotionVariable::kPosition));
+  for (Chart& chart : time_charts(bench, now, view)) blocks.emplace_back(std::move(chart));
+  blocks.emplace_back(cloud_chart(bench, now, view, ErrorVariable::kVelocity));
+  blocks.emplace_back(cloud_chart(bench, now, view, ErrorVariable::kPosition));
   return blocks_of(std::move(blocks));
 }
 
@@ -192,7 +223,7 @@ nlohmann::json waterfall_of(const Workbench& bench, std::size_t joint) {
                                                        bench.steps()[steps - 1].joint + 1);
     fall.steps.push_back({label, bench.held_out_percent(joint, steps)});
   }
-  return blocks_of({std::move(fall)}).at(0);
+  return block_of(std::move(fall));
 }
 
 }  // namespace offnominal::desk::studio

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
 
+#include "report/page.hpp"
 #include "studio/workbench.hpp"
 
 namespace offnominal::desk::studio {
@@ -21,14 +24,38 @@ struct View {
 inline constexpr std::size_t kFewestPixels = 100;
 inline constexpr std::size_t kMostPixels = 8000;
 
+/// Throws Refused where there is no such joint, recording or size.
+void check(const Workbench& bench, const View& view);
+
 /// The charts of a joint, as report pages hold them (report/page.hpp): torque over time, error over
-/// time, error over velocity, error over position. Curves over time keep the lowest and the highest
-/// point of every pixel of the part that is shown, and of the parts beside it. Throws Refused where
-/// there is no such joint, recording or size.
-nlohmann::json charts_of(const Workbench& bench, const View& view);
-/// The charts over time alone: what a zoom changes.
-nlohmann::json time_charts_of(const Workbench& bench, const View& view);
+/// time, error over velocity, error over position, of the model `now`. Curves over time keep the
+/// lowest and the highest point of every pixel of the part that is shown, and of the parts beside
+/// it; of that part the points of the others are marked. Throws as check().
+nlohmann::json charts_of(const Workbench& bench, const Compared& now, const View& view);
 /// The error of a joint, step by step.
 nlohmann::json waterfall_of(const Workbench& bench, std::size_t joint);
+
+/// What fitted and held-out data are called and how they are coloured, in every chart.
+struct Role {
+  const char* name;
+  report::Tone tone;
+};
+inline constexpr Role kFitted{"fitted data", report::Tone::kModel};
+inline constexpr Role kHeldOut{"held-out data", report::Tone::kResidual};
+[[nodiscard]] const Role& role_of(const Workbench& bench, std::size_t recording);
+
+/// The samples of a recording in the part of the time that is shown.
+struct Shown {
+  Eigen::Index first = 0;
+  Eigen::Index count = 0;
+};
+[[nodiscard]] Shown shown_of(const Comparison& recording, const View& view);
+
+/// A cloud of points.
+[[nodiscard]] report::Series points_of(const std::string& name, report::Tone tone,
+                                       const Eigen::VectorXd& x, const Eigen::VectorXd& y);
+
+/// As a report page holds it.
+[[nodiscard]] nlohmann::json block_of(report::Block block);
 
 }  // namespace offnominal::desk::studio

@@ -35,9 +35,25 @@ View view_of(const Request& request) {
   View view;
   view.joint = number_of<std::size_t>(request, "joint") - 1;
   view.recording = number_of<std::size_t>(request, "recording") - 1;
-  view.pixels = number_of<std::size_t>(request, "pixels");
+  if (request.has_param("pixels")) view.pixels = number_of<std::size_t>(request, "pixels");
   set_range(request, view);
   return view;
+}
+
+// "x=velocity&x_joint=2": a variable of a joint, of the one that is shown where none is named.
+ErrorOver over_of(const Request& request, const std::string& side) {
+  const auto variable = error_variable(request.get_param_value(side));
+  if (!variable) throw Refused(Refused::Why::kBadRequest, side + " has to be a variable.");
+  const std::string joint = side + "_joint";
+  const bool has_joint = request.has_param(joint);
+  return {*variable, number_of<std::size_t>(request, has_joint ? joint.c_str() : "joint") - 1};
+}
+
+SpectrumOver spectrum_over_of(const Request& request) {
+  const std::string over = request.get_param_value("over");
+  if (over == "frequency") return SpectrumOver::kFrequency;
+  if (over == "order") return SpectrumOver::kOrder;
+  throw Refused(Refused::Why::kBadRequest, "over has to be frequency or order.");
 }
 
 ArmView arm_view_of(const Request& request) {
@@ -73,8 +89,24 @@ void set_up_model(httplib::Server& server, const std::string& api, Stage& stage)
     answer(response, [&] { return stage.session()->state(); });
   });
   server.Get(api + "charts", [&stage](const Request& request, Response& response) {
+    answer(response, [&] { return stage.session()->charts(view_of(request)); });
+  });
+  server.Get(api + "map", [&stage](const Request& request, Response& response) {
     answer(response, [&] {
-      return stage.session()->charts(view_of(request), request.get_param_value("only") == "time");
+      return stage.session()->map(view_of(request), over_of(request, "x"), over_of(request, "y"));
+    });
+  });
+  server.Get(api + "spectrum", [&stage](const Request& request, Response& response) {
+    answer(response, [&] {
+      return stage.session()->spectrum(view_of(request), spectrum_over_of(request));
+    });
+  });
+  server.Get(api + "evidence", [&stage](const Request& request, Response& response) {
+    answer(response, [&] {
+      if (request.has_param("step")) {
+        return stage.session()->evidence_of_step(number_of<std::size_t>(request, "step"));
+      }
+      return stage.session()->evidence_of_finding(number_of<std::size_t>(request, "finding"));
     });
   });
   server.Get(api + "arm", [&stage](const Request& request, Response& response) {
@@ -89,6 +121,23 @@ void set_up_model(httplib::Server& server, const std::string& api, Stage& stage)
   });
   server.Delete(api + "steps/([0-9]{1,9})", [&stage](const Request& request, Response& response) {
     answer(response, [&] { return stage.session()->undo(std::stoul(request.matches[1])); });
+  });
+  server.Delete(api + "steps", [&stage](const Request&, Response& response) {
+    answer(response, [&] { return stage.session()->undo_all(); });
+  });
+  server.Get(api + "moved", [&stage](const Request& request, Response& response) {
+    answer(response, [&] {
+      return stage.session()->moved(
+          {number_of<std::size_t>(request, "step"), request.get_param_value("parameter"),
+           number_of<double>(request, "value")},
+          view_of(request));
+    });
+  });
+  server.Post(api + "page", [&stage](const Request& request, Response& response) {
+    answer(response, [&] {
+      const json body = body_of(request);
+      return stage.session()->save_page({body.value("name", ""), body.value("replace", false)});
+    });
   });
   server.Post(api + "save", [&stage](const Request& request, Response& response) {
     answer(response, [&] {

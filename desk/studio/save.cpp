@@ -8,6 +8,8 @@
 #include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "common/refused.hpp"
+#include "compare/compare_report.hpp"
+#include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk::studio {
@@ -37,6 +39,12 @@ void check_is_no_input(const Input& input, const std::string& path) {
       }
     }
   }
+}
+
+void refuse_what_is_there(const std::filesystem::path& path, const SaveRequest& request) {
+  std::error_code ignored;
+  if (request.replace || !std::filesystem::exists(path, ignored)) return;
+  throw Refused(Refused::Why::kMustConfirm, path.string() + " is there already.");
 }
 
 }  // namespace
@@ -78,6 +86,34 @@ std::filesystem::path place_to_save(const Input& input, const std::string& name)
   return path;
 }
 
+std::filesystem::path save_page(const Workbench& bench, const SaveRequest& request) {
+  const Input& input = bench.input();
+  std::filesystem::path path = place_to_save(input, request.name);
+  path.replace_extension(".html");
+  refuse_what_is_there(path, request);
+  const auto all = [](const Compared& compared) {
+    std::vector<Comparison> recordings = compared.fitted.recordings;
+    if (compared.held_out) {
+      const std::vector<Comparison>& others = compared.held_out->recordings;
+      recordings.insert(recordings.end(), others.begin(), others.end());
+    }
+    return together(std::move(recordings));
+  };
+  CompareNames names{input.log_files, input.robot_file, ""};
+  names.logs.insert(names.logs.end(), input.holdout_files.begin(), input.holdout_files.end());
+  report::Page page;
+  if (bench.steps().empty()) {
+    page = page_of(all(bench.now()), names);
+  } else {
+    names.against_file = input.robot_file;
+    names.robot_file = place_to_save(input, request.name).filename().string();
+    const Comparisons start = all(bench.start());
+    page = page_of(all(bench.now()), names, &start);
+  }
+  report::write_page(path, page, existing_if(request.replace));
+  return path;
+}
+
 std::filesystem::path save(const Workbench& bench, const SaveRequest& request) {
   if (bench.steps().empty()) {
     throw Refused(Refused::Why::kNotNow, "There is nothing to save yet: add an effect first.");
@@ -87,10 +123,7 @@ std::filesystem::path save(const Workbench& bench, const SaveRequest& request) {
     if (bench.fitted(i).result.doubts.empty()) continue;
     throw Refused(Refused::Why::kMustConfirm, bench.fitted(i).result.doubts.front());
   }
-  std::error_code ignored;
-  if (!request.replace && std::filesystem::exists(path, ignored)) {
-    throw Refused(Refused::Why::kMustConfirm, path.string() + " is there already.");
-  }
+  refuse_what_is_there(path, request);
   write_robot_file(bench.robot(), path, existing_if(request.replace));
   return path;
 }

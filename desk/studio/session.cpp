@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "common/error.hpp"
 #include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "common/refused.hpp"
@@ -26,7 +27,34 @@ EffectKind kind_of(const std::string& name) {
 
 }  // namespace
 
-Session::Session(Input input) : bench_(std::move(input)) {}
+Session::Session(Input input) : bench_(std::move(input)) {
+  if (bench_.input().keep_beside) kept_ = KeptSession(*bench_.input().keep_beside, bench_.input());
+  take_up_kept();
+}
+
+void Session::take_up_kept() {
+  const SessionState& found = kept_.found();
+  try {
+    for (const Step& step : found.steps) {
+      if (step.joint >= bench_.robot().joints.size()) break;
+      bench_.add(step.kind, step.joint);
+      ++taken_up_;
+      ++revision_;
+    }
+  } catch (const std::exception& error) {
+    not_taken_up_ = on_one_line(error.what());
+  }
+  answer_ = found.answer;
+  if (!answer_.is_object()) return;
+  const bool is_of_now = found.answers_now && taken_up_ == found.steps.size();
+  // No model of this session has that one: a number that JSON has, too.
+  answer_["revision"] = is_of_now ? ordered_json(revision_) : ordered_json(-1);
+}
+
+void Session::keep() {
+  const bool answers_now = answer_.is_object() && answer_.at("revision") == revision_;
+  kept_.keep({bench_.steps(), answer_, answers_now});
+}
 
 ordered_json Session::state_now() {
   ordered_json json = state_of(bench_);
@@ -38,6 +66,10 @@ ordered_json Session::state_now() {
                   {"commands", commands()},
                   {"commands_note", input.commands_note}};
   if (!saved_.empty() && saved_revision_ == revision_) json["save"]["saved"] = saved_;
+  json["kept"] = {{"file", kept_.file()},
+                  {"problem", kept_.problem()},
+                  {"taken_up", taken_up_},
+                  {"not_taken_up", not_taken_up_}};
   return json;
 }
 
@@ -51,12 +83,59 @@ ordered_json Session::state() {
   return state_now();
 }
 
-nlohmann::json Session::charts(const View& view, bool only_time) {
+nlohmann::json Session::charts(const View& view) {
   const std::lock_guard guard(lock_);
-  nlohmann::json json{{"revision", revision_}};
-  json["charts"] = only_time ? time_charts_of(bench_, view) : charts_of(bench_, view);
-  if (!only_time) json["waterfall"] = waterfall_of(bench_, view.joint);
-  return json;
+  return {{"revision", revision_},
+          {"charts", charts_of(bench_, bench_.now(), view)},
+          {"waterfall", waterfall_of(bench_, view.joint)}};
+}
+
+nlohmann::json Session::map(const View& view, const ErrorOver& x, const ErrorOver& y) {
+  const std::lock_guard guard(lock_);
+  return {{"revision", revision_}, {"chart", map_of(bench_, bench_.now(), view, x, y)}};
+}
+
+nlohmann::json Session::spectrum(const View& view, SpectrumOver over) {
+  const std::lock_guard guard(lock_);
+  return {{"revision", revision_}, {"chart", spectrum_of(bench_, bench_.now(), view, over)}};
+}
+
+nlohmann::json Session::evidence_of_step(std::size_t step) {
+  const std::lock_guard guard(lock_);
+  const Compared without = bench_.compared_with(bench_.robot_without(step));
+  return {{"revision", revision_},
+          {"chart", evidence_of(without, bench_.now(), bench_.effect(step))}};
+}
+
+nlohmann::json Session::evidence_of_finding(std::size_t finding) {
+  const std::lock_guard guard(lock_);
+  const Job::Report report = job_.report();
+  std::optional<std::size_t> at;
+  if (report.explanation) at = improved_effect(*report.explanation, finding);
+  if (!at) {
+    throw Refused(Refused::Why::kNotNow,
+                  "There is no such finding whose picture can be drawn: search again.");
+  }
+  const RobotDescription& robot = report.explanation->improved;
+  RobotDescription less = robot;
+  less.effects.erase(less.effects.begin() + static_cast<std::ptrdiff_t>(*at));
+  return {{"revision", revision_},
+          {"chart", evidence_of(bench_.compared_with(less), bench_.compared_with(robot),
+                                robot.effects[*at])}};
+}
+
+ordered_json Session::moved(const MovedNumber& number, const View& view) {
+  const std::lock_guard guard(lock_);
+  check(bench_, view);
+  const Compared now =
+      bench_.compared_with(bench_.robot_with(number.step, number.parameter, number.value));
+  const auto percent = [&](const Comparisons& all) {
+    return number_or_null(all.joints[view.joint].relative_error_percent);
+  };
+  return {{"revision", revision_},
+          {"fitted_percent", percent(now.fitted)},
+          {"held_out_percent", now.held_out ? percent(*now.held_out) : nullptr},
+          {"charts", charts_of(bench_, now, view)}};
 }
 
 ordered_json Session::arm(const ArmView& view) {
@@ -81,6 +160,7 @@ ordered_json Session::add(const std::string& effect, int joint) {
   }
   bench_.add(kind, static_cast<std::size_t>(joint - 1));
   ++revision_;
+  keep();
   return state_now();
 }
 
@@ -89,7 +169,23 @@ ordered_json Session::undo(std::size_t step) {
   refuse_while_explaining();
   bench_.undo(step);
   ++revision_;
+  keep();
   return state_now();
+}
+
+ordered_json Session::undo_all() {
+  const std::lock_guard guard(lock_);
+  refuse_while_explaining();
+  bench_.undo_all();
+  taken_up_ = 0;
+  ++revision_;
+  keep();
+  return state_now();
+}
+
+ordered_json Session::save_page(const SaveRequest& request) {
+  const std::lock_guard guard(lock_);
+  return {{"saved", studio::save_page(bench_, request).string()}};
 }
 
 ordered_json Session::save(const SaveRequest& request) {
@@ -108,6 +204,7 @@ ordered_json Session::start_to_explain() {
   options.threads = bench_.input().threads;
   options.robot_file = bench_.input().robot_file;
   options.source = bench_.input().source;
+  is_answer_kept_ = false;
   job_.start(bench_.robot(), bench_.input().recordings, std::move(options), revision_);
   return to_json(job_.report());
 }
@@ -122,6 +219,17 @@ bool Session::has_steps() {
   return !bench_.steps().empty();
 }
 
-ordered_json Session::explanation() { return to_json(job_.report()); }
+ordered_json Session::explanation() {
+  const std::lock_guard guard(lock_);
+  const Job::Report report = job_.report();
+  if (report.state == Job::State::kNone && answer_.is_object()) return answer_;
+  ordered_json json = to_json(report);
+  if (report.state != Job::State::kDone || is_answer_kept_) return json;
+  is_answer_kept_ = true;
+  answer_ = json;
+  without_pictures(answer_);
+  keep();
+  return json;
+}
 
 }  // namespace offnominal::desk::studio

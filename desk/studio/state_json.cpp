@@ -1,5 +1,6 @@
 #include "studio/state_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -16,13 +17,9 @@ using nlohmann::ordered_json;
 
 namespace {
 
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
 ordered_json errors_of(const Workbench& bench, std::size_t joint, std::size_t steps) {
-  return {{"fitted_percent", number(bench.fitted_percent(joint, steps))},
-          {"held_out_percent", number(bench.held_out_percent(joint, steps))}};
+  return {{"fitted_percent", number_or_null(bench.fitted_percent(joint, steps))},
+          {"held_out_percent", number_or_null(bench.held_out_percent(joint, steps))}};
 }
 
 // The errors of a step's joint without it and with it, as `add` prints them: where parts of the
@@ -36,8 +33,8 @@ OfStep errors_of_step(const Workbench& bench, std::size_t step) {
   OfStep errors{errors_of(bench, joint, step), errors_of(bench, joint, step + 1)};
   for (const BeforeAfter& one : bench.fitted(step).result.held_out) {
     if (one.joint != joint) continue;
-    errors.before["held_out_percent"] = number(one.before_percent);
-    errors.after["held_out_percent"] = number(one.after_percent);
+    errors.before["held_out_percent"] = number_or_null(one.before_percent);
+    errors.after["held_out_percent"] = number_or_null(one.after_percent);
   }
   return errors;
 }
@@ -115,6 +112,25 @@ ordered_json joints_of(const Workbench& bench) {
   return all;
 }
 
+// Of every fitted number of a step: what it is with all steps, and how far the page lets it be
+// dragged: as far as it is large, or as its interval is wide, within what the effect can have.
+ordered_json draggable_of(const Workbench& bench, const Step& step, const Fitted& fitted) {
+  ordered_json all = ordered_json::object();
+  const RobotEffect& now = bench.effect(step.id);
+  for (const FittedParameter& one : fitted.result.fit.parameters) {
+    if (!one.fitted || one.effect != fitted.result.added.front()) continue;
+    const ParameterInfo& info = info_of(step.kind)->parameters[one.parameter];
+    const double value = now.parameters[one.parameter];
+    const double width = one.ci95 ? (*one.ci95)[1] - (*one.ci95)[0] : 0;
+    const double reach = std::max(std::abs(value), width);
+    if (!(reach > 0)) continue;
+    all[info.name] = {{"value", value},
+                      {"low", std::max(info.min, value - reach)},
+                      {"high", std::min(info.max, value + reach)}};
+  }
+  return all;
+}
+
 ordered_json steps_of(const Workbench& bench) {
   ordered_json all = ordered_json::array();
   for (std::size_t i = 0; i < bench.steps().size(); ++i) {
@@ -127,6 +143,7 @@ ordered_json steps_of(const Workbench& bench) {
                    {"words", info_of(step.kind)->words},
                    {"joint", step.joint + 1},
                    {"parameters", added.at("parameters")},
+                   {"draggable", draggable_of(bench, step, fitted)},
                    {"refitted", added.at("refitted")},
                    {"before", std::move(errors.before)},
                    {"after", std::move(errors.after)},
@@ -138,6 +155,10 @@ ordered_json steps_of(const Workbench& bench) {
 }
 
 }  // namespace
+
+ordered_json number_or_null(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
 
 ordered_json state_of(const Workbench& bench) {
   const Input& input = bench.input();

@@ -12,4 +12,6 @@ namespace offnominal::desk::studio {
 /// Joints count from 1. A number that there is not is null.
 nlohmann::ordered_json state_of(const Workbench& bench);
 
+nlohmann::ordered_json number_or_null(double value);
+
 }  // namespace offnominal::desk::studio

@@ -17,13 +17,6 @@ namespace {
 // A fit holds the curves of every recording: at most so much of them is kept, bytes.
 constexpr double kMostKept = 512e6;
 
-Comparisons compare_all(const RobotDescription& robot, const std::vector<Log>& logs,
-                        const FilterPlan& plan) {
-  std::vector<Comparison> comparisons;
-  for (const Log& log : logs) comparisons.push_back(compare(robot, measure(log, robot, plan)));
-  return together(std::move(comparisons));
-}
-
 // Of two models on one and of one on the other, as a fit keeps them.
 double bytes_of(const Compared& compared) {
   Eigen::Index numbers = 0;
@@ -49,11 +42,7 @@ Workbench::Workbench(Input input)
   for (const std::vector<Log>* group : {&recordings.logs, &recordings.holdout}) {
     for (const Log& log : *group) require_joints(log, input_.robot);
   }
-  const FilterPlan& plan = memory_.plan(input_.robot);
-  start_.fitted = compare_all(input_.robot, recordings.logs, plan);
-  if (!recordings.holdout.empty()) {
-    start_.held_out = compare_all(input_.robot, recordings.holdout, plan);
-  }
+  start_ = compared_with(input_.robot);
   now_ = start_;
   most_known_ = static_cast<std::size_t>(std::clamp(kMostKept / bytes_of(start_), 4.0, 64.0));
 }
@@ -62,6 +51,49 @@ Compared Workbench::compared(const Fitted& last) {
   const AddResult& result = last.result;
   if (result.cross_validated) return {result.after, std::nullopt};
   return {result.after_fitted, result.after};
+}
+
+Compared Workbench::compared_with(const RobotDescription& robot) {
+  Compared made{memory_.compared(robot), std::nullopt};
+  if (!input_.recordings->holdout.empty()) made.held_out = memory_.compared_held_out(robot);
+  return made;
+}
+
+const Step& Workbench::step(std::size_t id) const {
+  const auto found =
+      std::find_if(steps_.begin(), steps_.end(), [&](const Step& one) { return one.id == id; });
+  if (found != steps_.end()) return *found;
+  throw Refused(Refused::Why::kBadRequest, fmt::format("There is no step {}.", id));
+}
+
+std::size_t Workbench::effect_of(std::size_t id) const {
+  const auto at = static_cast<std::size_t>(&step(id) - steps_.data());
+  return fits_[at]->result.added.front();
+}
+
+RobotDescription Workbench::robot_without(std::size_t id) const {
+  RobotDescription without = robot();
+  without.effects.erase(without.effects.begin() + static_cast<std::ptrdiff_t>(effect_of(id)));
+  return without;
+}
+
+RobotDescription Workbench::robot_with(std::size_t id, const std::string& parameter,
+                                       double value) const {
+  RobotDescription moved = robot();
+  RobotEffect& effect = moved.effects[effect_of(id)];
+  const auto parameters = info_of(effect.kind)->parameters;
+  const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const auto& one) {
+    return parameter == one.name;
+  });
+  if (found == parameters.end()) {
+    throw Refused(Refused::Why::kBadRequest, "The effect has no such parameter.");
+  }
+  if (!(value >= found->min && value <= found->max)) {
+    throw Refused(Refused::Why::kBadRequest, fmt::format("{} has to be {} to {}.", parameter,
+                                                         found->min, found->max));
+  }
+  effect.parameters[static_cast<std::size_t>(found - parameters.begin())] = value;
+  return moved;
 }
 
 const RobotDescription& Workbench::robot_after(std::size_t steps) const {
@@ -124,9 +156,7 @@ void Workbench::add(EffectKind kind, std::size_t joint) {
 
 void Workbench::undo(std::size_t id) {
   std::vector<Step> steps = steps_;
-  if (std::erase_if(steps, [&](const Step& step) { return step.id == id; }) == 0) {
-    throw Refused(Refused::Why::kBadRequest, fmt::format("There is no step {} to undo.", id));
-  }
+  steps.erase(steps.begin() + (&step(id) - steps_.data()));
   take(std::move(steps));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -29,6 +30,8 @@ struct Input {
   std::optional<std::string> output;          // the file that -o names; none: beside the robot file
   std::vector<std::string> commands_before;   // those that make the files of this session
   std::vector<report::EventMark> marks;       // in the time of the first recording
+  // Beside what its state is kept, as beside a recording; none: nowhere.
+  std::optional<std::filesystem::path> keep_beside = {};
   std::string commands_note;  // what those who repeat the session have to know, or empty
   int threads = 1;            // of explain
 };
@@ -65,6 +68,8 @@ class Workbench {
 
   [[nodiscard]] const Input& input() const { return input_; }
   [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
+  /// Throws Refused for an unknown id.
+  [[nodiscard]] const Step& step(std::size_t id) const;
   [[nodiscard]] const Fitted& fitted(std::size_t step) const { return *fits_[step]; }
   /// With all steps.
   [[nodiscard]] const RobotDescription& robot() const { return robot_after(steps_.size()); }
@@ -80,17 +85,34 @@ class Workbench {
   /// Why an effect cannot be added to a joint now, in words; empty: it can be tried.
   [[nodiscard]] std::string why_not(EffectKind kind, std::size_t joint) const;
 
+  /// Another model against the same recordings.
+  [[nodiscard]] Compared compared_with(const RobotDescription& robot);
+  /// The effect of a step, with the numbers that the robot with all steps has. Throws Refused for
+  /// an unknown id; so do the next two.
+  [[nodiscard]] const RobotEffect& effect(std::size_t id) const {
+    return robot().effects[effect_of(id)];
+  }
+  /// The robot with all steps, but for one of them: what the effect does by itself.
+  [[nodiscard]] RobotDescription robot_without(std::size_t id) const;
+  /// The robot with all steps, one number of one of them moved off its fit. Throws Refused for an
+  /// unknown parameter, too, and where the effect cannot have that value.
+  [[nodiscard]] RobotDescription robot_with(std::size_t id, const std::string& parameter,
+                                            double value) const;
+
   /// Adds an effect on top. Throws InputError as desk::add(), Refused where its fit must not be
   /// used; nothing has changed then.
   void add(EffectKind kind, std::size_t joint);
   /// Takes a step away; those above it are fitted anew. Throws Refused for an unknown id and where
   /// one above cannot be without it; nothing has changed then.
   void undo(std::size_t id);
+  void undo_all() { take({}); }
 
  private:
   using Fit = std::shared_ptr<const Fitted>;
 
   [[nodiscard]] const RobotDescription& robot_after(std::size_t steps) const;
+  // Among the effects of robot(): those above it are added behind it.
+  [[nodiscard]] std::size_t effect_of(std::size_t id) const;
   [[nodiscard]] AddRequest request_of(const Step& step) const;
   // With all of these fits.
   [[nodiscard]] static Compared compared(const Fitted& last);

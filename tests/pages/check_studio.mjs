@@ -132,7 +132,7 @@ async function checkSteps(page, options, inputs, fault) {
 
 /** A zoom asks for finer curves and keeps its range. */
 async function checkZoom(page, fault) {
-  const asked = page.waitForResponse((answer) => answer.url().includes("only=time"));
+  const asked = page.waitForResponse((answer) => answer.url().includes("charts?") && answer.url().includes("from="));
   await page.evaluate(() =>
     timeFigures()[0].chart.dispatchAction({ type: "dataZoom", dataZoomIndex: 0, start: 40, end: 60 }),
   );

@@ -27,6 +27,8 @@ function refill(figure, block) {
   root.querySelector("h3").textContent = block.title;
   for (const hidden of root.querySelectorAll(".tools .hidden-text")) hidden.textContent = ` of ${block.title}`;
   figure.legend?.setAttribute("aria-label", `Series of ${block.title}`);
+  const scale = root.querySelector(".scale");
+  if (scale !== null) scale.textContent = scaleWords(block);
   const words = root.querySelector("h3").id.replace(/-title$/, "-words");
   document.getElementById(words).textContent = figure.kind.words(block);
   refillRemark(root, block.note);
@@ -59,7 +61,7 @@ function chartPixels() {
 
 function chartAddress(look, range) {
   const parts = [`joint=${look.joint}`, `recording=${look.recording}`, `pixels=${chartPixels()}`];
-  if (range) parts.push("only=time", `from=${range.from}`, `to=${range.to}`);
+  if (range) parts.push(`from=${range.from}`, `to=${range.to}`);
   return `charts?${parts.join("&")}`;
 }
 
@@ -119,7 +121,15 @@ function zoomRange() {
   return startValue < endValue ? { from: startValue, to: endValue } : null;
 }
 
-/** The same charts over time, finer where the reader has zoomed. */
+/** A picture that no other depends on: made where there is none yet, else filled anew. */
+function showAlone(place, block, host) {
+  if (drawn.has(place)) refill(drawn.get(place), block);
+  else makeFigure(block, place, host);
+  shareExtents();
+  drawFigure(drawn.get(place));
+}
+
+/** The same charts: finer over the time that the reader has zoomed, that time marked in the others. */
 function showFiner(answer) {
   answer.charts.forEach((block, index) => {
     const figure = drawn.get(`chart.${index}`);

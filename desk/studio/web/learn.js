@@ -19,7 +19,7 @@ function chanceWords(p) {
   return `By chance in one of ${formatSignificant(1 / p, 2)} such searches at most.`;
 }
 
-function findingCard(card, id, state, actions) {
+function findingCard(card, id, search, state, actions) {
   const root = element("li", { class: "card finding" });
   const head = element("div", { class: "step-head" }, element("h4", {}, effectTitle(card.title)));
   head.append(addButton(card, `add-${id}`, isAdded(state, card), actions));
@@ -35,6 +35,9 @@ function findingCard(card, id, state, actions) {
       `It takes ${share} % off ${whose} error on held-out data. ${chanceWords(card.p_value)}`,
     ),
   );
+  if (card.finding !== null) {
+    root.append(evidenceElement(`finding ${card.finding} of ${search}`, `evidence?finding=${card.finding}`));
+  }
   if (card.alternatives.length > 0) {
     root.append(element("p", {}, "These recordings do not tell it from:"));
     root.append(choiceList(card.alternatives, id, state, actions));
@@ -49,7 +52,7 @@ function choiceList(effects, id, state, actions) {
       element(
         "li",
         {},
-        element("span", {}, `${effectTitle(what.effect)}: ${what.words}`),
+        element("span", {}, `${effectTitle(what.effect)}: ${what.words}. To tell it: ${what.motion}.`),
         addButton(what, `add-${id}-${index}`, isAdded(state, what), actions),
       ),
     ),
@@ -57,12 +60,12 @@ function choiceList(effects, id, state, actions) {
   return list;
 }
 
-function jointAnswer(answer, state, actions) {
+function jointAnswer(answer, search, state, actions) {
   const root = element("div", { class: "answer" });
   root.append(element("h3", {}, `Joint ${answer.joint}`), element("p", {}, answer.words));
   const cards = element("ul", { class: "findings" });
   answer.cards.forEach((card, index) =>
-    cards.append(findingCard(card, `${answer.joint}-${index}`, state, actions)),
+    cards.append(findingCard(card, `${answer.joint}-${index}`, search, state, actions)),
   );
   if (answer.cards.length > 0) root.append(cards);
   answer.classes.forEach((members, index) => {
@@ -76,17 +79,14 @@ function jointAnswer(answer, state, actions) {
   return root;
 }
 
-function foldWith(id, title) {
-  return element("details", { id }, element("summary", { id: `${id}-summary` }, title));
-}
-
 function answerElement(found, state, actions) {
   const root = element("div", {}, element("p", { class: "answer-words" }, found.answer.words));
   const silent = found.answer.joints.filter(
     ({ cards, classes }) => cards.length === 0 && classes.length === 0,
   );
+  const search = `${found.revision}, ${found.seconds}`;
   for (const answer of found.answer.joints) {
-    if (!silent.includes(answer)) root.append(jointAnswer(answer, state, actions));
+    if (!silent.includes(answer)) root.append(jointAnswer(answer, search, state, actions));
   }
   if (silent.length > 0) {
     const rest = foldWith("nothing-to-add", `Joints with nothing to add (${silent.length})`);

@@ -55,6 +55,10 @@ function sectionWith(id, heading, ...children) {
   return root;
 }
 
+function foldWith(id, title) {
+  return element("details", { id }, element("summary", { id: `${id}-summary` }, title));
+}
+
 function noteWith(level, ...children) {
   const root = element("div", { class: `note ${level}`, role: "note" });
   const text = element("p", {}, levelSymbol(level), ...children);

@@ -45,7 +45,7 @@ function effectList(joint, actions) {
   return [list, fold];
 }
 
-function stepRow(step, number, actions) {
+function stepRow(step, number, revision, actions) {
   const name = `${effectTitle(step.effect)}, joint ${step.joint}`;
   const undo = button(`undo-${step.id}`, "Undo", () => actions.undo(step.id));
   undo.append(element("span", { class: "hidden-text" }, ` ${name}`));
@@ -61,13 +61,15 @@ function stepRow(step, number, actions) {
   const row = element("li", { class: "card step" }, head);
   row.append(parameterList(Object.entries(step.parameters)));
   for (const doubt of step.doubts) row.append(noteWith("warn", doubt));
+  row.append(stepEvidence(step, revision));
+  if (Object.keys(step.draggable).length > 0) row.append(dragElement(step, actions));
   if (step.notes.length > 0 || step.refitted.length > 0) row.append(stepDetails(step));
   return row;
 }
 
 function stepDetails(step) {
   const id = `more-of-step-${step.id}`;
-  const details = element("details", { id }, element("summary", { id: `${id}-summary` }, "More of this fit"));
+  const details = foldWith(id, "More of this fit");
   for (const other of step.refitted) {
     details.append(
       element("p", {}, `Fitted again with it: ${effectTitle(other.effect)}, joint ${other.joint}`),
@@ -78,7 +80,7 @@ function stepDetails(step) {
   return details;
 }
 
-function stepList(steps, actions) {
+function stepList({ steps, revision }, actions) {
   if (steps.length === 0) {
     return element(
       "p",
@@ -87,6 +89,6 @@ function stepList(steps, actions) {
     );
   }
   const list = element("ol", { class: "steps" });
-  steps.forEach((step, index) => list.append(stepRow(step, index + 1, actions)));
+  steps.forEach((step, index) => list.append(stepRow(step, index + 1, revision, actions)));
   return list;
 }

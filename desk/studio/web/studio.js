@@ -76,9 +76,11 @@ function figureOf(label, value, note, level) {
   return { label, value, unit: "%", format: ".2f", level, note };
 }
 
-function headlineContent() {
+/** `dragged`: the errors of a model that is off its fit. */
+function headlineContent(dragged = null) {
   const joint = currentJoint();
-  const { start, now } = joint;
+  const { start } = joint;
+  const now = dragged ?? joint.now;
   const fell = (key) => {
     if (state.steps.length === 0 || start[key] === null || now[key] === null) return "as read";
     return `as read ${formatNumber(start[key], ".2f")} %`;
@@ -86,7 +88,7 @@ function headlineContent() {
   const better = (key) => now[key] !== null && start[key] !== null && now[key] < 0.98 * start[key];
   const figuresOf = [
     figureOf(
-      `Joint ${joint.joint}: error on held-out data`,
+      `Joint ${joint.joint}: error on held-out data${dragged === null ? "" : ", dragged"}`,
       now.held_out_percent,
       now.held_out_percent === null
         ? "no recording is held out: known once an effect is added"
@@ -94,7 +96,7 @@ function headlineContent() {
       better("held_out_percent") ? "good" : "neutral",
     ),
     figureOf(
-      `Joint ${joint.joint}: error on fitted data`,
+      `Joint ${joint.joint}: error on fitted data${dragged === null ? "" : ", dragged"}`,
       now.fitted_percent,
       fell("fitted_percent"),
       "neutral",
@@ -148,12 +150,15 @@ function saveContent() {
     element("label", { for: "save-name" }, save.fixed ? "Robot file" : "Robot file, beside the one that was read"),
     name,
     button("save-file", "Save", () => actions.save({}), { class: "action main" }),
+    button("save-page", "Save a page for others", actions.savePage),
   );
   const content = [form];
   if (saving.words !== "") {
     const note = noteWith(saving.level, saving.words, " ");
     if (saving.confirm !== null) {
-      note.firstChild.append(button("save-anyway", "Save all the same", () => actions.save(saving.confirm ?? {})));
+      const { confirm } = saving;
+      const again = typeof confirm === "function" ? confirm : () => actions.save(confirm);
+      note.firstChild.append(button("save-anyway", "Save all the same", again));
     }
     content.push(note);
   }
@@ -188,7 +193,9 @@ function show() {
   document.getElementById("effects-heading").textContent = `Effects of joint ${joint.joint}`;
   replaceContent(places.effects, ...effectList(joint, actions));
   replaceContent(places.recording, recordingPicker());
-  replaceContent(places.steps, stepList(state.steps, actions));
+  showExploreChoices(state.joints, () => explore(zoomRange()));
+  replaceContent(places.steps, ...keptContent(), stepList(state, actions));
+  forgetUnseen();
   places.fall.hidden = state.steps.length === 0;
   showFound();
   showSave();
@@ -220,18 +227,25 @@ function complain(words) {
 }
 
 async function drawCharts() {
-  const answer = await ask("GET", chartAddress(look, null));
+  const range = zoomRange();
+  const answer = await ask("GET", chartAddress(look, range));
   showCharts(answer, places.charts, places.fall);
   document.body.dataset.revision = String(answer.revision);
-  const range = zoomRange();
-  if (range !== null) await drawFiner(range);
-  else showArm(null);
+  showArm(range);
+  explore(range);
 }
 
-/** What a zoom changes; null: all of the time is shown, of which the charts have it all. */
+/** What a zoom changes; null: all of the time is shown. */
 async function drawFiner(range) {
   showArm(range);
-  if (range !== null) showFiner(await ask("GET", chartAddress(look, range)));
+  explore(range);
+  if (dragging.isOff) return actions.drag(dragging.last);
+  showFiner(await ask("GET", chartAddress(look, range)));
+}
+
+/** Nothing waits for map and spectrum either. */
+function explore(range) {
+  drawExplored(look, range).catch((error) => complain(error.message));
 }
 
 /** Nothing waits for the arm. */
@@ -304,6 +318,16 @@ const actions = {
     if (!busy) look.joint = joint;
     return changeModel("POST", "steps", { effect, joint });
   },
+  drag: (number) => followDrag(number, drawDragged).catch((error) => complain(error.message)),
+  snapBack: () => {
+    dragging.waiting = null;
+    if (!dragging.isOff) return;
+    dragging.isOff = false;
+    replaceContent(places.headline, headlineContent());
+    drawCharts().catch((error) => complain(error.message));
+  },
+  undoAll: () => changeModel("DELETE", "steps"),
+  savePage: () => change(savePage),
   undo: (id) => changeModel("DELETE", `steps/${id}`),
   toggle: (effect, joint) =>
     effect.steps.length > 0 ? actions.undo(effect.steps.at(-1)) : actions.add(effect.effect, joint),
@@ -333,6 +357,45 @@ async function save(agreed) {
   say(saving.words);
 }
 
+/** The report page of `compare`, for those who have no Studio. */
+async function savePage(agreed = {}) {
+  const name = saving.name ?? state.save.name;
+  try {
+    const { saved } = await ask("POST", "page", { ...(state.save.fixed ? {} : { name }), ...agreed });
+    saving = { ...saving, words: `Written: ${saved}`, level: "good", confirm: null };
+  } catch (error) {
+    const again = error.confirm ? () => change(() => savePage({ replace: true })) : null;
+    saving = { ...saving, words: error.message, level: error.confirm ? "warn" : "bad", confirm: again };
+  }
+  showSave();
+  say(saving.words);
+}
+
+/** Charts and errors with a number off its fit: no model, and nothing of it stays. */
+async function drawDragged(words) {
+  const parts = chartAddress(look, zoomRange()).replace(/^charts\?/, "");
+  const answer = await ask("GET", `moved?${words}&${parts}`);
+  if (!dragging.isOff) return;
+  const { fitted_percent, held_out_percent } = answer;
+  replaceContent(places.headline, headlineContent({ fitted_percent, held_out_percent }));
+  showFiner(answer);
+}
+
+/** Where the session is kept, and what was taken up of one before. */
+function keptContent() {
+  const { file, problem, taken_up: count, not_taken_up: why } = state.kept;
+  const content = [];
+  if (count > 0 && state.steps.length > 0) {
+    const what = count === 1 ? "One step was" : `${count} steps were`;
+    const note = noteWith("neutral", `${what} added in a session before, and taken up from ${baseName(file)}. `);
+    note.firstChild.append(button("begin-anew", "Begin anew", actions.undoAll));
+    content.push(note);
+  }
+  if (why !== "") content.push(noteWith("warn", `Not all of the session before could be taken up: ${why}`));
+  if (problem !== "") content.push(noteWith("warn", `What is done here is not kept: ${problem}`));
+  return content;
+}
+
 /** What a second "save" agrees to: first that a step is in doubt, then that a file is there. */
 function nextConfirm(agreed) {
   const doubtful = state.steps.some((step) => step.doubts.length > 0);
@@ -354,6 +417,7 @@ function buildStudio() {
       place("recording"),
       armElement(),
       place("charts", { class: "blocks" }),
+      exploreElement(),
     ),
     sectionWith("steps", "What was added", place("fall"), place("steps")),
     sectionWith("learn", "What is missing?", place("learn")),

@@ -32,7 +32,7 @@ class StudioCharts : public ::testing::Test {
 
 TEST_F(StudioCharts, KeepPeaksAndShowMoreOfWhatIsZoomed) {
   View view{.joint = 1, .pixels = kFewestPixels};
-  const json whole = charts_of(bench_, view);
+  const json whole = charts_of(bench_, bench_.now(), view);
   ASSERT_EQ(whole.size(), 4U);
   const auto y = series(whole, 0, 0).at("y").get<std::vector<double>>();
   const Eigen::VectorXd measured = bench_.now().fitted.recordings[0].measured.col(1);
@@ -43,7 +43,7 @@ TEST_F(StudioCharts, KeepPeaksAndShowMoreOfWhatIsZoomed) {
 
   view.from_s = 4;
   view.to_s = 6;
-  const json finer = time_charts_of(bench_, view);
+  const json finer = charts_of(bench_, bench_.now(), view);
   const auto x = series(finer, 0, 0).at("x").get<std::vector<double>>();
   const auto shown = std::count_if(x.begin(), x.end(), [](double t) { return t >= 4 && t < 6; });
   const Eigen::VectorXd& t_s = bench_.now().fitted.recordings[0].t_s;
@@ -52,12 +52,12 @@ TEST_F(StudioCharts, KeepPeaksAndShowMoreOfWhatIsZoomed) {
 }
 
 TEST_F(StudioCharts, ColourFittedAndHeldOutApart) {
-  const json clouds = charts_of(bench_, {.joint = 1});
+  const json clouds = charts_of(bench_, bench_.now(), {.joint = 1});
   EXPECT_EQ(series(clouds, 2, 0).at("name"), "fitted data");
   EXPECT_EQ(series(clouds, 2, 0).at("tone"), "model");
   EXPECT_EQ(series(clouds, 2, 1).at("name"), "held-out data");
   EXPECT_EQ(series(clouds, 2, 1).at("tone"), "residual");
-  const json held_out = charts_of(bench_, {.joint = 1, .recording = 1});
+  const json held_out = charts_of(bench_, bench_.now(), {.joint = 1, .recording = 1});
   EXPECT_EQ(series(held_out, 0, 1).at("name"), "model now, held-out data");
   EXPECT_EQ(series(held_out, 0, 1).at("tone"), "residual");
 }
@@ -76,7 +76,7 @@ TEST_F(StudioCharts, FallWithEveryStep) {
 TEST_F(StudioCharts, RefuseWhatIsNotThere) {
   for (const View& view : {View{.joint = 2}, View{.recording = 2}, View{.pixels = 1},
                            View{.pixels = kMostPixels + 1}}) {
-    EXPECT_THROW(charts_of(bench_, view), Refused);
+    EXPECT_THROW(charts_of(bench_, bench_.now(), view), Refused);
   }
 }
 

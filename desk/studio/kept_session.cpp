@@ -1,0 +1,150 @@
+#include "studio/kept_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "common/error.hpp"
+#include "common/file.hpp"
+#include "common/json_text.hpp"
+#include "robot/read_effect.hpp"
+#include "robot/robot_file.hpp"
+
+namespace offnominal::desk::studio {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+constexpr const char* kMark = "offnominal_studio_session";
+constexpr int kVersion = 1;
+
+// FNV-1a.
+class Hash {
+ public:
+  void add(std::string_view bytes) {
+    for (const char byte : bytes) {
+      value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
+    }
+  }
+  // As they are represented: the numbers of two files are the same to the bit, or others.
+  template <typename Dense>
+  void add_numbers(const Dense& values) {
+    const auto* const first = reinterpret_cast<const char*>(values.data());
+    const auto bytes = static_cast<std::size_t>(values.size()) * sizeof(double);
+    add(fmt::format("{}x{}:", values.rows(), values.cols()));
+    add({first, bytes});
+  }
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325U;
+};
+
+std::filesystem::path numbered(const std::filesystem::path& recording, int number) {
+  std::filesystem::path file = recording;
+  file.replace_filename(recording.stem().string() +
+                        (number == 1 ? ".studio.json" : fmt::format(".studio_{}.json", number)));
+  return file;
+}
+
+std::optional<EffectKind> kind_named(const std::string& name) {
+  for (const EffectInfo* info : file_effects()) {
+    if (name == info->name) return info->kind;
+  }
+  return std::nullopt;
+}
+
+SessionState state_of(const ordered_json& json) {
+  SessionState state;
+  for (const ordered_json& step : json.at("steps")) {
+    const auto joint = step.at("joint").get<std::size_t>();
+    const auto kind = kind_named(step.at("effect").get<std::string>());
+    if (!kind || joint < 1) break;  // of another version: what comes after it builds on it
+    state.steps.push_back({0, *kind, joint - 1});
+  }
+  state.answer = json.at("answer");
+  state.answers_now = json.at("answers_now").get<bool>();
+  return state;
+}
+
+ordered_json json_of(const SessionState& state, const std::string& of) {
+  ordered_json steps = ordered_json::array();
+  for (const Step& step : state.steps) {
+    steps.push_back({{"effect", info_of(step.kind)->name}, {"joint", step.joint + 1}});
+  }
+  return {{kMark, kVersion},
+          {"of", of},
+          {"steps", std::move(steps)},
+          {"answers_now", state.answers_now},
+          {"answer", state.answer}};
+}
+
+// What a file holds of a session over such numbers; none: it is no such file.
+std::optional<SessionState> read(const std::filesystem::path& file, const std::string& of) {
+  try {
+    const ordered_json json = ordered_json::parse(read_text_file(file));
+    if (json.at(kMark).get<int>() != kVersion || json.at("of").get<std::string>() != of) {
+      return std::nullopt;
+    }
+    return state_of(json);
+  } catch (const ordered_json::exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::uint64_t fingerprint_of(const Input& input) {
+  Hash hash;
+  hash.add(robot_text(input.robot));
+  hash.add(input.options);
+  for (const RecordingPayload& payload : input.payloads) hash.add(text_of(payload));
+  for (const auto* some : {&input.recordings->logs, &input.recordings->holdout}) {
+    hash.add("recordings:");
+    for (const Log& log : *some) {
+      hash.add_numbers(log.t_s);
+      hash.add_numbers(log.q);
+      hash.add_numbers(log.tau);
+    }
+  }
+  return hash.value();
+}
+
+KeptSession::KeptSession(const std::filesystem::path& recording, const Input& input)
+    : of_(fmt::format("{:016x}", fingerprint_of(input))) {
+  constexpr int kMostTried = 100;
+  try {
+    for (int number = 1; number <= kMostTried; ++number) {
+      const std::filesystem::path file = numbered(recording, number);
+      std::error_code ignored;
+      if (!std::filesystem::exists(std::filesystem::symlink_status(file, ignored))) {
+        file_ = file;
+        return;
+      }
+      const std::optional<SessionState> state = read(file, of_);
+      if (!state) continue;
+      file_ = file;
+      found_ = *state;
+      return;
+    }
+    problem_ = "there are a hundred sessions beside the recording already";
+  } catch (const InputError& error) {
+    problem_ = on_one_line(error.what());
+  }
+}
+
+void KeptSession::keep(const SessionState& state) {
+  if (file_.empty()) return;
+  try {
+    write_file_atomically(file_, json_text(json_of(state, of_)), Existing::kReplace);
+    problem_.clear();
+  } catch (const InputError& error) {
+    problem_ = on_one_line(error.what());
+  }
+}
+
+}  // namespace offnominal::desk::studio
