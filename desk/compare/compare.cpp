@@ -164,13 +164,19 @@ JointComparison compare_joint(const JointSamples& samples, std::size_t joint,
 }  // namespace
 
 Comparison compare(const RobotDescription& robot, const Measurement& measured) {
+  ModelTorqueMemory memory;
+  return compare(robot, measured, memory);
+}
+
+Comparison compare(const RobotDescription& robot, const Measurement& measured,
+                   ModelTorqueMemory& memory) {
   Comparison result;
   result.file = measured.log.file;
   result.payload = measured.log.payload;
   result.plan = measured.plan;
   result.t_s = measured.t_s;
   result.measured = measured.torque;
-  result.model = filtered_model_torque(robot, measured);
+  result.model = memory.filtered(robot, measured);
   result.remarks = measured.log.remarks;
   const auto kept = [&](const MatrixXd& columns) {
     MatrixXd samples(result.t_s.size(), columns.cols());

@@ -70,6 +70,9 @@ struct Comparisons {
 
 // `robot` has as many joints as the recording.
 Comparison compare(const RobotDescription& robot, const Measurement& measured);
+// The same, to the bit, with what is kept of the robot that was compared before.
+Comparison compare(const RobotDescription& robot, const Measurement& measured,
+                   ModelTorqueMemory& memory);
 
 // The numbers of all samples together. Times are taken one recording after the other; where there
 // are several, the error may also follow the "recording": be one in this and another in that.

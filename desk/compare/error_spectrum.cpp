@@ -85,7 +85,8 @@ Spectrum spectrum_over_travel(const Eigen::Ref<const VectorXd>& t_s,
   // Each step of the way counts by its length.
   const VectorXd travel = (turns.tail(count) - turns.head(count)).cwiseAbs();
   const VectorXd speed = travel.cwiseQuotient(t_s.tail(count) - t_s.head(count));
-  std::vector<double> at = steps_up_to(most_hz / (kSlow * speed.maxCoeff()), width);
+  const double most = std::min(0.5 / travel.maxCoeff(), most_hz / (kSlow * speed.maxCoeff()));
+  std::vector<double> at = steps_up_to(most, width);
   if (at.empty()) return {};
   const ArrayXd phase = turns.head(count);
   const ArrayXd weights = hann(phase, low, width) * travel.array();

@@ -21,8 +21,9 @@ Spectrum spectrum_over_time(const Eigen::Ref<const Eigen::VectorXd>& t_s,
 
 // Over the order: sines per turn of a joint, of the travel and not of the time, so that a ripple
 // stands at its order however fast the joint moves. `turns`: its position, in turns, or in metres
-// of one that slides. Up to the order that `most_hz` lets through at a tenth of the greatest speed,
-// 1000 steps at most.
+// of one that slides. Up to the order of which the longest step between two samples is half a wave,
+// and that `most_hz` lets through at a tenth of the greatest speed; 1000 steps at most. What is
+// slower shows higher orders.
 Spectrum spectrum_over_travel(const Eigen::Ref<const Eigen::VectorXd>& t_s,
                               const Eigen::Ref<const Eigen::VectorXd>& turns,
                               const Eigen::Ref<const Eigen::VectorXd>& values, double most_hz);

@@ -47,17 +47,24 @@ VectorXd delays_in_samples(const Chain<kRuntimeJoints, double>& chain, const Mot
 }  // namespace
 
 MatrixXd model_torque(const RobotDescription& robot, const Motion& motion) {
+  BodyTorque bodies;
+  return model_torque(robot, motion, bodies);
+}
+
+MatrixXd model_torque(const RobotDescription& robot, const Motion& motion, BodyTorque& bodies) {
   if (motion.q.cols() != robot.joint_count()) {
     throw std::invalid_argument("the motion has another number of joints than the robot");
   }
   const auto chain = chain_of<kRuntimeJoints, double>(robot);
   const auto model = make_model(chain);
+  const MatrixXd rigid = bodies.of(robot, motion);
   MatrixXd torque(motion.sample_count(), robot.joint_count());
   for (Index i = 0; i < motion.sample_count(); ++i) {
     const Joints q = motion.q.row(i);
     const Joints dq = motion.dq.row(i);
-    const Joints ddq = motion.ddq.row(i);
-    torque.row(i) = inverse_dynamics(model, q, dq, ddq, motion.t_s[i] - motion.t_s[0]);
+    const Joints of_bodies = rigid.row(i);
+    const auto effects = joint_effects(model, q, dq, motion.t_s[i] - motion.t_s[0]);
+    torque.row(i) = drive_torque<kRuntimeJoints, double>(model, effects, of_bodies);
   }
   for (const RobotEffect& effect : robot.effects) {
     if (!remembers(effect.kind) || !is_torque_effect(effect.kind)) continue;

@@ -5,6 +5,7 @@
 #include <offnominal/model/effect.hpp>
 #include <vector>
 
+#include "compare/body_torque.hpp"
 #include "compare/motion.hpp"
 #include "robot/robot.hpp"
 
@@ -18,6 +19,9 @@ namespace offnominal::desk {
 // What the model needs for the motion, effects included, with rigid transmissions: what acts
 // between motor and link is transmission_torque() (transmission.hpp).
 Eigen::MatrixXd model_torque(const RobotDescription& robot, const Motion& motion);
+// The same, to the bit, where `bodies` is of this motion.
+Eigen::MatrixXd model_torque(const RobotDescription& robot, const Motion& motion,
+                             BodyTorque& bodies);
 
 // The share of one link's mass and inertia in it; linear in them.
 Eigen::MatrixXd link_torque(const RobotDescription& robot, std::size_t link, const Motion& motion);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "common/error.hpp"
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
@@ -96,14 +98,27 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterRequest&
 }
 
 MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement& measured) {
+  return ModelTorqueMemory().filtered(robot, measured);
+}
+
+MatrixXd ModelTorqueMemory::filtered(const RobotDescription& robot, const Measurement& measured) {
   const RobotDescription seen =
       seen_by_sensors(carrying(robot, measured.log.payload), measured.log);
-  MatrixXd torque = model_torque(seen, measured.motion);
+  MatrixXd torque = model_torque(seen, measured.motion, bodies_);
   if (has_transmission_effect(seen)) {
     torque += transmission_torque(seen, measured.motion, torque, measured.log.tau,
                                   noise_densities(measured), measured.plan);
   }
-  return filtered_columns(measured.plan, torque);
+  if (torque_.rows() != torque.rows() || torque_.cols() != torque.cols()) {
+    filtered_ = filtered_columns(measured.plan, torque);
+  } else {
+    for (Index joint = 0; joint < torque.cols(); ++joint) {
+      if (torque.col(joint) == torque_.col(joint)) continue;
+      filtered_.col(joint) = desk::filtered(measured.plan, torque.col(joint));
+    }
+  }
+  torque_ = std::move(torque);
+  return filtered_;
 }
 
 }  // namespace offnominal::desk

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "compare/body_torque.hpp"
 #include "compare/filter_plan.hpp"
 #include "compare/motion.hpp"
 #include "log/log.hpp"
@@ -36,5 +37,17 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterRequest&
 // model_torque() of a robot with the recording's payload and its transmission_torque(), without
 // what the recording's torque sensors do not see, filtered as the measured torque is.
 Eigen::MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement& measured);
+
+// What is kept of a recording's model torque for the next robot: what both have in common.
+class ModelTorqueMemory {
+ public:
+  // The same, to the bit; `measured`: the same at every call.
+  Eigen::MatrixXd filtered(const RobotDescription& robot, const Measurement& measured);
+
+ private:
+  BodyTorque bodies_;
+  Eigen::MatrixXd torque_;    // of the last robot
+  Eigen::MatrixXd filtered_;  // the same, filtered
+};
 
 }  // namespace offnominal::desk

@@ -47,17 +47,28 @@ const Measurement& FitMemory::measured(const std::vector<Log>& logs, std::size_t
                                        const RobotDescription& robot, Known& known) {
   if (known.measured.size() == recording) {
     known.measured.push_back(measure(logs[recording], robot, plan(robot)));
+    known.models.emplace_back();
   }
   return known.measured[recording];
+}
+
+void FitMemory::forget_what_is_large(Known& known) {
+  // A model's torque is kept three times over: of so much it is made anew instead.
+  constexpr Eigen::Index kMostNumbers = 10'000'000;
+  for (std::size_t i = 0; i < known.models.size(); ++i) {
+    if (known.measured[i].motion.q.size() > kMostNumbers) known.models[i] = {};
+  }
 }
 
 Comparisons FitMemory::compare_one(const RobotDescription& robot, const std::vector<Log>& logs,
                                    Known& known) {
   std::vector<Comparison> all;
   for (std::size_t i = 0; i < logs.size(); ++i) {
-    all.push_back(compare(robot, measured(logs, i, robot, known)));
+    const Measurement& of = measured(logs, i, robot, known);
+    all.push_back(compare(robot, of, known.models[i]));
   }
-  if (for_ == For::kOneFit) known.measured.clear();
+  if (for_ == For::kOneFit) known = {};
+  forget_what_is_large(known);
   return together(std::move(all));
 }
 
@@ -70,16 +81,20 @@ FitMemory::Two FitMemory::compare_two(const RobotDescription& before, const Robo
   std::vector<Comparison> second;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const Measurement& of = measured(logs, i, before, known);
-    if (!is_known) first.push_back(compare(before, of));
-    second.push_back(compare(after, of));
-    if (for_ == For::kOneFit) known.measured[i] = {};
+    ModelTorqueMemory& model = known.models[i];
+    if (!is_known) first.push_back(compare(before, of, model));
+    second.push_back(compare(after, of, model));
+    if (for_ != For::kOneFit) continue;
+    known.measured[i] = {};
+    model = {};
   }
   Two two{is_known ? std::move(known.result) : together(std::move(first)),
           together(std::move(second))};
   if (for_ == For::kOneFit) {
-    known.measured.clear();
+    known = {};
     return two;
   }
+  forget_what_is_large(known);
   known.robot = robot_text(after);
   known.result = two.after;
   return two;

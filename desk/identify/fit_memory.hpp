@@ -54,9 +54,11 @@ class FitMemory {
  private:
   struct Known {
     std::vector<Measurement> measured;
+    std::vector<ModelTorqueMemory> models;  // of each of them
     std::string robot;  // the text of the one that was compared last
     Comparisons result;
   };
+  static void forget_what_is_large(Known& known);
   const Measurement& measured(const std::vector<Log>& logs, std::size_t recording,
                               const RobotDescription& robot, Known& known);
   Comparisons compare_one(const RobotDescription& robot, const std::vector<Log>& logs,

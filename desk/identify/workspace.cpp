@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
@@ -30,18 +29,6 @@ FilterPlan thinned(const FilterPlan& plan, Index stride) {
   thin.decimation = std::max<Index>(1, std::lround(static_cast<double>(plan.decimation) / by));
   thin.edge_samples = static_cast<Index>(std::ceil(static_cast<double>(plan.edge_samples) / by));
   return thin;
-}
-
-// Whether two robots have the same inverse dynamics, but for their effects.
-bool have_same_bodies(const RobotDescription& a, const RobotDescription& b) {
-  const auto of = [](const RobotJoint& one) {
-    const Joint<double>& joint = one.joint;
-    return std::tie(joint.type, joint.axis, joint.origin_m, joint.rotation, joint.mass_kg,
-                    joint.centre_of_mass_m, joint.inertia_kg_m2);
-  };
-  return a.gravity_m_s2 == b.gravity_m_s2 &&
-         std::equal(a.joints.begin(), a.joints.end(), b.joints.begin(), b.joints.end(),
-                    [&](const RobotJoint& x, const RobotJoint& y) { return of(x) == of(y); });
 }
 
 std::vector<MatrixXd> mass_columns(const Workspace& at) {
@@ -131,7 +118,7 @@ void Workspace::set_model(const RobotDescription& robot) {
   rigid = as_recorded(rigid);
   if (!same) load_torque = desk::model_torque(rigid, motion);
   const RobotDescription recorded = as_recorded(robot);
-  stiff_torque = robot.effects.empty() ? load_torque : desk::model_torque(recorded, motion);
+  stiff_torque = robot.effects.empty() ? load_torque : desk::model_torque(recorded, motion, bodies);
   model_torque = stiff_torque;
   if (has_transmission_effect(recorded)) {
     model_torque +=

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compare/body_torque.hpp"
 #include "compare/filter_plan.hpp"
 #include "compare/motion.hpp"
 #include "log/log.hpp"
@@ -27,6 +28,7 @@ struct Workspace {
   Eigen::MatrixXd load_torque;   // rigid-body torque of the model without any effect
   Eigen::MatrixXd stiff_torque;  // of the model with its effects, transmissions taken for rigid
   Eigen::MatrixXd model_torque;  // of the model with all its effects
+  BodyTorque bodies;             // what the next model may have in common with this one
   // Column k of the mass matrix over time: what 1 rad/s^2 or m/s^2 of joint k asks of every joint.
   std::vector<Eigen::MatrixXd> mass;
   Eigen::VectorXd torque_noise_density;  // per joint, of the recording, N m or N per root hertz

@@ -141,6 +141,60 @@ async function checkZoom(page, fault) {
   if ((await page.evaluate(() => zoomRange())) === null) fault("the zoom is lost");
 }
 
+async function titleAfter(page, place, act) {
+  const title = () => page.$eval(place, (root) => root.querySelector("figure")?.innerText ?? "");
+  const before = await title();
+  await act();
+  await page.waitForFunction(
+    ([selector, old]) => (document.querySelector(selector).querySelector("figure")?.innerText ?? "") !== old,
+    [place, before],
+  );
+  return title();
+}
+
+/** Map and spectrum follow what is chosen for their axes. */
+async function checkExplored(page, fault) {
+  const map = ".explored:first-child";
+  const over = await titleAfter(page, map, () => page.selectOption("#map-x", "since_reversal"));
+  if (!over.includes("time since reversal")) fault(`the map's words are: ${over}`);
+  const spectrum = await titleAfter(page, ".explored:last-child", () => page.selectOption("#spectrum-over", "order"));
+  if (!spectrum.includes("order")) fault(`the spectrum's words are: ${spectrum}`);
+}
+
+/** The picture of a step, and a number that is dragged off its fit and snaps back. */
+async function checkDrag(page, fault) {
+  const fold = (id) => page.$eval(`details[id^=${id}]`, (details) => (details.open = true));
+  await fold("evidence-of-step");
+  await page.waitForSelector(".step .evidence figure");
+  await fold("drag-");
+  const atFit = await headline(page);
+  await page.focus("input[id^=drag-]");
+  for (let i = 0; i < 30; ++i) await page.keyboard.press("ArrowRight");
+  const isDragged = () => document.querySelector("#place-headline").textContent.includes("dragged");
+  await page.waitForFunction(isDragged);
+  const off = await headline(page);
+  if (!(off[1] > atFit[1])) fault(`dragged off its fit, the error went from ${atFit} to ${off}`);
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => !document.querySelector("#place-headline").textContent.includes("dragged"));
+  const back = await headline(page);
+  if (back[1] !== atFit[1]) fault(`let go, the error is ${back} and was ${atFit}`);
+}
+
+/** What was added is there for the next program over the same files; a page for others beside it. */
+async function checkKept({ start, newContext }, words, page, fault) {
+  const names = (on) => on.$$eval(".step h3", (all) => all.map((each) => each.textContent));
+  const before = await names(page);
+  await page.click("#save-page");
+  await page.waitForFunction(() => document.querySelector("#place-save .note")?.textContent.includes(".html"));
+  const again = await start(words);
+  const other = await openPage(await newContext(), again.address, kReady, kExpected, fault);
+  const after = await names(other);
+  if (after.join() !== before.join()) fault(`the next program takes up "${after}" of "${before}"`);
+  await afterChange(other, () => other.click("#begin-anew"));
+  if ((await names(other)).length !== 0) fault("begun anew, there are steps");
+  await again.end();
+}
+
 async function checkSearch(page, fault) {
   await page.click("#search");
   await page.waitForFunction(() => document.querySelector("#place-learn .answer-words") !== null);
@@ -153,9 +207,11 @@ async function checkSearch(page, fault) {
   return "added from a card";
 }
 
-/** Milliseconds from a click to new charts, of switching an effect on (never seen) and off again. */
+/** Milliseconds from a click to new charts in the window, of switching an effect on (never seen) and off again. */
 async function measure(page) {
   const times = [];
+  await page.evaluate(() => document.getElementById("place-charts").scrollIntoView());
+  await page.waitForTimeout(1000);
   for (const id of await page.$$eval(".switch:not([aria-disabled])[aria-checked=false]", (all) => all.map((each) => each.id))) {
     const ms = await page.evaluate(async (id) => {
       const before = document.body.dataset.revision;
@@ -171,17 +227,22 @@ async function measure(page) {
   times.sort((a, b) => a - b);
   const at = (share) => times[Math.min(times.length - 1, Math.floor(share * times.length))].toFixed(0);
   console.log(`click to new charts: median ${at(0.5)} ms, p95 ${at(0.95)} ms, ${times.length} clicks`);
+  console.log(`all of them, ms: ${times.map((each) => each.toFixed(0)).join(" ")}`);
 }
 
 async function check({ options, folder, start, newContext, axeSource }, fault) {
   const inputs = await hostileInputs(options, folder);
-  const { address } = await start([inputs.recording, "--robot", inputs.robot, ...(inputs.holdout ? ["--holdout", inputs.holdout] : [])]);
+  const words = [inputs.recording, "--robot", inputs.robot, ...(inputs.holdout ? ["--holdout", inputs.holdout] : [])];
+  const { address } = await start(words);
   const page = await openPage(await newContext(), address, kReady, kExpected, fault);
   if (options.measure) return await measure(page);
   await checkSteps(page, options, inputs, fault);
+  await checkExplored(page, fault);
+  await checkDrag(page, fault);
   await checkZoom(page, fault);
   await checkArm(page, fault);
   const learnt = await checkSearch(page, fault);
+  await checkKept({ start, newContext }, words, page, fault);
   await look(page, kLooks, "studio", { ...options, axeSource }, fault);
   const plain = await newContext();
   await plain.addInitScript(() => {

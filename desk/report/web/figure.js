@@ -259,10 +259,13 @@ function drawFigure(figure) {
     if (figure.legend !== null) watchLegend(figure);
   }
   const isShown = (name) => !figure.hidden.has(name);
+  const isFirst = figure.option === null;
   figure.option = kind.option(block, look, host.clientWidth, figure.extent, isShown);
-  figure.chart.setOption(figure.option, { replaceMerge: ["series"] });
+  // The tool that zooms, told once: told again it has to be taken up again, which draws all anew.
+  const { toolbox, ...others } = figure.option;
+  figure.chart.setOption(isFirst ? figure.option : others, { replaceMerge: ["series"] });
   if (figure.legend !== null) fillLegend(figure, look);
-  if (kind.cursor !== null) setZoomBrush(figure, true);
+  if (kind.cursor !== null && isFirst) setZoomBrush(figure, true);
 }
 
 /** Charts of one zoom group share the x range that covers them all. */
@@ -282,6 +285,7 @@ function shownFigures() {
 
 function redrawAll() {
   for (const figure of shownFigures()) {
+    figure.option = null; // in other colours, its tool too
     figure.chart?.resize();
     drawFigure(figure);
   }
@@ -307,13 +311,13 @@ function watchPrinting() {
   window.addEventListener("beforeprint", () => {
     document.documentElement.setAttribute("data-print", "");
     for (const figure of shownFigures()) {
-      figure.chart.resize({ width: kPaperWidth });
+      figure.chart?.resize({ width: kPaperWidth });
       drawFigure(figure);
     }
   });
   window.addEventListener("afterprint", () => {
     document.documentElement.removeAttribute("data-print");
-    for (const figure of shownFigures()) figure.chart.resize({ width: "auto" });
+    for (const figure of shownFigures()) figure.chart?.resize({ width: "auto" });
     redrawAll();
   });
 }

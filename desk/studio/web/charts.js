@@ -96,11 +96,56 @@ function showCharts(answer, host, fallHost) {
     return;
   }
   shareExtents();
-  for (const figure of drawn.values()) {
-    figure.chart?.resize();
-    drawFigure(figure);
-  }
+  drawSoon(answer.charts.map((_, index) => drawn.get(`chart.${index}`)).concat(drawn.get("fall.0")));
 }
+
+/** Figures whose content is newer than their drawing: nobody sees them now. */
+const stale = new Set();
+
+/** What is in the window at once, the others as soon as there is nothing else to do, one by one. */
+function drawSoon(figuresOf) {
+  for (const figure of figuresOf) {
+    if (isInWindow(figure)) drawNow(figure);
+    else stale.add(figure);
+  }
+  whenIdle();
+}
+
+function isInWindow({ host }) {
+  const { top, bottom } = host.getBoundingClientRect();
+  return bottom > 0 && top < window.innerHeight;
+}
+
+function drawNow(figure) {
+  stale.delete(figure);
+  const { chart, host } = figure;
+  if (chart && (chart.getWidth() !== host.clientWidth || chart.getHeight() !== host.clientHeight)) chart.resize();
+  drawFigure(figure);
+}
+
+let isIdleAsked = false;
+function whenIdle() {
+  if (isIdleAsked || stale.size === 0) return;
+  isIdleAsked = true;
+  requestIdleCallback(
+    () => {
+      isIdleAsked = false;
+      const [next] = stale;
+      if (next) drawNow(next);
+      whenIdle();
+    },
+    { timeout: 1000 },
+  );
+}
+
+/** Whoever scrolls there sees what is new. */
+window.addEventListener(
+  "scroll",
+  () => {
+    for (const figure of stale) if (isInWindow(figure)) drawNow(figure);
+  },
+  { passive: true },
+);
 
 let zoomTimer = 0;
 /** Whom to tell of a zoom; set by studio.js. */
@@ -126,16 +171,15 @@ function showAlone(place, block, host) {
   if (drawn.has(place)) refill(drawn.get(place), block);
   else makeFigure(block, place, host);
   shareExtents();
-  drawFigure(drawn.get(place));
+  drawSoon([drawn.get(place)]);
 }
 
 /** The same charts: finer over the time that the reader has zoomed, that time marked in the others. */
 function showFiner(answer) {
   answer.charts.forEach((block, index) => {
-    const figure = drawn.get(`chart.${index}`);
-    refill(figure, block);
-    drawFigure(figure);
+    refill(drawn.get(`chart.${index}`), block);
   });
+  drawSoon(answer.charts.map((_, index) => drawn.get(`chart.${index}`)));
 }
 
 function showWhole() {

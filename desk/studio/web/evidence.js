@@ -30,7 +30,7 @@ async function drawEvidence(picture, address) {
     picture.host.replaceChildren();
     picture.figure = makeFigure(chart, picture.place, picture.host);
     shareExtents();
-    drawFigure(picture.figure);
+    drawSoon([picture.figure]);
   } catch (error) {
     picture.host.replaceChildren(element("p", { class: "remark" }, error.message));
   }
@@ -43,6 +43,7 @@ function forgetUnseen() {
     evidence.delete(key);
     drawn.delete(place);
     if (figure === null) continue;
+    stale.delete(figure);
     figure.chart?.dispose();
     figures.splice(figures.indexOf(figure), 1);
   }

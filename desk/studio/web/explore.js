@@ -24,7 +24,7 @@ function optionsOf(select, options, chosen) {
 function choiceOf(id, label, options, chosen, taken) {
   const select = optionsOf(element("select", { id }), options, chosen);
   select.addEventListener("change", () => taken(select.value));
-  return element("span", { class: "choice" }, element("label", { for: id }, label), select);
+  return element("span", { class: "pick" }, element("label", { for: id }, label), select);
 }
 
 function sideChoice(name, label, joints, redraw) {

@@ -45,6 +45,19 @@ TEST(Compare, GivenHiddenViscousFrictionThenTheErrorIsItsSizeAndFollowsTheVeloci
   EXPECT_LT(comparison.joints[0].relative_error_percent, 0.05);
 }
 
+TEST(Compare, WithWhatIsKeptOfTheRobotBeforeIsTheSameToTheBit) {
+  const Measurement measured = measure(record_arm({.torque_noise = 0.1}), arm_description());
+  RobotDescription rubs = arm_description();
+  rubs.effects.push_back(
+      offnominal::test::effect_of(offnominal::EffectKind::kViscousFriction, 1, {0.4}));
+  RobotDescription heavy = rubs;
+  heavy.joints[0].joint.mass_kg += 1;
+  ModelTorqueMemory memory;
+  for (const RobotDescription& robot : {arm_description(), rubs, heavy, rubs, arm_description()}) {
+    EXPECT_EQ(compare(robot, measured, memory).model, compare(robot, measured).model);
+  }
+}
+
 TEST(Compare, GivenNoTorqueAtAllThenThereIsNoPercentage) {
   Log log = record_arm({});
   log.tau.col(0).setZero();

@@ -115,6 +115,15 @@ TEST(SpectrumOverTravel, ShowsARippleAtItsOrderHoweverFastTheJointMoves) {
   EXPECT_LT(peak_of(spectrum_over_time(t, values, 12)).second, 0.5 / 3);
 }
 
+TEST(SpectrumOverTravel, EndsBeforeTheSamplesAreTooFarApart) {
+  const VectorXd t = times(2000, 0.05);
+  const VectorXd turns = t.unaryExpr([](double s) { return std::sin(0.3 * s); });
+  const Spectrum spectrum = spectrum_over_travel(t, turns, VectorXd::Random(2000), 12);
+  const double longest = (turns.tail(1999) - turns.head(1999)).cwiseAbs().maxCoeff();
+  EXPECT_LE(spectrum.at.back(), 0.5 / longest);
+  EXPECT_GT(spectrum.at.back(), 0.45 / longest);
+}
+
 TEST(Spectra, SayNothingOfWhatIsTooShortOrStandsStill) {
   EXPECT_TRUE(spectrum_over_time(times(5, 0.01), VectorXd::Ones(5), 12).at.empty());
   EXPECT_TRUE(spectrum_over_time(VectorXd(), VectorXd(), 12).at.empty());

@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <offnominal/model/effect_memory.hpp>
+#include <offnominal/model/inverse_dynamics.hpp>
 #include <random>
 
 #include "compare/measurement.hpp"
 #include "identify/unknown.hpp"
 #include "recorded_arm.hpp"
+#include "robot/chain_of.hpp"
 #include "support/seed.hpp"
 
 namespace {
@@ -101,6 +104,44 @@ RobotDescription heavier_arm(RobotDescription robot, double first, double second
     for (double& inertia : joint.inertia_kg_m2) inertia *= factor;
   }
   return robot;
+}
+
+// A memory that sees robot after robot has nothing left of those before.
+TEST(InverseModel, IsCoresToTheBitWhateverRobotCameBefore) {
+  auto generator = offnominal::test::seeded_generator();
+  std::uniform_real_distribution<double> number(0.1, 2);
+  const Motion motion = exact_motion(60);
+  RobotDescription robot = arm_description();
+  robot.transmission.emplace().matrix = {{30, 0}, {20, 20}};
+  BodyTorque memory;
+  for (int round = 0; round < 2; ++round) {
+    for (const EffectInfo& info : kAllEffectInfos) {
+      for (const bool of_motor : {false, true}) {
+        const bool remembers = offnominal::remembers(info.kind) ||
+                               info.kind == offnominal::EffectKind::kTimeDelay;
+        if (remembers || (of_motor && !offnominal::motor_may_have(info.kind))) continue;
+        RobotDescription with = heavier_arm(robot, 0.1 * round, 0);
+        with.effects = {effect_of(offnominal::EffectKind::kRotorInertia, 0, {number(generator)}),
+                        effect_of(info.kind, 1, {})};
+        with.effects[1].of_motor = of_motor;
+        for (std::size_t i = 0; i < info.parameters.size(); ++i) {
+          const bool other = info.parameters[i].quantity == offnominal::Quantity::kJointNumber;
+          with.effects[1].parameters[i] = other ? 1 : number(generator);
+        }
+        const MatrixXd torque = model_torque(with, motion, memory);
+        const auto model =
+            offnominal::make_model(chain_of<offnominal::kRuntimeJoints, double>(with));
+        using Joints = offnominal::Vector<offnominal::kRuntimeJoints, double>;
+        for (Index i = 0; i < motion.sample_count(); ++i) {
+          const Joints expected = offnominal::inverse_dynamics<offnominal::kRuntimeJoints, double>(
+              model, Joints(motion.q.row(i)), Joints(motion.dq.row(i)), Joints(motion.ddq.row(i)),
+              motion.t_s[i] - motion.t_s[0]);
+          ASSERT_EQ(torque(i, 0), expected[0]) << info.name << ' ' << of_motor;
+          ASSERT_EQ(torque(i, 1), expected[1]) << info.name << ' ' << of_motor;
+        }
+      }
+    }
+  }
 }
 
 TEST(InverseModel, ScaledLinkIsItsRegressorMore) {
