@@ -1,6 +1,7 @@
 #include "explain/beside_free_links.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "explain/link_share.hpp"
@@ -15,7 +16,7 @@ namespace {
 constexpr double kStaysNeeded = 0.5;
 // Of the joint's torque, beside links that had to be fitted further than CAD is off: so much of
 // second derivatives they leave.
-constexpr double kOfTorque = 0.02;
+constexpr double kOfTorque = 0.05;
 
 bool gives_way(const Term& term) {
   return term.effect->info().action == EffectAction::kDisplacement;
@@ -30,7 +31,64 @@ Fall taken(const Regression& regression, const FoundModel& found, const ModelFit
   return best_fall(layout.rms(without.residual), layout.rms(with.residual));
 }
 
+// What gravity on links that are a little elsewhere may look like.
+bool may_be_gravity(const Term& term) {
+  switch (term.effect->kind()) {
+    case EffectKind::kTipPayload:
+    case EffectKind::kLinkMass:
+    case EffectKind::kTorqueOffset:
+    case EffectKind::kTorqueScale:
+    case EffectKind::kJointStiffness:
+    case EffectKind::kPositionTorque:
+      return true;
+    default:
+      return false;
+  }
+}
+
+EffectAt at(const Accepted& one) { return {one.term.effect->kind(), one.term.joint}; }
+
+// Beside links of which each is off by itself already.
+std::vector<EffectAt> light_masses(const SearchSetting& setting, const RobotDescription& robot,
+                                   const FoundModel& found) {
+  constexpr double kDeviations = 3;
+  std::vector<EffectAt> light;
+  for (std::size_t i = 0; i < found.accepted.size(); ++i) {
+    const Term& term = found.accepted[i].term;
+    if (!term.effect->is_mass()) continue;
+    const double link_kg = robot.joints[static_cast<std::size_t>(term.joint)].joint.mass_kg;
+    const double off_kg = kDeviations * setting.nuisance.link_share * link_kg;
+    if (std::abs(found.fit.coefficients[i][0]) <= off_kg) light.push_back(at(found.accepted[i]));
+  }
+  return light;
+}
+
 }  // namespace
+
+std::vector<EffectAt> could_be_links(const SearchSetting& setting, const RobotDescription& robot,
+                                     const FoundModel& found) {
+  constexpr int kFewestJoints = 3;
+  const auto is_asked = [](const Accepted& one) { return may_be_gravity(one.term); };
+  if (robot.joint_count() < kFewestJoints || setting.data->recordings[0].at_rest ||
+      std::none_of(found.accepted.begin(), found.accepted.end(), is_asked)) {
+    return {};
+  }
+  if (setting.nuisance.link_geometry) return light_masses(setting, robot, found);
+  NuisanceOptions cad = setting.nuisance;
+  cad.link_share = std::max(cad.link_share, kCadShare);
+  cad.link_geometry = true;
+  const Data data(*setting.data, robot, cad);
+  const Regression beside_cad(data);
+  const ModelFit with = beside_cad.fit(found.terms());
+  std::vector<EffectAt> links;
+  for (std::size_t i = 0; i < found.accepted.size(); ++i) {
+    if (!is_asked(found.accepted[i])) continue;
+    const Fall own = taken(*setting.regression, found, found.fit, i);
+    const Fall stays = taken(beside_cad, found, with, i);
+    if (stays.share < kStaysNeeded * own.share) links.push_back(at(found.accepted[i]));
+  }
+  return links;
+}
 
 void leave_out_links_in_disguise(const SearchSetting& setting, const RobotDescription& robot,
                                  int threads, FoundModel& found) {

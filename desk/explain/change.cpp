@@ -255,9 +255,14 @@ class ChangeFinder {
     const Judge judge(remainder);
     one.log_likelihood = likelihood_of(judge, columns_of(data_, one.term));
     if (one.log_likelihood < kClearly) return std::nullopt;
+    const bool asks_when = !moments_.are_given();
+    // Friction and a brake hold a joint that stands with any torque up to their own.
+    if (asks_when && !one.term.effect->is_mass() &&
+        !moves_in_any(data_.recordings, one.term.joint)) {
+      return std::nullopt;
+    }
     const Fall fall =
         best_fall(data_.layout.rms(fit_without.residual), data_.layout.rms(fit.residual));
-    const bool asks_when = !moments_.are_given();
     if (!is_relevant(fall) ||
         (asks_when &&
          !is_sudden(moments_, one.recorded, whole(one.term), one.log_likelihood, judge)) ||
@@ -280,8 +285,8 @@ class ChangeFinder {
   [[nodiscard]] bool is_relevant(const Fall& fall) const {
     const RowLayout& layout = data_.layout;
     const ModelFit plain = regression_.fit({});
-    return fall.share >= kRelevantShare &&
-           fall.rms >= kRelevantTorque * layout.rms(data_.torque)[fall.joint] &&
+    const double torque = layout.rms(data_.torque)[fall.joint];
+    return is_worth_a_name(fall, torque) && fall.rms >= kRelevantTorque * torque &&
            fall.rms >= kLeftOfItself * layout.rms(plain.residual)[fall.joint];
   }
 

@@ -120,6 +120,10 @@ class Explainer {
     do {
       tell("looking for what else the effects could be");
       result.ambiguous = classes_of(setting_, result.excitation, found);
+      result.or_links = could_be_links(setting_, robot_, found);
+      for (const EffectAt& one : result.or_links) {
+        if (!holds_in_any(result.ambiguous, one)) result.ambiguous.push_back({one});
+      }
       result.shifts =
           contradicted_numbers(setting_, robot_, found, result.excitation, result.ambiguous);
       tell("fitting the numbers");
@@ -131,6 +135,11 @@ class Explainer {
     if (search) {
       for (auto& one :
            undecided(*setting_.search, *setting_.regression, found, result.excitation)) {
+        // Another mass or torque constant is one of the model's own numbers.
+        const auto own = std::find_if(one.begin(), one.end(), [](const EffectAt& member) {
+          return info_of(member.kind)->is_known_quantity();
+        });
+        if (own != one.end()) result.or_links.push_back(*own);
         result.ambiguous.push_back(std::move(one));
       }
     }

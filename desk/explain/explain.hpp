@@ -184,7 +184,7 @@ struct Remains {
   std::vector<LoudSpan> when = {};  // where it follows time
 };
 
-// What stands beside the effect of a class of one.
+// What stands beside the effects of a class that may be none of them.
 inline constexpr const char* kOwnNumbers = "the model's own numbers";
 
 // What is said of one joint; the joint counts from 0.
@@ -219,6 +219,8 @@ struct Explanation {
   // Effects of which one is missing, per class; of a class of one it is that or the model's own
   // numbers.
   std::vector<std::vector<EffectAt>> ambiguous;
+  // Of them, those that links which are off as CAD is could be (could_be_links()).
+  std::vector<EffectAt> or_links;
   std::optional<Suspicion> suspected;  // only where it makes the verdict
   std::vector<Rejection> rejected;
   std::vector<StructureShare> where;  // of what is left, largest first
@@ -260,6 +262,8 @@ struct Explanation {
   std::vector<std::string> unphysical;  // what physics forbids of it
 };
 
+// Whether a class of `ambiguous` may be no effect at all, but the model's own numbers.
+bool may_be_own_numbers(const Explanation& e, const std::vector<EffectAt>& same);
 // Whether `improved` has the finding: not where the recordings do not tell it from another effect,
 // and not beside a number of its joint that was held against what they say.
 bool is_written(const Explanation& e, const EffectAt& finding);

@@ -157,6 +157,8 @@ ordered_json to_json(const Explanation& e, const ExplainNames& names) {
   }
   json["ambiguous"] = array_of(
       e.ambiguous, [](const std::vector<EffectAt>& same) { return array_of(same, effect_at); });
+  json["or_own_numbers"] = array_of(
+      e.ambiguous, [&](const auto& same) { return ordered_json(may_be_own_numbers(e, same)); });
   json["suspected"] = nullptr;
   if (e.suspected) {
     json["suspected"] = effect_at(e.suspected->what);

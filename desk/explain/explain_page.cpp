@@ -212,12 +212,11 @@ report::Table class_table(const Explanation& e) {
       table.rows.push_back({static_cast<double>(i + 1), std::string(one.name()),
                             static_cast<double>(one.joint + 1)});
     }
+    if (may_be_own_numbers(e, e.ambiguous[i])) {
+      table.rows.push_back({static_cast<double>(i + 1), kOwnNumbers, {}});
+    }
   }
-  table.note = "One effect of each class is missing, the likeliest stands first.";
-  if (std::any_of(e.ambiguous.begin(), e.ambiguous.end(),
-                  [](const auto& same) { return same.size() == 1; })) {
-    table.note += fmt::format(" Where a class has one effect, it is that or {}.", kOwnNumbers);
-  }
+  table.note = "One of each class is what shows, the likeliest effect stands first.";
   return table;
 }
 

@@ -76,7 +76,7 @@ std::string text_of_findings(const Explanation& e) {
     for (const EffectAt& one : same) {
       text += fmt::format(" {} on joint {};", one.name(), one.joint + 1);
     }
-    if (same.size() == 1) text += fmt::format(" {};", kOwnNumbers);
+    if (may_be_own_numbers(e, same)) text += fmt::format(" {};", kOwnNumbers);
     text.back() = '\n';
   }
   return text;

@@ -31,6 +31,12 @@ Fall best_fall(const VectorXd& before, const VectorXd& after) {
   return best;
 }
 
+bool is_worth_a_name(const Fall& fall, double torque) {
+  constexpr double kLittle = 0.01;  // of the torque
+  constexpr double kMost = 0.5;     // of the error's energy
+  return fall.share >= kRelevantShare && (fall.share >= kMost || fall.rms >= kLittle * torque);
+}
+
 std::vector<Term> FoundModel::terms() const {
   std::vector<Term> terms;
   for (const Accepted& one : accepted) terms.push_back(one.term);
@@ -206,7 +212,9 @@ class Finder {
 
   [[nodiscard]] bool relevant(const ModelFit& before, const ModelFit& after) const {
     const Fall fall = fall_of(before, after);
-    return fall.share >= kRelevantShare && matters(fall);
+    const RowLayout& layout = regression_.data().layout;
+    const double torque = layout.rms(regression_.data().torque)[fall.joint];
+    return is_worth_a_name(fall, torque) && matters(fall);
   }
 
   static std::vector<EffectKind> kinds_of(const Proposal& one) {

@@ -43,6 +43,11 @@ inline constexpr double kRelevantShare = 0.08;
 // The same of the joint's rms torque, for an effect and for what is left of the error.
 inline constexpr double kRelevantTorque = 0.001;
 
+// Whether what goes of a joint's error is worth a name at all, where its rms torque is `torque`:
+// what is less than a hundredth of that has to be most of the error, or it may as well be what
+// smoothed friction and filtered positions leave of themselves.
+bool is_worth_a_name(const Fall& fall, double torque);
+
 struct FoundModel {
   std::vector<Accepted> accepted;      // those that matter most first
   std::optional<Suspected> suspected;  // only where nothing was accepted

@@ -195,10 +195,10 @@ void judge_ambiguous(Explanation& e) {
   }
   const std::string missing =
       sure.empty() ? "" : fmt::format("Missing: {}. ", fmt::join(sure, ", "));
-  if (possible.size() == 1) {
-    e.words =
-        fmt::format("{}Something {}, and these recordings cannot tell what: {}, or {}.", missing,
-                    sure.empty() ? "shows" : "else shows too", possible[0], kOwnNumbers);
+  if (may_be_own_numbers(e, e.ambiguous[0])) {
+    e.words = fmt::format("{}Something {}, and these recordings cannot tell what: {}, or {}.",
+                          missing, sure.empty() ? "shows" : "else shows too",
+                          fmt::join(possible, ", or "), kOwnNumbers);
   } else {
     e.words = fmt::format("{}Something {} missing{}, but these recordings cannot tell which: {}.",
                           missing, sure.empty() ? "is" : "else is", sure.empty() ? "" : " too",
@@ -319,6 +319,12 @@ std::string words_of(const Shift& shift) {
   const char* blank = shift.unit.empty() || shift.unit == "1" ? "" : " ";
   return fmt::format("{} is {:.3g}{}{}, not {:.3g}", shift.name, shift.came, blank,
                      *blank == '\0' ? "" : shift.unit, shift.file);
+}
+
+bool may_be_own_numbers(const Explanation& e, const std::vector<EffectAt>& same) {
+  return same.size() == 1 || std::any_of(same.begin(), same.end(), [&](const EffectAt& one) {
+           return holds(e.or_links, one);
+         });
 }
 
 bool is_written(const Explanation& e, const EffectAt& finding) {
@@ -452,7 +458,7 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
       answer.words = fmt::format("{}.", fmt::join(names_of(sure, errors.joint), ", "));
     for (const auto& same : answer.ambiguous) {
       auto names = names_of(same, errors.joint);
-      if (names.size() == 1) names.emplace_back(kOwnNumbers);
+      if (may_be_own_numbers(e, same)) names.emplace_back(kOwnNumbers);
       answer.words += fmt::format("{}{} cannot be told apart.", answer.words.empty() ? "" : " ",
                                   fmt::join(names, " or "));
     }

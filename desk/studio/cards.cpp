@@ -11,7 +11,9 @@ using nlohmann::ordered_json;
 namespace {
 
 ordered_json json_of(const EffectAt& what) {
-  return {{"effect", what.name()}, {"joint", what.joint + 1}, {"words", info_of(what.kind)->words},
+  return {{"effect", what.name()},
+          {"joint", what.joint + 1},
+          {"words", info_of(what.kind)->words},
           {"motion", info_of(what.kind)->motion_hint}};
 }
 
@@ -69,7 +71,8 @@ ordered_json joint_of(const JointAnswer& answer, const Explanation& explanation)
   for (const std::vector<EffectAt>& same : answer.ambiguous) {
     ordered_json members = ordered_json::array();
     for (const EffectAt& one : same) members.push_back(json_of(one));
-    json["classes"].push_back(std::move(members));
+    json["classes"].push_back({{"effects", std::move(members)},
+                               {"or_own_numbers", may_be_own_numbers(explanation, same)}});
   }
   return json;
 }

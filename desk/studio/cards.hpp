@@ -12,7 +12,8 @@ namespace offnominal::desk::studio {
 /// What `explain` says, joint by joint, the one that matters most first: {verdict, words, joints:
 /// [{joint, verdict, words, cards: [{effect, joint, title, words, formula, parameters: [{name,
 /// value, unit, ci95, why_no_ci95}], p_value, unit, held_out_before, held_out_after, alternatives:
-/// [{effect, joint, words, motion}], finding}], classes: [[the same]]}], advice}. Joints count from
+/// [{effect, joint, words, motion}], finding}], classes: [{effects: [the same],
+/// or_own_numbers}]}], advice}. Joints count from
 /// 1; `finding` is null where its picture cannot be drawn.
 nlohmann::ordered_json cards_of(const Explanation& explanation);
 

@@ -44,7 +44,10 @@ class ArmJudge {
       if (!is_there(finding) && !is_excused(finding.what)) count_wrong(finding.what);
     }
     for (const auto& same : told_.ambiguous) {
-      if (!same.empty() && !holds_one_that_is_there(same)) count_wrong(same.front());
+      // The model's own numbers are off in every case.
+      if (!may_be_own_numbers(told_, same) && !holds_one_that_is_there(same)) {
+        count_wrong(same.front());
+      }
     }
     for (const desk::Change& one : told_.changes) {
       if (!is_true(one)) count_wrong(one.what);
@@ -67,7 +70,9 @@ class ArmJudge {
         std::find_if(told_.found.begin(), told_.found.end(),
                      [&](const desk::Finding& found) { return found.what == asked.what; });
     for (const auto& same : told_.ambiguous) {
-      if (holds(same, asked.what)) asked.class_size = static_cast<int>(same.size());
+      if (!holds(same, asked.what)) continue;
+      const int own = may_be_own_numbers(told_, same) ? 1 : 0;  // a member, too
+      asked.class_size = static_cast<int>(same.size()) + own;
     }
     if (finding != told_.found.end() && asked.class_size == 0) {
       asked.named = true;
@@ -106,7 +111,8 @@ class ArmJudge {
   }
   [[nodiscard]] bool is_excused(const EffectAt& named) const {
     return std::any_of(told_.ambiguous.begin(), told_.ambiguous.end(), [&](const auto& same) {
-      return holds(same, named) && holds_one_that_is_there(same);
+      return holds(same, named) &&
+             (may_be_own_numbers(told_, same) || holds_one_that_is_there(same));
     });
   }
   [[nodiscard]] bool is_wrong_constant(const EffectAt& one) const {

@@ -36,7 +36,7 @@ function findingCard(card, id, search, state, actions) {
     ),
   );
   if (card.finding !== null) {
-    root.append(evidenceElement(`finding ${card.finding} of ${search}`, `evidence?finding=${card.finding}`));
+    root.append(evidenceElement(`finding ${card.finding} of ${search}`, `evidence?search=${search}&finding=${card.finding}`));
   }
   if (card.alternatives.length > 0) {
     root.append(element("p", {}, "These recordings do not tell it from:"));
@@ -68,10 +68,10 @@ function jointAnswer(answer, search, state, actions) {
     cards.append(findingCard(card, `${answer.joint}-${index}`, search, state, actions)),
   );
   if (answer.cards.length > 0) root.append(cards);
-  answer.classes.forEach((members, index) => {
+  answer.classes.forEach(({ effects: members, or_own_numbers: orOwn }, index) => {
     const words =
-      members.length === 1
-        ? "This is missing, or the model's own numbers are off; the recordings do not tell:"
+      orOwn
+        ? "One of these is missing, or the model's own numbers are off; the recordings do not tell:"
         : "One of these is missing; the recordings do not tell which:";
     root.append(element("p", {}, words));
     root.append(choiceList(members, `${answer.joint}-class-${index}`, state, actions));
@@ -84,7 +84,7 @@ function answerElement(found, state, actions) {
   const silent = found.answer.joints.filter(
     ({ cards, classes }) => cards.length === 0 && classes.length === 0,
   );
-  const search = `${found.revision}, ${found.seconds}`;
+  const search = found.search ?? 0;
   for (const answer of found.answer.joints) {
     if (!silent.includes(answer)) root.append(jointAnswer(answer, search, state, actions));
   }
