@@ -77,7 +77,9 @@ void set_names(std::vector<Log>& logs, const std::vector<std::string>& names) {
 // Beside the recording that is named first, also where it was dropped on a page: then the command
 // line's folder is where it is. -o says another.
 std::filesystem::path place_of_session(const StudioOptions& options, const std::string& recording) {
-  std::filesystem::path place = recording_files(recording).front();
+  const bool is_named = !options.files.logs.empty() && options.files.logs.front() == recording;
+  std::filesystem::path place = recording;
+  if (is_named) place = recording_files(recording).front();
   if (options.output) {
     place = std::filesystem::path(*options.output).replace_filename(place.filename());
   }
@@ -336,7 +338,9 @@ void check_source(const StudioOptions& options) {
 void keep_memory_for_the_next_click() {
   constexpr int kMegabyte = 1 << 20;
   mallopt(M_ARENA_MAX, 1);
-  mallopt(M_MMAP_THRESHOLD, 512 * kMegabyte);
+  if (mallopt(M_MMAP_THRESHOLD, 512 * kMegabyte) == 0) {
+    mallopt(M_MMAP_THRESHOLD, 32 * kMegabyte);  // the most that older C libraries take
+  }
   mallopt(M_TRIM_THRESHOLD, 1024 * kMegabyte);
   mallopt(M_TOP_PAD, 32 * kMegabyte);
 }

@@ -61,8 +61,7 @@ report::Heatmap mean_map(const std::string& title, const MapSide& x, const MapSi
   std::vector<double> sum(rows.count() * columns.count(), 0.0);
   std::vector<double> count(sum.size(), 0.0);
   for (const Index i : samples) {
-    const std::size_t cell =
-        rows.at(y.values[i]) * columns.count() + columns.at(x.values[i]);
+    const std::size_t cell = rows.at(y.values[i]) * columns.count() + columns.at(x.values[i]);
     sum[cell] += mean_of.values[i];
     count[cell] += 1;
   }

@@ -41,8 +41,8 @@ ArrayXd amplitudes(const ArrayXd& phase, const ArrayXd& values, const ArrayXd& w
   const double all = weights.sum();
   if (!(all > 0)) return ArrayXd::Zero(static_cast<Index>(at.size()));
   const ArrayXd about = values - (weights * values).sum() / all;
-  const std::vector<double> power = periodogram((kTwoPi * phase).matrix(),
-                                                (weights * about).matrix(), at);
+  const std::vector<double> power =
+      periodogram((kTwoPi * phase).matrix(), (weights * about).matrix(), at);
   return 2 / all * Eigen::Map<const ArrayXd>(power.data(), static_cast<Index>(power.size())).sqrt();
 }
 
@@ -60,9 +60,11 @@ Spectrum spectrum_over_time(const Eigen::Ref<const VectorXd>& t_s,
   std::vector<double> at = steps_up_to(most_hz, piece_s);
   if (at.empty()) return {};
   ArrayXd power = ArrayXd::Zero(static_cast<Index>(at.size()));
-  const auto pieces = static_cast<int>(std::floor(2 * (whole_s / piece_s - 1) + 1e-9)) + 1;
+  // They overlap by half or more: the last one ends where the signal does.
+  const auto pieces = static_cast<int>(std::ceil(2 * (whole_s / piece_s - 1) - 1e-9)) + 1;
+  const double apart_s = pieces > 1 ? (whole_s - piece_s) / (pieces - 1) : 0;
   for (int piece = 0; piece < pieces; ++piece) {
-    const double from_s = t_s[0] + piece * piece_s / 2;
+    const double from_s = t_s[0] + piece * apart_s;
     const auto first = std::lower_bound(t_s.begin(), t_s.end(), from_s);
     const auto end = std::upper_bound(first, t_s.end(), from_s + piece_s);
     const Index at_first = first - t_s.begin();

@@ -14,8 +14,8 @@ struct Spectrum {
   std::vector<double> amplitude;
 };
 
-// Over frequency, Hz, up to `most_hz`: the root mean square over pieces that overlap by half, as
-// long as 1000 steps resolve. `t_s` ascends.
+// Over frequency, Hz, up to `most_hz`: the root mean square over pieces that overlap by half or
+// more, as long as 1000 steps resolve. `t_s` ascends.
 Spectrum spectrum_over_time(const Eigen::Ref<const Eigen::VectorXd>& t_s,
                             const Eigen::Ref<const Eigen::VectorXd>& values, double most_hz);
 

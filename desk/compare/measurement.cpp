@@ -109,16 +109,19 @@ MatrixXd ModelTorqueMemory::filtered(const RobotDescription& robot, const Measur
     torque += transmission_torque(seen, measured.motion, torque, measured.log.tau,
                                   noise_densities(measured), measured.plan);
   }
+  MatrixXd result = filtered_;
   if (torque_.rows() != torque.rows() || torque_.cols() != torque.cols()) {
-    filtered_ = filtered_columns(measured.plan, torque);
+    result = filtered_columns(measured.plan, torque);
   } else {
     for (Index joint = 0; joint < torque.cols(); ++joint) {
       if (torque.col(joint) == torque_.col(joint)) continue;
-      filtered_.col(joint) = desk::filtered(measured.plan, torque.col(joint));
+      result.col(joint) = desk::filtered(measured.plan, torque.col(joint));
     }
   }
+  // Both or none of them, whatever throws above.
   torque_ = std::move(torque);
-  return filtered_;
+  filtered_ = result;
+  return result;
 }
 
 }  // namespace offnominal::desk

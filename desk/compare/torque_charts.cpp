@@ -74,10 +74,9 @@ Chart residual_over_time(const std::vector<NamedComparison>& models, std::size_t
   Chart chart = time_chart(any, joint, "residual (measured minus model)");
   for (const NamedComparison& model : models) {
     const Tone tone = models.size() == 1 ? Tone::kResidual : model.tone;
-    chart.series.push_back(series(models.size() == 1 ? "residual" : model.name, SeriesKind::kLine,
-                                  tone, numbers(any.t_s),
-                                  numbers(model.comparison->measured.col(column) -
-                                          model.comparison->model.col(column))));
+    chart.series.push_back(series(
+        models.size() == 1 ? "residual" : model.name, SeriesKind::kLine, tone, numbers(any.t_s),
+        numbers(model.comparison->measured.col(column) - model.comparison->model.col(column))));
   }
   return chart;
 }

@@ -55,7 +55,7 @@ class FitMemory {
   struct Known {
     std::vector<Measurement> measured;
     std::vector<ModelTorqueMemory> models;  // of each of them
-    std::string robot;  // the text of the one that was compared last
+    std::string robot;                      // the text of the one that was compared last
     Comparisons result;
   };
   static void forget_what_is_large(Known& known);

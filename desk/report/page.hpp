@@ -103,6 +103,15 @@ struct EventMark {
   Level level = Level::kNeutral;
 };
 
+/// What holds from one x to another, e.g. {3.1, 4.2, "encoder stuck", Level::kBad}: a band behind
+/// the series. Bands may overlap; from < to.
+struct SpanMark {
+  double from = 0.0;
+  double to = 0.0;
+  std::string label{};
+  Level level = Level::kNeutral;
+};
+
 /// A horizontal line at y on the left axis, e.g. a published figure.
 struct LevelMark {
   double y = 0.0;
@@ -116,6 +125,7 @@ struct Chart {
   std::vector<Axis> y{};  ///< one (left) or two (left, right)
   std::vector<Series> series{};
   std::vector<EventMark> events{};
+  std::vector<SpanMark> spans{};
   std::vector<LevelMark> levels{};
   /// Charts of one page with the same non-empty group have the same x range and zoom together.
   std::string zoom_group{};

@@ -78,6 +78,13 @@ struct Json {
             {"max", of(axis.max)}};
   }
 
+  static json of(const SpanMark& span) {
+    return {{"from", exact(span.from)},
+            {"to", exact(span.to)},
+            {"label", span.label},
+            {"level", span.level}};
+  }
+
   static json of(const LevelMark& mark) { return {{"y", mark.y}, {"label", mark.label}}; }
 
   template <typename Item>
@@ -143,6 +150,7 @@ struct Json {
             {"y", list(chart.y)},
             {"series", list(drawn)},
             {"events", list(chart.events)},
+            {"spans", list(chart.spans)},
             {"levels", list(chart.levels)},
             {"zoom_group", chart.zoom_group},
             {"slider", chart.slider},

@@ -125,6 +125,10 @@ void check(const Chart& chart) {
   for (const EventMark& event : chart.events) {
     require(std::isfinite(event.x), block, "event \"" + event.label + "\" is not finite");
   }
+  for (const SpanMark& span : chart.spans) {
+    const bool is_span = std::isfinite(span.from) && std::isfinite(span.to) && span.from < span.to;
+    require(is_span, block, "span \"" + span.label + "\" does not end behind its beginning");
+  }
   check_levels(block, chart.levels);
 }
 

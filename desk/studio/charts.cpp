@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -61,14 +62,34 @@ Series seen(const Series& whole, const View& view) {
   return result;
 }
 
-std::vector<Chart> time_charts(const Workbench& bench, const Compared& now, const View& view) {
+// Another recording over the one that is shown: what it measured, and its error.
+void lay_over(const Compared& now, const View& view, Chart& torque, Chart& error) {
+  const Comparison& shown = recording_of(now, view.recording);
+  const Comparison& other = recording_of(now, *view.beside);
+  const auto column = static_cast<Index>(view.joint);
+  const VectorXd t_s = other.t_s.array() + (shown.t_s[0] - other.t_s[0]);
+  const std::string name = std::filesystem::path(other.file).filename().string();
+  const auto put = [&](Chart& chart, const std::string& what, const VectorXd& values) {
+    Series series;
+    series.name = what + ", " + name;
+    series.tone = Tone::kThreshold;
+    series.x = report::numbers(t_s);
+    series.y = report::numbers(values);
+    chart.series.push_back(std::move(series));
+  };
+  put(torque, "measured", other.measured.col(column));
+  put(error, "error now", other.measured.col(column) - other.model.col(column));
+}
+
+std::vector<Chart> time_charts(const Workbench& bench, const Compared& now, const View& view,
+                               const std::vector<report::SpanMark>& spans) {
   const Role& role = role_of(bench, view.recording);
   std::vector<NamedComparison> models;
   if (!bench.steps().empty()) {
     models.push_back({"model as read", &recording_of(bench.start(), view.recording), Tone::kFaint});
   }
-  models.push_back({std::string("model now, ") + role.name, &recording_of(now, view.recording),
-                    role.tone});
+  models.push_back(
+      {std::string("model now, ") + role.name, &recording_of(now, view.recording), role.tone});
   Chart torque = torque_over_time(models, view.joint);
   Chart error = residual_over_time(models, view.joint);
   error.title = fmt::format("Joint {}: error (measured minus model)", view.joint + 1);
@@ -78,11 +99,13 @@ std::vector<Chart> time_charts(const Workbench& bench, const Compared& now, cons
   } else {
     error.series[0].name = "error as read";
   }
+  if (view.beside) lay_over(now, view, torque, error);
   std::vector<Chart> charts{std::move(torque), std::move(error)};
   for (Chart& chart : charts) {
     for (Series& series : chart.series) series = seen(series, view);
     chart.max_points = 6 * kMostPixels;
     if (view.recording == 0) chart.events = bench.input().marks;
+    chart.spans = spans;
   }
   return charts;
 }
@@ -143,8 +166,8 @@ Chart cloud_chart(const Workbench& bench, const Compared& now, const View& view,
     chart.series.push_back(points_of("the time that is shown", role_of(bench, view.recording).tone,
                                      part.at, part.error));
   }
-  chart.series.push_back(binned_mean(std::string(kFitted.name) + ", mean of bins",
-                                     Tone::kThreshold, fitted.at, fitted.error));
+  chart.series.push_back(binned_mean(std::string(kFitted.name) + ", mean of bins", Tone::kThreshold,
+                                     fitted.at, fitted.error));
   return chart;
 }
 
@@ -167,7 +190,8 @@ void check(const Workbench& bench, const View& view) {
     throw Refused(Refused::Why::kBadRequest, words);
   };
   if (view.joint >= bench.robot().joints.size()) refuse("There is no such joint.");
-  if (view.recording >= all.logs.size() + all.holdout.size()) refuse("No such recording.");
+  const std::size_t count = all.logs.size() + all.holdout.size();
+  if (view.recording >= count || view.beside.value_or(0) >= count) refuse("No such recording.");
   if (view.pixels < kFewestPixels || view.pixels > kMostPixels) {
     refuse(fmt::format("The width has to be {} to {} pixels.", kFewestPixels, kMostPixels));
   }
@@ -197,10 +221,11 @@ Series points_of(const std::string& name, Tone tone, const VectorXd& x, const Ve
 
 nlohmann::json block_of(report::Block block) { return blocks_of({std::move(block)}).at(0); }
 
-nlohmann::json charts_of(const Workbench& bench, const Compared& now, const View& view) {
+nlohmann::json charts_of(const Workbench& bench, const Compared& now, const View& view,
+                         const std::vector<report::SpanMark>& spans) {
   check(bench, view);
   std::vector<report::Block> blocks;
-  for (Chart& chart : time_charts(bench, now, view)) blocks.emplace_back(std::move(chart));
+  for (Chart& chart : time_charts(bench, now, view, spans)) blocks.emplace_back(std::move(chart));
   blocks.emplace_back(cloud_chart(bench, now, view, ErrorVariable::kVelocity));
   blocks.emplace_back(cloud_chart(bench, now, view, ErrorVariable::kPosition));
   return blocks_of(std::move(blocks));

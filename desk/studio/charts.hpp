@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "report/page.hpp"
 #include "studio/workbench.hpp"
@@ -19,6 +20,8 @@ struct View {
   // The part of the time that is shown, s of the recording's own time; none: all of it.
   std::optional<double> from_s = {};
   std::optional<double> to_s = {};
+  // Over it another recording, from 0, laid so that both begin together; none: it alone.
+  std::optional<std::size_t> beside = {};
 };
 
 inline constexpr std::size_t kFewestPixels = 100;
@@ -31,7 +34,9 @@ void check(const Workbench& bench, const View& view);
 /// time, error over velocity, error over position, of the model `now`. Curves over time keep the
 /// lowest and the highest point of every pixel of the part that is shown, and of the parts beside
 /// it; of that part the points of the others are marked. Throws as check().
-nlohmann::json charts_of(const Workbench& bench, const Compared& now, const View& view);
+/// `spans` are marked over time.
+nlohmann::json charts_of(const Workbench& bench, const Compared& now, const View& view,
+                         const std::vector<report::SpanMark>& spans = {});
 /// The error of a joint, step by step.
 nlohmann::json waterfall_of(const Workbench& bench, std::size_t joint);
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -25,9 +27,29 @@ namespace {
 
 constexpr std::size_t kMostOnCard = 2000;  // of a picture on a card
 
+// NaN where the joint is not judged: at rest, or where the recording is at fault.
 VectorXd error_of(const Comparison& one, std::size_t joint) {
   const auto column = static_cast<Index>(joint);
-  return one.measured.col(column) - one.model.col(column);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  return (one.moving.col(column).array() > 0)
+      .select(one.measured.col(column) - one.model.col(column), none);
+}
+
+// The same with its mean there: no sine is made of that.
+VectorXd error_without_gaps(const Comparison& one, std::size_t joint) {
+  VectorXd error = error_of(one, joint);
+  double sum = 0;
+  Index count = 0;
+  for (const double value : error) {
+    if (std::isnan(value)) continue;
+    sum += value;
+    ++count;
+  }
+  const double mean = count > 0 ? sum / static_cast<double>(count) : 0;
+  for (double& value : error) {
+    if (std::isnan(value)) value = mean;
+  }
+  return error;
 }
 
 report::Axis error_axis(const Comparison& one, std::size_t joint) {
@@ -47,7 +69,7 @@ Spectrum spectrum(const Comparison& one, const View& view, SpectrumOver over) {
   const auto part = [&](const VectorXd& values) -> VectorXd {
     return values.segment(shown.first, shown.count);
   };
-  const VectorXd error = part(error_of(one, view.joint));
+  const VectorXd error = part(error_without_gaps(one, view.joint));
   // At rest there is no filter, and no time.
   const double most_hz = std::min(one.plan.torque_cutoff_hz, one.plan.sample_rate_hz / 2);
   if (over == SpectrumOver::kFrequency) return spectrum_over_time(part(one.t_s), error, most_hz);
@@ -137,8 +159,9 @@ std::size_t joint_changed(const Compared& without, const Compared& with,
     for (std::size_t r = 0; r < with.fitted.recordings.size(); ++r) {
       const Comparison& bare = without.fitted.recordings[r];
       const auto column = static_cast<Index>(j);
-      changed += (with.fitted.recordings[r].model.col(column) - bare.model.col(column)).squaredNorm();
-      error += error_of(bare, j).squaredNorm();
+      changed +=
+          (with.fitted.recordings[r].model.col(column) - bare.model.col(column)).squaredNorm();
+      error += error_without_gaps(bare, j).squaredNorm();
     }
     if (!(error > 0) || changed / error <= most) continue;
     most = changed / error;
@@ -163,9 +186,8 @@ nlohmann::json map_of(const Workbench& bench, const Compared& now, const View& v
   };
   const MapSide error{error_axis(one, view.joint),
                       error_of(one, view.joint).segment(shown.first, shown.count)};
-  report::Heatmap map =
-      mean_map(fmt::format("Joint {}: mean error, model now", view.joint + 1), side(x), side(y),
-               error);
+  report::Heatmap map = mean_map(fmt::format("Joint {}: mean error, model now", view.joint + 1),
+                                 side(x), side(y), error);
   map.note = words_of(one, shown);
   return block_of(std::move(map));
 }
@@ -192,11 +214,12 @@ nlohmann::json spectrum_of(const Workbench& bench, const Compared& now, const Vi
   if (chart.series.back().x.empty()) {
     // A chart has to have a point.
     for (Series& series : chart.series) series.x = series.y = {0};
-    chart.note += over == SpectrumOver::kOrder ? " The joint turns too little to tell orders."
-                                               : " Too short to tell frequencies.";
+    chart.note += !(one.plan.sample_rate_hz > 0) ? " Readings at rest have no spectrum."
+                  : over == SpectrumOver::kOrder ? " The joint turns too little to tell orders."
+                                                 : " Too short to tell frequencies.";
   } else {
-    chart.note += fmt::format(" Low-passed at {:.3g} Hz, as all errors here.",
-                              one.plan.torque_cutoff_hz);
+    chart.note +=
+        fmt::format(" Low-passed at {:.3g} Hz, as all errors here.", one.plan.torque_cutoff_hz);
   }
   return block_of(std::move(chart));
 }
@@ -215,10 +238,10 @@ nlohmann::json evidence_of(const Compared& without, const Compared& with,
   chart.title = fmt::format("Joint {}: error without {}", shown_on + 1, name);
   chart.width = report::Width::kHalf;
   chart.max_points = kMostOnCard;
-  chart.series = {points_of("error without it", Tone::kFaint, samples.at, samples.error),
-                  points_of("torque of the effect", Tone::kResidual, samples.at, samples.torque),
-                  binned_mean("error without it, mean of bins", Tone::kThreshold, samples.at,
-                              samples.error)};
+  chart.series = {
+      points_of("error without it", Tone::kFaint, samples.at, samples.error),
+      points_of("torque of the effect", Tone::kResidual, samples.at, samples.torque),
+      binned_mean("error without it, mean of bins", Tone::kThreshold, samples.at, samples.error)};
   return block_of(std::move(chart));
 }
 

@@ -63,7 +63,11 @@ SessionState state_of(const ordered_json& json) {
   for (const ordered_json& step : json.at("steps")) {
     const auto joint = step.at("joint").get<std::size_t>();
     const auto kind = kind_named(step.at("effect").get<std::string>());
-    if (!kind || joint < 1) break;  // of another version: what comes after it builds on it
+    // Of another version: what comes after it builds on it.
+    if (!kind || joint < 1 || state.unknown > 0) {
+      ++state.unknown;
+      continue;
+    }
     state.steps.push_back({0, *kind, joint - 1});
   }
   state.answer = json.at("answer");
@@ -108,7 +112,11 @@ std::uint64_t fingerprint_of(const Input& input) {
     for (const Log& log : *some) {
       hash.add_numbers(log.t_s);
       hash.add_numbers(log.q);
+      hash.add_numbers(log.dq);
       hash.add_numbers(log.tau);
+      hash.add_numbers(log.sensor_tau);
+      hash.add_numbers(log.approach);
+      hash.add(fmt::format("{} left out", log.left_out.size()));
     }
   }
   return hash.value();
@@ -134,6 +142,18 @@ KeptSession::KeptSession(const std::filesystem::path& recording, const Input& in
     problem_ = "there are a hundred sessions beside the recording already";
   } catch (const InputError& error) {
     problem_ = on_one_line(error.what());
+  }
+}
+
+void KeptSession::set_found_aside() {
+  if (file_.empty()) return;
+  std::filesystem::path aside = file_;
+  aside += ".before";
+  try {
+    write_file_atomically(aside, read_text_file(file_), Existing::kReplace);
+  } catch (const InputError& error) {
+    problem_ = on_one_line(error.what());
+    file_.clear();  // rather than lose what is there
   }
 }
 

@@ -12,9 +12,10 @@ namespace offnominal::desk::studio {
 
 /// What the next program that is started over the same files goes on with.
 struct SessionState {
-  std::vector<Step> steps;                // from the first on; their ids mean nothing
+  std::vector<Step> steps;                  // from the first on; their ids mean nothing
+  std::size_t unknown = 0;                  // steps behind them, which this program does not know
   nlohmann::ordered_json answer = nullptr;  // of the search, as the page has it; null: none
-  bool answers_now = false;               // the answer is of the model with these steps
+  bool answers_now = false;                 // the answer is of the model with these steps
 };
 
 /// A session's state in a file of its own, written whole after every change: whatever ends the
@@ -25,12 +26,15 @@ class KeptSession {
  public:
   /// Kept nowhere.
   KeptSession() = default;
-  /// Beside a recording of that name, there or not; finds what was kept of this input before. Throws
-  /// nothing: where it cannot be read or written the session goes on without, and problem() says so.
+  /// Beside a recording of that name, there or not; finds what was kept of this input before.
+  /// Throws nothing: where it cannot be read or written the session goes on without, and problem()
+  /// says so.
   KeptSession(const std::filesystem::path& recording, const Input& input);
 
   [[nodiscard]] const SessionState& found() const { return found_; }
   void keep(const SessionState& state);
+  /// Not all that was found could be taken up: it stays beside the file, as "a.studio.json.before".
+  void set_found_aside();
   /// Empty: kept nowhere.
   [[nodiscard]] std::string file() const { return file_.string(); }
   /// Why the last change is not in the file, in words; empty: it is.

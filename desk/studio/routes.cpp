@@ -36,6 +36,7 @@ View view_of(const Request& request) {
   view.joint = number_of<std::size_t>(request, "joint") - 1;
   view.recording = number_of<std::size_t>(request, "recording") - 1;
   if (request.has_param("pixels")) view.pixels = number_of<std::size_t>(request, "pixels");
+  if (request.has_param("beside")) view.beside = number_of<std::size_t>(request, "beside") - 1;
   set_range(request, view);
   return view;
 }
@@ -97,16 +98,16 @@ void set_up_model(httplib::Server& server, const std::string& api, Stage& stage)
     });
   });
   server.Get(api + "spectrum", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      return stage.session()->spectrum(view_of(request), spectrum_over_of(request));
-    });
+    answer(response,
+           [&] { return stage.session()->spectrum(view_of(request), spectrum_over_of(request)); });
   });
   server.Get(api + "evidence", [&stage](const Request& request, Response& response) {
     answer(response, [&] {
       if (request.has_param("step")) {
         return stage.session()->evidence_of_step(number_of<std::size_t>(request, "step"));
       }
-      return stage.session()->evidence_of_finding(number_of<std::size_t>(request, "finding"));
+      return stage.session()->evidence_of_finding(number_of<std::size_t>(request, "search"),
+                                                  number_of<std::size_t>(request, "finding"));
     });
   });
   server.Get(api + "arm", [&stage](const Request& request, Response& response) {

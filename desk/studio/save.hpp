@@ -31,8 +31,9 @@ std::filesystem::path place_to_save(const Input& input, const std::string& name)
 /// written.
 std::filesystem::path save(const Workbench& bench, const SaveRequest& request);
 
-/// Writes the report page of `compare`, of all recordings with all steps and as read, under the same
-/// name with ".html", whole or not at all, and returns its path. Throws as save(), but of doubts.
+/// Writes the report page of `compare`, of all recordings with all steps and as read, under the
+/// same name with ".html", whole or not at all, and returns its path. Throws as save(), but of
+/// doubts.
 std::filesystem::path save_page(const Workbench& bench, const SaveRequest& request);
 
 }  // namespace offnominal::desk::studio

@@ -10,6 +10,7 @@
 #include "robot/read_effect.hpp"
 #include "studio/cards.hpp"
 #include "studio/commands.hpp"
+#include "studio/spans.hpp"
 #include "studio/state_json.hpp"
 
 namespace offnominal::desk::studio {
@@ -44,16 +45,37 @@ void Session::take_up_kept() {
   } catch (const std::exception& error) {
     not_taken_up_ = on_one_line(error.what());
   }
+  const bool is_all = taken_up_ == found.steps.size() && found.unknown == 0;
+  if (!is_all) {
+    if (not_taken_up_.empty()) {
+      not_taken_up_ = "this program does not know all of its effects and joints";
+    }
+    kept_.set_found_aside();
+  }
   answer_ = found.answer;
   if (!answer_.is_object()) return;
-  const bool is_of_now = found.answers_now && taken_up_ == found.steps.size();
+  const bool is_of_now = found.answers_now && is_all;
   // No model of this session has that one: a number that JSON has, too.
   answer_["revision"] = is_of_now ? ordered_json(revision_) : ordered_json(-1);
 }
 
+void Session::take_answer() {
+  const Job::Report report = job_.report();
+  if (report.state != Job::State::kDone || is_answer_kept_) return;
+  is_answer_kept_ = true;
+  answer_ = to_json(report);
+  without_pictures(answer_);
+  keep_state();
+}
+
 void Session::keep() {
+  take_answer();
+  keep_state();
+}
+
+void Session::keep_state() {
   const bool answers_now = answer_.is_object() && answer_.at("revision") == revision_;
-  kept_.keep({bench_.steps(), answer_, answers_now});
+  kept_.keep({bench_.steps(), 0, answer_, answers_now});
 }
 
 ordered_json Session::state_now() {
@@ -83,10 +105,15 @@ ordered_json Session::state() {
   return state_now();
 }
 
+nlohmann::json Session::charts_now(const Compared& now, const View& view) {
+  const auto explanation = job_.report().explanation;
+  return charts_of(bench_, now, view, spans_of(bench_, view, explanation.get()));
+}
+
 nlohmann::json Session::charts(const View& view) {
   const std::lock_guard guard(lock_);
   return {{"revision", revision_},
-          {"charts", charts_of(bench_, bench_.now(), view)},
+          {"charts", charts_now(bench_.now(), view)},
           {"waterfall", waterfall_of(bench_, view.joint)}};
 }
 
@@ -107,11 +134,11 @@ nlohmann::json Session::evidence_of_step(std::size_t step) {
           {"chart", evidence_of(without, bench_.now(), bench_.effect(step))}};
 }
 
-nlohmann::json Session::evidence_of_finding(std::size_t finding) {
+nlohmann::json Session::evidence_of_finding(std::size_t search, std::size_t finding) {
   const std::lock_guard guard(lock_);
   const Job::Report report = job_.report();
   std::optional<std::size_t> at;
-  if (report.explanation) at = improved_effect(*report.explanation, finding);
+  if (report.explanation && search == searches_) at = improved_effect(*report.explanation, finding);
   if (!at) {
     throw Refused(Refused::Why::kNotNow,
                   "There is no such finding whose picture can be drawn: search again.");
@@ -135,7 +162,7 @@ ordered_json Session::moved(const MovedNumber& number, const View& view) {
   return {{"revision", revision_},
           {"fitted_percent", percent(now.fitted)},
           {"held_out_percent", now.held_out ? percent(*now.held_out) : nullptr},
-          {"charts", charts_of(bench_, now, view)}};
+          {"charts", charts_now(now, view)}};
 }
 
 ordered_json Session::arm(const ArmView& view) {
@@ -178,6 +205,7 @@ ordered_json Session::undo_all() {
   refuse_while_explaining();
   bench_.undo_all();
   taken_up_ = 0;
+  not_taken_up_.clear();
   ++revision_;
   keep();
   return state_now();
@@ -205,6 +233,7 @@ ordered_json Session::start_to_explain() {
   options.robot_file = bench_.input().robot_file;
   options.source = bench_.input().source;
   is_answer_kept_ = false;
+  ++searches_;
   job_.start(bench_.robot(), bench_.input().recordings, std::move(options), revision_);
   return to_json(job_.report());
 }
@@ -223,12 +252,9 @@ ordered_json Session::explanation() {
   const std::lock_guard guard(lock_);
   const Job::Report report = job_.report();
   if (report.state == Job::State::kNone && answer_.is_object()) return answer_;
+  take_answer();
   ordered_json json = to_json(report);
-  if (report.state != Job::State::kDone || is_answer_kept_) return json;
-  is_answer_kept_ = true;
-  answer_ = json;
-  without_pictures(answer_);
-  keep();
+  json["search"] = searches_;
   return json;
 }
 

@@ -35,9 +35,10 @@ class Session {
   [[nodiscard]] nlohmann::json charts(const View& view);
   [[nodiscard]] nlohmann::json map(const View& view, const ErrorOver& x, const ErrorOver& y);
   [[nodiscard]] nlohmann::json spectrum(const View& view, SpectrumOver over);
-  /// Of an effect that was added, and of one that the search found: by its place in the answer.
+  /// Of an effect that was added, and of one that the search found: by its place in the
+  /// answer of that search.
   [[nodiscard]] nlohmann::json evidence_of_step(std::size_t step);
-  [[nodiscard]] nlohmann::json evidence_of_finding(std::size_t finding);
+  [[nodiscard]] nlohmann::json evidence_of_finding(std::size_t search, std::size_t finding);
   /// The charts and errors with one number of a step off its fit; the model stays as it is.
   [[nodiscard]] nlohmann::ordered_json moved(const MovedNumber& number, const View& view);
   [[nodiscard]] nlohmann::ordered_json arm(const ArmView& view);
@@ -58,8 +59,11 @@ class Session {
   void leave() { job_.stop(); }
 
  private:
+  [[nodiscard]] nlohmann::json charts_now(const Compared& now, const View& view);
   void take_up_kept();
   void keep();
+  void keep_state();
+  void take_answer();
   void refuse_while_explaining() const;
   [[nodiscard]] nlohmann::ordered_json state_now();
   // Those that repeat the session.
@@ -68,12 +72,13 @@ class Session {
   std::mutex lock_;
   Workbench bench_;
   KeptSession kept_;
-  std::size_t taken_up_ = 0;      // steps that were kept by a session before
-  std::string not_taken_up_;      // why not all of them, or empty
+  std::size_t taken_up_ = 0;       // steps that were kept by a session before
+  std::string not_taken_up_;       // why not all of them, or empty
   nlohmann::ordered_json answer_;  // of the search, what was kept of it; null: none
   bool is_answer_kept_ = false;    // of the search that was started last
-  std::size_t revision_ = 0;  // of the model
-  std::string saved_;         // the last file that was written, its name, and of which revision
+  std::size_t revision_ = 0;       // of the model
+  std::size_t searches_ = 0;
+  std::string saved_;  // the last file that was written, its name, and of which revision
   std::string saved_name_;
   std::size_t saved_revision_ = 0;
   bool is_robot_file_replaced_ = false;  // by one that was written: no command can start from it

@@ -82,15 +82,14 @@ RobotDescription Workbench::robot_with(std::size_t id, const std::string& parame
   RobotDescription moved = robot();
   RobotEffect& effect = moved.effects[effect_of(id)];
   const auto parameters = info_of(effect.kind)->parameters;
-  const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const auto& one) {
-    return parameter == one.name;
-  });
+  const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const auto& one) { return parameter == one.name; });
   if (found == parameters.end()) {
     throw Refused(Refused::Why::kBadRequest, "The effect has no such parameter.");
   }
   if (!(value >= found->min && value <= found->max)) {
-    throw Refused(Refused::Why::kBadRequest, fmt::format("{} has to be {} to {}.", parameter,
-                                                         found->min, found->max));
+    throw Refused(Refused::Why::kBadRequest,
+                  fmt::format("{} has to be {} to {}.", parameter, found->min, found->max));
   }
   effect.parameters[static_cast<std::size_t>(found - parameters.begin())] = value;
   return moved;

@@ -72,6 +72,9 @@ function axisTip(chart, colors, x, isShown) {
     if (at < 0) return [];
     return [tipRow(series, colors[index], tipValue(series, chart.y[series.y_axis], at))];
   });
+  for (const { from, to, label } of chart.spans) {
+    if (x >= from && x <= to) rows.push(`<tr><td colspan="2">${escapeHtml(label)}</td></tr>`);
+  }
   return tipTable(`${chart.x.name} ${withUnit(formatSignificant(x, 6), chart.x.unit)}`, rows);
 }
 
@@ -197,6 +200,7 @@ function chartOption(chart, look, width, extent, isShown) {
   const { zooms, filterMode } = chartZoom(chart, look);
   const byItem = showsItems(chart);
   const series = chart.series.map((each, i) => drawnSeries(each, i, colors[i], chart));
+  if (chart.spans.length > 0) series.push(spanSeries(chart, look));
   if (chart.events.length > 0) series.push(eventSeries(chart, look, rows));
   if (chart.levels.length > 0) series.push(levelSeries(chart.levels, look, false));
   return {
@@ -266,13 +270,25 @@ function chartCsv(chart) {
   return csvText([head, ...rows]);
 }
 
+/** Each of a few spans, of many how often what comes. */
+function spanWords({ spans, x }, at) {
+  const kMostTold = 6;
+  if (spans.length <= kMostTold) {
+    return spans.map(({ from, to, label }) => `${label} from ${at(from, x)} to ${at(to, x)}`);
+  }
+  const counts = new Map();
+  for (const { label } of spans) counts.set(label, (counts.get(label) ?? 0) + 1);
+  return [...counts].map(([label, count]) => `${label}, ${count} times`);
+}
+
 /** What the title does not say. */
 function chartWords(chart) {
   const ys = chart.y.map(axisTitle).join(" and ");
   const at = (value, axis) => withUnit(formatSignificant(value, 6), axis.unit);
   const events = chart.events.map((event) => `${event.label} at ${at(event.x, chart.x)}`);
   const levels = chart.levels.map((level) => `${level.label} at ${at(level.y, chart.y[0])}`);
-  const marks = [...events, ...levels];
+  const spans = spanWords(chart, at);
+  const marks = [...events, ...spans, ...levels];
   const marked = marks.length > 0 ? ` Marked: ${marks.join("; ")}.` : "";
   return `${ys} against ${axisTitle(chart.x)}.${marked}`;
 }

@@ -94,6 +94,36 @@ function eventSeries(chart, look, rows) {
   };
 }
 
+/** Bands behind the series; the label of one stands in it where there is room. */
+function spanSeries(chart, look) {
+  return {
+    id: "spans",
+    type: "custom",
+    data: chart.spans.map(({ from, to }) => [from, to]),
+    dimensions: ["from", "to"],
+    encode: { x: [0, 1], y: [] },
+    tooltip: { show: false },
+    silent: true,
+    clip: true,
+    z: 0,
+    renderItem: (params, api) => {
+      const plot = params.coordSys;
+      const { from, to, label, level } = chart.spans[params.dataIndex];
+      const left = Math.max(api.coord([from, 0])[0], plot.x);
+      const right = Math.min(api.coord([to, 0])[0], plot.x + plot.width);
+      if (!(right > left)) return null;
+      const color = look.levels[level];
+      const shape = { x: left, y: plot.y, width: Math.max(right - left, 1), height: plot.height };
+      const children = [{ type: "rect", shape, style: { fill: withOpacity(color, 0.13) } }];
+      if (textWidth(label, 12) + 10 < right - left) {
+        const style = { text: label, x: left + 5, y: plot.y + plot.height - 5, verticalAlign: "bottom" };
+        children.push({ type: "text", style: { ...style, fill: color, font: `12px ${kFontFamily}` } });
+      }
+      return { type: "group", children };
+    },
+  };
+}
+
 /** A label that would leave the plot stands beside its line. */
 function alongAlign(at, half, left, right) {
   if (at + half > right) return "right";

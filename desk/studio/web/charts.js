@@ -61,6 +61,7 @@ function chartPixels() {
 
 function chartAddress(look, range) {
   const parts = [`joint=${look.joint}`, `recording=${look.recording}`, `pixels=${chartPixels()}`];
+  if (look.beside !== null) parts.push(`beside=${look.beside}`);
   if (range) parts.push(`from=${range.from}`, `to=${range.to}`);
   return `charts?${parts.join("&")}`;
 }
@@ -179,7 +180,12 @@ function showFiner(answer) {
   answer.charts.forEach((block, index) => {
     refill(drawn.get(`chart.${index}`), block);
   });
-  drawSoon(answer.charts.map((_, index) => drawn.get(`chart.${index}`)));
+  const shown = answer.charts.map((_, index) => drawn.get(`chart.${index}`));
+  if (answer.waterfall) {
+    refill(drawn.get("fall.0"), answer.waterfall);
+    shown.push(drawn.get("fall.0"));
+  }
+  drawSoon(shown);
 }
 
 function showWhole() {

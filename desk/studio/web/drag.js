@@ -36,6 +36,7 @@ function dragRow(step, name, range, actions) {
     actions.drag({ step: step.id, parameter: name, value: Number(slider.value) });
   });
   slider.addEventListener("pointerup", back);
+  slider.addEventListener("pointercancel", back);
   slider.addEventListener("blur", back);
   slider.addEventListener("keydown", ({ key }) => key === "Escape" && back());
   // Arrow keys go in steps of a hundredth of the way.
@@ -47,6 +48,12 @@ function dragRow(step, name, range, actions) {
     slider.dispatchEvent(new Event("input"));
   });
   return element("div", { class: "drag-row" }, element("label", { for: id }, `${name.replaceAll("_", " ")}, with all steps`), slider, told);
+}
+
+/** Nothing is dragged any more: its slider is gone, or the model is another one. */
+function letGo() {
+  dragging.waiting = dragging.last = null;
+  dragging.isOff = false;
 }
 
 /** One question at a time: the last number that was dragged to is asked for next. */
@@ -61,6 +68,9 @@ async function followDrag(number, draw) {
       dragging.waiting = null;
       await draw(`step=${step}&parameter=${parameter}&value=${value}`);
     }
+  } catch (error) {
+    letGo();
+    throw error;
   } finally {
     dragging.isAsking = false;
   }

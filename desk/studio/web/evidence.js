@@ -27,6 +27,7 @@ async function drawEvidence(picture, address) {
   if (!picture.host.isConnected) return forgetUnseen();
   try {
     const { chart } = await ask("GET", address);
+    if (!picture.host.isConnected) return forgetUnseen();
     picture.host.replaceChildren();
     picture.figure = makeFigure(chart, picture.place, picture.host);
     shareExtents();
@@ -53,9 +54,11 @@ function forgetUnseen() {
 function stepEvidence(step, revision) {
   const id = `evidence-of-step-${step.id}`;
   const details = foldWith(id, "What the error looks like without it");
+  const key = `step ${step.id} ${revision}`;
+  const fill = () => details.append(evidenceElement(key, `evidence?step=${step.id}`));
+  if (evidence.has(key)) fill();
   details.addEventListener("toggle", () => {
-    if (!details.open || details.querySelector(".evidence")) return;
-    details.append(evidenceElement(`step ${step.id} ${revision}`, `evidence?step=${step.id}`));
+    if (details.open && !details.querySelector(".evidence")) fill();
   });
   return details;
 }

@@ -89,9 +89,19 @@ let exploredAsked = 0;
 /** Map and spectrum of what is looked at. */
 async function drawExplored(look, range) {
   const own = ++exploredAsked;
-  for (const [name, address] of Object.entries(exploredAddresses(look, range))) {
+  const addresses = Object.entries(exploredAddresses(look, range));
+  const draw = async ([name, address]) => {
     const { chart } = await ask("GET", address);
-    if (own !== exploredAsked) return;
-    showAlone(`${name}.0`, chart, explorePlaces[name]);
-  }
+    if (own === exploredAsked) showAlone(`${name}.0`, chart, explorePlaces[name]);
+  };
+  // Each without the other: a refusal of one is said, and the other is there.
+  const ends = await Promise.allSettled(addresses.map(draw));
+  const refused = ends.find(({ status }) => status === "rejected");
+  if (refused) throw refused.reason;
+}
+
+/** Another robot has other joints. */
+function forgetExploredJoints() {
+  explored.x.joint = null;
+  explored.y.joint = null;
 }

@@ -1,5 +1,5 @@
 /** What is looked at, and what the server last said. */
-const look = { joint: 1, recording: 1 };
+const look = { joint: 1, recording: 1, beside: null };
 let state = null;
 let found = { state: "none" };
 let busy = false;
@@ -128,7 +128,17 @@ function recordingPicker() {
     select.append(option);
   });
   select.addEventListener("change", () => choose({ recording: Number(select.value) }));
-  return element("div", { class: "choice-row" }, element("label", { for: "recording-choice" }, "Recording"), select);
+  const row = element("div", { class: "choice-row" }, element("label", { for: "recording-choice" }, "Recording"), select);
+  if (state.recordings.length < 2) return row;
+  const others = state.recordings.map((each, index) => [String(index + 1), baseName(each.name)]);
+  const options = [["", "none"], ...others.filter(([number]) => Number(number) !== look.recording)];
+  const chosen = look.beside === null ? "" : String(look.beside);
+  row.append(
+    choiceOf("beside-choice", "and over it", options, chosen, (value) =>
+      choose({ beside: value === "" ? null : Number(value) }),
+    ),
+  );
+  return row;
 }
 
 function saveContent() {
@@ -195,7 +205,6 @@ function show() {
   replaceContent(places.recording, recordingPicker());
   showExploreChoices(state.joints, () => explore(zoomRange()));
   replaceContent(places.steps, ...keptContent(), stepList(state, actions));
-  forgetUnseen();
   places.fall.hidden = state.steps.length === 0;
   showFound();
   showSave();
@@ -212,6 +221,7 @@ function showFound() {
     if (busy) holdControls(true);
   }
   document.body.toggleAttribute("data-searching", found.state === "running");
+  forgetUnseen();
 }
 
 function setBusy(value) {
@@ -226,11 +236,22 @@ function complain(words) {
   if (words !== "") places.message.scrollIntoView({ block: "nearest" });
 }
 
+/** Of several questions about the charts the answer to the last one is shown. */
+let chartsAsked = 0;
+
+async function askForCharts(address) {
+  const own = ++chartsAsked;
+  const answer = await ask("GET", address);
+  if (own !== chartsAsked) return null;
+  document.body.dataset.revision = String(answer.revision);
+  return answer;
+}
+
 async function drawCharts() {
   const range = zoomRange();
-  const answer = await ask("GET", chartAddress(look, range));
+  const answer = await askForCharts(chartAddress(look, range));
+  if (answer === null) return;
   showCharts(answer, places.charts, places.fall);
-  document.body.dataset.revision = String(answer.revision);
   showArm(range);
   explore(range);
 }
@@ -240,7 +261,8 @@ async function drawFiner(range) {
   showArm(range);
   explore(range);
   if (dragging.isOff) return actions.drag(dragging.last);
-  showFiner(await ask("GET", chartAddress(look, range)));
+  const answer = await askForCharts(chartAddress(look, range));
+  if (answer !== null) showFiner(answer);
 }
 
 /** Nothing waits for map and spectrum either. */
@@ -273,6 +295,7 @@ async function change(work) {
 async function changeModel(method, path, body) {
   await change(async () => {
     state = await ask(method, path, body);
+    letGo();
     saving = { ...saving, words: "", confirm: null };
     show();
     await drawCharts();
@@ -289,6 +312,7 @@ async function choose(what) {
   }
   await change(async () => {
     if (what.recording) {
+      if (what.recording === look.beside) look.beside = null;
       showWhole();
       stopPlay();
       clearCursors();
@@ -320,9 +344,8 @@ const actions = {
   },
   drag: (number) => followDrag(number, drawDragged).catch((error) => complain(error.message)),
   snapBack: () => {
-    dragging.waiting = null;
     if (!dragging.isOff) return;
-    dragging.isOff = false;
+    letGo();
     replaceContent(places.headline, headlineContent());
     drawCharts().catch((error) => complain(error.message));
   },
@@ -374,8 +397,8 @@ async function savePage(agreed = {}) {
 /** Charts and errors with a number off its fit: no model, and nothing of it stays. */
 async function drawDragged(words) {
   const parts = chartAddress(look, zoomRange()).replace(/^charts\?/, "");
-  const answer = await ask("GET", `moved?${words}&${parts}`);
-  if (!dragging.isOff) return;
+  const answer = await askForCharts(`moved?${words}&${parts}`);
+  if (answer === null || !dragging.isOff || answer.revision !== state.revision) return;
   const { fitted_percent, held_out_percent } = answer;
   replaceContent(places.headline, headlineContent({ fitted_percent, held_out_percent }));
   showFiner(answer);
@@ -446,8 +469,10 @@ async function loadSession() {
   state = await ask("GET", "state");
   found = await ask("GET", "explanation");
   places.desk.hidden = false;
+  letGo();
+  forgetExploredJoints();
   const worst = state.joints.reduce((a, b) => (errorOf(b, "now") > errorOf(a, "now") && b.moves ? b : a));
-  Object.assign(look, { joint: worst.joint, recording: 1 });
+  Object.assign(look, { joint: worst.joint, recording: 1, beside: null });
   saving = { words: "", level: "neutral", confirm: null, name: null };
   show();
   await drawCharts();

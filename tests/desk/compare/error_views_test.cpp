@@ -63,13 +63,16 @@ TEST(MeanMap, HoldsTheMeanOfEveryCellAndLeavesEmptyOnesEmpty) {
   x << 0, 0.01, 1, 1, nan;
   y << 0, 0.01, 2, 2, 1;
   error << 1, 2, -3, nan, 100;
-  const report::Heatmap map = mean_map("a map", {{"x", "1"}, x}, {{"y", "1"}, y}, {{"e", "1"}, error});
+  const report::Heatmap map =
+      mean_map("a map", {{"x", "1"}, x}, {{"y", "1"}, y}, {{"e", "1"}, error});
   ASSERT_EQ(map.x_edges.size(), 21U);
   EXPECT_EQ(map.x_edges.front(), 0);
   EXPECT_EQ(map.y_edges.back(), 2);
   EXPECT_EQ(map.value.front(), 1.5);
   EXPECT_EQ(map.value.back(), -3);
-  EXPECT_EQ(std::count_if(map.value.begin(), map.value.end(), [](double v) { return !std::isnan(v); }), 2);
+  EXPECT_EQ(
+      std::count_if(map.value.begin(), map.value.end(), [](double v) { return !std::isnan(v); }),
+      2);
 }
 
 TEST(MeanMap, IsOneEmptyCellWhereNothingIsKnown) {
@@ -106,8 +109,10 @@ TEST(SpectrumOverTime, ShowsASineAtItsFrequencyAndHeight) {
 TEST(SpectrumOverTravel, ShowsARippleAtItsOrderHoweverFastTheJointMoves) {
   const VectorXd t = times(8000, 0.005);
   // There and back over 1.5 turns, ever faster.
-  const VectorXd turns = t.unaryExpr([](double s) { return 0.75 * std::sin(0.2 * s + 0.02 * s * s); });
-  const VectorXd values = turns.unaryExpr([](double turn) { return 2 + 0.5 * std::cos(kTwoPi * 17 * turn); });
+  const VectorXd turns =
+      t.unaryExpr([](double s) { return 0.75 * std::sin(0.2 * s + 0.02 * s * s); });
+  const VectorXd values =
+      turns.unaryExpr([](double turn) { return 2 + 0.5 * std::cos(kTwoPi * 17 * turn); });
   const auto [order, height] = peak_of(spectrum_over_travel(t, turns, values, 12));
   EXPECT_NEAR(order, 17, 0.4);
   EXPECT_NEAR(height, 0.5, 0.1);

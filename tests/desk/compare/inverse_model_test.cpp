@@ -117,8 +117,8 @@ TEST(InverseModel, IsCoresToTheBitWhateverRobotCameBefore) {
   for (int round = 0; round < 2; ++round) {
     for (const EffectInfo& info : kAllEffectInfos) {
       for (const bool of_motor : {false, true}) {
-        const bool remembers = offnominal::remembers(info.kind) ||
-                               info.kind == offnominal::EffectKind::kTimeDelay;
+        const bool remembers =
+            offnominal::remembers(info.kind) || info.kind == offnominal::EffectKind::kTimeDelay;
         if (remembers || (of_motor && !offnominal::motor_may_have(info.kind))) continue;
         RobotDescription with = heavier_arm(robot, 0.1 * round, 0);
         with.effects = {effect_of(offnominal::EffectKind::kRotorInertia, 0, {number(generator)}),

@@ -110,6 +110,10 @@ TEST(PageJson, RefusesAPageThatContradictsItself) {
   EXPECT_THAT(with([](Chart& c) { c.y.clear(); }), HasSubstr("one or two y axes"));
   EXPECT_THAT(with([](Chart& c) { c.max_points = 3; }), HasSubstr("max_points"));
   EXPECT_THAT(with([](Chart& c) { c.events = {{kGap, "fault"}}; }), HasSubstr("not finite"));
+  EXPECT_EQ(with([](Chart& c) { c.spans = {{0.2, 0.4, "stuck"}}; }), "accepted");
+  for (const SpanMark& span : {SpanMark{0.4, 0.2, "stuck"}, SpanMark{kGap, 1, "stuck"}}) {
+    EXPECT_THAT(with([&](Chart& c) { c.spans = {span}; }), HasSubstr("span \"stuck\""));
+  }
   EXPECT_THAT(with([](Chart& c) {
                 c.y[0].log = true;
                 c.y[0].min = 0.0;

@@ -66,8 +66,8 @@ TEST_F(StudioErrorViews, AreOfTheTimeThatIsShown) {
   EXPECT_THAT(map.at("note").get<std::string>(), StartsWith("Of fitted.csv, 4.0"));
   const json whole = map_of(bench_, bench_.now(), {.joint = 1}, position_, velocity_);
   EXPECT_NE(map.at("value"), whole.at("value"));
-  const json nothing = map_of(bench_, bench_.now(), {.joint = 1, .from_s = 90, .to_s = 99},
-                              position_, velocity_);
+  const json nothing =
+      map_of(bench_, bench_.now(), {.joint = 1, .from_s = 90, .to_s = 99}, position_, velocity_);
   EXPECT_THAT(nothing.at("note").get<std::string>(), HasSubstr("no sample"));
 }
 
@@ -116,8 +116,8 @@ TEST_F(StudioErrorViews, MoveANumberOffItsFitAndLeaveTheModelAlone) {
   bench_.add(EffectKind::kCoulombFriction, 1);
   const std::size_t id = bench_.steps().back().id;
   const double before = bench_.now().fitted.joints[1].relative_error_percent;
-  const Compared same = bench_.compared_with(
-      bench_.robot_with(id, level_, bench_.effect(id).parameters[0]));
+  const Compared same =
+      bench_.compared_with(bench_.robot_with(id, level_, bench_.effect(id).parameters[0]));
   EXPECT_EQ(same.fitted.joints[1].relative_error_percent, before);
   const Compared off = bench_.compared_with(bench_.robot_with(id, level_, 0.1));
   EXPECT_GT(off.fitted.joints[1].relative_error_percent, before + 1);

@@ -71,7 +71,9 @@ TEST_F(StudioKeptSession, KeepsTheAnswerOfTheSearch) {
     ASSERT_EQ(answer.at("state"), "done");
     ASSERT_EQ(answer.at("answer").at("joints").at(0).at("cards").size(), 1U);
     EXPECT_EQ(answer.at("answer").at("joints").at(0).at("cards").at(0).at("finding"), 0);
-    EXPECT_NO_THROW(static_cast<void>(session.evidence_of_finding(0)));
+    EXPECT_EQ(answer.at("search"), 1);
+    EXPECT_NO_THROW(static_cast<void>(session.evidence_of_finding(1, 0)));
+    EXPECT_ANY_THROW(static_cast<void>(session.evidence_of_finding(2, 0)));
   }
   Session again(input());
   ordered_json kept = again.explanation();
@@ -142,7 +144,15 @@ TEST_F(StudioKeptSession, TakesUpWhatItKnowsOfAnotherVersion) {
   ordered_json kept = ordered_json::parse(content_of(file()));
   kept["steps"][1]["effect"] = "friction_of_next_year";
   put("a.studio.json", kept.dump());
-  EXPECT_EQ(Session(input()).state().at("steps").size(), 1U);
+  const std::string whole = content_of(file());
+  {
+    Session session(input());
+    EXPECT_EQ(session.state().at("steps").size(), 1U);
+    EXPECT_NE(session.state().at("kept").at("not_taken_up"), "");
+    session.add("torque_offset", 1);  // which writes the file anew
+    EXPECT_EQ(content_of(file("a.studio.json.before")), whole);
+    EXPECT_EQ(session.undo_all().at("kept").at("not_taken_up"), "");
+  }
   kept["steps"][0]["joint"] = 77;
   put("a.studio.json", kept.dump());
   EXPECT_TRUE(Session(input()).state().at("steps").empty());
