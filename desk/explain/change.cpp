@@ -10,6 +10,7 @@
 #include "common/parallel.hpp"
 #include "explain/alternatives.hpp"
 #include "explain/change_questions.hpp"
+#include "explain/excitation.hpp"
 #include "explain/moments.hpp"
 #include "explain/pushes.hpp"
 #include "explain/questions.hpp"
@@ -257,8 +258,7 @@ class ChangeFinder {
     if (one.log_likelihood < kClearly) return std::nullopt;
     const bool asks_when = !moments_.are_given();
     // Friction and a brake hold a joint that stands with any torque up to their own.
-    if (asks_when && !one.term.effect->is_mass() &&
-        !moves_in_any(data_.recordings, one.term.joint)) {
+    if (asks_when && !one.term.effect->is_mass() && !moves(data_.recordings, one.term.joint)) {
       return std::nullopt;
     }
     const Fall fall =
