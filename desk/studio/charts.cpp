@@ -209,6 +209,11 @@ Shown shown_of(const Comparison& recording, const View& view) {
   return {first - t_s.begin(), end - first};
 }
 
+std::string in_words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 Series points_of(const std::string& name, Tone tone, const VectorXd& x, const VectorXd& y) {
   Series series;
   series.name = name;

@@ -56,6 +56,9 @@ struct Shown {
 };
 [[nodiscard]] Shown shown_of(const Comparison& recording, const View& view);
 
+/// "coulomb friction" of "coulomb_friction".
+[[nodiscard]] std::string in_words(std::string name);
+
 /// A cloud of points.
 [[nodiscard]] report::Series points_of(const std::string& name, report::Tone tone,
                                        const Eigen::VectorXd& x, const Eigen::VectorXd& y);

@@ -233,9 +233,8 @@ nlohmann::json evidence_of(const Compared& without, const Compared& with,
   Chart chart;
   chart.x = desk::axis_of(any, over, shown_on);
   chart.y = {error_axis(any, shown_on)};
-  std::string name = info_of(effect.kind)->name;
-  std::replace(name.begin(), name.end(), '_', ' ');
-  chart.title = fmt::format("Joint {}: error without {}", shown_on + 1, name);
+  chart.title =
+      fmt::format("Joint {}: error without {}", shown_on + 1, in_words(info_of(effect.kind)->name));
   chart.width = report::Width::kHalf;
   chart.max_points = kMostOnCard;
   chart.series = {

@@ -10,7 +10,6 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/json_text.hpp"
-#include "robot/read_effect.hpp"
 #include "robot/robot_file.hpp"
 
 namespace offnominal::desk::studio {
@@ -51,18 +50,11 @@ std::filesystem::path numbered(const std::filesystem::path& recording, int numbe
   return file;
 }
 
-std::optional<EffectKind> kind_named(const std::string& name) {
-  for (const EffectInfo* info : file_effects()) {
-    if (name == info->name) return info->kind;
-  }
-  return std::nullopt;
-}
-
 SessionState state_of(const ordered_json& json) {
   SessionState state;
   for (const ordered_json& step : json.at("steps")) {
     const auto joint = step.at("joint").get<std::size_t>();
-    const auto kind = kind_named(step.at("effect").get<std::string>());
+    const auto kind = effect_named(step.at("effect").get<std::string>());
     // Of another version: what comes after it builds on it.
     if (!kind || joint < 1 || state.unknown > 0) {
       ++state.unknown;

@@ -7,7 +7,6 @@
 #include "common/json_text.hpp"
 #include "common/output_file.hpp"
 #include "common/refused.hpp"
-#include "robot/read_effect.hpp"
 #include "studio/cards.hpp"
 #include "studio/commands.hpp"
 #include "studio/spans.hpp"
@@ -16,17 +15,6 @@
 namespace offnominal::desk::studio {
 
 using nlohmann::ordered_json;
-
-namespace {
-
-EffectKind kind_of(const std::string& name) {
-  for (const EffectInfo* info : file_effects()) {
-    if (name == info->name) return info->kind;
-  }
-  throw Refused(Refused::Why::kBadRequest, "There is no effect of that name.");
-}
-
-}  // namespace
 
 Session::Session(Input input) : bench_(std::move(input)) {
   if (bench_.input().keep_beside) kept_ = KeptSession(*bench_.input().keep_beside, bench_.input());
@@ -181,11 +169,12 @@ void Session::refuse_while_explaining() const {
 ordered_json Session::add(const std::string& effect, int joint) {
   const std::lock_guard guard(lock_);
   refuse_while_explaining();
-  const EffectKind kind = kind_of(effect);
+  const std::optional<EffectKind> kind = effect_named(effect);
+  if (!kind) throw Refused(Refused::Why::kBadRequest, "There is no effect of that name.");
   if (joint < 1 || joint > bench_.input().robot.joint_count()) {
     throw Refused(Refused::Why::kBadRequest, "There is no such joint.");
   }
-  bench_.add(kind, static_cast<std::size_t>(joint - 1));
+  bench_.add(*kind, static_cast<std::size_t>(joint - 1));
   ++revision_;
   keep();
   return state_now();

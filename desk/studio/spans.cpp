@@ -17,11 +17,6 @@ using report::SpanMark;
 // More are no picture.
 constexpr std::size_t kMostRests = 200;
 
-std::string with_spaces(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
 class Spans {
  public:
   Spans(const Workbench& bench, const View& view)
@@ -34,7 +29,7 @@ class Spans {
     for (const DataFault& fault : faults) {
       if (fault.file != now_.file || (fault.joint >= 0 && fault.joint != joint_)) continue;
       for (const FaultSpan& span : fault.spans) {
-        put(span.from_s, span.to_s, with_spaces(name_of(fault.kind)),
+        put(span.from_s, span.to_s, in_words(name_of(fault.kind)),
             fault.certain ? Level::kBad : Level::kWarn);
       }
     }
@@ -74,7 +69,7 @@ class Spans {
       if (change.is_between || change.recording != recording_) continue;
       if (!shows_on(change.what, joint_)) continue;
       put(change.at_s, change.until_s.value_or(now_.t_s[now_.t_s.size() - 1]),
-          "changed: " + with_spaces(name_seen_from(joint_, change.what)), Level::kWarn);
+          "changed: " + in_words(name_seen_from(joint_, change.what)), Level::kWarn);
     }
     for (const LoudSpan& loud : explanation.loud) {
       if (loud.recording != recording_ || loud.joint != joint_) continue;

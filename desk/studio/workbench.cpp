@@ -10,6 +10,7 @@
 #include "common/refused.hpp"
 #include "identify/add_report.hpp"
 #include "identify/add_setup.hpp"
+#include "robot/read_effect.hpp"
 
 namespace offnominal::desk::studio {
 namespace {
@@ -29,6 +30,13 @@ double bytes_of(const Compared& compared) {
 }
 
 }  // namespace
+
+std::optional<EffectKind> effect_named(const std::string& name) {
+  for (const EffectInfo* info : file_effects()) {
+    if (name == info->name) return info->kind;
+  }
+  return std::nullopt;
+}
 
 const Comparison& recording_of(const Compared& compared, std::size_t recording) {
   const std::vector<Comparison>& fitted = compared.fitted.recordings;

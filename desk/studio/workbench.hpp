@@ -36,6 +36,9 @@ struct Input {
   int threads = 1;            // of explain
 };
 
+/// The effect that a robot file calls so; none: there is no such effect.
+[[nodiscard]] std::optional<EffectKind> effect_named(const std::string& name);
+
 /// One effect that was switched on.
 struct Step {
   std::size_t id = 0;  // never used twice in a session
