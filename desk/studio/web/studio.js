@@ -76,6 +76,11 @@ function figureOf(label, value, note, level) {
   return { label, value, unit: "%", format: ".2f", level, note };
 }
 
+/** Without a recording that is held out, a fit alone leaves a part of the recording for its judge. */
+function notHeldOut(isDragged) {
+  return isDragged ? "no recording is held out: known at the fit" : "no recording is held out: known once an effect is added";
+}
+
 /** `dragged`: the errors of a model that is off its fit. */
 function headlineContent(dragged = null) {
   const joint = currentJoint();
@@ -90,9 +95,7 @@ function headlineContent(dragged = null) {
     figureOf(
       `Joint ${joint.joint}: error on held-out data${dragged === null ? "" : ", dragged"}`,
       now.held_out_percent,
-      now.held_out_percent === null
-        ? "no recording is held out: known once an effect is added"
-        : fell("held_out_percent"),
+      now.held_out_percent === null ? notHeldOut(dragged !== null) : fell("held_out_percent"),
       better("held_out_percent") ? "good" : "neutral",
     ),
     figureOf(
