@@ -48,16 +48,19 @@ bool may_be_gravity(const Term& term) {
 
 EffectAt at(const Accepted& one) { return {one.term.effect->kind(), one.term.joint}; }
 
-// Beside links of which each is off by itself already.
+// Masses that the numbers of their link and of the one before it may make up, where each is off by
+// itself already.
 std::vector<EffectAt> light_masses(const SearchSetting& setting, const RobotDescription& robot,
                                    const FoundModel& found) {
-  constexpr double kDeviations = 3;
+  constexpr double kShares = 2;
   std::vector<EffectAt> light;
   for (std::size_t i = 0; i < found.accepted.size(); ++i) {
     const Term& term = found.accepted[i].term;
     if (!term.effect->is_mass()) continue;
-    const double link_kg = robot.joints[static_cast<std::size_t>(term.joint)].joint.mass_kg;
-    const double off_kg = kDeviations * setting.nuisance.link_share * link_kg;
+    const auto link = static_cast<std::size_t>(term.joint);
+    const double near_kg = robot.joints[link].joint.mass_kg +
+                           robot.joints[link - std::min<std::size_t>(1, link)].joint.mass_kg;
+    const double off_kg = kShares * setting.nuisance.link_share * near_kg;
     if (std::abs(found.fit.coefficients[i][0]) <= off_kg) light.push_back(at(found.accepted[i]));
   }
   return light;
@@ -65,27 +68,29 @@ std::vector<EffectAt> light_masses(const SearchSetting& setting, const RobotDesc
 
 }  // namespace
 
+bool tells_links_apart(const SearchSetting& setting, const RobotDescription& robot) {
+  constexpr int kFewestJoints = 3;
+  return robot.joint_count() >= kFewestJoints && !setting.data->recordings[0].at_rest;
+}
+
 std::vector<EffectAt> could_be_links(const SearchSetting& setting, const RobotDescription& robot,
                                      const FoundModel& found) {
-  constexpr int kFewestJoints = 3;
   const auto is_asked = [](const Accepted& one) { return may_be_gravity(one.term); };
-  if (robot.joint_count() < kFewestJoints || setting.data->recordings[0].at_rest ||
+  if (!tells_links_apart(setting, robot) ||
       std::none_of(found.accepted.begin(), found.accepted.end(), is_asked)) {
     return {};
   }
-  if (setting.nuisance.link_geometry) return light_masses(setting, robot, found);
-  NuisanceOptions cad = setting.nuisance;
-  cad.link_share = std::max(cad.link_share, kCadShare);
-  cad.link_geometry = true;
-  const Data data(*setting.data, robot, cad);
-  const Regression beside_cad(data);
-  const ModelFit with = beside_cad.fit(found.terms());
+  const Data data(*setting.data, robot, beside_wider_links(setting.nuisance));
+  const Regression beside_wider(data);
+  const ModelFit with = beside_wider.fit(found.terms());
   std::vector<EffectAt> links;
+  if (setting.nuisance.link_geometry) links = light_masses(setting, robot, found);
   for (std::size_t i = 0; i < found.accepted.size(); ++i) {
-    if (!is_asked(found.accepted[i])) continue;
+    const EffectAt what = at(found.accepted[i]);
+    if (!is_asked(found.accepted[i]) || holds(links, what)) continue;
     const Fall own = taken(*setting.regression, found, found.fit, i);
-    const Fall stays = taken(beside_cad, found, with, i);
-    if (stays.share < kStaysNeeded * own.share) links.push_back(at(found.accepted[i]));
+    const Fall stays = taken(beside_wider, found, with, i);
+    if (stays.share < kStaysNeeded * own.share) links.push_back(what);
   }
   return links;
 }

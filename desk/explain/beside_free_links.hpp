@@ -17,11 +17,14 @@ namespace offnominal::desk {
 void leave_out_links_in_disguise(const SearchSetting& setting, const RobotDescription& robot,
                                  int threads, FoundModel& found);
 
+// Whether links that are off further than they were let are asked for at all: those of an arm of
+// three joints or more, in motion.
+bool tells_links_apart(const SearchSetting& setting, const RobotDescription& robot);
+
 // Of what was found, what could as well be the links of the file: constant torques, springs, torque
 // constants, payloads and masses of links of an arm of three joints or more that take half as much
-// beside links whose masses, centres of mass and inertias are off each by itself, as far as CAD is;
-// and a mass that is no larger than what its link may be off, where links are off further. `robot`:
-// that the setting was made with.
+// beside links whose masses, centres of mass and inertias are off further, each by itself; and a
+// mass that is no larger than what its link may be off. `robot`: that the setting was made with.
 std::vector<EffectAt> could_be_links(const SearchSetting& setting, const RobotDescription& robot,
                                      const FoundModel& found);
 

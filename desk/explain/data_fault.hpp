@@ -72,6 +72,8 @@ struct DataFault {
   std::vector<FaultSpan> spans = {};           // where it is; empty: throughout
   std::vector<Eigen::Index> left_out_of = {};  // joints that do without the spans; empty: none
   bool overruled = false;                      // by a KeepFault
+  // The masses of the links, or of what is carried, say the same: said, and the search goes on.
+  bool or_masses = false;
 };
 
 // What the user says is no fault: of a joint, or of all for -1.

@@ -314,7 +314,7 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
     if (const auto pair = torque_pair(mended, robot)) {
       // The first that all torques follow from: nothing else is then held against them.
       if (!find_joint_order(mended, robot, *pair, faults)) {
-        const OfAnotherUnit unit = find_torque_unit(mended, *pair, faults);
+        const OfAnotherUnit unit = find_torque_unit(mended, robot, *pair, faults);
         if (unit == OfAnotherUnit::kSomeJoints ||
             (unit == OfAnotherUnit::kNone && !find_gravity(mended, robot, *pair, faults) &&
              !(find_joint_zero(mended, robot, *pair, faults) && faults.back().certain))) {

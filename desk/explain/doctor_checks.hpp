@@ -96,8 +96,8 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
 // part of it. On every joint that tells, and nothing else is then held against them; or of some
 // joints while the others follow the model, where no mass asks for so much.
 enum class OfAnotherUnit { kNone, kSomeJoints, kAllJoints };
-OfAnotherUnit find_torque_unit(const Log& log, const TorquePair& pair,
-                               std::vector<DataFault>& faults);
+OfAnotherUnit find_torque_unit(const Log& log, const RobotDescription& robot,
+                               const TorquePair& pair, std::vector<DataFault>& faults);
 void find_torque_sign(const Log& log, const RobotDescription& robot, const TorquePair& pair,
                       std::vector<DataFault>& faults);
 void find_clock_skew(const Log& log, const TorquePair& pair, std::vector<DataFault>& faults);

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,7 +8,7 @@
 #include <vector>
 
 #include "explain/doctor_checks.hpp"
-#include "identify/inertial_regressor.hpp"
+#include "explain/other_masses.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -81,59 +80,21 @@ bool are_all_turned(const TorquePair& pair, const std::vector<Index>& turned) {
   return static_cast<Index>(turned.size()) < pair.measured.cols();
 }
 
-// A body on the last link that no file knows of: on a light wrist its weight may turn the torque
-// round. Torques of all joints one under the other, each in parts of its joint's measured one.
-class Carried {
- public:
-  Carried(const RobotDescription& robot, const TorquePair& pair)
-      : parts_(parts_of(pair.measured)), body_(pair.q.size(), kMassAndPlace) {
-    const auto columns =
-        inertial_regressor(robot, robot.joints.size() - 1, {pair.t_s, pair.q, pair.dq, pair.ddq});
-    for (Index i = 0; i < kMassAndPlace; ++i) {
-      body_.col(i) = in_parts(columns[static_cast<std::size_t>(i)]);
-    }
-    solver_.compute(body_);
-  }
-
-  // What the best such body, if any has a mass, leaves of the error of the model.
-  [[nodiscard]] double left_of(const MatrixXd& error) const {
-    const VectorXd all = in_parts(error);
-    const VectorXd body = solver_.solve(all);
-    return body[0] > 0 ? (all - body_ * body).norm() : all.norm();
-  }
-
- private:
-  static constexpr Index kMassAndPlace = 4;  // of the ten numbers of a link
-
-  static VectorXd parts_of(const MatrixXd& measured) {
-    VectorXd parts = measured.colwise().norm().transpose();
-    for (double& part : parts) part = part > 0 ? 1 / part : 0;
-    return parts;
-  }
-
-  [[nodiscard]] VectorXd in_parts(const MatrixXd& torques) const {
-    return (torques * parts_.asDiagonal()).reshaped();
-  }
-
-  VectorXd parts_;
-  MatrixXd body_;
-  Eigen::ColPivHouseholderQR<MatrixXd> solver_;
-};
-
-// Joints whose torque something that is carried turns round, of those whose torque is opposed to
-// the model's: with their torques as they are it explains all torques better than the opposite
-// signs do, whatever is carried then. Several signs may be wrong at once, so that each is judged
-// beside the others, and then all of them together.
-std::vector<char> turned_by_what_is_carried(const RobotDescription& robot, const TorquePair& pair,
-                                            const std::vector<char>& opposed) {
-  const Carried carried(robot, pair);
+// Joints whose torque other masses turn round, of those whose torque is opposed to the model's:
+// with their torques as they are they explain all torques better than the opposite signs do,
+// whatever the masses are then. Several signs may be wrong at once, so that each is judged beside
+// the others, and then all of them together.
+std::vector<char> turned_by_masses(const RobotDescription& robot, const TorquePair& pair,
+                                   const std::vector<char>& opposed) {
+  constexpr double kNoise = 0.1;
+  const OtherMasses masses(robot, pair, sizes_about_mean(pair.measured), kNoise);
   const auto left_with = [&](const std::vector<char>& wrong) {
     MatrixXd error = pair.measured - pair.model;
     for (Index joint = 0; joint < error.cols(); ++joint) {
       if (wrong[static_cast<std::size_t>(joint)] == 0) continue;
       error.col(joint) = -pair.measured.col(joint) - pair.model.col(joint);
     }
-    return carried.left_of(error);
+    return masses.left_of_each(error).norm();
   };
   std::vector<char> wrong = opposed;
   double left = left_with(wrong);
@@ -149,11 +110,11 @@ std::vector<char> turned_by_what_is_carried(const RobotDescription& robot, const
   }
   const std::vector<char> none(opposed.size(), 0);
   if (left_with(none) < left) wrong = none;
-  std::vector<char> by_carried(opposed.size(), 0);
+  std::vector<char> by_masses(opposed.size(), 0);
   for (std::size_t joint = 0; joint < opposed.size(); ++joint) {
-    by_carried[joint] = static_cast<char>(opposed[joint] != 0 && wrong[joint] == 0);
+    by_masses[joint] = static_cast<char>(opposed[joint] != 0 && wrong[joint] == 0);
   }
-  return by_carried;
+  return by_masses;
 }
 
 // What speaks for a wrong sign of a joint's torque, the model or friction that gives power.
@@ -208,9 +169,9 @@ void find_torque_sign(const Log& log, const RobotDescription& robot, const Torqu
   }
   const std::size_t before = found.size();
   if (std::any_of(opposed.begin(), opposed.end(), [](char one) { return one != 0; })) {
-    const std::vector<char> carried = turned_by_what_is_carried(robot, pair, opposed);
+    const std::vector<char> by_masses = turned_by_masses(robot, pair, opposed);
     std::erase_if(found, [&](const DataFault& fault) {
-      return carried[static_cast<std::size_t>(fault.joint)] != 0;
+      return by_masses[static_cast<std::size_t>(fault.joint)] != 0;
     });
   }
   std::vector<Index> turned_channels;

@@ -7,14 +7,17 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "explain/doctor_checks.hpp"
+#include "explain/other_masses.hpp"
 
 namespace offnominal::desk {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Measured torque over the model's, seen by what only the pose and the other joints ask for.
@@ -138,12 +141,27 @@ Witness witness_of(const TorquePair& pair, const TorqueRatio& far) {
   return best;
 }
 
+// Whether a heavy tool or other links say as much of all torques, this one's as it is, as another
+// unit of it does, whatever the masses are then.
+bool is_by_masses(const RobotDescription& robot, const TorquePair& pair, const TorqueRatio& far) {
+  constexpr double kNoise = 0.1;
+  const auto left = [&](double ratio) {
+    std::vector<double> sizes = sizes_about_mean(pair.measured);
+    sizes[static_cast<std::size_t>(far.joint)] /= std::abs(ratio);
+    MatrixXd error = pair.measured - pair.model;
+    error.col(far.joint) = pair.measured.col(far.joint) / ratio - pair.model.col(far.joint);
+    return OtherMasses(robot, pair, std::move(sizes), kNoise).left_of_each(error).norm();
+  };
+  return left(1) <= left(far.ratio);
+}
+
 // Of some joints alone: a small drive that logs another unit than the large ones.
 struct JointOfAnotherUnit {
   TorqueRatio told;
   Witness witness;
 };
-std::vector<JointOfAnotherUnit> joints_of_another_unit(const TorquePair& pair,
+std::vector<JointOfAnotherUnit> joints_of_another_unit(const RobotDescription& robot,
+                                                       const TorquePair& pair,
                                                        const std::vector<TorqueRatio>& told) {
   std::vector<JointOfAnotherUnit> found;
   for (const TorqueRatio& one : told) {
@@ -151,7 +169,7 @@ std::vector<JointOfAnotherUnit> joints_of_another_unit(const TorquePair& pair,
     const Witness witness = ratio > 1 ? witness_of(pair, one) : Witness{};
     const bool far = witness.joint < 0 ? ratio > kFarOffAlone || ratio * kFarOffAlone < 1
                                        : ratio > kFarOff && witness.denies;
-    if (far) found.push_back({one, witness});
+    if (far && !is_by_masses(robot, pair, one)) found.push_back({one, witness});
   }
   // The scale of the others is what theirs is held against.
   if (found.size() == told.size()) found.clear();
@@ -235,14 +253,14 @@ bool is_of_another_torque_unit(const TorquePair& pair) {
   return is_another_unit(torque_ratios(pair));
 }
 
-OfAnotherUnit find_torque_unit(const Log& log, const TorquePair& pair,
-                               std::vector<DataFault>& faults) {
+OfAnotherUnit find_torque_unit(const Log& log, const RobotDescription& robot,
+                               const TorquePair& pair, std::vector<DataFault>& faults) {
   const std::vector<TorqueRatio> told = torque_ratios(pair);
   if (is_another_unit(told)) {
     add_fault_of_all(log, told, faults);
     return OfAnotherUnit::kAllJoints;
   }
-  const std::vector<JointOfAnotherUnit> found = joints_of_another_unit(pair, told);
+  const std::vector<JointOfAnotherUnit> found = joints_of_another_unit(robot, pair, told);
   add_faults_of_joints(log, found, faults);
   return found.empty() ? OfAnotherUnit::kNone : OfAnotherUnit::kSomeJoints;
 }

@@ -10,11 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "compare/inverse_model.hpp"
 #include "explain/doctor_checks.hpp"
-#include "robot/payload.hpp"
-#include "signal/decimate.hpp"
-#include "signal/norm_about_mean.hpp"
+#include "explain/rereading.hpp"
 
 // Positions that are counted from another zero than the robot file's, or the other way round.
 
@@ -22,18 +19,7 @@ namespace offnominal::desk {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-// How a joint's columns are to be read: the file's position is zero + (or minus) the recorded one.
-struct Reading {
-  double zero = 0;  // rad
-  bool position_turned = false;
-  bool torque_turned = false;
-
-  [[nodiscard]] bool is_as_it_is() const { return zero == 0 && !position_turned && !torque_turned; }
-};
-using Readings = std::vector<Reading>;
 
 constexpr std::array kWays{Reading{0, false, false}, Reading{0, false, true},
                            Reading{0, true, true}, Reading{0, true, false}};
@@ -41,83 +27,6 @@ constexpr std::array kWays{Reading{0, false, false}, Reading{0, false, true},
 constexpr double kStep = std::numbers::pi / 12;  // of the zeros that are tried
 
 double in_a_turn(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
-
-// The samples of a recording, few of them, and what the model says of them read in another way.
-class Rereading {
- public:
-  Rereading(const Log& log, const RobotDescription& robot, const TorquePair& pair)
-      : rigid_(robot), rows_(thinned(pair)) {
-    std::erase_if(rigid_.effects, [](const RobotEffect& effect) {
-      return info_of(effect.kind)->action != EffectAction::kPointMass;
-    });
-    rigid_ = carrying(rigid_, log.payload);
-    of_effects_ = rows_.model - model_torque(rigid_, {rows_.t_s, rows_.q, rows_.dq, rows_.ddq});
-    constexpr double kMoves = 1e-3;  // rad or m, rms
-    for (Index joint = 0; joint < rows_.q.cols(); ++joint) {
-      const double root = std::sqrt(static_cast<double>(rows_.q.rows()));
-      const bool tells = norm_about_mean(rows_.q.col(joint)) > kMoves * root;
-      sizes_.push_back(tells ? norm_about_mean(rows_.measured.col(joint)) : 0);
-    }
-  }
-
-  // Share of each joint's torque that is left with any friction, rotor and offset; 0 of one that
-  // does not move.
-  [[nodiscard]] VectorXd left_of_each(const Readings& readings) const {
-    Motion motion{rows_.t_s, rows_.q, rows_.dq, rows_.ddq};
-    for (Index joint = 0; joint < motion.q.cols(); ++joint) {
-      const Reading& one = readings[static_cast<std::size_t>(joint)];
-      if (one.position_turned) {
-        for (MatrixXd* of : {&motion.q, &motion.dq, &motion.ddq}) of->col(joint) *= -1;
-      }
-      motion.q.col(joint).array() += one.zero;
-    }
-    const MatrixXd load = model_torque(rigid_, motion);
-    VectorXd left = VectorXd::Zero(load.cols());
-    for (Index joint = 0; joint < load.cols(); ++joint) {
-      const auto at = static_cast<std::size_t>(joint);
-      if (!(sizes_[at] > 0)) continue;
-      const double sign = readings[at].torque_turned ? -1 : 1;
-      // Its own friction turns with it.
-      const double way = readings[at].position_turned ? -1 : 1;
-      const VectorXd error =
-          sign * rows_.measured.col(joint) - load.col(joint) - way * of_effects_.col(joint);
-      left[joint] = beside_drive(rows_, joint, error).norm() / sizes_[at];
-    }
-    return left;
-  }
-
-  // Rms over the joints that move.
-  [[nodiscard]] double left_by(const Readings& readings) const {
-    constexpr double kMost = 1.5;  // of one joint: it must not hide all others
-    const auto telling =
-        std::count_if(sizes_.begin(), sizes_.end(), [](double size) { return size > 0; });
-    if (telling == 0) return 0;
-    return left_of_each(readings).cwiseMin(kMost).norm() / std::sqrt(static_cast<double>(telling));
-  }
-
-  [[nodiscard]] bool turns(Index joint) const {
-    return rigid_.joints[static_cast<std::size_t>(joint)].joint.type == JointType::kRevolute;
-  }
-
- private:
-  static TorquePair thinned(const TorquePair& pair) {
-    constexpr Index kMostRows = 200;
-    const Index stride = std::max<Index>(1, (pair.q.rows() + kMostRows - 1) / kMostRows);
-    TorquePair rows;
-    rows.t_s = every_nth(pair.t_s, stride);
-    rows.q = every_nth_row(pair.q, stride);
-    rows.dq = every_nth_row(pair.dq, stride);
-    rows.ddq = every_nth_row(pair.ddq, stride);
-    rows.measured = every_nth_row(pair.measured, stride);
-    rows.model = every_nth_row(pair.model, stride);
-    return rows;
-  }
-
-  RobotDescription rigid_;
-  TorquePair rows_;
-  MatrixXd of_effects_;        // as the recording stands
-  std::vector<double> sizes_;  // per joint, of the torque about its mean; 0: it tells nothing
-};
 
 // The zero near `readings` at which least is left, by thirds.
 void refine_zero(const Rereading& rereading, Index joint, Readings& readings) {
@@ -220,14 +129,12 @@ std::string angle_words(double angle) {
 }
 
 std::string words_of(const Reading& one, Index joint) {
-  std::string words = !one.position_turned
-                          ? fmt::format("those of joint {}", joint + 1)
-                          : fmt::format("those of joint {} turned about{}", joint + 1,
-                                        one.torque_turned ? ", as its torques," : "");
-  if (one.zero != 0) {
-    words += fmt::format(" and {} {}", angle_words(one.zero), one.zero > 0 ? "added" : "taken off");
-  }
-  return words;
+  std::string words = fmt::format("those of joint {}", joint + 1);
+  if (one.position_turned) words += " turned about";
+  if (one.torque_turned) words += ", as its torques";
+  if (one.zero == 0) return words;
+  return fmt::format("{}{} and {} {}", words, one.torque_turned ? "," : "", angle_words(one.zero),
+                     one.zero > 0 ? "added" : "taken off");
 }
 
 void turn(Channel& channel) {
@@ -288,10 +195,12 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   // and where it is the zero hardly anything is left.
   constexpr double kOfWhatWasLeft = 0.35;  // of the first
   // Of fewer joints, where one alone shows it, or of the last one, a centre of mass elsewhere looks
-  // the same.
+  // the same; so does a poor CAD of a few links.
   constexpr std::size_t kSureJoints = 3;
   constexpr int kShownBy = 2;
   constexpr double kLeastWrongUnsure = 0.3;
+  // By other masses: then it is no zero at all.
+  constexpr double kClearlyLess = 0.5;
   const Rereading rereading(log, robot, pair);
   const std::size_t joints = robot.joints.size();
   const VectorXd left_before = rereading.left_of_each(Readings(joints));
@@ -323,12 +232,19 @@ bool find_joint_zero(const Log& log, const RobotDescription& robot, const Torque
   }
   if (words.empty()) return false;
   fault.unit = "rad";
-  fault.certain = certain;
+  const double by_masses = rereading.left_by_masses(after);
+  if (by_masses < kClearlyLess * after) return false;
+  fault.or_masses = is_hardly_more(by_masses, after);
+  fault.certain = certain && !fault.or_masses;
   fault.words = fmt::format(
       "positions {} counted from another zero than the robot file's, or the other way round: with "
       "{}, the model leaves {:.0f} % of the torques unexplained, friction apart, instead of {:.0f} "
-      "%",
-      fault.certain ? "are" : "may be", fmt::join(words, ", "), 100 * after, 100 * before);
+      "%{}",
+      fault.certain ? "are" : "may be", fmt::join(words, ", "), 100 * after, 100 * before,
+      fault.or_masses ? fmt::format(", and with masses and centres of its links that are off, and "
+                                    "something carried, {:.0f} %",
+                                    100 * by_masses)
+                      : "");
   fault.mend =
       "turn the joint's frame in the robot file by its rpy_rad, or its axis about, or read the "
       "positions as the file has them";

@@ -133,14 +133,10 @@ class Explainer {
       sizes = sizes_of(improved);
     } while (leave_out_unsure(sizes, *setting_.regression, hold_out, options_.threads, found));
     if (search) {
-      for (auto& one :
-           undecided(*setting_.search, *setting_.regression, found, result.excitation)) {
-        // Another mass or torque constant is one of the model's own numbers.
-        const auto own = std::find_if(one.begin(), one.end(), [](const EffectAt& member) {
-          return info_of(member.kind)->is_known_quantity();
-        });
-        if (own != one.end()) result.or_links.push_back(*own);
-        result.ambiguous.push_back(std::move(one));
+      const VectorXd left = improved.last.data->layout.rms(improved.last.fit.residual);
+      for (UndecidedClass& one : undecided(setting_, robot_, found, result.excitation, left)) {
+        if (one.or_own_numbers) result.or_links.push_back(one.effects.front());
+        result.ambiguous.push_back(std::move(one.effects));
       }
     }
     for (std::size_t joint = 0; joint < found.unsure.size(); ++joint) {
@@ -545,8 +541,8 @@ Explanation explain(const RobotDescription& robot, const Treated& recordings,
     const bool nothing = fault.kind == DataFaultKind::kNothingLeft;
     nothing_left = nothing_left || (nothing && fault.certain);
     // Velocities come from the positions here: what was recorded of them spoils nothing.
-    const bool hint =
-        fault.kind == DataFaultKind::kVelocity || fault.overruled || (nothing && !fault.certain);
+    const bool hint = fault.kind == DataFaultKind::kVelocity || fault.overruled ||
+                      fault.or_masses || (nothing && !fault.certain);
     auto& list = hint ? hints : !fault.left_out_of.empty() ? left_out : faults;
     list.push_back(fault);
   }
@@ -562,13 +558,15 @@ Explanation explain(const RobotDescription& robot, const Treated& recordings,
     judge_whole(result);
   }
   for (const DataFault& hint : hints) {
-    const char* why = hint.overruled ? ", which --keep overrules"
+    const char* why = hint.overruled   ? ", which --keep overrules"
+                      : hint.or_masses ? ": masses that are off are looked for; to mend a zero: "
                       : hint.kind == DataFaultKind::kNothingLeft
                           ? ", so that nothing is said of it"
                           : ", which changes nothing here; to mend: ";
     result.advice.push_back(
         hint.words + why +
-        (hint.kind == DataFaultKind::kVelocity && !hint.overruled ? hint.mend : ""));
+        ((hint.kind == DataFaultKind::kVelocity || hint.or_masses) && !hint.overruled ? hint.mend
+                                                                                      : ""));
   }
   result.data_hints = std::move(hints);
   result.left_out = std::move(left_out);

@@ -19,6 +19,7 @@ namespace {
 
 // Beyond CAD, far beyond it, and little more than the geometry known.
 constexpr std::array kShares{0.12, 0.3, 0.6};
+constexpr double kUnknownShare = 2;
 // Log-likelihood that a wider share has to gain, and the share of a joint's error.
 constexpr double kClearly = 10;
 constexpr double kRelevantFall = 0.05;
@@ -151,9 +152,19 @@ NuisanceOptions with_link_share(NuisanceOptions options, double share) {
   return options;
 }
 
+NuisanceOptions beside_wider_links(NuisanceOptions options) {
+  if (options.link_geometry) {
+    const auto* const wider = std::upper_bound(kShares.begin(), kShares.end(), options.link_share);
+    options.link_share = wider == kShares.end() ? kUnknownShare : *wider;
+  } else {
+    options.link_share = std::max(options.link_share, kCadShare);
+    options.link_geometry = true;
+  }
+  return options;
+}
+
 NuisanceOptions beside_unknown_links(NuisanceOptions options) {
-  constexpr double kUnknown = 2;
-  options.link_share = kUnknown;
+  options.link_share = kUnknownShare;
   options.link_geometry = true;
   return options;
 }

@@ -19,6 +19,10 @@ inline constexpr double kCadShare = 0.1;
 // constants that nobody doubts only the ratios would show.
 NuisanceOptions with_link_share(NuisanceOptions options, double share);
 
+// The same beside links of the next wider share that is tried; of those off by no more than CAD,
+// what that may be off where each number is off by itself.
+NuisanceOptions beside_wider_links(NuisanceOptions options);
+
 // The same beside links of which nothing is known.
 NuisanceOptions beside_unknown_links(NuisanceOptions options);
 

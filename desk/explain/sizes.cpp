@@ -81,13 +81,24 @@ bool leave_out_unsure(const Sizes& sizes, const Regression& regression, const Ho
   // Significance was asked before; what these intervals hold more than noise is what the model
   // adapts, and a size that they do not tell from nothing is none. Of friction that every drive has
   // half of that is enough.
+  // A transmission that gives way looks like links' inertia that grows with frequency: beside links
+  // that are off it takes twice as much.
   constexpr double kSure = 1;
   constexpr double kSureOfFriction = 0.5;
+  constexpr double kSureBesideLinks = 2;
+  const auto& nuisance = regression.data().nuisance.terms;
+  const bool links_are_off = std::any_of(nuisance.begin(), nuisance.end(), [](const auto& one) {
+    return one.kind == NuisanceTerm::Kind::kLinkCentre;
+  });
   std::size_t which = found.accepted.size();
   double least = 1;
   for (std::size_t i = 0; i < found.accepted.size(); ++i) {
-    const bool expected = found.accepted[i].term.effect->info().traits.every_drive_has;
-    const double reached = sizes.from_nothing[i] / (expected ? kSureOfFriction : kSure);
+    const EffectInfo& info = found.accepted[i].term.effect->info();
+    const bool gives_way = info.action == EffectAction::kDisplacement;
+    const double needed = info.traits.every_drive_has  ? kSureOfFriction
+                          : gives_way && links_are_off ? kSureBesideLinks
+                                                       : kSure;
+    const double reached = sizes.from_nothing[i] / needed;
     if (reached >= least) continue;
     least = reached;
     which = i;

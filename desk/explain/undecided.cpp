@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "explain/alternatives.hpp"
+#include "explain/beside_free_links.hpp"
+#include "explain/link_share.hpp"
 #include "explain/remainder.hpp"
 
 namespace offnominal::desk {
@@ -43,7 +45,8 @@ VectorXd left_of_moving_joints(const Regression& regression, const std::vector<T
 // Joints on which something shows that has no name, and whose error stands out, by how far.
 std::vector<Index> joints_that_show(const Regression& regression, const std::vector<Term>& terms,
                                     const std::vector<char>& is_unsure,
-                                    const std::vector<Excitation>& excitation) {
+                                    const std::vector<Excitation>& excitation,
+                                    const VectorXd& left_in_the_end) {
   std::vector<Index> shows;
   for (Index joint = 0; joint < regression.data().layout.joint_count(); ++joint) {
     const Excitation& motion = excitation[static_cast<std::size_t>(joint)];
@@ -56,7 +59,7 @@ std::vector<Index> joints_that_show(const Regression& regression, const std::vec
   if (shows.empty()) return shows;
   const Data& data = regression.data();
   const VectorXd left = left_of_moving_joints(regression, terms, excitation);
-  const VectorXd fitted = data.layout.rms(left);
+  const VectorXd fitted = data.layout.rms(left).cwiseMin(left_in_the_end);
   const VectorXd torque = data.layout.rms(data.torque);
   const VectorXd above = fitted.cwiseQuotient(noise_floor_of(data, left));
   std::erase_if(shows, [&](Index joint) {
@@ -121,6 +124,9 @@ std::vector<Possible> explained_on(Index joint, const Regression& regression,
   return possible;
 }
 
+// Another mass or torque constant.
+bool is_own_number(const EffectAt& one) { return info_of(one.kind)->is_known_quantity(); }
+
 // Empty where even the best explains too little, and where masses and torque constants are all that
 // is possible: those are the model's own numbers. One alone gets no name either.
 std::vector<EffectAt> class_of(const std::vector<Possible>& possible) {
@@ -130,9 +136,7 @@ std::vector<EffectAt> class_of(const std::vector<Possible>& possible) {
     if (one.share < kPossible * possible.front().share) break;
     names.push_back(one.what);
   }
-  const bool all_own = std::all_of(names.begin(), names.end(), [](const EffectAt& one) {
-    return info_of(one.kind)->is_known_quantity();
-  });
+  const bool all_own = std::all_of(names.begin(), names.end(), is_own_number);
   return all_own ? std::vector<EffectAt>{} : names;
 }
 
@@ -140,14 +144,25 @@ bool share_an_effect(const std::vector<EffectAt>& a, const std::vector<EffectAt>
   return std::any_of(a.begin(), a.end(), [&](const EffectAt& one) { return holds(b, one); });
 }
 
+// Rms error per joint beside links that may be off further.
+VectorXd left_beside_wider_links(const SearchSetting& setting, const RobotDescription& robot,
+                                 const std::vector<Term>& terms) {
+  const Data data(*setting.data, robot, beside_wider_links(setting.nuisance));
+  return data.layout.rms(Regression(data).fit(terms).residual);
+}
+
 }  // namespace
 
-std::vector<std::vector<EffectAt>> undecided(const Search& search, const Regression& regression,
-                                             const FoundModel& found,
-                                             const std::vector<Excitation>& excitation) {
+std::vector<UndecidedClass> undecided(const SearchSetting& setting, const RobotDescription& robot,
+                                      const FoundModel& found,
+                                      const std::vector<Excitation>& excitation,
+                                      const VectorXd& left_in_the_end) {
   constexpr std::size_t kMostProposals = 24;
+  const Regression& regression = *setting.regression;
+  const Search& search = *setting.search;
   const std::vector<Term> terms = found.terms();
-  const std::vector<Index> joints = joints_that_show(regression, terms, found.unsure, excitation);
+  const std::vector<Index> joints =
+      joints_that_show(regression, terms, found.unsure, excitation, left_in_the_end);
   if (joints.empty()) return {};
   const VectorXd before = regression.data().layout.rms(found.fit.residual);
   const std::vector<Proposal> proposals =
@@ -156,15 +171,21 @@ std::vector<std::vector<EffectAt>> undecided(const Search& search, const Regress
       search.family_p(proposals.front(), found.fit) > search.options().family_error) {
     return {};
   }
-  std::vector<std::vector<EffectAt>> classes;
+  const VectorXd beside_wider =
+      tells_links_apart(setting, robot) ? left_beside_wider_links(setting, robot, terms) : before;
+  std::vector<UndecidedClass> classes;
   for (const Index joint : joints) {
-    std::vector<EffectAt> names =
-        class_of(explained_on(joint, regression, terms, before, proposals));
+    const auto possible = explained_on(joint, regression, terms, before, proposals);
+    UndecidedClass one{class_of(possible), false};
     // One effect may show on several joints.
     const bool told = std::any_of(classes.begin(), classes.end(), [&](const auto& earlier) {
-      return share_an_effect(earlier, names);
+      return share_an_effect(earlier.effects, one.effects);
     });
-    if (!names.empty() && !told) classes.push_back(std::move(names));
+    if (one.effects.empty() || told) continue;
+    one.or_own_numbers =
+        std::any_of(one.effects.begin(), one.effects.end(), is_own_number) ||
+        explained_share(before[joint], beside_wider[joint]) >= kPossible * possible.front().share;
+    classes.push_back(std::move(one));
   }
   return classes;
 }

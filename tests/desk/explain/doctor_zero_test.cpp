@@ -82,6 +82,28 @@ TEST(JointZero, IsNotMadeOfAPayloadASpringOrAHeavyLink) {
   }
 }
 
+// Of the last joint both turn the first moment about; a payload has a mass besides.
+TEST(JointZero, OfTheLastJointIsToldFromAPayloadByItsMass) {
+  const RobotDescription file = test::serial_arm(kJoints);
+  const auto& last = file.joints.back().joint;
+  constexpr double kMass = 0.5;  // kg
+  const double turns = -2 * last.mass_kg / kMass;
+  RobotDescription real = file;
+  real.effects.push_back(test::effect_of(
+      EffectKind::kTipPayload, kJoints - 1,
+      {kMass, turns * last.centre_of_mass_m[0], turns * last.centre_of_mass_m[1], 0}));
+  for (const DataFault& fault : examine(recorded(real), file)) {
+    EXPECT_TRUE(fault.or_masses) << fault.words;
+  }
+  Log log = recorded(file);
+  log.q.col(kJoints - 1).array() -= std::numbers::pi;
+  const auto faults = examine(log, file);
+  ASSERT_THAT(faults, SizeIs(1));
+  EXPECT_EQ(faults[0].kind, DataFaultKind::kJointZero) << faults[0].words;
+  EXPECT_EQ(faults[0].joint, kJoints - 1);
+  EXPECT_FALSE(faults[0].or_masses) << faults[0].words;
+}
+
 // Their model turned upside down says nearly the same.
 TEST(JointZero, IsNotMadeOfTorquesOfTheWrongSign) {
   for (const std::size_t joints : {1U, 3U}) {
