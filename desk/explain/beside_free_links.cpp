@@ -18,10 +18,6 @@ constexpr double kStaysNeeded = 0.5;
 // second derivatives they leave.
 constexpr double kOfTorque = 0.05;
 
-bool gives_way(const Term& term) {
-  return term.effect->info().action == EffectAction::kDisplacement;
-}
-
 // What goes with the effect of what is left without it, on the joint where that is most. `with`:
 // the regression's fit of all that was found.
 Fall taken(const Regression& regression, const FoundModel& found, const ModelFit& with,
@@ -58,8 +54,8 @@ std::vector<EffectAt> light_masses(const SearchSetting& setting, const RobotDesc
     const Term& term = found.accepted[i].term;
     if (!term.effect->is_mass()) continue;
     const auto link = static_cast<std::size_t>(term.joint);
-    const double near_kg = robot.joints[link].joint.mass_kg +
-                           robot.joints[link - std::min<std::size_t>(1, link)].joint.mass_kg;
+    const std::size_t before = link > 0 ? link - 1 : 0;
+    const double near_kg = robot.joints[before].joint.mass_kg + robot.joints[link].joint.mass_kg;
     const double off_kg = kShares * setting.nuisance.link_share * near_kg;
     if (std::abs(found.fit.coefficients[i][0]) <= off_kg) light.push_back(at(found.accepted[i]));
   }
@@ -75,29 +71,28 @@ bool tells_links_apart(const SearchSetting& setting, const RobotDescription& rob
 
 std::vector<EffectAt> could_be_links(const SearchSetting& setting, const RobotDescription& robot,
                                      const FoundModel& found) {
-  const auto is_asked = [](const Accepted& one) { return may_be_gravity(one.term); };
-  if (!tells_links_apart(setting, robot) ||
-      std::none_of(found.accepted.begin(), found.accepted.end(), is_asked)) {
-    return {};
-  }
+  if (!tells_links_apart(setting, robot)) return {};
+  std::vector<EffectAt> links;
+  if (setting.nuisance.link_geometry) links = light_masses(setting, robot, found);
+  const auto is_asked = [&](const Accepted& one) {
+    return may_be_gravity(one.term) && !holds(links, at(one));
+  };
+  if (std::none_of(found.accepted.begin(), found.accepted.end(), is_asked)) return links;
   const Data data(*setting.data, robot, beside_wider_links(setting.nuisance));
   const Regression beside_wider(data);
   const ModelFit with = beside_wider.fit(found.terms());
-  std::vector<EffectAt> links;
-  if (setting.nuisance.link_geometry) links = light_masses(setting, robot, found);
   for (std::size_t i = 0; i < found.accepted.size(); ++i) {
-    const EffectAt what = at(found.accepted[i]);
-    if (!is_asked(found.accepted[i]) || holds(links, what)) continue;
+    if (!is_asked(found.accepted[i])) continue;
     const Fall own = taken(*setting.regression, found, found.fit, i);
     const Fall stays = taken(beside_wider, found, with, i);
-    if (stays.share < kStaysNeeded * own.share) links.push_back(what);
+    if (stays.share < kStaysNeeded * own.share) links.push_back(at(found.accepted[i]));
   }
   return links;
 }
 
 void leave_out_links_in_disguise(const SearchSetting& setting, const RobotDescription& robot,
                                  int threads, FoundModel& found) {
-  const auto is_asked = [](const Accepted& one) { return gives_way(one.term); };
+  const auto is_asked = [](const Accepted& one) { return one.term.effect->gives_way(); };
   if (std::none_of(found.accepted.begin(), found.accepted.end(), is_asked)) return;
   const Data data(*setting.data, robot, beside_unknown_links(setting.nuisance));
   const Regression beside_unknown(data);

@@ -23,8 +23,9 @@ bool tells_links_apart(const SearchSetting& setting, const RobotDescription& rob
 
 // Of what was found, what could as well be the links of the file: constant torques, springs, torque
 // constants, payloads and masses of links of an arm of three joints or more that take half as much
-// beside links whose masses, centres of mass and inertias are off further, each by itself; and a
-// mass that is no larger than what its link may be off. `robot`: that the setting was made with.
+// beside links whose masses, centres of mass and inertias are off further, each by itself; and
+// where the links of the file had to be off by more than CAD is, a mass of no more than twice what
+// its link and the one before it may be off. `robot`: that the setting was made with.
 std::vector<EffectAt> could_be_links(const SearchSetting& setting, const RobotDescription& robot,
                                      const FoundModel& found);
 

@@ -144,6 +144,19 @@ std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& ro
   return pair;
 }
 
+TorquePair thinned(const TorquePair& pair) {
+  constexpr Index kMostRows = 200;
+  const Index stride = std::max<Index>(1, (pair.q.rows() + kMostRows - 1) / kMostRows);
+  TorquePair rows;
+  rows.t_s = every_nth(pair.t_s, stride);
+  rows.q = every_nth_row(pair.q, stride);
+  rows.dq = every_nth_row(pair.dq, stride);
+  rows.ddq = every_nth_row(pair.ddq, stride);
+  rows.measured = every_nth_row(pair.measured, stride);
+  rows.model = every_nth_row(pair.model, stride);
+  return rows;
+}
+
 void find_gaps(const Log& log, std::vector<DataFault>& faults) {
   // One lost row makes a step of two periods; clocks of an ordinary computer stay below this.
   constexpr double kLongestStep = 1.5;

@@ -36,6 +36,10 @@ struct TorquePair {
 std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& robot,
                                       double cutoff_of_rate = 0);
 
+// Of a long one some two hundred rows of what was measured and of the model, without links and
+// load: for fits that would take much of each.
+TorquePair thinned(const TorquePair& pair);
+
 // What viscous and dry friction of a joint look like over time, two columns: rad/s or m/s, and 1.
 Eigen::MatrixXd friction_columns(const Eigen::VectorXd& dq);
 

@@ -87,12 +87,13 @@ bool are_all_turned(const TorquePair& pair, const std::vector<Index>& turned) {
 std::vector<char> turned_by_masses(const RobotDescription& robot, const TorquePair& pair,
                                    const std::vector<char>& opposed) {
   constexpr double kNoise = 0.1;
-  const OtherMasses masses(robot, pair, sizes_about_mean(pair.measured), kNoise);
+  const TorquePair rows = thinned(pair);
+  const OtherMasses masses(robot, rows, sizes_about_mean(rows.measured), kNoise);
   const auto left_with = [&](const std::vector<char>& wrong) {
-    MatrixXd error = pair.measured - pair.model;
+    MatrixXd error = rows.measured - rows.model;
     for (Index joint = 0; joint < error.cols(); ++joint) {
       if (wrong[static_cast<std::size_t>(joint)] == 0) continue;
-      error.col(joint) = -pair.measured.col(joint) - pair.model.col(joint);
+      error.col(joint) = -rows.measured.col(joint) - rows.model.col(joint);
     }
     return masses.left_of_each(error).norm();
   };

@@ -145,12 +145,13 @@ Witness witness_of(const TorquePair& pair, const TorqueRatio& far) {
 // unit of it does, whatever the masses are then.
 bool is_by_masses(const RobotDescription& robot, const TorquePair& pair, const TorqueRatio& far) {
   constexpr double kNoise = 0.1;
+  const TorquePair rows = thinned(pair);
   const auto left = [&](double ratio) {
-    std::vector<double> sizes = sizes_about_mean(pair.measured);
+    std::vector<double> sizes = sizes_about_mean(rows.measured);
     sizes[static_cast<std::size_t>(far.joint)] /= std::abs(ratio);
-    MatrixXd error = pair.measured - pair.model;
-    error.col(far.joint) = pair.measured.col(far.joint) / ratio - pair.model.col(far.joint);
-    return OtherMasses(robot, pair, std::move(sizes), kNoise).left_of_each(error).norm();
+    MatrixXd error = rows.measured - rows.model;
+    error.col(far.joint) = rows.measured.col(far.joint) / ratio - rows.model.col(far.joint);
+    return OtherMasses(robot, rows, std::move(sizes), kNoise).left_of_each(error).norm();
   };
   return left(1) <= left(far.ratio);
 }

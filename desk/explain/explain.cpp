@@ -466,6 +466,16 @@ void say_what_was_carried(const std::vector<Log>& logs, Explanation& result) {
   }
 }
 
+// Of what refuses nothing.
+std::string words_of_hint(const DataFault& hint) {
+  if (hint.overruled) return hint.words + ", which --keep overrules";
+  if (hint.kind == DataFaultKind::kNothingLeft)
+    return hint.words + ", so that nothing is said of it";
+  const char* meanwhile = hint.or_masses ? ": masses that are off are looked for; to mend a zero: "
+                                         : ", which changes nothing here; to mend: ";
+  return hint.words + meanwhile + hint.mend;
+}
+
 // Of a recording of which nothing is left, what the model leaves of it as it is is still shown.
 Explanation explain_as_it_is(const RobotDescription& robot, Treated recordings,
                              const ExplainOptions& options, const OnProgress& on_progress) {
@@ -558,15 +568,7 @@ Explanation explain(const RobotDescription& robot, const Treated& recordings,
     judge_whole(result);
   }
   for (const DataFault& hint : hints) {
-    const char* why = hint.overruled   ? ", which --keep overrules"
-                      : hint.or_masses ? ": masses that are off are looked for; to mend a zero: "
-                      : hint.kind == DataFaultKind::kNothingLeft
-                          ? ", so that nothing is said of it"
-                          : ", which changes nothing here; to mend: ";
-    result.advice.push_back(
-        hint.words + why +
-        ((hint.kind == DataFaultKind::kVelocity || hint.or_masses) && !hint.overruled ? hint.mend
-                                                                                      : ""));
+    result.advice.push_back(words_of_hint(hint));
   }
   result.data_hints = std::move(hints);
   result.left_out = std::move(left_out);

@@ -18,9 +18,9 @@ std::vector<double> sizes_about_mean(const Eigen::MatrixXd& torques);
 // torque round. Beside any friction, rotor and offset of each joint's drive.
 class OtherMasses {
  public:
-  // `sizes`: per joint, what its torques are shares of once multiplied by the root of the rows, so
-  // that a norm of 1 is all of it; 0: the joint tells nothing. `noise`: the share that counts as
-  // such, so that smaller errors ask for no other links.
+  // `pair`: few rows, thinned(), which have to outlive it. `sizes`: per joint the norm of its
+  // torque over these rows, which all is a share of; 0: the joint tells nothing. `noise`: the share
+  // that counts as such, so that smaller errors ask for no other links.
   OtherMasses(const RobotDescription& robot, const TorquePair& pair, std::vector<double> sizes,
               double noise);
 

@@ -7,7 +7,6 @@
 #include "compare/inverse_model.hpp"
 #include "explain/other_masses.hpp"
 #include "robot/payload.hpp"
-#include "signal/decimate.hpp"
 #include "signal/norm_about_mean.hpp"
 
 namespace offnominal::desk {
@@ -15,23 +14,6 @@ namespace offnominal::desk {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
-
-TorquePair thinned(const TorquePair& pair) {
-  constexpr Index kMostRows = 200;
-  const Index stride = std::max<Index>(1, (pair.q.rows() + kMostRows - 1) / kMostRows);
-  TorquePair rows;
-  rows.t_s = every_nth(pair.t_s, stride);
-  rows.q = every_nth_row(pair.q, stride);
-  rows.dq = every_nth_row(pair.dq, stride);
-  rows.ddq = every_nth_row(pair.ddq, stride);
-  rows.measured = every_nth_row(pair.measured, stride);
-  rows.model = every_nth_row(pair.model, stride);
-  return rows;
-}
-
-}  // namespace
 
 Rereading::Rereading(const Log& log, const RobotDescription& robot, const TorquePair& pair)
     : rigid_(robot), rows_(thinned(pair)) {

@@ -93,11 +93,10 @@ bool leave_out_unsure(const Sizes& sizes, const Regression& regression, const Ho
   std::size_t which = found.accepted.size();
   double least = 1;
   for (std::size_t i = 0; i < found.accepted.size(); ++i) {
-    const EffectInfo& info = found.accepted[i].term.effect->info();
-    const bool gives_way = info.action == EffectAction::kDisplacement;
-    const double needed = info.traits.every_drive_has  ? kSureOfFriction
-                          : gives_way && links_are_off ? kSureBesideLinks
-                                                       : kSure;
+    const EffectCandidate& effect = *found.accepted[i].term.effect;
+    const double needed = effect.info().traits.every_drive_has  ? kSureOfFriction
+                          : effect.gives_way() && links_are_off ? kSureBesideLinks
+                                                                : kSure;
     const double reached = sizes.from_nothing[i] / needed;
     if (reached >= least) continue;
     least = reached;

@@ -110,6 +110,8 @@ class EffectCandidate {
   [[nodiscard]] bool replaces_skew() const { return info_.action == EffectAction::kDelay; }
   // A mass at a place, which every joint that carries it feels.
   [[nodiscard]] bool is_mass() const { return info_.action == EffectAction::kPointMass; }
+  // A transmission that gives way under torque.
+  [[nodiscard]] bool gives_way() const { return info_.action == EffectAction::kDisplacement; }
   // Scales all that the drive of a joint gives.
   [[nodiscard]] bool is_torque_constant() const {
     return info_.action == EffectAction::kToldPerGiven;
