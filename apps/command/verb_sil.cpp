@@ -8,6 +8,7 @@
 
 #include "command/answer.hpp"
 #include "command/command_line.hpp"
+#include "command/plant_options.hpp"
 #include "command/progress.hpp"
 #include "command/read_robot.hpp"
 #include "command/refuse_option.hpp"
@@ -17,7 +18,6 @@
 #include "common/output_file.hpp"
 #include "log/candump_text.hpp"
 #include "log/csv_text.hpp"
-#include "loop/motion_at.hpp"
 #include "paper/recording.hpp"
 #include "paper/two_link_robot.hpp"
 #include "robot/robot_file.hpp"
@@ -37,8 +37,7 @@ struct SilOptions {
   std::string bus = sil::kInProcess;
   std::string scalar = "float";
   std::optional<std::string> robot;
-  std::optional<std::string> plant;
-  std::optional<std::string> motion;
+  PlantOptions other_end;
   std::optional<double> duration;
   bool real_time = false;
   bool lock_step = false;
@@ -48,35 +47,17 @@ struct SilOptions {
   AnswerOptions answer;
 };
 
-constexpr const char* kPaper = "paper";
-
-std::optional<std::string> mujoco_file(const SilOptions& options) {
-  return options.plant ? sil::mujoco_file_named(*options.plant) : std::nullopt;
-}
-
-// The robot file of the plant; none for the paper's arm. Of a plant of MuJoCo it says the joints.
+// A robot with the paper's links has the paper's arm for a plant unless --plant names another.
 std::optional<std::string> plant_file(const SilOptions& options, const RobotDescription& robot) {
-  if (mujoco_file(options)) return options.robot;
-  if (options.plant) return *options.plant == kPaper ? std::nullopt : options.plant;
-  return paper::is_two_link_arm(robot) ? std::nullopt : options.robot;
-}
-
-// Of the plant's file, a robot with the controller's joints.
-RobotDescription plant_from(const std::string& file, const RobotDescription& robot) {
-  RobotDescription plant = read_robot_file(file);
-  if (plant.joint_count() == robot.joint_count()) return plant;
-  throw InputError({file, "[[joint]]",
-                    fmt::format("robot {} with {} joint(s)", plant.name, plant.joint_count()),
-                    fmt::format("a plant with {}, as many as robot {} of the controller has",
-                                robot.joint_count(), robot.name),
-                    "give --plant and --robot files of the same arm"});
+  if (!options.other_end.plant && paper::is_two_link_arm(robot)) return std::nullopt;
+  return plant_file(options.other_end, options.robot);
 }
 
 sil::Scenario scenario_of(const SilOptions& options, const RobotDescription& robot) {
   sil::Scenario scenario;
-  const auto mujoco = mujoco_file(options);
-  if (mujoco && !options.robot) {
-    refuse_option("sil", "--plant", *options.plant + " without --robot",
+  const auto& plant = options.other_end.plant;
+  if (plant && sil::mujoco_file_named(*plant) && !options.robot) {
+    refuse_option("sil", "--plant", *plant + " without --robot",
                   "a robot file that says its joints", "give --robot FILE.toml");
   }
   if (const auto file = plant_file(options, robot)) scenario.plant = plant_from(*file, robot);
@@ -100,8 +81,7 @@ sil::Scenario scenario_of(const SilOptions& options, const RobotDescription& rob
     scenario.faults.push_back(
         {.kind = sim::FaultEventKind::kNonlinear, .begin_s = 10.0, .rate_per_s = 0.5});
   }
-  scenario.mujoco = mujoco;
-  if (options.motion) scenario.motion = motion_named(*options.motion, robot);
+  put_plant_options(options.other_end, robot, scenario);
   if (options.accommodate) scenario.accommodate = true;
   if (options.fd) scenario.format = hal::FrameFormat::kFd;
   if (options.duration) scenario.duration_s = *options.duration;
@@ -121,13 +101,14 @@ sil::SilResult real_time(const SilOptions& options, const RobotDescription& robo
     refuse_option("sil", "--real-time", "on the in-process bus", "a CAN interface of the kernel",
                   "give --bus vcan0; where the kernel has no CAN: ./dev vcan COMMAND");
   }
-  return sil::run_in_real_time(robot, scenario,
-                               {.interface = options.bus,
-                                .robot_file = options.robot,
-                                .plant_file = plant_file(options, robot),
-                                .motion = options.motion.value_or(scenario.plant ? "sway" : kPaper),
-                                .candump = options.candump,
-                                .replace_candump = options.answer.force});
+  return sil::run_in_real_time(
+      robot, scenario,
+      {.interface = options.bus,
+       .robot_file = options.robot,
+       .plant_file = plant_file(options, robot),
+       .motion = options.other_end.motion.value_or(scenario.plant ? "sway" : kPaper),
+       .candump = options.candump,
+       .replace_candump = options.answer.force});
 }
 
 sil::SilResult lock_step(const SilOptions& options, const RobotDescription& robot,
@@ -210,14 +191,9 @@ void set_up_sil(CLI::App& verb, ExitCode& exit_code) {
       ->capture_default_str();
   verb.add_option("--robot", options->robot,
                   "Robot file of the controller; by default the paper's arm");
-  verb.add_option(
-      "--plant", options->plant,
-      "Robot file of the plant, its rigid body and effects; mujoco:FILE, an MJCF or URDF "
-      "with the controller's joints; or paper. By default the paper's arm for a robot of "
-      "its links, and else the controller's robot");
-  verb.add_option("--motion", options->motion,
-                  "paper, sway (every joint a little to and fro), or a CSV as offnominal motion "
-                  "writes it; by default paper for the paper's arm, and else sway");
+  add_plant_options(verb, options->other_end,
+                    "; or paper. By default the paper's arm for a robot of its links, and else the "
+                    "controller's robot");
   verb.add_option("--duration", options->duration, "Length of the run, s [20]");
   verb.add_option("--log", options->log,
                   "Write the run as the controller saw it, and beside it what was true, CSV")

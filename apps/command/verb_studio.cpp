@@ -23,6 +23,7 @@
 
 #include "command/doctor.hpp"
 #include "command/input_options.hpp"
+#include "command/plant_options.hpp"
 #include "command/progress.hpp"
 #include "command/recordings.hpp"
 #include "command/refuse_option.hpp"
@@ -47,6 +48,7 @@ struct StudioOptions {
   std::vector<std::string> campaign;  // results, and the campaign's file
   std::optional<std::string> bus;
   std::optional<std::vector<std::string>> sil;  // with the scenario's file, or none
+  PlantOptions other_end;                       // of it
   std::vector<KeepFault> keep;
   std::optional<std::string> output;
   int port = 0;
@@ -205,11 +207,19 @@ class EndOnSignal {
   std::thread thread_;
 };
 
-// Of a run that is simulated: the plant is the robot of the file, as its scenario has it.
+// Of a run that is simulated: the plant is the robot of the file, unless --plant names another.
 sil::Scenario scenario_of(const StudioOptions& options, const RobotDescription& robot) {
+  const std::optional<std::string> file = plant_file(options.other_end, options.files.robot);
+  if (!file) {
+    refuse_option(
+        "studio", "--plant", *options.other_end.plant,
+        "a robot file, or mujoco:FILE: the paper's arm keeps the faults that it began with",
+        "run it by offnominal sil, or leave --plant out");
+  }
   sil::Scenario scenario;
-  scenario.plant = robot;
-  if (!options.sil->empty()) scenario = sil::read_scenario(options.sil->front(), robot);
+  scenario.plant = options.other_end.plant ? plant_from(*file, robot) : robot;
+  if (!options.sil->empty()) scenario = sil::read_scenario(options.sil->front(), scenario.plant);
+  put_plant_options(options.other_end, robot, scenario);
   scenario.precision = Precision::kFloat;  // as firmware
   return scenario;
 }
@@ -220,7 +230,10 @@ std::unique_ptr<live::Live> live_view(const StudioOptions& options) {
   require_carried(input.robot, options.files.robot);
   input.robot_file = options.files.robot;
   input.bus = options.bus;
-  if (options.sil) input.scenario = scenario_of(options, input.robot);
+  if (options.sil) {
+    input.scenario = scenario_of(options, input.robot);
+    input.plant_file = options.other_end.plant;
+  }
   if (options.output) input.folder = std::filesystem::path(*options.output).parent_path();
   return std::make_unique<live::Live>(std::move(input));
 }
@@ -323,6 +336,14 @@ void check_source(const StudioOptions& options) {
     refuse_option("studio", "--robot", "nothing", "a robot file",
                   "give one; without recordings too, the page asks for both");
   }
+  if (!options.sil) {
+    const auto refuse = [](const char* option) {
+      refuse_option("studio", option, "without --sil", "of a run that is simulated",
+                    "give --sil, or leave it out");
+    };
+    if (options.other_end.plant) refuse("--plant");
+    if (options.other_end.motion) refuse("--motion");
+  }
   if (!live && !has_logs) check_nothing_of_recordings(options);
   if (!options.campaign.empty()) check_campaign(options);
   if (!live) return;
@@ -397,6 +418,9 @@ void set_up_studio(CLI::App& verb, ExitCode& /*exit_code*/) {
           "the robot file on a bus, with faults from the page. A scenario's file may say more")
       ->type_name("[SCENARIO]")
       ->expected(0, 1);
+  add_plant_options(verb, options->other_end,
+                    ". Of --sil; by default the controller's robot. What the model does not know "
+                    "then shows as it does on a real arm");
   verb.add_option("--campaign", options->campaign,
                   "In place of recordings, the results of `offnominal campaign`: tables and curves "
                   "by fault, joint and detector, and every run as a recording. The campaign's file "

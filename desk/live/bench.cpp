@@ -66,7 +66,7 @@ class BenchOfRobot final : public Bench {
       fault.begin_s = same == injected_.end() ? now_s : same->begin_s;
       all.push_back(fault);
     }
-    // The plant of a robot file takes any.
+    // Plants of robot files and of MuJoCo take any.
     static_cast<void>(run_->ends.set_faults(all));
     injected_.assign(all.begin() + static_cast<std::ptrdiff_t>(scenario_.faults.size()), all.end());
   }

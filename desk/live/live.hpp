@@ -24,10 +24,11 @@ namespace offnominal::desk::live {
 /// What a live view is given.
 struct LiveInput {
   RobotDescription robot;
-  std::string robot_file;          // as the user named it
-  std::optional<std::string> bus;  // a CAN interface; none: a run that is simulated
-  sil::Scenario scenario;          // of that run, of robot files alone
-  std::filesystem::path folder;    // where recordings are written; empty: the working directory
+  std::string robot_file;                 // as the user named it
+  std::optional<std::string> bus;         // a CAN interface; none: a run that is simulated
+  sil::Scenario scenario;                 // of that run, of robot files and MuJoCo's alone
+  std::optional<std::string> plant_file;  // of it, as the user named it; none: the robot's
+  std::filesystem::path folder;  // where recordings are written; empty: the working directory
 };
 
 /// What is kept of before and after a detection, s: to be looked at, and to be explained; of the

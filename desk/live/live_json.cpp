@@ -160,6 +160,7 @@ ordered_json setup_json(const Live& live) {
   return {
       {"source", live.is_simulated() ? "sil" : "bus"},
       {"bus", input.bus ? ordered_json(*input.bus) : ordered_json(nullptr)},
+      {"plant", input.plant_file ? ordered_json(*input.plant_file) : ordered_json(nullptr)},
       {"robot", {{"name", input.robot.name}, {"file", input.robot_file}}},
       {"space", input.robot.estimator.space == EstimatorSpace::kTorque ? "torque" : "acceleration"},
       {"joints", std::move(joints)},

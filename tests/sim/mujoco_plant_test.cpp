@@ -198,6 +198,40 @@ TEST(MujocoPlant, ShowsAFaultAtItsTimeAndNotBefore) {
   }
 }
 
+// GIVEN faults that act WHEN it is given others THEN it has those, and nothing of the ones before.
+TEST(MujocoPlant, HasTheFaultsItWasLastGivenAndNothingOfOthers) {
+  const FaultEvent payload{.kind = FaultEventKind::kPayload, .begin_s = 0, .size = 0.8};
+  const FaultEvent loss{.kind = FaultEventKind::kMassLoss, .begin_s = 0, .joint = 1, .size = 0.5};
+  const FaultEvent jump{.kind = FaultEventKind::kFrictionJump, .begin_s = 0, .joint = 0, .size = 2};
+  const Vector3d tau(0.1, 5, 2);
+  const auto moved = [&](const std::vector<FaultEvent>& first,
+                         const std::vector<FaultEvent>& then) {
+    MujocoPlant plant = arm(arm_text(), {.start = swinging(), .faults = first});
+    EXPECT_TRUE(plant.set_faults(then));
+    plant.step(0.2, tau, 0.001);
+    return plant.state().dq;
+  };
+  const JointVector healthy = moved({}, {});
+  for (const FaultEvent& fault : {payload, loss, jump}) {
+    SCOPED_TRACE(info_of(fault.kind).name);
+    MujocoPlant plant = arm(arm_text(), {.start = swinging(), .faults = {fault}});
+    plant.step(0, tau, 0.001);
+    EXPECT_TRUE(plant.set_faults({}));
+    EXPECT_EQ(plant.fault_function(0.001, tau), Vector3d::Zero());
+    EXPECT_EQ(moved({fault}, {}), healthy);
+    EXPECT_EQ(moved({}, {fault}), moved({fault}, {fault}));
+    EXPECT_GT((moved({}, {fault}) - healthy).norm(), 1e-4);
+  }
+  // Two at once add up.
+  FaultEvent half = payload;
+  half.size = 0.4;
+  EXPECT_LT((moved({}, {half, half}) - moved({}, {payload})).norm(), 1e-12);
+  MujocoPlant plant = arm(arm_text(), {.start = swinging()});
+  EXPECT_THROW(static_cast<void>(plant.set_faults(
+                   {{.kind = FaultEventKind::kFrictionJump, .joint = 3, .size = 1}})),
+               std::invalid_argument);
+}
+
 TEST(MujocoPlant, IsPushedAsMuchAsTheForceSays) {
   MujocoPlant sledge = arm(sledge_text(), {.start = at_rest(1)});
   sledge.push(0, {4, 1, 0}, {0, 0, 0});

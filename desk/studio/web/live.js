@@ -28,8 +28,9 @@ function jointName(joint) {
 }
 
 function liveHeading() {
-  const { robot, source, bus } = live.setup;
-  return source === "sil" ? `Live: simulated run of ${robot.name}` : `Live: ${robot.name} on ${bus}`;
+  const { robot, source, bus, plant } = live.setup;
+  if (source !== "sil") return `Live: ${robot.name} on ${bus}`;
+  return `Live: simulated run of ${robot.name}${plant === null ? "" : `, its plant ${plant}`}`;
 }
 
 function controllerWords({ controller }) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "mujoco_handle.hpp"
 
@@ -116,23 +117,29 @@ struct MujocoPlant::Simulation {
     }
   }
 
-  // Faults as far as they have developed; 0 of them: the plant without.
+  // Faults as far as they have developed, and none that was there before; 0 of them: the plant
+  // without.
   void put_faults(const std::vector<FaultEvent>& faults, double t_s, double share) {
     std::copy(friction.begin(), friction.end(), model->dof_frictionloss);
+    double payload = 0;
+    lost.assign(losses.size(), 0.0);
     for (const FaultEvent& fault : faults) {
       const double size = share * fault.size * fault.developed(t_s);
       if (fault.kind == FaultEventKind::kFrictionJump) {
         if (fault.is_active(t_s)) model->dof_frictionloss[fault.joint] += share * fault.size;
       } else if (fault.kind == FaultEventKind::kPayload) {
-        if (size == gained) continue;
-        gained = size;
-        put_link(payloads.size() - 1);
+        payload += size;
       } else if (fault.kind == FaultEventKind::kMassLoss) {
-        const std::size_t joint = static_cast<std::size_t>(std::max(fault.joint, 0));
-        if (size == losses[joint]) continue;
-        losses[joint] = size;
-        put_link(joint);
+        double& of_link = lost[static_cast<std::size_t>(std::max(fault.joint, 0))];
+        of_link = std::min(of_link + size, 1.0);
       }
+    }
+    for (std::size_t joint = 0; joint < losses.size(); ++joint) {
+      const bool carries = joint + 1 == losses.size() && payload != gained;
+      if (!carries && lost[joint] == losses[joint]) continue;
+      losses[joint] = lost[joint];
+      if (carries) gained = payload;
+      put_link(joint);
     }
   }
 
@@ -174,6 +181,7 @@ struct MujocoPlant::Simulation {
   std::vector<MujocoInertial> links;  // per body, as the file has them
   std::vector<Payload> payloads;
   std::vector<double> losses;    // share of each link, by faults
+  std::vector<double> lost;      // room for what they are to be
   double gained = 0;             // on the last link, kg, by faults
   std::vector<double> friction;  // without faults
   std::vector<Push> pushes;
@@ -192,7 +200,17 @@ MujocoPlant::MujocoPlant(const MujocoModel& model, const MujocoSetup& setup)
   if (!(setup.longest_substep_s > 0)) {
     throw std::invalid_argument("MuJoCo plant: longest_substep_s must be above 0");
   }
-  for (const FaultEvent& fault : setup.faults) {
+  take_faults(setup.faults);
+  simulation_->put_state(state_.q, state_.dq, *simulation_->data);
+  mj_kinematics(simulation_->model.get(), simulation_->data.get());
+}
+
+MujocoPlant::~MujocoPlant() = default;
+
+void MujocoPlant::take_faults(const std::vector<FaultEvent>& faults) {
+  const Index joints = simulation_->model->nv;
+  std::vector<FaultEvent> acting;
+  for (const FaultEvent& fault : faults) {
     const bool acts = fault.kind == FaultEventKind::kMassLoss ||
                       fault.kind == FaultEventKind::kPayload ||
                       fault.kind == FaultEventKind::kFrictionJump;
@@ -202,13 +220,17 @@ MujocoPlant::MujocoPlant(const MujocoModel& model, const MujocoSetup& setup)
                                   std::to_string(fault.joint + 1) + ", the model has " +
                                   std::to_string(joints));
     }
-    faults_.push_back(fault);
+    acting.push_back(fault);
   }
-  simulation_->put_state(state_.q, state_.dq, *simulation_->data);
-  mj_kinematics(simulation_->model.get(), simulation_->data.get());
+  faults_ = std::move(acting);
 }
 
-MujocoPlant::~MujocoPlant() = default;
+bool MujocoPlant::set_faults(const std::vector<FaultEvent>& faults) {
+  take_faults(faults);
+  // Until the next step, which develops them.
+  simulation_->put_faults({}, 0, 0);
+  return true;
+}
 
 void MujocoPlant::step(double t_s, const JointVector& tau, double period_s) {
   Simulation& now = *simulation_;

@@ -278,6 +278,9 @@ TEST(Command, RefusesStudioOfTwoThingsAtOnce) {
       {"a.csv"},  // without a robot file
       {"--sil"},
       {"--bus", "can0", "--sil", "--robot", "r.toml"},
+      {"--bus", "can0", "--robot", "r.toml", "--plant", "p.toml"},
+      {"a.csv", "--robot", "r.toml", "--motion", "sway"},
+      {"--sil", "--robot", "r.toml", "--plant", "paper"},
       {"--holdout", "a.csv"},
       {"--channels", "c.toml"},
       {"--period", "0.001"},

@@ -16,6 +16,7 @@
 #include "common/refused.hpp"
 #include "desk/sil/serial_robot.hpp"
 #include "desk/support/temporary_folder.hpp"
+#include "exchange/export_robot.hpp"
 #include "live/live_json.hpp"
 #include "log/read_log.hpp"
 #include "replay/replay.hpp"
@@ -217,6 +218,29 @@ TEST(LiveBench, DetectsNamesAndKeepsAFaultThatIsInjected) {
       wait_for(live, [](const Moment& moment) { return !moment.detection && moment.is_judging; });
   EXPECT_TRUE(again.faults.empty());
   EXPECT_GT(again.t_s, there.t_s);
+}
+
+// GIVEN an arm of MuJoCo WHEN friction is put on a joint THEN the joint is told; begun again, it is
+// quiet. Dry friction, which holds it at rest there and in no model, is left out of its file.
+TEST(LiveBench, PutsFaultsOnAnArmOfMujocoAndTakesThemOff) {
+  const TemporaryFolder folder;
+  RobotDescription robot = test::by_joint_robot(2, kBoundNm);
+  std::erase_if(robot.effects,
+                [](const auto& one) { return one.kind == EffectKind::kCoulombFriction; });
+  test::put(folder / "plant.xml", exchange::export_mjcf(robot, "").text);
+  LiveInput input = input_of(robot, folder.path());
+  input.scenario.mujoco = (folder / "plant.xml").string();
+  Live live(std::move(input));
+  wait_for(live, [](const Moment& moment) { return moment.is_judging && moment.t_s > 2; });
+  EXPECT_FALSE(live.moment(0).detection.has_value());
+  live.add_fault("friction_jump", 2, 4 * kBoundNm);
+  const Moment there = wait_for(live, is_frozen);
+  EXPECT_EQ(there.detection->joint, 1);
+  live.begin_again();
+  const Moment again = wait_for(
+      live, [&](const Moment& moment) { return moment.is_judging && moment.t_s > there.t_s + 3; });
+  EXPECT_FALSE(again.detection.has_value());
+  EXPECT_TRUE(again.faults.empty());
 }
 
 TEST(LiveBench, SaysWhyARunHasEndedAndBeginsItAgain) {

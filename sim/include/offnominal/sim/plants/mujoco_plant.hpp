@@ -68,8 +68,10 @@ class MujocoPlant final : public Plant {
 
   [[nodiscard]] const JointState& state() const override { return state_; }
   void step(double t_s, const JointVector& tau, double period_s) override;
-  /// Of the setup's faults.
+  /// Of the faults that it was last given.
   [[nodiscard]] JointVector fault_function(double t_s, const JointVector& tau) const override;
+  /// True. Throws std::invalid_argument for a joint that the model has not, and changes nothing.
+  [[nodiscard]] bool set_faults(const std::vector<FaultEvent>& faults) override;
 
   /// N m or N, >= 0.
   void set_friction_loss(Eigen::Index joint, double level);
@@ -92,6 +94,7 @@ class MujocoPlant final : public Plant {
 
  private:
   struct Simulation;
+  void take_faults(const std::vector<FaultEvent>& faults);
   std::unique_ptr<Simulation> simulation_;
   std::vector<FaultEvent> faults_;
   double longest_substep_s_;
