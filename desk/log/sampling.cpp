@@ -26,6 +26,21 @@ using Eigen::VectorXd;
 // What does not change does not change between its rows either.
 bool is_constant(const VectorXd& values) { return values.minCoeff() == values.maxCoeff(); }
 
+// The rows that a spline goes through: of rows that came at once, as what waited in a queue does,
+// the last, which waited least. Through two of them it would have the slope of what the encoder
+// moved meanwhile over hardly any time, and swing far beyond both.
+std::vector<Index> knots_of(const VectorXd& t_s, double period_s) {
+  constexpr double kAtOnce = 0.25;  // periods
+  std::vector<Index> knots{t_s.size() - 1};
+  for (Index i = t_s.size() - 2; i >= 0; --i) {
+    if (t_s[knots.back()] - t_s[i] >= kAtOnce * period_s) knots.push_back(i);
+  }
+  // The grid begins at the first row.
+  if (knots.back() != 0) knots.back() = 0;
+  std::reverse(knots.begin(), knots.end());
+  return knots;
+}
+
 // A spline through the jump of an angle that is folded into a turn would swing beyond both ends.
 VectorXd position_at(const VectorXd& t_s, const VectorXd& q, const VectorXd& at_s) {
   if (is_constant(q)) return VectorXd::Constant(at_s.size(), q[0]);
@@ -70,7 +85,11 @@ RecordedRows resample(Log& log, double period_s) {
     return std::exchange(columns, std::move(result));
   };
   RecordedRows rows;
-  rows.q = resample_columns(log.q, position_at);
+  const std::vector<Index> knots = knots_of(recorded, period_s);
+  const VectorXd knots_s = recorded(knots);
+  rows.q = resample_columns(log.q, [&](const VectorXd&, const VectorXd& q, const VectorXd& at_s) {
+    return position_at(knots_s, q(knots), at_s);
+  });
   rows.dq = resample_columns(log.dq, linear_at);
   rows.tau = resample_columns(log.tau, linear_at);
   if (log.sensor_tau.rows() > 0) resample_columns(log.sensor_tau, linear_at);
