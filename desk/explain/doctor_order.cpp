@@ -54,6 +54,16 @@ VectorXd left_as_it_is(const TorquePair& pair) {
   return left;
 }
 
+// The same where its sign may be wrong too: a whole arm whose drives measure what acts on them
+// looks like another order as soon as two torques are opposed to each other.
+VectorXd left_by_either_sign(const TorquePair& pair, const VectorXd& left) {
+  VectorXd least = left;
+  for (Index joint = 0; joint < left.size(); ++joint) {
+    least[joint] = std::min(left[joint], left_by(pair, joint, -pair.measured.col(joint)));
+  }
+  return least;
+}
+
 bool is_moved(const Order& order, Index joint) {
   return order[static_cast<std::size_t>(joint)] != joint;
 }
@@ -80,15 +90,16 @@ bool are_several_bad(const std::vector<char>& bad) {
   return std::count(bad.begin(), bad.end(), 1) > 1;
 }
 
-// The order of the torques alone: every column that its own joint does not explain is explained by
-// another, and those have changed places.
+// The order of the torques alone: every column that its own joint does not explain, of whatever
+// sign, is explained by another, and those have changed places.
 std::optional<Order> order_of_torques(const TorquePair& pair, const VectorXd& left) {
   const std::vector<char> bad = are_bad(pair, left);
   const auto is_bad = [&](Index joint) { return bad[static_cast<std::size_t>(joint)] != 0; };
+  const VectorXd least = left_by_either_sign(pair, left);
   Order order = as_it_is(left.size());
   for (Index joint = 0; joint < left.size(); ++joint) {
     if (!is_bad(joint)) continue;
-    double best = std::min(kGood, left[joint] / 2);
+    double best = std::min(kGood, least[joint] / 2);
     for (Index column = 0; column < left.size(); ++column) {
       if (column == joint || !is_bad(column)) continue;
       const double there = left_by(pair, joint, pair.measured.col(column));
@@ -152,7 +163,8 @@ std::vector<Order> usual_orders(Index joints) {
 }
 
 // The order of all columns, where more than one joint moves as its model never asks for: with it
-// every joint fits that has moved, and no other fits worse.
+// every joint fits that has moved, and no other fits worse, and half as much is left as with every
+// torque of the sign that fits.
 std::optional<Order> order_of_joints(const Log& log, const RobotDescription& robot) {
   constexpr Index kMostSamples = 20000;
   constexpr double kWorse = 1.2;
@@ -163,7 +175,7 @@ std::optional<Order> order_of_joints(const Log& log, const RobotDescription& rob
   const VectorXd before = left_as_it_is(*as_is);
   if (!are_several_bad(are_bad(*as_is, before))) return std::nullopt;
   std::optional<Order> found;
-  double best = before.norm() / 2;
+  double best = left_by_either_sign(*as_is, before).norm() / 2;
   for (const Order& order : usual_orders(log.q.cols())) {
     const auto pair = torque_pair(reordered(order, part), robot);
     if (!pair) continue;

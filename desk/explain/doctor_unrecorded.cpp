@@ -53,8 +53,9 @@ MatrixXd gravity_in(const TorquePair& pair, const Log& log, const RobotDescripti
   return model_torque(rigid, {pair.t_s, pair.q, still, still});
 }
 
+// `impossible`: no drive gives this torque over this motion. Else it may have none at all.
 DataFault unrecorded(const Log& log, const RobotDescription& robot, Index joint,
-                     const VectorXd& asked) {
+                     const VectorXd& asked, bool impossible) {
   const JointType type = robot.joints[static_cast<std::size_t>(joint)].joint.type;
   DataFault fault;
   fault.kind = DataFaultKind::kStuck;
@@ -63,13 +64,17 @@ DataFault unrecorded(const Log& log, const RobotDescription& robot, Index joint,
   fault.size = 1;
   set_spans(log, {{0, log.sample_count() - 1}}, fault);
   fault.words = fmt::format(
-      "the torque of joint {} was never recorded: it is {:.4g} in every row, while the joint moves "
+      "the torque of joint {} was never recorded{}: it is {:.4g} in every row, while the joint "
+      "moves "
       "over {:.3g} {} and the model's torque changes by {:.3g} {}",
-      joint + 1, log.tau(0, joint) + 0.0, way_of(log.q.col(joint)),
-      unit_of(Quantity::kPosition, type), way_of(asked), unit_of(Quantity::kEffort, type));
-  fault.mend =
+      joint + 1, impossible ? "" : ", or it has no drive", log.tau(0, joint) + 0.0,
+      way_of(log.q.col(joint)), unit_of(Quantity::kPosition, type), way_of(asked),
+      unit_of(Quantity::kEffort, type));
+  fault.mend = fmt::format(
       "log the torque that acts, or the motor current, and look at the channel that it is read "
-      "from; what a hand or another machine moves tells nothing of torques";
+      "from; what a hand or another machine moves tells nothing of torques; --keep {}:{} takes it "
+      "as it is",
+      joint + 1, name_of(fault.kind));
   return fault;
 }
 
@@ -83,12 +88,17 @@ void find_unrecorded_torques(const Log& log, const Log& even, const RobotDescrip
     if ((tau.array() == tau[0]).all() && is_moved(log.q.col(joint))) constant.push_back(joint);
   }
   if (constant.empty()) return;
+  const bool others_change = static_cast<Index>(constant.size()) < log.tau.cols();
   const std::optional<TorquePair> pair = torque_pair(even, robot);
   if (!pair) return;
   const MatrixXd gravity = gravity_in(*pair, even, robot);
   for (const Index joint : constant) {
-    if (!is_impossible(*pair, gravity, joint)) continue;
-    faults.push_back(unrecorded(log, robot, joint, pair->model.col(joint)));
+    const bool impossible = is_impossible(*pair, gravity, joint);
+    // Of a joint without a drive, beside others that have one: a link without mass explains a
+    // torque of nothing best, and nothing that such a link says of the others is right.
+    const bool is_free = others_change && log.tau(0, joint) == 0;
+    if (!impossible && !is_free) continue;
+    faults.push_back(unrecorded(log, robot, joint, pair->model.col(joint), impossible));
   }
 }
 

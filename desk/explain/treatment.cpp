@@ -135,6 +135,12 @@ void leave_out(const DataFault& fault, Log& log) {
   }
 }
 
+// What --keep is given to overrule it.
+std::string keep_text_of(const DataFault& fault) {
+  const std::string joint = fault.joint < 0 ? "all" : std::to_string(fault.joint + 1);
+  return fmt::format("{}:{}", joint, name_of(fault.kind));
+}
+
 // A recording of which nothing is left, or some joints of it.
 void say_what_is_left(const Log& log, std::vector<DataFault>& faults) {
   constexpr double kFewestS = 0.5;
@@ -146,9 +152,12 @@ void say_what_is_left(const Log& log, std::vector<DataFault>& faults) {
   if (lost.empty()) return;
   const bool all = static_cast<Index>(lost.size()) == log.q.cols();
   std::string why;
+  std::string keep;
   for (const DataFault& fault : faults) {
     if (fault.left_out_of.empty()) continue;
     why += (why.empty() ? "" : "; ") + fault.words;
+    const std::string option = "--keep " + keep_text_of(fault);
+    if (keep.find(option) == std::string::npos) keep += (keep.empty() ? "" : " ") + option;
   }
   DataFault fault;
   fault.kind = DataFaultKind::kNothingLeft;
@@ -157,7 +166,7 @@ void say_what_is_left(const Log& log, std::vector<DataFault>& faults) {
   fault.file = log.file;
   fault.words = fmt::format("nothing is left of {}: {}",
                             all ? std::string("the recording") : list_of_joints(lost), why);
-  fault.mend = "record anew, or say with --keep JOINT:REASON what is no fault";
+  fault.mend = "record anew, or say what is no fault: " + keep;
   faults.push_back(std::move(fault));
 }
 

@@ -112,6 +112,28 @@ TEST(UnrecordedTorque, IsNoneOfAJointThatSwingsWithItsDriveOff) {
   EXPECT_THAT(named(examine(log, robot)), IsEmpty());
 }
 
+// GIVEN a joint without a drive beside one that holds still WHEN it swings THEN it is left out: a
+// link without mass would explain it best.
+TEST(UnrecordedTorque, IsThatOfAJointWithoutADriveBesideOthers) {
+  RobotDescription robot = pendulum(9.81);
+  robot.joints.push_back(robot.joints.front());
+  robot.joints.back().name = "free";
+  const Log swing = free_motion(pendulum(9.81), 0, 0.05);
+  Log log = swing;
+  const Index rows = swing.sample_count();
+  log.dq_derived = {false, false};
+  log.q.resize(rows, 2);
+  log.q << Eigen::VectorXd::Zero(rows), swing.q;
+  log.dq.resize(rows, 2);
+  log.dq << Eigen::VectorXd::Zero(rows), swing.dq;
+  log.tau.resize(rows, 2);
+  log.tau << 5 + swing.q.col(0).array().cos(), Eigen::VectorXd::Zero(rows);
+  const std::vector<DataFault> faults = examine(log, robot);
+  ASSERT_THAT(named(faults), ElementsAre("stuck 2"));
+  EXPECT_THAT(faults.front().words, HasSubstr("never recorded, or it has no drive"));
+  EXPECT_THAT(faults.front().mend, HasSubstr("--keep 2:stuck"));
+}
+
 // A motor that runs up under a torque that it is told: what its file lacks may be friction.
 TEST(UnrecordedTorque, IsNoneOfAJointThatRunsUpUnderAConstantOne) {
   const RobotDescription robot = pendulum(0);
