@@ -21,9 +21,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 InertialFit::InertialFit(const RobotDescription& file, const IdentifyRequest& request,
-                         const std::vector<Log>& logs, const FilterPlan& plan,
+                         const std::vector<Log>& logs, const FilterPlan& plan, Rotors rotors,
                          const OnProgress& on_progress)
-    : file_(file), request_(request), logs_(logs), plan_(plan), robot_(file) {
+    : file_(file), request_(request), logs_(logs), plan_(plan), robot_(file), rotors_(rotors) {
   const auto say = [&](const char* doing) {
     if (on_progress) on_progress(doing);
   };
@@ -144,15 +144,19 @@ void InertialFit::choose_drives() {
           });
       if (shows && !of_motor) base_.rotors.push_back(joint);
     }
-    const std::vector<std::size_t> apart = rotors_apart(robot_, base_);
+    const std::vector<std::size_t> apart =
+        rotors_ == Rotors::kAll ? base_.rotors : rotors_apart(robot_, base_);
     drives_ = drive_model(robot_, drive_request(apart, request_.keep));
     // What the links are named beside: rotors of the file and new ones.
     std::erase_if(base_.rotors, [&](std::size_t joint) {
       const bool is_apart = std::find(apart.begin(), apart.end(), joint) != apart.end();
-      return !is_apart &&
-             std::none_of(file_.effects.begin(), file_.effects.end(), [&](const RobotEffect& one) {
-               return one.joint == joint && !one.of_motor && one.kind == EffectKind::kRotorInertia;
-             });
+      if (is_apart) return false;
+      const bool is_in_file =
+          std::any_of(file_.effects.begin(), file_.effects.end(), [&](const RobotEffect& one) {
+            return one.joint == joint && !one.of_motor && one.kind == EffectKind::kRotorInertia;
+          });
+      if (!is_in_file) rotors_in_links_.push_back(joint);
+      return !is_in_file;
     });
   }
   nuisance_.free_effects = drives_.refitted;

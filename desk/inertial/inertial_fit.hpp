@@ -15,13 +15,18 @@
 
 namespace offnominal::desk {
 
+// Which drives get a rotor inertia: those that motions tell from the links, or all that could have
+// one. What no motion tells apart is then shared as the links are believed.
+enum class Rotors { kApartFromLinks, kAll };
+
 // The fit behind identify(), on the engine's data: the regression that add and explain have, with
 // ten numbers for every link beside it.
 class InertialFit {
  public:
   // All of them have to outlive it.
   InertialFit(const RobotDescription& file, const IdentifyRequest& request,
-              const std::vector<Log>& logs, const FilterPlan& plan, const OnProgress& on_progress);
+              const std::vector<Log>& logs, const FilterPlan& plan, Rotors rotors,
+              const OnProgress& on_progress);
 
   [[nodiscard]] const RobotDescription& file() const { return file_; }
   [[nodiscard]] const Data& data() const { return *data_; }
@@ -39,6 +44,8 @@ class InertialFit {
   [[nodiscard]] const std::vector<Stretch>& stretches() const { return stretches_; }
   [[nodiscard]] const BaseRequest& base_request() const { return base_; }
   [[nodiscard]] bool moves(std::size_t joint) const { return base_.moves[joint] != 0; }
+  // Joints whose rotor could be one, and whose link has it.
+  [[nodiscard]] const std::vector<std::size_t>& rotors_in_links() const { return rotors_in_links_; }
   // Whether the file's own numbers of the link are believed.
   [[nodiscard]] bool is_known(std::size_t link) const;
   // Joints whose width of the sign was fitted, and what the data were made with.
@@ -79,6 +86,8 @@ class InertialFit {
   std::vector<Stretch> stretches_;
   std::vector<Workspace> recordings_;
   NuisanceOptions nuisance_;
+  Rotors rotors_;
+  std::vector<std::size_t> rotors_in_links_;
   BaseRequest base_;
   DriveModel drives_;
   Eigen::VectorXd settled_;

@@ -144,6 +144,25 @@ TEST(Identify, FindsTheStandardDriveOfEveryJoint) {
   EXPECT_THAT(result.notes, testing::Contains(HasSubstr("rotor's inertia of joint 1")));
 }
 
+// GIVEN a rotor behind a gear of a hundred, twenty times the inertia of its link, on a joint about
+// whose axis no motion tells the two apart WHEN the file knows the links THEN it is a rotor, and no
+// link of a ton.
+TEST(Identify, TakesABigRotorOutOfALinkThatCannotBeSoHeavy) {
+  const RobotDescription truth = plain_arm(3);
+  std::vector<PlantDrive> drives = plain_drives(3);
+  drives[1].rotor = 4;
+  MujocoPlant plant(truth, drives);
+  PlantMotion motion;
+  motion.duration_s = 25;
+  const std::vector<Log> logs{plant.record(motion)};
+  const Identification result = identify(with_poor_cad(truth, 0.1, 3), request(), logs, {});
+  EXPECT_TRUE(result.doubts.empty());
+  EXPECT_LE(result.share, 0.15);
+  EXPECT_NEAR(drive(result, EffectKind::kRotorInertia, 1).after, drives[1].rotor, 0.4);
+  EXPECT_THAT(result.notes, testing::Contains(HasSubstr("with rotors of their own")));
+  expect_realisable(result);
+}
+
 TEST(Identify, NeedsNoMoreThanTheGeometry) {
   const RobotDescription truth = plain_arm(3);
   MujocoPlant plant(truth, plain_drives(3));
