@@ -34,9 +34,9 @@ class Proposer {
     const ExpectedJoints expected = expected_of(robot_);
     if (look_.has_names) roles_ = roles_of(columns_of(look_), expected);
     if (!period_s && !files_.time) take_time_in_two();
-    if (!look_.has_names) guess_by_numbers(expected.count, period_s.value_or(0));
+    if (are_nameless()) guess_by_numbers(expected.count, period_s.value_or(0));
     take_time(period_s);
-    if (look_.has_names && look_.t_s) set_names_right();
+    if (!look_.guessed && look_.t_s) set_names_right();
     take_roles();
     say_unknown_units();
     take_units_from_data(look_, robot_);
@@ -45,6 +45,18 @@ class Proposer {
   }
 
  private:
+  // Of a file without a header, or whose columns are those of one matrix: "data(:,1)" says no more.
+  [[nodiscard]] bool are_nameless() const {
+    if (!look_.has_names) return true;
+    if (!roles_.position.empty() || !roles_.torque.empty()) return false;
+    const auto stem = [](const std::string& name) { return name.substr(0, name.find("(:,")); };
+    return look_.columns.size() > 2 &&
+           std::all_of(look_.columns.begin(), look_.columns.end(), [&](const auto& column) {
+             return column.name.find("(:,") != std::string::npos &&
+                    stem(column.name) == stem(look_.columns.front().name);
+           });
+  }
+
   void guess_by_numbers(int joints, double period_s) {
     std::vector<std::string> names;
     for (const LookedColumn& column : look_.columns) {
@@ -59,7 +71,9 @@ class Proposer {
     for (const std::string& name : roles_.velocity) taken_for(name, Role::kVelocity);
     for (const std::string& name : roles_.torque) taken_for(name, Role::kTorque);
     look_.notes.emplace_back(
-        "the file has no header: columns go by their numbers, from 1, as in position = [2]");
+        look_.has_names
+            ? "columns of one matrix have no names: they were taken for what their numbers are like"
+            : "the file has no header: columns go by their numbers, from 1, as in position = [2]");
     look_.notes.insert(look_.notes.end(), guess.notes.begin(), guess.notes.end());
     if (!roles_.torque.empty()) {
       look_.notes.emplace_back(
@@ -209,7 +223,7 @@ class Proposer {
         joints > 0 ? fmt::format("one for each of {} joints", joints) : "one for each joint";
     const auto told = [&](const char* key, std::size_t count,
                           const std::vector<std::string>& of_other_count) {
-      if (!look_.has_names) return ": " + line_to_write(key, count);
+      if (look_.guessed) return ": " + line_to_write(key, count);
       if (of_other_count.empty()) return std::string(", told by their names");
       return fmt::format(
           ", told by their names: {} {}; name those of the joints", list_of(of_other_count),

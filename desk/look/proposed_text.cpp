@@ -25,7 +25,8 @@ std::string with_numbers(std::string line) {
 std::string pasted_lines(const Look& look, const char* quantity) {
   std::string text;
   for (const std::string& line : channel_lines(look.channels, quantity)) {
-    text += look.guessed ? with_numbers(line) + "   # guessed\n" : line + "\n";
+    text += look.has_names ? line : with_numbers(line);
+    text += look.guessed ? "   # guessed\n" : "\n";
   }
   return text;
 }

@@ -213,6 +213,19 @@ TEST_F(LookProposal, WithoutAHeaderNumbersTellTimePositionsAndVelocities) {
   }
 }
 
+// As of a .mat file that holds one matrix.
+TEST_F(LookProposal, ColumnsOfOneMatrixGoByTheirNumbersToo) {
+  std::string header;
+  for (int i = 1; i <= 7; ++i) header += fmt::format("{}\"data(:,{})\"", i == 1 ? "" : ",", i);
+  const std::string robot = robot_text({"a", "b"});
+  const Look seen = look(header + "\n" + rows(2), robot);
+  const std::string text = channels_text(seen);
+  EXPECT_THAT(text, HasSubstr("time = {source = \"data(:,1)\"}   # guessed"));
+  EXPECT_THAT(text, HasSubstr("position = [{source = \"data(:,2)\"}, {source = \"data(:,3)\"}]"));
+  EXPECT_THAT(seen.notes, Contains(HasSubstr("columns of one matrix have no names")));
+  expect_motion(pasted(seen, robot));
+}
+
 TEST_F(LookProposal, WithoutAHeaderDegreesAreTold) {
   const std::string robot = robot_text({"a", "b"});
   const Look seen = look(rows(2, {kDegrees, kDegrees}), robot);
