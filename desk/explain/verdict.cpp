@@ -18,6 +18,7 @@
 #include "explain/explain_report.hpp"
 #include "explain/find_model.hpp"
 #include "explain/link_share.hpp"
+#include "explain/list_of_joints.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -63,6 +64,25 @@ std::string at_joint(Eigen::Index joint) { return fmt::format("joint {}", joint 
 
 std::string words_of(const Finding& finding) {
   return fmt::format("{} on {}", title_of(finding), at_joint(finding.what.joint));
+}
+
+// "viscous_friction on joints 1, 2, rotor_inertia on joint 2": six joints that lack the same things
+// are no list of eighteen.
+std::string words_of(const std::vector<const Finding*>& findings) {
+  std::vector<std::pair<std::string, std::vector<Index>>> by_title;
+  for (const Finding* one : findings) {
+    const std::string title = title_of(*one);
+    auto same = std::find_if(by_title.begin(), by_title.end(),
+                             [&](const auto& other) { return other.first == title; });
+    if (same == by_title.end()) same = by_title.insert(by_title.end(), {title, {}});
+    same->second.push_back(one->what.joint);
+  }
+  std::vector<std::string> words;
+  for (auto& [title, joints] : by_title) {
+    std::sort(joints.begin(), joints.end());
+    words.push_back(fmt::format("{} on {}", title, list_of_joints(joints)));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
 }
 
 // What is left stands above the noise floor, and is worth a word.
@@ -189,12 +209,11 @@ void judge_ambiguous(Explanation& e) {
   for (const EffectAt& one : e.ambiguous[0]) {
     possible.push_back(words_of_place(one));
   }
-  std::vector<std::string> sure;
+  std::vector<const Finding*> sure;
   for (const Finding& finding : e.found) {
-    if (!holds_in_any(e.ambiguous, finding.what)) sure.push_back(words_of(finding));
+    if (!holds_in_any(e.ambiguous, finding.what)) sure.push_back(&finding);
   }
-  const std::string missing =
-      sure.empty() ? "" : fmt::format("Missing: {}. ", fmt::join(sure, ", "));
+  const std::string missing = sure.empty() ? "" : fmt::format("Missing: {}. ", words_of(sure));
   if (may_be_own_numbers(e, e.ambiguous[0])) {
     e.words = fmt::format("{}Something {}, and these recordings cannot tell what: {}, or {}.",
                           missing, sure.empty() ? "shows" : "else shows too",
@@ -237,10 +256,10 @@ void judge_found(Explanation& e) {
                         shift ? "Another value of a known quantity:" : "Missing:", words_of(first),
                         first.words, words_of_held_out(e, first));
   if (e.found.size() == 1) return;
-  std::vector<std::string> others;
+  std::vector<const Finding*> others;
   std::transform(e.found.begin() + 1, e.found.end(), std::back_inserter(others),
-                 [](const Finding& one) { return words_of(one); });
-  e.words += fmt::format(" Also: {}.", fmt::join(others, ", "));
+                 [](const Finding& one) { return &one; });
+  e.words += fmt::format(" Also: {}.", words_of(others));
 }
 
 // The joint whose unknown part matters most; null where there is none.
