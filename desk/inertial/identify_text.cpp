@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "common/effort_name.hpp"
@@ -153,10 +152,13 @@ std::string verdict_of(const Identification& result, const IdentifyNames& names)
                                         result.determined_count(), result.base.size());
   const std::vector<BeforeAfter>& errors =
       result.held_out.empty() ? result.fitted : result.held_out;
-  const auto most = std::max_element(
-      errors.begin(), errors.end(),
-      [](const BeforeAfter& a, const BeforeAfter& b) { return a.after_percent < b.after_percent; });
-  if (most != errors.end()) {
+  // No share is of a torque that is 0 throughout, or that nothing is left of.
+  const BeforeAfter* most = nullptr;
+  for (const BeforeAfter& one : errors) {
+    if (!std::isfinite(one.after_percent)) continue;
+    if (most == nullptr || one.after_percent > most->after_percent) most = &one;
+  }
+  if (most != nullptr) {
     const bool first = errors.size() == 1;
     words += fmt::format("; the error on {} is {:.2f} % of the {}{} ({} before)",
                          result.held_out.empty() ? "what was fitted" : "data not used for the fit",
