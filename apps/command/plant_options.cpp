@@ -9,14 +9,16 @@
 
 namespace offnominal::desk {
 
-void add_plant_options(CLI::App& verb, PlantOptions& options, const std::string& by_default) {
+void add_plant_options(CLI::App& verb, PlantOptions& options, const std::string& plant_by_default,
+                       const std::string& motion_by_default) {
   verb.add_option("--plant", options.plant,
                   "Robot file of the plant, its rigid body and effects; mujoco:FILE, an MJCF or "
                   "URDF with the controller's joints" +
-                      by_default);
+                      plant_by_default);
   verb.add_option("--motion", options.motion,
                   "paper, sway (every joint a little to and fro), or a CSV as offnominal motion "
-                  "writes it; by default paper for the paper's arm, and else sway");
+                  "writes it" +
+                      motion_by_default);
 }
 
 std::optional<std::string> plant_file(const PlantOptions& options,

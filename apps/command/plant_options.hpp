@@ -17,8 +17,9 @@ struct PlantOptions {
   std::optional<std::string> motion;
 };
 
-// `by_default`: what the plant is where --plant is not given, in words.
-void add_plant_options(CLI::App& verb, PlantOptions& options, const std::string& by_default);
+// What stands behind each in the help: what is taken where it is not given, in words.
+void add_plant_options(CLI::App& verb, PlantOptions& options, const std::string& plant_by_default,
+                       const std::string& motion_by_default);
 
 // The robot file of the plant, `robot_file` unless --plant names another; none for the paper's arm.
 // Of a plant of MuJoCo it says the joints.
@@ -28,7 +29,7 @@ void add_plant_options(CLI::App& verb, PlantOptions& options, const std::string&
 // The plant of a file: a robot with as many joints as the controller's. Throws InputError.
 [[nodiscard]] RobotDescription plant_from(const std::string& file, const RobotDescription& robot);
 
-// What --plant says of MuJoCo, and --motion.
+// What --plant says of MuJoCo, and --motion. Throws InputError for a motion that is none.
 void put_plant_options(const PlantOptions& options, const RobotDescription& robot,
                        sil::Scenario& scenario);
 

@@ -193,7 +193,8 @@ void set_up_sil(CLI::App& verb, ExitCode& exit_code) {
                   "Robot file of the controller; by default the paper's arm");
   add_plant_options(verb, options->other_end,
                     "; or paper. By default the paper's arm for a robot of its links, and else the "
-                    "controller's robot");
+                    "controller's robot",
+                    "; by default paper for the paper's arm, and else sway");
   verb.add_option("--duration", options->duration, "Length of the run, s [20]");
   verb.add_option("--log", options->log,
                   "Write the run as the controller saw it, and beside it what was true, CSV")

@@ -217,7 +217,8 @@ sil::Scenario scenario_of(const StudioOptions& options, const RobotDescription& 
         "run it by offnominal sil, or leave --plant out");
   }
   sil::Scenario scenario;
-  scenario.plant = options.other_end.plant ? plant_from(*file, robot) : robot;
+  // Of a plant of MuJoCo the controller's file says the joints.
+  scenario.plant = *file == options.files.robot ? robot : plant_from(*file, robot);
   if (!options.sil->empty()) scenario = sil::read_scenario(options.sil->front(), scenario.plant);
   put_plant_options(options.other_end, robot, scenario);
   scenario.precision = Precision::kFloat;  // as firmware
@@ -420,7 +421,8 @@ void set_up_studio(CLI::App& verb, ExitCode& /*exit_code*/) {
       ->expected(0, 1);
   add_plant_options(verb, options->other_end,
                     ". Of --sil; by default the controller's robot. What the model does not know "
-                    "then shows as it does on a real arm");
+                    "then shows as it does on a real arm",
+                    ", at whose end the arm stands. Of --sil; by default sway");
   verb.add_option("--campaign", options->campaign,
                   "In place of recordings, the results of `offnominal campaign`: tables and curves "
                   "by fault, joint and detector, and every run as a recording. The campaign's file "

@@ -82,6 +82,9 @@ struct KeepFault {
   DataFaultKind kind = DataFaultKind::kGaps;
 };
 
+// What --keep is given to overrule it: "2:saturation".
+std::string keep_text_of(const DataFault& fault);
+
 // "2:saturation" or "all:gaps". Throws InputError in the name of --keep.
 KeepFault keep_fault_of(const std::string& text);
 

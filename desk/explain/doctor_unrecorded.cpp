@@ -70,11 +70,10 @@ DataFault unrecorded(const Log& log, const RobotDescription& robot, Index joint,
       joint + 1, impossible ? "" : ", or it has no drive", log.tau(0, joint) + 0.0,
       way_of(log.q.col(joint)), unit_of(Quantity::kPosition, type), way_of(asked),
       unit_of(Quantity::kEffort, type));
-  fault.mend = fmt::format(
+  fault.mend =
       "log the torque that acts, or the motor current, and look at the channel that it is read "
-      "from; what a hand or another machine moves tells nothing of torques; --keep {}:{} takes it "
-      "as it is",
-      joint + 1, name_of(fault.kind));
+      "from; what a hand or another machine moves tells nothing of torques; --keep " +
+      keep_text_of(fault) + " takes it as it is";
   return fault;
 }
 
@@ -88,7 +87,8 @@ void find_unrecorded_torques(const Log& log, const Log& even, const RobotDescrip
     if ((tau.array() == tau[0]).all() && is_moved(log.q.col(joint))) constant.push_back(joint);
   }
   if (constant.empty()) return;
-  const bool others_change = static_cast<Index>(constant.size()) < log.tau.cols();
+  const bool others_change =
+      (log.tau.colwise().maxCoeff().array() > log.tau.colwise().minCoeff().array()).any();
   const std::optional<TorquePair> pair = torque_pair(even, robot);
   if (!pair) return;
   const MatrixXd gravity = gravity_in(*pair, even, robot);

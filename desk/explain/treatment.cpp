@@ -135,12 +135,6 @@ void leave_out(const DataFault& fault, Log& log) {
   }
 }
 
-// What --keep is given to overrule it.
-std::string keep_text_of(const DataFault& fault) {
-  const std::string joint = fault.joint < 0 ? "all" : std::to_string(fault.joint + 1);
-  return fmt::format("{}:{}", joint, name_of(fault.kind));
-}
-
 // A recording of which nothing is left, or some joints of it.
 void say_what_is_left(const Log& log, std::vector<DataFault>& faults) {
   constexpr double kFewestS = 0.5;
@@ -199,6 +193,11 @@ std::vector<DataFault> treat(Log& log, const RobotDescription& robot,
   if (derived) derive_velocities(log);
   if (!log.left_out.empty()) say_what_is_left(log, faults);
   return faults;
+}
+
+std::string keep_text_of(const DataFault& fault) {
+  const std::string joint = fault.joint < 0 ? "all" : std::to_string(fault.joint + 1);
+  return fmt::format("{}:{}", joint, name_of(fault.kind));
 }
 
 KeepFault keep_fault_of(const std::string& text) {

@@ -310,6 +310,20 @@ class FittedNumbers {
       told_[i].number->ci95 = estimates[i].ci95;
       told_[i].number->why_no_interval = estimates[i].why_no_interval;
     }
+    leave_open_what_no_motion_tells();
+  }
+
+  // How wide a rotor's interval is that no motion tells from its link says how far the link is
+  // believed, and nothing of the recordings.
+  void leave_open_what_no_motion_tells() {
+    const auto& untold = fit_.untold_rotors();
+    for (IdentifiedDrive& drive : result_.drives) {
+      if (drive.kind != EffectKind::kRotorInertia) continue;
+      if (std::find(untold.begin(), untold.end(), drive.joint) == untold.end()) continue;
+      drive.number.determined = false;
+      drive.number.ci95.reset();
+      drive.number.why_no_interval = "as far as the link is believed";
+    }
   }
 
   // Of what torques depend on, columns of length 1.

@@ -60,18 +60,17 @@ class Identifier {
   void take_rotors_out_of_links() {
     constexpr double kNear = 0.15;
     constexpr double kAsGood = 1.02;
-    if (fit_->rotors_in_links().empty() || fit_->share() <= kNear) return;
-    for (std::size_t link = 0; link < file_.joints.size(); ++link) {
-      if (!fit_->is_known(link)) return;
+    // Without parts that are held out nothing says whether it is as good.
+    if (fit_->untold_rotors().empty() || fit_->share() <= kNear ||
+        fit_->held_out_energy().size() == 0 || !file_is_whole() || request_.from_geometry) {
+      return;
     }
     auto apart =
         std::make_unique<InertialFit>(file_, request_, logs_, plan_, Rotors::kAll, on_progress_);
     const VectorXd weights = fit_->joint_weights().cwiseAbs2();
     const bool as_good =
-        fit_->held_out_energy().size() > 0 &&
         weights.dot(apart->held_out_energy()) <= kAsGood * weights.dot(fit_->held_out_energy());
     if (!as_good || apart->share() >= fit_->share()) return;
-    shared_rotors_ = fit_->rotors_in_links();
     share_without_ = fit_->share();
     fit_ = std::move(apart);
   }
@@ -228,11 +227,18 @@ class Identifier {
 
   void note_rotors() {
     std::vector<std::string> joints;
-    for (const std::size_t joint : shared_rotors_) joints.push_back(std::to_string(joint + 1));
+    for (const IdentifiedDrive& drive : result_.drives) {
+      const auto& untold = fit_->untold_rotors();
+      if (drive.kind != EffectKind::kRotorInertia || !drive.written) continue;
+      if (std::find(untold.begin(), untold.end(), drive.joint) == untold.end()) continue;
+      joints.push_back(std::to_string(drive.joint + 1));
+    }
     if (!joints.empty()) {
       result_.notes.push_back(fmt::format(
           "no motion tells the rotor's inertia of joint {} from the link's about the joint's axis: "
-          "the links stay within {:.0f} % of their file with rotors of their own, {:.0f} % without",
+          "with rotors of their own the links are believed within {:.0f} % of their file, and "
+          "{:.0f} "
+          "% without",
           list_of(joints), 100 * fit_->share(), 100 * share_without_));
     }
     joints.clear();
@@ -278,8 +284,7 @@ class Identifier {
   FilterPlan plan_;
   const OnProgress& on_progress_;
   std::unique_ptr<InertialFit> fit_;
-  std::vector<std::size_t> shared_rotors_;  // that links would have left their file for
-  double share_without_ = 0;                // by that
+  double share_without_ = 0;  // rotors that no motion tells from the links
   Identification result_;
 };
 

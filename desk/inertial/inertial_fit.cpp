@@ -144,19 +144,19 @@ void InertialFit::choose_drives() {
           });
       if (shows && !of_motor) base_.rotors.push_back(joint);
     }
-    const std::vector<std::size_t> apart =
-        rotors_ == Rotors::kAll ? base_.rotors : rotors_apart(robot_, base_);
-    drives_ = drive_model(robot_, drive_request(apart, request_.keep));
+    const std::vector<std::size_t> apart = rotors_apart(robot_, base_);
+    const bool all_rotors = rotors_ == Rotors::kAll;
+    drives_ = drive_model(robot_, drive_request(all_rotors ? base_.rotors : apart, request_.keep));
     // What the links are named beside: rotors of the file and new ones.
     std::erase_if(base_.rotors, [&](std::size_t joint) {
-      const bool is_apart = std::find(apart.begin(), apart.end(), joint) != apart.end();
-      if (is_apart) return false;
+      if (std::find(apart.begin(), apart.end(), joint) != apart.end()) return false;
       const bool is_in_file =
           std::any_of(file_.effects.begin(), file_.effects.end(), [&](const RobotEffect& one) {
             return one.joint == joint && !one.of_motor && one.kind == EffectKind::kRotorInertia;
           });
-      if (!is_in_file) rotors_in_links_.push_back(joint);
-      return !is_in_file;
+      if (is_in_file) return false;
+      untold_rotors_.push_back(joint);
+      return !all_rotors;
     });
   }
   nuisance_.free_effects = drives_.refitted;

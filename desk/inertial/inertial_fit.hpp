@@ -44,8 +44,8 @@ class InertialFit {
   [[nodiscard]] const std::vector<Stretch>& stretches() const { return stretches_; }
   [[nodiscard]] const BaseRequest& base_request() const { return base_; }
   [[nodiscard]] bool moves(std::size_t joint) const { return base_.moves[joint] != 0; }
-  // Joints whose rotor could be one, and whose link has it.
-  [[nodiscard]] const std::vector<std::size_t>& rotors_in_links() const { return rotors_in_links_; }
+  // Joints that could have a rotor which no motion tells from the link, and the file has none of.
+  [[nodiscard]] const std::vector<std::size_t>& untold_rotors() const { return untold_rotors_; }
   // Whether the file's own numbers of the link are believed.
   [[nodiscard]] bool is_known(std::size_t link) const;
   // Joints whose width of the sign was fitted, and what the data were made with.
@@ -87,7 +87,7 @@ class InertialFit {
   std::vector<Workspace> recordings_;
   NuisanceOptions nuisance_;
   Rotors rotors_;
-  std::vector<std::size_t> rotors_in_links_;
+  std::vector<std::size_t> untold_rotors_;
   BaseRequest base_;
   DriveModel drives_;
   Eigen::VectorXd settled_;

@@ -76,13 +76,22 @@ class BenchOfRobot final : public Bench {
     run_->ends.controller().set_accommodation(on);
   }
 
+  // A plant of MuJoCo is read again, and its file may have changed or gone meanwhile.
   void begin_again() override {
+    std::unique_ptr<Run> again;
+    try {
+      sil::check_scenario(robot_, scenario_);
+      again = make_run();
+    } catch (const std::exception& error) {
+      ended_ = error.what();
+      return;
+    }
     base_us_ = now_us();
     injected_.clear();
     ended_.clear();
     safe_since_us_.reset();
     started_ = false;
-    run_ = make_run();
+    run_ = std::move(again);
   }
 
   [[nodiscard]] ControllerWord controller() const override {

@@ -19,12 +19,12 @@ Sampling sampling_of(const Eigen::Ref<const Eigen::VectorXd>& t_s);
 // taken as even; rows that are even but for those that are missing are put on their grid with their
 // own values, and the missing ones filled in; all else is resampled to its median step, and the
 // rows stay as `recorded`; of rows stamped less than a quarter of a step apart, which came at once,
-// the last counts. Positions that are folded into a turn stay so. Where rows are missing,
-// not just late, for more than kMaxGap steps and kShortestGapS, the samples of the grid in between
-// are `gaps` of the log: straight lines, which no analysis may use. Of a recording with a gap of
-// more than kLongestGapS only the longest part between such gaps is kept; the rest is `cut`. Throws
-// InputError where the grid would have more than 4 times the rows that there are, and more than 100
-// 000.
+// the last counts for positions (at the start the first). Positions that are folded into a turn
+// stay so. Where rows are missing, not just late, for more than kMaxGap steps and kShortestGapS,
+// the samples of the grid in between are `gaps` of the log: straight lines, which no analysis may
+// use. Of a recording with a gap of more than kLongestGapS only the longest part between such gaps
+// is kept; the rest is `cut`. Throws InputError where the grid would have more than 4 times the
+// rows that there are, and more than 100 000.
 void make_even(Log& log);
 
 // Shorter ones hold nothing that a motion could do meanwhile.

@@ -45,16 +45,28 @@ class Proposer {
   }
 
  private:
-  // Of a file without a header, or whose columns are those of one matrix: "data(:,1)" says no more.
+  // Of a file without a header, or whose columns are the columns or rows of one matrix, beside a
+  // time that has a name perhaps: "data(:,1)" says no more. Where any name says what it is, they
+  // count.
   [[nodiscard]] bool are_nameless() const {
     if (!look_.has_names) return true;
-    if (!roles_.position.empty() || !roles_.torque.empty()) return false;
-    const auto stem = [](const std::string& name) { return name.substr(0, name.find("(:,")); };
-    return look_.columns.size() > 2 &&
-           std::all_of(look_.columns.begin(), look_.columns.end(), [&](const auto& column) {
-             return column.name.find("(:,") != std::string::npos &&
-                    stem(column.name) == stem(look_.columns.front().name);
-           });
+    const bool says_something =
+        std::any_of(look_.columns.begin(), look_.columns.end(), [](const LookedColumn& column) {
+          return column.role != Role::kNone && column.role != Role::kTime;
+        });
+    if (says_something) return false;
+    std::optional<std::string> matrix;
+    int parts = 0;
+    for (const LookedColumn& column : look_.columns) {
+      if (column.role == Role::kTime) continue;
+      const auto stem = column.name.substr(0, column.name.find('('));
+      const bool is_part = column.name.find("(:,") != std::string::npos ||
+                           column.name.find(",:)") != std::string::npos;
+      if (!is_part || stem != matrix.value_or(stem)) return false;
+      matrix = stem;
+      ++parts;
+    }
+    return parts > 2;
   }
 
   void guess_by_numbers(int joints, double period_s) {
@@ -261,12 +273,16 @@ class Proposer {
   // Of a file without names, where the numbers do not tell: with all that is left, or some of it.
   std::string line_to_write(const char* key, std::size_t count) const {
     if (left_.empty()) return "the file has no columns left";
-    if (left_.size() == count) {
-      return fmt::format("{} = [{}] says so", key, fmt::join(left_, ", "));
+    std::vector<std::string> all = left_;
+    if (look_.has_names) {
+      for (std::string& one : all) one = fmt::format("\"{}\"", one);
     }
-    return fmt::format("{} = [...] with the number{} of {} of the columns {}", key,
-                       count == 1 ? "" : "s", count == 0 ? "some" : std::to_string(count),
-                       list_of(left_));
+    if (all.size() == count) {
+      return fmt::format("{} = [{}] says so", key, fmt::join(all, ", "));
+    }
+    return fmt::format("{} = [...] with the {}{} of {} of the columns {}", key,
+                       look_.has_names ? "name" : "number", count == 1 ? "" : "s",
+                       count == 0 ? "some" : std::to_string(count), list_of(all));
   }
 
   // What channels of motors are refused without.

@@ -48,7 +48,7 @@ struct Look {
   // What is proposed, or, where there is `by_robot`, the robot file's own. Its positions and
   // torques are there, or `missing` says what is not; its `velocity` has an entry per joint.
   ChannelMap channels;
-  bool guessed = false;             // by the numbers alone, the file has no names
+  bool guessed = false;             // by the numbers alone, names say nothing
   std::vector<std::string> to_add;  // lines of [channels] beside the robot file's own
   // Lines of [transmission] without which the channels are refused, as comments.
   std::vector<std::string> transmission;

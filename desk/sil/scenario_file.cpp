@@ -73,9 +73,10 @@ void check_in_run(const TomlTable& table, const sim::FaultEvent& fault, const Sc
                  "arm is free to move");
   }
   if (scenario.plant && fault.kind == sim::FaultEventKind::kNonlinear) {
-    table.refuse("kind", "nonlinear, for robot " + scenario.plant->name,
-                 "every kind but this one, which is a fault of the paper's arm",
-                 "take friction_jump, payload or disturbance_torque, or --plant paper");
+    table.refuse(
+        "kind", "nonlinear, for robot " + scenario.plant->name,
+        "every kind but this one, which is a fault of the paper's arm",
+        "take friction_jump, payload or disturbance_torque; offnominal sil has --plant paper");
   }
 }
 

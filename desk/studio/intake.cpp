@@ -169,7 +169,7 @@ void Intake::guess() {
   }
   map_is_of_robot_ = !look.by_robot.empty();
   map_source_ = map_is_of_robot_ ? "the robot file's own [channels]"
-                : look.guessed   ? "the numbers: the file has no names"
+                : look.guessed   ? "the numbers: the file has no names that say anything"
                                  : "the columns' names";
   if (!look.t_s && look.channels.period_s == 0) look.channels.time = {};
   if (!map_is_of_robot_) look.channels.extra.clear();

@@ -131,7 +131,7 @@ struct MujocoPlant::Simulation {
         payload += size;
       } else if (fault.kind == FaultEventKind::kMassLoss) {
         double& of_link = lost[static_cast<std::size_t>(std::max(fault.joint, 0))];
-        of_link = std::min(of_link + size, 1.0);
+        of_link = 1 - (1 - of_link) * (1 - size);
       }
     }
     for (std::size_t joint = 0; joint < losses.size(); ++joint) {

@@ -278,9 +278,6 @@ TEST(Command, RefusesStudioOfTwoThingsAtOnce) {
       {"a.csv"},  // without a robot file
       {"--sil"},
       {"--bus", "can0", "--sil", "--robot", "r.toml"},
-      {"--bus", "can0", "--robot", "r.toml", "--plant", "p.toml"},
-      {"a.csv", "--robot", "r.toml", "--motion", "sway"},
-      {"--sil", "--robot", "r.toml", "--plant", "paper"},
       {"--holdout", "a.csv"},
       {"--channels", "c.toml"},
       {"--period", "0.001"},
@@ -293,6 +290,21 @@ TEST(Command, RefusesStudioOfTwoThingsAtOnce) {
     const CommandResult result = offnominal(words);
     expect_one_line_refusal(result);
   }
+}
+
+// A plant is of a run that is simulated, and takes faults while it runs.
+TEST(Command, RefusesStudioAPlantThatItCannotHave) {
+  const std::string robot = (test::source_dir() / "robots" / "two_link.toml").string();
+  const auto told = [](std::vector<std::string> words, const std::string& expected) {
+    words.insert(words.begin(), {"studio", "--no-open"});
+    const CommandResult result = offnominal(words);
+    expect_one_line_refusal(result);
+    EXPECT_THAT(result.err, HasSubstr(expected));
+  };
+  told({"--bus", "can0", "--robot", robot, "--plant", robot},
+       "studio: --plant: found without --sil");
+  told({"a.csv", "--robot", robot, "--motion", "sway"}, "studio: --motion: found without --sil");
+  told({"--sil", "--robot", robot, "--plant", "paper"}, "studio: --plant: found paper");
 }
 
 TEST(Command, FailsWhereItsOutputCannotBeWritten) {

@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "compare/inverse_model.hpp"
 #include "explain/doctor.hpp"
 #include "explain/treatment.hpp"
 #include "robot/payload.hpp"
+#include "serial_arm.hpp"
 #include "strangers_arm.hpp"
 
 // Columns that stand at another joint than they are of.
@@ -127,6 +129,38 @@ TEST(JointOrder, IsNotNamedForOtherFaults) {
   EXPECT_FALSE(order_in(right, mounted));
   EXPECT_FALSE(order_in(
       test::record(carrying(arm.real, Payload{8, {0.2, 0, 0.1}}), {.duration_s = 20}), arm.file));
+}
+
+// GIVEN two joints whose torques are opposed to each other WHEN every sign is turned THEN it is the
+// signs; WHEN they are exchanged THEN it is the order.
+TEST(JointOrder, OfOpposedTorquesIsToldFromTurnedSigns) {
+  RobotDescription robot = test::serial_arm(2);
+  robot.gravity_m_s2 = {0, -9.81, 0};
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    Joint<double>& one = robot.joints[joint].joint;
+    one.axis = {0, 0, 1};
+    one.origin_m = {0, 0, 0};
+    one.mass_kg = joint == 0 ? 8 : 3;
+    one.centre_of_mass_m = {joint == 0 ? 0.3 : -0.3, joint == 0 ? 0.0 : 0.02, 0};
+  }
+  Log log = test::record(robot, {.duration_s = 20});
+  const Eigen::ArrayXd t = log.t_s.array();
+  log.q << (0.8 * t).sin(), 0.3 * (1.3 * t).sin();
+  log.dq << 0.8 * (0.8 * t).cos(), 0.39 * (1.3 * t).cos();
+  Eigen::MatrixXd ddq(log.q.rows(), 2);
+  ddq << -0.64 * (0.8 * t).sin(), -0.507 * (1.3 * t).sin();
+  log.tau = model_torque(robot, {log.t_s, log.q, log.dq, ddq});
+  const Eigen::MatrixXd right = log.tau;
+  ASSERT_LT(right.col(0).dot(right.col(1)), -0.8 * right.col(0).norm() * right.col(1).norm());
+  EXPECT_FALSE(order_in(log, robot));
+  log.tau = -right;
+  EXPECT_FALSE(order_in(log, robot));
+  const auto faults = examine(log, robot);
+  ASSERT_FALSE(faults.empty());
+  EXPECT_EQ(faults[0].kind, DataFaultKind::kTorqueSign);
+  log.tau = right;
+  log.tau.col(0).swap(log.tau.col(1));
+  EXPECT_TRUE(order_in(log, robot));
 }
 
 TEST(JointOrder, MayBeOverruledAsAllThatStopsAVerb) {

@@ -132,6 +132,9 @@ TEST(UnrecordedTorque, IsThatOfAJointWithoutADriveBesideOthers) {
   ASSERT_THAT(named(faults), ElementsAre("stuck 2"));
   EXPECT_THAT(faults.front().words, HasSubstr("never recorded, or it has no drive"));
   EXPECT_THAT(faults.front().mend, HasSubstr("--keep 2:stuck"));
+  // Where no torque changes at all, the drives are off.
+  log.tau.setZero();
+  EXPECT_THAT(named(examine(log, robot)), IsEmpty());
 }
 
 // A motor that runs up under a torque that it is told: what its file lacks may be friction.

@@ -159,6 +159,9 @@ TEST(Identify, TakesABigRotorOutOfALinkThatCannotBeSoHeavy) {
   EXPECT_TRUE(result.doubts.empty());
   EXPECT_LE(result.share, 0.15);
   EXPECT_NEAR(drive(result, EffectKind::kRotorInertia, 1).after, drives[1].rotor, 0.4);
+  EXPECT_FALSE(drive(result, EffectKind::kRotorInertia, 1).determined);
+  EXPECT_FALSE(drive(result, EffectKind::kRotorInertia, 1).ci95.has_value());
+  EXPECT_TRUE(drive(result, EffectKind::kRotorInertia, 2).ci95.has_value());
   EXPECT_THAT(result.notes, testing::Contains(HasSubstr("with rotors of their own")));
   expect_realisable(result);
 }

@@ -213,6 +213,15 @@ TEST_F(LookProposal, WithoutAHeaderNumbersTellTimePositionsAndVelocities) {
   }
 }
 
+// Names that say what they are count, however many they are.
+TEST_F(LookProposal, ColumnsOfOneMatrixThatIsCalledATorqueStayThat) {
+  std::string header;
+  for (int i = 1; i <= 7; ++i) header += fmt::format("{}\"tau(:,{})\"", i == 1 ? "" : ",", i);
+  const Look seen = look(header + "\n" + rows(2), robot_text({"a", "b"}));
+  EXPECT_FALSE(seen.guessed);
+  EXPECT_THAT(seen.channels.position, IsEmpty());
+}
+
 // As of a .mat file that holds one matrix.
 TEST_F(LookProposal, ColumnsOfOneMatrixGoByTheirNumbersToo) {
   std::string header;

@@ -28,7 +28,8 @@ class Plant {
   [[nodiscard]] virtual JointVector fault_function(double t_s, const JointVector& tau) const = 0;
 
   /// From now on its body has these faults and no others; those of drives, encoders and the bus
-  /// concern it not. False, and nothing changed, where it cannot change them.
+  /// concern it not. False, and nothing changed, where it cannot change them;
+  /// std::invalid_argument, and nothing changed, may be thrown for a joint that it has not.
   [[nodiscard]] virtual bool set_faults(const std::vector<FaultEvent>& /*faults*/) { return false; }
 
   [[nodiscard]] Eigen::Index joint_count() const { return state().q.size(); }
