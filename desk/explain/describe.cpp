@@ -44,15 +44,16 @@ void describe_joints(const SearchResult& from, Explanation& to) {
   }
 }
 
-// Which joint's error says most of it, relative to that joint's torque.
+// Which joint's error says most of it, relative to that joint's torque: its own, or one that moves.
 Index seen_on(const EffectAt& what, const VectorXd& without, const VectorXd& with,
-              const VectorXd& torque) {
+              const VectorXd& torque, const std::vector<Excitation>& excitation) {
   Index joint = what.joint;
   const auto gain = [&](Index of) {
     return torque[of] > 0 ? (without[of] - with[of]) / torque[of] : 0;
   };
   for (Index other = 0; other < torque.size(); ++other) {
-    if (shows_on(what, other) && gain(other) > gain(joint)) joint = other;
+    const bool moves = excitation[static_cast<std::size_t>(other)].moves;
+    if (moves && shows_on(what, other) && gain(other) > gain(joint)) joint = other;
   }
   return joint;
 }
@@ -78,7 +79,7 @@ void describe_findings(const SearchResult& from, Explanation& to) {
     finding.p_value = accepted.p;
     finding.p_replay = accepted.p_replay;
     const VectorXd held_before = from.hold_out.rms(from.hold_out.residual(without, fit));
-    finding.seen_on = seen_on(finding.what, held_before, held_after, torque);
+    finding.seen_on = seen_on(finding.what, held_before, held_after, torque, to.excitation);
     finding.holdout_before = held_before[finding.seen_on];
     finding.holdout_after = held_after[finding.seen_on];
     finding.simulated_before = simulated_position_error(data, fit.residual)[finding.seen_on];

@@ -191,7 +191,18 @@ class Finder {
 
   [[nodiscard]] Fall fall_of(const ModelFit& before, const ModelFit& after) const {
     const RowLayout& layout = regression_.data().layout;
-    return best_fall(layout.rms(before.residual), layout.rms(after.residual));
+    return best_fall(of_moving(layout.rms(before.residual)), layout.rms(after.residual));
+  }
+
+  // A joint that stands while others move has no say: friction holds it, and takes whatever torque
+  // that is.
+  [[nodiscard]] VectorXd of_moving(VectorXd rms) const {
+    const auto moves = [](const Excitation& one) { return one.moves; };
+    if (std::none_of(excitation_.begin(), excitation_.end(), moves)) return rms;
+    for (Index joint = 0; joint < rms.size(); ++joint) {
+      if (!excitation_[static_cast<std::size_t>(joint)].moves) rms[joint] = 0;
+    }
+    return rms;
   }
 
   // By how much the log-likelihood of all joints' recordings grows.
@@ -315,6 +326,12 @@ class Finder {
     return nullptr;
   }
 
+  // Several effects at once, friction of a drive with an offset, leave the turn to each of them.
+  static std::size_t tries_of_one(const OfJoint& of) {
+    return static_cast<std::size_t>(std::count_if(
+        of.failed.begin(), of.failed.end(), [](const auto& kinds) { return kinds.size() == 1; }));
+  }
+
   // Searches every joint that is not done; false where nothing more was found on any.
   bool round() {
     constexpr std::size_t kMostTries = 4;  // of one joint, one after the other
@@ -326,7 +343,7 @@ class Finder {
         OfJoint& of = joints_[joint];
         if (of.done) continue;
         const Proposal* one =
-            of.failed.size() < kMostTries ? best_of(joint, proposals[joint]) : nullptr;
+            tries_of_one(of) < kMostTries ? best_of(joint, proposals[joint]) : nullptr;
         if (one != nullptr) {
           best.push_back(one);
           continue;
@@ -390,6 +407,21 @@ class Finder {
     return true;
   }
 
+  // Friction that every drive has and the file has not, and that takes most of the error away, also
+  // of what no fit has seen: it was not found by searching among many, so that it needs not to
+  // stand out among all that a search shows. What it leaves may be the rest of a drive's friction,
+  // which is no noise to hold it against.
+  [[nodiscard]] bool is_plain(const Term& term, const ModelFit& without, const ModelFit& with,
+                              const VectorXd& held_before, const VectorXd& held_after) const {
+    constexpr double kMost = 0.5;  // of the energy
+    if (!search_.is_asked_first(term)) return false;
+    const RowLayout& layout = regression_.data().layout;
+    const Index joint = term.joint;
+    return explained_share(layout.rms(without.residual)[joint], layout.rms(with.residual)[joint]) >=
+               kMost &&
+           explained_share(held_before[joint], held_after[joint]) >= kMost;
+  }
+
   // `model`: what it is judged beside, where that is not what was found.
   bool passes(const Proposal& one, const NullOfSearch& null, const VectorXd& held_before,
               const VectorXd& held_of_all, const ModelFit* model = nullptr) {
@@ -406,7 +438,8 @@ class Finder {
       }
       const ModelFit& without = one.added > 1 ? beside : model != nullptr ? *model : found_.fit;
       const double p = search_.family_p(one.terms[i], without, null);
-      if (p > search_.options().family_error) {
+      if (p > search_.options().family_error &&
+          !is_plain(one.terms[i], without, one.fit, held_before, hold_out_.rms(held_of_all))) {
         suspect(one, p);
         return false;
       }
@@ -427,7 +460,7 @@ class Finder {
     if (!(explained_share(held_before[joint], held_after[joint]) >= kRelevantHeldOut)) {
       // An effect may show on another joint than the one it acts from.
       const VectorXd alone = hold_out_.rms(hold_out_.residual(one.terms, one.fit));
-      if (best_fall(held_before, alone).share < kRelevantHeldOut) {
+      if (best_fall(of_moving(held_before), alone).share < kRelevantHeldOut) {
         suspect(one, fresh.back().p);
         return false;
       }

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "common/parallel.hpp"
+#include "explain/excitation.hpp"
 #include "explain/friction_family.hpp"
 #include "identify/independent_samples.hpp"
 #include "identify/shape_search.hpp"
@@ -47,6 +48,9 @@ bool Search::is_known(const EffectCandidate& effect, Index joint) const {
 
 Search::Search(const Regression& regression, const SearchOptions& options)
     : regression_(regression), data_(regression.data()), options_(options) {
+  for (Index joint = 0; joint < data_.layout.joint_count(); ++joint) {
+    moves_.push_back(static_cast<char>(moves(data_.recordings, joint)));
+  }
   for (const auto& effect : all_candidates()) {
     if (effect->info().traits.has_any_shape) continue;  // any_shape.hpp
     for (Index joint = 0; joint < data_.layout.joint_count(); ++joint) {
@@ -133,10 +137,19 @@ Screening Search::screen(const std::vector<Term>& terms, const ModelFit& at) con
   return {std::move(screened)};
 }
 
-// Friction that every drive has and the file has not: a little damping is no answer for the rest.
 bool Search::is_asked_first(const Term& term) const {
   return term.effect->info().traits.every_drive_has &&
          !file_has(data_, term.effect->kind(), term.joint);
+}
+
+// What no search can name is none of its questions: the few rows of a joint that stands, which a
+// rest or two fill, would show anything.
+bool Search::can_show(const Term& term) const {
+  if (data_.recordings[0].at_rest || !term.effect->is_mass()) {
+    return data_.recordings[0].at_rest || moves_[static_cast<std::size_t>(term.joint)] != 0;
+  }
+  return std::any_of(moves_.begin(), moves_.begin() + term.joint + 1,
+                     [](char one) { return one != 0; });
 }
 
 NullOfSearch Search::null_of(const std::vector<Term>& terms, const ModelFit& fit,
@@ -171,6 +184,7 @@ NullOfSearch Search::null_of(const std::vector<Term>& terms, const ModelFit& fit
       std::vector<const ActingColumns*> columns;
       for (const Slot& slot : slots_) {
         if (std::find(joints.begin(), joints.end(), slot.term.joint) == joints.end()) continue;
+        if (!can_show(slot.term)) continue;
         if (is_asked_first(slot.term) != first || (!first && !is_open(slot, terms))) continue;
         for (const ActingColumns& one : slot.columns) columns.push_back(&one);
       }

@@ -83,6 +83,8 @@ class Search {
   // nothing. `at`: the model without the term.
   [[nodiscard]] double family_p(const Term& term, const ModelFit& at,
                                 const NullOfSearch& null) const;
+  // Friction that every drive has and the file has not: a little damping is no answer for the rest.
+  [[nodiscard]] bool is_asked_first(const Term& term) const;
   // The same of a proposal of one term, what it leaves being taken for the noise.
   [[nodiscard]] double family_p(const Proposal& proposal, const ModelFit& at) const;
   // Where a term's shape is looked for; for a spectrum the peaks are not among them.
@@ -96,7 +98,7 @@ class Search {
   };
   [[nodiscard]] bool is_worth_a_name(const Term& term, const Eigen::VectorXd& coefficients) const;
   [[nodiscard]] bool is_known(const EffectCandidate& effect, Eigen::Index joint) const;
-  [[nodiscard]] bool is_asked_first(const Term& term) const;
+  [[nodiscard]] bool can_show(const Term& term) const;
   [[nodiscard]] bool is_open(const Slot& slot, const std::vector<Term>& terms) const;
   [[nodiscard]] Screened judge_slot(const Slot& slot, const Remainder& at,
                                     const Judge& judge) const;
@@ -108,6 +110,7 @@ class Search {
   const Data& data_;
   SearchOptions options_;
   std::vector<Slot> slots_;
+  std::vector<char> moves_;  // per joint
 };
 
 }  // namespace offnominal::desk

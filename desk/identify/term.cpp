@@ -16,9 +16,20 @@ std::string words_of(const TimeSpan& span) {
                      : fmt::format("from {:.4g} s of {} on", span.from_s, files);
 }
 
+namespace {
+
+bool leaves_a_mass(const Term& term, const VectorXd& coefficients,
+                   const std::vector<Workspace>& recordings) {
+  if (!term.effect->is_mass() || term.during || coefficients[0] >= 0) return true;
+  const auto link = static_cast<std::size_t>(term.joint);
+  return recordings[0].rigid.joints[link].joint.mass_kg + coefficients[0] > 0;
+}
+
+}  // namespace
+
 bool can_be(const Term& term, const VectorXd& coefficients,
             const std::vector<Workspace>& recordings) {
-  return term.effect->is_physical(coefficients) &&
+  return term.effect->is_physical(coefficients) && leaves_a_mass(term, coefficients, recordings) &&
          term.effect->is_within_reach(recordings, term.joint, coefficients, term.shape,
                                       term.ranges);
 }

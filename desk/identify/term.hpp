@@ -50,7 +50,8 @@ struct Term {
 };
 
 // Whether an effect with these coefficients can be on a drive (EffectCandidate::is_physical) and is
-// one that the recordings can show (is_within_reach).
+// one that the recordings can show (is_within_reach); and of a mass that is less than nothing,
+// whether its link has so much to lose. What has changed meanwhile may have been carried.
 bool can_be(const Term& term, const Eigen::VectorXd& coefficients,
             const std::vector<Workspace>& recordings);
 
