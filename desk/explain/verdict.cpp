@@ -544,7 +544,10 @@ JointAnswer lost_joint(const JointErrors& errors) {
 void judge_joints(Explanation& e) {
   e.answers.clear();
   for (const JointErrors& joint : e.joints) {
-    const bool lost = !std::isfinite(joint.rms_torque);
+    // What is searched may be all at fault where the rest is not.
+    const bool none_searched =
+        joint.rms_before > 0 && !(joint.noise_floor > 0) && !(joint.holdout_before > 0);
+    const bool lost = !std::isfinite(joint.rms_torque) || none_searched;
     e.answers.push_back(lost ? lost_joint(joint) : judge_joint(e, joint));
   }
   const auto share = [&](const JointAnswer& one) {

@@ -323,7 +323,8 @@ ModelFit Regression::fit(const std::vector<Term>& terms, const std::vector<char>
   for (int pass = 0; pass < 2; ++pass) {
     const double floor = 1e-9 * layout.rms(data_.torque).maxCoeff() + 1e-300;
     result.joint_weights = spread.cwiseMax(floor).cwiseInverse();
-    if (pass > 0) {
+    // Where no row counts, as in stretches that are all at fault, there is nothing but the priors.
+    if (pass > 0 && independent.sum() > 0) {
       result.prior_weight = std::sqrt(static_cast<double>(layout.rows()) / independent.sum());
     }
     const RegressionRows weighted = turned.weighted(result.joint_weights);
