@@ -61,7 +61,9 @@ std::vector<Jump> jumps_of(const VectorXd& q) {
   std::vector<Jump> jumps;
   const Index steps = q.size() - 1;
   const double range = q.maxCoeff() - q.minCoeff();
-  if (!(range > 0) || steps < 4 * kPaceRows) return jumps;
+  // Less is a count or two of an encoder that a joint at rest has moved by.
+  constexpr double kLeastRange = 0.02;  // rad or m
+  if (!(range > kLeastRange) || steps < 4 * kPaceRows) return jumps;
   const VectorXd change = (q.tail(steps) - q.head(steps)).cwiseAbs();
   const double least = std::max(kOfRangeInOneStep * range, kOfSteps * quantile(change, kNearlyAll));
   for (Index i = 0; i < steps; ++i) {

@@ -282,18 +282,19 @@ class Assembler {
   }
 
   void unfold_positions(const ChannelMap& map) {
-    constexpr double kTurn = 2 * std::numbers::pi;
     for (Index joint = 0; joint < joints_; ++joint) {
       VectorXd q = log_.q.col(joint);
-      const std::vector<Index> folds = folds_of(q, kTurn);
+      const auto [range, folds] = known_fold_of(q);
       if (folds.empty()) continue;
-      unfold(q, kTurn, folds);
+      unfold(q, range, folds);
       log_.q.col(joint) = q;
-      columns_.remarks.push_back(
-          fmt::format("the {} is folded into a turn: it jumps by 2 pi {} time{}, "
-                      "first at t = {:.6g} s, and was unfolded",
-                      words_of("position", map.position_of, joint), folds.size(),
-                      folds.size() == 1 ? "" : "s", log_.t_s[folds.front()]));
+      const bool is_turn = range < 2 * std::numbers::pi + 1;
+      columns_.remarks.push_back(fmt::format(
+          "the {} is folded into {}: it jumps by {} {} time{}, first at t = {:.6g} s, and was "
+          "unfolded",
+          words_of("position", map.position_of, joint),
+          is_turn ? "a turn" : "the 25 rad of the MIT protocol", is_turn ? "2 pi" : "25 rad",
+          folds.size(), folds.size() == 1 ? "" : "s", log_.t_s[folds.front()]));
     }
   }
 

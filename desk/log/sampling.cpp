@@ -44,14 +44,15 @@ std::vector<Index> knots_of(const VectorXd& t_s, double period_s) {
 // A spline through the jump of an angle that is folded into a turn would swing beyond both ends.
 VectorXd position_at(const VectorXd& t_s, const VectorXd& q, const VectorXd& at_s) {
   if (is_constant(q)) return VectorXd::Constant(at_s.size(), q[0]);
-  for (const double turn : {2 * std::numbers::pi, 360.0}) {
-    const std::vector<Index> folds = folds_of(q, turn);
-    if (folds.empty()) continue;
+  constexpr double kTurnInDegrees = 360;
+  for (const KnownFold& fold :
+       {known_fold_of(q), KnownFold{kTurnInDegrees, folds_of(q, kTurnInDegrees)}}) {
+    if (fold.folds.empty()) continue;
     VectorXd whole = q;
-    unfold(whole, turn, folds);
-    const double low = (q.minCoeff() + q.maxCoeff() - turn) / 2;
+    unfold(whole, fold.range, fold.folds);
+    const double low = (q.minCoeff() + q.maxCoeff() - fold.range) / 2;
     VectorXd result = spline_at(t_s, whole, at_s);
-    for (double& angle : result) angle -= turn * std::floor((angle - low) / turn);
+    for (double& angle : result) angle -= fold.range * std::floor((angle - low) / fold.range);
     return result;
   }
   return spline_at(t_s, q, at_s);

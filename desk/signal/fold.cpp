@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "signal/quantile.hpp"
 
@@ -34,6 +35,21 @@ std::vector<Index> folds_of(const Eigen::Ref<const VectorXd>& x, double range) {
     if (change[i] > kSmallestFold * range && motion[i] <= most) folds.push_back(i);
   }
   return folds;
+}
+
+KnownFold known_fold_of(const Eigen::Ref<const VectorXd>& x) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  constexpr double kMit = 25;
+  constexpr double kFilled = 0.95;
+  constexpr double kRounding = 1e-3;  // rad
+  KnownFold fold{kTurn, folds_of(x, kTurn)};
+  if (!fold.folds.empty() || x.size() == 0) return fold;
+  const double low = x.minCoeff();
+  const double high = x.maxCoeff();
+  const bool is_filled =
+      high <= kMit / 2 + kRounding && low >= -kMit / 2 - kRounding && high - low > kFilled * kMit;
+  if (is_filled) fold = {kMit, folds_of(x, kMit)};
+  return fold;
 }
 
 void unfold(Eigen::Ref<VectorXd> x, double range, const std::vector<Index>& folds) {

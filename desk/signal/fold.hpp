@@ -11,6 +11,16 @@ namespace offnominal::desk {
 // the range, or where other steps are so large that a fold cannot be told from them.
 std::vector<Eigen::Index> folds_of(const Eigen::Ref<const Eigen::VectorXd>& x, double range);
 
+// Positions that are folded into a range which is known without their encoder.
+struct KnownFold {
+  double range = 0;
+  std::vector<Eigen::Index> folds;  // none: they are not
+};
+
+// A turn, 2 pi; or the 25 rad of motors that speak the MIT mini cheetah's protocol, 16 bit from
+// -12.5 to 12.5, where they are filled. `x` in rad.
+KnownFold known_fold_of(const Eigen::Ref<const Eigen::VectorXd>& x);
+
 // Takes a range off, or adds it, from each of these rows on.
 void unfold(Eigen::Ref<Eigen::VectorXd> x, double range, const std::vector<Eigen::Index>& folds);
 
