@@ -48,12 +48,15 @@ void describe_joints(const SearchResult& from, Explanation& to) {
 Index seen_on(const EffectAt& what, const VectorXd& without, const VectorXd& with,
               const VectorXd& torque, const std::vector<Excitation>& excitation) {
   Index joint = what.joint;
+  const auto moves = [&](Index of) { return excitation[static_cast<std::size_t>(of)].moves; };
+  for (Index other = 0; other < torque.size() && !moves(joint); ++other) {
+    if (moves(other) && shows_on(what, other)) joint = other;
+  }
   const auto gain = [&](Index of) {
     return torque[of] > 0 ? (without[of] - with[of]) / torque[of] : 0;
   };
   for (Index other = 0; other < torque.size(); ++other) {
-    const bool moves = excitation[static_cast<std::size_t>(other)].moves;
-    if (moves && shows_on(what, other) && gain(other) > gain(joint)) joint = other;
+    if (moves(other) && shows_on(what, other) && gain(other) > gain(joint)) joint = other;
   }
   return joint;
 }

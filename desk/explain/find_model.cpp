@@ -411,15 +411,30 @@ class Finder {
   // of what no fit has seen: it was not found by searching among many, so that it needs not to
   // stand out among all that a search shows. What it leaves may be the rest of a drive's friction,
   // which is no noise to hold it against.
-  [[nodiscard]] bool is_plain(const Term& term, const ModelFit& without, const ModelFit& with,
-                              const VectorXd& held_before, const VectorXd& held_after) const {
-    constexpr double kMost = 0.5;  // of the energy
+  // `which` of its terms, beside the fit without that one.
+  [[nodiscard]] bool is_plain(const Proposal& one, std::size_t which,
+                              const ModelFit& without) const {
+    constexpr double kMost = 0.5;    // of the energy
+    constexpr double kOwnP = 0.001;  // as the only question
+    const Term& term = one.terms[which];
     if (!search_.is_asked_first(term)) return false;
-    const RowLayout& layout = regression_.data().layout;
+    const Data& data = regression_.data();
     const Index joint = term.joint;
-    return explained_share(layout.rms(without.residual)[joint], layout.rms(with.residual)[joint]) >=
-               kMost &&
-           explained_share(held_before[joint], held_after[joint]) >= kMost;
+    const auto takes_most = [&](const VectorXd& before, const VectorXd& after) {
+      return explained_share(before[joint], after[joint]) >= kMost;
+    };
+    if (!takes_most(data.layout.rms(without.residual), data.layout.rms(one.fit.residual))) {
+      return false;
+    }
+    const Evidence evidence = evidence_for(Judge(without.remainder), data, term);
+    if (!evidence.usable || p_of_statistic(evidence.statistic, evidence.coefficients.size(),
+                                           without.remainder.blocks.count) > kOwnP) {
+      return false;
+    }
+    std::vector<Term> others = one.terms;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
+    return takes_most(hold_out_.rms(hold_out_.residual(others, without)),
+                      hold_out_.rms(hold_out_.residual(one.terms, one.fit)));
   }
 
   // `model`: what it is judged beside, where that is not what was found.
@@ -438,8 +453,7 @@ class Finder {
       }
       const ModelFit& without = one.added > 1 ? beside : model != nullptr ? *model : found_.fit;
       const double p = search_.family_p(one.terms[i], without, null);
-      if (p > search_.options().family_error &&
-          !is_plain(one.terms[i], without, one.fit, held_before, hold_out_.rms(held_of_all))) {
+      if (p > search_.options().family_error && (model != nullptr || !is_plain(one, i, without))) {
         suspect(one, p);
         return false;
       }

@@ -546,7 +546,7 @@ void judge_joints(Explanation& e) {
   for (const JointErrors& joint : e.joints) {
     // What is searched may be all at fault where the rest is not.
     const bool none_searched =
-        joint.rms_before > 0 && !(joint.noise_floor > 0) && !(joint.holdout_before > 0);
+        joint.rms_before > 0 && !(joint.rms_fitted_before > 0) && !(joint.rms_after > 0);
     const bool lost = !std::isfinite(joint.rms_torque) || none_searched;
     e.answers.push_back(lost ? lost_joint(joint) : judge_joint(e, joint));
   }

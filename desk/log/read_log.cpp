@@ -284,17 +284,17 @@ class Assembler {
   void unfold_positions(const ChannelMap& map) {
     for (Index joint = 0; joint < joints_; ++joint) {
       VectorXd q = log_.q.col(joint);
-      const auto [range, folds] = known_fold_of(q);
-      if (folds.empty()) continue;
-      unfold(q, range, folds);
+      const KnownFold fold = known_fold_of(q);
+      if (fold.folds.empty()) continue;
+      unfold(q, fold.range, fold.folds);
       log_.q.col(joint) = q;
-      const bool is_turn = range < 2 * std::numbers::pi + 1;
+      const bool is_turn = fold.range < 2 * std::numbers::pi + 1;
       columns_.remarks.push_back(fmt::format(
           "the {} is folded into {}: it jumps by {} {} time{}, first at t = {:.6g} s, and was "
           "unfolded",
           words_of("position", map.position_of, joint),
           is_turn ? "a turn" : "the 25 rad of the MIT protocol", is_turn ? "2 pi" : "25 rad",
-          folds.size(), folds.size() == 1 ? "" : "s", log_.t_s[folds.front()]));
+          fold.folds.size(), fold.folds.size() == 1 ? "" : "s", log_.t_s[fold.folds.front()]));
     }
   }
 

@@ -44,15 +44,19 @@ std::vector<Index> knots_of(const VectorXd& t_s, double period_s) {
 // A spline through the jump of an angle that is folded into a turn would swing beyond both ends.
 VectorXd position_at(const VectorXd& t_s, const VectorXd& q, const VectorXd& at_s) {
   if (is_constant(q)) return VectorXd::Constant(at_s.size(), q[0]);
-  constexpr double kTurnInDegrees = 360;
-  for (const KnownFold& fold :
-       {known_fold_of(q), KnownFold{kTurnInDegrees, folds_of(q, kTurnInDegrees)}}) {
-    if (fold.folds.empty()) continue;
+  KnownFold fold = known_fold_of(q);
+  if (fold.folds.empty()) {
+    constexpr double kTurnInDegrees = 360;
+    fold = {kTurnInDegrees, (q.minCoeff() + q.maxCoeff() - kTurnInDegrees) / 2,
+            folds_of(q, kTurnInDegrees)};
+  }
+  if (!fold.folds.empty()) {
     VectorXd whole = q;
     unfold(whole, fold.range, fold.folds);
-    const double low = (q.minCoeff() + q.maxCoeff() - fold.range) / 2;
     VectorXd result = spline_at(t_s, whole, at_s);
-    for (double& angle : result) angle -= fold.range * std::floor((angle - low) / fold.range);
+    for (double& angle : result) {
+      angle -= fold.range * std::floor((angle - fold.low) / fold.range);
+    }
     return result;
   }
   return spline_at(t_s, q, at_s);

@@ -34,8 +34,15 @@ class Proposer {
     const ExpectedJoints expected = expected_of(robot_);
     if (look_.has_names) roles_ = roles_of(columns_of(look_), expected);
     if (!period_s && !files_.time) take_time_in_two();
-    if (are_nameless()) guess_by_numbers(expected.count, period_s.value_or(0));
-    take_time(period_s);
+    const bool nameless = are_nameless();
+    const std::optional<std::string> named_time = nameless ? roles_.time : std::nullopt;
+    if (named_time) take_time(period_s);
+    if (nameless) guess_by_numbers(expected.count, period_s.value_or(0));
+    if (named_time) {
+      roles_.time = named_time;
+    } else {
+      take_time(period_s);
+    }
     if (!look_.guessed && look_.t_s) set_names_right();
     take_roles();
     say_unknown_units();

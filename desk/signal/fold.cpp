@@ -42,13 +42,14 @@ KnownFold known_fold_of(const Eigen::Ref<const VectorXd>& x) {
   constexpr double kMit = 25;
   constexpr double kFilled = 0.95;
   constexpr double kRounding = 1e-3;  // rad
-  KnownFold fold{kTurn, folds_of(x, kTurn)};
-  if (!fold.folds.empty() || x.size() == 0) return fold;
+  if (x.size() == 0) return {};
   const double low = x.minCoeff();
   const double high = x.maxCoeff();
+  KnownFold fold{kTurn, (low + high - kTurn) / 2, folds_of(x, kTurn)};
+  if (!fold.folds.empty()) return fold;
   const bool is_filled =
       high <= kMit / 2 + kRounding && low >= -kMit / 2 - kRounding && high - low > kFilled * kMit;
-  if (is_filled) fold = {kMit, folds_of(x, kMit)};
+  if (is_filled) fold = {kMit, -kMit / 2, folds_of(x, kMit)};
   return fold;
 }
 

@@ -14,6 +14,7 @@ std::vector<Eigen::Index> folds_of(const Eigen::Ref<const Eigen::VectorXd>& x, d
 // Positions that are folded into a range which is known without their encoder.
 struct KnownFold {
   double range = 0;
+  double low = 0;                   // where the range begins
   std::vector<Eigen::Index> folds;  // none: they are not
 };
 

@@ -213,6 +213,18 @@ TEST_F(LookProposal, WithoutAHeaderNumbersTellTimePositionsAndVelocities) {
   }
 }
 
+// A time that has a name beside the matrix is the time.
+TEST_F(LookProposal, ColumnsOfOneMatrixGoByTheTimeBesideThem) {
+  std::string header = "t";
+  for (int i = 1; i <= 6; ++i) header += fmt::format(",\"data(:,{})\"", i);
+  const std::string robot = robot_text({"a", "b"});
+  const Look seen = look(header + "\n" + rows(2), robot);
+  EXPECT_EQ(seen.channels.time.source, "t");
+  ASSERT_EQ(seen.channels.position.size(), 2U);
+  EXPECT_EQ(seen.channels.position[0].source, "data(:,1)");
+  expect_motion(pasted(seen, robot));
+}
+
 // Names that say what they are count, however many they are.
 TEST_F(LookProposal, ColumnsOfOneMatrixThatIsCalledATorqueStayThat) {
   std::string header;
