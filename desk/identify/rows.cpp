@@ -83,7 +83,8 @@ void RowLayout::leave_out_empty(Blocks& blocks) const {
   for (int& one : number) {
     if (one == 0) one = count++;
   }
-  blocks.count = count;
+  // Where no row says anything they are all of one, which says nothing.
+  blocks.count = std::max(count, 1);
   for (int& block : blocks.of_row) block = std::max(0, number[static_cast<std::size_t>(block)]);
 }
 

@@ -87,5 +87,15 @@ TEST(FewRowsOfJoints, FitAsAllRowsDoWithAnyWeightPerJointAndAnyRowsLeftOut) {
   }
 }
 
+// GIVEN stretches that are all at fault, so that no row says anything, THEN there still is a block
+// that all of them are of: sums over blocks have somewhere to go.
+TEST(Blocks, AreOneWhereNoRowSaysAnything) {
+  RowLayout layout = layout_of_two();
+  layout.leave_out(std::vector<char>(static_cast<std::size_t>(layout.rows()), 0));
+  const RowLayout::Blocks blocks = layout.blocks(0.5);
+  EXPECT_EQ(blocks.count, 1);
+  for (const int block : blocks.of_row) EXPECT_EQ(block, 0);
+}
+
 }  // namespace
 }  // namespace offnominal::desk
