@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "explain/find_model.hpp"
+#include "explain/found_model.hpp"
 
 namespace offnominal::desk {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "explain/find_model.hpp"
+#include "explain/found_model.hpp"
 #include "explain/search.hpp"
 #include "identify/estimates.hpp"
 #include "identify/regression.hpp"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "explain/explain.hpp"
-#include "explain/find_model.hpp"
+#include "explain/found_model.hpp"
 #include "explain/search_setting.hpp"
 #include "identify/improved_robot.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "explain/change.hpp"
 #include "explain/explain.hpp"
-#include "explain/find_model.hpp"
+#include "explain/found_model.hpp"
 #include "explain/sizes.hpp"
 #include "identify/improved_robot.hpp"
 

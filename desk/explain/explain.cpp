@@ -23,6 +23,7 @@
 #include "explain/free_function.hpp"
 #include "explain/friction_family.hpp"
 #include "explain/given_part.hpp"
+#include "explain/inner_effect.hpp"
 #include "explain/link_share.hpp"
 #include "explain/pushes.hpp"
 #include "explain/questions.hpp"
@@ -131,7 +132,7 @@ class Explainer {
         improved = fitted_robot(found, result);
       } while (leave_out_impossible(improved.held, result.shifts));
       sizes = sizes_of(improved);
-    } while (leave_out_unsure(sizes, *setting_.regression, hold_out, options_.threads, found));
+    } while (gives_one_up(sizes, found));
     if (search) {
       const VectorXd left = improved.last.data->layout.rms(improved.last.fit.residual);
       for (UndecidedClass& one : undecided(setting_, robot_, found, result.excitation, left)) {
@@ -233,6 +234,21 @@ class Explainer {
     return fitted_robot(found, result, true);
   }
 
+  // As run() does in the end.
+  void keep_sure(const Explanation& result, FoundModel& found) const {
+    Sizes sizes;
+    do {
+      sizes = sizes_of(fitted_robot(found, result, false));
+    } while (gives_one_up(sizes, found));
+  }
+
+  // Whether a name was taken back, or gave its place to a simpler one.
+  bool gives_one_up(const Sizes& sizes, FoundModel& found) const {
+    return replace_by_inner(setting_, sizes, options_.threads, found) ||
+           leave_out_unsure(sizes, *setting_.regression, *setting_.hold_out, options_.threads,
+                            found);
+  }
+
   // With links as far off as the recordings ask for, where nobody has said how far that is.
   FoundModel search_model(bool search, Explanation& result) {
     result.link_share = setting_.nuisance.link_share;
@@ -241,10 +257,14 @@ class Explainer {
     if (!search || options_.link_share || result.at_rest) return best;
     tell("asking how far the links' numbers are off");
     const NuisanceOptions usual = setting_.nuisance;
-    for (const double share : wider_link_shares(robot_, *setting_.data, usual, options_.threads)) {
+    const auto shares = wider_link_shares(robot_, *setting_.data, usual, options_.threads);
+    // What names of unsure size have taken is no gain of the one search over the other.
+    if (!shares.empty()) keep_sure(result, best);
+    for (const double share : shares) {
       // What the fits point to has to stay where it is until one of them is chosen.
       SearchSetting of_best = set_beside(with_link_share(usual, share));
       FoundModel wide = find(search, result);
+      keep_sure(result, wide);
       if (is_clearly_better(*setting_.hold_out, wide, best, result.link_share_judged)) {
         result.link_share = share;
         result.link_share_judged = true;

@@ -17,8 +17,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Beyond CAD, far beyond it, and little more than the geometry known.
-constexpr std::array kShares{0.12, 0.3, 0.6};
+// Beyond CAD, far beyond it, little more than the geometry known, and a guess of the masses.
+constexpr std::array kShares{0.12, 0.3, 0.6, 1.0};
 constexpr double kUnknownShare = 2;
 // Log-likelihood that a wider share has to gain, and the share of a joint's error.
 constexpr double kClearly = 10;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "explain/find_model.hpp"
+#include "explain/found_model.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::desk {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "explain/find_model.hpp"
+#include "explain/found_model.hpp"
 
 namespace offnominal::desk {
 

@@ -33,6 +33,20 @@ bool repeats_with_something(const Term& term, const std::vector<Estimate>& numbe
   });
 }
 
+// Whether no part of what a number may be is within what a robot file takes: no such effect exists.
+bool is_beyond_any(const Term& term, const std::vector<Estimate>& numbers) {
+  const auto& parameters = term.effect->info().parameters;
+  return std::any_of(numbers.begin(), numbers.end(), [&](const Estimate& one) {
+    const auto of =
+        std::find_if(parameters.begin(), parameters.end(),
+                     [&](const ParameterInfo& info) { return info.name == one.value.name; });
+    if (of == parameters.end()) return false;
+    const double low = one.ci95 ? (*one.ci95)[0] : one.value.value;
+    const double high = one.ci95 ? (*one.ci95)[1] : one.value.value;
+    return high < of->min || low > of->max;
+  });
+}
+
 void widen(Estimate& estimate, double deviation) {
   constexpr double kTwoSided95 = 1.96;
   if (!estimate.ci95) return;
@@ -63,17 +77,34 @@ Sizes sizes_of(const ImprovedRobot& improved) {
     const auto& recordings = improved.last.data->recordings;
     const bool possible =
         (can_be(terms[i], value, recordings) || can_be(terms[i], kBarely * value, recordings)) &&
-        repeats_with_something(terms[i], estimates.terms[i]);
-    double least = possible ? estimates.linear[i].from_nothing() : 0;
+        repeats_with_something(terms[i], estimates.terms[i]) &&
+        !is_beyond_any(terms[i], estimates.terms[i]);
+    std::vector<LinearPart> linear{estimates.linear[i]};
     for (const VectorXd& shift : shifts[i].linear) {
-      LinearPart wider = estimates.linear[i];
-      wider.widen(shift);
-      least = std::min(least, wider.from_nothing());
+      linear.push_back(estimates.linear[i]);
+      linear.back().widen(shift);
     }
+    double least = possible ? linear[0].from_nothing() : 0;
+    for (const LinearPart& one : linear) least = std::min(least, one.from_nothing());
+    sizes.linear.push_back(std::move(linear));
     sizes.from_nothing.push_back(least);
   }
   sizes.numbers = std::move(estimates.terms);
   return sizes;
+}
+
+void leave_out(std::size_t which, const Regression& regression, const HoldOut& hold_out,
+               int threads, FoundModel& found) {
+  const auto goes = found.accepted.begin() + static_cast<std::ptrdiff_t>(which);
+  found.unsure[static_cast<std::size_t>(goes->term.joint)] = 1;
+  if (found.accepted.size() == 1) {
+    const RowLayout& layout = regression.data().layout;
+    const Fall fall =
+        best_fall(layout.rms(found.baseline.residual), layout.rms(found.fit.residual));
+    found.suspected = {goes->term, goes->p, std::max(0.0, fall.share)};
+  }
+  found.accepted.erase(goes);
+  order_and_hold_out(regression, hold_out, threads, found);
 }
 
 bool leave_out_unsure(const Sizes& sizes, const Regression& regression, const HoldOut& hold_out,
@@ -103,16 +134,7 @@ bool leave_out_unsure(const Sizes& sizes, const Regression& regression, const Ho
     which = i;
   }
   if (which == found.accepted.size()) return false;
-  const auto goes = found.accepted.begin() + static_cast<std::ptrdiff_t>(which);
-  found.unsure[static_cast<std::size_t>(goes->term.joint)] = 1;
-  if (found.accepted.size() == 1) {
-    const RowLayout& layout = regression.data().layout;
-    const Fall fall =
-        best_fall(layout.rms(found.baseline.residual), layout.rms(found.fit.residual));
-    found.suspected = {goes->term, goes->p, std::max(0.0, fall.share)};
-  }
-  found.accepted.erase(goes);
-  order_and_hold_out(regression, hold_out, threads, found);
+  leave_out(which, regression, hold_out, threads, found);
   return true;
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "explain/find_model.hpp"
+#include "explain/found_model.hpp"
 #include "identify/estimates.hpp"
 #include "identify/improved_robot.hpp"
 
@@ -15,9 +15,16 @@ struct Sizes {
   std::vector<std::vector<Estimate>> numbers;
   std::vector<double> from_nothing;  // LinearPart::from_nothing(); 0 of a size that cannot be, and
                                      // of a wave whose order or frequency is unknown by half of it
+  // What it is linear in, per effect: as it is, and with the regions of narrower bands.
+  std::vector<std::vector<LinearPart>> linear = {};
 };
 
 Sizes sizes_of(const ImprovedRobot& improved);
+
+// Takes one of the accepted out of the model: its joint is unsure from then on, and one that was
+// found alone is suspected.
+void leave_out(std::size_t which, const Regression& regression, const HoldOut& hold_out,
+               int threads, FoundModel& found);
 
 // Takes back the name whose size the recordings tell least from nothing, one at a time: what goes
 // may be what made another unsure. False where all are sure. A shape at the end of what a motion

@@ -5,7 +5,7 @@
 
 #include "explain/excitation.hpp"
 #include "explain/explain.hpp"
-#include "explain/find_model.hpp"
+#include "explain/found_model.hpp"
 #include "explain/search_setting.hpp"
 #include "robot/robot.hpp"
 

@@ -16,7 +16,7 @@
 #include "explain/any_shape.hpp"
 #include "explain/change_words.hpp"
 #include "explain/explain_report.hpp"
-#include "explain/find_model.hpp"
+#include "explain/found_model.hpp"
 #include "explain/link_share.hpp"
 #include "explain/list_of_joints.hpp"
 
@@ -558,6 +558,9 @@ void judge_joints(Explanation& e) {
                    [&](const JointAnswer& a, const JointAnswer& b) { return share(a) > share(b); });
 }
 
+// Links of which a file says so little are better sought by themselves.
+constexpr double kHardlyKnown = 0.5;
+
 // How far the links were let off the file, where the recordings said so, or why they were not.
 void advise_on_links(Explanation& e) {
   if (!e.links_kept_for.empty() && changes_the_file(e)) {
@@ -573,8 +576,12 @@ void advise_on_links(Explanation& e) {
     e.advice.push_back(fmt::format(
         "the links' masses, centres of mass and inertias{} are off the file by more than CAD "
         "usually is: they were fitted within {:.0f} % of it, which predicts time that was not "
-        "fitted better; `--link-share 0.05` holds them",
-        e.torque_constants.empty() ? "" : ", or the torque constants,", 100 * e.link_share));
+        "fitted better; `--link-share 0.05` holds them{}",
+        e.torque_constants.empty() ? "" : ", or the torque constants,", 100 * e.link_share,
+        e.link_share < kHardlyKnown
+            ? ""
+            : ", and `offnominal identify` with these recordings finds them from the geometry "
+              "alone: explain again with the file that it writes"));
   }
   if (e.torque_constants.empty()) return;
   std::vector<std::string> constants;

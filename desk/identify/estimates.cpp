@@ -311,10 +311,16 @@ Index joint_shown_on(const RowLayout& layout, const ScaledColumns& scaled, const
 
 }  // namespace
 
-double LinearPart::from_nothing() const {
+double LinearPart::from_nothing() const { return from_line(VectorXd::Zero(value.size())); }
+
+double LinearPart::from_line(const VectorXd& line) const {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
   if (region.size() == 0) return kUnknown;
-  const double squared = value.dot(region.completeOrthogonalDecomposition().solve(value));
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> inverse(region);
+  const VectorXd weighted = inverse.solve(value);
+  double squared = value.dot(weighted);
+  const double along = line.dot(inverse.solve(line));
+  if (along > 0) squared -= line.dot(weighted) * line.dot(weighted) / along;
   return std::isfinite(squared) ? std::sqrt(std::max(0.0, squared)) : kUnknown;
 }
 

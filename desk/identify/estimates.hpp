@@ -26,6 +26,8 @@ struct LinearPart {
 
   // How far the term is from nothing, in half-widths of the region; infinite where that is unknown.
   [[nodiscard]] double from_nothing() const;
+  // The same from all that is a multiple of `line`, which may be any.
+  [[nodiscard]] double from_line(const Eigen::VectorXd& line) const;
   // Makes the region as much wider as one standard deviation of this says.
   void widen(const Eigen::VectorXd& deviation);
 };

@@ -29,6 +29,17 @@ TEST(LinearPart, IsAsFarFromNothingAsItsRegionIsNarrow) {
   EXPECT_NEAR(part.from_nothing(), 1, 1e-12);
 }
 
+// Of a spring whose stiffness is not told from nothing, and its torque at 0 clearly is: as far from
+// an offset as its stiffness is, whatever the offset.
+TEST(LinearPart, IsAsFarFromALineAsWhatTheLineDoesNotHold) {
+  const LinearPart spring{Vector2d(0.5, 9), Eigen::Matrix2d::Identity()};
+  EXPECT_GT(spring.from_nothing(), 9);
+  EXPECT_NEAR(spring.from_line(Vector2d(0, 3)), 0.5, 1e-12);
+  EXPECT_NEAR(spring.from_line(Vector2d(0, -0.1)), 0.5, 1e-12);
+  EXPECT_EQ((LinearPart{Vector2d(2, 0), {}}.from_line(Vector2d(0, 1))),
+            std::numeric_limits<double>::infinity());
+}
+
 TEST(LinearPart, OfTooFewSamplesIsNotJudged) {
   EXPECT_EQ((LinearPart{Vector2d(2, 0), {}}.from_nothing()),
             std::numeric_limits<double>::infinity());
@@ -147,6 +158,29 @@ TEST(Sizes, OfWhatCannotBeAreNothing) {
   ASSERT_LT(one.coefficients[0], 0);
   ASSERT_EQ(one.sizes.from_nothing.size(), 1U);
   EXPECT_EQ(one.sizes.from_nothing[0], 0);
+}
+
+// Of a loss of more than all that goes through a gear: no file takes it.
+TEST(Sizes, OfWhatNoRobotFileTakesAreNothing) {
+  const OfOneEffect there = sizes_of_one(
+      [] {
+        RobotDescription robot = test::serial_arm(1);
+        robot.effects.push_back(
+            test::effect_of(EffectKind::kLoadDependentFriction, 0, {0.3, 0.01}, true));
+        return robot;
+      }(),
+      EffectKind::kLoadDependentFriction);
+  EXPECT_GT(there.sizes.from_nothing[0], 1);
+  const OfOneEffect beyond = sizes_of_one(
+      [] {
+        RobotDescription robot = test::serial_arm(1);
+        robot.effects.push_back(
+            test::effect_of(EffectKind::kLoadDependentFriction, 0, {1.6, 0.01}, true));
+        return robot;
+      }(),
+      EffectKind::kLoadDependentFriction);
+  ASSERT_GT(beyond.coefficients[0], 1);
+  EXPECT_EQ(beyond.sizes.from_nothing[0], 0);
 }
 
 // Of a ripple on a joint that has none.

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "explain/found_model.hpp"
+#include "explain/search_setting.hpp"
+#include "explain/sizes.hpp"
+
+namespace offnominal::desk {
+
+// Puts an effect of fewer numbers in the place of one that was found, where its torque is a part of
+// that one's and the recordings do not tell from nothing what the larger one has beyond: a spring
+// whose rest is far away, and whose stiffness may be none, is an offset. Where that is not
+// significant, neither has a name. One at a time; false where there is none. `sizes`: of the
+// accepted, in their order.
+bool replace_by_inner(const SearchSetting& setting, const Sizes& sizes, int threads,
+                      FoundModel& found);
+
+}  // namespace offnominal::desk
