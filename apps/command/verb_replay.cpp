@@ -21,6 +21,7 @@
 #include "common/amount.hpp"
 #include "common/error.hpp"
 #include "common/text_table.hpp"
+#include "common/time_words.hpp"
 #include "log/log_format.hpp"
 #include "log/read_log.hpp"
 #include "replay/monitor_filter.hpp"
@@ -109,7 +110,7 @@ void require_whole(const Log& log) {
   const double at_s = !log.gaps.empty() ? log.t_s[log.gaps[0].first]
                       : at_front        ? log.t_s[0]
                                         : log.t_s[log.t_s.size() - 1];
-  throw InputError({log.file, fmt::format("t = {:.6g} s", at_s), "a gap",
+  throw InputError({log.file, fmt::format("t = {} s", words_of_time(at_s)), "a gap",
                     "a recording of every tick, as the monitor sees it",
                     "cut the recording at the gap"});
 }

@@ -211,6 +211,21 @@ bool is_unrecorded(const DataFault& fault, const Log& log) {
          fault.spans.size() == 1 && fault.spans.front().samples.count() == log.sample_count();
 }
 
+// An encoder that sticks, jumps or starts late cannot be told from a joint that is held, and a
+// torque that stays is right there.
+void leave_out_of_held(const Log& log, const RobotDescription& robot,
+                       std::vector<DataFault>& faults) {
+  const std::vector<char> held = held_joints(log, robot);
+  std::erase_if(faults, [&](const DataFault& fault) {
+    const bool by_motion =
+        fault.kind == DataFaultKind::kStuck ||
+        (fault.signal == FaultySignal::kPosition &&
+         (fault.kind == DataFaultKind::kJump || fault.kind == DataFaultKind::kStart));
+    return by_motion && fault.joint >= 0 && held[static_cast<std::size_t>(fault.joint)] != 0 &&
+           !is_unrecorded(fault, log);
+  });
+}
+
 // The longest part of a recording that no fault touches for longer than a filter forgives; none
 // where that is nothing, the recording itself where it is all of it.
 Log longest_good_part(const Log& log, const std::vector<DataFault>& faults) {
@@ -308,6 +323,7 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
   const std::size_t before = faults.size();
   const Log whole = mended;
   std::vector<DataFault> local = local_faults(mended, robot);
+  leave_out_of_held(mended, robot, local);
   for (const DataFault& fault : local) {
     bridge(fault, mended);
     if (is_unrecorded(fault, mended)) mended.tau.col(fault.joint).setZero();
@@ -320,7 +336,10 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
       Log radians = whole;
       std::vector<DataFault> again;
       mend_degrees(radians, robot, again);
-      if (!again.empty()) local = local_faults(radians, robot);
+      if (!again.empty()) {
+        local = local_faults(radians, robot);
+        leave_out_of_held(radians, robot, local);
+      }
     }
     mend_strange_velocities(mended, robot, faults);
     mend_velocities(mended, robot, faults);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/time_words.hpp"
 #include "explain/doctor_checks.hpp"
 #include "explain/doctor_signal.hpp"
 #include "signal/quantile.hpp"
@@ -231,9 +232,9 @@ void find_position_jumps(const Log& log, Index joint, std::vector<DataFault>& fa
   const std::string what = jumps.steps.empty()
                                ? ""
                                : fmt::format(
-                                     "jumps by {:.3g} at t = {:.6g} s and is counted from "
+                                     "jumps by {:.3g} at t = {} s and is counted from "
                                      "another zero; the shorter side is left out",
-                                     jumps.largest, log.t_s[jumps.steps[0]]);
+                                     jumps.largest, words_of_time(log.t_s[jumps.steps[0]]));
   const std::size_t before = faults.size();
   add_jump_fault(log, joint, true, DataFaultKind::kJump, sides, jumps.largest, what, faults);
   if (faults.size() > before) faults.back().at_s = log.t_s[jumps.steps[0]];

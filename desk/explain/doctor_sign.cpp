@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "explain/doctor_checks.hpp"
+#include "explain/doctor_signal.hpp"
 #include "explain/other_masses.hpp"
 
 namespace offnominal::desk {
@@ -124,8 +125,9 @@ struct WrongSign {
   bool by_model = false;
 };
 
-// None where nothing does.
-std::optional<WrongSign> wrong_sign_of(const TorquePair& pair, Index joint) {
+// None where nothing does. `held`: a controller that holds a joint gives torques against each
+// motion, as friction that gives power would.
+std::optional<WrongSign> wrong_sign_of(const TorquePair& pair, Index joint, bool held) {
   WrongSign wrong;
   DataFault& fault = wrong.fault;
   fault.kind = DataFaultKind::kTorqueSign;
@@ -138,7 +140,8 @@ std::optional<WrongSign> wrong_sign_of(const TorquePair& pair, Index joint) {
         "the torque of joint {} has the wrong sign: measured against model torque has slope "
         "{:.2f}, and the opposite sign leaves {:.0f} % of it unexplained instead of {:.0f} %",
         joint + 1, fault.size, 100 * turned->turned, 100 * turned->as_is);
-  } else if (const auto braking = braking_of(pair, joint); braking && *braking < -kClearBraking) {
+  } else if (const auto braking = braking_of(pair, joint);
+             !held && braking && *braking < -kClearBraking) {
     const VectorXd speed = pair.dq.col(joint);
     fault.size = (pair.measured.col(joint) - pair.load.col(joint)).dot(speed) / speed.squaredNorm();
     fault.words = fmt::format(
@@ -162,8 +165,9 @@ void find_torque_sign(const Log& log, const RobotDescription& robot, const Torqu
   const Index joints = pair.measured.cols();
   std::vector<DataFault> found;
   std::vector<char> opposed(static_cast<std::size_t>(joints), 0);
+  const std::vector<char> held = held_joints(pair.q, robot);
   for (Index joint = 0; joint < joints; ++joint) {
-    auto wrong = wrong_sign_of(pair, joint);
+    auto wrong = wrong_sign_of(pair, joint, held[static_cast<std::size_t>(joint)] != 0);
     if (!wrong) continue;
     opposed[static_cast<std::size_t>(joint)] = static_cast<char>(wrong->by_model);
     found.push_back(std::move(wrong->fault));

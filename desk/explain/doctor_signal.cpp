@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/time_words.hpp"
 #include "explain/doctor_checks.hpp"
 #include "signal/quantile.hpp"
 
@@ -93,6 +94,52 @@ bool stands_still(const VectorXd& q) {
   return !(q.maxCoeff() - q.minCoeff() > kFewestSteps * step);
 }
 
+namespace {
+
+// How far a joint may come that is held, rad or m.
+double held_within(const RobotDescription& robot, Index joint) {
+  constexpr double kHeldRad = 0.05;
+  constexpr double kHeldM = 0.005;
+  const JointType type = robot.joints[static_cast<std::size_t>(joint)].joint.type;
+  return type == JointType::kRevolute ? kHeldRad : kHeldM;
+}
+
+// The farthest way within a second by the velocity alone; a sensor's zero does not add up to it.
+double way_by_velocity(const VectorXd& dq, double period_s) {
+  const auto rows = std::max<Index>(1, std::lround(1 / period_s));
+  double farthest = 0;
+  for (Index first = 0; first < dq.size(); first += rows) {
+    const Index count = std::min(rows, dq.size() - first);
+    const VectorXd centred = dq.segment(first, count).array() - dq.mean();
+    farthest = std::max(farthest, std::abs(centred.sum()) * period_s);
+  }
+  return farthest;
+}
+
+}  // namespace
+
+std::vector<char> held_joints(const Log& log, const RobotDescription& robot) {
+  std::vector<char> held = held_joints(log.q, robot);
+  for (std::size_t joint = 0; joint < held.size(); ++joint) {
+    if (held[joint] == 0 || log.dq_derived[joint]) continue;
+    const auto at = static_cast<Index>(joint);
+    if (way_by_velocity(log.dq.col(at), log.period_s) > held_within(robot, at)) held[joint] = 0;
+  }
+  return held;
+}
+
+std::vector<char> held_joints(const Eigen::MatrixXd& q, const RobotDescription& robot) {
+  constexpr double kOthersMove = 10;  // times as far
+  VectorXd way = (q.colwise().maxCoeff() - q.colwise().minCoeff()).transpose();
+  for (Index joint = 0; joint < q.cols(); ++joint) way[joint] /= held_within(robot, joint);
+  const double most = way.size() == 0 ? 0 : way.maxCoeff();
+  std::vector<char> held;
+  for (const double one : way) {
+    held.push_back(static_cast<char>(one < 1 && most >= kOthersMove * one && most > 1));
+  }
+  return held;
+}
+
 bool is_noisy_around(const VectorXd& x, const Burst& burst) {
   constexpr Index kNear = 200;
   constexpr Index kFewest = 30;
@@ -156,8 +203,8 @@ void set_spans(const Log& log, const std::vector<RowSpan>& spans, DataFault& fau
 }
 
 std::string words_of(const FaultSpan& span) {
-  return fmt::format("rows {} to {}, {:.6g} to {:.6g} s", span.first_row, span.last_row,
-                     span.from_s, span.to_s);
+  return fmt::format("rows {} to {}, {} to {} s", span.first_row, span.last_row,
+                     words_of_time(span.from_s), words_of_time(span.to_s));
 }
 
 std::string words_of_spans(const DataFault& fault) {

@@ -6,6 +6,7 @@
 
 #include "explain/data_fault.hpp"
 #include "log/log.hpp"
+#include "robot/robot.hpp"
 
 // What the doctor's checks ask of one signal.
 
@@ -55,6 +56,13 @@ class Rounding {
 // Whether a position flickers between a few values that it is rounded to: the joint stands still,
 // and nothing can be said of how it moves.
 bool stands_still(const Eigen::VectorXd& q);
+
+// Per joint, whether its drive holds it while another one moves: what play, noise and a controller
+// make of a rest shows no sign of a torque, no unit and no encoder that sticks or jumps. `q`: one
+// column per joint.
+std::vector<char> held_joints(const Eigen::MatrixXd& q, const RobotDescription& robot);
+// The same, but for those whose measured velocity says that they move.
+std::vector<char> held_joints(const Log& log, const RobotDescription& robot);
 
 // Whether noise larger than what the signal is rounded to surrounds a burst: then no value of it
 // repeats for long. Neither an encoder's steps nor printed digits are noise, however they vary.

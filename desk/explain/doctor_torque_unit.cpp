@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "explain/doctor_checks.hpp"
+#include "explain/doctor_signal.hpp"
 #include "explain/other_masses.hpp"
 
 namespace offnominal::desk {
@@ -261,7 +262,12 @@ OfAnotherUnit find_torque_unit(const Log& log, const RobotDescription& robot,
     add_fault_of_all(log, told, faults);
     return OfAnotherUnit::kAllJoints;
   }
-  const std::vector<JointOfAnotherUnit> found = joints_of_another_unit(robot, pair, told);
+  std::vector<JointOfAnotherUnit> found = joints_of_another_unit(robot, pair, told);
+  // One torque at rest is another mass, or an offset.
+  const std::vector<char> held = held_joints(pair.q, robot);
+  std::erase_if(found, [&](const JointOfAnotherUnit& one) {
+    return held[static_cast<std::size_t>(one.told.joint)] != 0;
+  });
   add_faults_of_joints(log, found, faults);
   return found.empty() ? OfAnotherUnit::kNone : OfAnotherUnit::kSomeJoints;
 }

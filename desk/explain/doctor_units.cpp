@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "explain/doctor_checks.hpp"
+#include "explain/doctor_signal.hpp"
 #include "explain/list_of_joints.hpp"
 #include "robot/channel_text.hpp"
 #include "robot/units.hpp"
@@ -234,7 +235,9 @@ void mend_velocities(Log& log, const RobotDescription& robot, std::vector<DataFa
   };
   std::vector<Found> groups;
   Index measured = 0;
+  const std::vector<char> held = held_joints(log, robot);
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
+    if (held[static_cast<std::size_t>(joint)] != 0) continue;
     const auto ratio = velocity_ratio(log, joint);
     if (!ratio) continue;
     ++measured;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "explain/doctor_checks.hpp"
+#include "explain/doctor_signal.hpp"
 #include "log/sampling.hpp"
 
 // A measured velocity against the derivative of the position, over stretches of samples: how far
@@ -208,7 +209,9 @@ void mend_strange_velocities(Log& log, const RobotDescription& robot,
     Stranger stranger;
   };
   std::vector<Found> found;
+  const std::vector<char> held = held_joints(log, robot);
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
+    if (held[static_cast<std::size_t>(joint)] != 0) continue;
     if (const auto stranger = stranger_in(log, joint)) found.push_back({joint, *stranger});
   }
   if (found.empty()) return;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/time_words.hpp"
 #include "explain/doctor_checks.hpp"
 #include "explain/doctor_signal.hpp"
 #include "log/sampling.hpp"
@@ -171,9 +172,10 @@ void mend_wrapped(Log& log, const RobotDescription& robot, std::vector<DataFault
     fault.size = range.size;
     fault.at_s = log.t_s[found->first];
     fault.words = fmt::format(
-        "the position of {} is folded into {}: it jumps {} time{}, first at t = {:.6g} s, and goes "
+        "the position of {} is folded into {}: it jumps {} time{}, first at t = {} s, and goes "
         "on as it came",
-        joint_words(joint), range.words, found->count, found->count == 1 ? "" : "s", *fault.at_s);
+        joint_words(joint), range.words, found->count, found->count == 1 ? "" : "s",
+        words_of_time(*fault.at_s));
     const std::string by_hand = fmt::format(
         "log positions that count turns, or unfold the column before: add {:.6g} after each jump "
         "down and take it off after each jump up",

@@ -12,6 +12,7 @@
 
 #include "common/error.hpp"
 #include "common/nearest.hpp"
+#include "common/time_words.hpp"
 #include "log/channel_needs.hpp"
 #include "robot/channel_text.hpp"
 #include "robot/units.hpp"
@@ -229,10 +230,10 @@ TimedColumns joined_files(std::vector<TimedColumns> files, Index fewest, double 
     joined.time.rows.assign(base.time.rows.begin() + begin, base.time.rows.begin() + end);
   }
   into.remarks.push_back(fmt::format(
-      "{} files joined on the samples of {}: {} of its {}, from {:.6g} to {:.6g} s; the others by "
+      "{} files joined on the samples of {}: {} of its {}, from {} to {} s; the others by "
       "straight lines between theirs",
-      files.size(), base.columns.file, end - begin, clock.size(), joined.time.t_s[0],
-      joined.time.t_s[end - begin - 1]));
+      files.size(), base.columns.file, end - begin, clock.size(), words_of_time(joined.time.t_s[0]),
+      words_of_time(joined.time.t_s[end - begin - 1])));
   into.place_of = [place_of = base.columns.place_of, begin](Index row) {
     return place_of(row + begin);
   };

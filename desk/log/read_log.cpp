@@ -14,6 +14,7 @@
 #include "common/error.hpp"
 #include "common/input_name.hpp"
 #include "common/nearest.hpp"
+#include "common/time_words.hpp"
 #include "log/channel_needs.hpp"
 #include "log/column_values.hpp"
 #include "log/hold_map.hpp"
@@ -290,11 +291,12 @@ class Assembler {
       log_.q.col(joint) = q;
       const bool is_turn = fold.range < 2 * std::numbers::pi + 1;
       columns_.remarks.push_back(fmt::format(
-          "the {} is folded into {}: it jumps by {} {} time{}, first at t = {:.6g} s, and was "
+          "the {} is folded into {}: it jumps by {} {} time{}, first at t = {} s, and was "
           "unfolded",
           words_of("position", map.position_of, joint),
           is_turn ? "a turn" : "the 25 rad of the MIT protocol", is_turn ? "2 pi" : "25 rad",
-          fold.folds.size(), fold.folds.size() == 1 ? "" : "s", log_.t_s[fold.folds.front()]));
+          fold.folds.size(), fold.folds.size() == 1 ? "" : "s",
+          words_of_time(log_.t_s[fold.folds.front()])));
     }
   }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/time_words.hpp"
 #include "log/read_log.hpp"
 #include "signal/differentiate.hpp"
 #include "signal/fold.hpp"
@@ -189,7 +190,7 @@ void check_size(const Log& log, const Sampling& sampling) {
   const double even = (log.t_s[rows - 1] - log.t_s[0]) / period_s;
   if (even <= std::max(kMost * static_cast<double>(rows), kAlways)) return;
   throw InputError(
-      {log.file, fmt::format("t = {:.6g} s", sampling.largest_gap_at_s),
+      {log.file, fmt::format("t = {} s", words_of_time(sampling.largest_gap_at_s)),
        fmt::format("a gap of {:.4g} s, and {} rows where there should be {:.0f}",
                    sampling.largest_gap_s, rows, even),
        fmt::format("gaps up to {:g} s that leave a quarter of the rows, one each {:.4g} s",

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/time_words.hpp"
 #include "log/column_values.hpp"
 #include "log/usable_rows.hpp"
 #include "robot/units.hpp"
@@ -56,9 +57,10 @@ void leave_out_rows_out_of_time(NamedColumns& columns, FileTime& time) {
     ++first;
   }
   const std::string place = columns.place_of(first) + ", time";
-  const std::string found =
-      first == 0 ? fmt::format("{:.9g} s", time.t_s[first])
-                 : fmt::format("{:.9g} s after {:.9g} s", time.t_s[first], time.t_s[first - 1]);
+  const std::string found = first == 0
+                                ? fmt::format("{} s", words_of_time(time.t_s[first]))
+                                : fmt::format("{} s after {} s", words_of_time(time.t_s[first]),
+                                              words_of_time(time.t_s[first - 1]));
   if (static_cast<double>(left_out) > kMostRowsOutOfTime * static_cast<double>(rows)) {
     throw InputError({columns.file, place, found, "time that ascends from sample to sample",
                       "cut the recording where its clock begins anew, or say its step: --period"});

@@ -55,6 +55,40 @@ TEST(DoctorByModel, NamesATorqueThatComesUpFromNothing) {
   EXPECT_LT(start->spans.at(0).to_s, 0.4);
 }
 
+// A joint that its controller holds against what the others do: a torque against each of its small
+// motions, positions that stay for long and then move on by a step.
+TEST(DoctorByModel, FindsNoFaultOfAJointThatIsHeld) {
+  const RobotDescription robot = test::serial_arm(3);
+  Log log = test::record(robot, {.duration_s = 20, .torque_noise_nm = 0.01, .seed = 3});
+  constexpr double kCount = 0.002;
+  constexpr double kWay = 0.006;
+  for (Index i = 0; i < log.sample_count(); ++i) {
+    const double t = log.t_s[i];
+    const double slow = std::sin(0.9 * t) + 0.7 * std::sin(1.7 * t);
+    log.q(i, kSecond) = kCount * std::round(kWay * std::clamp(1.6 * slow, -1.0, 1.0) / kCount);
+    log.dq(i, kSecond) = kWay * (0.9 * std::cos(0.9 * t) + 1.2 * std::cos(1.7 * t));
+    log.tau(i, kSecond) = -30 * log.dq(i, kSecond);
+  }
+  for (const DataFault& fault : examine(log, robot)) {
+    EXPECT_NE(fault.joint, kSecond) << fault.words;
+    EXPECT_FALSE(fault.joint < 0 && fault.certain) << fault.words;
+  }
+}
+
+// An encoder that is dead from a moment on at which the joint had hardly moved.
+TEST(DoctorByModel, FindsADeadEncoderWhoseVelocityGoesOn) {
+  const RobotDescription robot = test::serial_arm(3);
+  Log log = test::record(robot, {.duration_s = 20, .torque_noise_nm = 0.01, .seed = 3});
+  const double start = log.q(0, kSecond);
+  for (Index i = 0; i < log.sample_count(); ++i) {
+    const double t = std::min(log.t_s[i], 1.0);
+    log.q(i, kSecond) = start + 0.02 * std::sin(5 * t);
+  }
+  log.dq_derived[kSecond] = false;
+  EXPECT_NE(fault_in(examine(log, robot), DataFaultKind::kStuck), nullptr)
+      << all_words(examine(log, robot));
+}
+
 // A torque of a few dozen steps, whose largest is held as long as it would be below its peak.
 Log rounded_recording(const RobotDescription& robot, double cut_off) {
   Log log = test::record(robot, {.duration_s = 20, .torque_noise_nm = 0.01, .seed = 3});
