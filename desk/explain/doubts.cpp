@@ -18,11 +18,12 @@ bool falls(const HeldOutSquares& joint) {
   return rises(std::sqrt(joint.after), std::sqrt(joint.before), std::sqrt(joint.torque));
 }
 
-// Something of that joint's own has changed. What it carries is another matter: others may show it.
+// Something of that joint's own is to be changed. What it carries is another matter: others may
+// show it.
 bool is_changed_itself(const Explanation& e, Eigen::Index joint) {
   return std::any_of(e.found.begin(), e.found.end(),
                      [&](const Finding& one) {
-                       return one.what.joint == joint &&
+                       return one.what.joint == joint && is_written(e, one.what) &&
                               info_of(one.what.kind)->action != EffectAction::kPointMass;
                      }) ||
          std::any_of(e.shifts.begin(), e.shifts.end(),

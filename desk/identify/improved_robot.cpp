@@ -47,7 +47,7 @@ std::string why_unwritable(const Effect<double>& effect, JointType type) {
 // from a number that is far off says that the end is right.
 HeldNumber held_number(const Relinearised& found, Index column, double start, double asked,
                        double beyond, const PhysicalRange& range) {
-  constexpr double kOfTheWay = 0.1;
+  constexpr double kOfTheWay = 0.25;
   const Data& data = *found.data;
   const NuisanceTerm& term = data.nuisance.terms[static_cast<std::size_t>(column)];
   const double rms =

@@ -204,6 +204,23 @@ TEST(CommandToAdd, SaysWhatAddWillDoubt) {
   EXPECT_THAT(findings_text(e, names), Not(HasSubstr("add --all-found")));
 }
 
+// What was found there stands in a class, and is not written.
+TEST(CommandToAdd, DoubtsNoJointThatLosesLittleAndThatItLeavesAsItIs) {
+  Explanation e = found_with_rest(1.1);
+  e.joints[0].holdout_before = 8;
+  e.joints[0].holdout_after = 4;
+  JointErrors other = e.joints[0];
+  other.joint = 1;
+  other.holdout_after = 8.01;
+  e.joints.push_back(other);
+  Finding undecided;
+  undecided.what = {EffectKind::kCoulombFriction, 1};
+  e.found.push_back(undecided);
+  EXPECT_EQ(doubts_of(e, held_out_squares(e)).size(), 1U) << "it is to be written";
+  e.ambiguous.push_back({undecided.what, {EffectKind::kHysteresis, 1}});
+  EXPECT_TRUE(doubts_of(e, held_out_squares(e)).empty());
+}
+
 TEST(Doubted, IsAJointThatIsChangedAndDoesNotGainOrAnotherThatLoses) {
   EXPECT_FALSE(is_doubted({1.0, 0.9, 100}, true));
   EXPECT_TRUE(is_doubted({1.0, 1.0, 100}, true));
