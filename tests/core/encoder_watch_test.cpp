@@ -38,6 +38,31 @@ TEST(EncoderWatch, SeesAJumpAtAnyRateOfSamples) {
   }
 }
 
+// What the encoder says is refused for two ticks, and then taken: elsewhere by more than the joint
+// ever went in as many. A joint that only moved on is where it can be.
+TEST(EncoderWatch, SeesAJumpOverTicksThatWereRefused) {
+  for (const double jump : {0.0, 0.1}) {
+    const MovingReading joint{.rate_hz = 250, .jump = jump};
+    EncoderWatch<double> watch = MovingReading{.rate_hz = 250}.watched(10.24);
+    look_at(watch, joint.reading(2564), 5);
+    for (std::uint32_t i = 2565; i < 2600; ++i) look_at(watch, joint.reading(i));
+    EXPECT_EQ(has_jumped(watch), jump > 0);
+    if (jump > 0) {
+      EXPECT_NEAR(watch.jump, jump, 0.03);
+    }
+  }
+}
+
+// A brake that takes hold while nobody looks.
+TEST(EncoderWatch, TakesNoStopOverTicksWithoutASampleForAJump) {
+  const MovingReading joint{};
+  EncoderWatch<double> watch = joint.watched(9.45);  // near the middle of its way, at full speed
+  const double held = joint.reading(9452);
+  look_at(watch, held, 8);
+  for (int i = 0; i < 20; ++i) look_at(watch, held);
+  EXPECT_FALSE(has_jumped(watch));
+}
+
 // A jump of less than the way of a tick at the highest speed, 0.01 rad here: only a reading goes on
 // as before. A joint that is knocked into another speed does not.
 TEST(EncoderWatch, TellsASmallJumpFromAKnock) {

@@ -39,6 +39,7 @@ SeenState seen(const Vector<kOwnRegressors, double>& own, double torque, int blo
   }
   joint.any.evidence = 0.45 * blocks * torque * torque / 0.09;
   joint.moved = state.blocks = state.moved = static_cast<std::uint32_t>(blocks);
+  state.alarmed = {false, true};
   return state;
 }
 Vector<kOwnRegressors, double> only(OwnRegressor which, double value) {
@@ -82,6 +83,26 @@ TEST(IsolationVerdict, DoesNotTakeForTheFaultWhatIsTooSmallForTheAlarm) {
   };
   EXPECT_EQ(kind(0.5), FaultKind::kFriction);
   EXPECT_EQ(kind(0.02), FaultKind::kUnknown);
+}
+
+// One joint's alarm is not the doing of another that never had one, however far that is off.
+TEST(IsolationVerdict, DoesNotBlameAJointThatWasNeverDetected) {
+  SeenState state = seen(only(kSignRegressor, 1), 2);
+  EXPECT_EQ(contest_of(state, scales_of(1), kTimes).kind, FaultKind::kFriction);
+  state.alarmed = {true, false};
+  EXPECT_EQ(contest_of(state, scales_of(1), kTimes).kind, FaultKind::kUnknown);
+}
+
+TEST(IsolationSize, OfAPayloadIsThatOfABody) {
+  const auto is_body = [](double mass, double deviation) {
+    return detail::is_body<2, double>({mass, deviation, 0}, 0.62);
+  };
+  EXPECT_TRUE(is_body(0.5, 0.1));
+  EXPECT_TRUE(is_body(0.16, 0.08));
+  EXPECT_FALSE(is_body(0.001, 0.002));
+  EXPECT_TRUE(is_body(-0.5, 0.1));
+  EXPECT_FALSE(is_body(-0.5, 0.3));
+  EXPECT_FALSE(is_body(-0.99, 0.3)) << "more than the link has";
 }
 
 TEST(IsolationVerdict, WidensTheRangeOfASizeThatLeavesMoreThanNoise) {

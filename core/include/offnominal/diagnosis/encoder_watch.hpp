@@ -119,6 +119,24 @@ void judge_jump(EncoderWatch<Scalar>& watch, Scalar step, Scalar second, bool wa
   watch.candidate = beyond && watch.since_jump > 0 ? second : Scalar(0);
 }
 
+// A sample behind a few ticks that were not seen: whether it is neither where the joint was, nor
+// where it was going, nor between, by more than a tick or two of its fastest and than any force
+// does to it in as many. What stops meanwhile has not jumped.
+template <typename Scalar>
+void judge_gap(EncoderWatch<Scalar>& watch, Scalar q, std::uint32_t ticks) {
+  const bool warm = watch.known_for > kEncoderWarmUp && watch.steps > kStepsWarmUp;
+  if (!warm || watch.filled < 2 || ticks > kEncoderLag) return;
+  const auto passed = static_cast<Scalar>(ticks);
+  const Scalar last = position_before(watch, 0);
+  const Scalar going = last + passed * (last - position_before(watch, 1));
+  const Scalar off = q - std::clamp(q, std::min(last, going), std::max(last, going));
+  const Scalar steps = 3 * watch.way[2] / static_cast<Scalar>(kEncoderLag);
+  const Scalar bent = kBeyondMotion<Scalar> * watch.jerk[2] * passed * (passed + 1);
+  if (!(Eigen::numext::abs(off) > std::max(steps, bent))) return;
+  watch.jump = q - going;
+  watch.since_jump = 0;
+}
+
 template <typename Scalar>
 void count_stop(EncoderWatch<Scalar>& watch, Scalar step, std::uint32_t ticks) {
   if (step == 0) {
@@ -145,16 +163,20 @@ void judge_stop(EncoderWatch<Scalar>& watch, bool warm) {
 }  // namespace detail
 
 // Takes the next sample's position, rad or m, `ticks` >= 1 after the last one. Where samples are
-// missing between them, what spans them is not judged.
+// missing between them, or were refused because of what the encoder said, what spans them is judged
+// by how far the joint has come.
 template <typename Scalar>
 void look_at(EncoderWatch<Scalar>& watch, Scalar q, std::uint32_t ticks = 1) {
   using detail::position_before;
-  if (ticks != 1) watch.filled = 0;
+  watch.since_jump = detail::more(watch.since_jump, ticks);
+  if (ticks != 1) {
+    detail::judge_gap(watch, q, ticks);
+    watch.filled = 0;
+  }
   const Scalar last = watch.q[watch.newest];
   watch.newest = static_cast<std::uint8_t>((watch.newest + 1U) % watch.q.size());
   watch.q[watch.newest] = q;
   watch.filled = detail::more(watch.filled);
-  watch.since_jump = detail::more(watch.since_jump, ticks);
   const Scalar step = q - last;
   if (watch.known_for > 0) detail::count_stop(watch, step, ticks);
   detail::count_slow(watch, ticks);

@@ -49,7 +49,7 @@ class Isolation {
     state.started = false;
     state.newest = state.filled = state.pending = 0;
     const std::size_t count = scales_.thresholds.size();
-    size_for(count, state.baselines, state.encoders, state.joints);
+    size_for(count, state.baselines, state.encoders, state.joints, state.alarmed);
     for (std::size_t i = 0; i < count; ++i) {
       state.encoders[i] = {};
       state.baselines[i] = {};
@@ -107,6 +107,9 @@ class Isolation {
     if (!ended || state.pending > 0) return;
     state.judging = true;
     state.next_part = 0;
+    for (std::size_t i = 0; i < state.alarmed.size(); ++i) {
+      state.alarmed[i] = output.detector.joints[i].latched;
+    }
   }
 
  private:
@@ -380,13 +383,18 @@ class Isolation {
   void answer(State& state) const {
     const Contest<Scalar>& contest = state.contest;
     const Scalar since = since_detection(state);
-    const auto measure = detail::measure_of(state, scales_, contest.kind, contest.joint);
+    auto measure = detail::measure_of(state, scales_, contest.kind, contest.joint);
     FaultDiagnosis<Scalar>& diagnosis = state.diagnosis;
     diagnosis.kind = contest.kind;
+    diagnosis.confidence = contest.share();
+    if (contest.kind == FaultKind::kPayload && !detail::is_body(measure, scales_.last_mass)) {
+      diagnosis.kind = FaultKind::kUnknown;
+      diagnosis.confidence = 1 - contest.share();
+      measure = detail::measure_of(state, scales_, FaultKind::kUnknown, contest.joint);
+    }
     diagnosis.joint = contest.joint;
     diagnosis.size = measure.size;
     diagnosis.deviation = measure.deviation;
-    diagnosis.confidence = contest.share();
     diagnosis.time_s = static_cast<double>(state.tick) * static_cast<double>(period_s_);
     Scalar squares{};
     for (const JointEvidence<Scalar>& joint : state.joints) squares += joint.squares;

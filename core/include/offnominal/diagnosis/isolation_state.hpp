@@ -79,6 +79,7 @@ struct IsolationState {
   // A verdict in the making: which of its parts is next, none where it is made.
   std::uint8_t next_part = 0;
   bool judging = false;
+  PerJoint<N, bool> alarmed{};  // joints that had been detected when it began
   Contest<Scalar> contest;
   FaultDiagnosis<Scalar> diagnosis;
 };

@@ -176,14 +176,16 @@ template <int N, typename Scalar>
 }
 
 // Of the evidence for a hypothesis what counts where its torque on a joint, at most `largest`, was
-// never near the threshold that was crossed: an error of the model, not the fault.
+// never near the threshold that was crossed, or where another joint's was: an error of the model,
+// not the fault.
 template <int N, typename Scalar>
 [[nodiscard]] Scalar of_alarm(Scalar evidence, Scalar largest,
+                              const IsolationState<N, Scalar>& state,
                               const IsolationScales<N, Scalar>& scales, std::size_t joint) {
   constexpr auto kNear = static_cast<Scalar>(0.05);
   constexpr auto kMost = static_cast<Scalar>(10);  // nats against it
   const Scalar least = kNear * scales.thresholds[joint];
-  const Scalar torque = Eigen::numext::abs(largest);
+  const Scalar torque = state.alarmed[joint] ? Eigen::numext::abs(largest) : Scalar(0);
   if (!(torque < least)) return evidence;
   const Scalar share = std::max(2 * torque / least - 1, Scalar(0));
   return share * evidence - (1 - share) * kMost;
@@ -205,9 +207,9 @@ void enter_friction(const IsolationState<N, Scalar>& state,
   const Scalar evidence = log_sum(dry.evidence, both.evidence) +
                           beyond(-scale * dry.theta[0], most, scale * scale * dry.covariance(0, 0));
   const Scalar largest = dry.theta[0] * joint.largest_own[kSignRegressor];
-  contest.enter(
-      FaultKind::kFriction, index,
-      of_alarm(evidence, largest, scales, index) + log_prior<Scalar>(prior, state.joints.size()));
+  contest.enter(FaultKind::kFriction, index,
+                of_alarm(evidence, largest, state, scales, index) +
+                    log_prior<Scalar>(prior, state.joints.size()));
 }
 
 // No drive loses more than all of its torque.
@@ -221,14 +223,14 @@ void enter_drive(const IsolationState<N, Scalar>& state, const IsolationScales<N
   const Scalar evidence = lost.evidence + beyond(scale * lost.theta[0], Scalar(1),
                                                  scale * scale * lost.covariance(0, 0));
   const Scalar largest = lost.theta[0] * joint.largest_own[kTorqueRegressor];
-  contest.enter(
-      FaultKind::kLostTorque, index,
-      of_alarm(evidence, largest, scales, index) + log_prior<Scalar>(kPriorLostTorque, count));
+  contest.enter(FaultKind::kLostTorque, index,
+                of_alarm(evidence, largest, state, scales, index) +
+                    log_prior<Scalar>(kPriorLostTorque, count));
   const auto offset = fit_of(part_of<kOneRegressor>(joint.own));
   const Scalar constant = offset.theta[0] * joint.largest_own[kOneRegressor];
-  contest.enter(
-      FaultKind::kOffset, index,
-      of_alarm(offset.evidence, constant, scales, index) + log_prior<Scalar>(kPriorOffset, count));
+  contest.enter(FaultKind::kOffset, index,
+                of_alarm(offset.evidence, constant, state, scales, index) +
+                    log_prior<Scalar>(kPriorOffset, count));
 }
 
 // Of a body on the last link that is farther than `reach_m` from its frame: nats against it.
@@ -268,7 +270,7 @@ void enter_holding_friction(const IsolationState<N, Scalar>& state,
                             Scalar stands, Contest<Scalar>& contest) {
   const JointEvidence<Scalar>& joint = state.joints[index];
   const Scalar more = std::max(joint.held.evidence, Scalar(0)) + std::max(stands, Scalar(0));
-  if (!(more > 0)) return;
+  if (!(more > 0) || !state.alarmed[index]) return;
   const auto dry = fit_of(part_of<kSignRegressor>(joint.own));
   const Scalar size = scales.own(kSignRegressor, static_cast<Eigen::Index>(index)) * dry.theta[0];
   if (!(size > 0) || !holds(joint.largest_held, size, index, scales)) return;
