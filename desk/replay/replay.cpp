@@ -170,8 +170,11 @@ std::string words_of(const Replay& replay) {
     words = fmt::format("Nominal: the residual stays below its threshold, at most {:.1f} % of it.",
                         100 * replay.max_error_to_threshold);
   }
-  for (const IsolatedFault& fault : replay.faults)
+  for (std::size_t i = 0; i < replay.faults.size(); ++i) {
+    const IsolatedFault& fault = replay.faults[i];
+    if (i > 0) words += fmt::format(" Detected anew at {:.3f} s:", fault.detection_time_s);
     words += " " + words_of(fault, replay.joint_names) + ".";
+  }
   if (!replay.blind.empty()) words += blind_words(replay);
   for (const auto& [status, refusals] : replay.refused) {
     words += fmt::format(" {} refused ({}, first at {:.3f} s).",

@@ -132,11 +132,23 @@ class ReplayCollector {
   std::vector<AlarmCollector> joints_;
 };
 
+bool is_same(const IsolatedFault& one, const IsolatedFault& other) {
+  return one.kind == other.kind && one.joint == other.joint &&
+         std::signbit(one.size) == std::signbit(other.size);
+}
+
 }  // namespace
 
 void replay_monitor(const RobotDescription& robot, const Log& log, Replay& result) {
-  const auto watch = make_watch(
-      robot, log.period_s, [&](const IsolatedFault& fault) { result.faults.push_back(fault); });
+  // One that lasts is detected again and again; an answer that was decided says more.
+  const auto take = [&](const IsolatedFault& fault) {
+    if (result.faults.empty() || !is_same(result.faults.back(), fault)) {
+      result.faults.push_back(fault);
+    } else if (fault.decided && !result.faults.back().decided) {
+      result.faults.back() = fault;
+    }
+  };
+  const auto watch = make_watch(robot, log.period_s, take, Detections::kEach);
   ReplayCollector collector(log.sample_count(), robot.joint_count(), result);
   for (Eigen::Index i = 0; i < log.sample_count(); ++i) {
     const Watch::Sample sample{log.q.row(i).transpose(), log.dq.row(i).transpose(),

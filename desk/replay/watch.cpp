@@ -63,7 +63,9 @@ class FaultNamer<TorqueSpace> {
   template <typename Monitored>
   void take(const Monitored& monitor, const typename Monitored::State& state,
             const typename Monitored::Output& output, double t_s) {
-    if (!state_->triggered && output.detector.latched) detection_s_ = t_s;
+    const bool is_new =
+        !state_->triggered || state_->detection_tick != output.detector.detection_tick;
+    if (is_new && output.detector.latched) detection_s_ = t_s;
     isolation_.step(monitor.model(), state.sample, state.tick, output, *state_);
     if (state_->diagnosis.time_s != answer_at_) answer_s_ = t_s;
     answer_at_ = state_->diagnosis.time_s;
@@ -73,6 +75,7 @@ class FaultNamer<TorqueSpace> {
     const std::optional<IsolatedFault> last = answer();
     if (last && on_fault_) on_fault_(*last);
   }
+  [[nodiscard]] const FaultDiagnosis<double>& said() const { return state_->diagnosis; }
   [[nodiscard]] std::optional<IsolatedFault> answer() const {
     const FaultDiagnosis<double>& said = state_->diagnosis;
     if (!state_->triggered || said.time_s <= 0) return std::nullopt;
@@ -109,8 +112,10 @@ bool counts_time(const RobotDescription& robot) {
 template <typename Space>
 class WatchOf final : public Watch {
  public:
-  WatchOf(const RobotDescription& robot, double period_s, const OnFault& on_fault)
+  WatchOf(const RobotDescription& robot, double period_s, const OnFault& on_fault,
+          Detections detections)
       : robot_(robot),
+        detections_(detections),
         counts_time_(counts_time(robot)),
         config_(config_of(robot, period_s)),
         at_start_(first_output<Space>(robot.joints.size())),
@@ -142,8 +147,12 @@ class WatchOf final : public Watch {
     if (afresh) {
       forget();
       namer_.begin_afresh();
+      quiet_ticks_ = 0;
     } else if (missed_ == 0) {
       namer_.take(monitor_, *state_, output_, t_s);
+      if constexpr (std::is_same_v<Space, TorqueSpace>) {
+        if (detections_ == Detections::kEach) arm_again();
+      }
     }
     missed_ = 0;
     say();
@@ -182,6 +191,32 @@ class WatchOf final : public Watch {
     return status;
   }
 
+  // Of a fault that was named: after so long without an alarm, or where another joint has its first
+  // long after, which a fault of one joint alone does not touch, the detection is taken back, as an
+  // operator does, and what comes then is named by itself.
+  void arm_again() {
+    constexpr double kQuietS = 5;
+    quiet_ticks_ = output_.detector.level ? 0 : quiet_ticks_ + 1;
+    if (!output_.detector.latched || !namer_.said().decided) return;
+    const double quiet_s = static_cast<double>(quiet_ticks_) * config_.estimator.period_s;
+    if (quiet_s < kQuietS && !is_of_another_joint()) return;
+    namer_.finish();
+    clear_latch(state_->detector);
+    output_.detector.latched = false;
+    quiet_ticks_ = 0;
+  }
+
+  [[nodiscard]] bool is_of_another_joint() const {
+    constexpr double kLaterS = 2;
+    const auto& said = namer_.said();
+    const bool is_of_one = said.kind == FaultKind::kFriction ||
+                           said.kind == FaultKind::kLostTorque || said.kind == FaultKind::kOffset;
+    const auto& joints = output_.detector.joints;
+    return is_of_one && std::any_of(joints.begin(), joints.end(), [&](const auto& joint) {
+             return joint.latched && joint.detection_time_s > said.time_s + kLaterS;
+           });
+  }
+
   // What is said of the sample that it begins afresh with: no error yet, and the threshold that
   // was.
   void forget() {
@@ -211,6 +246,7 @@ class WatchOf final : public Watch {
   }
 
   RobotDescription robot_;
+  Detections detections_;
   bool counts_time_;
   MonitorConfig<kRuntimeJoints, double, Space> config_;
   Monitored monitor_;
@@ -220,18 +256,19 @@ class WatchOf final : public Watch {
   Output output_;
   FaultNamer<Space> namer_;
   Watched said_;
-  std::int64_t missed_ = 0;  // in a row: refused and missing
+  std::int64_t missed_ = 0;       // in a row: refused and missing
+  std::int64_t quiet_ticks_ = 0;  // in a row without an alarm
   std::uint64_t ticks_ = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<Watch> make_watch(const RobotDescription& robot, double period_s,
-                                  const Watch::OnFault& on_fault) {
+                                  const Watch::OnFault& on_fault, Detections detections) {
   if (robot.estimator.space == EstimatorSpace::kTorque) {
-    return std::make_unique<WatchOf<TorqueSpace>>(robot, period_s, on_fault);
+    return std::make_unique<WatchOf<TorqueSpace>>(robot, period_s, on_fault, detections);
   }
-  return std::make_unique<WatchOf<AccelerationSpace>>(robot, period_s, on_fault);
+  return std::make_unique<WatchOf<AccelerationSpace>>(robot, period_s, on_fault, detections);
 }
 
 }  // namespace offnominal::desk

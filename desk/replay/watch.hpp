@@ -34,15 +34,15 @@ struct Watched {
   double weight_norm = 0;
   bool level = false;                                               // beyond the threshold now
   std::array<bool, static_cast<std::size_t>(kMaxJoints)> levels{};  // of each, in torque space
-  bool latched = false;                                             // was beyond, ever
+  bool latched = false;  // was beyond, ever, or since the detection was taken back
   int first_joint = -1;  // from 0, that was first; -1: none, or one threshold of all
 };
 
 class Watch {
  public:
   using Sample = JointSample<kRuntimeJoints, double>;
-  // Told each answer of isolation when no more is to come of it: the monitor begins afresh, or
-  // ends.
+  // Told each answer of isolation when no more is to come of it: the monitor begins afresh, takes
+  // its detection back, or ends.
   using OnFault = std::function<void(const IsolatedFault& fault)>;
 
   virtual ~Watch() = default;
@@ -60,9 +60,14 @@ class Watch {
   virtual void finish() = 0;
 };
 
+// Whether a detection stays until the monitor begins afresh, as on a controller, or is taken back
+// when the fault is over or another one begins, so that each is named.
+enum class Detections { kFirst, kEach };
+
 // Of a robot with a bound, for samples every period_s. Throws InputError where a setting does not
 // go with it.
 [[nodiscard]] std::unique_ptr<Watch> make_watch(const RobotDescription& robot, double period_s,
-                                                const Watch::OnFault& on_fault);
+                                                const Watch::OnFault& on_fault,
+                                                Detections detections = Detections::kFirst);
 
 }  // namespace offnominal::desk
