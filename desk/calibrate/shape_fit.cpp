@@ -115,11 +115,13 @@ struct Limits {
   VectorXd lowest;
   VectorXd price;
   std::optional<VectorXd> highest;
+  Index points = 0;  // of a table
 };
 
 Limits limits_of(const BoundShape& shape, const CoefficientRange& range, Index unknowns,
                  bool finds_velocity_error) {
   Limits limits{VectorXd::Constant(unknowns, range.lowest), VectorXd::Ones(unknowns), {}};
+  if (shape.settings.kind == BoundSettings::Kind::kTable) limits.points = shape.size;
   if (shape.settings.kind == BoundSettings::Kind::kTable && range.highest > 0) {
     limits.highest = VectorXd::Constant(unknowns, range.highest);
   }
@@ -132,13 +134,22 @@ Limits limits_of(const BoundShape& shape, const CoefficientRange& range, Index u
   return limits;
 }
 
+// A table that is lower at one point than at both of its neighbours says that a joint is quieter in
+// a narrow band of speeds: so do a few passes through it, and the next ones not. `points`: of the
+// table, which the unknown numbers begin with.
+void fill_dips(Index points, VectorXd& c) {
+  for (Index k = 1; k + 1 < points; ++k) c[k] = std::max(c[k], std::min(c[k - 1], c[k + 1]));
+}
+
 VectorXd tightest_without(const std::vector<FoldRows>& folds, const Turn& turn,
                           const Limits& limits) {
   ThresholdParts parts;
   for (std::size_t i = 0; i < folds.size(); ++i) {
     if (!turn.leaves_out(i)) parts.emplace_back(folds[i].rows);
   }
-  return tightest(parts, limits.lowest, limits.price, limits.highest);
+  VectorXd c = tightest(parts, limits.lowest, limits.price, limits.highest);
+  fill_dips(limits.points, c);
+  return c;
 }
 
 // Row 0 of a recording is the start of its run, where there is no error and may be no threshold.

@@ -8,25 +8,26 @@
 namespace offnominal::desk {
 namespace {
 
+// With the sign that `factor` gives it.
 std::string range_of(const IsolatedFault& fault, double factor, const std::string& unit) {
-  const double size = factor * std::abs(fault.size);
-  const double two = 2 * factor * fault.deviation;
+  const double size = factor * fault.size;
+  const double two = 2 * std::abs(factor) * fault.deviation;
   return fmt::format("{:.3g} {} ({:.3g} to {:.3g})", size, unit, size - two, size + two);
 }
 
 std::string what_it_is(const IsolatedFault& fault) {
   const bool more = fault.size >= 0;
+  const double sign = more ? 1 : -1;
   switch (fault.kind) {
     case FaultKind::kFriction:
-      return (more ? "friction up by " : "friction down by ") + range_of(fault, 1, fault.unit);
+      return (more ? "friction up by " : "friction down by ") + range_of(fault, sign, fault.unit);
     case FaultKind::kLostTorque:
-      return (more ? "torque lost, " : "torque gained, ") + range_of(fault, 100, "%") +
+      return (more ? "torque lost, " : "torque gained, ") + range_of(fault, sign * 100, "%") +
              " of what the drive is told";
     case FaultKind::kOffset:
-      return fmt::format("a constant torque of {}{} acts on it", more ? "" : "-",
-                         range_of(fault, 1, fault.unit));
+      return fmt::format("a constant torque of {} acts on it", range_of(fault, 1, fault.unit));
     case FaultKind::kPayload:
-      return (more ? "payload gained, " : "payload lost, ") + range_of(fault, 1, fault.unit);
+      return (more ? "payload gained, " : "payload lost, ") + range_of(fault, sign, fault.unit);
     case FaultKind::kContact:
       return fmt::format("contact with its link, torques of joints up to {:.3g} {}",
                          std::abs(fault.size), fault.unit);

@@ -186,6 +186,21 @@ ordered_json to_json(const SilResult& result) {
   return json;
 }
 
+// Of several faults that one which began last before the detection.
+std::string detected_words(const SilResult& result) {
+  const double at_s = *result.run.detection_time_s;
+  double begin_s = *result.run.fault_time_s;
+  for (const sim::FaultEvent& fault : result.faults) {
+    if (fault.begin_s <= at_s) begin_s = std::max(begin_s, fault.begin_s);
+  }
+  if (result.faults.size() < 2) {
+    return fmt::format("The fault is detected {:.3f} s after it began.", at_s - begin_s);
+  }
+  return fmt::format(
+      "The first detection is {:.3f} s after a fault began, the one at {:g} s of {} faults.",
+      at_s - begin_s, begin_s, result.faults.size());
+}
+
 std::string sentence_of(const SilResult& result) {
   const paper::ExperimentResult& run = result.run;
   std::string words;
@@ -200,8 +215,7 @@ std::string sentence_of(const SilResult& result) {
                     static_cast<int>(result.fault));
   } else if (run.detection_time_s && run.fault_time_s &&
              *run.detection_time_s >= *run.fault_time_s) {
-    words = fmt::format("The fault is detected {:.3f} s after it began.",
-                        *run.detection_time_s - *run.fault_time_s);
+    words = detected_words(result);
   } else if (run.detection_time_s) {
     words = "There is an alarm while nothing is wrong.";
   } else if (run.fault_time_s) {
