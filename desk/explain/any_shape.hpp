@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "explain/found_model.hpp"
+#include "explain/search.hpp"
 
 namespace offnominal::desk {
 

@@ -234,12 +234,13 @@ class Explainer {
     return fitted_robot(found, result, true);
   }
 
-  // As run() does in the end.
-  void keep_sure(const Explanation& result, FoundModel& found) const {
+  // Without names of unsure size, as run() does in the end.
+  [[nodiscard]] FoundModel sure_of(FoundModel found, const Explanation& result) const {
     Sizes sizes;
     do {
       sizes = sizes_of(fitted_robot(found, result, false));
     } while (gives_one_up(sizes, found));
+    return found;
   }
 
   // Whether a name was taken back, or gave its place to a simpler one.
@@ -258,17 +259,22 @@ class Explainer {
     tell("asking how far the links' numbers are off");
     const NuisanceOptions usual = setting_.nuisance;
     const auto shares = wider_link_shares(robot_, *setting_.data, usual, options_.threads);
-    // What names of unsure size have taken is no gain of the one search over the other.
-    if (!shares.empty()) keep_sure(result, best);
+    FoundModel sure_best = shares.empty() ? FoundModel{} : sure_of(best, result);
     for (const double share : shares) {
       // What the fits point to has to stay where it is until one of them is chosen.
       SearchSetting of_best = set_beside(with_link_share(usual, share));
       FoundModel wide = find(search, result);
-      keep_sure(result, wide);
-      if (is_clearly_better(*setting_.hold_out, wide, best, result.link_share_judged)) {
+      FoundModel sure_wide = sure_of(wide, result);
+      // What names of unsure size have taken is no gain of the one search over the other; that they
+      // were needed is.
+      const HoldOut& held = *setting_.hold_out;
+      const bool judged = result.link_share_judged;
+      if (is_clearly_better(held, wide, best, judged) ||
+          is_clearly_better(held, sure_wide, sure_best, judged)) {
         result.link_share = share;
         result.link_share_judged = true;
         best = std::move(wide);
+        sure_best = std::move(sure_wide);
       } else {
         setting_ = std::move(of_best);
       }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
@@ -95,14 +94,12 @@ VectorXd values_at(Known known, const VectorXd& at_s, const std::string& name,
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   VectorXd result = VectorXd::Constant(at_s.size(), kNone);
   if (known.t_s.size() < 2) return result;
-  for (const double turn : {2 * std::numbers::pi, 360.0}) {
-    const std::vector<Index> folds = folds_of(known.values, turn);
-    if (folds.empty()) continue;
-    unfold(known.values, turn, folds);
+  const KnownFold fold = known_fold_in_any_unit(known.values);
+  if (!fold.folds.empty()) {
+    unfold(known.values, fold.range, fold.folds);
     remarks.push_back(
-        fmt::format("{} is folded into a turn of {:.4g}, {} times: unfolded before it was joined",
-                    name, turn, folds.size()));
-    break;
+        fmt::format("{} is folded into a range of {:.4g}, {} times: unfolded before it was joined",
+                    name, fold.range, fold.folds.size()));
   }
   const double last_s = known.t_s[known.t_s.size() - 1];
   const Index begin = std::lower_bound(at_s.begin(), at_s.end(), known.t_s[0]) - at_s.begin();

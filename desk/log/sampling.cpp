@@ -45,12 +45,7 @@ std::vector<Index> knots_of(const VectorXd& t_s, double period_s) {
 // A spline through the jump of an angle that is folded into a turn would swing beyond both ends.
 VectorXd position_at(const VectorXd& t_s, const VectorXd& q, const VectorXd& at_s) {
   if (is_constant(q)) return VectorXd::Constant(at_s.size(), q[0]);
-  KnownFold fold = known_fold_of(q);
-  if (fold.folds.empty()) {
-    constexpr double kTurnInDegrees = 360;
-    fold = {kTurnInDegrees, (q.minCoeff() + q.maxCoeff() - kTurnInDegrees) / 2,
-            folds_of(q, kTurnInDegrees)};
-  }
+  const KnownFold fold = known_fold_in_any_unit(q);
   if (!fold.folds.empty()) {
     VectorXd whole = q;
     unfold(whole, fold.range, fold.folds);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "signal/differentiate.hpp"
 #include "signal/fold.hpp"
@@ -115,9 +114,8 @@ Relation relation_of(const VectorXd& position, const VectorXd& velocity, const V
     relation.not_judged = "one of them never changes";
     return relation;
   }
-  for (const double turn : {2 * std::numbers::pi, 360.0}) {
-    if (const auto folds = folds_of(q, turn); !folds.empty()) unfold(q, turn, folds);
-  }
+  const KnownFold fold = known_fold_in_any_unit(q);
+  if (!fold.folds.empty()) unfold(q, fold.range, fold.folds);
   const VectorXd t = t_s.segment(stretch.first, stretch.count);
   return relation_of(smoothed(q, t), smoothed(dq, t));
 }

@@ -53,6 +53,14 @@ KnownFold known_fold_of(const Eigen::Ref<const VectorXd>& x) {
   return fold;
 }
 
+KnownFold known_fold_in_any_unit(const Eigen::Ref<const VectorXd>& x) {
+  constexpr double kTurnInDegrees = 360;
+  KnownFold fold = known_fold_of(x);
+  if (!fold.folds.empty() || x.size() == 0) return fold;
+  return {kTurnInDegrees, (x.minCoeff() + x.maxCoeff() - kTurnInDegrees) / 2,
+          folds_of(x, kTurnInDegrees)};
+}
+
 void unfold(Eigen::Ref<VectorXd> x, double range, const std::vector<Index>& folds) {
   std::vector<double> turns;
   turns.reserve(folds.size());

@@ -22,6 +22,9 @@ struct KnownFold {
 // -12.5 to 12.5, where they are filled. `x` in rad.
 KnownFold known_fold_of(const Eigen::Ref<const Eigen::VectorXd>& x);
 
+// The same of a column whose unit is not known: in rad, or folded into a turn of 360 degrees.
+KnownFold known_fold_in_any_unit(const Eigen::Ref<const Eigen::VectorXd>& x);
+
 // Takes a range off, or adds it, from each of these rows on.
 void unfold(Eigen::Ref<Eigen::VectorXd> x, double range, const std::vector<Eigen::Index>& folds);
 

@@ -1,6 +1,9 @@
 #include "sil/both_ends.hpp"
 
+#include <fmt/format.h>
+
 #include <string>
+#include <vector>
 
 #include "common/error.hpp"
 #include "sil/plant_of.hpp"
@@ -17,11 +20,32 @@ ControllerSettings settings_of(const Scenario& scenario) {
   return settings;
 }
 
+std::string joints_without_gains(const RobotDescription& robot) {
+  std::vector<std::string> joints;
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const RobotJoint& joint = robot.joints[i];
+    if (joint.kp > 0 && joint.kd > 0) continue;
+    joints.push_back(fmt::format("{} ({})", i + 1, joint.name));
+  }
+  return fmt::format("{}", fmt::join(joints, ", "));
+}
+
+// What to do where the controller does not arm.
+std::string mend_of(controller::Fault refusal, const std::string& without_gains) {
+  if (refusal == controller::Fault::kNoGains) {
+    return "joint " + without_gains +
+           ": give kp_per_s2 and kd_per_s in [joint.control] of the robot file, as docs/sil.md "
+           "does";
+  }
+  return "docs/troubleshooting.md says what it asks for";
+}
+
 }  // namespace
 
 BothEnds::BothEnds(const RobotDescription& robot, const Scenario& scenario, Wire& wire,
                    const TappedPort::OnFrame& on_frame)
     : period_us_(period_us_of(robot.estimator.period_s)),
+      without_gains_(joints_without_gains(robot)),
       motion_(motion_of(scenario)),
       wire_(wire),
       controller_tap_(wire.controller(), on_frame),
@@ -54,7 +78,7 @@ void BothEnds::start() {
                                  : std::string("arming refused: ") + controller::name_of(refusal),
                     .allowed = "",
                     .mend = unheard ? "let the faults on the bus begin later"
-                                    : "docs/troubleshooting.md says what it asks for"});
+                                    : mend_of(refusal, without_gains_)});
 }
 
 void BothEnds::tick() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "loop/stepped_controller.hpp"
@@ -47,6 +48,7 @@ class BothEnds {
   using Bus = sim::FaultyBus<BusPort>;
 
   hal::Microseconds period_us_;
+  std::string without_gains_;  // joints, in words
   MotionAt motion_;
   Wire& wire_;
   TappedPort controller_tap_;

@@ -167,6 +167,7 @@ TEST(Isolation, TakesForFrictionWhatHoldsAJointThatStands) {
     state.joints[0].largest_own = own;
   }
   state.blocks = 60;
+  state.alarmed = {true, false};
   const auto share_of_friction = [&](double largest_held) {
     state.joints[0].largest_held = largest_held;
     state.joints[0].held.evidence = 12;

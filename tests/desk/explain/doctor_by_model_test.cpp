@@ -81,8 +81,9 @@ TEST(DoctorByModel, FindsADeadEncoderWhoseVelocityGoesOn) {
   Log log = test::record(robot, {.duration_s = 20, .torque_noise_nm = 0.01, .seed = 3});
   const double start = log.q(0, kSecond);
   for (Index i = 0; i < log.sample_count(); ++i) {
-    const double t = std::min(log.t_s[i], 1.0);
-    log.q(i, kSecond) = start + 0.02 * std::sin(5 * t);
+    const double t = log.t_s[i];
+    log.q(i, kSecond) = start + 0.02 * std::sin(5 * std::min(t, 1.0));
+    log.dq(i, kSecond) = t < 1 ? 0.1 * std::cos(5 * t) : 0.8 * std::sin(0.7 * t);
   }
   log.dq_derived[kSecond] = false;
   EXPECT_NE(fault_in(examine(log, robot), DataFaultKind::kStuck), nullptr)

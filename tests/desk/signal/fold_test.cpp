@@ -39,5 +39,14 @@ TEST(KnownFold, IsNoneOfAnotherRangeOrPlace) {
   EXPECT_THAT(known_fold_of(VectorXd()).folds, IsEmpty());
 }
 
+TEST(KnownFold, InAnyUnitIsATurnOfDegreesToo) {
+  const KnownFold degrees = known_fold_in_any_unit(folded(360, 0));
+  EXPECT_EQ(degrees.range, 360);
+  EXPECT_FALSE(degrees.folds.empty());
+  EXPECT_EQ(known_fold_in_any_unit(folded(25, -12.5)).range, 25);
+  EXPECT_THAT(known_fold_in_any_unit(folded(300, 0)).folds, IsEmpty());
+  EXPECT_THAT(known_fold_in_any_unit(VectorXd()).folds, IsEmpty());
+}
+
 }  // namespace
 }  // namespace offnominal::desk
