@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "explain/alternatives.hpp"
+#include "explain/friction_family.hpp"
 
 namespace offnominal::desk {
 
@@ -14,13 +15,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-// Without a shape: where one is searched, the larger one's says where.
-bool is_plain(const EffectCandidate& effect, const Data& data, Index joint) {
-  return effect.spectrum() == EffectCandidate::Spectrum::kNone && !effect.is_mass() &&
-         effect.applies_in_any(data.recordings, joint) &&
-         effect.shapes(data.recordings, joint).empty();
-}
 
 // The numbers with which `outer` is `inner`, but for their size; none where it never is.
 std::optional<VectorXd> as_inner(const MatrixXd& outer, const MatrixXd& inner) {
@@ -36,23 +30,20 @@ bool is_found(const FoundModel& found, const Term& term) {
   });
 }
 
+// The offset that an effect may be as well; none where its size tells it from one.
 std::optional<Term> inner_of(const Data& data, const FoundModel& found, const Term& outer,
                              const std::vector<LinearPart>& size) {
   constexpr double kTold = 1;
   if (outer.effect->is_mass() || columns_of(data, outer).cols() < 2) return std::nullopt;
-  for (const auto& effect : all_candidates()) {
-    const Term inner{effect.get(), outer.joint, {}};
-    if (!is_plain(*effect, data, outer.joint) || is_found(found, inner)) continue;
-    if (columns_of(data, inner).cols() != 1 || !is_nested(data, found.baseline, inner, outer)) {
-      continue;
-    }
-    const auto line = as_inner(columns_of(data, outer), columns_of(data, inner));
-    const bool told = !line || std::all_of(size.begin(), size.end(), [&](const LinearPart& one) {
-      return one.from_line(*line) >= kTold;
-    });
-    if (!told) return inner;
-  }
-  return std::nullopt;
+  Term inner = first_on_grid(data, EffectKind::kTorqueOffset, outer.joint);
+  if (is_found(found, inner) || !is_nested(data, found.baseline, inner, outer)) return std::nullopt;
+  const auto line = as_inner(columns_of(data, outer), columns_of(data, inner));
+  if (!line) return std::nullopt;
+  const bool told = std::all_of(size.begin(), size.end(), [&](const LinearPart& one) {
+    return one.from_line(*line) >= kTold;
+  });
+  if (told) return std::nullopt;
+  return inner;
 }
 
 }  // namespace

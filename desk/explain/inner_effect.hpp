@@ -6,11 +6,10 @@
 
 namespace offnominal::desk {
 
-// Puts an effect of fewer numbers in the place of one that was found, where its torque is a part of
-// that one's and the recordings do not tell from nothing what the larger one has beyond: a spring
-// whose rest is far away, and whose stiffness may be none, is an offset. Where that is not
-// significant, neither has a name. One at a time; false where there is none. `sizes`: of the
-// accepted, in their order.
+// Puts an offset in the place of an effect that was found, where the recordings do not tell from
+// nothing what that one has beyond: a spring whose rest is far away, and whose stiffness may be
+// none, is an offset. Where that is not significant, neither has a name. One at a time; false where
+// there is none. `sizes`: of the accepted, in their order.
 bool replace_by_inner(const SearchSetting& setting, const Sizes& sizes, int threads,
                       FoundModel& found);
 

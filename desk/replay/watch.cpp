@@ -199,11 +199,21 @@ class WatchOf final : public Watch {
     quiet_ticks_ = output_.detector.level ? 0 : quiet_ticks_ + 1;
     if (!output_.detector.latched || !namer_.said().decided) return;
     const double quiet_s = static_cast<double>(quiet_ticks_) * config_.estimator.period_s;
-    if (quiet_s < kQuietS && !is_of_another_joint()) return;
+    const bool over = quiet_s >= kQuietS;
+    if (!over && !is_of_another_joint()) return;
     namer_.finish();
+    if (over) forget_what_was_learnt();
     clear_latch(state_->detector);
     output_.detector.latched = false;
     quiet_ticks_ = 0;
+  }
+
+  // Of a fault that is over it would be one itself.
+  void forget_what_was_learnt() {
+    const auto fresh = std::make_unique<typename Monitored::State>();
+    if (monitor_.reset(state_->sample, *fresh) != Status::kOk) return;
+    fresh->estimator.mu = state_->estimator.mu;
+    state_->estimator = fresh->estimator;
   }
 
   [[nodiscard]] bool is_of_another_joint() const {

@@ -40,11 +40,12 @@ TEST(KnownFold, IsNoneOfAnotherRangeOrPlace) {
 }
 
 TEST(KnownFold, InAnyUnitIsATurnOfDegreesToo) {
-  const KnownFold degrees = known_fold_in_any_unit(folded(360, 0));
+  const VectorXd turns = folded(2 * std::numbers::pi, 0) * (180 / std::numbers::pi);
+  const KnownFold degrees = known_fold_in_any_unit(turns);
   EXPECT_EQ(degrees.range, 360);
   EXPECT_FALSE(degrees.folds.empty());
   EXPECT_EQ(known_fold_in_any_unit(folded(25, -12.5)).range, 25);
-  EXPECT_THAT(known_fold_in_any_unit(folded(300, 0)).folds, IsEmpty());
+  EXPECT_THAT(known_fold_in_any_unit(0.8 * turns).folds, IsEmpty());
   EXPECT_THAT(known_fold_in_any_unit(VectorXd()).folds, IsEmpty());
 }
 
