@@ -23,8 +23,8 @@
 #include "explain/free_function.hpp"
 #include "explain/friction_family.hpp"
 #include "explain/given_part.hpp"
-#include "explain/inner_effect.hpp"
 #include "explain/link_share.hpp"
+#include "explain/offset_instead.hpp"
 #include "explain/pushes.hpp"
 #include "explain/questions.hpp"
 #include "explain/search_setting.hpp"
@@ -245,7 +245,7 @@ class Explainer {
 
   // Whether a name was taken back, or gave its place to a simpler one.
   bool gives_one_up(const Sizes& sizes, FoundModel& found) const {
-    return replace_by_inner(setting_, sizes, options_.threads, found) ||
+    return replace_by_offset(setting_, sizes, options_.threads, found) ||
            leave_out_unsure(sizes, *setting_.regression, *setting_.hold_out, options_.threads,
                             found);
   }

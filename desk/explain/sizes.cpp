@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 
 #include "explain/band_shift.hpp"
@@ -84,7 +85,7 @@ Sizes sizes_of(const ImprovedRobot& improved) {
       linear.push_back(estimates.linear[i]);
       linear.back().widen(shift);
     }
-    double least = possible ? linear[0].from_nothing() : 0;
+    double least = possible ? std::numeric_limits<double>::infinity() : 0;
     for (const LinearPart& one : linear) least = std::min(least, one.from_nothing());
     sizes.linear.push_back(std::move(linear));
     sizes.from_nothing.push_back(least);

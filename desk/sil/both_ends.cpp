@@ -31,11 +31,11 @@ std::string joints_without_gains(const RobotDescription& robot) {
 }
 
 // What to do where the controller does not arm.
-std::string mend_of(controller::Fault refusal, const std::string& without_gains) {
+std::string mend_of(controller::Fault refusal, const RobotDescription& robot) {
   if (refusal == controller::Fault::kNoGains) {
-    return "joint " + without_gains +
-           ": give kp_per_s2 and kd_per_s in [joint.control] of the robot file, as docs/sil.md "
-           "does";
+    return "joint " + joints_without_gains(robot) +
+           ": give kp_per_s2 and kd_per_s in [joint.control] of the robot file "
+           "(docs/robot-file.md)";
   }
   return "docs/troubleshooting.md says what it asks for";
 }
@@ -45,7 +45,7 @@ std::string mend_of(controller::Fault refusal, const std::string& without_gains)
 BothEnds::BothEnds(const RobotDescription& robot, const Scenario& scenario, Wire& wire,
                    const TappedPort::OnFrame& on_frame)
     : period_us_(period_us_of(robot.estimator.period_s)),
-      without_gains_(joints_without_gains(robot)),
+      robot_(robot),
       motion_(motion_of(scenario)),
       wire_(wire),
       controller_tap_(wire.controller(), on_frame),
@@ -71,14 +71,13 @@ void BothEnds::start() {
   }
   if (refusal == controller::Fault::kNone) return;
   const bool unheard = passes_by_itself(refusal);
-  throw InputError({.file = "sil",
-                    .place = "start",
-                    .found = unheard
-                                 ? "no valid frames of every joint within 200 ticks"
-                                 : std::string("arming refused: ") + controller::name_of(refusal),
-                    .allowed = "",
-                    .mend = unheard ? "let the faults on the bus begin later"
-                                    : mend_of(refusal, without_gains_)});
+  throw InputError(
+      {.file = "sil",
+       .place = "start",
+       .found = unheard ? "no valid frames of every joint within 200 ticks"
+                        : std::string("arming refused: ") + controller::name_of(refusal),
+       .allowed = "",
+       .mend = unheard ? "let the faults on the bus begin later" : mend_of(refusal, robot_)});
 }
 
 void BothEnds::tick() {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "loop/stepped_controller.hpp"
@@ -48,7 +47,7 @@ class BothEnds {
   using Bus = sim::FaultyBus<BusPort>;
 
   hal::Microseconds period_us_;
-  std::string without_gains_;  // joints, in words
+  const RobotDescription& robot_;
   MotionAt motion_;
   Wire& wire_;
   TappedPort controller_tap_;

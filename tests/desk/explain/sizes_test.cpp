@@ -162,23 +162,14 @@ TEST(Sizes, OfWhatCannotBeAreNothing) {
 
 // Of a loss of more than all that goes through a gear: no file takes it.
 TEST(Sizes, OfWhatNoRobotFileTakesAreNothing) {
-  const OfOneEffect there = sizes_of_one(
-      [] {
-        RobotDescription robot = test::serial_arm(1);
-        robot.effects.push_back(
-            test::effect_of(EffectKind::kLoadDependentFriction, 0, {0.3, 0.01}, true));
-        return robot;
-      }(),
-      EffectKind::kLoadDependentFriction);
-  EXPECT_GT(there.sizes.from_nothing[0], 1);
-  const OfOneEffect beyond = sizes_of_one(
-      [] {
-        RobotDescription robot = test::serial_arm(1);
-        robot.effects.push_back(
-            test::effect_of(EffectKind::kLoadDependentFriction, 0, {1.6, 0.01}, true));
-        return robot;
-      }(),
-      EffectKind::kLoadDependentFriction);
+  const auto with_factor = [](double factor) {
+    RobotDescription robot = test::serial_arm(1);
+    robot.effects.push_back(
+        test::effect_of(EffectKind::kLoadDependentFriction, 0, {factor, 0.01}, true));
+    return sizes_of_one(robot, EffectKind::kLoadDependentFriction);
+  };
+  EXPECT_GT(with_factor(0.3).sizes.from_nothing[0], 1);
+  const OfOneEffect beyond = with_factor(1.6);
   ASSERT_GT(beyond.coefficients[0], 1);
   EXPECT_EQ(beyond.sizes.from_nothing[0], 0);
 }

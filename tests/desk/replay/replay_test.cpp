@@ -153,45 +153,44 @@ TEST(Replay, GivenTorqueSpaceThenWhichFaultItIsIsSaidWithJointAndSize) {
       to_json(replay(arm_in_torque_space(), record_arm({.duration_s = 10})))["faults"].empty());
 }
 
-// Friction of the elbow for a while, and long behind its end a constant torque on the shoulder.
-TEST(Replay, GivenTorqueSpaceThenAFaultThatIsOverHidesNoOther) {
+// Friction of the elbow until `friction_ends_s`, and from `torque_begins_s` on a constant torque on
+// the shoulder too.
+Log recording_of_two_faults(double friction_ends_s, double torque_begins_s) {
+  return record_arm(
+      {.duration_s = 26, .torque_noise = 0.01}, [=](const ArmInstant& at) -> Vector2d {
+        const bool rubs = at.t_s >= kFaultTime && at.t_s < friction_ends_s;
+        const double friction = rubs ? 3 * kTorqueBound * std::tanh(at.dq[1] / 0.005) : 0;
+        return {at.t_s < torque_begins_s ? 0 : 3 * kTorqueBound, friction};
+      });
+}
+
+RobotDescription arm_of_equal_bounds() {
   RobotDescription robot = arm_in_torque_space();
   robot.bound->joints[0].value = {kTorqueBound};
-  const auto two_faults = [](double again_s) {
-    return record_arm(
-        {.duration_s = 26, .torque_noise = 0.01}, [again_s](const ArmInstant& at) -> Vector2d {
-          const bool first = at.t_s >= kFaultTime && at.t_s < kFaultTime + 4;
-          const double friction = first ? 3 * kTorqueBound * std::tanh(at.dq[1] / 0.005) : 0;
-          return {at.t_s >= again_s ? 3 * kTorqueBound : 0, friction};
-        });
-  };
-  const Replay faulty = replay(robot, two_faults(20));
+  return robot;
+}
+
+TEST(Replay, GivenTorqueSpaceThenAFaultThatIsOverHidesNoOther) {
+  const RobotDescription robot = arm_of_equal_bounds();
+  constexpr double kEnd = kFaultTime + 4;
+  const Replay faulty = replay(robot, recording_of_two_faults(kEnd, 20));
   ASSERT_EQ(faulty.faults.size(), 2U);
   EXPECT_STREQ(name_of(faulty.faults[0].kind), "friction");
   EXPECT_EQ(faulty.faults[0].joint, 1);
   EXPECT_EQ(faulty.faults[1].joint, 0);
   EXPECT_NEAR(faulty.faults[1].detection_time_s, 20, 0.1);
   EXPECT_EQ(*faulty.detection_time_s, faulty.faults[0].detection_time_s) << "the first";
-  EXPECT_EQ(replay(robot, two_faults(100)).faults.size(), 1U);
+  EXPECT_EQ(replay(robot, recording_of_two_faults(kEnd, 100)).faults.size(), 1U);
 }
 
 // The first goes on when the second begins: that is told from its own detection on.
 TEST(Replay, GivenTorqueSpaceThenALastingFaultHidesNoOtherJoints) {
-  RobotDescription robot = arm_in_torque_space();
-  robot.bound->joints[0].value = {kTorqueBound};
-  const auto lasting = [](double other_s) {
-    return record_arm(
-        {.duration_s = 26, .torque_noise = 0.01}, [other_s](const ArmInstant& at) -> Vector2d {
-          const double friction =
-              at.t_s < kFaultTime ? 0 : 3 * kTorqueBound * std::tanh(at.dq[1] / 0.005);
-          return {at.t_s < other_s ? 0 : 3 * kTorqueBound, friction};
-        });
-  };
-  const Replay both = replay(robot, lasting(18));
+  const RobotDescription robot = arm_of_equal_bounds();
+  const Replay both = replay(robot, recording_of_two_faults(100, 18));
   ASSERT_GE(both.faults.size(), 2U);
   EXPECT_EQ(both.faults[0].joint, 1);
   EXPECT_NEAR(both.faults[1].detection_time_s, 18, 0.1);
-  const Replay one = replay(robot, lasting(100));
+  const Replay one = replay(robot, recording_of_two_faults(100, 100));
   ASSERT_EQ(one.faults.size(), 1U) << "however often it is detected";
   EXPECT_STREQ(name_of(one.faults[0].kind), "friction");
 }

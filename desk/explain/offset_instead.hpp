@@ -10,7 +10,7 @@ namespace offnominal::desk {
 // nothing what that one has beyond: a spring whose rest is far away, and whose stiffness may be
 // none, is an offset. Where that is not significant, neither has a name. One at a time; false where
 // there is none. `sizes`: of the accepted, in their order.
-bool replace_by_inner(const SearchSetting& setting, const Sizes& sizes, int threads,
-                      FoundModel& found);
+bool replace_by_offset(const SearchSetting& setting, const Sizes& sizes, int threads,
+                       FoundModel& found);
 
 }  // namespace offnominal::desk
