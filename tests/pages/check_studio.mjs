@@ -91,18 +91,34 @@ async function checkCommands(page, options, saved, fault) {
   if ((await readFile(again, "utf8")) !== (await readFile(saved, "utf8"))) fault("the commands write another file");
 }
 
+/** Clicks, and what stands under the charts at the very end of the change, before those below the window are drawn anew. */
+function clickAndLook(page, ids) {
+  return page.evaluate(async (all) => {
+    all.forEach((id) => document.getElementById(id).click());
+    await new Promise((done) => {
+      const watch = () => document.body.hasAttribute("data-busy") || done();
+      new MutationObserver(watch).observe(document.body, { attributes: true });
+    });
+    const wrong = [...document.querySelectorAll("#place-charts figure")].flatMap((figure) => {
+      const own = ` of ${figure.querySelector("h3").textContent}`;
+      const said = [...figure.querySelectorAll(".hidden-text")].map((span) => span.textContent);
+      return said.filter((words) => words !== own);
+    });
+    return { joint: look.joint, wrong };
+  }, ids);
+}
+
 /** Choices while a change is under way wait for its end: the last one counts. */
 async function checkHaste(page, options, fault) {
   const all = await page.$$eval("[name=joint]", (inputs) => inputs.map((each) => each.id));
   const own = `joint-${options.joint}`;
   const other = all.find((id) => id !== own);
   if (other === undefined) return;
-  await page.evaluate(([first, last]) => [first, last].forEach((id) => document.getElementById(id).click()), [other, own]);
-  await page.waitForFunction(() => !document.body.hasAttribute("data-busy"));
-  const [joint, title] = await page.evaluate(() => [look.joint, document.querySelector("#place-charts h3").textContent]);
-  if (joint !== Number(options.joint)) fault(`chosen in haste, joint ${joint} is shown`);
-  const tools = await page.$$eval("#place-charts figure:first-child .hidden-text", (spans) => spans.map((each) => each.textContent));
-  if (!tools.every((words) => words === ` of ${title}`)) fault(`under "${title}" a control says "${tools}"`);
+  for (const ids of [[other], [own, other, own]]) {
+    const { joint, wrong } = await clickAndLook(page, ids);
+    if (`joint-${joint}` !== ids.at(-1)) fault(`after ${ids} joint ${joint} is shown`);
+    if (wrong.length > 0) fault(`under the charts of joint ${joint} controls say "${wrong}"`);
+  }
 }
 
 async function checkSteps(page, options, inputs, fault) {

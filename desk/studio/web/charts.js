@@ -25,7 +25,8 @@ function refill(figure, block) {
   figure.cursor = null;
   figure.host.style.height = `${figure.kind.height(block)}px`;
   root.querySelector("h3").textContent = block.title;
-  for (const hidden of root.querySelectorAll(".tools .hidden-text")) hidden.textContent = ` of ${block.title}`;
+  // The legend's too: it is drawn anew only when somebody sees it, and is read out before.
+  for (const hidden of root.querySelectorAll(".hidden-text")) hidden.textContent = ` of ${block.title}`;
   figure.legend?.setAttribute("aria-label", `Series of ${block.title}`);
   const scale = root.querySelector(".scale");
   if (scale !== null) scale.textContent = scaleWords(block);
