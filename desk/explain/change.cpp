@@ -228,6 +228,7 @@ class ChangeFinder {
       refine(one, at);
       end_it(one, at);
       if (auto change = judged(one, at)) {
+        one.term = change->term;
         change->alike = alike(one, scanned, at);
         found_.push_back(std::move(*change));
         return true;
@@ -245,14 +246,30 @@ class ChangeFinder {
     return all;
   }
 
+  // An error with a change in it says little about its joint: when it was is asked once more with
+  // the weights of what is left beside it, and so is all that follows. `fit`: with the change.
+  [[nodiscard]] ModelFit settle(Scanned& one, const std::vector<Term>& without,
+                                ModelFit& fit) const {
+    std::vector<Term> with = without;
+    with.push_back(one.term);
+    fit = regression_.fit(with);
+    ModelFit beside = regression_.fit_weighted_as(fit, without);
+    if (moments_.are_given()) return beside;
+    refine_ends(one, beside);
+    with.back() = one.term;
+    fit = regression_.fit(with);
+    return regression_.fit_weighted_as(fit, without);
+  }
+
   [[nodiscard]] std::optional<FoundChange> judged(Scanned one, const ModelFit& at) const {
     constexpr double kFamilyError = 0.01;
     const std::vector<Term> without = model_with_effect(one, at);
+    ModelFit fit;
+    const ModelFit beside = settle(one, without, fit);
     std::vector<Term> with = without;
     with.push_back(one.term);
     const ModelFit fit_without = regression_.fit(without);
-    const ModelFit fit = regression_.fit(with);
-    const Remainder remainder = beside_effect(at, one.term, fit.remainder.independent_samples);
+    const Remainder remainder = beside_effect(beside, one.term, fit.remainder.independent_samples);
     const Judge judge(remainder);
     one.log_likelihood = likelihood_of(judge, columns_of(data_, one.term));
     if (one.log_likelihood < kClearly) return std::nullopt;
@@ -406,15 +423,24 @@ std::vector<Term> terms_of(const std::vector<FoundChange>& changes) {
   return terms;
 }
 
-bool predicts_better(const Regression& regression, const FoundModel& with,
-                     const Regression& regression_without, const FoundModel& without) {
+bool predicts_better(const std::vector<FoundChange>& changes, const Regression& regression,
+                     const FoundModel& with, const Regression& regression_without,
+                     const FoundModel& without) {
   const auto held_out = [](const Regression& of, const FoundModel& model) {
     const HoldOut parts(of, nullptr);
     return parts.rms(parts.residual(model.terms(), model.fit));
   };
+  const Data& data = regression.data();
+  VectorXd samples = VectorXd::Zero(data.layout.joint_count());
+  for (const FoundChange& one : changes) {
+    for (const Index joint :
+         acting_joints(data, columns_of(data, one.term), with.fit.joint_weights)) {
+      samples[joint] = with.fit.remainder.independent_samples[joint];
+    }
+  }
   const VectorXd after = held_out(regression, with);
   const VectorXd before = held_out(regression_without, without);
-  return growth_of_log_likelihood(before, after, with.fit.remainder.independent_samples) > kClearly;
+  return growth_of_log_likelihood(before, after, samples) > kClearly;
 }
 
 }  // namespace offnominal::desk

@@ -29,10 +29,10 @@ struct FoundChange {
 // be bent to a change. A change is told where it takes as much as an effect has to
 // (find_model.hpp), beside that effect all the time, where no drift of the effect (a cubic in time,
 // or one that fades) makes the recordings as likely, where free functions of position, velocity and
-// load of the joints that it acts on do not take half of it (another motion behind that moment is
-// no change), and where its size is told from nothing. What comes and goes again is one change.
-// Where `given` says when, neither the moment nor its suddenness is asked of. In the order of how
-// likely they make the recordings.
+// load of the joints that it acts on do not take two thirds of it, or take less than it does
+// (another motion behind that moment is no change), and where its size is told from nothing. What
+// comes and goes again is one change. Where `given` says when, neither the moment nor its
+// suddenness is asked of. In the order of how likely they make the recordings.
 std::vector<FoundChange> changes_beside(const Regression& regression, std::vector<Term> terms,
                                         const SearchOptions& options,
                                         const std::optional<TimeSpan>& given = {});
@@ -42,9 +42,11 @@ bool are_same(const std::vector<FoundChange>& a, const std::vector<FoundChange>&
 
 std::vector<Term> terms_of(const std::vector<FoundChange>& changes);
 
-// Whether time that was not fitted is clearly more likely by the model beside changes. `with` is of
-// `regression`, `without` of `regression_without`.
-bool predicts_better(const Regression& regression, const FoundModel& with,
-                     const Regression& regression_without, const FoundModel& without);
+// Whether time that was not fitted is clearly more likely by the model beside `changes`, on the
+// joints that they act on: what else was found beside them or without is of the others. `with` is
+// of `regression`, `without` of `regression_without`.
+bool predicts_better(const std::vector<FoundChange>& changes, const Regression& regression,
+                     const FoundModel& with, const Regression& regression_without,
+                     const FoundModel& without);
 
 }  // namespace offnominal::desk

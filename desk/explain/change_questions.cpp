@@ -63,20 +63,40 @@ bool is_sudden(const Moments& moments, std::size_t recorded, const MatrixXd& col
   });
 }
 
+std::vector<Index> acting_joints(const Data& data, const MatrixXd& columns,
+                                 const VectorXd& joint_weights) {
+  constexpr double kActsOn = 0.2;
+  const VectorXd energy =
+      data.layout.energy(data.layout.weighted(columns.rowwise().sum(), joint_weights));
+  std::vector<Index> joints;
+  for (Index joint = 0; joint < energy.size(); ++joint) {
+    if (energy[joint] >= kActsOn * energy.maxCoeff()) joints.push_back(joint);
+  }
+  return joints;
+}
+
 bool is_no_other_motion(const Data& data, const Remainder& remainder, const MatrixXd& columns) {
   constexpr double kStays = 0.33;
-  constexpr double kActsOn = 0.2;  // of the energy of the effect
-  const VectorXd energy =
-      data.layout.energy(data.layout.weighted(columns.rowwise().sum(), remainder.joint_weights));
+  constexpr double kMore = 1.2;
   const auto taken = [&](const Remainder& at) { return Judge(at).gain(columns) * at.energy.sum(); };
+  const std::vector<Index> joints = acting_joints(data, columns, remainder.joint_weights);
   Remainder free = remainder;
-  for (Index joint = 0; joint < energy.size(); ++joint) {
-    if (energy[joint] < kActsOn * energy.sum()) continue;
+  for (const Index joint : joints) {
     for (const char* variable : {"position", "velocity", "load"}) {
       free = beside_columns(std::move(free), bins_over(data, joint, variable));
     }
   }
-  return taken(free) >= kStays * taken(remainder);
+  if (taken(free) >= kStays * taken(remainder)) return true;
+  // What takes clearly more by itself than all of them together is about time: they would mimic a
+  // moment where the motion behind it goes elsewhere.
+  const Remainder beside = beside_columns(remainder, columns);
+  double by_itself = 0;
+  double by_functions = 0;
+  for (const Index joint : joints) {
+    by_itself += remainder.energy[joint] - beside.energy[joint];
+    by_functions += remainder.energy[joint] - free.energy[joint];
+  }
+  return by_itself >= kMore * by_functions;
 }
 
 }  // namespace offnominal::desk

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "explain/moments.hpp"
 #include "identify/evidence.hpp"
@@ -21,8 +22,14 @@ double likelihood_of(const Judge& judge, const Eigen::MatrixXd& columns);
 bool is_sudden(const Moments& moments, std::size_t recorded, const Eigen::MatrixXd& columns,
                double likely, const Judge& judge);
 
+// The joints on which columns, stacked and not weighted, have a fifth of the energy that they have
+// on the one where they have most.
+std::vector<Eigen::Index> acting_joints(const Data& data, const Eigen::MatrixXd& columns,
+                                        const Eigen::VectorXd& joint_weights);
+
 // Whether free functions of position, velocity and load of the joints that it acts on take less
-// than half of what a change takes: behind its moment they do not only move otherwise.
+// than two thirds of what a change takes, or clearly less by themselves than it does: behind its
+// moment they do not only move otherwise.
 bool is_no_other_motion(const Data& data, const Remainder& remainder,
                         const Eigen::MatrixXd& columns);
 

@@ -311,7 +311,10 @@ class Explainer {
       FoundModel with = search_model(search, result);
       changes_ = changes_in(with);
       if (are_same(changes, changes_)) {
-        if (!predicts_better(*setting_.regression, with, *of_without.regression, without)) break;
+        if (!predicts_better(changes_, *setting_.regression, with, *of_without.regression,
+                             without)) {
+          break;
+        }
         return with;
       }
       changes = changes_;

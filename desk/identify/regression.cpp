@@ -334,6 +334,28 @@ ModelFit Regression::fit(const std::vector<Term>& terms, const std::vector<char>
     spread = layout.rms(result.residual);
     independent = independent_samples_of(layout, result.residual);
   }
+  complete(result, made, terms, std::move(fitted), independent, rows);
+  return result;
+}
+
+ModelFit Regression::fit_weighted_as(const ModelFit& like, const std::vector<Term>& terms) const {
+  const Design made = design(terms);
+  const RegressionRows weighted =
+      FewRowsOfJoints(data_.layout, made.columns, data_.target, {}).weighted(like.joint_weights);
+  ModelFit result;
+  result.joint_weights = like.joint_weights;
+  result.prior_weight = like.prior_weight;
+  PriorFit fitted = least_squares_with_priors(weighted.columns, weighted.target, made.priors,
+                                              result.prior_weight);
+  result.residual = data_.target - made.columns * fitted.x;
+  complete(result, made, terms, std::move(fitted), like.remainder.independent_samples, {});
+  return result;
+}
+
+void Regression::complete(ModelFit& result, const Design& made, const std::vector<Term>& terms,
+                          PriorFit fitted, const VectorXd& independent_samples,
+                          const std::vector<char>& rows) const {
+  const RowLayout& layout = data_.layout;
   result.nuisance = VectorXd::Zero(data_.nuisance.columns.cols());
   for (std::size_t i = 0; i < made.kept.size(); ++i) {
     result.nuisance[made.kept[i]] = fitted.x[static_cast<Index>(i)];
@@ -351,7 +373,7 @@ ModelFit Regression::fit(const std::vector<Term>& terms, const std::vector<char>
   }
   Remainder& remainder = result.remainder;
   remainder.layout = &layout;
-  remainder.independent_samples = independent;
+  remainder.independent_samples = independent_samples;
   remainder.joint_weights = result.joint_weights;
   const auto of_priors = std::count_if(made.priors.begin(), made.priors.end(),
                                        [](const Prior& one) { return one.is_informative(); });
@@ -362,7 +384,6 @@ ModelFit Regression::fit(const std::vector<Term>& terms, const std::vector<char>
   remainder.energy = layout.energy(remainder.residual);
   remainder.basis = basis_of(data_, terms, std::move(row_weights), result.prior_weight,
                              std::move(fitted.to_basis));
-  return result;
 }
 
 void Regression::refine(std::vector<Term>& terms, std::size_t which) const {

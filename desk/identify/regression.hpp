@@ -45,6 +45,10 @@ class Regression {
   // Fits nuisance and terms; `rows`: weights 0 or 1 per row, empty for all.
   [[nodiscard]] ModelFit fit(const std::vector<Term>& terms,
                              const std::vector<char>& rows = {}) const;
+  // The same with the weights, of joints and priors, of another fit: what that model leaves says
+  // what the data are worth.
+  [[nodiscard]] ModelFit fit_weighted_as(const ModelFit& like,
+                                         const std::vector<Term>& terms) const;
   // What is fitted: nuisance that applies, then the terms' columns, not weighted.
   struct Design {
     Eigen::MatrixXd columns;
@@ -60,6 +64,10 @@ class Regression {
               const Judge& judge) const;
 
  private:
+  // All of a fit that follows from what least squares said with its weights; `rows` as in fit().
+  void complete(ModelFit& result, const Design& made, const std::vector<Term>& terms,
+                PriorFit fitted, const Eigen::VectorXd& independent_samples,
+                const std::vector<char>& rows) const;
   // An unknown of the nuisance stands at one of its ends: free of it, it might not.
   [[nodiscard]] bool holds_an_end(const ModelFit& fit) const;
   [[nodiscard]] bool has_dry_friction(const std::vector<Term>& terms, Eigen::Index joint) const;

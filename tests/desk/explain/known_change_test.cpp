@@ -62,6 +62,19 @@ TEST(KnownChange, OfThePayloadBetweenRecordingsIsToldWithItsMass) {
   EXPECT_THAT(told.words, HasSubstr("tip_payload on joint 4 from before to after (mass +0.5"));
 }
 
+// An unknown torque over the position is another one in another area, whatever step takes as much.
+TEST(KnownChange, IsNotToldWhereTheLaterMotionIsElsewhere) {
+  const RobotDescription robot = test::serial_arm(1);
+  const auto moved_by = [&](double away, const std::string& name, std::uint64_t seed) {
+    Log log = recorded(robot, name, seed);
+    log.q.col(0).array() += away;
+    log.tau.col(0).array() += 0.8 * (3 * (log.q.col(0).array() - 1.5)).tanh();
+    return log;
+  };
+  const Explanation told = explain(robot, {moved_by(0, "a", 1), moved_by(3, "b", 2)}, {}, after(1));
+  EXPECT_THAT(told.changes, IsEmpty()) << told.words;
+}
+
 // What is missing before and after is found; what differs is told beside it.
 TEST(KnownChange, OfFrictionIsToldBesideAnEffectThatIsMissingInBoth) {
   const RobotDescription robot = test::serial_arm(kJoints);

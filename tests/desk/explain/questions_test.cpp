@@ -39,6 +39,23 @@ class MadeUpErrors : public ::testing::Test {
   std::unique_ptr<HoldOut> hold_out_;
 };
 
+class Weights : public MadeUpErrors {
+ protected:
+  Weights() : MadeUpErrors(2) {}
+};
+
+TEST_F(Weights, OfTheSameModelGiveTheSameFit) {
+  const ModelFit own = regression_->fit({});
+  const ModelFit again = regression_->fit_weighted_as(own, {});
+  EXPECT_EQ(again.joint_weights, own.joint_weights);
+  EXPECT_EQ(again.prior_weight, own.prior_weight);
+  EXPECT_TRUE(again.nuisance.isApprox(own.nuisance, 1e-9));
+  EXPECT_TRUE(again.remainder.energy.isApprox(own.remainder.energy, 1e-9));
+  ModelFit other = own;
+  other.prior_weight *= 10;
+  EXPECT_FALSE(regression_->fit_weighted_as(other, {}).nuisance.isApprox(own.nuisance, 1e-3));
+}
+
 class AnySpeed : public MadeUpErrors {
  protected:
   AnySpeed() : MadeUpErrors(1) {}
