@@ -29,7 +29,7 @@ std::vector<std::string> objections_to(const Explanation& e) {
   }
   std::vector<std::string> objections;
   for (const HeldNumber& held : e.held) {
-    if (held.contradicted && !something) objections.push_back(held.words);
+    if (held.contradicted && !something) objections.push_back(held.words());
   }
   // A number that is held against the recordings says more of the same joint's friction.
   if (objections.empty()) objections = e.unphysical;
@@ -142,7 +142,7 @@ ordered_json to_json(const AddedFindings& added, const ExplainNames& names,
   json["objections"] = added.objections;
   json["doubts"] = added.doubts;
   json["held"] = ordered_json::array();
-  for (const HeldNumber& held : added.explanation.held) json["held"].push_back(held.words);
+  for (const HeldNumber& held : added.explanation.held) json["held"].push_back(held.words());
   json["written"] = added.may_be_written(force) ? ordered_json(output_file) : ordered_json();
   return json;
 }
@@ -165,7 +165,7 @@ std::string text_of(const AddedFindings& added, const ExplainNames& names, bool 
                             : "a number of that joint would have to be what cannot be");
   }
   for (const HeldNumber& held : added.explanation.held) {
-    if (!held.contradicted || added.objections.empty()) text += "\nnote: " + held.words + "\n";
+    if (!held.contradicted || added.objections.empty()) text += "\nnote: " + held.words() + "\n";
   }
   for (const std::string& doubt : added.doubts) {
     text += fmt::format("\n{}: {}{}\n",

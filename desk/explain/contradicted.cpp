@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "explain/remainder.hpp"
+#include "identify/physical_range.hpp"
 
 namespace offnominal::desk {
 
@@ -23,6 +24,15 @@ constexpr double kMatters = 0.02;  // of the joint's rms torque
 constexpr double kMattersAnyway = 0.05;
 // What is left beside a number and is no noise is of something else, that bends the number as well.
 constexpr double kOfWhatIsLeft = 2;  // of its energy
+// Friction this many times too large or too small only has to take more than what is left.
+constexpr double kNoMeasurement = 3;
+constexpr double kOfWhatIsLeftBesideNone = 1;
+
+// Friction of a drive that is so far off was never measured; other numbers are about 0 as often.
+bool was_measured(const Shift& one, const RobotDescription& robot) {
+  if (!physical_range(robot.effects[one.effect].kind, one.parameter).is_friction) return true;
+  return kNoMeasurement * one.came >= one.file && kNoMeasurement * one.file >= one.came;
+}
 
 // What one fit says of the file's numbers.
 std::vector<Shift> far_off(const Data& data, const RobotDescription& robot, const ModelFit& fit,
@@ -89,7 +99,8 @@ std::vector<Shift> contradicted_numbers(const SearchSetting& setting, const Robo
   std::erase_if(shifts, [&](const Shift& one) {
     const double taken = as_the_file[one.joint] - moved[one.joint];
     const double left = std::max(moved[one.joint] - noise[one.joint], 0.0);
-    return !(taken > kRelevantShare * as_the_file[one.joint] && taken > kOfWhatIsLeft * left);
+    const double times = was_measured(one, robot) ? kOfWhatIsLeft : kOfWhatIsLeftBesideNone;
+    return !(taken > kRelevantShare * as_the_file[one.joint] && taken > times * left);
   });
   return shifts;
 }

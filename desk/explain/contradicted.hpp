@@ -11,7 +11,8 @@ namespace offnominal::desk {
 
 // Numbers of the file's effects that the recordings contradict: far from what the file says, where
 // that matters to the joint's torque, or not so far where it is much of it, and data that no fit
-// has seen are predicted better with the number that fits than with the file's. None of a joint
+// has seen are predicted better with the number that fits than with the file's: by twice what is
+// left beside it, or as much as that where it is friction that is three times off. None of a joint
 // whose torque may have another scale, as one of `classes` has it: its numbers hang on that.
 // `robot`: what the setting's data were made with.
 std::vector<Shift> contradicted_numbers(const SearchSetting& setting, const RobotDescription& robot,

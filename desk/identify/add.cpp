@@ -494,7 +494,7 @@ class Adder {
     object_to_indistinct(asked(), result_);
     object_to_ranges();
     for (const HeldNumber& held : improved_.held) {
-      (held.contradicted ? result_.objections : result_.notes).push_back(held.words);
+      (held.contradicted ? result_.objections : result_.notes).push_back(held.words());
     }
     // What no range of one number says. Nothing where a number is beyond its own: that says more.
     if (result_.objections.empty()) result_.objections = improved_.unphysical;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -58,10 +59,9 @@ HeldNumber held_number(const Relinearised& found, Index column, double start, do
   held.contradicted =
       contradicts(range, std::nullopt, rms / data.layout.rms(data.torque)[term.joint]) &&
       std::abs(asked - range.nearest(asked)) > kOfTheWay * std::abs(range.nearest(asked) - start);
-  held.words = fmt::format(
-      "{} was held at {:g}, as {} is possible; free it would be {:.4g}: {}", term.name,
-      range.nearest(asked), range.words_at(asked), asked,
-      held.contradicted ? range.usual_cause() : "as good as the end for these recordings");
+  held.what = fmt::format("{} was held at {:g}, as {} is possible; free it would be {:.4g}",
+                          term.name, range.nearest(asked), range.words_at(asked), asked);
+  held.why = held.contradicted ? range.usual_cause() : "as good as the end for these recordings";
   return held;
 }
 
@@ -168,28 +168,70 @@ class FileFitter {
   // else is fitted beside them.
   Relinearised fitted_within(std::vector<HeldNumber>& held) {
     constexpr double kRounding = 1e-9;
+    std::vector<char> near;  // per held number: it asks for no more beyond than the file was off
+    std::optional<VectorXd> free;  // what is left per joint where nothing is held
     for (;;) {
       const Data plain(recordings_, robot_, nuisance_);
       Relinearised last =
           relinearise(robot_, plain, nuisance_, terms_, Regression(plain).fit(terms_));
+      const VectorXd left = plain.layout.rms(last.fit.residual);
+      if (!free) free = left;
       const std::size_t held_before = nuisance_.known.size();
       for (const Moved& moved : moved_numbers(last, file_)) {
-        const bool is_held = std::any_of(
-            nuisance_.known.begin(), nuisance_.known.end(), [&](const KnownNumber& one) {
-              return one.effect == moved.effect && one.parameter == moved.parameter;
-            });
-        if (is_held || moved.range.holds(moved.asked)) continue;
+        if (is_known(moved.effect, moved.parameter) || moved.range.holds(moved.asked)) continue;
         const double end = moved.range.nearest(moved.asked);
         const double beyond = (moved.asked - end) / moved.factor;
         const double start = file_.effects[moved.effect].parameters[moved.parameter];
         held.push_back(
             held_number(last, column_of(last, moved), start, moved.asked, beyond, moved.range));
+        near.push_back(std::abs(moved.asked - end) <= std::abs(end - start) ? 1 : 0);
         const double at_end = (end - start) / moved.factor;
         const double wide = kRounding * std::max(std::abs(at_end), std::abs(beyond));
         nuisance_.known.push_back({moved.effect, moved.parameter, at_end - wide, at_end + wide});
       }
-      if (nuisance_.known.size() == held_before) return last;
+      if (nuisance_.known.size() > held_before) continue;
+      settle_held(near, *free, left, held);
+      return last;
     }
+  }
+
+  // A number that is held, where the joint's others take most of what all of them take free: they
+  // were wrong, and the end is as good as any number for it. `near`: per held number, whether it
+  // asks for little beyond its end; `free`, `within`: what is left per joint, rms.
+  void settle_held(const std::vector<char>& near, const VectorXd& free, const VectorXd& within,
+                   std::vector<HeldNumber>& held) const {
+    constexpr double kLost = 1.0 / 3;  // of the energy
+    if (std::none_of(held.begin(), held.end(), [](const auto& one) { return one.contradicted; })) {
+      return;
+    }
+    NuisanceOptions as_the_file = nuisance_;
+    const Prior unmoved = Prior::at(0);
+    for (const NuisanceTerm& term : Data(recordings_, robot_, nuisance_).nuisance.terms) {
+      const bool is_other = term.kind == NuisanceTerm::Kind::kKnownEffect &&
+                            holds_what_cannot_be(held, term.joint) &&
+                            !is_known(term.effect, term.parameter);
+      if (!is_other) continue;
+      as_the_file.known.push_back({term.effect, term.parameter, unmoved.low, unmoved.high});
+    }
+    const Data data(recordings_, robot_, as_the_file);
+    const VectorXd ends_alone = data.layout.rms(
+        relinearise(robot_, data, as_the_file, terms_, Regression(data).fit(terms_)).fit.residual);
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      HeldNumber& one = held[i];
+      const Index joint = one.joint;
+      const double least = free[joint] * free[joint];
+      const double lost = within[joint] * within[joint] - least;
+      const double all = ends_alone[joint] * ends_alone[joint] - least;
+      if (!one.contradicted || near[i] == 0 || lost > kLost * all) continue;
+      one.contradicted = false;
+      one.why = "the joint's other numbers take most of what it takes";
+    }
+  }
+
+  [[nodiscard]] bool is_known(std::size_t effect, std::size_t parameter) const {
+    return std::any_of(nuisance_.known.begin(), nuisance_.known.end(), [&](const KnownNumber& one) {
+      return one.effect == effect && one.parameter == parameter;
+    });
   }
 
   const RobotDescription& file_;

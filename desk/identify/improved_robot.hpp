@@ -12,11 +12,14 @@ namespace offnominal::desk {
 // A number of the file that fitted best where physics does not let it be: it was held at the end of
 // what is possible.
 struct HeldNumber {
-  std::string words;
+  std::string what;  // which one, where, and what it asked for
+  std::string why;   // what that usually means, or why it does not matter
   Eigen::Index joint = 0;
-  // What it asked for beyond the end is more than nothing to the joint's torque: the recordings
-  // contradict the end.
+  // What it asked for beyond the end is more than nothing to the joint's torque, and the joint's
+  // other numbers do not take most of it: the recordings contradict the end.
   bool contradicted = false;
+
+  [[nodiscard]] std::string words() const { return what + ": " + why; }
 };
 
 // Whether a number of the joint was held at the end of what is possible against the recordings.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -62,6 +63,27 @@ TEST_P(CleanFriction, IsCoulombAndViscousFrictionAndNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(OneAndThree, CleanFriction, ::testing::Values(1, 3),
                          [](const auto& joints) { return std::to_string(joints.param); });
+
+// A description with numbers that nobody measured: the slope of what is there would be below zero,
+// which physics does not let be, and the level is told all the same.
+TEST(InventedFriction, IsHeldAtNothingAndTheRestIsTold) {
+  const RobotDescription made = test::serial_arm(2);
+  RobotDescription real = without_friction(made);
+  RobotDescription robot = real;
+  const auto put = [](RobotDescription& on, double slope, double level) {
+    on.effects.push_back(test::effect_of(EffectKind::kViscousFriction, 1, {slope}, true));
+    on.effects.push_back(test::effect_of(EffectKind::kCoulombFriction, 1, {level, 0.01}, true));
+  };
+  put(real, -0.15, 1);
+  put(robot, 0.4, 0.2);
+  const Log log = test::record(real, {.duration_s = 12, .seed = 7});
+  const Explanation told = explain(robot, {log}, {}, family_options());
+  std::map<std::string, double> came;
+  for (const Shift& one : told.shifts) came[one.name] = one.came;
+  ASSERT_THAT(came, testing::SizeIs(2)) << told.words;
+  EXPECT_NEAR(came.at("viscous_friction.coefficient of joint 2"), 0, 1e-6);
+  EXPECT_NEAR(came.at("coulomb_friction.level of joint 2"), 0.88, 0.1);
+}
 
 // What a joint may do says nothing of what it did.
 TEST(Excitation, TheLimitsOfTheJointsChangeNoVerdict) {
