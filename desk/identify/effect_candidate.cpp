@@ -198,6 +198,28 @@ bool EffectCandidate::is_physical(const VectorXd& coefficients) const {
   return true;
 }
 
+namespace {
+
+// Whether a joint moves in both directions, at a tenth of its top speed for a fiftieth of the time
+// that it moves so fast.
+bool turns_both_ways(const std::vector<Workspace>& recordings, Index joint) {
+  constexpr double kSpeed = 0.1;
+  constexpr double kTime = 0.02;
+  double top = 0;
+  for (const Workspace& at : recordings) top = std::max(top, at.top_speed[joint]);
+  Index forward = 0;
+  Index backward = 0;
+  for (const Workspace& at : recordings) {
+    const auto dq = at.motion.dq.col(joint).array();
+    forward += (dq > kSpeed * top).count();
+    backward += (dq < -kSpeed * top).count();
+  }
+  const double enough = kTime * static_cast<double>(forward + backward);
+  return static_cast<double>(std::min(forward, backward)) > enough;
+}
+
+}  // namespace
+
 bool EffectCandidate::applies(const Workspace& at, Index joint) const {
   if (info_.traits.is_before_sensor && !at.sees_drive(joint)) return false;
   if (info_.find(Quantity::kJointNumber) != nullptr) return at.joint_count() > 1;
@@ -205,6 +227,8 @@ bool EffectCandidate::applies(const Workspace& at, Index joint) const {
 }
 
 bool EffectCandidate::applies_in_any(const std::vector<Workspace>& at, Index joint) const {
+  // What differs between the directions is a constant and a slope as any in one of them.
+  if (kind() == EffectKind::kFrictionAsymmetry && !turns_both_ways(at, joint)) return false;
   return std::any_of(at.begin(), at.end(),
                      [&](const Workspace& one) { return applies(one, joint); });
 }

@@ -68,6 +68,21 @@ TEST(Candidates, GiveTheEffectThatTheirRegressorsAreOf) {
   EXPECT_EQ(compared, 26);
 }
 
+// In one direction a difference between the two is any constant and any slope.
+TEST(Candidates, OfBothDirectionsDoNotApplyWhereAJointTurnsOneWay) {
+  const Candidate asymmetry = candidate_of(EffectKind::kFrictionAsymmetry);
+  std::vector<Workspace> at = some_recording();
+  EXPECT_TRUE(asymmetry->applies_in_any(at, 0));
+  at[0].motion.dq.col(0) = at[0].motion.dq.col(0).cwiseAbs();
+  EXPECT_FALSE(asymmetry->applies_in_any(at, 0));
+  EXPECT_TRUE(asymmetry->applies_in_any(at, 1));
+  // A second recording in which it all but stands says nothing of directions.
+  at.push_back(at[0]);
+  at[1].motion.dq.col(0) = 1e-3 * some_recording()[0].motion.dq.col(0);
+  at[1].top_speed[0] *= 1e-3;
+  EXPECT_FALSE(asymmetry->applies_in_any(at, 0));
+}
+
 TEST(Candidates, HaveARegressorPerLinearParameterAtEveryPointOfTheirGrids) {
   const std::vector<Workspace> at = some_recording();
   for (const auto& effect : all_candidates()) {
