@@ -18,6 +18,9 @@ namespace {
 
 // What a named effect has to take of what a free function takes.
 constexpr double kTakes = 0.9;
+// Where it is Coulomb or viscous friction, which every drive has: the rest of such a function is
+// what its friction has beside them.
+constexpr double kTakesOfDrive = 0.8;
 // The same beside a free function of two variables, which is noisier and takes some of what has
 // nothing to do with the effect.
 constexpr double kTakesOfMap = 0.6;
@@ -30,6 +33,15 @@ constexpr const char* kBoth = "position and velocity";
 
 // The variable that an effect is a function of; empty where it is one of several or of none.
 std::string variable_of(EffectKind kind) { return name_of(info_of(kind)->traits.follows); }
+
+// Of what a free function of the variable takes.
+double share_to_take(const std::string& variable, const std::vector<EffectAt>& effects) {
+  if (variable != "velocity") return kTakes;
+  const bool every_drive_has = std::all_of(effects.begin(), effects.end(), [](const EffectAt& one) {
+    return one.kind == EffectKind::kCoulombFriction || one.kind == EffectKind::kViscousFriction;
+  });
+  return every_drive_has ? kTakesOfDrive : kTakes;
+}
 
 class Judgement {
  public:
@@ -110,7 +122,7 @@ class Judgement {
     for (const char* variable : {"position", "velocity", "load"}) {
       const double free = share_of(at_first_, joint, variable);
       if (free < kLeftStructured || share_of(left_, joint, variable) < kLeftStructured) continue;
-      if (taken < kTakes * free) {
+      if (taken < share_to_take(variable, all) * free) {
         return shape(variable, taken / free);
       }
     }
@@ -194,7 +206,7 @@ class Judgement {
     const double left = std::pow(after_[joint], 2);
     const double taken = std::max(0.0, energy - left);
     const double free = taken + left * more;
-    if (taken >= kTakes * free) return std::nullopt;
+    if (taken >= share_to_take(variable, own) * free) return std::nullopt;
     return shape_of(joint, variable, own, taken / free, without.residual);
   }
 
