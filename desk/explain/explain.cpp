@@ -31,6 +31,7 @@
 #include "explain/sizes.hpp"
 #include "explain/undecided.hpp"
 #include "explain/verdict.hpp"
+#include "identify/file_errors.hpp"
 #include "identify/improved_robot.hpp"
 #include "identify/stretches.hpp"
 #include "log/seen_by_sensor.hpp"
@@ -132,7 +133,7 @@ class Explainer {
         improved = fitted_robot(found, result);
       } while (leave_out_impossible(improved.held, result.shifts));
       sizes = sizes_of(improved);
-    } while (gives_one_up(sizes, found));
+    } while (gives_one_up(sizes, found) || gives_up_what_raises(improved, found));
     if (search) {
       const VectorXd left = improved.last.data->layout.rms(improved.last.fit.residual);
       for (UndecidedClass& one : undecided(setting_, robot_, found, result.excitation, left)) {
@@ -248,6 +249,30 @@ class Explainer {
     return replace_by_offset(setting_, sizes, options_.threads, found) ||
            leave_out_unsure(sizes, *setting_.regression, *setting_.hold_out, options_.threads,
                             found);
+  }
+
+  // Whether a name was taken back on whose joint the file that it is written to is worse than the
+  // one that was read: then nothing shows it. Friction that every drive has is there all the same,
+  // and what is carried need not show on its own joint.
+  bool gives_up_what_raises(const ImprovedRobot& improved, FoundModel& found) const {
+    const auto is_asked = [](const Accepted& one) {
+      return !one.term.effect->is_mass() && !one.term.effect->info().traits.every_drive_has;
+    };
+    const auto& accepted = found.accepted;
+    if (setting_.data->recordings[0].at_rest ||
+        std::none_of(accepted.begin(), accepted.end(), is_asked)) {
+      return false;
+    }
+    const std::vector<double> before = file_errors(file_, logs_, plan_).rms_error;
+    const std::vector<double> after = file_errors(improved.robot, logs_, plan_).rms_error;
+    for (std::size_t i = accepted.size(); i-- > 0;) {
+      const auto joint = static_cast<std::size_t>(accepted[i].term.joint);
+      const bool is_written = i < improved.added.size() && improved.added[i] != kUnwritten;
+      if (!is_asked(accepted[i]) || !is_written || !(after[joint] > before[joint])) continue;
+      leave_out(i, *setting_.regression, *setting_.hold_out, options_.threads, found);
+      return true;
+    }
+    return false;
   }
 
   // With links as far off as the recordings ask for, where nobody has said how far that is.
