@@ -247,27 +247,22 @@ class ChangeFinder {
   }
 
   // An error with a change in it says little about its joint: when it was is asked once more with
-  // the weights of what is left beside it, and so is all that follows. `fit`: with the change.
-  [[nodiscard]] ModelFit settle(Scanned& one, const std::vector<Term>& without,
-                                ModelFit& fit) const {
+  // the weights of what is left beside it.
+  void settle(Scanned& one, const std::vector<Term>& without) const {
+    if (moments_.are_given()) return;
     std::vector<Term> with = without;
     with.push_back(one.term);
-    fit = regression_.fit(with);
-    ModelFit beside = regression_.fit_weighted_as(fit, without);
-    if (moments_.are_given()) return beside;
-    refine_ends(one, beside);
-    with.back() = one.term;
-    fit = regression_.fit(with);
-    return regression_.fit_weighted_as(fit, without);
+    refine_ends(one, regression_.fit_weighted_as(regression_.fit(with), without));
   }
 
   [[nodiscard]] std::optional<FoundChange> judged(Scanned one, const ModelFit& at) const {
     constexpr double kFamilyError = 0.01;
     const std::vector<Term> without = model_with_effect(one, at);
-    ModelFit fit;
-    const ModelFit beside = settle(one, without, fit);
+    settle(one, without);
     std::vector<Term> with = without;
     with.push_back(one.term);
+    const ModelFit fit = regression_.fit(with);
+    const ModelFit beside = regression_.fit_weighted_as(fit, without);
     const ModelFit fit_without = regression_.fit(without);
     const Remainder remainder = beside_effect(beside, one.term, fit.remainder.independent_samples);
     const Judge judge(remainder);

@@ -174,8 +174,7 @@ class FileFitter {
       const Data plain(recordings_, robot_, nuisance_);
       Relinearised last =
           relinearise(robot_, plain, nuisance_, terms_, Regression(plain).fit(terms_));
-      const VectorXd left = plain.layout.rms(last.fit.residual);
-      if (!free) free = left;
+      if (!free) free = last.data->layout.rms(last.fit.residual);
       const std::size_t held_before = nuisance_.known.size();
       for (const Moved& moved : moved_numbers(last, file_)) {
         if (is_known(moved.effect, moved.parameter) || moved.range.holds(moved.asked)) continue;
@@ -190,15 +189,15 @@ class FileFitter {
         nuisance_.known.push_back({moved.effect, moved.parameter, at_end - wide, at_end + wide});
       }
       if (nuisance_.known.size() > held_before) continue;
-      settle_held(near, *free, left, held);
+      settle_held(last, near, *free, held);
       return last;
     }
   }
 
   // A number that is held, where the joint's others take most of what all of them take free: they
   // were wrong, and the end is as good as any number for it. `near`: per held number, whether it
-  // asks for little beyond its end; `free`, `within`: what is left per joint, rms.
-  void settle_held(const std::vector<char>& near, const VectorXd& free, const VectorXd& within,
+  // asks for little beyond its end; `free`: what is left per joint where none is held, rms.
+  void settle_held(const Relinearised& last, const std::vector<char>& near, const VectorXd& free,
                    std::vector<HeldNumber>& held) const {
     constexpr double kLost = 1.0 / 3;  // of the energy
     if (std::none_of(held.begin(), held.end(), [](const auto& one) { return one.contradicted; })) {
@@ -206,7 +205,7 @@ class FileFitter {
     }
     NuisanceOptions as_the_file = nuisance_;
     const Prior unmoved = Prior::at(0);
-    for (const NuisanceTerm& term : Data(recordings_, robot_, nuisance_).nuisance.terms) {
+    for (const NuisanceTerm& term : last.data->nuisance.terms) {
       const bool is_other = term.kind == NuisanceTerm::Kind::kKnownEffect &&
                             holds_what_cannot_be(held, term.joint) &&
                             !is_known(term.effect, term.parameter);
@@ -216,6 +215,7 @@ class FileFitter {
     const Data data(recordings_, robot_, as_the_file);
     const VectorXd ends_alone = data.layout.rms(
         relinearise(robot_, data, as_the_file, terms_, Regression(data).fit(terms_)).fit.residual);
+    const VectorXd within = last.data->layout.rms(last.fit.residual);
     for (std::size_t i = 0; i < held.size(); ++i) {
       HeldNumber& one = held[i];
       const Index joint = one.joint;
