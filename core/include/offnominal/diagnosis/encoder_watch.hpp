@@ -98,6 +98,18 @@ void move_on(std::array<Scalar, 3>& largest, Scalar kept) {
   largest[0] = Scalar(0);
 }
 
+// Seen moving for long enough to know how it moves: of a joint that stands, one count of its
+// encoder would be beyond all motion.
+template <typename Scalar>
+[[nodiscard]] bool is_warm(const EncoderWatch<Scalar>& watch) {
+  return watch.known_for > kEncoderWarmUp && watch.steps > kStepsWarmUp;
+}
+// Beyond any step that its fastest motion takes.
+template <typename Scalar>
+[[nodiscard]] Scalar beyond_steps(const EncoderWatch<Scalar>& watch) {
+  return 3 * watch.way[2] / static_cast<Scalar>(kEncoderLag);
+}
+
 // Whether the newest second difference takes the candidate back: then it was a jump. Beyond what
 // any force does to a joint, which is the way of a tick or two, that is enough. A smaller one has
 // to leave the joint moving as it moved before, which no knock does.
@@ -106,10 +118,9 @@ void judge_jump(EncoderWatch<Scalar>& watch, Scalar step, Scalar second, bool wa
   const Scalar size = Eigen::numext::abs(watch.candidate);
   if (size > 0) {
     const Scalar rest = Eigen::numext::abs(second + watch.candidate);
-    const Scalar steps = 3 * watch.way[2] / static_cast<Scalar>(kEncoderLag);
     const Scalar usual = 2 * watch.jerk[2];
     const bool goes_on = rest < usual && Eigen::numext::abs(step) > usual;
-    if (goes_on || (size > steps && rest < Scalar(0.3) * size)) {
+    if (goes_on || (size > beyond_steps(watch) && rest < Scalar(0.3) * size)) {
       watch.jump = watch.candidate;
       watch.since_jump = 0;
     }
@@ -124,15 +135,13 @@ void judge_jump(EncoderWatch<Scalar>& watch, Scalar step, Scalar second, bool wa
 // does to it in as many. What stops meanwhile has not jumped.
 template <typename Scalar>
 void judge_gap(EncoderWatch<Scalar>& watch, Scalar q, std::uint32_t ticks) {
-  const bool warm = watch.known_for > kEncoderWarmUp && watch.steps > kStepsWarmUp;
-  if (!warm || watch.filled < 2 || ticks > kEncoderLag) return;
+  if (!is_warm(watch) || watch.filled < 2 || ticks > kEncoderLag) return;
   const auto passed = static_cast<Scalar>(ticks);
   const Scalar last = position_before(watch, 0);
   const Scalar going = last + passed * (last - position_before(watch, 1));
   const Scalar off = q - std::clamp(q, std::min(last, going), std::max(last, going));
-  const Scalar steps = 3 * watch.way[2] / static_cast<Scalar>(kEncoderLag);
   const Scalar bent = kBeyondMotion<Scalar> * watch.jerk[2] * passed * (passed + 1);
-  if (!(Eigen::numext::abs(off) > std::max(steps, bent))) return;
+  if (!(Eigen::numext::abs(off) > std::max(beyond_steps(watch), bent))) return;
   watch.jump = q - going;
   watch.since_jump = 0;
 }
@@ -183,8 +192,7 @@ void look_at(EncoderWatch<Scalar>& watch, Scalar q, std::uint32_t ticks = 1) {
   watch.known_for = detail::more(watch.known_for);
   if (watch.filled < 3) return;
   if (step != 0) watch.steps = detail::more(watch.steps);
-  // Of a joint that stands, one count of its encoder would be beyond all motion.
-  const bool warm = watch.known_for > detail::kEncoderWarmUp && watch.steps > detail::kStepsWarmUp;
+  const bool warm = detail::is_warm(watch);
   const Scalar second = step - (last - position_before(watch, 2));
   detail::judge_jump(watch, step, second, warm);
   detail::widen(watch.jerk, second);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <offnominal/diagnosis/isolation_config.hpp>
+#include <offnominal/diagnosis/isolation_scales.hpp>
 #include <offnominal/diagnosis/isolation_size.hpp>
 #include <offnominal/diagnosis/isolation_state.hpp>
 #include <offnominal/diagnosis/isolation_verdict.hpp>
@@ -40,7 +41,10 @@ class Isolation {
     const Scalar block_s = static_cast<Scalar>(isolation.block_ticks_) * isolation.period_s_;
     isolation.kept_ = std::exp(-block_s / config.baseline_s);
     isolation.contact_kept_ = std::exp(-block_s / config.contact_s);
-    isolation.set_scales(watched);
+    isolation.scales_ = scales_of(watched, config.sign_width);
+    const std::size_t parts = watched.chain.joints.size() + 3;  // judge_part()
+    isolation.parts_per_tick_ =
+        static_cast<int>((parts + isolation.block_ticks_ - 1) / isolation.block_ticks_);
     return Status::kOk;
   }
 
@@ -129,52 +133,6 @@ class Isolation {
   static std::uint16_t ticks_of(Scalar seconds, Scalar period_s) {
     const Scalar ticks = std::clamp(seconds / period_s, Scalar(1), Scalar(10000));
     return static_cast<std::uint16_t>(ticks + Scalar(0.5));
-  }
-
-  void set_scales(const MonitorConfig<N, Scalar, TorqueSpace>& watched) {
-    const std::size_t count = watched.chain.joints.size();
-    size_for(count, scales_.thresholds, scales_.speeds);
-    scales_.alpha = watched.estimator.alpha;
-    const std::size_t parts = count + 3;  // judge_part()
-    parts_per_tick_ = static_cast<int>((parts + block_ticks_ - 1) / block_ticks_);
-    scales_.own.resize(kOwnRegressors, static_cast<Eigen::Index>(count));
-    Scalar mass{};
-    for (std::size_t i = 0; i < count; ++i) {
-      const Joint<Scalar>& joint = watched.chain.joints[i];
-      const JointBound<Scalar>& bound = watched.bound.joints[i];
-      const Scalar threshold = largest_value(bound) + 2 * scales_.alpha * bound.momentum_error;
-      scales_.thresholds[i] = threshold;
-      const Scalar torque = static_cast<Scalar>(kPriorTorque) * threshold;
-      constexpr Scalar kFast = Scalar(100);  // no speed limit
-      const Scalar speed = joint.max_velocity < kFast ? joint.max_velocity : Scalar(1);
-      scales_.speeds[i] = speed;
-      scales_.own.col(static_cast<Eigen::Index>(i)) << torque, torque / speed,
-          static_cast<Scalar>(kPriorShare), torque;
-      mass += joint.mass_kg;
-    }
-    constexpr Scalar kShareOfMass = Scalar(0.1);
-    constexpr Scalar kDistanceM = Scalar(0.15);  // of a payload from the last joint
-    scales_.tip.setConstant(kShareOfMass * mass * kDistanceM);
-    scales_.tip[0] = kShareOfMass * mass;
-    scales_.friction = known_friction<N, Scalar>(watched.chain, config_.sign_width);
-    // Of a tool, beyond a link of the size that its centre of mass tells of.
-    const auto& centre = watched.chain.joints[count - 1].centre_of_mass_m;
-    scales_.reach_m = Scalar(0.6) + 2 * Vector<3, Scalar>(centre[0], centre[1], centre[2]).norm();
-    scales_.last_mass = watched.chain.joints[count - 1].mass_kg + payload_of(watched.chain);
-  }
-
-  // Point masses that the model has beside the last link, kg.
-  static Scalar payload_of(const Chain<N, Scalar>& chain) {
-    Scalar mass{};
-    for (const Effect<Scalar>& effect : chain.effects.view()) {
-      if (effect.joint + 1U != chain.joints.size()) continue;
-      visit_effect(effect.kind, [&]<typename E>() {
-        if constexpr (detail::action_of<E>() == EffectAction::kPointMass) {
-          mass += effect.parameters[0];
-        }
-      });
-    }
-    return mass;
   }
 
   static void forget(State& state) {
@@ -376,13 +334,9 @@ class Isolation {
     detail::enter_encoders(state, scales_, times, felt, state.contest);
   }
 
-  [[nodiscard]] Scalar since_detection(const State& state) const {
-    return static_cast<Scalar>(state.tick - state.detection_tick) * period_s_;
-  }
-
   void answer(State& state) const {
     const Contest<Scalar>& contest = state.contest;
-    const Scalar since = since_detection(state);
+    const Scalar since = static_cast<Scalar>(state.tick - state.detection_tick) * period_s_;
     auto measure = detail::measure_of(state, scales_, contest.kind, contest.joint);
     FaultDiagnosis<Scalar>& diagnosis = state.diagnosis;
     diagnosis.kind = contest.kind;

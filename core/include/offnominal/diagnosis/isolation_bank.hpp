@@ -19,9 +19,6 @@
 
 namespace offnominal {
 
-// A usual size of a fault, in units of the joint's largest threshold; of a lost torque, as a share.
-inline constexpr double kPriorTorque = 1.5;
-inline constexpr double kPriorShare = 0.3;
 // How many times as large a large one is.
 inline constexpr double kLargeFault = 5;
 // How much smaller what the model lacks without a fault is: the threshold covers it.

@@ -131,6 +131,8 @@ struct EffectTraits {
   bool every_drive_has = false;
   // By itself it looks like that friction, and is named only where it is clearly more likely.
   bool passes_for_friction = false;
+  // Tells the two directions apart: a joint that turns one way only does not show it.
+  bool needs_both_directions = false;
   // A robot may have more or less of it from one moment to the next.
   bool may_change = false;
 };

@@ -86,7 +86,8 @@ struct FrictionAsymmetry {
   static constexpr const char* kMotionHint =
       "move at several speeds in both directions, with rests in between";
   static constexpr EffectTraits kTraits{.follows = EffectVariable::kVelocity,
-                                        .passes_for_friction = true};
+                                        .passes_for_friction = true,
+                                        .needs_both_directions = true};
   static constexpr std::array<ParameterInfo, 3> kParameters{{
       {"level", Quantity::kEffort, ParameterRole::kLinear, -kAny, kAny, true, 0,
        "half the difference of the Coulomb levels of the two directions"},
