@@ -18,14 +18,16 @@ namespace {
 struct ImportOptions {
   std::string urdf;
   exchange::ChainRequest chain;
+  bool nearest_inertia = false;
   std::string output;
   AnswerOptions answer;
 };
 
 void run(const ImportOptions& options) {
   const std::string file = names_standard_input(options.urdf) ? "/dev/stdin" : options.urdf;
-  const exchange::ImportedRobot imported =
-      exchange::import_urdf(read_text_file(file), shown_name(options.urdf), options.chain);
+  const exchange::ImportedRobot imported = exchange::import_urdf(
+      read_text_file(file), shown_name(options.urdf), options.chain,
+      options.nearest_inertia ? exchange::InertiaRule::kNearest : exchange::InertiaRule::kPossible);
   const std::string text = exchange::robot_text_of(imported, options.urdf);
   static_cast<void>(parse_robot(text, options.output + " (to be written)"));
   write_file_atomically(options.output, text, options.answer.existing());
@@ -52,6 +54,9 @@ void set_up_import_urdf(CLI::App& verb, ExitCode& /*exit_code*/) {
       "Link that stands still, whose frame the robot file's base is. Default: the root");
   verb.add_option("--tip", options->chain.tip,
                   "Link in which the chain of joints ends. Default: where the only one ends");
+  verb.add_flag("--nearest-inertia", options->nearest_inertia,
+                "Where no body can have a link's inertia, take the nearest that one can, and say "
+                "so. Default: what is off by more than a tenth is refused");
   verb.add_option("-o,--output", options->output, "Robot file to write")
       ->type_name(kNewFile)
       ->required();

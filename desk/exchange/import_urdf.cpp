@@ -50,8 +50,8 @@ double held_position(const urdf::Joint& joint) {
 
 class Importer {
  public:
-  Importer(const UrdfDocument& document, UrdfChain chain)
-      : document_(document), chain_(std::move(chain)) {}
+  Importer(const UrdfDocument& document, UrdfChain chain, InertiaRule inertia)
+      : document_(document), chain_(std::move(chain)), inertia_(inertia) {}
 
   ImportedRobot run(const ChainRequest& request) {
     result_.base = chain_.base->name;
@@ -212,6 +212,31 @@ class Importer {
   }
 
   // What a link weighs; none where it weighs nothing. Refused where no body can be like that.
+  // In the place of one that no body has.
+  std::array<double, 6> possible_inertia(const urdf::Link& link,
+                                         const std::array<double, 6>& tensor,
+                                         const std::string& fault) {
+    // What is off by rounding, or by a drawing's parts left out, is no reason to have no robot.
+    constexpr double kSlightly = 0.1;
+    const auto broken = broken_triangle(tensor);
+    const auto nearest = nearest_inertia(tensor);
+    const bool taken = inertia_ == InertiaRule::kNearest || (broken && *broken <= kSlightly);
+    if (!taken || !nearest) {
+      refuse(
+          document_.link_place(link.name), fault,
+          "a positive definite tensor about the centre of mass whose principal moments are each at "
+          "most the sum of the others; all zero for a point mass",
+          "check the signs of ixy, ixz, iyz, that the tensor is about the centre of mass, and its "
+          "unit (kg m^2)" +
+              std::string(nearest ? "; or take the nearest that a body can have: --nearest-inertia"
+                                  : ""));
+    }
+    note(Kind::kAssumed, line_of(link),
+         fmt::format("the nearest inertia of link `{}` that a body can have: the file's is {}",
+                     link.name, fault));
+    return *nearest;
+  }
+
   std::optional<RigidBody> body_of_link(const urdf::Link& link) {
     if (link.inertial == nullptr) return std::nullopt;
     const urdf::Inertial& given = *link.inertial;
@@ -234,23 +259,7 @@ class Importer {
       return std::nullopt;
     }
     const std::string fault = inertia_fault(tensor);
-    // What is off by rounding, or by a drawing's parts left out, is no reason to have no robot.
-    constexpr double kSlightly = 0.1;
-    const auto possible =
-        fault.empty() ? std::nullopt : with_triangle_inequality(tensor, kSlightly);
-    if (possible) {
-      tensor = *possible;
-      note(Kind::kAssumed, line_of(link),
-           fmt::format("the nearest inertia of link `{}` that a body can have: the file's is {}",
-                       link.name, fault));
-    } else if (!fault.empty()) {
-      refuse(
-          place, fault,
-          "a positive definite tensor about the centre of mass whose principal moments are each at "
-          "most the sum of the others; all zero for a point mass",
-          "check the signs of ixy, ixz, iyz, that the tensor is about the centre of mass, and its "
-          "unit (kg m^2)");
-    }
+    if (!fault.empty()) tensor = possible_inertia(link, tensor, fault);
     note(Kind::kAssumed, line_of(link),
          fmt::format("a point mass: the inertia of link `{}` is zero", link.name), no_tensor);
     RigidBody own{given.mass, Vector3d::Zero(), {}};
@@ -467,6 +476,7 @@ class Importer {
 
   const UrdfDocument& document_;
   UrdfChain chain_;
+  InertiaRule inertia_;
   ImportedRobot result_;
   bool any_dry_ = false;
 };
@@ -488,9 +498,9 @@ const char* name_of(ImportNote::Kind kind) {
 }
 
 ImportedRobot import_urdf(std::string_view text, const std::string& file,
-                          const ChainRequest& request) {
+                          const ChainRequest& request, InertiaRule inertia) {
   const UrdfDocument document = parse_urdf(text, file);
-  return Importer(document, choose_chain(document, request)).run(request);
+  return Importer(document, choose_chain(document, request), inertia).run(request);
 }
 
 }  // namespace offnominal::desk::exchange

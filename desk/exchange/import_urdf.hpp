@@ -28,6 +28,12 @@ struct ImportNote {
 [[nodiscard]] const char* name_of(
     ImportNote::Kind kind);  // "merged", "held", "left out", "assumed"
 
+// What becomes of a link's inertia that no body has.
+enum class InertiaRule : std::uint8_t {
+  kPossible,  // refused, unless a tenth of its largest principal moment is enough to mend it
+  kNearest,   // the nearest one that a body can have
+};
+
 struct ImportedRobot {
   RobotDescription robot;
   std::string base;  // links
@@ -44,8 +50,9 @@ struct ImportedRobot {
 ///
 /// Throws InputError with line and remedy where parse_urdf() and choose_chain() do; on a mimic,
 /// floating or planar joint in the chain, an axis of no length, a range without width; a link of
-/// the chain that has no mass; and an inertia that no body has.
+/// the chain that has no mass; and an inertia that no body has, as `inertia` says.
 [[nodiscard]] ImportedRobot import_urdf(std::string_view text, const std::string& file,
-                                        const ChainRequest& request = {});
+                                        const ChainRequest& request = {},
+                                        InertiaRule inertia = InertiaRule::kPossible);
 
 }  // namespace offnominal::desk::exchange

@@ -60,20 +60,25 @@ std::optional<std::array<double, 9>> nearest_rotation(const std::array<double, 9
   return rows_of(svd.matrixU() * svd.matrixV().transpose());
 }
 
-std::optional<std::array<double, 6>> with_triangle_inequality(
-    const std::array<double, 6>& inertia_kg_m2, double share) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tensor_of(inertia_kg_m2));
-  Eigen::Vector3d moments = solver.eigenvalues();  // ascending
+std::optional<double> broken_triangle(const std::array<double, 6>& inertia_kg_m2) {
+  const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
+                                      tensor_of(inertia_kg_m2), Eigen::EigenvaluesOnly)
+                                      .eigenvalues();  // ascending
   const double lacks = moments[2] - moments[0] - moments[1];
-  if (moments[0] < moments[2] * kTolerance || !(lacks > 0) || lacks > share * moments[2]) {
-    return std::nullopt;
-  }
-  // A little more, so that the last bits do not break it again.
-  const double raised = lacks / 2 + kTolerance * moments[2];
-  moments[0] += raised;
-  moments[1] += raised;
+  if (moments[0] < moments[2] * kTolerance || !(lacks > 0)) return std::nullopt;
+  return lacks / moments[2];
+}
+
+std::optional<std::array<double, 6>> nearest_inertia(const std::array<double, 6>& inertia_kg_m2) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tensor_of(inertia_kg_m2));
+  const Eigen::Vector3d moments = solver.eigenvalues();
+  const double trace = moments.sum();
+  if (!(trace > 0)) return std::nullopt;
+  // A little more than none, so that the last bits do not break it again.
+  const Eigen::Vector3d second = (trace / 2 - moments.array()).max(kTolerance * trace);
+  const Eigen::Vector3d possible = second.sum() - second.array();
   const Eigen::Matrix3d& axes = solver.eigenvectors();
-  const Eigen::Matrix3d tensor = axes * moments.asDiagonal() * axes.transpose();
+  const Eigen::Matrix3d tensor = axes * possible.asDiagonal() * axes.transpose();
   return std::array{tensor(0, 0), tensor(1, 1), tensor(2, 2),
                     tensor(0, 1), tensor(0, 2), tensor(1, 2)};
 }

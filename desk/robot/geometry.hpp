@@ -26,9 +26,14 @@ inline constexpr double kMostAngleRad = 6.2832;
 /// moments; empty where a body can have it.
 [[nodiscard]] std::string inertia_fault(const std::array<double, 6>& inertia_kg_m2);
 
-/// A tensor that breaks the triangle inequality by at most `share` of its largest principal moment,
-/// with the two smaller ones raised by as much each until a body can have it. None for any other.
-[[nodiscard]] std::optional<std::array<double, 6>> with_triangle_inequality(
-    const std::array<double, 6>& inertia_kg_m2, double share);
+/// By how much of its largest principal moment a positive definite tensor breaks the triangle
+/// inequality; none for one that does not, or is not positive definite.
+[[nodiscard]] std::optional<double> broken_triangle(const std::array<double, 6>& inertia_kg_m2);
+
+/// The nearest tensor that a body can have: second moments of its mass below zero become none. A
+/// triangle inequality that is broken has the two smaller principal moments raised by as much each.
+/// None where the trace is not above 0.
+[[nodiscard]] std::optional<std::array<double, 6>> nearest_inertia(
+    const std::array<double, 6>& inertia_kg_m2);
 
 }  // namespace offnominal::desk

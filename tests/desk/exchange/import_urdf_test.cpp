@@ -140,21 +140,41 @@ TEST(ImportUrdf, TellsNamesThatAreInNoEncoding) {
       desk::parse_robot(desk::exchange::robot_text_of(imported, "bar.urdf"), "bar.toml")));
 }
 
-// 0.1 + 0.2 lack 0.02 of 0.32: both get half of it.
-TEST(ImportUrdf, TakesTheNearestInertiaThatABodyCanHave) {
-  const ImportedRobot imported = import_urdf(R"(<robot name="brick">
+std::string brick_with(const std::string& inertia) {
+  return R"(<robot name="brick">
     <link name="ground"/>
     <link name="brick"><inertial><mass value="1"/>
-      <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.32"/></inertial></link>
+      <inertia )" +
+         inertia + R"(/></inertial></link>
     <joint name="pin" type="continuous"><parent link="ground"/><child link="brick"/>
-      <axis xyz="0 0 1"/></joint></robot>)",
-                                             "brick.urdf");
+      <axis xyz="0 0 1"/></joint></robot>)";
+}
+
+// 0.1 + 0.2 lack 0.02 of 0.32: both get half of it.
+TEST(ImportUrdf, TakesTheNearestInertiaThatABodyCanHave) {
+  const ImportedRobot imported = import_urdf(
+      brick_with(R"(ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.32")"), "brick.urdf");
   const auto& inertia = imported.robot.joints[0].joint.inertia_kg_m2;
   const double by_hand[]{0.11, 0.21, 0.32, 0, 0, 0};
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(inertia[i], by_hand[i], 1e-6) << i;
   EXPECT_THAT(notes_of(imported),
               Contains(HasSubstr("assumed 3 the nearest inertia of link `brick` that a body can "
                                  "have: the file's is a tensor that breaks the triangle")));
+}
+
+// The first link of a real arm's URDF lacks two thirds of its largest moment.
+TEST(ImportUrdf, TakesTheNearestInertiaHoweverFarWhereAsked) {
+  const std::string text =
+      brick_with(R"(ixx="0.0004" ixy="0" ixz="0" iyy="0.0048" iyz="0" izz="0.0146")");
+  EXPECT_THAT(
+      message_of<desk::InputError>([&] { static_cast<void>(import_urdf(text, "brick.urdf")); }),
+      HasSubstr("or take the nearest that a body can have: --nearest-inertia"));
+  const ImportedRobot imported =
+      import_urdf(text, "brick.urdf", {}, desk::exchange::InertiaRule::kNearest);
+  const auto& inertia = imported.robot.joints[0].joint.inertia_kg_m2;
+  const double by_hand[]{0.0051, 0.0095, 0.0146, 0, 0, 0};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(inertia[i], by_hand[i], 1e-6) << i;
+  EXPECT_THAT(notes_of(imported), Contains(HasSubstr("assumed 3 the nearest inertia")));
 }
 
 // As files for Drake have it.

@@ -57,5 +57,26 @@ TEST(InertiaFault, SaysWhichLawIsBroken) {
               HasSubstr("triangle inequality (principal moments 1, 1, 3"));
 }
 
+TEST(BrokenTriangle, IsAShareOfTheLargestMomentOfATensorThatIsPositive) {
+  EXPECT_NEAR(broken_triangle({1, 1, 4, 0, 0, 0}).value_or(0), 0.5, 1e-12);
+  EXPECT_FALSE(broken_triangle({1, 1, 2, 0, 0, 0}));
+  EXPECT_FALSE(broken_triangle({1, 1, -1, 0, 0, 0}));
+}
+
+// Second moments (trace / 2 - moment): those below zero become none.
+TEST(NearestInertia, IsOneThatABodyCanHave) {
+  const auto plate = nearest_inertia({1, 1, 4, 0, 0, 0});  // seconds 2, 2, -1
+  ASSERT_TRUE(plate);
+  const double of_plate[]{2, 2, 4};
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR((*plate)[i], of_plate[i], 1e-4) << i;
+  // Turned by 45 deg: principal moments -1, 1, 3 along (1, -1, 0), z and (1, 1, 0).
+  const auto mended = nearest_inertia({1, 1, 1, 2, 0, 0});  // seconds 2.5, 0.5, -1.5
+  ASSERT_TRUE(mended);
+  EXPECT_EQ(inertia_fault(*mended), "");
+  const double by_hand[]{1.75, 1.75, 2.5, 1.25, 0, 0};  // principal 0.5, 2.5, 3
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR((*mended)[i], by_hand[i], 1e-4) << i;
+  EXPECT_FALSE(nearest_inertia({-1, 1, -1, 0, 0, 0}));
+}
+
 }  // namespace
 }  // namespace offnominal::desk
