@@ -116,6 +116,15 @@ bool is_position_of_axis(const Words& words) {
   });
 }
 
+// "joint_p", "joint_dp", "joint_u": letters that say it only of a joint.
+Role role_of_joints_letter(const Words& words) {
+  if (!any_of(words, {"joint", "joints"})) return Role::kNone;
+  if (any_of(words, {"p"})) return Role::kPosition;
+  if (any_of(words, {"v", "dp"})) return Role::kVelocity;
+  if (any_of(words, {"u"})) return Role::kTorque;
+  return Role::kNone;
+}
+
 // Whatever became of it.
 Role quantity_of(const Words& words) {
   if (says_velocity(words)) return Role::kVelocity;
@@ -127,6 +136,7 @@ Role quantity_of(const Words& words) {
   if (says_position(words) || is_position_of_axis(words)) return Role::kPosition;
   // A drive's signal in volts, as the EMPS benchmark calls it.
   if (any_of(words, {"vir"})) return Role::kVoltage;
+  if (const Role role = role_of_joints_letter(words); role != Role::kNone) return role;
   if (any_of(words,
              {"t", "time", "timestamp", "stamp", "times", "zeit", "sec", "secs", "seconds", "nsec",
               "nsecs", "nanosec", "nanosecs", "clock", "duration", "uhrzeit", "zeitstempel"})) {
