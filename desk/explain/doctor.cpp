@@ -350,6 +350,7 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
         if (unit == OfAnotherUnit::kSomeJoints ||
             (unit == OfAnotherUnit::kNone && !find_gravity(mended, robot, *pair, faults) &&
              !(find_joint_zero(mended, robot, *pair, faults) && faults.back().certain))) {
+          find_joint_gravity(mended, robot, *pair, faults);
           find_torque_sign(mended, robot, *pair, faults);
         }
         find_clock_skew(mended, *pair, faults);

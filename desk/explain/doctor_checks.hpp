@@ -92,6 +92,10 @@ bool find_joint_order(const Log& log, const RobotDescription& robot, const Torqu
 // else is held against the model's torque would follow from it. Returns whether it does.
 bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
                   std::vector<DataFault>& faults);
+// Single joints whose torque has none of the gravity that the model has, as if a spring or a part
+// of the controller that is not recorded carried it.
+void find_joint_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
+                        std::vector<DataFault>& faults);
 // Positions that are counted from another zero than the file's, or the other way round, of one
 // joint or several. Returns whether they are.
 bool find_joint_zero(const Log& log, const RobotDescription& robot, const TorquePair& pair,

@@ -10,6 +10,7 @@
 
 #include "compare/inverse_model.hpp"
 #include "explain/doctor_checks.hpp"
+#include "explain/doctor_signal.hpp"
 #include "robot/payload.hpp"
 
 namespace offnominal::desk {
@@ -75,9 +76,34 @@ MatrixXd torques_of_gravity(const RobotDescription& robot, const std::optional<P
   return columns;
 }
 
+// What has to be added to the file's gravity, m/s^2; what no joint feels stays as it is. Rows as
+// InParts gives them.
+Vector3d change_of_gravity(const MatrixXd& columns, const VectorXd& error) {
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(columns);
+  return solver.solve(error);
+}
+
 double angle_deg(const Vector3d& a, const Vector3d& b) {
   const double cosine = a.dot(b) / (a.norm() * b.norm());
   return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
+}
+
+// Whether every joint but one says the same gravity, whichever is left out: links that are off, or
+// one joint whose torques lack something, turn it too, each by its own. What only one joint feels
+// is nobody's word but its own.
+bool is_said_without_any(const MatrixXd& columns, const VectorXd& error, const Vector3d& stated,
+                         const Vector3d& fitted, Index joints) {
+  constexpr double kSame = 0.3;  // of the gravity
+  const Index rows = error.size() / joints;
+  for (Index joint = 0; joint < joints; ++joint) {
+    MatrixXd others = columns;
+    VectorXd left = error;
+    others.middleRows(joint * rows, rows).setZero();
+    left.segment(joint * rows, rows).setZero();
+    const Vector3d said = stated + change_of_gravity(others, left);
+    if (!((said - fitted).norm() < kSame * kStandard)) return false;
+  }
+  return true;
 }
 
 // The axis of the base that a direction is near, or itself.
@@ -109,9 +135,7 @@ bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePai
   const InParts parts(pair);
   const VectorXd error = parts.beside_friction(pair.measured - pair.model);
   const MatrixXd columns = torques_of_gravity(robot, log.payload, pair, parts);
-  // What no joint feels stays as it is.
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(columns);
-  const Vector3d change = solver.solve(error);
+  const Vector3d change = change_of_gravity(columns, error);
   const Vector3d stated = gravity_of(robot);
   const Vector3d fitted = stated + change;
   const double joints = std::sqrt(static_cast<double>(pair.measured.cols()));
@@ -121,7 +145,11 @@ bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePai
     return false;
   DataFault fault;
   fault.kind = DataFaultKind::kGravity;
-  fault.certain = pair.measured.cols() >= kSureJoints;
+  const Index count = pair.measured.cols();
+  // Else links, or one joint, may be what is off.
+  fault.or_masses =
+      count >= kSureJoints && !is_said_without_any(columns, error, stated, fitted, count);
+  fault.certain = count >= kSureJoints && !fault.or_masses;
   if (fitted.norm() < kOff * kStandard && stated.norm() > kOff * kStandard) {
     fault.words = fmt::format(
         "the torques {} without gravity: friction apart, the model leaves {:.0f} % of them "
@@ -152,6 +180,44 @@ bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePai
       rounded(mounted[0]), rounded(mounted[1]), rounded(mounted[2]));
   faults.push_back(std::move(fault));
   return true;
+}
+
+void find_joint_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
+                        std::vector<DataFault>& faults) {
+  constexpr double kBadFit = 0.5;         // with it, of the joint's own torque
+  constexpr double kClearlyBetter = 0.5;  // without, of what is left with it
+  constexpr double kAsWhole = 0.2;        // of it that is missing: neither less nor more
+  const InParts parts(pair);
+  const VectorXd error = parts.beside_friction(pair.measured - pair.model);
+  const VectorXd gravity = torques_of_gravity(robot, log.payload, pair, parts) * gravity_of(robot);
+  const Index rows = pair.measured.rows();
+  // What a brake or dry friction holds is not told either.
+  const std::vector<char> held = held_joints(pair.q, robot);
+  for (Index joint = 0; joint < pair.measured.cols(); ++joint) {
+    if (held[static_cast<std::size_t>(joint)] != 0) continue;
+    const auto left = error.segment(joint * rows, rows);
+    const auto own = gravity.segment(joint * rows, rows);
+    const double with = left.norm();
+    const double without = (left + own).norm();
+    if (!(with > kBadFit) || !(without < kClearlyBetter * with)) continue;
+    const double missing = -left.dot(own) / own.squaredNorm();
+    if (!(std::abs(missing - 1) < kAsWhole)) continue;
+    DataFault fault;
+    fault.kind = DataFaultKind::kGravity;
+    fault.joint = joint;
+    fault.certain = false;
+    fault.or_masses = true;
+    fault.words = fmt::format(
+        "the torque of joint {} may be without gravity: friction apart, the model leaves {:.0f} % "
+        "of it unexplained, and {:.0f} % where nothing weighs anything on that joint",
+        joint + 1, 100 * with, 100 * without);
+    fault.mend = fmt::format(
+        "record the whole torque where the drive's controller carries gravity apart; where a "
+        "spring or a counterweight carries it, `offnominal add position_torque --joint {}` puts "
+        "that into the model",
+        joint + 1);
+    faults.push_back(std::move(fault));
+  }
 }
 
 }  // namespace offnominal::desk

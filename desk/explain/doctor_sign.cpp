@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -30,26 +31,29 @@ struct Opposed {
 
 // The model with the opposite sign must fit: missing effects and a clock that is off leave less.
 constexpr double kFits = 0.6;
+// Of a joint that its drive holds friction may hold as much, whichever way.
+constexpr double kFitsWhileHeld = 0.3;
 // Friction of any kind has +0.8.
 constexpr double kClearBraking = 0.6;
 
-std::optional<Opposed> opposed(const VectorXd& tau, const VectorXd& model) {
+std::optional<Opposed> opposed(const VectorXd& tau, const VectorXd& model, double fits) {
   const double size = tau.norm();
   if (!(model.norm() > kSilentModel * size)) return std::nullopt;
   const Opposed found{tau.dot(model) / model.squaredNorm(), (tau + model).norm() / size,
                       (tau - model).norm() / size};
-  if (!(found.turned < kFits) || !(found.as_is > 1)) return std::nullopt;
+  if (!(found.turned < fits) || !(found.as_is > 1)) return std::nullopt;
   return found;
 }
 
 // As the model has it, or where friction is only a part of the torque, beside whatever friction.
-std::optional<Opposed> opposed_to_model(const TorquePair& pair, Index joint) {
+std::optional<Opposed> opposed_to_model(const TorquePair& pair, Index joint, bool held) {
+  const double fits = held ? kFitsWhileHeld : kFits;
   const VectorXd tau = pair.measured.col(joint);
-  if (auto found = opposed(tau, pair.model.col(joint))) return found;
+  if (auto found = opposed(tau, pair.model.col(joint), fits)) return found;
   const VectorXd dq = pair.dq.col(joint);
   const VectorXd rest = beside_friction(tau, dq);
   if (!(rest.norm() > kSilentModel * tau.norm())) return std::nullopt;
-  return opposed(rest, beside_friction(pair.model.col(joint), dq));
+  return opposed(rest, beside_friction(pair.model.col(joint), dq), fits);
 }
 
 // The correlation with the velocity of what the rigid body does not explain, where that is nearly
@@ -62,6 +66,18 @@ std::optional<double> braking_of(const TorquePair& pair, Index joint) {
   const double product = rest.norm() * speed.norm();
   if (!(product > 0)) return std::nullopt;
   return rest.dot(speed) / product;
+}
+
+// Whether the torque beside the rigid body's steps with the direction of motion as friction does,
+// whatever it does with the speed beside: a controller that tells a drive less than friction takes,
+// or more the faster it goes, turns no sign.
+bool steps_as_friction_does(const TorquePair& pair, Index joint) {
+  constexpr double kStep = 0.1;  // of it, rms
+  const VectorXd rest = pair.measured.col(joint) - pair.load.col(joint);
+  MatrixXd friction(rest.size(), 2);
+  friction << pair.dq.col(joint), pair.dq.col(joint).cwiseSign();
+  const VectorXd parts = Eigen::ColPivHouseholderQR<MatrixXd>(friction).solve(rest);
+  return parts[1] * std::sqrt(static_cast<double>(rest.size())) > kStep * rest.norm();
 }
 
 // A sign that is right: the model as it is fits, or friction takes power.
@@ -133,15 +149,16 @@ std::optional<WrongSign> wrong_sign_of(const TorquePair& pair, Index joint, bool
   fault.kind = DataFaultKind::kTorqueSign;
   fault.joint = joint;
   if (!(pair.measured.col(joint).norm() > 0)) return std::nullopt;
-  if (const auto turned = opposed_to_model(pair, joint)) {
+  if (const auto turned = opposed_to_model(pair, joint, held)) {
     wrong.by_model = true;
     fault.size = turned->slope;
     fault.words = fmt::format(
         "the torque of joint {} has the wrong sign: measured against model torque has slope "
         "{:.2f}, and the opposite sign leaves {:.0f} % of it unexplained instead of {:.0f} %",
         joint + 1, fault.size, 100 * turned->turned, 100 * turned->as_is);
-  } else if (const auto braking = braking_of(pair, joint);
-             !held && braking && *braking < -kClearBraking) {
+  } else if (const auto braking = braking_of(pair, joint); !held && braking &&
+                                                           *braking < -kClearBraking &&
+                                                           !steps_as_friction_does(pair, joint)) {
     const VectorXd speed = pair.dq.col(joint);
     fault.size = (pair.measured.col(joint) - pair.load.col(joint)).dot(speed) / speed.squaredNorm();
     fault.words = fmt::format(

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -647,6 +648,25 @@ TEST(DoctorOfGravity, SaysThatTheTorquesHaveNone) {
   EXPECT_TRUE(faults[0].certain);
   EXPECT_THAT(faults[0].words, HasSubstr("the torques are without gravity"));
   EXPECT_THAT(faults[0].mend, HasSubstr("record the whole torque"));
+}
+
+// A spring carries one joint, or its drive's controller: it is nobody's fault for sure, and no
+// other mounting of the arm.
+TEST(DoctorOfGravity, SaysWhichJointsTorqueHasNone) {
+  const RobotDescription file = test::serial_arm(6);
+  RobotDescription weightless = file;
+  weightless.gravity_m_s2 = {0, 0, 0};
+  for (const Index joint : {1, 2}) {
+    Log log = test::record(file, {.duration_s = 12});
+    log.tau.col(joint) = test::record(weightless, {.duration_s = 12}).tau.col(joint);
+    const std::vector<DataFault> faults = examine(log, file);
+    ASSERT_EQ(faults.size(), 1U) << words_of(faults);
+    EXPECT_EQ(faults[0].kind, DataFaultKind::kGravity);
+    EXPECT_EQ(faults[0].joint, joint);
+    EXPECT_FALSE(faults[0].certain);
+    EXPECT_THAT(faults[0].words, HasSubstr("may be without gravity"));
+    EXPECT_THAT(faults[0].mend, HasSubstr(fmt::format("position_torque --joint {}", joint + 1)));
+  }
 }
 
 TEST(DoctorOfGravity, SaysNothingOfLinksThatAreOffOrOfWhatIsCarried) {
