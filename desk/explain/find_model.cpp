@@ -488,6 +488,7 @@ class Finder {
         if (needed[i] == 0 && (least == shares.size() || shares[i] < shares[least])) least = i;
       }
       if (least == shares.size()) return;
+      least = larger_member_instead(regression_, found_.terms(), least);
       found_.accepted.erase(found_.accepted.begin() + static_cast<std::ptrdiff_t>(least));
       found_.fit = regression_.fit(found_.terms());
     }
@@ -503,6 +504,7 @@ class Finder {
 
   // One effect that describes a joint as well as all that were found on it, one after the other,
   // is the simpler answer: a first one that was only close leaves what a second one then takes.
+  // Not of the friction that every drive has, which is there.
   bool replace_several_by_one() {
     constexpr std::size_t kMostTries = 8;
     bool replaced = false;
@@ -510,12 +512,17 @@ class Finder {
       const std::vector<Accepted> all = found_.accepted;
       std::vector<Accepted> elsewhere = accepted_elsewhere(joint);
       if (all.size() < elsewhere.size() + 2) continue;
+      const auto of_every_drive = std::count_if(all.begin(), all.end(), [&](const Accepted& one) {
+        return static_cast<std::size_t>(one.term.joint) == joint &&
+               one.term.effect->info().traits.every_drive_has;
+      });
+      if (of_every_drive == static_cast<std::ptrdiff_t>(all.size() - elsewhere.size())) continue;
       tell(fmt::format("trying a single effect on joint {}", joint + 1));
       const ModelFit several = found_.fit;
       const VectorXd held_of_several = hold_out_.residual(found_.terms(), several);
       found_.accepted = std::move(elsewhere);
       refit();
-      if (accept_instead(joint, several, held_of_several, kMostTries)) {
+      if (accept_instead(joint, several, held_of_several, of_every_drive > 0, kMostTries)) {
         replaced = true;
         continue;
       }
@@ -527,8 +534,9 @@ class Finder {
   }
 
   // Takes the best effect on a joint that is as good as `several`; false where there is none.
+  // `own_friction`: the joint's own is among them, and no other joint's motion takes its place.
   bool accept_instead(std::size_t joint, const ModelFit& several, const VectorXd& held_of_several,
-                      std::size_t most_tries) {
+                      bool own_friction, std::size_t most_tries) {
     constexpr double kAsWell = 1.1;
     const Data& data = regression_.data();
     std::vector<char> open(joints_.size(), 0);
@@ -538,7 +546,9 @@ class Finder {
         search_.propose_per_joint(terms, found_.fit, search_.screen(terms, found_.fit), open);
     std::size_t tries = 0;
     for (const Proposal& one : proposals[joint]) {
-      if (one.added > 1 || one.terms.back().effect->info().traits.has_any_shape) continue;
+      const EffectInfo& info = one.terms.back().effect->info();
+      if (one.added > 1 || info.traits.has_any_shape) continue;
+      if (own_friction && is_of_another_joint(info)) continue;
       if (++tries > most_tries) break;
       // Within chance, and not within what its formula simplifies: that may be the other ones.
       if (!as_good(data, several, one.fit, 0)) continue;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "compare/inverse_model.hpp"
 #include "identify/effects/effects.hpp"
@@ -38,11 +40,33 @@ double scale_of(Quantity quantity, const std::vector<Workspace>& at, const AtPla
   }
 }
 
-// The other joints that move, counted from 1.
-std::vector<double> other_joints(const std::vector<Workspace>& at, Index joint) {
-  std::vector<double> others;
+// Of the velocities of two joints, over all recordings.
+double correlation_of(const std::vector<Workspace>& at, Index a, Index b) {
+  double product = 0;
+  double of_a = 0;
+  double of_b = 0;
+  for (const Workspace& one : at) {
+    product += one.motion.dq.col(a).dot(one.motion.dq.col(b));
+    of_a += one.motion.dq.col(a).squaredNorm();
+    of_b += one.motion.dq.col(b).squaredNorm();
+  }
+  const double size = std::sqrt(of_a * of_b);
+  return size > 0 ? product / size : 0;
+}
+
+// Other joints' motion, each by its number, counted from 1.
+struct OtherJoints {
+  std::vector<double> apart;    // not in step with the joint
+  std::vector<double> in_step;  // the friction of the joint itself would show as one of theirs
+};
+
+OtherJoints other_joints(const std::vector<Workspace>& at, Index joint) {
+  constexpr double kInStep = 0.97;
+  OtherJoints others;
   for (Index k = 0; k < at[0].joint_count(); ++k) {
-    if (k != joint && moves_in_any(at, k)) others.push_back(static_cast<double>(k + 1));
+    if (k == joint || !moves_in_any(at, k)) continue;
+    const bool is_apart = std::abs(correlation_of(at, joint, k)) < kInStep;
+    (is_apart ? others.apart : others.in_step).push_back(static_cast<double>(k + 1));
   }
   return others;
 }
@@ -148,7 +172,9 @@ std::vector<ShapeRange> EffectCandidate::shapes(const std::vector<Workspace>& at
       }
     } else if (info.quantity == Quantity::kJointNumber) {
       range.kind = ShapeRange::Kind::kDiscrete;
-      range.grid = other_joints(at, joint);
+      // Who asks for it all the same has one that is in step.
+      OtherJoints others = other_joints(at, joint);
+      range.grid = std::move(others.apart.empty() ? others.in_step : others.apart);
     } else {
       range.kind = ShapeRange::Kind::kLogarithmic;
       const double scale = scale_of(
@@ -228,7 +254,10 @@ bool EffectCandidate::applies(const Workspace& at, Index joint) const {
 
 bool EffectCandidate::applies_in_any(const std::vector<Workspace>& at, Index joint) const {
   // What differs between the directions is a constant and a slope as any in one of them.
-  if (kind() == EffectKind::kFrictionAsymmetry && !turns_both_ways(at, joint)) return false;
+  if (info_.traits.needs_both_directions && !turns_both_ways(at, joint)) return false;
+  if (info_.find(Quantity::kJointNumber) != nullptr && other_joints(at, joint).apart.empty()) {
+    return false;
+  }
   return std::any_of(at.begin(), at.end(),
                      [&](const Workspace& one) { return applies(one, joint); });
 }

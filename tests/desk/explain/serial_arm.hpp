@@ -47,6 +47,8 @@ struct SerialRecording {
   double torque_noise_nm = 0.02;
   std::uint64_t seed = 1;
   Eigen::Index held = -1;  // joint that stands, at 0.4 rad; none
+  // All move as the first does, less and less, every other one the other way, but for a hundredth.
+  bool in_step = false;
 };
 
 // Every joint but one that is held moves in five sines of its own; the torque is what `robot`
@@ -72,6 +74,14 @@ inline desk::Log record(const desk::RobotDescription& robot, const SerialRecordi
       motion.q.col(joint).array() += size * angle.sin();
       motion.dq.col(joint).array() += size * w * angle.cos();
       motion.ddq.col(joint).array() -= size * w * w * angle.sin();
+    }
+  }
+  if (settings.in_step) {
+    for (Eigen::MatrixXd* of : {&motion.q, &motion.dq, &motion.ddq}) {
+      for (Eigen::Index joint = 1; joint < joints; ++joint) {
+        of->col(joint) =
+            std::pow(-0.8, static_cast<double>(joint)) * of->col(0) + 0.01 * of->col(joint);
+      }
     }
   }
   if (settings.held >= 0) motion.q.col(settings.held).setConstant(0.4);
