@@ -104,7 +104,10 @@ class Classes {
     }
     const EffectTraits& traits = mine.effect->info().traits;
     const bool is_curve = traits.has_any_shape && traits.follows == EffectVariable::kPosition;
-    if (is_curve || excitation_[static_cast<std::size_t>(mine.joint)].is_poor()) {
+    const bool is_poor = excitation_[static_cast<std::size_t>(mine.joint)].is_poor();
+    // Friction that every drive has and the file lacks is there: such a ripple, which on a poor
+    // motion is any curve, would only be beside it.
+    if (is_curve || (is_poor && !traits.every_drive_has)) {
       add_slow_ripples(found, mine, others, own, same);
     }
     return same;

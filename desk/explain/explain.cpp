@@ -29,6 +29,7 @@
 #include "explain/questions.hpp"
 #include "explain/search_setting.hpp"
 #include "explain/sizes.hpp"
+#include "explain/taken_back.hpp"
 #include "explain/undecided.hpp"
 #include "explain/verdict.hpp"
 #include "identify/file_errors.hpp"
@@ -133,7 +134,9 @@ class Explainer {
         improved = fitted_robot(found, result);
       } while (leave_out_impossible(improved.held, result.shifts));
       sizes = sizes_of(improved);
-    } while (gives_one_up(sizes, found) || gives_up_what_raises(improved, found));
+    } while (gives_one_up(sizes, found) ||
+             takes_back_what_raises(judged(), improved, setting_, options_.threads, found) ||
+             takes_back_what_drives(improved, setting_, options_.threads, found));
     if (search) {
       const VectorXd left = improved.last.data->layout.rms(improved.last.fit.residual);
       for (UndecidedClass& one : undecided(setting_, robot_, found, result.excitation, left)) {
@@ -207,13 +210,16 @@ class Explainer {
 
   [[nodiscard]] Judged judged() const { return {file_, logs_, holdout_, plan_}; }
 
-  [[nodiscard]] ImprovedRobot fitted_robot(const FoundModel& found, const Explanation& result,
-                                           bool keeps_links) const {
+  [[nodiscard]] ImprovedRobot robot_with(const std::vector<Term>& terms, const ModelFit& fit,
+                                         const Explanation& result, bool keeps_links) const {
     FileFitOptions how{setting_.nuisance, {}, {}, options_.source, keeps_links};
     if (!options_.keep_effects) how.refitted = refitted_effects(file_, result.shifts);
-    return improved_robot(
-        file_, robot_, *setting_.data, how,
-        relinearise(robot_, *setting_.data, setting_.nuisance, found.terms(), found.fit));
+    return improved_robot(file_, robot_, *setting_.data, how,
+                          relinearise(robot_, *setting_.data, setting_.nuisance, terms, fit));
+  }
+  [[nodiscard]] ImprovedRobot fitted_robot(const FoundModel& found, const Explanation& result,
+                                           bool keeps_links) const {
+    return robot_with(found.terms(), found.fit, result, keeps_links);
   }
 
   // All that is written. Links get other numbers where the recordings support that: where a joint
@@ -249,30 +255,6 @@ class Explainer {
     return replace_by_offset(setting_, sizes, options_.threads, found) ||
            leave_out_unsure(sizes, *setting_.regression, *setting_.hold_out, options_.threads,
                             found);
-  }
-
-  // Whether a name was taken back on whose joint the file that it is written to is worse than the
-  // one that was read: then nothing shows it. Friction that every drive has is there all the same,
-  // and what is carried need not show on its own joint.
-  bool gives_up_what_raises(const ImprovedRobot& improved, FoundModel& found) const {
-    const auto is_asked = [](const Accepted& one) {
-      return !one.term.effect->is_mass() && !one.term.effect->info().traits.every_drive_has;
-    };
-    const auto& accepted = found.accepted;
-    if (setting_.data->recordings[0].at_rest ||
-        std::none_of(accepted.begin(), accepted.end(), is_asked)) {
-      return false;
-    }
-    const std::vector<double> before = file_errors(file_, logs_, plan_).rms_error;
-    const std::vector<double> after = file_errors(improved.robot, logs_, plan_).rms_error;
-    for (std::size_t i = accepted.size(); i-- > 0;) {
-      const auto joint = static_cast<std::size_t>(accepted[i].term.joint);
-      const bool is_written = i < improved.added.size() && improved.added[i] != kUnwritten;
-      if (!is_asked(accepted[i]) || !is_written || !(after[joint] > before[joint])) continue;
-      leave_out(i, *setting_.regression, *setting_.hold_out, options_.threads, found);
-      return true;
-    }
-    return false;
   }
 
   // With links as far off as the recordings ask for, where nobody has said how far that is.
@@ -365,23 +347,52 @@ class Explainer {
   }
 
   // What could as well be something else is not written, nor what stands beside a number that
-  // cannot be; all numbers were fitted beside it.
-  static void leave_out_undecided(const FoundModel& found, const Explanation& result,
-                                  ImprovedRobot& improved) {
+  // cannot be. The links' numbers were fitted beside it, so that they do not take its place; what
+  // else is written of its joint was fitted to what it leaves, and fits nothing without it.
+  void leave_out_undecided(const FoundModel& found, const Explanation& result,
+                           ImprovedRobot& improved) const {
     const bool writes = changes_the_file(result);
+    std::vector<char> touched(robot_.joints.size(), 0);
+    std::vector<Term> kept;
     for (std::size_t i = 0; i < found.accepted.size(); ++i) {
       const Term& term = found.accepted[i].term;
       const EffectAt what{term.effect->kind(), term.joint};
       const std::size_t at = improved.added[i];
       const bool left_out =
           holds_in_any(result.ambiguous, what) || (writes && !is_written(result, what));
-      if (at == kUnwritten || !left_out) continue;
+      if (at == kUnwritten || !left_out) {
+        kept.push_back(term);
+        continue;
+      }
+      touched[static_cast<std::size_t>(term.joint)] = 1;
       improved.robot.effects.erase(improved.robot.effects.begin() +
                                    static_cast<std::ptrdiff_t>(at));
       improved.added[i] = kUnwritten;
       for (std::size_t& other : improved.added) {
         if (other != kUnwritten && other > at) --other;
       }
+    }
+    if (writes && kept.size() < found.accepted.size()) {
+      take_numbers_without(kept, result, touched, improved);
+    }
+  }
+
+  // Numbers of those joints' effects from a fit of these terms alone.
+  void take_numbers_without(const std::vector<Term>& kept, const Explanation& result,
+                            const std::vector<char>& joints, ImprovedRobot& improved) const {
+    tell("fitting the numbers without what is not written");
+    const ImprovedRobot without =
+        robot_with(kept, setting_.regression->fit(kept), result, !result.links_kept_for.empty());
+    // Several of a kind stand in the same order in both.
+    std::vector<RobotEffect> others = without.robot.effects;
+    for (RobotEffect& effect : improved.robot.effects) {
+      if (effect.of_motor || joints[static_cast<std::size_t>(effect.joint)] == 0) continue;
+      const auto same = std::find_if(others.begin(), others.end(), [&](const RobotEffect& one) {
+        return one.kind == effect.kind && one.joint == effect.joint && !one.of_motor;
+      });
+      if (same == others.end()) continue;
+      effect.parameters = same->parameters;
+      others.erase(same);
     }
   }
 
@@ -525,8 +536,10 @@ std::string words_of_hint(const DataFault& hint) {
   if (hint.overruled) return hint.words + ", which --keep overrules";
   if (hint.kind == DataFaultKind::kNothingLeft)
     return hint.words + ", so that nothing is said of it";
-  const char* meanwhile = hint.or_masses ? ": masses that are off are looked for; to mend a zero: "
-                                         : ", which changes nothing here; to mend: ";
+  const bool of_zero = hint.kind == DataFaultKind::kJointZero;
+  const char* meanwhile = !hint.or_masses ? ", which changes nothing here; to mend: "
+                          : of_zero       ? ": masses that are off are looked for; to mend a zero: "
+                                          : ": what else it could be is looked for; to mend: ";
   return hint.words + meanwhile + hint.mend;
 }
 

@@ -561,6 +561,21 @@ void judge_joints(Explanation& e) {
 // Links of which a file says so little are better sought by themselves.
 constexpr double kHardlyKnown = 0.5;
 
+// Joints most of whose torque nothing explains.
+std::vector<Eigen::Index> hardly_explained(const Explanation& e) {
+  constexpr double kMost = 0.5;
+  std::vector<Eigen::Index> joints;
+  for (const JointAnswer& one : e.answers) {
+    const JointErrors& errors = errors_of(e, one.joint);
+    if (one.verdict == Verdict::kUnknownStateDependent &&
+        errors.rms_after > kMost * errors.rms_torque) {
+      joints.push_back(one.joint + 1);
+    }
+  }
+  std::sort(joints.begin(), joints.end());
+  return joints;
+}
+
 // How far the links were let off the file, where the recordings said so, or why they were not.
 void advise_on_links(Explanation& e) {
   if (!e.links_kept_for.empty() && changes_the_file(e)) {
@@ -582,6 +597,15 @@ void advise_on_links(Explanation& e) {
             ? ""
             : ", and `offnominal identify` with these recordings finds them from the geometry "
               "alone: explain again with the file that it writes"));
+  }
+  const std::vector<Eigen::Index> hardly = hardly_explained(e);
+  const bool said = e.link_share_judged && e.link_share >= kHardlyKnown;
+  if (!hardly.empty() && !said && !e.at_rest) {
+    e.advice.push_back(fmt::format(
+        "nothing explains most of the torque of joint {}: where the file's masses are a guess, "
+        "`offnominal identify` with these recordings finds the links from the geometry alone, and "
+        "its error on what is held out tells whether they are what is missing",
+        fmt::join(hardly, ", ")));
   }
   if (e.torque_constants.empty()) return;
   std::vector<std::string> constants;

@@ -265,10 +265,11 @@ void move_fitted_effects(const Relinearised& found, const std::string& source,
   }
 }
 
-// Friction that all together gives energy, whatever the search saw, and masses beyond belief.
-std::vector<std::string> unphysical(const Relinearised& last, const RobotDescription& file,
-                                    const RobotDescription& improved) {
-  std::vector<std::string> objections = masses_beyond_belief(file, improved);
+// Friction that all together gives energy, whatever the search saw, of joints whose friction is not
+// the file's.
+std::vector<FrictionDrives> friction_that_drives(const Relinearised& last,
+                                                 const RobotDescription& improved) {
+  std::vector<FrictionDrives> found;
   std::set<Index> joints;
   for (const Term& term : last.terms) {
     const EffectKind kind = term.effect->kind();
@@ -284,11 +285,11 @@ std::vector<std::string> unphysical(const Relinearised& last, const RobotDescrip
       const auto drives = friction_that_drives(
           at.as_recorded(improved), static_cast<std::size_t>(joint), at.motion, rms[joint]);
       if (!drives) continue;
-      objections.push_back(drives->words(improved));
+      found.push_back(*drives);
       break;
     }
   }
-  return objections;
+  return found;
 }
 
 void set_fitted_width(RobotDescription& robot, const std::vector<std::size_t>& refitted,
@@ -475,7 +476,11 @@ ImprovedRobot improved_robot(const RobotDescription& file, const RobotDescriptio
     effect.source = options.source;
     improved.robot.effects.push_back(std::move(effect));
   }
-  improved.unphysical = unphysical(last, file, improved.robot);
+  improved.unphysical = masses_beyond_belief(file, improved.robot);
+  for (const FrictionDrives& one : friction_that_drives(last, improved.robot)) {
+    improved.unphysical.push_back(one.words(improved.robot));
+    if (one.contradicted) improved.driven.push_back(static_cast<Index>(one.joint));
+  }
   improved.found = std::move(found);
   // As whoever reads it will judge it: a mass that is taken away may leave none.
   try {

@@ -49,6 +49,7 @@ struct ImprovedRobot {
   std::vector<std::string> unwritable;
   std::vector<HeldNumber> held;
   std::vector<std::string> unphysical;  // why it must not be used; empty: it may
+  std::vector<Eigen::Index> driven;  // joints whose friction gives energy, against the recordings
 };
 
 struct FileFitOptions {
