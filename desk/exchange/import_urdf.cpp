@@ -211,7 +211,6 @@ class Importer {
     return axis / length;
   }
 
-  // What a link weighs; none where it weighs nothing. Refused where no body can be like that.
   // In the place of one that no body has.
   std::array<double, 6> possible_inertia(const urdf::Link& link,
                                          const std::array<double, 6>& tensor,
@@ -237,6 +236,7 @@ class Importer {
     return *nearest;
   }
 
+  // What a link weighs; none where it weighs nothing. Refused where no body can be like that.
   std::optional<RigidBody> body_of_link(const urdf::Link& link) {
     if (link.inertial == nullptr) return std::nullopt;
     const urdf::Inertial& given = *link.inertial;

@@ -1,6 +1,8 @@
 #include "explain/as_written.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "explain/doubts.hpp"
 #include "identify/file_errors.hpp"
@@ -39,6 +41,38 @@ void tell_errors_of_files(const Judged& by, const ImprovedRobot& improved, Expla
     joint.holdout_before = held_out.before[joint.joint];
     joint.holdout_after = held_out.after[joint.joint];
   }
+}
+
+std::vector<Index> take_better_numbers(const Judged& by, const RobotDescription& other,
+                                       const std::vector<char>& joints, RobotDescription& robot) {
+  RobotDescription refitted = robot;
+  // Several of a kind stand in the same order in both.
+  std::vector<RobotEffect> numbers = other.effects;
+  for (RobotEffect& effect : refitted.effects) {
+    const EffectInfo& info = *info_of(effect.kind);
+    if (effect.of_motor || joints[static_cast<std::size_t>(effect.joint)] == 0 ||
+        info.action == EffectAction::kPointMass || info.acts_on_whole_drive()) {
+      continue;
+    }
+    const auto same = std::find_if(numbers.begin(), numbers.end(), [&](const RobotEffect& one) {
+      return one.kind == effect.kind && one.joint == effect.joint && !one.of_motor;
+    });
+    if (same == numbers.end()) continue;
+    effect.parameters = same->parameters;
+    numbers.erase(same);
+  }
+  const std::vector<double> as_it_was = file_errors(robot, by.logs, by.plan).rms_error;
+  const std::vector<double> as_it_is = file_errors(refitted, by.logs, by.plan).rms_error;
+  std::vector<Index> better;
+  for (std::size_t joint = 0; joint < joints.size(); ++joint) {
+    if (as_it_is[joint] < as_it_was[joint]) better.push_back(static_cast<Index>(joint));
+  }
+  for (std::size_t i = 0; i < robot.effects.size(); ++i) {
+    const auto joint = static_cast<Index>(robot.effects[i].joint);
+    if (std::find(better.begin(), better.end(), joint) == better.end()) continue;
+    robot.effects[i].parameters = refitted.effects[i].parameters;
+  }
+  return better;
 }
 
 std::vector<Index> raised_by_links(const Judged& by, const ImprovedRobot& improved,

@@ -22,6 +22,13 @@ HeldOutErrors held_out_of(const Judged& by, const ImprovedRobot& improved);
 // and their friction by the direction of approach no file.
 void tell_errors_of_files(const Judged& by, const ImprovedRobot& improved, Explanation& result);
 
+// Gives the effects of these joints, a flag each, the numbers of another fit of the same effects
+// and others, where that lowers the joint's error. Masses, and constants of drives, belong to the
+// links and stay. Returns the joints that have other numbers then.
+std::vector<Eigen::Index> take_better_numbers(const Judged& by, const RobotDescription& other,
+                                              const std::vector<char>& joints,
+                                              RobotDescription& robot);
+
 // Joints whose error on data that no fit has seen rises although nothing is changed at them, by
 // more than what a twentieth is: what raises it are the links' numbers that were fitted beside.
 // `changed`: per joint, whether an effect or a number of it is.

@@ -308,6 +308,22 @@ std::vector<DataFault> local_faults(const Log& log, const RobotDescription& robo
   return faults;
 }
 
+// Of torques in their unit: the first that they all follow from, else what single joints have.
+void find_in_torques(const Log& log, const RobotDescription& robot, const TorquePair& pair,
+                     std::vector<DataFault>& faults) {
+  const std::size_t before = faults.size();
+  const bool may_be_gravity = find_gravity(log, robot, pair, faults);
+  if (may_be_gravity && faults.back().certain) return;
+  if (!(find_joint_zero(log, robot, pair, faults) && faults.back().certain)) {
+    find_joint_gravity(log, robot, pair, faults);
+    find_torque_sign(log, robot, pair, faults);
+  }
+  // Where something else is what is off, another gravity only looked like it.
+  if (may_be_gravity && faults.size() > before + 1) {
+    faults.erase(faults.begin() + static_cast<std::ptrdiff_t>(before));
+  }
+}
+
 }  // namespace
 
 std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
@@ -347,12 +363,8 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
       // The first that all torques follow from: nothing else is then held against them.
       if (!find_joint_order(mended, robot, *pair, faults)) {
         const OfAnotherUnit unit = find_torque_unit(mended, robot, *pair, faults);
-        if (unit == OfAnotherUnit::kSomeJoints ||
-            (unit == OfAnotherUnit::kNone && !find_gravity(mended, robot, *pair, faults) &&
-             !(find_joint_zero(mended, robot, *pair, faults) && faults.back().certain))) {
-          find_joint_gravity(mended, robot, *pair, faults);
-          find_torque_sign(mended, robot, *pair, faults);
-        }
+        if (unit == OfAnotherUnit::kSomeJoints) find_torque_sign(mended, robot, *pair, faults);
+        if (unit == OfAnotherUnit::kNone) find_in_torques(mended, robot, *pair, faults);
         find_clock_skew(mended, *pair, faults);
       }
     }

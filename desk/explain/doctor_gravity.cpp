@@ -88,22 +88,32 @@ double angle_deg(const Vector3d& a, const Vector3d& b) {
   return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-// Whether every joint but one says the same gravity, whichever is left out: links that are off, or
-// one joint whose torques lack something, turn it too, each by its own. What only one joint feels
-// is nobody's word but its own.
-bool is_said_without_any(const MatrixXd& columns, const VectorXd& error, const Vector3d& stated,
-                         const Vector3d& fitted, Index joints) {
-  constexpr double kSame = 0.3;  // of the gravity
+// Whether more than one joint says so: of each of two or more it leaves clearly less, and all but
+// one say the same, whichever is left out. Links that are off, or one joint whose torques lack
+// something, turn it too, each by its own. Along an axis that only one joint feels it is that
+// joint's word.
+bool is_said_by_several(const MatrixXd& columns, const VectorXd& error, const Vector3d& change,
+                        Index joints) {
+  constexpr double kSame = 0.3;     // of the gravity
+  constexpr double kHardly = 0.05;  // of what they feel along any axis
+  constexpr double kClearly = 0.6;  // of what was left of a joint's
+  constexpr int kSeveral = 2;
   const Index rows = error.size() / joints;
+  const Eigen::Matrix3d all = columns.transpose() * columns;
+  const VectorXd rest = error - columns * change;
+  int say = 0;
   for (Index joint = 0; joint < joints; ++joint) {
-    MatrixXd others = columns;
-    VectorXd left = error;
-    others.middleRows(joint * rows, rows).setZero();
-    left.segment(joint * rows, rows).setZero();
-    const Vector3d said = stated + change_of_gravity(others, left);
-    if (!((said - fitted).norm() < kSame * kStandard)) return false;
+    const auto own = columns.middleRows(joint * rows, rows);
+    const auto left = rest.segment(joint * rows, rows);
+    if (left.norm() < kClearly * error.segment(joint * rows, rows).norm()) ++say;
+    const Vector3d pull = columns.transpose() * rest - own.transpose() * left;
+    const Eigen::Matrix3d others = all - own.transpose() * own;
+    const Eigen::Matrix3d held =
+        others + kHardly * others.trace() / 3 * Eigen::Matrix3d::Identity();
+    const Vector3d off = held.completeOrthogonalDecomposition().solve(pull);
+    if (!(off.norm() < kSame * kStandard)) return false;
   }
-  return true;
+  return say >= kSeveral;
 }
 
 // The axis of the base that a direction is near, or itself.
@@ -147,8 +157,7 @@ bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePai
   fault.kind = DataFaultKind::kGravity;
   const Index count = pair.measured.cols();
   // Else links, or one joint, may be what is off.
-  fault.or_masses =
-      count >= kSureJoints && !is_said_without_any(columns, error, stated, fitted, count);
+  fault.or_masses = count >= kSureJoints && !is_said_by_several(columns, error, change, count);
   fault.certain = count >= kSureJoints && !fault.or_masses;
   if (fitted.norm() < kOff * kStandard && stated.norm() > kOff * kStandard) {
     fault.words = fmt::format(
@@ -185,6 +194,7 @@ bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePai
 void find_joint_gravity(const Log& log, const RobotDescription& robot, const TorquePair& pair,
                         std::vector<DataFault>& faults) {
   constexpr double kBadFit = 0.5;         // with it, of the joint's own torque
+  constexpr double kGoodFit = 0.6;        // without
   constexpr double kClearlyBetter = 0.5;  // without, of what is left with it
   constexpr double kAsWhole = 0.2;        // of it that is missing: neither less nor more
   const InParts parts(pair);
@@ -199,7 +209,7 @@ void find_joint_gravity(const Log& log, const RobotDescription& robot, const Tor
     const auto own = gravity.segment(joint * rows, rows);
     const double with = left.norm();
     const double without = (left + own).norm();
-    if (!(with > kBadFit) || !(without < kClearlyBetter * with)) continue;
+    if (!(with > kBadFit) || !(without < kGoodFit) || !(without < kClearlyBetter * with)) continue;
     const double missing = -left.dot(own) / own.squaredNorm();
     if (!(std::abs(missing - 1) < kAsWhole)) continue;
     DataFault fault;

@@ -70,14 +70,17 @@ std::optional<double> braking_of(const TorquePair& pair, Index joint) {
 
 // Whether the torque beside the rigid body's steps with the direction of motion as friction does,
 // whatever it does with the speed beside: a controller that tells a drive less than friction takes,
-// or more the faster it goes, turns no sign.
+// or more the faster it goes, turns no sign. A joint that turns one way shows no step.
 bool steps_as_friction_does(const TorquePair& pair, Index joint) {
-  constexpr double kStep = 0.1;  // of it, rms
+  constexpr double kStep = 0.1;       // of it, rms
+  constexpr double kBothWays = 0.05;  // of the samples, at least, in each direction
   const VectorXd rest = pair.measured.col(joint) - pair.load.col(joint);
-  MatrixXd friction(rest.size(), 2);
-  friction << pair.dq.col(joint), pair.dq.col(joint).cwiseSign();
+  const VectorXd dq = pair.dq.col(joint);
+  MatrixXd friction(rest.size(), 3);
+  friction << dq, dq.cwiseProduct(dq.cwiseAbs()), dq.cwiseSign();
+  if (!(std::abs(friction.col(2).mean()) < 1 - 2 * kBothWays)) return false;
   const VectorXd parts = Eigen::ColPivHouseholderQR<MatrixXd>(friction).solve(rest);
-  return parts[1] * std::sqrt(static_cast<double>(rest.size())) > kStep * rest.norm();
+  return parts[2] * std::sqrt(static_cast<double>(rest.size())) > kStep * rest.norm();
 }
 
 // A sign that is right: the model as it is fits, or friction takes power.

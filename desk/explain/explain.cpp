@@ -24,6 +24,7 @@
 #include "explain/friction_family.hpp"
 #include "explain/given_part.hpp"
 #include "explain/link_share.hpp"
+#include "explain/list_of_joints.hpp"
 #include "explain/offset_instead.hpp"
 #include "explain/pushes.hpp"
 #include "explain/questions.hpp"
@@ -349,7 +350,7 @@ class Explainer {
   // What could as well be something else is not written, nor what stands beside a number that
   // cannot be. The links' numbers were fitted beside it, so that they do not take its place; what
   // else is written of its joint was fitted to what it leaves, and fits nothing without it.
-  void leave_out_undecided(const FoundModel& found, const Explanation& result,
+  void leave_out_undecided(const FoundModel& found, Explanation& result,
                            ImprovedRobot& improved) const {
     const bool writes = changes_the_file(result);
     std::vector<char> touched(robot_.joints.size(), 0);
@@ -372,28 +373,25 @@ class Explainer {
         if (other != kUnwritten && other > at) --other;
       }
     }
-    if (writes && kept.size() < found.accepted.size()) {
-      take_numbers_without(kept, result, touched, improved);
+    if (writes && !result.at_rest && kept.size() < found.accepted.size()) {
+      take_numbers_without(kept, touched, result, improved);
     }
   }
 
   // Numbers of those joints' effects from a fit of these terms alone.
-  void take_numbers_without(const std::vector<Term>& kept, const Explanation& result,
-                            const std::vector<char>& joints, ImprovedRobot& improved) const {
+  void take_numbers_without(const std::vector<Term>& kept, const std::vector<char>& joints,
+                            Explanation& result, ImprovedRobot& improved) const {
     tell("fitting the numbers without what is not written");
     const ImprovedRobot without =
         robot_with(kept, setting_.regression->fit(kept), result, !result.links_kept_for.empty());
-    // Several of a kind stand in the same order in both.
-    std::vector<RobotEffect> others = without.robot.effects;
-    for (RobotEffect& effect : improved.robot.effects) {
-      if (effect.of_motor || joints[static_cast<std::size_t>(effect.joint)] == 0) continue;
-      const auto same = std::find_if(others.begin(), others.end(), [&](const RobotEffect& one) {
-        return one.kind == effect.kind && one.joint == effect.joint && !one.of_motor;
-      });
-      if (same == others.end()) continue;
-      effect.parameters = same->parameters;
-      others.erase(same);
-    }
+    if (!without.unphysical.empty() || !without.unwritable.empty()) return;
+    const std::vector<Index> better =
+        take_better_numbers(judged(), without.robot, joints, improved.robot);
+    if (better.empty()) return;
+    result.advice.push_back(fmt::format(
+        "the numbers of {} in the new file are not those above: they were fitted without what is "
+        "not written of {}",
+        list_of_joints(better), better.size() == 1 ? "it" : "them"));
   }
 
   // A hold map may show one order after the other: as many as robot files have room for.
@@ -478,8 +476,7 @@ void check_keep(const std::vector<KeepFault>& keep, const RobotDescription& robo
                         ""});
     }
     if (one.kind == DataFaultKind::kGaps || one.kind == DataFaultKind::kTimeUnit ||
-        one.kind == DataFaultKind::kGravity || one.kind == DataFaultKind::kJointOrder ||
-        one.kind == DataFaultKind::kJointZero) {
+        one.kind == DataFaultKind::kJointOrder || one.kind == DataFaultKind::kJointZero) {
       throw InputError({"--keep", "", said, "a fault of one joint: this one is of all",
                         fmt::format("write all:{}", name_of(one.kind))});
     }

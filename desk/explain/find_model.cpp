@@ -488,7 +488,6 @@ class Finder {
         if (needed[i] == 0 && (least == shares.size() || shares[i] < shares[least])) least = i;
       }
       if (least == shares.size()) return;
-      least = larger_member_instead(regression_, found_.terms(), least);
       found_.accepted.erase(found_.accepted.begin() + static_cast<std::ptrdiff_t>(least));
       found_.fit = regression_.fit(found_.terms());
     }
@@ -548,7 +547,7 @@ class Finder {
     for (const Proposal& one : proposals[joint]) {
       const EffectInfo& info = one.terms.back().effect->info();
       if (one.added > 1 || info.traits.has_any_shape) continue;
-      if (own_friction && is_of_another_joint(info)) continue;
+      if (own_friction && info.find(Quantity::kJointNumber) != nullptr) continue;
       if (++tries > most_tries) break;
       // Within chance, and not within what its formula simplifies: that may be the other ones.
       if (!as_good(data, several, one.fit, 0)) continue;

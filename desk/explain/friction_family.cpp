@@ -36,15 +36,6 @@ bool brings(const Proposal& one, const Is& is) {
                      [&](const Term& term) { return is(term.effect->info()); });
 }
 
-// Where joints move in step, the friction of one fits the motion of the other about as well: what
-// else is wrong with the model may decide between them. Of the error that a joint's own friction
-// leaves, the motion of another has to leave no more.
-constexpr double kOfAnotherJoint = 0.8;
-
-double rms_left(const Data& data, const Proposal& one, std::size_t joint) {
-  return data.layout.rms(one.fit.residual)[static_cast<Index>(joint)];
-}
-
 bool is_drift(const EffectInfo& info) { return info.traits.is_friction && info.traits.counts_time; }
 
 bool may_lack_offset(const Data& data, const std::vector<Term>& terms, Index joint) {
@@ -69,10 +60,6 @@ std::vector<std::vector<EffectKind>> combinations_of(const std::vector<EffectKin
 }
 
 }  // namespace
-
-bool is_of_another_joint(const EffectInfo& info) {
-  return info.find(Quantity::kJointNumber) != nullptr;
-}
 
 bool file_has(const Data& data, EffectKind kind, Index joint) {
   const Workspace& at = data.recordings[0];
@@ -117,28 +104,6 @@ bool is_refuted_by_simpler(const Data& data, const Term& simpler, const ModelFit
   return simpler.effect->info().traits.every_drive_has &&
          other.effect->info().traits.passes_for_friction &&
          rest[simpler.joint] >= simple[simpler.joint];
-}
-
-std::size_t larger_member_instead(const Regression& regression, const std::vector<Term>& terms,
-                                  std::size_t which) {
-  constexpr double kAboutAsLittle = 1.15;
-  if (!terms[which].effect->info().traits.every_drive_has) return which;
-  const Index joint = terms[which].joint;
-  const auto left_without = [&](std::size_t i) {
-    std::vector<Term> others = terms;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    return regression.data().layout.rms(regression.fit(others).residual)[joint];
-  };
-  std::size_t goes = which;
-  double least = kAboutAsLittle * left_without(which);
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    if (terms[i].joint != joint || !terms[i].effect->info().traits.passes_for_friction) continue;
-    const double left = left_without(i);
-    if (!(left <= least)) continue;
-    least = left;
-    goes = i;
-  }
-  return goes;
 }
 
 void refine_over_range(const Regression& regression, std::vector<Term>& terms, std::size_t which) {
@@ -209,17 +174,13 @@ void put_friction_first(const Search& search, const Regression& regression,
     }
     if (!has_family) continue;
     search.rank(list);
-    const auto best = std::find_if(list.begin(), list.end(), [](const Proposal& one) {
-      return one.terms.back().effect->info().traits.every_drive_has;
-    });
-    if (best == list.end()) continue;
-    const double score = best->score;
-    const double left = rms_left(data, *best, joint);
+    double best = -std::numeric_limits<double>::infinity();
+    for (const Proposal& one : list) {
+      if (one.terms.back().effect->info().traits.every_drive_has) best = std::max(best, one.score);
+    }
     std::erase_if(list, [&](const Proposal& one) {
-      return (one.terms.back().effect->info().traits.passes_for_friction &&
-              one.score < score + kBeats) ||
-             (brings(one, is_of_another_joint) &&
-              rms_left(data, one, joint) > kOfAnotherJoint * left);
+      return one.terms.back().effect->info().traits.passes_for_friction &&
+             one.score < best + kBeats;
     });
   }
 }

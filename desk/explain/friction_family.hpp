@@ -23,15 +23,6 @@ void put_friction_first(const Search& search, const Regression& regression,
 bool is_refuted_by_simpler(const Data& data, const Term& simpler, const ModelFit& with_simpler,
                            const Term& other, const ModelFit& with_other);
 
-// Whether it is what another joint's motion does.
-bool is_of_another_joint(const EffectInfo& info);
-
-// What is to leave a model in the place of the plain friction of every drive, `which` of its terms,
-// that it can do without: a larger member of the family on the same joint, where about as little is
-// left without that. Else `which`.
-std::size_t larger_member_instead(const Regression& regression, const std::vector<Term>& terms,
-                                  std::size_t which);
-
 // Whether the robot file has such an effect that acts on a joint: a motor's acts on all joints that
 // it moves.
 bool file_has(const Data& data, EffectKind kind, Eigen::Index joint);

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "explain/band_shift.hpp"
-#include "explain/friction_family.hpp"
 
 namespace offnominal::desk {
 
@@ -136,7 +135,6 @@ bool leave_out_unsure(const Sizes& sizes, const Regression& regression, const Ho
     which = i;
   }
   if (which == found.accepted.size()) return false;
-  which = larger_member_instead(regression, found.terms(), which);
   leave_out(which, regression, hold_out, threads, found);
   return true;
 }

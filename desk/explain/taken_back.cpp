@@ -37,7 +37,8 @@ bool takes_back_what_drives(const ImprovedRobot& improved, const SearchSetting& 
   for (std::size_t i = found.accepted.size(); i-- > 0;) {
     const Term& term = found.accepted[i].term;
     const EffectTraits& traits = term.effect->info().traits;
-    if (!traits.is_friction || !traits.passes_for_friction ||
+    const bool may_drive = traits.is_friction && traits.sign != CoefficientSign::kPositive;
+    if (!may_drive || !traits.passes_for_friction ||
         std::find(driven.begin(), driven.end(), term.joint) == driven.end()) {
       continue;
     }

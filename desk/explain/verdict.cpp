@@ -569,7 +569,7 @@ std::vector<Eigen::Index> hardly_explained(const Explanation& e) {
     const JointErrors& errors = errors_of(e, one.joint);
     if (one.verdict == Verdict::kUnknownStateDependent &&
         errors.rms_after > kMost * errors.rms_torque) {
-      joints.push_back(one.joint + 1);
+      joints.push_back(one.joint);
     }
   }
   std::sort(joints.begin(), joints.end());
@@ -602,10 +602,10 @@ void advise_on_links(Explanation& e) {
   const bool said = e.link_share_judged && e.link_share >= kHardlyKnown;
   if (!hardly.empty() && !said && !e.at_rest) {
     e.advice.push_back(fmt::format(
-        "nothing explains most of the torque of joint {}: where the file's masses are a guess, "
+        "nothing explains most of the torque of {}: where the file's masses are a guess, "
         "`offnominal identify` with these recordings finds the links from the geometry alone, and "
         "its error on what is held out tells whether they are what is missing",
-        fmt::join(hardly, ", ")));
+        list_of_joints(hardly)));
   }
   if (e.torque_constants.empty()) return;
   std::vector<std::string> constants;

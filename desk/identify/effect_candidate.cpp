@@ -172,7 +172,7 @@ std::vector<ShapeRange> EffectCandidate::shapes(const std::vector<Workspace>& at
       }
     } else if (info.quantity == Quantity::kJointNumber) {
       range.kind = ShapeRange::Kind::kDiscrete;
-      // Who asks for it all the same has one that is in step.
+      // Where there is no other, who asks for it all the same has those in step.
       OtherJoints others = other_joints(at, joint);
       range.grid = std::move(others.apart.empty() ? others.in_step : others.apart);
     } else {

@@ -116,13 +116,18 @@ bool is_position_of_axis(const Words& words) {
   });
 }
 
-// "joint_p", "joint_dp", "joint_u": letters that say it only of a joint.
+// "joint_p", "joint_dp[2]", "joint1_u": letters that say it right behind a joint, and last.
 Role role_of_joints_letter(const Words& words) {
-  if (!any_of(words, {"joint", "joints"})) return Role::kNone;
-  if (any_of(words, {"p"})) return Role::kPosition;
-  if (any_of(words, {"v", "dp"})) return Role::kVelocity;
-  if (any_of(words, {"u"})) return Role::kTorque;
-  return Role::kNone;
+  const auto is_number = [](const std::string& word) { return is_digit(word[0]); };
+  auto at = std::find_if(words.begin(), words.end(), [](const std::string& word) {
+    return word == "joint" || word == "joints";
+  });
+  if (at == words.end()) return Role::kNone;
+  at = std::find_if_not(at + 1, words.end(), is_number);
+  if (at == words.end() || !std::all_of(at + 1, words.end(), is_number)) return Role::kNone;
+  if (*at == "p") return Role::kPosition;
+  if (*at == "v" || *at == "dp") return Role::kVelocity;
+  return *at == "u" ? Role::kTorque : Role::kNone;
 }
 
 // Whatever became of it.

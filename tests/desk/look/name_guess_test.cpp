@@ -53,6 +53,8 @@ TEST(NameGuess, RolesUnitsAndNumbersOfCommonNames) {
                           Case{"joint_p[2]", Role::kPosition, 2, ""},
                           Case{"joint_dp[2]", Role::kVelocity, 2, ""},
                           Case{"joint_u[2]", Role::kTorque, 2, ""},
+                          Case{"joint1_u", Role::kTorque, 1, ""},
+                          Case{"joint1_pid_p", Role::kNone, 1, ""},
                           Case{"theta_dot_2", Role::kVelocity, 2, ""},
                           Case{"thetadot2", Role::kVelocity, 2, ""},
                           Case{"q1_dot", Role::kVelocity, 1, ""},
