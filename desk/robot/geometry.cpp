@@ -71,7 +71,7 @@ std::optional<double> broken_triangle(const std::array<double, 6>& inertia_kg_m2
 
 std::optional<std::array<double, 6>> nearest_inertia(const std::array<double, 6>& inertia_kg_m2) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tensor_of(inertia_kg_m2));
-  const Eigen::Vector3d moments = solver.eigenvalues();
+  const Eigen::Vector3d& moments = solver.eigenvalues();
   const double trace = moments.sum();
   if (!(trace > 0)) return std::nullopt;
   // A little more than none, so that the last bits do not break it again.
