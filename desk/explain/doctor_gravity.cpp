@@ -76,13 +76,6 @@ MatrixXd torques_of_gravity(const RobotDescription& robot, const std::optional<P
   return columns;
 }
 
-// What has to be added to the file's gravity, m/s^2; what no joint feels stays as it is. Rows as
-// InParts gives them.
-Vector3d change_of_gravity(const MatrixXd& columns, const VectorXd& error) {
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(columns);
-  return solver.solve(error);
-}
-
 double angle_deg(const Vector3d& a, const Vector3d& b) {
   const double cosine = a.dot(b) / (a.norm() * b.norm());
   return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
@@ -145,7 +138,9 @@ bool find_gravity(const Log& log, const RobotDescription& robot, const TorquePai
   const InParts parts(pair);
   const VectorXd error = parts.beside_friction(pair.measured - pair.model);
   const MatrixXd columns = torques_of_gravity(robot, log.payload, pair, parts);
-  const Vector3d change = change_of_gravity(columns, error);
+  // What no joint feels stays as it is.
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(columns);
+  const Vector3d change = solver.solve(error);
   const Vector3d stated = gravity_of(robot);
   const Vector3d fitted = stated + change;
   const double joints = std::sqrt(static_cast<double>(pair.measured.cols()));
