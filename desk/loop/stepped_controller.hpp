@@ -52,7 +52,7 @@ class SteppedController {
   virtual void step(hal::Microseconds begin_us, BusPort& bus) = 0;
   /// As JointController::arm(), for the motion of the set-up.
   [[nodiscard]] virtual controller::Fault arm() = 0;
-  /// Whether it compensates from the next tick on for what the monitor has learnt; its state and
+  /// Whether it compensates from the next tick on for what is off nominal; its state and
   /// what was learnt stay.
   virtual void set_accommodation(bool on) = 0;
   [[nodiscard]] virtual hal::ControllerState state() const = 0;

@@ -40,7 +40,7 @@ class FaultNamer {
   void begin_afresh() {}
   template <typename Monitored>
   void take(const Monitored& /*monitor*/, const typename Monitored::State& /*state*/,
-            const typename Monitored::Output& /*output*/, double /*t_s*/) {}
+            typename Monitored::Output& /*output*/, double /*t_s*/) {}
   void finish() {}
   [[nodiscard]] static std::optional<IsolatedFault> answer() { return std::nullopt; }
 };
@@ -60,13 +60,16 @@ class FaultNamer<TorqueSpace> {
     finish();
     isolation_.reset(*state_);
   }
+  // The compensation is then the named fault's own, as on a controller.
   template <typename Monitored>
   void take(const Monitored& monitor, const typename Monitored::State& state,
-            const typename Monitored::Output& output, double t_s) {
+            typename Monitored::Output& output, double t_s) {
     const bool is_new =
         !state_->triggered || state_->detection_tick != output.detector.detection_tick;
     if (is_new && output.detector.latched) detection_s_ = t_s;
     isolation_.step(monitor.model(), state.sample, state.tick, output, *state_);
+    const FaultLaw<kRuntimeJoints, double>& law = state_->law;
+    if (law.known) output.compensation = monitor.compensation_of(law.load, output);
     if (state_->diagnosis.time_s != answer_at_) answer_s_ = t_s;
     answer_at_ = state_->diagnosis.time_s;
   }

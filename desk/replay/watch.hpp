@@ -30,7 +30,7 @@ struct Watched {
   double threshold = 0;                         //   threshold, as this
   Vector<kRuntimeJoints, double> thresholds;    // of each joint; empty where there is one of all
   Vector<kRuntimeJoints, double> psi_hat;       // rad/s^2 or m/s^2; in torque space N m or N
-  Vector<kRuntimeJoints, double> compensation;  // that would take it away, N m or N
+  Vector<kRuntimeJoints, double> compensation;  // by what is known best, N m or N
   double weight_norm = 0;
   bool level = false;                                               // beyond the threshold now
   std::array<bool, static_cast<std::size_t>(kMaxJoints)> levels{};  // of each, in torque space

@@ -76,6 +76,15 @@ struct Beside<N, Scalar, TorqueSpace> {
   void step(const Watch& monitor, const typename Watch::State& state,
             const typename Watch::Output& output) {
     isolation.step(monitor.model(), state.sample, state.tick, output, isolating);
+    // The law of a fault, whatever was answered.
+    PerJoint<N, Scalar> thresholds{};
+    size_for(isolating.joints.size(), thresholds);
+    for (Scalar& threshold : thresholds) threshold = Scalar(1);
+    FaultLaw<N, Scalar>& law = isolating.law;
+    law.of_body = !law.of_body;
+    begin_law(isolating.block.last, thresholds, law);
+    follow_law(isolating.block.last, thresholds, LawRates<Scalar>{}, law);
+    EXPECT_EQ(monitor.compensation_of(law.load, output).torque.size(), law.load.size());
   }
   bool has_answered() { return isolating.diagnosis.time_s > 0; }
 

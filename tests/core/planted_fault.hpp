@@ -66,8 +66,9 @@ class PlantedRobot {
     }
     const Values needed = inverse_dynamics(model_, q, dq, ddq, t);
     JointSample<N, double> sample{q, dq, needed};
-    if (t >= kPlantedAtS) spoil(t, ddq, sample);
+    if (t >= kPlantedAtS && t < over_at_s) spoil(t, ddq, sample);
     if (t >= kPlantedAtS - 0.4) sample.tau[fault_.joint] += error_before;
+    beside = needed - sample.tau;
     std::normal_distribution<double> noise(0, 0.01);
     for (double& torque : sample.tau) torque += noise(generator_);
     return sample;
@@ -77,6 +78,10 @@ class PlantedRobot {
   void stand() { rate_.setZero(); }
 
   MonitorConfig<N, double, TorqueSpace> config;
+  // What acted on the joints beside the model at the last sample, N m or N; of a fault of the
+  // encoder it means nothing.
+  Values beside = Values::Zero();
+  double over_at_s = 1e9;   // from when on the fault is gone
   double error_before = 0;  // of the model, from 0.4 s before the fault on, N m or N
 
  private:

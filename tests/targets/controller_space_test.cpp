@@ -240,6 +240,39 @@ TEST(ControllerWithIsolation, GivenFrictionThenItSaysSoAndCompensatesOnceItIsDec
   EXPECT_FALSE(joint.drive.faults.front().decided) << "the best answer so far comes first";
 }
 
+// GIVEN friction that is compensated WHEN it is over THEN the controller lets go of it: it moves as
+// one that never had any.
+TEST(ControllerWithIsolation, GivenFrictionThatGoesThenItsCompensationGoes) {
+  Isolating joint = swaying(true);
+  Isolating without = swaying(false);
+  Isolating healthy = swaying(true);
+  double off = 0;
+  double off_without = 0;
+  const auto run = [&](int ticks, double friction_nm) {
+    off = off_without = 0;
+    for (int i = 0; i < ticks; ++i) {
+      for (Isolating* one : {&joint, &without}) {
+        one->push_nm = -friction_nm * std::tanh(one->dq / 0.02);
+        one->tick();
+      }
+      healthy.tick();
+      off += std::pow(joint.q - healthy.q, 2);
+      off_without += std::pow(without.q - healthy.q, 2);
+    }
+  };
+  run(3000, 6);
+  ASSERT_TRUE(joint.data->isolation.law.known);
+  run(1500, 6);
+  EXPECT_LT(off, 0.1 * off_without);
+  run(2000, 0);
+  EXPECT_FALSE(joint.data->isolation.law.known);
+  EXPECT_TRUE(joint.data->isolation.diagnosis.decided) << "what it was stays said";
+  run(4000, 0);
+  run(1500, 0);
+  EXPECT_LT(std::sqrt(off / 1500), 0.002);
+  EXPECT_TRUE(healthy.drive.faults.empty());
+}
+
 // GIVEN a joint that something holds WHEN that is decided THEN nothing is compensated: the torque
 // is what it would be without any compensation.
 TEST(ControllerWithIsolation, GivenAJointThatIsHeldThenNothingIsCompensated) {

@@ -173,8 +173,16 @@ class Monitor {
     Form::judge(config_.estimator.alpha, jumped, state, output);
     output.psi_hat = state.estimator.psi_hat;
     output.detector = state.detector;
-    output.compensation = Form::compensation(nominal, output.psi_hat, max_compensation_);
+    Form::compensate(nominal, max_compensation_, output);
     return Status::kOk;
+  }
+
+  // Takes `load` away, N m or N, at the tick that `output` is of, which step() has accepted: where
+  // it is known better than by psi_hat (FaultLaw). In TorqueSpace.
+  template <typename JointOutput>
+  [[nodiscard]] CompensatingTorque<N, Scalar> compensation_of(const Vector<N, Scalar>& load,
+                                                              const JointOutput& output) const {
+    return compensating_torque_of_load<N, Scalar>(load, max_compensation_, output.told_per_load);
   }
 
   [[nodiscard]] const Config& config() const { return config_; }

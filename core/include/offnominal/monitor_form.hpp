@@ -26,7 +26,7 @@
 //   jump()                    of the nominal rate, by a jump of the load at the last sample
 //   judge()                   error and threshold of a tick, against each other; and a joint whose
 //                             position is where no motion brings it (position_step.hpp)
-//   compensation()            torque that takes psi_hat away
+//   compensate()              torque that takes psi_hat away
 
 namespace offnominal {
 
@@ -86,10 +86,11 @@ struct MonitorForm<AccelerationSpace, N, Scalar> {
     const bool beyond = output.error_norm > output.threshold || jumped != kNoJoint;
     update(state.detector, beyond, state.tick, output.time_s);
   }
-  [[nodiscard]] static CompensatingTorque<N, Scalar> compensation(const Dynamics& nominal,
-                                                                  const Vector<N, Scalar>& psi_hat,
-                                                                  const Vector<N, Scalar>& limit) {
-    return compensating_torque<N, Scalar>(nominal.inertia, psi_hat, limit, nominal.told_per_load);
+  template <typename Output>
+  static EIGEN_ALWAYS_INLINE void compensate(const Dynamics& nominal,
+                                             const Vector<N, Scalar>& limit, Output& output) {
+    output.compensation = compensating_torque<N, Scalar>(nominal.inertia, output.psi_hat, limit,
+                                                         nominal.told_per_load);
   }
 };
 
@@ -102,6 +103,8 @@ struct MonitorForm<TorqueSpace, N, Scalar> {
   struct Kept {};
   struct JointOutput {
     Vector<N, Scalar> thresholds = zeros<N, Scalar>();  // alpha mu_i of |error_i|, N m or N
+    // What a drive has to be told for 1 N m more behind its gear, MomentumDynamics::told_per_load.
+    Vector<N, Scalar> told_per_load = zeros<N, Scalar>();
   };
 
   [[nodiscard]] static EIGEN_ALWAYS_INLINE Status look(const RigidBodyModel<N, Scalar>& model,
@@ -164,10 +167,12 @@ struct MonitorForm<TorqueSpace, N, Scalar> {
     output.error_norm = Eigen::numext::abs(output.error[worst]);
     output.threshold = output.thresholds[worst];
   }
-  [[nodiscard]] static CompensatingTorque<N, Scalar> compensation(const Dynamics& nominal,
-                                                                  const Vector<N, Scalar>& psi_hat,
-                                                                  const Vector<N, Scalar>& limit) {
-    return compensating_torque_of_load<N, Scalar>(psi_hat, limit, nominal.told_per_load);
+  template <typename Output>
+  static EIGEN_ALWAYS_INLINE void compensate(const Dynamics& nominal,
+                                             const Vector<N, Scalar>& limit, Output& output) {
+    output.told_per_load = nominal.told_per_load;
+    output.compensation =
+        compensating_torque_of_load<N, Scalar>(output.psi_hat, limit, nominal.told_per_load);
   }
 };
 

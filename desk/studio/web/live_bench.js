@@ -76,6 +76,6 @@ function accommodationSwitch() {
     "div",
     { class: "live-row" },
     node,
-    element("span", { id: "accommodation-name" }, "Accommodation: the controller compensates for what the monitor has learnt"),
+    element("span", { id: "accommodation-name" }, "Accommodation: the controller compensates for the fault that the monitor has named"),
   );
 }

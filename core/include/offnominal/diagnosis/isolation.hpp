@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <offnominal/diagnosis/isolation_config.hpp>
+#include <offnominal/diagnosis/isolation_law.hpp>
 #include <offnominal/diagnosis/isolation_scales.hpp>
 #include <offnominal/diagnosis/isolation_size.hpp>
 #include <offnominal/diagnosis/isolation_state.hpp>
@@ -42,6 +43,9 @@ class Isolation {
     isolation.kept_ = std::exp(-block_s / config.baseline_s);
     isolation.contact_kept_ = std::exp(-block_s / config.contact_s);
     isolation.scales_ = scales_of(watched, config.sign_width);
+    isolation.law_rates_ = {isolation.scales_.alpha,
+                            1 - std::exp(-isolation.scales_.alpha * isolation.period_s_),
+                            isolation.period_s_ / static_cast<Scalar>(detail::kDoubtS)};
     const std::size_t parts = watched.chain.joints.size() + 3;  // judge_part()
     isolation.parts_per_tick_ =
         static_cast<int>((parts + isolation.block_ticks_ - 1) / isolation.block_ticks_);
@@ -98,9 +102,16 @@ class Isolation {
       state.triggered = true;
       state.detection_tick = output.detector.detection_tick;
     }
-    if (state.diagnosis.decided) return;
+    if (state.diagnosis.decided) {
+      if (state.law.known) follow_law(at, scales_.thresholds, law_rates_, state.law);
+      return;
+    }
     for (int i = 0; i < parts_per_tick_ && state.judging; ++i) judge_part(model, sample.q, state);
-    if (state.diagnosis.decided) return;
+    if (state.diagnosis.decided) {
+      state.law = detail::law_of(state, scales_, config_.confidence);
+      if (state.law.known) begin_law(at, scales_.thresholds, state.law);
+      return;
+    }
     if (!state.looked_back) {
       // In the blocks that had ended by then a fault that was seen at once does not show.
       const std::uint64_t since = state.tick - state.detection_tick;
@@ -143,6 +154,7 @@ class Isolation {
     for (JointEvidence<Scalar>& joint : state.joints) joint = {};
     state.tip = {};
     state.diagnosis = {};
+    state.law.known = false;
   }
 
   [[nodiscard]] Vector<kOwnRegressors, Scalar> scaled(const IsolationBlock<N, Scalar>& block,
@@ -376,6 +388,7 @@ class Isolation {
   Scalar period_s_{};
   Scalar kept_{};          // of the baseline, from block to block
   Scalar contact_kept_{};  // of an arbitrary torque
+  LawRates<Scalar> law_rates_{};
   std::uint16_t block_ticks_ = 1;
   int parts_per_tick_ = 1;  // of a verdict: it is made before the next block has ended
   IsolationScales<N, Scalar> scales_{};

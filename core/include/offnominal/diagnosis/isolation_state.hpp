@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <offnominal/diagnosis/encoder_watch.hpp>
 #include <offnominal/diagnosis/fault_kind.hpp>
+#include <offnominal/diagnosis/fault_law.hpp>
 #include <offnominal/diagnosis/isolation_bank.hpp>
 #include <offnominal/diagnosis/isolation_block.hpp>
 #include <offnominal/diagnosis/isolation_contest.hpp>
@@ -82,6 +83,7 @@ struct IsolationState {
   PerJoint<N, bool> alarmed{};  // joints that had been detected when it began
   Contest<Scalar> contest;
   FaultDiagnosis<Scalar> diagnosis;
+  FaultLaw<N, Scalar> law;  // of the fault that is decided
 };
 
 // Of the blocks in which the joint moved, rad/s or m/s.

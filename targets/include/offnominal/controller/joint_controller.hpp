@@ -304,10 +304,12 @@ class JointController {
       if (!config_.isolates) return;
       isolation_.step(monitor_.model(), data.sample, data.monitor.tick, data.output,
                       data.isolation);
+      const auto& law = data.isolation.law;
+      if (law.known) data.output.compensation = monitor_.compensation_of(law.load, data.output);
     }
   }
 
-  // Whether what was learnt is to be taken away by the drives.
+  // Whether output.compensation is to be given by the drives.
   [[nodiscard]] bool compensates(const Data& data) const {
     if constexpr (kIsolates) {
       const auto& found = data.isolation.diagnosis;
