@@ -269,7 +269,7 @@ TEST(ControllerWithIsolation, GivenFrictionThatGoesThenItsCompensationGoes) {
   EXPECT_TRUE(joint.data->isolation.diagnosis.decided) << "what it was stays said";
   run(4000, 0);
   run(1500, 0);
-  EXPECT_LT(std::sqrt(off / 1500), 0.002);
+  EXPECT_LT(std::sqrt(off / 1500), 0.01) << "what the network had learnt fades more slowly";
   EXPECT_TRUE(healthy.drive.faults.empty());
 }
 

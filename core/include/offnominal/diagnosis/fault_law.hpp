@@ -74,11 +74,22 @@ template <int N, typename Scalar>
   return at.tip.momentum.transpose().lazyProduct(law.body);
 }
 
+// Of a joint's own fault, N m or N: of dry friction also where the joint creeps or sticks.
+template <int N, typename Scalar>
+[[nodiscard]] Scalar size_of(const FaultLaw<N, Scalar>& law,
+                             const IsolationInstant<N, Scalar>& at) {
+  const auto column = static_cast<Eigen::Index>(law.joint);
+  Vector<kOwnRegressors, Scalar> own = at.own.col(column);
+  own[kSignRegressor] = Scalar(1);
+  return own.cwiseProduct(law.own).template lpNorm<1>();
+}
+
 // The load, and whether the law still holds.
 template <int N, typename Scalar>
 void take_torque(const Vector<N, Scalar>& torque, const Vector<N, Scalar>& accelerated,
                  const IsolationInstant<N, Scalar>& at, const PerJoint<N, Scalar>& thresholds,
                  Scalar doubt, FaultLaw<N, Scalar>& law) {
+  const Scalar size = size_of(law, at);
   Scalar squared{};
   Scalar acting{};
   // A joint that is not the fault's: what was learnt of it, nothing before it has been detected.
@@ -87,8 +98,8 @@ void take_torque(const Vector<N, Scalar>& torque, const Vector<N, Scalar>& accel
     if (!law.of_body && i != static_cast<Eigen::Index>(law.joint)) continue;
     const Scalar threshold = thresholds[static_cast<std::size_t>(i)];
     const Scalar missed = at.residual[i] + law.seen_of_learnt[i] - law.seen_of_law[i];
-    // Within what the numbers may be off and a healthy joint may show: beyond, it may be anything.
-    const Scalar most = threshold + Scalar(0.5) * Eigen::numext::abs(torque[i]) +
+    // Within the size of the fault, and what a healthy joint may show: beyond, it may be anything.
+    const Scalar most = threshold + (law.of_body ? Eigen::numext::abs(torque[i]) : size) +
                         Eigen::numext::abs(accelerated[i]);
     law.load[i] = torque[i] + std::clamp(missed, -most, most);
     const Scalar of_law = (law.seen_of_law[i] - accelerated[i]) / threshold;
