@@ -2,7 +2,7 @@ find_package(GTest REQUIRED)
 include(GoogleTest)
 
 # offnominal_add_test(NAME <target> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>]
-#                     [TOGETHER | BUS | REAL_TIME] [LONG] [AS_SHIPPED] [THREADS])
+#                     [TOGETHER | BUS | REAL_TIME] [LONG] [AS_SHIPPED] [THREADS] [UNWATCHED])
 #
 # Builds one GoogleTest executable and registers each of its cases with CTest, or with TOGETHER all of
 # them as one test: for cases that share what takes long to compute. Where the sanitizers watch, a
@@ -15,8 +15,13 @@ include(GoogleTest)
 # that none of them is left to run alone at the end. With AS_SHIPPED what it includes is optimised as a user's
 # program is. With THREADS the thread sanitizer watches its cases of the name *Threads* alone: the others
 # run the same loops, and each would take it minutes. Cases see "support/<header>.hpp" (tests/support).
+#
+# Where a directory sets OFFNOMINAL_TESTED_ONCE, `./dev test` runs its cases once, under the address sanitizer:
+# in the release build they carry the label `once` and wait for `./dev test release`, which takes their
+# random ones twenty times as far. UNWATCHED: the sanitizers do not build this one.
 function(offnominal_add_test)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER;BUS;REAL_TIME;LONG;AS_SHIPPED;THREADS" "NAME;LABELS" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 0 arg "TOGETHER;BUS;REAL_TIME;LONG;AS_SHIPPED;THREADS;UNWATCHED"
+                        "NAME;LABELS" "SOURCES;LIBRARIES")
   if(NOT arg_NAME OR NOT arg_SOURCES)
     message(FATAL_ERROR "offnominal_add_test: NAME and SOURCES are required")
   endif()
@@ -52,6 +57,8 @@ function(offnominal_add_test)
     list(APPEND properties LABELS bus RESOURCE_LOCK can_buses)
   elseif(arg_REAL_TIME)
     list(APPEND properties LABELS real_time RESOURCE_LOCK can_buses)
+  elseif(OFFNOMINAL_TESTED_ONCE AND NOT arg_UNWATCHED AND NOT OFFNOMINAL_SANITIZE)
+    list(APPEND properties LABELS once)
   endif()
   if(arg_THREADS AND OFFNOMINAL_SANITIZE STREQUAL "thread")
     add_test(NAME ${arg_NAME} COMMAND ${arg_NAME} --gtest_filter=*Threads* --gtest_brief=1)

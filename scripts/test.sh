@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
-# Every check of the project. The last line sums them: N passed, N failed[, N skipped].
+# test.sh: every check of the project. The last line sums them: N passed, N failed[, N skipped].
+# test.sh release: the tests of the release build alone, also those that otherwise run under the
+# sanitizers only (label `once`, cmake/OffnominalTest.cmake).
 # A step that breaks is counted as failed and the next one runs, so the last line is always reached.
 set -uo pipefail
 # shellcheck source=scripts/common.sh
@@ -101,8 +103,9 @@ words_of() {
 # whole REPORT: whether a JUnit report is there to its end.
 whole() { grep -qs '</testsuite>' "$1"; }
 
-# suite PRESET: runs every test of a build that needs no CAN bus; each counts by itself.
-suite() { run_suite "$1" "tests ($1)" "$(nproc)" -LE '^(bus|real_time)$'; }
+# suite PRESET [LABEL]: runs every test of a build that needs no CAN bus, but for those of a label; each
+# counts by itself.
+suite() { run_suite "$1" "tests ($1)" "$(nproc)" -LE "^(bus|real_time${2:+|$2})\$"; }
 
 # bus_suite PRESET: runs the others, all of them in one place with buses.
 bus_suite() {
@@ -146,12 +149,24 @@ $(words_of "$report" "$name")" ;;
 
 export NINJA_OPTIONS="-k 0"
 
+case "${1:-}" in
+  "") ;;
+  release)
+    check "setup" "$root/scripts/setup.sh"
+    check "build (release)" build release
+    check "build (firmware)" build_firmware
+    suite release
+    finish
+    ;;
+  *) die "test: found '$1', allowed: nothing, or release" ;;
+esac
+
 check "setup" "$root/scripts/setup.sh"
 check "lint: layout (clang-format)" "$root/scripts/lint.sh" format
 check "build (release)" build release
 check "build (firmware)" build_firmware
 check "lint: static analysis (clang-tidy)" "$root/scripts/lint.sh" tidy
-suite release
+suite release once
 bus_suite release
 real_time_suite release
 check "build (sanitize)" build sanitize
