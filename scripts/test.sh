@@ -153,7 +153,7 @@ case "${1:-}" in
   "") ;;
   release)
     check "setup" "$root/scripts/setup.sh"
-    check "build (release)" build release
+    check "build (release)" build release all tested_once
     check "build (firmware)" build_firmware
     suite release
     finish
