@@ -5,23 +5,40 @@
 #include <cstddef>
 
 #include "explain/doubts.hpp"
-#include "identify/file_errors.hpp"
 
 namespace offnominal::desk {
 
 using Eigen::Index;
 using Eigen::VectorXd;
 
+const FileErrors& Judged::errors_of_file() const {
+  if (!errors_of_file_) errors_of_file_ = errors_of(file_);
+  return *errors_of_file_;
+}
+
+const FileErrors& Judged::held_out_errors_of_file() const {
+  if (!held_out_errors_of_file_) held_out_errors_of_file_ = held_out_errors_of(file_);
+  return *held_out_errors_of_file_;
+}
+
+FileErrors Judged::errors_of(const RobotDescription& robot) const {
+  return file_errors(robot, logs_, plan_);
+}
+
+FileErrors Judged::held_out_errors_of(const RobotDescription& robot) const {
+  return file_errors(robot, holdout_, plan_);
+}
+
 HeldOutErrors held_out_of(const Judged& by, const ImprovedRobot& improved) {
-  if (by.holdout.empty()) {
+  if (by.holdout().empty()) {
     std::vector<Term> written;
     for (std::size_t i = 0; i < improved.added.size(); ++i) {
       if (improved.added[i] != kUnwritten) written.push_back(improved.last.terms[i]);
     }
-    return held_out_errors(by.file, improved, written);
+    return held_out_errors(by.file(), improved, written);
   }
-  const FileErrors before = file_errors(by.file, by.holdout, by.plan);
-  const FileErrors after = file_errors(improved.robot, by.holdout, by.plan);
+  const FileErrors& before = by.held_out_errors_of_file();
+  const FileErrors after = by.held_out_errors_of(improved.robot);
   const auto vector = [](const std::vector<double>& of) -> VectorXd {
     return Eigen::Map<const VectorXd>(of.data(), static_cast<Index>(of.size()));
   };
@@ -29,8 +46,8 @@ HeldOutErrors held_out_of(const Judged& by, const ImprovedRobot& improved) {
 }
 
 void tell_errors_of_files(const Judged& by, const ImprovedRobot& improved, Explanation& result) {
-  const FileErrors before = file_errors(by.file, by.logs, by.plan);
-  const FileErrors after = file_errors(improved.robot, by.logs, by.plan);
+  const FileErrors& before = by.errors_of_file();
+  const FileErrors after = by.errors_of(improved.robot);
   for (std::size_t joint = 0; joint < result.joints.size(); ++joint) {
     result.joints[joint].rms_torque = before.rms_torque[joint];
     result.joints[joint].rms_before = before.rms_error[joint];
@@ -61,8 +78,8 @@ std::vector<Index> take_better_numbers(const Judged& by, const RobotDescription&
     effect.parameters = same->parameters;
     numbers.erase(same);
   }
-  const std::vector<double> as_it_was = file_errors(robot, by.logs, by.plan).rms_error;
-  const std::vector<double> as_it_is = file_errors(refitted, by.logs, by.plan).rms_error;
+  const std::vector<double> as_it_was = by.errors_of(robot).rms_error;
+  const std::vector<double> as_it_is = by.errors_of(refitted).rms_error;
   std::vector<Index> better;
   for (std::size_t joint = 0; joint < joints.size(); ++joint) {
     if (as_it_is[joint] < as_it_was[joint]) better.push_back(static_cast<Index>(joint));

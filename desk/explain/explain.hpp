@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,7 +10,7 @@
 #include "explain/excitation.hpp"
 #include "explain/pushes.hpp"
 #include "explain/remainder.hpp"
-#include "explain/treatment.hpp"
+#include "explain/treated.hpp"
 #include "identify/effect_candidate.hpp"
 #include "identify/estimates.hpp"
 #include "identify/improved_robot.hpp"
@@ -295,22 +294,6 @@ struct ExplainOptions {
   std::size_t after = 0;
   std::optional<double> since_s = {};
 };
-
-// treat() of all of them; readings at rest are left as they are: every check there is needs time.
-// Throws InputError, in the name of --keep, where `keep` speaks of a joint that the robot does not
-// have, or of one joint's fault that is always of all.
-std::vector<DataFault> treat_all(const std::vector<std::span<Log>>& groups,
-                                 const RobotDescription& robot, const std::vector<KeepFault>& keep);
-
-// Recordings of which the doctor has left out what is at fault.
-struct Treated {
-  std::vector<Log> logs;
-  std::vector<Log> holdout;
-  std::vector<DataFault> faults;
-};
-// Throws InputError where the recordings and the robot do not fit together.
-Treated treated(const RobotDescription& robot, std::vector<Log> logs, std::vector<Log> holdout,
-                const std::vector<KeepFault>& keep);
 
 // Which effects the robot's model lacks, by recordings of it. `holdout` may be empty: then parts of
 // the recordings are held out in turn. Throws InputError where the recordings and the robot do not

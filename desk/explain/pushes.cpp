@@ -476,6 +476,12 @@ void leave_out(const std::vector<Push>& pushes, std::vector<Log>& logs) {
   for (Log& log : logs) leave_out(pushes, log);
 }
 
+bool is_among(const Push& one, const std::vector<Push>& pushes) {
+  return std::any_of(pushes.begin(), pushes.end(), [&](const Push& other) {
+    return one.file == other.file && one.from_s <= other.to_s && one.to_s >= other.from_s;
+  });
+}
+
 void leave_out(const std::vector<Push>& pushes, Log& log) {
   constexpr double kSpreadPeriods = 3;  // as of what the doctor leaves out
   for (const Push& push : pushes) {

@@ -43,6 +43,9 @@ std::string words_of(const Push& push);
 std::vector<Push> pushes_in(const Data& data, const RobotDescription& robot,
                             const std::vector<Excitation>& excitation);
 
+// Whether pushes hold one at the same time of the same recording, which may have been given twice.
+bool is_among(const Push& one, const std::vector<Push>& pushes);
+
 // Leaves the pushes of a recording out of every joint of it.
 void leave_out(const std::vector<Push>& pushes, Log& log);
 void leave_out(const std::vector<Push>& pushes, std::vector<Log>& logs);

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "explain/sizes.hpp"
-#include "identify/file_errors.hpp"
 
 namespace offnominal::desk {
 
@@ -19,8 +18,8 @@ bool takes_back_what_raises(const Judged& by, const ImprovedRobot& improved,
       std::none_of(accepted.begin(), accepted.end(), is_asked)) {
     return false;
   }
-  const std::vector<double> before = file_errors(by.file, by.logs, by.plan).rms_error;
-  const std::vector<double> after = file_errors(improved.robot, by.logs, by.plan).rms_error;
+  const std::vector<double>& before = by.errors_of_file().rms_error;
+  const std::vector<double> after = by.errors_of(improved.robot).rms_error;
   for (std::size_t i = accepted.size(); i-- > 0;) {
     const auto joint = static_cast<std::size_t>(accepted[i].term.joint);
     const bool is_written = i < improved.added.size() && improved.added[i] != kUnwritten;
