@@ -27,6 +27,7 @@ struct ControllerView {
   sim::JointState seen;
   sim::JointVector tau;  // N m or N, that the drives said they gave
   sim::JointVector psi_hat;
+  sim::JointVector compensation;  // N m or N, that acts on the joints
   double error_norm = 0;
   double threshold = 0;
   // Of a controller that judges joint by joint; otherwise empty, and -1.

@@ -49,6 +49,7 @@ class SteppedControllerOf final : public SteppedController {
     view.seen = {doubles(data_->sample.q), doubles(data_->sample.dq)};
     view.tau = doubles(data_->sample.tau);
     view.psi_hat = doubles(data_->output.psi_hat);
+    view.compensation = doubles(controller_.acting_compensation(*data_));
     view.error_norm = static_cast<double>(data_->output.error_norm);
     view.threshold = static_cast<double>(data_->output.threshold);
     view.weight_norm =

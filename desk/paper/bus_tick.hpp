@@ -10,6 +10,7 @@ struct BusTick {
   sim::JointState seen;         // which, as it took them
   sim::JointVector seen_tau;    // torque that the drives said they gave
   sim::JointVector acting_tau;  // that really acted on the joints
+  sim::JointVector compensation;  // what of seen_tau the controller adds for what is off nominal
 };
 
 }  // namespace offnominal::desk::paper

@@ -28,11 +28,11 @@ Log seen_recording_of(const RobotDescription& robot, const TimeSeries& series) {
     log.tau.row(row) = bus.seen_tau;
   }
   for (Eigen::Index joint = 0; joint < joints; ++joint) {
-    const auto put = [&](const char* name, const auto& truth_at) {
+    const auto put = [&](const char* name, const auto& value_at) {
       Eigen::VectorXd& column = log.extra[name + std::to_string(joint + 1)];
       column.resize(rows);
       for (Eigen::Index row = 0; row < rows; ++row) {
-        column[row] = truth_at(fresh[static_cast<std::size_t>(row)]);
+        column[row] = value_at(fresh[static_cast<std::size_t>(row)]);
       }
     };
     put("q_true",
@@ -40,6 +40,7 @@ Log seen_recording_of(const RobotDescription& robot, const TimeSeries& series) {
     put("dq_true",
         [&](std::size_t tick) { return series.dq[static_cast<std::size_t>(joint)][tick]; });
     put("tau_true", [&](std::size_t tick) { return series.bus[tick].acting_tau[joint]; });
+    put("compensation", [&](std::size_t tick) { return series.bus[tick].compensation[joint]; });
   }
   log.dq_derived.assign(robot.joints.size(), false);
   return log;

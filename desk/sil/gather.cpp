@@ -85,7 +85,8 @@ paper::TickRecord record_of(const Table& plant, Index row, const Table& controll
   record.bus = {true,
                 {controller.all("q", partner), controller.all("dq", partner)},
                 controller.all("tau", partner),
-                plant.all("acting", row)};
+                plant.all("acting", row),
+                controller.all("compensation", partner)};
   return record;
 }
 

@@ -72,7 +72,8 @@ class LockStepLoop {
     record.thresholds = view.thresholds;
     record.first_joint = view.first_joint;
     // Before the drives follow, a sample holds the torque that is asked for.
-    record.bus = {view.fresh && view.drives_follow, view.seen, view.tau, ends_.plant().acting_nm()};
+    record.bus = {view.fresh && view.drives_follow, view.seen, view.tau, ends_.plant().acting_nm(),
+                  view.compensation};
     return record;
   }
 

@@ -62,6 +62,7 @@ SessionState state_of(const ordered_json& json) {
     }
     state.steps.push_back({0, *kind, joint - 1});
   }
+  if (json.contains("look") && !json["look"].is_null()) state.view = view_from(json["look"]);
   state.answer = json.at("answer");
   state.answers_now = json.at("answers_now").get<bool>();
   return state;
@@ -75,6 +76,7 @@ ordered_json json_of(const SessionState& state, const std::string& of) {
   return {{kMark, kVersion},
           {"of", of},
           {"steps", std::move(steps)},
+          {"look", state.view ? studio::json_of(*state.view) : ordered_json(nullptr)},
           {"answers_now", state.answers_now},
           {"answer", state.answer}};
 }
@@ -93,6 +95,29 @@ std::optional<SessionState> read(const std::filesystem::path& file, const std::s
 }
 
 }  // namespace
+
+ordered_json json_of(const View& view) {
+  const auto or_null = [](const auto& value) {
+    return value ? ordered_json(*value) : ordered_json(nullptr);
+  };
+  return {{"joint", view.joint + 1},
+          {"recording", view.recording + 1},
+          {"beside", view.beside ? ordered_json(*view.beside + 1) : ordered_json(nullptr)},
+          {"from", or_null(view.from_s)},
+          {"to", or_null(view.to_s)}};
+}
+
+View view_from(const ordered_json& json) {
+  // 0 becomes the largest number there is, which no check lets pass.
+  const auto from_0 = [](const ordered_json& number) { return number.get<std::size_t>() - 1; };
+  View view;
+  view.joint = from_0(json.at("joint"));
+  view.recording = from_0(json.at("recording"));
+  if (const auto& beside = json.at("beside"); !beside.is_null()) view.beside = from_0(beside);
+  if (const auto& from = json.at("from"); !from.is_null()) view.from_s = from.get<double>();
+  if (const auto& to = json.at("to"); !to.is_null()) view.to_s = to.get<double>();
+  return view;
+}
 
 std::uint64_t fingerprint_of(const Input& input) {
   Hash hash;

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "studio/charts.hpp"
 #include "studio/workbench.hpp"
 
 namespace offnominal::desk::studio {
@@ -16,6 +18,7 @@ struct SessionState {
   std::size_t unknown = 0;                  // steps behind them, which this program does not know
   nlohmann::ordered_json answer = nullptr;  // of the search, as the page has it; null: none
   bool answers_now = false;                 // the answer is of the model with these steps
+  std::optional<View> view = {};            // what was looked at last; none: nothing was chosen
 };
 
 /// A session's state in a file of its own, written whole after every change: whatever ends the
@@ -46,6 +49,11 @@ class KeptSession {
   SessionState found_;
   std::string problem_;
 };
+
+/// {joint, recording, beside, from, to}, counted from 1, of what is not there null; and back, of
+/// anything. Throws nlohmann::json::exception where it is none.
+[[nodiscard]] nlohmann::ordered_json json_of(const View& view);
+[[nodiscard]] View view_from(const nlohmann::ordered_json& json);
 
 /// Of the numbers that a session is over: the robot, and every sample of every recording.
 [[nodiscard]] std::uint64_t fingerprint_of(const Input& input);

@@ -113,6 +113,9 @@ void set_up_model(httplib::Server& server, const std::string& api, Stage& stage)
   server.Get(api + "arm", [&stage](const Request& request, Response& response) {
     answer(response, [&] { return stage.session()->arm(arm_view_of(request)); });
   });
+  server.Post(api + "look", [&stage](const Request& request, Response& response) {
+    answer(response, [&] { return stage.session()->look_at(view_from(body_of(request))); });
+  });
   server.Post(api + "steps", [&stage](const Request& request, Response& response) {
     answer(response, [&] {
       const json body = body_of(request);

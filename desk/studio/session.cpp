@@ -40,11 +40,23 @@ void Session::take_up_kept() {
     }
     kept_.set_found_aside();
   }
+  take_up_view(found);
   answer_ = found.answer;
   if (!answer_.is_object()) return;
   const bool is_of_now = found.answers_now && is_all;
   // No model of this session has that one: a number that JSON has, too.
   answer_["revision"] = is_of_now ? ordered_json(revision_) : ordered_json(-1);
+}
+
+// Of a file that somebody has changed it may be of a joint that is not there.
+void Session::take_up_view(const SessionState& found) {
+  if (!found.view) return;
+  try {
+    check(bench_, *found.view);
+    view_ = found.view;
+  } catch (const Refused&) {
+    view_.reset();
+  }
 }
 
 void Session::take_answer() {
@@ -63,12 +75,13 @@ void Session::keep() {
 
 void Session::keep_state() {
   const bool answers_now = answer_.is_object() && answer_.at("revision") == revision_;
-  kept_.keep({bench_.steps(), 0, answer_, answers_now});
+  kept_.keep({bench_.steps(), 0, answer_, answers_now, view_});
 }
 
 ordered_json Session::state_now() {
   ordered_json json = state_of(bench_);
   json["revision"] = revision_;
+  json["look"] = view_ ? json_of(*view_) : ordered_json(nullptr);
   const Input& input = bench_.input();
   json["save"] = {{"name", saved_.empty() ? proposed_name(input) : saved_name_},
                   {"fixed", input.output.has_value()},
@@ -187,6 +200,15 @@ ordered_json Session::undo(std::size_t step) {
   ++revision_;
   keep();
   return state_now();
+}
+
+ordered_json Session::look_at(const View& view) {
+  const std::lock_guard guard(lock_);
+  check(bench_, view);
+  view_ = view;
+  // Whoever only looks leaves nothing beside the recordings.
+  if (!bench_.steps().empty() || answer_.is_object()) keep_state();
+  return ordered_json::object();
 }
 
 ordered_json Session::undo_all() {

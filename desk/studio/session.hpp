@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ class Session {
   /// The charts and errors with one number of a step off its fit; the model stays as it is.
   [[nodiscard]] nlohmann::ordered_json moved(const MovedNumber& number, const View& view);
   [[nodiscard]] nlohmann::ordered_json arm(const ArmView& view);
+  /// What the page shows: the next one that is opened over the session begins there. Of a session
+  /// that is kept in a file it goes there too.
+  nlohmann::ordered_json look_at(const View& view);
   /// Both answer with the new state.
   nlohmann::ordered_json add(const std::string& effect, int joint);
   nlohmann::ordered_json undo(std::size_t step);
@@ -61,6 +65,7 @@ class Session {
  private:
   [[nodiscard]] nlohmann::json charts_now(const Compared& now, const View& view);
   void take_up_kept();
+  void take_up_view(const SessionState& found);
   void keep();
   void keep_state();
   void take_answer();
@@ -76,6 +81,7 @@ class Session {
   std::string not_taken_up_;       // why not all of them, or empty
   nlohmann::ordered_json answer_;  // of the search, what was kept of it; null: none
   bool is_answer_kept_ = false;    // of the search that was started last
+  std::optional<View> view_;       // that the page shows; none: it has not said so
   std::size_t revision_ = 0;       // of the model
   std::size_t searches_ = 0;
   std::string saved_;  // the last file that was written, its name, and of which revision

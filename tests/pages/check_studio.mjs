@@ -209,10 +209,16 @@ async function checkKept({ start, newContext }, words, page, fault) {
   const before = await names(page);
   await page.click("#save-page");
   await page.waitForFunction(() => document.querySelector("#place-save .note")?.textContent.includes(".html"));
+  await page.evaluate(() => showTime({ from: 2, to: 5 }));
+  await page.waitForResponse((answer) => answer.url().endsWith("api/look"));
   const again = await start(words);
   const other = await openPage(await newContext(), again.address, kReady, kExpected, fault);
   const after = await names(other);
   if (after.join() !== before.join()) fault(`the next program takes up "${after}" of "${before}"`);
+  await other.waitForFunction(() => zoomRange() !== null).catch(() => fault("the next program shows all of the time"));
+  const shown = await other.evaluate(() => zoomRange());
+  if (Math.abs(shown.from - 2) > 0.01 || Math.abs(shown.to - 5) > 0.01) fault(`the next program shows ${JSON.stringify(shown)}`);
+  await page.evaluate(() => showWhole());
   await afterChange(other, () => other.click("#begin-anew"));
   if ((await names(other)).length !== 0) fault("begun anew, there are steps");
   await other.context().close(); // before its server: what it still asks for would be refused

@@ -264,6 +264,8 @@ TEST(ControllerWithIsolation, GivenFrictionThatGoesThenItsCompensationGoes) {
   ASSERT_TRUE(joint.data->isolation.law.known);
   run(1500, 6);
   EXPECT_LT(off, 0.1 * off_without);
+  EXPECT_NEAR(std::abs(joint.controller.acting_compensation(*joint.data)[0]), 6, 1.5);
+  EXPECT_EQ(healthy.controller.acting_compensation(*healthy.data)[0], 0);
   run(2000, 0);
   EXPECT_FALSE(joint.data->isolation.law.known);
   EXPECT_TRUE(joint.data->isolation.diagnosis.decided) << "what it was stays said";
@@ -271,6 +273,8 @@ TEST(ControllerWithIsolation, GivenFrictionThatGoesThenItsCompensationGoes) {
   run(1500, 0);
   EXPECT_LT(std::sqrt(off / 1500), 0.01) << "what the network had learnt fades more slowly";
   EXPECT_TRUE(healthy.drive.faults.empty());
+  ASSERT_TRUE(joint.controller.disarm(*joint.data));
+  EXPECT_EQ(joint.controller.acting_compensation(*joint.data)[0], 0) << "nothing is commanded";
 }
 
 // GIVEN a joint that something holds WHEN that is decided THEN nothing is compensated: the torque

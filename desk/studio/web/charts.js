@@ -189,6 +189,12 @@ function showFiner(answer) {
   drawSoon(shown);
 }
 
+/** Zooms to a part of the time. */
+function showTime({ from, to }) {
+  const [figure] = timeFigures();
+  if (figure?.chart) zoomTo(figure, () => ({ startValue: from, endValue: to }));
+}
+
 function showWhole() {
   const [figure] = timeFigures();
   if (figure?.chart && zoomRange() !== null) resetZoom(figure);

@@ -307,6 +307,14 @@ async function changeModel(method, path, body) {
   });
 }
 
+/** The next page over this session begins where this one is; nothing waits for it. */
+function keepLook() {
+  const range = zoomRange();
+  ask("POST", "look", { ...look, from: range?.from ?? null, to: range?.to ?? null }).catch((error) =>
+    complain(error.message),
+  );
+}
+
 /** Another joint or recording; while a change is under way the last wish waits for its end. */
 async function choose(what) {
   if (busy) {
@@ -323,6 +331,7 @@ async function choose(what) {
     Object.assign(look, what);
     show();
     await drawCharts();
+    keepLook();
   });
 }
 
@@ -343,7 +352,7 @@ async function follow() {
 const actions = {
   add: (effect, joint) => {
     if (!busy) look.joint = joint;
-    return changeModel("POST", "steps", { effect, joint });
+    return changeModel("POST", "steps", { effect, joint }).then(keepLook);
   },
   drag: (number) => followDrag(number, drawDragged).catch((error) => complain(error.message)),
   snapBack: () => {
@@ -476,9 +485,12 @@ async function loadSession() {
   forgetExploredJoints();
   const worst = state.joints.reduce((a, b) => (errorOf(b, "now") > errorOf(a, "now") && b.moves ? b : a));
   Object.assign(look, { joint: worst.joint, recording: 1, beside: null });
+  const kept = state.look;
+  if (kept !== null) Object.assign(look, { joint: kept.joint, recording: kept.recording, beside: kept.beside });
   saving = { words: "", level: "neutral", confirm: null, name: null };
   show();
   await drawCharts();
+  if (kept !== null && kept.from !== null && kept.to !== null) showTime(kept);
   if (found.state === "running") follow();
 }
 
@@ -493,7 +505,10 @@ function showUnloaded({ robot }) {
 
 async function start() {
   buildStudio();
-  onZoom = (range) => drawFiner(range).catch((error) => complain(error.message));
+  onZoom = (range) => {
+    keepLook();
+    drawFiner(range).catch((error) => complain(error.message));
+  };
   try {
     const setup = await ask("GET", "live");
     places.desk.hidden = !setup.loaded;

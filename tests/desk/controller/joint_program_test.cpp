@@ -212,6 +212,9 @@ TEST(JointProgram, InTorqueSpaceSaysAndRecordsWhichJointWasFirst) {
     EXPECT_NEAR(columns.at("threshold1").maxCoeff(), 5, 1e-3);
     const double residual = columns.at("error1").cwiseAbs().maxCoeff();
     EXPECT_NEAR(residual, push_nm, push_nm > 0 ? 3 : 1);
+    const Eigen::VectorXd compensation = columns.at("compensation1").cwiseAbs();
+    EXPECT_EQ(compensation.head(2000).maxCoeff(), 0) << "nothing was wrong yet";
+    EXPECT_EQ(compensation.maxCoeff() > 0, push_nm > 0);
   }
 }
 

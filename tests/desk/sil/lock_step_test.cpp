@@ -105,6 +105,9 @@ TEST(LockStep, RecordsWhatTheControllerSawAndTheTruthBesideIt) {
       {{.kind = FaultEventKind::kTorqueLoss, .begin_s = 2.0, .joint = 1, .size = 0.4}});
   EXPECT_LT((0.6 * tail(weak, weak.tau.col(1)) - tail(weak, weak.extra.at("tau_true2"))).norm(),
             1e-3);
+  const Eigen::VectorXd& compensation = weak.extra.at("compensation2");
+  EXPECT_EQ(compensation.head(weak.sample_count() / 10).norm(), 0) << "before the fault";
+  EXPECT_GT(tail(weak, compensation).cwiseAbs().maxCoeff(), 0.1) << "N m";
 
   // A tick without a reading is no row.
   const Log lossy =

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/refused.hpp"
 #include "desk/studio/studio_input.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "studio/session.hpp"
@@ -57,6 +58,47 @@ TEST_F(StudioKeptSession, IsTakenUpByTheNextProgram) {
     EXPECT_EQ(after.at("steps").at(1).at(part), before.at("steps").at(1).at(part)) << part;
   }
   EXPECT_EQ(after.at("joints"), before.at("joints"));
+}
+
+// Also within one program: a page that is loaded again begins where it was.
+TEST_F(StudioKeptSession, BeginsWhereThePageWas) {
+  const View view{.joint = 1, .recording = 1, .from_s = 0.5, .to_s = 1.25, .beside = 0};
+  const ordered_json told = {
+      {"joint", 2}, {"recording", 2}, {"beside", 1}, {"from", 0.5}, {"to", 1.25}};
+  {
+    Session session(input());
+    EXPECT_EQ(session.state().at("look"), nullptr);
+    session.look_at(view);
+    EXPECT_EQ(session.state().at("look"), told);
+    EXPECT_FALSE(std::filesystem::exists(file())) << "whoever only looks leaves nothing";
+    session.add("viscous_friction", 2);
+  }
+  EXPECT_EQ(Session(input()).state().at("look"), told);
+  {
+    Session session(input());
+    session.look_at({});
+  }
+  EXPECT_EQ(Session(input()).state().at("look").at("joint"), 1);
+}
+
+TEST_F(StudioKeptSession, RefusesToLookAtWhatIsNotThere) {
+  Session session(input());
+  EXPECT_THROW(session.look_at({.joint = 2}), Refused);
+  EXPECT_THROW(session.look_at({.recording = 2}), Refused);
+  EXPECT_THROW(session.look_at(view_from({{"joint", 0},
+                                          {"recording", 1},
+                                          {"beside", nullptr},
+                                          {"from", nullptr},
+                                          {"to", nullptr}})),
+               Refused);
+  session.add("viscous_friction", 2);
+  ordered_json kept = ordered_json::parse(content_of(file()));
+  kept["look"] = {{"joint", 9}, {"recording", 1}, {"beside", nullptr}, {"from", 0}, {"to", 1}};
+  put("a.studio.json", kept.dump());
+  EXPECT_EQ(Session(input()).state().at("look"), nullptr);
+  kept["look"] = "here";
+  put("a.studio.json", kept.dump());
+  EXPECT_EQ(Session(input()).state().at("kept").at("taken_up"), 0) << "no file of ours";
 }
 
 TEST_F(StudioKeptSession, KeepsTheAnswerOfTheSearch) {

@@ -143,6 +143,14 @@ class JointController {
     enter_fault(reason, bus, data);
   }
 
+  // What of output.compensation is added to the computed torque, N m or N, before both are held to
+  // what the drives can give: nothing unless armed, or before a fault is named that is compensated.
+  [[nodiscard]] Vector<N, Scalar> acting_compensation(const Data& data) const {
+    const bool acts = data.state == ControllerState::kArmed && compensates(data);
+    return acts ? data.output.compensation.torque
+                : Vector<N, Scalar>(zeros<N, Scalar>(static_cast<Eigen::Index>(joints())));
+  }
+
   // The monitor has its own: monitor().config().
   [[nodiscard]] const ControlConfig<N, Scalar>& config() const { return config_; }
   [[nodiscard]] const Watch& monitor() const { return monitor_; }

@@ -69,7 +69,9 @@ struct LoopReport {
       columns.push_back(quantity + std::to_string(joint));
     }
   };
-  for (const char* quantity : {"q", "dq", "tau", "command", "psi_hat"}) add_of_joints(quantity);
+  for (const char* quantity : {"q", "dq", "tau", "command", "psi_hat", "compensation"}) {
+    add_of_joints(quantity);
+  }
   if (by_joint) {
     add_of_joints("error");
     add_of_joints("threshold");
@@ -86,8 +88,9 @@ namespace detail {
 
 template <int N, int L, typename Scalar, typename Memory, typename Space, typename Isolates>
 [[nodiscard]] Row row_of(
-    const controller::ControllerData<N, L, Scalar, Memory, Space, Isolates>& data, const Tick& tick,
-    Scalar period_s) {
+    const controller::JointController<N, L, Scalar, Memory, Space, Isolates>& controller,
+    const controller::ControllerData<N, L, Scalar, Memory, Space, Isolates>& data,
+    const Tick& tick) {
   Row row;
   // When it was due: rows are evenly spaced.
   row.time_us = tick.begin_us - tick.latency_us;
@@ -101,6 +104,7 @@ template <int N, int L, typename Scalar, typename Memory, typename Space, typena
   put_all(data.sample.tau);
   for (const hal::TorqueCommand& command : data.commands) put(static_cast<double>(command.torque));
   put_all(data.output.psi_hat);
+  put_all(controller.acting_compensation(data));
   if constexpr (std::is_same_v<Space, TorqueSpace>) {
     put_all(data.output.error);
     put_all(data.output.thresholds);
@@ -110,7 +114,8 @@ template <int N, int L, typename Scalar, typename Memory, typename Space, typena
   put(static_cast<double>(data.output.threshold));
   put(std::sqrt(static_cast<double>(data.monitor.estimator.theta_squared_norm)));
   put(data.output.detector.latched ? 1 : 0);
-  put(static_cast<double>(data.run_ticks) * static_cast<double>(period_s));
+  put(static_cast<double>(data.run_ticks) *
+      static_cast<double>(controller.monitor().config().estimator.period_s));
   put(tick.late_ticks);
   put(static_cast<double>(tick.latency_us));
   put(static_cast<double>(data.fault));
@@ -165,8 +170,7 @@ class ControlLoop {
     parts_.controller.step(tick.begin_us, tick.late_ticks, parts_.reference_at, parts_.bus,
                            parts_.drives, parts_.data);
     if (parts_.data.fresh) {
-      parts_.recorder.keep(detail::row_of(parts_.data, tick,
-                                          parts_.controller.monitor().config().estimator.period_s));
+      parts_.recorder.keep(detail::row_of(parts_.controller, parts_.data, tick));
     }
     note(tick, parts_.bus.now() - tick.begin_us);
   }
