@@ -29,14 +29,15 @@ struct Run {
 
 class BenchOfRobot final : public Bench {
  public:
-  BenchOfRobot(const RobotDescription& robot, const sil::Scenario& scenario)
+  BenchOfRobot(const RobotDescription& robot, const sil::Scenario& scenario, Pace pace)
       : robot_(robot),
         scenario_(scenario),
+        pace_(pace),
         period_us_(period_us_of(robot.estimator.period_s)),
         run_(make_run()) {}
 
   void take(const OnFrame& on_frame) override {
-    std::this_thread::sleep_for(kNap);
+    if (pace_ == Pace::kRealTime || !ended_.empty()) std::this_thread::sleep_for(kNap);
     if (!ended_.empty()) return;
     on_frame_ = &on_frame;
     try {
@@ -116,6 +117,7 @@ class BenchOfRobot final : public Bench {
   }
 
   std::int64_t ticks_due() {
+    if (pace_ == Pace::kAtSpeed) return kMostBehindTicks;
     const auto since = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - begin_);
     const std::int64_t due = since.count() / period_us_ - ticks_;
     if (due <= kMostBehindTicks) return due;
@@ -138,6 +140,7 @@ class BenchOfRobot final : public Bench {
 
   RobotDescription robot_;
   sil::Scenario scenario_;
+  Pace pace_;
   hal::Microseconds period_us_;
   const OnFrame* on_frame_ = nullptr;
   hal::Microseconds base_us_ = 0;
@@ -153,9 +156,10 @@ class BenchOfRobot final : public Bench {
 
 }  // namespace
 
-std::unique_ptr<Bench> make_bench(const RobotDescription& robot, const sil::Scenario& scenario) {
+std::unique_ptr<Bench> make_bench(const RobotDescription& robot, const sil::Scenario& scenario,
+                                  Pace pace) {
   sil::check_scenario(robot, scenario);
-  return std::make_unique<BenchOfRobot>(robot, scenario);
+  return std::make_unique<BenchOfRobot>(robot, scenario, pace);
 }
 
 }  // namespace offnominal::desk::live

@@ -53,10 +53,14 @@ class Bench : public Feed {
   [[nodiscard]] virtual ControllerWord controller() const = 0;
 };
 
-/// Controller and plant of a robot on an in-process bus, in real time. The plant is that of the
-/// scenario. Throws InputError where the scenario cannot be run.
+/// As time goes by, or as fast as this machine can.
+enum class Pace : std::uint8_t { kRealTime, kAtSpeed };
+
+/// Controller and plant of a robot on an in-process bus. The plant is that of the scenario. Throws
+/// InputError where the scenario cannot be run.
 [[nodiscard]] std::unique_ptr<Bench> make_bench(const RobotDescription& robot,
-                                                const sil::Scenario& scenario);
+                                                const sil::Scenario& scenario,
+                                                Pace pace = Pace::kRealTime);
 
 /// Listens to a CAN interface of the kernel; nothing that is made here can send. Throws InputError
 /// where there is no such interface.
