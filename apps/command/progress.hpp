@@ -17,15 +17,22 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress() { end(); }
 
-  /// What is being done now; step() counts from 0 again.
+  /// What is being done now; step() and reach() count from 0 again.
   void begin(std::string what) {
     what_ = std::move(what);
     steps_ = 0;
+    percent_ = -1;
     show();
   }
 
   void step() {
     ++steps_;
+    show();
+  }
+
+  /// How far it has come, 0 to 1.
+  void reach(double share) {
+    percent_ = static_cast<int>(100 * share);
     show();
   }
 
@@ -44,11 +51,13 @@ class Progress {
     shown_ = true;
     std::cerr << "\r\033[K" << what_;
     if (steps_ > 0) std::cerr << ": " << steps_ << " tried";
+    if (percent_ >= 0) std::cerr << ": " << percent_ << " %";
     std::cerr << std::flush;
   }
 
   std::string what_;
   long steps_ = 0;
+  int percent_ = -1;  // none
   bool terminal_ = ::isatty(STDERR_FILENO) != 0;
   bool shown_ = false;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

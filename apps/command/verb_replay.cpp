@@ -123,7 +123,9 @@ void run(const ReplayOptions& options, const std::string& command_line, ExitCode
   require_whole(log);
   Progress progress;
   const auto faults = examined({std::span(&log, 1)}, robot, progress);
-  const Replay result = replay(robot, log);
+  progress.begin("the monitor over " + log.file);
+  const Replay result = replay(robot, log, [&](double share) { progress.reach(share); });
+  progress.end();
   write_report(options.answer, [&] { return with_faults(page_of(result, command_line), faults); });
   std::string notes;
   for (const std::string& remark : log.remarks) notes += "note: " + remark + "\n";

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
+#include "common/list_of_joints.hpp"
 #include "compare/inverse_model.hpp"
 #include "explain/any_shape.hpp"
 #include "explain/link_share.hpp"
-#include "explain/list_of_joints.hpp"
 #include "explain/remains.hpp"
 
 namespace offnominal::desk {

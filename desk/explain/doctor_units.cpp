@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "common/list_of_joints.hpp"
 #include "explain/doctor_checks.hpp"
 #include "explain/doctor_signal.hpp"
-#include "explain/list_of_joints.hpp"
 #include "robot/channel_text.hpp"
 #include "robot/units.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/input_name.hpp"
+#include "common/list_of_joints.hpp"
 #include "common/shell_word.hpp"
 #include "compare/measurement.hpp"
 #include "explain/beside_free_links.hpp"
@@ -20,7 +21,6 @@
 #include "explain/friction_family.hpp"
 #include "explain/given_part.hpp"
 #include "explain/link_share.hpp"
-#include "explain/list_of_joints.hpp"
 #include "explain/offset_instead.hpp"
 #include "explain/questions.hpp"
 #include "explain/taken_back.hpp"

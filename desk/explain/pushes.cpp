@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
+#include "common/list_of_joints.hpp"
 #include "explain/friction_family.hpp"
 #include "explain/link_share.hpp"
-#include "explain/list_of_joints.hpp"
 #include "explain/remainder.hpp"
 #include "identify/regression.hpp"
 #include "signal/quantile.hpp"

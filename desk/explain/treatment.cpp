@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "common/list_of_joints.hpp"
 #include "common/nearest.hpp"
 #include "compare/inverse_model.hpp"
 #include "compare/motion.hpp"
 #include "compare/usable.hpp"
 #include "explain/doctor.hpp"
 #include "explain/doctor_signal.hpp"
-#include "explain/list_of_joints.hpp"
 #include "log/sampling.hpp"
 #include "signal/decimate.hpp"
 

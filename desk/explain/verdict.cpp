@@ -10,12 +10,12 @@
 #include <limits>
 #include <utility>
 
+#include "common/list_of_joints.hpp"
 #include "compare/before_after.hpp"
 #include "explain/advice.hpp"
 #include "explain/change_words.hpp"
 #include "explain/explain_report.hpp"
 #include "explain/joint_answers.hpp"
-#include "explain/list_of_joints.hpp"
 #include "explain/remains.hpp"
 
 namespace offnominal::desk {

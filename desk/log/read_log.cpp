@@ -13,6 +13,7 @@
 
 #include "common/error.hpp"
 #include "common/input_name.hpp"
+#include "common/list_of_joints.hpp"
 #include "common/nearest.hpp"
 #include "common/time_words.hpp"
 #include "log/channel_needs.hpp"
@@ -313,11 +314,15 @@ class Assembler {
 
   void remark_constants() {
     const auto remark = [&](const Eigen::MatrixXd& columns, const char* what, bool derived) {
+      std::map<double, std::vector<Index>> joints_at;
       for (Index i = 0; i < columns.cols(); ++i) {
         if (derived && log_.dq_derived[static_cast<std::size_t>(i)]) continue;
         if (columns.col(i).maxCoeff() > columns.col(i).minCoeff()) continue;
-        log_.remarks.push_back(fmt::format("{} of joint {} never changes: it is {:.6g} throughout",
-                                           what, i + 1, columns(0, i)));
+        joints_at[columns(0, i)].push_back(i);
+      }
+      for (const auto& [value, joints] : joints_at) {
+        log_.remarks.push_back(fmt::format("{} of {} never changes: it is {:.6g} throughout", what,
+                                           list_of_joints(joints), value));
       }
     };
     remark(log_.q, "the position", false);

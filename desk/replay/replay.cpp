@@ -66,7 +66,7 @@ std::int64_t Replay::samples() const {
       [](std::int64_t sum, const auto& item) { return sum + item.second.count; });
 }
 
-Replay replay(const RobotDescription& robot, const Log& log) {
+Replay replay(const RobotDescription& robot, const Log& log, const OnShare& on_share) {
   check_settings(robot, log);
   const RobotDescription seen = seen_by_sensors(robot, log);
   Replay result;
@@ -79,6 +79,7 @@ Replay replay(const RobotDescription& robot, const Log& log) {
   result.period_s = log.period_s;
   result.hidden_units = robot.estimator.hidden_units;
   result.seed = robot.estimator.seed;
+  result.filter_s = 1 / robot.estimator.alpha;
   for (const RobotJoint& joint : robot.joints) {
     result.joint_names.push_back(joint.name);
     const JointType type = joint.joint.type;
@@ -86,7 +87,7 @@ Replay replay(const RobotDescription& robot, const Log& log) {
     result.psi_hat_units.emplace_back(in_torque ? unit_of(Quantity::kEffort, type) : acceleration);
     if (in_torque) result.joints.emplace_back().unit = unit_of(Quantity::kEffort, type);
   }
-  replay_monitor(carrying(seen, log.payload), log, result);
+  replay_monitor(carrying(seen, log.payload), log, on_share, result);
   if (result.t_s.size() == 0) {
     const auto& [status, refusals] = *result.refused.begin();
     throw InputError({.file = log.file,
@@ -107,6 +108,11 @@ double Replay::blind_s() const {
   return std::accumulate(blind.begin(), blind.end(), 0.0, [](double sum, const BlindStretch& one) {
     return sum + one.end_s - one.start_s;
   });
+}
+
+bool Replay::is_too_short() const {
+  constexpr double kTimeConstants = 3;  // until 95 % of a step are there
+  return t_s.size() == 0 || t_s[t_s.size() - 1] - t_s[0] < kTimeConstants * filter_s;
 }
 
 namespace {
@@ -165,6 +171,12 @@ std::string words_of(const Replay& replay) {
         "Blind: {} of {} samples were judged, at most {} in a row were not; in those that were the "
         "residual is at most {:.1f} % of its threshold.",
         replay.judged(), replay.samples(), replay.longest_refused,
+        100 * replay.max_error_to_threshold);
+  } else if (replay.is_too_short()) {
+    words = fmt::format(
+        "Too short to judge: a residual takes {:.3g} s to build up (3 / alpha), and {:.3g} s are "
+        "there; in them it is at most {:.1f} % of its threshold.",
+        3 * replay.filter_s, replay.t_s[replay.t_s.size() - 1] - replay.t_s[0],
         100 * replay.max_error_to_threshold);
   } else {
     words = fmt::format("Nominal: the residual stays below its threshold, at most {:.1f} % of it.",

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -65,6 +66,7 @@ struct Replay {
   double period_s = 0;
   int hidden_units = 0;
   std::uint32_t seed = 0;
+  double filter_s = 0;  // time constant of the residual's filter, 1 / alpha
   std::vector<std::string> joint_names;
   std::vector<std::string> psi_hat_units;  // per joint
 
@@ -94,7 +96,12 @@ struct Replay {
   // is as long as a controller bears it, or more than one in a hundred.
   [[nodiscard]] bool is_blind() const;
   [[nodiscard]] double blind_s() const;  // of all stretches together
+  // Whether the recording is over before a residual has built up: no alarm then says nothing.
+  [[nodiscard]] bool is_too_short() const;
 };
+
+// What share of the recording has been played, 0 to 1, for the one who waits.
+using OnShare = std::function<void(double share)>;
 
 // Replays `log` through the monitor of `robot`, with the recording's sampling period as the tick.
 // The recording's torque is taken as the torque that was really applied. As on the controller, the
@@ -102,7 +109,8 @@ struct Replay {
 // it begins afresh, as at the start of the recording but for its threshold, which stays. Throws
 // InputError when the recording has another number of joints, the robot file has no uncertainty
 // bound, when a setting does not go with the sampling period, or when no sample is accepted.
-[[nodiscard]] Replay replay(const RobotDescription& robot, const Log& log);
+[[nodiscard]] Replay replay(const RobotDescription& robot, const Log& log,
+                            const OnShare& on_share = {});
 
 [[nodiscard]] nlohmann::json to_json(const Replay& replay);
 [[nodiscard]] report::Page page_of(const Replay& replay, const std::string& command_line);

@@ -85,6 +85,7 @@ nlohmann::json to_json(const Replay& replay) {
                          {"samples", replay.samples()},
                          {"judged", replay.judged()},
                          {"blind", replay.is_blind()},
+                         {"too_short", replay.is_too_short()},
                          {"blind_s", replay.blind_s()},
                          {"blind_stretches", blind_json(replay.blind)},
                          {"refused", refused},

@@ -139,7 +139,8 @@ bool is_same(const IsolatedFault& one, const IsolatedFault& other) {
 
 }  // namespace
 
-void replay_monitor(const RobotDescription& robot, const Log& log, Replay& result) {
+void replay_monitor(const RobotDescription& robot, const Log& log, const OnShare& on_share,
+                    Replay& result) {
   // One that lasts is detected again and again; an answer that was decided says more.
   const auto take = [&](const IsolatedFault& fault) {
     if (result.faults.empty() || !is_same(result.faults.back(), fault)) {
@@ -150,7 +151,11 @@ void replay_monitor(const RobotDescription& robot, const Log& log, Replay& resul
   };
   const auto watch = make_watch(robot, log.period_s, take, Detections::kEach);
   ReplayCollector collector(log.sample_count(), robot.joint_count(), result);
+  constexpr Eigen::Index kToldEvery = 10'000;
   for (Eigen::Index i = 0; i < log.sample_count(); ++i) {
+    if (on_share && i % kToldEvery == 0) {
+      on_share(static_cast<double>(i) / static_cast<double>(log.sample_count()));
+    }
     const Watch::Sample sample{log.q.row(i).transpose(), log.dq.row(i).transpose(),
                                log.tau.row(i).transpose()};
     const Status status = watch->take(sample, log.t_s[i], 0);

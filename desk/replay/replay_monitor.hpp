@@ -5,6 +5,7 @@
 namespace offnominal::desk {
 
 // Fills in what the monitor says of every sample; a part of replay().
-void replay_monitor(const RobotDescription& robot, const Log& log, Replay& result);
+void replay_monitor(const RobotDescription& robot, const Log& log, const OnShare& on_share,
+                    Replay& result);
 
 }  // namespace offnominal::desk

@@ -182,7 +182,7 @@ Table blind_table(const Replay& replay) {
 // Nothing is good that nobody saw.
 Level level_of(const Replay& replay) {
   if (replay.detection_time_s) return Level::kBad;
-  return replay.is_blind() ? Level::kWarn : Level::kGood;
+  return replay.is_blind() || replay.is_too_short() ? Level::kWarn : Level::kGood;
 }
 
 KeyFigures key_figures(const Replay& replay) {

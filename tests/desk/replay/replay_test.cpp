@@ -56,6 +56,17 @@ TEST(Replay, GivenAHealthyRecordingThenThereIsNoAlarmAndNothingIsLearnt) {
   EXPECT_THAT(words_of(healthy), HasSubstr("Nominal"));
 }
 
+TEST(Replay, GivenLessThanAResidualTakesToBuildUpThenItIsNotCalledNominal) {
+  std::vector<double> shares;
+  const Replay part = replay(watched_arm(), record_arm({.duration_s = 0.2}),
+                             [&](double share) { shares.push_back(share); });
+  EXPECT_TRUE(part.is_too_short());
+  EXPECT_THAT(words_of(part), HasSubstr("Too short to judge"));
+  EXPECT_EQ(to_json(part)["too_short"], true);
+  EXPECT_THAT(shares, ElementsAre(0));
+  EXPECT_FALSE(replay(watched_arm(), record_arm({.duration_s = 0.4})).is_too_short());
+}
+
 // A constant disturbance d from T on: |e| = d (1 - exp(-alpha s)) / alpha passes mu = K / alpha at
 // s = ln(d / (d - K)) / alpha.
 TEST(Replay, GivenAHiddenTorqueThenTheAlarmComesWhenTheFilterSaysSo) {
