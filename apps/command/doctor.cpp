@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/nearest.hpp"
 #include "explain/doctor.hpp"
 #include "explain/explain.hpp"
 
@@ -31,7 +32,8 @@ void add_keep_option(CLI::App& verb, std::vector<KeepFault>& keep) {
             for (const std::string& text : texts) keep.push_back(keep_fault_of(text));
           },
           "2:saturation, all:gaps and the like: what the doctor finds there is no fault, and "
-          "nothing is left out or refused for it. Once for each")
+          "nothing is left out or refused for it. Once for each. Reasons: " +
+              list_of(keep_reasons()))
       ->type_name("JOINT:REASON")
       ->expected(1)
       ->take_all()

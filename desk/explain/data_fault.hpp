@@ -87,6 +87,8 @@ std::string keep_text_of(const DataFault& fault);
 
 // "2:saturation" or "all:gaps". Throws InputError in the name of --keep.
 KeepFault keep_fault_of(const std::string& text);
+// The names of all that can be kept.
+std::vector<std::string> keep_reasons();
 
 // Whether an answer that rests on positions and torques, or on velocities as well, is wrong with
 // it: another unit, a wrong sign, positions that jump.

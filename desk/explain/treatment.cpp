@@ -200,11 +200,16 @@ std::string keep_text_of(const DataFault& fault) {
   return fmt::format("{}:{}", joint, name_of(fault.kind));
 }
 
-KeepFault keep_fault_of(const std::string& text) {
+std::vector<std::string> keep_reasons() {
   std::vector<std::string> reasons;
   for (int kind = 0; kind < static_cast<int>(DataFaultKind::kNothingLeft); ++kind) {
     reasons.emplace_back(name_of(static_cast<DataFaultKind>(kind)));
   }
+  return reasons;
+}
+
+KeepFault keep_fault_of(const std::string& text) {
+  const std::vector<std::string> reasons = keep_reasons();
   const std::string form = "JOINT:REASON, such as 2:saturation or all:gaps";
   const auto colon = text.find(':');
   if (colon == std::string::npos) throw InputError({"--keep", "", "\"" + text + "\"", form, ""});
