@@ -135,10 +135,18 @@ Limits limits_of(const BoundShape& shape, const CoefficientRange& range, Index u
 }
 
 // A table that is lower at one point than at both of its neighbours says that a joint is quieter in
-// a narrow band of speeds: so do a few passes through it, and the next ones not. `points`: of the
-// table, which the unknown numbers begin with.
-void fill_dips(Index points, VectorXd& c) {
-  for (Index k = 1; k + 1 < points; ++k) c[k] = std::max(c[k], std::min(c[k - 1], c[k + 1]));
+// a narrow band of speeds. So do quick passes through it: the residual has no time to become what
+// it is where the joint stays there. What the point alone would make of the threshold, the filter's
+// answer to it, tells how long it stayed: without such a stay the neighbours' number counts.
+// `points`: of the table, which the unknown numbers begin with.
+void fill_dips(const ThresholdParts& parts, Index points, VectorXd& c) {
+  constexpr double kStayed = 0.7;  // of what the filter comes to in the end
+  for (Index k = 1; k + 1 < points; ++k) {
+    const bool stayed = std::any_of(parts.begin(), parts.end(), [k](const ThresholdRows& part) {
+      return part.filtered.col(k).maxCoeff() >= kStayed;
+    });
+    if (!stayed) c[k] = std::max(c[k], std::min(c[k - 1], c[k + 1]));
+  }
 }
 
 VectorXd tightest_without(const std::vector<FoldRows>& folds, const Turn& turn,
@@ -148,7 +156,7 @@ VectorXd tightest_without(const std::vector<FoldRows>& folds, const Turn& turn,
     if (!turn.leaves_out(i)) parts.emplace_back(folds[i].rows);
   }
   VectorXd c = tightest(parts, limits.lowest, limits.price, limits.highest);
-  fill_dips(limits.points, c);
+  fill_dips(parts, limits.points, c);
   return c;
 }
 
