@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "explain/doubts.hpp"
 
@@ -54,9 +55,12 @@ void tell_errors_of_files(const Judged& by, const ImprovedRobot& improved, Expla
     result.joints[joint].rms_improved = after.rms_error[joint];
   }
   const HeldOutErrors held_out = held_out_of(by, improved);
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   for (JointErrors& joint : result.joints) {
-    joint.holdout_before = held_out.before[joint.joint];
-    joint.holdout_after = held_out.after[joint.joint];
+    // Of a joint of which nothing is left there is no error.
+    const bool is_there = held_out.torque[joint.joint] > 0;
+    joint.holdout_before = is_there ? held_out.before[joint.joint] : kNone;
+    joint.holdout_after = is_there ? held_out.after[joint.joint] : kNone;
   }
 }
 

@@ -110,6 +110,14 @@ bool leave_out_impossible(const std::vector<HeldNumber>& held, std::vector<Shift
                        [&](const Shift& one) { return holds_what_cannot_be(held, one.joint); }) > 0;
 }
 
+bool leave_out_undone(const RobotDescription& fitted, std::vector<Shift>& shifts) {
+  constexpr double kStays = 0.5;  // of the way from the file to what the search asked for
+  return std::erase_if(shifts, [&](const Shift& one) {
+           const double came = fitted.effects[one.effect].parameters[one.parameter];
+           return (came - one.file) / (one.came - one.file) < kStays;
+         }) > 0;
+}
+
 std::vector<std::size_t> refitted_effects(const RobotDescription& file,
                                           const std::vector<Shift>& shifts) {
   const std::vector<std::size_t> fitted = fitted_effects(file);

@@ -25,6 +25,11 @@ std::vector<Shift> contradicted_numbers(const SearchSetting& setting, const Robo
 // Whether there were any: the rest is then to be fitted again.
 bool leave_out_impossible(const std::vector<HeldNumber>& held, std::vector<Shift>& shifts);
 
+// Leaves out those that are not there once all that is written has been fitted together: less than
+// half as far from the file as they were. Whether there were any: the rest is then to be fitted
+// again, beside the file's numbers.
+bool leave_out_undone(const RobotDescription& fitted, std::vector<Shift>& shifts);
+
 // Effects of the file that get new numbers, as indices: those marked fitted, and of those numbers.
 std::vector<std::size_t> refitted_effects(const RobotDescription& file,
                                           const std::vector<Shift>& shifts);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 #include <vector>
 
 #include "common/time_words.hpp"
@@ -55,6 +57,10 @@ struct Breaks {
   std::vector<RowSpan> spikes;  // rows that are off
   std::vector<Index> steps;     // rows behind which another zero counts
   double largest = 0;
+  // Of every change from one row to the next, what is more than the pace around it brings, and
+  // that; empty where nothing had to be looked at.
+  VectorXd excess;
+  VectorXd expected;
 };
 
 bool holds(const std::vector<RowSpan>& spans, Index row) {
@@ -205,29 +211,101 @@ RowSpan shorter_side(Index step, Index rows) {
   return step + 1 < rows - step - 1 ? RowSpan{0, step} : RowSpan{step + 1, rows - 1};
 }
 
-void find_position_jumps(const Log& log, Index joint, std::vector<DataFault>& faults) {
-  const VectorXd q = log.q.col(joint);
+// How a joint goes on behind a row: by how much at once, and by how much a row around it.
+struct GoesOn {
+  double at_once = 0;
+  double a_row = 0;
+};
+GoesOn goes_on(const VectorXd& q, Index row) {
+  constexpr Index kAround = 16;
+  const Index before = std::min(kAround, row);
+  const Index after = std::min(kAround, q.size() - 2 - row);
+  if (before == 0 || after == 0) return {};
+  const double slope = (q[row] - q[row - before]) / static_cast<double>(before) +
+                       (q[row + 1 + after] - q[row + 1]) / static_cast<double>(after);
+  return {q[row + 1] - q[row], slope / 2};
+}
+
+// Whether behind a row all joints have gone on as if the same time had passed: rows are missing
+// there, whatever the time stamps say, and no joint counts from another zero. `joint`: one that
+// shows it. Of the others those count that would have to show it.
+bool is_loss(const Log& log, const std::vector<double>& usual, Index row, Index joint) {
+  constexpr double kShows = 6;  // times a usual change from one row to the next
+  constexpr double kAlike =
+      3;  // times what it would have to be, or that part: paces change meanwhile
+  const GoesOn own = goes_on(log.q.col(joint), row);
+  const double rows = own.at_once / own.a_row;
+  if (!(rows > 2) || !std::isfinite(rows)) return false;
+  int alike = 0;
+  int others = 0;
+  for (Index i = 0; i < log.q.cols(); ++i) {
+    const GoesOn other = goes_on(log.q.col(i), row);
+    const double wanted = rows * other.a_row;
+    if (i == joint || !(std::abs(wanted) > kShows * usual[static_cast<std::size_t>(i)])) continue;
+    ++others;
+    const double share = other.at_once / wanted;
+    if (share > 1 / kAlike && share < kAlike) ++alike;
+  }
+  return others > 0 && 2 * alike > others;
+}
+
+// Such rows, in order.
+std::vector<Index> rows_before_a_loss(const Log& log, const std::vector<Breaks>& of_joints) {
+  const bool any = std::any_of(of_joints.begin(), of_joints.end(),
+                               [](const Breaks& one) { return !one.steps.empty(); });
+  if (!any) return {};
+  const Index steps = log.q.rows() - 1;
+  std::vector<double> usual;
+  for (Index i = 0; i < log.q.cols(); ++i) {
+    const VectorXd q = log.q.col(i);
+    usual.push_back((q.tail(steps) - q.head(steps)).cwiseAbs().mean());
+  }
+  std::set<Index> lost;
+  for (std::size_t i = 0; i < of_joints.size(); ++i) {
+    for (const Index row : of_joints[i].steps) {
+      if (is_loss(log, usual, row, static_cast<Index>(i))) lost.insert(row);
+    }
+  }
+  return {lost.begin(), lost.end()};
+}
+
+// Of a channel that is known to repeat: it catches up after every burst.
+std::vector<RowSpan> known_of_position(const Log& log, Index joint,
+                                       const std::vector<DataFault>& faults) {
   std::vector<RowSpan> known = known_spans(faults, joint, FaultySignal::kPosition);
   const bool stale = std::any_of(faults.begin(), faults.end(), [&](const DataFault& fault) {
     return fault.kind == DataFaultKind::kStaleSamples && fault.joint == joint &&
            fault.signal == FaultySignal::kPosition;
   });
-  // A channel that is known to repeat catches up after every burst.
-  if (stale) {
-    for (const Burst& burst : repeats_of(q)) known.push_back({burst.first, burst.end() + 1});
+  if (!stale) return known;
+  for (const Burst& burst : repeats_of(log.q.col(joint))) {
+    known.push_back({burst.first, burst.end() + 1});
   }
-  const Breaks jumps = breaks_of(log, q, known);
+  return known;
+}
+
+void find_position_jumps(const Log& log, Index joint, const std::vector<Index>& lost, Breaks jumps,
+                         std::vector<DataFault>& faults) {
+  const Index rows = log.q.rows();
+  std::vector<RowSpan> beside_loss;
+  std::erase_if(jumps.steps, [&](const Index row) {
+    const bool is_lost = std::find(lost.begin(), lost.end(), row) != lost.end();
+    if (is_lost) beside_loss.push_back({row, row + 1});
+    return is_lost;
+  });
+  add_jump_fault(log, joint, true, DataFaultKind::kJump, beside_loss, jumps.largest,
+                 "jumps as the other joints do, as if rows were missing there", faults);
   add_jump_fault(log, joint, true, DataFaultKind::kJump, jumps.spikes, jumps.largest,
                  "jumps and comes back", faults);
   std::vector<RowSpan> sides;
   if (jumps.steps.size() == 1) {
-    sides.push_back(shorter_side(jumps.steps[0], q.size()));
+    sides.push_back(shorter_side(jumps.steps[0], rows));
   } else if (jumps.steps.size() > 1) {
     // Between jumps there and back the zero is another; of more than two none is known.
     for (std::size_t i = 0; i + 1 < jumps.steps.size(); i += 2) {
       sides.push_back({jumps.steps[i] + 1, jumps.steps[i + 1]});
     }
-    if (jumps.steps.size() % 2 == 1) sides.push_back(shorter_side(jumps.steps.back(), q.size()));
+    if (jumps.steps.size() % 2 == 1) sides.push_back(shorter_side(jumps.steps.back(), rows));
   }
   const std::string what = jumps.steps.empty()
                                ? ""
@@ -240,6 +318,35 @@ void find_position_jumps(const Log& log, Index joint, std::vector<DataFault>& fa
   if (faults.size() > before) faults.back().at_s = log.t_s[jumps.steps[0]];
 }
 
+// Rows at the start of a signal that have not settled; 0 where it is at fault already.
+Index unsettled_of(const Log& log, Index joint, bool position,
+                   const std::vector<DataFault>& faults) {
+  const auto signal = position ? FaultySignal::kPosition : FaultySignal::kTorque;
+  const bool known = std::any_of(faults.begin(), faults.end(), [&](const DataFault& fault) {
+    return fault.joint == joint && fault.signal == signal;
+  });
+  if (known) return 0;
+  return unsettled_rows(position ? log.q.col(joint) : log.tau.col(joint), position);
+}
+
+void add_unsettled(const Log& log, Index joint, bool position, Index unsettled,
+                   std::vector<DataFault>& faults) {
+  if (unsettled == 0) return;
+  add_jump_fault(log, joint, position, DataFaultKind::kStart, {{0, unsettled - 1}},
+                 static_cast<double>(unsettled) / static_cast<double>(log.sample_count()),
+                 "changes at the start as it never does later", faults);
+}
+
+void find_torque_spikes(const Log& log, Index joint, std::vector<DataFault>& faults) {
+  const VectorXd tau = log.tau.col(joint);
+  const auto spikes = torque_spikes(tau, known_spans(faults, joint, FaultySignal::kTorque));
+  double largest = 0;
+  for (const RowSpan& span : spikes) {
+    largest = std::max(largest, tau.segment(span.first, span.count()).cwiseAbs().maxCoeff());
+  }
+  add_jump_fault(log, joint, false, DataFaultKind::kJump, spikes, largest, "has spikes", faults);
+}
+
 }  // namespace
 
 std::string mend_of_start() {
@@ -247,32 +354,29 @@ std::string mend_of_start() {
 }
 
 void find_jumps(const Log& log, std::vector<DataFault>& faults) {
+  struct OfPosition {
+    Index unsettled = 0;
+    Breaks breaks;
+  };
+  std::vector<OfPosition> positions(static_cast<std::size_t>(log.q.cols()));
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
-    for (const bool position : {true, false}) {
-      const VectorXd x = position ? log.q.col(joint) : log.tau.col(joint);
-      if (position && stands_still(x)) continue;
-      const auto signal = position ? FaultySignal::kPosition : FaultySignal::kTorque;
-      const bool known = std::any_of(faults.begin(), faults.end(), [&](const DataFault& fault) {
-        return fault.joint == joint && fault.signal == signal;
-      });
-      const Index unsettled = known ? 0 : unsettled_rows(x, position);
-      if (unsettled > 0) {
-        add_jump_fault(log, joint, position, DataFaultKind::kStart, {{0, unsettled - 1}},
-                       static_cast<double>(unsettled) / static_cast<double>(x.size()),
-                       "changes at the start as it never does later", faults);
-      }
-      if (position) {
-        find_position_jumps(log, joint, faults);
-        continue;
-      }
-      const auto spikes = torque_spikes(x, known_spans(faults, joint, signal));
-      double largest = 0;
-      for (const RowSpan& span : spikes) {
-        largest = std::max(largest, x.segment(span.first, span.count()).cwiseAbs().maxCoeff());
-      }
-      add_jump_fault(log, joint, false, DataFaultKind::kJump, spikes, largest, "has spikes",
-                     faults);
-    }
+    if (stands_still(log.q.col(joint))) continue;
+    OfPosition& of = positions[static_cast<std::size_t>(joint)];
+    of.unsettled = unsettled_of(log, joint, true, faults);
+    std::vector<RowSpan> known = known_of_position(log, joint, faults);
+    if (of.unsettled > 0) known.push_back({-1, of.unsettled});
+    of.breaks = breaks_of(log, log.q.col(joint), known);
+  }
+  std::vector<Breaks> of_joints;
+  std::transform(positions.begin(), positions.end(), std::back_inserter(of_joints),
+                 [](const OfPosition& one) { return one.breaks; });
+  const std::vector<Index> lost = rows_before_a_loss(log, of_joints);
+  for (Index joint = 0; joint < log.q.cols(); ++joint) {
+    const OfPosition& of = positions[static_cast<std::size_t>(joint)];
+    add_unsettled(log, joint, true, of.unsettled, faults);
+    find_position_jumps(log, joint, lost, of.breaks, faults);
+    add_unsettled(log, joint, false, unsettled_of(log, joint, false, faults), faults);
+    find_torque_spikes(log, joint, faults);
   }
 }
 

@@ -85,7 +85,8 @@ double change_after(const VectorXd& q, Index lag) {
 
 bool repeats_with_motion(const Data& data, const Term& term) {
   constexpr int kHighest = 8;    // harmonic of the motion that a torque of its state shows
-  constexpr double kSame = 0.2;  // of the motion
+  constexpr double kSame = 0.5;  // of the motion: a gait is not the same from step to step
+  constexpr double kComesBack = 2;
   if (term.effect->spectrum() != EffectCandidate::Spectrum::kTime) return false;
   const double cycle_s = 2 * std::numbers::pi / term.shape[0];  // of an angular frequency
   bool any = false;
@@ -96,8 +97,9 @@ bool repeats_with_motion(const Data& data, const Term& term) {
     const auto repeats_after = [&](int cycles) {
       const auto lag = static_cast<Index>(std::llround(cycles * cycle_s / at.period_s()));
       // What hardly moves meanwhile does not repeat.
-      return lag >= 2 && 2 * lag <= q.size() && change_after(q, lag) < kSame &&
-             change_after(q, lag / 2) > kSame;
+      if (lag < 2 || 2 * lag > q.size()) return false;
+      const double change = change_after(q, lag);
+      return change < kSame && change_after(q, lag / 2) > std::max(kSame, kComesBack * change);
     };
     bool repeats = false;
     for (int cycles = 1; cycles <= kHighest && !repeats; ++cycles) repeats = repeats_after(cycles);

@@ -56,6 +56,25 @@ void widen(Estimate& estimate, double deviation) {
   estimate.ci95 = {estimate.value.value - half, estimate.value.value + half};
 }
 
+// Whether some number that an effect is linear in is told from nothing by its own interval. Where
+// it has several that go together none may be, though all of them at once are: what that is of is
+// not known then.
+bool has_a_number(const Term& term, const std::vector<Estimate>& numbers) {
+  // A wave has a size, whatever its phase.
+  if (term.effect->spectrum() != EffectCandidate::Spectrum::kNone) return true;
+  const auto& parameters = term.effect->info().parameters;
+  int linear = 0;
+  const bool any = std::any_of(numbers.begin(), numbers.end(), [&](const Estimate& one) {
+    const auto of =
+        std::find_if(parameters.begin(), parameters.end(),
+                     [&](const ParameterInfo& info) { return info.name == one.value.name; });
+    if (of == parameters.end() || of->role != ParameterRole::kLinear) return false;
+    ++linear;
+    return !one.ci95 || (*one.ci95)[0] > 0 || (*one.ci95)[1] < 0;
+  });
+  return any || linear < 2;
+}
+
 }  // namespace
 
 Sizes sizes_of(const ImprovedRobot& improved) {
@@ -79,7 +98,7 @@ Sizes sizes_of(const ImprovedRobot& improved) {
     const bool possible =
         (can_be(terms[i], value, recordings) || can_be(terms[i], kBarely * value, recordings)) &&
         repeats_with_something(terms[i], estimates.terms[i]) &&
-        !is_beyond_any(terms[i], estimates.terms[i]);
+        has_a_number(terms[i], estimates.terms[i]) && !is_beyond_any(terms[i], estimates.terms[i]);
     std::vector<LinearPart> linear{estimates.linear[i]};
     for (const VectorXd& shift : shifts[i].linear) {
       linear.push_back(estimates.linear[i]);

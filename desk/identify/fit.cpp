@@ -179,6 +179,10 @@ PriorFit least_squares_with_priors(const MatrixXd& columns, const VectorXd& targ
   }
   result.basis = whole.columns * result.to_basis;
   result.x = whole.x;
+  for (std::size_t i = 0; i < priors.size(); ++i) {
+    const Prior& prior = priors[i];
+    if (prior.is_one_value()) result.x[static_cast<Index>(i)] = (prior.low + prior.high) / 2;
+  }
   return result;
 }
 

@@ -16,8 +16,15 @@ struct Prior {
 
   // Held there, but for rounding.
   static Prior at(double value) {
-    const double wide = 1e-9 * (value < 0 ? -value : value) + 1e-12;
+    const double wide = rounding_of(value);
     return {value, std::numeric_limits<double>::infinity(), value - wide, value + wide};
+  }
+  static double rounding_of(double value) { return 1e-9 * (value < 0 ? -value : value) + 1e-12; }
+  // Whether its ends are apart by no more than at() has them: then it is the middle that is meant.
+  [[nodiscard]] bool is_one_value() const {
+    constexpr double kOfRounding = 2.1;
+    return high - low < std::numeric_limits<double>::infinity() &&
+           high - low <= kOfRounding * rounding_of((low + high) / 2);
   }
 
   [[nodiscard]] bool is_informative() const {
@@ -50,7 +57,8 @@ inline double row_of(const Prior& prior, double prior_weight) {
 
 // `columns` and `target` are already weighted to errors of size 1. `prior_weight` is the root of
 // the number of rows that count as one independent observation: a prior is one. Unknowns whose
-// column adds nothing to those before it (relative 1e-7) stay at 0.
+// column adds nothing to those before it (relative 1e-7) stay at 0. One that has but one value has
+// exactly that.
 PriorFit least_squares_with_priors(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target,
                                    const std::vector<Prior>& priors, double prior_weight);
 

@@ -99,6 +99,30 @@ Index column_of(const Relinearised& found, const Moved& moved) {
   return static_cast<Index>(at - terms.begin());
 }
 
+// Whether a number asks for little beyond the end of its range: by no more than the file was off,
+// or by little of what the joint's other numbers ask for together. `beyond`: in the fit's units.
+bool asks_for_little(const Relinearised& found, const RobotDescription& file, const Moved& moved,
+                     double beyond) {
+  constexpr double kLittle = 0.25;  // of the root mean square of their torque
+  const double end = moved.range.nearest(moved.asked);
+  const double start = file.effects[moved.effect].parameters[moved.parameter];
+  if (std::abs(moved.asked - end) <= std::abs(end - start)) return true;
+  const Data& data = *found.data;
+  const Index column = column_of(found, moved);
+  const Index joint = data.nuisance.terms[static_cast<std::size_t>(column)].joint;
+  VectorXd others = VectorXd::Zero(data.layout.rows());
+  for (std::size_t i = 0; i < data.nuisance.terms.size(); ++i) {
+    const NuisanceTerm& term = data.nuisance.terms[i];
+    const auto other = static_cast<Index>(i);
+    if (term.kind != NuisanceTerm::Kind::kKnownEffect || term.joint != joint || other == column) {
+      continue;
+    }
+    others += found.fit.nuisance[other] * data.nuisance.columns.col(other);
+  }
+  const VectorXd own = beyond * data.nuisance.columns.col(column);
+  return data.layout.rms(own)[joint] <= kLittle * data.layout.rms(others)[joint];
+}
+
 // The last fit and what it is made of.
 struct FileFit {
   Relinearised last;
@@ -168,7 +192,7 @@ class FileFitter {
   // else is fitted beside them.
   Relinearised fitted_within(std::vector<HeldNumber>& held) {
     constexpr double kRounding = 1e-9;
-    std::vector<char> near;  // per held number: it asks for no more beyond than the file was off
+    std::vector<char> near;        // per held number: asks_for_little()
     std::optional<VectorXd> free;  // what is left per joint where nothing is held
     for (;;) {
       const Data plain(recordings_, robot_, nuisance_);
@@ -183,7 +207,7 @@ class FileFitter {
         const double start = file_.effects[moved.effect].parameters[moved.parameter];
         held.push_back(
             held_number(last, column_of(last, moved), start, moved.asked, beyond, moved.range));
-        near.push_back(std::abs(moved.asked - end) <= std::abs(end - start) ? 1 : 0);
+        near.push_back(asks_for_little(last, file_, moved, beyond) ? 1 : 0);
         const double at_end = (end - start) / moved.factor;
         const double wide = kRounding * std::max(std::abs(at_end), std::abs(beyond));
         nuisance_.known.push_back({moved.effect, moved.parameter, at_end - wide, at_end + wide});
@@ -320,7 +344,7 @@ void scale_links(const Relinearised& found, const std::string& source, RobotDesc
       words += fmt::format(", centre of mass moved by {:.4g}, {:.4g}, {:.4g} m", c[0], c[1], c[2]);
     }
     std::string& of_link = robot.joints[link].source;
-    if (!of_link.empty()) of_link += " ";
+    if (!of_link.empty()) of_link += of_link.ends_with('.') ? " " : ". ";
     of_link += fmt::format("{}: {}", words, source);
   }
 }

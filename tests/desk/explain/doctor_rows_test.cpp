@@ -72,6 +72,36 @@ struct Real {
   std::string folder, robot, channels;
 };
 
+// A recorder that dropped rows and stamped the others on: every joint has gone on as if time had
+// passed, and none counts from another zero.
+TEST(DoctorOfRows, TakesRowsThatAreMissingForNoOtherZero) {
+  const Log whole = jittered_arm();
+  const Index lost = 60;
+  const Index from = whole.sample_count() / 3;
+  const Index rows = whole.sample_count() - lost;
+  Log log = whole;
+  log.t_s.conservativeResize(rows);
+  for (Eigen::MatrixXd Log::*column : {&Log::q, &Log::dq, &Log::tau}) {
+    (log.*column) = Eigen::MatrixXd((whole.*column).topRows(rows));
+    (log.*column).bottomRows(rows - from) = (whole.*column).bottomRows(rows - from);
+  }
+  const std::vector<DataFault> faults = examine(log, test::arm_description());
+  const std::string words = breaks_in(faults);
+  EXPECT_THAT(words, ::testing::HasSubstr("as if rows were missing there"));
+  EXPECT_THAT(words, ::testing::Not(::testing::HasSubstr("another zero")));
+  for (const DataFault& fault : faults) {
+    for (const FaultSpan& span : fault.spans) {
+      EXPECT_LE(span.samples.count(), 8) << fault.words;
+      EXPECT_NEAR(static_cast<double>(span.samples.first), static_cast<double>(from), 8);
+    }
+  }
+  // One joint alone that goes on from elsewhere does count from another zero.
+  Log jumped = whole;
+  jumped.q.col(1).tail(rows - from).array() += 0.3;
+  EXPECT_THAT(breaks_in(examine(jumped, test::arm_description())),
+              ::testing::HasSubstr("another zero"));
+}
+
 TEST(DoctorOfRows, SaysNoRepeatAndNoJumpOfRealRecordings) {
   const std::string free_motor =
       "time = \"Time\"\nposition = [\"Position\"]\nvelocity = [\"Velocity\"]\n"

@@ -14,6 +14,7 @@
 #include "compare/compare.hpp"
 #include "compare/measurement.hpp"
 #include "explain/add_found.hpp"
+#include "explain/contradicted.hpp"
 #include "explain/explain.hpp"
 #include "explain/explain_report.hpp"
 #include "serial_arm.hpp"
@@ -151,6 +152,45 @@ TEST(ManyJoints, GIVEN_a_number_that_is_held_THEN_all_else_is_fitted_beside_it) 
   const double step = 0.02 * std::abs(improved.effects.at(2).parameters[0]);
   EXPECT_LT(error(0), error(step));
   EXPECT_LT(error(0), error(-step));
+}
+
+// Viscous friction that is a guess near nothing and comes out a little below it is held there, and
+// hides no wrong Coulomb friction beside it.
+TEST(ManyJoints,
+     GIVEN_a_guess_of_viscous_friction_near_nothing_THEN_wrong_coulomb_friction_is_told) {
+  RobotDescription real = test::serial_arm(3);
+  RobotDescription robot = real;
+  real.effects.at(2).parameters[0] = -0.02;
+  real.effects.at(3).parameters[0] = 2;
+  robot.effects.at(2).parameters[0] = 0.01;
+  robot.effects.at(3).parameters[0] = 0.1;
+  const Explanation told = explain(robot, {test::record(real, {.duration_s = 20})}, {}, quick(2));
+  ASSERT_THAT(told.shifts, ::testing::SizeIs(1)) << told.words;
+  EXPECT_EQ(told.shifts[0].effect, 3U);
+  EXPECT_NEAR(told.shifts[0].came, 2, 0.1);
+  EXPECT_EQ(told.improved.effects.at(2).parameters[0], 0);
+  EXPECT_NEAR(told.improved.effects.at(3).parameters[0], 2, 0.1);
+}
+
+// What is told of a number is what the new file has: a number that the last fit leaves where it was
+// is not told.
+TEST(ManyJoints, GIVEN_a_number_that_the_last_fit_leaves_THEN_it_is_no_shift) {
+  const RobotDescription file = test::serial_arm(2);
+  RobotDescription fitted = file;
+  fitted.effects.at(1).parameters[0] = 1.0;
+  fitted.effects.at(3).parameters[0] *= 1.0001;
+  const auto shift = [&](std::size_t effect, double came) {
+    Shift one;
+    one.effect = effect;
+    one.file = file.effects.at(effect).parameters[0];
+    one.came = came;
+    return one;
+  };
+  std::vector<Shift> shifts{shift(1, 1.1), shift(3, 1.0), shift(0, 0.2)};
+  EXPECT_TRUE(leave_out_undone(fitted, shifts));
+  ASSERT_THAT(shifts, ::testing::SizeIs(1));
+  EXPECT_EQ(shifts[0].effect, 1U);
+  EXPECT_FALSE(leave_out_undone(fitted, shifts));
 }
 
 // A description of somebody else's with friction that nobody measured: what the recordings say is
