@@ -38,6 +38,8 @@
 #include "log/seen_by_sensor.hpp"
 #include "robot/robot_file.hpp"
 #include "sil/scenario_file.hpp"
+#include "studio/benchmark_view.hpp"
+#include "studio/campaign_view.hpp"
 #include "studio/server.hpp"
 
 namespace offnominal::desk {
@@ -45,7 +47,8 @@ namespace {
 
 struct StudioOptions {
   FitFiles files;
-  std::vector<std::string> campaign;  // results, and the campaign's file
+  std::vector<std::string> campaign;     // results, and the campaign's file
+  std::optional<std::string> benchmark;  // results
   std::optional<std::string> bus;
   std::optional<std::vector<std::string>> sil;  // with the scenario's file, or none
   PlantOptions other_end;                       // of it
@@ -313,20 +316,22 @@ void check_nothing_of_recordings(const StudioOptions& options) {
   if (!channels.payloads.empty()) refuse("--payload", "give the recording on the command line");
 }
 
-// The model and the recordings are the campaign's.
-void check_campaign(const StudioOptions& options) {
-  const auto refuse = [](const char* option) {
-    refuse_option("studio", option, "together with --campaign", "one of the two",
-                  "the runs of a campaign are opened from its page, with its model");
+// The models and the recordings are those of the results.
+void check_results(const StudioOptions& options) {
+  const std::string results = options.benchmark ? "--benchmark" : "--campaign";
+  const auto refuse = [&](const char* option) {
+    refuse_option("studio", option, "together with " + results, "one of the two",
+                  "the runs of results are opened from their page, with their model");
   };
+  if (options.benchmark && !options.campaign.empty()) refuse("--campaign");
   if (options.bus) refuse("--bus");
   if (options.sil) refuse("--sil");
   if (!options.files.logs.empty()) refuse("RECORDING");
   if (!options.files.robot.empty()) refuse("--robot");
 }
 
-// One of five: recordings, a bus, a run that is simulated, a campaign, files that the page is
-// given.
+// One of six: recordings, a bus, a run that is simulated, a campaign, a benchmark, files that the
+// page is given.
 void check_source(const StudioOptions& options) {
   const bool live = options.bus || options.sil;
   const bool has_logs = !options.files.logs.empty();
@@ -346,7 +351,7 @@ void check_source(const StudioOptions& options) {
     if (options.other_end.motion) refuse("--motion");
   }
   if (!live && !has_logs) check_nothing_of_recordings(options);
-  if (!options.campaign.empty()) check_campaign(options);
+  if (!options.campaign.empty() || options.benchmark) check_results(options);
   if (!live) return;
   if (has_logs || !options.files.holdout.empty()) {
     refuse_option("studio", "RECORDING", "recordings beside a live view", "one of the two",
@@ -367,6 +372,15 @@ void keep_memory_for_the_next_click() {
   mallopt(M_TOP_PAD, 32 * kMegabyte);
 }
 
+// Null: none were named.
+std::unique_ptr<studio::ResultsView> results_view(const StudioOptions& options) {
+  if (options.benchmark) return std::make_unique<studio::BenchmarkView>(*options.benchmark);
+  if (options.campaign.empty()) return nullptr;
+  std::optional<std::string> file;
+  if (options.campaign.size() > 1) file = options.campaign[1];
+  return std::make_unique<studio::CampaignView>(options.campaign[0], file);
+}
+
 void run(const StudioOptions& options, const std::string& more) {
   check_source(options);
   keep_memory_for_the_next_click();
@@ -376,10 +390,7 @@ void run(const StudioOptions& options, const std::string& more) {
     serve(server, options, held);
     return;
   }
-  if (!options.campaign.empty()) {
-    std::optional<std::string> file;
-    if (options.campaign.size() > 1) file = options.campaign[1];
-    auto view = std::make_unique<studio::CampaignView>(options.campaign[0], file);
+  if (std::unique_ptr<studio::ResultsView> view = results_view(options)) {
     const HeldSignals held;
     studio::Server server(std::move(view), file_opener(options, more), options.port);
     serve(server, options, held);
@@ -429,6 +440,11 @@ void set_up_studio(CLI::App& verb, ExitCode& /*exit_code*/) {
                   "may stand behind them: the commands that repeat a session name it")
       ->type_name("RESULTS [FILE]")
       ->expected(1, 2);
+  verb.add_option("--benchmark", options->benchmark,
+                  "In place of recordings, the results of `./dev bench discovery --results`: what "
+                  "was found of what was hidden, by effect, joint and group, and every case that "
+                  "was written as a recording")
+      ->type_name("RESULTS");
   verb.add_option("--holdout", options->files.holdout,
                   "Recordings to judge the fit on: no fit sees them. Without any, parts of the "
                   "others are held out");

@@ -11,6 +11,7 @@
 
 #include "arm_outcome.hpp"
 #include "arm_summary.hpp"
+#include "common/file.hpp"
 #include "common/parallel.hpp"
 
 namespace offnominal::bench {
@@ -95,13 +96,16 @@ void print_arm_json(const ArmBenchOptions& options, const std::vector<ArmGroup>&
 
 void run_arm_bench(const ArmBenchOptions& options) {
   const std::vector<ArmGroup> groups = chosen_arm_groups(options);
-  if (!options.write.empty()) {
-    for (const auto& folder : write_arm_cases(groups, options.write)) {
+  const ResultsRequest& results = options.results;
+  if (!results.cases.empty() && results.file.empty()) {
+    for (const auto& folder : write_arm_cases(groups, results.cases)) {
       fmt::print("written: {}\n", folder.string());
     }
     return;
   }
+  if (!results.file.empty()) desk::check_can_be_written(results.file);
   const ArmOutcomes outcomes = outcomes_of(groups, options.threads);
+  if (!results.file.empty()) write_results(results, groups, outcomes);
   if (options.json) {
     print_arm_json(options, groups, outcomes);
   } else {

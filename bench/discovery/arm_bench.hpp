@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "results.hpp"
+
 namespace offnominal::bench {
 
 // What of the benchmark of arms is run, and how it is shown.
@@ -11,8 +13,10 @@ struct ArmBenchOptions {
   bool json = false;
   bool failures = false;
   std::string cases;  // empty: all
-  std::string write;  // folder that gets the cases, in place of a run; empty: none
-  int most = 1000;    // cases of each group
+  // Of a run; without a file of results the cases are written, where a folder is named, in place of
+  // it.
+  ResultsRequest results;
+  int most = 1000;  // cases of each group
   std::uint64_t seed = 0;
   int threads = 1;
 };

@@ -14,8 +14,10 @@
 
 #include "arm_bench.hpp"
 #include "case_groups.hpp"
+#include "common/file.hpp"
 #include "common/parallel.hpp"
 #include "outcome.hpp"
+#include "results.hpp"
 #include "scale.hpp"
 #include "tables.hpp"
 #include "write_cases.hpp"
@@ -27,8 +29,10 @@ struct Options {
   bool quick = false;
   bool json = false;
   bool failures = false;
-  std::string cases;  // empty: all
-  std::string write;  // folder that gets the cases, in place of a run; empty: none
+  std::string cases;    // empty: all
+  std::string write;    // folder that gets the cases; empty: none
+  std::string results;  // file of --benchmark, of a run; empty: none, and cases are written alone
+  bool force = false;
   bool arm = false;
   bool scale = false;
   ScaleRequest scale_request;
@@ -120,6 +124,21 @@ void print_json(const Options& options, const Results& results) {
   fmt::print("{}\n", document.dump(1));
 }
 
+// What repeats the run.
+std::string command_of(const Options& options) {
+  std::string command = fmt::format("./dev bench discovery --seed {}", options.seed);
+  if (options.arm) command += " --arm";
+  if (options.quick) command += " --quick";
+  if (!options.cases.empty()) command += " --cases " + options.cases;
+  const Options usual;
+  if (options.most != usual.most) command += fmt::format(" --most {}", options.most);
+  return command;
+}
+
+ResultsRequest results_of(const Options& options) {
+  return {options.results, options.write, command_of(options), options.seed, options.force};
+}
+
 void run_scale(const Options& options) {
   ScaleRequest request = options.scale_request;
   request.seed = options.seed;
@@ -142,7 +161,7 @@ void run_arm(const Options& options) {
                  .json = options.json,
                  .failures = options.failures,
                  .cases = options.cases,
-                 .write = options.write,
+                 .results = results_of(options),
                  .most = options.most,
                  .seed = options.seed,
                  .threads = options.threads});
@@ -162,13 +181,18 @@ int main_of(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--write", options.write,
                  "write the chosen cases as robot files and recordings into this folder, and what "
-                 "they hide beside them; nothing is run");
+                 "they hide beside them; nothing is run, unless --results asks for it");
+  app.add_option(
+      "--results", options.results,
+      "write what came of every case into this file, for `offnominal studio --benchmark`; "
+      "with --write its cases can be opened there");
+  app.add_flag("--force", options.force, "--results may replace a file");
   CLI::Option* arm = app.add_flag("--arm", options.arm,
                                   "arms of six and seven joints in MuJoCo, judged joint by joint");
   CLI::Option* scale = app.add_flag(
       "--scale", options.scale,
       "one long recording of a seven-joint arm in place of the cases: time and memory of explain");
-  scale->excludes(arm);
+  scale->excludes(arm)->excludes("--results");
   app.add_option("--samples", options.scale_request.samples, "of that recording, at 1 kHz")
       ->check(CLI::Range(10'000, 10'000'000))
       ->capture_default_str()
@@ -185,13 +209,17 @@ int main_of(int argc, char** argv) {
       run_arm(options);
       return 0;
     }
-    if (!options.write.empty()) {
+    if (!options.write.empty() && options.results.empty()) {
       for (const auto& folder : write_cases(chosen_groups(options), options.write)) {
         fmt::print("written: {}\n", folder.string());
       }
       return 0;
     }
+    if (!options.results.empty()) desk::check_can_be_written(options.results);
     const Results results = run(options);
+    if (!options.results.empty()) {
+      write_results(results_of(options), results.groups, results.outcomes);
+    }
     if (options.json) {
       print_json(options, results);
     } else {

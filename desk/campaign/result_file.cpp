@@ -13,8 +13,12 @@
 namespace offnominal::desk::campaign {
 namespace {
 
-constexpr std::int64_t kApplicationId = 0x6f666e63;  // "ofnc"
-constexpr std::int64_t kResultFormat = 3;
+const FileKind& kind_of_file() {
+  static const FileKind kind{.application = 0x6f666e63,  // "ofnc"
+                             .format = 3,
+                             .words = "results that offnominal campaign wrote"};
+  return kind;
+}
 
 constexpr const char* kSchema = R"(
 CREATE TABLE campaign (name TEXT NOT NULL, identity TEXT NOT NULL, runs INTEGER NOT NULL);
@@ -37,33 +41,6 @@ constexpr const char* kColumns =
     "ran_away_s, named, named_joint, named_size, named_after_s, tracking_end_rad, "
     "tracking_end_accommodated_rad";
 constexpr int kColumnCount = 25;
-
-void require_results(Database& database) {
-  const auto number = [&](const char* what) {
-    return database.text_of(fmt::format("PRAGMA {}", what)).value_or("0");
-  };
-  if (number("application_id") != std::to_string(kApplicationId)) {
-    throw InputError({.file = database.file(),
-                      .place = "",
-                      .found = "a file without results of a campaign",
-                      .allowed = "results that offnominal campaign wrote",
-                      .mend = "it was left as it is: name another file"});
-  }
-  if (number("user_version") != std::to_string(kResultFormat)) {
-    throw InputError({.file = database.file(),
-                      .place = "",
-                      .found = "results of format " + number("user_version"),
-                      .allowed = std::to_string(kResultFormat),
-                      .mend = "use the version of offnominal that wrote them"});
-  }
-  const std::string state = database.text_of("PRAGMA quick_check(1)").value_or("no answer");
-  if (state == "ok") return;
-  throw InputError({.file = database.file(),
-                    .place = "",
-                    .found = "a damaged file (" + state + ")",
-                    .allowed = "results that offnominal campaign wrote",
-                    .mend = "it was left as it is: take a copy, or name another file"});
-}
 
 CampaignRow read_campaign_row(Database& database) {
   Statement one(database, "SELECT name, identity, runs FROM campaign");
@@ -94,8 +71,7 @@ void write_campaign_row(Database& database, const CampaignRow& row) {
     each.bind(3, row.detectors[i].notes);
     each.step();
   }
-  database.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId,
-                           kResultFormat));
+  mark_kind(database, kind_of_file());
 }
 
 void bind_named(const std::optional<Named>& named, int at, Statement& statement) {
@@ -245,7 +221,7 @@ void ResultFile::check(const std::filesystem::path& path, const Campaign& campai
     return;
   }
   Database database(path, OpenAs::kWrite);
-  require_results(database);
+  require_kind(database, kind_of_file());
   CampaignRow found = read_campaign_row(database);
   CampaignRow wanted = found;
   wanted.identity = campaign.identity;
@@ -260,7 +236,7 @@ ResultFile ResultFile::open(const std::filesystem::path& path, const CampaignRow
     write_campaign_row(database, campaign);
     whole.commit();
   } else {
-    require_results(database);
+    require_kind(database, kind_of_file());
     require_same(read_campaign_row(database), campaign, path.string(), "this campaign");
   }
   return ResultFile(std::move(database));
@@ -281,12 +257,7 @@ void ResultFile::add(const std::vector<Result>& rows) {
 }
 
 Results read_results(const std::filesystem::path& path) {
-  // SQLite's words for a missing file do not name what is wrong.
-  if (!is_there(path)) {
-    throw InputError({path.string(), "", "no such file", "results of offnominal campaign", ""});
-  }
-  Database database(path, OpenAs::kRead);
-  require_results(database);
+  Database database = open_results(path, kind_of_file());
   Results results;
   results.campaign = read_campaign_row(database);
   Statement all(database, fmt::format("SELECT {} FROM result", kColumns));
@@ -319,22 +290,10 @@ Results merged(const std::vector<std::filesystem::path>& paths) {
 }
 
 void write_results(const std::filesystem::path& path, const Results& results, Existing existing) {
-  check_can_be_written(path);
-  std::filesystem::path partial = path;
-  partial += ".partial";
-  std::filesystem::remove(partial);
-  {
-    Database database(partial, OpenAs::kNew);
-    Transaction whole(database);
+  write_database(path, existing, [&](Database& database) {
     write_campaign_row(database, results.campaign);
     insert(database, results.rows);
-    whole.commit();
-  }
-  if (existing == Existing::kRefuse && is_there(path)) {
-    std::filesystem::remove(partial);
-    throw InputError({path.string(), "", "a file that is there", "a new one", "say --force"});
-  }
-  std::filesystem::rename(partial, path);
+  });
 }
 
 std::string run_list(const std::vector<std::int64_t>& numbers) {

@@ -8,8 +8,8 @@
 
 #include "campaign/campaign.hpp"
 #include "campaign/score.hpp"
-#include "campaign/sqlite.hpp"
 #include "common/file.hpp"
+#include "common/sqlite.hpp"
 
 // Results in one SQLite file: table `campaign` (what was run), `detector` (with its thresholds),
 // `result` (a row for every run and detector, columns as of Result). docs/campaigns.md has them.

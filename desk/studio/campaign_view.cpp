@@ -14,7 +14,6 @@
 #include "campaign/summary_report.hpp"
 #include "common/error.hpp"
 #include "common/input_name.hpp"
-#include "common/refused.hpp"
 #include "common/shell_word.hpp"
 #include "log/csv_text.hpp"
 #include "report/page.hpp"
@@ -28,13 +27,11 @@ using nlohmann::ordered_json;
 
 constexpr const char* kFaultFree = "none";
 
-[[noreturn]] void refuse_view(const std::string& words) {
-  throw Refused(Refused::Why::kBadRequest, words);
-}
-
-bool is_of_fault(const Result& row, const RunFilter& filter) {
-  if (filter.kind && row.kind != *filter.kind) return false;
-  return !filter.joint || row.joint == filter.joint;
+bool is_of_fault(const Result& row, const ResultsFilter& filter) {
+  const std::string kind = value_of(filter, "kind");
+  const std::string joint = value_of(filter, "joint");
+  if (!kind.empty() && row.kind != kind) return false;
+  return joint.empty() || (row.joint && std::to_string(*row.joint) == joint);
 }
 
 // What became of a run under one detector.
@@ -64,18 +61,23 @@ std::map<std::int64_t, std::vector<const Result*>> by_run(const std::vector<Resu
   return runs;
 }
 
+const char* level_of(const std::string& outcome) {
+  if (outcome == "missed") return "warn";
+  return outcome == "early" || outcome == "false alarm" ? "bad" : "";
+}
+
 ordered_json run_json(std::int64_t number, const std::vector<const Result*>& rows) {
   const Result& first = *rows.front();
-  ordered_json outcomes = ordered_json::array();
+  const std::string fault =
+      first.kind == kFaultFree ? "no fault" : campaign::place_words(first.kind, first.joint);
+  const std::string size = campaign::size_words(first.kind, first.size);
+  ordered_json cells = {cell_json(fault), cell_json(size)};
   for (const Result* row : rows) {
-    outcomes.push_back(
-        {{"detector", row->detector}, {"outcome", outcome_of(*row)}, {"words", words_of(*row)}});
+    cells.push_back(cell_json(words_of(*row), level_of(outcome_of(*row))));
   }
-  const bool is_healthy = first.kind == kFaultFree;
   return {{"run", number},
-          {"fault", is_healthy ? "no fault" : campaign::place_words(first.kind, first.joint)},
-          {"size", campaign::size_words(first.kind, first.size)},
-          {"outcomes", std::move(outcomes)}};
+          {"label", size.empty() ? fault : fault + ", " + size},
+          {"cells", std::move(cells)}};
 }
 
 // "run_12", and after it what makes both files of a run's names free here.
@@ -102,38 +104,63 @@ CampaignView::CampaignView(const std::string& results, const std::optional<std::
 }
 
 ordered_json CampaignView::state() const {
-  ordered_json detectors = ordered_json::array();
+  std::vector<FilterOption> detectors{{"", "all detectors"}};
   for (const campaign::DetectorRow& one : results_.campaign.detectors) {
-    detectors.push_back(one.name);
+    detectors.push_back({one.name, one.name});
   }
-  std::vector<std::string> kinds;
-  std::set<int> joints;
+  std::vector<FilterOption> kinds{{"", "all faults"}};
+  std::set<int> of_joints;
   for (const Result& row : results_.rows) {
     if (row.kind == kFaultFree) continue;
-    if (std::find(kinds.begin(), kinds.end(), row.kind) == kinds.end()) kinds.push_back(row.kind);
-    if (row.joint) joints.insert(*row.joint);
+    const bool is_new = std::none_of(
+        kinds.begin(), kinds.end(), [&](const FilterOption& one) { return one.value == row.kind; });
+    if (is_new) kinds.push_back({row.kind, spaced(row.kind)});
+    if (row.joint) of_joints.insert(*row.joint);
   }
-  return {{"name", results_.campaign.name},    {"file", input_name(results_file_)},
-          {"runs", results_.campaign.runs},    {"missing", results_.missing.size()},
-          {"detectors", std::move(detectors)}, {"kinds", std::move(kinds)},
-          {"joints", std::move(joints)}};
+  std::vector<FilterOption> joints{{"", "every joint or link"}};
+  for (const int joint : of_joints)
+    joints.push_back({std::to_string(joint), std::to_string(joint)});
+  const std::int64_t all = results_.campaign.runs;
+  const auto missing = static_cast<std::int64_t>(results_.missing.size());
+  const std::string there =
+      missing == 0 ? fmt::format("{} runs", all) : fmt::format("{} of {} runs", all - missing, all);
+  return {
+      {"item", "run"},
+      {"name", results_.campaign.name},
+      {"title", "Campaign: " + results_.campaign.name},
+      {"subtitle", input_name(results_file_) + " \u00b7 " + there},
+      {"heading", "What was seen"},
+      {"list_heading", "Run by run"},
+      {"list_words",
+       "A click on a number runs it once more and opens it below as a recording, with the model "
+       "that the detectors have."},
+      {"count", all},
+      {"filters",
+       {filter_json("kind", "Fault", false, kinds), filter_json("joint", "Joint", false, joints),
+        filter_json("detector", "Detector", false, detectors),
+        filter_json("outcome", "Show", true,
+                    {{"", "all runs"},
+                     {"missed", "those that a detector missed"},
+                     {"early", "those with a false or early alarm"}})}}};
 }
 
-campaign::Results CampaignView::left_by(const RunFilter& filter) const {
+campaign::Results CampaignView::left_by(const ResultsFilter& filter) const {
+  check_filters(filter, {"kind", "joint", "detector", "outcome"});
   campaign::Results left = results_;
-  if (filter.detector) {
+  const std::string detector = value_of(filter, "detector");
+  if (!detector.empty()) {
     std::erase_if(left.campaign.detectors,
-                  [&](const campaign::DetectorRow& one) { return one.name != *filter.detector; });
-    if (left.campaign.detectors.empty()) refuse_view("There is no such detector.");
+                  [&](const campaign::DetectorRow& one) { return one.name != detector; });
+    if (left.campaign.detectors.empty()) refuse_filter("There is no such detector.");
   }
   std::erase_if(left.rows, [&](const Result& row) {
-    if (filter.detector && row.detector != *filter.detector) return true;
+    if (!detector.empty() && row.detector != detector) return true;
     return row.kind != kFaultFree && !is_of_fault(row, filter);
   });
   return left;
 }
 
-nlohmann::json CampaignView::figures(const RunFilter& filter) const {
+nlohmann::json CampaignView::figures(const ResultsFilter& filter) const {
   const campaign::Results left = left_by(filter);
   report::Page page = page_of(campaign::summary_of(left), "");
   if (auto delays = campaign::delay_chart_of(left)) {
@@ -147,25 +174,32 @@ nlohmann::json CampaignView::figures(const RunFilter& filter) const {
   return {{"sections", to_json(page).at("sections")}};
 }
 
-ordered_json CampaignView::runs(const RunFilter& filter, std::size_t from) const {
-  if (!filter.outcome.empty() && filter.outcome != "missed" && filter.outcome != "early") {
-    refuse_view("There is no such outcome.");
+ordered_json CampaignView::runs(const ResultsFilter& filter, std::size_t from) const {
+  const std::string wanted = value_of(filter, "outcome");
+  if (!wanted.empty() && wanted != "missed" && wanted != "early") {
+    refuse_filter("There is no such outcome.");
   }
   const campaign::Results left = left_by(filter);
-  const bool of_a_fault = filter.kind || filter.joint;
+  const bool of_a_fault = !value_of(filter, "kind").empty() || !value_of(filter, "joint").empty();
+  ordered_json columns = {"Run", "Fault", "Size"};
+  for (const campaign::DetectorRow& one : left.campaign.detectors) columns.push_back(one.name);
   ordered_json runs = ordered_json::array();
   std::size_t count = 0;
   for (const auto& [number, rows] : by_run(left.rows)) {
     if (of_a_fault && rows.front()->kind == kFaultFree) continue;
     const bool has_outcome = std::any_of(rows.begin(), rows.end(), [&](const Result* row) {
       const std::string outcome = outcome_of(*row);
-      return filter.outcome == outcome || (filter.outcome == "early" && outcome == "false alarm");
+      return wanted == outcome || (wanted == "early" && outcome == "false alarm");
     });
-    if (!filter.outcome.empty() && !has_outcome) continue;
+    if (!wanted.empty() && !has_outcome) continue;
     if (count >= from && runs.size() < kMostRunsAtOnce) runs.push_back(run_json(number, rows));
     ++count;
   }
-  return {{"count", count}, {"from", from}, {"most", kMostRunsAtOnce}, {"runs", std::move(runs)}};
+  return {{"count", count},
+          {"from", from},
+          {"most", kMostRunsAtOnce},
+          {"columns", std::move(columns)},
+          {"runs", std::move(runs)}};
 }
 
 std::vector<report::EventMark> CampaignView::marks_of(std::int64_t run) const {
@@ -188,7 +222,7 @@ void CampaignView::restore() {
 SessionFiles CampaignView::record(std::int64_t run) {
   const std::lock_guard guard(recording_);
   if (!campaign_) restore();
-  if (run < 0 || run >= campaign_->run_count()) refuse_view("There is no such run.");
+  if (run < 0 || run >= campaign_->run_count()) refuse_filter("There is no such run.");
   if (!simulator_) simulator_ = std::make_unique<campaign::Simulator>(*campaign_);
   const Log log = simulator_->run(campaign::run_of(*campaign_, run)).log;
   const std::string stem = free_stem(fmt::format("run_{}", run));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -11,47 +10,34 @@
 #include "campaign/campaign.hpp"
 #include "campaign/result_file.hpp"
 #include "campaign/simulate.hpp"
-#include "studio/session_files.hpp"
+#include "studio/results_view.hpp"
 #include "studio/upload_folder.hpp"
 
 namespace offnominal::desk::studio {
 
-/// Which runs of a campaign are looked at; what is not said is all of it.
-struct RunFilter {
-  std::optional<std::string> detector = {};
-  std::optional<std::string> kind = {};  // of the fault; runs without one stay in the figures
-  std::optional<int> joint = {};         // of the fault, from 1
-  std::string outcome = {};              // of a run, of any of the detectors: "missed", "early"
-};
-
-inline constexpr std::size_t kMostRunsAtOnce = 200;
-
-/// The results of a campaign, and its runs as recordings. Every function may be called by any
-/// thread, answers as docs/studio.md has it, and throws Refused or InputError where it cannot be
-/// done.
-class CampaignView {
+/// The results of a campaign, and its runs as recordings. Filters: `detector`, `kind` and `joint`
+/// of the fault, and of the list `outcome`, of any of the detectors: "missed", "early".
+class CampaignView final : public ResultsView {
  public:
   /// `file`: of the campaign, which the commands that repeat a session name; none: the results say
   /// themselves what was run. Throws InputError where the results cannot be read, or are those of
   /// another campaign.
   CampaignView(const std::string& results, const std::optional<std::string>& file);
 
-  /// What it holds: {name, file, runs, missing, detectors, kinds, joints}.
-  [[nodiscard]] nlohmann::ordered_json state() const;
-  /// Tables and charts of the rows that the filter leaves, as report pages hold their sections. Of
-  /// a filter's fault the fault-free runs stay: false alarms are counted in them.
-  [[nodiscard]] nlohmann::json figures(const RunFilter& filter) const;
-  /// {count, from, runs}: kMostRunsAtOnce runs at most, the number `from` of those that the filter
-  /// leaves first.
-  [[nodiscard]] nlohmann::ordered_json runs(const RunFilter& filter, std::size_t from) const;
-  /// One run once more, as a recording of the model that the detectors have, as `offnominal
-  /// campaign record` writes it. It lies in a folder that goes with this object.
-  [[nodiscard]] SessionFiles record(std::int64_t run);
-
-  [[nodiscard]] const UploadFolder& folder() const { return folder_; }
+  [[nodiscard]] nlohmann::ordered_json state() const override;
+  /// Of a filter's fault the fault-free runs stay: false alarms are counted in them.
+  [[nodiscard]] nlohmann::json figures(const ResultsFilter& filter) const override;
+  [[nodiscard]] nlohmann::ordered_json runs(const ResultsFilter& filter,
+                                            std::size_t from) const override;
+  /// Run once more, with the model that the detectors have, as `offnominal campaign record` writes
+  /// it. It lies in a folder that goes with this object.
+  [[nodiscard]] SessionFiles record(std::int64_t run) override;
+  [[nodiscard]] InputError shown(const InputError& error) const override {
+    return folder_.shown(error);
+  }
 
  private:
-  [[nodiscard]] campaign::Results left_by(const RunFilter& filter) const;
+  [[nodiscard]] campaign::Results left_by(const ResultsFilter& filter) const;
   [[nodiscard]] std::vector<report::EventMark> marks_of(std::int64_t run) const;
   void restore();
 

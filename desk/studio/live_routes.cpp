@@ -37,12 +37,12 @@ ordered_json setup_of(const Stage& stage) {
     return {{"source", nullptr},
             {"loaded", stage.is_loaded()},
             {"takes_files", stage.takes_files()},
-            {"has_campaign", stage.has_campaign()}};
+            {"has_results", stage.has_results()}};
   }
   ordered_json setup = live::setup_json(stage.live());
   setup["loaded"] = stage.is_loaded();
   setup["takes_files"] = false;
-  setup["has_campaign"] = false;
+  setup["has_results"] = false;
   return setup;
 }
 

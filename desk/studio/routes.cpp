@@ -7,10 +7,10 @@
 #include "common/refused.hpp"
 #include "report/assets.hpp"
 #include "studio/assets.hpp"
-#include "studio/campaign_routes.hpp"
 #include "studio/live_routes.hpp"
 #include "studio/load_routes.hpp"
 #include "studio/requests.hpp"
+#include "studio/results_routes.hpp"
 #include "studio/stage.hpp"
 
 namespace offnominal::desk::studio {
@@ -176,7 +176,7 @@ void set_up_routes(httplib::Server& server, const std::string& path, Stage& stag
   set_up_search(server, path + "api/", stage);
   set_up_live_routes(server, path + "api/", stage);
   set_up_load_routes(server, path + "api/", stage);
-  set_up_campaign_routes(server, path + "api/", stage);
+  set_up_results_routes(server, path + "api/", stage);
 }
 
 }  // namespace offnominal::desk::studio

@@ -140,8 +140,8 @@ Server::Server(std::unique_ptr<live::Live> live, OpenRecording open, int port)
     : parts_(std::make_unique<Parts>(port, std::move(live), std::move(open))) {}
 Server::Server(std::unique_ptr<Intake> intake, OpenFiles open, int port)
     : parts_(std::make_unique<Parts>(port, std::move(intake), std::move(open))) {}
-Server::Server(std::unique_ptr<CampaignView> campaign, OpenFiles open, int port)
-    : parts_(std::make_unique<Parts>(port, std::move(campaign), std::move(open))) {}
+Server::Server(std::unique_ptr<ResultsView> results, OpenFiles open, int port)
+    : parts_(std::make_unique<Parts>(port, std::move(results), std::move(open))) {}
 Server::~Server() = default;
 
 std::string Server::address() const { return parts_->guard.address(); }

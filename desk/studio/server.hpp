@@ -18,8 +18,8 @@ class Server {
   Server(std::unique_ptr<live::Live> live, OpenRecording open, int port);
   /// The same of files that the page is given, which become a session by `open`.
   Server(std::unique_ptr<Intake> intake, OpenFiles open, int port);
-  /// The same of a campaign's results, whose runs become a session by `open`.
-  Server(std::unique_ptr<CampaignView> campaign, OpenFiles open, int port);
+  /// The same of results of many runs, which become a session by `open`.
+  Server(std::unique_ptr<ResultsView> results, OpenFiles open, int port);
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
   /// After run() has returned, or where it was never called.

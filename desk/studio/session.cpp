@@ -242,6 +242,7 @@ ordered_json Session::start_to_explain() {
   ExplainOptions options;
   options.threads = bench_.input().threads;
   options.robot_file = bench_.input().robot_file;
+  options.reading = bench_.input().options;
   options.source = bench_.input().source;
   is_answer_kept_ = false;
   ++searches_;

@@ -16,8 +16,8 @@ Stage::Stage(std::unique_ptr<live::Live> live, OpenRecording open)
 Stage::Stage(std::unique_ptr<Intake> intake, OpenFiles open)
     : open_files_(std::move(open)), intake_(std::move(intake)) {}
 
-Stage::Stage(std::unique_ptr<CampaignView> campaign, OpenFiles open)
-    : open_files_(std::move(open)), campaign_(std::move(campaign)) {}
+Stage::Stage(std::unique_ptr<ResultsView> results, OpenFiles open)
+    : open_files_(std::move(open)), results_(std::move(results)) {}
 
 std::shared_ptr<Session> Stage::session() const {
   const std::lock_guard guard(lock_);
@@ -26,8 +26,8 @@ std::shared_ptr<Session> Stage::session() const {
     throw Refused(Refused::Why::kNotNow,
                   "No recording is loaded yet: drop a recording and a robot file, and use them.");
   }
-  if (campaign_) {
-    throw Refused(Refused::Why::kNotNow, "No run is open yet: choose one of the campaign's.");
+  if (results_) {
+    throw Refused(Refused::Why::kNotNow, "No run is open yet: choose one of the list.");
   }
   throw Refused(Refused::Why::kNotNow,
                 "No recording is loaded yet: once something is detected, have it explained.");
@@ -75,21 +75,21 @@ nlohmann::ordered_json Stage::use_files(bool replace) {
   }
 }
 
-CampaignView& Stage::campaign() const {
-  if (campaign_) return *campaign_;
+ResultsView& Stage::results() const {
+  if (results_) return *results_;
   throw Refused(Refused::Why::kNotNow,
-                "This session is over no campaign: start Studio with --campaign RESULTS for one.");
+                "This session is over no results: start Studio with --campaign or --benchmark.");
 }
 
 nlohmann::ordered_json Stage::open_run(std::int64_t run, bool replace) {
   const std::lock_guard guard(making_);
-  CampaignView& view = campaign();
+  ResultsView& view = results();
   check_nothing_is_lost(replace);
   try {
     const SessionFiles files = view.record(run);
     show(std::make_shared<Session>(open_files_(files)));
   } catch (const InputError& error) {
-    throw view.folder().shown(error);
+    throw view.shown(error);
   }
   return {{"run", run}};
 }

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "live/live.hpp"
-#include "studio/campaign_view.hpp"
 #include "studio/intake.hpp"
+#include "studio/results_view.hpp"
 #include "studio/session.hpp"
 #include "studio/workbench.hpp"
 
@@ -20,14 +20,14 @@ namespace offnominal::desk::studio {
 using OpenRecording = std::function<Input(const std::string& file)>;
 
 /// What the server shows: a session over recordings, or what leads to one: files that the page is
-/// given, a campaign's runs, or a live view that hands stretches over. Every function may be called
-/// by any thread.
+/// given, runs of a campaign or a benchmark, or a live view that hands stretches over. Every
+/// function may be called by any thread.
 class Stage {
  public:
   explicit Stage(Input input);
   Stage(std::unique_ptr<live::Live> live, OpenRecording open);
   Stage(std::unique_ptr<Intake> intake, OpenFiles open);
-  Stage(std::unique_ptr<CampaignView> campaign, OpenFiles open);
+  Stage(std::unique_ptr<ResultsView> results, OpenFiles open);
 
   /// Throws Refused as long as no recording is loaded.
   [[nodiscard]] std::shared_ptr<Session> session() const;
@@ -38,8 +38,8 @@ class Stage {
   [[nodiscard]] Intake& intake() const;
   [[nodiscard]] bool takes_files() const { return intake_ != nullptr; }
   /// Throws Refused where there is none.
-  [[nodiscard]] CampaignView& campaign() const;
-  [[nodiscard]] bool has_campaign() const { return campaign_ != nullptr; }
+  [[nodiscard]] ResultsView& results() const;
+  [[nodiscard]] bool has_results() const { return results_ != nullptr; }
   [[nodiscard]] bool is_loaded() const;
 
   /// What came since the last detection becomes a recording, that one the session's, and the search
@@ -50,7 +50,7 @@ class Stage {
   /// where something is missing, and where a session with steps would be lost and `replace` does
   /// not say that this is meant; InputError where they will not do; the session before stays.
   nlohmann::ordered_json use_files(bool replace);
-  /// A run of the campaign becomes the session's recording: {run}. Throws as use_files().
+  /// A run of the results becomes the session's recording: {run}. Throws as use_files().
   nlohmann::ordered_json open_run(std::int64_t run, bool replace);
   /// The page is gone, or the server ends: no search goes on in the background.
   void leave() const;
@@ -66,7 +66,7 @@ class Stage {
   mutable std::mutex lock_;  // of the session that is shown
   std::shared_ptr<Session> session_;
   std::unique_ptr<Intake> intake_;
-  std::unique_ptr<CampaignView> campaign_;
+  std::unique_ptr<ResultsView> results_;
   std::unique_ptr<live::Live> live_;  // ends first
 };
 

@@ -19,28 +19,28 @@ function verb(options, folder, ...words) {
 }
 
 function tableOf(page, caption) {
-  return page.$$eval("#place-campaignFigures table", (all, name) => {
+  return page.$$eval("#place-resultsFigures table", (all, name) => {
     const table = all.find((each) => each.caption.textContent === name);
     return table === undefined ? [] : [...table.tBodies[0].rows].map((row) => row.cells[0].textContent);
   }, caption);
 }
 
 async function choose(page, key, value) {
-  const before = await page.evaluate(() => document.body.dataset.campaign);
-  await page.selectOption(`#campaign-${key}`, value);
-  await page.waitForFunction((old) => document.body.dataset.campaign !== old, before);
+  const before = await page.evaluate(() => document.body.dataset.results);
+  await page.selectOption(`#results-${key}`, value);
+  await page.waitForFunction((old) => document.body.dataset.results !== old, before);
 }
 
 function runsShown(page) {
-  return page.evaluate(() => campaign.runs);
+  return page.evaluate(() => results.runs);
 }
 
 async function checkFigures(page, summary, fault) {
-  const titles = await page.$$eval("#place-campaignFigures figure h3", (all) => all.map((each) => each.textContent));
+  const titles = await page.$$eval("#place-resultsFigures figure h3", (all) => all.map((each) => each.textContent));
   for (const title of ["Faults seen against false alarms", "Time from fault to alarm"]) {
     if (!titles.includes(title)) fault(`there is no chart "${title}"`);
   }
-  if ((await page.$$("#place-campaignFigures canvas")).length < 3) fault("the charts are not drawn");
+  if ((await page.$$("#place-resultsFigures canvas")).length < 3) fault("the charts are not drawn");
   for (const detector of summary.detectors) {
     const rows = await tableOf(page, detector.name);
     if (rows.length !== detector.faults.length) fault(`of ${detector.name} ${rows.length} faults are told, not ${detector.faults.length}`);
@@ -56,11 +56,11 @@ async function checkFilter(page, summary, fault) {
   const { count, runs } = await runsShown(page);
   const expected = one.faults.filter(({ kind, joint }) => kind === "friction" && joint === 2);
   if (count !== expected.reduce((sum, { runs: of }) => sum + of, 0)) fault(`${count} runs have friction at joint 2`);
-  if (!runs.every(({ fault: words }) => words === "friction, joint 2")) fault("other runs are listed beside");
+  if (!runs.every(({ cells }) => cells[0].words === "friction, joint 2")) fault("other runs are listed beside");
   if ((await tableOf(page, one.name)).length !== expected.length) fault("the tables do not follow the choice of a fault");
   await choose(page, "outcome", "missed");
   const missed = await runsShown(page);
-  if (!missed.runs.every(({ outcomes }) => outcomes.some(({ outcome }) => outcome === "missed"))) fault("runs that are seen are listed as missed");
+  if (!missed.runs.every(({ cells }) => cells.some(({ words }) => words === "not seen"))) fault("runs that are seen are listed as missed");
   await choose(page, "outcome", "");
   await choose(page, "detector", two.name);
   if ((await tableOf(page, one.name)).length > 0) fault("a detector that is not chosen is told of");
@@ -72,7 +72,7 @@ async function checkRun(page, options, folder, file, fault) {
   const { run } = (await runsShown(page)).runs.at(-1);
   await page.focus(`#open-run-${run}`);
   await page.keyboard.press("Enter");
-  await page.waitForFunction((number) => campaign.open === number && !campaign.busy && document.body.dataset.revision === "0", run);
+  await page.waitForFunction((number) => results.open === number && !results.busy && document.body.dataset.revision === "0", run);
   if (!(await page.textContent("#place-run h2")).includes(`Run ${run}`)) fault("which run is open is not said");
   const [first] = await page.evaluate(() => [timeFigures()[0].block.events.map(({ label }) => label)]);
   if (!first.includes("friction")) fault(`the chart marks ${first}`);
@@ -97,7 +97,7 @@ async function checkSession(page, options, folder, run, fault) {
   await page.click(`#open-run-${run}`);
   await page.waitForSelector("#open-anyway");
   await page.click("#open-anyway");
-  await page.waitForFunction(() => !campaign.busy && state.steps.length === 0);
+  await page.waitForFunction(() => !results.busy && state.steps.length === 0);
 }
 
 async function check({ options, folder, start, newContext, axeSource }, fault) {
@@ -105,7 +105,7 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   const results = join(folder, "results.sqlite");
   const summary = JSON.parse(verb(options, folder, "campaign", file, "-o", results, "--json"));
   const { address } = await start(["--campaign", results, file]);
-  const page = await openPage(await newContext(), address, "body[data-campaign]", ["409 (Conflict)"], fault);
+  const page = await openPage(await newContext(), address, "body[data-results]", ["409 (Conflict)"], fault);
   await page.setViewportSize({ width: 1400, height: 900 });
   await checkFigures(page, summary, fault);
   await look(page, kLooks, "campaign", { ...options, axeSource }, fault);

@@ -31,8 +31,9 @@ function baseName(path) {
 function headerContent() {
   const names = (held) => state.recordings.filter((each) => each.held_out === held).map((each) => baseName(each.name));
   const judged = state.held_out === "recordings" ? names(true).join(", ") : "parts of the same, held out in turn";
-  // Below a campaign the run is a part of the page.
-  const title = campaign.setup === null ? element("h1", {}, `Studio: ${state.robot.name}`) : element("h2", {}, `Run ${campaign.open}`);
+  // Below results a run is a part of the page.
+  const { setup, open } = results;
+  const title = setup === null ? element("h1", {}, `Studio: ${state.robot.name}`) : element("h2", {}, `${effectTitle(setup.item)} ${open}`);
   const header = element("header", {}, title);
   header.append(
     element(
@@ -198,8 +199,8 @@ function commandsContent({ commands, commands_note: note }) {
 
 function show() {
   const joint = currentJoint();
-  if (campaign.setup === null) document.title = `Studio: ${state.robot.name}`;
-  const host = campaign.setup === null ? places.head : places.run;
+  if (results.setup === null) document.title = `Studio: ${state.robot.name}`;
+  const host = results.setup === null ? places.head : places.run;
   replaceContent(host, headerContent(), ...state.hints.map((hint) => noteWith("warn", hint)));
   replaceContent(places.joints, jointChoice());
   replaceContent(places.headline, headlineContent());
@@ -460,7 +461,7 @@ function buildStudio() {
   );
   const desk = place("desk", { class: "desk" });
   desk.append(place("run", { class: "run" }), side, pictures);
-  main.append(place("head"), place("live"), place("load"), place("campaign"), desk);
+  main.append(place("head"), place("live"), place("load"), place("results"), desk);
   const footer = element("footer");
   footer.append(
     element("p", { id: "spoken", class: "hidden-text", role: "status" }),
@@ -517,8 +518,8 @@ async function start() {
         await loadSession();
         places.head.scrollIntoView({ block: "start" });
       });
-    } else if (setup.has_campaign) {
-      await startCampaign(places.campaign, async () => {
+    } else if (setup.has_results) {
+      await startResults(places.results, async () => {
         await loadSession();
         places.desk.scrollIntoView({ block: "start" });
       });

@@ -12,6 +12,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "campaign/campaign_file.hpp"
 #include "campaign/restored_campaign.hpp"
@@ -36,7 +37,9 @@ using offnominal::test::small_campaign;
 using offnominal::test::TemporaryFolder;
 using namespace offnominal::desk;
 using namespace offnominal::desk::studio;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // Run once for all tests; nobody changes it.
 class SmallResults {
@@ -79,11 +82,20 @@ const json* block_titled(const json& figures, const std::string& title) {
 TEST(CampaignView, SaysWhatTheResultsHold) {
   const ordered_json state = view_of(false).state();
   EXPECT_EQ(state.at("name"), "small");
-  EXPECT_EQ(state.at("runs"), small().plan().run_count());
-  EXPECT_EQ(state.at("missing"), 0);
-  EXPECT_EQ(state.at("detectors").size(), 4U);
-  EXPECT_EQ(state.at("kinds"), (ordered_json{"offset", "payload"}));
-  EXPECT_EQ(state.at("joints"), (ordered_json{1, 2}));
+  EXPECT_EQ(state.at("count"), small().plan().run_count());
+  EXPECT_THAT(state.at("subtitle").get<std::string>(), Not(HasSubstr(" of ")));
+  const auto values_of = [&](const std::string& key) {
+    std::vector<std::string> values;
+    for (const ordered_json& filter : state.at("filters")) {
+      if (filter.at("key") != key) continue;
+      for (const ordered_json& one : filter.at("options")) values.push_back(one.at("value"));
+    }
+    return values;
+  };
+  EXPECT_EQ(values_of("detector").size(), 5U) << "all, or one of four";
+  EXPECT_THAT(values_of("kind"), ElementsAre("", "offset", "payload"));
+  EXPECT_THAT(values_of("joint"), ElementsAre("", "1", "2"));
+  EXPECT_THAT(values_of("outcome"), ElementsAre("", "missed", "early"));
 }
 
 TEST(CampaignView, CountsEveryRunWithAFaultInTheTimesToDetect) {
@@ -109,7 +121,7 @@ TEST(CampaignView, CountsEveryRunWithAFaultInTheTimesToDetect) {
 TEST(CampaignView, FiltersFiguresAndRunsByFaultJointAndDetector) {
   const CampaignView view = view_of(false);
   const std::string first = small().rows().campaign.detectors.front().name;
-  const RunFilter filter{.detector = first, .kind = "offset", .joint = 2};
+  const ResultsFilter filter{{"detector", first}, {"kind", "offset"}, {"joint", "2"}};
   const json figures = view.figures(filter);
   const json* table = block_titled(figures, first);
   ASSERT_NE(table, nullptr);
@@ -120,15 +132,16 @@ TEST(CampaignView, FiltersFiguresAndRunsByFaultJointAndDetector) {
   const ordered_json runs = view.runs(filter, 0);
   EXPECT_EQ(runs.at("count"), 4);
   for (const ordered_json& run : runs.at("runs")) {
-    EXPECT_EQ(run.at("fault"), "offset, joint 2");
-    EXPECT_EQ(run.at("outcomes").size(), 1U);
+    EXPECT_EQ(run.at("cells").at(0).at("words"), "offset, joint 2");
+    EXPECT_EQ(run.at("cells").size(), 3U) << "fault, size, and one detector";
   }
   EXPECT_EQ(view.runs({}, 0).at("count"), small().plan().run_count());
   EXPECT_EQ(view.runs({}, 3).at("runs").at(0).at("run"), 3);
-  const ordered_json missed = view.runs({.outcome = "missed"}, 0);
+  const ordered_json missed = view.runs({{"outcome", "missed"}}, 0);
   EXPECT_LT(missed.at("count"), view.runs({}, 0).at("count"));
-  EXPECT_THROW(static_cast<void>(view.figures({.detector = "no_such"})), Refused);
-  EXPECT_THROW(static_cast<void>(view.runs({.outcome = "no_such"}, 0)), Refused);
+  EXPECT_THROW(static_cast<void>(view.figures({{"detector", "no_such"}})), Refused);
+  EXPECT_THROW(static_cast<void>(view.runs({{"outcome", "no_such"}}, 0)), Refused);
+  EXPECT_THROW(static_cast<void>(view.runs({{"no_such", "filter"}}, 0)), Refused);
 }
 
 TEST(CampaignView, RecordsARunAsTheVerbDoesWithTheFileAndWithout) {
@@ -197,24 +210,24 @@ TEST(CampaignServer, OpensARunAsASession) {
     const auto result = client.Post(path + "api/" + what, own, body.dump(), "application/json");
     return std::pair(result ? result->status : 0, json::parse(result->body, nullptr, false));
   };
-  EXPECT_TRUE(json::parse(client.Get(path + "api/live")->body).at("has_campaign").get<bool>());
+  EXPECT_TRUE(json::parse(client.Get(path + "api/live")->body).at("has_results").get<bool>());
   EXPECT_EQ(client.Get(path + "api/state")->status, 409);
-  EXPECT_EQ(client.Get(path + "api/campaign/runs?from=0&kind=offset")->status, 200);
-  for (const char* wrong : {"campaign/runs", "campaign/runs?from=-1", "campaign/figures?joint=x",
-                            "campaign/figures?detector=<img>"}) {
+  EXPECT_EQ(client.Get(path + "api/results/runs?from=0&kind=offset")->status, 200);
+  for (const char* wrong : {"results/runs", "results/runs?from=-1", "results/figures?colour=x",
+                            "results/figures?detector=<img>"}) {
     EXPECT_EQ(client.Get(path + "api/" + wrong)->status, 400) << wrong;
   }
-  EXPECT_EQ(post("campaign/session", {{"run", 1'000'000}}).first, 400);
-  EXPECT_EQ(post("campaign/session", json::object()).first, 400);
-  ASSERT_EQ(post("campaign/session", {{"run", 2}}).first, 200);
+  EXPECT_EQ(post("results/session", {{"run", 1'000'000}}).first, 400);
+  EXPECT_EQ(post("results/session", json::object()).first, 400);
+  ASSERT_EQ(post("results/session", {{"run", 2}}).first, 200);
   const json state = json::parse(client.Get(path + "api/state")->body);
   EXPECT_EQ(state.at("recordings").at(0).at("samples"), 750);
   const json charts =
       json::parse(client.Get(path + "api/charts?joint=1&recording=1&pixels=300")->body);
   EXPECT_EQ(charts.at("charts").at(0).at("events").at(0).at("label"), "offset");
   ASSERT_EQ(post("steps", {{"effect", "torque_offset"}, {"joint", 1}}).first, 200);
-  EXPECT_EQ(post("campaign/session", {{"run", 3}}).first, 409);
-  EXPECT_EQ(post("campaign/session", {{"run", 3}, {"replace", true}}).first, 200);
+  EXPECT_EQ(post("results/session", {{"run", 3}}).first, 409);
+  EXPECT_EQ(post("results/session", {{"run", 3}, {"replace", true}}).first, 200);
   server.stop();
   thread.join();
 }

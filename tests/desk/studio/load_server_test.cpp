@@ -69,7 +69,7 @@ TEST_F(LoadServer, BeginsWithNothingAndBecomesASession) {
   EXPECT_EQ(
       get("live"),
       (json{
-          {"source", nullptr}, {"loaded", false}, {"takes_files", true}, {"has_campaign", false}}));
+          {"source", nullptr}, {"loaded", false}, {"takes_files", true}, {"has_results", false}}));
   EXPECT_EQ(client().Get(at("state"))->status, 409);
   EXPECT_EQ(post("load/session", json::object()).first, 409);
   ASSERT_EQ(give("arm.toml", robot_text_of_arm()).first, 200);

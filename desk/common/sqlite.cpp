@@ -1,10 +1,11 @@
-#include "campaign/sqlite.hpp"
+#include "common/sqlite.hpp"
 
+#include <fmt/format.h>
 #include <sqlite3.h>
 
 #include "common/error.hpp"
 
-namespace offnominal::desk::campaign {
+namespace offnominal::desk {
 namespace {
 
 [[noreturn]] void refuse(const std::string& file, int code, const std::string& words) {
@@ -14,7 +15,7 @@ namespace {
       throw InputError({.file = file,
                         .place = "",
                         .found = "no SQLite file, or a damaged one (" + words + ")",
-                        .allowed = "results that offnominal campaign wrote",
+                        .allowed = "results that offnominal wrote",
                         .mend = "it was left as it is: take a copy, or name another file"});
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
@@ -37,7 +38,7 @@ namespace {
       throw InputError({.file = file,
                         .place = "",
                         .found = "what SQLite refuses (" + words + ")",
-                        .allowed = "results that offnominal campaign wrote",
+                        .allowed = "results that offnominal wrote",
                         .mend = ""});
   }
 }
@@ -142,4 +143,67 @@ std::string Statement::text(int column) const {
   return {static_cast<const char*>(static_cast<const void*>(bytes)), size};
 }
 
-}  // namespace offnominal::desk::campaign
+void require_kind(Database& database, const FileKind& kind) {
+  const auto number = [&](const char* what) {
+    return database.text_of(fmt::format("PRAGMA {}", what)).value_or("0");
+  };
+  if (number("application_id") != std::to_string(kind.application)) {
+    throw InputError({.file = database.file(),
+                      .place = "",
+                      .found = "another kind of file",
+                      .allowed = kind.words,
+                      .mend = "it was left as it is: name another file"});
+  }
+  if (number("user_version") != std::to_string(kind.format)) {
+    throw InputError({.file = database.file(),
+                      .place = "",
+                      .found = "results of format " + number("user_version"),
+                      .allowed = std::to_string(kind.format),
+                      .mend = "use the version of offnominal that wrote them"});
+  }
+  const std::string state = database.text_of("PRAGMA quick_check(1)").value_or("no answer");
+  if (state == "ok") return;
+  throw InputError({.file = database.file(),
+                    .place = "",
+                    .found = "a damaged file (" + state + ")",
+                    .allowed = kind.words,
+                    .mend = "it was left as it is: take a copy, or name another file"});
+}
+
+void mark_kind(Database& database, const FileKind& kind) {
+  database.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kind.application,
+                           kind.format));
+}
+
+Database open_results(const std::filesystem::path& path, const FileKind& kind) {
+  // SQLite's words for a missing file do not name what is wrong.
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    throw InputError({path.string(), "", "no such file", kind.words, ""});
+  }
+  Database database(path, OpenAs::kRead);
+  require_kind(database, kind);
+  return database;
+}
+
+void write_database(const std::filesystem::path& path, Existing existing,
+                    const std::function<void(Database& database)>& fill) {
+  check_can_be_written(path);
+  std::filesystem::path partial = path;
+  partial += ".partial";
+  std::filesystem::remove(partial);
+  {
+    Database database(partial, OpenAs::kNew);
+    Transaction whole(database);
+    fill(database);
+    whole.commit();
+  }
+  std::error_code ignored;
+  if (existing == Existing::kRefuse && std::filesystem::exists(path, ignored)) {
+    std::filesystem::remove(partial);
+    throw InputError({path.string(), "", "a file that is there", "a new one", "say --force"});
+  }
+  std::filesystem::rename(partial, path);
+}
+
+}  // namespace offnominal::desk

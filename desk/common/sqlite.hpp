@@ -2,9 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+
+#include "common/file.hpp"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -12,7 +15,7 @@ struct sqlite3_stmt;
 // SQLite (https://www.sqlite.org/c3ref/intro.html) as far as results need it. Every error is an
 // InputError with the file's name and SQLite's own words.
 
-namespace offnominal::desk::campaign {
+namespace offnominal::desk {
 
 enum class OpenAs : std::uint8_t { kRead, kWrite, kNew };
 
@@ -86,4 +89,22 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> handle_;
 };
 
-}  // namespace offnominal::desk::campaign
+/// Which results a file holds, as it says in its head.
+struct FileKind {
+  std::int64_t application = 0;
+  std::int64_t format = 0;  // version of its tables
+  std::string words;        // "results that offnominal campaign wrote"
+};
+
+/// Throws InputError for a file of another kind or version, or a damaged one; it is left as it is.
+void require_kind(Database& database, const FileKind& kind);
+void mark_kind(Database& database, const FileKind& kind);
+/// To read. Throws as require_kind(), and where there is no such file.
+[[nodiscard]] Database open_results(const std::filesystem::path& path, const FileKind& kind);
+
+/// A file that `fill` makes, whole or not at all. Throws InputError where it cannot be written, or
+/// is there and must not be replaced.
+void write_database(const std::filesystem::path& path, Existing existing,
+                    const std::function<void(Database& database)>& fill);
+
+}  // namespace offnominal::desk
