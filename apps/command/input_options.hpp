@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "command/recordings.hpp"
+#include "common/number.hpp"
 #include "common/numeric_options.hpp"
+#include "common/shell_word.hpp"
 #include "compare/filter_plan.hpp"
 #include "log/read_log.hpp"
 
@@ -49,6 +51,15 @@ inline void add_channels_option(CLI::App& verb, ChannelOptions& channels,
   verb.add_option("--period", channels.period_s,
                   "Time between two samples, s, instead of a column of time")
       ->check(above_zero());
+}
+
+/// " --channels c.toml --period 0.001": what every command has to be given that reads the same
+/// recordings, beside --payload, which is of one of them; empty where nothing was given.
+inline std::string reading_words(const ChannelOptions& channels) {
+  std::string words;
+  if (channels.file) words += " --channels " + shell_word(channels.file->string());
+  if (channels.period_s) words += " --period " + shortest(*channels.period_s);
+  return words;
 }
 
 /// --threads, by default as many as the machine has.

@@ -52,6 +52,7 @@ void run(const ExplainArguments& options, const std::string& command_line) {
   ExplainOptions settings = options.explain;
   settings.after = options.before.size();
   settings.robot_file = files.robot;
+  settings.reading = reading_words(files.channels);
   const Explanation explanation =
       explain(data.robot, std::move(data.logs), std::move(data.holdout), settings,
               [&](const std::string& doing) { progress.begin(doing); });

@@ -270,8 +270,10 @@ std::string place_words(const std::string& kind, const std::optional<int>& joint
 std::string size_words(const std::string& kind, const std::optional<double>& size) {
   if (!size) return {};
   const FaultKindInfo* const info = info_named(kind);
-  const std::string unit = info == nullptr || std::string(info->unit) == "1" ? "" : info->unit;
-  return unit.empty() ? shortest(*size) : shortest(*size) + " " + unit;
+  if (info == nullptr) return shortest(*size);
+  // A share.
+  if (std::string(info->unit) == "1") return fmt::format("{:.6g} %", 100 * *size);
+  return shortest(*size) + " " + info->unit;
 }
 
 }  // namespace offnominal::desk::campaign

@@ -71,7 +71,8 @@ std::string sentence(const JointComparison& joint) {
   }
   if (joint.at_fault > 0) {
     words += fmt::format(
-        " {:.1f} % of the samples are left out for faults of the recording; {} are left.",
+        " {:.1f} % of the samples are left out for faults of the recording; {} are left of this "
+        "joint.",
         100 * joint.at_fault, joint.samples);
   }
   return words;
@@ -218,8 +219,13 @@ std::string error_table(const Comparisons& comparisons) {
   const TextTable table(columns);
   std::string text = table.heading();
   const auto row = [&](const JointComparison& joint, const std::string& recording) {
-    const std::string error = fmt::format("{:.4g} {}", joint.rms_error, joint.unit);
-    const std::string torque = fmt::format("{:.4g} {}", joint.rms_torque, joint.unit);
+    // Where nothing is left of a joint there are none.
+    const auto amount = [&](double value) {
+      return std::isfinite(value) ? fmt::format("{:.4g} {}", value, joint.unit)
+                                  : std::string("none");
+    };
+    const std::string error = amount(joint.rms_error);
+    const std::string torque = amount(joint.rms_torque);
     const std::string relative = percent(joint.relative_error_percent);
     const std::string fit = percent(joint.fit_percent);
     text += several ? table.row(joint.joint + 1, recording, error, torque, relative, fit)

@@ -258,10 +258,12 @@ DhTable read_csv_table(const std::filesystem::path& path, std::optional<DhConven
         const auto refuse_it = [&](const auto&... words) { refuse(path, place, words...); };
         return is_known(column) ? angle_in(column, text, refuse_it) : std::nullopt;
       });
+  std::vector<std::string> allowed{"joint"};
+  allowed.insert(allowed.end(), known.begin(), known.end());
   for (const std::string& name : read.names) {
     if (read.columns.contains(name) || name == "joint") continue;
-    refuse(path, "column " + name, "a column that is none of a DH table", list_of(known),
-           mend_name(name, known));
+    refuse(path, "column " + name, "a column that is none of a DH table", list_of(allowed),
+           mend_name(name, allowed));
   }
   const auto has = [&](const std::string& name) { return read.columns.contains(name); };
   const auto column_of = [&](const Parameter& parameter) {

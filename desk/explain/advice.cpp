@@ -116,9 +116,9 @@ void advise_on_friction(Explanation& e) {
   std::vector<std::string> joints;
   for (const Eigen::Index joint : e.without_friction) joints.push_back(std::to_string(joint + 1));
   e.advice.push_back(fmt::format(
-      "the robot file has no friction on joint {}, and every drive has some: `[[effect]]` with "
-      "kind = \"coulomb_friction\" and one with kind = \"viscous_friction\" per joint, `fitted = "
-      "true`, is where to begin",
+      "the robot file has no friction on joint {}, and every drive has some: where none was found, "
+      "`[[effect]]` with kind = \"coulomb_friction\" and one with kind = \"viscous_friction\", "
+      "`fitted = true`, is where to begin",
       fmt::join(joints, ", ")));
 }
 
@@ -162,9 +162,9 @@ void advise_on_shapes(Explanation& e) {
     });
     if (has) continue;
     e.advice.push_back(fmt::format(
-        "joint {}: `offnominal add {} --joint {} --robot {} --log LOG -o improved.toml` puts it "
+        "joint {}: `offnominal add {} --joint {} --robot {} --log LOG{} -o improved.toml` puts it "
         "into the model as {}",
-        one.joint + 1, curve->name, one.joint + 1, e.robot_file, curve->words));
+        one.joint + 1, curve->name, one.joint + 1, e.robot_file, e.reading, curve->words));
   }
 }
 

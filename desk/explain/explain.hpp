@@ -239,6 +239,7 @@ struct Explanation {
   std::vector<Eigen::Index> links_kept_for;
   std::vector<std::string> advice;
   std::string robot_file = "ROBOT";         // as commands in the advice name it
+  std::string reading;                      // ExplainOptions::reading
   bool at_rest = false;                     // by hold maps
   std::vector<HoldFriction> hold_friction;  // of hold maps, per joint that came from both sides
 
@@ -287,6 +288,9 @@ struct ExplainOptions {
   int most_effects = 6;         // of one joint
   std::string source = {};      // what `improved` says of where its numbers come from
   std::string robot_file = {};  // as the user named it, for commands in the advice; empty: "ROBOT"
+  // What every command has to be given that reads the same recordings, " --channels c.toml", for
+  // the advice.
+  std::string reading = {};
   std::vector<KeepFault> keep = {};  // of the doctor's findings, that are no faults
   // When the robot may have become another one, where that is known: nothing else is then asked of
   // changes. The recordings from this one on were made after it (0: none of them), or what the only

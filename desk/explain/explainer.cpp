@@ -119,6 +119,7 @@ Explanation Explainer::begun(std::vector<Push> pushes) const {
   result.pushes = std::move(pushes);
   if (!options_.robot_file.empty() && !is_stream(options_.robot_file))
     result.robot_file = shell_word(options_.robot_file);
+  result.reading = options_.reading;
   result.at_rest = setting_.data->recordings[0].at_rest;
   result.holdout_is_apart = setting_.hold_out->is_apart();
   result.filter = plan_;
@@ -180,7 +181,8 @@ Explainer::Settled Explainer::settle(FoundModel& found, Explanation& result) con
     tell("fitting the numbers");
     do {
       settled.improved = fitted_robot(found, result);
-    } while (leave_out_impossible(settled.improved.held, result.shifts));
+    } while (leave_out_impossible(settled.improved.held, result.shifts) ||
+             leave_out_undone(settled.improved.robot, result.shifts));
     settled.sizes = sizes_of(settled.improved);
   } while (gives_one_up(settled.sizes, found) ||
            takes_back_what_raises(judged_, settled.improved, setting_, options_.threads, found) ||

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/amount.hpp"
 #include "common/error.hpp"
 #include "common/input_name.hpp"
 #include "common/list_of_joints.hpp"
@@ -303,7 +304,8 @@ class Assembler {
 
   void check_sample_count(Index samples) const {
     if (samples >= kMinSamples) return;
-    fail("", fmt::format("{} samples", samples), fmt::format("{} samples or more", kMinSamples));
+    fail("", counted(static_cast<std::size_t>(samples), "sample"),
+         fmt::format("{} samples or more", kMinSamples));
   }
 
   void check_readings() const {

@@ -24,7 +24,14 @@ function hiddenText(text) {
 
 function paragraphs(text) {
   const parts = text.split(/\n\s*\n/).filter((part) => part.trim() !== "");
-  return parts.map((part) => element("p", {}, part));
+  return parts.map((part) => element("p", {}, ...withCode(part)));
+}
+
+/** What stands between two backticks is for a terminal. */
+function withCode(text) {
+  const parts = text.split("`");
+  if (parts.length % 2 === 0) return [text];
+  return parts.map((part, index) => (index % 2 === 1 ? element("code", {}, part) : part)).filter((part) => part !== "");
 }
 
 /** The table alone; it scrolls by itself where the window is narrower: see watchWidths(). */
