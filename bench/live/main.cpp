@@ -45,11 +45,16 @@ double resident_mib() {
 }
 
 // The file's arm, watched joint by joint with as large a network as there is, whatever its own
-// settings are.
+// settings are, and with gains where it has none.
 desk::RobotDescription robot_of(const Options& options) {
   desk::RobotDescription robot = desk::read_robot_file(options.robot);
   robot.estimator.space = desk::EstimatorSpace::kTorque;
   robot.estimator.hidden_units = 64;
+  for (desk::RobotJoint& joint : robot.joints) {
+    if (joint.kp > 0) continue;
+    joint.kp = 100;
+    joint.kd = 20;
+  }
   desk::BoundSettings bound;
   bound.kind = desk::BoundSettings::Kind::kPerJoint;
   bound.joints.assign(robot.joints.size(), desk::JointBoundSettings{{}, {options.bound_nm}, 0});

@@ -372,7 +372,7 @@ void judge_whole(Explanation& e) {
   }
   // What stands above the noise without following anything is told as such.
   if (suspected && all_sufficient(e.excitation) && above_noise(e) == nullptr) {
-    e.suspected = std::move(suspected);
+    e.suspected = suspected;
   }
   judge_joints(e);
   advise_on_motion(e);

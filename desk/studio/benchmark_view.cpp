@@ -189,7 +189,7 @@ std::string words_of_wrong(const std::vector<const Case*>& cases) {
   const auto count = [&](const auto& is_one) {
     return std::count_if(cases.begin(), cases.end(), [&](const Case* one) { return is_one(*one); });
   };
-  return fmt::format("{} of {} cases have something named that is not there, {} have no answer.",
+  return fmt::format("Cases with something named that is not there: {} of {}; without an answer: {}.",
                      count([](const Case& one) { return !one.wrong.empty(); }), cases.size(),
                      count([](const Case& one) { return !one.failed.empty(); }));
 }
@@ -278,6 +278,10 @@ nlohmann::json BenchmarkView::figures(const ResultsFilter& filter) const {
   found.heading = "Found";
   if (auto chart = found_over_size(asked)) found.blocks.emplace_back(std::move(*chart));
   if (auto chart = times_chart(cases)) found.blocks.emplace_back(std::move(*chart));
+  // Half a row would stand empty beside one.
+  if (found.blocks.size() == 1) {
+    std::get<report::Chart>(found.blocks.front()).width = report::Width::kFull;
+  }
   report::Table by_effects = table_of("Effect by effect", "hidden effect", rows(by_effect));
   by_effects.note += " " + words_of_wrong(cases);
   found.blocks.emplace_back(std::move(by_effects));

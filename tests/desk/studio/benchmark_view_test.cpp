@@ -120,7 +120,7 @@ TEST_F(BenchmarkResults, AreCountedByEffectAndGroup) {
   EXPECT_LT(row.at(6).get<double>(), 80);
   EXPECT_GT(row.at(7).get<double>(), 80);
   EXPECT_EQ(row.at(8), "explained (6)");
-  EXPECT_THAT(whole.at("note").get<std::string>(), HasSubstr("1 of 30 cases have something named"));
+  EXPECT_THAT(whole.at("note").get<std::string>(), HasSubstr("named that is not there: 1 of 30"));
   const json groups = table({}, "Group by group");
   ASSERT_EQ(groups.at("rows").size(), 3U) << "two, and all";
   const json second = table({{"joint", "2"}}, "Effect by effect");
