@@ -189,9 +189,10 @@ std::string words_of_wrong(const std::vector<const Case*>& cases) {
   const auto count = [&](const auto& is_one) {
     return std::count_if(cases.begin(), cases.end(), [&](const Case* one) { return is_one(*one); });
   };
-  return fmt::format("Cases with something named that is not there: {} of {}; without an answer: {}.",
-                     count([](const Case& one) { return !one.wrong.empty(); }), cases.size(),
-                     count([](const Case& one) { return !one.failed.empty(); }));
+  return fmt::format(
+      "Cases with something named that is not there: {} of {}; without an answer: {}.",
+      count([](const Case& one) { return !one.wrong.empty(); }), cases.size(),
+      count([](const Case& one) { return !one.failed.empty(); }));
 }
 
 }  // namespace
