@@ -453,18 +453,21 @@ class Finder {
     }
   }
 
-  // Whether what is held out is predicted better with the model than without one of its effects, on
-  // the joints that it acts on: what wide links do elsewhere meanwhile is not its doing.
+  // Whether what is held out is predicted better with the model than without one of its effects, by
+  // as much as when it was found, on the joints that it acts on: what wide links do elsewhere
+  // meanwhile is not its doing.
   [[nodiscard]] bool predicts(const Term& term, const std::vector<Term>& terms_without,
                               const ModelFit& without, const VectorXd& held_out) const {
     const Data& data = regression_.data();
     const VectorXd before = hold_out_.rms(hold_out_.residual(terms_without, without));
     VectorXd samples = VectorXd::Zero(before.size());
     const ActingColumns acting(data.layout, columns_of(data, term));
+    double most = 0;  // what it takes off the error of a joint
     for (const ActingColumns::Span& span : acting.spans()) {
       samples[span.joint] = found_.fit.remainder.independent_samples[span.joint];
+      most = std::max(most, explained_share(before[span.joint], held_out[span.joint]));
     }
-    return growth_of_log_likelihood(before, held_out, samples) > 0;
+    return most >= kRelevantHeldOut && growth_of_log_likelihood(before, held_out, samples) > 0;
   }
 
   // Every accepted effect must still be needed beside all others, and predict what is held out:
