@@ -82,8 +82,9 @@ TEST(LockStep, SeesWhatChangesTheMotion) {
 
 // The recording of a run is what the controller saw, and beside it what was true.
 TEST(LockStep, RecordsWhatTheControllerSawAndTheTruthBesideIt) {
-  const auto recording_with = [](const std::vector<FaultEvent>& faults) {
+  const auto recording_with = [](const std::vector<FaultEvent>& faults, bool accommodate = false) {
     Scenario scenario = scenario_with(faults);
+    scenario.accommodate = accommodate;
     scenario.record = true;
     const RobotDescription robot = paper::two_link_robot();
     const auto wire = make_in_process_wire();
@@ -102,7 +103,7 @@ TEST(LockStep, RecordsWhatTheControllerSawAndTheTruthBesideIt) {
   EXPECT_LT((tail(stuck, stuck.q.col(1)) - tail(stuck, stuck.extra.at("q_true2"))).norm(), 1e-3);
 
   const Log weak = recording_with(
-      {{.kind = FaultEventKind::kTorqueLoss, .begin_s = 2.0, .joint = 1, .size = 0.4}});
+      {{.kind = FaultEventKind::kTorqueLoss, .begin_s = 2.0, .joint = 1, .size = 0.4}}, true);
   EXPECT_LT((0.6 * tail(weak, weak.tau.col(1)) - tail(weak, weak.extra.at("tau_true2"))).norm(),
             1e-3);
   const Eigen::VectorXd& compensation = weak.extra.at("compensation2");
