@@ -11,7 +11,6 @@
 
 #include "arm_outcome.hpp"
 #include "arm_summary.hpp"
-#include "common/file.hpp"
 #include "common/parallel.hpp"
 
 namespace offnominal::bench {
@@ -103,14 +102,14 @@ void run_arm_bench(const ArmBenchOptions& options) {
     }
     return;
   }
-  if (!results.file.empty()) desk::check_can_be_written(results.file);
+  check_results(results);
   const ArmOutcomes outcomes = outcomes_of(groups, options.threads);
-  if (!results.file.empty()) write_results(results, groups, outcomes);
   if (options.json) {
     print_arm_json(options, groups, outcomes);
   } else {
     print_arm_text(options, groups, outcomes);
   }
+  if (!results.file.empty()) write_results(results, groups, outcomes);
 }
 
 }  // namespace offnominal::bench

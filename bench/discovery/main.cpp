@@ -14,7 +14,6 @@
 
 #include "arm_bench.hpp"
 #include "case_groups.hpp"
-#include "common/file.hpp"
 #include "common/parallel.hpp"
 #include "outcome.hpp"
 #include "results.hpp"
@@ -215,15 +214,15 @@ int main_of(int argc, char** argv) {
       }
       return 0;
     }
-    if (!options.results.empty()) desk::check_can_be_written(options.results);
+    check_results(results_of(options));
     const Results results = run(options);
-    if (!options.results.empty()) {
-      write_results(results_of(options), results.groups, results.outcomes);
-    }
     if (options.json) {
       print_json(options, results);
     } else {
       print_text(options, results);
+    }
+    if (!options.results.empty()) {
+      write_results(results_of(options), results.groups, results.outcomes);
     }
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;

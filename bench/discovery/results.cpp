@@ -4,8 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
+#include "common/error.hpp"
+#include "common/file.hpp"
 #include "write_cases.hpp"
 
 namespace offnominal::bench {
@@ -142,6 +145,22 @@ void write_all(const ResultsRequest& request, const std::string& name,
 }
 
 }  // namespace
+
+void check_results(const ResultsRequest& request) {
+  if (request.file.empty()) return;
+  std::error_code ignored;
+  if (!request.force && std::filesystem::exists(request.file, ignored)) {
+    throw desk::InputError(
+        {request.file, "", "a file that is there", "a new one", "say --force, or name another"});
+  }
+  desk::check_can_be_written(request.file);
+  const bool has_cases = !request.cases.empty() &&
+                         std::filesystem::exists(request.cases, ignored) &&
+                         !std::filesystem::is_empty(request.cases, ignored);
+  if (!has_cases) return;
+  throw desk::InputError({request.cases, "", "a folder with something in it", "a new folder",
+                          "name another one with --write"});
+}
 
 void write_results(const ResultsRequest& request, const std::vector<CaseGroup>& groups,
                    const std::vector<std::vector<Outcome>>& outcomes) {

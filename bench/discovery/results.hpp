@@ -19,6 +19,9 @@ struct ResultsRequest {
   bool force = false;
 };
 
+// Before a run: throws desk::InputError where its results could not be written in the end.
+void check_results(const ResultsRequest& request);
+
 // Both for `offnominal studio --benchmark`; `outcomes`: per group and case. Writes the cases first.
 // Throws desk::InputError where something cannot be written.
 void write_results(const ResultsRequest& request, const std::vector<CaseGroup>& groups,

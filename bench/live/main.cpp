@@ -104,7 +104,9 @@ int run(const Options& options) {
   std::uint64_t next = 0;
   double first_mib = 0;
   double last_mib = 0;
-  for (double hour = 0.25; hour < options.hours + 1e-9; hour = hour < 1 ? 1 : hour + 1) {
+  double hour = 0;
+  while (hour < options.hours) {
+    hour = std::min(hour == 0 ? 0.25 : std::floor(hour) + 1, options.hours);
     const Hour one = next_hour(live, hour * kHourS, next);
     if (first_mib == 0) first_mib = one.mib;  // every ring has been round by then
     last_mib = one.mib;
@@ -131,7 +133,7 @@ int main_of(int argc, char** argv) {
   CLI::App app("Hours of the live view, simulated at speed: its memory, and its residuals",
                "./dev bench live");
   app.add_option("--hours", options.hours, "simulated, h")
-      ->check(CLI::Range(0.25, 1000.0))
+      ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   app.add_option("--robot", options.robot, "robot file; its arm is its own plant");
   app.add_option("--bound", options.bound_nm, "threshold of every joint, N m or N")

@@ -124,6 +124,10 @@ Results read_benchmark(const std::filesystem::path& path) {
     one.failed = all.text(7);
     one.time_s = all.real(8);
     one.folder = all.text(9);
+    if (std::filesystem::path(one.folder).is_absolute()) {
+      throw InputError({database.file(), "table cases, folder", one.folder,
+                        "a folder as seen from the file", "take the file as it was written"});
+    }
     read_asked(database, one);
     results.cases.push_back(std::move(one));
   }

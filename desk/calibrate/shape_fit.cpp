@@ -143,7 +143,7 @@ void fill_dips(const ThresholdParts& parts, Index points, VectorXd& c) {
   constexpr double kStayed = 0.7;  // of what the filter comes to in the end
   for (Index k = 1; k + 1 < points; ++k) {
     const bool stayed = std::any_of(parts.begin(), parts.end(), [k](const ThresholdRows& part) {
-      return part.filtered.col(k).maxCoeff() >= kStayed;
+      return part.filtered.col(k).tail(part.size()).maxCoeff() >= kStayed;
     });
     if (!stayed) c[k] = std::max(c[k], std::min(c[k - 1], c[k + 1]));
   }

@@ -113,8 +113,12 @@ bool leave_out_impossible(const std::vector<HeldNumber>& held, std::vector<Shift
 bool leave_out_undone(const RobotDescription& fitted, std::vector<Shift>& shifts) {
   constexpr double kStays = 0.5;  // of the way from the file to what the search asked for
   return std::erase_if(shifts, [&](const Shift& one) {
-           const double came = fitted.effects[one.effect].parameters[one.parameter];
-           return (came - one.file) / (one.came - one.file) < kStays;
+           const RobotEffect& effect = fitted.effects[one.effect];
+           const PhysicalRange range = physical_range(effect.kind, one.parameter);
+           // What cannot be is held at the end of what can.
+           const double asked = range.holds(one.came) ? one.came : range.nearest(one.came);
+           const double came = effect.parameters[one.parameter];
+           return asked == one.file || (came - one.file) / (asked - one.file) < kStays;
          }) > 0;
 }
 

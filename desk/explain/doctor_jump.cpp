@@ -216,7 +216,7 @@ struct GoesOn {
   double at_once = 0;
   double a_row = 0;
 };
-GoesOn goes_on(const VectorXd& q, Index row) {
+GoesOn goes_on(const Eigen::Ref<const VectorXd>& q, Index row) {
   constexpr Index kAround = 16;
   const Index before = std::min(kAround, row);
   const Index after = std::min(kAround, q.size() - 2 - row);

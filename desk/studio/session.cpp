@@ -205,6 +205,7 @@ ordered_json Session::undo(std::size_t step) {
 ordered_json Session::look_at(const View& view) {
   const std::lock_guard guard(lock_);
   check(bench_, view);
+  if (view_ && json_of(*view_) == json_of(view)) return ordered_json::object();
   view_ = view;
   // Whoever only looks leaves nothing beside the recordings.
   if (!bench_.steps().empty() || answer_.is_object()) keep_state();

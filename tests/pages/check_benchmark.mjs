@@ -48,7 +48,8 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   await page.check(`#joint-${joint}`);
   await page.waitForFunction(() => !document.body.hasAttribute("data-busy"));
   const switched = await page.$(`#switch-${effect}:not([aria-disabled])`);
-  if (switched !== null) {
+  if (switched === null) fault(`${effect} cannot be switched on`);
+  else {
     const before = await page.evaluate((at) => state.joints[at - 1].now.held_out_percent, joint);
     await switched.click();
     await page.waitForFunction(() => document.body.dataset.revision === "1" && !document.body.hasAttribute("data-busy"));
