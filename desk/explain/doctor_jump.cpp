@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "common/time_words.hpp"
@@ -231,8 +231,8 @@ GoesOn goes_on(const Eigen::Ref<const VectorXd>& q, Index row) {
 // shows it. Of the others those count that would have to show it.
 bool is_loss(const Log& log, const std::vector<double>& usual, Index row, Index joint) {
   constexpr double kShows = 6;  // times a usual change from one row to the next
-  constexpr double kAlike =
-      3;  // times what it would have to be, or that part: paces change meanwhile
+  // Times what it would have to be, or that part of it: paces change meanwhile.
+  constexpr double kAlike = 3;
   const GoesOn own = goes_on(log.q.col(joint), row);
   const double rows = own.at_once / own.a_row;
   if (!(rows > 2) || !std::isfinite(rows)) return false;
@@ -257,7 +257,7 @@ std::vector<Index> rows_before_a_loss(const Log& log, const std::vector<Breaks>&
   const Index steps = log.q.rows() - 1;
   std::vector<double> usual;
   for (Index i = 0; i < log.q.cols(); ++i) {
-    const VectorXd q = log.q.col(i);
+    const auto q = log.q.col(i);
     usual.push_back((q.tail(steps) - q.head(steps)).cwiseAbs().mean());
   }
   std::set<Index> lost;
@@ -354,27 +354,22 @@ std::string mend_of_start() {
 }
 
 void find_jumps(const Log& log, std::vector<DataFault>& faults) {
-  struct OfPosition {
-    Index unsettled = 0;
-    Breaks breaks;
-  };
-  std::vector<OfPosition> positions(static_cast<std::size_t>(log.q.cols()));
-  for (Index joint = 0; joint < log.q.cols(); ++joint) {
+  const auto joints = static_cast<std::size_t>(log.q.cols());
+  std::vector<Index> unsettled(joints, 0);  // of the positions
+  std::vector<Breaks> breaks(joints);
+  for (std::size_t i = 0; i < joints; ++i) {
+    const auto joint = static_cast<Index>(i);
     if (stands_still(log.q.col(joint))) continue;
-    OfPosition& of = positions[static_cast<std::size_t>(joint)];
-    of.unsettled = unsettled_of(log, joint, true, faults);
+    unsettled[i] = unsettled_of(log, joint, true, faults);
     std::vector<RowSpan> known = known_of_position(log, joint, faults);
-    if (of.unsettled > 0) known.push_back({-1, of.unsettled});
-    of.breaks = breaks_of(log, log.q.col(joint), known);
+    if (unsettled[i] > 0) known.push_back({-1, unsettled[i]});
+    breaks[i] = breaks_of(log, log.q.col(joint), known);
   }
-  std::vector<Breaks> of_joints;
-  std::transform(positions.begin(), positions.end(), std::back_inserter(of_joints),
-                 [](const OfPosition& one) { return one.breaks; });
-  const std::vector<Index> lost = rows_before_a_loss(log, of_joints);
-  for (Index joint = 0; joint < log.q.cols(); ++joint) {
-    const OfPosition& of = positions[static_cast<std::size_t>(joint)];
-    add_unsettled(log, joint, true, of.unsettled, faults);
-    find_position_jumps(log, joint, lost, of.breaks, faults);
+  const std::vector<Index> lost = rows_before_a_loss(log, breaks);
+  for (std::size_t i = 0; i < joints; ++i) {
+    const auto joint = static_cast<Index>(i);
+    add_unsettled(log, joint, true, unsettled[i], faults);
+    find_position_jumps(log, joint, lost, std::move(breaks[i]), faults);
     add_unsettled(log, joint, false, unsettled_of(log, joint, false, faults), faults);
     find_torque_spikes(log, joint, faults);
   }

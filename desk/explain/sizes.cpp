@@ -34,14 +34,20 @@ bool repeats_with_something(const Term& term, const std::vector<Estimate>& numbe
   });
 }
 
+// What a robot file says of a number of an effect; null: it is none of the file's.
+const ParameterInfo* parameter_of(const Term& term, const Estimate& number) {
+  const auto& parameters = term.effect->info().parameters;
+  const auto of =
+      std::find_if(parameters.begin(), parameters.end(),
+                   [&](const ParameterInfo& info) { return info.name == number.value.name; });
+  return of == parameters.end() ? nullptr : &*of;
+}
+
 // Whether no part of what a number may be is within what a robot file takes: no such effect exists.
 bool is_beyond_any(const Term& term, const std::vector<Estimate>& numbers) {
-  const auto& parameters = term.effect->info().parameters;
   return std::any_of(numbers.begin(), numbers.end(), [&](const Estimate& one) {
-    const auto of =
-        std::find_if(parameters.begin(), parameters.end(),
-                     [&](const ParameterInfo& info) { return info.name == one.value.name; });
-    if (of == parameters.end()) return false;
+    const ParameterInfo* of = parameter_of(term, one);
+    if (of == nullptr) return false;
     const double low = one.ci95 ? (*one.ci95)[0] : one.value.value;
     const double high = one.ci95 ? (*one.ci95)[1] : one.value.value;
     return high < of->min || low > of->max;
@@ -62,13 +68,10 @@ void widen(Estimate& estimate, double deviation) {
 bool has_a_number(const Term& term, const std::vector<Estimate>& numbers) {
   // A wave has a size, whatever its phase.
   if (term.effect->spectrum() != EffectCandidate::Spectrum::kNone) return true;
-  const auto& parameters = term.effect->info().parameters;
   int linear = 0;
   const bool any = std::any_of(numbers.begin(), numbers.end(), [&](const Estimate& one) {
-    const auto of =
-        std::find_if(parameters.begin(), parameters.end(),
-                     [&](const ParameterInfo& info) { return info.name == one.value.name; });
-    if (of == parameters.end() || of->role != ParameterRole::kLinear) return false;
+    const ParameterInfo* of = parameter_of(term, one);
+    if (of == nullptr || of->role != ParameterRole::kLinear) return false;
     ++linear;
     return !one.ci95 || (*one.ci95)[0] > 0 || (*one.ci95)[1] < 0;
   });
