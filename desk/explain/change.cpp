@@ -171,6 +171,17 @@ class ChangeFinder {
     if (!moments_.are_given()) refine_ends(one, at);
   }
 
+  // A body at a place where it is not may look like less than other changes together do: it stands
+  // against them where it fits best.
+  void look_for_place(Scanned& one, const ModelFit& at) const {
+    if (!one.term.effect->is_mass() || !one.term.is_searched() || !one.term.during) return;
+    Scanned there = one;
+    refine(there, at);
+    const Remainder remainder = beside_effect(at, there.term, all_samples());
+    there.log_likelihood = likelihood_of(Judge(remainder), columns_of(data_, there.term));
+    if (there.log_likelihood > one.log_likelihood) one = there;
+  }
+
   // What comes and goes again: from or to the moment that was found, where that makes the
   // recordings clearly more likely.
   void end_it(Scanned& one, const ModelFit& at) const {
@@ -219,6 +230,7 @@ class ChangeFinder {
     std::vector<Scanned> scanned(candidates_.size());
     parallel_for(scanned.size(), options_.threads,
                  [&](std::size_t i) { scanned[i] = scan(candidates_[i], at); });
+    for (Scanned& one : scanned) look_for_place(one, at);
     std::erase_if(scanned, [](const Scanned& one) { return one.log_likelihood < kClearly; });
     std::stable_sort(scanned.begin(), scanned.end(), [](const Scanned& a, const Scanned& b) {
       return a.log_likelihood > b.log_likelihood;

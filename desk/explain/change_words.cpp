@@ -70,10 +70,12 @@ std::string sentence_on_changes(const Explanation& e) {
                        e.changes_between ? "" : " in the middle of a recording",
                        words_of(e.changes));
   }
-  return e.changes_asked ? "Nothing that is looked at changes there: neither a payload on the last "
-                           "link, nor Coulomb or viscous friction, a constant torque or a torque "
-                           "constant of any joint."
-                         : "";
+  return e.changes_asked
+             ? "No change is told there: neither a payload on the last link, nor Coulomb or "
+               "viscous friction, a constant torque or a torque constant of any joint "
+               "stands out. That does not say that none changed, the less the shorter "
+               "the part behind it is."
+             : "";
 }
 
 void advise_on_changes(Explanation& e) {

@@ -99,7 +99,7 @@ TEST(KnownChange, IsNoneBetweenTwoMotionsOfOneRobot) {
       explain(robot, {recorded(same, "a", 4), recorded(same, "b", 5)}, {}, after(1));
   EXPECT_THAT(told.changes, IsEmpty()) << told.words;
   ASSERT_THAT(told.found, SizeIs(1)) << told.words;
-  EXPECT_THAT(told.words, HasSubstr("Nothing that is looked at changes there"));
+  EXPECT_THAT(told.words, HasSubstr("No change is told there"));
 }
 
 // From then on the torques are those of another robot.
