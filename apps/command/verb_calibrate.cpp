@@ -38,6 +38,7 @@ struct CalibrateOptions {
   FitFiles files;
   std::string output;
   double alarms_per_hour = 0.1;
+  std::optional<double> act_alarms_per_hour;
   std::optional<double> velocity_error;
   std::vector<KeepFault> keep;
   AnswerOptions answer;
@@ -48,11 +49,25 @@ void check_numbers(const CalibrateOptions& options) {
     refuse_option("calibrate", "--alarms-per-hour", fmt::format("{:g}", options.alarms_per_hour),
                   "1e-6 to 60");
   }
+  const double act = options.act_alarms_per_hour.value_or(options.alarms_per_hour);
+  if (!(act >= 1e-9 && act <= options.alarms_per_hour)) {
+    refuse_option("calibrate", "--act-alarms-per-hour", fmt::format("{:g}", act),
+                  fmt::format("1e-9 to --alarms-per-hour, which is {:g}", options.alarms_per_hour));
+  }
   const double error = options.velocity_error.value_or(0);
   if (!(error >= 0 && std::isfinite(error))) {
     refuse_option("calibrate", "--velocity-error", fmt::format("{:g}", error),
                   "at least 0, rad/s or m/s");
   }
+}
+
+void check_act(const CalibrateOptions& options, const RobotDescription& robot) {
+  if (!options.act_alarms_per_hour || robot.estimator.space == EstimatorSpace::kTorque) return;
+  refuse_option("calibrate", "--act-alarms-per-hour",
+                fmt::format("{:g}, beside one threshold of all joints in {}",
+                            *options.act_alarms_per_hour, options.files.robot),
+                "none: two levels are of joints that are judged one by one",
+                "leave it out, or set estimator.space to \"torque\" in the robot file");
 }
 
 void check_velocity_error(const CalibrateOptions& options, const RobotDescription& robot) {
@@ -103,14 +118,18 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
   Progress progress;
   RobotDescription robot = read_robot(options.files.robot);
   check_velocity_error(options, robot);
+  check_act(options, robot);
   FitData data =
       read_fit_data("calibrate", "LOG", options.files, std::move(robot), read_log, progress);
   const FaultFree healthy = keep_fault_free(data, options.keep, progress);
   progress.begin("shapes of the bound");
   const CalibrateRequest request{
-      options.alarms_per_hour, options.velocity_error,
+      options.alarms_per_hour,
+      options.velocity_error,
       "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + ".",
-      healthy.left_out};
+      healthy.left_out,
+      {},
+      options.act_alarms_per_hour};
   require_carried(data.robot, options.files.robot);
   const CalibrateNames names{options.files.robot, options.output, command_line};
   const auto on_step = [&progress] { progress.step(); };
@@ -131,9 +150,9 @@ constexpr const char* kHowItCalibrates =
     "Constant, scaled-norm and table bounds are tried; the tightest that keeps the level on parts "
     "it has not seen is taken. Without --holdout the last of several recordings is held out, or "
     "the last fifth of a single one.\n"
-    "With estimator.space = \"torque\" each joint gets a bound of its own, of a constant and a "
-    "table "
-    "over its speed the better one, and --velocity-error is refused.\n"
+    "With estimator.space = \"torque\" each joint gets a bound of its own, a constant or a table "
+    "over its speed, load or position, and with fast_alpha_per_s one more behind a second, faster "
+    "filter; --act-alarms-per-hour adds a second level to each, and --velocity-error is refused.\n"
     "Exit code 1, and nothing written, when the hold-out data raise more alarms than the level "
     "allows, or when one part's error is so unlike the others' that it may hold a fault.";
 
@@ -153,6 +172,10 @@ void set_up_calibrate(CLI::App& verb, ExitCode& exit_code) {
   verb.add_option("--alarms-per-hour", options->alarms_per_hour,
                   "False alarms per hour to aim at, by extrapolation")
       ->capture_default_str();
+  verb.add_option("--act-alarms-per-hour", options->act_alarms_per_hour,
+                  "The same of a second level, at which the controller acts (stops, compensates) "
+                  "and below which it only reports; with estimator.space = \"torque\". Without "
+                  "it, it acts on every alarm");
   verb.add_option("--velocity-error", options->velocity_error,
                   "Largest error of the measured velocity, rad/s or m/s, where it is known; "
                   "without it, it is found with the bound. None where "

@@ -210,7 +210,8 @@ int run(const Options& options) {
       {.candump = options.candump.value_or(""),
        .interface = options.bus,
        .csv = options.log.value_or(""),
-       .columns = realtime::loop_columns(joints, robot.estimator.space == EstimatorSpace::kTorque),
+       .columns = realtime::loop_columns(joints, robot.estimator.space == EstimatorSpace::kTorque,
+                                         robot.estimator.fast_alpha > 0),
        .replace = options.force},
       recorder);
   const Microseconds period_us = period_us_of(robot.estimator.period_s);

@@ -205,12 +205,14 @@ std::vector<BoundShape> joint_bound_shapes(int joint,
   std::vector<BoundShape> shapes(1);
   shapes[0].words = "constant";
   add_table(BoundVariable::kSpeed, joint, recordings, shapes);
+  add_table(BoundVariable::kTorque, joint, recordings, shapes);
+  add_table(BoundVariable::kPosition, joint, recordings, shapes);
   return shapes;
 }
 
 Eigen::MatrixXd filtered_basis(const RobotDescription& robot, const BoundShape& shape,
                                const RecordedError& recording) {
-  const TickFilter filter = tick_filter(robot.estimator.alpha, recording.period_s);
+  const TickFilter<double> filter = recording.filter();
   const bool held = robot.estimator.torque_signal == TorqueSignal::kHeld;
   // A held torque is over the whole tick what the sample at its end says.
   const Index shift = held && follows_torque(shape) ? 1 : 0;

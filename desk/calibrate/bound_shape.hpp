@@ -31,7 +31,8 @@ struct BoundShape {
 [[nodiscard]] std::vector<BoundShape> bound_shapes(const RobotDescription& robot,
                                                    const std::vector<RecordedError>& recordings);
 
-/// Of one joint alone, for EstimatorSpace::kTorque: constant, and a table over its own speed.
+/// Of one joint alone, for EstimatorSpace::kTorque: constant, and tables over its own speed, load
+/// and position.
 [[nodiscard]] std::vector<BoundShape> joint_bound_shapes(
     int joint, const std::vector<RecordedError>& recordings);
 

@@ -14,8 +14,7 @@ Calibration calibrate(const RobotDescription& robot, const CalibrateRequest& req
   for (const auto* group : {&logs, &holdout}) {
     for (const Log& log : *group) recordings.push_back(recorded_error(robot, log));
   }
-  const CalibrationData data =
-      data_of(std::move(recordings), logs.size(), robot.estimator.alpha, {}, 1, request.left_out);
+  const CalibrationData data = data_of(std::move(recordings), logs.size(), {}, 1, request.left_out);
   Fitted fit = fitted(robot, request, data, on_step);
   // The core itself runs over every recording again, with the new bound.
   std::vector<Eigen::VectorXd> thresholds;

@@ -26,6 +26,11 @@ struct CalibrateRequest {
   // Within which a fault has to be seen, for SmallestFault; none: five time constants of the
   // filter.
   std::optional<double> fault_window_s = {};
+  // A shorter one beside it, for SmallestFault::soon; none: half of it.
+  std::optional<double> soon_window_s = {};
+  // Of the second level, at which somebody acts: a lower rate. None: both levels are one. Of joints
+  // that are judged one by one.
+  std::optional<double> act_alarms_per_hour = {};
 };
 
 /// How the error and its threshold are called: |e| and mu, or those of one joint.
@@ -100,6 +105,7 @@ struct Calibration {
   ErrorWords words;
   std::vector<ShapeScore> shapes;
   FalseAlarmLevel level;
+  double act_ratio = 1;  // of the second level's threshold to this one
   std::optional<Transient> transient;
   std::vector<double> unseen_maxima;  // block maxima of |e| / tightest mu, the chosen shape's
   std::vector<JudgedStretch> stretches;

@@ -15,38 +15,51 @@ namespace {
 
 // [joint][recording]
 using JointErrors = std::vector<std::vector<RecordedError>>;
+using JointThresholds = std::vector<std::vector<Eigen::VectorXd>>;
 
-JointErrors errors_of(const RobotDescription& robot, const std::vector<Log>& logs,
-                      const std::vector<Log>& holdout) {
-  JointErrors errors(robot.joints.size());
+OfFilters<JointErrors> errors_of(const RobotDescription& robot, const std::vector<Log>& logs,
+                                 const std::vector<Log>& holdout) {
+  OfFilters<JointErrors> errors;
+  const auto append = [](std::vector<RecordedError> joints, JointErrors& to) {
+    to.resize(joints.size());
+    for (std::size_t i = 0; i < joints.size(); ++i) to[i].push_back(std::move(joints[i]));
+  };
   for (const auto* group : {&logs, &holdout}) {
     for (const Log& log : *group) {
-      std::vector<RecordedError> joints = joint_errors(robot, log);
-      for (std::size_t i = 0; i < joints.size(); ++i) errors[i].push_back(std::move(joints[i]));
+      OfFilters<std::vector<RecordedError>> joints = joint_errors(robot, log);
+      append(std::move(joints.slow), errors.slow);
+      append(std::move(joints.fast), errors.fast);
     }
   }
   return errors;
 }
 
-// [joint][recording]
-std::vector<std::vector<Eigen::VectorXd>> thresholds_of(const RobotDescription& robot,
-                                                        const std::vector<Log>& logs,
-                                                        const std::vector<Log>& holdout) {
-  std::vector<std::vector<Eigen::VectorXd>> thresholds(robot.joints.size());
+OfFilters<JointThresholds> thresholds_of(const RobotDescription& robot,
+                                         const std::vector<Log>& logs,
+                                         const std::vector<Log>& holdout) {
+  OfFilters<JointThresholds> thresholds;
+  const auto append = [](const Eigen::MatrixXd& of_joints, JointThresholds& to) {
+    to.resize(static_cast<std::size_t>(of_joints.cols()));
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      to[i].emplace_back(of_joints.col(static_cast<Eigen::Index>(i)));
+    }
+  };
   for (const auto* group : {&logs, &holdout}) {
     for (const Log& log : *group) {
-      const Eigen::MatrixXd of_joints = joint_thresholds(robot, log);
-      for (std::size_t i = 0; i < thresholds.size(); ++i) {
-        thresholds[i].emplace_back(of_joints.col(static_cast<Eigen::Index>(i)));
-      }
+      const OfFilters<Eigen::MatrixXd> of_joints = joint_thresholds(robot, log);
+      append(of_joints.slow, thresholds.slow);
+      append(of_joints.fast, thresholds.fast);
     }
   }
   return thresholds;
 }
 
-JointBoundSettings joint_bound(const BoundSettings& bound) {
+JointBoundSettings joint_bound(const Calibration& calibration) {
+  const BoundSettings& bound = *calibration.robot.bound;
   JointBoundSettings joint;
+  joint.act_ratio = calibration.act_ratio;
   if (bound.kind == BoundSettings::Kind::kTable) {
+    joint.variable = bound.table.variable;
     joint.at = bound.table.at;
     joint.value = bound.table.value;
   } else {
@@ -55,22 +68,67 @@ JointBoundSettings joint_bound(const BoundSettings& bound) {
   return joint;
 }
 
+// The bounds of one filter, before they are judged.
+struct FittedFilter {
+  std::vector<CalibrationData> data;  // one per joint
+  std::vector<Fitted> fits;
+};
+
+FittedFilter fitted_filter(const RobotDescription& robot, const CalibrateRequest& of_one,
+                           JointErrors errors, std::size_t given, std::size_t judged,
+                           const std::function<void()>& on_step,
+                           std::vector<JointBoundSettings>& bounds) {
+  FittedFilter filter;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    filter.data.push_back(
+        data_of(std::move(errors[i]), given, static_cast<int>(i), judged, of_one.left_out));
+    filter.fits.push_back(fitted(robot, of_one, filter.data[i], on_step));
+    bounds.push_back(joint_bound(filter.fits[i].result));
+  }
+  return filter;
+}
+
+void collect(const std::string& joint, const std::vector<std::string>& from,
+             std::vector<std::string>& into) {
+  for (const std::string& words : from) into.push_back(fmt::format("{}: {}", joint, words));
+}
+
+// `fast`: which of the two filters it is.
+std::vector<JointCalibration> judged_filter(FittedFilter filter, const CalibrateRequest& of_one,
+                                            const JointThresholds& thresholds,
+                                            const std::vector<JointBoundSettings>& bounds,
+                                            bool fast, JointsCalibration& result) {
+  std::vector<JointCalibration> joints;
+  for (std::size_t i = 0; i < filter.data.size(); ++i) {
+    JointCalibration& joint = joints.emplace_back();
+    joint.name = result.robot.joints[i].name;
+    const std::vector<RecordedError>& recordings = filter.data[i].recordings;
+    joint.fault =
+        smallest_fault(recordings, thresholds[i], bounds[i], recordings.front().alpha_per_s,
+                       {of_one.fault_window_s, of_one.soon_window_s});
+    joint.calibration =
+        judged_calibration(std::move(filter.fits[i]), of_one, filter.data[i], thresholds[i]);
+    const std::string place =
+        fmt::format("joint {} ({}){}", i + 1, joint.name, fast ? ", fast filter" : "");
+    collect(place, joint.calibration.notes, result.notes);
+    collect(place, joint.calibration.objections, result.objections);
+  }
+  return joints;
+}
+
 std::string source_of(const CalibrateRequest& request, const JointsCalibration& result) {
   const FalseAlarmLevel& level = result.joints.front().calibration.level;
   std::int64_t alarms = 0;
-  for (const JointCalibration& joint : result.joints) {
-    alarms += joint.calibration.level.held_out_alarms;
+  for (const auto* filter : {&result.joints, &result.fast}) {
+    for (const JointCalibration& joint : *filter) {
+      alarms += joint.calibration.level.held_out_alarms;
+    }
   }
   return fmt::format(
       "{} {:g} false alarms per hour of all joints by extrapolation of {} block maxima of {:g} s "
       "each; on hold-out data {} in {:g} s.",
       request.source, result.alarms_per_hour, level.blocks, level.block_s,
       counted(static_cast<std::size_t>(alarms), "alarm"), level.held_out_s);
-}
-
-void collect(const std::string& joint, const std::vector<std::string>& from,
-             std::vector<std::string>& into) {
-  for (const std::string& words : from) into.push_back(fmt::format("{}: {}", joint, words));
 }
 
 }  // namespace
@@ -85,39 +143,30 @@ JointsCalibration calibrate_joints(const RobotDescription& robot, const Calibrat
                       .allowed = "none: what it adds to a joint's momentum depends on the others",
                       .mend = "leave --velocity-error out; it is found with the bounds"});
   }
-  const std::size_t count = robot.joints.size();
+  OfFilters<JointErrors> errors = errors_of(robot, logs, holdout);
+  const std::size_t judged = errors.slow.size() + errors.fast.size();
   CalibrateRequest of_one = request;
-  of_one.alarms_per_hour /= static_cast<double>(count);
+  of_one.alarms_per_hour /= static_cast<double>(judged);
+  if (of_one.act_alarms_per_hour) *of_one.act_alarms_per_hour /= static_cast<double>(judged);
   // What a measured velocity's error does to the momentum is in the residual, and no start has to
   // be covered by it.
   of_one.velocity_error = 0;
-  JointErrors errors = errors_of(robot, logs, holdout);
-  std::vector<CalibrationData> data;
-  std::vector<Fitted> fits;
   JointsCalibration result;
   result.robot = robot;
   result.old_bound = robot.bound;
   result.alarms_per_hour = request.alarms_per_hour;
+  result.act_alarms_per_hour = request.act_alarms_per_hour;
   BoundSettings& bound = result.robot.bound.emplace();
   bound.kind = BoundSettings::Kind::kPerJoint;
-  for (std::size_t i = 0; i < count; ++i) {
-    data.push_back(data_of(std::move(errors[i]), logs.size(), robot.estimator.alpha,
-                           static_cast<int>(i), count, request.left_out));
-    fits.push_back(fitted(robot, of_one, data[i], on_step));
-    bound.joints.push_back(joint_bound(*fits[i].result.robot.bound));
-  }
+  FittedFilter slow = fitted_filter(robot, of_one, std::move(errors.slow), logs.size(), judged,
+                                    on_step, bound.joints);
+  FittedFilter fast = fitted_filter(robot, of_one, std::move(errors.fast), logs.size(), judged,
+                                    on_step, bound.fast);
   // The core itself runs over every recording again, with the new bounds.
-  const auto thresholds = thresholds_of(result.robot, logs, holdout);
-  for (std::size_t i = 0; i < count; ++i) {
-    JointCalibration& joint = result.joints.emplace_back();
-    joint.name = robot.joints[i].name;
-    joint.fault = smallest_fault(data[i].recordings, thresholds[i], bound.joints[i],
-                                 robot.estimator.alpha, request.fault_window_s);
-    joint.calibration = judged_calibration(std::move(fits[i]), of_one, data[i], thresholds[i]);
-    const std::string place = fmt::format("joint {} ({})", i + 1, joint.name);
-    collect(place, joint.calibration.notes, result.notes);
-    collect(place, joint.calibration.objections, result.objections);
-  }
+  const OfFilters<JointThresholds> thresholds = thresholds_of(result.robot, logs, holdout);
+  result.joints =
+      judged_filter(std::move(slow), of_one, thresholds.slow, bound.joints, false, result);
+  result.fast = judged_filter(std::move(fast), of_one, thresholds.fast, bound.fast, true, result);
   note_what_matters(robot, logs.size() + holdout.size(), result.notes);
   result.robot.bound->source = source_of(request, result);
   return result;

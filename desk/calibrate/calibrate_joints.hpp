@@ -25,16 +25,18 @@ struct JointCalibration {
 struct JointsCalibration {
   RobotDescription robot;  // with the new bounds
   std::optional<BoundSettings> old_bound;
-  double alarms_per_hour = 0;  // of all joints together
+  double alarms_per_hour = 0;                      // of all joints and filters together
+  std::optional<double> act_alarms_per_hour = {};  // of the second level; none: there is one
   std::vector<JointCalibration> joints;
+  std::vector<JointCalibration> fast;  // the same behind the fast filter; empty: the robot has none
   std::vector<std::string> notes;
   std::vector<std::string> objections;  // why the result must not be used; empty: it may
 };
 
 /// As calibrate(), joint by joint, for a robot whose estimator is in EstimatorSpace::kTorque. The
-/// rate is shared evenly: alarms of different joints are taken for different alarms, which is on
-/// the safe side. Throws InputError too where a velocity error is given, which says nothing of
-/// torques.
+/// rate is shared evenly: alarms of different joints, and of a joint's two filters, are taken for
+/// different alarms, which is on the safe side. Throws InputError too where a velocity error is
+/// given, which says nothing of torques.
 [[nodiscard]] JointsCalibration calibrate_joints(const RobotDescription& robot,
                                                  const CalibrateRequest& request,
                                                  const std::vector<Log>& logs,

@@ -273,11 +273,11 @@ void note_what_matters(const RobotDescription& robot, std::size_t recordings,
 }
 
 CalibrationData data_of(std::vector<RecordedError> recordings, std::size_t given,
-                        double alpha_per_s, std::optional<int> joint, std::size_t judged,
-                        const std::string& left_out) {
+                        std::optional<int> joint, std::size_t judged, const std::string& left_out) {
   CalibrationData data;
   data.recordings = std::move(recordings);
-  data.block_s = std::max(kShortestBlock, kBlockTimeConstants / alpha_per_s);
+  data.block_s =
+      std::max(kShortestBlock, kBlockTimeConstants / data.recordings.front().alpha_per_s);
   data.joint = joint;
   data.judged = judged;
   data.split = split(data.recordings, given, 0.5 * data.block_s);
@@ -300,6 +300,7 @@ Fitted fitted(const RobotDescription& robot, const CalibrateRequest& request,
                              tried[i].mean_threshold, i == fit.chosen});
   }
   result.transient = fit.tries.transient;
+  result.act_ratio = best.act_ratio;
   result.unseen_maxima = best.maxima;
   result.level.alarms_per_hour = request.alarms_per_hour;
   result.level.block_s = data.block_s;

@@ -18,8 +18,8 @@ namespace offnominal::desk {
 /// Of recordings of which the first `given` are to calibrate on. Throws InputError where they are
 /// too short, with what was left out of them, or without any error.
 [[nodiscard]] CalibrationData data_of(std::vector<RecordedError> recordings, std::size_t given,
-                                      double alpha_per_s, std::optional<int> joint = {},
-                                      std::size_t judged = 1, const std::string& left_out = {});
+                                      std::optional<int> joint = {}, std::size_t judged = 1,
+                                      const std::string& left_out = {});
 
 /// The bound, before it is judged.
 struct Fitted {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "common/error.hpp"
 #include "replay/replay.hpp"
@@ -22,6 +23,7 @@ RobotDescription without_learning(RobotDescription robot) {
   if (robot.estimator.space == EstimatorSpace::kTorque) {
     bound.kind = BoundSettings::Kind::kPerJoint;
     bound.joints.resize(robot.joints.size());
+    if (robot.estimator.fast_alpha > 0) bound.fast.resize(robot.joints.size());
   }
   return robot;
 }
@@ -54,20 +56,7 @@ Eigen::VectorXi loudest_joints(const Eigen::MatrixXd& error) {
 
 }  // namespace
 
-TickFilter tick_filter(double alpha_per_s, double period_s) {
-  const auto step = [&](double y, double x_begin, double x_end) {
-    const double h = period_s;
-    const double x_middle = 0.5 * (x_begin + x_end);
-    const double k1 = x_begin - alpha_per_s * y;
-    const double k2 = x_middle - alpha_per_s * (y + 0.5 * h * k1);
-    const double k3 = x_middle - alpha_per_s * (y + 0.5 * h * k2);
-    const double k4 = x_end - alpha_per_s * (y + h * k3);
-    return y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-  };
-  return {step(1, 0, 0), step(0, 1, 0), step(0, 0, 1)};
-}
-
-std::vector<StartBefore> starts_before(const TickFilter& filter) {
+std::vector<StartBefore> starts_before(const TickFilter<double>& filter) {
   // Between a start and the next one asked for neither |e| nor its threshold moves far.
   constexpr double kFurther = 1.5;
   constexpr double kForgotten = 0.05;
@@ -102,6 +91,7 @@ RecordedError recorded_error(const RobotDescription& robot, const Log& log) {
   recorded.file = log.file;
   recorded.unit = run.unit;
   recorded.period_s = log.period_s;
+  recorded.alpha_per_s = robot.estimator.alpha;
   recorded.t_s = run.t_s;
   recorded.error = run.error;
   recorded.error_norm = run.error_norm;
@@ -111,30 +101,37 @@ RecordedError recorded_error(const RobotDescription& robot, const Log& log) {
   return recorded;
 }
 
-std::vector<RecordedError> joint_errors(const RobotDescription& robot, const Log& log) {
+OfFilters<std::vector<RecordedError>> joint_errors(const RobotDescription& robot, const Log& log) {
   const Replay run = replay(without_learning(robot), log);
   require_all_accepted(run);
   const auto signals = signals_of(log);
-  std::vector<RecordedError> joints;
-  for (Eigen::Index joint = 0; joint < run.error.cols(); ++joint) {
-    RecordedError& recorded = joints.emplace_back();
-    recorded.file = log.file;
-    recorded.unit = run.joints[static_cast<std::size_t>(joint)].unit;
-    recorded.period_s = log.period_s;
-    recorded.t_s = run.t_s;
-    recorded.error = run.error.col(joint);
-    recorded.error_norm = recorded.error.cwiseAbs();
-    recorded.loudest_joint = Eigen::VectorXi::Constant(run.error.rows(), static_cast<int>(joint));
-    if (robot.bound) recorded.old_threshold = run.thresholds.col(joint);
-    recorded.signals = signals;
-    recorded.scale = robot.estimator.alpha;
-    recorded.of_one_joint = true;
-  }
-  return joints;
+  const auto behind = [&](double alpha_per_s, const Eigen::MatrixXd& errors,
+                          const Eigen::MatrixXd& thresholds) {
+    std::vector<RecordedError> joints;
+    for (Eigen::Index joint = 0; joint < errors.cols(); ++joint) {
+      RecordedError& recorded = joints.emplace_back();
+      recorded.file = log.file;
+      recorded.unit = run.joints[static_cast<std::size_t>(joint)].unit;
+      recorded.period_s = log.period_s;
+      recorded.alpha_per_s = alpha_per_s;
+      recorded.t_s = run.t_s;
+      recorded.error = errors.col(joint);
+      recorded.error_norm = recorded.error.cwiseAbs();
+      recorded.loudest_joint = Eigen::VectorXi::Constant(errors.rows(), static_cast<int>(joint));
+      if (robot.bound) recorded.old_threshold = thresholds.col(joint);
+      recorded.signals = signals;
+      recorded.scale = alpha_per_s;
+      recorded.of_one_joint = true;
+    }
+    return joints;
+  };
+  return {behind(robot.estimator.alpha, run.error, run.thresholds),
+          behind(robot.estimator.fast_alpha, run.fast_error, run.fast_thresholds)};
 }
 
-Eigen::MatrixXd joint_thresholds(const RobotDescription& robot, const Log& log) {
-  return replay(without_learning(robot), log).thresholds;
+OfFilters<Eigen::MatrixXd> joint_thresholds(const RobotDescription& robot, const Log& log) {
+  Replay run = replay(without_learning(robot), log);
+  return {std::move(run.thresholds), std::move(run.fast_thresholds)};
 }
 
 }  // namespace offnominal::desk

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <offnominal/diagnosis/tick_filter.hpp>
 #include <string>
 #include <vector>
 
@@ -12,16 +13,6 @@
 
 namespace offnominal::desk {
 
-/// The estimator's filter W_alpha over one tick, as its Runge-Kutta step has it: a state y with the
-/// input x, linear from x_begin to x_end inside the tick, ends at
-/// keep * y + begin * x_begin + end * x_end.
-struct TickFilter {
-  double keep = 0;
-  double begin = 0;
-  double end = 0;
-};
-[[nodiscard]] TickFilter tick_filter(double alpha_per_s, double period_s);
-
 /// A run that starts `ticks` before a sample stands there where this recording's run does, less
 /// `kept` times where that was at the start: the filter is linear, and zero in the beginning.
 struct StartBefore {
@@ -29,7 +20,7 @@ struct StartBefore {
   double kept = 0;  // keep^ticks
 };
 /// One tick before a sample, and then ever further, until a run is what the recording's own is.
-[[nodiscard]] std::vector<StartBefore> starts_before(const TickFilter& filter);
+[[nodiscard]] std::vector<StartBefore> starts_before(const TickFilter<double>& filter);
 
 /// Rows: samples, columns: joints.
 struct RecordedSignals {
@@ -44,6 +35,7 @@ struct RecordedError {
   // Of e: "rad/s", "m/s", or "1" where joints of both types are mixed; "N m" or "N" of one joint.
   std::string unit;
   double period_s = 0;
+  double alpha_per_s = 0;         // pole of the filter behind which it is
   Eigen::VectorXd t_s;            // as recorded
   Eigen::MatrixXd error;          // e with its signs, rows: samples; of one joint a single column
   Eigen::VectorXd error_norm;     // |e|, what `offnominal replay` shows before any alarm
@@ -61,16 +53,26 @@ struct RecordedError {
                                                  Eigen::Index end) const;
 
   [[nodiscard]] Eigen::Index samples() const { return t_s.size(); }
+  /// What the filter does in a tick.
+  [[nodiscard]] TickFilter<double> filter() const { return tick_filter(alpha_per_s, period_s); }
   [[nodiscard]] double duration_s() const { return static_cast<double>(samples() - 1) * period_s; }
 };
 
+/// One value for the estimator's own filter and one for the fast filter beside it.
+template <typename Value>
+struct OfFilters {
+  Value slow{};
+  Value fast{};  // empty: the robot has none
+};
+
 /// The same of each joint of a robot with EstimatorSpace::kTorque: residuals and thresholds in N m
-/// or N, behind the filter's alpha.
-[[nodiscard]] std::vector<RecordedError> joint_errors(const RobotDescription& robot,
-                                                      const Log& log);
+/// or N, behind each filter's alpha.
+[[nodiscard]] OfFilters<std::vector<RecordedError>> joint_errors(const RobotDescription& robot,
+                                                                 const Log& log);
 
 /// The thresholds of these joints alone, columns: joints. The robot has a bound.
-[[nodiscard]] Eigen::MatrixXd joint_thresholds(const RobotDescription& robot, const Log& log);
+[[nodiscard]] OfFilters<Eigen::MatrixXd> joint_thresholds(const RobotDescription& robot,
+                                                          const Log& log);
 
 /// Runs the monitor of `robot` over `log` without learning. Throws InputError as replay() does, and
 /// where a sample is refused: what the monitor would not look at cannot calibrate it.

@@ -1,6 +1,7 @@
 #include "calibrate/shape_fit.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "calibrate/tightest.hpp"
@@ -192,7 +193,7 @@ ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
       const RecordedError& recording = recordings[fold.recording];
       if (fold.recording != held) {
         basis = filtered_basis(robot, shape, recording);
-        starts = starts_before(tick_filter(robot.estimator.alpha, recording.period_s));
+        starts = starts_before(recording.filter());
       }
       held = fold.recording;
       rows.push_back(fold_rows(basis, starts, recording, fold, velocity_error));
@@ -215,14 +216,22 @@ ShapeFit fit_shape(const RobotDescription& robot, const BoundShape& shape,
         fit.unseen_start_ratio, demanded_of_threshold(rows[i].rows, rows[i].starts, unseeing));
   }
   double sum = 0;
+  double sum_of_logarithms = 0;
   Index count = 0;
+  Index above_nothing = 0;
   for (std::size_t i = 0; i < folds.size(); ++i) {
     const ThresholdRows& of_fold = rows[i].rows;
     fit.apart_ratio = std::max(fit.apart_ratio, demanded_of_threshold(of_fold, rows[i].apart, all));
-    sum += of_fold.threshold({}, of_fold.along(all), all).sum();
+    const VectorXd threshold = of_fold.threshold({}, of_fold.along(all), all);
+    sum += threshold.sum();
     count += of_fold.size();
+    // A run of |e| starts at no threshold.
+    sum_of_logarithms += (threshold.array() > 0).select(threshold.array().log(), 0.0).sum();
+    above_nothing += (threshold.array() > 0).count();
   }
   fit.mean_threshold = sum / static_cast<double>(count);
+  fit.typical_threshold =
+      std::exp(sum_of_logarithms / static_cast<double>(std::max<Index>(above_nothing, 1)));
   fit.coefficients.resize(shape.size + 1);
   fit.coefficients.head(shape.size) = all.head(shape.size);
   fit.coefficients[shape.size] = velocity_error ? *velocity_error : all[unknowns - 1];

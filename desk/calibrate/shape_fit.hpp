@@ -14,6 +14,7 @@ namespace offnominal::desk {
 struct ShapeFit {
   Eigen::VectorXd coefficients;  // c_1.., then v
   double mean_threshold = 0;     // over all folds, rad/s or m/s, without the 2 v of a given v
+  double typical_threshold = 0;  // the same, geometric: of one that is high for moments, the rest
   // |e| over the threshold that the folds of other turns ask for, sample by sample; one entry per
   // fold. The 2 v of a given v is taken off both. kApart in samples that nothing is fitted to.
   std::vector<Eigen::VectorXd> unseen_ratio;

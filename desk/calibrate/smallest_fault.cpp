@@ -94,7 +94,7 @@ double largest_threshold(const JointBoundSettings& bound, double alpha_per_s) {
 SmallestFault smallest_fault(const std::vector<RecordedError>& recordings,
                              const std::vector<Eigen::VectorXd>& thresholds,
                              const JointBoundSettings& bound, double alpha_per_s,
-                             std::optional<double> window_s) {
+                             const FaultWindows& windows) {
   SmallestFault fault;
   double longest_period_s = 0;
   for (const RecordedError& recording : recordings) {
@@ -104,11 +104,15 @@ SmallestFault smallest_fault(const std::vector<RecordedError>& recordings,
   fault.certain_with = kMargin * fault.certain;
   // The sample that shows it may be a period later.
   fault.certain_s = std::log(kMargin / (kMargin - 1)) / alpha_per_s + longest_period_s;
-  fault.window_s = window_s.value_or(kWindowTimeConstants / alpha_per_s);
-  std::vector<double> needed =
-      over_beginnings(recordings, thresholds, alpha_per_s, fault.window_s,
-                      [](const Beginning& one) { return one.least_torque(); });
-  fault.usual = share(needed, kShareSeen);
+  fault.window_s = windows.whole_s.value_or(kWindowTimeConstants / alpha_per_s);
+  const auto seen_within = [&](double window_s) {
+    std::vector<double> needed =
+        over_beginnings(recordings, thresholds, alpha_per_s, window_s,
+                        [](const Beginning& one) { return one.least_torque(); });
+    return share(needed, kShareSeen);
+  };
+  fault.usual = seen_within(fault.window_s);
+  fault.soon = seen_within(windows.soon_s.value_or(0.5 * fault.window_s));
   std::vector<double> delays = over_beginnings(
       recordings, thresholds, alpha_per_s, fault.window_s,
       [&](const Beginning& one) { return one.delay(2 * fault.usual, fault.window_s); });

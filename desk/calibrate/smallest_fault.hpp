@@ -23,13 +23,20 @@ struct SmallestFault {
   double usual = 0;
   double window_s = 0;
   double twice_s = 0;
+  double soon = 0;  // as `usual`, within FaultWindows::soon_s
+};
+
+/// Within which a fault has to be seen, s.
+struct FaultWindows {
+  std::optional<double> whole_s = {};  // none: five time constants of the filter, which has then
+                                       // seen 99 % of a fault
+  std::optional<double> soon_s = {};   // none: half of it
 };
 
 /// Of one joint with this bound: `recordings`, with residuals, and the bound's thresholds in each.
-/// `window_s`: none for five time constants of the filter, after which it has seen 99 % of a fault.
 [[nodiscard]] SmallestFault smallest_fault(const std::vector<RecordedError>& recordings,
                                            const std::vector<Eigen::VectorXd>& thresholds,
                                            const JointBoundSettings& bound, double alpha_per_s,
-                                           std::optional<double> window_s = {});
+                                           const FaultWindows& windows = {});
 
 }  // namespace offnominal::desk

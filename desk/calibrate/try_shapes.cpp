@@ -45,7 +45,7 @@ std::vector<double> judged_maxima(const VectorXd& ratio, std::int64_t length) {
 
 Tried judged(const BoundShape& shape, ShapeFit fit, const CalibrationData& data,
              const CalibrateRequest& request) {
-  Tried tried{shape, std::move(fit), {}, {}, 0, 1, 0};
+  Tried tried{shape, std::move(fit), {}, {}, 0, 1, 1, 0, 0};
   for (std::size_t i = 0; i < data.split.folds.size(); ++i) {
     const RecordedError& recording = data.recordings[data.split.folds[i].recording];
     const auto maxima = judged_maxima(tried.fit.unseen_ratio[i], data.block_samples(recording));
@@ -53,13 +53,20 @@ Tried judged(const BoundShape& shape, ShapeFit fit, const CalibrationData& data,
     tried.largest = std::max(tried.largest, tried.fit.unseen_ratio[i].maxCoeff());
   }
   tried.law = extreme_law_of(tried.maxima);
-  const double per_block = -std::expm1(-request.alarms_per_hour / 3600 * data.block_s);
+  const auto exceeded_at = [&](double alarms_per_hour) {
+    return exceeded_with(tried.law, -std::expm1(-alarms_per_hour / 3600 * data.block_s));
+  };
   const double above = data.joint ? kAboveUnseenOfJoint : kAboveUnseen;
   tried.widening =
       std::max({1.0, above * tried.largest, tried.fit.unseen_start_ratio,
-                kAboveTransient * tried.fit.apart_ratio, exceeded_with(tried.law, per_block)});
+                kAboveTransient * tried.fit.apart_ratio, exceeded_at(request.alarms_per_hour)});
+  if (request.act_alarms_per_hour) {
+    tried.act_ratio = std::max(1.0, exceeded_at(*request.act_alarms_per_hour) / tried.widening);
+  }
   tried.mean_threshold =
       tried.widening * tried.fit.mean_threshold + 2 * request.velocity_error.value_or(0);
+  tried.judged_threshold =
+      data.joint ? tried.widening * tried.fit.typical_threshold : tried.mean_threshold;
   return tried;
 }
 
@@ -101,10 +108,11 @@ Transient transient_of(const CalibrationData& data, const SampleRange& event, co
 
 // The constant bound whose threshold, once the filter has settled, is that share of the largest
 // |e|.
-double lowest_constant(const std::vector<RecordedError>& recordings, double alpha_per_s) {
+double lowest_constant(const std::vector<RecordedError>& recordings) {
   double largest = 0;  // of |e|, in the bound's unit
   for (const RecordedError& recording : recordings) {
-    largest = std::max(largest, recording.error_norm.maxCoeff() * alpha_per_s / recording.scale);
+    largest = std::max(largest,
+                       recording.error_norm.maxCoeff() * recording.alpha_per_s / recording.scale);
   }
   return kLowestShareOfError * largest;
 }
@@ -132,7 +140,7 @@ Tries try_shapes(const RobotDescription& robot, const CalibrationData& data,
   const auto try_constant = [&](const BoundShape& shape) {
     Tried tried = try_shape(shape);
     if (tried.fit.coefficients[0] > 0) return tried;
-    range.lowest = lowest_constant(fitted, robot.estimator.alpha);
+    range.lowest = lowest_constant(fitted);
     return try_shape(shape);
   };
   const std::vector<BoundShape> shapes =
@@ -160,10 +168,10 @@ std::size_t choice_among(const std::vector<Tried>& tried) {
   const auto kind_of = [&](std::size_t i) { return tried[i].shape.settings.kind; };
   std::size_t choice = 0;
   for (const auto kind : {BoundSettings::Kind::kScaledNorm, BoundSettings::Kind::kTable}) {
-    double best = (1 - kWorthwhile) * tried[choice].mean_threshold;
+    double best = (1 - kWorthwhile) * tried[choice].judged_threshold;
     for (std::size_t i = 0; i < tried.size(); ++i) {
-      if (kind_of(i) != kind || tried[i].mean_threshold >= best) continue;
-      best = tried[i].mean_threshold;
+      if (kind_of(i) != kind || tried[i].judged_threshold >= best) continue;
+      best = tried[i].judged_threshold;
       choice = i;
     }
   }

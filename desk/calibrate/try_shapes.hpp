@@ -37,7 +37,11 @@ struct Tried {
   ExtremeLaw law;
   double largest = 0;
   double widening = 1;
+  double act_ratio = 1;  // of the second level to the first
   double mean_threshold = 0;
+  // By which shapes are compared: the mean threshold; of one joint, whose table is high for the
+  // moments of a reversal, the typical one, which says what is seen in between.
+  double judged_threshold = 0;
 };
 
 /// Constant first. A transient is not among what the widening is for (Transient).

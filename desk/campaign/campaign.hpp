@@ -47,10 +47,11 @@ enum class DetectorKind : std::uint8_t {
 
 struct DetectorSettings {
   DetectorKind kind = DetectorKind::kTorque;
-  std::string name;           // of its own in a campaign
-  double alpha_per_s = 10;    // pole of the monitor's filter, or the observers' gain
-  bool accommodates = false;  // kTorque: each run with a fault once more, with it in the loop
-  double filter_share = 0;    // kKdl: the part of the last estimate that is kept, 0 to below 1
+  std::string name;             // of its own in a campaign
+  double alpha_per_s = 10;      // pole of the monitor's filter, or the observers' gain
+  double fast_alpha_per_s = 0;  // kTorque: of a second filter beside it; 0: none
+  bool accommodates = false;    // kTorque: each run with a fault once more, with it in the loop
+  double filter_share = 0;      // kKdl: the part of the last estimate that is kept, 0 to below 1
 };
 
 enum class FaultKind : std::uint8_t {

@@ -58,6 +58,19 @@ PlantSettings read_plant(const TomlTable& table) {
   return plant;
 }
 
+void read_fast_alpha(const TomlTable& table, const std::string& kind, DetectorSettings& detector) {
+  if (!table.has("fast_alpha_per_s")) return;
+  if (detector.kind != DetectorKind::kTorque) {
+    table.refuse("fast_alpha_per_s", "a second filter of a detector of kind " + kind,
+                 "it with kind = \"torque\" alone", "leave it out");
+  }
+  detector.fast_alpha_per_s = table.number("fast_alpha_per_s", at_most(positive("1/s"), 1000));
+  if (detector.fast_alpha_per_s > detector.alpha_per_s) return;
+  table.refuse("fast_alpha_per_s", shortest(detector.fast_alpha_per_s),
+               "above alpha_per_s, which is " + shortest(detector.alpha_per_s),
+               "give the faster pole here and the slower one in alpha_per_s");
+}
+
 DetectorSettings read_detector(const TomlTable& table, const PlantSettings& plant) {
   const std::vector<std::string> kinds{"torque", "acceleration", "momentum_observer", "kdl"};
   DetectorSettings detector;
@@ -72,6 +85,7 @@ DetectorSettings read_detector(const TomlTable& table, const PlantSettings& plan
     }
     detector.filter_share = table.number("filter_share", at_most(not_negative("1"), 0.999));
   }
+  read_fast_alpha(table, kinds[kind], detector);
   detector.accommodates = table.boolean("accommodates", false);
   if (detector.accommodates && detector.kind != DetectorKind::kTorque) {
     table.refuse("accommodates", "true of a detector of kind " + kinds[kind],
@@ -85,6 +99,9 @@ DetectorSettings read_detector(const TomlTable& table, const PlantSettings& plan
   detector.name = table.text_or_empty("name");
   if (detector.name.empty()) {
     detector.name = fmt::format("{} {}", kinds[kind], shortest(detector.alpha_per_s));
+    if (detector.fast_alpha_per_s > 0) {
+      detector.name += fmt::format(" and {}", shortest(detector.fast_alpha_per_s));
+    }
   }
   return detector;
 }
@@ -92,15 +109,18 @@ DetectorSettings read_detector(const TomlTable& table, const PlantSettings& plan
 std::vector<DetectorSettings> read_detectors(const TomlTable& root, const PlantSettings& plant) {
   std::vector<DetectorSettings> detectors;
   std::set<std::string> names;
-  for (const TomlTable& table :
-       root.tables("detector", {"kind", "name", "alpha_per_s", "accommodates", "filter_share"})) {
+  for (const TomlTable& table : root.tables(
+           "detector",
+           {"kind", "name", "alpha_per_s", "fast_alpha_per_s", "accommodates", "filter_share"})) {
     DetectorSettings detector = read_detector(table, plant);
     if (!names.insert(detector.name).second) {
       table.refuse("", "a second detector called " + detector.name, "a name for each",
                    "give it a name");
     }
-    if (detector.alpha_per_s * plant.period_s > 1) {
-      table.refuse("alpha_per_s", shortest(detector.alpha_per_s),
+    const bool is_fast = detector.fast_alpha_per_s > detector.alpha_per_s;
+    const double fastest = is_fast ? detector.fast_alpha_per_s : detector.alpha_per_s;
+    if (fastest * plant.period_s > 1) {
+      table.refuse(is_fast ? "fast_alpha_per_s" : "alpha_per_s", shortest(fastest),
                    "at most 1 / period_s = " + shortest(1 / plant.period_s),
                    "take a slower filter");
     }

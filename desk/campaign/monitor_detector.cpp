@@ -47,6 +47,9 @@ class MonitorDetector final : public Detector {
       return {shown.t_s, ratio_of(shown.error_norm, shown.threshold)};
     }
     Judged judged{shown.t_s, ratio_of(shown.error, shown.thresholds)};
+    if (shown.fast_error.size() > 0) {
+      judged.ratio = judged.ratio.cwiseMax(ratio_of(shown.fast_error, shown.fast_thresholds));
+    }
     add_jumps(shown, judged.ratio);
     if (!shown.faults.empty() && shown.faults.front().detection_time_s == shown.detection_time_s) {
       const IsolatedFault& said = shown.faults.front();
@@ -81,6 +84,7 @@ std::unique_ptr<Detector> calibrated_monitor(const DetectorSettings& settings,
                                              const std::vector<Log>& logs) {
   RobotDescription robot = campaign.model;
   robot.estimator.alpha = settings.alpha_per_s;
+  robot.estimator.fast_alpha = settings.fast_alpha_per_s;
   const CalibrateRequest request{campaign.calibration.alarms_per_hour, {}, ""};
   if (settings.kind == DetectorKind::kTorque) {
     robot.estimator.space = EstimatorSpace::kTorque;

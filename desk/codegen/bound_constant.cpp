@@ -65,11 +65,30 @@ std::string joint_bound_text(const JointBound<double>& bound, JointType type) {
   const auto in_use = [&](const auto& values) {
     return cpp_text::numbers(std::span<const double>(values.data(), bound.points));
   };
-  std::string text = member("points", std::to_string(bound.points));
+  const BoundVariableName& variable = bound_variable_names(bound.variable);
+  std::string text;
+  if (bound.points > 1) {
+    text += member("variable", fmt::format("offnominal::BoundVariable::{}", variable.enumerator));
+  }
+  text += member("points", std::to_string(bound.points));
   if (bound.points > 1 || bound.at[0] != 0)
-    text += member("at", in_use(bound.at), unit_of(Quantity::kVelocity, type));
+    text += member("at", in_use(bound.at), unit_of(variable.quantity, type));
   text += member("value", in_use(bound.value), unit);
-  return text + member("momentum_error", cpp_text::number(bound.momentum_error), unit + " s");
+  text += member("momentum_error", cpp_text::number(bound.momentum_error), unit + " s");
+  return text + member("act_ratio", cpp_text::number(bound.act_ratio), "times the threshold");
+}
+
+// ".joints = {{...}}," of the bounds of one filter.
+std::string joint_bounds_constant(const PerJoint<kRuntimeJoints, JointBound<double>>& bounds,
+                                  const RobotDescription& robot) {
+  std::string joints;
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const RobotJoint& joint = robot.joints[i];
+    joints += cpp_text::comment(fmt::format("joint {}: {}", i + 1, joint.name));
+    joints +=
+        "{\n" + cpp_text::indented(joint_bound_text(bounds[i], joint.joint.type), "    ") + "},\n";
+  }
+  return ".joints = {{\n" + cpp_text::indented(joints, "    ") + "}},\n";
 }
 
 }  // namespace
@@ -83,19 +102,16 @@ BoundConstant bound_constant(const UncertaintyBound<kRuntimeJoints, double>& bou
 
 BoundConstant bound_constant(const TorqueBound<kRuntimeJoints, double>& bound,
                              const RobotDescription& robot) {
-  std::string joints;
-  for (std::size_t i = 0; i < bound.joints.size(); ++i) {
-    const RobotJoint& joint = robot.joints[i];
-    joints += cpp_text::comment(fmt::format("joint {}: {}", i + 1, joint.name));
-    joints += "{\n" +
-              cpp_text::indented(joint_bound_text(bound.joints[i], joint.joint.type), "    ") +
-              "},\n";
+  std::string members = joint_bounds_constant(bound.joints, robot);
+  if (bound.fast.alpha > 0) {
+    const std::string fast = member("alpha", cpp_text::number(bound.fast.alpha), "1/s") +
+                             joint_bounds_constant(bound.fast.joints, robot);
+    members += cpp_text::comment("of the second, faster filter");
+    members += ".fast = {\n" + cpp_text::indented(fast, "    ") + "},\n";
   }
   return {.type = "offnominal::TorqueBound<kJoints, Scalar>",
-          .members = ".joints = {{\n" + cpp_text::indented(joints, "    ") + "}},\n",
-          .remark =
-              "mu_bar of each joint, N m or N, over its own speed: what its unmodelled torque "
-              "does not exceed."};
+          .members = members,
+          .remark = "mu_bar of each joint, N m or N: what its unmodelled torque does not exceed."};
 }
 
 }  // namespace offnominal::desk

@@ -26,7 +26,10 @@ BoundSettings no_bound(const RobotDescription& robot) {
   bound.constant.value = kBeyondAll;
   if (robot.estimator.space == EstimatorSpace::kTorque) {
     bound.kind = BoundSettings::Kind::kPerJoint;
-    bound.joints.assign(robot.joints.size(), JointBoundSettings{{}, {kBeyondAll}, 0});
+    JointBoundSettings of_joint;
+    of_joint.value = {kBeyondAll};
+    bound.joints.assign(robot.joints.size(), of_joint);
+    if (robot.estimator.fast_alpha > 0) bound.fast = bound.joints;
   }
   return bound;
 }
@@ -208,8 +211,9 @@ void Live::keep(const BusSample& sample, double t_s, const Watched& said) {
   const bool by_joint = judged_.size() > 1 || said.thresholds.size() > 0;
   for (std::size_t i = 0; i < judged_.size(); ++i) {
     const auto index = static_cast<Eigen::Index>(i);
-    residual_[i] = by_joint ? std::abs(said.error[index]) : said.error_norm;
-    const double threshold = by_joint ? said.thresholds[index] : said.threshold;
+    const Watched::Nearest nearest = by_joint ? said.nearest(index) : Watched::Nearest{};
+    residual_[i] = by_joint ? nearest.residual : said.error_norm;
+    const double threshold = by_joint ? nearest.threshold : said.threshold;
     threshold_[i] = has_bound_ ? threshold : kNone;
     now_.beyond[i] = by_joint ? said.levels[i] : said.level;
   }

@@ -52,6 +52,9 @@ void add_velocity_error(const RobotDescription& robot, Scalar error,
   const std::vector<double> per_velocity = momentum_per_velocity(robot);
   for (std::size_t i = 0; i < bound.joints.size(); ++i) {
     bound.joints[i].momentum_error += static_cast<Scalar>(per_velocity[i]) * error;
+    if (bound.fast.alpha > 0) {
+      bound.fast.joints[i].momentum_error = bound.joints[i].momentum_error;
+    }
   }
 }
 

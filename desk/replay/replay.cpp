@@ -31,15 +31,18 @@ void check_settings(const RobotDescription& robot, const Log& log) {
          .mend = "give the recording's own robot file"});
   }
   require_bound(robot, "robot " + robot.name);
-  const double pole = robot.estimator.alpha * log.period_s;
-  if (pole > kMaxPolePerTick) {
+  const auto require_followed = [&](const std::string& key, double alpha_per_s) {
+    const double pole = alpha_per_s * log.period_s;
+    if (pole <= kMaxPolePerTick) return;
     throw InputError(
         {.file = log.file,
          .place = "sampling period " + shortest(log.period_s) + " s",
-         .found = "alpha_per_s * period = " + shortest(pole),
+         .found = key + " * period = " + shortest(pole),
          .allowed = "at most " + shortest(kMaxPolePerTick),
-         .mend = "lower alpha_per_s in the robot file, or take a recording with faster sampling"});
-  }
+         .mend = "lower " + key + " in the robot file, or take a recording with faster sampling"});
+  };
+  require_followed("alpha_per_s", robot.estimator.alpha);
+  require_followed("fast_alpha_per_s", robot.estimator.fast_alpha);
   if (robot.estimator.hidden_units > kMaxHiddenUnits) {
     throw InputError({.file = "robot " + robot.name,
                       .place = "estimator.hidden_units",
@@ -80,6 +83,11 @@ Replay replay(const RobotDescription& robot, const Log& log, const OnShare& on_s
   result.hidden_units = robot.estimator.hidden_units;
   result.seed = robot.estimator.seed;
   result.filter_s = 1 / robot.estimator.alpha;
+  for (const auto* bounds : {&robot.bound->joints, &robot.bound->fast}) {
+    for (const JointBoundSettings& joint : *bounds) {
+      result.has_two_levels = result.has_two_levels || joint.act_ratio > 1;
+    }
+  }
   for (const RobotJoint& joint : robot.joints) {
     result.joint_names.push_back(joint.name);
     const JointType type = joint.joint.type;
@@ -131,9 +139,10 @@ std::string joints_words(const Replay& replay) {
   std::string words =
       fmt::format("Off nominal: joint {} ({}) first, ", first + 1, replay.joint_names[first]);
   const bool jumped = !crossed.alarms.empty() && crossed.alarms.front().is_jump();
-  words += jumped ? fmt::format("at {:.3f} s its position is where no motion brings it", at_s)
-                  : fmt::format("its residual crosses its threshold at {:.3f} s, up to {:.3g} {}",
-                                at_s, crossed.max_residual, crossed.unit);
+  words +=
+      jumped ? fmt::format("at {:.3f} s its position is where no motion brings it", at_s)
+             : fmt::format("its residual crosses its threshold at {:.3f} s, up to {:.3g} {}", at_s,
+                           std::max(crossed.max_residual, crossed.fast_max_residual), crossed.unit);
   for (std::size_t k = 0; k < later.size(); ++k) {
     const auto& [time_s, joint] = later[k];
     words += fmt::format("{} joint {} ({}) ", k == 0 ? "; then" : ",", joint + 1,
@@ -181,6 +190,11 @@ std::string words_of(const Replay& replay) {
   } else {
     words = fmt::format("Nominal: the residual stays below its threshold, at most {:.1f} % of it.",
                         100 * replay.max_error_to_threshold);
+  }
+  if (replay.has_two_levels && replay.detection_time_s) {
+    words += replay.act_time_s
+                 ? fmt::format(" Beyond the level to act at {:.3f} s.", *replay.act_time_s)
+                 : std::string(" Never beyond the level to act.");
   }
   for (std::size_t i = 0; i < replay.faults.size(); ++i) {
     const IsolatedFault& fault = replay.faults[i];

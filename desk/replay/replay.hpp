@@ -50,7 +50,9 @@ struct JointReplay {
   std::string unit;  // of residual and threshold: "N m" or "N"
   double max_residual = 0;
   double max_threshold = 0;
-  double max_error_to_threshold = 0;
+  double fast_max_residual = 0;  // behind the fast filter, where there is one
+  double fast_max_threshold = 0;
+  double max_error_to_threshold = 0;       // of either
   std::optional<double> detection_time_s;  // its first alarm, time of the recording
   std::vector<Alarm> alarms;
 };
@@ -72,13 +74,17 @@ struct Replay {
 
   // One entry per sample that was accepted; times as in the recording.
   Eigen::VectorXd t_s;
-  Eigen::MatrixXd error;       // e; rows: samples, columns: joints
-  Eigen::VectorXd error_norm;  // |e|
-  Eigen::VectorXd threshold;   // mu
-  Eigen::MatrixXd thresholds;  // of each joint, as error; empty where there is one of all
-  Eigen::MatrixXd psi_hat;     // rows: samples, columns: joints; rad/s^2 or m/s^2
+  Eigen::MatrixXd error;            // e; rows: samples, columns: joints
+  Eigen::VectorXd error_norm;       // |e|
+  Eigen::VectorXd threshold;        // mu
+  Eigen::MatrixXd thresholds;       // of each joint, as error; empty where there is one of all
+  Eigen::MatrixXd fast_error;       // error and thresholds behind the fast filter; empty: there
+  Eigen::MatrixXd fast_thresholds;  //   is none
+  Eigen::MatrixXd psi_hat;          // rows: samples, columns: joints; rad/s^2 or m/s^2
 
   std::optional<double> detection_time_s;  // first alarm, time of the recording
+  bool has_two_levels = false;             // a joint's act_ratio is above 1
+  std::optional<double> act_time_s;        // the first one beyond the second level
   std::vector<Alarm> alarms;
   std::vector<JointReplay> joints;  // empty where there is one threshold of all
   std::optional<int> first_joint;   // from 0, of the first alarm where joints are told apart

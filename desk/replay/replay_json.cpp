@@ -58,10 +58,15 @@ void add_joints(const Replay& replay, nlohmann::json& json) {
                       {"max_abs_psi_hat", replay.psi_hat.col(index).cwiseAbs().maxCoeff()},
                       {"detection_time_s", time_or_null(joint.detection_time_s)},
                       {"alarms", alarms_json(joint.alarms)}});
+    if (replay.fast_error.size() > 0) {
+      joints.back()["fast_max_residual"] = joint.fast_max_residual;
+      joints.back()["fast_max_threshold"] = joint.fast_max_threshold;
+    }
   }
   // Of whichever joint was nearest to its threshold, and of mixed units.
   for (const char* key : {"max_error", "max_threshold", "max_abs_psi_hat"}) json[key] = nullptr;
   json["space"] = "torque";
+  if (replay.has_two_levels) json["act_time_s"] = time_or_null(replay.act_time_s);
   json["first_joint"] =
       replay.first_joint ? nlohmann::json(*replay.first_joint + 1) : nlohmann::json();
   json["joints"] = joints;

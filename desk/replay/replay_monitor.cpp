@@ -39,9 +39,13 @@ class AlarmCollector {
 // Collects what the monitor says of one accepted sample after the other.
 class ReplayCollector {
  public:
-  ReplayCollector(Eigen::Index samples, int joints, Replay& result)
+  ReplayCollector(Eigen::Index samples, int joints, bool has_fast, Replay& result)
       : result_(result), joints_(result.joints.size()) {
     if (!result.joints.empty()) result.thresholds.resize(samples, joints);
+    if (has_fast) {
+      result.fast_error.resize(samples, joints);
+      result.fast_thresholds.resize(samples, joints);
+    }
     result.t_s.resize(samples);
     result.error.resize(samples, joints);
     result.error_norm.resize(samples);
@@ -63,6 +67,7 @@ class ReplayCollector {
     result_.max_weight_norm = std::max(result_.max_weight_norm, output.weight_norm);
     any_.take(t_s, output.level, ratio, result_.alarms, result_.detection_time_s);
     if (!joints_.empty() && output.level) name_joints(output);
+    if (output.acts && !result_.act_time_s) result_.act_time_s = t_s;
   }
 
   void refuse(double t_s, Status status) {
@@ -80,7 +85,10 @@ class ReplayCollector {
     result_.error_norm.conservativeResize(count_);
     result_.threshold.conservativeResize(count_);
     result_.psi_hat.conservativeResize(count_, Eigen::NoChange);
-    if (!result_.joints.empty()) result_.thresholds.conservativeResize(count_, Eigen::NoChange);
+    for (Eigen::MatrixXd* of_joints :
+         {&result_.thresholds, &result_.fast_error, &result_.fast_thresholds}) {
+      if (of_joints->size() > 0) of_joints->conservativeResize(count_, Eigen::NoChange);
+    }
   }
 
  private:
@@ -95,7 +103,8 @@ class ReplayCollector {
   void name_joints(const Watched& output) {
     std::vector<int>& named = result_.alarms.back().joints;
     const auto ratio = [&](int joint) {
-      return ratio_of(std::abs(output.error[joint]), output.thresholds[joint]);
+      const Watched::Nearest nearest = output.nearest(joint);
+      return ratio_of(nearest.residual, nearest.threshold);
     };
     const auto before = static_cast<std::ptrdiff_t>(named.size());
     for (std::size_t i = 0; i < joints_.size(); ++i) {
@@ -109,15 +118,25 @@ class ReplayCollector {
 
   void accept_joints(double t_s, const Watched& output) {
     result_.thresholds.row(count_) = output.thresholds.transpose();
+    const bool has_fast = result_.fast_error.size() > 0;
+    if (has_fast) {
+      result_.fast_error.row(count_) = output.fast_error.transpose();
+      result_.fast_thresholds.row(count_) = output.fast_thresholds.transpose();
+    }
     if (output.latched && !result_.first_joint) result_.first_joint = output.first_joint;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       const auto index = static_cast<Eigen::Index>(i);
-      const double residual = std::abs(output.error[index]);
-      const double threshold = output.thresholds[index];
-      const double ratio = ratio_of(residual, threshold);
+      const Watched::Nearest nearest = output.nearest(index);
+      const double ratio = ratio_of(nearest.residual, nearest.threshold);
       JointReplay& joint = result_.joints[i];
-      joint.max_residual = std::max(joint.max_residual, residual);
-      joint.max_threshold = std::max(joint.max_threshold, threshold);
+      joint.max_residual = std::max(joint.max_residual, std::abs(output.error[index]));
+      joint.max_threshold = std::max(joint.max_threshold, output.thresholds[index]);
+      if (has_fast) {
+        joint.fast_max_residual =
+            std::max(joint.fast_max_residual, std::abs(output.fast_error[index]));
+        joint.fast_max_threshold =
+            std::max(joint.fast_max_threshold, output.fast_thresholds[index]);
+      }
       joint.max_error_to_threshold = std::max(joint.max_error_to_threshold, ratio);
       joints_[i].take(t_s, output.levels[i], ratio, joint.alarms, joint.detection_time_s);
     }
@@ -150,7 +169,8 @@ void replay_monitor(const RobotDescription& robot, const Log& log, const OnShare
     }
   };
   const auto watch = make_watch(robot, log.period_s, take, Detections::kEach);
-  ReplayCollector collector(log.sample_count(), robot.joint_count(), result);
+  ReplayCollector collector(log.sample_count(), robot.joint_count(), robot.estimator.fast_alpha > 0,
+                            result);
   constexpr Eigen::Index kToldEvery = 10'000;
   for (Eigen::Index i = 0; i < log.sample_count(); ++i) {
     if (on_share && i % kToldEvery == 0) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "replay/replay.hpp"
 #include "replay/residual_chart.hpp"
@@ -58,15 +59,21 @@ Chart residual_chart(const Replay& replay) {
   return chart;
 }
 
-Chart joint_chart(const Replay& replay, Eigen::Index joint) {
+// Of one filter.
+struct FilterSeries {
+  std::string title;
+  const Eigen::MatrixXd& error;
+  const Eigen::MatrixXd& thresholds;
+};
+
+Chart joint_chart(const Replay& replay, const FilterSeries& filter, Eigen::Index joint) {
   const auto index = static_cast<std::size_t>(joint);
   const JointReplay& of_joint = replay.joints[index];
   Chart chart = chart_against_threshold(EstimatorSpace::kTorque, of_joint.unit,
-                                        line_of(replay, replay.error.col(joint).cwiseAbs()),
-                                        line_of(replay, replay.thresholds.col(joint)));
-  chart.title = "Residual against its threshold, " + replay.joint_names[index];
+                                        line_of(replay, filter.error.col(joint).cwiseAbs()),
+                                        line_of(replay, filter.thresholds.col(joint)));
+  chart.title = filter.title + ", " + replay.joint_names[index];
   put_on_time(replay, of_joint.detection_time_s, chart);
-  chart.slider = joint == 0;
   return chart;
 }
 
@@ -80,6 +87,11 @@ Table joint_table(const Replay& replay) {
                    {"largest residual", "", ".4g"},
                    {"largest threshold", "", ".4g"},
                    {"largest ratio", "1", ".3g"}};
+  const bool has_fast = replay.fast_error.size() > 0;
+  if (has_fast) {
+    table.columns.push_back({"behind the fast filter", "", ".4g"});
+    table.columns.push_back({"its largest threshold", "", ".4g"});
+  }
   for (std::size_t i = 0; i < replay.joints.size(); ++i) {
     const JointReplay& joint = replay.joints[i];
     table.rows.push_back({replay.joint_names[i],
@@ -90,6 +102,9 @@ Table joint_table(const Replay& replay) {
                           joint.max_threshold,
                           joint.max_error_to_threshold});
     if (joint.detection_time_s) table.rows.back()[1] = *joint.detection_time_s;
+    if (!has_fast) continue;
+    table.rows.back().emplace_back(joint.fast_max_residual);
+    table.rows.back().emplace_back(joint.fast_max_threshold);
   }
   return table;
 }
@@ -110,8 +125,14 @@ void add_residuals(const Replay& replay, Section& section) {
       "and "
       "its uncertainty bound say when the residual exceeds the threshold.";
   section.blocks.emplace_back(joint_table(replay));
+  const FilterSeries slow{"Residual against its threshold", replay.error, replay.thresholds};
+  const FilterSeries fast{"The same behind the fast filter", replay.fast_error,
+                          replay.fast_thresholds};
   for (Eigen::Index joint = 0; joint < replay.error.cols(); ++joint) {
-    section.blocks.emplace_back(joint_chart(replay, joint));
+    Chart chart = joint_chart(replay, slow, joint);
+    chart.slider = joint == 0;
+    section.blocks.emplace_back(std::move(chart));
+    if (fast.error.size() > 0) section.blocks.emplace_back(joint_chart(replay, fast, joint));
   }
 }
 

@@ -97,11 +97,12 @@ class FaultNamer<TorqueSpace> {
 
 // Of the sample that a run starts with: no error yet.
 template <typename Space>
-MonitorOutput<kRuntimeJoints, double, Space> first_output(std::size_t joints) {
+MonitorOutput<kRuntimeJoints, double, Space> first_output(std::size_t joints, bool has_fast) {
   MonitorOutput<kRuntimeJoints, double, Space> output;
   size_for(joints, output.error, output.psi_hat, output.compensation.torque);
   if constexpr (std::is_same_v<Space, TorqueSpace>) {
     size_for(joints, output.thresholds, output.detector.joints);
+    if (has_fast) size_for(joints, output.fast_error, output.fast_thresholds);
   }
   return output;
 }
@@ -121,7 +122,7 @@ class WatchOf final : public Watch {
         detections_(detections),
         counts_time_(counts_time(robot)),
         config_(config_of(robot, period_s)),
-        at_start_(first_output<Space>(robot.joints.size())),
+        at_start_(first_output<Space>(robot.joints.size(), robot.estimator.fast_alpha > 0)),
         output_(at_start_),
         namer_(config_, on_fault) {
     require_start(Monitored::create(config_, monitor_), robot);
@@ -170,6 +171,22 @@ class WatchOf final : public Watch {
   using Monitored = ReplayMonitor<Space>;
   using Output = MonitorOutput<kRuntimeJoints, double, Space>;
 
+  // Of both filters, where there are two.
+  using State = typename Monitored::State;
+  struct Thresholds {
+    typename Space::template Threshold<kRuntimeJoints, double> slow;
+    Vector<kRuntimeJoints, double> fast;
+  };
+  static Thresholds thresholds_of(const State& state) {
+    Thresholds thresholds{state.estimator.mu, {}};
+    if constexpr (std::is_same_v<Space, TorqueSpace>) thresholds.fast = state.fast.mu;
+    return thresholds;
+  }
+  static void set_thresholds(const Thresholds& thresholds, State& state) {
+    state.estimator.mu = thresholds.slow;
+    if constexpr (std::is_same_v<Space, TorqueSpace>) state.fast.mu = thresholds.fast;
+  }
+
   static MonitorConfig<kRuntimeJoints, double, Space> config_of(const RobotDescription& robot,
                                                                 double period_s) {
     auto config = monitor_config_of<kRuntimeJoints, double, Space>(robot);
@@ -182,15 +199,16 @@ class WatchOf final : public Watch {
   // begins at nothing is that of the bound at an instant, which a healthy robot may exceed for as
   // long as the filter forgives it (docs/theory.md, erratum 6).
   Status begin_afresh(const Sample& sample, std::uint64_t tick) {
-    const auto before = state_->initialised ? std::optional(state_->estimator.mu) : std::nullopt;
+    const bool had_begun = state_->initialised;
+    Thresholds threshold = thresholds_of(*state_);
     Status status = monitor_.reset(sample, *state_);
     if (status != Status::kOk) return status;
-    const auto threshold = before.value_or(state_->estimator.mu);
+    if (!had_begun) threshold = thresholds_of(*state_);
     if (counts_time_ && tick > 0) {
       state_->tick = tick - 1;
       status = monitor_.resume(sample, 0, *state_);
     }
-    state_->estimator.mu = threshold;
+    set_thresholds(threshold, *state_);
     return status;
   }
 
@@ -215,8 +233,9 @@ class WatchOf final : public Watch {
   void forget_what_was_learnt() {
     const auto fresh = std::make_unique<typename Monitored::State>();
     if (monitor_.reset(state_->sample, *fresh) != Status::kOk) return;
-    fresh->estimator.mu = state_->estimator.mu;
+    set_thresholds(thresholds_of(*state_), *fresh);
     state_->estimator = fresh->estimator;
+    if constexpr (std::is_same_v<Space, TorqueSpace>) state_->fast = fresh->fast;
   }
 
   [[nodiscard]] bool is_of_another_joint() const {
@@ -235,6 +254,9 @@ class WatchOf final : public Watch {
   void forget() {
     output_.error = at_start_.error;
     output_.error_norm = at_start_.error_norm;
+    if constexpr (std::is_same_v<Space, TorqueSpace>) {
+      output_.fast_error = at_start_.fast_error;
+    }
     output_.psi_hat = at_start_.psi_hat;
     output_.compensation = at_start_.compensation;
     output_.detector = at_start_.detector;
@@ -249,8 +271,11 @@ class WatchOf final : public Watch {
     said_.weight_norm = std::sqrt(state_->estimator.theta_squared_norm);
     said_.level = output_.detector.level;
     said_.latched = output_.detector.latched;
+    said_.acts = output_.detector.acts;
     if constexpr (std::is_same_v<Space, TorqueSpace>) {
       said_.thresholds = output_.thresholds;
+      said_.fast_error = output_.fast_error;
+      said_.fast_thresholds = output_.fast_thresholds;
       said_.first_joint = said_.latched ? output_.detector.first_joint : -1;
       for (std::size_t i = 0; i < output_.detector.joints.size(); ++i) {
         said_.levels[i] = output_.detector.joints[i].level;
@@ -275,6 +300,13 @@ class WatchOf final : public Watch {
 };
 
 }  // namespace
+
+Watched::Nearest Watched::nearest(Eigen::Index joint) const {
+  const Nearest slow{std::abs(error[joint]), thresholds[joint]};
+  if (fast_error.size() == 0) return slow;
+  const Nearest fast{std::abs(fast_error[joint]), fast_thresholds[joint]};
+  return fast.residual * slow.threshold > slow.residual * fast.threshold ? fast : slow;
+}
 
 std::unique_ptr<Watch> make_watch(const RobotDescription& robot, double period_s,
                                   const Watch::OnFault& on_fault, Detections detections) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -25,17 +26,29 @@ inline constexpr std::int64_t kBorneInARow = 2;
 
 // What the monitor says of the last sample that it accepted; one number per joint in every vector.
 struct Watched {
-  Vector<kRuntimeJoints, double> error;         // e, rad/s or m/s; in torque space N m or N
-  double error_norm = 0;                        // |e|; in torque space of the joint nearest to its
-  double threshold = 0;                         //   threshold, as this
-  Vector<kRuntimeJoints, double> thresholds;    // of each joint; empty where there is one of all
+  Vector<kRuntimeJoints, double> error;       // e, rad/s or m/s; in torque space N m or N
+  double error_norm = 0;                      // |e|; in torque space of the joint nearest to its
+  double threshold = 0;                       //   threshold, as this
+  Vector<kRuntimeJoints, double> thresholds;  // of each joint; empty where there is one of all
+  // The same behind the fast filter; empty where there is none.
+  Vector<kRuntimeJoints, double> fast_error;
+  Vector<kRuntimeJoints, double> fast_thresholds;
   Vector<kRuntimeJoints, double> psi_hat;       // rad/s^2 or m/s^2; in torque space N m or N
   Vector<kRuntimeJoints, double> compensation;  // by what is known best, N m or N
   double weight_norm = 0;
   bool level = false;                                               // beyond the threshold now
   std::array<bool, static_cast<std::size_t>(kMaxJoints)> levels{};  // of each, in torque space
   bool latched = false;  // was beyond, ever, or since the detection was taken back
+  bool acts = false;     // the same of the second level; of one level as latched
   int first_joint = -1;  // from 0, that was first; -1: none, or one threshold of all
+
+  /// Of a joint that is judged by itself: size of the residual and threshold, N m or N, of the
+  /// filter that is nearer to its threshold, or farther beyond.
+  struct Nearest {
+    double residual = 0;
+    double threshold = 0;
+  };
+  [[nodiscard]] Nearest nearest(Eigen::Index joint) const;
 };
 
 class Watch {

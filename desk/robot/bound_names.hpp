@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <offnominal/diagnosis/bound.hpp>
 #include <offnominal/model/quantity.hpp>
+#include <string>
 
 #include "robot/robot.hpp"
 
@@ -33,6 +34,11 @@ inline constexpr std::array<BoundVariableName, 3> kBoundVariableNames{{
 
 [[nodiscard]] constexpr const BoundVariableName& bound_variable_names(BoundVariable variable) {
   return kBoundVariableNames[static_cast<std::size_t>(variable)];
+}
+
+// Of a robot file: the tables of joints whose bound is over that variable, "over_speed".
+[[nodiscard]] inline std::string key_of_tables(BoundVariable variable) {
+  return std::string("over_") + bound_variable_names(variable).name;
 }
 
 }  // namespace offnominal::desk

@@ -12,6 +12,6 @@ namespace offnominal::desk {
 
 /// The keys of Kind::kPerJoint, `kind` first, without a line break at the end: the joints'
 /// constants in one list, what depends on a speed in tables of one line.
-[[nodiscard]] std::string joint_bounds_text(const std::vector<JointBoundSettings>& joints);
+[[nodiscard]] std::string joint_bounds_text(const BoundSettings& bound);
 
 }  // namespace offnominal::desk

@@ -74,29 +74,50 @@ void set_table(const TableBoundSettings& settings, UncertaintyBound<N, Scalar>& 
 
 }  // namespace detail
 
-/// Of a robot with that many joints. Throws std::invalid_argument where the settings are not one
-/// per joint, or have too many points.
+namespace detail {
+
+template <typename Scalar>
+[[nodiscard]] JointBound<Scalar> joint_bound_of(const JointBoundSettings& from) {
+  JointBound<Scalar> joint;
+  if (from.value.empty() || from.value.size() > joint.value.size() ||
+      (from.value.size() > 1 && from.at.size() != from.value.size())) {
+    throw std::invalid_argument("a joint's bound has not a place for each value, or too many");
+  }
+  joint.variable = from.variable;
+  joint.points = static_cast<std::uint8_t>(from.value.size());
+  for (std::size_t k = 0; k < from.value.size(); ++k) {
+    joint.value[k] = static_cast<Scalar>(from.value[k]);
+    if (!from.at.empty()) joint.at[k] = static_cast<Scalar>(from.at[k]);
+  }
+  joint.momentum_error = static_cast<Scalar>(from.momentum_error);
+  joint.act_ratio = static_cast<Scalar>(from.act_ratio);
+  return joint;
+}
+
+}  // namespace detail
+
+/// Of a robot with that many joints; fast_alpha as EstimatorSettings has it. Throws
+/// std::invalid_argument where the settings are not one per joint, or have too many points.
 template <int N, typename Scalar>
 [[nodiscard]] TorqueBound<N, Scalar> torque_bound_of(
-    const BoundSettings& settings, std::size_t joints = static_cast<std::size_t>(N)) {
-  if (settings.kind != BoundSettings::Kind::kPerJoint || settings.joints.size() != joints) {
-    throw std::invalid_argument("the bound is not one per joint");
+    const BoundSettings& settings, double fast_alpha,
+    std::size_t joints = static_cast<std::size_t>(N)) {
+  const bool has_fast = fast_alpha > 0;
+  if (settings.kind != BoundSettings::Kind::kPerJoint || settings.joints.size() != joints ||
+      settings.fast.size() != (has_fast ? joints : 0)) {
+    throw std::invalid_argument("the bound is not one per joint and filter");
   }
   TorqueBound<N, Scalar> bound;
   size_for(joints, bound.joints);
   for (std::size_t i = 0; i < joints; ++i) {
-    const JointBoundSettings& from = settings.joints[i];
-    JointBound<Scalar>& joint = bound.joints[i];
-    if (from.value.empty() || from.value.size() > joint.value.size() ||
-        (from.value.size() > 1 && from.at.size() != from.value.size())) {
-      throw std::invalid_argument("a joint's bound has not a speed for each value, or too many");
-    }
-    joint.points = static_cast<std::uint8_t>(from.value.size());
-    for (std::size_t k = 0; k < from.value.size(); ++k) {
-      joint.value[k] = static_cast<Scalar>(from.value[k]);
-      if (!from.at.empty()) joint.at[k] = static_cast<Scalar>(from.at[k]);
-    }
-    joint.momentum_error = static_cast<Scalar>(from.momentum_error);
+    bound.joints[i] = detail::joint_bound_of<Scalar>(settings.joints[i]);
+  }
+  if (!has_fast) return bound;
+  bound.fast.alpha = static_cast<Scalar>(fast_alpha);
+  size_for(joints, bound.fast.joints);
+  for (std::size_t i = 0; i < joints; ++i) {
+    bound.fast.joints[i] = detail::joint_bound_of<Scalar>(settings.fast[i]);
+    bound.fast.joints[i].momentum_error = bound.joints[i].momentum_error;
   }
   return bound;
 }
@@ -164,7 +185,8 @@ template <int N, typename Scalar, typename Space = AccelerationSpace>
   config.chain = chain_of<N, Scalar>(robot);
   config.estimator = estimator_config_of<Scalar>(robot.estimator);
   if constexpr (std::is_same_v<Space, TorqueSpace>) {
-    config.bound = torque_bound_of<N, Scalar>(*robot.bound, robot.joints.size());
+    config.bound =
+        torque_bound_of<N, Scalar>(*robot.bound, robot.estimator.fast_alpha, robot.joints.size());
   } else {
     config.bound = bound_of<N, Scalar>(*robot.bound, robot.joints.size());
   }

@@ -1,5 +1,6 @@
 #include "robot/read_settings.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -22,10 +23,26 @@ void require_rising(const TomlTable& table, const std::vector<double>& at) {
   }
 }
 
-// Of joints whose bound depends on their speed; returns which.
-std::vector<bool> read_over_speed(const TomlTable& table, std::vector<JointBoundSettings>& joints) {
-  std::vector<bool> given(joints.size());
-  for (const TomlTable& of_joint : table.tables("over_speed", {"joint", "at", "value"})) {
+constexpr std::array kTableVariables{BoundVariable::kPosition, BoundVariable::kSpeed,
+                                     BoundVariable::kTorque};
+
+NumberRule rule_of(BoundVariable variable) {
+  switch (variable) {
+    case BoundVariable::kPosition:
+      return any_number("rad or m");
+    case BoundVariable::kSpeed:
+      return not_negative("rad/s or m/s");
+    case BoundVariable::kTorque:
+      break;
+  }
+  return not_negative("N m or N");
+}
+
+// Of joints whose bound depends on that variable of theirs; notes which in `given`.
+void read_tables_over(BoundVariable variable, const TomlTable& table,
+                      std::vector<JointBoundSettings>& joints, std::vector<bool>& given) {
+  for (const TomlTable& of_joint :
+       table.tables(key_of_tables(variable), {"joint", "at", "value"})) {
     const auto number = of_joint.integer("joint", 1, static_cast<std::int64_t>(joints.size()));
     const auto joint = static_cast<std::size_t>(number - 1);
     if (given[joint]) {
@@ -33,35 +50,67 @@ std::vector<bool> read_over_speed(const TomlTable& table, std::vector<JointBound
                       "one table per joint", "make one table of them");
     }
     given[joint] = true;
-    joints[joint].at = of_joint.numbers("at", physical(not_negative("rad/s or m/s")), 2,
+    joints[joint].variable = variable;
+    joints[joint].at = of_joint.numbers("at", physical(rule_of(variable)), 2,
                                         static_cast<std::size_t>(kMaxJointBoundPoints));
     require_rising(of_joint, joints[joint].at);
     joints[joint].value = of_joint.numbers("value", physical(positive("N m or N")),
                                            joints[joint].at.size(), joints[joint].at.size());
   }
-  return given;
 }
 
+// Of one filter.
 std::vector<JointBoundSettings> read_joint_bounds(const TomlTable& table, std::size_t count) {
   std::vector<JointBoundSettings> joints(count);
   const std::vector<double> values =
       table.numbers("value", physical(not_negative("N m or N")), count, count);
-  const std::vector<bool> over_speed = read_over_speed(table, joints);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (over_speed[i] != (values[i] == 0)) {
-      table.refuse("value", shortest(values[i]) + " for joint " + std::to_string(i + 1),
-                   over_speed[i] ? "0, as over_speed has this joint's values" : "a number above 0",
-                   over_speed[i]
-                       ? "write 0, or remove the joint's table from over_speed"
-                       : "give the bound in N m or N, or the joint's table in over_speed");
-    }
-    if (!over_speed[i]) joints[i].value = {values[i]};
+  std::vector<bool> has_table(count);
+  for (const BoundVariable variable : kTableVariables) {
+    read_tables_over(variable, table, joints, has_table);
   }
-  if (!table.has("momentum_error")) return joints;
-  const std::vector<double> errors =
-      table.numbers("momentum_error", physical(not_negative("N m s or N s")), count, count);
-  for (std::size_t i = 0; i < count; ++i) joints[i].momentum_error = errors[i];
+  for (std::size_t i = 0; i < count; ++i) {
+    if (has_table[i] != (values[i] == 0)) {
+      table.refuse("value", shortest(values[i]) + " for joint " + std::to_string(i + 1),
+                   has_table[i] ? "0, as a table has this joint's values" : "a number above 0",
+                   has_table[i] ? "write 0, or remove the joint's table from over_position, "
+                                  "over_speed or over_torque"
+                                : "give the bound in N m or N, or the joint's table in over_speed, "
+                                  "over_position or over_torque");
+    }
+    if (!has_table[i]) joints[i].value = {values[i]};
+  }
+  if (!table.has("act_ratio")) return joints;
+  NumberRule at_least_one = any_number("");
+  at_least_one.min = 1;
+  const std::vector<double> ratios =
+      table.numbers("act_ratio", physical(at_least_one), count, count);
+  for (std::size_t i = 0; i < count; ++i) joints[i].act_ratio = ratios[i];
   return joints;
+}
+
+// What the bounds of every filter have.
+const std::vector<std::string>& joint_bound_keys() {
+  static const std::vector<std::string> keys{"value", "over_position", "over_speed", "over_torque",
+                                             "act_ratio"};
+  return keys;
+}
+
+std::vector<std::string> per_joint_keys() {
+  std::vector<std::string> keys = joint_bound_keys();
+  keys.insert(keys.end(), {"momentum_error", "fast"});
+  return keys;
+}
+
+void read_per_joint(const TomlTable& table, std::size_t count, BoundSettings& bound) {
+  bound.joints = read_joint_bounds(table, count);
+  if (table.has("momentum_error")) {
+    const std::vector<double> errors =
+        table.numbers("momentum_error", physical(not_negative("N m s or N s")), count, count);
+    for (std::size_t i = 0; i < count; ++i) bound.joints[i].momentum_error = errors[i];
+  }
+  if (const auto fast = table.optional_table("fast", joint_bound_keys())) {
+    bound.fast = read_joint_bounds(*fast, count);
+  }
 }
 
 // Refuses the keys that belong to another kind of bound.
@@ -94,6 +143,38 @@ TableBoundSettings read_table_bound(const TomlTable& table, int joint_count) {
   return bound;
 }
 
+// Refuses a pole that a step of period_s no longer follows.
+void require_followed(const TomlTable& table, const std::string& key, double alpha,
+                      double period_s) {
+  const double pole_per_tick = alpha * period_s;
+  if (pole_per_tick <= kMaxPolePerTick) return;
+  table.refuse(
+      table.has(key) ? key : "period_s", key + " * period_s = " + shortest(pole_per_tick),
+      "at most " + shortest(kMaxPolePerTick) +
+          ", beyond it a step of period_s no longer follows the filter",
+      "lower " + key + " to " + shortest(kMaxPolePerTick / period_s) + ", or shorten period_s");
+}
+
+void read_fast_alpha(const TomlTable& table, EstimatorSettings& settings) {
+  const std::string key = "fast_alpha_per_s";
+  if (!table.has(key)) return;
+  settings.fast_alpha =
+      table.number(key, positive("1/s",
+                                 "give the pole of a second, faster filter, or leave it "
+                                 "out"));
+  if (settings.space != EstimatorSpace::kTorque) {
+    table.refuse(key, "a second filter beside a monitor that judges all joints by one norm",
+                 "none, or estimator.space = \"torque\"",
+                 "set estimator.space to \"torque\", or leave " + key + " out");
+  }
+  if (settings.fast_alpha <= settings.alpha) {
+    table.refuse(key, shortest(settings.fast_alpha),
+                 "above alpha_per_s, which is " + shortest(settings.alpha),
+                 "give the faster pole here and the slower one in alpha_per_s");
+  }
+  require_followed(table, key, settings.fast_alpha, settings.period_s);
+}
+
 // A kind of the other space is read all the same: what does not go together is said of both keys
 // (robot_file.cpp).
 BoundSettings::Kind read_kind(const TomlTable& table, EstimatorSpace space) {
@@ -116,7 +197,8 @@ const std::vector<std::string>& estimator_keys() {
       "period_s",      "alpha_per_s",   "hidden_units",
       "learning_rate", "weight_radius", "initial_weight_range",
       "seed",          "dead_zone",     "torque_signal",
-      "space",         "isolation",     "source"};
+      "space",         "isolation",     "fast_alpha_per_s",
+      "source"};
   return keys;
 }
 
@@ -128,8 +210,10 @@ const std::vector<std::string>& arming_keys() {
 
 const std::vector<std::string>& bound_keys() {
   static const std::vector<std::string> keys{
-      "kind",     "source", "value", "scale",          "offset",     "matrix",
-      "variable", "joint",  "at",    "velocity_error", "over_speed", "momentum_error"};
+      "kind",       "source",         "value",          "scale",
+      "offset",     "matrix",         "variable",       "joint",
+      "at",         "velocity_error", "momentum_error", "over_position",
+      "over_speed", "over_torque",    "act_ratio",      "fast"};
   return keys;
 }
 
@@ -139,15 +223,7 @@ EstimatorSettings read_estimator(const TomlTable& table) {
       "period_s", positive("s", "give the length of a control tick in s"), settings.period_s);
   settings.alpha = table.number(
       "alpha_per_s", positive("1/s", "give the pole of the filter 1/(s + alpha)"), settings.alpha);
-  const double pole_per_tick = settings.alpha * settings.period_s;
-  if (pole_per_tick > kMaxPolePerTick) {
-    table.refuse(table.has("alpha_per_s") ? "alpha_per_s" : "period_s",
-                 "alpha_per_s * period_s = " + shortest(pole_per_tick),
-                 "at most " + shortest(kMaxPolePerTick) +
-                     ", beyond it a step of period_s no longer follows the filter",
-                 "lower alpha_per_s to " + shortest(kMaxPolePerTick / settings.period_s) +
-                     ", or shorten period_s");
-  }
+  require_followed(table, "alpha_per_s", settings.alpha, settings.period_s);
   settings.hidden_units =
       static_cast<int>(table.integer("hidden_units", 1, kMaxHiddenUnits, settings.hidden_units));
   settings.learning_rate =
@@ -177,6 +253,7 @@ EstimatorSettings read_estimator(const TomlTable& table) {
                          ? EstimatorSpace::kAcceleration
                          : EstimatorSpace::kTorque;
   }
+  read_fast_alpha(table, settings);
   settings.isolation = table.boolean("isolation", false);
   if (settings.isolation && settings.space != EstimatorSpace::kTorque) {
     table.refuse(
@@ -224,8 +301,8 @@ BoundSettings read_bound(const TomlTable& table, int joint_count, EstimatorSpace
       bound.table = read_table_bound(table, joint_count);
       break;
     case BoundSettings::Kind::kPerJoint:
-      refuse_keys_other_than(table, {"value", "over_speed", "momentum_error"}, "per_joint");
-      bound.joints = read_joint_bounds(table, joints);
+      refuse_keys_other_than(table, per_joint_keys(), "per_joint");
+      read_per_joint(table, joints, bound);
       break;
   }
   bound.velocity_error =

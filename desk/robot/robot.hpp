@@ -52,7 +52,9 @@ enum class EstimatorSpace : std::uint8_t { kAcceleration, kTorque };
 struct EstimatorSettings : EstimatorConfig<double> {
   EstimatorSpace space = EstimatorSpace::kAcceleration;
   TorqueSignal torque_signal = TorqueSignal::kSampled;
-  bool isolation = false;   // a controller asks which fault it is; in kTorque alone
+  bool isolation = false;  // a controller asks which fault it is; in kTorque alone
+  // Pole of a second filter beside alpha's, 1/s; 0: there is none. In kTorque alone.
+  double fast_alpha = 0;
   std::string source = {};  // where the numbers come from, free text; empty: not said
 };
 
@@ -82,12 +84,14 @@ struct TableBoundSettings {
   std::vector<double> at;
   std::vector<double> value;
 };
-// Of one joint in EstimatorSpace::kTorque: linear between points over its own speed, N m or N; one
-// value without a point is a constant.
+// Of one joint in EstimatorSpace::kTorque: linear between points over one variable of its own, N m
+// or N; one value without a point is a constant.
 struct JointBoundSettings {
-  std::vector<double> at;  // rad/s or m/s; empty for a constant
+  std::vector<double> at;  // rad/s or m/s, rad or m, N m or N; empty for a constant
   std::vector<double> value{1};
   double momentum_error = 0;  // of p by that of the measured velocities, N m s or N s
+  double act_ratio = 1;       // the second level: so many times the threshold, >= 1
+  BoundVariable variable = BoundVariable::kSpeed;
 };
 struct BoundSettings {
   enum class Kind : std::uint8_t {
@@ -100,6 +104,9 @@ struct BoundSettings {
   ScaledNormBoundSettings scaled_norm;
   TableBoundSettings table;
   std::vector<JointBoundSettings> joints;  // kPerJoint, the only kind of EstimatorSpace::kTorque
+  // Of the second filter (EstimatorSettings::fast_alpha), one per joint or none. Its momentum_error
+  // is that of `joints`.
+  std::vector<JointBoundSettings> fast = {};
   double velocity_error = 0;  // largest error of the measured velocity, rad/s or m/s; not kPerJoint
   std::string source = {};    // where the numbers come from, free text; empty: not said
 };

@@ -143,6 +143,23 @@ void check_space(const TomlTable& root, const RobotDescription& robot) {
                "`offnominal calibrate` find another");
 }
 
+// A second filter and its bounds belong together.
+void check_fast_filter(const TomlTable& root, const RobotDescription& robot) {
+  if (!robot.bound) return;
+  const bool has_bounds = !robot.bound->fast.empty();
+  if (has_bounds == (robot.estimator.fast_alpha > 0)) return;
+  const TomlTable table = root.table("uncertainty_bound", bound_keys());
+  if (has_bounds) {
+    table.refuse("fast", "bounds of a second filter that the estimator does not have",
+                 "none, or estimator.fast_alpha_per_s beside them",
+                 "give the filter's pole in estimator.fast_alpha_per_s, or remove them");
+  }
+  table.refuse("", "no bounds of the second filter, estimator.fast_alpha_per_s",
+               "fast = {value = [...]}, N m or N per joint",
+               "leave [uncertainty_bound] out and let `offnominal calibrate` find the bounds of "
+               "both filters, or remove estimator.fast_alpha_per_s");
+}
+
 // A protocol that scales every axis by itself has no joint for the axes of motors that joints
 // share.
 void check_axes(const TomlTable& root, const RobotDescription& robot) {
@@ -269,6 +286,7 @@ RobotDescription parse_robot(std::string_view text, const std::string& file, Bla
     robot.bound = read_bound(*table, robot.joint_count(), robot.estimator.space);
   }
   check_space(root, robot);
+  check_fast_filter(root, robot);
   if (const toml::table* table = root.raw_table("drives")) {
     robot.drives = read_drives(*table, file, robot.joint_count(), robot.estimator.period_s);
     check_axes(root, robot);

@@ -148,6 +148,7 @@ void write_estimator(Writer& out, const EstimatorSettings& settings) {
   out.table("[estimator]");
   out.value("period_s", shortest_real(settings.period_s));
   out.value("alpha_per_s", shortest_real(settings.alpha));
+  if (settings.fast_alpha > 0) out.value("fast_alpha_per_s", shortest_real(settings.fast_alpha));
   out.value("hidden_units", std::to_string(settings.hidden_units));
   out.value("learning_rate", shortest_real(settings.learning_rate));
   out.value("weight_radius", shortest_real(settings.weight_radius));
@@ -193,7 +194,7 @@ void write_bound(Writer& out, const BoundSettings& bound) {
       out.value("value", list(bound.table.value));
       break;
     case BoundSettings::Kind::kPerJoint:
-      out.line(joint_bounds_text(bound.joints));
+      out.line(joint_bounds_text(bound));
       break;
   }
   if (bound.velocity_error > 0) out.value("velocity_error", shortest_real(bound.velocity_error));

@@ -125,19 +125,20 @@ MatrixXd over_bound(const RobotDescription& robot, const ArmModel& model,
   TorqueBound<kRuntimeJoints, double> torque;
   UncertaintyBound<kRuntimeJoints, double> acceleration;
   if (of_torques) {
-    torque = torque_bound_of<kRuntimeJoints, double>(*robot.bound, joints);
+    torque =
+        torque_bound_of<kRuntimeJoints, double>(*robot.bound, robot.estimator.fast_alpha, joints);
   } else {
     acceleration = bound_of<kRuntimeJoints, double>(*robot.bound, joints);
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const JointVector q = recording.q.row(rows[i]).transpose();
     const JointVector dq = recording.dq.row(rows[i]).transpose();
+    const JointVector tau = recording.measured.row(rows[i]).transpose();
     JointVector missed = error.row(rows[i]).transpose();
     JointVector bound;
     if (of_torques) {
-      bound = evaluate(torque, dq);
+      bound = evaluate<kRuntimeJoints, double>(torque.joints, q, dq, tau);
     } else {
-      const JointVector tau = recording.measured.row(rows[i]).transpose();
       Matrix<kRuntimeJoints, kRuntimeJoints, double> factor;
       const bool solved = cholesky<kRuntimeJoints, double>(mass_matrix(model, q), factor);
       if (solved) solve_in_place<kRuntimeJoints, double>(factor, missed);

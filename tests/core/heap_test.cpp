@@ -48,6 +48,7 @@ MonitorConfig<N, Scalar, Space> any_config(std::mt19937_64& generator) {
   config.estimator.hidden_units = L;
   if constexpr (std::is_same_v<Space, TorqueSpace>) {
     for (JointBound<Scalar>& joint : config.bound.joints) joint.value[0] = Scalar(0.01);
+    config.bound.fast.alpha = 60;
   } else {
     config.bound.kind = BoundKind::kScaledNorm;
     config.bound.offset = Scalar(0.01);

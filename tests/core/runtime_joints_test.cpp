@@ -55,6 +55,8 @@ void take_bound(const UncertaintyBound<N, Scalar>& from,
 template <int N, typename Scalar>
 void take_bound(const TorqueBound<N, Scalar>& from, TorqueBound<kRuntimeJoints, Scalar>& bound) {
   take_all(from.joints, bound.joints);
+  bound.fast.alpha = from.fast.alpha;
+  take_all(from.fast.joints, bound.fast.joints);
 }
 
 template <int N, typename Scalar, typename Space>
@@ -124,6 +126,14 @@ MonitorConfig<N, Scalar, TorqueSpace> any_torque_config(TorqueSignal signal,
     joint.at[1] = Scalar(0.3);
     joint.value = {Scalar(0.05), static_cast<Scalar>(uniform(generator, 0.1, 0.5))};
     joint.momentum_error = Scalar(0.001);
+    joint.act_ratio = Scalar(1.5);
+  }
+  config.bound.fast.alpha = 60;
+  for (JointBound<Scalar>& joint : config.bound.fast.joints) {
+    joint.variable = BoundVariable::kTorque;
+    joint.points = 2;
+    joint.at[1] = Scalar(0.3);
+    joint.value = {Scalar(0.5), static_cast<Scalar>(uniform(generator, 1, 5))};
   }
   return config;
 }
@@ -202,6 +212,9 @@ class Pair {
     EXPECT_EQ(output_.detector.level, other_output_.detector.level);
     if constexpr (std::is_same_v<Space, TorqueSpace>) {
       expect_same_bits(output_.thresholds, other_output_.thresholds, "thresholds");
+      expect_same_bits(output_.fast_error, other_output_.fast_error, "fast e");
+      expect_same_bits(output_.fast_thresholds, other_output_.fast_thresholds, "fast thresholds");
+      EXPECT_EQ(output_.detector.acts, other_output_.detector.acts);
       ASSERT_EQ(other_output_.detector.joints.size(), output_.detector.joints.size());
       EXPECT_EQ(output_.detector.first_joint, other_output_.detector.first_joint);
     }

@@ -120,6 +120,9 @@ TEST(Diagnosis, ArrivesInItsCounts) {
   EXPECT_EQ(received.first_joint, 7);
   EXPECT_EQ(received.worst_joint, 12);
   EXPECT_EQ(received.error_to_threshold, 1.25F);
+  EXPECT_FALSE(received.acts);
+  EXPECT_TRUE(round_trip(Diagnosis{true, 7, 12, 1.25F, true}).acts);
+  EXPECT_TRUE(round_trip(Diagnosis{false, 7, 0, 0, true}).acts) << "latched, as first_joint";
   const Diagnosis nothing = round_trip(Diagnosis{});
   EXPECT_FALSE(nothing.level);
   EXPECT_EQ(nothing.first_joint, 0);
@@ -135,7 +138,7 @@ TEST(Diagnosis, ThatContradictsItselfIsRefused) {
   EXPECT_EQ(encoded(Diagnosis{true, 1, 0, 0}), Status::kInvalidValue)
       << "beyond what nobody judges";
   EXPECT_EQ(encoded(Diagnosis{false, 1, 0, 0.5F}), Status::kInvalidValue);
-  EXPECT_EQ(decoded<Diagnosis>({2, 0, 1, 0, 0}), Status::kInvalidValue);
+  EXPECT_EQ(decoded<Diagnosis>({4, 0, 1, 0, 0}), Status::kInvalidValue);
   EXPECT_EQ(decoded<Diagnosis>({1, 1, 0, 0, 0}), Status::kInvalidValue);
   EXPECT_EQ(decoded<Diagnosis>({0, 1, 0, 1, 0}), Status::kInvalidValue);
   EXPECT_EQ(decoded<Diagnosis>({0, 1, 0, 0, 0}), Status::kOk);

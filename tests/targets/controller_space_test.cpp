@@ -129,6 +129,52 @@ TEST(ControllerInTorqueSpace, TellsTheBusWhichJointIsOffNominal) {
   EXPECT_GT(arm.drives.reports.back().error_to_threshold, 2);
 }
 
+// What is noticed is told; it stops and compensates beyond the second level.
+TEST(ControllerInTorqueSpace, GivenTwoLevelsThenItActsBeyondTheSecondAlone) {
+  auto config = watchful<TorqueSpace>();
+  config.stop_at_detection = true;
+  config.monitor.bound.joints[1].act_ratio = 4;
+  ByJoint noticed(config);
+  ASSERT_TRUE(noticed.start());
+  noticed.run(20);
+  give_in_vain(noticed, 1, 9);  // three times the threshold
+  noticed.run(400);
+  EXPECT_TRUE(noticed.data->output.detector.latched);
+  EXPECT_EQ(noticed.fault(), Fault::kNone);
+  EXPECT_EQ(noticed.drives.reports.back().first_joint, 2);
+  EXPECT_FALSE(noticed.drives.reports.back().acts);
+
+  config.monitor.bound.joints[1].act_ratio = 2;
+  ByJoint stopped(config);
+  ASSERT_TRUE(stopped.start());
+  stopped.run(20);
+  give_in_vain(stopped, 1, 9);
+  stopped.run(400);
+  EXPECT_EQ(stopped.fault(), Fault::kDetected);
+  EXPECT_TRUE(stopped.drives.reports.back().acts);
+}
+
+// A push that is over before the slow filter has it.
+TEST(ControllerInTorqueSpace, GivenASecondFilterThenItSeesWhatIsShort) {
+  for (const bool has_fast : {false, true}) {
+    auto config = watchful<TorqueSpace>();
+    if (has_fast) {
+      config.monitor.bound.fast.alpha = 100;
+      config.monitor.bound.fast.joints[0].value[0] = 5;
+      config.monitor.bound.fast.joints[1].value[0] = 5;
+    }
+    ByJoint arm(config);
+    ASSERT_TRUE(arm.start());
+    arm.run(20);
+    give_in_vain(arm, 1, 9);
+    arm.run(20);
+    EXPECT_EQ(arm.data->output.detector.latched, has_fast);
+    if (!has_fast) continue;
+    EXPECT_EQ(arm.drives.reports.back().worst_joint, 2);
+    EXPECT_GT(arm.drives.reports.back().error_to_threshold, 1) << "of the filter that saw it";
+  }
+}
+
 TEST(ControllerInTorqueSpace, TellsAfterItHasStoppedWhoWasFirstAndNoMore) {
   auto config = watchful<TorqueSpace>();
   config.stop_at_detection = true;
@@ -163,8 +209,9 @@ TEST(ControllerInAccelerationSpace, TellsTheBusNothingOfJoints) {
 
 TEST(DiagnosisOf, NamesTheJointThatIsNearestToItsThreshold) {
   MonitorOutput<3, float, TorqueSpace> output;
-  output.error = {1, -3, 2};
-  output.thresholds = {2, 4, 8};
+  output.worst_joint = 1;
+  output.error_norm = 3;
+  output.threshold = 4;
   hal::Diagnosis found = controller::diagnosis_of(output, true);
   EXPECT_EQ(found.worst_joint, 2);
   EXPECT_EQ(found.error_to_threshold, 0.75F);
@@ -173,12 +220,11 @@ TEST(DiagnosisOf, NamesTheJointThatIsNearestToItsThreshold) {
   output.detector.first_joint = 2;
   EXPECT_EQ(controller::diagnosis_of(output, true).first_joint, 3);
   // Thresholds begin at 0.
-  output.thresholds = {0, 0, 0};
+  output.threshold = 0;
   EXPECT_GT(controller::diagnosis_of(output, true).error_to_threshold, 1e5F);
-  output.error = {0, 0, 0};
+  output.error_norm = 0;
   found = controller::diagnosis_of(output, true);
   EXPECT_EQ(found.error_to_threshold, 0);
-  EXPECT_EQ(found.worst_joint, 1);
 }
 
 using Isolating = JointOnDeskIn<TorqueSpace, WithIsolation>;

@@ -94,6 +94,10 @@ class Monitor {
     if (status != Status::kOk) return status;
     status = EffectMemoryOf::validate(config.chain, config.estimator.period_s);
     if (status != Status::kOk) return status;
+    if constexpr (kByJoint) {
+      status = FastFilter<N, Scalar>::create(config.bound.fast, config.estimator, monitor.fast_);
+      if (status != Status::kOk) return status;
+    }
     monitor.config_ = config;
     monitor.model_ = make_model(config.chain);
     monitor.memory_.prepare(config.chain, monitor.model_, config.estimator.period_s);
@@ -116,6 +120,12 @@ class Monitor {
     status = offnominal::reset(config_.estimator, input, state.estimator);
     if (status != Status::kOk) return status;
     state.estimator.mu = Form::first_threshold(config_.bound, config_.estimator.alpha);
+    if constexpr (kByJoint) {
+      if (fast_.runs()) {
+        fast_.reset(config_.bound.fast, sample, now.acting(sample.tau), input.measured.momentum,
+                    state.fast);
+      }
+    }
     memory_.keep_begin(sample, now, state.memory);
     state.sample = sample;
     Form::keep(nominal, state);
@@ -141,6 +151,12 @@ class Monitor {
     if (status != Status::kOk) return status;
     status = offnominal::resume(input, velocity_allowance(), state.estimator);
     if (status != Status::kOk) return status;
+    if constexpr (kByJoint) {
+      if (fast_.runs()) {
+        fast_.resume(config_.bound.fast, sample, now.acting(sample.tau), input.measured.momentum,
+                     state.fast);
+      }
+    }
     memory_.keep(sample, missed, now, state.memory);
     state.tick = tick;
     state.sample = sample;
@@ -159,9 +175,17 @@ class Monitor {
     const Now now = memory_.next(sample, 0, state.memory);
     Status status = look(sample, now, end_s, nominal, input);
     if (status != Status::kOk) return status;
-    status = offnominal::step(config_.estimator, begin_of_tick(now.acting(sample.tau), state),
-                              input, state.estimator);
+    const Vector<N, Scalar>& tau = now.acting(sample.tau);
+    const TickBegin<N, Scalar, Space> begin = begin_of_tick(tau, state);
+    [[maybe_unused]] const auto fast_begin = begin_of_fast(begin, tau, state);
+    status = offnominal::step(config_.estimator, begin, input, state.estimator);
     if (status != Status::kOk) return status;
+    if constexpr (kByJoint) {
+      if (fast_.runs()) {
+        const FastBound<N, Scalar>& bound = config_.bound.fast;
+        fast_.step(bound, fast_begin, input, fast_.bound_at(bound, sample, tau), state.fast);
+      }
+    }
 
     memory_.keep(sample, 0, now, state.memory);
     ++state.tick;
@@ -170,7 +194,7 @@ class Monitor {
     state.sample = sample;
     Form::keep(nominal, state);
     output.time_s = end_s;
-    Form::judge(config_.estimator.alpha, jumped, state, output);
+    Form::judge(config_.estimator.alpha, config_.bound, fast_, jumped, state, output);
     output.psi_hat = state.estimator.psi_hat;
     output.detector = state.detector;
     Form::compensate(nominal, max_compensation_, output);
@@ -195,6 +219,7 @@ class Monitor {
   using Threshold = typename Space::template Threshold<N, Scalar>;
   using EffectMemoryOf = typename Memory::template Of<N, Scalar>;
   using Now = typename EffectMemoryOf::Now;
+  static constexpr bool kByJoint = std::is_same_v<Space, TorqueSpace>;
 
   // What the model and the bound say at a sample; refuses one that they cannot judge. Not inlined:
   // on a controller its callers share its code, and the estimator its stack.
@@ -236,6 +261,24 @@ class Monitor {
     return begin;
   }
 
+  // Of a filter that runs beside the estimator's; its bound at a held torque too.
+  [[nodiscard]] auto begin_of_fast(const TickBegin<N, Scalar, Space>& begin,
+                                   const Vector<N, Scalar>& tau, const State& state) const {
+    if constexpr (kByJoint) {
+      FastFilterBegin<N, Scalar> of_fast;
+      if (!fast_.runs()) return of_fast;
+      const FastBound<N, Scalar>& bound = config_.bound.fast;
+      of_fast = {state.estimator.measured.momentum, begin.nominal_rate, state.estimator.psi_hat,
+                 state.fast.mu_bar};
+      if (config_.torque_signal == TorqueSignal::kHeld && follows_torque(bound.joints)) {
+        of_fast.mu_bar = fast_.bound_at(bound, state.sample, tau);
+      }
+      return of_fast;
+    } else {
+      return typename Form::Fast{};
+    }
+  }
+
   // What the torque's jump at the last sample changes of the load there.
   [[nodiscard]] Vector<N, Scalar> load_jump(const Vector<N, Scalar>& tau,
                                             const State& state) const {
@@ -250,6 +293,7 @@ class Monitor {
   Config config_{};
   RigidBodyModel<N, Scalar> model_{};
   [[no_unique_address]] EffectMemoryOf memory_{};
+  [[no_unique_address]] typename Form::Fast fast_{};
   Vector<N, Scalar> max_compensation_ = zeros<N, Scalar>();
   bool ready_ = false;
 };

@@ -7,6 +7,7 @@
 #include <offnominal/diagnosis/bound.hpp>
 #include <offnominal/diagnosis/detector.hpp>
 #include <offnominal/diagnosis/estimator_state.hpp>
+#include <offnominal/diagnosis/fast_filter.hpp>
 #include <offnominal/diagnosis/joint_bound.hpp>
 #include <offnominal/diagnosis/position_step.hpp>
 #include <offnominal/diagnosis/space.hpp>
@@ -17,7 +18,8 @@
 
 // What a monitor does differently in each space (diagnosis/space.hpp). One specialisation each:
 //   Bound, Dynamics           what a configuration says, what the model says of a sample
-//   Kept                      of the last sample, in MonitorState
+//   Kept                      of the last sample, and of a second filter, in MonitorState
+//   Fast                      that second filter, where it may have one
 //   JointOutput, Detector     in MonitorOutput, and in both
 //   look(), fill()            model and input of the estimator at a sample
 //   start()                   of the detector at the first one
@@ -43,6 +45,7 @@ struct MonitorForm<AccelerationSpace, N, Scalar> {
     Matrix<N, N, Scalar> inertia_factor = no_values<Matrix<N, N, Scalar>>();  // of M(q), lower
   };
   struct JointOutput {};
+  struct Fast {};  // none
 
   [[nodiscard]] static EIGEN_ALWAYS_INLINE Status look(const RigidBodyModel<N, Scalar>& model,
                                                        const Vector<N, Scalar>& q,
@@ -78,7 +81,8 @@ struct MonitorForm<AccelerationSpace, N, Scalar> {
   }
 
   template <typename State, typename Output>
-  static EIGEN_ALWAYS_INLINE void judge(Scalar /*alpha*/, Eigen::Index jumped, State& state,
+  static EIGEN_ALWAYS_INLINE void judge(Scalar /*alpha*/, const Bound& /*bound*/,
+                                        const Fast& /*fast*/, Eigen::Index jumped, State& state,
                                         Output& output) {
     output.error = state.estimator.error;
     output.error_norm = detail::length(state.estimator.error);
@@ -100,9 +104,16 @@ struct MonitorForm<TorqueSpace, N, Scalar> {
   using Dynamics = MomentumDynamics<N, Scalar>;
   using Detector = JointDetectors<N, Scalar>;
   using Input = EstimatorInput<N, Scalar, TorqueSpace>;
-  struct Kept {};
+  using Fast = FastFilter<N, Scalar>;
+  struct Kept {
+    FastFilterState<N, Scalar> fast;
+  };
   struct JointOutput {
     Vector<N, Scalar> thresholds = zeros<N, Scalar>();  // alpha mu_i of |error_i|, N m or N
+    // The same of the fast filter, with its own alpha; 0, or no joints, where there is none.
+    Vector<N, Scalar> fast_error = zeros<N, Scalar>();
+    Vector<N, Scalar> fast_thresholds = zeros<N, Scalar>();
+    std::uint8_t worst_joint = 0;  // whose error_norm and threshold are said, from 0
     // What a drive has to be told for 1 N m more behind its gear, MomentumDynamics::told_per_load.
     Vector<N, Scalar> told_per_load = zeros<N, Scalar>();
   };
@@ -127,29 +138,19 @@ struct MonitorForm<TorqueSpace, N, Scalar> {
 
   // As of the velocity's error, joint by joint.
   [[nodiscard]] static Vector<N, Scalar> allowance(const Bound& bound) {
-    Vector<N, Scalar> values;
-    values.resize(static_cast<Eigen::Index>(bound.joints.size()));
-    for (std::size_t i = 0; i < bound.joints.size(); ++i) {
-      values[static_cast<Eigen::Index>(i)] = 2 * bound.joints[i].momentum_error;
-    }
-    return values;
+    return momentum_allowance<N, Scalar>(bound.joints);
   }
-  // Where the bound at its largest would have brought it: what the robot did before the run is not
-  // known, and in its first ticks a run may err as much as the bound says at any speed.
   [[nodiscard]] static Vector<N, Scalar> first_threshold(const Bound& bound, Scalar alpha) {
-    Vector<N, Scalar> values = allowance(bound);
-    for (std::size_t i = 0; i < bound.joints.size(); ++i) {
-      values[static_cast<Eigen::Index>(i)] += largest_value(bound.joints[i]) / alpha;
-    }
-    return values;
+    return offnominal::first_threshold<N, Scalar>(bound.joints, alpha);
   }
-  [[nodiscard]] static Vector<N, Scalar> bound_at(const Bound& bound,
-                                                  const Vector<N, Scalar>& /*q*/,
+  [[nodiscard]] static Vector<N, Scalar> bound_at(const Bound& bound, const Vector<N, Scalar>& q,
                                                   const Vector<N, Scalar>& dq,
-                                                  const Vector<N, Scalar>& /*tau*/) {
-    return evaluate(bound, dq);
+                                                  const Vector<N, Scalar>& tau) {
+    return evaluate<N, Scalar>(bound.joints, q, dq, tau);
   }
-  [[nodiscard]] static bool follows_torque(const Bound& /*bound*/) { return false; }
+  [[nodiscard]] static bool follows_torque(const Bound& bound) {
+    return offnominal::follows_torque(bound.joints);
+  }
   [[nodiscard]] static const Vector<N, Scalar>& jump(const Kept& /*kept*/,
                                                      const Vector<N, Scalar>& load) {
     return load;
@@ -157,22 +158,34 @@ struct MonitorForm<TorqueSpace, N, Scalar> {
 
   // In N m: alpha e and alpha mu, what a lasting torque and a lasting bound tend to.
   template <typename State, typename Output>
-  static EIGEN_ALWAYS_INLINE void judge(Scalar alpha, Eigen::Index jumped, State& state,
-                                        Output& output) {
-    const Vector<N, Scalar>& e = state.estimator.error;
-    const Vector<N, Scalar>& mu = state.estimator.mu;
-    output.error = alpha * e;
-    output.thresholds = alpha * mu;
-    const Eigen::Index worst = update(state.detector, e, mu, jumped, state.tick, output.time_s);
-    output.error_norm = Eigen::numext::abs(output.error[worst]);
-    output.threshold = output.thresholds[worst];
+  static EIGEN_ALWAYS_INLINE void judge(Scalar alpha, const Bound& bound, const Fast& fast,
+                                        Eigen::Index jumped, State& state, Output& output) {
+    output.error = alpha * state.estimator.error;
+    output.thresholds = alpha * state.estimator.mu;
+    JointErrors<N, Scalar> errors =
+        errors_of<N, Scalar>(output.error, output.thresholds, bound.joints);
+    if (fast.runs()) {
+      output.fast_error = bound.fast.alpha * state.fast.error;
+      output.fast_thresholds = bound.fast.alpha * state.fast.mu;
+      add(errors_of<N, Scalar>(output.fast_error, output.fast_thresholds, bound.fast.joints),
+          errors);
+    }
+    const Eigen::Index worst = update(state.detector, errors, jumped, state.tick, output.time_s);
+    output.worst_joint = static_cast<std::uint8_t>(worst);
+    output.error_norm = errors.size[worst];
+    output.threshold = errors.threshold[worst];
   }
+  // Of the joints that are beyond the second level: what was only noticed is not acted on.
   template <typename Output>
   static EIGEN_ALWAYS_INLINE void compensate(const Dynamics& nominal,
                                              const Vector<N, Scalar>& limit, Output& output) {
     output.told_per_load = nominal.told_per_load;
+    Vector<N, Scalar> load = output.psi_hat;
+    for (std::size_t i = 0; i < output.detector.joints.size(); ++i) {
+      if (!output.detector.joints[i].acts) load[static_cast<Eigen::Index>(i)] = 0;
+    }
     output.compensation =
-        compensating_torque_of_load<N, Scalar>(output.psi_hat, limit, nominal.told_per_load);
+        compensating_torque_of_load<N, Scalar>(load, limit, nominal.told_per_load);
   }
 };
 

@@ -37,7 +37,7 @@ class MomentumRobot {
     p_ += config_.period_s * unmodelled;
     ASSERT_EQ(step(config_, input(), state), Status::kOk);
     ++ticks_;
-    update(detectors, state.error, state.mu, kNoJoint, ticks_,
+    update(detectors, errors_of<kWatched, double>(state.error, state.mu, {}), kNoJoint, ticks_,
            config_.period_s * static_cast<double>(ticks_));
   }
 
@@ -263,16 +263,22 @@ TEST(JointDeadZone, IsZeroWithinEachThresholdAndTakesItOffOutside) {
   EXPECT_EQ((dead_zone<3, double>(none, none, DeadZone::kContinuous)), none);
 }
 
+using Three = Vector<3, float>;
+Eigen::Index judge(JointDetectors<3, float>& detectors, const Three& e, const Three& mu,
+                   Eigen::Index jumped, std::uint64_t tick) {
+  return update<3, float>(detectors, errors_of<3, float>(e, mu, {}), jumped, tick,
+                          0.001 * static_cast<double>(tick));
+}
+
 TEST(JointDetectors, SayOfJointsThatCrossTogetherTheOneThatIsFarthestBeyond) {
   JointDetectors<3, float> detectors;
-  using Three = Vector<3, float>;
-  EXPECT_EQ(update<3>(detectors, Three(0, 0, 0), Three(0, 0, 0), kNoJoint, 0, 0.0), 0);
+  EXPECT_EQ(judge(detectors, Three(0, 0, 0), Three(0, 0, 0), kNoJoint, 0), 0);
   EXPECT_FALSE(detectors.level);
-  EXPECT_EQ(update<3>(detectors, Three(1.5F, -6, 1), Three(1, 2, 1), kNoJoint, 4, 0.004), 1);
+  EXPECT_EQ(judge(detectors, Three(1.5F, -6, 1), Three(1, 2, 1), kNoJoint, 4), 1);
   EXPECT_TRUE(detectors.latched && detectors.joints[0].latched && detectors.joints[1].latched);
   EXPECT_FALSE(detectors.joints[2].latched);
   EXPECT_EQ(detectors.first_joint, 1);
-  EXPECT_EQ(update<3>(detectors, Three(0, 0, 9), Three(1, 2, 1), kNoJoint, 5, 0.005), 2);
+  EXPECT_EQ(judge(detectors, Three(0, 0, 9), Three(1, 2, 1), kNoJoint, 5), 2);
   EXPECT_EQ(detectors.first_joint, 1) << "the first one stays";
   EXPECT_FALSE(detectors.joints[1].level);
   EXPECT_EQ(detectors.joints[2].detection_tick, 5U);
@@ -282,13 +288,48 @@ TEST(JointDetectors, SayOfJointsThatCrossTogetherTheOneThatIsFarthestBeyond) {
 
 TEST(JointDetectors, SayTheJointWhosePositionNoMotionBringsWhateverTheErrors) {
   JointDetectors<3, float> detectors;
-  using Three = Vector<3, float>;
-  EXPECT_EQ(update<3>(detectors, Three(0.5F, 3, 0), Three(1, 2, 1), 2, 4, 0.004), 1);
+  EXPECT_EQ(judge(detectors, Three(0.5F, 3, 0), Three(1, 2, 1), 2, 4), 1);
   EXPECT_TRUE(detectors.joints[1].latched && detectors.joints[2].latched);
   EXPECT_EQ(detectors.first_joint, 2);
-  EXPECT_EQ(update<3>(detectors, Three(0, 0, 0), Three(1, 2, 1), kNoJoint, 5, 0.005), 0);
+  EXPECT_EQ(judge(detectors, Three(0, 0, 0), Three(1, 2, 1), kNoJoint, 5), 0);
   EXPECT_FALSE(detectors.level || detectors.joints[2].level);
   EXPECT_TRUE(detectors.latched);
+}
+
+TEST(JointDetectors, ActOnlyBeyondTheSecondLevelAndKeepIt) {
+  PerJoint<3, JointBound<float>> bounds{};
+  bounds[1].act_ratio = 2;
+  JointDetectors<3, float> detectors;
+  const Three mu(1, 1, 1);
+  const auto take = [&](const Three& e, Eigen::Index jumped, std::uint64_t tick) {
+    update<3, float>(detectors, errors_of<3, float>(e, mu, bounds), jumped, tick, 0.001);
+  };
+  take({0, 1.9F, 0}, kNoJoint, 1);
+  EXPECT_TRUE(detectors.latched && detectors.joints[1].latched);
+  EXPECT_FALSE(detectors.acts || detectors.joints[1].acts) << "noticed, no more";
+  take({0, -2.1F, 0}, kNoJoint, 2);
+  EXPECT_TRUE(detectors.acts && detectors.joints[1].acts);
+  take({0, 0, 0}, kNoJoint, 3);
+  EXPECT_TRUE(detectors.acts && detectors.joints[1].acts) << "latched";
+  EXPECT_FALSE(detectors.joints[0].acts);
+  clear_latch(detectors);
+  EXPECT_FALSE(detectors.acts || detectors.joints[1].acts);
+  take({0, 0, 0}, 1, 4);
+  EXPECT_TRUE(detectors.joints[1].acts) << "a jump is no matter of size";
+  take({1.1F, 0, 0}, kNoJoint, 5);
+  EXPECT_TRUE(detectors.joints[0].acts) << "one level: both at once";
+}
+
+// Of a joint the filter that is nearer to its threshold, or farther beyond.
+TEST(JointErrors, AreThoseOfTheFilterThatIsNearerToItsThreshold) {
+  PerJoint<3, JointBound<float>> bounds{};
+  for (JointBound<float>& bound : bounds) bound.act_ratio = 3;
+  auto errors = errors_of<3, float>({0.5F, -2, 0}, {1, 1, 1}, bounds);
+  add<3, float>(errors_of<3, float>({8, -3, 0}, {2, 2, 2}, bounds), errors);
+  EXPECT_EQ(errors.size, Three(8, 2, 0));
+  EXPECT_EQ(errors.threshold, Three(2, 1, 1));
+  EXPECT_TRUE(errors.acts[0]);
+  EXPECT_FALSE(errors.acts[1] || errors.acts[2]);
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(FilteredBasis, OfALaterStartIsThatOfAMonitorThatStartsThere) {
   rows.filtered = filtered_basis(robot, shape, recording);
   rows.constant = 2;
   const Eigen::Vector3d c(1, 1, 0.01);
-  const auto starts = starts_before(tick_filter(robot.estimator.alpha, log.period_s));
+  const auto starts = starts_before(recording.filter());
   ASSERT_GT(starts.size(), 8U);
   ASSERT_EQ(starts.front().ticks, 1);
   EXPECT_LT(starts.back().kept, 0.05);

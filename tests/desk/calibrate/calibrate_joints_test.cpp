@@ -198,10 +198,11 @@ TEST(CalibrateJoints, ObjectsToAFaultInOneRecordingAndSaysOnWhichJoint) {
 }
 
 TEST(CalibrateJoints, SaysOfAJointWithoutResidualThatItWasNotMoved) {
-  std::vector<RecordedError> recordings = {joint_errors(arm_watched_by_joint(), arm_run(1))[1]};
+  std::vector<RecordedError> recordings = {
+      joint_errors(arm_watched_by_joint(), arm_run(1)).slow[1]};
   recordings[0].error_norm.setZero();
   try {
-    static_cast<void>(data_of(std::move(recordings), 1, 10, 1, 2));
+    static_cast<void>(data_of(std::move(recordings), 1, 1, 2));
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("joint 2: found no residual at all: it did not move"));
@@ -210,10 +211,58 @@ TEST(CalibrateJoints, SaysOfAJointWithoutResidualThatItWasNotMoved) {
 }
 
 TEST(CalibrateJoints, OfOneRecordingShareItsSignals) {
-  const auto joints = joint_errors(arm_watched_by_joint(), arm_run(1));
+  const auto joints = joint_errors(arm_watched_by_joint(), arm_run(1)).slow;
   ASSERT_EQ(joints.size(), 2U);
   EXPECT_EQ(joints[0].signals, joints[1].signals);
   EXPECT_EQ(joints[0].signals->dq, arm_run(1).dq);
+}
+
+// With a faster filter beside the estimator's, and a second level of both.
+const JointsCalibration& calibrated_twice() {
+  static const JointsCalibration kResult = [] {
+    RobotDescription robot = arm_watched_by_joint();
+    robot.estimator.fast_alpha = 5 * robot.estimator.alpha;
+    CalibrateRequest request;
+    request.act_alarms_per_hour = 0.001;
+    return calibrate_joints(robot, request, {arm_run(1), arm_run(2)}, {arm_run(3)});
+  }();
+  return kResult;
+}
+
+TEST(CalibrateJoints, GivenASecondFilterThenItFindsBoundsBehindItToo) {
+  const JointsCalibration& result = calibrated_twice();
+  EXPECT_TRUE(result.objections.empty());
+  ASSERT_EQ(result.fast.size(), 2U);
+  const BoundSettings& bound = *result.robot.bound;
+  ASSERT_EQ(bound.fast.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_GT(margin_of(result.fast[i].calibration).mean_after,
+              margin_of(result.joints[i].calibration).mean_after)
+        << "more comes through it";
+    EXPECT_LT(result.fast[i].fault.certain_s, result.joints[i].fault.certain_s);
+    EXPECT_GE(bound.joints[i].act_ratio, 1);
+    EXPECT_GE(bound.fast[i].act_ratio, 1);
+  }
+  EXPECT_GT(bound.fast[0].act_ratio + bound.fast[1].act_ratio + bound.joints[0].act_ratio +
+                bound.joints[1].act_ratio,
+            4)
+      << "a hundredth of the rate is a higher threshold somewhere";
+  EXPECT_EQ(robot_text(parse_robot(robot_text(result.robot), "r.toml")), robot_text(result.robot));
+  EXPECT_FALSE(replay(result.robot, arm_run(3)).detection_time_s);
+}
+
+TEST(CalibrateJoints, GivenASecondFilterThenItsRowsAndLevelsAreTold) {
+  const CalibrateNames names{"arm.toml", "new.toml", "offnominal calibrate"};
+  const std::string text = text_of(calibrated_twice(), names);
+  EXPECT_THAT(text, HasSubstr("1 shoulder, fast"));
+  EXPECT_THAT(text, HasSubstr("all joints and both filters"));
+  EXPECT_THAT(text, HasSubstr("act at: the second level, for 0.001 false alarms per hour"));
+  const auto json = to_json(calibrated_twice(), names);
+  EXPECT_EQ(json["act_alarms_per_hour"], 0.001);
+  EXPECT_GE(json["joints"][0]["fast"]["bound"]["act_ratio"], 1);
+  EXPECT_GT(json["joints"][1]["fast"]["smallest_fault"]["seen_in_95_of_100"], 0);
+  EXPECT_THAT(page_text(calibrated_twice()), HasSubstr("shoulder, fast"));
+  EXPECT_THAT(text_of(calibrated(), names), Not(HasSubstr("act at")));
 }
 
 TEST(CalibrateJoints, RefusesAVelocityError) {

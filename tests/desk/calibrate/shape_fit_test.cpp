@@ -37,7 +37,8 @@ RecordedError recorded(const std::vector<Stay>& stays) {
   of.period_s = kPeriodS;
   of.t_s = VectorXd::LinSpaced(ticks, 0, kPeriodS * static_cast<double>(ticks - 1));
   of.error = MatrixXd::Zero(ticks, 1);
-  of.scale = test::arm_description().estimator.alpha;
+  of.alpha_per_s = test::arm_description().estimator.alpha;
+  of.scale = of.alpha_per_s;
   of.of_one_joint = true;
   Index at = 0;
   for (const Stay& one : stays) {

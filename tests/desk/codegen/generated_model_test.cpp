@@ -150,12 +150,16 @@ std::vector<Scalar> numbers_in(const UncertaintyBound<N, Scalar>& bound) {
 
 template <int N, typename Scalar>
 std::vector<Scalar> numbers_in(const TorqueBound<N, Scalar>& bound) {
-  std::vector<Scalar> all;
-  for (const JointBound<Scalar>& joint : bound.joints) {
-    all.push_back(static_cast<Scalar>(joint.points));
-    all.push_back(joint.momentum_error);
-    all.insert(all.end(), joint.at.begin(), joint.at.end());
-    all.insert(all.end(), joint.value.begin(), joint.value.end());
+  std::vector<Scalar> all{bound.fast.alpha};
+  for (const auto* bounds : {&bound.joints, &bound.fast.joints}) {
+    for (const JointBound<Scalar>& joint : *bounds) {
+      all.push_back(static_cast<Scalar>(joint.variable));
+      all.push_back(static_cast<Scalar>(joint.points));
+      all.push_back(joint.momentum_error);
+      all.push_back(joint.act_ratio);
+      all.insert(all.end(), joint.at.begin(), joint.at.end());
+      all.insert(all.end(), joint.value.begin(), joint.value.end());
+    }
   }
   return all;
 }

@@ -116,11 +116,12 @@ TEST(Dbc, SaysOfHeartbeatsAndStopsWhatTheCodeSays) {
 }
 
 TEST(Dbc, SaysOfDiagnosesWhatTheCodeSays) {
-  const Values found = signals_of(
-      frame_of(hal::MessageKind::kDiagnosis, 31,
-               record_of(hal::MessageKind::kDiagnosis, 31, hal::Diagnosis{true, 4, 6, 100.25F})));
+  const Values found = signals_of(frame_of(
+      hal::MessageKind::kDiagnosis, 31,
+      record_of(hal::MessageKind::kDiagnosis, 31, hal::Diagnosis{true, 4, 6, 100.25F, true})));
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.at("beyond_threshold"), 1);
+  EXPECT_EQ(found.at("acts"), 1);
   EXPECT_EQ(found.at("first_joint"), 4);
   EXPECT_EQ(found.at("worst_joint"), 6);
   EXPECT_EQ(found.at("error_to_threshold"), 100.25);

@@ -135,6 +135,54 @@ TEST(Replay, GivenTorqueSpaceThenTheFaultyJointIsNamedWhenTheFilterSaysSo) {
   EXPECT_EQ(to_json(replay(watched_arm(), recording_with({0, 1}))).count("joints"), 0U);
 }
 
+// A torque d for 20 ms: behind the pole alpha its residual comes to d (1 - exp(-0.02 alpha)).
+Log recording_with_a_push(double torque) {
+  return record_arm({.duration_s = 8}, [torque](const ArmInstant& at) -> Vector2d {
+    return {0, at.t_s >= kFaultTime && at.t_s < kFaultTime + 0.02 ? torque : 0};
+  });
+}
+
+RobotDescription arm_with_two_filters() {
+  RobotDescription robot = arm_in_torque_space();
+  robot.estimator.fast_alpha = 100;
+  robot.bound->fast = robot.bound->joints;
+  return robot;
+}
+
+TEST(Replay, GivenASecondFilterThenAPushThatTheFirstOneMissesIsSeen) {
+  const Log pushed = recording_with_a_push(4);
+  EXPECT_FALSE(replay(arm_in_torque_space(), pushed).detection_time_s) << "0.7 of its threshold";
+  const Replay seen = replay(arm_with_two_filters(), pushed);
+  ASSERT_TRUE(seen.detection_time_s);
+  EXPECT_NEAR(*seen.detection_time_s, kFaultTime, 0.02);
+  EXPECT_EQ(seen.first_joint, 1);
+  EXPECT_LT(seen.joints[1].max_residual, kTorqueBound);
+  EXPECT_GT(seen.joints[1].fast_max_residual, 2);
+  EXPECT_GT(seen.max_error_to_threshold, 2);
+  const nlohmann::json json = to_json(seen);
+  EXPECT_EQ(json["joints"][1]["fast_max_residual"], seen.joints[1].fast_max_residual);
+  EXPECT_THAT(report::to_json(page_of(seen, "")).dump(),
+              HasSubstr("The same behind the fast filter"));
+  EXPECT_EQ(to_json(replay(arm_in_torque_space(), pushed))["joints"][1].count("fast_max_residual"),
+            0U);
+}
+
+TEST(Replay, GivenTwoLevelsThenItSaysWhenTheSecondWasReached) {
+  RobotDescription robot = arm_in_torque_space();
+  EXPECT_FALSE(replay(robot, recording_with({0, 3})).has_two_levels);
+  robot.bound->joints[1].act_ratio = 2;
+  const Replay acts = replay(robot, recording_with({0, 3 * kTorqueBound}));
+  ASSERT_TRUE(acts.act_time_s);
+  EXPECT_NEAR(*acts.act_time_s, kFaultTime + std::log(3.0) / 10, 0.01);
+  EXPECT_LT(*acts.detection_time_s, *acts.act_time_s);
+  EXPECT_THAT(words_of(acts), HasSubstr("Beyond the level to act at "));
+  EXPECT_EQ(to_json(acts)["act_time_s"], *acts.act_time_s);
+  const Replay noticed = replay(robot, recording_with({0, 1.5 * kTorqueBound}));
+  EXPECT_TRUE(noticed.detection_time_s);
+  EXPECT_FALSE(noticed.act_time_s);
+  EXPECT_THAT(words_of(noticed), HasSubstr("Never beyond the level to act."));
+}
+
 // Friction of the elbow, from a time on.
 TEST(Replay, GivenTorqueSpaceThenWhichFaultItIsIsSaidWithJointAndSize) {
   const Log log =

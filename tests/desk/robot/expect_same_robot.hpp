@@ -60,6 +60,7 @@ inline void expect_same(const desk::RobotEffect& a, const desk::RobotEffect& b) 
 inline void expect_same(const desk::EstimatorSettings& a, const desk::EstimatorSettings& b) {
   expect_same(a.period_s, b.period_s);
   expect_same(a.alpha, b.alpha);
+  expect_same(a.fast_alpha, b.fast_alpha);
   EXPECT_EQ(a.hidden_units, b.hidden_units);
   expect_same(a.learning_rate, b.learning_rate);
   expect_same(a.weight_radius, b.weight_radius);
@@ -79,6 +80,20 @@ inline void expect_same(const desk::ArmingSettings& a, const desk::ArmingSetting
   EXPECT_EQ(a.source, b.source);
 }
 
+inline void expect_same(const std::vector<desk::JointBoundSettings>& a,
+                        const std::vector<desk::JointBoundSettings>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!a[i].at.empty()) {
+      EXPECT_EQ(a[i].variable, b[i].variable);
+    }
+    expect_same(a[i].at, b[i].at);
+    expect_same(a[i].value, b[i].value);
+    expect_same(a[i].momentum_error, b[i].momentum_error);
+    expect_same(a[i].act_ratio, b[i].act_ratio);
+  }
+}
+
 inline void expect_same(const desk::BoundSettings& a, const desk::BoundSettings& b) {
   ASSERT_EQ(a.kind, b.kind);
   EXPECT_EQ(a.source, b.source);
@@ -91,12 +106,8 @@ inline void expect_same(const desk::BoundSettings& a, const desk::BoundSettings&
   EXPECT_EQ(a.table.joint, b.table.joint);
   expect_same(a.table.at, b.table.at);
   expect_same(a.table.value, b.table.value);
-  ASSERT_EQ(a.joints.size(), b.joints.size());
-  for (std::size_t i = 0; i < a.joints.size(); ++i) {
-    expect_same(a.joints[i].at, b.joints[i].at);
-    expect_same(a.joints[i].value, b.joints[i].value);
-    expect_same(a.joints[i].momentum_error, b.joints[i].momentum_error);
-  }
+  expect_same(a.joints, b.joints);
+  expect_same(a.fast, b.fast);
 }
 
 inline void expect_same(const desk::DriveSettings& a, const desk::DriveSettings& b) {

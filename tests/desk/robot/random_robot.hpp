@@ -32,7 +32,7 @@ class RandomRobot {
     for (int i = 0; i < effects; ++i) robot.effects.push_back(effect(robot));
     robot.estimator = estimator();
     robot.arming = arming(joints);
-    if (coin()) robot.bound = bound(joints, robot.estimator.space);
+    if (coin()) robot.bound = bound(joints, robot.estimator);
     if (coin()) robot.drives = drives(joints, robot.estimator.period_s);
     // Axes of their own have no place beside joints that share motors.
     const bool shares = robot.transmission && !robot.transmission->matrix.empty();
@@ -210,6 +210,9 @@ class RandomRobot {
     settings.dead_zone = coin() ? DeadZone::kContinuous : DeadZone::kDiscontinuous;
     settings.torque_signal = coin() ? TorqueSignal::kSampled : TorqueSignal::kHeld;
     settings.space = coin() ? desk::EstimatorSpace::kAcceleration : desk::EstimatorSpace::kTorque;
+    if (settings.space == desk::EstimatorSpace::kTorque && coin()) {
+      settings.fast_alpha = 0.95 / settings.period_s;
+    }
     settings.source = any_text();
     return settings;
   }
@@ -232,9 +235,10 @@ class RandomRobot {
   desk::JointBoundSettings joint_bound() {
     desk::JointBoundSettings result;
     result.value = {positive()};
-    if (coin()) result.momentum_error = positive();
+    if (coin()) result.act_ratio = 1 + positive();
     if (coin()) return result;
-    result.at = {0};
+    result.variable = static_cast<BoundVariable>(whole(0, 2));
+    result.at = {result.variable == BoundVariable::kPosition ? number(kLargestOfBound) : 0};
     for (int i = whole(1, kMaxJointBoundPoints - 1); i > 0; --i) {
       result.at.push_back(
           std::nextafter(result.at.back() + positive(), std::numeric_limits<double>::max()));
@@ -243,12 +247,16 @@ class RandomRobot {
     return result;
   }
 
-  desk::BoundSettings bound(int joints, desk::EstimatorSpace space) {
+  desk::BoundSettings bound(int joints, const desk::EstimatorSettings& estimator) {
     desk::BoundSettings result;
     result.source = any_text();
-    if (space == desk::EstimatorSpace::kTorque) {
+    if (estimator.space == desk::EstimatorSpace::kTorque) {
       result.kind = desk::BoundSettings::Kind::kPerJoint;
-      for (int i = 0; i < joints; ++i) result.joints.push_back(joint_bound());
+      for (int i = 0; i < joints; ++i) {
+        result.joints.push_back(joint_bound());
+        if (coin()) result.joints.back().momentum_error = positive();
+        if (estimator.fast_alpha > 0) result.fast.push_back(joint_bound());
+      }
       return result;
     }
     if (coin()) result.velocity_error = positive();

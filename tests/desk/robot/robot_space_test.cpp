@@ -66,7 +66,7 @@ TEST(RobotFile, RefusesBoundsPerJointThatAreNotOnePerJoint) {
   const std::string table = "over_speed = [{joint = 2, at = [0.0, 1.0], value = [1.0, 2.0]}";
   EXPECT_EQ(with("value = [1.0, 0.0]\n" + table + "]"), "accepted");
   EXPECT_THAT(with("value = [1.0, 2.0]\n" + table + "]"),
-              HasSubstr("found 2 for joint 2; allowed: 0, as over_speed has this joint's values"));
+              HasSubstr("found 2 for joint 2; allowed: 0, as a table has this joint's values"));
   EXPECT_THAT(
       with("value = [1.0, 0.0]\n" + table + ", {joint = 2, at = [0.0, 1.0], value = [1.0, 2.0]}]"),
       HasSubstr("joint 2 a second time"));
@@ -76,6 +76,63 @@ TEST(RobotFile, RefusesBoundsPerJointThatAreNotOnePerJoint) {
   EXPECT_THAT(
       with("value = [1.0, 0.0]\nover_speed = [{joint = 3, at = [0.0, 1.0], value = [1.0, 2.0]}]"),
       HasSubstr("a whole number from 1 to 2"));
+}
+
+TEST(RobotFile, HasTablesOverOneVariableOfEachJoint) {
+  const RobotDescription robot = parse_robot(
+      in_torque_space("[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [0.0, 0.0]\n"
+                      "over_position = [{joint = 1, at = [-1.0, 1.0], value = [1.0, 2.0]}]\n"
+                      "over_torque = [{joint = 2, at = [0.0, 5.0], value = [1.0, 2.0]}]\n"
+                      "act_ratio = [1.0, 1.5]\n"),
+      "arm.toml");
+  EXPECT_EQ(robot.bound->joints[0].variable, BoundVariable::kPosition);
+  EXPECT_EQ(robot.bound->joints[0].at, (std::vector{-1.0, 1.0}));
+  EXPECT_EQ(robot.bound->joints[1].variable, BoundVariable::kTorque);
+  EXPECT_EQ(robot.bound->joints[1].act_ratio, 1.5);
+  const auto with = [](const std::string& keys) {
+    return space_refusal(
+        in_torque_space("[uncertainty_bound]\nkind = \"per_joint\"\n" + keys + "\n"));
+  };
+  const std::string of_second = "{joint = 2, at = [0.0, 1.0], value = [1.0, 2.0]}";
+  EXPECT_THAT(with("value = [1.0, 0.0]\nover_speed = [" + of_second + "]\nover_torque = [" +
+                   of_second + "]"),
+              HasSubstr("joint 2 a second time"));
+  EXPECT_THAT(with("value = [1.0, 0.0]\nover_torque = [{joint = 2, at = [-1.0, 1.0], value = "
+                   "[1.0, 2.0]}]"),
+              HasSubstr("found -1"));
+  EXPECT_THAT(with("value = [1.0, 2.0]\nact_ratio = [1.0, 0.9]"),
+              HasSubstr("uncertainty_bound.act_ratio[2]: found 0.9"));
+}
+
+TEST(RobotFile, HasBoundsOfASecondFilterWhereItHasTheFilterAndOnlyThere) {
+  const std::string bound = "[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.0, 2.0]\n";
+  const std::string fast = "fast = {value = [3.0, 4.0], act_ratio = [1.0, 2.0]}\n";
+  const auto with_filter = [](const std::string& text, const std::string& pole) {
+    return test::changed(text, "seed = 7", "seed = 7\nfast_alpha_per_s = " + pole);
+  };
+  const RobotDescription robot =
+      parse_robot(with_filter(in_torque_space(bound + fast), "70.0"), "arm.toml");
+  EXPECT_EQ(robot.estimator.fast_alpha, 70);
+  ASSERT_EQ(robot.bound->fast.size(), 2U);
+  EXPECT_EQ(robot.bound->fast[1].value, std::vector{4.0});
+  EXPECT_EQ(robot.bound->fast[1].act_ratio, 2);
+  EXPECT_EQ(space_refusal(with_filter(in_torque_space(""), "70.0")), "accepted")
+      << "calibrate finds both";
+  EXPECT_THAT(space_refusal(with_filter(in_torque_space(bound), "70.0")),
+              AllOf(HasSubstr("no bounds of the second filter"), HasSubstr("calibrate")));
+  EXPECT_THAT(space_refusal(in_torque_space(bound + fast)),
+              HasSubstr("bounds of a second filter that the estimator does not have"));
+  EXPECT_THAT(space_refusal(with_filter(in_torque_space(""), "1.0")),
+              HasSubstr("above alpha_per_s"));
+  EXPECT_THAT(space_refusal(with_filter(in_torque_space(""), "1e5")),
+              HasSubstr("fast_alpha_per_s * period_s"));
+  EXPECT_THAT(space_refusal(with_filter(test::kSampleRobot, "70.0")),
+              HasSubstr("beside a monitor that judges all joints by one norm"));
+  EXPECT_THAT(space_refusal(with_filter(
+                  in_torque_space(bound + "fast = {value = [3.0, 4.0], momentum_error = [0.0]}\n"),
+                  "70.0")),
+              HasSubstr("momentum_error"))
+      << "it is that of the joints' own bounds";
 }
 
 TEST(RobotFile, NamesTheKindsOfItsSpaceWhereABoundHasNone) {

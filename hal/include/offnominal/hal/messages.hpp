@@ -86,6 +86,7 @@ struct Diagnosis {
   std::uint8_t worst_joint = 0;  // with the largest |e| / mu; none while nothing is judged
   // Its |e| / mu, >= 0; on the wire in 256ths, the largest number standing for all above it.
   float error_to_threshold = 0;
+  bool acts = false;  // some joint has come beyond its second level too, latched
 };
 inline constexpr float kRatioPerCount = 0x1p-8F;
 
@@ -200,7 +201,7 @@ inline constexpr std::uint8_t kMostFaultJoint = 31;
   constexpr float kMost = 0xFFFF;
   const auto counts = static_cast<std::uint32_t>(std::fmin(ratio / kRatioPerCount, kMost));
   Content content{};
-  content[0] = diagnosis.level ? 1 : 0;
+  content[0] = static_cast<std::uint8_t>((diagnosis.level ? 1U : 0U) | (diagnosis.acts ? 2U : 0U));
   content[1] = diagnosis.first_joint;
   content[2] = diagnosis.worst_joint;
   to_little_endian(counts, std::span(content).last<2>());
@@ -274,9 +275,10 @@ namespace detail {
 [[nodiscard]] inline bool from_content(const Content& content, Diagnosis& diagnosis) {
   const std::uint32_t counts = from_little_endian(std::span(content).last<2>());
   const bool judges = content[2] != 0;
-  if (content[0] > 1 || (!judges && (content[0] != 0 || counts != 0))) return false;
-  diagnosis = {content[0] != 0, content[1], content[2],
-               static_cast<float>(counts) * kRatioPerCount};
+  const bool level = (content[0] & 1U) != 0;
+  if (content[0] > 3 || (!judges && (level || counts != 0))) return false;
+  diagnosis = {level, content[1], content[2], static_cast<float>(counts) * kRatioPerCount,
+               (content[0] & 2U) != 0};
   return true;
 }
 

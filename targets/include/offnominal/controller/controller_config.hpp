@@ -36,7 +36,9 @@ struct ControlConfig {
   // velocity_error_bound() then, in TorqueSpace every joint's momentum_error what M makes of it.
   // Its period_s is the monitor's.
   VelocityObserverConfig<Scalar> velocity_observer;
-  bool stop_at_detection = false;  // a crossed threshold leads to the safe state
+  // What is beyond the second level (JointBound::act_ratio, where there is one) leads to the safe
+  // state. Nothing is compensated either before a joint is beyond it.
+  bool stop_at_detection = false;
   // Of a controller WithIsolation: whether it asks which fault it is. It then compensates once that
   // is decided, and only for a kind that compensation is right for; without, from the detection on.
   bool isolates = true;

@@ -19,17 +19,13 @@ template <int N, typename Scalar>
   const JointDetectors<N, Scalar>& detector = output.detector;
   if (detector.latched) {
     diagnosis.first_joint = static_cast<std::uint8_t>(detector.first_joint + 1);
+    diagnosis.acts = detector.acts;
   }
   if (!judges) return diagnosis;
   diagnosis.level = detector.level;
-  Eigen::Index worst = 0;
-  for (Eigen::Index i = 1; i < output.error.size(); ++i) {
-    const Scalar size = Eigen::numext::abs(output.error[i]) * output.thresholds[worst];
-    if (size > Eigen::numext::abs(output.error[worst]) * output.thresholds[i]) worst = i;
-  }
-  diagnosis.worst_joint = static_cast<std::uint8_t>(worst + 1);
-  const Scalar error = Eigen::numext::abs(output.error[worst]);
-  const Scalar threshold = output.thresholds[worst];
+  diagnosis.worst_joint = static_cast<std::uint8_t>(output.worst_joint + 1);
+  const Scalar error = output.error_norm;
+  const Scalar threshold = output.threshold;
   constexpr auto kMost = Scalar(1e6);  // more than a frame says
   if (error > 0) {
     diagnosis.error_to_threshold =

@@ -183,7 +183,8 @@ class JointController {
     data.output = {};
     size_for(joints(), data.output.error, data.output.psi_hat, data.output.compensation.torque);
     if constexpr (kByJoint) {
-      size_for(joints(), data.output.thresholds, data.output.detector.joints);
+      size_for(joints(), data.output.thresholds, data.output.fast_error,
+               data.output.fast_thresholds, data.output.detector.joints);
     }
   }
 
@@ -302,7 +303,7 @@ class JointController {
     if (follows && fault == Fault::kNone) isolate(data);
     if (fault != Fault::kNone) {
       enter_fault(fault, bus, data);
-    } else if (config_.stop_at_detection && data.output.detector.latched) {
+    } else if (config_.stop_at_detection && data.output.detector.acts) {
       enter_fault(Fault::kDetected, bus, data);
     }
   }
@@ -321,7 +322,8 @@ class JointController {
   [[nodiscard]] bool compensates(const Data& data) const {
     if constexpr (kIsolates) {
       const auto& found = data.isolation.diagnosis;
-      return !config_.isolates || (found.decided && is_compensated(found.kind));
+      if (!config_.isolates) return true;
+      return found.decided && is_compensated(found.kind) && data.output.detector.acts;
     }
     return true;
   }

@@ -61,8 +61,9 @@ struct LoopReport {
 };
 
 // The columns of the rows that the loop records, for RecorderConfig::columns. by_joint: of a
-// controller in TorqueSpace.
-[[nodiscard]] inline std::vector<std::string> loop_columns(int joints, bool by_joint = false) {
+// controller in TorqueSpace; has_fast: with a second filter.
+[[nodiscard]] inline std::vector<std::string> loop_columns(int joints, bool by_joint = false,
+                                                           bool has_fast = false) {
   std::vector<std::string> columns;
   const auto add_of_joints = [&](const char* quantity) {
     for (int joint = 1; joint <= joints; ++joint) {
@@ -76,6 +77,11 @@ struct LoopReport {
     add_of_joints("error");
     add_of_joints("threshold");
     columns.emplace_back("first_joint");
+    columns.emplace_back("acts");
+    if (has_fast) {
+      add_of_joints("fast_error");
+      add_of_joints("fast_threshold");
+    }
   }
   for (const char* name : {"error", "threshold", "weights", "detected", "motion_t", "late_ticks",
                            "latency_us", "fault", "state"}) {
@@ -109,6 +115,11 @@ template <int N, int L, typename Scalar, typename Memory, typename Space, typena
     put_all(data.output.error);
     put_all(data.output.thresholds);
     put(data.output.detector.latched ? data.output.detector.first_joint + 1 : 0);
+    put(data.output.detector.acts ? 1 : 0);
+    if (controller.monitor().config().bound.fast.alpha > 0) {
+      put_all(data.output.fast_error);
+      put_all(data.output.fast_thresholds);
+    }
   }
   put(static_cast<double>(data.output.error_norm));
   put(static_cast<double>(data.output.threshold));

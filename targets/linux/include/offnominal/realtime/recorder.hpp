@@ -24,7 +24,7 @@ struct FrameEntry {
 // One line of the table: its time, then numbers, then one digit.
 struct Row {
   // What a loop records: eight of every joint, and nine more.
-  static constexpr std::size_t kMostValues = 8 * static_cast<std::size_t>(kMaxJoints) + 9;
+  static constexpr std::size_t kMostValues = 10 * static_cast<std::size_t>(kMaxJoints) + 11;
   Microseconds time_us = 0;
   std::array<double, kMostValues> values{};
   std::uint8_t digit = 0;  // 0 to 9
