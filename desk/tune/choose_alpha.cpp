@@ -32,6 +32,23 @@ double geometric_mean(const std::vector<double>& values) {
   return std::exp(sum / static_cast<double>(values.size()));
 }
 
+// Of the poles that were tried, the slowest that sees soon what the best of them does.
+void choose_fast(const AlphaTrial& slow, std::vector<AlphaTrial>& trials) {
+  const auto is_faster = [&](const AlphaTrial& trial) {
+    return trial.why_none.empty() && trial.alpha_per_s >= kFaster * slow.alpha_per_s;
+  };
+  double best = slow.mean_soon / kAsGoodAPole;
+  for (const AlphaTrial& trial : trials) {
+    if (is_faster(trial)) best = std::min(best, trial.mean_soon);
+  }
+  for (AlphaTrial& trial : trials) {
+    const bool is_worth_it = kAsGoodAPole * trial.mean_soon <= slow.mean_soon;
+    if (!is_faster(trial) || !is_worth_it || trial.mean_soon > kAsGoodAPole * best) continue;
+    trial.chosen_fast = true;
+    return;
+  }
+}
+
 }  // namespace
 
 AlphaChoice choose_alpha(const RobotDescription& robot, const TuneRequest& request,
@@ -41,6 +58,7 @@ AlphaChoice choose_alpha(const RobotDescription& robot, const TuneRequest& reque
   CalibrateRequest calibration;
   calibration.alarms_per_hour = request.alarms_per_hour;
   calibration.fault_window_s = request.within_s;
+  calibration.soon_window_s = kSoonShare * request.within_s;
   AlphaChoice choice;
   std::optional<InputError> refusal;
   double best = std::numeric_limits<double>::infinity();
@@ -55,6 +73,8 @@ AlphaChoice choose_alpha(const RobotDescription& robot, const TuneRequest& reque
     }
     RobotDescription tried = robot;
     tried.estimator.alpha = alpha;
+    tried.estimator.fast_alpha = 0;
+    if (tried.bound) tried.bound->fast.clear();
     try {
       calibrations.back() = calibrate_joints(tried, calibration, logs, holdout, on_step);
     } catch (const InputError& error) {
@@ -62,16 +82,20 @@ AlphaChoice choose_alpha(const RobotDescription& robot, const TuneRequest& reque
       trial.why_none = error.what();
       continue;
     }
+    std::vector<double> soon;
     for (const JointCalibration& joint : calibrations.back()->joints) {
       trial.seen_from.push_back(joint.fault.usual);
+      soon.push_back(joint.fault.soon);
     }
     trial.mean = geometric_mean(trial.seen_from);
+    trial.mean_soon = geometric_mean(soon);
     best = std::min(best, trial.mean);
   }
   for (std::size_t i = 0; i < choice.trials.size(); ++i) {
     AlphaTrial& trial = choice.trials[i];
     if (!trial.why_none.empty() || trial.mean > kAsGoodAPole * best) continue;
     trial.chosen = true;
+    choose_fast(AlphaTrial(trial), choice.trials);
     choice.calibration = std::move(*calibrations[i]);
     return choice;
   }

@@ -144,6 +144,22 @@ std::string reasons_of_alpha(const Tuned& tuned, const TuneRequest& request) {
       others.empty() ? "no other could be tried" : others);
 }
 
+// Nothing where one filter does.
+const AlphaTrial* fast_of(const std::vector<AlphaTrial>& trials) {
+  const auto found = std::find_if(trials.begin(), trials.end(),
+                                  [](const AlphaTrial& trial) { return trial.chosen_fast; });
+  return found == trials.end() ? nullptr : &*found;
+}
+
+std::string reasons_of_fast(const AlphaTrial& fast, const Tuned& tuned,
+                            const TuneRequest& request) {
+  return fmt::format(
+      "a second filter: within {:g} s it sees lasting torques from {} {} on, geometric mean of the "
+      "joints, the other one from {}",
+      kSoonShare * request.within_s, significant(fast.mean_soon, 3), tuned.units.front(),
+      significant(chosen_of(tuned.alphas).mean_soon, 3));
+}
+
 std::vector<EstimatorLine> lines_of(const Tuned& tuned, const TuneRequest& request) {
   const EstimatorSettings& settings = tuned.robot.estimator;
   const auto missed = [](const LearningTrial& trial) {
@@ -162,6 +178,14 @@ std::vector<EstimatorLine> lines_of(const Tuned& tuned, const TuneRequest& reque
                    "the controller says which fault it is, and compensates only for what that is "
                    "right for"});
   lines.push_back({"alpha_per_s", shortest_real(settings.alpha), reasons_of_alpha(tuned, request)});
+  if (const AlphaTrial* fast = fast_of(tuned.alphas)) {
+    lines.push_back({"fast_alpha_per_s", shortest_real(settings.fast_alpha),
+                     reasons_of_fast(*fast, tuned, request)});
+  } else if (settings.fast_alpha > 0) {
+    lines.push_back(
+        {"fast_alpha_per_s", shortest_real(settings.fast_alpha),
+         "kept: no pole sees faults sooner by a fifth; leave it out, and one filter does"});
+  }
   lines.push_back(
       {"hidden_units", std::to_string(settings.hidden_units),
        reason(fmt::format("misses {} of a torque that it has to learn; {}", missed(size),
@@ -184,6 +208,13 @@ std::vector<EstimatorLine> lines_of(const Tuned& tuned, const TuneRequest& reque
        reason(fmt::format("missed {} at the rate {:g}, the least of {}", missed(range),
                           range.learning_rate, counted(tuned.ranges.size(), "trial")))});
   return lines;
+}
+
+// A filter that the file has is not taken away.
+double fast_alpha_of(const RobotDescription& given, const Tuned& tuned) {
+  if (const AlphaTrial* fast = fast_of(tuned.alphas)) return fast->alpha_per_s;
+  const double own = given.estimator.fast_alpha;
+  return own > 0 ? std::max(own, kFaster * tuned.robot.estimator.alpha) : 0;
 }
 
 // The file's own text with the new lines and without its bound, where it can be cut; otherwise the
@@ -220,6 +251,7 @@ Tuned tune(const RobotDescription& given, const TuneRequest& request, const std:
   const LearningTrials trials(bounded, logs, torques, on_step);
   tuned.trial_s = trials.seconds();
   learn(trials, bounded.estimator, tuned);
+  tuned.robot.estimator.fast_alpha = fast_alpha_of(given, tuned);
   tuned.robot.bound.reset();
   tuned.lines = lines_of(tuned, request);
   if (given.bound) {

@@ -27,9 +27,14 @@ struct AlphaTrial {
   // in 95 of 100 beginnings, whichever its sign.
   std::vector<double> seen_from;
   double mean = 0;       // their geometric mean, by which poles are compared
+  double mean_soon = 0;  // the same within a quarter of within_s, by which fast ones are
   std::string why_none;  // why it could not be tried; empty: it was
   bool chosen = false;
+  bool chosen_fast = false;  // for the second filter
 };
+
+/// What a second filter is judged by, of within_s.
+inline constexpr double kSoonShare = 0.25;
 
 /// One setting of the network, on torques that appear in the recordings, joint after joint.
 struct LearningTrial {

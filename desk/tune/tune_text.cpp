@@ -13,17 +13,24 @@ namespace {
 
 const char* mark(bool chosen) { return chosen ? "*" : " "; }
 
+// Of a filter's pole: the estimator's own, or that of the second filter.
+const char* mark(const AlphaTrial& trial) {
+  if (trial.chosen) return "*";
+  return trial.chosen_fast ? "f" : " ";
+}
+
 std::string percent(double share) { return fmt::format("{:.1f}", 100 * share); }
 
 std::string alphas_text(const Tuned& tuned, const TuneRequest& request) {
-  std::vector<TextColumn> columns{{"", 1}, {"alpha 1/s", 9}, {"mean", 8}};
+  std::vector<TextColumn> columns{{"", 1}, {"alpha 1/s", 9}, {"soon", 8}, {"mean", 8}};
   for (std::size_t i = 0; i < tuned.units.size(); ++i) {
     columns.push_back({fmt::format("joint {} {}", i + 1, tuned.units[i]), 12});
   }
   const TextTable table(columns, "  ");
   std::string text = fmt::format(
-      "Filter: the smallest lasting torque beside the model that is seen within {:g} s\n",
-      request.within_s);
+      "Filter: the smallest lasting torque beside the model that is seen within {:g} s, "
+      "soon:\nwithin {:g} s; *: chosen, f: for a second filter beside it\n",
+      request.within_s, kSoonShare * request.within_s);
   text += table.heading();
   std::string missing;
   for (const AlphaTrial& trial : tuned.alphas) {
@@ -31,8 +38,8 @@ std::string alphas_text(const Tuned& tuned, const TuneRequest& request) {
       missing += fmt::format("  alpha {:g} was not tried: {}\n", trial.alpha_per_s, trial.why_none);
       continue;
     }
-    std::vector<std::string> cells{mark(trial.chosen), fmt::format("{:g}", trial.alpha_per_s),
-                                   significant(trial.mean, 3)};
+    std::vector<std::string> cells{mark(trial), fmt::format("{:g}", trial.alpha_per_s),
+                                   significant(trial.mean_soon, 3), significant(trial.mean, 3)};
     for (const double torque : trial.seen_from) cells.push_back(significant(torque, 3));
     text += table.line(cells);
   }
@@ -79,10 +86,13 @@ nlohmann::ordered_json json_of(const std::vector<LearningTrial>& trials) {
 nlohmann::ordered_json json_of(const std::vector<AlphaTrial>& trials) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const AlphaTrial& trial : trials) {
-    nlohmann::ordered_json one{{"alpha_per_s", trial.alpha_per_s}, {"chosen", trial.chosen}};
+    nlohmann::ordered_json one{{"alpha_per_s", trial.alpha_per_s},
+                               {"chosen", trial.chosen},
+                               {"chosen_fast", trial.chosen_fast}};
     if (trial.why_none.empty()) {
       one["seen_from"] = trial.seen_from;
       one["mean"] = trial.mean;
+      one["mean_soon"] = trial.mean_soon;
     } else {
       one["not_tried"] = trial.why_none;
     }
