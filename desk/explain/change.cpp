@@ -62,11 +62,25 @@ class ChangeFinder {
   void add_candidate(const EffectCandidate& effect, Index joint) {
     if (!effect.applies_in_any(data_.recordings, joint)) return;
     Term term{&effect, joint, {}, effect.shapes(data_.recordings, joint)};
+    if (effect.is_mass()) reach_to_centre(term);
     for (const ShapeRange& range : term.ranges) {
       if (range.grid.empty()) return;
       term.shape.push_back(range.grid[range.grid.size() / 2]);
     }
     candidates_.push_back(std::move(term));
+  }
+
+  // What is missing all the time at the last link's own centre is another mass of it, and is looked
+  // for as that; what comes later may be put there.
+  void reach_to_centre(Term& term) const {
+    const auto& centre = data_.recordings[0]
+                             .rigid.joints[static_cast<std::size_t>(term.joint)]
+                             .joint.centre_of_mass_m;
+    for (std::size_t axis = 0; axis < term.ranges.size(); ++axis) {
+      std::vector<double>& grid = term.ranges[axis].grid;
+      if (std::find(grid.begin(), grid.end(), centre.at(axis)) != grid.end()) continue;
+      grid.insert(std::lower_bound(grid.begin(), grid.end(), centre.at(axis)), centre.at(axis));
+    }
   }
 
   [[nodiscard]] const Moments::Recorded& recorded(const Scanned& one) const {

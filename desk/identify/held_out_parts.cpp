@@ -15,7 +15,9 @@ std::vector<int> held_out_parts(const RowLayout& layout, bool at_rest) {
     }
     block_s = std::min(kBlockS, whole_s / (2 * kHeldOutParts));
   }
-  std::vector<int> parts = layout.blocks(block_s).of_row;
+  // What a short recording alone has, a change, is otherwise unseen as a whole.
+  constexpr int kOfEachRecording = 2;
+  std::vector<int> parts = layout.blocks(block_s, kOfEachRecording).of_row;
   for (int& part : parts) part %= kHeldOutParts;
   return parts;
 }

@@ -53,11 +53,12 @@ double RowLayout::moving_count(std::size_t recording, Index joint) const {
                              : moving_.segment(begin(recording, joint), n).sum();
 }
 
-RowLayout::Blocks RowLayout::blocks(double block_s) const {
+RowLayout::Blocks RowLayout::blocks(double block_s, int at_least) const {
   Blocks blocks;
   blocks.of_row.resize(static_cast<std::size_t>(rows_));
   for (std::size_t r = 0; r < samples_.size(); ++r) {
-    const auto length = std::max<Index>(1, std::lround(block_s / period_s_[r]));
+    const Index wanted = std::lround(block_s / period_s_[r]);
+    const Index length = std::max<Index>(1, std::min<Index>(wanted, samples_[r] / at_least));
     const auto count = static_cast<int>(std::max<Index>(1, samples_[r] / length));
     for (Index joint = 0; joint < joints_; ++joint) {
       for (Index i = 0; i < samples_[r]; ++i) {

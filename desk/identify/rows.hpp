@@ -25,12 +25,13 @@ class RowLayout {
   }
   [[nodiscard]] double period_s(std::size_t recording) const { return period_s_[recording]; }
   // Block of every row, from 0, for blocks of about block_s seconds. One in which every joint
-  // stands still does not count: its rows, whose weight is 0, are in the first.
+  // stands still does not count: its rows, whose weight is 0, are in the first. Of each recording
+  // at_least so many, shorter ones where it has to be.
   struct Blocks {
     std::vector<int> of_row;
     int count = 0;
   };
-  [[nodiscard]] Blocks blocks(double block_s) const;
+  [[nodiscard]] Blocks blocks(double block_s, int at_least = 1) const;
   // Of how many of the groups each joint has rows that say something.
   [[nodiscard]] std::vector<int> groups_of_joints(const Blocks& groups) const;
 

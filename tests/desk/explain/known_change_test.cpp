@@ -91,6 +91,31 @@ TEST(KnownChange, OfFrictionIsToldBesideAnEffectThatIsMissingInBoth) {
   EXPECT_EQ(told.found[0].what, (EffectAt{EffectKind::kJointStiffness, 2}));
 }
 
+// What comes after may be short: a run that the fault has ended.
+TEST(KnownChange, IsToldOfThreeSecondsBehindIt) {
+  const RobotDescription robot = test::serial_arm(kJoints);
+  const RobotDescription worn =
+      with(robot, test::effect_of(EffectKind::kCoulombFriction, 1, {2, 0.01}));
+  Log after_it = test::record(worn, {.duration_s = 3, .seed = 2});
+  after_it.file = "b";
+  const Explanation told = explain(robot, {recorded(robot, "a", 1), after_it}, {}, after(1));
+  ASSERT_THAT(told.changes, SizeIs(1)) << told.words;
+  EXPECT_EQ(told.changes[0].what, (EffectAt{EffectKind::kCoulombFriction, 1}));
+  EXPECT_NEAR(number(told.changes[0], "level"), 2, 0.2);
+}
+
+// Each joint by itself could have another torque constant; a body explains both.
+TEST(KnownChange, OfAPayloadAtTheTipIsNoChangeOfTorqueConstants) {
+  const RobotDescription robot = test::serial_arm(2);
+  const RobotDescription loaded =
+      with(robot, test::effect_of(EffectKind::kTipPayload, 1, {0.5, 0.2, 0, 0}));
+  const Explanation told =
+      explain(robot, {recorded(robot, "a", 1), recorded(loaded, "b", 2)}, {}, after(1));
+  ASSERT_THAT(told.changes, SizeIs(1)) << told.words;
+  EXPECT_EQ(told.changes[0].what, (EffectAt{EffectKind::kTipPayload, 1}));
+  EXPECT_NEAR(number(told.changes[0], "mass"), 0.5, 0.1);
+}
+
 TEST(KnownChange, IsNoneBetweenTwoMotionsOfOneRobot) {
   const RobotDescription robot = test::serial_arm(kJoints);
   const RobotDescription same =
