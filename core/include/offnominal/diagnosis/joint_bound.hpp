@@ -41,7 +41,7 @@ struct FastBound {
 template <int N, typename Scalar>
 struct TorqueBound {
   PerJoint<N, JointBound<Scalar>> joints{};
-  FastBound<N, Scalar> fast;
+  FastBound<N, Scalar> fast{};
 };
 
 template <typename Scalar>
