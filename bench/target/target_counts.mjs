@@ -13,10 +13,12 @@ const inTorqueSpace = { space: " torque", scalars: ["float"] };
 const twoByJoint = { ...twoJoints, ...inTorqueSpace, name: "two_link_torque" };
 const sevenByJoint = { ...sevenJoints, ...inTorqueSpace, name: "arm7_torque" };
 const sevenIsolating = { ...sevenByJoint, space: " torque, isolation", name: "arm7_isolation" };
+const sevenTwoFilters = { ...sevenByJoint, space: " torque, two filters", name: "arm7_filters" };
 const boards = [
   {
     preset: "cortex-m7", machine: "mps2-an500", scalars: ["float", "double"],
-    robots: [twoJoints, sixJoints, sevenJoints, twoByJoint, sevenByJoint, sevenIsolating],
+    robots: [twoJoints, sixJoints, sevenJoints, twoByJoint, sevenByJoint, sevenIsolating,
+      sevenTwoFilters],
   },
   { preset: "cortex-m4", machine: "mps2-an386", scalars: ["float"], robots: [twoJoints] },
 ];

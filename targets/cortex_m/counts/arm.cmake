@@ -19,6 +19,16 @@ function(offnominal_isolation robot file)
   file(CONFIGURE OUTPUT "${file}" CONTENT "${text}" @ONLY)
 endfunction()
 
+# offnominal_two_filters(<robot file> <bounds> <file>): the robot in torque space with a second filter beside it,
+# whose bounds are those, one per joint.
+function(offnominal_two_filters robot bounds file)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${robot}")
+  file(READ "${robot}" text)
+  string(REPLACE "[estimator]" "[estimator]\nfast_alpha_per_s = 30.0" text "${text}")
+  string(REPLACE "kind = \"per_joint\"" "kind = \"per_joint\"\nfast = {value = [${bounds}]}" text "${text}")
+  file(CONFIGURE OUTPUT "${file}" CONTENT "${text}" @ONLY)
+endfunction()
+
 # offnominal_counted_arm(<joints> <hidden units> <file>): bench/discovery's arm with the first joints
 # only, and the estimator and bound that it lacks.
 function(offnominal_counted_arm joints hidden file)
