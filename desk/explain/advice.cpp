@@ -113,13 +113,25 @@ void advise_on_links(Explanation& e) {
 
 void advise_on_friction(Explanation& e) {
   if (e.without_friction.empty() || e.at_rest) return;
-  std::vector<std::string> joints;
-  for (const Eigen::Index joint : e.without_friction) joints.push_back(std::to_string(joint + 1));
-  e.advice.push_back(fmt::format(
-      "the robot file has no friction on joint {}, and every drive has some: where none was found, "
-      "`[[effect]]` with kind = \"coulomb_friction\" and one with kind = \"viscous_friction\", "
-      "`fitted = true`, is where to begin",
-      fmt::join(joints, ", ")));
+  const auto is_found = [&](Eigen::Index joint) {
+    return std::any_of(e.found.begin(), e.found.end(), [joint](const Finding& one) {
+      return one.what.joint == joint && (one.what.kind == EffectKind::kCoulombFriction ||
+                                         one.what.kind == EffectKind::kViscousFriction);
+    });
+  };
+  std::vector<Eigen::Index> none_found;
+  std::copy_if(e.without_friction.begin(), e.without_friction.end(), std::back_inserter(none_found),
+               [&](Eigen::Index joint) { return !is_found(joint); });
+  std::string advice = fmt::format("the robot file has no friction on {}, and every drive has some",
+                                   list_of_joints(e.without_friction));
+  if (!none_found.empty()) {
+    advice += fmt::format(
+        ": on {} none was found, and `[[effect]]` with kind = \"coulomb_friction\" and one with "
+        "kind "
+        "= \"viscous_friction\", `fitted = true`, is where to begin",
+        list_of_joints(none_found));
+  }
+  e.advice.push_back(std::move(advice));
 }
 
 void advise_on_motors(Explanation& e) {

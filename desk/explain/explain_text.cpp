@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/amount.hpp"
 #include "common/input_name.hpp"
 #include "common/number.hpp"
 #include "common/shell_word.hpp"
@@ -139,6 +140,17 @@ std::string command_to_add(const ExplainNames& names) {
                      kept ? "" : ", keep what came through a pipe in a file, and", command);
 }
 
+// Of the joint that shows it most: ", 0.014 N m or 0.47 % of the torque,".
+std::string how_much_is_left(const Explanation& e) {
+  const Eigen::Index joint = e.where.front().joint;
+  const auto of_joint = std::find_if(e.joints.begin(), e.joints.end(),
+                                     [&](const JointErrors& one) { return one.joint == joint; });
+  if (of_joint == e.joints.end() || !(of_joint->rms_torque > 0)) return "";
+  return fmt::format(", {} {} or {} % of the torque,", significant(of_joint->rms_after, 2),
+                     of_joint->unit,
+                     significant(100 * of_joint->rms_after / of_joint->rms_torque, 2));
+}
+
 // How to write it, and what `add` will say to that.
 std::string how_to_add(const Explanation& e, const ExplainNames& names) {
   std::string text = command_to_add(names) + "\n";
@@ -170,8 +182,8 @@ std::string findings_text(const Explanation& e, const ExplainNames& names) {
   text += text_of_changes(e);
   if (!e.where.empty()) {
     const StructureShare& first = e.where.front();
-    text += fmt::format("\nwhat is left follows the {} of joint {} by {:.0f} %\n", first.variable,
-                        first.joint + 1, 100 * first.share);
+    text += fmt::format("\nwhat is left{} follows the {} of joint {} by {:.0f} %\n",
+                        how_much_is_left(e), first.variable, first.joint + 1, 100 * first.share);
   }
   for (const HoldFriction& one : e.hold_friction) {
     text += fmt::format(

@@ -305,7 +305,7 @@ TEST(ManyJoints, GIVEN_a_file_without_friction_THEN_every_joint_gets_both_and_no
         << one.joint + 1 << ": " << one.words;
   }
   EXPECT_EQ(told.found.size(), 2 * kJoints);
-  EXPECT_THAT(told.advice, Contains(HasSubstr("no friction on joint 1, 2, 3, 4, 5, 6")));
+  EXPECT_THAT(told.advice, Contains(HasSubstr("no friction on joints 1, 2, 3, 4, 5, 6")));
   ASSERT_EQ(told.waterfall.size(), told.found.size() + 1);
   for (std::size_t i = 0; i < kJoints; ++i) {
     const auto joint = static_cast<Eigen::Index>(i);

@@ -377,7 +377,13 @@ TEST(Verdict, SaysInOneSentenceThatAFileHasNoFriction) {
   Explanation e = found_with_rest(1.1);
   e.without_friction = {0, 2};
   judge_whole(e);
-  EXPECT_THAT(e.advice, Contains(HasSubstr("no friction on joint 1, 3")));
+  EXPECT_THAT(e.advice, Contains(AllOf(HasSubstr("no friction on joints 1, 3"),
+                                       HasSubstr("on joint 3 none was found"))));
+  e.found.emplace_back().what = {EffectKind::kViscousFriction, 2};
+  e.advice.clear();
+  judge_whole(e);
+  EXPECT_THAT(e.advice, Contains(AllOf(HasSubstr("no friction on joints 1, 3"),
+                                       Not(HasSubstr("none was found")))));
 }
 
 }  // namespace
