@@ -82,7 +82,11 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
   std::vector<EffectAt> sure = answer.found;
   std::erase_if(sure, [&](const EffectAt& one) { return holds_in_any(answer.ambiguous, one); });
   const bool far = stands_out(errors) && errors.rms_after > kShareOfTorque * errors.rms_torque;
-  const bool unknown = !answer.left.follows.empty() || far || !shapes.empty();
+  const std::vector<Change> changes = changes_on(e, errors.joint);
+  // A change is known as well as its moment and its law are: a little of it is left around every
+  // reversal or start behind it.
+  const bool of_change = !changes.empty() && !far;
+  const bool unknown = (!answer.left.follows.empty() && !of_change) || far || !shapes.empty();
   if (!answer.ambiguous.empty() || !answer.found.empty()) {
     answer.verdict = !answer.ambiguous.empty() ? Verdict::kAmbiguous
                      : known                   ? Verdict::kParameterShift
@@ -133,7 +137,7 @@ JointAnswer judge_joint(const Explanation& e, const JointErrors& errors) {
                                words_of_gain(errors, true)
                          : "no known effect is missing.";
   }
-  if (const auto changes = changes_on(e, errors.joint); !changes.empty()) {
+  if (!changes.empty()) {
     const bool alone = answer.verdict == Verdict::kExplained;
     if (alone) answer.verdict = Verdict::kChanged;
     answer.words = fmt::format("{}changes{}: {}.", alone ? "" : answer.words + " It ",

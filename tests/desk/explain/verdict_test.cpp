@@ -373,6 +373,28 @@ TEST(Verdict, OfATorqueOverAVariableBesideWhatWasFoundNamesBoth) {
                     HasSubstr("beside what was found")));
 }
 
+// What a change leaves around reversals is no unknown thing of its own, unless it is much.
+TEST(Verdict, OfAChangeThatLeavesALittleIsTheChange) {
+  Explanation e = nothing_found(4);
+  e.where = {{0, "time", 0.6}};
+  e.joints[0].rms_torque = 100 * e.joints[0].rms_after;
+  Explanation without = e;
+  judge_whole(without);
+  EXPECT_EQ(without.verdict, Verdict::kUnknownExternal);
+  Change change;
+  change.what = {EffectKind::kCoulombFriction, 0};
+  change.at_s = 30;
+  e.changes = {change};
+  Explanation much = e;
+  judge_whole(e);
+  EXPECT_EQ(e.verdict, Verdict::kChanged);
+  EXPECT_EQ(e.answers.front().verdict, Verdict::kChanged);
+  EXPECT_THAT(e.answers.front().words, HasSubstr("What is left: "));
+  much.joints[0].rms_torque = 10 * much.joints[0].rms_after;
+  judge_whole(much);
+  EXPECT_EQ(much.verdict, Verdict::kUnknownExternal);
+}
+
 TEST(Verdict, SaysInOneSentenceThatAFileHasNoFriction) {
   Explanation e = found_with_rest(1.1);
   e.without_friction = {0, 2};
