@@ -87,8 +87,10 @@ void add_options(CLI::App& app, Options& options) {
                  "offnominal motion writes it")
       ->capture_default_str();
   app.add_flag("--accommodate", options.accommodate, "Add the compensating torque");
-  app.add_flag("--stop-at-detection", options.stop_at_detection,
-               "A crossed threshold leads to the safe state");
+  app.add_flag(
+      "--stop-at-detection", options.stop_at_detection,
+      "A crossed threshold leads to the safe state; with act_ratio in the robot file, one that is "
+      "crossed by so much");
   app.add_flag("--end-at-fault", options.end_at_fault, "End 0.1 s after a fault");
   app.add_option("--safe-mode", options.safe_mode, "What drives are told in the safe state")
       ->check(CLI::IsMember({"off", "damping"}))

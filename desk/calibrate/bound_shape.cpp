@@ -200,12 +200,16 @@ std::vector<BoundShape> bound_shapes(const RobotDescription& robot,
   return shapes;
 }
 
-std::vector<BoundShape> joint_bound_shapes(int joint,
+std::vector<BoundShape> joint_bound_shapes(const RobotDescription& robot, int joint,
                                            const std::vector<RecordedError>& recordings) {
   std::vector<BoundShape> shapes(1);
   shapes[0].words = "constant";
   add_table(BoundVariable::kSpeed, joint, recordings, shapes);
-  add_table(BoundVariable::kTorque, joint, recordings, shapes);
+  const bool acts_later =
+      std::any_of(robot.effects.begin(), robot.effects.end(), [joint](const RobotEffect& one) {
+        return one.kind == EffectKind::kTimeDelay && one.joint == joint;
+      });
+  if (!acts_later) add_table(BoundVariable::kTorque, joint, recordings, shapes);
   add_table(BoundVariable::kPosition, joint, recordings, shapes);
   return shapes;
 }

@@ -32,9 +32,9 @@ struct BoundShape {
                                                    const std::vector<RecordedError>& recordings);
 
 /// Of one joint alone, for EstimatorSpace::kTorque: constant, and tables over its own speed, load
-/// and position.
+/// and position; not over a load that acts later than it is recorded (time_delay).
 [[nodiscard]] std::vector<BoundShape> joint_bound_shapes(
-    int joint, const std::vector<RecordedError>& recordings);
+    const RobotDescription& robot, int joint, const std::vector<RecordedError>& recordings);
 
 /// What the c_k of a shape contribute to the threshold in the run that the recording is. Rows:
 /// samples, row 0 (the start) is not judged. The velocity error v adds 2 times the recording's

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -57,7 +58,7 @@ OfFilters<JointThresholds> thresholds_of(const RobotDescription& robot,
 JointBoundSettings joint_bound(const Calibration& calibration) {
   const BoundSettings& bound = *calibration.robot.bound;
   JointBoundSettings joint;
-  joint.act_ratio = calibration.act_ratio;
+  joint.act_ratio = std::ceil(1000 * calibration.act_ratio) / 1000;
   if (bound.kind == BoundSettings::Kind::kTable) {
     joint.variable = bound.table.variable;
     joint.at = bound.table.at;

@@ -83,7 +83,7 @@ std::vector<double> over_beginnings(const std::vector<RecordedError>& recordings
   return all;
 }
 
-// No speed and no start of a run brings the threshold above this.
+// No place in the table and no start of a run brings the threshold above this.
 double largest_threshold(const JointBoundSettings& bound, double alpha_per_s) {
   return *std::max_element(bound.value.begin(), bound.value.end()) +
          2 * alpha_per_s * bound.momentum_error;

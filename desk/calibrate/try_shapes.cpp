@@ -144,7 +144,7 @@ Tries try_shapes(const RobotDescription& robot, const CalibrationData& data,
     return try_shape(shape);
   };
   const std::vector<BoundShape> shapes =
-      data.joint ? joint_bound_shapes(*data.joint, fitted) : bound_shapes(robot, fitted);
+      data.joint ? joint_bound_shapes(robot, *data.joint, fitted) : bound_shapes(robot, fitted);
   Tries tries;
   Tried constant = try_constant(shapes.front());
   if (constant.maxima.size() >= static_cast<std::size_t>(kFewestBlocks) + kBlocksOfAnEvent) {

@@ -62,9 +62,11 @@ class ChangeFinder {
   void add_candidate(const EffectCandidate& effect, Index joint) {
     if (!effect.applies_in_any(data_.recordings, joint)) return;
     Term term{&effect, joint, {}, effect.shapes(data_.recordings, joint)};
-    if (effect.is_mass()) reach_to_centre(term);
     for (const ShapeRange& range : term.ranges) {
       if (range.grid.empty()) return;
+    }
+    if (effect.is_mass()) reach_to_centre(term);
+    for (const ShapeRange& range : term.ranges) {
       term.shape.push_back(range.grid[range.grid.size() / 2]);
     }
     candidates_.push_back(std::move(term));

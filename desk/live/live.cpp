@@ -211,7 +211,7 @@ void Live::keep(const BusSample& sample, double t_s, const Watched& said) {
   const bool by_joint = judged_.size() > 1 || said.thresholds.size() > 0;
   for (std::size_t i = 0; i < judged_.size(); ++i) {
     const auto index = static_cast<Eigen::Index>(i);
-    const Watched::Nearest nearest = by_joint ? said.nearest(index) : Watched::Nearest{};
+    const ResidualAgainst nearest = by_joint ? said.nearest(index) : ResidualAgainst{};
     residual_[i] = by_joint ? nearest.residual : said.error_norm;
     const double threshold = by_joint ? nearest.threshold : said.threshold;
     threshold_[i] = has_bound_ ? threshold : kNone;

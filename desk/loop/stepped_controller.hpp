@@ -33,7 +33,9 @@ struct ControllerView {
   // Of a controller that judges joint by joint; otherwise empty, and -1.
   sim::JointVector error;       // N m or N
   sim::JointVector thresholds;  // N m or N
-  int first_joint = -1;         // that was detected first, from 0
+  sim::JointVector fast_error;  // both behind a second filter; empty: it has none
+  sim::JointVector fast_thresholds;
+  int first_joint = -1;  // that was detected first, from 0
   double weight_norm = 0;
   bool detected = false;                  // latched
   std::optional<IsolatedFault> isolated;  // once there is an answer, of a robot that asks for one

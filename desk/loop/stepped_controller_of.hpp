@@ -58,6 +58,10 @@ class SteppedControllerOf final : public SteppedController {
     if constexpr (std::is_same_v<Space, TorqueSpace>) {
       view.error = doubles(data_->output.error);
       view.thresholds = doubles(data_->output.thresholds);
+      if (controller_.monitor().config().bound.fast.alpha > 0) {
+        view.fast_error = doubles(data_->output.fast_error);
+        view.fast_thresholds = doubles(data_->output.fast_thresholds);
+      }
       if (view.detected) view.first_joint = data_->output.detector.first_joint;
       const FaultDiagnosis<Scalar>& found = data_->isolation.diagnosis;
       if (data_->isolation.triggered && found.time_s > 0) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <offnominal/model/mass_matrix.hpp>
 
+#include "common/nearer_filter.hpp"
 #include "robot/chain_of.hpp"
 
 namespace offnominal::desk::paper {
@@ -103,8 +104,8 @@ void RunObserver::judge_joints(const TickRecord& tick, bool healthy) {
   if (tick.first_joint >= 0 && !result_.first_joint) result_.first_joint = tick.first_joint;
   for (std::size_t i = 0; i < result_.joints.size(); ++i) {
     const auto index = static_cast<Eigen::Index>(i);
-    const double residual = std::abs(tick.error[index]);
-    const double threshold = tick.thresholds[index];
+    const auto [residual, threshold] =
+        nearer_filter(tick.error, tick.thresholds, tick.fast_error, tick.fast_thresholds, index);
     JointRun& joint = result_.joints[i];
     if (residual > threshold && !joint.detection_time_s) joint.detection_time_s = tick.time_s;
     if (!healthy || threshold <= 0) continue;

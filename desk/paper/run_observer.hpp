@@ -30,6 +30,8 @@ struct TickRecord {
   // In EstimatorSpace::kTorque, N m or N; otherwise empty, and -1.
   sim::JointVector error;
   sim::JointVector thresholds;
+  sim::JointVector fast_error;  // both behind a second filter; empty: there is none
+  sim::JointVector fast_thresholds;
   int first_joint = -1;  // that was detected, from 0
   std::optional<BusTick> bus;
 };

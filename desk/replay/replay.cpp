@@ -139,10 +139,9 @@ std::string joints_words(const Replay& replay) {
   std::string words =
       fmt::format("Off nominal: joint {} ({}) first, ", first + 1, replay.joint_names[first]);
   const bool jumped = !crossed.alarms.empty() && crossed.alarms.front().is_jump();
-  words +=
-      jumped ? fmt::format("at {:.3f} s its position is where no motion brings it", at_s)
-             : fmt::format("its residual crosses its threshold at {:.3f} s, up to {:.3g} {}", at_s,
-                           std::max(crossed.max_residual, crossed.fast_max_residual), crossed.unit);
+  words += jumped ? fmt::format("at {:.3f} s its position is where no motion brings it", at_s)
+                  : fmt::format("its residual crosses its threshold at {:.3f} s, up to {:.3g} {}",
+                                at_s, crossed.largest_beyond(), crossed.unit);
   for (std::size_t k = 0; k < later.size(); ++k) {
     const auto& [time_s, joint] = later[k];
     words += fmt::format("{} joint {} ({}) ", k == 0 ? "; then" : ",", joint + 1,

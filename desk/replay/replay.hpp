@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -52,9 +53,15 @@ struct JointReplay {
   double max_threshold = 0;
   double fast_max_residual = 0;  // behind the fast filter, where there is one
   double fast_max_threshold = 0;
-  double max_error_to_threshold = 0;       // of either
+  double max_ratio_slow = 0;          // of residual to threshold behind the estimator's own filter
+  double max_error_to_threshold = 0;  // of either
   std::optional<double> detection_time_s;  // its first alarm, time of the recording
   std::vector<Alarm> alarms;
+
+  /// The largest residual of a filter that has seen something: its own where it has.
+  [[nodiscard]] double largest_beyond() const {
+    return max_ratio_slow > 1 ? max_residual : std::max(max_residual, fast_max_residual);
+  }
 };
 
 // With EstimatorSpace::kTorque error holds residuals alpha (p - omega) in N m or N, psi_hat too,

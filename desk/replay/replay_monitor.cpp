@@ -103,7 +103,7 @@ class ReplayCollector {
   void name_joints(const Watched& output) {
     std::vector<int>& named = result_.alarms.back().joints;
     const auto ratio = [&](int joint) {
-      const Watched::Nearest nearest = output.nearest(joint);
+      const ResidualAgainst nearest = output.nearest(joint);
       return ratio_of(nearest.residual, nearest.threshold);
     };
     const auto before = static_cast<std::ptrdiff_t>(named.size());
@@ -126,11 +126,13 @@ class ReplayCollector {
     if (output.latched && !result_.first_joint) result_.first_joint = output.first_joint;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       const auto index = static_cast<Eigen::Index>(i);
-      const Watched::Nearest nearest = output.nearest(index);
+      const ResidualAgainst nearest = output.nearest(index);
       const double ratio = ratio_of(nearest.residual, nearest.threshold);
       JointReplay& joint = result_.joints[i];
       joint.max_residual = std::max(joint.max_residual, std::abs(output.error[index]));
       joint.max_threshold = std::max(joint.max_threshold, output.thresholds[index]);
+      joint.max_ratio_slow = std::max(
+          joint.max_ratio_slow, ratio_of(std::abs(output.error[index]), output.thresholds[index]));
       if (has_fast) {
         joint.fast_max_residual =
             std::max(joint.fast_max_residual, std::abs(output.fast_error[index]));

@@ -225,7 +225,7 @@ class WatchOf final : public Watch {
     namer_.finish();
     if (over) forget_what_was_learnt();
     clear_latch(state_->detector);
-    output_.detector.latched = false;
+    output_.detector.latched = output_.detector.acts = false;
     quiet_ticks_ = 0;
   }
 
@@ -300,13 +300,6 @@ class WatchOf final : public Watch {
 };
 
 }  // namespace
-
-Watched::Nearest Watched::nearest(Eigen::Index joint) const {
-  const Nearest slow{std::abs(error[joint]), thresholds[joint]};
-  if (fast_error.size() == 0) return slow;
-  const Nearest fast{std::abs(fast_error[joint]), fast_thresholds[joint]};
-  return fast.residual * slow.threshold > slow.residual * fast.threshold ? fast : slow;
-}
 
 std::unique_ptr<Watch> make_watch(const RobotDescription& robot, double period_s,
                                   const Watch::OnFault& on_fault, Detections detections) {

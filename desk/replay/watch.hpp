@@ -12,6 +12,7 @@
 #include <offnominal/vector.hpp>
 #include <optional>
 
+#include "common/nearer_filter.hpp"
 #include "replay/replay.hpp"
 #include "robot/robot.hpp"
 
@@ -42,13 +43,10 @@ struct Watched {
   bool acts = false;     // the same of the second level; of one level as latched
   int first_joint = -1;  // from 0, that was first; -1: none, or one threshold of all
 
-  /// Of a joint that is judged by itself: size of the residual and threshold, N m or N, of the
-  /// filter that is nearer to its threshold, or farther beyond.
-  struct Nearest {
-    double residual = 0;
-    double threshold = 0;
-  };
-  [[nodiscard]] Nearest nearest(Eigen::Index joint) const;
+  /// Of a joint that is judged by itself, of the nearer of its filters.
+  [[nodiscard]] ResidualAgainst nearest(Eigen::Index joint) const {
+    return nearer_filter(error, thresholds, fast_error, fast_thresholds, joint);
+  }
 };
 
 class Watch {

@@ -11,7 +11,7 @@ namespace offnominal::desk {
 [[nodiscard]] std::string bound_text(const BoundSettings& bound);
 
 /// The keys of Kind::kPerJoint, `kind` first, without a line break at the end: the joints'
-/// constants in one list, what depends on a speed in tables of one line.
+/// constants in one list, what depends on a position, speed or load in tables of one line.
 [[nodiscard]] std::string joint_bounds_text(const BoundSettings& bound);
 
 }  // namespace offnominal::desk

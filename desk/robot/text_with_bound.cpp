@@ -28,12 +28,16 @@ std::string header_of(const std::string& line) {
   return header;
 }
 
-// Behind the bound and the tables that belong to it, [[uncertainty_bound.over_speed]].
+// Behind the bound and the tables that belong to it, [[uncertainty_bound.over_speed]],
+// [uncertainty_bound.fast].
 std::size_t end_of_bound(const Lines& lines, std::size_t header) {
   std::size_t end = end_of_block(lines, header);
   for (std::size_t next = end; next < lines.size(); ++next) {
     if (!is_header(lines[next])) continue;
-    if (!header_of(lines[next]).starts_with("[[uncertainty_bound.")) break;
+    const std::string name = header_of(lines[next]);
+    const bool belongs =
+        name.starts_with("[[uncertainty_bound.") || name.starts_with("[uncertainty_bound.");
+    if (!belongs) break;
     end = end_of_block(lines, next);
     next = end - 1;
   }

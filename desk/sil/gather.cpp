@@ -79,6 +79,10 @@ paper::TickRecord record_of(const Table& plant, Index row, const Table& controll
   if (robot.estimator.space == EstimatorSpace::kTorque) {
     record.error = controller.all("error", partner);
     record.thresholds = controller.all("threshold", partner);
+    if (robot.estimator.fast_alpha > 0) {
+      record.fast_error = controller.all("fast_error", partner);
+      record.fast_thresholds = controller.all("fast_threshold", partner);
+    }
     record.first_joint = static_cast<int>(controller.at("first_joint", partner)) - 1;
   }
   // The controller's rows are those of its fresh ticks.

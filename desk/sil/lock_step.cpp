@@ -70,6 +70,8 @@ class LockStepLoop {
     record.detected = view.detected;
     record.error = view.error;
     record.thresholds = view.thresholds;
+    record.fast_error = view.fast_error;
+    record.fast_thresholds = view.fast_thresholds;
     record.first_joint = view.first_joint;
     // Before the drives follow, a sample holds the torque that is asked for.
     record.bus = {view.fresh && view.drives_follow, view.seen, view.tau, ends_.plant().acting_nm(),

@@ -35,7 +35,9 @@ double geometric_mean(const std::vector<double>& values) {
 // Of the poles that were tried, the slowest that sees soon what the best of them does.
 void choose_fast(const AlphaTrial& slow, std::vector<AlphaTrial>& trials) {
   const auto is_faster = [&](const AlphaTrial& trial) {
-    return trial.why_none.empty() && trial.alpha_per_s >= kFaster * slow.alpha_per_s;
+    // In less than a tick no filter sees anything.
+    return trial.why_none.empty() && trial.alpha_per_s >= kFaster * slow.alpha_per_s &&
+           std::isfinite(trial.mean_soon);
   };
   double best = slow.mean_soon / kAsGoodAPole;
   for (const AlphaTrial& trial : trials) {

@@ -182,9 +182,10 @@ std::vector<EstimatorLine> lines_of(const Tuned& tuned, const TuneRequest& reque
     lines.push_back({"fast_alpha_per_s", shortest_real(settings.fast_alpha),
                      reasons_of_fast(*fast, tuned, request)});
   } else if (settings.fast_alpha > 0) {
-    lines.push_back(
-        {"fast_alpha_per_s", shortest_real(settings.fast_alpha),
-         "kept: no pole sees faults sooner by a fifth; leave it out, and one filter does"});
+    lines.push_back({"fast_alpha_per_s", shortest_real(settings.fast_alpha),
+                     "no pole sees faults sooner by a fifth, and the file has a second filter: its "
+                     "own pole, or "
+                     "twice alpha_per_s; leave it out, and one filter does"});
   }
   lines.push_back(
       {"hidden_units", std::to_string(settings.hidden_units),

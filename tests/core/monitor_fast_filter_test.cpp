@@ -225,7 +225,9 @@ TYPED_TEST(FastFilterOf, RefusesAPoleThatIsNoFasterOneOrThatNoTickFollows) {
     auto config = slide_config<TypeParam>();
     config.bound.fast.alpha = alpha;
     Slide<TypeParam> monitor;
-    return Slide<TypeParam>::create(config, monitor);
+    const Status status = Slide<TypeParam>::create(config, monitor);
+    EXPECT_EQ((validate<kSlideUnits, 1, TypeParam>(config)), status);
+    return status;
   };
   EXPECT_EQ(status_of(TypeParam(0)), Status::kOk) << "none";
   EXPECT_EQ(status_of(TypeParam(10)), Status::kInvalidFilterPole);

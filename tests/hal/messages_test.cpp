@@ -139,6 +139,8 @@ TEST(Diagnosis, ThatContradictsItselfIsRefused) {
       << "beyond what nobody judges";
   EXPECT_EQ(encoded(Diagnosis{false, 1, 0, 0.5F}), Status::kInvalidValue);
   EXPECT_EQ(decoded<Diagnosis>({4, 0, 1, 0, 0}), Status::kInvalidValue);
+  EXPECT_EQ(decoded<Diagnosis>({2, 0, 1, 0, 0}), Status::kInvalidValue) << "acts on no joint";
+  EXPECT_EQ(encoded(Diagnosis{false, 0, 1, 0.5F, true}), Status::kInvalidValue);
   EXPECT_EQ(decoded<Diagnosis>({1, 1, 0, 0, 0}), Status::kInvalidValue);
   EXPECT_EQ(decoded<Diagnosis>({0, 1, 0, 1, 0}), Status::kInvalidValue);
   EXPECT_EQ(decoded<Diagnosis>({0, 1, 0, 0, 0}), Status::kOk);

@@ -230,10 +230,11 @@ TEST(DiagnosisOf, NamesTheJointThatIsNearestToItsThreshold) {
 using Isolating = JointOnDeskIn<TorqueSpace, WithIsolation>;
 
 // A joint that sways, on a controller that may compensate or not.
-Isolating swaying(bool may) {
+Isolating swaying(bool may, double act_ratio = 1) {
   auto config = Isolating::config();
   if (may) config.monitor.max_compensation.fill(100);
   config.monitor.bound.joints[0].value[0] = 2;
+  config.monitor.bound.joints[0].act_ratio = static_cast<float>(act_ratio);
   Isolating joint(config);
   joint.reference_at = [](double t_s) {
     constexpr double kSpeed = 3;
@@ -284,6 +285,23 @@ TEST(ControllerWithIsolation, GivenFrictionThenItSaysSoAndCompensatesOnceItIsDec
   EXPECT_TRUE(told.decided);
   EXPECT_EQ(told.size, static_cast<float>(found.size));
   EXPECT_FALSE(joint.drive.faults.front().decided) << "the best answer so far comes first";
+}
+
+// Its law is of a joint that was only noticed.
+TEST(ControllerWithIsolation, GivenTwoLevelsThenAFaultBelowTheSecondIsNamedAndNotCompensated) {
+  for (const double act_ratio : {1.0, 1000.0}) {
+    Isolating joint = swaying(true, act_ratio);
+    float largest = 0;
+    for (int i = 0; i < 3000; ++i) {
+      joint.push_nm = -6 * std::tanh(joint.dq / 0.02);
+      joint.tick();
+      largest = std::max(largest, std::abs(joint.data->output.compensation.torque[0]));
+    }
+    EXPECT_TRUE(joint.data->isolation.diagnosis.decided);
+    EXPECT_EQ(joint.data->output.detector.acts, act_ratio == 1);
+    EXPECT_EQ(largest > 1, act_ratio == 1) << largest;
+    EXPECT_EQ(largest == 0, act_ratio != 1) << largest;
+  }
 }
 
 // GIVEN friction that is compensated WHEN it is over THEN the controller lets go of it: it moves as

@@ -37,6 +37,10 @@ template <int L, int N, typename Scalar, typename Space>
   if (const Status status = validate<L>(config.estimator); status != Status::kOk) return status;
   const std::size_t joints = config.chain.joints.size();
   if (const Status status = validate(config.bound, joints); status != Status::kOk) return status;
+  if constexpr (std::is_same_v<Space, TorqueSpace>) {
+    const Status status = validate_pole<N, Scalar>(config.bound.fast, config.estimator);
+    if (status != Status::kOk) return status;
+  }
   if (config.max_compensation.size() != joints) return Status::kWrongJointCount;
   for (const Scalar limit : config.max_compensation) {
     if (is_nan(limit) || limit < 0) return Status::kInvalidLimit;
@@ -94,11 +98,10 @@ class Monitor {
     if (status != Status::kOk) return status;
     status = EffectMemoryOf::validate(config.chain, config.estimator.period_s);
     if (status != Status::kOk) return status;
-    if constexpr (kByJoint) {
-      status = FastFilter<N, Scalar>::create(config.bound.fast, config.estimator, monitor.fast_);
-      if (status != Status::kOk) return status;
-    }
     monitor.config_ = config;
+    if constexpr (kByJoint) {
+      monitor.fast_ = FastFilter<N, Scalar>(config.bound.fast, config.estimator);
+    }
     monitor.model_ = make_model(config.chain);
     monitor.memory_.prepare(config.chain, monitor.model_, config.estimator.period_s);
     size_for(config.max_compensation.size(), monitor.max_compensation_);
@@ -202,11 +205,13 @@ class Monitor {
   }
 
   // Takes `load` away, N m or N, at the tick that `output` is of, which step() has accepted: where
-  // it is known better than by psi_hat (FaultLaw). In TorqueSpace.
+  // it is known better than by psi_hat (FaultLaw). In TorqueSpace. As of psi_hat, nothing before a
+  // joint is beyond the second level, and nothing of one that was only noticed.
   template <typename JointOutput>
   [[nodiscard]] CompensatingTorque<N, Scalar> compensation_of(const Vector<N, Scalar>& load,
                                                               const JointOutput& output) const {
-    return compensating_torque_of_load<N, Scalar>(load, max_compensation_, output.told_per_load);
+    return compensating_torque_of_load<N, Scalar>(acted_on<N, Scalar>(load, output.detector),
+                                                  max_compensation_, output.told_per_load);
   }
 
   [[nodiscard]] const Config& config() const { return config_; }

@@ -175,17 +175,12 @@ struct MonitorForm<TorqueSpace, N, Scalar> {
     output.error_norm = errors.size[worst];
     output.threshold = errors.threshold[worst];
   }
-  // Of the joints that are beyond the second level: what was only noticed is not acted on.
   template <typename Output>
   static EIGEN_ALWAYS_INLINE void compensate(const Dynamics& nominal,
                                              const Vector<N, Scalar>& limit, Output& output) {
     output.told_per_load = nominal.told_per_load;
-    Vector<N, Scalar> load = output.psi_hat;
-    for (std::size_t i = 0; i < output.detector.joints.size(); ++i) {
-      if (!output.detector.joints[i].acts) load[static_cast<Eigen::Index>(i)] = 0;
-    }
-    output.compensation =
-        compensating_torque_of_load<N, Scalar>(load, limit, nominal.told_per_load);
+    output.compensation = compensating_torque_of_load<N, Scalar>(
+        acted_on<N, Scalar>(output.psi_hat, output.detector), limit, nominal.told_per_load);
   }
 };
 

@@ -26,6 +26,7 @@ class TipPayload final : public EffectCandidate {
     if (at[0].joint_count() < kAnywhere) {
       place[0].grid = {1.5 * centre[0], 1.75 * centre[0], 2 * centre[0], 2.5 * centre[0],
                        3 * centre[0]};
+      std::sort(place[0].grid.begin(), place[0].grid.end());  // a link may point backwards
       place[1].grid = {0};
       place[2].grid = {0};
       return place;

@@ -115,5 +115,17 @@ TEST(CampaignFile, RefusesWhatIsWrongWithFileLineFoundAllowedAndMend) {
               AllOf(HasSubstr("known afterwards"), HasSubstr("observed")));
 }
 
+TEST(CampaignFile, OfASecondFilterHasItsPoleOfTheMonitorAlone) {
+  const std::string good = small_campaign("");
+  const auto with_filter = [&](const std::string& kind, const std::string& pole) {
+    return replaced(good, "kind = \"" + kind + "\"\n",
+                    "kind = \"" + kind + "\"\nfast_alpha_per_s = " + pole + "\n");
+  };
+  EXPECT_THAT(refusal_of(with_filter("kdl", "50.0")), HasSubstr("kind = \"torque\" alone"));
+  EXPECT_THAT(refusal_of(with_filter("torque", "1.0")),
+              HasSubstr("above alpha_per_s, which is 10"));
+  EXPECT_EQ(refusal_of(with_filter("torque", "50.0")), "nothing was refused");
+}
+
 }  // namespace
 }  // namespace offnominal::desk::campaign

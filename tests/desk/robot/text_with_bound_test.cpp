@@ -59,6 +59,22 @@ TEST(TextWithBound, TheTablesOfTheOldBoundGoWithItWhereTheyHaveHeaders) {
   EXPECT_TRUE(text_with_bound(head + kTail + bound + over_speed("[1.0, 2.0]"), robot));
 }
 
+TEST(TextWithBound, TheTableOfTheSecondFilterGoesWithItWhereItHasAHeader) {
+  const std::string head =
+      kHead + "\n[estimator]\nspace = \"torque\" # kept as well\nfast_alpha_per_s = 50.0\n";
+  const std::string text = head +
+                           "\n[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.0]\n"
+                           "\n[uncertainty_bound.fast] # by hand\nvalue = [2.0]\n" +
+                           kTail;
+  RobotDescription robot = parse_robot(text, "r.toml");
+  robot.bound->fast[0].value = {5};
+  const auto written = text_with_bound(text, robot);
+  ASSERT_TRUE(written) << "the comments of the file are lost";
+  EXPECT_EQ(written->substr(0, head.size()), head);
+  EXPECT_EQ(written->find("by hand"), std::string::npos);
+  EXPECT_EQ(parse_robot(*written, "r.toml").bound->fast[0].value, std::vector{5.0});
+}
+
 // Above all headers there is no place for a table: the new bound goes to the end, and what stands
 // above the old one may speak of the whole file.
 TEST(TextWithBound, ABoundInOneLineGoesAndEveryOtherLineStays) {

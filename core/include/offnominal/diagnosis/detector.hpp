@@ -110,6 +110,20 @@ inline Eigen::Index update(JointDetectors<N, Scalar>& state, const JointErrors<N
   return worst;
 }
 
+// Of a load on the joints, N m or N, what somebody may act on: nothing before any joint is beyond
+// the second level, and nothing on a joint that was noticed and is not. On the others a body that
+// is carried acts too.
+template <int N, typename Scalar>
+[[nodiscard]] inline Vector<N, Scalar> acted_on(const Vector<N, Scalar>& load,
+                                                const JointDetectors<N, Scalar>& state) {
+  Vector<N, Scalar> acted = load;
+  for (std::size_t i = 0; i < state.joints.size(); ++i) {
+    const DetectorState<Scalar>& joint = state.joints[i];
+    if (!state.acts || (joint.latched && !joint.acts)) acted[static_cast<Eigen::Index>(i)] = 0;
+  }
+  return acted;
+}
+
 // Forgets the latched detection. The next crossing latches again, with its own time.
 template <typename Scalar>
 inline void clear_latch(DetectorState<Scalar>& state) {

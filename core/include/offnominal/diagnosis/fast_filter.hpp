@@ -34,8 +34,19 @@ struct FastFilterBegin {
   Vector<N, Scalar> mu_bar = zeros<N, Scalar>();        // N m or N
 };
 
+// kInvalidFilterPole: a pole that is no number above the estimator's; kUnstablePeriod: too far for
+// a tick. 0: no such filter.
+template <int N, typename Scalar>
+[[nodiscard]] Status validate_pole(const FastBound<N, Scalar>& bound,
+                                   const EstimatorConfig<Scalar>& estimator) {
+  if (bound.alpha == 0) return Status::kOk;
+  if (!is_finite(bound.alpha) || bound.alpha <= estimator.alpha) return Status::kInvalidFilterPole;
+  const bool is_followed = bound.alpha * estimator.period_s <= static_cast<Scalar>(kMaxPolePerTick);
+  return is_followed ? Status::kOk : Status::kUnstablePeriod;
+}
+
 // The immutable part. Where runs() is false nothing else of it is to be called. `bound` is the one
-// that it was created with.
+// that it was made of, which validate_pole() accepts.
 template <int N, typename Scalar>
 class FastFilter {
  public:
@@ -46,22 +57,9 @@ class FastFilter {
   using Begin = FastFilterBegin<N, Scalar>;
   using Input = EstimatorInput<N, Scalar, TorqueSpace>;
 
-  // kInvalidFilterPole: its pole is no number above the estimator's; kUnstablePeriod: too far for a
-  // tick. Of a bound that validate() accepts.
-  [[nodiscard]] static Status create(const Bound& bound, const EstimatorConfig<Scalar>& estimator,
-                                     FastFilter& filter) {
-    filter = {};
-    if (bound.alpha == 0) return Status::kOk;
-    if (!is_finite(bound.alpha) || bound.alpha <= estimator.alpha) {
-      return Status::kInvalidFilterPole;
-    }
-    if (bound.alpha * estimator.period_s > static_cast<Scalar>(kMaxPolePerTick)) {
-      return Status::kUnstablePeriod;
-    }
-    filter.runs_ = true;
-    filter.tick_ = tick_filter(bound.alpha, estimator.period_s);
-    return Status::kOk;
-  }
+  FastFilter() = default;
+  FastFilter(const Bound& bound, const EstimatorConfig<Scalar>& estimator)
+      : tick_(tick_filter(bound.alpha, estimator.period_s)), runs_(bound.alpha > 0) {}
 
   [[nodiscard]] bool runs() const { return runs_; }
 

@@ -198,6 +198,7 @@ inline constexpr std::uint8_t kMostFaultJoint = 31;
   const bool judges = diagnosis.worst_joint != 0;
   // NaN is not.
   if (!(ratio >= 0) || (!judges && (diagnosis.level || ratio > 0))) return Status::kInvalidValue;
+  if (diagnosis.acts && diagnosis.first_joint == 0) return Status::kInvalidValue;
   constexpr float kMost = 0xFFFF;
   const auto counts = static_cast<std::uint32_t>(std::fmin(ratio / kRatioPerCount, kMost));
   Content content{};
@@ -276,9 +277,10 @@ namespace detail {
   const std::uint32_t counts = from_little_endian(std::span(content).last<2>());
   const bool judges = content[2] != 0;
   const bool level = (content[0] & 1U) != 0;
+  const bool acts = (content[0] & 2U) != 0;
   if (content[0] > 3 || (!judges && (level || counts != 0))) return false;
-  diagnosis = {level, content[1], content[2], static_cast<float>(counts) * kRatioPerCount,
-               (content[0] & 2U) != 0};
+  if (acts && content[1] == 0) return false;
+  diagnosis = {level, content[1], content[2], static_cast<float>(counts) * kRatioPerCount, acts};
   return true;
 }
 

@@ -322,8 +322,7 @@ class JointController {
   [[nodiscard]] bool compensates(const Data& data) const {
     if constexpr (kIsolates) {
       const auto& found = data.isolation.diagnosis;
-      if (!config_.isolates) return true;
-      return found.decided && is_compensated(found.kind) && data.output.detector.acts;
+      return !config_.isolates || (found.decided && is_compensated(found.kind));
     }
     return true;
   }
