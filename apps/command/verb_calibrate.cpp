@@ -124,12 +124,11 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
   const FaultFree healthy = keep_fault_free(data, options.keep, progress);
   progress.begin("shapes of the bound");
   const CalibrateRequest request{
-      options.alarms_per_hour,
-      options.velocity_error,
-      "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + ".",
-      healthy.left_out,
-      {},
-      options.act_alarms_per_hour};
+      .alarms_per_hour = options.alarms_per_hour,
+      .velocity_error = options.velocity_error,
+      .source = "Calibrated by offnominal calibrate on " + file_names(options.files.logs) + ".",
+      .left_out = healthy.left_out,
+      .act_alarms_per_hour = options.act_alarms_per_hour};
   require_carried(data.robot, options.files.robot);
   const CalibrateNames names{options.files.robot, options.output, command_line};
   const auto on_step = [&progress] { progress.step(); };

@@ -68,11 +68,14 @@ std::string text_of(const Replay& replay, const MonitorFilter& filter) {
                                   : "";
     row(fmt::format("joint {}, {}", i + 1, replay.joint_names[i]),
         fmt::format("residual up to {:.4g}, threshold up to {:.4g} {}, ratio up to {:.3g}{}",
-                    joint.max_residual, joint.max_threshold, joint.unit,
-                    joint.max_error_to_threshold, first));
+                    joint.max_residual, joint.max_threshold, joint.unit, joint.max_ratio_slow,
+                    first));
     if (replay.fast_error.size() > 0) {
-      row("", fmt::format("behind the fast filter up to {:.4g}, threshold up to {:.4g} {}",
-                          joint.fast_max_residual, joint.fast_max_threshold, joint.unit));
+      row("",
+          fmt::format("behind the fast filter up to {:.4g}, threshold up to {:.4g} {}, ratio up to "
+                      "{:.3g}",
+                      joint.fast_max_residual, joint.fast_max_threshold, joint.unit,
+                      joint.max_ratio_fast));
     }
   }
   // Joint by joint they are of whichever was nearest, and of mixed units.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "calibrate/recorded_error.hpp"
 #include "common/amount.hpp"
 #include "common/error.hpp"
+#include "common/list_of_joints.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -132,6 +134,36 @@ std::string source_of(const CalibrateRequest& request, const JointsCalibration& 
       counted(static_cast<std::size_t>(alarms), "alarm"), level.held_out_s);
 }
 
+bool has_second_level(const BoundSettings& bound) {
+  const auto is_above = [](const JointBoundSettings& one) { return one.act_ratio > 1; };
+  return std::any_of(bound.joints.begin(), bound.joints.end(), is_above) ||
+         std::any_of(bound.fast.begin(), bound.fast.end(), is_above);
+}
+
+// That a second level is gone, or no higher than the first.
+void note_levels(const CalibrateRequest& request, JointsCalibration& result) {
+  if (!request.act_alarms_per_hour) {
+    if (!result.old_bound || !has_second_level(*result.old_bound)) return;
+    result.notes.emplace_back(
+        "The old bound had a second level (act_ratio), the new one has none: the controller acts "
+        "on "
+        "every alarm. --act-alarms-per-hour finds another.");
+    return;
+  }
+  const BoundSettings& bound = *result.robot.bound;
+  std::vector<Eigen::Index> without;
+  for (std::size_t i = 0; i < bound.joints.size(); ++i) {
+    const bool fast = !bound.fast.empty() && bound.fast[i].act_ratio > 1;
+    if (bound.joints[i].act_ratio <= 1 && !fast) without.push_back(static_cast<Eigen::Index>(i));
+  }
+  if (without.empty()) return;
+  result.notes.push_back(fmt::format(
+      "On {} the second level is the first: what the recordings ask for (their largest unseen "
+      "residual, a start or a transient) is already rarer than {:g} per hour by the law of the "
+      "maxima.",
+      list_of_joints(without), *request.act_alarms_per_hour));
+}
+
 }  // namespace
 
 JointsCalibration calibrate_joints(const RobotDescription& robot, const CalibrateRequest& request,
@@ -169,6 +201,7 @@ JointsCalibration calibrate_joints(const RobotDescription& robot, const Calibrat
       judged_filter(std::move(slow), of_one, thresholds.slow, bound.joints, false, result);
   result.fast = judged_filter(std::move(fast), of_one, thresholds.fast, bound.fast, true, result);
   note_what_matters(robot, logs.size() + holdout.size(), result.notes);
+  note_levels(request, result);
   result.robot.bound->source = source_of(request, result);
   return result;
 }

@@ -189,8 +189,11 @@ std::string verdict_of(const JointsCalibration& calibration) {
   std::string words = "Lasting faults that are seen from";
   for (std::size_t i = 0; i < calibration.joints.size(); ++i) {
     const JointCalibration& joint = calibration.joints[i];
-    words += fmt::format("{} {} {} on joint {}", i == 0 ? "" : ",",
-                         significant(joint.fault.usual, 2), joint.calibration.unit, i + 1);
+    const double usual = calibration.fast.empty()
+                             ? joint.fault.usual
+                             : std::min(joint.fault.usual, calibration.fast[i].fault.usual);
+    words += fmt::format("{} {} {} on joint {}", i == 0 ? "" : ",", significant(usual, 2),
+                         joint.calibration.unit, i + 1);
   }
   return words + fmt::format("; {} of {} in {:g} s of hold-out data.",
                              counted(static_cast<std::size_t>(held_out.alarms), "alarm"),

@@ -239,6 +239,8 @@ std::string words_of(const ExperimentResult& run) {
                         *run.fault_time_s, *run.detection_time_s,
                         *run.detection_time_s - *run.fault_time_s);
   }
+  // A run that has stopped early has no last quarter.
+  if (!std::isfinite(run.tracking_rms_rad)) return words;
   words += fmt::format(" {} accommodation the tracking error is {:.4f} rad (rms, last quarter).",
                        run.accommodate ? "With" : "Without", run.tracking_rms_rad);
   return words;

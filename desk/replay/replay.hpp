@@ -53,8 +53,10 @@ struct JointReplay {
   double max_threshold = 0;
   double fast_max_residual = 0;  // behind the fast filter, where there is one
   double fast_max_threshold = 0;
-  double max_ratio_slow = 0;          // of residual to threshold behind the estimator's own filter
-  double max_error_to_threshold = 0;  // of either
+  // Of residual to threshold, behind the estimator's own filter and behind the fast one.
+  double max_ratio_slow = 0;
+  double max_ratio_fast = 0;
+  double max_error_to_threshold = 0;       // of either
   std::optional<double> detection_time_s;  // its first alarm, time of the recording
   std::vector<Alarm> alarms;
 

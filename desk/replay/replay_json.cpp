@@ -61,6 +61,7 @@ void add_joints(const Replay& replay, nlohmann::json& json) {
     if (replay.fast_error.size() > 0) {
       joints.back()["fast_max_residual"] = joint.fast_max_residual;
       joints.back()["fast_max_threshold"] = joint.fast_max_threshold;
+      joints.back()["fast_max_error_to_threshold"] = finite_or_null(joint.max_ratio_fast);
     }
   }
   // Of whichever joint was nearest to its threshold, and of mixed units.

@@ -138,6 +138,9 @@ class ReplayCollector {
             std::max(joint.fast_max_residual, std::abs(output.fast_error[index]));
         joint.fast_max_threshold =
             std::max(joint.fast_max_threshold, output.fast_thresholds[index]);
+        joint.max_ratio_fast =
+            std::max(joint.max_ratio_fast,
+                     ratio_of(std::abs(output.fast_error[index]), output.fast_thresholds[index]));
       }
       joint.max_error_to_threshold = std::max(joint.max_error_to_threshold, ratio);
       joints_[i].take(t_s, output.levels[i], ratio, joint.alarms, joint.detection_time_s);

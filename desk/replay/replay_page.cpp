@@ -91,6 +91,7 @@ Table joint_table(const Replay& replay) {
   if (has_fast) {
     table.columns.push_back({"behind the fast filter", "", ".4g"});
     table.columns.push_back({"its largest threshold", "", ".4g"});
+    table.columns.push_back({"its largest ratio", "1", ".3g"});
   }
   for (std::size_t i = 0; i < replay.joints.size(); ++i) {
     const JointReplay& joint = replay.joints[i];
@@ -100,11 +101,12 @@ Table joint_table(const Replay& replay) {
                           joint.unit,
                           joint.max_residual,
                           joint.max_threshold,
-                          joint.max_error_to_threshold});
+                          joint.max_ratio_slow});
     if (joint.detection_time_s) table.rows.back()[1] = *joint.detection_time_s;
     if (!has_fast) continue;
     table.rows.back().emplace_back(joint.fast_max_residual);
     table.rows.back().emplace_back(joint.fast_max_threshold);
+    table.rows.back().emplace_back(joint.max_ratio_fast);
   }
   return table;
 }

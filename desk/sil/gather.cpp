@@ -42,17 +42,23 @@ class Partner {
  public:
   Partner(const Table& controller, double period_s)
       : controller_(controller), period_s_(period_s) {}
-  // In the order of time. False where it had none, or was not armed.
+  // In the order of time. False where it had none, or was not armed, but for the tick in which it
+  // stopped for what it had detected.
   bool find(double plant_t_s) {
     while (row_ < controller_.rows() && controller_.at("t", row_) <= plant_t_s) ++row_;
     if (row_ == controller_.rows()) return false;
     const bool in_time = controller_.at("t", row_) < plant_t_s + 1.5 * period_s_;
-    return in_time &&
-           controller_.at("state", row_) == static_cast<double>(hal::ControllerState::kArmed);
+    return in_time && (is_armed(row_) || (row_ > 0 && is_armed(row_ - 1) &&
+                                          controller_.at("fault", row_) ==
+                                              static_cast<double>(controller::Fault::kDetected)));
   }
   [[nodiscard]] Index row() const { return row_; }
 
  private:
+  [[nodiscard]] bool is_armed(Index row) const {
+    return controller_.at("state", row) == static_cast<double>(hal::ControllerState::kArmed);
+  }
+
   const Table& controller_;
   double period_s_;
   Index row_ = 0;

@@ -27,9 +27,14 @@ class LockStepLoop {
     // Both ends have a tick in which they do what time 0 asks for.
     ends_.tick();
     std::optional<double> safe_since_s;
+    bool was_armed = false;
     for (std::int64_t i = 1; i <= ticks_; ++i) {
       ends_.tick();
-      if (ends_.controller().state() == hal::ControllerState::kArmed) observe(record());
+      const bool armed = ends_.controller().state() == hal::ControllerState::kArmed;
+      // What it stops for is of the tick that stops it.
+      const bool stops = was_armed && ends_.controller().fault() == controller::Fault::kDetected;
+      if (armed || stops) observe(record());
+      was_armed = armed;
       if (!result.not_held && ends_.controller().fault() == controller::Fault::kArmNotHeld) {
         result.not_held = not_held(robot_, scenario_, held, ends_.plant().state());
       }

@@ -113,6 +113,33 @@ TEST_F(CalibrateVerb, RefusesAVelocityErrorInTorqueSpaceBeforeItReadsARecording)
   EXPECT_THAT(result.err, HasSubstr("in " + path("torque.toml")));
 }
 
+TEST_F(CalibrateVerb, WritesTheSecondLevelThatIsAskedForAndSaysWhereItIsGone) {
+  RobotDescription robot = arm_description();
+  robot.estimator.space = EstimatorSpace::kTorque;
+  robot.estimator.fast_alpha = 5 * robot.estimator.alpha;
+  offnominal::test::put(folder_ / "torque.toml", robot_text(robot));
+  const auto calibrated = [&](const std::string& from, const std::string& to,
+                              std::vector<std::string> more) {
+    std::vector<std::string> arguments{path("a.csv"), path("b.csv"), "--robot",
+                                       path(from),    "-o",          path(to)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return calibrate(arguments);
+  };
+  const CommandResult asked =
+      calibrated("torque.toml", "levels.toml", {"--act-alarms-per-hour", "1e-5"});
+  ASSERT_EQ(asked.exit_code, 0) << asked.err;
+  EXPECT_THAT(asked.out, HasSubstr("act at: the second level, for 1e-05 false alarms per hour"));
+  EXPECT_THAT(content_of(path("levels.toml")), HasSubstr("act_ratio = ["));
+  const CommandResult again = calibrated("levels.toml", "again.toml", {});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.out, HasSubstr("had a second level (act_ratio), the new one has none"));
+  EXPECT_THAT(content_of(path("again.toml")), Not(HasSubstr("act_ratio")));
+  const CommandResult refused =
+      calibrated("arm.toml", "no.toml", {"--act-alarms-per-hour", "0.001"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("two levels are of joints that are judged one by one"));
+}
+
 TEST_F(CalibrateVerb, ReplayOfATorqueSpaceSaysNoMaximaOverJoints) {
   RobotDescription robot = arm_description();
   robot.estimator.space = EstimatorSpace::kTorque;

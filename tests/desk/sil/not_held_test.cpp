@@ -114,6 +114,8 @@ TEST(SafeState, IsAskedForByADetectionThatItIsToldToStopAt) {
   const SilResult result = run(robot, scenario);
   EXPECT_EQ(result.fault, controller::Fault::kDetected);
   EXPECT_FALSE(is_unasked_stop(result));
+  ASSERT_TRUE(result.run.detection_time_s) << "what it stopped for is told";
+  EXPECT_GT(*result.run.detection_time_s, 1.0);
 }
 
 }  // namespace
