@@ -12,6 +12,7 @@
 #include "explain/data_fault_report.hpp"
 #include "explain/doubts.hpp"
 #include "explain/explain_report.hpp"
+#include "explain/remains.hpp"
 #include "robot/payload.hpp"
 
 namespace offnominal::desk {
@@ -142,13 +143,10 @@ std::string command_to_add(const ExplainNames& names) {
 
 // Of the joint that shows it most: ", 0.014 N m or 0.47 % of the torque,".
 std::string how_much_is_left(const Explanation& e) {
-  const Eigen::Index joint = e.where.front().joint;
-  const auto of_joint = std::find_if(e.joints.begin(), e.joints.end(),
-                                     [&](const JointErrors& one) { return one.joint == joint; });
-  if (of_joint == e.joints.end() || !(of_joint->rms_torque > 0)) return "";
-  return fmt::format(", {} {} or {} % of the torque,", significant(of_joint->rms_after, 2),
-                     of_joint->unit,
-                     significant(100 * of_joint->rms_after / of_joint->rms_torque, 2));
+  const JointErrors& errors = errors_of(e, e.where.front().joint);
+  if (!(errors.rms_torque > 0)) return "";
+  return fmt::format(", {} {} or {} % of the torque,", significant(errors.rms_after, 2),
+                     errors.unit, significant(100 * errors.rms_after / errors.rms_torque, 2));
 }
 
 // How to write it, and what `add` will say to that.
