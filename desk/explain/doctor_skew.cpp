@@ -65,12 +65,13 @@ LagEstimate estimate_lag(const TorquePair& pair, Index joint, Index first, Index
   const MatrixXd basis =
       MatrixXd(qr.householderQ() * MatrixXd::Identity(count, columns.cols())).leftCols(qr.rank());
   const VectorXd own_t = pair.t_s.segment(first, count);
+  const Spline measured(pair.t_s, pair.measured.col(joint));
   const auto steps = static_cast<Index>(kLargestLagS / kLagStepS);
   VectorXd errors(2 * steps + 1);
   for (Index k = 0; k < errors.size(); ++k) {
     const double lag = kLagStepS * static_cast<double>(k - steps);
     const VectorXd at = (own_t.array() + lag).max(pair.t_s[0]).min(pair.t_s[pair.t_s.size() - 1]);
-    const VectorXd shifted = spline_at(pair.t_s, pair.measured.col(joint), at);
+    const VectorXd shifted = measured.at(at);
     errors[k] = std::max(shifted.squaredNorm() - (basis.transpose() * shifted).squaredNorm(), 0.0) /
                 std::max(shifted.squaredNorm(), std::numeric_limits<double>::min());
   }

@@ -28,6 +28,25 @@ TEST(Spline, EqualsScipy) {
   EXPECT_LT((spline_at(kAt, kValue, wanted) - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+// Whatever the order in which it is asked, and however far from the last question.
+TEST(Spline, EqualsScipyInAnyOrderAndTimeAfterTime) {
+  const offnominal::desk::Spline spline(kAt, kValue);
+  const VectorXd wanted = vector({.8, 0, .4, .05, .79, .27, .2});
+  const VectorXd expected =
+      vector({3, 1, -0.9853855721393032, 1.6665111940298507, 2.950273562741846,
+              -0.4433582089552243, 1.025566611387507});
+  EXPECT_LT((spline.at(wanted) - expected).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((spline.at(wanted.reverse()) - expected.reverse()).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+// More points than the search walks over before it halves what is left.
+TEST(Spline, FindsTheIntervalFarAhead) {
+  const VectorXd at = VectorXd::LinSpaced(1000, 0, 999);
+  const offnominal::desk::Spline line(at, 2 * at);
+  const VectorXd wanted = vector({0.5, 700.25, 701, 3.75, 999, 0});
+  EXPECT_LT((line.at(wanted) - 2 * wanted).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 TEST(Spline, StraightLineStaysStraight) {
   const VectorXd wanted = vector({0.01, 0.2, 0.77});
   EXPECT_LT((spline_at(kAt, 3 * kAt.array() - 1, wanted).array() - (3 * wanted.array() - 1))
