@@ -53,7 +53,7 @@ class Adder {
     const VectorXd& resolved = memory_.sign_widths(file_);
     std::vector<Workspace> recordings = memory_.workspaces(robot_, resolved);
     settle_sign_widths(resolved, robot_, recordings);
-    data_ = std::make_unique<Data>(std::move(recordings), robot_, nuisance_);
+    data_ = std::make_unique<Data>(std::move(recordings), memory_.inertial(), robot_, nuisance_);
     regression_ = std::make_unique<Regression>(*data_);
     terms_ = terms_of(setup_, request.joint, *data_);
   }

@@ -24,7 +24,7 @@ class ColumnCache {
   explicit ColumnCache(std::shared_ptr<InertialColumns> inertial)
       : inertial_(std::move(inertial)) {}
 
-  // Columns of `effect`, which is one of all_candidates(), on a joint.
+  // Columns of `effect` on a joint: one of all_candidates(), or a payload with values of its own.
   [[nodiscard]] Eigen::MatrixXd columns(const RowLayout& layout,
                                         const std::vector<Workspace>& recordings,
                                         const EffectCandidate& effect, Eigen::Index joint,

@@ -25,15 +25,14 @@ struct Data {
   std::shared_ptr<ColumnCache> cache;
 
   Data(std::vector<Workspace> made, const RobotDescription& robot, const NuisanceOptions& options);
+  // `inertial_columns`: of the same motions, joints and gravity.
+  Data(std::vector<Workspace> made, std::shared_ptr<InertialColumns> inertial_columns,
+       const RobotDescription& robot, const NuisanceOptions& options);
   // The same recordings of the same robot beside another nuisance.
   Data(const Data& same, const RobotDescription& robot, const NuisanceOptions& options);
   // The same recordings of a robot with other masses or effects, and the same joints and gravity.
   static Data of_robot(const Data& same, const RobotDescription& robot,
                        const NuisanceOptions& options);
-
- private:
-  Data(std::vector<Workspace> made, std::shared_ptr<InertialColumns> inertial_columns,
-       const RobotDescription& robot, const NuisanceOptions& options);
 };
 
 // The error of a robot file as it is, rms per joint (N m or N), on the data's rows that say

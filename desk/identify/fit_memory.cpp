@@ -33,6 +33,7 @@ std::vector<Workspace> FitMemory::workspaces(const RobotDescription& robot,
   if (workspaces_.empty() || !are_same(stretches, stretches_)) {
     workspaces_ = searched_workspaces(stretches, robot, plan(robot), sign_width);
     stretches_ = std::move(stretches);
+    inertial_ = std::make_shared<InertialColumns>();
   }
   std::vector<Workspace> made = workspaces_;
   for (Workspace& at : made) {

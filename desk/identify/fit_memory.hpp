@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "compare/compare.hpp"
 #include "compare/filter_plan.hpp"
 #include "compare/measurement.hpp"
+#include "identify/inertial_columns.hpp"
 #include "identify/stretches.hpp"
 #include "identify/workspace.hpp"
 #include "log/log.hpp"
@@ -38,6 +40,8 @@ class FitMemory {
   // searched_workspaces() of their stretches.
   std::vector<Workspace> workspaces(const RobotDescription& robot,
                                     const Eigen::VectorXd& sign_width);
+  // Of the workspaces that were asked for last.
+  [[nodiscard]] const std::shared_ptr<InertialColumns>& inertial() const { return inertial_; }
   // measure() and compare() of two robots on every one of them, and on the hold-out recordings.
   struct Two {
     Comparisons before;
@@ -74,6 +78,7 @@ class FitMemory {
   std::optional<Eigen::VectorXd> sign_widths_;
   std::vector<Stretch> stretches_;
   std::vector<Workspace> workspaces_;
+  std::shared_ptr<InertialColumns> inertial_;
   Known fitted_;
   Known held_out_;
 };

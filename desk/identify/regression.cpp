@@ -212,7 +212,8 @@ MatrixXd columns_of_all(const Data& data, const Term& term) {
   const bool is_common = std::any_of(all.begin(), all.end(), [&](const auto& one) {
     return one.get() == term.effect;  // any other may have values of its own
   });
-  if (of_whole_arm && is_common) {
+  const bool is_place = term.effect->kind() == EffectKind::kTipPayload;
+  if (is_place || (of_whole_arm && is_common)) {
     return data.cache->columns(data.layout, data.recordings, *term.effect, term.joint, term.shape);
   }
   return stacked_columns(data.layout, data.recordings, *term.effect, term.joint, term.shape);

@@ -136,6 +136,20 @@ std::string payload_words(const IdentifiedPayload& payload) {
                          : "");
 }
 
+const std::vector<BeforeAfter>& judged_on(const Identification& result) {
+  return result.held_out.empty() ? result.fitted : result.held_out;
+}
+
+// Joints of whose torque the identified robot still misses most: the file is no model of them.
+std::vector<std::string> joints_hardly_explained(const Identification& result) {
+  constexpr double kMostPercent = 60;
+  std::vector<std::string> joints;
+  for (const BeforeAfter& one : judged_on(result)) {
+    if (one.after_percent > kMostPercent) joints.push_back(std::to_string(one.joint + 1));
+  }
+  return joints;
+}
+
 }  // namespace
 
 std::string verdict_of(const Identification& result, const IdentifyNames& names) {
@@ -150,8 +164,7 @@ std::string verdict_of(const Identification& result, const IdentifyNames& names)
                           ? payload_words(*result.payload)
                           : fmt::format("These recordings determine {} of {} base parameters",
                                         result.determined_count(), result.base.size());
-  const std::vector<BeforeAfter>& errors =
-      result.held_out.empty() ? result.fitted : result.held_out;
+  const std::vector<BeforeAfter>& errors = judged_on(result);
   // No share is of a torque that is 0 throughout, or that nothing is left of.
   const BeforeAfter* most = nullptr;
   for (const BeforeAfter& one : errors) {
@@ -167,6 +180,13 @@ std::string verdict_of(const Identification& result, const IdentifyNames& names)
                          percent_or_dash(most->before_percent));
   }
   words += ".";
+  if (const auto joints = joints_hardly_explained(result); !joints.empty() && !result.payload) {
+    words += fmt::format(
+        " Of the {} of joint {} most is still missed, and no bound of this file is worth much there: "
+        "`offnominal explain` says what else acts on it, `offnominal look` whether its signals are "
+        "what they are taken for.",
+        effort_name(errors.front().unit), list_of(joints));
+  }
   if (result.doubts.empty()) return words;
   words += " But " + list_of(result.doubts) + ".";
   return words + (names.force ? " Written all the same, as --force says."
@@ -175,7 +195,9 @@ std::string verdict_of(const Identification& result, const IdentifyNames& names)
 
 report::Level level_of(const Identification& result) {
   if (!result.objections.empty() || !result.doubts.empty()) return report::Level::kBad;
-  return result.determined_count() < result.base.size() ? report::Level::kWarn
+  const bool all_told =
+      result.determined_count() == result.base.size() && joints_hardly_explained(result).empty();
+  return !all_told ? report::Level::kWarn
                                                         : report::Level::kGood;
 }
 

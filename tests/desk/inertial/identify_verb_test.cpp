@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,13 @@ class IdentifyVerb : public testing::Test {
  protected:
   void SetUp() override {
     desk::RobotDescription robot = serial_arm(2);
-    const desk::Log log = record(robot, {.duration_s = 14, .rate_hz = 100});
+    log_ = record(robot, {.duration_s = 14, .rate_hz = 100});
+    write_log(log_);
+    robot.effects.clear();
+    for (desk::RobotJoint& one : robot.joints) one.joint.mass_kg *= 1.3;
+    put(folder_ / "r.toml", desk::robot_text(robot));
+  }
+  void write_log(const desk::Log& log) const {
     std::string csv = "t,q1,q2,dq1,dq2,tau1,tau2\n";
     for (Eigen::Index i = 0; i < log.t_s.size(); ++i) {
       csv += std::to_string(log.t_s[i]);
@@ -38,9 +45,6 @@ class IdentifyVerb : public testing::Test {
       csv += "\n";
     }
     put(folder_ / "log.csv", csv);
-    robot.effects.clear();
-    for (desk::RobotJoint& one : robot.joints) one.joint.mass_kg *= 1.3;
-    put(folder_ / "r.toml", desk::robot_text(robot));
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   CommandResult identify(Words more) const {
@@ -53,6 +57,7 @@ class IdentifyVerb : public testing::Test {
   }
 
   TemporaryFolder folder_;
+  desk::Log log_;
 };
 
 TEST_F(IdentifyVerb, WritesARobotFileThatSaysWhereItIsFrom) {
@@ -94,6 +99,29 @@ TEST_F(IdentifyVerb, HasItsNumbersInJsonAndOnAPage) {
   EXPECT_LT(told["joints"][0]["after"]["holdout"]["relative_error_percent"].get<double>(),
             told["joints"][0]["before"]["holdout"]["relative_error_percent"].get<double>());
   EXPECT_THAT(content_of(folder_ / "page.html"), HasSubstr("Base parameters"));
+}
+
+// A torque that nothing which is fitted follows: the file is better than before, and still no model.
+TEST_F(IdentifyVerb, SaysOfWhichJointMostIsStillMissed) {
+  const CommandResult usual = identify_file("r.toml", {"--json"});
+  EXPECT_THAT(usual.out, testing::Not(HasSubstr("most is still missed")));
+  desk::Log pushed = log_;
+  std::mt19937 generator(7);
+  std::normal_distribution<double> size(0, 3 * pushed.tau.col(1).cwiseAbs().maxCoeff());
+  double push = 0;
+  for (Eigen::Index i = 0; i < pushed.tau.rows(); ++i) {
+    if (i % 40 == 0) push = size(generator);
+    pushed.tau(i, 1) += push;
+  }
+  write_log(pushed);
+  Words options = {"-o", path("out.toml"), "--force"};
+  for (const char* reason : {"torque_unit", "torque_sign", "joint_order", "clock_skew", "jump"}) {
+    options.insert(options.end(), {"--keep", std::string("all:") + reason});
+  }
+  const CommandResult result = identify_file("r.toml", options);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("Of the torque of joint 2 most is still missed")) << result.out;
+  EXPECT_THAT(result.out, HasSubstr("`offnominal explain` says what else acts on it"));
 }
 
 // What it writes would pass every check but this one: links of a tenth are no error of a drawing.
