@@ -44,6 +44,17 @@ VectorXd delays_in_samples(const Chain<kRuntimeJoints, double>& chain, const Mot
   return samples;
 }
 
+// Its joints alone: what has no mass takes no torque.
+RobotDescription without_masses(const RobotDescription& robot) {
+  RobotDescription bare = robot;
+  bare.effects.clear();
+  for (RobotJoint& one : bare.joints) {
+    one.joint.mass_kg = 0;
+    one.joint.inertia_kg_m2 = {};
+  }
+  return bare;
+}
+
 }  // namespace
 
 MatrixXd model_torque(const RobotDescription& robot, const Motion& motion) {
@@ -80,13 +91,8 @@ MatrixXd model_torque(const RobotDescription& robot, const Motion& motion, BodyT
 }
 
 MatrixXd link_torque(const RobotDescription& robot, std::size_t link, const Motion& motion) {
-  RobotDescription only = robot;
-  only.effects.clear();
-  for (std::size_t i = 0; i < only.joints.size(); ++i) {
-    if (i == link) continue;
-    only.joints[i].joint.mass_kg = 0;
-    only.joints[i].joint.inertia_kg_m2 = {};
-  }
+  RobotDescription only = without_masses(robot);
+  only.joints[link] = robot.joints[link];
   return model_torque(only, motion);
 }
 
@@ -203,11 +209,17 @@ double reflected_inertia_of(const Effect<double>& effect) {
 
 MatrixXd torque_of_inertial_effect(const RobotDescription& robot, const Effect<double>& effect,
                                    const Motion& motion) {
-  RobotDescription without = robot;
-  without.effects.clear();
-  RobotDescription with = without;
-  with.effects.push_back({effect});
-  return model_torque(with, motion) - model_torque(without, motion);
+  const bool is_of_joint_alone =
+      info_of(effect.kind)->action == EffectAction::kReflectedInertia && !effect.of_motor;
+  if (is_of_joint_alone) {
+    const auto joint = static_cast<Index>(effect.joint);
+    MatrixXd torque = MatrixXd::Zero(motion.q.rows(), motion.q.cols());
+    torque.col(joint) = reflected_inertia_of(effect) * motion.ddq.col(joint);
+    return torque;
+  }
+  RobotDescription only = without_masses(robot);
+  only.effects.push_back({effect});
+  return model_torque(only, motion);
 }
 
 }  // namespace offnominal::desk

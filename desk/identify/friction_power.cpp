@@ -46,7 +46,9 @@ VectorXd friction_torque(const RobotDescription& robot, std::size_t joint, const
     effect.parameters[1] = smoothing;
   }
   const auto column = static_cast<Index>(joint);
-  return model_torque(with, motion).col(column) - model_torque(without, motion).col(column);
+  BodyTorque bodies;
+  const VectorXd torque = model_torque(with, motion, bodies).col(column);
+  return torque - model_torque(without, motion, bodies).col(column);
 }
 
 struct Tenth {

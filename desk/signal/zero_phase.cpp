@@ -1,29 +1,51 @@
 #include "signal/zero_phase.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
 
 namespace offnominal::desk {
 namespace {
 
-// One pass in place. The input of every section has settled at the first sample's value times the
-// gain at 0 Hz of the sections before it.
-void filter_from_steady_state(const std::vector<Biquad>& sections, Eigen::VectorXd& signal) {
-  double level = signal[0];
-  for (const Biquad& section : sections) {
-    const double settled =
-        level * (section.b0 + section.b1 + section.b2) / (1 + section.a1 + section.a2);
-    double s1 = settled - section.b0 * level;
-    double s2 = section.b2 * level - section.a2 * settled;
-    for (double& value : signal) {
-      const double in = value;
-      value = section.b0 * in + s1;
-      s1 = section.b1 * in - section.a1 * value + s2;
-      s2 = section.b2 * in - section.a2 * value;
-    }
+// One pass in place over `count` values, the next one `step` further on. The input of every section
+// has settled at `level` times the gain at 0 Hz of the sections before it; `level` is what leaves
+// the last one then. Sections run side by side: each waits for its own last value alone.
+template <std::size_t kSections>
+void filter_by(const Biquad* sections, double& level, double* value, std::ptrdiff_t step,
+               Eigen::Index count) {
+  std::array<Biquad, kSections> of{};
+  std::array<double, kSections> s1{};
+  std::array<double, kSections> s2{};
+  for (std::size_t k = 0; k < kSections; ++k) {
+    of[k] = sections[k];
+    const double settled = level * (of[k].b0 + of[k].b1 + of[k].b2) / (1 + of[k].a1 + of[k].a2);
+    s1[k] = settled - of[k].b0 * level;
+    s2[k] = of[k].b2 * level - of[k].a2 * settled;
     level = settled;
   }
+  for (; count > 0; --count, value += step) {
+    double passing = *value;
+    for (std::size_t k = 0; k < kSections; ++k) {
+      const double out = of[k].b0 * passing + s1[k];
+      s1[k] = of[k].b1 * passing - of[k].a1 * out + s2[k];
+      s2[k] = of[k].b2 * passing - of[k].a2 * out;
+      passing = out;
+    }
+    *value = passing;
+  }
+}
+
+// `step`: 1 from the first value to the last, -1 back.
+void filter_from_steady_state(const std::vector<Biquad>& sections, Eigen::VectorXd& signal,
+                              std::ptrdiff_t step) {
+  double* const first = step > 0 ? signal.data() : signal.data() + signal.size() - 1;
+  double level = *first;
+  const Biquad* next = sections.data();
+  const Biquad* const end = next + sections.size();
+  for (; end - next >= 2; next += 2) filter_by<2>(next, level, first, step, signal.size());
+  if (next != end) filter_by<1>(next, level, first, step, signal.size());
 }
 
 }  // namespace
@@ -40,10 +62,8 @@ Eigen::VectorXd zero_phase(const std::vector<Biquad>& sections,
     extended[padding - i] = 2 * signal[0] - signal[i];
     extended[padding + size - 1 + i] = 2 * signal[size - 1] - signal[size - 1 - i];
   }
-  filter_from_steady_state(sections, extended);
-  extended.reverseInPlace();
-  filter_from_steady_state(sections, extended);
-  extended.reverseInPlace();
+  filter_from_steady_state(sections, extended, 1);
+  filter_from_steady_state(sections, extended, -1);
   return extended.segment(padding, size);
 }
 
