@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// Files of desk/report/web, held inside the program.
+/// Files of desk/web, held inside the program.
 namespace offnominal::desk::report::assets {
 
 std::string_view page_template();

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// Files of desk/studio/web and of the npm package three, held inside the program.
+/// Files of desk/web and of the npm package three, held inside the program.
 namespace offnominal::desk::studio::assets {
 
 std::string_view page();

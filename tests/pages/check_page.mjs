@@ -39,7 +39,7 @@ const kLooks = [
 ];
 const kNarrowest = 400;
 
-const web = fileURLToPath(new URL("../../desk/report/web/", import.meta.url));
+const web = fileURLToPath(new URL("../../desk/web/", import.meta.url));
 
 function readArguments() {
   const { values, positionals } = parseArgs({

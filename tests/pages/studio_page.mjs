@@ -12,7 +12,7 @@ import { checkWithAxe, readAxe } from "./accessible.mjs";
 /** A name that would be script where a page took it for markup. */
 export const kScript = "<img src=x onerror=window.hacked=1>";
 
-const web = fileURLToPath(new URL("../../desk/report/web/", import.meta.url));
+const web = fileURLToPath(new URL("../../desk/web/", import.meta.url));
 
 /** Options of the command line: `needed` have to be there; `more` as parseArgs() has them. */
 export function readArguments(needed, more = {}) {
