@@ -43,7 +43,7 @@ install_packages() {
 install_web() {
   local web="$root/desk/web"
   cmp -s "$web/package-lock.json" "$web/node_modules/.installed-lock.json" && return 0
-  note "setup: fetching the chart and the 3-D library (npm ci)"
+  note "setup: fetching what the front end is made of and with (npm ci)"
   (cd "$web" && npm ci --ignore-scripts --no-audit --no-fund) >&2
   cp "$web/package-lock.json" "$web/node_modules/.installed-lock.json"
 }

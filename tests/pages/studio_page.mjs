@@ -73,6 +73,10 @@ export async function openPage(context, address, ready, expected, fault) {
   });
   await page.goto(address);
   await page.waitForSelector(ready);
+  // What the page's own module says of itself: `studio` in what a check runs inside the page.
+  await page.evaluate(async () => {
+    window.studio = await import(new URL("studio.js", document.baseURI).href);
+  });
   return page;
 }
 

@@ -1,21 +1,35 @@
+import { axisStyle, edgeLabelOption, tooltipStyle } from "./axes";
+import { kNameRow, kPlotLeft, zoomBrush } from "./chart";
+import { column } from "./chart_words";
+import type { Axis, Heatmap, Value } from "./document";
+import type { ItemApi, ItemParams } from "./echarts";
+import type { CellValue } from "./figure_type";
+import { axisTitle, csvText, escapeHtml, formatSignificant, withUnit } from "./format";
+import { kFontFamily, type Look } from "./palette";
+
 const kHeatmapBottom = 46;
 
-function heatmapHeight() {
+export function heatmapHeight() {
   return 360;
 }
 
-function heatmapCells(map) {
+/** Cells have an edge on either side. */
+function edgeOf(edges: Value[], at: number): number {
+  return edges[at] ?? NaN;
+}
+
+export function heatmapCells(map: Heatmap) {
   const columns = map.x_edges.length - 1;
-  return map.value.flatMap((value, index) => {
+  return map.value.flatMap((value, index): CellValue[] => {
     if (value === null) return [];
     const column = index % columns;
     const row = Math.floor(index / columns);
-    const middle = (edges, at) => (edges[at] + edges[at + 1]) / 2;
+    const middle = (edges: Value[], at: number) => (edgeOf(edges, at) + edgeOf(edges, at + 1)) / 2;
     return [[middle(map.x_edges, column), middle(map.y_edges, row), value, column, row]];
   });
 }
 
-function heatmapScale(map) {
+export function heatmapScale(map: Heatmap) {
   const values = map.value.filter((value) => value !== null);
   let low = map.value_axis.min ?? values.reduce((a, b) => Math.min(a, b), Infinity);
   let high = map.value_axis.max ?? values.reduce((a, b) => Math.max(a, b), -Infinity);
@@ -27,11 +41,11 @@ function heatmapScale(map) {
   return low < high ? { low, high } : { low: low - 0.5, high: high + 0.5 };
 }
 
-function heatmapTip(map, item) {
+export function heatmapTip(map: Heatmap, item: { value: CellValue }) {
   const [, , value, column, row] = item.value;
-  const range = (edges, at, unit) =>
-    withUnit(`${formatSignificant(edges[at], 5)} to ${formatSignificant(edges[at + 1], 5)}`, unit);
-  const lines = [
+  const range = (edges: Value[], at: number, unit: string) =>
+    withUnit(`${formatSignificant(edgeOf(edges, at), 5)} to ${formatSignificant(edgeOf(edges, at + 1), 5)}`, unit);
+  const lines: [string, string][] = [
     [map.x.name, range(map.x_edges, column, map.x.unit)],
     [map.y.name, range(map.y_edges, row, map.y.unit)],
     [map.value_axis.name, withUnit(formatSignificant(value, 5), map.value_axis.unit)],
@@ -42,18 +56,18 @@ function heatmapTip(map, item) {
   return `<table>${rows.join("")}</table>`;
 }
 
-function heatmapAxis(axis, edges, look) {
+function heatmapAxis(axis: Axis, edges: Value[], look: Look) {
   return {
     ...axisStyle(axis, look),
     name: axisTitle(axis),
-    min: axis.min ?? edges[0],
-    max: axis.max ?? edges[edges.length - 1],
+    min: axis.min ?? edgeOf(edges, 0),
+    max: axis.max ?? edgeOf(edges, edges.length - 1),
     splitLine: { show: false },
-    ...edgeLabelOption(axis, edges[0], edges[edges.length - 1], 5, look),
+    ...edgeLabelOption(axis, edgeOf(edges, 0), edgeOf(edges, edges.length - 1), 5, look),
   };
 }
 
-function heatmapOption(map, look) {
+export function heatmapOption(map: Heatmap, look: Look) {
   const { low, high } = heatmapScale(map);
   const xAxis = heatmapAxis(map.x, map.x_edges, look);
   const yAxis = heatmapAxis(map.y, map.y_edges, look);
@@ -73,7 +87,7 @@ function heatmapOption(map, look) {
     tooltip: {
       ...tooltipStyle(look),
       trigger: "item",
-      formatter: (item) => heatmapTip(map, item),
+      formatter: (item: { value: CellValue }) => heatmapTip(map, item),
     },
     toolbox: zoomBrush({ xAxisIndex: 0, yAxisIndex: 0, filterMode: "none" }, look),
     dataZoom: ["xAxisIndex", "yAxisIndex"].map((axis) => ({
@@ -104,22 +118,22 @@ function heatmapOption(map, look) {
   };
 }
 
-function heatmapColors(map, look) {
+function heatmapColors(map: Heatmap, look: Look) {
   return map.diverging ? look.diverging : look.sequential;
 }
 
 /** About five round numbers from low to high. */
-function roundNumbers(low, high) {
+export function roundNumbers(low: number, high: number) {
   const rough = (high - low) / 5;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * [1, 2, 5, 10].find((factor) => factor * power >= rough * 0.999);
+  const step = power * ([1, 2, 5].find((factor) => factor * power >= rough * 0.999) ?? 10);
   const first = Math.ceil(low / step - 1e-9);
   const last = Math.floor(high / step + 1e-9);
   return Array.from({ length: last - first + 1 }, (_, index) => (first + index) * step);
 }
 
 /** The colour scale at the right of the map, with round numbers beside it. */
-function colorScale(colors, low, high, look) {
+function colorScale(colors: string[], low: number, high: number, look: Look) {
   const top = kNameRow + 8;
   const height = heatmapHeight() - top - kHeatmapBottom;
   const stops = colors.map((color, index) => ({ offset: 1 - index / (colors.length - 1), color }));
@@ -149,7 +163,7 @@ function colorScale(colors, low, high, look) {
   return [{ id: "scale", type: "group", right: 0, top, silent: true, children: [frame, bar, ...ticks] }];
 }
 
-function heatmapSeries(map) {
+function heatmapSeries(map: Heatmap) {
   return {
     id: "cells",
     type: "custom",
@@ -157,10 +171,10 @@ function heatmapSeries(map) {
     encode: { x: 0, y: 1 },
     clip: true,
     progressive: false,
-    renderItem: (params, api) => {
+    renderItem: (_params: ItemParams, api: ItemApi) => {
       const [column, row] = [api.value(3), api.value(4)];
-      const [left, bottom] = api.coord([map.x_edges[column], map.y_edges[row]]);
-      const [right, top] = api.coord([map.x_edges[column + 1], map.y_edges[row + 1]]);
+      const [left, bottom] = api.coord([edgeOf(map.x_edges, column), edgeOf(map.y_edges, row)]);
+      const [right, top] = api.coord([edgeOf(map.x_edges, column + 1), edgeOf(map.y_edges, row + 1)]);
       // Whole pixels: no seams between neighbours.
       const x = Math.round(left);
       const y = Math.round(top);
@@ -174,26 +188,27 @@ function heatmapSeries(map) {
 }
 
 /** What the colours mean. */
-function scaleWords(map) {
+export function scaleWords(map: Heatmap) {
   const empty = map.value.includes(null) ? "; empty cells: no value" : "";
   return `Colour: ${axisTitle(map.value_axis)}${empty}`;
 }
 
-function heatmapCsv(map) {
+export function heatmapCsv(map: Heatmap) {
   const head = [axisTitle(map.x), axisTitle(map.y), axisTitle(map.value_axis)];
   return csvText([head, ...heatmapCells(map).map((cell) => cell.slice(0, 3))]);
 }
 
 /** What the title does not say. */
-function heatmapWords(map) {
+export function heatmapWords(map: Heatmap) {
   return `Map of ${axisTitle(map.value_axis)} over ${axisTitle(map.x)} and ${axisTitle(map.y)}.`;
 }
 
 /** The ends of the map; all its cells are what is saved as CSV. */
-function heatmapNumbers(map) {
+export function heatmapNumbers(map: Heatmap) {
   const cells = heatmapCells(map).sort((a, b) => a[2] - b[2]);
-  const row = (name, cell) => [name, cell[2], cell[0], cell[1]];
-  const ends = cells.length > 0 ? [row("lowest", cells[0]), row("highest", cells.at(-1))] : [];
+  const row = (name: string, cell: CellValue) => [name, cell[2], cell[0], cell[1]];
+  const [lowest, highest] = [cells[0], cells.at(-1)];
+  const ends = lowest && highest ? [row("lowest", lowest), row("highest", highest)] : [];
   const axes = [map.value_axis, map.x, map.y].map(({ name, unit }) => column(name, unit));
   return { columns: [column(`Of ${cells.length} cells`, ""), ...axes], rows: ends };
 }

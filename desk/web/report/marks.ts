@@ -1,9 +1,19 @@
-const kEventRow = 17;
+import type { Chart, EventMark, LevelMark } from "./document";
+import type { ItemApi, ItemParams } from "./echarts";
+import { penOf } from "./element";
+import type { Extent } from "./figure_type";
+import { itemAt } from "./lists";
+import { kFontFamily, withOpacity, type Look } from "./palette";
+
+export const kEventRow = 17;
+
 /** How far an event's label may stand out of the plot on its right. */
 const kBesidePlot = 16;
 
-function textWidth(text, fontSize) {
-  const context = (textWidth.canvas ??= document.createElement("canvas")).getContext("2d");
+let measure: CanvasRenderingContext2D | null = null;
+
+export function textWidth(text: string, fontSize: number) {
+  const context = (measure ??= penOf(document.createElement("canvas")));
   context.font = `${fontSize}px ${kFontFamily}`;
   return context.measureText(text).width;
 }
@@ -12,14 +22,13 @@ function textWidth(text, fontSize) {
  * Row of each event's label above the plot, and which side of its line it takes. From right to
  * left, each label lies higher than the labels and lines that it would touch.
  */
-function placeEventLabels(positions, widths, right) {
-  const placed = [];
-  const places = new Array(positions.length);
-  const order = positions.map((_, index) => index).sort((a, b) => positions[b] - positions[a]);
-  for (const index of order) {
-    const x = positions[index];
-    const flipped = x + widths[index] > right;
-    const [start, end] = flipped ? [x - widths[index], x] : [x, x + widths[index]];
+export function placeEventLabels(positions: number[], widths: number[], right: number) {
+  const placed: { start: number; end: number; row: number }[] = [];
+  const places = positions.map(() => ({ row: 0, flipped: false }));
+  const labels = positions.map((x, index) => ({ x, index, width: widths[index] ?? 0 }));
+  for (const { x, index, width } of labels.sort((a, b) => b.x - a.x)) {
+    const flipped = x + width > right;
+    const [start, end] = flipped ? [x - width, x] : [x, x + width];
     const touched = placed.filter((other) => other.end + 4 > start && other.start - 4 < end);
     const row = touched.reduce((highest, other) => Math.max(highest, other.row + 1), 0);
     placed.push({ start, end, row });
@@ -28,15 +37,15 @@ function placeEventLabels(positions, widths, right) {
   return { places, rows: Math.max(0, ...placed.map((each) => each.row + 1)) };
 }
 
-function eventWidths(events) {
+function eventWidths(events: EventMark[]) {
   return events.map((event) => textWidth(event.label, 12) + 10);
 }
 
 /** Rows that the event labels need over the whole x range on a plot of this width. */
-function eventRows(chart, extent, plotWidth) {
+export function eventRows(chart: Chart, extent: Extent | null, plotWidth: number) {
   if (chart.events.length === 0) return 0;
   if (extent === null) return 1;
-  const scale = chart.x.log ? Math.log10 : (x) => x;
+  const scale = chart.x.log ? Math.log10 : (x: number) => x;
   const start = scale(extent.low);
   const perUnit = plotWidth / (scale(extent.high) - start);
   const positions = chart.events.map((event) => (scale(event.x) - start) * perUnit);
@@ -44,7 +53,7 @@ function eventRows(chart, extent, plotWidth) {
 }
 
 /** Vertical lines with their labels above the plot; the labels are placed anew at each zoom. */
-function eventSeries(chart, look, rows) {
+export function eventSeries(chart: Chart, look: Look, rows: number) {
   const widths = eventWidths(chart.events);
   return {
     id: "events",
@@ -56,14 +65,14 @@ function eventSeries(chart, look, rows) {
     silent: true,
     clip: false,
     z: 1,
-    renderItem: (params, api) => {
+    renderItem: (params: ItemParams, api: ItemApi) => {
       const plot = params.coordSys;
-      const event = chart.events[params.dataIndex];
+      const event = itemAt(chart.events, params.dataIndex);
       const positions = chart.events.map((each) => api.coord([each.x, 1])[0]);
-      const x = positions[params.dataIndex];
+      const x = itemAt(positions, params.dataIndex);
       if (!(x >= plot.x - 0.5 && x <= plot.x + plot.width + 0.5)) return null;
       const { places } = placeEventLabels(positions, widths, plot.x + plot.width + kBesidePlot);
-      const place = places[params.dataIndex];
+      const place = itemAt(places, params.dataIndex);
       const color = look.levels[event.level];
       const top = plot.y - (Math.min(place.row, rows - 1) + 1) * kEventRow;
       return {
@@ -95,7 +104,7 @@ function eventSeries(chart, look, rows) {
 }
 
 /** Bands behind the series; the label of one stands in it where there is room. */
-function spanSeries(chart, look) {
+export function spanSeries(chart: Chart, look: Look) {
   return {
     id: "spans",
     type: "custom",
@@ -106,15 +115,15 @@ function spanSeries(chart, look) {
     silent: true,
     clip: true,
     z: 0,
-    renderItem: (params, api) => {
+    renderItem: (params: ItemParams, api: ItemApi) => {
       const plot = params.coordSys;
-      const { from, to, label, level } = chart.spans[params.dataIndex];
-      const left = Math.max(api.coord([from, 0])[0], plot.x);
-      const right = Math.min(api.coord([to, 0])[0], plot.x + plot.width);
+      const { from, to, label, level } = itemAt(chart.spans, params.dataIndex);
+      const left = Math.max(api.coord([from ?? NaN, 0])[0], plot.x);
+      const right = Math.min(api.coord([to ?? NaN, 0])[0], plot.x + plot.width);
       if (!(right > left)) return null;
       const color = look.levels[level];
       const shape = { x: left, y: plot.y, width: Math.max(right - left, 1), height: plot.height };
-      const children = [{ type: "rect", shape, style: { fill: withOpacity(color, 0.13) } }];
+      const children: object[] = [{ type: "rect", shape, style: { fill: withOpacity(color, 0.13) } }];
       if (textWidth(label, 12) + 10 < right - left) {
         const style = { text: label, x: left + 5, y: plot.y + plot.height - 5, verticalAlign: "bottom" };
         children.push({ type: "text", style: { ...style, fill: color, font: `12px ${kFontFamily}` } });
@@ -125,13 +134,13 @@ function spanSeries(chart, look) {
 }
 
 /** A label that would leave the plot stands beside its line. */
-function alongAlign(at, half, left, right) {
+function alongAlign(at: number, half: number, left: number, right: number) {
   if (at + half > right) return "right";
   return at - half < left ? "left" : "center";
 }
 
 /** Horizontal lines (vertical where the value axis lies) with their label at the far end. */
-function levelSeries(levels, look, alongX) {
+export function levelSeries(levels: LevelMark[], look: Look, alongX: boolean) {
   return {
     id: "levels",
     type: "custom",
@@ -142,9 +151,9 @@ function levelSeries(levels, look, alongX) {
     silent: true,
     clip: false,
     z: 4,
-    renderItem: (params, api) => {
+    renderItem: (params: ItemParams, api: ItemApi) => {
       const plot = params.coordSys;
-      const { y, label } = levels[params.dataIndex];
+      const { y, label } = itemAt(levels, params.dataIndex);
       const at = alongX ? api.coord([y, 0])[0] : api.coord([plot.x, y])[1];
       const start = alongX ? plot.x : plot.y;
       if (!(at >= start && at <= start + (alongX ? plot.width : plot.height))) return null;

@@ -1,13 +1,27 @@
+import type { Axis, Chart, Series, Value } from "./document";
+import type { ItemApi, ItemParams } from "./echarts";
+import type { Pair } from "./figure_type";
+import { itemAt } from "./lists";
+import { isDashed, withOpacity } from "./palette";
+
+/** The axis that a series belongs to. */
+export function yAxisOf(chart: Chart, series: Series): Axis {
+  return itemAt(chart.y, series.y_axis);
+}
+
 /** Gaps, and values that a logarithmic axis cannot show, are null. */
-function drawable(value, axis) {
+export function drawable(value: Value, axis: Axis) {
   return value !== null && axis.log && value <= 0 ? null : value;
 }
 
-function bandSeries(common, series, color, x, y) {
+/** The part of a band between two gaps, in pixels. */
+type Piece = { low: Pair; high: Pair }[];
+
+function bandSeries(common: object, series: Series, color: string, x: Axis, y: Axis) {
   const data = series.x.map((value, index) => [
     drawable(value, x),
-    drawable(series.y[index], y),
-    drawable(series.y_upper[index], y),
+    drawable(series.y[index] ?? null, y),
+    drawable(series.y_upper?.[index] ?? null, y),
   ]);
   return {
     ...common,
@@ -18,21 +32,21 @@ function bandSeries(common, series, color, x, y) {
     clip: true,
     itemStyle: { color },
     // The whole band is one shape, drawn with the first point, so that no seams show.
-    renderItem: (params, api) => {
+    renderItem: (params: ItemParams, api: ItemApi) => {
       if (params.dataIndexInside !== 0) return null;
-      const pieces = [];
-      let piece = [];
+      const pieces: Piece[] = [];
+      let piece: Piece = [];
       for (let index = 0; index < params.dataInsideLength; ++index) {
-        const at = [0, 1, 2].map((dimension) => api.value(dimension, index));
-        if (at.every(Number.isFinite)) {
-          piece.push({ low: api.coord([at[0], at[1]]), high: api.coord([at[0], at[2]]) });
+        const [x, lower, upper] = [api.value(0, index), api.value(1, index), api.value(2, index)];
+        if ([x, lower, upper].every(Number.isFinite)) {
+          piece.push({ low: api.coord([x, lower]), high: api.coord([x, upper]) });
         } else if (piece.length > 0) {
           pieces.push(piece);
           piece = [];
         }
       }
       if (piece.length > 0) pieces.push(piece);
-      const outline = (points) => [
+      const outline = (points: Piece) => [
         ...points.map((point) => point.low),
         ...points.map((point) => point.high).reverse(),
       ];
@@ -48,7 +62,7 @@ function bandSeries(common, series, color, x, y) {
   };
 }
 
-function barSeries(common, series, color, y) {
+function barSeries(common: object, series: Series, color: string, y: Axis) {
   const data = series.y.map((value, bar) => [series.x[bar], series.x[bar + 1], drawable(value, y)]);
   return {
     ...common,
@@ -58,7 +72,7 @@ function barSeries(common, series, color, y) {
     encode: { x: [0, 1], y: 2 },
     clip: true,
     itemStyle: { color },
-    renderItem: (params, api) => {
+    renderItem: (params: ItemParams, api: ItemApi) => {
       const value = api.value(2);
       if (!Number.isFinite(value)) return null;
       const plot = params.coordSys;
@@ -80,12 +94,12 @@ function barSeries(common, series, color, y) {
   };
 }
 
-function drawnSeries(series, index, color, chart) {
-  const y = chart.y[series.y_axis];
+export function drawnSeries(series: Series, index: number, color: string, chart: Chart) {
+  const y = yAxisOf(chart, series);
   const common = { id: `s${index}`, name: series.name, yAxisIndex: series.y_axis, z: 2 };
   if (series.kind === "band") return { ...bandSeries(common, series, color, chart.x, y), z: 1 };
   if (series.kind === "bars") return barSeries(common, series, color, y);
-  const data = series.x.map((x, i) => [drawable(x, chart.x), drawable(series.y[i], y)]);
+  const data = series.x.map((x, i) => [drawable(x, chart.x), drawable(series.y[i] ?? null, y)]);
   if (series.kind === "points") {
     return {
       ...common,

@@ -1,33 +1,49 @@
+import { axisStyle, tooltipStyle } from "./axes";
+import { column } from "./chart_words";
+import type { Value, Waterfall, WaterfallStep } from "./document";
+import type { ItemApi, ItemParams } from "./echarts";
+import { axisTitle, csvText, escapeHtml, formatNumber, withUnit } from "./format";
+import { itemAt } from "./lists";
+import { levelSeries, textWidth } from "./marks";
+import { kFontFamily, withOpacity, type Look } from "./palette";
+
 const kWaterfallRow = 46;
+
 /** In a narrower picture each label stands above its bar, which is thinner. */
 const kWaterfallNarrow = 480;
 
-function waterfallBar(width) {
+/** Half of a bar's thickness, and how far below the middle of its row it lies. */
+interface BarSize {
+  half: number;
+  below: number;
+}
+
+function waterfallBar(width: number) {
   return width < kWaterfallNarrow ? { half: 9, below: 11 } : { half: 13, below: 0 };
 }
 
-function waterfallHeight(waterfall) {
+export function waterfallHeight(waterfall: Waterfall) {
   return waterfall.steps.length * kWaterfallRow + 76;
 }
 
-function waterfallLabelWidth(waterfall, width) {
+function waterfallLabelWidth(waterfall: Waterfall, width: number) {
   const widest = Math.max(...waterfall.steps.map((step) => textWidth(step.label, 13)));
   return Math.min(Math.ceil(widest) + 4, Math.round(width * 0.36));
 }
 
 /** What each step took away (positive) or added (negative); null for the first and at gaps. */
-function waterfallFalls(steps) {
+export function waterfallFalls(steps: WaterfallStep[]) {
   return steps.map((step, index) => {
-    const before = index === 0 ? null : steps[index - 1].value;
+    const before = steps[index - 1]?.value ?? null;
     return step.value === null || before === null ? null : before - step.value;
   });
 }
 
-function waterfallOption(waterfall, look, width) {
+export function waterfallOption(waterfall: Waterfall, look: Look, width: number) {
   const narrow = width < kWaterfallNarrow;
   const labels = waterfallLabelWidth(waterfall, width);
   const value = { ...axisStyle(waterfall.value_axis, look) };
-  const series = [waterfallSeries(waterfall, look, waterfallBar(width))];
+  const series: object[] = [waterfallSeries(waterfall, look, waterfallBar(width))];
   if (waterfall.levels.length > 0) series.push(levelSeries(waterfall.levels, look, true));
   return {
     animation: false,
@@ -42,7 +58,7 @@ function waterfallOption(waterfall, look, width) {
     tooltip: {
       ...tooltipStyle(look),
       trigger: "item",
-      formatter: (item) => waterfallTip(waterfall, item.dataIndex),
+      formatter: (item: { dataIndex: number }) => waterfallTip(waterfall, item.dataIndex),
     },
     xAxis: {
       ...value,
@@ -76,11 +92,11 @@ function waterfallOption(waterfall, look, width) {
   };
 }
 
-function waterfallTip(waterfall, index) {
-  const step = waterfall.steps[index];
-  const fall = waterfallFalls(waterfall.steps)[index];
+function waterfallTip(waterfall: Waterfall, index: number) {
+  const step = itemAt(waterfall.steps, index);
+  const fall = itemAt(waterfallFalls(waterfall.steps), index);
   const unit = waterfall.value_axis.unit;
-  const rows = [[waterfall.value_axis.name, step.value]];
+  const rows: [string, Value][] = [[waterfall.value_axis.name, step.value]];
   if (fall !== null) rows.push([fall >= 0 ? "taken away" : "added", Math.abs(fall)]);
   const body = rows.map(([name, number]) => {
     const text = withUnit(formatNumber(number, waterfall.format), unit);
@@ -89,7 +105,7 @@ function waterfallTip(waterfall, index) {
   return `<table><caption>${escapeHtml(step.label)}</caption>${body.join("")}</table>`;
 }
 
-function waterfallSeries(waterfall, look, thickness) {
+function waterfallSeries(waterfall: Waterfall, look: Look, thickness: BarSize) {
   const falls = waterfallFalls(waterfall.steps);
   return {
     id: "steps",
@@ -99,31 +115,31 @@ function waterfallSeries(waterfall, look, thickness) {
     dimensions: ["step", "value", "zero"],
     encode: { x: [1, 2], y: 0 },
     clip: false,
-    renderItem: (params, api) => waterfallShapes(waterfall, falls, look, thickness, params, api),
+    renderItem: (params: ItemParams, api: ItemApi) => waterfallShapes(waterfall, falls, look, thickness, params, api),
   };
 }
 
-function waterfallShapes(waterfall, falls, look, { half, below }, params, api) {
+function waterfallShapes(waterfall: Waterfall, falls: Value[], look: Look, { half, below }: BarSize, params: ItemParams, api: ItemApi) {
   const index = params.dataIndex;
-  const { value } = waterfall.steps[index];
+  const { value } = itemAt(waterfall.steps, index);
   if (value === null) return null;
-  const fall = falls[index];
+  const fall = itemAt(falls, index);
   const [zero, center] = api.coord([0, index]);
   const middle = center + below;
   const end = api.coord([value, index])[0];
-  const bar = (from, to, style) => ({
+  const bar = (from: number, to: number, style: object) => ({
     type: "rect",
     shape: { x: Math.min(from, to), y: middle - half, width: Math.abs(to - from), height: 2 * half },
     style,
   });
-  const text = (content, x, align, style) => ({
+  const text = (content: string, x: number, align: string, style: object) => ({
     type: "text",
     silent: true,
     style: { text: content, x, y: middle, align, verticalAlign: "middle", ...style },
   });
   const last = index === waterfall.steps.length - 1;
   const solid = last ? look.tones.model : withOpacity(look.tones.model, 0.72);
-  const children = [bar(zero, end, { fill: solid })];
+  const children: object[] = [bar(zero, end, { fill: solid })];
   let labelAt = end;
   if (fall !== null && fall !== 0) {
     const before = api.coord([value + fall, index])[0];
@@ -144,14 +160,15 @@ function waterfallShapes(waterfall, falls, look, { half, below }, params, api) {
 }
 
 /** What stands beside a bar: its value, and what the step changed. */
-function stepWords({ steps, format }, falls, index) {
-  const fall = falls[index];
-  const change = fall === null ? "" : formatNumber(Math.abs(fall), format);
-  return [formatNumber(steps[index].value, format), change && ` (${fall > 0 ? "-" : "+"}${change})`];
+function stepWords({ steps, format }: Waterfall, falls: Value[], index: number) {
+  const fall = falls[index] ?? null;
+  const shown = formatNumber(steps[index]?.value ?? null, format);
+  if (fall === null) return [shown, ""];
+  return [shown, ` (${fall > 0 ? "-" : "+"}${formatNumber(Math.abs(fall), format)})`];
 }
 
 /** Room for the widest of these words beside the longest bar: on a bar they could not be read. */
-function stepWordsRoom(waterfall) {
+function stepWordsRoom(waterfall: Waterfall) {
   const falls = waterfallFalls(waterfall.steps);
   const widths = waterfall.steps.map((_, index) =>
     textWidth(stepWords(waterfall, falls, index).join(""), 14),
@@ -160,7 +177,7 @@ function stepWordsRoom(waterfall) {
 }
 
 /** Ties what was taken away to the end of the bar above. */
-function connector(x, top, look) {
+function connector(x: number, top: number, look: Look) {
   return {
     type: "line",
     silent: true,
@@ -169,21 +186,20 @@ function connector(x, top, look) {
   };
 }
 
-function waterfallCsv(waterfall) {
+export function waterfallCsv(waterfall: Waterfall) {
   const head = ["step", axisTitle(waterfall.value_axis)];
   return csvText([head, ...waterfall.steps.map((step) => [step.label, step.value])]);
 }
 
 /** What the title does not say. */
-function waterfallWords(waterfall) {
+export function waterfallWords(waterfall: Waterfall) {
   const { steps, value_axis, format } = waterfall;
-  const name = (step) => `${step.label} ${formatNumber(step.value, format)}`;
-  const ends = [steps[0], steps.at(-1)].map(name);
-  const words = steps.length > 1 ? `${steps.length} steps, from ${ends.join(" to ")}` : ends[0];
+  const name = (step: WaterfallStep) => `${step.label} ${formatNumber(step.value, format)}`;
+  const words = steps.length > 1 ? `${steps.length} steps, from ${name(itemAt(steps, 0))} to ${name(itemAt(steps, steps.length - 1))}` : steps.map(name).join();
   return `${axisTitle(value_axis)} step by step: ${words}.`;
 }
 
-function waterfallNumbers({ steps, value_axis, format }) {
+export function waterfallNumbers({ steps, value_axis, format }: Waterfall) {
   const falls = waterfallFalls(steps);
   return {
     columns: [
@@ -191,10 +207,9 @@ function waterfallNumbers({ steps, value_axis, format }) {
       { name: value_axis.name, unit: value_axis.unit, format },
       { name: "Change", unit: value_axis.unit, format },
     ],
-    rows: steps.map((step, index) => [
-      step.label,
-      step.value,
-      falls[index] === null ? null : -falls[index],
-    ]),
+    rows: steps.map((step, index) => {
+      const fall = itemAt(falls, index);
+      return [step.label, step.value, fall === null ? null : -fall];
+    }),
   };
 }

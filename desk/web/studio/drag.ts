@@ -1,11 +1,37 @@
+import { element } from "../report/element";
+import { formatSignificant, withUnit } from "../report/format";
+import type { Actions } from "./actions";
+import type { Draggable, Step } from "./api";
+import { foldWith } from "./parts";
+
 /**
  * A number of a step under the reader's hand: charts and errors follow, the model stays at its fit and the number
  * snaps back once it is let go.
  */
-const dragging = { waiting: null, last: null, isAsking: false, isOff: false };
+export const dragging: { waiting: Dragged | null; last: Dragged | null; isAsking: boolean; isOff: boolean } = {
+  waiting: null,
+  last: null,
+  isAsking: false,
+  isOff: false,
+};
+
+/** A parameter of a step, and what it is dragged to. */
+export interface Dragged {
+  step: number;
+  parameter: string;
+  value: number;
+}
+
+const kWays: Record<string, number> = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
+
+/** Where an arrow key takes the number: a hundredth of the way, and no further than it goes; null: no arrow. */
+export function steppedBy(key: string, value: number, { low, high }: Draggable): number | null {
+  const way = kWays[key];
+  return way === undefined ? null : Math.min(high, Math.max(low, value + (way * (high - low)) / 100));
+}
 
 /** Every fitted number of a step as a slider. */
-function dragElement(step, actions) {
+export function dragElement(step: Step, actions: Actions) {
   const id = `drag-${step.id}`;
   const details = foldWith(id, "Drag its numbers");
   details.append(
@@ -17,11 +43,11 @@ function dragElement(step, actions) {
   return details;
 }
 
-function dragRow(step, name, range, actions) {
+function dragRow(step: Step, name: string, range: Draggable, actions: Actions) {
   const id = `drag-${step.id}-${name}`;
-  const slider = element("input", { type: "range", id, min: range.low, max: range.high, step: "any" });
+  const slider = element("input", { type: "range", id, min: String(range.low), max: String(range.high), step: "any" });
   slider.value = String(range.value);
-  const { unit } = step.parameters[name];
+  const unit = step.parameters[name]?.unit ?? "";
   const told = element("output", { for: id });
   const words = () => (told.textContent = withUnit(formatSignificant(Number(slider.value), 4), unit));
   words();
@@ -39,34 +65,33 @@ function dragRow(step, name, range, actions) {
   slider.addEventListener("pointercancel", back);
   slider.addEventListener("blur", back);
   slider.addEventListener("keydown", ({ key }) => key === "Escape" && back());
-  // Arrow keys go in steps of a hundredth of the way.
   slider.addEventListener("keydown", (event) => {
-    const way = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
-    if (way === undefined) return;
+    const next = steppedBy(event.key, Number(slider.value), range);
+    if (next === null) return;
     event.preventDefault();
-    slider.value = String(Number(slider.value) + (way * (range.high - range.low)) / 100);
+    slider.value = String(next);
     slider.dispatchEvent(new Event("input"));
   });
   return element("div", { class: "drag-row" }, element("label", { for: id }, `${name.replaceAll("_", " ")}, with all steps`), slider, told);
 }
 
 /** Nothing is dragged any more: its slider is gone, or the model is another one. */
-function letGo() {
+export function letGo() {
   dragging.waiting = dragging.last = null;
   dragging.isOff = false;
 }
 
 /** One question at a time: the last number that was dragged to is asked for next. */
-async function followDrag(number, draw) {
+export async function followDrag(number: Dragged, draw: (number: Dragged) => Promise<void>) {
   dragging.waiting = dragging.last = number;
   dragging.isOff = true;
   if (dragging.isAsking) return;
   dragging.isAsking = true;
   try {
     while (dragging.waiting !== null) {
-      const { step, parameter, value } = dragging.waiting;
+      const next: Dragged = dragging.waiting;
       dragging.waiting = null;
-      await draw(`step=${step}&parameter=${parameter}&value=${value}`);
+      await draw(next);
     }
   } catch (error) {
     letGo();

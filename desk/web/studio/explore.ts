@@ -1,85 +1,96 @@
+import type { Drawn } from "../report/document";
+import { element, within } from "../report/element";
+import type { Joint, QueryTo } from "./api";
+import { showAlone, type TimeRange } from "./charts";
+import { choiceOf, type Choice } from "./choices";
+import { replaceContent } from "./parts";
+import { ask } from "./server";
+import type { Looked } from "./session";
+
+type Variable = QueryTo<"GET", "/map">["x"];
+type Over = QueryTo<"GET", "/spectrum">["over"];
+
+/** A side of the map; joint null: of the one that is looked at. */
+interface MapSide {
+  variable: Variable;
+  joint: number | null;
+}
+
 /** What a side of the map may be: the server's name for it, and the reader's. */
-const kSides = [
+const kSides: [Variable, string][] = [
   ["position", "position"],
   ["velocity", "velocity"],
   ["acceleration", "acceleration"],
   ["load", "model torque"],
   ["since_reversal", "time since reversal"],
 ];
-/** What the reader has chosen; joint null: the one that is looked at. */
-const explored = { x: { variable: "position", joint: null }, y: { variable: "velocity", joint: null }, over: "frequency" };
 
-const explorePlaces = {};
+/** What the reader has chosen. */
+const explored: { x: MapSide; y: MapSide; over: Over } = {
+  x: { variable: "position", joint: null },
+  y: { variable: "velocity", joint: null },
+  over: "frequency",
+};
 
-function optionsOf(select, options, chosen) {
-  for (const [value, words] of options) {
-    const option = element("option", { value }, words);
-    option.selected = value === chosen;
-    select.append(option);
-  }
-  return select;
-}
+/** Where map and spectrum stand, and where their choices. */
+const explorePlaces = {
+  map: { pictures: element("div", { class: "blocks" }), choice: element("div", { class: "choice-row" }) },
+  spectrum: { pictures: element("div", { class: "blocks" }), choice: element("div", { class: "choice-row" }) },
+};
 
-/** A labelled choice; `taken` hears of another value. */
-function choiceOf(id, label, options, chosen, taken) {
-  const select = optionsOf(element("select", { id }), options, chosen);
-  select.addEventListener("change", () => taken(select.value));
-  return element("span", { class: "pick" }, element("label", { for: id }, label), select);
-}
-
-function sideChoice(name, label, joints, redraw) {
+function sideChoice(name: "x" | "y", label: string, joints: Joint[], redraw: () => void) {
   const side = explored[name];
   const row = choiceOf(`map-${name}`, label, kSides, side.variable, (value) => {
-    side.variable = value;
+    side.variable = value as Variable;
     redraw();
   });
   if (joints.length < 2) return [row];
-  const all = [["", "this joint"], ...joints.map(({ joint }) => [String(joint), `joint ${joint}`])];
+  const all: Choice[] = [["", "this joint"], ...joints.map(({ joint }): Choice => [String(joint), `joint ${joint}`])];
   const chosen = side.joint === null ? "" : String(side.joint);
   const other = choiceOf(`map-${name}-joint`, `of, ${label}`, all, chosen, (value) => {
     side.joint = value === "" ? null : Number(value);
     redraw();
   });
-  other.firstChild.className = "hidden-text";
+  within(other, "label").className = "hidden-text";
   return [row, other];
 }
 
-/** The place of map and spectrum; filled by showExplored(). */
-function exploreElement() {
-  const part = (name) => {
-    explorePlaces[name] = element("div", { class: "blocks" });
-    explorePlaces[`${name}Choice`] = element("div", { class: "choice-row" });
-    return element("div", { class: "explored" }, explorePlaces[`${name}Choice`], explorePlaces[name]);
-  };
-  const root = element("div", { class: "explore" }, part("map"), part("spectrum"));
-  return root;
+/** The place of map and spectrum; filled by drawExplored(). */
+export function exploreElement() {
+  const { map, spectrum } = explorePlaces;
+  const part = ({ pictures, choice }: typeof map) => element("div", { class: "explored" }, choice, pictures);
+  return element("div", { class: "explore" }, part(map), part(spectrum));
 }
 
-function showExploreChoices(joints, redraw) {
-  replaceContent(explorePlaces.mapChoice, ...sideChoice("x", "Map over", joints, redraw), ...sideChoice("y", "and", joints, redraw));
-  const overs = [
+export function showExploreChoices(joints: Joint[], redraw: () => void) {
+  const { map, spectrum } = explorePlaces;
+  replaceContent(map.choice, ...sideChoice("x", "Map over", joints, redraw), ...sideChoice("y", "and", joints, redraw));
+  const overs: Choice[] = [
     ["frequency", "frequency"],
     ["order", "order: waves per turn of the joint"],
   ];
   replaceContent(
-    explorePlaces.spectrumChoice,
+    spectrum.choice,
     choiceOf("spectrum-over", "Spectrum over", overs, explored.over, (value) => {
-      explored.over = value;
+      explored.over = value as Over;
       redraw();
     }),
   );
 }
 
-function exploredAddresses(look, range) {
-  const parts = [`joint=${look.joint}`, `recording=${look.recording}`];
-  if (range) parts.push(`from=${range.from}`, `to=${range.to}`);
-  const side = (name) => {
-    const { variable, joint } = explored[name];
-    return [`${name}=${variable}`, ...(joint === null ? [] : [`${name}_joint=${joint}`])];
-  };
+/** What map and spectrum are asked for with. */
+function exploredQueries({ joint, recording }: Looked, range: TimeRange | null) {
+  const { x, y, over } = explored;
+  const both = { joint, recording, ...range };
   return {
-    map: `map?${[...parts, ...side("x"), ...side("y")].join("&")}`,
-    spectrum: `spectrum?${[...parts, `over=${explored.over}`].join("&")}`,
+    map: {
+      ...both,
+      x: x.variable,
+      y: y.variable,
+      ...(x.joint === null ? {} : { x_joint: x.joint }),
+      ...(y.joint === null ? {} : { y_joint: y.joint }),
+    },
+    spectrum: { ...both, over },
   };
 }
 
@@ -87,21 +98,23 @@ function exploredAddresses(look, range) {
 let exploredAsked = 0;
 
 /** Map and spectrum of what is looked at. */
-async function drawExplored(look, range) {
+export async function drawExplored(look: Looked, range: TimeRange | null) {
   const own = ++exploredAsked;
-  const addresses = Object.entries(exploredAddresses(look, range));
-  const draw = async ([name, address]) => {
-    const { chart } = await ask("GET", address);
-    if (own === exploredAsked) showAlone(`${name}.0`, chart, explorePlaces[name]);
+  const queries = exploredQueries(look, range);
+  const draw = async (name: "map" | "spectrum", question: Promise<{ chart: Drawn }>) => {
+    const { chart } = await question;
+    if (own === exploredAsked) showAlone(`${name}.0`, chart, explorePlaces[name].pictures);
   };
   // Each without the other: a refusal of one is said, and the other is there.
-  const ends = await Promise.allSettled(addresses.map(draw));
-  const refused = ends.find(({ status }) => status === "rejected");
-  if (refused) throw refused.reason;
+  const ends = await Promise.allSettled([
+    draw("map", ask("GET", "/map", { query: queries.map })),
+    draw("spectrum", ask("GET", "/spectrum", { query: queries.spectrum })),
+  ]);
+  for (const end of ends) if (end.status === "rejected") throw end.reason;
 }
 
 /** Another robot has other joints. */
-function forgetExploredJoints() {
+export function forgetExploredJoints() {
   explored.x.joint = null;
   explored.y.joint = null;
 }

@@ -1,5 +1,16 @@
+import { byId, element } from "../report/element";
+import { formatNumber, formatSignificant } from "../report/format";
+import { itemAt } from "../report/lists";
+import type { Actions } from "./actions";
+import type { EffectAt, Explanation, FindingCard, FoundAnswer, JointAnswer, State } from "./api";
+import { evidenceElement } from "./evidence";
+import { button, effectTitle, foldWith, noteWith, parameterList } from "./parts";
+
+/** Which effect of which joint. */
+type EffectOn = Pick<EffectAt, "effect" | "joint">;
+
 /** An effect that can be added from an answer, or is. */
-function addButton(what, id, added, actions) {
+function addButton(what: EffectOn, id: string, added: boolean, actions: Actions) {
   const name = `${effectTitle(what.effect)}, joint ${what.joint}`;
   if (added) return element("span", { class: "added" }, `Added: ${name}`);
   const node = button(id, "Add", () => actions.add(what.effect, what.joint), { class: "action main" });
@@ -8,22 +19,28 @@ function addButton(what, id, added, actions) {
 }
 
 /** That it is there and cannot be there once more. */
-function isAdded(state, what) {
-  const { effects } = state.joints[what.joint - 1];
+function isAdded(state: State, what: EffectOn) {
+  const { effects } = itemAt(state.joints, what.joint - 1);
   const known = effects.find(({ effect }) => effect === what.effect);
   return known !== undefined && known.steps.length > 0 && !known.may_repeat;
 }
 
-function chanceWords(p) {
+function chanceWords(p: number | null) {
+  if (p === null) return "";
   if (p < 1e-4) return "Chance does practically never do that.";
   return `By chance in one of ${formatSignificant(1 / p, 2)} such searches at most.`;
 }
 
-function findingCard(card, id, search, state, actions) {
+/** What it takes off the error, %. */
+function shareOf({ takes_of_held_out }: FindingCard) {
+  return takes_of_held_out === null ? null : 100 * takes_of_held_out;
+}
+
+function findingCard(card: FindingCard, id: string, search: number, state: State, actions: Actions) {
   const root = element("li", { class: "card finding" });
   const head = element("div", { class: "step-head" }, element("h4", {}, effectTitle(card.title)));
   head.append(addButton(card, `add-${id}`, isAdded(state, card), actions));
-  const share = formatNumber(100 * card.takes_of_held_out, ".0f");
+  const share = formatNumber(shareOf(card), ".0f");
   const whose = card.seen_on === card.joint ? "the joint's" : `joint ${card.seen_on}'s`;
   root.append(
     head,
@@ -36,7 +53,7 @@ function findingCard(card, id, search, state, actions) {
     ),
   );
   if (card.finding !== null) {
-    root.append(evidenceElement(`finding ${card.finding} of ${search}`, `evidence?search=${search}&finding=${card.finding}`));
+    root.append(evidenceElement(`finding ${card.finding} of ${search}`, { search, finding: card.finding }));
   }
   if (card.alternatives.length > 0) {
     root.append(element("p", {}, "These recordings do not tell it from:"));
@@ -45,7 +62,7 @@ function findingCard(card, id, search, state, actions) {
   return root;
 }
 
-function choiceList(effects, id, state, actions) {
+function choiceList(effects: EffectAt[], id: string, state: State, actions: Actions) {
   const list = element("ul", { class: "choices" });
   effects.forEach((what, index) =>
     list.append(
@@ -60,7 +77,7 @@ function choiceList(effects, id, state, actions) {
   return list;
 }
 
-function jointAnswer(answer, search, state, actions) {
+function jointAnswer(answer: JointAnswer, search: number, state: State, actions: Actions) {
   const root = element("div", { class: "answer" });
   root.append(element("h3", {}, `Joint ${answer.joint}`), element("p", {}, answer.words));
   const cards = element("ul", { class: "findings" });
@@ -79,13 +96,12 @@ function jointAnswer(answer, search, state, actions) {
   return root;
 }
 
-function answerElement(found, state, actions) {
-  const root = element("div", {}, element("p", { class: "answer-words" }, found.answer.words));
-  const silent = found.answer.joints.filter(
+function answerElement(found: FoundAnswer, search: number, state: State, actions: Actions) {
+  const root = element("div", {}, element("p", { class: "answer-words" }, found.words));
+  const silent = found.joints.filter(
     ({ cards, classes }) => cards.length === 0 && classes.length === 0,
   );
-  const search = found.search ?? 0;
-  for (const answer of found.answer.joints) {
+  for (const answer of found.joints) {
     if (!silent.includes(answer)) root.append(jointAnswer(answer, search, state, actions));
   }
   if (silent.length > 0) {
@@ -93,16 +109,16 @@ function answerElement(found, state, actions) {
     for (const answer of silent) rest.append(element("p", {}, answer.words));
     root.append(rest);
   }
-  if (found.answer.advice.length > 0) {
+  if (found.advice.length > 0) {
     const advice = foldWith("advice", "Advice");
-    for (const text of found.answer.advice) advice.append(element("p", {}, text));
+    for (const text of found.advice) advice.append(element("p", {}, text));
     root.append(advice);
   }
   return root;
 }
 
 /** How long it has run stands beside what is read out: that is only what it does. */
-function progressContent(found, actions) {
+function progressContent(found: Explanation, actions: Actions) {
   const doing = element("span", { id: "search-doing", role: "status" }, found.doing);
   const seconds = element("span", { id: "search-seconds" }, secondsWords(found));
   const progress = element("p", { class: "progress" }, element("span", { class: "spinner", "aria-hidden": "true" }));
@@ -110,24 +126,24 @@ function progressContent(found, actions) {
   return [progress, button("stop-search", "Stop", actions.stop, { "data-free": "" })];
 }
 
-function secondsWords(found) {
+function secondsWords(found: Explanation) {
   return `${formatNumber(found.seconds, ".0f")} s`;
 }
 
 /** The same search goes on: false where its place does not show it yet. */
-function updateProgress(found) {
+export function updateProgress(found: Explanation) {
   const doing = document.getElementById("search-doing");
   if (doing === null) return false;
   if (doing.textContent !== found.doing) doing.textContent = found.doing;
-  document.getElementById("search-seconds").textContent = secondsWords(found);
+  byId("search-seconds").textContent = secondsWords(found);
   return true;
 }
 
 /** The search for what is missing: its button, its progress or its answer. */
-function learnContent(found, state, actions) {
+export function learnContent(found: Explanation, state: State, actions: Actions) {
   if (found.state === "running") return progressContent(found, actions);
   const again = state.steps.length > 0 || found.state === "done";
-  const content = [
+  const content: HTMLElement[] = [
     button("search", again ? "Search what is left" : "Search for missing effects", actions.search, {
       class: "action main",
     }),
@@ -145,13 +161,13 @@ function learnContent(found, state, actions) {
   }
   if (found.state === "stopped") content.unshift(element("p", { class: "empty" }, "The search was stopped."));
   if (found.state === "failed") content.unshift(noteWith("bad", found.error));
-  if (found.state === "done") {
+  if (found.state === "done" && found.answer !== null) {
     if (found.revision !== state.revision) {
       content.unshift(
         noteWith("neutral", "The model has changed since this answer: search again for what is left now."),
       );
     }
-    content.push(answerElement(found, state, actions));
+    content.push(answerElement(found.answer, found.search ?? 0, state, actions));
   }
   return content;
 }

@@ -1,20 +1,31 @@
-function faultOf(kind) {
-  return live.setup.faults.find((each) => each.kind === kind);
+import { element } from "../report/element";
+import { formatNumber, formatSignificant, withUnit } from "../report/format";
+import type { Moment } from "./api";
+import { liveActions } from "./live_actions";
+import { jointName, live, liveSetup } from "./live_state";
+import { button, effectTitle, replaceContent } from "./parts";
+import { place, placeOf } from "./places";
+
+function faultOf(kind: string) {
+  const fault = liveSetup().faults.find((each) => each.kind === kind);
+  if (fault === undefined) throw new Error(`there is no fault ${kind}`);
+  return fault;
 }
 
 /** What can be done to a simulated run; made once, its words follow the choice. */
-function benchContent() {
+export function benchContent() {
   const kind = element("select", { id: "fault-kind" });
-  for (const [label, onBus] of [["Arm, drives, encoders", false], ["Bus", true]]) {
+  for (const onBus of [false, true]) {
+    const label = onBus ? "Bus" : "Arm, drives, encoders";
     const group = element("optgroup", { label });
-    for (const fault of live.setup.faults.filter(({ on_bus }) => on_bus === onBus)) {
+    for (const fault of liveSetup().faults.filter(({ on_bus }) => on_bus === onBus)) {
       group.append(element("option", { value: fault.kind }, effectTitle(fault.kind)));
     }
     kind.append(group);
   }
   kind.value = "friction_jump";
   const joint = element("select", { id: "fault-joint" });
-  live.setup.joints.forEach((name, at) => joint.append(element("option", { value: String(at + 1) }, `${at + 1}. ${name}`)));
+  liveSetup().joints.forEach((name, at) => joint.append(element("option", { value: String(at + 1) }, `${at + 1}. ${name}`)));
   const size = element("input", { id: "fault-size", type: "number", step: "any", inputmode: "decimal" });
   const unit = element("span", { id: "fault-unit" });
   const words = element("p", { class: "remark", id: "fault-words" });
@@ -22,7 +33,7 @@ function benchContent() {
     const fault = faultOf(kind.value);
     joint.disabled = fault.joint === "none";
     size.disabled = fault.unit === "";
-    size.value = fault.proposed ?? "";
+    size.value = String(fault.proposed ?? "");
     unit.textContent = fault.unit === "" || fault.unit === "1" ? "" : fault.unit;
     words.textContent = `${effectTitle(fault.kind)}: ${fault.words}.`;
   };
@@ -45,12 +56,12 @@ function benchContent() {
   return [row, words, place("injected")];
 }
 
-function showInjected({ faults }) {
+export function showInjected({ faults }: Moment) {
   const words = JSON.stringify(faults);
-  if (words === live.faultWords) return;
-  live.faultWords = words;
+  if (words === live.written.faults) return;
+  live.written.faults = words;
   if (faults.length === 0) {
-    replaceContent(places.injected, element("p", { class: "empty" }, "No fault is injected."));
+    replaceContent(placeOf("injected"), element("p", { class: "empty" }, "No fault is injected."));
     return;
   }
   const list = element("ul", { class: "parameters" });
@@ -59,10 +70,10 @@ function showInjected({ faults }) {
     const much = size === null ? "" : `, ${withUnit(formatSignificant(size, 4), unit)}`;
     list.append(element("li", {}, `${effectTitle(kind)}${where}${much}, since ${formatNumber(since_s, ".1f")} s`));
   }
-  replaceContent(places.injected, list);
+  replaceContent(placeOf("injected"), list);
 }
 
-function accommodationSwitch() {
+export function accommodationSwitch() {
   const node = element("button", {
     type: "button",
     id: "accommodation",

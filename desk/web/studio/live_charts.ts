@@ -1,54 +1,90 @@
+import { labelStep } from "../report/axes";
+import { element, penOf } from "../report/element";
+import { formatTick, unitInBrackets } from "../report/format";
+import { itemAt } from "../report/lists";
+import { currentLook, darkPreference } from "../report/look";
+import { kFontFamily, type Look } from "../report/palette";
+import type { LiveSteps } from "./api";
+import type { TimeRange } from "./charts";
+
 const kLiveWindowS = 10;
+
 const kLiveRow = 132;
+
 const kLiveTop = 26;
+
 const kLiveBottom = 22;
+
 const kLiveGap = 26;
+
 const kLiveLeft = 62;
+
 const kLiveRight = 18;
+
 /** Above it two charts stand side by side. */
 const kLiveWide = 900;
 
-/**
- * What is drawn of the last seconds, a curve of each that is judged: points [t, value], gaps are null.
- * @typedef {{residual: [number, number | null][], threshold: [number, number | null][]}} LiveCurve
- */
+/** s, and the value there; a gap is null. */
+type Point = [number, number | null];
 
-/** @returns {LiveCurve[]} */
-function emptyCurves(count) {
+/** What is drawn of the last seconds, of one that is judged. */
+export interface LiveCurve {
+  residual: Point[];
+  threshold: Point[];
+}
+
+/** Where a chart's curves stand, in pixels of the page. */
+interface Plot {
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+}
+
+/** The end of an axis that begins at 0, and the step between its labels. */
+interface Scale {
+  top: number;
+  step: number;
+}
+
+export function emptyCurves(count: number): LiveCurve[] {
   return Array.from({ length: count }, () => ({ residual: [], threshold: [] }));
 }
 
 /** Appends the new steps of the server and lets go of what has left the window. */
-function appendSteps(curves, steps, stepS) {
+export function appendSteps(curves: LiveCurve[], steps: LiveSteps, stepS: number) {
   curves.forEach((curve, of) => {
+    const low = itemAt(steps.low, of);
+    const high = itemAt(steps.high, of);
+    const threshold = itemAt(steps.threshold, of);
     steps.t_s.forEach((t, at) => {
+      if (t === null) return;
       const last = curve.threshold.at(-1);
       if (last !== undefined && t - last[0] > 2.5 * stepS) {
         curve.residual.push([last[0] + stepS, null]);
         curve.threshold.push([last[0] + stepS, null]);
       }
-      curve.residual.push([t, steps.low[of][at]], [t + stepS / 2, steps.high[of][at]]);
-      curve.threshold.push([t, steps.threshold[of][at]]);
+      curve.residual.push([t, low[at] ?? null], [t + stepS / 2, high[at] ?? null]);
+      curve.threshold.push([t, threshold[at] ?? null]);
     });
     const newest = curve.threshold.at(-1)?.[0] ?? 0;
     for (const points of [curve.residual, curve.threshold]) {
-      let old = 0;
-      while (old < points.length && points[old][0] < newest - kLiveWindowS - 1) ++old;
-      points.splice(0, old);
+      const first = points.findIndex(([t]) => t >= newest - kLiveWindowS - 1);
+      points.splice(0, first < 0 ? points.length : first);
     }
   });
 }
 
-function liveColumns(host, count) {
+function liveColumns(host: HTMLElement, count: number) {
   return count > 1 && host.clientWidth >= kLiveWide ? 2 : 1;
 }
 
-function liveHeight(host, count) {
+function liveHeight(host: HTMLElement, count: number) {
   return Math.ceil(count / liveColumns(host, count)) * (kLiveRow + kLiveGap) + kLiveTop;
 }
 
 /** Where a chart's curves stand, in pixels of the page. */
-function livePlot(at, columns, width) {
+function livePlot(at: number, columns: number, width: number): Plot {
   const room = width / columns;
   const left = (at % columns) * room + kLiveLeft;
   const top = kLiveTop + Math.floor(at / columns) * (kLiveRow + kLiveGap);
@@ -56,16 +92,16 @@ function livePlot(at, columns, width) {
 }
 
 /** The end of the axis of what is never negative, and the step between its labels. */
-function liveScale(curve) {
+export function liveScale(curve: LiveCurve): Scale {
   let most = 0;
   for (const points of [curve.residual, curve.threshold]) {
-    for (const [, value] of points) if (value > most) most = value;
+    for (const [, value] of points) if (value !== null && value > most) most = value;
   }
   const step = labelStep(most > 0 ? 1.05 * most : 1, 3);
   return { step, top: step * Math.ceil((1.05 * most) / step || 1) };
 }
 
-function drawLiveAxes(pen, plot, scale, window, look) {
+function drawLiveAxes(pen: CanvasRenderingContext2D, plot: Plot, scale: Scale, window: TimeRange, look: Look) {
   pen.font = `12px ${kFontFamily}`;
   pen.fillStyle = look.soft;
   pen.textBaseline = "middle";
@@ -89,7 +125,7 @@ function drawLiveAxes(pen, plot, scale, window, look) {
   }
 }
 
-function drawLiveCurve(pen, plot, points, scale, window) {
+function drawLiveCurve(pen: CanvasRenderingContext2D, plot: Plot, points: Point[], scale: Scale, window: TimeRange) {
   const perS = plot.width / kLiveWindowS;
   const perUnit = plot.height / scale.top;
   let isDown = false;
@@ -112,13 +148,17 @@ function drawLiveCurve(pen, plot, points, scale, window) {
  * All curves in one picture, drawn anew as often as it is told. Not by ECharts: that takes ten times as long, and
  * thirty times a second there is no time for it.
  */
-class LivePicture {
-  constructor(host, judged) {
-    this.host = host;
-    this.judged = judged;
-    this.canvas = element("canvas", { "aria-hidden": "true" });
-    this.pen = this.canvas.getContext("2d", { willReadFrequently: true });
-    this.last = null;
+export class LivePicture {
+  private readonly canvas = element("canvas", { "aria-hidden": "true" });
+  private readonly pen = penOf(this.canvas, { willReadFrequently: true });
+  private last: [LiveCurve[], number] | null = null;
+  private width = 0;
+  private height = 0;
+
+  constructor(
+    private readonly host: HTMLElement,
+    private readonly judged: { name: string; unit: string }[],
+  ) {
     host.append(this.canvas);
     new ResizeObserver(() => this.begin()).observe(host);
     darkPreference.addEventListener("change", () => this.begin());
@@ -137,8 +177,8 @@ class LivePicture {
     if (this.last !== null) this.draw(...this.last);
   }
 
-  /** @param {LiveCurve[]} curves @param {number} newest s, the right end of the picture */
-  draw(curves, newest) {
+  /** `newest`: the right end of the picture, s. */
+  draw(curves: LiveCurve[], newest: number) {
     this.last = [curves, newest];
     const { pen } = this;
     const look = currentLook();
@@ -149,7 +189,7 @@ class LivePicture {
     curves.forEach((curve, at) => {
       const plot = livePlot(at, columns, this.width);
       const scale = liveScale(curve);
-      const { name, unit } = this.judged[at];
+      const { name, unit } = itemAt(this.judged, at);
       drawLiveAxes(pen, plot, scale, span, look);
       pen.fillStyle = look.ink;
       pen.textAlign = "left";

@@ -1,6 +1,24 @@
+import { element, within, type Child } from "../report/element";
+import { formatSignificant } from "../report/format";
+import { itemAt } from "../report/lists";
+import { hiddenText } from "../report/words";
+import type { LoadRecording, LoadState, SignalEdit } from "./api";
+import { mapContent, showPreview } from "./load_map";
+import { addToNote, button, foldWith, holdControls, noteWith, replaceContent, sectionWith } from "./parts";
+import { place, placeOf } from "./places";
+import { ask, mayConfirm, wordsOf } from "./server";
+
 /** Files that the page is given: what there is, and what is under way. */
-const load = {
+export const load: {
   /** What the server last said; null: the files are those of the command line. */
+  state: LoadState | null;
+  doing: string;
+  message: string | null;
+  written: string[];
+  /** What was refused is done where it is asked once more. */
+  confirm: boolean;
+  onSession: () => Promise<void>;
+} = {
   state: null,
   doing: "",
   message: null,
@@ -9,28 +27,31 @@ const load = {
   onSession: async () => {},
 };
 
+export function loadState(): LoadState {
+  if (load.state === null) throw new Error("the files are those of the command line");
+  return load.state;
+}
+
 const kRobotKinds = [".toml", ".urdf"];
 
-function isRobotFile(name) {
+function isRobotFile(name: string) {
   return kRobotKinds.some((kind) => name.toLowerCase().endsWith(kind));
 }
 
-function sizeWords(bytes) {
+export function sizeWords(bytes: number): string {
   const units = ["bytes", "KiB", "MiB", "GiB"];
-  let at = 0;
-  while (bytes >= 1024 && at < units.length - 1) {
-    bytes /= 1024;
-    ++at;
-  }
-  return `${formatSignificant(bytes, 3)} ${units[at]}`;
+  const power = Math.floor(Math.log2(Math.max(bytes, 1)) / 10);
+  const at = Math.min(power, units.length - 1);
+  return `${formatSignificant(bytes / 1024 ** at, 3)} ${itemAt(units, at)}`;
 }
 
 function dropElement() {
+  const { limits } = loadState();
   const input = element("input", { type: "file", id: "load-input", multiple: "", hidden: "" });
   input.addEventListener("change", () => {
-    const files = [...input.files];
+    const files = [...(input.files ?? [])];
     input.value = "";
-    takeFiles(files);
+    void takeFiles(files);
   });
   const words = element("p", { class: "drop-words" }, "Drop recordings and a robot file here");
   const root = element("div", { class: "drop", id: "load-drop" }, words, input);
@@ -40,7 +61,7 @@ function dropElement() {
       "p",
       { class: "remark" },
       "Recordings: CSV, MATLAB .mat, candump. The robot: a robot file (.toml) or a URDF (.urdf). At most " +
-        `${load.state.limits.file_words} a file, ${load.state.limits.all_words} together. Nothing leaves this machine.`,
+        `${limits.file_words} a file, ${limits.all_words} together. Nothing leaves this machine.`,
     ),
   );
   return root;
@@ -48,8 +69,8 @@ function dropElement() {
 
 /** The page is one place to drop files on: beside it the browser would open them. */
 function watchDrops() {
-  const carriesFiles = (event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
-  const mark = (on) => document.getElementById("load-drop")?.toggleAttribute("data-over", on);
+  const carriesFiles = (event: DragEvent) => [...(event.dataTransfer?.types ?? [])].includes("Files");
+  const mark = (on: boolean) => document.getElementById("load-drop")?.toggleAttribute("data-over", on);
   window.addEventListener("dragover", (event) => {
     if (!carriesFiles(event)) return;
     event.preventDefault();
@@ -62,26 +83,27 @@ function watchDrops() {
     if (!carriesFiles(event)) return;
     event.preventDefault();
     mark(false);
-    document.getElementById("load-fold").open = true;
-    takeFiles([...event.dataTransfer.files]);
+    unfoldLoad();
+    void takeFiles([...(event.dataTransfer?.files ?? [])]);
   });
 }
 
 /** One after the other, the robot first: with it the columns are guessed. What fails is said, the others are taken. */
-async function takeFiles(files) {
+async function takeFiles(files: File[]) {
   while (load.doing !== "") await new Promise((done) => setTimeout(done, 100));
   const sorted = [...files].sort((a, b) => Number(isRobotFile(b.name)) - Number(isRobotFile(a.name)));
-  const refused = [];
+  const { limits } = loadState();
+  const refused: string[] = [];
   await loadChange(async () => {
     for (const file of sorted) {
       showDoing(`Reading ${file.name} …`);
       try {
-        if (file.size > load.state.limits.file) {
-          throw new Error(`${file.name}: a file of ${sizeWords(file.size)}; allowed: ${load.state.limits.file_words} a file on the page; to mend: start Studio with it on the command line`);
+        if (file.size > limits.file) {
+          throw new Error(`${file.name}: a file of ${sizeWords(file.size)}; allowed: ${limits.file_words} a file on the page; to mend: start Studio with it on the command line`);
         }
-        load.state = await handOver(file);
+        load.state = await ask("POST", "/load/files", { query: { name: file.name }, file });
       } catch (error) {
-        refused.push(error.message);
+        refused.push(wordsOf(error));
       }
     }
     showDoing("");
@@ -90,7 +112,7 @@ async function takeFiles(files) {
 }
 
 /** One at a time; what fails is said, and nothing else has changed. */
-async function loadChange(work) {
+async function loadChange(work: () => Promise<void>) {
   if (load.doing !== "") return;
   load.doing = "…";
   load.message = null;
@@ -99,38 +121,38 @@ async function loadChange(work) {
   try {
     await work();
   } catch (error) {
-    load.message = error.message;
-    load.confirm = error.confirm === true;
+    load.message = wordsOf(error);
+    load.confirm = mayConfirm(error);
   }
   load.doing = "";
   showLoad();
   holdControls(false);
-  if (load.message !== null) places.loadMessage.scrollIntoView({ block: "nearest" });
+  if (load.message !== null) placeOf("loadMessage").scrollIntoView({ block: "nearest" });
   await showPreview();
 }
 
-function showDoing(words) {
+function showDoing(words: string) {
   load.doing = words || "…";
-  replaceContent(places.loadDoing, words === "" ? "" : element("p", { class: "progress" }, element("span", { class: "spinner", "aria-hidden": "true" }), words));
+  replaceContent(placeOf("loadDoing"), words === "" ? "" : element("p", { class: "progress" }, element("span", { class: "spinner", "aria-hidden": "true" }), words));
 }
 
-const loadActions = {
-  remove: (id) => loadChange(async () => {
-    load.state = await ask("DELETE", `load/files/${id}`);
+export const loadActions = {
+  remove: (id: number) => loadChange(async () => {
+    load.state = await ask("DELETE", "/load/files/{id}", { path: { id } });
   }),
-  holdOut: (id, heldOut) => loadChange(async () => {
-    load.state = await ask("POST", "load/held_out", { recording: id, held_out: heldOut });
+  holdOut: (id: number, heldOut: boolean) => loadChange(async () => {
+    load.state = await ask("POST", "/load/held_out", { body: { recording: id, held_out: heldOut } });
   }),
-  signal: (edit) => loadChange(async () => {
-    load.state = await ask("POST", "load/signal", edit);
+  signal: (edit: SignalEdit) => loadChange(async () => {
+    load.state = await ask("POST", "/load/signal", { body: edit });
   }),
   guess: () => loadChange(async () => {
-    load.state = await ask("POST", "load/guess");
+    load.state = await ask("POST", "/load/guess");
   }),
-  use: (replace) => loadChange(async () => {
+  use: (replace: boolean) => loadChange(async () => {
     showDoing("Reading and examining the recordings …");
     try {
-      load.written = (await ask("POST", "load/session", { replace })).written;
+      load.written = (await ask("POST", "/load/session", { body: { replace } })).written;
       await load.onSession();
       foldLoad(true);
     } finally {
@@ -140,11 +162,12 @@ const loadActions = {
 };
 
 /** What is there, and what comes next: a line each. */
-function stepsContent({ robot, recordings, map }) {
+function stepsContent({ robot, recordings, map }: LoadState) {
   let number = 0;
-  const line = (done, title, ...words) => {
+  const line = (done: boolean, title: string, ...words: Child[]) => {
     const mark = element("span", { class: "mark", "aria-hidden": "true" }, done ? "✓" : String(++number));
-    return element("li", { class: done ? "done" : "" }, mark, element("div", {}, element("b", {}, title), hiddenText(done ? "done" : "still to do"), " ", ...words));
+    const told = element("div", {}, element("b", {}, title), hiddenText(done ? "done" : "still to do"), " ", ...words);
+    return element("li", { class: done ? "done" : "" }, mark, told);
   };
   const list = element("ol", { class: "load-steps" });
   const joints = robot === null ? 0 : robot.joints.length;
@@ -153,9 +176,9 @@ function stepsContent({ robot, recordings, map }) {
       ? line(false, "A robot file.", "What is known of the arm: ", element("code", {}, ".toml"), ", or a URDF to make one of. Without either, ", element("code", {}, "offnominal new"), " begins one from a table of lengths and masses.")
       : line(true, "Robot:", `${robot.file}, “${robot.name}”, ${joints} ${joints === 1 ? "joint" : "joints"}`),
   );
-  const recordingLine = line(recordings.length > 0, recordings.length > 0 ? "Recordings:" : "A recording.", recordings.length > 0 ? "" : "Time, position and torque or motor current of every joint while the arm moves; several will do. Velocities are welcome.");
-  if (recordings.length > 0) recordingLine.lastChild.append(recordingList(recordings));
-  list.append(recordingLine);
+  const wanted = "Time, position and torque or motor current of every joint while the arm moves; several will do. Velocities are welcome.";
+  const none = recordings.length === 0;
+  list.append(none ? line(false, "A recording.", wanted) : line(true, "Recordings:", recordingList(recordings)));
   const ready = map !== null && map.missing.length === 0;
   list.append(
     line(ready, "What the columns are.", map === null ? "Guessed once both are there, shown, and put right below." : `Told by ${map.from}; look at them below, then use them.`),
@@ -163,7 +186,7 @@ function stepsContent({ robot, recordings, map }) {
   return list;
 }
 
-function recordingList(recordings) {
+function recordingList(recordings: LoadRecording[]) {
   const list = element("ul", { class: "load-recordings" });
   for (const { id, name, bytes, held_out: heldOut } of recordings) {
     const box = element("input", { type: "checkbox", id: `held-out-${id}` });
@@ -178,40 +201,45 @@ function recordingList(recordings) {
 }
 
 function loadMessageContent() {
-  const content = [];
+  const content: HTMLElement[] = [];
   if (load.message !== null) {
     for (const words of load.message.split("\n")) content.push(noteWith(load.confirm ? "warn" : "bad", words));
-    if (load.confirm) content.at(-1).firstChild.append(" ", button("use-anyway", "Begin anew", () => loadActions.use(true)));
+    const last = content.at(-1);
+    if (load.confirm && last) addToNote(last, " ", button("use-anyway", "Begin anew", () => loadActions.use(true)));
   }
   if (load.written.length > 0) content.push(noteWith("good", `Written: ${load.written.join(", ")}`));
   return content;
 }
 
 /** With a session there is more to see than its files. */
-function foldLoad(folded) {
-  const fold = document.getElementById("load-fold");
+function foldLoad(folded: boolean) {
+  const fold = within<HTMLDetailsElement>(document, "#load-fold");
   fold.open = !folded;
   fold.toggleAttribute("data-foldable", folded);
 }
 
-function showLoad() {
-  const { state: given } = load;
-  if (places.desk.hidden) {
+function unfoldLoad() {
+  within<HTMLDetailsElement>(document, "#load-fold").open = true;
+}
+
+export function showLoad() {
+  const given = loadState();
+  if (placeOf("desk").hidden) {
     const title = given.robot === null ? "Studio" : `Studio: ${given.robot.name}`;
     document.title = given.robot === null ? "offnominal Studio" : title;
     const header = element("header", {}, element("h1", {}, title));
     header.append(element("p", { class: "subtitle" }, "Recordings of a robot and the file of its model: what the model misses, and which effect makes up for it."));
-    replaceContent(places.head, header);
+    replaceContent(placeOf("head"), header);
   }
-  replaceContent(places.loadSteps, stepsContent(given));
-  replaceContent(places.loadMessage, ...loadMessageContent());
+  replaceContent(placeOf("loadSteps"), stepsContent(given));
+  replaceContent(placeOf("loadMessage"), ...loadMessageContent());
   const notes = given.robot?.notes ?? [];
-  replaceContent(places.loadNotes, notes.length === 0 ? "" : foldedList("robot-notes", `What the URDF's import merged, left out or assumed (${notes.length})`, notes));
-  replaceContent(places.loadMap, ...(given.map === null ? [] : mapContent(given)));
+  replaceContent(placeOf("loadNotes"), notes.length === 0 ? "" : foldedList("robot-notes", `What the URDF's import merged, left out or assumed (${notes.length})`, notes));
+  replaceContent(placeOf("loadMap"), ...(given.map === null ? [] : mapContent(given, given.map)));
   if (load.doing !== "") holdControls(true);
 }
 
-function foldedList(id, title, lines) {
+export function foldedList(id: string, title: string, lines: string[]) {
   const list = element("ul");
   for (const words of lines) list.append(element("li", {}, words));
   const fold = foldWith(id, title);
@@ -220,9 +248,9 @@ function foldedList(id, title, lines) {
 }
 
 /** A page that is given its files: where they are dropped stays, folded up once there is a session. */
-async function startLoad(host, loaded, onSession) {
+export async function startLoad(host: HTMLElement, loaded: boolean, onSession: () => Promise<void>) {
   load.onSession = onSession;
-  load.state = await ask("GET", "load");
+  load.state = await ask("GET", "/load");
   const fold = element("details", { id: "load-fold" }, element("summary", { id: "load-fold-summary" }, "Files and columns"));
   fold.append(
     dropElement(),

@@ -1,30 +1,54 @@
-/** What the columns are: of the recording that is shown, as the server last read it. */
-const mapView = { recording: 0, preview: null, findings: null, failed: null, asked: 0 };
+import { element, type Child } from "../report/element";
+import { itemAt } from "../report/lists";
+import type {
+  DataFault,
+  Findings,
+  LoadJoint,
+  LoadState,
+  Preview,
+  PreviewSignal,
+  Side,
+  Signal,
+  SignalEdit,
+  SignalMap,
+} from "./api";
+import { selectWith, type Choice } from "./choices";
+import { foldedList, loadActions, loadState, showLoad } from "./load";
+import { button, effectTitle, noteWith, percent } from "./parts";
+import { ask, wordsOf } from "./server";
+import { sketchElement, sketchLegend, type Curve } from "./sketch";
 
-const kSideWords = { joint: "of the joint", motor: "of its motor", current: "current of its motor", sensor: "of a sensor behind the gear" };
+/** What the columns are: of the recording that is shown, as the server last read it. */
+export const mapView: {
+  recording: number;
+  preview: Preview | null;
+  findings: Findings | null;
+  failed: string | null;
+  asked: number;
+} = { recording: 0, preview: null, findings: null, failed: null, asked: 0 };
+
+const kSideWords: Record<Side, string> = {
+  joint: "of the joint",
+  motor: "of its motor",
+  current: "current of its motor",
+  sensor: "of a sensor behind the gear",
+};
+
 const kPreviewPixels = 300;
 
-function signalWords({ quantity, joint }) {
+type SignalName = { quantity: Signal["quantity"]; joint: number | null };
+type Change = Omit<SignalEdit, "quantity" | "joint">;
+
+function signalWords({ quantity, joint }: SignalName): string {
   return joint === null ? "the time" : `the ${quantity} of joint ${joint}`;
 }
 
-function selectWith(id, label, options, chosen, onChange) {
-  const select = element("select", { id, "aria-label": label });
-  for (const [value, words] of options) {
-    const option = element("option", { value }, words);
-    option.selected = value === chosen;
-    select.append(option);
-  }
-  select.addEventListener("change", () => onChange(select.value));
-  return select;
-}
-
-function editOf(signal, change) {
+export function editOf(signal: SignalName, change: Change): SignalEdit {
   return { quantity: signal.quantity, ...(signal.joint === null ? {} : { joint: signal.joint }), ...change };
 }
 
-function columnOptions(signal, columns) {
-  const options = columns.map((name) => [name, name]);
+export function columnOptions(signal: Signal, columns: string[]): Choice[] {
+  const options = columns.map((name): Choice => [name, name]);
   if (signal.quantity === "velocity") options.unshift(["", "derived"]);
   else if (signal.source === "") options.unshift(["", signal.more === "" ? "choose a column" : signal.more]);
   if (signal.source !== "" && !columns.includes(signal.source)) options.push([signal.source, `${signal.source} (not there)`]);
@@ -32,17 +56,17 @@ function columnOptions(signal, columns) {
 }
 
 /** Column, unit and sign; the rest one click away. */
-function signalControls(signal, columns) {
+function signalControls(signal: Signal, columns: string[]) {
   const id = signal.joint === null ? "signal-time" : `signal-${signal.quantity}-${signal.joint}`;
   const words = signalWords(signal);
-  const change = (what) => loadActions.signal(editOf(signal, what));
+  const change = (what: Change) => loadActions.signal(editOf(signal, what));
   const root = element("div", { class: "signal-controls" });
   root.append(
     selectWith(`${id}-source`, `Column of ${words}`, columnOptions(signal, columns), signal.source, (source) => change({ source })),
   );
   if (signal.source === "" && signal.more === "") return root;
   root.append(
-    selectWith(`${id}-unit`, `Unit of ${words}`, signal.units.map((unit) => [unit, unit]), signal.unit, (unit) => change({ unit })),
+    selectWith(`${id}-unit`, `Unit of ${words}`, signal.units.map((unit): Choice => [unit, unit]), signal.unit, (unit) => change({ unit })),
   );
   if (signal.joint === null) return root;
   const sign = element("input", { type: "checkbox", id: `${id}-sign` });
@@ -53,7 +77,7 @@ function signalControls(signal, columns) {
   return root;
 }
 
-function moreControls(signal, id, change) {
+function moreControls(signal: Signal, id: string, change: (what: Change) => void) {
   const words = signalWords(signal);
   const factor = element("input", { type: "number", step: "any", id: `${id}-scale`, value: String(Math.abs(signal.scale)) });
   factor.addEventListener("change", () => {
@@ -63,7 +87,7 @@ function moreControls(signal, id, change) {
   const row = element("div", { class: "signal-more" });
   row.append(
     element("label", { for: `${id}-scale` }, "times ", factor),
-    selectWith(`${id}-of`, `What ${words} is of`, signal.sides.map((side) => [side, kSideWords[side]]), signal.of, (of) => change({ of })),
+    selectWith(`${id}-of`, `What ${words} is of`, signal.sides.map((side): Choice => [side, kSideWords[side]]), signal.of, (of) => change({ of: of as Side })),
   );
   if (signal.more !== "") row.append(element("span", { class: "soft" }, `and, as the robot file has it, ${signal.more}`));
   // What is not as everywhere is seen without a click.
@@ -73,14 +97,14 @@ function moreControls(signal, id, change) {
 }
 
 /** What the curve should meet. */
-function otherOf(signal, drawn) {
-  if (signal.quantity === "velocity" && drawn.derived.length > 0) return { t_s: drawn.derived_t_s, values: drawn.derived };
+function otherOf(signal: Signal, drawn: PreviewSignal): Curve | null {
+  if (signal.quantity === "velocity" && drawn.derived.length > 0) return { t_s: drawn.derived_t_s ?? [], values: drawn.derived };
   if (signal.quantity !== "torque" || mapView.findings === null) return null;
   const found = mapView.findings.joints.find(({ joint }) => joint === signal.joint);
   return found === undefined ? null : { t_s: found.t_s, values: found.model };
 }
 
-function signalRow(signal, columns) {
+function signalRow(signal: Signal, columns: string[]) {
   const row = element("div", { class: "signal" });
   const head = element("div", { class: "signal-head" }, element("h4", {}, effectTitle(signal.quantity)), signalControls(signal, columns));
   row.append(head);
@@ -89,13 +113,13 @@ function signalRow(signal, columns) {
   return row;
 }
 
-function findingNote(fault) {
+function findingNote(fault: DataFault) {
   const note = noteWith(fault.spoils ? "bad" : "warn", `${fault.words}. To mend: ${fault.mend}.`);
   note.dataset.finding = fault.fault;
   return note;
 }
 
-function jointCard({ joint, name }, signals, columns) {
+function jointCard({ joint, name }: LoadJoint, signals: Signal[], columns: string[]) {
   const found = mapView.findings?.joints.find((each) => each.joint === joint);
   const head = element("div", { class: "step-head" }, element("h3", {}, `${joint}. ${name}`));
   if (found !== undefined) head.append(element("span", { class: "fall" }, "error of the robot file ", element("b", {}, percent(found.error_percent))));
@@ -107,8 +131,8 @@ function jointCard({ joint, name }, signals, columns) {
   return card;
 }
 
-function clockRow(map) {
-  const time = map.signals[0];
+function clockRow(map: SignalMap) {
+  const time = itemAt(map.signals, 0);
   const row = element("div", { class: "signal-row" }, element("h3", {}, "Time"), signalControls(time, map.columns));
   const period = element("input", { type: "number", step: "any", id: "signal-period", value: map.period_s === null ? "" : String(map.period_s), placeholder: "no" });
   period.addEventListener("change", () => loadActions.signal({ quantity: "time", period_s: Number(period.value) }));
@@ -117,37 +141,36 @@ function clockRow(map) {
   return row;
 }
 
-function shownRecording(given) {
+function shownRecording(given: LoadState) {
   const { recordings } = given;
-  if (!recordings.some(({ id }) => id === mapView.recording)) mapView.recording = recordings[0].id;
+  if (!recordings.some(({ id }) => id === mapView.recording)) mapView.recording = itemAt(recordings, 0).id;
   if (recordings.length === 1) return "";
-  const select = selectWith("preview-recording", "Recording that is shown", recordings.map(({ id, name }) => [String(id), name]), String(mapView.recording), (id) => {
+  const select = selectWith("preview-recording", "Recording that is shown", recordings.map(({ id, name }): Choice => [String(id), name]), String(mapView.recording), (id) => {
     mapView.recording = Number(id);
     mapView.preview = mapView.findings = null;
     showLoad();
-    showPreview();
+    void showPreview();
   });
   return element("div", { class: "choice-row" }, element("span", {}, "Shown:"), select, element("span", { class: "soft" }, "the same columns are read of all of them"));
 }
 
-function mapContent(given) {
-  const { map, robot } = given;
+export function mapContent(given: LoadState, map: SignalMap): Child[] {
   const shown = shownRecording(given);
-  const content = [element("h3", { class: "map-heading", id: "map-heading" }, "What the columns are")];
+  const content: Child[] = [element("h3", { class: "map-heading", id: "map-heading" }, "What the columns are")];
   content.push(element("p", {}, "Every signal as it is read: at the joint, in SI units. Where a curve does not look like the arm's, choose another column, its unit or its sign: the picture follows."), shown);
-  const fine = mapView.preview?.error === null;
-  if (mapView.preview !== null && !fine) content.push(noteWith("bad", mapView.preview.error));
+  const wrong = mapView.preview?.error ?? null;
+  if (wrong !== null) content.push(noteWith("bad", wrong));
   const whole = mapView.findings?.faults.filter((fault) => fault.joint === null) ?? [];
   content.push(clockRow(map), ...whole.map(findingNote), sketchLegend());
   const cards = element("div", { class: "joint-cards" });
-  for (const joint of robot.joints) cards.append(jointCard(joint, map.signals, map.columns));
-  content.push(cards, ...saidContent(map), useContent(map, fine));
+  for (const joint of given.robot?.joints ?? []) cards.append(jointCard(joint, map.signals, map.columns));
+  content.push(cards, ...saidContent(map), useContent(map, mapView.preview !== null && wrong === null));
   return content;
 }
 
 /** What the guess, the reader and the doctor have to say. */
-function saidContent(map) {
-  const content = [];
+function saidContent(map: SignalMap): HTMLElement[] {
+  const content: HTMLElement[] = [];
   const { findings, failed } = mapView;
   const why = failed ?? findings?.error ?? null;
   if (why !== null) content.push(noteWith("warn", why));
@@ -161,7 +184,7 @@ function saidContent(map) {
   return content;
 }
 
-function useContent(map, fine) {
+function useContent(map: SignalMap, fine: boolean) {
   const root = element("div", { class: "use" });
   const ready = fine && map.missing.length === 0;
   const spoilt = mapView.findings?.faults.some(({ spoils }) => spoils) ?? false;
@@ -178,19 +201,27 @@ function useContent(map, fine) {
 }
 
 /** The curves, and then what takes longer; an answer that comes late is of no use. */
-async function showPreview() {
-  if (load.state.map === null) return;
+export async function showPreview() {
+  if (loadState().map === null) return;
   const asked = ++mapView.asked;
-  const address = (what) => `load/${what}?recording=${mapView.recording}&pixels=${kPreviewPixels}`;
-  const take = async (what) => {
-    const answer = await ask("GET", address(what)).catch((error) => ({ failed: error.message }));
-    if (asked !== mapView.asked) return false;
-    mapView[what] = answer.failed === undefined ? answer : null;
-    mapView.failed = answer.failed ?? null;
+  const said = { query: { recording: mapView.recording, pixels: kPreviewPixels } };
+  const isLate = () => asked !== mapView.asked;
+  /** Null: there is none, or it comes late. */
+  const shown = async <Answer>(question: Promise<Answer>, keep: (answer: Answer | null) => void) => {
+    const [answer, failed] = await question.then(
+      (given): [Answer, null] => [given, null],
+      (error): [null, string] => [null, wordsOf(error)],
+    );
+    if (isLate()) return null;
+    keep(answer);
+    mapView.failed = failed;
     showLoad();
-    return answer.failed === undefined;
+    return answer;
   };
   mapView.findings = null;
-  if ((await take("preview")) && mapView.preview.error === null) await take("findings");
-  if (asked === mapView.asked) document.body.dataset.load = String(load.state.revision);
+  const preview = await shown(ask("GET", "/load/preview", said), (answer) => (mapView.preview = answer));
+  if (preview !== null && preview.error === null) {
+    await shown(ask("GET", "/load/findings", said), (answer) => (mapView.findings = answer));
+  }
+  if (!isLate()) document.body.dataset.load = String(loadState().revision);
 }

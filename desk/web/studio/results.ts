@@ -1,33 +1,79 @@
+import { blockElement } from "../report/blocks";
+import { element } from "../report/element";
+import { figures } from "../report/figure";
+import { itemAt } from "../report/lists";
+import type { Figures, Filter, Results, Run, Runs } from "./api";
+import { drawEverything } from "./charts";
+import {
+  addToNote,
+  button,
+  effectTitle,
+  foldWith,
+  holdControls,
+  noteWith,
+  replaceContent,
+  sectionWith,
+} from "./parts";
+import { place, placeOf } from "./places";
+import { watchTables } from "./refill";
+import { ask, mayConfirm, wordsOf } from "./server";
+
 /** Results of many runs, of a campaign or of a benchmark: what is looked at of them, and the run that is open. */
-const results = {
-  setup: null,
+export const results: {
+  setup: Results | null;
   /** Of every filter what is chosen; empty: all. */
+  filter: Partial<Record<Filter["key"], string>>;
+  figures: Figures;
+  runs: Runs;
+  open: number | null;
+  busy: boolean;
+  asked: number;
+  message: string | null;
+  /** The run that a second click begins anew with. */
+  confirm: number | null;
+  onSession: () => Promise<void>;
+} = {
+  setup: null,
   filter: {},
-  figures: null,
-  runs: null,
+  figures: { sections: [] },
+  runs: { count: 0, from: 0, most: 0, columns: [], runs: [] },
   open: null,
   busy: false,
   asked: 0,
   message: null,
-  /** The run that a second click begins anew with. */
   confirm: null,
   onSession: async () => {},
 };
 
-function filterSelect({ key, label, options }) {
+/** The page shows results, and a session below them. */
+export function hasResults(): boolean {
+  return results.setup !== null;
+}
+
+function resultsSetup(): Results {
+  if (results.setup === null) throw new Error("there are no results");
+  return results.setup;
+}
+
+/** "Run 15": the one that is open. */
+export function openRunTitle(): string {
+  return `${effectTitle(resultsSetup().item)} ${results.open}`;
+}
+
+function filterSelect({ key, label, options }: Filter) {
   const id = `results-${key}`;
   const select = element("select", { id });
   for (const { value, words } of options) select.append(element("option", { value }, words));
   select.addEventListener("change", () => {
     results.filter[key] = select.value;
-    showResults();
+    void showResults();
   });
   return element("div", { class: "choice-row" }, element("label", { for: id }, label), select);
 }
 
 /** Those that the figures follow too, or those of the list alone. */
-function filtersOf(of) {
-  return results.setup.filters.filter((each) => each.of === of);
+function filtersOf(of: Filter["of"]) {
+  return resultsSetup().filters.filter((each) => each.of === of);
 }
 
 function filterRow() {
@@ -37,9 +83,9 @@ function filterRow() {
 }
 
 /** What the filters leave, as a request says it. */
-function filterQuery(filters) {
-  const chosen = filters.map(({ key }) => [key, results.filter[key] ?? ""]).filter(([, value]) => value !== "");
-  return chosen.map(([key, value]) => `${key}=${encodeURIComponent(value)}`);
+function filterQuery(filters: Filter[]): typeof results.filter {
+  const chosen = filters.map(({ key }) => [key, results.filter[key] ?? ""]);
+  return Object.fromEntries(chosen.filter(([, value]) => value !== ""));
 }
 
 /** Both follow the filter; an answer that comes late is of no use. */
@@ -47,7 +93,7 @@ async function showResults() {
   const asked = ++results.asked;
   try {
     const [shown, runs] = await Promise.all([
-      ask("GET", `results/figures?${filterQuery(filtersOf("all")).join("&")}`),
+      ask("GET", "/results/figures", { query: filterQuery(filtersOf("all")) }),
       askRuns(0),
     ]);
     if (asked !== results.asked) return;
@@ -57,20 +103,21 @@ async function showResults() {
     showFigures();
     showRuns();
   } catch (error) {
-    results.message = error.message;
+    results.message = wordsOf(error);
   }
   showResultsMessage();
   document.body.dataset.results = String(asked);
 }
 
-function askRuns(from) {
-  return ask("GET", `results/runs?${[`from=${from}`, ...filterQuery(results.setup.filters)].join("&")}`);
+function askRuns(from: number) {
+  return ask("GET", "/results/runs", { query: { from, ...filterQuery(resultsSetup().filters) } });
 }
 
 function forgetFigures() {
   for (let at = figures.length - 1; at >= 0; --at) {
-    if (!figures[at].place.startsWith("results")) continue;
-    figures[at].chart?.dispose();
+    const figure = itemAt(figures, at);
+    if (!figure.place.startsWith("results")) continue;
+    figure.chart?.dispose();
     figures.splice(at, 1);
   }
 }
@@ -88,26 +135,26 @@ function showFigures() {
     }
     return element("div", {}, element("h3", {}, section.heading), blocks);
   });
-  replaceContent(places.resultsFigures, ...content);
-  watchTables(places.resultsFigures);
+  replaceContent(placeOf("resultsFigures"), ...content);
+  watchTables(placeOf("resultsFigures"));
   drawEverything();
 }
 
-function runRow({ run, label, cells }) {
+function runRow({ run, label, cells }: Run) {
   const row = element("tr", run === results.open ? { class: "open-run", "aria-current": "true" } : {});
-  const name = `Open ${results.setup.item} ${run}: ${label}`;
+  const name = `Open ${resultsSetup().item} ${run}: ${label}`;
   const open = button(`open-run-${run}`, String(run), () => openRun(run, false), { "aria-label": name });
   row.append(element("th", { scope: "row" }, open));
   for (const { words, level } of cells) row.append(element("td", level === "" ? {} : { class: `level-${level}` }, words));
   return row;
 }
 
-function runTable({ columns, runs }) {
+function runTable({ columns, runs }: Runs) {
   const head = element("tr");
   for (const name of columns) head.append(element("th", { scope: "col" }, name));
   const body = element("tbody");
   for (const run of runs) body.append(runRow(run));
-  const words = results.setup.list_heading;
+  const words = resultsSetup().list_heading;
   const caption = element("caption", { class: "hidden-text" }, words);
   const grid = element("table", { class: "runs" }, caption, element("thead", {}, head), body);
   return element("div", { class: "run-scroll", tabindex: "0", role: "region", "aria-label": words }, grid);
@@ -115,67 +162,67 @@ function runTable({ columns, runs }) {
 
 function showRuns() {
   const { count, runs } = results.runs;
-  const { item, list_words: listWords } = results.setup;
+  const { item, list_words: listWords } = resultsSetup();
   const words = count === 0 ? `No ${item} is left by this choice.` : `${count} ${count === 1 ? item : `${item}s`}. ${listWords}`;
-  const content = [element("p", {}, words)];
+  const content: HTMLElement[] = [element("p", {}, words)];
   if (count > 0) content.push(runTable(results.runs));
   if (runs.length < count) {
     const more = async () => {
-      const next = await askRuns(runs.length).catch((error) => complainOf(error));
+      const next = await askRuns(runs.length).catch(complainOfRuns);
       if (next) results.runs = { ...next, runs: [...runs, ...next.runs] };
       showRuns();
     };
     content.push(button("more-runs", `Show ${Math.min(results.runs.most, count - runs.length)} more`, more));
   }
-  replaceContent(places.resultsRuns, ...content);
+  replaceContent(placeOf("resultsRuns"), ...content);
 }
 
-function complainOf(error) {
-  results.message = error.message;
+function complainOfRuns(error: unknown) {
+  results.message = wordsOf(error);
   showResultsMessage();
   return null;
 }
 
 function showResultsMessage() {
   const { message, confirm } = results;
-  if (message === null) return replaceContent(places.resultsMessage, "");
+  if (message === null) return replaceContent(placeOf("resultsMessage"), "");
   const note = noteWith(confirm === null ? "bad" : "warn", message);
-  if (confirm !== null) note.firstChild.append(" ", button("open-anyway", "Begin anew", () => openRun(confirm, true)));
-  replaceContent(places.resultsMessage, note);
-  places.resultsMessage.scrollIntoView({ block: "nearest" });
+  if (confirm !== null) addToNote(note, " ", button("open-anyway", "Begin anew", () => openRun(confirm, true)));
+  replaceContent(placeOf("resultsMessage"), note);
+  placeOf("resultsMessage").scrollIntoView({ block: "nearest" });
 }
 
 /** Runs it once more; it is the recording of the session below from then on. */
-async function openRun(run, replace) {
+async function openRun(run: number, replace: boolean) {
   if (results.busy) return;
   results.busy = true;
   Object.assign(results, { message: null, confirm: null });
-  replaceContent(places.resultsDoing, element("p", { class: "progress" }, element("span", { class: "spinner", "aria-hidden": "true" }), `${effectTitle(results.setup.item)} ${run} …`));
+  replaceContent(placeOf("resultsDoing"), element("p", { class: "progress" }, element("span", { class: "spinner", "aria-hidden": "true" }), `${effectTitle(resultsSetup().item)} ${run} …`));
   showResultsMessage();
   holdControls(true);
   try {
-    await ask("POST", "results/session", { run, replace });
+    await ask("POST", "/results/session", { body: { run, replace } });
     results.open = run;
     await results.onSession();
   } catch (error) {
-    results.message = error.message;
-    if (error.confirm) results.confirm = run;
+    results.message = wordsOf(error);
+    if (mayConfirm(error)) results.confirm = run;
   }
   results.busy = false;
-  replaceContent(places.resultsDoing, "");
+  replaceContent(placeOf("resultsDoing"), "");
   holdControls(false);
   showRuns();
   showResultsMessage();
 }
 
-async function startResults(host, onSession) {
+export async function startResults(host: HTMLElement, onSession: () => Promise<void>) {
   results.onSession = onSession;
-  results.setup = await ask("GET", "results");
-  const { name, title, subtitle, heading, list_heading: listHeading } = results.setup;
+  results.setup = await ask("GET", "/results");
+  const { name, title, subtitle, heading, list_heading: listHeading } = resultsSetup();
   document.title = `Studio: ${name}`;
   const header = element("header", {}, element("h1", {}, title));
   header.append(element("p", { class: "subtitle" }, subtitle));
-  replaceContent(places.head, header);
+  replaceContent(placeOf("head"), header);
   const list = element("div", { id: "results-runs" }, element("h3", {}, listHeading));
   list.append(...filtersOf("list").map(filterSelect), place("resultsDoing", { role: "status" }), place("resultsRuns"));
   host.append(

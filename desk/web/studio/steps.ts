@@ -1,5 +1,12 @@
+import { element } from "../report/element";
+import type { Actions } from "./actions";
+import type { Effect, Joint, State, Step } from "./api";
+import { dragElement } from "./drag";
+import { stepEvidence } from "./evidence";
+import { button, effectTitle, foldWith, noteWith, parameterList, percent } from "./parts";
+
 /** One effect of a joint: a switch, its name and words, and one click away its formula. */
-function effectRow(effect, joint, actions) {
+function effectRow(effect: Effect, joint: number, actions: Actions) {
   const on = effect.in_file || effect.steps.length > 0;
   const locked = effect.in_file || (!on && effect.why_not !== "");
   const id = `switch-${effect.effect}`;
@@ -21,18 +28,17 @@ function effectRow(effect, joint, actions) {
   const words = element("p", { class: "effect-words", id: `${id}-words` }, effect.words);
   if (effect.in_file) words.append(element("b", {}, " · in the robot file"));
   else if (locked) words.append(element("b", {}, ` · not possible: ${effect.why_not}`));
-  const row = element("li", { class: on ? "on" : "" }, control, element("div", {}, details, words));
+  const told = element("div", {}, details, words);
+  const row = element("li", { class: on ? "on" : "" }, control, told);
   if (on && effect.may_repeat && effect.why_not === "") {
-    row.lastChild.append(
-      button(`more-${effect.effect}`, "Add another", () => actions.add(effect.effect, joint)),
-    );
+    told.append(button(`more-${effect.effect}`, "Add another", () => actions.add(effect.effect, joint)));
   }
   return row;
 }
 
 /** The switches of a joint; what cannot act there is folded up. */
-function effectList(joint, actions) {
-  const possible = (effect) =>
+export function effectList(joint: Joint, actions: Actions) {
+  const possible = (effect: Effect) =>
     effect.in_file || effect.steps.length > 0 || effect.why_not === "";
   const list = element("ul", { class: "effects" });
   for (const effect of joint.effects.filter(possible)) list.append(effectRow(effect, joint.joint, actions));
@@ -45,7 +51,7 @@ function effectList(joint, actions) {
   return [list, fold];
 }
 
-function stepRow(step, number, revision, actions) {
+function stepRow(step: Step, number: number, revision: number, actions: Actions) {
   const name = `${effectTitle(step.effect)}, joint ${step.joint}`;
   const undo = button(`undo-${step.id}`, "Undo", () => actions.undo(step.id));
   undo.append(element("span", { class: "hidden-text" }, ` ${name}`));
@@ -67,7 +73,7 @@ function stepRow(step, number, revision, actions) {
   return row;
 }
 
-function stepDetails(step) {
+function stepDetails(step: Step) {
   const id = `more-of-step-${step.id}`;
   const details = foldWith(id, "More of this fit");
   for (const other of step.refitted) {
@@ -80,7 +86,7 @@ function stepDetails(step) {
   return details;
 }
 
-function stepList({ steps, revision }, actions) {
+export function stepList({ steps, revision }: State, actions: Actions) {
   if (steps.length === 0) {
     return element(
       "p",
