@@ -1,9 +1,10 @@
 // Bundles the page's modules into the scripts that the command embeds:
 //   node build.mjs OUT            report.js, studio.js and arm_view.js, into the folder OUT
 import { build } from "esbuild";
-import { readFileSync } from "node:fs";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
+import { validatorsText } from "./api.mjs";
 
 const web = fileURLToPath(new URL(".", import.meta.url));
 
@@ -29,6 +30,14 @@ function licencesOfCharts() {
   ].join("\n");
 }
 
+/** What the modules import as "#validators" is made here. */
+function withValidators(out) {
+  const file = join(out, "validators.mjs");
+  mkdirSync(out, { recursive: true });
+  writeFileSync(file, validatorsText());
+  return { alias: { "#validators": file } };
+}
+
 /** A script of the page: `entry` and all that it imports. */
 async function script(out, entry, name, options) {
   const outfile = join(out, name);
@@ -48,7 +57,12 @@ async function buildScripts(out) {
   const banner = { js: licencesOfCharts() };
   checkEmbeddable(await script(out, "report/main.ts", "report.js", { format: "iife", banner }));
   // The arm is a script of its own: what stands at once does not wait for three.js.
-  await script(out, "studio/main.ts", "studio.js", { format: "esm", banner, external: ["./arm_view.js"] });
+  await script(out, "studio/main.ts", "studio.js", {
+    ...withValidators(out),
+    format: "esm",
+    banner,
+    external: ["./arm_view.js"],
+  });
   await script(out, "studio/arm_view.ts", "arm_view.js", { format: "esm" });
 }
 
