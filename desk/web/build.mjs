@@ -1,7 +1,8 @@
-// Bundles the page's modules into the scripts that the command embeds:
+// Bundles the page's modules into the scripts that the command embeds, or its unit tests:
 //   node build.mjs OUT            report.js, studio.js and arm_view.js, into the folder OUT
+//   node build.mjs OUT --tests    a script of each file in tests/, for `node --test OUT`
 import { build } from "esbuild";
-import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { validatorsText } from "./api.mjs";
@@ -66,9 +67,24 @@ async function buildScripts(out) {
   await script(out, "studio/arm_view.ts", "arm_view.js", { format: "esm" });
 }
 
-const [out] = process.argv.slice(2);
-if (out === undefined) {
-  console.error("node build.mjs OUT");
+async function buildTests(out) {
+  const tests = readdirSync(join(web, "tests")).filter((name) => name.endsWith(".test.ts"));
+  await build({
+    ...kCommon,
+    ...withValidators(out),
+    entryPoints: tests.map((name) => `tests/${name}`),
+    outdir: out,
+    outExtension: { ".js": ".mjs" },
+    format: "esm",
+    platform: "node",
+    target: "node18",
+    sourcemap: "inline",
+  });
+}
+
+const [out, mode] = process.argv.slice(2);
+if (out === undefined || ![undefined, "--tests"].includes(mode)) {
+  console.error("node build.mjs OUT [--tests]");
   process.exit(2);
 }
-await buildScripts(resolve(out));
+await (mode === "--tests" ? buildTests(resolve(out)) : buildScripts(resolve(out)));

@@ -1,7 +1,7 @@
 /** A report page as the data that it embeds: desk/report/page.hpp says what each part means. A gap is null. */
 
 export type Level = "neutral" | "good" | "warn" | "bad";
-export type Width = "full" | "half";
+type Width = "full" | "half";
 export type Value = number | null;
 export type Cell = number | string | null;
 
@@ -40,7 +40,7 @@ export interface KeyFigure {
   note: string;
 }
 
-export interface KeyFigures {
+interface KeyFigures {
   type: "key_figures";
   figures: KeyFigure[];
 }
@@ -69,7 +69,7 @@ export interface EventMark {
   level: Level;
 }
 
-export interface SpanMark {
+interface SpanMark {
   from: Value;
   to: Value;
   label: string;

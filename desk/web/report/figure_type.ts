@@ -38,7 +38,7 @@ export interface Tip {
   tooltip?: { formatter: () => string };
 }
 
-export interface FigureOption extends Option {
+interface FigureOption extends Option {
   grid: { left: number; right: number; top: number; bottom: number };
 }
 

@@ -3,14 +3,15 @@ import { itemAt } from "../report/lists";
 import { darkPreference, isDarkLook } from "../report/look";
 import type { Arm } from "./api";
 import { bandColour, colouringOf, colourOf, instantAt } from "./arm_colours";
-import { askMark, cursorTable, fillTable, marks, markTable, type Quantity } from "./arm_numbers";
+import { askMark, fillTable, marks } from "./arm_numbers";
 import { arm, armData, armParts } from "./arm_state";
+import { cursorTable, markTable, type Quantity } from "./arm_tables";
 import { ArmView } from "./arm_view";
-import type { TimeRange } from "./charts";
 import { cursor, setCursor, timeWords, type CursorName } from "./cursor";
 import { complainOf } from "./message";
 import { ask, wordsOf } from "./server";
 import { look } from "./session";
+import type { TimeRange } from "./time_range";
 
 /** Asks for the arm of the recording and the time that are looked at. */
 export async function drawArm(range: TimeRange | null) {

@@ -19,7 +19,7 @@ const kBoundBands: Bands = {
   words: ["below 0.25", "0.25 to 0.5", "0.5 to 0.75", "0.75 to 1", "beyond the bound"],
 };
 
-export type Mode = "light" | "dark";
+type Mode = "light" | "dark";
 
 /* Brewer's YlOrBr: lightness alone tells the bands apart. */
 const kBandColours: Record<Mode, string[]> = {
@@ -30,7 +30,7 @@ const kBandColours: Record<Mode, string[]> = {
 const kNoColour: Record<Mode, string> = { light: "#c3cbd3", dark: "#5d6975" };
 
 /** What the joints are coloured by: the number of a joint, from 0, at an instant, and how it is written. */
-export interface Colouring {
+interface Colouring {
   title: string;
   words: string;
   bands: Bands;
@@ -68,7 +68,7 @@ export function percentShort(value: Value): string {
   return value === null ? "–" : `${formatNumber(value, value < 10 ? ".1f" : ".0f")}\u202f%`;
 }
 
-export function bandOf(value: number, { limits }: Bands): number {
+function bandOf(value: number, { limits }: Bands): number {
   return limits.filter((limit) => value >= limit).length;
 }
 

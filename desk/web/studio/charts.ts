@@ -3,12 +3,13 @@ import { drawAll, drawFigure, shareExtents, shownFigures, zoomGroup } from "../r
 import { figureWith } from "../report/figure";
 import { chartOf, type Figure } from "../report/figure_type";
 import { itemAt } from "../report/lists";
-import { resetZoom, zoomsOf, zoomTo, type Zoom } from "../report/zoom";
+import { resetZoom, zoomsOf, zoomTo } from "../report/zoom";
 import type { AnswerTo, QueryTo } from "./api";
 import { followChart } from "./cursor";
 import { drawSoon } from "./draw_soon";
 import { refill, watchTables } from "./refill";
 import type { Looked } from "./session";
+import { rangeOf, type TimeRange } from "./time_range";
 
 /** The figures of the joint that is looked at, by their place; made once, then filled anew. */
 export const drawn = new Map<string, Figure>();
@@ -29,12 +30,6 @@ export function timeFigures(): Figure[] {
 function chartPixels() {
   const width = timeFigures()[0]?.host.clientWidth || document.documentElement.clientWidth;
   return Math.min(8000, Math.max(100, Math.round(width * (window.devicePixelRatio || 1))));
-}
-
-/** A part of the time, s of the recording. */
-export interface TimeRange {
-  from: number;
-  to: number;
 }
 
 /** What the charts of what is looked at are asked for with. */
@@ -121,12 +116,6 @@ export function zoomRange(): TimeRange | null {
   const figure = timeFigures()[0];
   if (!figure?.chart) return null;
   return rangeOf(itemAt(zoomsOf(figure.chart), 0));
-}
-
-/** What a zoom leaves of the time; null: all of it. */
-export function rangeOf({ start, end, startValue, endValue }: Zoom): TimeRange | null {
-  if (start <= 0.01 && end >= 99.99) return null;
-  return startValue < endValue ? { from: startValue, to: endValue } : null;
 }
 
 /** Zooms to a part of the time. */

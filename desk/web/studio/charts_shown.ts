@@ -1,6 +1,6 @@
 import type { AnswerTo, QueryTo } from "./api";
 import { drawArm } from "./arm";
-import { chartQuery, showCharts, showFiner, zoomRange, type TimeRange } from "./charts";
+import { chartQuery, showCharts, showFiner, zoomRange } from "./charts";
 import { dragging, followDrag, type Dragged } from "./drag";
 import { drawExplored } from "./explore";
 import { headlineContent } from "./joints";
@@ -9,6 +9,7 @@ import { replaceContent } from "./parts";
 import { placeOf } from "./places";
 import { ask } from "./server";
 import { look, state } from "./session";
+import type { TimeRange } from "./time_range";
 
 /** Of several questions about the charts the answer to the last one is shown. */
 let chartsAsked = 0;

@@ -23,7 +23,7 @@ function isInWindow({ host }: Figure) {
   return bottom > 0 && top < window.innerHeight;
 }
 
-export function drawNow(figure: Figure) {
+function drawNow(figure: Figure) {
   stale.delete(figure);
   const { chart, host } = figure;
   if (chart && (chart.getWidth() !== host.clientWidth || chart.getHeight() !== host.clientHeight)) chart.resize();

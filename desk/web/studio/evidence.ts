@@ -12,7 +12,7 @@ import { ask, wordsOf } from "./server";
  * Pictures of what effects do, by what they are of: {host, place, figure}. They outlive the cards, which are made anew
  * with every answer.
  */
-export const evidence = new Map<string, Picture>();
+const evidence = new Map<string, Picture>();
 
 interface Picture {
   host: HTMLElement;

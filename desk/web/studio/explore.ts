@@ -1,11 +1,12 @@
 import type { Drawn } from "../report/document";
 import { element, within } from "../report/element";
 import type { Joint, QueryTo } from "./api";
-import { showAlone, type TimeRange } from "./charts";
+import { showAlone } from "./charts";
 import { choiceOf, type Choice } from "./choices";
 import { replaceContent } from "./parts";
 import { ask } from "./server";
 import type { Looked } from "./session";
+import type { TimeRange } from "./time_range";
 
 type Variable = QueryTo<"GET", "/map">["x"];
 type Over = QueryTo<"GET", "/spectrum">["over"];

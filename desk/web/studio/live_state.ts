@@ -1,6 +1,7 @@
 import type { Figure } from "../report/figure_type";
 import type { LiveSetup, Moment } from "./api";
-import { LivePicture, type LiveCurve } from "./live_charts";
+import { LivePicture } from "./live_charts";
+import type { LiveCurve } from "./live_curves";
 
 /** What there is of a live view. */
 export const live: {

@@ -18,7 +18,7 @@ function controllerWords({ controller }: Moment) {
   return controller.fault === null ? controller.state : `${controller.state}: ${controller.fault}`;
 }
 
-export function monitorWords(now: Moment) {
+function monitorWords(now: Moment) {
   if (now.ended !== "") return now.ended;
   if (now.words !== "") return now.words;
   if (!now.driven) return "The drives give no torque: nothing is judged.";

@@ -1,8 +1,7 @@
 import { element, within, type Child } from "../report/element";
-import { formatSignificant } from "../report/format";
-import { itemAt } from "../report/lists";
 import { hiddenText } from "../report/words";
 import type { LoadRecording, LoadState, SignalEdit } from "./api";
+import { isRobotFile, sizeWords } from "./files";
 import { mapContent, showPreview } from "./load_map";
 import { addToNote, button, foldWith, holdControls, noteWith, replaceContent, sectionWith } from "./parts";
 import { place, placeOf } from "./places";
@@ -30,19 +29,6 @@ export const load: {
 export function loadState(): LoadState {
   if (load.state === null) throw new Error("the files are those of the command line");
   return load.state;
-}
-
-const kRobotKinds = [".toml", ".urdf"];
-
-function isRobotFile(name: string) {
-  return kRobotKinds.some((kind) => name.toLowerCase().endsWith(kind));
-}
-
-export function sizeWords(bytes: number): string {
-  const units = ["bytes", "KiB", "MiB", "GiB"];
-  const power = Math.floor(Math.log2(Math.max(bytes, 1)) / 10);
-  const at = Math.min(power, units.length - 1);
-  return `${formatSignificant(bytes / 1024 ** at, 3)} ${itemAt(units, at)}`;
 }
 
 function dropElement() {

@@ -9,13 +9,13 @@ import type {
   PreviewSignal,
   Side,
   Signal,
-  SignalEdit,
   SignalMap,
 } from "./api";
 import { selectWith, type Choice } from "./choices";
 import { foldedList, loadActions, loadState, showLoad } from "./load";
 import { button, effectTitle, noteWith, percent } from "./parts";
 import { ask, wordsOf } from "./server";
+import { columnOptions, editOf, signalWords, type Change } from "./signals";
 import { sketchElement, sketchLegend, type Curve } from "./sketch";
 
 /** What the columns are: of the recording that is shown, as the server last read it. */
@@ -35,25 +35,6 @@ const kSideWords: Record<Side, string> = {
 };
 
 const kPreviewPixels = 300;
-
-type SignalName = { quantity: Signal["quantity"]; joint: number | null };
-type Change = Omit<SignalEdit, "quantity" | "joint">;
-
-function signalWords({ quantity, joint }: SignalName): string {
-  return joint === null ? "the time" : `the ${quantity} of joint ${joint}`;
-}
-
-export function editOf(signal: SignalName, change: Change): SignalEdit {
-  return { quantity: signal.quantity, ...(signal.joint === null ? {} : { joint: signal.joint }), ...change };
-}
-
-export function columnOptions(signal: Signal, columns: string[]): Choice[] {
-  const options = columns.map((name): Choice => [name, name]);
-  if (signal.quantity === "velocity") options.unshift(["", "derived"]);
-  else if (signal.source === "") options.unshift(["", signal.more === "" ? "choose a column" : signal.more]);
-  if (signal.source !== "" && !columns.includes(signal.source)) options.push([signal.source, `${signal.source} (not there)`]);
-  return options;
-}
 
 /** Column, unit and sign; the rest one click away. */
 function signalControls(signal: Signal, columns: string[]) {

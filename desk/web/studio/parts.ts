@@ -81,7 +81,7 @@ export function explained(summary: string, ...paragraphsOf: string[]) {
 }
 
 /** A fitted number with its 95 % interval, or why it has none. */
-export type Estimated = Pick<Parameter, "value" | "unit" | "ci95" | "why_no_ci95">;
+type Estimated = Pick<Parameter, "value" | "unit" | "ci95" | "why_no_ci95">;
 
 /** "20.8 N (19.6 to 22)" of a fitted parameter. */
 export function valueWords({ value, unit, ci95, why_no_ci95 }: Estimated) {

@@ -36,7 +36,7 @@ type PlaceName =
   | "save"
   | "steps";
 
-export const places = new Map<PlaceName, HTMLElement>();
+const places = new Map<PlaceName, HTMLElement>();
 
 /** Makes the place. */
 export function place(name: PlaceName, attributes: Attributes = {}): HTMLElement {

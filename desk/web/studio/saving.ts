@@ -5,7 +5,7 @@ import { change } from "./changes";
 import { addToNote, button, holdControls, noteWith, replaceContent } from "./parts";
 import { placeOf } from "./places";
 import { ask, mayConfirm, wordsOf } from "./server";
-import { session, state, takeState, type Agreed } from "./session";
+import { nextConfirm, session, state, takeState, type Agreed } from "./session";
 
 /** What is under "save" now. */
 export function showSave() {
@@ -107,8 +107,3 @@ async function tellOutcome(write: () => Promise<string>, again: () => Promise<vo
   say(session.saving.words);
 }
 
-/** What a second "save" agrees to: first that a step is in doubt, then that a file is there. */
-export function nextConfirm({ steps }: Pick<State, "steps">, agreed: Agreed): Agreed {
-  const doubtful = steps.some((step) => step.doubts.length > 0);
-  return doubtful && !agreed.accept_doubts ? { accept_doubts: true } : { ...agreed, replace: true };
-}

@@ -15,7 +15,7 @@ export interface Agreed {
 }
 
 /** Under "save": what came of it, or what has to be confirmed; `name`: as the reader has typed it. */
-export interface Saving {
+interface Saving {
   words: string;
   level: "neutral" | "good" | "warn" | "bad";
   confirm: (() => void) | null;
@@ -39,7 +39,7 @@ export function forgetSaving() {
   session.saving = kNothingSaved;
 }
 
-export let held: State | null = null;
+let held: State | null = null;
 
 /** What the server last said of the session. */
 export function state(): State {
@@ -59,4 +59,17 @@ export function currentJoint(): Joint {
 export function errorOf(joint: Joint, when: "start" | "now"): number | null {
   const { held_out_percent, fitted_percent } = joint[when];
   return held_out_percent ?? fitted_percent;
+}
+
+/** What a second "save" agrees to: first that a step is in doubt, then that a file is there. */
+export function nextConfirm({ steps }: Pick<State, "steps">, agreed: Agreed): Agreed {
+  const doubtful = steps.some((step) => step.doubts.length > 0);
+  return doubtful && !agreed.accept_doubts ? { accept_doubts: true } : { ...agreed, replace: true };
+}
+
+/** The joint that is looked at first: the one with the largest error of those that move. */
+export function worstJoint(joints: Joint[]): number {
+  const error = (joint: Joint) => errorOf(joint, "now") ?? 0;
+  const worst = joints.reduce((a, b) => (error(b) > error(a) && b.moves ? b : a));
+  return worst.joint;
 }

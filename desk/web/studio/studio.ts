@@ -1,6 +1,6 @@
 import { byId, element } from "../report/element";
 import { follow } from "./actions";
-import type { Joint, LiveSetup } from "./api";
+import type { LiveSetup } from "./api";
 import { armElement } from "./arm_card";
 import { keepLook } from "./changes";
 import { showTime, tellOfZoom } from "./charts";
@@ -15,7 +15,7 @@ import { replaceContent, sectionWith } from "./parts";
 import { place, placeOf } from "./places";
 import { startResults } from "./results";
 import { ask, watchLeaving } from "./server";
-import { errorOf, forgetSaving, look, session, state, takeState } from "./session";
+import { forgetSaving, look, session, state, takeState, worstJoint } from "./session";
 import { show } from "./show";
 
 function buildStudio() {
@@ -55,13 +55,6 @@ function buildStudio() {
     ),
   );
   byId("page").append(main, footer);
-}
-
-/** The joint that is looked at first: the one with the largest error of those that move. */
-export function worstJoint(joints: Joint[]): number {
-  const error = (joint: Joint) => errorOf(joint, "now") ?? 0;
-  const worst = joints.reduce((a, b) => (error(b) > error(a) && b.moves ? b : a));
-  return worst.joint;
 }
 
 /** What the session holds now: at the start, and when a live view hands a stretch over to it. */
