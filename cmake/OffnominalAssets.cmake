@@ -31,33 +31,10 @@ function(offnominal_assets)
   set(${arg_FILES} "${all_files}" PARENT_SCOPE)
 endfunction()
 
-# Link-time optimisation may part the assembler text from the functions that use its symbols.
+# Those that the front end is built into lie in the build folder: they are made before. Link-time optimisation may part the assembler text from the functions that use its symbols.
 function(offnominal_assets_of target files)
   set_source_files_properties(
     "${CMAKE_CURRENT_BINARY_DIR}/assets.cpp" TARGET_DIRECTORY ${target}
     PROPERTIES OBJECT_DEPENDS "${files}" COMPILE_OPTIONS "-fno-lto")
-endfunction()
-
-# offnominal_pinned_package(WEB <folder> PACKAGE <name> FILES <file>...)
-#
-# The configuration fails unless the npm package is there, with these files, in the version that the folder's
-# package.json pins.
-function(offnominal_pinned_package)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "" "WEB;PACKAGE" "FILES")
-  set(folder "${arg_WEB}/node_modules/${arg_PACKAGE}")
-  foreach(file IN LISTS arg_FILES ITEMS package.json)
-    if(NOT EXISTS "${folder}/${file}")
-      message(FATAL_ERROR "${arg_PACKAGE} is missing (${folder}/${file}).\n"
-                          "Run `./dev setup` once; it fetches what ${arg_WEB}/package-lock.json pins.")
-    endif()
-  endforeach()
-  file(READ "${arg_WEB}/package.json" package)
-  string(JSON pinned GET "${package}" dependencies "${arg_PACKAGE}")
-  file(READ "${folder}/package.json" package)
-  string(JSON found GET "${package}" version)
-  if(NOT found STREQUAL pinned)
-    message(FATAL_ERROR "found ${arg_PACKAGE} ${found}, pinned is ${pinned}.\n"
-                        "Run `./dev setup` to fetch the pinned one.")
-  endif()
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${arg_WEB}/package.json" "${folder}/package.json")
+  add_dependencies(${target} offnominal_web)
 endfunction()

@@ -2,6 +2,7 @@
 # lint.sh format: layout of every tracked C++ file.
 # lint.sh tidy:   static analysis of every source that the release build compiles; builds nothing but
 #                 the headers that the command writes.
+# lint.sh types:  types of the front end's modules, the answers of the server among them.
 # lint.sh rewrite: lays every tracked C++ file out anew.
 set -euo pipefail
 # shellcheck source=scripts/common.sh
@@ -90,6 +91,7 @@ check_tidy() {
 case "${1:-}" in
   format) check_format ;;
   tidy) check_tidy ;;
+  types) node desk/web/types.mjs ;;
   rewrite) rewrite ;;
-  *) die "lint.sh format | tidy | rewrite" ;;
+  *) die "lint.sh format | tidy | types | rewrite" ;;
 esac

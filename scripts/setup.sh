@@ -41,9 +41,9 @@ install_packages() {
 
 # The stamp is the lock file itself, inside what it describes: deleting node_modules deletes it too.
 install_web() {
-  local web="$root/desk/report/web"
+  local web="$root/desk/web"
   cmp -s "$web/package-lock.json" "$web/node_modules/.installed-lock.json" && return 0
-  note "setup: fetching the chart and the 3-D library (npm ci)"
+  note "setup: fetching what the front end is made of and with (npm ci)"
   (cd "$web" && npm ci --ignore-scripts --no-audit --no-fund) >&2
   cp "$web/package-lock.json" "$web/node_modules/.installed-lock.json"
 }

@@ -2,12 +2,11 @@
 
 #include <string_view>
 
-/// Files of desk/report/web, held inside the program.
+/// What desk/web makes report pages of, held inside the program.
 namespace offnominal::desk::report::assets {
 
 std::string_view page_template();
 std::string_view style();
 std::string_view script();
-std::string_view echarts();
 
 }  // namespace offnominal::desk::report::assets

@@ -81,7 +81,6 @@ std::string render(const Page& page) {
                                         {"verdict", verdict},
                                         {"style", assets::style()},
                                         {"data", data},
-                                        {"echarts", assets::echarts()},
                                         {"script", assets::script()}});
 }
 

@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "common/refused.hpp"
-#include "report/assets.hpp"
 #include "studio/assets.hpp"
 #include "studio/live_routes.hpp"
 #include "studio/load_routes.hpp"
@@ -73,16 +72,9 @@ void set_up_files(httplib::Server& server, const std::string& path) {
   };
   constexpr const char* kScript = "text/javascript; charset=utf-8";
   file("", std::string(assets::page()), "text/html; charset=utf-8");
-  file("studio\\.css", std::string(report::assets::style()) + std::string(assets::style()),
-       "text/css; charset=utf-8");
-  file("echarts\\.js", std::string(report::assets::echarts()), kScript);
-  file("report\\.js", std::string(report::assets::script()), kScript);
+  file("studio\\.css", std::string(assets::style()), "text/css; charset=utf-8");
   file("studio\\.js", std::string(assets::script()), kScript);
-  // The modules of the arm, under the names by which they import each other.
   file("arm_view\\.js", std::string(assets::arm_view()), kScript);
-  file("orbit_controls\\.js", std::string(assets::orbit_controls()), kScript);
-  file("three\\.module\\.min\\.js", std::string(assets::three()), kScript);
-  file("three\\.core\\.min\\.js", std::string(assets::three_core()), kScript);
 }
 
 void set_up_model(httplib::Server& server, const std::string& api, Stage& stage) {

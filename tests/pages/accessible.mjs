@@ -100,7 +100,8 @@ function drawingFaults() {
     return over(`rgb(${r},${g},${b})`, opacity / 255, surface);
   };
   const faults = [];
-  for (const { block, chart, host, option } of shownFigures()) {
+  const drawings = [...document.querySelectorAll(".drawing")].filter((host) => host.closest("[hidden]") === null);
+  for (const { block, chart, host, option } of drawings.map(({ figure }) => figure)) {
     const canvas = host.querySelector("canvas");
     const drawn = copyOf(canvas);
     const ratio = canvas.width / canvas.clientWidth;
@@ -135,7 +136,7 @@ function drawingFaults() {
     plot.height = height - grid.bottom - grid.top;
     const seen = new Set();
     for (const { style, box } of shapes) {
-      if (style.text || style.stroke === currentLook().rule) continue;
+      if (style.text || style.stroke === option.xAxis.splitLine.lineStyle.color) continue;
       const beside = box.x > right(plot) || right(box) < plot.x;
       if (beside || box.y > bottom(plot) || bottom(box) < plot.y) continue;
       const paints = [style.fill, style.lineWidth > 0 ? style.stroke : null]
@@ -214,7 +215,7 @@ export async function checkKeyboard(page, fault) {
 function focused() {
   const node = document.activeElement;
   if (node.dataset.stop === undefined) return null;
-  const figure = figures.find(({ host }) => host === node);
+  const { figure } = node;
   const chart = figure ? `${figure.block.type} ${figure.option.tooltip.trigger}` : null;
   return { at: Number(node.dataset.stop), outline: getComputedStyle(node).outlineStyle, chart };
 }
@@ -223,7 +224,7 @@ function focused() {
 async function chartState(page) {
   return page.evaluate(() => {
     const host = document.activeElement;
-    const figure = figures.find((each) => each.host === host);
+    const { figure } = host;
     const { start, end } = figure.chart.getOption().dataZoom[0];
     const tip = host.querySelector(".tip");
     const tipShown = tip?.style.opacity !== "0" && tip?.checkVisibility({ visibilityProperty: true });

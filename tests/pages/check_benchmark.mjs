@@ -18,7 +18,7 @@ async function choose(page, key, value) {
 }
 
 function shown(page) {
-  return page.evaluate(() => results.runs);
+  return page.evaluate(() => studio.results.runs);
 }
 
 async function check({ options, folder, start, newContext, axeSource }, fault) {
@@ -43,17 +43,17 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   await choose(page, "effect", "");
   await page.focus("#open-run-0");
   await page.keyboard.press("Enter");
-  await page.waitForFunction(() => results.open === 0 && !results.busy && document.body.dataset.revision === "0");
+  await page.waitForFunction(() => studio.results.open === 0 && !studio.results.busy && document.body.dataset.revision === "0");
   if (!(await page.textContent("#place-run h2")).includes("Case 0")) fault("which case is open is not said");
   await page.check(`#joint-${joint}`);
   await page.waitForFunction(() => !document.body.hasAttribute("data-busy"));
   const switched = await page.$(`#switch-${effect}:not([aria-disabled])`);
   if (switched === null) fault(`${effect} cannot be switched on`);
   else {
-    const before = await page.evaluate((at) => state.joints[at - 1].now.held_out_percent, joint);
+    const before = await page.evaluate((at) => studio.state().joints[at - 1].now.held_out_percent, joint);
     await switched.click();
     await page.waitForFunction(() => document.body.dataset.revision === "1" && !document.body.hasAttribute("data-busy"));
-    const after = await page.evaluate((at) => state.joints[at - 1].now.held_out_percent, joint);
+    const after = await page.evaluate((at) => studio.state().joints[at - 1].now.held_out_percent, joint);
     if (!(after < before)) fault(`with ${effect} the error goes from ${before} to ${after} %`);
   }
   await checkNames(page, fault);

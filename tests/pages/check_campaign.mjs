@@ -32,7 +32,7 @@ async function choose(page, key, value) {
 }
 
 function runsShown(page) {
-  return page.evaluate(() => results.runs);
+  return page.evaluate(() => studio.results.runs);
 }
 
 async function checkFigures(page, summary, fault) {
@@ -72,14 +72,14 @@ async function checkRun(page, options, folder, file, fault) {
   const { run } = (await runsShown(page)).runs.at(-1);
   await page.focus(`#open-run-${run}`);
   await page.keyboard.press("Enter");
-  await page.waitForFunction((number) => results.open === number && !results.busy && document.body.dataset.revision === "0", run);
+  await page.waitForFunction((number) => studio.results.open === number && !studio.results.busy && document.body.dataset.revision === "0", run);
   if (!(await page.textContent("#place-run h2")).includes(`Run ${run}`)) fault("which run is open is not said");
-  const [first] = await page.evaluate(() => [timeFigures()[0].block.events.map(({ label }) => label)]);
+  const [first] = await page.evaluate(() => [studio.timeFigures()[0].block.events.map(({ label }) => label)]);
   if (!first.includes("friction")) fault(`the chart marks ${first}`);
   verb(options, folder, "campaign", "record", file, "--run", String(run), "-o", "same.csv", "--model", "same.toml");
   const { joints } = JSON.parse(verb(options, folder, "compare", "same.csv", "--robot", "same.toml", "--json"));
   for (const { joint, relative_error_percent: percent } of joints) {
-    const shown = await page.evaluate((at) => state.joints[at - 1].now.fitted_percent, joint);
+    const shown = await page.evaluate((at) => studio.state().joints[at - 1].now.fitted_percent, joint);
     if (Math.abs(shown - percent) > 1e-9) fault(`joint ${joint}: compare says ${percent} %, the page ${shown} %`);
   }
   return run;
@@ -97,7 +97,7 @@ async function checkSession(page, options, folder, run, fault) {
   await page.click(`#open-run-${run}`);
   await page.waitForSelector("#open-anyway");
   await page.click("#open-anyway");
-  await page.waitForFunction(() => !results.busy && state.steps.length === 0);
+  await page.waitForFunction(() => !studio.results.busy && studio.state().steps.length === 0);
 }
 
 async function check({ options, folder, start, newContext, axeSource }, fault) {

@@ -34,12 +34,12 @@ function pictures(page) {
 
 /** Curves that move, and no alarm of a healthy arm. */
 async function checkMoving(page, fault) {
-  await page.waitForFunction(() => live.now?.judging && live.curves[0].threshold.length > 100);
+  await page.waitForFunction(() => studio.live.now?.judging && studio.live.curves[0].threshold.length > 100);
   const before = await pictures(page);
-  const newest = await page.evaluate(() => live.curves[0].threshold.at(-1)[0]);
+  const newest = await page.evaluate(() => studio.live.curves[0].threshold.at(-1)[0]);
   await page.waitForTimeout(1000);
   if ((await pictures(page)) <= before) fault("no picture is drawn in a second");
-  if ((await page.evaluate(() => live.curves[0].threshold.at(-1)[0])) <= newest) fault("the curves stand still");
+  if ((await page.evaluate(() => studio.live.curves[0].threshold.at(-1)[0])) <= newest) fault("the curves stand still");
   if ((await page.getAttribute("body", "data-detection")) !== "") fault("a healthy arm raises an alarm");
   if (await page.isVisible("#effects")) fault("without a recording the analysis is there");
   const painted = await page.evaluate(() => {
@@ -77,7 +77,7 @@ async function checkAlarm(page, fault) {
 }
 
 async function checkExplanation(page, folder, fault) {
-  await page.waitForFunction((s) => live.now.t_s > s, (await page.evaluate(() => live.now.detection.t_s)) + 6);
+  await page.waitForFunction((s) => studio.live.now.t_s > s, (await page.evaluate(() => studio.live.now.detection.t_s)) + 6);
   await page.click("#live-explain");
   await page.waitForFunction(() => document.querySelector("#place-learn .answer-words") !== null);
   if ((await page.textContent("#place-learn")).trim().length < 40) fault("the explanation says nothing");
@@ -93,17 +93,17 @@ async function checkExplanation(page, folder, fault) {
 
 async function checkRest(page, folder, fault) {
   await page.click("#live-record");
-  await page.waitForFunction(() => live.now.recording_s > 0.5);
+  await page.waitForFunction(() => studio.live.now.recording_s > 0.5);
   await page.waitForFunction(() => document.getElementById("live-record").textContent.startsWith("Stop"));
   await page.click("#live-record");
-  await page.waitForFunction(() => live.saved.startsWith("Written: "));
+  await page.waitForFunction(() => studio.live.saved.startsWith("Written: "));
   if (!(await readdir(folder)).includes("arm_live.csv")) fault("the recording was not written");
   await page.click("#accommodation");
   await page.waitForSelector("#accommodation[aria-checked=true]");
   await page.click("#fault-end");
-  await page.waitForFunction(() => live.now.faults.length === 0);
+  await page.waitForFunction(() => studio.live.now.faults.length === 0);
   await page.click("#live-again");
-  await page.waitForFunction(() => document.body.dataset.detection === "" && live.now.judging);
+  await page.waitForFunction(() => document.body.dataset.detection === "" && studio.live.now.judging);
   await page.fill("#fault-size", "1e9");
   await page.click("#fault-inject");
   await page.waitForSelector("#place-liveMessage .note");
@@ -119,7 +119,7 @@ async function usage(pid) {
 }
 
 async function measure(page, program, seconds) {
-  await page.waitForFunction(() => live.now?.judging);
+  await page.waitForFunction(() => studio.live.now?.judging);
   const [drawn, before, begun] = [await pictures(page), await usage(program.pid), performance.now()];
   await page.waitForTimeout(1000 * seconds);
   const [drawnThen, after, passed] = [await pictures(page), await usage(program.pid), (performance.now() - begun) / 1000];

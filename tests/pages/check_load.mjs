@@ -40,10 +40,10 @@ async function strangersFiles(options, folder) {
 
 /** Until what was asked for is there and shown. */
 async function settled(page, act) {
-  const before = await page.evaluate(() => mapView.asked);
+  const before = await page.evaluate(() => studio.mapView.asked);
   await act();
   await page.waitForFunction(
-    (asked) => mapView.asked > asked && load.doing === "" && document.body.dataset.load === String(load.state.revision),
+    (asked) => studio.mapView.asked > asked && studio.load.doing === "" && document.body.dataset.load === String(studio.load.state.revision),
     before,
   );
 }
@@ -57,7 +57,7 @@ async function chooseByKeyboard(page, file, fault) {
   const chooser = await asked;
   if (!chooser.isMultiple()) fault("only one file can be chosen");
   await chooser.setFiles(file);
-  await page.waitForFunction(() => load.doing === "" && load.state.robot !== null);
+  await page.waitForFunction(() => studio.load.doing === "" && studio.load.state.robot !== null);
 }
 
 /** As from a file manager. */
@@ -82,22 +82,22 @@ async function checkEmpty(page, looks, fault) {
 
 async function checkRefused(page, fault) {
   await drop(page, [["none.csv", ""], ["broken.toml", "name = 3\n"]]);
-  await page.waitForFunction(() => load.doing === "" && document.querySelectorAll("#place-loadMessage .note.bad").length === 2);
+  await page.waitForFunction(() => studio.load.doing === "" && document.querySelectorAll("#place-loadMessage .note.bad").length === 2);
   const words = await page.textContent("#place-loadMessage");
   for (const file of ["none.csv", "broken.toml"]) {
     if (!words.includes(file)) fault(`of ${file} is said: ${words}`);
   }
   if (words.includes("/tmp/") || words.includes("offnominal-studio-")) fault(`the message names a folder: ${words}`);
-  if ((await page.evaluate(() => load.state.recordings.length)) !== 0) fault("what cannot be read is there");
+  if ((await page.evaluate(() => studio.load.state.recordings.length)) !== 0) fault("what cannot be read is there");
 }
 
 function errorOf(page, joint) {
-  return page.evaluate((at) => mapView.findings?.joints.find((each) => each.joint === at)?.error_percent ?? null, joint);
+  return page.evaluate((at) => studio.mapView.findings?.joints.find((each) => each.joint === at)?.error_percent ?? null, joint);
 }
 
 function curve(page, quantity, joint) {
   return page.evaluate(
-    ([what, of]) => mapView.preview.signals.find((each) => each.quantity === what && each.joint === of).high,
+    ([what, of]) => studio.mapView.preview.signals.find((each) => each.quantity === what && each.joint === of).high,
     [quantity, joint],
   );
 }
@@ -129,8 +129,8 @@ async function checkColumns(page, looks, fault) {
 
 async function useThese(page, fault) {
   await page.click("#use-these");
-  await page.waitForFunction(() => load.doing === "" && (load.written.length > 0 || load.message !== null));
-  if (await page.evaluate(() => load.message !== null)) fault(`using them is refused: ${await page.textContent("#place-loadMessage")}`);
+  await page.waitForFunction(() => studio.load.doing === "" && (studio.load.written.length > 0 || studio.load.message !== null));
+  if (await page.evaluate(() => studio.load.message !== null)) fault(`using them is refused: ${await page.textContent("#place-loadMessage")}`);
   await page.waitForSelector("body[data-revision]");
   await page.waitForFunction(() => !document.body.hasAttribute("data-busy"));
 }
@@ -138,12 +138,12 @@ async function useThese(page, fault) {
 /** What was written says the same to `compare`, and what the page prints can be run. */
 async function checkSession(page, options, folder, files, fault) {
   await useThese(page, fault);
-  const written = await page.evaluate(() => load.written);
+  const written = await page.evaluate(() => studio.load.written);
   const [robot, channels] = written.map((name) => join(folder, name));
   if (written.length !== 2 || !(await readFile(channels, "utf8")).startsWith("[channels]\n")) fault(`written is ${written}`);
   const text = execFileSync(resolve(options.offnominal), ["compare", files.recording, "--robot", robot, "--channels", channels, "--json"], { stdio: ["ignore", "pipe", "ignore"] });
   for (const { joint, relative_error_percent: percent } of JSON.parse(text).joints) {
-    const shown = await page.evaluate((at) => state.joints[at - 1].now.fitted_percent, joint);
+    const shown = await page.evaluate((at) => studio.state().joints[at - 1].now.fitted_percent, joint);
     if (Math.abs(shown - percent) > 1e-9) fault(`joint ${joint}: compare says ${percent} %, the page ${shown} %`);
   }
   if (await page.isVisible("#load-drop")) fault("with a session the files are not folded up");
@@ -171,8 +171,8 @@ async function checkAnew(page, fault) {
   await page.click("#use-these");
   await page.waitForSelector("#use-anyway");
   await page.click("#use-anyway");
-  await page.waitForFunction(() => load.doing === "" && state.steps.length === 0);
-  if (await page.evaluate(() => load.message !== null)) fault("beginning anew is refused");
+  await page.waitForFunction(() => studio.load.doing === "" && studio.state().steps.length === 0);
+  if (await page.evaluate(() => studio.load.message !== null)) fault("beginning anew is refused");
 }
 
 async function check({ options, folder, start, newContext, axeSource }, fault) {

@@ -39,7 +39,7 @@ const kLooks = [
 ];
 const kNarrowest = 400;
 
-const web = fileURLToPath(new URL("../../desk/report/web/", import.meta.url));
+const web = fileURLToPath(new URL("../../desk/web/", import.meta.url));
 
 function readArguments() {
   const { values, positionals } = parseArgs({
@@ -206,7 +206,8 @@ function settled() {
 /** Zooms the charts by their API, as a reader would, so that a fault in redrawing shows. */
 async function exercise(page) {
   await page.evaluate(() => {
-    const shown = shownFigures();
+    const drawings = [...document.querySelectorAll(".drawing")];
+    const shown = drawings.filter((host) => host.closest("[hidden]") === null).map(({ figure }) => figure);
     const groups = shown.map(({ block }) => block.zoom_group || block);
     // The others of a group follow their first.
     const zoomed = shown.filter(
@@ -219,7 +220,10 @@ async function exercise(page) {
       button.click();
       button.click();
     }
-    for (const figure of zoomed) resetZoom(figure);
+    for (const { chart } of zoomed) {
+      const batch = chart.getOption().dataZoom.map((_, dataZoomIndex) => ({ dataZoomIndex, start: 0, end: 100 }));
+      chart.dispatchAction({ type: "dataZoom", batch });
+    }
   });
 }
 

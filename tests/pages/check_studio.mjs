@@ -104,7 +104,7 @@ function clickAndLook(page, ids) {
       const said = [...figure.querySelectorAll(".hidden-text")].map((span) => span.textContent);
       return said.filter((words) => words !== own);
     });
-    return { joint: look.joint, wrong };
+    return { joint: Number(document.querySelector("input[name=joint]:checked").value), wrong };
   }, ids);
 }
 
@@ -151,11 +151,11 @@ async function checkSteps(page, options, inputs, fault) {
 async function checkZoom(page, fault) {
   const asked = page.waitForResponse((answer) => answer.url().includes("charts?") && answer.url().includes("from="));
   await page.evaluate(() =>
-    timeFigures()[0].chart.dispatchAction({ type: "dataZoom", dataZoomIndex: 0, start: 40, end: 60 }),
+    studio.timeFigures()[0].chart.dispatchAction({ type: "dataZoom", dataZoomIndex: 0, start: 40, end: 60 }),
   );
   if ((await asked).status() !== 200) fault("zooming is refused");
   await page.waitForTimeout(100);
-  if ((await page.evaluate(() => zoomRange())) === null) fault("the zoom is lost");
+  if ((await page.evaluate(() => studio.zoomRange())) === null) fault("the zoom is lost");
 }
 
 async function titleAfter(page, place, act) {
@@ -209,16 +209,16 @@ async function checkKept({ start, newContext }, words, page, fault) {
   const before = await names(page);
   await page.click("#save-page");
   await page.waitForFunction(() => document.querySelector("#place-save .note")?.textContent.includes(".html"));
-  await page.evaluate(() => showTime({ from: 2, to: 5 }));
+  await page.evaluate(() => studio.showTime({ from: 2, to: 5 }));
   await page.waitForResponse((answer) => answer.url().endsWith("api/look"));
   const again = await start(words);
   const other = await openPage(await newContext(), again.address, kReady, kExpected, fault);
   const after = await names(other);
   if (after.join() !== before.join()) fault(`the next program takes up "${after}" of "${before}"`);
-  await other.waitForFunction(() => zoomRange() !== null).catch(() => fault("the next program shows all of the time"));
-  const shown = await other.evaluate(() => zoomRange());
+  await other.waitForFunction(() => studio.zoomRange() !== null).catch(() => fault("the next program shows all of the time"));
+  const shown = await other.evaluate(() => studio.zoomRange());
   if (Math.abs(shown.from - 2) > 0.01 || Math.abs(shown.to - 5) > 0.01) fault(`the next program shows ${JSON.stringify(shown)}`);
-  await page.evaluate(() => showWhole());
+  await page.evaluate(() => studio.showWhole());
   await afterChange(other, () => other.click("#begin-anew"));
   if ((await names(other)).length !== 0) fault("begun anew, there are steps");
   await other.context().close(); // before its server: what it still asks for would be refused

@@ -4,7 +4,7 @@
 /** Colours of the picture as it is drawn now, no more than 64 of them. */
 function coloursOf(page) {
   return page.evaluate(() => {
-    const { view } = arm;
+    const { view } = studio.arm;
     view.drawNow();
     const copy = document.createElement("canvas");
     copy.width = copy.height = 128;
@@ -23,8 +23,8 @@ function shown(page) {
   return page.evaluate(() => ({
     time: document.querySelector("output.arm-time").textContent,
     table: document.querySelector("#arm-table tbody").textContent,
-    pictures: arm.view?.pictures ?? 0,
-    camera: arm.view?.camera.position.toArray().join() ?? "",
+    pictures: studio.arm.view?.pictures ?? 0,
+    camera: studio.arm.view?.camera.position.toArray().join() ?? "",
   }));
 }
 
@@ -36,13 +36,13 @@ async function press(page, key) {
   const before = await shown(page);
   await page.press("#arm-view", key);
   await page
-    .waitForFunction((drawn) => arm.view.pictures > drawn, before.pictures, { timeout: 10_000 })
+    .waitForFunction((drawn) => studio.arm.view.pictures > drawn, before.pictures, { timeout: 10_000 })
     .catch(() => undefined);
   return [before, await shown(page)];
 }
 
 export async function checkArm(page, fault) {
-  await page.waitForFunction(() => arm.view?.pictures > 0);
+  await page.waitForFunction(() => studio.arm.view?.pictures > 0);
   const colours = await coloursOf(page);
   if (colours.length < 8) fault(`the picture of the arm has ${colours.length} colours`);
   const [before, after] = await press(page, "ArrowRight");
@@ -58,10 +58,10 @@ export async function checkArm(page, fault) {
   for (let i = 0; i < 3; ++i) await page.press("#arm-view", "ArrowRight");
   await page.press("#arm-view", "b");
   await page.waitForFunction(() => document.querySelectorAll("#arm-marks tbody tr").length > 0);
-  const joints = await page.evaluate(() => arm.data.joints.length);
+  const joints = await page.evaluate(() => studio.arm.data.joints.length);
   // A row of times stands above the joints.
   if ((await page.$$("#arm-marks tbody tr")).length !== joints + 1) fault("A and B are not compared joint by joint");
-  await page.evaluate(() => timeFigures()[0].chart.dispatchAction({ type: "updateAxisPointer", x: 300, y: 60 }));
+  await page.evaluate(() => studio.timeFigures()[0].chart.dispatchAction({ type: "updateAxisPointer", x: 300, y: 60 }));
   const still = await shown(page);
   await page.click("#arm-play");
   await page.waitForFunction((time) => document.querySelector("output.arm-time").textContent !== time, still.time);

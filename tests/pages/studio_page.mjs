@@ -12,7 +12,7 @@ import { checkWithAxe, readAxe } from "./accessible.mjs";
 /** A name that would be script where a page took it for markup. */
 export const kScript = "<img src=x onerror=window.hacked=1>";
 
-const web = fileURLToPath(new URL("../../desk/report/web/", import.meta.url));
+const web = fileURLToPath(new URL("../../desk/web/", import.meta.url));
 
 /** Options of the command line: `needed` have to be there; `more` as parseArgs() has them. */
 export function readArguments(needed, more = {}) {
@@ -73,6 +73,10 @@ export async function openPage(context, address, ready, expected, fault) {
   });
   await page.goto(address);
   await page.waitForSelector(ready);
+  // What the page's own module says of itself: `studio` in what a check runs inside the page.
+  await page.evaluate(async () => {
+    window.studio = await import(new URL("studio.js", document.baseURI).href);
+  });
   return page;
 }
 

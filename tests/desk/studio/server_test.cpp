@@ -102,8 +102,7 @@ TEST_F(StudioServer, ServesThePageWithoutInlineScriptAndNothingWithoutTheToken) 
   EXPECT_THAT(page->get_header_value("Content-Security-Policy"), HasSubstr("default-src 'none'"));
   EXPECT_EQ(page->get_header_value("Referrer-Policy"), "no-referrer");
   EXPECT_THAT(page->body, Not(HasSubstr("<script>")));
-  for (const char* file : {"studio.css", "studio.js", "report.js", "echarts.js", "arm_view.js",
-                           "orbit_controls.js", "three.module.min.js", "three.core.min.js"}) {
+  for (const char* file : {"studio.css", "studio.js", "arm_view.js"}) {
     EXPECT_EQ(client().Get(at(file))->status, 200) << file;
   }
   EXPECT_EQ(client().Get("/")->status, 404);

@@ -1,0 +1,208 @@
+import { element, type Child } from "../report/element";
+import { itemAt } from "../report/lists";
+import type {
+  DataFault,
+  Findings,
+  LoadJoint,
+  LoadState,
+  Preview,
+  PreviewSignal,
+  Side,
+  Signal,
+  SignalMap,
+} from "./api";
+import { selectWith, type Choice } from "./choices";
+import { foldedList, loadActions, loadState, showLoad } from "./load";
+import { button, effectTitle, noteWith, percent } from "./parts";
+import { ask, wordsOf } from "./server";
+import { columnOptions, editOf, signalWords, type Change } from "./signals";
+import { sketchElement, sketchLegend, type Curve } from "./sketch";
+
+/** What the columns are: of the recording that is shown, as the server last read it. */
+export const mapView: {
+  recording: number;
+  preview: Preview | null;
+  findings: Findings | null;
+  failed: string | null;
+  asked: number;
+} = { recording: 0, preview: null, findings: null, failed: null, asked: 0 };
+
+const kSideWords: Record<Side, string> = {
+  joint: "of the joint",
+  motor: "of its motor",
+  current: "current of its motor",
+  sensor: "of a sensor behind the gear",
+};
+
+const kPreviewPixels = 300;
+
+/** Column, unit and sign; the rest one click away. */
+function signalControls(signal: Signal, columns: string[]) {
+  const id = signal.joint === null ? "signal-time" : `signal-${signal.quantity}-${signal.joint}`;
+  const words = signalWords(signal);
+  const change = (what: Change) => loadActions.signal(editOf(signal, what));
+  const root = element("div", { class: "signal-controls" });
+  root.append(
+    selectWith(`${id}-source`, `Column of ${words}`, columnOptions(signal, columns), signal.source, (source) => change({ source })),
+  );
+  if (signal.source === "" && signal.more === "") return root;
+  root.append(
+    selectWith(`${id}-unit`, `Unit of ${words}`, signal.units.map((unit): Choice => [unit, unit]), signal.unit, (unit) => change({ unit })),
+  );
+  if (signal.joint === null) return root;
+  const sign = element("input", { type: "checkbox", id: `${id}-sign` });
+  sign.checked = signal.scale < 0;
+  sign.addEventListener("change", () => change({ scale: -signal.scale }));
+  root.append(element("label", { for: `${id}-sign` }, sign, " sign turned", element("span", { class: "hidden-text" }, ` of ${words}`)));
+  root.append(moreControls(signal, id, change));
+  return root;
+}
+
+function moreControls(signal: Signal, id: string, change: (what: Change) => void) {
+  const words = signalWords(signal);
+  const factor = element("input", { type: "number", step: "any", id: `${id}-scale`, value: String(Math.abs(signal.scale)) });
+  factor.addEventListener("change", () => {
+    const value = Number(factor.value);
+    if (factor.value !== "" && value > 0) change({ scale: Math.sign(signal.scale) * value });
+  });
+  const row = element("div", { class: "signal-more" });
+  row.append(
+    element("label", { for: `${id}-scale` }, "times ", factor),
+    selectWith(`${id}-of`, `What ${words} is of`, signal.sides.map((side): Choice => [side, kSideWords[side]]), signal.of, (of) => change({ of: of as Side })),
+  );
+  if (signal.more !== "") row.append(element("span", { class: "soft" }, `and, as the robot file has it, ${signal.more}`));
+  // What is not as everywhere is seen without a click.
+  if (Math.abs(signal.scale) !== 1 || signal.of !== "joint" || signal.more !== "") return row;
+  const summary = element("summary", { id: `${id}-more-summary` }, "More", element("span", { class: "hidden-text" }, ` of ${words}`));
+  return element("details", { id: `${id}-more` }, summary, row);
+}
+
+/** What the curve should meet. */
+function otherOf(signal: Signal, drawn: PreviewSignal): Curve | null {
+  if (signal.quantity === "velocity" && drawn.derived.length > 0) return { t_s: drawn.derived_t_s ?? [], values: drawn.derived };
+  if (signal.quantity !== "torque" || mapView.findings === null) return null;
+  const found = mapView.findings.joints.find(({ joint }) => joint === signal.joint);
+  return found === undefined ? null : { t_s: found.t_s, values: found.model };
+}
+
+function signalRow(signal: Signal, columns: string[]) {
+  const row = element("div", { class: "signal" });
+  const head = element("div", { class: "signal-head" }, element("h4", {}, effectTitle(signal.quantity)), signalControls(signal, columns));
+  row.append(head);
+  const drawn = mapView.preview?.signals.find((each) => each.quantity === signal.quantity && each.joint === signal.joint);
+  if (drawn !== undefined) row.append(sketchElement(drawn, otherOf(signal, drawn), effectTitle(signalWords(signal))));
+  return row;
+}
+
+function findingNote(fault: DataFault) {
+  const note = noteWith(fault.spoils ? "bad" : "warn", `${fault.words}. To mend: ${fault.mend}.`);
+  note.dataset.finding = fault.fault;
+  return note;
+}
+
+function jointCard({ joint, name }: LoadJoint, signals: Signal[], columns: string[]) {
+  const found = mapView.findings?.joints.find((each) => each.joint === joint);
+  const head = element("div", { class: "step-head" }, element("h3", {}, `${joint}. ${name}`));
+  if (found !== undefined) head.append(element("span", { class: "fall" }, "error of the robot file ", element("b", {}, percent(found.error_percent))));
+  const card = element("section", { class: "card joint-card", "aria-label": `Joint ${joint}` }, head);
+  const grid = element("div", { class: "signals" });
+  for (const signal of signals.filter((each) => each.joint === joint)) grid.append(signalRow(signal, columns));
+  card.append(grid);
+  for (const fault of mapView.findings?.faults.filter((each) => each.joint === joint) ?? []) card.append(findingNote(fault));
+  return card;
+}
+
+function clockRow(map: SignalMap) {
+  const time = itemAt(map.signals, 0);
+  const row = element("div", { class: "signal-row" }, element("h3", {}, "Time"), signalControls(time, map.columns));
+  const period = element("input", { type: "number", step: "any", id: "signal-period", value: map.period_s === null ? "" : String(map.period_s), placeholder: "no" });
+  period.addEventListener("change", () => loadActions.signal({ quantity: "time", period_s: Number(period.value) }));
+  row.append(element("label", { for: "signal-period" }, "or a sample every ", period, " s"));
+  if (mapView.preview?.sampling) row.append(element("span", { class: "soft" }, mapView.preview.sampling));
+  return row;
+}
+
+function shownRecording(given: LoadState) {
+  const { recordings } = given;
+  if (!recordings.some(({ id }) => id === mapView.recording)) mapView.recording = itemAt(recordings, 0).id;
+  if (recordings.length === 1) return "";
+  const select = selectWith("preview-recording", "Recording that is shown", recordings.map(({ id, name }): Choice => [String(id), name]), String(mapView.recording), (id) => {
+    mapView.recording = Number(id);
+    mapView.preview = mapView.findings = null;
+    showLoad();
+    void showPreview();
+  });
+  return element("div", { class: "choice-row" }, element("span", {}, "Shown:"), select, element("span", { class: "soft" }, "the same columns are read of all of them"));
+}
+
+export function mapContent(given: LoadState, map: SignalMap): Child[] {
+  const shown = shownRecording(given);
+  const content: Child[] = [element("h3", { class: "map-heading", id: "map-heading" }, "What the columns are")];
+  content.push(element("p", {}, "Every signal as it is read: at the joint, in SI units. Where a curve does not look like the arm's, choose another column, its unit or its sign: the picture follows."), shown);
+  const wrong = mapView.preview?.error ?? null;
+  if (wrong !== null) content.push(noteWith("bad", wrong));
+  const whole = mapView.findings?.faults.filter((fault) => fault.joint === null) ?? [];
+  content.push(clockRow(map), ...whole.map(findingNote), sketchLegend());
+  const cards = element("div", { class: "joint-cards" });
+  for (const joint of given.robot?.joints ?? []) cards.append(jointCard(joint, map.signals, map.columns));
+  content.push(cards, ...saidContent(map), useContent(map, mapView.preview !== null && wrong === null));
+  return content;
+}
+
+/** What the guess, the reader and the doctor have to say. */
+function saidContent(map: SignalMap): HTMLElement[] {
+  const content: HTMLElement[] = [];
+  const { findings, failed } = mapView;
+  const why = failed ?? findings?.error ?? null;
+  if (why !== null) content.push(noteWith("warn", why));
+  else if (findings === null && mapView.preview?.error === null) content.push(element("p", { class: "soft" }, "The data doctor is looking at it …"));
+  if (findings !== null && findings.faults.length === 0) {
+    content.push(noteWith("good", "The data doctor finds nothing wrong: units, signs, gaps, jumps and the like."));
+  }
+  const lines = [...map.notes, ...(mapView.preview?.remarks ?? [])];
+  if (map.without_numbers.length > 0) lines.push(`Columns without numbers: ${map.without_numbers.join(", ")}`);
+  if (lines.length > 0) content.push(foldedList("map-notes", `Remarks on the columns (${lines.length})`, lines));
+  return content;
+}
+
+function useContent(map: SignalMap, fine: boolean) {
+  const root = element("div", { class: "use" });
+  const ready = fine && map.missing.length === 0;
+  const spoilt = mapView.findings?.faults.some(({ spoils }) => spoils) ?? false;
+  root.append(
+    button("use-these", "Use these", () => loadActions.use(false), { class: "action main", ...(ready ? {} : { "aria-disabled": "true" }) }),
+    button("guess-again", "Guess again", loadActions.guess),
+  );
+  if (spoilt) root.append(element("span", { class: "soft" }, "A session refuses what is marked red."));
+  const words = map.is_of_robot
+    ? "The robot file's own [channels] read it, and stay as they are."
+    : "Use these writes this file, which every verb takes as --channels; or paste it into the robot file:";
+  const text = map.text === null || map.is_of_robot ? "" : element("pre", { tabindex: "0", "aria-label": "The [channels] that are written" }, map.text.trim());
+  return element("div", {}, root, element("p", { class: "remark" }, words), text);
+}
+
+/** The curves, and then what takes longer; an answer that comes late is of no use. */
+export async function showPreview() {
+  if (loadState().map === null) return;
+  const asked = ++mapView.asked;
+  const said = { query: { recording: mapView.recording, pixels: kPreviewPixels } };
+  const isLate = () => asked !== mapView.asked;
+  /** Null: there is none, or it comes late. */
+  const shown = async <Answer>(question: Promise<Answer>, keep: (answer: Answer | null) => void) => {
+    const [answer, failed] = await question.then(
+      (given): [Answer, null] => [given, null],
+      (error): [null, string] => [null, wordsOf(error)],
+    );
+    if (isLate()) return null;
+    keep(answer);
+    mapView.failed = failed;
+    showLoad();
+    return answer;
+  };
+  mapView.findings = null;
+  const preview = await shown(ask("GET", "/load/preview", said), (answer) => (mapView.preview = answer));
+  if (preview !== null && preview.error === null) {
+    await shown(ask("GET", "/load/findings", said), (answer) => (mapView.findings = answer));
+  }
+  if (!isLate()) document.body.dataset.load = String(loadState().revision);
+}
