@@ -2,9 +2,11 @@
 
 #include <string_view>
 
-/// Files of desk/studio/web and of the npm package three, held inside the program.
+/// Files of desk/studio/web, of desk/studio/api and of the npm package three, held inside the
+/// program.
 namespace offnominal::desk::studio::assets {
 
+std::string_view api();
 std::string_view page();
 std::string_view style();
 std::string_view script();
