@@ -192,9 +192,6 @@ void check(const Workbench& bench, const View& view) {
   if (view.joint >= bench.robot().joints.size()) refuse("There is no such joint.");
   const std::size_t count = all.logs.size() + all.holdout.size();
   if (view.recording >= count || view.beside.value_or(0) >= count) refuse("No such recording.");
-  if (view.pixels < kFewestPixels || view.pixels > kMostPixels) {
-    refuse(fmt::format("The width has to be {} to {} pixels.", kFewestPixels, kMostPixels));
-  }
 }
 
 const Role& role_of(const Workbench& bench, std::size_t recording) {

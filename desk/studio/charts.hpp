@@ -24,10 +24,10 @@ struct View {
   std::optional<std::size_t> beside = {};
 };
 
-inline constexpr std::size_t kFewestPixels = 100;
+/// That the document of the API allows.
 inline constexpr std::size_t kMostPixels = 8000;
 
-/// Throws Refused where there is no such joint, recording or size.
+/// Throws Refused where there is no such joint or recording.
 void check(const Workbench& bench, const View& view);
 
 /// The charts of a joint, as report pages hold them (report/page.hpp): torque over time, error over

@@ -2,35 +2,17 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string>
 
-#include "common/refused.hpp"
 #include "live/live_json.hpp"
-#include "studio/charts.hpp"
-#include "studio/requests.hpp"
+#include "studio/api.hpp"
 #include "studio/stage.hpp"
 
 namespace offnominal::desk::studio {
 namespace {
 
-using httplib::Request;
-using httplib::Response;
 using nlohmann::json;
 using nlohmann::ordered_json;
-
-std::size_t pixels_of(const Request& request) {
-  const auto pixels = number_of<std::size_t>(request, "pixels");
-  if (pixels >= kFewestPixels && pixels <= kMostPixels) return pixels;
-  throw Refused(Refused::Why::kBadRequest, "pixels has to be the width of a picture.");
-}
-
-// An action that has no answer of its own: what there is then.
-template <typename Act>
-void act(Response& response, const Act& do_it) {
-  answer(response, [&] {
-    do_it();
-    return json::object();
-  });
-}
 
 ordered_json setup_of(const Stage& stage) {
   if (!stage.is_live()) {
@@ -46,61 +28,45 @@ ordered_json setup_of(const Stage& stage) {
   return setup;
 }
 
-void set_up_looking(httplib::Server& server, const std::string& api, Stage& stage) {
-  server.Get(api + "live", [&stage](const Request&, Response& response) {
-    answer(response, [&] { return setup_of(stage); });
+void set_up_looking(Api& api, Stage& stage) {
+  api.on("GET /live", [&stage](const ApiRequest&) { return setup_of(stage); });
+  api.on("GET /live/now", [&stage](const ApiRequest& asked) {
+    const live::Live& live = stage.live();
+    return live::moment_json(live.moment(asked.parameters.at("from").get<std::uint64_t>()), live);
   });
-  server.Get(api + "live/now", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      const live::Live& live = stage.live();
-      return live::moment_json(live.moment(number_of<std::uint64_t>(request, "from")), live);
-    });
-  });
-  server.Get(api + "live/frozen", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      const live::Live& live = stage.live();
-      return json{{"charts", live::frozen_json(live, pixels_of(request))}};
-    });
+  api.on("GET /live/frozen", [&stage](const ApiRequest& asked) {
+    const auto pixels = asked.parameters.at("pixels").get<std::size_t>();
+    return json{{"charts", live::frozen_json(stage.live(), pixels)}};
   });
 }
 
-void set_up_bench(httplib::Server& server, const std::string& api, Stage& stage) {
-  server.Post(api + "live/faults", [&stage](const Request& request, Response& response) {
-    act(response, [&] {
-      const json body = body_of(request);
-      stage.live().add_fault(body.at("kind").get<std::string>(), body.value("joint", 0),
-                             body.value("size", 0.0));
-    });
+void set_up_bench(Api& api, Stage& stage) {
+  api.on("POST /live/faults", [&stage](const ApiRequest& asked) {
+    stage.live().add_fault(asked.body.at("kind").get<std::string>(),
+                           asked.body.at("joint").get<int>(), asked.body.at("size").get<double>());
   });
-  server.Delete(api + "live/faults", [&stage](const Request&, Response& response) {
-    act(response, [&] { stage.live().end_faults(); });
+  api.on("DELETE /live/faults", [&stage](const ApiRequest&) { stage.live().end_faults(); });
+  api.on("POST /live/accommodation", [&stage](const ApiRequest& asked) {
+    stage.live().set_accommodation(asked.body.at("on").get<bool>());
   });
-  server.Post(api + "live/accommodation", [&stage](const Request& request, Response& response) {
-    act(response, [&] { stage.live().set_accommodation(body_of(request).at("on").get<bool>()); });
-  });
-  server.Post(api + "live/again", [&stage](const Request&, Response& response) {
-    act(response, [&] { stage.live().begin_again(); });
-  });
+  api.on("POST /live/again", [&stage](const ApiRequest&) { stage.live().begin_again(); });
 }
 
-void set_up_recordings(httplib::Server& server, const std::string& api, Stage& stage) {
-  server.Post(api + "live/recording", [&stage](const Request&, Response& response) {
-    act(response, [&] { stage.live().start_recording(); });
+void set_up_recordings(Api& api, Stage& stage) {
+  api.on("POST /live/recording", [&stage](const ApiRequest&) { stage.live().start_recording(); });
+  api.on("DELETE /live/recording", [&stage](const ApiRequest&) {
+    return json{{"saved", stage.live().stop_recording()}};
   });
-  server.Delete(api + "live/recording", [&stage](const Request&, Response& response) {
-    answer(response, [&] { return json{{"saved", stage.live().stop_recording()}}; });
-  });
-  server.Post(api + "live/explanation", [&stage](const Request&, Response& response) {
-    answer(response, [&] { return stage.explain_detection(); });
-  });
+  api.on("POST /live/explanation",
+         [&stage](const ApiRequest&) { return stage.explain_detection(); });
 }
 
 }  // namespace
 
-void set_up_live_routes(httplib::Server& server, const std::string& api, Stage& stage) {
-  set_up_looking(server, api, stage);
-  set_up_bench(server, api, stage);
-  set_up_recordings(server, api, stage);
+void set_up_live_routes(Api& api, Stage& stage) {
+  set_up_looking(api, stage);
+  set_up_bench(api, stage);
+  set_up_recordings(api, stage);
 }
 
 }  // namespace offnominal::desk::studio

@@ -1,17 +1,11 @@
 #pragma once
 
-#include <string>
-
-namespace httplib {
-class Server;
-}
-
 namespace offnominal::desk::studio {
 
+class Api;
 class Stage;
 
-/// The part of the API below `api`, as set_up_routes() has it, that is of a live view. `stage` has
-/// to outlive the server.
-void set_up_live_routes(httplib::Server& server, const std::string& api, Stage& stage);
+/// The part of the API that is of a live view. `stage` has to outlive the server.
+void set_up_live_routes(Api& api, Stage& stage);
 
 }  // namespace offnominal::desk::studio

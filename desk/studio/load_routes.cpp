@@ -2,26 +2,18 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "common/refused.hpp"
-#include "studio/charts.hpp"
+#include "studio/api.hpp"
 #include "studio/intake.hpp"
-#include "studio/requests.hpp"
 #include "studio/stage.hpp"
 
 namespace offnominal::desk::studio {
 namespace {
 
-using httplib::Request;
-using httplib::Response;
 using nlohmann::json;
-
-std::size_t pixels_in(const Request& request) {
-  const auto pixels = number_of<std::size_t>(request, "pixels");
-  if (pixels >= kFewestPixels && pixels <= kMostPixels) return pixels;
-  throw Refused(Refused::Why::kBadRequest, "pixels has to be the width of a picture.");
-}
 
 template <typename Value>
 std::optional<Value> value_of(const json& body, const char* key) {
@@ -32,9 +24,12 @@ std::optional<Value> value_of(const json& body, const char* key) {
 SignalEdit edit_of(const json& body) {
   SignalEdit edit;
   edit.quantity = body.at("quantity").get<std::string>();
-  // Of the time there is none; 0 is no joint.
-  const json& joint = body.value("joint", json(1));
-  edit.joint = joint.get<std::size_t>() - 1;
+  const auto joint = value_of<std::size_t>(body, "joint");
+  if (!joint && edit.quantity != "time") {
+    throw Refused(Refused::Why::kBadRequest,
+                  "joint is missing; allowed: a joint of the robot, left out of the time alone.");
+  }
+  edit.joint = joint.value_or(1) - 1;
   edit.source = value_of<std::string>(body, "source");
   edit.unit = value_of<std::string>(body, "unit");
   edit.scale = value_of<double>(body, "scale");
@@ -44,12 +39,9 @@ SignalEdit edit_of(const json& body) {
 }
 
 // As it comes, into the folder of such files.
-std::filesystem::path received(const Request& request, const Response& response,
+std::filesystem::path received(const std::string& name, const httplib::Response& response,
                                const httplib::ContentReader& read, UploadFolder& folder) {
-  if (request.is_multipart_form_data()) {
-    throw Refused(Refused::Why::kBadRequest, "A file is handed over as the body itself.");
-  }
-  UploadFolder::Upload upload = folder.begin(request.get_param_value("name"));
+  UploadFolder::Upload upload = folder.begin(name);
   std::optional<InputError> refused;
   const bool whole = read([&](const char* data, std::size_t size) {
     try {
@@ -65,61 +57,47 @@ std::filesystem::path received(const Request& request, const Response& response,
   return upload.finish();
 }
 
-void set_up_files(httplib::Server& server, const std::string& api, Stage& stage) {
-  server.Get(api + "load", [&stage](const Request&, Response& response) {
-    answer(response, [&] { return stage.intake().state(); });
+void set_up_files(Api& api, Stage& stage) {
+  api.on("GET /load", [&stage](const ApiRequest&) { return stage.intake().state(); });
+  api.on_file(std::string("POST /") + kFilesRoute,
+              [&stage](const ApiRequest& asked, const httplib::Response& response,
+                       const httplib::ContentReader& read) {
+                Intake& intake = stage.intake();
+                const auto name = asked.parameters.at("name").get<std::string>();
+                return intake.take(received(name, response, read, intake.folder()));
+              });
+  api.on(std::string("DELETE /") + kFilesRoute + "/{id}", [&stage](const ApiRequest& asked) {
+    return stage.intake().remove(asked.parameters.at("id").get<std::size_t>());
   });
-  server.Post(api + kFilesRoute, [&stage](const Request& request, Response& response,
-                                          const httplib::ContentReader& read) {
-    answer(response, [&] {
-      Intake& intake = stage.intake();
-      return intake.take(received(request, response, read, intake.folder()));
-    });
-    // What was not read of a body would be the next request.
-    if (response.status >= 400) response.set_header("Connection", "close");
-  });
-  server.Delete(api + kFilesRoute + std::string("/([0-9]{1,9})"), [&stage](const Request& request,
-                                                                           Response& response) {
-    answer(response, [&] { return stage.intake().remove(std::stoul(request.matches[1])); });
-  });
-  server.Post(api + "load/held_out", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      const json body = body_of(request);
-      return stage.intake().set_held_out(body.at("recording").get<std::size_t>(),
-                                         body.at("held_out").get<bool>());
-    });
+  api.on("POST /load/held_out", [&stage](const ApiRequest& asked) {
+    return stage.intake().set_held_out(asked.body.at("recording").get<std::size_t>(),
+                                       asked.body.at("held_out").get<bool>());
   });
 }
 
-void set_up_columns(httplib::Server& server, const std::string& api, Stage& stage) {
-  server.Post(api + "load/signal", [&stage](const Request& request, Response& response) {
-    answer(response, [&] { return stage.intake().set_signal(edit_of(body_of(request))); });
+void set_up_columns(Api& api, Stage& stage) {
+  api.on("POST /load/signal", [&stage](const ApiRequest& asked) {
+    return stage.intake().set_signal(edit_of(asked.body));
   });
-  server.Post(api + "load/guess", [&stage](const Request&, Response& response) {
-    answer(response, [&] { return stage.intake().guess_again(); });
+  api.on("POST /load/guess", [&stage](const ApiRequest&) { return stage.intake().guess_again(); });
+  api.on("GET /load/preview", [&stage](const ApiRequest& asked) {
+    return stage.intake().preview(asked.parameters.at("recording").get<std::size_t>(),
+                                  asked.parameters.at("pixels").get<std::size_t>());
   });
-  server.Get(api + "load/preview", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      return stage.intake().preview(number_of<std::size_t>(request, "recording"),
-                                    pixels_in(request));
-    });
+  api.on("GET /load/findings", [&stage](const ApiRequest& asked) {
+    return stage.intake().findings(asked.parameters.at("recording").get<std::size_t>(),
+                                   asked.parameters.at("pixels").get<std::size_t>());
   });
-  server.Get(api + "load/findings", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      return stage.intake().findings(number_of<std::size_t>(request, "recording"),
-                                     pixels_in(request));
-    });
-  });
-  server.Post(api + "load/session", [&stage](const Request& request, Response& response) {
-    answer(response, [&] { return stage.use_files(body_of(request).value("replace", false)); });
+  api.on("POST /load/session", [&stage](const ApiRequest& asked) {
+    return stage.use_files(asked.body.at("replace").get<bool>());
   });
 }
 
 }  // namespace
 
-void set_up_load_routes(httplib::Server& server, const std::string& api, Stage& stage) {
-  set_up_files(server, api, stage);
-  set_up_columns(server, api, stage);
+void set_up_load_routes(Api& api, Stage& stage) {
+  set_up_files(api, stage);
+  set_up_columns(api, stage);
 }
 
 }  // namespace offnominal::desk::studio

@@ -1,44 +1,35 @@
 #include "studio/results_routes.hpp"
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "studio/requests.hpp"
+#include "studio/api.hpp"
 #include "studio/results_view.hpp"
 #include "studio/stage.hpp"
 
 namespace offnominal::desk::studio {
 namespace {
 
-using httplib::Request;
-using httplib::Response;
-
-ResultsFilter filter_of(const Request& request) {
+ResultsFilter filter_of(const ApiRequest& asked) {
   ResultsFilter filter;
-  for (const auto& [key, value] : request.params) {
-    if (key != "from") filter[key] = value;
+  for (const auto& parameter : asked.parameters.items()) {
+    if (parameter.key() != "from") filter[parameter.key()] = parameter.value();
   }
   return filter;
 }
 
 }  // namespace
 
-void set_up_results_routes(httplib::Server& server, const std::string& api, Stage& stage) {
-  server.Get(api + "results", [&stage](const Request&, Response& response) {
-    answer(response, [&] { return stage.results().state(); });
+void set_up_results_routes(Api& api, Stage& stage) {
+  api.on("GET /results", [&stage](const ApiRequest&) { return stage.results().state(); });
+  api.on("GET /results/figures",
+         [&stage](const ApiRequest& asked) { return stage.results().figures(filter_of(asked)); });
+  api.on("GET /results/runs", [&stage](const ApiRequest& asked) {
+    return stage.results().runs(filter_of(asked), asked.parameters.at("from").get<std::size_t>());
   });
-  server.Get(api + "results/figures", [&stage](const Request& request, Response& response) {
-    answer(response, [&] { return stage.results().figures(filter_of(request)); });
-  });
-  server.Get(api + "results/runs", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      return stage.results().runs(filter_of(request), number_of<std::size_t>(request, "from"));
-    });
-  });
-  server.Post(api + "results/session", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      const nlohmann::json body = body_of(request);
-      return stage.open_run(body.at("run").get<std::int64_t>(), body.value("replace", false));
-    });
+  api.on("POST /results/session", [&stage](const ApiRequest& asked) {
+    return stage.open_run(asked.body.at("run").get<std::int64_t>(),
+                          asked.body.at("replace").get<bool>());
   });
 }
 

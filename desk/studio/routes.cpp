@@ -1,14 +1,13 @@
 #include "studio/routes.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "common/refused.hpp"
+#include "studio/api.hpp"
 #include "studio/assets.hpp"
 #include "studio/live_routes.hpp"
 #include "studio/load_routes.hpp"
-#include "studio/requests.hpp"
 #include "studio/results_routes.hpp"
 #include "studio/stage.hpp"
 
@@ -19,49 +18,60 @@ using httplib::Request;
 using httplib::Response;
 using nlohmann::json;
 
-// The part of the time that is shown, where the request names one.
-template <typename Any>
-void set_range(const Request& request, Any& view) {
-  if (!request.has_param("from") || !request.has_param("to")) return;
-  view.from_s = number_of<double>(request, "from");
-  view.to_s = number_of<double>(request, "to");
-  if (!std::isfinite(*view.from_s) || !std::isfinite(*view.to_s)) {
-    throw Refused(Refused::Why::kBadRequest, "from and to have to be times.");
-  }
+std::size_t number_in(const json& parameters, const char* name) {
+  return parameters.at(name).get<std::size_t>();
 }
 
-View view_of(const Request& request) {
+// The part of the time that is shown, where the request names one.
+template <typename Any>
+void set_range(const json& parameters, Any& view) {
+  if (parameters.contains("from") != parameters.contains("to")) {
+    throw Refused(Refused::Why::kBadRequest, "from and to go together: one of them is missing.");
+  }
+  if (!parameters.contains("from")) return;
+  view.from_s = parameters["from"].template get<double>();
+  view.to_s = parameters["to"].template get<double>();
+}
+
+View view_of(const json& parameters) {
   View view;
-  view.joint = number_of<std::size_t>(request, "joint") - 1;
-  view.recording = number_of<std::size_t>(request, "recording") - 1;
-  if (request.has_param("pixels")) view.pixels = number_of<std::size_t>(request, "pixels");
-  if (request.has_param("beside")) view.beside = number_of<std::size_t>(request, "beside") - 1;
-  set_range(request, view);
+  view.joint = number_in(parameters, "joint") - 1;
+  view.recording = number_in(parameters, "recording") - 1;
+  if (parameters.contains("pixels")) view.pixels = number_in(parameters, "pixels");
+  if (parameters.contains("beside")) view.beside = number_in(parameters, "beside") - 1;
+  set_range(parameters, view);
   return view;
 }
 
 // "x=velocity&x_joint=2": a variable of a joint, of the one that is shown where none is named.
-ErrorOver over_of(const Request& request, const std::string& side) {
-  const auto variable = error_variable(request.get_param_value(side));
-  if (!variable) throw Refused(Refused::Why::kBadRequest, side + " has to be a variable.");
+ErrorOver over_of(const json& parameters, const std::string& side) {
   const std::string joint = side + "_joint";
-  const bool has_joint = request.has_param(joint);
-  return {*variable, number_of<std::size_t>(request, has_joint ? joint.c_str() : "joint") - 1};
+  const bool has_joint = parameters.contains(joint);
+  return {error_variable(parameters.at(side).get<std::string>()).value(),
+          number_in(parameters, has_joint ? joint.c_str() : "joint") - 1};
 }
 
-SpectrumOver spectrum_over_of(const Request& request) {
-  const std::string over = request.get_param_value("over");
-  if (over == "frequency") return SpectrumOver::kFrequency;
-  if (over == "order") return SpectrumOver::kOrder;
-  throw Refused(Refused::Why::kBadRequest, "over has to be frequency or order.");
-}
-
-ArmView arm_view_of(const Request& request) {
+ArmView arm_view_of(const json& parameters) {
   ArmView view;
-  view.recording = number_of<std::size_t>(request, "recording") - 1;
-  if (request.has_param("instants")) view.instants = number_of<std::size_t>(request, "instants");
-  set_range(request, view);
+  view.recording = number_in(parameters, "recording") - 1;
+  view.instants = number_in(parameters, "instants");
+  set_range(parameters, view);
   return view;
+}
+
+json evidence_of(Session& session, const json& parameters) {
+  if (parameters.contains("step")) return session.evidence_of_step(number_in(parameters, "step"));
+  if (!parameters.contains("search") || !parameters.contains("finding")) {
+    throw Refused(Refused::Why::kBadRequest,
+                  "step is missing; allowed: it, or search and finding.");
+  }
+  return session.evidence_of_finding(number_in(parameters, "search"),
+                                     number_in(parameters, "finding"));
+}
+
+SaveRequest save_request_of(const json& body) {
+  return {body.at("name").get<std::string>(), body.at("replace").get<bool>(),
+          body.value("accept_doubts", false)};
 }
 
 void set_up_files(httplib::Server& server, const std::string& path) {
@@ -77,98 +87,76 @@ void set_up_files(httplib::Server& server, const std::string& path) {
   file("arm_view\\.js", std::string(assets::arm_view()), kScript);
 }
 
-void set_up_model(httplib::Server& server, const std::string& api, Stage& stage) {
-  server.Get(api + "state", [&stage](const Request&, Response& response) {
-    answer(response, [&] { return stage.session()->state(); });
+void set_up_views(Api& api, Stage& stage) {
+  api.on("GET /state", [&stage](const ApiRequest&) { return stage.session()->state(); });
+  api.on("GET /charts", [&stage](const ApiRequest& asked) {
+    return stage.session()->charts(view_of(asked.parameters));
   });
-  server.Get(api + "charts", [&stage](const Request& request, Response& response) {
-    answer(response, [&] { return stage.session()->charts(view_of(request)); });
+  api.on("GET /map", [&stage](const ApiRequest& asked) {
+    return stage.session()->map(view_of(asked.parameters), over_of(asked.parameters, "x"),
+                                over_of(asked.parameters, "y"));
   });
-  server.Get(api + "map", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      return stage.session()->map(view_of(request), over_of(request, "x"), over_of(request, "y"));
-    });
+  api.on("GET /spectrum", [&stage](const ApiRequest& asked) {
+    const bool is_frequency = asked.parameters.at("over") == "frequency";
+    return stage.session()->spectrum(
+        view_of(asked.parameters), is_frequency ? SpectrumOver::kFrequency : SpectrumOver::kOrder);
   });
-  server.Get(api + "spectrum", [&stage](const Request& request, Response& response) {
-    answer(response,
-           [&] { return stage.session()->spectrum(view_of(request), spectrum_over_of(request)); });
+  api.on("GET /evidence", [&stage](const ApiRequest& asked) {
+    return evidence_of(*stage.session(), asked.parameters);
   });
-  server.Get(api + "evidence", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      if (request.has_param("step")) {
-        return stage.session()->evidence_of_step(number_of<std::size_t>(request, "step"));
-      }
-      return stage.session()->evidence_of_finding(number_of<std::size_t>(request, "search"),
-                                                  number_of<std::size_t>(request, "finding"));
-    });
+  api.on("GET /moved", [&stage](const ApiRequest& asked) {
+    return stage.session()->moved(
+        {number_in(asked.parameters, "step"), asked.parameters.at("parameter").get<std::string>(),
+         asked.parameters.at("value").get<double>()},
+        view_of(asked.parameters));
   });
-  server.Get(api + "arm", [&stage](const Request& request, Response& response) {
-    answer(response, [&] { return stage.session()->arm(arm_view_of(request)); });
+  api.on("GET /arm", [&stage](const ApiRequest& asked) {
+    return stage.session()->arm(arm_view_of(asked.parameters));
   });
-  server.Post(api + "look", [&stage](const Request& request, Response& response) {
-    answer(response, [&] { return stage.session()->look_at(view_from(body_of(request))); });
-  });
-  server.Post(api + "steps", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      const json body = body_of(request);
-      return stage.session()->add(body.at("effect").get<std::string>(),
-                                  body.at("joint").get<int>());
-    });
-  });
-  server.Delete(api + "steps/([0-9]{1,9})", [&stage](const Request& request, Response& response) {
-    answer(response, [&] { return stage.session()->undo(std::stoul(request.matches[1])); });
-  });
-  server.Delete(api + "steps", [&stage](const Request&, Response& response) {
-    answer(response, [&] { return stage.session()->undo_all(); });
-  });
-  server.Get(api + "moved", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      return stage.session()->moved(
-          {number_of<std::size_t>(request, "step"), request.get_param_value("parameter"),
-           number_of<double>(request, "value")},
-          view_of(request));
-    });
-  });
-  server.Post(api + "page", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      const json body = body_of(request);
-      return stage.session()->save_page({body.value("name", ""), body.value("replace", false)});
-    });
-  });
-  server.Post(api + "save", [&stage](const Request& request, Response& response) {
-    answer(response, [&] {
-      const json body = body_of(request);
-      return stage.session()->save({body.value("name", ""), body.value("replace", false),
-                                    body.value("accept_doubts", false)});
-    });
+  api.on("POST /look", [&stage](const ApiRequest& asked) {
+    return stage.session()->look_at(view_from(asked.body));
   });
 }
 
-void set_up_search(httplib::Server& server, const std::string& api, Stage& stage) {
-  server.Get(api + "explanation", [&stage](const Request&, Response& response) {
-    answer(response, [&] { return stage.session()->explanation(); });
+void set_up_model(Api& api, Stage& stage) {
+  api.on("POST /steps", [&stage](const ApiRequest& asked) {
+    return stage.session()->add(asked.body.at("effect").get<std::string>(),
+                                asked.body.at("joint").get<int>());
   });
-  server.Post(api + "explanation", [&stage](const Request&, Response& response) {
-    answer(response, [&] { return stage.session()->start_to_explain(); });
+  api.on("DELETE /steps/{id}", [&stage](const ApiRequest& asked) {
+    return stage.session()->undo(number_in(asked.parameters, "id"));
   });
-  server.Delete(api + "explanation", [&stage](const Request&, Response& response) {
-    answer(response, [&] { return stage.session()->stop_to_explain(); });
+  api.on("DELETE /steps", [&stage](const ApiRequest&) { return stage.session()->undo_all(); });
+  api.on("POST /page", [&stage](const ApiRequest& asked) {
+    return stage.session()->save_page(save_request_of(asked.body));
   });
-  server.Post(api + "leave", [&stage](const Request&, Response& response) {
-    stage.leave();
-    response.status = 204;
+  api.on("POST /save", [&stage](const ApiRequest& asked) {
+    return stage.session()->save(save_request_of(asked.body));
   });
+}
+
+void set_up_search(Api& api, Stage& stage) {
+  api.on("GET /explanation",
+         [&stage](const ApiRequest&) { return stage.session()->explanation(); });
+  api.on("POST /explanation",
+         [&stage](const ApiRequest&) { return stage.session()->start_to_explain(); });
+  api.on("DELETE /explanation",
+         [&stage](const ApiRequest&) { return stage.session()->stop_to_explain(); });
+  api.on("POST /leave", [&stage](const ApiRequest&) { stage.leave(); });
 }
 
 }  // namespace
 
 void set_up_routes(httplib::Server& server, const std::string& path, Stage& stage) {
   set_up_files(server, path);
-  set_up_model(server, path + "api/", stage);
-  set_up_search(server, path + "api/", stage);
-  set_up_live_routes(server, path + "api/", stage);
-  set_up_load_routes(server, path + "api/", stage);
-  set_up_results_routes(server, path + "api/", stage);
+  Api api(server, path + "api/");
+  set_up_views(api, stage);
+  set_up_model(api, stage);
+  set_up_search(api, stage);
+  set_up_live_routes(api, stage);
+  set_up_load_routes(api, stage);
+  set_up_results_routes(api, stage);
+  api.require_all();
 }
 
 }  // namespace offnominal::desk::studio

@@ -184,7 +184,7 @@ ordered_json Session::add(const std::string& effect, int joint) {
   refuse_while_explaining();
   const std::optional<EffectKind> kind = effect_named(effect);
   if (!kind) throw Refused(Refused::Why::kBadRequest, "There is no effect of that name.");
-  if (joint < 1 || joint > bench_.input().robot.joint_count()) {
+  if (joint > bench_.input().robot.joint_count()) {
     throw Refused(Refused::Why::kBadRequest, "There is no such joint.");
   }
   bench_.add(*kind, static_cast<std::size_t>(joint - 1));

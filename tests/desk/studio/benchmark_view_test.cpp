@@ -13,12 +13,14 @@
 #include "common/error.hpp"
 #include "common/refused.hpp"
 #include "common/sqlite.hpp"
+#include "desk/studio/benchmark_results.hpp"
 #include "desk/support/temporary_folder.hpp"
 
 namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
+using offnominal::test::benchmark_results;
 using offnominal::test::put;
 using offnominal::test::TemporaryFolder;
 using namespace offnominal::desk;
@@ -28,40 +30,11 @@ using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
-Asked asked(const std::string& effect, int joint, int class_size, double share) {
-  const Outcome outcome = class_size == 0   ? Outcome::kMissed
-                          : class_size == 1 ? Outcome::kNamed
-                                            : Outcome::kInClass;
-  return {effect, joint, share, outcome, class_size, class_size == 0 ? "explained" : ""};
-}
-
-// Thirty cases with friction on one of two joints, of which the smallest are missed; one with
-// something that is not there, one without an answer.
-Results results() {
-  Results all{"discovery", "./dev bench discovery --seed 5", 5, {}};
-  for (int i = 0; i < 30; ++i) {
-    Case one;
-    one.number = i;
-    one.group = i % 2 == 0 ? "single" : "small";
-    one.seed = 0xffffffffffffff00U + static_cast<std::uint64_t>(i);
-    one.hidden = "coulomb_friction@" + std::to_string(i % 2 + 1);
-    one.said = i < 6 ? "nothing" : "coulomb_friction@" + std::to_string(i % 2 + 1);
-    one.verdict = i < 6 ? "explained" : "found";
-    one.time_s = 0.5 + 0.1 * i;
-    one.asked = {asked("coulomb_friction", i % 2 + 1, i < 6 ? 0 : i < 9 ? 2 : 1, 0.01 * (i + 1))};
-    one.folder = i == 4 ? "cases/small-004" : "";
-    all.cases.push_back(one);
-  }
-  all.cases[20].wrong = {"backlash@1"};
-  all.cases[21].failed = "the <robot> was lost";
-  return all;
-}
-
 class BenchmarkResults : public ::testing::Test {
  protected:
   TemporaryFolder folder_;
   [[nodiscard]] std::string file() const { return (folder_ / "bench.sqlite").string(); }
-  void SetUp() override { write_benchmark(file(), results(), Existing::kRefuse); }
+  void SetUp() override { write_benchmark(file(), benchmark_results(), Existing::kRefuse); }
 
   [[nodiscard]] json table(const ResultsFilter& filter, const std::string& caption) const {
     const json figures = BenchmarkView(file()).figures(filter);
@@ -75,8 +48,8 @@ class BenchmarkResults : public ::testing::Test {
 };
 
 TEST_F(BenchmarkResults, AreReadAsTheyWereWritten) {
-  EXPECT_EQ(read_benchmark(file()), results());
-  EXPECT_THROW(write_benchmark(file(), results(), Existing::kRefuse), InputError);
+  EXPECT_EQ(read_benchmark(file()), benchmark_results());
+  EXPECT_THROW(write_benchmark(file(), benchmark_results(), Existing::kRefuse), InputError);
   write_benchmark(file(), {"other", "", 1, {}}, Existing::kReplace);
   EXPECT_EQ(read_benchmark(file()).name, "other");
 }

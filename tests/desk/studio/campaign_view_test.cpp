@@ -16,14 +16,12 @@
 
 #include "campaign/campaign_file.hpp"
 #include "campaign/restored_campaign.hpp"
-#include "campaign/run_campaign.hpp"
 #include "campaign/summary.hpp"
 #include "common/error.hpp"
 #include "common/refused.hpp"
-#include "desk/campaign/small_campaign.hpp"
+#include "desk/studio/small_results.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "log/csv_text.hpp"
-#include "log/read_log.hpp"
 #include "robot/robot_file.hpp"
 #include "studio/server.hpp"
 
@@ -32,38 +30,15 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 using offnominal::test::content_of;
+using offnominal::test::open_run;
 using offnominal::test::put;
-using offnominal::test::small_campaign;
+using offnominal::test::small;
 using offnominal::test::TemporaryFolder;
 using namespace offnominal::desk;
 using namespace offnominal::desk::studio;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-// Run once for all tests; nobody changes it.
-class SmallResults {
- public:
-  SmallResults() {
-    put(file(), small_campaign("[[fault]]\nkind = \"payload\"\nsizes = [0.5]\n", "robot"));
-    plan_ = campaign::read_campaign(file());
-    campaign::run_campaign(plan_, {results(), {}, 1}, [](const auto&, auto, auto) {});
-    rows_ = campaign::read_results(results());
-  }
-  [[nodiscard]] std::filesystem::path file() const { return folder_ / "small.toml"; }
-  [[nodiscard]] std::filesystem::path results() const { return folder_ / "small.sqlite"; }
-  [[nodiscard]] const campaign::Campaign& plan() const { return plan_; }
-  [[nodiscard]] const campaign::Results& rows() const { return rows_; }
-
- private:
-  TemporaryFolder folder_;
-  campaign::Campaign plan_;
-  campaign::Results rows_;
-};
-const SmallResults& small() {
-  static const SmallResults results;
-  return results;
-}
 
 CampaignView view_of(bool with_file) {
   return {small().results().string(),
@@ -182,19 +157,6 @@ TEST(CampaignView, RefusesTheFileOfAnotherCampaignAndResultsOfAnotherVersion) {
         InputError);
   }
   EXPECT_THROW(CampaignView((folder / "other.toml").string(), std::nullopt), InputError);
-}
-
-Input open_run(const SessionFiles& files) {
-  Input input;
-  input.robot = read_robot_file(files.robot.path);
-  Treated recordings;
-  recordings.logs.push_back(read_log(files.logs.at(0).path, input.robot));
-  input.recordings = std::make_shared<const Treated>(std::move(recordings));
-  input.robot_file = files.robot.name;
-  input.log_files = {files.logs.at(0).name};
-  input.commands_before = files.commands_before;
-  input.marks = files.marks;
-  return input;
 }
 
 TEST(CampaignServer, OpensARunAsASession) {

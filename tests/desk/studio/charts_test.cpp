@@ -31,12 +31,13 @@ class StudioCharts : public ::testing::Test {
 };
 
 TEST_F(StudioCharts, KeepPeaksAndShowMoreOfWhatIsZoomed) {
-  View view{.joint = 1, .pixels = kFewestPixels};
+  constexpr std::size_t kPixels = 100;
+  View view{.joint = 1, .pixels = kPixels};
   const json whole = charts_of(bench_, bench_.now(), view);
   ASSERT_EQ(whole.size(), 4U);
   const auto y = series(whole, 0, 0).at("y").get<std::vector<double>>();
   const Eigen::VectorXd measured = bench_.now().fitted.recordings[0].measured.col(1);
-  EXPECT_LE(y.size(), 2 * kFewestPixels);
+  EXPECT_LE(y.size(), 2 * kPixels);
   EXPECT_LT(y.size(), static_cast<std::size_t>(measured.size()));
   EXPECT_NEAR(*std::max_element(y.begin(), y.end()), measured.maxCoeff(), 1e-5);
   EXPECT_NEAR(*std::min_element(y.begin(), y.end()), measured.minCoeff(), 1e-5);
@@ -74,8 +75,7 @@ TEST_F(StudioCharts, FallWithEveryStep) {
 }
 
 TEST_F(StudioCharts, RefuseWhatIsNotThere) {
-  for (const View& view : {View{.joint = 2}, View{.recording = 2}, View{.pixels = 1},
-                           View{.pixels = kMostPixels + 1}}) {
+  for (const View& view : {View{.joint = 2}, View{.recording = 2}}) {
     EXPECT_THROW(charts_of(bench_, bench_.now(), view), Refused);
   }
 }

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "desk/sil/serial_robot.hpp"
+#include "desk/studio/api_document.hpp"
 #include "desk/studio/studio_input.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "live/live.hpp"
@@ -23,6 +24,8 @@
 namespace {
 
 using nlohmann::json;
+using offnominal::test::api_document;
+using offnominal::test::ApiDocument;
 using offnominal::test::by_joint_robot;
 using offnominal::test::TemporaryFolder;
 using namespace offnominal::desk;
@@ -59,15 +62,22 @@ class LiveServer : public ::testing::Test {
   [[nodiscard]] httplib::Headers own() const {
     return {{"Origin", "http://127.0.0.1:" + std::to_string(server_.port())}};
   }
+  // It is as the document of the API has it.
+  static std::pair<int, json> taken(const std::string& method, const std::string& path,
+                                    const httplib::Result& result) {
+    const json answer = json::parse(result->body);
+    EXPECT_TRUE(api_document().keeps(ApiDocument::route_of(method, path), result->status, answer));
+    return {result->status, answer};
+  }
   std::pair<int, json> get(const std::string& path) {
     const auto result = client().Get(at(path));
     EXPECT_TRUE(result);
-    return {result->status, json::parse(result->body)};
+    return taken("GET", path, result);
   }
   std::pair<int, json> post(const std::string& path, const json& body) {
     const auto result = client().Post(at(path), own(), body.dump(), "application/json");
     EXPECT_TRUE(result);
-    return {result->status, json::parse(result->body)};
+    return taken("POST", path, result);
   }
   // What there is once `is_there` says so; no time is asserted.
   json wait_for(const std::function<bool(const json&)>& is_there) {

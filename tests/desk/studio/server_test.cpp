@@ -16,6 +16,7 @@
 #include <string>
 #include <thread>
 
+#include "desk/studio/api_document.hpp"
 #include "desk/studio/studio_input.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "studio/routes.hpp"
@@ -23,6 +24,8 @@
 namespace {
 
 using nlohmann::json;
+using offnominal::test::api_document;
+using offnominal::test::ApiDocument;
 using offnominal::test::studio_input;
 using offnominal::test::TemporaryFolder;
 using namespace offnominal::desk;
@@ -51,23 +54,30 @@ class StudioServer : public ::testing::Test {
     return made;
   }
 
+  // It is as the document of the API has it.
+  static std::pair<int, json> taken(const std::string& method, const std::string& path,
+                                    const httplib::Result& result) {
+    const json answer = json::parse(result->body);
+    EXPECT_TRUE(api_document().keeps(ApiDocument::route_of(method, path), result->status, answer));
+    return {result->status, answer};
+  }
   json get(const std::string& path) {
     const auto result = client().Get(at("api/" + path));
     EXPECT_TRUE(result);
     EXPECT_EQ(result->status, 200) << result->body;
-    return json::parse(result->body);
+    return taken("GET", path, result).second;
   }
   // Its status, and what it says.
   std::pair<int, json> post(const std::string& path, const json& body) {
     const auto result =
         client().Post(at("api/" + path), {{"Origin", own()}}, body.dump(), "application/json");
     EXPECT_TRUE(result);
-    return {result->status, json::parse(result->body)};
+    return taken("POST", path, result);
   }
   std::pair<int, json> erase(const std::string& path) {
     const auto result = client().Delete(at("api/" + path), {{"Origin", own()}});
     EXPECT_TRUE(result);
-    return {result->status, json::parse(result->body)};
+    return taken("DELETE", path, result);
   }
 
   // The first that comes back of a request whose body is still to come.
