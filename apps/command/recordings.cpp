@@ -14,6 +14,7 @@
 #include "common/number.hpp"
 #include "common/output_file.hpp"
 #include "robot/payload.hpp"
+#include "robot/payload_check.hpp"
 
 namespace offnominal::desk {
 
@@ -62,7 +63,7 @@ void check_each_differs(const std::string& verb, const std::string& option,
 }
 
 // What a payload lacks whose text is none.
-std::string mend_of_payload(const std::string& text) {
+std::string mend_of_payload_text(const std::string& text) {
   std::vector<std::string> lacks;
   const std::size_t at = text.rfind('@');
   const std::size_t equals = text.substr(0, at).rfind('=');
@@ -75,9 +76,7 @@ std::string mend_of_payload(const std::string& text) {
     lacks.emplace_back("write three numbers behind @, its place in the last link's frame");
   }
   if (!lacks.empty()) return fmt::format("{}", fmt::join(lacks, ", and "));
-  return fmt::format("write a mass of 0 to {} kg, and numbers from -{} to {} m behind @",
-                     shortest(kMostPayloadKg), shortest(kFurthestPayloadM),
-                     shortest(kFurthestPayloadM));
+  return mend_of_payload() + " behind @";
 }
 
 }  // namespace
@@ -98,10 +97,10 @@ std::vector<RecordingPayload> payloads_of(const std::string& verb,
   for (const std::string& text : texts) {
     const auto payload = payload_of_text(text);
     if (!payload) {
-      refuse_option(verb, "--payload", "\"" + text + "\"",
-                    "LOG=KG@X,Y,Z with a mass of 0 kg or more and a place in m, such as "
-                    "run_2.csv=0.8@0,0,0.1",
-                    mend_of_payload(text));
+      refuse_option(
+          verb, "--payload", "\"" + text + "\"",
+          fmt::format("LOG=KG@X,Y,Z with {}, such as run_2.csv=0.8@0,0,0.1", kAllowedPayload),
+          mend_of_payload_text(text));
     }
     payloads.push_back(*payload);
   }

@@ -268,6 +268,7 @@ studio::OpenFiles file_opener(StudioOptions options, const std::string& more) {
     take(files.logs, of_files.files.logs, names.logs);
     take(files.holdout, of_files.files.holdout, names.holdout);
     of_files.files.robot = files.robot.path;
+    of_files.files.channels.payloads = files.payloads;
     std::string with_channels = more;
     if (files.channels) {
       of_files.files.channels.file = files.channels->path;
@@ -313,7 +314,7 @@ void check_nothing_of_recordings(const StudioOptions& options) {
   if (!options.files.holdout.empty()) refuse("--holdout", on_page);
   if (channels.file) refuse("--channels", on_page);
   if (channels.period_s) refuse("--period", on_page);
-  if (!channels.payloads.empty()) refuse("--payload", "give the recording on the command line");
+  if (!channels.payloads.empty()) refuse("--payload", on_page);
 }
 
 // The models and the recordings are those of the results.

@@ -10,12 +10,20 @@
 #include "common/error.hpp"
 #include "common/input_name.hpp"
 #include "common/number.hpp"
+#include "robot/payload_check.hpp"
 
 namespace offnominal::desk {
 namespace {
 
 bool is_same(const Payload& a, const Payload& b) {
   return a.mass_kg == b.mass_kg && a.place_m == b.place_m;
+}
+
+// Not of a number that is none.
+bool can_be_carried(const Payload& payload) {
+  return payload.mass_kg >= 0 && payload.mass_kg <= kMostPayloadKg &&
+         std::all_of(payload.place_m.begin(), payload.place_m.end(),
+                     [](double at) { return std::abs(at) <= kFurthestPayloadM; });
 }
 
 std::optional<double> number_of(std::string_view text) {
@@ -82,18 +90,31 @@ std::optional<RecordingPayload> payload_of_text(std::string_view text) {
   }
   RecordingPayload payload{std::string(text.substr(0, equals)), {}};
   const auto mass = number_of(text.substr(equals + 1, at - equals - 1));
-  if (!mass || *mass < 0 || *mass > kMostPayloadKg) return std::nullopt;
+  if (!mass) return std::nullopt;
   payload.payload.mass_kg = *mass;
   std::string_view rest = text.substr(at + 1);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t comma = rest.find(',');
     if ((comma == std::string_view::npos) != (i == 2)) return std::nullopt;
     const auto place = number_of(rest.substr(0, comma));
-    if (!place || std::abs(*place) > kFurthestPayloadM) return std::nullopt;
+    if (!place) return std::nullopt;
     payload.payload.place_m[i] = *place;
     if (i < 2) rest.remove_prefix(comma + 1);
   }
+  if (!can_be_carried(payload.payload)) return std::nullopt;
   return payload;
+}
+
+void check_payload(const RecordingPayload& payload) {
+  if (can_be_carried(payload.payload)) return;
+  throw InputError({payload.recording, "payload", words_of(payload.payload), kAllowedPayload,
+                    mend_of_payload()});
+}
+
+std::string mend_of_payload() {
+  return fmt::format("write a mass of 0 to {} kg, and numbers from -{} to {} m",
+                     shortest(kMostPayloadKg), shortest(kFurthestPayloadM),
+                     shortest(kFurthestPayloadM));
 }
 
 std::string text_of(const RecordingPayload& payload) {

@@ -17,6 +17,8 @@
 #include "look/look.hpp"
 #include "look/looked_files.hpp"
 #include "robot/channel_text.hpp"
+#include "robot/payload.hpp"
+#include "robot/payload_check.hpp"
 #include "robot/robot_file.hpp"
 #include "studio/preview.hpp"
 
@@ -56,6 +58,15 @@ void refuse_dbc(const RobotDescription& robot, const std::string& name) {
   throw InputError({name, "channels.dbc", "the name of another file",
                     "none in a file that is dropped on the page",
                     "start Studio with --robot and this file"});
+}
+
+ordered_json payload_json(const std::optional<Payload>& payload) {
+  if (!payload) return nullptr;
+  return {{"mass_kg", payload->mass_kg},
+          {"x_m", payload->place_m[0]},
+          {"y_m", payload->place_m[1]},
+          {"z_m", payload->place_m[2]},
+          {"words", words_of(*payload)}};
 }
 
 }  // namespace
@@ -203,6 +214,15 @@ ordered_json Intake::set_held_out(std::size_t id, bool held_out) {
   return state_now();
 }
 
+ordered_json Intake::set_payload(std::size_t id, const std::optional<Payload>& payload) {
+  const std::lock_guard guard(lock_);
+  Recording& recording = recording_of(id);
+  if (payload) check_payload({recording.name, *payload});
+  recording.payload = payload;
+  ++revision_;
+  return state_now();
+}
+
 ordered_json Intake::set_signal(const SignalEdit& edit) {
   const std::lock_guard guard(lock_);
   if (!map_) throw Refused(Refused::Why::kNotNow, "There is no recording and robot file yet.");
@@ -225,21 +245,28 @@ ordered_json Intake::guess_again() {
   return state_now();
 }
 
+ChannelMap Intake::map_of(const Recording& recording) const {
+  if (!map_) throw Refused(Refused::Why::kNotNow, "There is no robot file yet.");
+  ChannelMap map = *map_;
+  if (recording.payload) map.payloads = {{recording.name, *recording.payload}};
+  return map;
+}
+
 ordered_json Intake::preview(std::size_t id, std::size_t pixels) {
   const std::lock_guard guard(lock_);
   const Recording& recording = recording_of(id);
-  if (!map_) throw Refused(Refused::Why::kNotNow, "There is no robot file yet.");
+  const ChannelMap map = map_of(recording);
   ordered_json json{{"revision", revision_}, {"recording", id}};
-  json.update(preview_of(recording.columns, *robot_, *map_, pixels));
+  json.update(preview_of(recording.columns, *robot_, map, pixels));
   return json;
 }
 
 ordered_json Intake::findings(std::size_t id, std::size_t pixels) {
   const std::lock_guard guard(lock_);
   const Recording& recording = recording_of(id);
-  if (!map_) throw Refused(Refused::Why::kNotNow, "There is no robot file yet.");
+  const ChannelMap map = map_of(recording);
   ordered_json json{{"revision", revision_}, {"recording", id}};
-  json.update(findings_of(recording.columns, *robot_, *map_, settings_.keep, pixels));
+  json.update(findings_of(recording.columns, *robot_, map, settings_.keep, pixels));
   return json;
 }
 
@@ -276,6 +303,7 @@ SessionFiles Intake::files() {
     }
     auto& group = recording.held_out ? files.holdout : files.logs;
     group.push_back({recording.path.string(), is_here ? own.string() : recording.name});
+    if (recording.payload) files.payloads.push_back({recording.name, *recording.payload});
   }
   if (files.logs.empty()) not_now("A recording to fit is missing: those that are held out judge.");
   const std::vector<std::string> missing = missing_of(*map_);
@@ -344,7 +372,8 @@ ordered_json Intake::state_now() const {
     recordings.push_back({{"id", one.id},
                           {"name", one.name},
                           {"bytes", std::filesystem::file_size(one.path, ignored)},
-                          {"held_out", one.held_out}});
+                          {"held_out", one.held_out},
+                          {"payload", payload_json(one.payload)}});
   }
   const UploadLimits& limits = folder_.limits();
   return {{"revision", revision_},

@@ -42,6 +42,9 @@ class Intake {
   /// A recording.
   nlohmann::ordered_json remove(std::size_t id);
   nlohmann::ordered_json set_held_out(std::size_t id, bool held_out);
+  /// What a recording carried, where that is known; none: what the robot file says of it, if
+  /// anything.
+  nlohmann::ordered_json set_payload(std::size_t id, const std::optional<Payload>& payload);
   nlohmann::ordered_json set_signal(const SignalEdit& edit);
   /// What was said of the columns is forgotten.
   nlohmann::ordered_json guess_again();
@@ -60,6 +63,7 @@ class Intake {
     std::filesystem::path path;
     std::string name;
     bool held_out = false;
+    std::optional<Payload> payload = {};
     NamedColumns columns;
   };
 
@@ -74,6 +78,8 @@ class Intake {
   [[nodiscard]] Recording& recording_of(std::size_t id);
   // Those of all recordings, by the first that has them: a session reads all of them by one map.
   [[nodiscard]] const NamedColumns& all_columns() const { return recordings_.front().columns; }
+  // As a session reads this recording.
+  [[nodiscard]] ChannelMap map_of(const Recording& recording) const;
   [[nodiscard]] std::string free_name(const std::string& stem, const std::string& ending) const;
   [[nodiscard]] std::filesystem::path here(const std::string& name) const;
 

@@ -38,6 +38,12 @@ SignalEdit edit_of(const json& body) {
   return edit;
 }
 
+Payload payload_from(const json& body) {
+  return {
+      body.at("mass_kg").get<double>(),
+      {body.at("x_m").get<double>(), body.at("y_m").get<double>(), body.at("z_m").get<double>()}};
+}
+
 // As it comes, into the folder of such files.
 std::filesystem::path received(const std::string& name, const httplib::Response& response,
                                const httplib::ContentReader& read, UploadFolder& folder) {
@@ -72,6 +78,13 @@ void set_up_files(Api& api, Stage& stage) {
   api.on("POST /load/held_out", [&stage](const ApiRequest& asked) {
     return stage.intake().set_held_out(asked.body.at("recording").get<std::size_t>(),
                                        asked.body.at("held_out").get<bool>());
+  });
+  api.on("POST /load/payload", [&stage](const ApiRequest& asked) {
+    return stage.intake().set_payload(asked.body.at("recording").get<std::size_t>(),
+                                      payload_from(asked.body));
+  });
+  api.on("DELETE /load/payload/{id}", [&stage](const ApiRequest& asked) {
+    return stage.intake().set_payload(asked.parameters.at("id").get<std::size_t>(), std::nullopt);
   });
 }
 

@@ -21,7 +21,8 @@ struct SessionFiles {
   NamedFile robot;
   std::vector<NamedFile> logs;
   std::vector<NamedFile> holdout = {};
-  std::optional<NamedFile> channels = {};  // none: the robot file's own
+  std::vector<RecordingPayload> payloads = {};  // by the recordings' names without folders
+  std::optional<NamedFile> channels = {};       // none: the robot file's own
   std::string commands_note = {};  // what those who repeat the session have to know, or empty
   std::vector<std::string> commands_before = {};  // that make these files
   std::vector<report::EventMark> marks = {};      // of the first recording, in its time

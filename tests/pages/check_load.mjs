@@ -14,6 +14,7 @@ const kLooks = [
   [1400, "dark"],
   [400, "light"],
   [400, "dark"],
+  [3840, "light"],
 ];
 const kRobotName = `arm${kScript}.toml`;
 const kRecordingName = `run${kScript}.csv`;
@@ -127,6 +128,45 @@ async function checkColumns(page, looks, fault) {
   await settled(page, () => page.selectOption("#signal-velocity-1-source", "actual_vel_1"));
 }
 
+/** Said by the keyboard alone; what cannot be is refused beside it, and what was written stays. */
+async function checkPayload(page, looks, fault) {
+  const id = await page.evaluate(() => studio.load.state.recordings[0].id);
+  const field = (name) => `#payload-${id}-${name}`;
+  const focused = () => page.evaluate(() => document.activeElement.id);
+  const errors = async () => [await errorOf(page, 1), await errorOf(page, 2)];
+  const before = await errors();
+  await page.focus(field("summary"));
+  await page.keyboard.press("Enter");
+  await page.fill(field("mass_kg"), "-1");
+  for (const name of ["x_m", "y_m"]) await page.fill(field(name), "0");
+  await page.press(field("y_m"), "Enter");
+  const wrong = () => page.textContent(field("wrong"));
+  if (!(await wrong()).includes("z: empty")) fault(`of an empty field is said: ${await wrong()}`);
+  if ((await page.getAttribute(field("z_m"), "aria-invalid")) !== "true") fault("an empty field is not marked");
+  if ((await focused()) !== field("y_m").slice(1)) fault("after a refusal the focus is lost");
+  await page.fill(field("z_m"), "0.1");
+  await settled(page, () => page.press(field("z_m"), "Enter"));
+  if (!(await wrong()).includes("allowed: a mass of 0 kg or more and a place in m; to mend: write a mass of 0 to")) fault(`of a negative mass is said: ${await wrong()}`);
+  if ((await page.inputValue(field("mass_kg"))) !== "-1") fault("what was written is gone with its refusal");
+  if (await page.isVisible("#place-loadMessage .note")) fault("a payload is refused far from its fields");
+  await looks("load_payload");
+  await page.fill(field("mass_kg"), "0.05");
+  await settled(page, () => page.press(field("mass_kg"), "Enter"));
+  if ((await focused()) !== field("mass_kg").slice(1)) fault("once the payload is set the focus is lost");
+  const summary = await page.textContent(field("summary"));
+  if (!summary.includes("0.05 kg at [0, 0, 0.1] m")) fault(`a payload that is set reads ${summary}`);
+  const loaded = await errors();
+  if (loaded[1] === before[1]) fault("with a payload the error stays as it was");
+  await page.focus(field("remove"));
+  await settled(page, () => page.keyboard.press("Enter"));
+  if ((await focused()) !== field("summary").slice(1)) fault("once the payload is taken away the focus is lost");
+  if ((await errors()).join() !== before.join()) fault("without the payload the error is another than before it");
+  await page.fill(field("mass_kg"), "0.05");
+  for (const [name, text] of [["x_m", "0"], ["y_m", "0"], ["z_m", "0.1"]]) await page.fill(field(name), text);
+  await settled(page, () => page.click(field("set")));
+  if ((await errors()).join() !== loaded.join()) fault("the same payload makes another error");
+}
+
 async function useThese(page, fault) {
   await page.click("#use-these");
   await page.waitForFunction(() => studio.load.doing === "" && (studio.load.written.length > 0 || studio.load.message !== null));
@@ -141,7 +181,8 @@ async function checkSession(page, options, folder, files, fault) {
   const written = await page.evaluate(() => studio.load.written);
   const [robot, channels] = written.map((name) => join(folder, name));
   if (written.length !== 2 || !(await readFile(channels, "utf8")).startsWith("[channels]\n")) fault(`written is ${written}`);
-  const text = execFileSync(resolve(options.offnominal), ["compare", files.recording, "--robot", robot, "--channels", channels, "--json"], { stdio: ["ignore", "pipe", "ignore"] });
+  const payload = `${kRecordingName}=0.05@0,0,0.1`;
+  const text = execFileSync(resolve(options.offnominal), ["compare", files.recording, "--robot", robot, "--channels", channels, "--payload", payload, "--json"], { stdio: ["ignore", "pipe", "ignore"] });
   for (const { joint, relative_error_percent: percent } of JSON.parse(text).joints) {
     const shown = await page.evaluate((at) => studio.state().joints[at - 1].now.fitted_percent, joint);
     if (Math.abs(shown - percent) > 1e-9) fault(`joint ${joint}: compare says ${percent} %, the page ${shown} %`);
@@ -151,7 +192,7 @@ async function checkSession(page, options, folder, files, fault) {
   await page.click("#switch-viscous_friction");
   await page.waitForFunction(() => document.body.dataset.revision === "1" && !document.body.hasAttribute("data-busy"));
   const lines = await page.textContent("#place-save pre");
-  if (!lines.includes("--channels")) fault(`the commands are ${lines}`);
+  if (!lines.includes("--channels") || !lines.includes(payload)) fault(`the commands are ${lines}`);
   execFileSync("/bin/sh", ["-c", `set -e\noffnominal() { "$PROGRAM" "$@"; }\n${lines}\n`], {
     // They name the recording alone: it lies elsewhere, as the page says.
     cwd: await besideRecording(folder, files, written), env: { ...process.env, PROGRAM: resolve(options.offnominal) }, stdio: "pipe",
@@ -186,6 +227,7 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   await chooseByKeyboard(page, files.robot, fault);
   await settled(page, () => drop(page, [[kRecordingName, files.text]]));
   await checkColumns(page, looks, fault);
+  await checkPayload(page, looks, fault);
   await checkSession(page, options, folder, files, fault);
   await looks("load_used");
   await checkAnew(page, fault);

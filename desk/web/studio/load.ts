@@ -3,6 +3,7 @@ import { hiddenText } from "../report/words";
 import type { LoadRecording, LoadState, SignalEdit } from "./api";
 import { isRobotFile, sizeWords } from "./files";
 import { mapContent, showPreview } from "./load_map";
+import { payloadElement } from "./load_payload";
 import { addToNote, button, foldWith, holdControls, noteWith, replaceContent, sectionWith } from "./parts";
 import { place, placeOf } from "./places";
 import { ask, mayConfirm, wordsOf } from "./server";
@@ -98,7 +99,7 @@ async function takeFiles(files: File[]) {
 }
 
 /** One at a time; what fails is said, and nothing else has changed. */
-async function loadChange(work: () => Promise<void>) {
+export async function loadChange(work: () => Promise<void>) {
   if (load.doing !== "") return;
   load.doing = "…";
   load.message = null;
@@ -174,14 +175,15 @@ function stepsContent({ robot, recordings, map }: LoadState) {
 
 function recordingList(recordings: LoadRecording[]) {
   const list = element("ul", { class: "load-recordings" });
-  for (const { id, name, bytes, held_out: heldOut } of recordings) {
+  for (const recording of recordings) {
+    const { id, name, bytes, held_out: heldOut } = recording;
     const box = element("input", { type: "checkbox", id: `held-out-${id}` });
     box.checked = heldOut;
     box.addEventListener("change", () => loadActions.holdOut(id, box.checked));
     const remove = button(`remove-${id}`, "Remove", () => loadActions.remove(id));
     remove.append(element("span", { class: "hidden-text" }, ` ${name}`));
     const label = element("label", { for: `held-out-${id}` }, box, " hold out", element("span", { class: "hidden-text" }, ` ${name}`));
-    list.append(element("li", {}, element("span", { class: "file-name" }, name), element("span", { class: "soft" }, sizeWords(bytes)), label, remove));
+    list.append(element("li", {}, element("span", { class: "file-name" }, name), element("span", { class: "soft" }, sizeWords(bytes)), label, remove, payloadElement(recording)));
   }
   return list;
 }

@@ -36,6 +36,10 @@ export function replaceContent(host: HTMLElement, ...children: Child[]) {
   const same = active.id === "" ? null : document.getElementById(active.id);
   if (same === null) host.tabIndex = -1;
   (same ?? host).focus({ preventScroll: true });
+  // Who writes there goes on where the next letter comes.
+  if (active instanceof HTMLInputElement && same instanceof HTMLInputElement && active.type === "text") {
+    same.setSelectionRange(active.selectionStart, active.selectionEnd);
+  }
 }
 
 /** While a change is under way no other begins: its controls say so, and keep the focus. */

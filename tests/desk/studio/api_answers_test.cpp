@@ -162,8 +162,13 @@ Routes of_files() {
   EXPECT_EQ(give("third.csv", offnominal::test::strange_csv(0.5)), 200);
   EXPECT_EQ(studio.erase("load/files/3").first, 200);
   EXPECT_EQ(studio.post("load/held_out", {{"recording", 2}, {"held_out", true}}).first, 200);
+  json payload{{"recording", 1}, {"mass_kg", 0.5}, {"x_m", 0}, {"y_m", 0}, {"z_m", 0.1}};
+  EXPECT_EQ(studio.post("load/payload", payload).first, 200);
+  payload["z_m"] = 101;
+  EXPECT_EQ(studio.post("load/payload", payload).first, 422);
   EXPECT_EQ(studio.get("load/preview?recording=1&pixels=300").first, 200);
   EXPECT_EQ(studio.get("load/findings?recording=1&pixels=300").first, 200);
+  EXPECT_EQ(studio.erase("load/payload/1").first, 200);
   // Of a column that is no time, what cannot be read.
   EXPECT_EQ(studio.post("load/signal", {{"quantity", "time"}, {"source", "actual_pos_1"}}).first,
             200);

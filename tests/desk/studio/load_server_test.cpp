@@ -25,6 +25,7 @@ using namespace offnominal::desk;
 using namespace offnominal::desk::studio;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 class LoadServer : public ::testing::Test {
  protected:
@@ -90,6 +91,40 @@ TEST_F(LoadServer, BeginsWithNothingAndBecomesASession) {
   EXPECT_TRUE(post("load/session", json::object()).second.at("confirm").get<bool>());
   EXPECT_EQ(post("load/session", {{"replace", true}}).first, 200);
   EXPECT_TRUE(get("state").at("steps").empty());
+}
+
+TEST_F(LoadServer, GivesTheSessionAndItsCommandsWhatARecordingCarried) {
+  ASSERT_EQ(give("arm.toml", robot_text_of_arm()).first, 200);
+  ASSERT_EQ(give("run.csv", strange_csv(1)).first, 200);
+  ASSERT_EQ(give("more.csv", strange_csv(0.7)).first, 200);
+  ASSERT_EQ(post("load/held_out", {{"recording", 2}, {"held_out", true}}).first, 200);
+  ASSERT_EQ(post("load/signal", {{"quantity", "torque"}, {"joint", 2}, {"scale", -1}}).first, 200);
+  json payload{{"recording", 2}, {"mass_kg", -1}, {"x_m", 0}, {"y_m", 0}, {"z_m", 0.1}};
+  const auto [status, refused] = post("load/payload", payload);
+  EXPECT_EQ(status, 422);
+  EXPECT_THAT(refused.at("error").get<std::string>(),
+              HasSubstr("more.csv: payload: found -1 kg at [0, 0, 0.1] m of the last link"));
+  for (const auto& [recording, mass_kg] : {std::pair{1, 0.5}, std::pair{2, 0.25}}) {
+    payload["recording"] = recording;
+    payload["mass_kg"] = mass_kg;
+    ASSERT_EQ(post("load/payload", payload).first, 200);
+  }
+  const json findings = get("load/findings?recording=1&pixels=300");
+  ASSERT_EQ(post("load/session", json::object()).first, 200);
+  EXPECT_EQ(get("state").at("joints").at(0).at("now").at("fitted_percent"),
+            findings.at("joints").at(0).at("error_percent"));
+  ASSERT_EQ(post("steps", {{"effect", "viscous_friction"}, {"joint", 2}}).first, 200);
+  const json commands = get("state").at("save").at("commands");
+  EXPECT_THAT(commands.at(0).get<std::string>(),
+              HasSubstr("--payload run.csv=0.5@0,0,0.1 --payload more.csv=0.25@0,0,0.1"));
+  EXPECT_THAT(commands.at(1).get<std::string>(), Not(HasSubstr("more.csv")));
+  // Without it, the next session is of the arm alone.
+  EXPECT_EQ(client().Delete(at("load/payload/1"), own())->status, 200);
+  EXPECT_EQ(client().Delete(at("load/payload/2"), own())->status, 200);
+  EXPECT_EQ(client().Delete(at("load/payload/3"), own())->status, 400);
+  ASSERT_EQ(post("load/session", {{"replace", true}}).first, 200);
+  EXPECT_LT(get("state").at("joints").at(0).at("now").at("fitted_percent"),
+            findings.at("joints").at(0).at("error_percent"));
 }
 
 TEST_F(LoadServer, TakesLongBodiesForFilesAloneAndSaysTheLimit) {

@@ -11,12 +11,15 @@
 
 #include "common/error.hpp"
 #include "common/refused.hpp"
+#include "compare/compare.hpp"
+#include "compare/measurement.hpp"
 #include "desk/studio/strange_files.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "log/read_log.hpp"
 #include "look/look.hpp"
 #include "look/look_report.hpp"
 #include "robot/channels.hpp"
+#include "robot/payload.hpp"
 #include "robot/robot_file.hpp"
 #include "studio/intake.hpp"
 #include "studio/upload_folder.hpp"
@@ -93,6 +96,13 @@ TEST(UploadFolder, SaysItsLimitsAndKeepsNothingOfWhatIsBeyondThem) {
     EXPECT_EQ(folder.used(), 10U);
   }
   EXPECT_TRUE(std::filesystem::exists(kept));
+}
+
+// The [channels] that the page would write.
+ChannelMap read_channels_of(const ordered_json& state) {
+  const TemporaryFolder folder;
+  put(folder / "channels.toml", state.at("map").at("text").get<std::string>());
+  return read_channels_file(folder / "channels.toml", 2);
 }
 
 class Loading : public ::testing::Test {
@@ -214,6 +224,75 @@ TEST_F(Loading, RefusesEditsOfWhatThereIsNotAndChangesNothing) {
   static_cast<void>(intake_.set_signal({.quantity = "torque", .of = "current"}));
   EXPECT_THAT(intake_.preview(1, 200).at("error").get<std::string>(), HasSubstr("transmission"));
   EXPECT_FALSE(intake_.preview(1, 200).at("signals").empty());
+}
+
+double error_of(const ordered_json& findings, std::size_t joint) {
+  return findings.at("joints").at(joint).at("error_percent").get<double>();
+}
+
+TEST_F(Loading, HasWhatARecordingCarriedInTheModelsTorqueUntilItIsTakenAway) {
+  give("arm.toml", robot_text_of_arm());
+  give("run.csv", strange_csv(1));
+  give("more.csv", strange_csv(0.7));
+  static_cast<void>(intake_.set_signal({.quantity = "torque", .joint = 1, .scale = -1}));
+  const ordered_json bare = intake_.findings(1, 200);
+  const ordered_json state = intake_.set_payload(1, Payload{0.5, {0.1, 0, 0.02}});
+  EXPECT_EQ(state.at("recordings").at(0).at("payload").at("words"),
+            "0.5 kg at [0.1, 0, 0.02] m of the last link");
+  EXPECT_TRUE(state.at("recordings").at(1).at("payload").is_null());
+  const ordered_json loaded = intake_.findings(1, 200);
+  EXPECT_NE(error_of(loaded, 1), error_of(bare, 1));
+  EXPECT_NE(loaded.at("joints").at(1).at("model"), bare.at("joints").at(1).at("model"));
+  // As compare says it of the same recording with --payload.
+  const std::filesystem::path recording = folder_ / "run.csv";
+  put(recording, strange_csv(1));
+  const SessionFiles files = intake_.files();
+  ASSERT_EQ(files.payloads.size(), 1U);
+  EXPECT_EQ(text_of(files.payloads.at(0)), "run.csv=0.5@0.1,0,0.02");
+  const RobotDescription robot = arm_description();
+  ChannelOptions options;
+  options.file = files.channels->path;
+  options.payloads = files.payloads;
+  const Comparison compared = compare(robot, measure(read_log(recording, robot, options), robot));
+  EXPECT_EQ(error_of(loaded, 1), compared.joints.at(1).relative_error_percent);
+  EXPECT_EQ(intake_.set_payload(1, std::nullopt).at("recordings").at(0).at("payload"), nullptr);
+  EXPECT_EQ(intake_.findings(1, 200).at("joints"), bare.at("joints"));
+  EXPECT_THAT(intake_.files().payloads, IsEmpty());
+}
+
+TEST_F(Loading, RefusesAPayloadAsTheCommandLineDoesAndKeepsTheOneThatIsThere) {
+  give("arm.toml", robot_text_of_arm());
+  give("run.csv", strange_csv(1));
+  static_cast<void>(intake_.set_payload(1, Payload{0.5, {0, 0, 0}}));
+  const ordered_json before = intake_.state();
+  for (const Payload& payload :
+       {Payload{-1, {0, 0, 0}}, Payload{1e6, {0, 0, 0}}, Payload{1, {0, -101, 0}}}) {
+    try {
+      static_cast<void>(intake_.set_payload(1, payload));
+      ADD_FAILURE() << words_of(payload);
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.problem().place, "payload");
+      EXPECT_EQ(error.problem().allowed, "a mass of 0 kg or more and a place in m");
+      EXPECT_THAT(error.problem().mend, StartsWith("write a mass of 0 to "));
+    }
+  }
+  EXPECT_THROW(static_cast<void>(intake_.set_payload(9, std::nullopt)), Refused);
+  EXPECT_EQ(intake_.state(), before);
+}
+
+TEST_F(Loading, PutsWhatThePageSaysBeforeWhatTheRobotFileSaysOfAPayload) {
+  RobotDescription robot = arm_description();
+  give("run.csv", strange_csv(1));
+  ChannelMap channels = read_channels_of(give("arm.toml", robot_text_of_arm()));
+  channels.payloads = {{"run.csv", {0.5, {0.1, 0, 0}}}};
+  robot.channels = channels;
+  give("arm.toml", robot_text(robot));
+  const double of_file = error_of(intake_.findings(1, 200), 0);
+  static_cast<void>(intake_.set_payload(1, Payload{0, {0, 0, 0}}));
+  const double of_page = error_of(intake_.findings(1, 200), 0);
+  EXPECT_LT(of_page, of_file);
+  static_cast<void>(intake_.set_payload(1, std::nullopt));
+  EXPECT_EQ(error_of(intake_.findings(1, 200), 0), of_file);
 }
 
 TEST_F(Loading, SaysWhatIsMissingBeforeASessionCanBegin) {

@@ -38,6 +38,7 @@ inline desk::studio::Input open_files(const desk::studio::SessionFiles& files) {
   input.robot = read_robot_file(files.robot.path);
   ChannelOptions channels;
   if (files.channels) channels.file = files.channels->path;
+  channels.payloads = files.payloads;
   Treated treated;
   for (const studio::NamedFile& file : files.logs) {
     treated.logs.push_back(read_log(file.path, input.robot, channels));
@@ -50,6 +51,7 @@ inline desk::studio::Input open_files(const desk::studio::SessionFiles& files) {
   treated.faults = treat_all({treated.logs, treated.holdout}, input.robot, {});
   input.recordings = std::make_shared<const Treated>(std::move(treated));
   input.robot_file = files.robot.name;
+  input.payloads = files.payloads;
   if (files.channels) input.options = " --channels " + files.channels->name;
   return input;
 }
