@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -9,6 +10,16 @@ namespace offnominal::desk::exchange {
 struct ChainRequest {
   std::optional<std::string> base = std::nullopt;  // none: the root
   std::optional<std::string> tip = std::nullopt;   // none: where the only chain of joints ends
+};
+
+/// The options of `import-urdf` that say so: " --base world --tip hand"; empty: none.
+[[nodiscard]] std::string options_of(const ChainRequest& request);
+
+/// A chain that a URDF has.
+struct ChainChoice {
+  std::string base;
+  std::string tip;
+  std::size_t joints = 0;  // that move
 };
 
 }  // namespace offnominal::desk::exchange

@@ -42,8 +42,9 @@ std::string friction_of(const RobotDescription& robot, std::size_t joint, Effect
 }  // namespace
 
 std::string robot_text_of(const ImportedRobot& imported, const std::string& file) {
-  std::string text = fmt::format("# Imported from the URDF {} by `offnominal import-urdf`.\n",
-                                 on_one_line(as_utf8(input_name(file))));
+  std::string text = fmt::format("# Imported from the URDF {} by `offnominal import-urdf{}`.\n",
+                                 on_one_line(as_utf8(input_name(file))),
+                                 on_one_line(as_utf8(options_of(imported.request))));
   for (const ImportNote& note : imported.notes) text += "# " + as_utf8(line_of(note));
   return text + "\n" + robot_text(imported.robot);
 }

@@ -56,6 +56,7 @@ class Importer {
   ImportedRobot run(const ChainRequest& request) {
     result_.base = chain_.base->name;
     result_.tip = chain_.tip->name;
+    result_.request = request;
     RobotDescription& robot = result_.robot;
     name_robot(robot);
     say_what_was_chosen(request);
@@ -495,6 +496,10 @@ const char* name_of(ImportNote::Kind kind) {
       return "assumed";
   }
   return "";
+}
+
+std::vector<ChainChoice> chains_in(std::string_view text, const std::string& file) {
+  return chains_of(parse_urdf(text, file));
 }
 
 ImportedRobot import_urdf(std::string_view text, const std::string& file,

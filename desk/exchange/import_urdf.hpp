@@ -40,6 +40,7 @@ struct ImportedRobot {
   std::string tip;
   std::vector<std::string> links;  // per joint: the link that moves with it
   std::vector<ImportNote> notes;   // by kind, then by line
+  ChainRequest request = {};       // that it was chosen by
 };
 
 /// Links that are fixed to a link of the chain are merged into it, what hangs on other joints is
@@ -54,5 +55,9 @@ struct ImportedRobot {
 [[nodiscard]] ImportedRobot import_urdf(std::string_view text, const std::string& file,
                                         const ChainRequest& request = {},
                                         InertiaRule inertia = InertiaRule::kPossible);
+
+/// The chains that `request` may ask for; one at most: it need not. Throws InputError where
+/// parse_urdf() does.
+[[nodiscard]] std::vector<ChainChoice> chains_in(std::string_view text, const std::string& file);
 
 }  // namespace offnominal::desk::exchange

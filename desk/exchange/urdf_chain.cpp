@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/nearest.hpp"
+#include "common/shell_word.hpp"
 #include "robot/robot.hpp"
 
 namespace offnominal::desk::exchange {
@@ -104,6 +105,27 @@ Link only_tip(const UrdfDocument& document, const Link& base) {
 }
 
 }  // namespace
+
+std::string options_of(const ChainRequest& request) {
+  std::string words;
+  if (request.base) words += " --base " + shell_word(*request.base);
+  if (request.tip) words += " --tip " + shell_word(*request.tip);
+  return words;
+}
+
+std::vector<ChainChoice> chains_of(const UrdfDocument& document) {
+  const Link root = document.model->getRoot();
+  const std::vector<Link> tips = ends_of_chains(root);
+  std::vector<Link> bases{root};
+  bases.insert(bases.end(), tips.begin(), tips.end());
+  std::vector<ChainChoice> chains;
+  for (const Link& base : bases) {
+    for (const Link& tip : ends_of_chains(base)) {
+      chains.push_back({base->name, tip->name, moving_between(base, tip)->size()});
+    }
+  }
+  return chains;
+}
 
 UrdfChain choose_chain(const UrdfDocument& document, const ChainRequest& request) {
   UrdfChain chain;

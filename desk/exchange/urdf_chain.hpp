@@ -19,4 +19,8 @@ struct UrdfChain {
 /// is given and there are several.
 [[nodiscard]] UrdfChain choose_chain(const UrdfDocument& document, const ChainRequest& request);
 
+/// The chains that may be meant: from the root to every link that choose_chain() lists as a tip,
+/// and from those of them that have joints beyond, to theirs. One at most: the file has no choice.
+[[nodiscard]] std::vector<ChainChoice> chains_of(const UrdfDocument& document);
+
 }  // namespace offnominal::desk::exchange

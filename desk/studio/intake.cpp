@@ -12,8 +12,7 @@
 #include "common/file.hpp"
 #include "common/nearest.hpp"
 #include "common/refused.hpp"
-#include "exchange/import_report.hpp"
-#include "exchange/import_urdf.hpp"
+#include "common/shell_word.hpp"
 #include "look/look.hpp"
 #include "look/looked_files.hpp"
 #include "robot/channel_text.hpp"
@@ -52,14 +51,6 @@ bool same_content(const std::filesystem::path& a, const std::filesystem::path& b
   return true;
 }
 
-// A name in a file of the page would be one of this machine.
-void refuse_dbc(const RobotDescription& robot, const std::string& name) {
-  if (!robot.channels || robot.channels->dbc.empty()) return;
-  throw InputError({name, "channels.dbc", "the name of another file",
-                    "none in a file that is dropped on the page",
-                    "start Studio with --robot and this file"});
-}
-
 ordered_json payload_json(const std::optional<Payload>& payload) {
   if (!payload) return nullptr;
   return {{"mass_kg", payload->mass_kg},
@@ -74,7 +65,8 @@ ordered_json payload_json(const std::optional<Payload>& payload) {
 Intake::Intake(IntakeSettings settings)
     : settings_(std::move(settings)), folder_(settings_.limits) {
   if (!settings_.robot_file) return;
-  use_robot(read_robot_file(*settings_.robot_file), {*settings_.robot_file, *settings_.robot_file});
+  use_robot(
+      {read_robot_file(*settings_.robot_file), {*settings_.robot_file, *settings_.robot_file}});
 }
 
 ordered_json Intake::state() {
@@ -87,7 +79,8 @@ ordered_json Intake::take(const std::filesystem::path& file) {
   const std::string kind = lower_extension(file);
   try {
     if (kind == ".toml") {
-      take_robot(file);
+      use_robot(robot_of_toml(file));
+      forget_urdf();
     } else if (kind == ".urdf") {
       take_urdf(file);
     } else {
@@ -104,45 +97,51 @@ ordered_json Intake::take(const std::filesystem::path& file) {
   return state_now();
 }
 
-void Intake::take_robot(const std::filesystem::path& file) {
-  const std::string name = file.filename().string();
-  RobotDescription robot = parse_robot(read_text_file(file), name);
-  refuse_dbc(robot, name);
-  use_robot(std::move(robot), {file.string(), here(name).string()});
-  robot_notes_.clear();
-}
-
 void Intake::take_urdf(const std::filesystem::path& file) {
-  const std::string name = file.filename().string();
-  const exchange::ImportedRobot imported = exchange::import_urdf(read_text_file(file), name);
-  const std::string text = exchange::robot_text_of(imported, name);
-  const std::string own = file.stem().string() + ".toml";
-  RobotDescription robot = parse_robot(text, own);
-  use_robot(std::move(robot), {folder_.put(own, text).string(), here(own).string()});
-  folder_.remove(file);
-  robot_notes_.clear();
-  for (const exchange::ImportNote& note : imported.notes) {
-    robot_notes_.push_back(std::string(name_of(note.kind)) + ": " + note.text);
+  GivenUrdf urdf(file);
+  if (!urdf.has_choice()) {
+    use_robot(urdf.robot(folder_));
+    folder_.remove(file);
+    forget_urdf();
+    return;
   }
+  forget_urdf();
+  urdf_ = std::move(urdf);
 }
 
-void Intake::use_robot(RobotDescription robot, NamedFile file) {
-  const std::optional<RobotDescription> before = std::exchange(robot_, std::move(robot));
+void Intake::forget_urdf() {
+  if (urdf_) folder_.remove(urdf_->file());
+  urdf_.reset();
+}
+
+ordered_json Intake::choose_chain(std::size_t chain) {
+  const std::lock_guard guard(lock_);
+  if (!urdf_) throw Refused(Refused::Why::kNotNow, "There is no URDF with several chains.");
+  use_robot(urdf_->robot(chain, folder_));
+  urdf_->choose(chain);
+  ++revision_;
+  return state_now();
+}
+
+void Intake::use_robot(GivenRobot robot) {
+  std::optional<GivenRobot> before = std::exchange(robot_, std::move(robot));
+  std::optional<ChannelMap> map_before = std::exchange(map_, std::nullopt);
   try {
     // How a log of a bus is decoded may follow from the robot file.
     for (Recording& recording : recordings_) recording.columns = read_columns(recording.path);
-    map_.reset();
     guess();
   } catch (...) {
-    robot_ = before;
+    map_ = std::move(map_before);
+    folder_.remove(robot_->file.path);
+    robot_ = std::move(before);
     throw;
   }
-  if (robot_file_.path != file.path) folder_.remove(robot_file_.path);
-  robot_file_ = std::move(file);
+  if (before && before->file.path != robot_->file.path) folder_.remove(before->file.path);
 }
 
 NamedColumns Intake::read_columns(const std::filesystem::path& file) const {
-  NamedColumns columns = read_looked_files(file, robot_ ? &*robot_ : nullptr, std::nullopt).columns;
+  NamedColumns columns =
+      read_looked_files(file, robot_ ? &robot_->description : nullptr, std::nullopt).columns;
   columns.file = file.filename().string();
   return columns;
 }
@@ -169,7 +168,7 @@ void Intake::take_recording(const std::filesystem::path& file) {
 
 void Intake::guess() {
   if (map_ || !robot_ || recordings_.empty()) return;
-  RobotDescription robot = *robot_;
+  RobotDescription robot = robot_->description;
   // Of readings at rest, which no session is over.
   if (robot.channels && robot.channels->at_rest) robot.channels.reset();
   Look look;
@@ -184,7 +183,7 @@ void Intake::guess() {
                                  : "the columns' names";
   if (!look.t_s && look.channels.period_s == 0) look.channels.time = {};
   if (!map_is_of_robot_) look.channels.extra.clear();
-  map_ = with_all_joints(std::move(look.channels), robot_->joints.size());
+  map_ = with_all_joints(std::move(look.channels), robot_->description.joints.size());
   notes_.clear();
   for (const std::string& note : look.notes) notes_.push_back(folder_.shown(note));
   others_ = std::move(look.unread);
@@ -226,7 +225,7 @@ ordered_json Intake::set_payload(std::size_t id, const std::optional<Payload>& p
 ordered_json Intake::set_signal(const SignalEdit& edit) {
   const std::lock_guard guard(lock_);
   if (!map_) throw Refused(Refused::Why::kNotNow, "There is no recording and robot file yet.");
-  studio::set_signal(*map_, edit, *robot_, all_columns());
+  studio::set_signal(*map_, edit, robot_->description, all_columns());
   map_is_of_robot_ = false;
   ++revision_;
   return state_now();
@@ -257,7 +256,7 @@ ordered_json Intake::preview(std::size_t id, std::size_t pixels) {
   const Recording& recording = recording_of(id);
   const ChannelMap map = map_of(recording);
   ordered_json json{{"revision", revision_}, {"recording", id}};
-  json.update(preview_of(recording.columns, *robot_, map, pixels));
+  json.update(preview_of(recording.columns, robot_->description, map, pixels));
   return json;
 }
 
@@ -266,7 +265,7 @@ ordered_json Intake::findings(std::size_t id, std::size_t pixels) {
   const Recording& recording = recording_of(id);
   const ChannelMap map = map_of(recording);
   ordered_json json{{"revision", revision_}, {"recording", id}};
-  json.update(findings_of(recording.columns, *robot_, map, settings_.keep, pixels));
+  json.update(findings_of(recording.columns, robot_->description, map, settings_.keep, pixels));
   return json;
 }
 
@@ -284,6 +283,17 @@ std::string Intake::free_name(const std::string& stem, const std::string& ending
       return path.string();
     }
   }
+}
+
+// One of the page under the name that it has or would be written by.
+NamedFile Intake::robot_to_use() const {
+  NamedFile file = robot_->file;
+  if (settings_.robot_file && file.path == *settings_.robot_file) return file;
+  file.name = here(file.name).string();
+  if (!same_content(file.path, file.name)) {
+    file.name = free_name(std::filesystem::path(file.name).stem().string(), ".toml");
+  }
+  return file;
 }
 
 SessionFiles Intake::files() {
@@ -308,13 +318,14 @@ SessionFiles Intake::files() {
   if (files.logs.empty()) not_now("A recording to fit is missing: those that are held out judge.");
   const std::vector<std::string> missing = missing_of(*map_);
   if (!missing.empty()) not_now("Choose the column of " + list_of(missing) + " first.");
-  files.robot = robot_file_;
-  const std::string stem = std::filesystem::path(robot_file_.name).stem().string();
-  const bool is_dropped = !settings_.robot_file || robot_file_.path != *settings_.robot_file;
-  if (is_dropped && !same_content(robot_file_.path, robot_file_.name)) {
-    files.robot.name = free_name(stem, ".toml");
+  files.robot = robot_to_use();
+  if (!robot_->import_command.empty()) {
+    files.commands_note +=
+        fmt::format("{}The robot file is made by: {} -o {}", files.commands_note.empty() ? "" : " ",
+                    robot_->import_command, shell_word(files.robot.name));
   }
   if (!map_is_of_robot_) {
+    const std::string stem = std::filesystem::path(robot_->file.name).stem().string();
     files.channels = NamedFile{folder_.put("channels.toml", channels_table(*map_)).string(),
                                free_name(stem + "_channels", ".toml")};
   }
@@ -343,7 +354,7 @@ ordered_json Intake::map_json() const {
   for (const std::string& name : all.names) {
     if (all.columns.contains(name)) columns.push_back(name);
   }
-  return {{"signals", signals_json(*map_, *robot_, all)},
+  return {{"signals", signals_json(*map_, robot_->description, all)},
           {"columns", std::move(columns)},
           {"period_s", map_->period_s > 0 ? ordered_json(map_->period_s) : ordered_json(nullptr)},
           {"from", map_source_},
@@ -355,17 +366,6 @@ ordered_json Intake::map_json() const {
 }
 
 ordered_json Intake::state_now() const {
-  ordered_json robot = nullptr;
-  if (robot_) {
-    ordered_json joints = ordered_json::array();
-    for (std::size_t i = 0; i < robot_->joints.size(); ++i) {
-      joints.push_back({{"joint", i + 1}, {"name", robot_->joints[i].name}});
-    }
-    robot = {{"name", robot_->name},
-             {"file", std::filesystem::path(robot_file_.path).filename().string()},
-             {"joints", std::move(joints)},
-             {"notes", robot_notes_}};
-  }
   ordered_json recordings = ordered_json::array();
   for (const Recording& one : recordings_) {
     std::error_code ignored;
@@ -377,7 +377,8 @@ ordered_json Intake::state_now() const {
   }
   const UploadLimits& limits = folder_.limits();
   return {{"revision", revision_},
-          {"robot", std::move(robot)},
+          {"robot", robot_ ? to_json(*robot_) : ordered_json(nullptr)},
+          {"urdf", urdf_ ? urdf_->json() : ordered_json(nullptr)},
           {"recordings", std::move(recordings)},
           {"limits",
            {{"file", limits.file},

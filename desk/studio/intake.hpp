@@ -12,6 +12,7 @@
 #include "explain/data_fault.hpp"
 #include "log/named_columns.hpp"
 #include "robot/robot.hpp"
+#include "studio/given_robot.hpp"
 #include "studio/session_files.hpp"
 #include "studio/signal_map.hpp"
 #include "studio/upload_folder.hpp"
@@ -36,9 +37,12 @@ class Intake {
   [[nodiscard]] UploadFolder& folder() { return folder_; }
   [[nodiscard]] nlohmann::ordered_json state();
   /// A file that was handed over: a robot file (.toml), a URDF (.urdf) or a recording. One that
-  /// cannot be read is gone. A robot takes the place of the one before, and the columns are
-  /// guessed anew.
+  /// cannot be read is gone. Of a URDF that has several chains of joints, one is chosen by
+  /// choose_chain(); until then the robot before stays. A robot takes the place of the one before,
+  /// and the columns are guessed anew.
   nlohmann::ordered_json take(const std::filesystem::path& file);
+  /// Of the URDF that was handed over last, where it has several chains, the robot of one, from 0.
+  nlohmann::ordered_json choose_chain(std::size_t chain);
   /// A recording.
   nlohmann::ordered_json remove(std::size_t id);
   nlohmann::ordered_json set_held_out(std::size_t id, bool held_out);
@@ -69,10 +73,10 @@ class Intake {
 
   [[nodiscard]] nlohmann::ordered_json state_now() const;
   [[nodiscard]] nlohmann::ordered_json map_json() const;
-  void take_robot(const std::filesystem::path& file);
   void take_urdf(const std::filesystem::path& file);
   void take_recording(const std::filesystem::path& file);
-  void use_robot(RobotDescription robot, NamedFile file);
+  void forget_urdf();
+  void use_robot(GivenRobot robot);
   [[nodiscard]] NamedColumns read_columns(const std::filesystem::path& file) const;
   void guess();
   [[nodiscard]] Recording& recording_of(std::size_t id);
@@ -81,14 +85,14 @@ class Intake {
   // As a session reads this recording.
   [[nodiscard]] ChannelMap map_of(const Recording& recording) const;
   [[nodiscard]] std::string free_name(const std::string& stem, const std::string& ending) const;
+  [[nodiscard]] NamedFile robot_to_use() const;
   [[nodiscard]] std::filesystem::path here(const std::string& name) const;
 
   std::mutex lock_;
   IntakeSettings settings_;
   UploadFolder folder_;
-  std::optional<RobotDescription> robot_;
-  NamedFile robot_file_;
-  std::vector<std::string> robot_notes_;  // of its import
+  std::optional<GivenRobot> robot_;
+  std::optional<GivenUrdf> urdf_;  // the last one, where it has several chains
   std::list<Recording> recordings_;
   std::optional<ChannelMap> map_;
   bool map_is_of_robot_ = false;  // the robot file's own, as they are there

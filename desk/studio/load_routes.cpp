@@ -75,6 +75,9 @@ void set_up_files(Api& api, Stage& stage) {
   api.on(std::string("DELETE /") + kFilesRoute + "/{id}", [&stage](const ApiRequest& asked) {
     return stage.intake().remove(asked.parameters.at("id").get<std::size_t>());
   });
+  api.on("POST /load/chain", [&stage](const ApiRequest& asked) {
+    return stage.intake().choose_chain(asked.body.at("chain").get<std::size_t>() - 1);
+  });
   api.on("POST /load/held_out", [&stage](const ApiRequest& asked) {
     return stage.intake().set_held_out(asked.body.at("recording").get<std::size_t>(),
                                        asked.body.at("held_out").get<bool>());

@@ -14,6 +14,11 @@ const kLooks = [
   [1400, "dark"],
   [400, "light"],
   [400, "dark"],
+];
+/** Of what is looked at with little around it. */
+const kSomeLooks = [
+  [400, "light"],
+  [1400, "dark"],
   [3840, "light"],
 ];
 const kRobotName = `arm${kScript}.toml`;
@@ -58,7 +63,7 @@ async function chooseByKeyboard(page, file, fault) {
   const chooser = await asked;
   if (!chooser.isMultiple()) fault("only one file can be chosen");
   await chooser.setFiles(file);
-  await page.waitForFunction(() => studio.load.doing === "" && studio.load.state.robot !== null);
+  await page.waitForFunction(() => studio.load.doing === "" && studio.load.state.robot?.file.endsWith(".toml") && studio.load.state.urdf === null);
 }
 
 /** As from a file manager. */
@@ -90,6 +95,43 @@ async function checkRefused(page, fault) {
   }
   if (words.includes("/tmp/") || words.includes("offnominal-studio-")) fault(`the message names a folder: ${words}`);
   if ((await page.evaluate(() => studio.load.state.recordings.length)) !== 0) fault("what cannot be read is there");
+}
+
+/** Two arms on one post. */
+const kTwoArms = (() => {
+  const limit = '<limit lower="-2" upper="2" velocity="3" effort="10"/>';
+  const link = (name) => `<link name="${name}"><inertial><origin xyz="0.2 0 0"/><mass value="1"/><inertia ixx="0.01" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial></link>`;
+  const joint = (parent, child, more = "") => `<joint name="to_${child}" type="revolute"><parent link="${parent}"/><child link="${child}"/><axis xyz="0 1 0"/>${limit}${more}</joint>`;
+  const parts = [link("left"), link("left_hand"), link("right"), joint("post", "left"), joint("left", "left_hand"), joint("post", "right", '<mimic joint="to_left"/>')];
+  return `<robot name="two"><link name="post"/>${parts.join("")}</robot>`;
+})();
+
+/** Of a URDF with several chains one is chosen by the keyboard; one that import-urdf refuses is refused beside the choice. */
+async function checkChains(page, looks, fault) {
+  const idle = () => page.waitForFunction(() => studio.load.doing === "");
+  await drop(page, [["two.urdf", kTwoArms]]);
+  await page.waitForSelector("#chain");
+  const words = await page.textContent("#chain");
+  for (const said of ["post to left_hand, 2 joints", "post to right, 1 joint"]) {
+    if (!words.includes(said)) fault(`of the chains is said: ${words}`);
+  }
+  if (await page.evaluate(() => studio.load.state.robot !== null)) fault("a chain is taken unasked");
+  await page.selectOption("#chain", { label: "post to right, 1 joint" });
+  await page.focus("#take-chain");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#chain-wrong");
+  await idle();
+  const wrong = await page.textContent("#chain-wrong");
+  if (!wrong.includes("two.urdf") || !wrong.includes("mimic")) fault(`of a chain with a mimic is said: ${wrong}`);
+  if ((await page.textContent("#chain option:checked")) !== "post to right, 1 joint") fault("a refused chain is chosen no more");
+  await looks("load_chain", kSomeLooks);
+  await page.selectOption("#chain", { label: "post to left_hand, 2 joints" });
+  await page.focus("#take-chain");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => studio.load.doing === "" && (studio.load.state.urdf?.chosen ?? null) !== null);
+  if ((await page.evaluate(() => document.activeElement.id)) !== "take-chain") fault("once a chain is taken the focus is lost");
+  if ((await page.evaluate(() => studio.load.state.robot.joints.length)) !== 2) fault("the chosen chain has not its joints");
+  if ((await page.$("#chain-wrong")) !== null) fault("what was refused stays where another chain is taken");
 }
 
 function errorOf(page, joint) {
@@ -135,8 +177,8 @@ async function checkPayload(page, looks, fault) {
   const focused = () => page.evaluate(() => document.activeElement.id);
   const errors = async () => [await errorOf(page, 1), await errorOf(page, 2)];
   const before = await errors();
-  await page.focus(field("summary"));
-  await page.keyboard.press("Enter");
+  await page.press(field("summary"), "Enter");
+  await page.waitForSelector(`#payload-${id}[open]`);
   await page.fill(field("mass_kg"), "-1");
   for (const name of ["x_m", "y_m"]) await page.fill(field(name), "0");
   await page.press(field("y_m"), "Enter");
@@ -149,14 +191,14 @@ async function checkPayload(page, looks, fault) {
   if (!(await wrong()).includes("allowed: a mass of 0 kg or more and a place in m; to mend: write a mass of 0 to")) fault(`of a negative mass is said: ${await wrong()}`);
   if ((await page.inputValue(field("mass_kg"))) !== "-1") fault("what was written is gone with its refusal");
   if (await page.isVisible("#place-loadMessage .note")) fault("a payload is refused far from its fields");
-  await looks("load_payload");
+  await looks("load_payload", kSomeLooks);
   await page.fill(field("mass_kg"), "0.05");
   await settled(page, () => page.press(field("mass_kg"), "Enter"));
   if ((await focused()) !== field("mass_kg").slice(1)) fault("once the payload is set the focus is lost");
   const summary = await page.textContent(field("summary"));
   if (!summary.includes("0.05 kg at [0, 0, 0.1] m")) fault(`a payload that is set reads ${summary}`);
   const loaded = await errors();
-  if (loaded[1] === before[1]) fault("with a payload the error stays as it was");
+  if (loaded.join() === before.join()) fault("with a payload the error stays as it was");
   await page.focus(field("remove"));
   await settled(page, () => page.keyboard.press("Enter"));
   if ((await focused()) !== field("summary").slice(1)) fault("once the payload is taken away the focus is lost");
@@ -220,11 +262,13 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   const files = await strangersFiles(options, folder);
   const { address, end } = await start([]);
   const page = await openPage(await newContext(), address, "body[data-load]", ["422 (Unprocessable", "409 (Conflict)"], fault);
-  const looks = (name) => look(page, kLooks, name, { ...options, axeSource }, fault);
+  const looks = (name, sizes = kLooks) => look(page, sizes, name, { ...options, axeSource }, fault);
   await checkEmpty(page, looks, fault);
   await page.setViewportSize({ width: 1400, height: 900 });
   await checkRefused(page, fault);
+  await checkChains(page, looks, fault);
   await chooseByKeyboard(page, files.robot, fault);
+  if ((await page.$("#chain")) !== null) fault("beside a robot file a chain of another one can be chosen");
   await settled(page, () => drop(page, [[kRecordingName, files.text]]));
   await checkColumns(page, looks, fault);
   await checkPayload(page, looks, fault);

@@ -7,6 +7,11 @@ export function isRobotFile(name: string) {
   return kRobotKinds.some((kind) => name.toLowerCase().endsWith(kind));
 }
 
+/** "1 joint", "7 joints". */
+export function jointsWords(count: number): string {
+  return `${count} ${count === 1 ? "joint" : "joints"}`;
+}
+
 export function sizeWords(bytes: number): string {
   const units = ["bytes", "KiB", "MiB", "GiB"];
   const power = Math.floor(Math.log2(Math.max(bytes, 1)) / 10);

@@ -1,7 +1,8 @@
 import { element, within, type Child } from "../report/element";
 import { hiddenText } from "../report/words";
-import type { LoadRecording, LoadState, SignalEdit } from "./api";
-import { isRobotFile, sizeWords } from "./files";
+import type { LoadRecording, LoadRobot, LoadState, LoadUrdf, SignalEdit } from "./api";
+import { isRobotFile, jointsWords, sizeWords } from "./files";
+import { chainElement } from "./load_chain";
 import { mapContent, showPreview } from "./load_map";
 import { payloadElement } from "./load_payload";
 import { addToNote, button, foldWith, holdControls, noteWith, replaceContent, sectionWith } from "./parts";
@@ -148,21 +149,29 @@ export const loadActions = {
   }),
 };
 
+type Line = (done: boolean, title: string, ...words: Child[]) => HTMLElement;
+
+function robotLine(line: Line, robot: LoadRobot | null, urdf: LoadUrdf | null) {
+  const words = robot === null ? "" : `${robot.file}, “${robot.name}”, ${jointsWords(robot.joints.length)}`;
+  if (urdf !== null && urdf.chosen === null) {
+    const before = robot === null ? "" : ` Until then the robot is ${words}.`;
+    return line(false, "The robot’s chain.", `${urdf.file} has several chains of joints: choose the one that was recorded.${before}`, chainElement(urdf));
+  }
+  if (urdf !== null) return line(true, "Robot:", words, chainElement(urdf));
+  if (robot !== null) return line(true, "Robot:", words);
+  return line(false, "A robot file.", "What is known of the arm: ", element("code", {}, ".toml"), ", or a URDF to make one of. Without either, ", element("code", {}, "offnominal new"), " begins one from a table of lengths and masses.");
+}
+
 /** What is there, and what comes next: a line each. */
-function stepsContent({ robot, recordings, map }: LoadState) {
+function stepsContent({ robot, urdf, recordings, map }: LoadState) {
   let number = 0;
-  const line = (done: boolean, title: string, ...words: Child[]) => {
+  const line: Line = (done, title, ...words) => {
     const mark = element("span", { class: "mark", "aria-hidden": "true" }, done ? "✓" : String(++number));
     const told = element("div", {}, element("b", {}, title), hiddenText(done ? "done" : "still to do"), " ", ...words);
     return element("li", { class: done ? "done" : "" }, mark, told);
   };
   const list = element("ol", { class: "load-steps" });
-  const joints = robot === null ? 0 : robot.joints.length;
-  list.append(
-    robot === null
-      ? line(false, "A robot file.", "What is known of the arm: ", element("code", {}, ".toml"), ", or a URDF to make one of. Without either, ", element("code", {}, "offnominal new"), " begins one from a table of lengths and masses.")
-      : line(true, "Robot:", `${robot.file}, “${robot.name}”, ${joints} ${joints === 1 ? "joint" : "joints"}`),
-  );
+  list.append(robotLine(line, robot, urdf));
   const wanted = "Time, position and torque or motor current of every joint while the arm moves; several will do. Velocities are welcome.";
   const none = recordings.length === 0;
   list.append(none ? line(false, "A recording.", wanted) : line(true, "Recordings:", recordingList(recordings)));

@@ -10,7 +10,9 @@ namespace offnominal::test {
 namespace {
 
 using desk::InputError;
+using desk::exchange::ChainChoice;
 using desk::exchange::ChainRequest;
+using desk::exchange::chains_in;
 using desk::exchange::import_urdf;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -146,6 +148,16 @@ TEST(UrdfRefusal, ListsTheTipsWhereThereAreSeveral) {
       HasSubstr("line 5, link `world`: found more than one chain of moving joints beyond it; "
                 "allowed: --tip one of hand (3 joints), finger (4 joints), other_finger (4 "
                 "joints); to mend: add --tip"));
+}
+
+TEST(UrdfChains, AreFromTheRootAndFromWhereTheyPart) {
+  std::string words;
+  for (const ChainChoice& chain : chains_in(sample_arm().text(), "arm.urdf")) {
+    words += chain.base + " " + chain.tip + " " + std::to_string(chain.joints) + "; ";
+  }
+  EXPECT_EQ(words,
+            "world hand 3; world finger 4; world other_finger 4; hand finger 1; "
+            "hand other_finger 1; ");
 }
 
 TEST(UrdfRefusal, KnowsABaseThatIsNotAboveTheTip) {

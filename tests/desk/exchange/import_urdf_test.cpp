@@ -327,8 +327,9 @@ TEST(ImportUrdf, SaysThatWhatFollowsAJointOfTheChainIsHeldAllTheSame) {
 TEST(ImportUrdf, WritesARobotFileThatIsReadAgainWithTheNotesAsComments) {
   const ImportedRobot imported = imported_arm();
   const std::string text = desk::exchange::robot_text_of(imported, "/somewhere/arm.urdf");
-  EXPECT_THAT(
-      text, testing::StartsWith("# Imported from the URDF arm.urdf by `offnominal import-urdf`."));
+  EXPECT_THAT(text, testing::StartsWith(
+                        "# Imported from the URDF arm.urdf by `offnominal import-urdf --base "
+                        "world --tip hand`.\n"));
   EXPECT_THAT(text, HasSubstr("\n# merged: link `cover` (0.4 kg) into `upper` (line 34)\n"));
   const auto robot = desk::parse_robot(text, "arm.toml");
   EXPECT_EQ(robot.joint_count(), 3);

@@ -13,6 +13,7 @@
 
 #include "benchmark/benchmark_file.hpp"
 #include "common/error.hpp"
+#include "desk/exchange/urdfs.hpp"
 #include "desk/sil/serial_robot.hpp"
 #include "desk/studio/api_document.hpp"
 #include "desk/studio/benchmark_results.hpp"
@@ -156,6 +157,11 @@ Routes of_files() {
   EXPECT_EQ(studio.get("load").first, 200);
   EXPECT_EQ(studio.get("state").first, 409);
   EXPECT_EQ(give("run.csv", offnominal::test::strange_csv(1)), 200);
+  EXPECT_EQ(studio.post("load/chain", {{"chain", 1}}).first, 409);
+  EXPECT_EQ(give("arm.urdf", offnominal::test::sample_arm().text()), 200);
+  EXPECT_EQ(studio.get("load").first, 200);
+  EXPECT_EQ(studio.post("load/chain", {{"chain", 1}}).first, 200);
+  EXPECT_EQ(studio.post("load/chain", {{"chain", 99}}).first, 400);
   EXPECT_EQ(give("arm.toml", offnominal::test::robot_text_of_arm()), 200);
   EXPECT_EQ(give("arm.toml", "joints = 3"), 422);
   EXPECT_EQ(give("more.csv", offnominal::test::strange_csv(0.7)), 200);

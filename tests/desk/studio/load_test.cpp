@@ -13,6 +13,7 @@
 #include "common/refused.hpp"
 #include "compare/compare.hpp"
 #include "compare/measurement.hpp"
+#include "desk/studio/loading.hpp"
 #include "desk/studio/strange_files.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "log/read_log.hpp"
@@ -29,6 +30,7 @@ namespace {
 using nlohmann::ordered_json;
 using offnominal::test::arm_description;
 using offnominal::test::content_of;
+using offnominal::test::Loading;
 using offnominal::test::put;
 using offnominal::test::robot_text_of_arm;
 using offnominal::test::strange_csv;
@@ -104,24 +106,6 @@ ChannelMap read_channels_of(const ordered_json& state) {
   put(folder / "channels.toml", state.at("map").at("text").get<std::string>());
   return read_channels_file(folder / "channels.toml", 2);
 }
-
-class Loading : public ::testing::Test {
- protected:
-  ordered_json give(const std::string& name, const std::string& content) {
-    return intake_.take(intake_.folder().put(name, content));
-  }
-  std::string refusal_of(const std::string& name, const std::string& content) {
-    try {
-      static_cast<void>(give(name, content));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
-
-  TemporaryFolder folder_;
-  Intake intake_{{.folder = folder_.path()}};
-};
 
 TEST_F(Loading, GuessesTheColumnsAsLookDoesWhicheverFileComesFirst) {
   EXPECT_TRUE(give("run.csv", strange_csv(1)).at("map").is_null());
@@ -322,19 +306,6 @@ TEST_F(Loading, SaysWhatIsMissingBeforeASessionCanBegin) {
   EXPECT_EQ(refusal(), "");
   static_cast<void>(intake_.set_held_out(1, true));
   EXPECT_THAT(refusal(), HasSubstr("held out"));
-}
-
-TEST_F(Loading, ImportsAUrdfAndWritesItsRobotFile) {
-  const char* urdf = R"(<robot name="one"><link name="base"/>
-    <link name="arm"><inertial><origin xyz="0.2 0 0"/><mass value="1"/>
-    <inertia ixx="0.01" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial></link>
-    <joint name="shoulder" type="revolute"><parent link="base"/><child link="arm"/>
-    <axis xyz="0 1 0"/><limit lower="-2" upper="2" velocity="3" effort="10"/></joint></robot>)";
-  const ordered_json state = give("one.urdf", urdf);
-  EXPECT_EQ(state.at("robot").at("file"), "one.toml");
-  EXPECT_EQ(state.at("robot").at("joints").size(), 1U);
-  EXPECT_THAT(refusal_of("two.urdf", "<robot/>"), HasSubstr("two.urdf"));
-  EXPECT_EQ(intake_.state().at("robot").at("file"), "one.toml");
 }
 
 TEST_F(Loading, RefusesWhatCannotBeReadByItsNameAndKeepsTheRest) {
