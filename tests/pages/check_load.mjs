@@ -177,6 +177,8 @@ async function checkPayload(page, looks, fault) {
   const focused = () => page.evaluate(() => document.activeElement.id);
   const errors = async () => [await errorOf(page, 1), await errorOf(page, 2)];
   const before = await errors();
+  // The look for accessibility has unfolded everything.
+  await page.$eval(`#payload-${id}`, (fold) => (fold.open = false));
   await page.press(field("summary"), "Enter");
   await page.waitForSelector(`#payload-${id}[open]`);
   await page.fill(field("mass_kg"), "-1");

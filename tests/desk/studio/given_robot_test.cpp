@@ -85,7 +85,7 @@ TEST_F(Loading, AsksForOneOfSeveralChainsOfAUrdfAndWritesItAsImportUrdfDoes) {
                                     "arm.urdf"));
   // Another one, and then a robot file, which leaves no choice.
   EXPECT_EQ(intake_.choose_chain(1).at("robot").at("joints").size(), 4U);
-  EXPECT_TRUE(give("arm.toml", robot_text_of_arm()).at("urdf").is_null());
+  EXPECT_TRUE(give("arm.toml", content_of(folder_ / "arm.toml")).at("urdf").is_null());
   EXPECT_THROW(static_cast<void>(intake_.choose_chain(0)), Refused);
   EXPECT_EQ(intake_.files().commands_note, "");
 }
