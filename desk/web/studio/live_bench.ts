@@ -87,6 +87,6 @@ export function accommodationSwitch() {
     "div",
     { class: "live-row" },
     node,
-    element("span", { id: "accommodation-name" }, "Accommodation: the controller compensates for the fault that the monitor has named"),
+    element("span", { id: "accommodation-name" }, "Accommodation: the controller compensates for a fault that the monitor has detected"),
   );
 }

@@ -95,12 +95,18 @@ export function valueWords({ value, unit, ci95, why_no_ci95 }: Estimated) {
   return why_no_ci95 ? `${text}, no interval: ${why_no_ci95}` : text;
 }
 
-export function parameterList(parameters: [string, Estimated][]) {
+/** What a later step has made of a fitted number; "" where it prints as it was fitted. */
+export function laterWords({ value, unit }: Estimated, now: number | undefined) {
+  const text = (each: number | null) => withUnit(formatNumber(each, ".4g"), unit);
+  return now === undefined || text(now) === text(value) ? "" : `; now ${text(now)}, fitted again with a later step`;
+}
+
+/** `now`: of numbers that later steps have fitted again, the value that the model has. */
+export function parameterList(parameters: [string, Estimated][], now: Record<string, { value: number }> = {}) {
   const list = element("ul", { class: "parameters" });
   for (const [name, parameter] of parameters) {
-    list.append(
-      element("li", {}, element("b", {}, name.replaceAll("_", " ")), ` ${valueWords(parameter)}`),
-    );
+    const words = `${valueWords(parameter)}${laterWords(parameter, now[name]?.value)}`;
+    list.append(element("li", {}, element("b", {}, name.replaceAll("_", " ")), ` ${words}`));
   }
   return list;
 }

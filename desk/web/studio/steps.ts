@@ -65,7 +65,7 @@ function stepRow(step: Step, number: number, revision: number, actions: Actions)
   );
   const head = element("div", { class: "step-head" }, element("h3", {}, `${number}. ${name}`), fall, undo);
   const row = element("li", { class: "card step" }, head);
-  row.append(parameterList(Object.entries(step.parameters)));
+  row.append(parameterList(Object.entries(step.parameters), step.draggable));
   for (const doubt of step.doubts) row.append(noteWith("warn", doubt));
   row.append(stepEvidence(step, revision));
   if (Object.keys(step.draggable).length > 0) row.append(dragElement(step, actions));
@@ -86,7 +86,7 @@ function stepDetails(step: Step) {
   return details;
 }
 
-export function stepList({ steps, revision }: State, actions: Actions) {
+export function stepList({ steps, revision, held_out }: State, actions: Actions) {
   if (steps.length === 0) {
     return element(
       "p",
@@ -96,5 +96,7 @@ export function stepList({ steps, revision }: State, actions: Actions) {
   }
   const list = element("ol", { class: "steps" });
   steps.forEach((step, index) => list.append(stepRow(step, index + 1, revision, actions)));
-  return list;
+  if (held_out === "recordings" || steps.length < 2) return list;
+  const why = "No recording is held out: each step is judged on parts of the recordings that its own fit leaves out. What a step begins with may differ from what the one before it ended with.";
+  return element("div", {}, list, element("p", { class: "soft" }, why));
 }

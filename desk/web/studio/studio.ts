@@ -79,7 +79,7 @@ function showUnloaded({ robot }: LiveSetup) {
   document.title = `Studio: ${robot.name}`;
   placeOf("desk").hidden = true;
   const header = element("header", {}, element("h1", {}, `Studio: ${robot.name}`));
-  header.append(element("p", { class: "subtitle" }, `${robot.file} · no recording is loaded: a detection that is explained is`));
+  header.append(element("p", { class: "subtitle" }, `${robot.file} · no recording is loaded; “Explain this” at a detection loads one`));
   replaceContent(placeOf("head"), header);
 }
 

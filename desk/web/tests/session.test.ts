@@ -6,7 +6,7 @@ import { isRobotFile, sizeWords } from "../studio/files";
 import { appendSteps, emptyCurves, liveScale } from "../studio/live_curves";
 import { errorOf, nextConfirm, worstJoint } from "../studio/session";
 import { columnOptions, editOf, signalWords } from "../studio/signals";
-import { valueWords } from "../studio/parts";
+import { laterWords, valueWords } from "../studio/parts";
 import { step } from "./samples";
 
 function joint(number: number, now: number | null, moves = true): Joint {
@@ -116,4 +116,11 @@ test("WhatHasLeftTheWindowIsForgotten", () => {
 test("TheScaleReachesBeyondTheHighestValue", () => {
   const { top, step: width } = liveScale({ residual: [[0, 0.4]], threshold: [[0, 1.9]] });
   assert.ok(top >= 1.9 && top / width === Math.round(top / width));
+});
+
+test("ANumberThatALaterStepHasFittedAgainSaysWhatItIsNow", () => {
+  const level = { value: 41.447, unit: "N", ci95: [35.46, 47.45], why_no_ci95: "" };
+  assert.match(laterWords(level, 20.8012), /^; now 20\.8\sN, fitted again with a later step$/);
+  assert.equal(laterWords(level, 41.4471), "");
+  assert.equal(laterWords(level, undefined), "");
 });
