@@ -182,7 +182,8 @@ std::string verdict_of(const Identification& result, const IdentifyNames& names)
   words += ".";
   if (const auto joints = joints_hardly_explained(result); !joints.empty() && !result.payload) {
     words += fmt::format(
-        " Of the {} of joint {} most is still missed, and no bound of this file is worth much there: "
+        " Of the {} of joint {} most is still missed, and no bound of this file is worth much "
+        "there: "
         "`offnominal explain` says what else acts on it, `offnominal look` whether its signals are "
         "what they are taken for.",
         effort_name(errors.front().unit), list_of(joints));
@@ -197,8 +198,7 @@ report::Level level_of(const Identification& result) {
   if (!result.objections.empty() || !result.doubts.empty()) return report::Level::kBad;
   const bool all_told =
       result.determined_count() == result.base.size() && joints_hardly_explained(result).empty();
-  return !all_told ? report::Level::kWarn
-                                                        : report::Level::kGood;
+  return !all_told ? report::Level::kWarn : report::Level::kGood;
 }
 
 std::string text_of(const Identification& result, const IdentifyNames& names) {

@@ -4,12 +4,12 @@
 
 namespace offnominal::desk {
 
-/// The natural cubic spline through (at, value), for smooth quantities such as positions; solved once,
-/// asked as often as wanted.
+/// The natural cubic spline through (at, value), for smooth quantities such as positions; solved
+/// once, asked as often as wanted.
 class Spline {
  public:
-  /// Throws std::invalid_argument unless `at` ascends strictly, has at least 3 points and is as long
-  /// as `value`.
+  /// Throws std::invalid_argument unless `at` ascends strictly, has at least 3 points and is as
+  /// long as `value`.
   Spline(Eigen::VectorXd at, Eigen::VectorXd value);
 
   /// Values at `wanted`; quickest where they ascend. Throws std::invalid_argument unless every one

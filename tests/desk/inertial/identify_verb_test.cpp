@@ -101,7 +101,8 @@ TEST_F(IdentifyVerb, HasItsNumbersInJsonAndOnAPage) {
   EXPECT_THAT(content_of(folder_ / "page.html"), HasSubstr("Base parameters"));
 }
 
-// A torque that nothing which is fitted follows: the file is better than before, and still no model.
+// A torque that nothing which is fitted follows: the file is better than before, and still no
+// model.
 TEST_F(IdentifyVerb, SaysOfWhichJointMostIsStillMissed) {
   const CommandResult usual = identify_file("r.toml", {"--json"});
   EXPECT_THAT(usual.out, testing::Not(HasSubstr("most is still missed")));

@@ -32,9 +32,8 @@ TEST(Spline, EqualsScipy) {
 TEST(Spline, EqualsScipyInAnyOrderAndTimeAfterTime) {
   const offnominal::desk::Spline spline(kAt, kValue);
   const VectorXd wanted = vector({.8, 0, .4, .05, .79, .27, .2});
-  const VectorXd expected =
-      vector({3, 1, -0.9853855721393032, 1.6665111940298507, 2.950273562741846,
-              -0.4433582089552243, 1.025566611387507});
+  const VectorXd expected = vector({3, 1, -0.9853855721393032, 1.6665111940298507,
+                                    2.950273562741846, -0.4433582089552243, 1.025566611387507});
   EXPECT_LT((spline.at(wanted) - expected).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_LT((spline.at(wanted.reverse()) - expected.reverse()).cwiseAbs().maxCoeff(), 1e-12);
 }
