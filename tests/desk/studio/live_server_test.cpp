@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "desk/sil/serial_robot.hpp"
-#include "desk/studio/api_document.hpp"
+#include "desk/studio/served_studio.hpp"
 #include "desk/studio/studio_input.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "live/live.hpp"
@@ -24,9 +24,8 @@
 namespace {
 
 using nlohmann::json;
-using offnominal::test::api_document;
-using offnominal::test::ApiDocument;
 using offnominal::test::by_joint_robot;
+using offnominal::test::ServedStudio;
 using offnominal::test::TemporaryFolder;
 using namespace offnominal::desk;
 using namespace offnominal::desk::studio;
@@ -45,50 +44,12 @@ Input read_written(const std::filesystem::path& robot_file, const std::string& f
 
 class LiveServer : public ::testing::Test {
  protected:
-  void TearDown() override {
-    server_.stop();
-    thread_.join();
-  }
-
-  [[nodiscard]] std::string at(const std::string& path) const {
-    const std::string address = server_.address();
-    return address.substr(address.find('/', std::string("http://").size())) + "api/" + path;
-  }
-  [[nodiscard]] httplib::Client client() const {
-    httplib::Client made("127.0.0.1", server_.port());
-    made.set_read_timeout(120);
-    return made;
-  }
-  [[nodiscard]] httplib::Headers own() const {
-    return {{"Origin", "http://127.0.0.1:" + std::to_string(server_.port())}};
-  }
-  // It is as the document of the API has it.
-  static std::pair<int, json> taken(const std::string& method, const std::string& path,
-                                    const httplib::Result& result) {
-    const json answer = json::parse(result->body);
-    EXPECT_TRUE(api_document().keeps(ApiDocument::route_of(method, path), result->status, answer));
-    return {result->status, answer};
-  }
-  std::pair<int, json> get(const std::string& path) {
-    const auto result = client().Get(at(path));
-    EXPECT_TRUE(result);
-    return taken("GET", path, result);
-  }
+  std::pair<int, json> get(const std::string& path) { return studio_.get(path); }
   std::pair<int, json> post(const std::string& path, const json& body) {
-    const auto result = client().Post(at(path), own(), body.dump(), "application/json");
-    EXPECT_TRUE(result);
-    return taken("POST", path, result);
+    return studio_.post(path, body);
   }
-  // What there is once `is_there` says so; no time is asserted.
   json wait_for(const std::function<bool(const json&)>& is_there) {
-    json now;
-    for (int i = 0; i < 6000; ++i) {
-      now = get("live/now?from=0").second;
-      if (is_there(now)) return now;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    ADD_FAILURE() << "did not come about: " << now;
-    return now;
+    return studio_.wait_for("live/now?from=0", is_there);
   }
 
   std::unique_ptr<live::Live> bench() {
@@ -104,9 +65,8 @@ class LiveServer : public ::testing::Test {
 
   TemporaryFolder folder_;
   std::filesystem::path robot_file_ = folder_ / "arm.toml";
-  Server server_{bench(),
-                 [this](const std::string& file) { return read_written(robot_file_, file); }, 0};
-  std::thread thread_{[this] { server_.run(); }};
+  ServedStudio studio_{bench(),
+                       [this](const std::string& file) { return read_written(robot_file_, file); }};
 };
 
 TEST_F(LiveServer, SaysWhatThereIsAndHasNoSessionYet) {
@@ -136,8 +96,10 @@ TEST_F(LiveServer, GivesEveryStepOnceToWhoAsksForWhatIsNew) {
 
 TEST_F(LiveServer, TakesChangesOnlyFromItsOwnPage) {
   const json fault{{"kind", "friction_jump"}, {"joint", 1}, {"size", 1}};
-  EXPECT_EQ(client().Post(at("live/faults"), fault.dump(), "application/json")->status, 403);
-  EXPECT_EQ(client().Get("/api/live")->status, 404);
+  EXPECT_EQ(
+      studio_.client().Post(studio_.at("live/faults"), fault.dump(), "application/json")->status,
+      403);
+  EXPECT_EQ(studio_.client().Get("/api/live")->status, 404);
   for (const json& body :
        {json{{"kind", "no_such"}}, json::array(), json{{"kind", "friction_jump"}, {"joint", 9}},
         json{{"kind", "friction_jump"}, {"joint", 1}, {"size", -1}},
@@ -176,13 +138,14 @@ TEST_F(LiveServer, HandsADetectionToTheAnalysis) {
 }
 
 TEST_F(LiveServer, WritesARecordingWholeAndOverNothing) {
-  EXPECT_EQ(client().Delete(at("live/recording"), own())->status, 409);
+  EXPECT_EQ(studio_.client().Delete(studio_.at("live/recording"), studio_.own())->status, 409);
   wait_for([](const json& now) { return now.at("judging").get<bool>(); });
   for (const char* name : {"arm_live.csv", "arm_live_2.csv"}) {
     ASSERT_EQ(post("live/recording", json::object()).first, 200);
     EXPECT_EQ(post("live/recording", json::object()).first, 409);
     wait_for([](const json& now) { return now.at("recording_s") > 0.3; });
-    const json written = json::parse(client().Delete(at("live/recording"), own())->body);
+    const json written =
+        json::parse(studio_.client().Delete(studio_.at("live/recording"), studio_.own())->body);
     EXPECT_EQ(written.at("saved"), (folder_ / name).string());
     const Log log = read_log(folder_ / name, 2, std::nullopt);
     EXPECT_GT(log.sample_count(), 200);

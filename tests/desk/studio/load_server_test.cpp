@@ -1,24 +1,23 @@
 // Files that the page is given behind the server: its routes, and the session that comes of them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <httplib.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <thread>
 #include <utility>
 
+#include "desk/studio/served_studio.hpp"
 #include "desk/studio/strange_files.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "studio/intake.hpp"
-#include "studio/server.hpp"
 
 namespace {
 
 using nlohmann::json;
 using offnominal::test::open_files;
 using offnominal::test::robot_text_of_arm;
+using offnominal::test::ServedStudio;
 using offnominal::test::strange_csv;
 using offnominal::test::TemporaryFolder;
 using namespace offnominal::desk;
@@ -29,41 +28,19 @@ using ::testing::Not;
 
 class LoadServer : public ::testing::Test {
  protected:
-  void TearDown() override {
-    server_.stop();
-    thread_.join();
-  }
-  [[nodiscard]] std::string at(const std::string& path) const {
-    const std::string address = server_.address();
-    return address.substr(address.find('/', std::string("http://").size())) + "api/" + path;
-  }
-  [[nodiscard]] httplib::Client client() const {
-    httplib::Client made("127.0.0.1", server_.port());
-    made.set_read_timeout(120);
-    return made;
-  }
-  [[nodiscard]] httplib::Headers own() const {
-    return {{"Origin", "http://127.0.0.1:" + std::to_string(server_.port())}};
-  }
-  std::pair<int, json> answer_of(const httplib::Result& result) {
-    EXPECT_TRUE(result);
-    if (!result) return {0, nullptr};
-    return {result->status, json::parse(result->body, nullptr, false)};
-  }
   std::pair<int, json> give(const std::string& name, const std::string& content) {
-    return answer_of(
-        client().Post(at("load/files?name=" + name), own(), content, "application/octet-stream"));
+    return studio_.post_text("load/files?name=" + name, content, "application/octet-stream");
   }
   std::pair<int, json> post(const std::string& path, const json& body) {
-    return answer_of(client().Post(at(path), own(), body.dump(), "application/json"));
+    return studio_.post(path, body);
   }
-  json get(const std::string& path) { return answer_of(client().Get(at(path))).second; }
+  json get(const std::string& path) { return studio_.get(path).second; }
 
   TemporaryFolder folder_;
-  Server server_{std::make_unique<Intake>(IntakeSettings{
-                     .folder = folder_.path(), .limits = {.file = 2'000'000, .all = 3'000'000}}),
-                 open_files, 0};
-  std::thread thread_{[this] { server_.run(); }};
+  ServedStudio studio_{
+      std::make_unique<Intake>(IntakeSettings{.folder = folder_.path(),
+                                              .limits = {.file = 2'000'000, .all = 3'000'000}}),
+      open_files};
 };
 
 TEST_F(LoadServer, BeginsWithNothingAndBecomesASession) {
@@ -71,7 +48,7 @@ TEST_F(LoadServer, BeginsWithNothingAndBecomesASession) {
       get("live"),
       (json{
           {"source", nullptr}, {"loaded", false}, {"takes_files", true}, {"has_results", false}}));
-  EXPECT_EQ(client().Get(at("state"))->status, 409);
+  EXPECT_EQ(studio_.client().Get(studio_.at("state"))->status, 409);
   EXPECT_EQ(post("load/session", json::object()).first, 409);
   ASSERT_EQ(give("arm.toml", robot_text_of_arm()).first, 200);
   ASSERT_EQ(give("run.csv", strange_csv(1)).first, 200);
@@ -119,9 +96,9 @@ TEST_F(LoadServer, GivesTheSessionAndItsCommandsWhatARecordingCarried) {
               HasSubstr("--payload run.csv=0.5@0,0,0.1 --payload more.csv=0.25@0,0,0.1"));
   EXPECT_THAT(commands.at(1).get<std::string>(), Not(HasSubstr("more.csv")));
   // Without it, the next session is of the arm alone.
-  EXPECT_EQ(client().Delete(at("load/payload/1"), own())->status, 200);
-  EXPECT_EQ(client().Delete(at("load/payload/2"), own())->status, 200);
-  EXPECT_EQ(client().Delete(at("load/payload/3"), own())->status, 400);
+  EXPECT_EQ(studio_.client().Delete(studio_.at("load/payload/1"), studio_.own())->status, 200);
+  EXPECT_EQ(studio_.client().Delete(studio_.at("load/payload/2"), studio_.own())->status, 200);
+  EXPECT_EQ(studio_.client().Delete(studio_.at("load/payload/3"), studio_.own())->status, 400);
   ASSERT_EQ(post("load/session", {{"replace", true}}).first, 200);
   EXPECT_LT(get("state").at("joints").at(0).at("now").at("fitted_percent"),
             findings.at("joints").at(0).at("error_percent"));
@@ -129,21 +106,26 @@ TEST_F(LoadServer, GivesTheSessionAndItsCommandsWhatARecordingCarried) {
 
 TEST_F(LoadServer, TakesLongBodiesForFilesAloneAndSaysTheLimit) {
   const std::string long_body(20'000, ' ');
-  EXPECT_EQ(post("load/signal", {{"quantity", long_body}}).first, 413);
+  // Refused before the API: in plain text, which no answer of a route is.
+  EXPECT_EQ(studio_.client()
+                .Post(studio_.at("load/signal"), studio_.own(),
+                      json{{"quantity", long_body}}.dump(), "application/json")
+                ->status,
+            413);
   EXPECT_EQ(give("long.csv", long_body).first, 422);  // no recording, but let in
   const auto [status, answer] = give("huge.csv", std::string(20'000'000, ' '));
   EXPECT_EQ(status, 422);
   EXPECT_THAT(answer.at("error").get<std::string>(), HasSubstr("1.91 MiB a file"));
-  EXPECT_EQ(client()
-                .Post(at("load/files?name=a.csv"),
-                      {{"Origin", "http://127.0.0.1:" + std::to_string(server_.port())},
-                       {"Content-Encoding", "gzip"}},
-                      "x", "application/octet-stream")
+  EXPECT_EQ(studio_.client()
+                .Post(studio_.at("load/files?name=a.csv"),
+                      {*studio_.own().begin(), {"Content-Encoding", "gzip"}}, "x",
+                      "application/octet-stream")
                 ->status,
             415);
-  EXPECT_EQ(
-      client().Post(at("load/files?name=a.csv"), "t,q1\n", "application/octet-stream")->status,
-      403);
+  EXPECT_EQ(studio_.client()
+                .Post(studio_.at("load/files?name=a.csv"), "t,q1\n", "application/octet-stream")
+                ->status,
+            403);
   EXPECT_EQ(give("..%2Fa.csv", "x").first, 400);
   EXPECT_EQ(give("a%00b.csv", "x").first, 400);
   EXPECT_THAT(get("load").at("recordings"), IsEmpty());
@@ -155,7 +137,7 @@ TEST_F(LoadServer, RefusesWhatItDoesNotUnderstand) {
   give("run.csv", strange_csv(1));
   for (const char* path : {"load/preview", "load/preview?recording=1&pixels=1",
                            "load/preview?recording=9&pixels=300", "load/findings?pixels=300"}) {
-    EXPECT_EQ(client().Get(at(path))->status, 400) << path;
+    EXPECT_EQ(studio_.client().Get(studio_.at(path))->status, 400) << path;
   }
   for (const json& body :
        {json::array(), json{{"quantity", 3}}, json{{"quantity", "torque"}, {"joint", -1}},
@@ -163,8 +145,8 @@ TEST_F(LoadServer, RefusesWhatItDoesNotUnderstand) {
         json{{"quantity", "torque"}, {"joint", 1}, {"scale", "1"}}}) {
     EXPECT_EQ(post("load/signal", body).first, 400) << body;
   }
-  EXPECT_EQ(client().Delete(at("load/files/9"), own())->status, 400);
-  EXPECT_EQ(client().Delete(at("load/files/1"), own())->status, 200);
+  EXPECT_EQ(studio_.client().Delete(studio_.at("load/files/9"), studio_.own())->status, 400);
+  EXPECT_EQ(studio_.client().Delete(studio_.at("load/files/1"), studio_.own())->status, 200);
   EXPECT_TRUE(get("load").at("map").is_null());
 }
 

@@ -56,7 +56,7 @@ class ServedStudio {
   // Routes that have given an answer.
   [[nodiscard]] const std::set<std::string>& answered() const { return answered_; }
 
- private:
+  // For requests that the page would not make: where, by whom, and the headers of its own.
   [[nodiscard]] std::string at(const std::string& path) const {
     const std::string address = server_.address();
     return address.substr(address.find('/', std::string("http://").size())) + "api/" + path;
@@ -69,6 +69,8 @@ class ServedStudio {
   [[nodiscard]] httplib::Headers own() const {
     return {{"Origin", "http://127.0.0.1:" + std::to_string(server_.port())}};
   }
+
+ private:
   Answer taken(const std::string& method, const std::string& path, const httplib::Result& result) {
     const std::string route = ApiDocument::route_of(method, path);
     if (!result) {
