@@ -10,6 +10,18 @@
 
 namespace offnominal::desk {
 
+/// As many as the machine runs at once.
+[[nodiscard]] inline int all_threads() {
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+/// How many threads `numbers` of data are worth: one where there are few, all where there are so
+/// many that to begin a thread costs nothing beside them.
+[[nodiscard]] inline int threads_for(std::ptrdiff_t numbers) {
+  constexpr std::ptrdiff_t kMany = 2'000'000;
+  return numbers < kMany ? 1 : all_threads();
+}
+
 /// Calls work(i) for i = 0 .. count-1 on `threads` threads until one throws: that exception is
 /// thrown again, and what had not begun is left. Every call has to write to a place of its own, or
 /// to lock, so that results do not depend on the number of threads.

@@ -171,13 +171,13 @@ Comparison compare(const RobotDescription& robot, const Measurement& measured) {
 Comparison compare(const RobotDescription& robot, const Measurement& measured,
                    ModelTorqueMemory& memory) {
   Comparison result;
-  result.file = measured.log.file;
-  result.payload = measured.log.payload;
+  result.file = measured.log->file;
+  result.payload = measured.log->payload;
   result.plan = measured.plan;
   result.t_s = measured.t_s;
   result.measured = measured.torque;
   result.model = memory.filtered(robot, measured);
-  result.remarks = measured.log.remarks;
+  result.remarks = measured.log->remarks;
   const auto kept = [&](const MatrixXd& columns) {
     MatrixXd samples(result.t_s.size(), columns.cols());
     for (Index joint = 0; joint < columns.cols(); ++joint) {
@@ -191,7 +191,7 @@ Comparison compare(const RobotDescription& robot, const Measurement& measured,
   result.moving = measured.moving;
   result.sensor = measured.sensor_torque;
   for (Index joint = 0; joint < result.measured.cols(); ++joint) {
-    result.has_both.push_back(measured.log.has_both(static_cast<std::size_t>(joint)) ? 1 : 0);
+    result.has_both.push_back(measured.log->has_both(static_cast<std::size_t>(joint)) ? 1 : 0);
   }
   result.at_fault = measured.at_fault;
   for (Index joint = 0; joint < result.measured.cols(); ++joint) {

@@ -30,7 +30,7 @@ double highest_cutoff_hz(const Log& log, Index joint, double counts_per_unit, do
   FilterPlan coarse;
   coarse.sample_rate_hz = log.sample_rate_hz();
   coarse.position_cutoff_hz = std::min(lowest_hz, kMostOfRate * coarse.sample_rate_hz);
-  const VectorXd ddq = motion_of(log, coarse).ddq.col(joint);
+  const VectorXd ddq = motion_of_joint(log, coarse, joint).ddq;
   const double moves = std::sqrt(ddq.squaredNorm() / static_cast<double>(ddq.size()));
   const double noise = 1 / counts_per_unit / std::sqrt(12.0);
   // Power of white noise over f, differentiated twice: (2 pi)^4 f^5 / 5 per rate / 2.

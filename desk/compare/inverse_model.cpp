@@ -6,6 +6,7 @@
 #include <offnominal/model/inverse_dynamics.hpp>
 #include <stdexcept>
 
+#include "common/parallel.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/transmission.hpp"
 #include "signal/shift.hpp"
@@ -44,6 +45,49 @@ VectorXd delays_in_samples(const Chain<kRuntimeJoints, double>& chain, const Mot
   return samples;
 }
 
+using Model = decltype(make_model(Chain<kRuntimeJoints, double>()));
+
+Model model_for(const RobotDescription& robot, const Motion& motion) {
+  if (motion.q.cols() != robot.joint_count()) {
+    throw std::invalid_argument("the motion has another number of joints than the robot");
+  }
+  return make_model(chain_of<kRuntimeJoints, double>(robot));
+}
+
+Motion part_of(const Motion& motion, Index first, Index count) {
+  return {motion.t_s.segment(first, count), motion.q.middleRows(first, count),
+          motion.dq.middleRows(first, count), motion.ddq.middleRows(first, count)};
+}
+
+// Sets the rows of `torque` from `first` on, one for each row of `rigid`, the bodies' torque there:
+// with every effect that follows from a sample alone.
+void torque_of_drives(const Model& model, const Motion& motion, const MatrixXd& rigid, Index first,
+                      MatrixXd& torque) {
+  for (Index row = 0; row < rigid.rows(); ++row) {
+    const Index i = first + row;
+    const Joints q = motion.q.row(i);
+    const Joints dq = motion.dq.row(i);
+    const Joints of_bodies = rigid.row(row);
+    const auto effects = joint_effects(model, q, dq, motion.t_s[i] - motion.t_s[0]);
+    torque.row(i) = drive_torque<kRuntimeJoints, double>(model, effects, of_bodies);
+  }
+}
+
+// What follows from the whole motion: effects with a state, and delays.
+void add_what_remembers(const RobotDescription& robot, const Model& model, const Motion& motion,
+                        MatrixXd& torque) {
+  for (const RobotEffect& effect : robot.effects) {
+    if (!remembers(effect.kind) || !is_torque_effect(effect.kind)) continue;
+    const JointType type = robot.joints[effect.joint].joint.type;
+    torque.col(effect.joint) +=
+        model.told_per_given[effect.joint] * torque_of_effect(effect, type, motion);
+  }
+  const VectorXd delays = delays_in_samples(chain_of<kRuntimeJoints, double>(robot), motion);
+  for (Index joint = 0; joint < delays.size(); ++joint) {
+    if (delays[joint] != 0) torque.col(joint) = ahead_by(torque.col(joint), delays[joint]);
+  }
+}
+
 // Its joints alone: what has no mass takes no torque.
 RobotDescription without_masses(const RobotDescription& robot) {
   RobotDescription bare = robot;
@@ -58,35 +102,25 @@ RobotDescription without_masses(const RobotDescription& robot) {
 }  // namespace
 
 MatrixXd model_torque(const RobotDescription& robot, const Motion& motion) {
-  BodyTorque bodies;
-  return model_torque(robot, motion, bodies);
+  const Model model = model_for(robot, motion);
+  MatrixXd torque(motion.sample_count(), robot.joint_count());
+  constexpr Index kRows = 1 << 15;  // of a part: what the bodies take is kept of no more
+  const Index parts = (motion.sample_count() + kRows - 1) / kRows;
+  parallel_for(static_cast<std::size_t>(parts), threads_for(motion.q.size()), [&](std::size_t i) {
+    const Index first = static_cast<Index>(i) * kRows;
+    const Index count = std::min(kRows, motion.sample_count() - first);
+    const MatrixXd rigid = BodyTorque().of(robot, part_of(motion, first, count));
+    torque_of_drives(model, motion, rigid, first, torque);
+  });
+  add_what_remembers(robot, model, motion, torque);
+  return torque;
 }
 
 MatrixXd model_torque(const RobotDescription& robot, const Motion& motion, BodyTorque& bodies) {
-  if (motion.q.cols() != robot.joint_count()) {
-    throw std::invalid_argument("the motion has another number of joints than the robot");
-  }
-  const auto chain = chain_of<kRuntimeJoints, double>(robot);
-  const auto model = make_model(chain);
-  const MatrixXd rigid = bodies.of(robot, motion);
+  const Model model = model_for(robot, motion);
   MatrixXd torque(motion.sample_count(), robot.joint_count());
-  for (Index i = 0; i < motion.sample_count(); ++i) {
-    const Joints q = motion.q.row(i);
-    const Joints dq = motion.dq.row(i);
-    const Joints of_bodies = rigid.row(i);
-    const auto effects = joint_effects(model, q, dq, motion.t_s[i] - motion.t_s[0]);
-    torque.row(i) = drive_torque<kRuntimeJoints, double>(model, effects, of_bodies);
-  }
-  for (const RobotEffect& effect : robot.effects) {
-    if (!remembers(effect.kind) || !is_torque_effect(effect.kind)) continue;
-    const JointType type = robot.joints[effect.joint].joint.type;
-    torque.col(effect.joint) +=
-        model.told_per_given[effect.joint] * torque_of_effect(effect, type, motion);
-  }
-  const VectorXd delays = delays_in_samples(chain, motion);
-  for (Index joint = 0; joint < delays.size(); ++joint) {
-    if (delays[joint] != 0) torque.col(joint) = ahead_by(torque.col(joint), delays[joint]);
-  }
+  torque_of_drives(model, motion, bodies.of(robot, motion), 0, torque);
+  add_what_remembers(robot, model, motion, torque);
   return torque;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/parallel.hpp"
 #include "compare/inverse_model.hpp"
 #include "compare/standstill.hpp"
 #include "compare/transmission.hpp"
@@ -21,36 +22,40 @@ using Eigen::VectorXd;
 
 namespace {
 
+// On several threads where it is long.
 MatrixXd filtered_columns(const FilterPlan& plan, const MatrixXd& columns) {
   MatrixXd result;
-  for (Index joint = 0; joint < columns.cols(); ++joint) {
-    const VectorXd column = filtered(plan, columns.col(joint));
-    if (joint == 0) result.resize(column.size(), columns.cols());
-    result.col(joint) = column;
+  std::vector<VectorXd> all(static_cast<std::size_t>(columns.cols()));
+  parallel_for(all.size(), threads_for(columns.size()), [&](std::size_t joint) {
+    all[joint] = filtered(plan, columns.col(static_cast<Index>(joint)));
+  });
+  for (std::size_t joint = 0; joint < all.size(); ++joint) {
+    if (joint == 0) result.resize(all[joint].size(), columns.cols());
+    result.col(static_cast<Index>(joint)) = all[joint];
   }
   return result;
 }
 
 // Of the measured torque, per joint.
 VectorXd noise_densities(const Measurement& measured) {
-  VectorXd densities(measured.log.tau.cols());
-  const MatrixXd usable = usable_samples(measured.log, measured.plan);
+  const Log& log = *measured.log;
+  VectorXd densities(log.tau.cols());
   for (Index joint = 0; joint < densities.size(); ++joint) {
-    const VectorXd raw = measured.log.tau.col(joint);
+    const VectorXd raw = log.tau.col(joint);
     densities[joint] = noise_density(
         raw,
         zero_phase_low_pass(raw, measured.plan.position_cutoff_hz, measured.plan.sample_rate_hz),
-        usable.size() > 0 ? VectorXd(usable.col(joint)) : VectorXd(), measured.plan);
+        usable_samples(log, measured.plan, joint), measured.plan);
   }
   return densities;
 }
 
 void leave_out_faults(const Log& log, Measurement& measured) {
   measured.at_fault = VectorXd::Zero(measured.moving.cols());
-  const MatrixXd usable = usable_samples(log, measured.plan);
-  if (usable.size() == 0) return;
-  for (Index joint = 0; joint < usable.cols(); ++joint) {
-    const VectorXd kept = kept_samples(measured.plan, usable.col(joint));
+  if (log.left_out.empty()) return;
+  for (Index joint = 0; joint < measured.moving.cols(); ++joint) {
+    const VectorXd kept =
+        kept_samples(measured.plan, usable_samples(log, measured.plan, joint));
     measured.at_fault[joint] = 1 - kept.mean();
     measured.moving.col(joint).array() *= kept.array();
     // Where all that is left stands still, rest is all there is (as in standstill.cpp).
@@ -72,7 +77,13 @@ void require_joints(const Log& log, const RobotDescription& robot) {
                     "give the robot file that belongs to this recording, or [channels]"});
 }
 
-Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& plan) {
+std::shared_ptr<const Log> held_elsewhere(const Log& log) {
+  return {std::shared_ptr<const Log>(), &log};
+}
+
+Measurement measure(std::shared_ptr<const Log> held, const RobotDescription& robot,
+                    const FilterPlan& plan) {
+  const Log& log = *held;
   require_joints(log, robot);
   Measurement measured;
   measured.plan = plan_for(log, plan);
@@ -82,14 +93,21 @@ Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& pl
   if (log.sensor_tau.rows() > 0) {
     measured.sensor_torque = filtered_columns(measured.plan, log.sensor_tau);
   }
-  const MatrixXd moving = samples_that_tell(log, robot, measured.motion);
-  measured.moving.resize(measured.t_s.size(), moving.cols());
-  for (Index joint = 0; joint < moving.cols(); ++joint) {
-    measured.moving.col(joint) = kept_samples(measured.plan, moving.col(joint));
-  }
+  measured.moving.resize(measured.t_s.size(), log.q.cols());
+  parallel_for(static_cast<std::size_t>(log.q.cols()), threads_for(log.q.size()),
+               [&](std::size_t i) {
+                 const auto joint = static_cast<Index>(i);
+                 const VectorXd speed = measured.motion.dq.col(joint);
+                 measured.moving.col(joint) =
+                     kept_samples(measured.plan, samples_that_tell(log, robot, joint, speed));
+               });
   leave_out_faults(log, measured);
-  measured.log = std::move(log);
+  measured.log = std::move(held);
   return measured;
+}
+
+Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& plan) {
+  return measure(std::make_shared<const Log>(std::move(log)), robot, plan);
 }
 
 Measurement measure(Log log, const RobotDescription& robot, const FilterRequest& request) {
@@ -103,12 +121,17 @@ MatrixXd filtered_model_torque(const RobotDescription& robot, const Measurement&
 
 MatrixXd ModelTorqueMemory::filtered(const RobotDescription& robot, const Measurement& measured) {
   const RobotDescription seen =
-      seen_by_sensors(carrying(robot, measured.log.payload), measured.log);
-  MatrixXd torque = model_torque(seen, measured.motion, bodies_);
+      seen_by_sensors(carrying(robot, measured.log->payload), *measured.log);
+  // A model's torque is kept three times over: of so much it is made anew instead.
+  constexpr Index kMostNumbers = 10'000'000;
+  const bool is_kept = measured.motion.q.size() <= kMostNumbers;
+  MatrixXd torque = is_kept ? model_torque(seen, measured.motion, bodies_)
+                            : model_torque(seen, measured.motion);
   if (has_transmission_effect(seen)) {
-    torque += transmission_torque(seen, measured.motion, torque, measured.log.tau,
+    torque += transmission_torque(seen, measured.motion, torque, measured.log->tau,
                                   noise_densities(measured), measured.plan);
   }
+  if (!is_kept) return filtered_columns(measured.plan, torque);
   MatrixXd result = filtered_;
   if (torque_.rows() != torque.rows() || torque_.cols() != torque.cols()) {
     result = filtered_columns(measured.plan, torque);

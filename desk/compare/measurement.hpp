@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "compare/body_torque.hpp"
 #include "compare/filter_plan.hpp"
@@ -13,7 +14,7 @@ namespace offnominal::desk {
 // A recording made ready for comparison and regression: everything that does not depend on the
 // model's torque is filtered once.
 struct Measurement {
-  Log log;
+  std::shared_ptr<const Log> log;
   FilterPlan plan;
   Motion motion;                  // full rate
   Eigen::VectorXd t_s;            // of the samples that are kept
@@ -28,8 +29,13 @@ struct Measurement {
 // Throws InputError where a recording has another number of joints than the robot.
 void require_joints(const Log& log, const RobotDescription& robot);
 
+// A recording that somebody else holds for as long as any measurement of it.
+std::shared_ptr<const Log> held_elsewhere(const Log& log);
+
 // `plan`: of plan_filter() for this recording and those that it is analysed with. Throws InputError
 // as plan_for(), and where the robot has another number of joints.
+Measurement measure(std::shared_ptr<const Log> log, const RobotDescription& robot,
+                    const FilterPlan& plan);
 Measurement measure(Log log, const RobotDescription& robot, const FilterPlan& plan);
 // With the plan of this recording alone.
 Measurement measure(Log log, const RobotDescription& robot, const FilterRequest& request = {});

@@ -26,4 +26,12 @@ struct Motion {
 // then all three belong together, and none of them lags. Of a hold map: its positions, at rest.
 Motion motion_of(const Log& log, const FilterPlan& plan);
 
+// The same of one joint, one column each, and of every so many-th sample alone: of a long recording
+// the whole motion is as large as the recording.
+struct JointMotion {
+  Eigen::VectorXd q, dq, ddq;
+};
+JointMotion motion_of_joint(const Log& log, const FilterPlan& plan, Eigen::Index joint);
+Motion thin_motion_of(const Log& log, const FilterPlan& plan, Eigen::Index stride);
+
 }  // namespace offnominal::desk

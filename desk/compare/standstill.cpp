@@ -8,7 +8,6 @@
 namespace offnominal::desk {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
@@ -79,16 +78,12 @@ void leave_out_sticking(const VectorXd& speed, double top_speed, double period_s
   if (left.mean() >= kFewest) moving = left;
 }
 
-MatrixXd samples_that_tell(const Log& log, const RobotDescription& robot, const Motion& motion) {
-  MatrixXd tell(log.sample_count(), log.q.cols());
-  for (Index joint = 0; joint < log.q.cols(); ++joint) {
-    tell.col(joint) = moving_samples(
-        log, joint, robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit);
-    if (log.at_rest) continue;
-    const VectorXd speed = motion.dq.col(joint);
-    leave_out_sticking(speed, quantile(speed.cwiseAbs(), kTopSpeedShare), log.period_s,
-                       tell.col(joint));
-  }
+VectorXd samples_that_tell(const Log& log, const RobotDescription& robot, Index joint,
+                           const VectorXd& speed) {
+  VectorXd tell = moving_samples(
+      log, joint, robot.joints[static_cast<std::size_t>(joint)].encoder.counts_per_unit);
+  if (log.at_rest) return tell;
+  leave_out_sticking(speed, quantile(speed.cwiseAbs(), kTopSpeedShare), log.period_s, tell);
   return tell;
 }
 

@@ -29,8 +29,9 @@ void leave_out_sticking(const Eigen::VectorXd& speed, double top_speed, double p
 // The share of the samples that are not faster than a joint's top speed.
 inline constexpr double kTopSpeedShare = 0.99;
 
-// Both, of every joint of a recording and its motion. Rows: samples, columns: joints; 1 or 0.
-Eigen::MatrixXd samples_that_tell(const Log& log, const RobotDescription& robot,
-                                  const Motion& motion);
+// Both, of one joint of a recording and its velocity in motion_of(), rad/s or m/s. Per sample 1
+// or 0.
+Eigen::VectorXd samples_that_tell(const Log& log, const RobotDescription& robot, Eigen::Index joint,
+                                  const Eigen::VectorXd& speed);
 
 }  // namespace offnominal::desk

@@ -6,18 +6,19 @@
 namespace offnominal::desk {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
-MatrixXd usable_samples(const Log& log, const FilterPlan& plan) {
+VectorXd usable_samples(const Log& log, const FilterPlan& plan, Index joint) {
   if (log.left_out.empty()) return {};
   const Index rows = log.sample_count();
-  MatrixXd usable = MatrixXd::Ones(rows, log.q.cols());
+  VectorXd usable = VectorXd::Ones(rows);
   for (const LeftOut& out : log.left_out) {
+    if (out.joint != joint) continue;
     const auto spread = static_cast<Index>(
         std::ceil(out.spread_periods * plan.sample_rate_hz / plan.torque_cutoff_hz));
     const Index first = std::clamp<Index>(out.rows.first - spread, 0, rows);
     const Index end = std::clamp<Index>(out.rows.last + 1 + spread, first, rows);
-    usable.col(out.joint).segment(first, end - first).setZero();
+    usable.segment(first, end - first).setZero();
   }
   return usable;
 }

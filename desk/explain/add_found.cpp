@@ -106,7 +106,7 @@ AddedFindings add_found(const RobotDescription& robot, std::vector<Log> logs,
       added.gains.push_back({log.file, held_out, at_rest(robot, added.explanation.improved, log)});
       return;
     }
-    const Measurement measured = measure(log, robot, plan);
+    const Measurement measured = measure(held_elsewhere(log), robot, plan);
     added.gains.push_back(
         {log.file, held_out,
          before_after(compare(robot, measured), compare(added.explanation.improved, measured))});

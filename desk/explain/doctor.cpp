@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "common/parallel.hpp"
 #include "compare/inverse_model.hpp"
 #include "compare/motion.hpp"
 #include "explain/doctor_checks.hpp"
@@ -87,8 +88,7 @@ std::string joint_words(Index joint) {
   return joint < 0 ? "all joints" : fmt::format("joint {}", joint + 1);
 }
 
-std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& robot,
-                                      double cutoff_of_rate) {
+std::optional<SlowSignals> slow_signals(const Log& log, double cutoff_of_rate) {
   // Robots move below this; above it the second derivative of a coarse encoder outweighs the
   // torque.
   constexpr double kCutoffHz = 5;
@@ -97,51 +97,67 @@ std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& ro
   constexpr double kShortestPeriods =
       8;  // of the cut-off; the filter's ends spoil one on each side
   const double rate_hz = log.sample_rate_hz();
-  TorquePair pair;
-  pair.cutoff_hz =
+  SlowSignals slow;
+  slow.cutoff_hz =
       cutoff_of_rate > 0 ? cutoff_of_rate * rate_hz : std::min(kCutoffHz, kCutoffOfRate * rate_hz);
-  const auto rows_per_period = static_cast<Index>(std::ceil(rate_hz / pair.cutoff_hz));
+  const auto rows_per_period = static_cast<Index>(std::ceil(rate_hz / slow.cutoff_hz));
   if (static_cast<double>(log.sample_count()) <
       kShortestPeriods * static_cast<double>(rows_per_period)) {
     return std::nullopt;
   }
   FilterPlan plan;
   plan.sample_rate_hz = rate_hz;
-  plan.position_cutoff_hz = 2 * pair.cutoff_hz;
-  const Motion full = motion_of(log, plan);
+  plan.position_cutoff_hz = 2 * slow.cutoff_hz;
   const auto stride =
-      std::max<Index>(1, static_cast<Index>(rate_hz / (kSamplesPerCutoff * pair.cutoff_hz)));
-  pair.period_s = log.period_s * static_cast<double>(stride);
-  const Index edge = rows_per_period / stride + 1;
+      std::max<Index>(1, static_cast<Index>(rate_hz / (kSamplesPerCutoff * slow.cutoff_hz)));
+  slow.period_s = log.period_s * static_cast<double>(stride);
+  slow.edge = rows_per_period / stride + 1;
+  slow.motion = thin_motion_of(log, plan, stride);
+  slow.torque.resize(slow.motion.sample_count(), log.tau.cols());
+  parallel_for(static_cast<std::size_t>(log.tau.cols()), threads_for(log.tau.size()),
+               [&](std::size_t i) {
+                 const auto joint = static_cast<Index>(i);
+                 slow.torque.col(joint) = every_nth(
+                     zero_phase_low_pass(log.tau.col(joint), plan.position_cutoff_hz, rate_hz),
+                     stride);
+               });
+  slow.payload = log.payload;
+  return slow;
+}
+
+std::optional<TorquePair> torque_pair(const SlowSignals& slow, const RobotDescription& robot,
+                                      WithLinks links) {
+  TorquePair pair;
+  pair.period_s = slow.period_s;
+  pair.cutoff_hz = slow.cutoff_hz;
   const auto smooth = [&](const MatrixXd& thin) {
-    MatrixXd result(thin.rows() - 2 * edge, thin.cols());
+    MatrixXd result(thin.rows() - 2 * slow.edge, thin.cols());
     for (Index joint = 0; joint < thin.cols(); ++joint) {
       result.col(joint) = zero_phase_low_pass(thin.col(joint), pair.cutoff_hz, 1 / pair.period_s)
-                              .segment(edge, result.rows());
+                              .segment(slow.edge, result.rows());
     }
     return result;
   };
-  const Motion thin{every_nth(full.t_s, stride), every_nth_row(full.q, stride),
-                    every_nth_row(full.dq, stride), every_nth_row(full.ddq, stride)};
-  MatrixXd torque = log.tau;
-  for (Index joint = 0; joint < torque.cols(); ++joint) {
-    torque.col(joint) = zero_phase_low_pass(log.tau.col(joint), plan.position_cutoff_hz, rate_hz);
-  }
   RobotDescription rigid = robot;
   rigid.effects.clear();
-  rigid = carrying(rigid, log.payload);
-  pair.measured = smooth(every_nth_row(torque, stride));
-  pair.model = smooth(model_torque(carrying(robot, log.payload), thin));
-  pair.load = smooth(model_torque(rigid, thin));
-  for (std::size_t link = 0; link < robot.joints.size(); ++link) {
-    pair.links.push_back(smooth(link_torque(robot, link, thin)));
+  rigid = carrying(rigid, slow.payload);
+  pair.measured = smooth(slow.torque);
+  pair.model = smooth(model_torque(carrying(robot, slow.payload), slow.motion));
+  pair.load = smooth(model_torque(rigid, slow.motion));
+  for (std::size_t link = 0; links == WithLinks::kYes && link < robot.joints.size(); ++link) {
+    pair.links.push_back(smooth(link_torque(robot, link, slow.motion)));
   }
-  pair.t_s = thin.t_s.segment(edge, pair.measured.rows());
-  pair.q = smooth(thin.q);
-  pair.dq = smooth(thin.dq);
-  pair.ddq = smooth(thin.ddq);
+  pair.t_s = slow.motion.t_s.segment(slow.edge, pair.measured.rows());
+  pair.q = smooth(slow.motion.q);
+  pair.dq = smooth(slow.motion.dq);
+  pair.ddq = smooth(slow.motion.ddq);
   if (!pair.measured.allFinite() || !pair.model.allFinite()) return std::nullopt;
   return pair;
+}
+
+std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& robot) {
+  const auto slow = slow_signals(log);
+  return slow ? torque_pair(*slow, robot, WithLinks::kYes) : std::nullopt;
 }
 
 TorquePair thinned(const TorquePair& pair) {
@@ -228,7 +244,7 @@ void leave_out_of_held(const Log& log, const RobotDescription& robot,
 
 // The longest part of a recording that no fault touches for longer than a filter forgives; none
 // where that is nothing, the recording itself where it is all of it.
-Log longest_good_part(const Log& log, const std::vector<DataFault>& faults) {
+Log longest_good_part(Log log, const std::vector<DataFault>& faults) {
   constexpr double kForgivenS = 0.1;
   std::vector<char> bad(static_cast<std::size_t>(log.sample_count()), 0);
   for (const DataFault& fault : faults) {
@@ -337,20 +353,22 @@ std::vector<DataFault> examine(const Log& log, const RobotDescription& robot) {
   mend_wrapped(mended, robot, faults);
   mend_time(mended, robot, faults);
   const std::size_t before = faults.size();
-  const Log whole = mended;
   std::vector<DataFault> local = local_faults(mended, robot);
   leave_out_of_held(mended, robot, local);
   for (const DataFault& fault : local) {
     bridge(fault, mended);
     if (is_unrecorded(fault, mended)) mended.tau.col(fault.joint).setZero();
   }
-  mended = longest_good_part(mended, local);
+  mended = longest_good_part(std::move(mended), local);
   if (mended.sample_count() >= kFewestSamples) {
     mend_degrees(mended, robot, faults);
     if (faults.size() > before) {
       // What was held against the model's torque is to be looked at anew.
-      Log radians = whole;
+      Log radians = log;
       std::vector<DataFault> again;
+      mend_wrapped(radians, robot, again);
+      mend_time(radians, robot, again);
+      again.clear();
       mend_degrees(radians, robot, again);
       if (!again.empty()) {
         local = local_faults(radians, robot);

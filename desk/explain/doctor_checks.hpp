@@ -7,9 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "compare/motion.hpp"
 #include "explain/data_fault.hpp"
 #include "explain/expected_torque.hpp"
 #include "log/log.hpp"
+#include "robot/payload.hpp"
 #include "robot/robot.hpp"
 
 // The doctor's checks one by one; doctor.hpp puts them in order.
@@ -31,10 +33,26 @@ struct TorquePair {
   std::vector<Eigen::MatrixXd> links;  // share of each link in `load`
 };
 
+// Motion and measured torque of a recording in a band of twice that cut-off, thinned out: all that
+// a pair needs of it. A recording is long, and whoever asks for pairs in other units asks for many.
+struct SlowSignals {
+  double period_s = 0;
+  double cutoff_hz = 0;
+  Eigen::Index edge = 0;  // rows at either end that the filter spoils
+  Motion motion;
+  Eigen::MatrixXd torque;
+  std::optional<Payload> payload;
+};
 // Low-passed at that share of the sampling rate, or for 0 at 5 Hz or what a slow log has. None
-// where the recording is too short for a low-pass, or its model torque is not finite.
-std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& robot,
-                                      double cutoff_of_rate = 0);
+// where the recording is too short for a low-pass.
+std::optional<SlowSignals> slow_signals(const Log& log, double cutoff_of_rate = 0);
+
+// None where the model torque is not finite. The links take as much time as all the rest, each.
+enum class WithLinks { kNo, kYes };
+std::optional<TorquePair> torque_pair(const SlowSignals& slow, const RobotDescription& robot,
+                                      WithLinks links);
+// Of both; none where either has none.
+std::optional<TorquePair> torque_pair(const Log& log, const RobotDescription& robot);
 
 // Of a long one some two hundred rows of what was measured and of the model, without links and
 // load: for fits that would take much of each.

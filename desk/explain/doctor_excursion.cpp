@@ -199,11 +199,13 @@ void find_torque_excursions(const Log& log, const Log& even, const RobotDescript
   constexpr double kTravel = 0.002;  // of the joint's range
   constexpr double kFelt = 0.4;
   std::optional<Response> response;
+  const std::vector<std::vector<Index>> edges_of_all =
+      of_every_joint(log, [&](Index joint) { return edges_of(log.tau.col(joint)); });
   for (Index joint = 0; joint < log.tau.cols(); ++joint) {
     const VectorXd tau = log.tau.col(joint);
     const auto q = log.q.col(joint);
     const double range = q.maxCoeff() - q.minCoeff();
-    const std::vector<Index> edges = edges_of(tau);
+    const std::vector<Index>& edges = edges_of_all[static_cast<std::size_t>(joint)];
     std::vector<Excursion> found;
     for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
       const auto one = excursion_between(tau, edges[k], edges[k + 1], log.period_s);

@@ -356,15 +356,14 @@ std::string mend_of_start() {
 void find_jumps(const Log& log, std::vector<DataFault>& faults) {
   const auto joints = static_cast<std::size_t>(log.q.cols());
   std::vector<Index> unsettled(joints, 0);  // of the positions
-  std::vector<Breaks> breaks(joints);
-  for (std::size_t i = 0; i < joints; ++i) {
-    const auto joint = static_cast<Index>(i);
-    if (stands_still(log.q.col(joint))) continue;
-    unsettled[i] = unsettled_of(log, joint, true, faults);
+  std::vector<Breaks> breaks = of_every_joint(log, [&](Index joint) {
+    if (stands_still(log.q.col(joint))) return Breaks{};
+    const Index own = unsettled_of(log, joint, true, faults);
+    unsettled[static_cast<std::size_t>(joint)] = own;
     std::vector<RowSpan> known = known_of_position(log, joint, faults);
-    if (unsettled[i] > 0) known.push_back({-1, unsettled[i]});
-    breaks[i] = breaks_of(log, log.q.col(joint), known);
-  }
+    if (own > 0) known.push_back({-1, own});
+    return breaks_of(log, log.q.col(joint), known);
+  });
   const std::vector<Index> lost = rows_before_a_loss(log, breaks);
   for (std::size_t i = 0; i < joints; ++i) {
     const auto joint = static_cast<Index>(i);

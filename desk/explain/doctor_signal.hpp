@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
+#include "common/parallel.hpp"
 #include "explain/data_fault.hpp"
 #include "log/log.hpp"
 #include "robot/robot.hpp"
@@ -11,6 +13,15 @@
 // What the doctor's checks ask of one signal.
 
 namespace offnominal::desk {
+
+// What `work` says of every joint of a recording, in their order; of a long one several at once.
+template <typename Work>
+auto of_every_joint(const Log& log, const Work& work) {
+  std::vector<decltype(work(Eigen::Index{}))> all(static_cast<std::size_t>(log.q.cols()));
+  parallel_for(all.size(), threads_for(log.q.size()),
+               [&](std::size_t joint) { all[joint] = work(static_cast<Eigen::Index>(joint)); });
+  return all;
+}
 
 // Rows that repeat the row before them exactly.
 struct Burst {

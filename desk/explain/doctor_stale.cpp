@@ -186,10 +186,17 @@ double smallest_step(const VectorXd& x) {
 }
 
 void find_stale_samples(const Log& log, std::vector<DataFault>& faults) {
+  struct StaleSignals {
+    Stale position, torque;
+  };
+  const std::vector<StaleSignals> all = of_every_joint(log, [&](Index joint) {
+    return StaleSignals{stands_still(log.q.col(joint)) ? Stale{} : stale_of(log, joint, true),
+                        stale_of(log, joint, false)};
+  });
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
+    const StaleSignals& own = all[static_cast<std::size_t>(joint)];
     for (const bool position : {true, false}) {
-      if (position && stands_still(log.q.col(joint))) continue;
-      const Stale stale = stale_of(log, joint, position);
+      const Stale& stale = position ? own.position : own.torque;
       const double share =
           static_cast<double>(stale.rows) / static_cast<double>(log.sample_count());
       if (stale.spans.size() < kFewestBursts || share < kLeastShare) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "explain/doctor_checks.hpp"
@@ -29,16 +30,17 @@ constexpr double kUnusual = 2;
 constexpr double kSensorSteps = 3;  // of the encoder
 constexpr double kSeldom = 1e-3;
 
-// How a burst begins and ends in a position.
+// How a burst begins and ends in a signal. What it does usually is looked for once somebody asks:
+// in a long recording that costs more than all bursts.
 class BurstEnds {
  public:
-  explicit BurstEnds(const VectorXd& q) : q_(q), rounding_(q) {
-    constexpr double kNearlyTop = 0.99;
-    const Index steps = q.size() - 1;
-    top_pace_ = quantile((q.tail(steps) - q.head(steps)).cwiseAbs(), kNearlyTop);
-    for (Index width = 1; width <= kWidest; width *= 2) {
-      limits_.push_back(kUnusual * usual_change_of_pace(q, width, kEvents));
-    }
+  // `q` has to outlive it.
+  explicit BurstEnds(const VectorXd& q) : q_(q) {}
+
+  // What the signal is rounded to at a value.
+  [[nodiscard]] double step_at(double value) const {
+    if (!rounding_) rounding_.emplace(q_);
+    return rounding_->at(value);
   }
 
   // The joint moved at full pace right before it: a real one slows down.
@@ -49,14 +51,14 @@ class BurstEnds {
     constexpr double kOfTopPace = 0.3;
     std::size_t at = 0;
     for (Index width = 1; width <= kWidest && kWhole * width <= burst.length; width *= 2) {
-      const double limit = limits_[at++] + kSensorSteps * rounding_.at(q_[burst.first]);
       const Index from = burst.first - kWhole * width;
       if (from < 0) break;
+      const double limit = limit_of(at++) + kSensorSteps * step_at(q_[burst.first]);
       const double last = std::abs(q_[burst.first] - q_[burst.first - width]);
       const double whole = std::abs(q_[burst.first] - q_[from]) / kWhole;
       const double before = std::abs(q_[burst.first - width] - q_[from]) / (kWhole - 1);
       // One jump is no pace, and dry friction stops what is slow at once.
-      if (last > limit && last > kOfTopPace * top_pace_ * static_cast<double>(width) &&
+      if (last > limit && last > kOfTopPace * top_pace() * static_cast<double>(width) &&
           last > kPaceKept * whole && before > kPaceBefore * last)
         return true;
     }
@@ -71,8 +73,8 @@ class BurstEnds {
     const double next = end + 2 < q_.size() ? std::abs(q_[end + 2] - q_[end + 1]) : 0;
     constexpr double kOfTopPace = 2;
     if (comes_back(burst)) return false;
-    return jump > limits_.front() + kSensorSteps * rounding_.at(q_[end + 1]) &&
-           jump > kOfTopPace * top_pace_ && jump > 2 * next;
+    return jump > 2 * next && jump > kOfTopPace * top_pace() &&
+           jump > limit_of(0) + kSensorSteps * step_at(q_[end + 1]);
   }
 
   // It comes to its end with the recording, or with a change that the joint does not show
@@ -81,7 +83,7 @@ class BurstEnds {
     const Index end = burst.end();
     if (end + 1 >= q_.size()) return true;
     return !comes_back(burst) && std::abs(q_[end + 1] - q_[end]) >
-                                     limits_.front() + kSensorSteps * rounding_.at(q_[end + 1]);
+                                     limit_of(0) + kSensorSteps * step_at(q_[end + 1]);
   }
 
   // A jump that is not more than what the joint can have moved meanwhile, by how it moves then.
@@ -109,43 +111,89 @@ class BurstEnds {
     return false;
   }
 
+  // From one row to the next.
+  [[nodiscard]] double top_pace() const {
+    constexpr double kNearlyTop = 0.99;
+    const Index steps = q_.size() - 1;
+    if (!top_pace_) {
+      top_pace_ = quantile((q_.tail(steps) - q_.head(steps)).cwiseAbs(), kNearlyTop);
+    }
+    return *top_pace_;
+  }
+
+  // Of the width 2^power rows.
+  [[nodiscard]] double limit_of(std::size_t power) const {
+    if (limits_.size() <= power) limits_.resize(power + 1);
+    std::optional<double>& limit = limits_[power];
+    if (!limit) limit = kUnusual * usual_change_of_pace(q_, Index{1} << power, kEvents);
+    return *limit;
+  }
+
   const VectorXd& q_;
-  Rounding rounding_;
-  double top_pace_ = 0;         // from one row to the next
-  std::vector<double> limits_;  // per width: 1, 2, 4, ...
+  mutable std::optional<Rounding> rounding_;
+  mutable std::optional<double> top_pace_;
+  mutable std::vector<std::optional<double>> limits_;  // per power of two
 };
 
-// Its measured velocity moves on: at a pace, or to and fro over more than a part of the joint's
-// way.
-bool velocity_moves(const Log& log, Index joint, const Burst& burst) {
-  constexpr double kOfUsual = 0.3;
-  constexpr double kOfTop = 0.95;
-  constexpr double kOfFastest = 0.2;  // of one that moves seldom
-  if (log.dq_derived[static_cast<std::size_t>(joint)]) return false;
-  const VectorXd dq = log.dq.col(joint);
-  const VectorXd speed = dq.cwiseAbs();
-  const double usual = std::max(quantile(speed, kOfTop), kOfFastest * speed.maxCoeff());
-  const VectorXd during = dq.segment(burst.first + 1, burst.length);
-  // Where it is filtered it only comes to rest later.
-  constexpr double kLateS = 0.15;
-  if (static_cast<double>(burst.length) * log.period_s < 2 * kLateS) return false;
-  // By what it is elsewhere, on the longer side of the burst.
-  const Index behind = log.sample_count() - burst.end() - 1;
-  const bool before = burst.first > behind;
-  const auto ratio =
-      velocity_ratio(before ? log.q.col(joint).head(burst.first) : log.q.col(joint).tail(behind),
-                     before ? dq.head(burst.first) : dq.tail(behind), log.period_s);
-  if (ratio) {
-    constexpr double kOfWay = 0.2;
-    VectorXd way(during.size());
-    std::partial_sum(during.begin(), during.end(), way.begin());
-    const double covered = log.period_s * (way.maxCoeff() - way.minCoeff()) / std::abs(*ratio);
-    const auto q = log.q.col(joint);
-    if (covered > kOfWay * (q.maxCoeff() - q.minCoeff())) return true;
+// What a joint's measured velocity does while its position repeats.
+class VelocityMeanwhile {
+ public:
+  VelocityMeanwhile(const Log& log, Index joint) : log_(log), joint_(joint) {}
+
+  // It moves on: at a pace, or to and fro over more than a part of the joint's way.
+  [[nodiscard]] bool moves(const Burst& burst) const {
+    constexpr double kOfUsual = 0.3;
+    if (log_.dq_derived[static_cast<std::size_t>(joint_)]) return false;
+    // Where it is filtered it only comes to rest later.
+    constexpr double kLateS = 0.15;
+    if (static_cast<double>(burst.length) * log_.period_s < 2 * kLateS) return false;
+    const VectorXd during = log_.dq.col(joint_).segment(burst.first + 1, burst.length);
+    if (const auto ratio = ratio_beside(burst)) {
+      constexpr double kOfWay = 0.2;
+      VectorXd way(during.size());
+      std::partial_sum(during.begin(), during.end(), way.begin());
+      const double covered = log_.period_s * (way.maxCoeff() - way.minCoeff()) / std::abs(*ratio);
+      const auto q = log_.q.col(joint_);
+      if (covered > kOfWay * (q.maxCoeff() - q.minCoeff())) return true;
+    }
+    return during.minCoeff() < during.maxCoeff() &&
+           std::abs(during.mean()) > kOfUsual * usual_speed() &&
+           during.cwiseAbs().mean() > kSensorSteps * step();
   }
-  return during.minCoeff() < during.maxCoeff() && std::abs(during.mean()) > kOfUsual * usual &&
-         during.cwiseAbs().mean() > kSensorSteps * smallest_step(dq);
-}
+
+ private:
+  // Of velocity and position, on the longer side of the burst: more than ten minutes say no more.
+  [[nodiscard]] std::optional<double> ratio_beside(const Burst& burst) const {
+    constexpr double kLongestS = 600;
+    const Index behind = log_.sample_count() - burst.end() - 1;
+    const bool before = burst.first > behind;
+    const auto rows = std::min(before ? burst.first : behind,
+                               static_cast<Index>(std::lround(kLongestS / log_.period_s)));
+    const Index first = before ? burst.first - rows : burst.end() + 1;
+    return velocity_ratio(log_.q.col(joint_).segment(first, rows),
+                          log_.dq.col(joint_).segment(first, rows), log_.period_s);
+  }
+
+  [[nodiscard]] double usual_speed() const {
+    constexpr double kOfTop = 0.95;
+    constexpr double kOfFastest = 0.2;  // of one that moves seldom
+    if (!usual_speed_) {
+      const VectorXd speed = log_.dq.col(joint_).cwiseAbs();
+      usual_speed_ = std::max(quantile(speed, kOfTop), kOfFastest * speed.maxCoeff());
+    }
+    return *usual_speed_;
+  }
+
+  [[nodiscard]] double step() const {
+    if (!step_) step_ = smallest_step(log_.dq.col(joint_));
+    return *step_;
+  }
+
+  const Log& log_;
+  Index joint_;
+  mutable std::optional<double> usual_speed_;
+  mutable std::optional<double> step_;
+};
 
 // What a joint's torque asks for beyond the model at the positions that were read: how much that
 // changes within half a second, usually and while its position repeats.
@@ -221,6 +269,7 @@ std::vector<Burst> stuck_positions(const Log& log, Index joint, const ExpectedTo
   if (bursts.empty() || stands_still(q)) return {};
   const BurstEnds ends(q);
   const BeyondModel torque(log, joint, expected, bursts);
+  const VelocityMeanwhile velocity(log, joint);
   const std::vector<Index> repeats_before = repeats_before_of(q);
   std::erase_if(bursts, [&](const Burst& burst) {
     if (is_next_to_gap(log, burst)) return true;
@@ -229,7 +278,7 @@ std::vector<Burst> stuck_positions(const Log& log, Index joint, const ExpectedTo
     const bool usual = static_cast<double>(q.size()) * std::pow(own_repeats(repeats_before, burst),
                                                                 static_cast<double>(burst.length)) >
                        kSeldom;
-    const bool by_velocity = velocity_moves(log, joint, burst);
+    const bool by_velocity = velocity.moves(burst);
     const bool at_start = burst.first == 0 && is_short(log, burst);
     if (ends.ends_in_jump(burst)) {
       const MovedMeanwhile moved = moved_meanwhile(log, burst, expected);
@@ -250,11 +299,11 @@ bool moves_mostly(const VectorXd& dq, const Burst& burst) {
   return 2 * (during > slow).count() > during.size();
 }
 
-bool goes_on_by_a_step(const VectorXd& x, const Rounding& rounding, const Burst& burst) {
+bool goes_on_by_a_step(const VectorXd& x, const BurstEnds& ends, const Burst& burst) {
   constexpr double kSteps = 1.5;
   if (burst.end() + 1 >= x.size()) return false;
   const double change = std::abs(x[burst.end() + 1] - x[burst.end()]);
-  return change <= kSteps * rounding.at(x.cwiseAbs().maxCoeff());
+  return change <= kSteps * ends.step_at(x.cwiseAbs().maxCoeff());
 }
 
 std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorque& expected) {
@@ -279,7 +328,6 @@ std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorq
   const double high = tau.maxCoeff();
   const double near = kAtExtreme * (high - low);
   const BurstEnds ends(tau);
-  const Rounding rounding(tau);
   std::erase_if(bursts, [&](const Burst& burst) {
     if (is_next_to_gap(log, burst)) return true;
     // A drive that gives nothing yet, then all at once, also where it holds the joint.
@@ -299,7 +347,7 @@ std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorq
     const double lasting =
         expected.lasting_change_during(log.t_s[burst.first], log.t_s[burst.end()], joint);
     constexpr double kSteps = 2;  // of the torque, that rounding makes of nothing
-    if (lasting < kSteps * rounding.at(value)) return true;
+    if (lasting < kSteps * ends.step_at(value)) return true;
     // A drive that is off lets the joint swing as the model says, or fall to where friction holds
     // it; a torque that is lost does not.
     if (value == 0) {
@@ -320,7 +368,7 @@ std::vector<Burst> stuck_torques(const Log& log, Index joint, const ExpectedTorq
       return by_chance || change < kChangeOfFine * (high - low);
     }
     // Where it only stayed it goes on by a step.
-    if (goes_on_by_a_step(tau, rounding, burst)) return true;
+    if (goes_on_by_a_step(tau, ends, burst)) return true;
     return lasting < (by_chance ? kChangeWhereLost : kChange) * (high - low);
   });
   return bursts;
@@ -368,10 +416,16 @@ void add_stuck_fault(const Log& log, Index joint, bool position, bool at_start,
 
 void find_stuck_values(const Log& log, const ExpectedTorque& expected,
                        std::vector<DataFault>& faults) {
+  struct Stuck {
+    std::vector<Burst> positions, torques;
+  };
+  const std::vector<Stuck> stuck = of_every_joint(log, [&](Index joint) {
+    return Stuck{stuck_positions(log, joint, expected), stuck_torques(log, joint, expected)};
+  });
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
+    const Stuck& own = stuck[static_cast<std::size_t>(joint)];
     for (const bool position : {true, false}) {
-      auto bursts =
-          position ? stuck_positions(log, joint, expected) : stuck_torques(log, joint, expected);
+      std::vector<Burst> bursts = position ? own.positions : own.torques;
       const auto signal = position ? FaultySignal::kPosition : FaultySignal::kTorque;
       std::erase_if(bursts,
                     [&](const Burst& burst) { return is_known(faults, joint, signal, burst); });

@@ -15,6 +15,7 @@ namespace offnominal::desk {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kRadPerDegree = std::numbers::pi / 180;
@@ -49,12 +50,17 @@ bool velocity_in_degrees(const Log& log, Index joint) {
   return ratio && *ratio > 1 / kSameUnit && *ratio < kSameUnit;
 }
 
+// Where `joint`, or every revolute one for -1, has positions in degrees.
+bool is_in_degrees(const RobotDescription& robot, Index joint, Index which) {
+  return (joint < 0 || which == joint) &&
+         robot.joints[static_cast<std::size_t>(which)].joint.type == JointType::kRevolute;
+}
+
 // Converts one joint, or all revolute ones for -1, in the recording and in where it comes from.
 void to_radians(Log& log, const RobotDescription& robot, Index joint) {
   for (Index j = 0; j < log.q.cols(); ++j) {
     const auto index = static_cast<std::size_t>(j);
-    if (joint >= 0 && j != joint) continue;
-    if (robot.joints[index].joint.type != JointType::kRevolute) continue;
+    if (!is_in_degrees(robot, joint, j)) continue;
     const bool with_velocity = log.dq_derived[index] || velocity_in_degrees(log, j);
     log.q.col(j) *= kRadPerDegree;
     change_recorded(log, [j](RecordedRows& rows) { rows.q.col(j) *= kRadPerDegree; });
@@ -66,10 +72,25 @@ void to_radians(Log& log, const RobotDescription& robot, Index joint) {
   }
 }
 
-Log in_radians(const Log& log, const RobotDescription& robot, Index joint) {
-  Log scaled = log;
-  to_radians(scaled, robot, joint);
-  return scaled;
+// What a pair needs of to_radians().
+SlowSignals in_radians(SlowSignals slow, const RobotDescription& robot, Index joint) {
+  for (Index j = 0; j < slow.motion.q.cols(); ++j) {
+    if (!is_in_degrees(robot, joint, j)) continue;
+    for (MatrixXd* const one : {&slow.motion.q, &slow.motion.dq, &slow.motion.ddq}) {
+      one->col(j) *= kRadPerDegree;
+    }
+  }
+  return slow;
+}
+
+// Of a time of which a second has so many units.
+SlowSignals in_units(SlowSignals slow, double per_second) {
+  slow.period_s /= per_second;
+  slow.cutoff_hz *= per_second;
+  slow.motion.t_s /= per_second;
+  slow.motion.dq *= per_second;
+  slow.motion.ddq *= per_second * per_second;
+  return slow;
 }
 
 bool leaves_limits(const Log& log, const RobotDescription& robot, Index joint) {
@@ -112,13 +133,14 @@ TorquePair all_beside_friction(TorquePair pair) {
   return pair;
 }
 
-std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription& robot,
+std::optional<Degrees> degrees_by_torque(const Log& log, const SlowSignals& slow,
+                                         const RobotDescription& robot,
                                          const std::vector<Index>& revolute) {
   // As degrees it must fit, although effects are missing or a clock is off.
   constexpr double kGoodFit = 0.5;
   // And fit far better.
   constexpr double kBetter = 3;
-  const auto as_is = torque_pair(log, robot);
+  const auto as_is = torque_pair(slow, robot, WithLinks::kNo);
   if (!as_is) return std::nullopt;
   // A friction of the file that is a guess is no unit of the positions.
   const double missed = std::min(misfit(*as_is), misfit(all_beside_friction(*as_is)));
@@ -131,7 +153,7 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
   std::optional<Degrees> found;
   double best = std::min(kGoodFit, missed / kBetter);
   for (const Index joint : choices) {
-    const auto scaled = torque_pair(in_radians(log, robot, joint), robot);
+    const auto scaled = torque_pair(in_radians(slow, robot, joint), robot, WithLinks::kNo);
     const double left = scaled ? misfit(*scaled) : best;
     if (!(left < best)) continue;
     // Within a turn it must be the whole torque that fits, friction or none.
@@ -148,7 +170,7 @@ std::optional<Degrees> degrees_by_torque(const Log& log, const RobotDescription&
                     std::min(100 * missed, 1e4), 100 * best)};
   }
   if (found || !go_beyond_a_turn(log, revolute, -1)) return found;
-  const auto radians = torque_pair(in_radians(log, robot, -1), robot);
+  const auto radians = torque_pair(in_radians(slow, robot, -1), robot, WithLinks::kNo);
   if (!radians || !is_of_another_torque_unit(*radians)) return std::nullopt;
   return Degrees{-1,
                  "the torques follow the model, at another scale, with the positions times pi/180 "
@@ -183,7 +205,8 @@ bool is_folded_into_radians(const std::vector<DataFault>& faults, Index joint) {
   });
 }
 
-std::optional<Degrees> degrees_by_limits(const Log& log, const RobotDescription& robot,
+std::optional<Degrees> degrees_by_limits(const Log& log, const std::optional<SlowSignals>& slow,
+                                         const RobotDescription& robot,
                                          const std::vector<Index>& revolute,
                                          const std::vector<DataFault>& faults) {
   std::vector<Index> beyond;
@@ -195,10 +218,10 @@ std::optional<Degrees> degrees_by_limits(const Log& log, const RobotDescription&
   }
   if (beyond.empty()) return std::nullopt;
   // Limits of a turn stand beside a joint that turns on and on; its torque knows better.
-  const auto as_is = torque_pair(log, robot);
+  const auto as_is = slow ? torque_pair(*slow, robot, WithLinks::kNo) : std::nullopt;
   std::erase_if(beyond, [&](Index joint) {
     if (!as_is || !(as_is->measured.col(joint).norm() > 0)) return false;
-    const auto scaled = torque_pair(in_radians(log, robot, joint), robot);
+    const auto scaled = torque_pair(in_radians(*slow, robot, joint), robot, WithLinks::kNo);
     if (!scaled) return false;
     const double radians = misfit(*as_is, joint);
     const double degrees = misfit(*scaled, joint);
@@ -242,22 +265,22 @@ TimeByTorque time_by_torque(const Log& log, const RobotDescription& robot, doubl
   constexpr double kOfRate = 0.1;
   constexpr double kFewestPeriods = 20;  // of the cut-off in the recording
   const auto rows = static_cast<double>(log.sample_count());
-  Log scaled = log;
-  scaled.t_s /= per_second;
-  scaled.period_s /= per_second;
-  scaled.dq *= per_second;
   // Filtered over as many samples either way: else the one that smooths more has less noise.
-  const double share = std::min(kOfRate, std::max(kHz * scaled.period_s, kFewestPeriods / rows));
-  const auto best_misfit = [&](const Log& one) {
+  const double share =
+      std::min(kOfRate, std::max(kHz * log.period_s / per_second, kFewestPeriods / rows));
+  const auto slow = slow_signals(log, share);
+  if (!slow) return TimeByTorque::kUnknown;
+  const auto best_misfit = [&](const SlowSignals& one) {
     double best = std::numeric_limits<double>::infinity();
     for (const bool degrees : {false, true}) {
-      const auto pair = torque_pair(degrees ? in_radians(one, robot, -1) : one, robot, share);
+      const auto pair =
+          torque_pair(degrees ? in_radians(one, robot, -1) : one, robot, WithLinks::kNo);
       if (pair) best = std::min(best, misfit(*pair));
     }
     return best;
   };
-  const double seconds = best_misfit(log);
-  const double other = best_misfit(scaled);
+  const double seconds = best_misfit(*slow);
+  const double other = best_misfit(in_units(*slow, per_second));
   if (seconds < kBadFit && seconds < kClearlyBetter * other) return TimeByTorque::kSeconds;
   if (other < kBadFit && other < kClearlyBetter * seconds) return TimeByTorque::kUnit;
   return TimeByTorque::kUnknown;
@@ -271,9 +294,10 @@ void mend_degrees(Log& log, const RobotDescription& robot, std::vector<DataFault
     }
   }
   if (revolute.empty()) return;
-  auto found = degrees_by_torque(log, robot, revolute);
+  const std::optional<SlowSignals> slow = slow_signals(log);
+  auto found = slow ? degrees_by_torque(log, *slow, robot, revolute) : std::nullopt;
   if (!found) found = degrees_by_velocity(log, revolute);
-  if (!found) found = degrees_by_limits(log, robot, revolute, faults);
+  if (!found) found = degrees_by_limits(log, slow, robot, revolute, faults);
   if (!found) return;
   DataFault fault;
   fault.kind = DataFaultKind::kDegrees;

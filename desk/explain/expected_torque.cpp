@@ -5,7 +5,6 @@
 
 #include "compare/inverse_model.hpp"
 #include "compare/motion.hpp"
-#include "signal/decimate.hpp"
 
 namespace offnominal::desk {
 
@@ -19,10 +18,7 @@ ExpectedTorque::ExpectedTorque(const Log& even, const RobotDescription& robot, I
   FilterPlan plan;
   plan.sample_rate_hz = even.sample_rate_hz();
   plan.position_cutoff_hz = cutoff_hz(even);
-  const Motion full = motion_of(even, plan);
-  torque_ =
-      model_torque(robot, {every_nth(full.t_s, stride_), every_nth_row(full.q, stride_),
-                           every_nth_row(full.dq, stride_), every_nth_row(full.ddq, stride_)});
+  torque_ = model_torque(robot, thin_motion_of(even, plan, stride_));
 }
 
 double ExpectedTorque::cutoff_hz(const Log& even) {

@@ -14,7 +14,6 @@
 #include "explain/doctor.hpp"
 #include "explain/doctor_signal.hpp"
 #include "log/sampling.hpp"
-#include "signal/decimate.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -84,10 +83,8 @@ double spread_of(const DataFault& fault, const RowSpan& rows, const FilterPlan& 
 std::vector<Index> depending_on(Index joint, const Log& log, const RobotDescription& robot) {
   constexpr double kShare = 0.02;
   constexpr Index kMostRows = 1000;
-  const Motion full = motion_of(log, usual_plan(log));
   const Index stride = std::max<Index>(1, log.sample_count() / kMostRows);
-  Motion moves{every_nth(full.t_s, stride), every_nth_row(full.q, stride),
-               every_nth_row(full.dq, stride), every_nth_row(full.ddq, stride)};
+  Motion moves = thin_motion_of(log, usual_plan(log), stride);
   RobotDescription rigid = robot;
   rigid.effects.clear();
   const MatrixXd with = model_torque(rigid, moves);
@@ -138,10 +135,10 @@ void leave_out(const DataFault& fault, Log& log) {
 // A recording of which nothing is left, or some joints of it.
 void say_what_is_left(const Log& log, std::vector<DataFault>& faults) {
   constexpr double kFewestS = 0.5;
-  const MatrixXd usable = usable_samples(log, usual_plan(log));
   std::vector<Index> lost;
-  for (Index joint = 0; joint < usable.cols(); ++joint) {
-    if (usable.col(joint).sum() * log.period_s < kFewestS) lost.push_back(joint);
+  for (Index joint = 0; joint < log.q.cols(); ++joint) {
+    const VectorXd usable = usable_samples(log, usual_plan(log), joint);
+    if (usable.sum() * log.period_s < kFewestS) lost.push_back(joint);
   }
   if (lost.empty()) return;
   const bool all = static_cast<Index>(lost.size()) == log.q.cols();

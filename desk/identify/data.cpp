@@ -70,9 +70,9 @@ VectorXd resolved_sign_widths(const std::vector<Log>& logs, const FilterPlan& pl
   constexpr double kShareOfTopSpeed = 0.004;
   VectorXd widths = VectorXd::Zero(logs.front().q.cols());
   for (const Log& log : logs) {
-    const MatrixXd dq = motion_of(log, plan).dq;
     for (Index joint = 0; joint < widths.size(); ++joint) {
-      const double top = quantile(dq.col(joint).cwiseAbs(), kTopSpeedShare);
+      const VectorXd dq = motion_of_joint(log, plan, joint).dq;
+      const double top = quantile(dq.cwiseAbs(), kTopSpeedShare);
       widths[joint] = std::max(widths[joint], kShareOfTopSpeed * top);
     }
   }

@@ -47,18 +47,10 @@ std::vector<Workspace> FitMemory::workspaces(const RobotDescription& robot,
 const Measurement& FitMemory::measured(const std::vector<Log>& logs, std::size_t recording,
                                        const RobotDescription& robot, Known& known) {
   if (known.measured.size() == recording) {
-    known.measured.push_back(measure(logs[recording], robot, plan(robot)));
+    known.measured.push_back(measure(held_elsewhere(logs[recording]), robot, plan(robot)));
     known.models.emplace_back();
   }
   return known.measured[recording];
-}
-
-void FitMemory::forget_what_is_large(Known& known) {
-  // A model's torque is kept three times over: of so much it is made anew instead.
-  constexpr Eigen::Index kMostNumbers = 10'000'000;
-  for (std::size_t i = 0; i < known.models.size(); ++i) {
-    if (known.measured[i].motion.q.size() > kMostNumbers) known.models[i] = {};
-  }
 }
 
 Comparisons FitMemory::compare_one(const RobotDescription& robot, const std::vector<Log>& logs,
@@ -69,7 +61,6 @@ Comparisons FitMemory::compare_one(const RobotDescription& robot, const std::vec
     all.push_back(compare(robot, of, known.models[i]));
   }
   if (for_ == For::kOneFit) known = {};
-  forget_what_is_large(known);
   return together(std::move(all));
 }
 
@@ -95,7 +86,6 @@ FitMemory::Two FitMemory::compare_two(const RobotDescription& before, const Robo
     known = {};
     return two;
   }
-  forget_what_is_large(known);
   known.robot = robot_text(after);
   known.result = two.after;
   return two;

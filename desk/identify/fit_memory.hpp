@@ -62,7 +62,6 @@ class FitMemory {
     std::string robot;                      // the text of the one that was compared last
     Comparisons result;
   };
-  static void forget_what_is_large(Known& known);
   const Measurement& measured(const std::vector<Log>& logs, std::size_t recording,
                               const RobotDescription& robot, Known& known);
   Comparisons compare_one(const RobotDescription& robot, const std::vector<Log>& logs,

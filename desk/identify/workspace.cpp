@@ -161,20 +161,23 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
   const Motion full = motion_of(log, plan);
   at.motion = {every_nth(full.t_s, stride), every_nth_row(full.q, stride),
                every_nth_row(full.dq, stride), every_nth_row(full.ddq, stride)};
-  const MatrixXd usable = usable_samples(log, plan);
   MatrixXd torque = log.tau;
+  MatrixXd moving(at.motion.sample_count(), torque.cols());
+  MatrixXd usable = MatrixXd::Ones(log.left_out.empty() ? 0 : moving.rows(), torque.cols());
   at.torque_noise_density.resize(torque.cols());
   for (Index joint = 0; joint < torque.cols(); ++joint) {
+    moving.col(joint) =
+        every_nth(samples_that_tell(log, robot, joint, full.dq.col(joint)), stride);
+    const VectorXd own = usable_samples(log, plan, joint);
+    if (own.size() > 0) usable.col(joint) = every_nth(own, stride);
     at.torque_noise_density[joint] = 0;
     if (log.at_rest) continue;
     const VectorXd raw = log.tau.col(joint);
     const VectorXd smooth = zero_phase_low_pass(raw, plan.position_cutoff_hz, plan.sample_rate_hz);
-    at.torque_noise_density[joint] = noise_density(
-        raw, smooth, usable.size() > 0 ? VectorXd(usable.col(joint)) : VectorXd(), plan);
+    at.torque_noise_density[joint] = noise_density(raw, smooth, own, plan);
     if (stride > 1) torque.col(joint) = smooth;
   }
   at.torque = every_nth_row(torque, stride);
-  MatrixXd moving = every_nth_row(samples_that_tell(log, robot, full), stride);
   at.start_s = log.t_s[0];
   at.at_rest = log.at_rest;
   at.approach = log.approach;
@@ -189,7 +192,7 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
   }
   at.set_sign_width(sign_width);
   if (moving.minCoeff() < 1) at.moving = std::move(moving);
-  if (usable.size() > 0) at.usable = every_nth_row(usable, stride);
+  if (usable.rows() > 0) at.usable = std::move(usable);
   return at;
 }
 

@@ -136,7 +136,7 @@ class Identifier {
     result_.cross_validated = holdout_.empty();
     result_.held_out = holdout_.empty() ? parts_held_out() : errors_on(holdout_);
     const Measurement measured =
-        measure(holdout_.empty() ? logs_.front() : holdout_.front(), file_, plan_);
+        measure(held_elsewhere(holdout_.empty() ? logs_.front() : holdout_.front()), file_, plan_);
     if (file_is_whole()) result_.before = compare(file_, measured);
     result_.after = compare(result_.robot, measured);
   }

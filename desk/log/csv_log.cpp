@@ -9,15 +9,21 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "common/encoding.hpp"
 #include "common/error.hpp"
+#include "common/parallel.hpp"
 #include "common/small_letters.hpp"
+#include "log/csv_column.hpp"
 #include "log/csv_layout.hpp"
 #include "log/csv_line.hpp"
+#include "log/csv_lines.hpp"
+#include "log/csv_plain_row.hpp"
 #include "log/date_time.hpp"
+#include "log/decimal_marks.hpp"
 #include "log/split_time.hpp"
 
 namespace offnominal::desk {
@@ -48,33 +54,8 @@ constexpr const char* kTimes =
     "time in s, or a date with its time, in one column or two: 2026-11-24T02:14:30.123 or "
     "24.11.2026 02:14:30.123";
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
 bool has_small_letter(const std::string& text) {
   return std::any_of(text.begin(), text.end(), [](char c) { return c >= 'a' && c <= 'z'; });
-}
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-// A mark, and three digits behind it.
-bool has_three_decimals(std::string_view text) {
-  constexpr std::size_t kDecimals = 3;
-  return text.size() > kDecimals + 1 && !is_digit(text[text.size() - kDecimals - 1]);
-}
-
-// "1.371", "-12.345.678", and neither "0.371" nor "1.37".
-bool may_be_thousands(std::string_view text, char mark) {
-  constexpr std::size_t kGroup = 3;
-  if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
-  const std::size_t first = text.find(mark);
-  if (first == std::string_view::npos || first == 0 || first > kGroup || text[0] == '0') {
-    return false;
-  }
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool is_mark = i >= first && (i - first) % (kGroup + 1) == 0;
-    if (is_mark ? text[i] != mark : !is_digit(text[i])) return false;
-  }
-  return (text.size() - first) % (kGroup + 1) == 0;
 }
 
 // Up to this every whole number is a double.
@@ -104,19 +85,8 @@ class CsvReader {
   }
 
  private:
-  // What the cells of a column of time are.
-  enum class Form { kNumber, kLongNumber, kDate };
-
-  struct Column {
-    std::string name;  // that it is asked for by
-    Need need = Need::kNone;
-    Form form = Form::kNumber;
-    std::int64_t origin = 0;  // of what is no plain number
-    // The cell with the date, where this one has the time of day, or the other way round.
-    std::optional<std::size_t> other_half = std::nullopt;
-    // Grows by doubling; what is not written to is not in memory.
-    Eigen::VectorXd values;
-  };
+  using Column = CsvColumn;
+  using Form = CsvColumn::Form;
 
   [[noreturn]] void fail(const std::string& place, const std::string& found,
                          const std::string& allowed, const std::string& mend = {}) const {
@@ -167,13 +137,59 @@ class CsvReader {
     unfinished_ = !layout_.first_ended;
     // Before anything is known of its cells.
     read_row_slowly(splitter, layout_.first);
-    std::string_view line;
-    while (kept_ > 0 && ascending_ && next(line)) {
-      make_room();
-      if (!unfinished_ && read_row(line)) {
+    CsvLines lines = CsvLines::next(file_, layout_);
+    while (goes_on()) {
+      make_room(lines.size());
+      CsvLines ahead;
+      std::vector<PlainRow> plain;
+      if (lines.is_full()) {
+        const std::jthread reader([&] { ahead = CsvLines::next(file_, layout_); });
+        plain = plain_rows(lines);
+      }
+      take(lines, plain, splitter);
+      if (!goes_on()) return;
+      lines.rethrow();
+      if (!lines.is_full()) return;
+      lines = std::move(ahead);
+    }
+  }
+
+  [[nodiscard]] bool goes_on() const { return kept_ > 0 && ascending_; }
+
+  // Each as if all lines before it were plain ones.
+  std::vector<PlainRow> plain_rows(const CsvLines& lines) {
+    constexpr std::size_t kParts = 4;  // per thread
+    std::vector<PlainRow> rows(lines.size());
+    const int threads = all_threads();
+    const std::size_t parts = kParts * static_cast<std::size_t>(threads);
+    parallel_for(parts, threads, [&](std::size_t part) {
+      std::string scratch;
+      const std::size_t end = (part + 1) * lines.size() / parts;
+      for (std::size_t i = part * lines.size() / parts; i < end; ++i) {
+        rows[i] = plain_row(lines.line(i), static_cast<Index>(rows_ + i), scratch);
+      }
+    });
+    return rows;
+  }
+
+  PlainRow plain_row(std::string_view line, Index row, std::string& scratch) {
+    return read_plain_row({layout_, marks_, has_commas_}, line, row, columns_, scratch);
+  }
+
+  // `plain`: of these lines, or nothing.
+  void take(const CsvLines& lines, const std::vector<PlainRow>& plain, CsvLineSplitter& splitter) {
+    const std::size_t first = rows_;
+    for (std::size_t i = 0; i < lines.size() && goes_on(); ++i) {
+      ++line_number_;
+      unfinished_ = !lines.is_ended(i);
+      const bool is_in_place = !plain.empty() && rows_ == first + i;
+      PlainRow row = is_in_place ? plain[i] : PlainRow{};
+      if (!row.is_plain) row = plain_row(lines.line(i), static_cast<Index>(rows_), scratch_);
+      if (!unfinished_ && row.is_plain) {
+        take_time(row.time);
         end_row();
       } else {
-        read_row_slowly(splitter, line);
+        read_row_slowly(splitter, lines.line(i));
       }
       if (rows_ > most_rows()) {
         fail(line_place(), "more than " + std::to_string(RecordingFile::kMostNumbers) + " numbers",
@@ -186,137 +202,27 @@ class CsvReader {
     return RecordingFile::kMostNumbers / std::max<std::size_t>(1, kept_);
   }
 
-  bool next(std::string_view& line) {
-    if (ahead_ < layout_.ahead.size()) {
-      line = layout_.ahead[ahead_].first;
-      unfinished_ = !layout_.ahead[ahead_].second;
-      ++ahead_;
-    } else if (file_.next_line(line)) {
-      unfinished_ = !file_.line_ended();
-    } else {
-      return false;
-    }
-    ++line_number_;
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    return true;
-  }
-
-  void make_room() {
-    if (rows_ < room_) return;
+  void make_room(std::size_t rows = 1) {
+    if (rows_ + rows <= room_) return;
     constexpr std::size_t kFirstRoom = 256;
-    room_ = std::max(kFirstRoom, 2 * room_);
+    room_ = std::max({kFirstRoom, 2 * room_, rows_ + rows});
     for (Column& column : columns_) {
       if (column.need != Need::kNone) column.values.conservativeResize(static_cast<Index>(room_));
     }
   }
 
-  // The first numbers with a decimal mark, and with one that may as well stand before thousands.
-  struct Marks {
-    char mark;
-    std::optional<std::string> any = std::nullopt;
-    std::optional<std::string> thousands = std::nullopt;
-  };
-
   // Of what somebody asked for.
   void note_marks(const Column& column, std::string_view text) {
     if (layout_.separator == ',' || !is_required(column.need)) return;
-    for (Marks* const marks : {&points_, &commas_}) {
-      if (text.find(marks->mark) == std::string_view::npos) continue;
-      const bool is_thousands = !marks->thousands && may_be_thousands(text, marks->mark);
-      if (marks->any && !is_thousands) continue;
-      const std::string words = std::string(text) + " of column " + column.name;
-      if (!marks->any) marks->any = words;
-      if (is_thousands) marks->thousands = words;
-    }
-    check_marks(points_, commas_);
-    check_marks(commas_, points_);
-  }
-
-  void check_marks(const Marks& first, const Marks& second) const {
-    if (!first.thousands || !second.any) return;
+    const auto found = marks_.note(text, column.name);
+    if (!found) return;
     fail(line_place(),
          "numbers with a decimal comma and others with a point, one of which may stand between "
          "thousands: " +
-             *first.thousands + " and " + *second.any,
+             found->thousands + " and " + found->decimals,
          "one decimal mark in all that is read",
          "write the recording with one mark and without marks between thousands, or leave such "
          "columns out of [channels]");
-  }
-
-  // A line of plain numbers at once. False, and nothing done, for any other.
-  bool read_row(std::string_view line) {
-    const std::string_view written = line;
-    if (has_commas_) {
-      pointed_ = line;
-      std::replace(pointed_.begin(), pointed_.end(), ',', '.');
-      line = pointed_;
-    }
-    const char separator = layout_.separator;
-    const auto is_gap = [separator](char c) { return is_blank(c) && c != separator; };
-    const char* at = line.data();
-    const char* const end = at + line.size();
-    double time = last_time_;
-    if (is_comment(line)) return false;
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      Column& column = columns_[i];
-      while (at != end && (separator == ' ' ? is_blank(*at) : is_gap(*at))) ++at;
-      if (column.need == Need::kNone) {
-        while (at != end && *at != separator && *at != '"' && !(separator == ' ' && *at == '\t')) {
-          ++at;
-        }
-        if (at != end && *at == '"') return false;
-      } else {
-        double value = 0;
-        const char* const stop = number_at(column, at, end, value);
-        if (stop == nullptr || (stop != end && *stop == '.')) return false;
-        const auto size = static_cast<std::size_t>(stop - at);
-        const std::string_view cell =
-            written.substr(static_cast<std::size_t>(at - line.data()), size);
-        const bool is_first = !points_.any && !has_commas_;
-        if (is_first || has_three_decimals(cell)) note_marks(column, cell);
-        at = stop;
-        if (column.need == Need::kAscending) time = value;
-        column.values[static_cast<Index>(rows_)] = value;
-      }
-      if (separator == ' ') {
-        if (at != end && !is_blank(*at)) return false;
-        continue;
-      }
-      while (at != end && is_gap(*at)) ++at;
-      const bool last = i + 1 == columns_.size();
-      if (last && at != end && *at == separator && layout_.has_trailing) ++at;
-      if (last) break;
-      if (at == end || *at != separator) return false;
-      ++at;
-    }
-    while (at != end && is_blank(*at)) ++at;
-    if (at != end) return false;
-    take_time(time);
-    return true;
-  }
-
-  // Where the number at `at` ends; null where there is none of the column's form.
-  static const char* number_at(const Column& column, const char* at, const char* end,
-                               double& value) {
-    if (column.form == Form::kDate) return nullptr;
-    if (at != end && *at == '+') ++at;
-    if (column.form == Form::kLongNumber) {
-      std::int64_t whole = 0;
-      const auto [stop, error] = std::from_chars(at, end, whole);
-      if (error != std::errc() || (stop != end && (*stop == '.' || *stop == 'e' || *stop == 'E'))) {
-        return nullptr;
-      }
-      value = difference(whole, column.origin);
-      return stop;
-    }
-    const auto [stop, error] = std::from_chars(at, end, value);
-    return error == std::errc() ? stop : nullptr;
-  }
-
-  // Without overflow, and exact as long as it is small.
-  static double difference(std::int64_t a, std::int64_t b) {
-    if ((a < 0) == (b < 0)) return static_cast<double>(a - b);
-    return static_cast<double>(a) - static_cast<double>(b);
   }
 
   // As far as time ascends: single rows that do not are left out later.
@@ -490,7 +396,6 @@ class CsvReader {
   const NeedOf& need_of_;
   MeaningOf meaning_of_;
   CsvLayout layout_;
-  std::size_t ahead_ = 0;  // lines of the layout that were taken
   std::size_t line_number_ = 0;
   std::size_t last_line_ = 0;  // that holds a row
   std::vector<std::size_t> blank_lines_;
@@ -503,8 +408,8 @@ class CsvReader {
   double last_time_ = -std::numeric_limits<double>::infinity();  // that ascends
   std::size_t out_of_time_ = 0;                                  // rows
   bool has_commas_ = false;                                      // as decimal marks
-  Marks points_{'.'}, commas_{','};
-  std::string pointed_;      // a line with points in place of its commas
+  DecimalMarks marks_;
+  std::string scratch_;
   bool unfinished_ = false;  // no line end after the newest line
   bool cut_off_ = false;     // the last line was left out
   std::vector<std::string> remarks_;

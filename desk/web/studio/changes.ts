@@ -28,14 +28,20 @@ export async function change(work: () => Promise<void>) {
   await choose(chosen);
 }
 
+/** Everything of the session as it is: the server makes the charts while the page shows the rest. */
+async function showAll() {
+  const charts = drawCharts();
+  show();
+  await charts;
+}
+
 /** A change whose answer is the new state. */
 export async function changeModel(question: () => Promise<State>) {
   await change(async () => {
     takeState(await question());
     letGo();
     session.saving = { ...session.saving, words: "", confirm: null };
-    show();
-    await drawCharts();
+    await showAll();
     const joint = currentJoint();
     say(`Joint ${joint.joint}: error now ${percent(errorOf(joint, "now"))}`);
   });
@@ -62,8 +68,7 @@ export async function choose(what: Partial<Looked>) {
       clearCursors();
     }
     Object.assign(look, what);
-    show();
-    await drawCharts();
+    await showAll();
     keepLook();
   });
 }

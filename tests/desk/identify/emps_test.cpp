@@ -43,8 +43,8 @@ class Emps : public ::testing::Test {
     AddRequest request;
     request.effects = std::move(effects);
     AddResult result =
-        add(robot_, request, {fitted_.log},
-            hold_out ? std::vector<Log>{validation_.log} : std::vector<Log>{}, kPublished);
+        add(robot_, request, {*fitted_.log},
+            hold_out ? std::vector<Log>{*validation_.log} : std::vector<Log>{}, kPublished);
     EXPECT_TRUE(result.objections.empty());
     robot_ = result.robot;
     return result;
