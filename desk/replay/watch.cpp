@@ -19,8 +19,9 @@
 namespace offnominal::desk {
 namespace {
 
-template <typename Space>
-using ReplayMonitor = Monitor<kRuntimeJoints, kMaxHiddenUnits, double, WithMemory, Space>;
+// `L`: the most hidden units.
+template <typename Space, int L>
+using ReplayMonitor = Monitor<kRuntimeJoints, L, double, WithMemory, Space>;
 
 void require_start(Status status, const RobotDescription& robot) {
   if (status == Status::kOk) return;
@@ -113,7 +114,7 @@ bool counts_time(const RobotDescription& robot) {
   });
 }
 
-template <typename Space>
+template <typename Space, int L>
 class WatchOf final : public Watch {
  public:
   WatchOf(const RobotDescription& robot, double period_s, const OnFault& on_fault,
@@ -168,7 +169,7 @@ class WatchOf final : public Watch {
   void finish() override { namer_.finish(); }
 
  private:
-  using Monitored = ReplayMonitor<Space>;
+  using Monitored = ReplayMonitor<Space, L>;
   using Output = MonitorOutput<kRuntimeJoints, double, Space>;
 
   // Of both filters, where there are two.
@@ -288,7 +289,7 @@ class WatchOf final : public Watch {
   bool counts_time_;
   MonitorConfig<kRuntimeJoints, double, Space> config_;
   Monitored monitor_;
-  // On the heap: 128 hidden units of 12 joints do not belong on a stack.
+  // On the heap: so many hidden units of 12 joints do not belong on a stack.
   std::unique_ptr<typename Monitored::State> state_ = std::make_unique<typename Monitored::State>();
   Output at_start_;
   Output output_;
@@ -299,14 +300,27 @@ class WatchOf final : public Watch {
   std::uint64_t ticks_ = 0;
 };
 
+template <int L>
+std::unique_ptr<Watch> make_watch_of(const RobotDescription& robot, double period_s,
+                                     const Watch::OnFault& on_fault, Detections detections) {
+  if (robot.estimator.space == EstimatorSpace::kTorque) {
+    return std::make_unique<WatchOf<TorqueSpace, L>>(robot, period_s, on_fault, detections);
+  }
+  return std::make_unique<WatchOf<AccelerationSpace, L>>(robot, period_s, on_fault, detections);
+}
+
 }  // namespace
 
 std::unique_ptr<Watch> make_watch(const RobotDescription& robot, double period_s,
                                   const Watch::OnFault& on_fault, Detections detections) {
-  if (robot.estimator.space == EstimatorSpace::kTorque) {
-    return std::make_unique<WatchOf<TorqueSpace>>(robot, period_s, on_fault, detections);
-  }
-  return std::make_unique<WatchOf<AccelerationSpace>>(robot, period_s, on_fault, detections);
+  // A tick takes the time of all that there is room for, and a campaign has a billion of them. What
+  // is beyond the robot's own units is and stays 0: the answer is the same to the bit.
+  constexpr int kFew = 40;
+  constexpr int kUsual = 64;
+  const int units = robot.estimator.hidden_units;
+  if (units <= kFew) return make_watch_of<kFew>(robot, period_s, on_fault, detections);
+  if (units <= kUsual) return make_watch_of<kUsual>(robot, period_s, on_fault, detections);
+  return make_watch_of<kMaxHiddenUnits>(robot, period_s, on_fault, detections);
 }
 
 }  // namespace offnominal::desk
