@@ -54,8 +54,7 @@ void leave_out_faults(const Log& log, Measurement& measured) {
   measured.at_fault = VectorXd::Zero(measured.moving.cols());
   if (log.left_out.empty()) return;
   for (Index joint = 0; joint < measured.moving.cols(); ++joint) {
-    const VectorXd kept =
-        kept_samples(measured.plan, usable_samples(log, measured.plan, joint));
+    const VectorXd kept = kept_samples(measured.plan, usable_samples(log, measured.plan, joint));
     measured.at_fault[joint] = 1 - kept.mean();
     measured.moving.col(joint).array() *= kept.array();
     // Where all that is left stands still, rest is all there is (as in standstill.cpp).
@@ -125,8 +124,8 @@ MatrixXd ModelTorqueMemory::filtered(const RobotDescription& robot, const Measur
   // A model's torque is kept three times over: of so much it is made anew instead.
   constexpr Index kMostNumbers = 10'000'000;
   const bool is_kept = measured.motion.q.size() <= kMostNumbers;
-  MatrixXd torque = is_kept ? model_torque(seen, measured.motion, bodies_)
-                            : model_torque(seen, measured.motion);
+  MatrixXd torque =
+      is_kept ? model_torque(seen, measured.motion, bodies_) : model_torque(seen, measured.motion);
   if (has_transmission_effect(seen)) {
     torque += transmission_torque(seen, measured.motion, torque, measured.log->tau,
                                   noise_densities(measured), measured.plan);

@@ -82,8 +82,8 @@ class BurstEnds {
   [[nodiscard]] bool ends_unlike_a_rest(const Burst& burst) const {
     const Index end = burst.end();
     if (end + 1 >= q_.size()) return true;
-    return !comes_back(burst) && std::abs(q_[end + 1] - q_[end]) >
-                                     limit_of(0) + kSensorSteps * step_at(q_[end + 1]);
+    return !comes_back(burst) &&
+           std::abs(q_[end + 1] - q_[end]) > limit_of(0) + kSensorSteps * step_at(q_[end + 1]);
   }
 
   // A jump that is not more than what the joint can have moved meanwhile, by how it moves then.

@@ -9,7 +9,8 @@ namespace offnominal::desk {
 FileErrors file_errors(const RobotDescription& robot, const std::vector<Log>& logs,
                        const FilterPlan& plan) {
   std::vector<Comparison> recordings;
-  for (const Log& log : logs) recordings.push_back(compare(robot, measure(held_elsewhere(log), robot, plan)));
+  for (const Log& log : logs)
+    recordings.push_back(compare(robot, measure(held_elsewhere(log), robot, plan)));
   FileErrors errors;
   for (const JointComparison& joint : together(std::move(recordings)).joints) {
     errors.rms_error.push_back(joint.rms_error);

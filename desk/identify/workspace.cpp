@@ -166,8 +166,7 @@ Workspace make_workspace(const Log& log, const RobotDescription& robot, const Fi
   MatrixXd usable = MatrixXd::Ones(log.left_out.empty() ? 0 : moving.rows(), torque.cols());
   at.torque_noise_density.resize(torque.cols());
   for (Index joint = 0; joint < torque.cols(); ++joint) {
-    moving.col(joint) =
-        every_nth(samples_that_tell(log, robot, joint, full.dq.col(joint)), stride);
+    moving.col(joint) = every_nth(samples_that_tell(log, robot, joint, full.dq.col(joint)), stride);
     const VectorXd own = usable_samples(log, plan, joint);
     if (own.size() > 0) usable.col(joint) = every_nth(own, stride);
     at.torque_noise_density[joint] = 0;

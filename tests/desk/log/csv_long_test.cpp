@@ -88,9 +88,8 @@ TEST(LongCsv, WhatIsNoNumberIsNamedWithItsLine) {
     if (row == 333'333) line = "333333,abc,1\n";
     if (row == 5) line = "# a comment\n" + line;
   });
-  EXPECT_THAT(refusal(text),
-              AllOf(HasSubstr(fmt::format("line {}", 333'333 + 3)), HasSubstr("column q1"),
-                    HasSubstr("\"abc\"")));
+  EXPECT_THAT(refusal(text), AllOf(HasSubstr(fmt::format("line {}", 333'333 + 3)),
+                                   HasSubstr("column q1"), HasSubstr("\"abc\"")));
 }
 
 TEST(LongCsv, TheFirstOfTwoFaultsIsSaid) {
