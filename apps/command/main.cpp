@@ -114,10 +114,10 @@ ExitCode run(int argc, char** argv) {
 int main(int argc, char** argv) {
   using offnominal::desk::ExitCode;
   // Fits make and drop matrices of megabytes by the hundred. Handed back to the system each time,
-  // as is usual, they cost a quarter of the time of `explain` in page faults. What is larger is the
-  // columns of a recording of millions of rows: of those nothing is kept that is not in use.
+  // as is usual, they cost a quarter of the time of `explain` in page faults. A matrix of a
+  // recording of ten million rows is: of those nothing is kept that is not in use.
   constexpr int kKept = 1 << 30;
-  constexpr int kLarge = 1 << 26;
+  constexpr int kLarge = 1 << 29;
   mallopt(M_MMAP_THRESHOLD, kLarge);
   mallopt(M_TRIM_THRESHOLD, kKept);
   // A file that grows beyond what this user may have is said with its name, and does not end us.

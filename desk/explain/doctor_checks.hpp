@@ -161,6 +161,8 @@ inline constexpr double kSameUnit = 1.5;
 // none where the velocity was derived, where the joint stands, or where they have nothing in
 // common.
 std::optional<double> velocity_ratio(const Log& log, Eigen::Index joint);
+// Of every joint.
+std::vector<std::optional<double>> velocity_ratios(const Log& log);
 // The same of a part of one joint, sampled evenly.
 std::optional<double> velocity_ratio(const Eigen::VectorXd& q, const Eigen::VectorXd& dq,
                                      double period_s);

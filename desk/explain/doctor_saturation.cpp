@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "compare/standstill.hpp"
@@ -74,16 +75,25 @@ void find_held_torques(const Log& log, const RobotDescription& robot, const Expe
   constexpr double kExpected = 0.5;  // of the torque, that the model's spreads over
   constexpr double kUnlike = 3;      // times what the torque spreads over
   constexpr Index kFewestRows = 100;
-  for (Index joint = 0; joint < log.tau.cols(); ++joint) {
+  struct Held {
+    Spread torque, expected;
+  };
+  const auto all = of_every_joint(log, [&](Index joint) -> std::optional<Held> {
     const std::vector<Index> rows = moving_rows(log, robot, joint);
-    if (static_cast<Index>(rows.size()) < kFewestRows) continue;
+    if (static_cast<Index>(rows.size()) < kFewestRows) return std::nullopt;
     const Spread torque = spread_over(rows, [&](Index row) { return log.tau(row, joint); });
     const double size = std::abs(torque.middle);
-    if (!(torque.width > 0) || !(torque.width < kHeld * size)) continue;
+    if (!(torque.width > 0) || !(torque.width < kHeld * size)) return std::nullopt;
     const Spread expected =
         spread_over(rows, [&](Index row) { return model.at(log.t_s[row], joint); });
-    if (!(expected.width > std::max(kUnlike * torque.width, kExpected * size))) continue;
-    if (is_known_to_stay(faults, joint)) continue;
+    if (!(expected.width > std::max(kUnlike * torque.width, kExpected * size))) return std::nullopt;
+    return Held{torque, expected};
+  });
+  for (Index joint = 0; joint < log.tau.cols(); ++joint) {
+    const std::optional<Held>& held = all[static_cast<std::size_t>(joint)];
+    if (!held || is_known_to_stay(faults, joint)) continue;
+    const Spread& torque = held->torque;
+    const Spread& expected = held->expected;
     DataFault fault;
     fault.kind = DataFaultKind::kSaturation;
     fault.joint = joint;
@@ -211,26 +221,36 @@ void find_reached_limits(const Log& log, const RobotDescription& robot, const Ex
       std::none_of(faults.begin(), faults.end(), [](const DataFault& fault) {
         return fault.joint >= 0 && fault.signal == FaultySignal::kPosition;
       });
-  for (Index joint = 0; joint < log.tau.cols(); ++joint) {
+  struct Reached {
+    Limits limits;
+    std::vector<RowSpan> spans;
+  };
+  const auto all = of_every_joint(log, [&](Index joint) -> std::optional<Reached> {
     const VectorXd tau = log.tau.col(joint);
     const TorqueExtremes torque(tau, moving_rows(log, robot, joint));
-    if (!torque.varies()) continue;
-    const Limits limits = limits_of(log, robot, joint, torque, are_positions_right, model);
+    if (!torque.varies()) return std::nullopt;
+    Reached reached{limits_of(log, robot, joint, torque, are_positions_right, model), {}};
+    if (!(reached.limits.share > 0)) return std::nullopt;
+    for (const double end : reached.limits.ends) {
+      const std::vector<RowSpan> stretches = torque.spans(end);
+      reached.spans.insert(reached.spans.end(), stretches.begin(), stretches.end());
+    }
+    return reached;
+  });
+  for (Index joint = 0; joint < log.tau.cols(); ++joint) {
+    const std::optional<Reached>& reached = all[static_cast<std::size_t>(joint)];
+    if (!reached) continue;
+    const Limits& limits = reached->limits;
     const double most_share = limits.gradual && !is_known_to_stay(faults, joint)
                                   ? kLargestShareOfAll
                                   : kLargestShareAtExtreme;
-    if (!(limits.share > 0) || (limits.share > most_share && !limits.at_stated)) continue;
+    if (limits.share > most_share && !limits.at_stated) continue;
     DataFault fault;
     fault.kind = DataFaultKind::kSaturation;
     fault.joint = joint;
     fault.signal = FaultySignal::kTorque;
     fault.size = limits.share;
-    std::vector<RowSpan> spans;
-    for (const double end : limits.ends) {
-      const std::vector<RowSpan> stretches = torque.spans(end);
-      spans.insert(spans.end(), stretches.begin(), stretches.end());
-    }
-    set_spans(log, spans, fault);
+    set_spans(log, reached->spans, fault);
     fault.words =
         fmt::format("the torque of joint {} stays at {:.4g} in {:.1f} % of the samples: {}",
                     joint + 1, limits.most.value, 100 * limits.share, words_of_spans(fault));

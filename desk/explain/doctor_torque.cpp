@@ -182,8 +182,9 @@ std::optional<Degrees> degrees_by_velocity(const Log& log, const std::vector<Ind
   std::optional<Degrees> found;
   Index told = 0;
   Index alike = 0;
+  const std::vector<std::optional<double>> ratios = velocity_ratios(log);
   for (const Index joint : revolute) {
-    const auto ratio = velocity_ratio(log, joint);
+    const auto& ratio = ratios[static_cast<std::size_t>(joint)];
     if (!ratio) continue;
     ++told;
     if (!(*ratio > kRadPerDegree / kNearUnit && *ratio < kRadPerDegree * kNearUnit)) continue;

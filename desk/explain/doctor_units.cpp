@@ -120,15 +120,15 @@ constexpr double kLongestPeriodS = 0.2;
 
 // A minute, an hour or a day, which every velocity that was measured shows. None: no such unit, or
 // the torques follow from s.
-std::optional<Unit> long_unit_of_time(const Log& log, const RobotDescription& robot) {
+std::optional<Unit> long_unit_of_time(const Log& log, const RobotDescription& robot,
+                                      const std::vector<std::optional<double>>& ratios) {
   for (const char* name : kLongTimeUnits) {
     const Unit unit{1 / unit_factor(name), name};
     const double period_s = log.period_s / unit.per_si;
     if (period_s < kShortestPeriodS || period_s > kLongestPeriodS) continue;
     Index told = 0;
     Index alike = 0;
-    for (Index joint = 0; joint < log.q.cols(); ++joint) {
-      const auto ratio = velocity_ratio(log, joint);
+    for (const auto& ratio : ratios) {
       if (!ratio) continue;
       ++told;
       if (shows_long_time_unit(*ratio, name)) ++alike;
@@ -144,14 +144,15 @@ std::optional<Unit> long_unit_of_time(const Log& log, const RobotDescription& ro
 // that is the robot file's but for the unit. A slow recording may have either: then the torque
 // tells, or nothing does. None: it is s.
 std::optional<TimeUnit> unit_of_time(const Log& log, const RobotDescription& robot) {
-  if (const auto unit = long_unit_of_time(log, robot)) return TimeUnit{*unit, true};
+  const std::vector<std::optional<double>> ratios = velocity_ratios(log);
+  if (const auto unit = long_unit_of_time(log, robot, ratios)) return TimeUnit{*unit, true};
   static constexpr std::array kUnits{Unit{1e3, "ms"}, Unit{1e6, "us"}, Unit{1e9, "ns"}};
   bool told = false;      // by a velocity
   bool as_it_is = false;  // a velocity is the derivative, to the unit
   std::array<bool, kUnits.size()> fits{true, true, true};
   bool fits_seconds = true;
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
-    const auto signed_ratio = velocity_ratio(log, joint);
+    const auto& signed_ratio = ratios[static_cast<std::size_t>(joint)];
     if (!signed_ratio) continue;
     const double ratio = std::abs(*signed_ratio);
     const bool revolute = is_revolute(robot, joint);
@@ -236,10 +237,10 @@ void mend_velocities(Log& log, const RobotDescription& robot, std::vector<DataFa
   std::vector<Found> groups;
   Index measured = 0;
   const std::vector<char> held = held_joints(log, robot);
+  const std::vector<std::optional<double>> ratios = velocity_ratios(log);
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
-    if (held[static_cast<std::size_t>(joint)] != 0) continue;
-    const auto ratio = velocity_ratio(log, joint);
-    if (!ratio) continue;
+    const auto& ratio = ratios[static_cast<std::size_t>(joint)];
+    if (!ratio || held[static_cast<std::size_t>(joint)] != 0) continue;
     ++measured;
     if (*ratio > 0 && distance(*ratio, 1) < std::log(kSameUnit)) continue;
     const Unit* unit = unit_of_velocity(*ratio, is_revolute(robot, joint));

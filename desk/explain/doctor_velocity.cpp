@@ -193,6 +193,10 @@ std::optional<double> velocity_ratio(const Log& log, Index joint) {
   return velocity_ratio(log.q.col(joint), log.dq.col(joint), log.period_s);
 }
 
+std::vector<std::optional<double>> velocity_ratios(const Log& log) {
+  return of_every_joint(log, [&](Index joint) { return velocity_ratio(log, joint); });
+}
+
 std::optional<double> velocity_ratio(const VectorXd& q, const VectorXd& dq, double period_s) {
   if (q.size() == 0) return std::nullopt;
   const Match best = best_match(q, travel_of(dq, period_s));
