@@ -34,6 +34,23 @@ void add_jumps(const Replay& shown, Eigen::MatrixXd& ratio) {
   }
 }
 
+// Begins what robot_text() says last.
+constexpr const char* kBound = "[uncertainty_bound]";
+
+bool is_monitor(DetectorKind kind) {
+  return kind == DetectorKind::kTorque || kind == DetectorKind::kAcceleration;
+}
+
+// The campaign's model with the filters of a detector, whatever its bound.
+RobotDescription with_filters(const DetectorSettings& settings, const Campaign& campaign) {
+  RobotDescription robot = campaign.model;
+  robot.estimator.alpha = settings.alpha_per_s;
+  robot.estimator.fast_alpha = settings.fast_alpha_per_s;
+  robot.estimator.space = settings.kind == DetectorKind::kTorque ? EstimatorSpace::kTorque
+                                                                  : EstimatorSpace::kAcceleration;
+  return robot;
+}
+
 class MonitorDetector final : public Detector {
  public:
   MonitorDetector(RobotDescription robot, bool accommodates, std::vector<std::string> notes)
@@ -68,7 +85,7 @@ class MonitorDetector final : public Detector {
   // The robot file's text has every digit of the bound.
   [[nodiscard]] std::string thresholds() const override {
     const std::string text = robot_text(robot_);
-    const std::size_t begin = text.find("[uncertainty_bound]");
+    const std::size_t begin = text.find(kBound);
     return begin == std::string::npos ? text : text.substr(begin);
   }
 
@@ -82,20 +99,27 @@ class MonitorDetector final : public Detector {
 std::unique_ptr<Detector> calibrated_monitor(const DetectorSettings& settings,
                                              const Campaign& campaign,
                                              const std::vector<Log>& logs) {
-  RobotDescription robot = campaign.model;
-  robot.estimator.alpha = settings.alpha_per_s;
-  robot.estimator.fast_alpha = settings.fast_alpha_per_s;
+  const RobotDescription robot = with_filters(settings, campaign);
   const CalibrateRequest request{campaign.calibration.alarms_per_hour, {}, ""};
   if (settings.kind == DetectorKind::kTorque) {
-    robot.estimator.space = EstimatorSpace::kTorque;
     JointsCalibration result = calibrate_joints(robot, request, logs, {});
     return std::make_unique<MonitorDetector>(std::move(result.robot), settings.accommodates,
                                              std::move(result.objections));
   }
-  robot.estimator.space = EstimatorSpace::kAcceleration;
   Calibration result = calibrate(robot, request, logs, {});
   return std::make_unique<MonitorDetector>(std::move(result.robot), false,
                                            std::move(result.objections));
+}
+
+std::optional<RobotDescription> judging_robot(const Campaign& campaign, const std::string& detector,
+                                              const std::string& thresholds) {
+  const auto found = std::find_if(
+      campaign.detectors.begin(), campaign.detectors.end(),
+      [&](const DetectorSettings& one) { return one.name == detector && is_monitor(one.kind); });
+  if (found == campaign.detectors.end()) return std::nullopt;
+  std::string text = robot_text(with_filters(*found, campaign));
+  text.resize(std::min(text.size(), text.find(kBound)));
+  return parse_robot(text + "\n" + thresholds, "detector " + detector);
 }
 
 }  // namespace offnominal::desk::campaign

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "campaign/detector.hpp"
+#include "robot/robot.hpp"
 
 namespace offnominal::desk::campaign {
 
@@ -11,5 +14,11 @@ namespace offnominal::desk::campaign {
 [[nodiscard]] std::unique_ptr<Detector> calibrated_monitor(const DetectorSettings& settings,
                                                            const Campaign& campaign,
                                                            const std::vector<Log>& logs);
+
+/// The robot file of such a monitor once more, with the bound that it was calibrated to: its
+/// Detector::thresholds(). None: the detector of this name is a peer, or there is none.
+[[nodiscard]] std::optional<RobotDescription> judging_robot(const Campaign& campaign,
+                                                            const std::string& detector,
+                                                            const std::string& thresholds);
 
 }  // namespace offnominal::desk::campaign

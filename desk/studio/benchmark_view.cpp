@@ -231,6 +231,7 @@ ordered_json BenchmarkView::state() const {
            "A click on a number opens its recordings below, with the robot file that does not know "
            "what is hidden."},
           {"count", results_.cases.size()},
+          {"monitors", ordered_json::array()},
           {"filters",
            {filter_json("effect", "Hidden", false, of_effects),
             filter_json("joint", "Joint", false, of_joints),

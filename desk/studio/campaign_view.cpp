@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "campaign/campaign_file.hpp"
+#include "campaign/monitor_detector.hpp"
 #include "campaign/restored_campaign.hpp"
 #include "campaign/summary.hpp"
 #include "campaign/summary_report.hpp"
@@ -16,6 +17,7 @@
 #include "common/input_name.hpp"
 #include "common/shell_word.hpp"
 #include "log/csv_text.hpp"
+#include "replay/replay.hpp"
 #include "report/page.hpp"
 #include "robot/robot_file.hpp"
 
@@ -108,6 +110,11 @@ ordered_json CampaignView::state() const {
   for (const campaign::DetectorRow& one : results_.campaign.detectors) {
     detectors.push_back({one.name, one.name});
   }
+  // A peer has thresholds alone.
+  ordered_json monitors = ordered_json::array();
+  for (const campaign::DetectorRow& one : results_.campaign.detectors) {
+    if (one.thresholds.starts_with("[uncertainty_bound]")) monitors.push_back(one.name);
+  }
   std::vector<FilterOption> kinds{{"", "all faults"}};
   std::set<int> of_joints;
   for (const Result& row : results_.rows) {
@@ -135,6 +142,7 @@ ordered_json CampaignView::state() const {
        "A click on a number runs it once more and opens it below as a recording, with the model "
        "that the detectors have."},
       {"count", all},
+      {"monitors", std::move(monitors)},
       {"filters",
        {filter_json("kind", "Fault", false, kinds), filter_json("joint", "Joint", false, joints),
         filter_json("detector", "Detector", false, detectors),
@@ -219,12 +227,48 @@ void CampaignView::restore() {
       campaign::restored_campaign(results_.campaign.identity, folder_.path(), results_file_);
 }
 
-SessionFiles CampaignView::record(std::int64_t run) {
-  const std::lock_guard guard(recording_);
+const Log& CampaignView::log_of(std::int64_t run) {
   if (!campaign_) restore();
   if (run < 0 || run >= campaign_->run_count()) refuse_filter("There is no such run.");
   if (!simulator_) simulator_ = std::make_unique<campaign::Simulator>(*campaign_);
-  const Log log = simulator_->run(campaign::run_of(*campaign_, run)).log;
+  if (!newest_ || newest_->first != run) {
+    newest_.emplace(run, simulator_->run(campaign::run_of(*campaign_, run)).log);
+    newest_->second.file = fmt::format("run {}", run);
+  }
+  return newest_->second;
+}
+
+nlohmann::json CampaignView::watched(std::int64_t run, const std::string& detector) {
+  const std::lock_guard guard(recording_);
+  const Log& log = log_of(run);
+  const auto& detectors = results_.campaign.detectors;
+  const auto found = std::find_if(detectors.begin(), detectors.end(),
+                                  [&](const auto& one) { return one.name == detector; });
+  const auto robot = found == detectors.end()
+                         ? std::nullopt
+                         : campaign::judging_robot(*campaign_, detector, found->thresholds);
+  if (!robot) refuse_filter("There is no such monitor.");
+  report::Page page = page_of(replay(*robot, log), "");
+  for (report::Section& section : page.sections) {
+    for (report::Block& block : section.blocks) {
+      auto* const chart = std::get_if<report::Chart>(&block);
+      if (chart == nullptr) continue;
+      for (report::EventMark& mark : marks_of(run)) {
+        if (mark.level == report::Level::kBad) chart->events.push_back(std::move(mark));
+      }
+    }
+  }
+  const nlohmann::json json = to_json(page);
+  return {{"run", run},
+          {"detector", detector},
+          {"words", json.at("verdict").at("words")},
+          {"level", json.at("verdict").at("level")},
+          {"sections", json.at("sections")}};
+}
+
+SessionFiles CampaignView::record(std::int64_t run) {
+  const std::lock_guard guard(recording_);
+  const Log& log = log_of(run);
   const std::string stem = free_stem(fmt::format("run_{}", run));
   const std::string recording = stem + ".csv";
   const std::string model = stem + "_model.toml";

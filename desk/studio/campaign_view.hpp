@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "campaign/campaign.hpp"
 #include "campaign/result_file.hpp"
@@ -32,6 +33,8 @@ class CampaignView final : public ResultsView {
   /// Run once more, with the model that the detectors have, as `offnominal campaign record` writes
   /// it. It lies in a folder that goes with this object.
   [[nodiscard]] SessionFiles record(std::int64_t run) override;
+  /// The monitor with the bound that the results hold, over the run as record() has it.
+  [[nodiscard]] nlohmann::json watched(std::int64_t run, const std::string& detector) override;
   [[nodiscard]] InputError shown(const InputError& error) const override {
     return folder_.shown(error);
   }
@@ -40,6 +43,8 @@ class CampaignView final : public ResultsView {
   [[nodiscard]] campaign::Results left_by(const ResultsFilter& filter) const;
   [[nodiscard]] std::vector<report::EventMark> marks_of(std::int64_t run) const;
   void restore();
+  // Whoever calls holds `recording_`.
+  const Log& log_of(std::int64_t run);
 
   std::string results_file_;
   std::optional<std::string> campaign_file_;
@@ -47,6 +52,7 @@ class CampaignView final : public ResultsView {
   std::optional<campaign::Campaign> campaign_;
   std::mutex recording_;  // one run at a time
   std::unique_ptr<campaign::Simulator> simulator_;
+  std::optional<std::pair<std::int64_t, Log>> newest_;  // the run that was asked for last
   UploadFolder folder_;
 };
 

@@ -27,6 +27,10 @@ void set_up_results_routes(Api& api, Stage& stage) {
   api.on("GET /results/runs", [&stage](const ApiRequest& asked) {
     return stage.results().runs(filter_of(asked), asked.parameters.at("from").get<std::size_t>());
   });
+  api.on("GET /results/watched", [&stage](const ApiRequest& asked) {
+    return stage.results().watched(asked.parameters.at("run").get<std::int64_t>(),
+                                   asked.parameters.at("detector").get<std::string>());
+  });
   api.on("POST /results/session", [&stage](const ApiRequest& asked) {
     return stage.open_run(asked.body.at("run").get<std::int64_t>(),
                           asked.body.at("replace").get<bool>());

@@ -46,4 +46,8 @@ std::string value_of(const ResultsFilter& filter, const std::string& key) {
   return found == filter.end() ? std::string() : found->second;
 }
 
+nlohmann::json ResultsView::watched(std::int64_t /*run*/, const std::string& /*detector*/) {
+  refuse_filter("No monitor watched these.");
+}
+
 }  // namespace offnominal::desk::studio

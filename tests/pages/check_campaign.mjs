@@ -85,6 +85,24 @@ async function checkRun(page, options, folder, file, fault) {
   return run;
 }
 
+/** What each of the campaign's monitors saw of the run: charts with the fault on their time. */
+async function checkWatched(page, summary, fault) {
+  await page.waitForSelector("#watched-fold-0");
+  await page.focus("#watched-fold-0-summary");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#watched-fold-0 canvas");
+  const monitors = await page.$$eval("#watched-monitor option", (all) => all.map((each) => each.value));
+  const known = summary.detectors.map(({ name }) => name);
+  if (monitors.length === 0 || !monitors.every((name) => known.includes(name))) fault(`monitors to choose from: ${monitors}`);
+  for (const name of monitors.slice(1)) {
+    await page.selectOption("#watched-monitor", name);
+    await page.waitForSelector("#watched-fold-0[open] canvas");
+  }
+  const titles = await page.$$eval("#place-watched figure h3", (all) => all.map((each) => each.textContent));
+  if (!titles.some((each) => each.startsWith("Residual against its threshold"))) fault(`the monitor's charts are ${titles}`);
+  if (!(await page.textContent("#place-watched .note")).includes("nominal")) fault("what the monitor says is not shown");
+}
+
 async function checkSession(page, options, folder, run, fault) {
   await page.check("#joint-2");
   await page.waitForFunction(() => !document.body.hasAttribute("data-busy"));
@@ -112,6 +130,7 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   await page.setViewportSize({ width: 1400, height: 900 });
   await checkFilter(page, summary, fault);
   const run = await checkRun(page, options, folder, file, fault);
+  await checkWatched(page, summary, fault);
   await look(page, kLooks, "campaign_run", { ...options, axeSource }, fault);
   await page.setViewportSize({ width: 1400, height: 900 });
   await checkSession(page, options, folder, run, fault);

@@ -39,6 +39,7 @@ export type Filter = Schemas["Filter"];
 export type Figures = Schemas["Figures"];
 export type Runs = Schemas["Runs"];
 export type Run = Schemas["Run"];
+export type Watched = Schemas["Watched"];
 export type LiveAnswer = Schemas["LiveAnswer"];
 export type LiveSetup = Schemas["LiveSetup"];
 export type Moment = Schemas["Moment"];

@@ -1,6 +1,6 @@
 import type { Chart, Drawn, Waterfall } from "../report/document";
 import { drawAll, drawFigure, shareExtents, shownFigures, zoomGroup } from "../report/drawing";
-import { figureWith } from "../report/figure";
+import { figures, figureWith } from "../report/figure";
 import { chartOf, type Figure } from "../report/figure_type";
 import { itemAt } from "../report/lists";
 import { resetZoom, zoomsOf, zoomTo } from "../report/zoom";
@@ -36,6 +36,16 @@ function chartPixels() {
 export function chartQuery(look: Looked, range: TimeRange | null): QueryTo<"GET", "/charts"> {
   const { joint, recording, beside } = look;
   return { joint, recording, pixels: chartPixels(), ...(beside === null ? {} : { beside }), ...range };
+}
+
+/** Those of places that begin so are gone. */
+export function forgetFigures(beginning: string) {
+  for (let at = figures.length - 1; at >= 0; --at) {
+    const figure = itemAt(figures, at);
+    if (!figure.place.startsWith(beginning)) continue;
+    figure.chart?.dispose();
+    figures.splice(at, 1);
+  }
 }
 
 let isDrawn = false;

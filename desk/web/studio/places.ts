@@ -33,6 +33,7 @@ type PlaceName =
   | "resultsMessage"
   | "resultsRuns"
   | "run"
+  | "watched"
   | "save"
   | "steps";
 

@@ -1,9 +1,7 @@
 import { blockElement } from "../report/blocks";
 import { element } from "../report/element";
-import { figures } from "../report/figure";
-import { itemAt } from "../report/lists";
 import type { Figures, Filter, Results, Run, Runs } from "./api";
-import { drawEverything } from "./charts";
+import { drawEverything, forgetFigures } from "./charts";
 import {
   addToNote,
   button,
@@ -17,6 +15,7 @@ import {
 import { place, placeOf } from "./places";
 import { watchTables } from "./refill";
 import { ask, mayConfirm, wordsOf } from "./server";
+import { showWatched } from "./watched";
 
 /** Results of many runs, of a campaign or of a benchmark: what is looked at of them, and the run that is open. */
 export const results: {
@@ -113,18 +112,9 @@ function askRuns(from: number) {
   return ask("GET", "/results/runs", { query: { from, ...filterQuery(resultsSetup().filters) } });
 }
 
-function forgetFigures() {
-  for (let at = figures.length - 1; at >= 0; --at) {
-    const figure = itemAt(figures, at);
-    if (!figure.place.startsWith("results")) continue;
-    figure.chart?.dispose();
-    figures.splice(at, 1);
-  }
-}
-
 /** Tables alone are one click away: what is seen first is drawn. */
 function showFigures() {
-  forgetFigures();
+  forgetFigures("results");
   const content = results.figures.sections.map((section, index) => {
     const blocks = element("div", { class: "blocks" });
     section.blocks.forEach((block, at) => blocks.append(blockElement(block, `results${index}.${at}`)));
@@ -203,6 +193,7 @@ async function openRun(run: number, replace: boolean) {
   try {
     await ask("POST", "/results/session", { body: { run, replace } });
     results.open = run;
+    showWatched(run, resultsSetup().monitors);
     await results.onSession();
   } catch (error) {
     results.message = wordsOf(error);

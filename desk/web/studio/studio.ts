@@ -40,7 +40,7 @@ function buildStudio() {
     sectionWith("save", "Save", place("save")),
   );
   const desk = place("desk", { class: "desk" });
-  desk.append(place("run", { class: "run" }), side, pictures);
+  desk.append(place("run", { class: "run" }), place("watched", { class: "run" }), side, pictures);
   main.append(place("head"), place("live"), place("load"), place("results"), desk);
   const footer = element("footer");
   footer.append(

@@ -203,6 +203,11 @@ Routes of_a_campaign() {
     EXPECT_EQ(studio.get(path).first, 200) << path;
   }
   EXPECT_EQ(studio.get("results/figures?group=single").first, 400) << "of a benchmark alone";
+  EXPECT_EQ(studio.get("results/watched?run=2&detector=no_such").first, 400);
+  const std::string monitor = offnominal::test::small().rows().campaign.detectors.front().name;
+  std::string asked = "results/watched?run=2&detector=" + monitor;
+  asked.replace(asked.find(' '), 1, "%20");
+  EXPECT_EQ(studio.get(asked).first, 200);
   EXPECT_EQ(studio.post("results/session", {{"run", 1000000}}).first, 400);
   EXPECT_EQ(studio.post("results/session", {{"run", 2}}).first, 200);
   EXPECT_EQ(studio.get("charts?joint=1&recording=1&pixels=300").first, 200);

@@ -3,8 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
 #include <httplib.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -136,6 +138,33 @@ TEST(CampaignView, RecordsARunAsTheVerbDoesWithTheFileAndWithout) {
     EXPECT_THROW(static_cast<void>(view.record(-1)), Refused);
     EXPECT_THROW(static_cast<void>(view.record(small().plan().run_count())), Refused);
   }
+}
+
+TEST(CampaignView, ShowsWhatAMonitorSawAsTheResultsHaveIt) {
+  CampaignView view = view_of(false);
+  const ordered_json monitors = view.state().at("monitors");
+  ASSERT_EQ(monitors.size(), 2U) << "peers have no residual of ours";
+  int seen = 0;
+  for (const campaign::Result& row : small().rows().rows) {
+    if (std::find(monitors.begin(), monitors.end(), row.detector) == monitors.end()) continue;
+    if (!row.fault_s || !row.detected || row.early || !row.delay_s) continue;
+    ++seen;
+    const json watched = view.watched(row.run, row.detector);
+    EXPECT_EQ(watched.at("level"), "bad");
+    const json& figures = watched.at("sections").at(0).at("blocks").at(0).at("figures");
+    EXPECT_NEAR(figures.at(0).at("value").get<double>(), *row.fault_s + *row.delay_s, 1e-9)
+        << row.detector << ", run " << row.run;
+    const json* chart = block_titled(
+        watched, row.detector.starts_with("torque") ? "Residual against its threshold, joint1"
+                                                    : "Residual against its threshold");
+    ASSERT_NE(chart, nullptr);
+    EXPECT_EQ(chart->at("events").back().at("label"), row.kind);
+  }
+  EXPECT_GE(seen, 4);
+  const std::string peer = small().rows().campaign.detectors.back().name;
+  EXPECT_THROW(static_cast<void>(view.watched(0, peer)), Refused);
+  EXPECT_THROW(static_cast<void>(view.watched(0, "no_such")), Refused);
+  EXPECT_THROW(static_cast<void>(view.watched(-1, monitors.at(0))), Refused);
 }
 
 TEST(CampaignView, RefusesTheFileOfAnotherCampaignAndResultsOfAnotherVersion) {
