@@ -47,7 +47,7 @@ RobotDescription with_filters(const DetectorSettings& settings, const Campaign& 
   robot.estimator.alpha = settings.alpha_per_s;
   robot.estimator.fast_alpha = settings.fast_alpha_per_s;
   robot.estimator.space = settings.kind == DetectorKind::kTorque ? EstimatorSpace::kTorque
-                                                                  : EstimatorSpace::kAcceleration;
+                                                                 : EstimatorSpace::kAcceleration;
   return robot;
 }
 

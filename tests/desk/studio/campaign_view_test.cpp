@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <httplib.h>
 
 #include <algorithm>
@@ -154,9 +153,9 @@ TEST(CampaignView, ShowsWhatAMonitorSawAsTheResultsHaveIt) {
     const json& figures = watched.at("sections").at(0).at("blocks").at(0).at("figures");
     EXPECT_NEAR(figures.at(0).at("value").get<double>(), *row.fault_s + *row.delay_s, 1e-9)
         << row.detector << ", run " << row.run;
-    const json* chart = block_titled(
-        watched, row.detector.starts_with("torque") ? "Residual against its threshold, joint1"
-                                                    : "Residual against its threshold");
+    const json* chart = block_titled(watched, row.detector.starts_with("torque")
+                                                  ? "Residual against its threshold, joint1"
+                                                  : "Residual against its threshold");
     ASSERT_NE(chart, nullptr);
     EXPECT_EQ(chart->at("events").back().at("label"), row.kind);
   }
