@@ -172,7 +172,7 @@ real_time_suite release
 check "build (sanitize)" build sanitize
 suite sanitize
 bus_suite sanitize
-check "build (thread)" build thread campaign_test change_test live_test many_joints_test studio_test
+check "build (thread)" build thread campaign_test change_test csv_long_test live_test many_joints_test studio_test
 suite thread
 check "fuzz: the bus's frames, 60 s" "$root/scripts/fuzz.sh" 60 frames
 check "fuzz: every reader, 10 s each" "$root/scripts/fuzz.sh" 10

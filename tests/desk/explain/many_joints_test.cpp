@@ -11,10 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "common/parallel.hpp"
 #include "compare/compare.hpp"
 #include "compare/measurement.hpp"
 #include "explain/add_found.hpp"
 #include "explain/contradicted.hpp"
+#include "explain/doctor.hpp"
 #include "explain/explain.hpp"
 #include "explain/explain_report.hpp"
 #include "serial_arm.hpp"
@@ -456,6 +458,37 @@ TEST(ManyJoints, GIVEN_a_slow_motion_and_the_right_width_of_friction_THEN_nothin
   for (const JointErrors& joint : told.joints) {
     EXPECT_LT(joint.rms_after, 2 * joint.rms_before) << joint.joint;
   }
+}
+
+// Every joint of so long a recording is looked at beside the others.
+TEST(ManyJoints, OfALongRecordingThreadsFindWhatIsWrongOnEachJoint) {
+  constexpr Eigen::Index kFirst = 200'000;
+  constexpr Eigen::Index kRows = 400;
+  const RobotDescription robot = test::serial_arm(7);
+  Log log = test::record(robot, {.duration_s = 290, .rate_hz = 1000});
+  ASSERT_GT(threads_for(log.q.size()), 1) << "on a machine of several processors";
+  for (const JointComparison& joint : compare(robot, measure(log, robot)).joints) {
+    EXPECT_LT(joint.relative_error_percent, 2) << joint.joint;
+  }
+  log.tau(100'000, 4) += 500;
+  log.q.col(2).segment(kFirst, kRows).setConstant(log.q(kFirst, 2));
+  const std::vector<DataFault> faults = examine(log, robot);
+  const auto rows_of = [&](DataFaultKind kind, Eigen::Index joint) {
+    std::vector<RowSpan> rows;
+    for (const DataFault& fault : faults) {
+      if (fault.kind != kind || fault.joint != joint) continue;
+      for (const FaultSpan& span : fault.spans) rows.push_back(span.samples);
+    }
+    return rows;
+  };
+  EXPECT_EQ(faults.size(), 2U);
+  const std::vector<RowSpan> stuck = rows_of(DataFaultKind::kStuck, 2);
+  ASSERT_EQ(stuck.size(), 1U);
+  EXPECT_NEAR(static_cast<double>(stuck[0].first), kFirst, 1);
+  EXPECT_NEAR(static_cast<double>(stuck[0].count()), kRows, 2);
+  const std::vector<RowSpan> spike = rows_of(DataFaultKind::kJump, 4);
+  ASSERT_EQ(spike.size(), 1U);
+  EXPECT_EQ(spike[0].first, 100'000);
 }
 
 TEST(ManyJoints, TheNumberOfThreadsChangesNothing) {
