@@ -16,15 +16,30 @@ namespace offnominal {
 
 namespace detail {
 
+// m v, and m^T v. Written out, in the order of Eigen's sums: as its product each of them is a call.
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> times(const Matrix<3, 3, Scalar>& m,
+                                                          const Vector<3, Scalar>& v) {
+  return {m(0, 0) * v[0] + (m(0, 1) * v[1] + m(0, 2) * v[2]),
+          m(1, 0) * v[0] + (m(1, 1) * v[1] + m(1, 2) * v[2]),
+          m(2, 0) * v[0] + (m(2, 1) * v[1] + m(2, 2) * v[2])};
+}
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> transposed_times(const Matrix<3, 3, Scalar>& m,
+                                                                     const Vector<3, Scalar>& v) {
+  return {m(0, 0) * v[0] + (m(1, 0) * v[1] + m(2, 0) * v[2]),
+          m(0, 1) * v[0] + (m(1, 1) * v[1] + m(2, 1) * v[2]),
+          m(0, 2) * v[0] + (m(1, 2) * v[1] + m(2, 2) * v[2])};
+}
 template <typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> rotated(const Matrix<3, 3, Scalar>& rotation,
                                                             const Vector<3, Scalar>& v) {
-  return rotation.lazyProduct(v);
+  return times<Scalar>(rotation, v);
 }
 template <typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> rotated_back(
     const Matrix<3, 3, Scalar>& rotation, const Vector<3, Scalar>& v) {
-  return rotation.transpose().lazyProduct(v);
+  return transposed_times<Scalar>(rotation, v);
 }
 // omega x (omega x r)
 template <typename Scalar>
@@ -57,7 +72,7 @@ template <bool Accelerating, int N, typename Scalar>
     moment[0] = first.link.first_moment.cross(acceleration);
     if constexpr (Accelerating) {
       omega_dot = first.axis * ddq[0];
-      moment[0] += first.link.inertia.lazyProduct(omega_dot);
+      moment[0] += times<Scalar>(first.link.inertia, omega_dot);
     }
     force[0].setZero();
   } else {
@@ -86,11 +101,11 @@ template <bool Accelerating, int N, typename Scalar>
       if constexpr (Accelerating) acceleration += body.axis * ddq[index];
     }
     const Vec3& h = body.link.first_moment;
-    const Vec3 spin = body.link.inertia.lazyProduct(omega);
+    const Vec3 spin = times<Scalar>(body.link.inertia, omega);
     force[i] = body.link.mass * acceleration + omega_dot.cross(h) +
                centripetal<Scalar>(omega, omega.squaredNorm(), h);
     moment[i] =
-        body.link.inertia.lazyProduct(omega_dot) + omega.cross(spin) + h.cross(acceleration);
+        times<Scalar>(body.link.inertia, omega_dot) + omega.cross(spin) + h.cross(acceleration);
   }
 
   Vector<N, Scalar> torque;

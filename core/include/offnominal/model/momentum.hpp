@@ -90,7 +90,7 @@ template <int N, typename Scalar>
     mass += body.link.mass;
     first_moment += h;
     linear += body.link.mass * links.v[i] + links.omega[i].cross(h);
-    angular += body.link.inertia.lazyProduct(links.omega[i]) + h.cross(links.v[i]);
+    angular += detail::times<Scalar>(body.link.inertia, links.omega[i]) + h.cross(links.v[i]);
     if (body.type == JointType::kRevolute) {
       form.momentum[index] = body.axis.dot(angular);
       form.pull[index] = body.axis.dot(angular.cross(links.omega[i]) + linear.cross(links.v[i]) +
