@@ -84,8 +84,9 @@ total(const typename VectorOf<Scalar, Count>::Type& block) {
   }
 }
 
-// Rows in one turn of a loop where a block is one row: several, unless what is done with a row is
-// so long that the loop's own instructions count for less than the room in flash.
+// Rows in one turn of a loop where a block is one row: the more, the shorter what is done with a
+// row; where it is so long that the loop's own instructions count for less than the room in flash,
+// one.
 inline constexpr int kShortRow = 8;
 inline constexpr int kMediumRow = 5;
 inline constexpr int kLongRow = 1;

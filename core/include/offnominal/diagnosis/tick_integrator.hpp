@@ -76,8 +76,8 @@ class TickIntegrator {
         model_(model),
         input_(input),
         begin_(begin),
-        w1_z_{begin.w1_z, {}, factors_.sigma_later.back()},
-        factors_{{}, begin.sigma, {}} {
+        factors_{{}, begin.sigma, {}},
+        w1_z_{begin.w1_z, {}, factors_.sigma_later.back()} {
     const Scalar half(0.5);
     z_.z00 = begin.z_squared_norm;
     z_.z01 = dot_of_inputs<N, Scalar>(begin.z, input.z);
@@ -319,8 +319,8 @@ class TickIntegrator {
   [[no_unique_address]] std::conditional_t<kPerJoint, Vector<N, Scalar>, NoJoints> learns_{};
   Scalar radius_squared_{};
   InputProducts<Scalar> z_;
-  FirstLayer<L, Scalar> w1_z_;
   StageFactors<L, Scalar> factors_;
+  FirstLayer<L, Scalar> w1_z_;  // lies in part in factors_
   std::array<Vector<N, Scalar>, kStages> d_;
   std::array<Scalar, kStages> gradient_reach_{};
   SpanProducts<Scalar> products_;
