@@ -16,31 +16,6 @@ namespace offnominal {
 
 namespace detail {
 
-// m v, and m^T v. Written out, in the order of Eigen's sums: as its product each of them is a call.
-template <typename Scalar>
-[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> times(const Matrix<3, 3, Scalar>& m,
-                                                          const Vector<3, Scalar>& v) {
-  return {m(0, 0) * v[0] + (m(0, 1) * v[1] + m(0, 2) * v[2]),
-          m(1, 0) * v[0] + (m(1, 1) * v[1] + m(1, 2) * v[2]),
-          m(2, 0) * v[0] + (m(2, 1) * v[1] + m(2, 2) * v[2])};
-}
-template <typename Scalar>
-[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> transposed_times(const Matrix<3, 3, Scalar>& m,
-                                                                     const Vector<3, Scalar>& v) {
-  return {m(0, 0) * v[0] + (m(1, 0) * v[1] + m(2, 0) * v[2]),
-          m(0, 1) * v[0] + (m(1, 1) * v[1] + m(2, 1) * v[2]),
-          m(0, 2) * v[0] + (m(1, 2) * v[1] + m(2, 2) * v[2])};
-}
-template <typename Scalar>
-[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> rotated(const Matrix<3, 3, Scalar>& rotation,
-                                                            const Vector<3, Scalar>& v) {
-  return times<Scalar>(rotation, v);
-}
-template <typename Scalar>
-[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> rotated_back(
-    const Matrix<3, 3, Scalar>& rotation, const Vector<3, Scalar>& v) {
-  return transposed_times<Scalar>(rotation, v);
-}
 // omega x (omega x r)
 template <typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> centripetal(const Vector<3, Scalar>& omega,
@@ -149,13 +124,22 @@ template <int N, typename Scalar>
 }
 
 // The torque that the drive has to be told for the motion (q, dq, ddq) at time_s, effects included.
+// `at`: of q.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> inverse_dynamics(const RigidBodyModel<N, Scalar>& model,
+                                                 const JointTransforms<N, Scalar>& at,
+                                                 const Vector<N, Scalar>& q,
+                                                 const Vector<N, Scalar>& dq,
+                                                 const Vector<N, Scalar>& ddq, double time_s) {
+  return drive_torque<N, Scalar>(model, joint_effects(model, q, dq, time_s),
+                                 rigid_body_torque(model, at, dq, ddq));
+}
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> inverse_dynamics(const RigidBodyModel<N, Scalar>& model,
                                                  const Vector<N, Scalar>& q,
                                                  const Vector<N, Scalar>& dq,
                                                  const Vector<N, Scalar>& ddq, double time_s) {
-  return drive_torque<N, Scalar>(model, joint_effects(model, q, dq, time_s),
-                                 rigid_body_torque(model, joint_transforms(model, q), dq, ddq));
+  return inverse_dynamics(model, joint_transforms(model, q), q, dq, ddq, time_s);
 }
 
 // The same without acceleration: V(q, dq) dq + G(q) and the effects.
