@@ -11,6 +11,7 @@
 #include <offnominal/finite.hpp>
 #include <offnominal/model/chain.hpp>
 #include <offnominal/model/effect_memory.hpp>
+#include <offnominal/model/joint_transforms.hpp>
 #include <offnominal/monitor_form.hpp>
 #include <offnominal/sample.hpp>
 #include <offnominal/status.hpp>
@@ -87,6 +88,7 @@ class Monitor {
   using State = MonitorState<N, L, Scalar, Memory, Space>;
   using Sample = JointSample<N, Scalar>;
   using Output = MonitorOutput<N, Scalar, Space>;
+  using Transforms = JointTransforms<N, Scalar>;
   // Whether its state has a `memory.remembered`: torque that the drive has to be told beside the
   // model's.
   static constexpr bool kRemembers = std::is_same_v<Memory, WithMemory>;
@@ -112,13 +114,17 @@ class Monitor {
     return Status::kOk;
   }
 
-  // Starts a run at a sample, time 0. Any refusal leaves `state` unchanged.
+  // Starts a run at a sample, time 0. Any refusal leaves `state` unchanged. `at`, here and below:
+  // of the sample's positions, where somebody else wants it too.
   [[nodiscard]] Status reset(const Sample& sample, State& state) const {
+    return reset(sample, joint_transforms(model_, sample.q), state);
+  }
+  [[nodiscard]] Status reset(const Sample& sample, const Transforms& at, State& state) const {
     if (!ready_) return Status::kNotInitialised;
     Dynamics nominal;
     Input input;
     const Now now = memory_.begin(sample);
-    Status status = look(sample, now, 0.0, nominal, input);
+    Status status = look(sample, at, now, 0.0, nominal, input);
     if (status != Status::kOk) return status;
     status = offnominal::reset(config_.estimator, input, state.estimator);
     if (status != Status::kOk) return status;
@@ -145,12 +151,16 @@ class Monitor {
   // kept as they were, the threshold grows by what the velocity's error may add, and time goes on.
   // Any refusal leaves `state` unchanged.
   [[nodiscard]] Status resume(const Sample& sample, std::uint32_t missed, State& state) const {
+    return resume(sample, joint_transforms(model_, sample.q), missed, state);
+  }
+  [[nodiscard]] Status resume(const Sample& sample, const Transforms& at, std::uint32_t missed,
+                              State& state) const {
     if (!ready_ || !state.initialised) return Status::kNotInitialised;
     const std::uint64_t tick = state.tick + missed + 1;
     Dynamics nominal;
     Input input;
     const Now now = memory_.next(sample, missed, state.memory);
-    Status status = look(sample, now, time_at(tick), nominal, input);
+    Status status = look(sample, at, now, time_at(tick), nominal, input);
     if (status != Status::kOk) return status;
     status = offnominal::resume(input, velocity_allowance(), state.estimator);
     if (status != Status::kOk) return status;
@@ -171,20 +181,26 @@ class Monitor {
   // next good sample is then taken as if it followed the last good one by one tick, unless resume()
   // is told of the gap: what a joint went in several ticks may then be a fault.
   [[nodiscard]] Status step(const Sample& sample, State& state, Output& output) const {
+    return step(sample, joint_transforms(model_, sample.q), state, output);
+  }
+  [[nodiscard]] Status step(const Sample& sample, const Transforms& at, State& state,
+                            Output& output) const {
     if (!ready_ || !state.initialised) return Status::kNotInitialised;
     const double end_s = time_at(state.tick + 1);
     Dynamics nominal;
     Input input;
     const Now now = memory_.next(sample, 0, state.memory);
-    Status status = look(sample, now, end_s, nominal, input);
+    Status status = look(sample, at, now, end_s, nominal, input);
     if (status != Status::kOk) return status;
     const Vector<N, Scalar>& tau = now.acting(sample.tau);
     const TickBegin<N, Scalar, Space> begin = begin_of_tick(tau, state);
-    [[maybe_unused]] const auto fast_begin = begin_of_fast(begin, tau, state);
+    [[maybe_unused]] const bool has_fast = runs_fast();
+    [[maybe_unused]] FastBegin fast_begin;
+    if (has_fast) begin_of_fast(begin, tau, state, fast_begin);
     status = offnominal::step(config_.estimator, begin, input, state.estimator);
     if (status != Status::kOk) return status;
     if constexpr (kByJoint) {
-      if (fast_.runs()) {
+      if (has_fast) {
         const FastBound<N, Scalar>& bound = config_.bound.fast;
         fast_.step(bound, fast_begin, input, fast_.bound_at(bound, sample, tau), state.fast);
       }
@@ -225,15 +241,17 @@ class Monitor {
   using EffectMemoryOf = typename Memory::template Of<N, Scalar>;
   using Now = typename EffectMemoryOf::Now;
   static constexpr bool kByJoint = std::is_same_v<Space, TorqueSpace>;
+  using FastBegin = std::conditional_t<kByJoint, FastFilterBegin<N, Scalar>, typename Form::Fast>;
 
   // What the model and the bound say at a sample; refuses one that they cannot judge. Not inlined:
   // on a controller its callers share its code, and the estimator its stack.
-  [[nodiscard, gnu::noinline]] Status look(const Sample& sample, const Now& now, double time_s,
-                                           Dynamics& nominal, Input& input) const {
+  [[nodiscard, gnu::noinline]] Status look(const Sample& sample, const Transforms& at,
+                                           const Now& now, double time_s, Dynamics& nominal,
+                                           Input& input) const {
     Status status = validate<N>(sample, config_.chain.joints);
     if (status != Status::kOk) return status;
     const Vector<N, Scalar>& tau = now.acting(sample.tau);
-    status = Form::look(model_, sample.q, sample.dq, now.driving(tau), time_s, nominal);
+    status = Form::look(model_, at, sample.q, sample.dq, now.driving(tau), time_s, nominal);
     if (status != Status::kOk) return status;
     input.z = network_input<N, Scalar>(sample.q, sample.dq, tau);
     Form::fill(nominal, input);
@@ -266,21 +284,22 @@ class Monitor {
     return begin;
   }
 
+  [[nodiscard]] bool runs_fast() const {
+    if constexpr (kByJoint) return fast_.runs();
+    return false;
+  }
   // Of a filter that runs beside the estimator's; its bound at a held torque too.
-  [[nodiscard]] auto begin_of_fast(const TickBegin<N, Scalar, Space>& begin,
-                                   const Vector<N, Scalar>& tau, const State& state) const {
+  EIGEN_ALWAYS_INLINE void begin_of_fast([[maybe_unused]] const TickBegin<N, Scalar, Space>& begin,
+                                         [[maybe_unused]] const Vector<N, Scalar>& tau,
+                                         [[maybe_unused]] const State& state,
+                                         [[maybe_unused]] FastBegin& of_fast) const {
     if constexpr (kByJoint) {
-      FastFilterBegin<N, Scalar> of_fast;
-      if (!fast_.runs()) return of_fast;
       const FastBound<N, Scalar>& bound = config_.bound.fast;
       of_fast = {state.estimator.measured.momentum, begin.nominal_rate, state.estimator.psi_hat,
                  state.fast.mu_bar};
       if (config_.torque_signal == TorqueSignal::kHeld && follows_torque(bound.joints)) {
         of_fast.mu_bar = fast_.bound_at(bound, state.sample, tau);
       }
-      return of_fast;
-    } else {
-      return typename Form::Fast{};
     }
   }
 

@@ -48,11 +48,12 @@ struct MonitorForm<AccelerationSpace, N, Scalar> {
   struct Fast {};  // none
 
   [[nodiscard]] static EIGEN_ALWAYS_INLINE Status look(const RigidBodyModel<N, Scalar>& model,
+                                                       const JointTransforms<N, Scalar>& at,
                                                        const Vector<N, Scalar>& q,
                                                        const Vector<N, Scalar>& dq,
                                                        const Vector<N, Scalar>& driving,
                                                        double time_s, Dynamics& nominal) {
-    return forward_dynamics<N, Scalar>(model, q, dq, driving, time_s, nominal);
+    return forward_dynamics<N, Scalar>(model, at, q, dq, driving, time_s, nominal);
   }
   static EIGEN_ALWAYS_INLINE void fill(const Dynamics& nominal, Input& input) {
     input.nominal_rate = nominal.ddq;
@@ -119,11 +120,12 @@ struct MonitorForm<TorqueSpace, N, Scalar> {
   };
 
   [[nodiscard]] static EIGEN_ALWAYS_INLINE Status look(const RigidBodyModel<N, Scalar>& model,
+                                                       const JointTransforms<N, Scalar>& at,
                                                        const Vector<N, Scalar>& q,
                                                        const Vector<N, Scalar>& dq,
                                                        const Vector<N, Scalar>& driving,
                                                        double time_s, Dynamics& nominal) {
-    nominal = momentum_dynamics<N, Scalar>(model, q, dq, driving, time_s);
+    nominal = momentum_dynamics<N, Scalar>(model, at, q, dq, driving, time_s);
     return Status::kOk;
   }
   static EIGEN_ALWAYS_INLINE void fill(const Dynamics& nominal, Input& input) {

@@ -37,9 +37,10 @@ template <int N, typename Scalar>
 
 // Computed torque, paper eq. (29): M(q)(ddq_d + K_d (dq_d - dq) + K_p (q_d - q)) + V dq + G, plus
 // the effects that the model knows, as the drive has to be told. N m or N, not limited. One
-// inverse-dynamics recursion.
+// inverse-dynamics recursion. `at`: of q.
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> computed_torque(const RigidBodyModel<N, Scalar>& model,
+                                                const JointTransforms<N, Scalar>& at,
                                                 const ComputedTorqueGains<N, Scalar>& gains,
                                                 const Reference<N, Scalar>& reference,
                                                 const Vector<N, Scalar>& q,
@@ -49,7 +50,15 @@ template <int N, typename Scalar>
   const Diagonal kd(gains.kd.data(), q.size());
   const Vector<N, Scalar> ddq =
       reference.ddq + kd.cwiseProduct(reference.dq - dq) + kp.cwiseProduct(reference.q - q);
-  return inverse_dynamics(model, q, dq, ddq, time_s);
+  return inverse_dynamics(model, at, q, dq, ddq, time_s);
+}
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> computed_torque(const RigidBodyModel<N, Scalar>& model,
+                                                const ComputedTorqueGains<N, Scalar>& gains,
+                                                const Reference<N, Scalar>& reference,
+                                                const Vector<N, Scalar>& q,
+                                                const Vector<N, Scalar>& dq, double time_s) {
+  return computed_torque(model, joint_transforms(model, q), gains, reference, q, dq, time_s);
 }
 
 }  // namespace offnominal

@@ -3,7 +3,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
-#include <offnominal/model/rigid_body_model.hpp>
+#include <offnominal/repeat.hpp>
+#include <offnominal/vector.hpp>
 
 namespace offnominal {
 
@@ -31,12 +32,16 @@ template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> dead_zone(const Vector<N, Scalar>& e, const Vector<N, Scalar>& mu,
                                           DeadZone kind,
                                           Scalar largest = std::numeric_limits<Scalar>::max()) {
-  Vector<N, Scalar> outside = e;
-  for (Eigen::Index i = 0; i < e.size(); ++i) {
-    const Scalar size = Eigen::numext::abs(e[i]);
-    const Scalar beyond = kind == DeadZone::kContinuous ? e[i] - (e[i] < 0 ? -mu[i] : mu[i]) : e[i];
-    outside[i] = size > mu[i] ? beyond : Scalar(0);
-  }
+  Vector<N, Scalar> outside;
+  outside.resize(e.size());
+  const Scalar taken = kind == DeadZone::kContinuous ? Scalar(1) : Scalar(0);
+  detail::repeat<N>(
+      e.size(), [&](int i) __attribute__((always_inline)) {
+        const Scalar size = Eigen::numext::abs(e[i]);
+        const Scalar beyond = size - taken * mu[i];
+        const Scalar signed_beyond = e[i] < Scalar(0) ? -beyond : beyond;
+        outside[i] = size > mu[i] ? signed_beyond : Scalar(0);
+      });
   const Scalar norm =
       Eigen::numext::maxi(detail::length(outside), std::numeric_limits<Scalar>::min());
   return Eigen::numext::mini(Scalar(1), largest / norm) * outside;

@@ -138,12 +138,12 @@ template <int N, int L, typename Scalar, typename Space>
                           EstimatorState<N, L, Scalar, Space>& state) {
   detail::TickIntegrator<N, L, Scalar, Space> tick(config, begin, input, state);
   const detail::TickEnd<N, Scalar, Space> end = tick.integrate();
-  const bool bounded = detail::is_bounded(input, tick.input_products().z11) &&
-                       detail::is_within(tick.squared_reach(end.theta)) &&
-                       detail::is_within(detail::squared_length(end.omega)) &&
-                       detail::is_within(end.mu);
+  const Scalar reach = tick.squared_reach(end.theta);
+  const bool bounded =
+      detail::is_bounded(input, tick.input_products().z11) && detail::is_within(reach) &&
+      detail::is_within(detail::squared_length(end.omega)) && detail::is_within(end.mu);
   if (!bounded) return Status::kNumericOverflow;
-  tick.finish(end.theta, state);
+  tick.finish(end.theta, reach, state);
   state.omega = end.omega;
   state.mu = end.mu;
   state.z = input.z;

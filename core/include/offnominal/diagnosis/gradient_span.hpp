@@ -41,6 +41,30 @@ struct GradientProducts {
   Scalar squared{};     // |g|^2        = |b|^2 |z|^2 + |D|^2 |sigma|^2
 };
 
+// Those of every stage, and of one stage's gradient with another's.
+template <typename Scalar>
+struct SpanProducts {
+  std::array<GradientProducts<Scalar>, kStages> of_stage;
+  std::array<std::array<Scalar, kStages>, kStages> pairs;  // <g_i, g_j>, j < i
+
+  // |keep theta_0 + sum gain_j g_j|^2. What rounding makes of it goes with the squares of the
+  // parts, of which it may be the small rest.
+  [[nodiscard]] EIGEN_ALWAYS_INLINE Scalar squared_norm(const SpanPoint<Scalar>& at,
+                                                        Scalar begin_squared) const {
+    Scalar sum = at.keep * at.keep * begin_squared;
+    repeat<kStages>([&](int i) __attribute__((always_inline)) {
+      const auto stage = static_cast<std::size_t>(i);
+      Scalar along = at.keep * of_stage[stage].with_begin;
+      repeat<kStages>([&](int j) __attribute__((always_inline)) {
+        const auto before = static_cast<std::size_t>(j);
+        if (j < i) along += at.gain[before] * pairs[stage][before];
+      });
+      sum += at.gain[stage] * (along + along + at.gain[stage] * of_stage[stage].squared);
+    });
+    return sum;
+  }
+};
+
 // theta_0 + step (g_Stage - pull theta), from stage `Stage` with coordinates `at`.
 template <int Stage, typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE SpanPoint<Scalar> moved(const SpanPoint<Scalar>& at, Scalar step,

@@ -73,6 +73,12 @@ class Isolation {
   // answer stands in state.diagnosis; it is one where its time is above 0.
   void step(const RigidBodyModel<N, Scalar>& model, const Sample& sample, std::uint64_t tick,
             const Output& output, State& state) const {
+    step(model, sample, joint_transforms(model, sample.q), tick, output, state);
+  }
+  // `transforms`: of the sample's positions.
+  void step(const RigidBodyModel<N, Scalar>& model, const Sample& sample,
+            const JointTransforms<N, Scalar>& transforms, std::uint64_t tick, const Output& output,
+            State& state) const {
     const std::uint64_t ticks = state.started ? tick - state.tick : 1;
     const bool gap = !state.started || ticks != 1;
     state.tick = tick;
@@ -80,7 +86,7 @@ class Isolation {
     constexpr std::uint32_t kMost = ~std::uint32_t{0};
     watch_encoders(sample, ticks < kMost ? static_cast<std::uint32_t>(ticks) : kMost, state);
     const IsolationInstant<N, Scalar> at =
-        isolation_instant<N, Scalar>(model, sample, output, scales_.friction);
+        isolation_instant<N, Scalar>(model, sample, transforms, output, scales_.friction);
     bool ended = false;
     if (gap) {
       begin_block(at, state.block);

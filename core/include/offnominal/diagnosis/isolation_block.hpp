@@ -55,11 +55,12 @@ struct IsolationInstant {
 template <int N, typename Scalar>
 [[nodiscard]] IsolationInstant<N, Scalar> isolation_instant(
     const RigidBodyModel<N, Scalar>& model, const JointSample<N, Scalar>& sample,
+    const JointTransforms<N, Scalar>& transforms,
     const MonitorOutput<N, Scalar, TorqueSpace>& output,
     const PerJoint<N, KnownFriction<Scalar>>& friction) {
-  IsolationInstant<N, Scalar> at;
-  at.residual = output.error;
-  at.psi_hat = output.psi_hat;
+  // The tip's form is made where it stays.
+  IsolationInstant<N, Scalar> at{output.error, output.psi_hat, OwnValues<N, Scalar>(),
+                                 tip_body_form<N, Scalar>(model, transforms, sample.dq)};
   at.own.resize(kOwnRegressors, sample.dq.size());
   for (Eigen::Index i = 0; i < sample.dq.size(); ++i) {
     at.own(kSignRegressor, i) =
@@ -68,7 +69,6 @@ template <int N, typename Scalar>
     at.own(kTorqueRegressor, i) = -sample.tau[i];
     at.own(kOneRegressor, i) = Scalar(1);
   }
-  at.tip = tip_body_form<N, Scalar>(model, joint_transforms<N, Scalar>(model, sample.q), sample.dq);
   return at;
 }
 

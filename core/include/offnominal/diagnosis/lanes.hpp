@@ -84,17 +84,28 @@ total(const typename VectorOf<Scalar, Count>::Type& block) {
   }
 }
 
-// Rows in one turn of a loop where a block is one row: several, unless what is done with a row is
-// so long that the loop's own instructions count for less than the room in flash.
-inline constexpr int kShortRow = 5;
+// Rows in one turn of a loop where a block is one row: the more, the shorter what is done with a
+// row; where it is so long that the loop's own instructions count for less than the room in flash,
+// one.
+inline constexpr int kShortRow = 8;
+inline constexpr int kMediumRow = 5;
 inline constexpr int kLongRow = 1;
 
-// body(row) for the first row of every block, in turns of `Turn` rows where a block is one.
+// At most `most`, and a part of all rows without a rest where one is at least half of that: the
+// rest would have to be written out beside the loop.
+[[nodiscard]] constexpr int rows_in_turn(int rows, int most) {
+  for (int turn = most; 2 * turn >= most; --turn) {
+    if (turn > 0 && rows % turn == 0) return turn;
+  }
+  return most;
+}
+
+// body(row) for the first row of every block, in turns of about `Turn` rows where a block is one.
 template <typename Scalar, int L, int Turn = kShortRow, typename Body>
 EIGEN_ALWAYS_INLINE void for_each_block(const Body& body) {
   constexpr int kWidth = kLanes<Scalar>;
   constexpr int kRows = kHiddenRows<L, Scalar>;
-  constexpr int kTurn = kWidth == 1 ? Turn : kWidth;
+  constexpr int kTurn = kWidth == 1 ? rows_in_turn(kRows, Turn) : kWidth;
   constexpr int kWhole = kRows / kTurn * kTurn;
   for (int row = 0; row < kWhole; row += kTurn) {
     repeat<kTurn / kWidth>([&](int i) __attribute__((always_inline)) { body(row + i * kWidth); });
@@ -102,6 +113,17 @@ EIGEN_ALWAYS_INLINE void for_each_block(const Body& body) {
   repeat<(kRows - kWhole) / kWidth>([&](int i) __attribute__((always_inline)) {
     body(kWhole + i * kWidth);
   });
+}
+
+// Without vectors: body<Rows>(row) for the first row of every turn of kManyRows, and of what is
+// left.
+inline constexpr int kManyRows = 8;
+template <int L, typename Body>
+EIGEN_ALWAYS_INLINE void for_each_turn(const Body& body) {
+  constexpr int kTurn = rows_in_turn(L, kManyRows);
+  constexpr int kWhole = L / kTurn * kTurn;
+  for (int row = 0; row < kWhole; row += kTurn) body.template operator()<kTurn>(row);
+  if constexpr (kWhole < L) body.template operator()<L - kWhole>(kWhole);
 }
 
 }  // namespace detail

@@ -136,20 +136,33 @@ template <int N, int L, typename Scalar>
   return sum;
 }
 
-// W1 z.
-template <int N, int L, typename Scalar>
+namespace detail {
+
+// take(row, W1 z of the block that begins there), block by block.
+template <int N, int L, typename Scalar, typename Take>
 EIGEN_ALWAYS_INLINE void first_layer(const NetworkWeights<N, L, Scalar>& weights,
-                                     const NetworkInput<N, Scalar>& z,
-                                     HiddenVector<L, Scalar>& w1_z) {
-  using namespace detail;
+                                     const NetworkInput<N, Scalar>& z, const Take& take) {
   for_each_block<Scalar, L, kLongRow>([&](int row) __attribute__((always_inline)) {
     Block<Scalar> sum = z[0] * load(&weights.w1(row, 0));
     repeat<kNetworkInputs<N> - 1>(
         z.size() - 1, [&](int i) __attribute__((always_inline)) {
           sum += z[i + 1] * load(&weights.w1(row, i + 1));
         });
-    store<Scalar>(sum, &w1_z[row]);
+    take(row, sum);
   });
+}
+
+}  // namespace detail
+
+// W1 z.
+template <int N, int L, typename Scalar>
+EIGEN_ALWAYS_INLINE void first_layer(const NetworkWeights<N, L, Scalar>& weights,
+                                     const NetworkInput<N, Scalar>& z,
+                                     HiddenVector<L, Scalar>& w1_z) {
+  detail::first_layer<N, L, Scalar>(
+      weights, z, [&](int row, const detail::Block<Scalar>& sum) __attribute__((always_inline)) {
+        detail::store<Scalar>(sum, &w1_z[row]);
+      });
 }
 
 // psi_hat, rad/s^2 or m/s^2, of the hidden units' values.

@@ -13,9 +13,17 @@ namespace offnominal {
 
 namespace detail {
 
+// Whether the larger of two numbers is one instruction. The FPUs of Cortex-M have it where they are
+// of version 5, which no macro says: all that know double precision are, and all of Armv8-M.
+#if defined(__ARM_FEATURE_NUMERIC_MAXMIN) ||                                          \
+    (defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'M' && defined(__ARM_FP) && \
+     ((__ARM_FP & 8) != 0 || __ARM_ARCH >= 8))
+#define OFFNOMINAL_HAS_MAXMIN
+#endif
+
 // x held to [-16, 16] without a branch; NaN gives 16.
 [[nodiscard]] EIGEN_ALWAYS_INLINE float held_to_16(float x) {
-#ifdef __ARM_FEATURE_NUMERIC_MAXMIN
+#ifdef OFFNOMINAL_HAS_MAXMIN
   return std::fmax(-16.0F, std::fmin(16.0F, x));
 #else
   // A comparison of numbers may become a jump, one of whole numbers becomes a choice.

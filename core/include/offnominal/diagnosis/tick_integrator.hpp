@@ -15,12 +15,11 @@
 
 namespace offnominal::detail {
 
-// Signals at one place inside the tick.
+// What drives the filters at one place inside the tick.
 template <int N, typename Scalar, typename Space>
 struct StageSignals {
-  Vector<N, Scalar> y;  // dq, or p
-  Vector<N, Scalar> nominal_rate;
-  typename Space::template Threshold<N, Scalar> mu_bar{};
+  const Vector<N, Scalar>& nominal_rate;
+  const typename Space::template Threshold<N, Scalar>& mu_bar;
 };
 
 // Inner products z_i . z_j of the tick's beginning (0), middle (m) and end (1).
@@ -32,10 +31,8 @@ struct InputProducts {
 // What one Runge-Kutta stage starts from.
 template <int N, typename Scalar, typename Space>
 struct StagePoint {
-  Vector<N, Scalar> omega;
   typename Space::template Threshold<N, Scalar> mu{};
   Vector<N, Scalar> e;
-  Vector<N, Scalar> d;
   SpanPoint<Scalar> theta;
   SpanNorms<Scalar> norms;
 };
@@ -46,6 +43,7 @@ template <int N, typename Scalar>
 struct StageOutput {
   Vector<N, Scalar> psi_hat;
   Vector<N, Scalar> with_w2_begin;
+  std::array<Scalar, kStages> with_sigma{};  // sigma_j . sigma_s, j < s
 };
 
 // Where the tick ends: omega, mu and the coordinates of theta before it is shrunk into the ball.
@@ -78,8 +76,8 @@ class TickIntegrator {
         model_(model),
         input_(input),
         begin_(begin),
-        w1_z_{begin.w1_z, {}},
-        factors_{{}, begin.sigma, {}} {
+        factors_{{}, begin.sigma, {}},
+        w1_z_{begin.w1_z, {}, factors_.sigma_later.back()} {
     const Scalar half(0.5);
     z_.z00 = begin.z_squared_norm;
     z_.z01 = dot_of_inputs<N, Scalar>(begin.z, input.z);
@@ -90,33 +88,42 @@ class TickIntegrator {
     largest_d_ = kLargestStep<Scalar> /
                  (config.period_s * config.learning_rate * std::sqrt(z_.z00 + z_.z11));
     radius_squared_ = config.weight_radius * config.weight_radius;
-    first_layer<N, L, Scalar>(begin.weights, input.z, w1_z_.at_end);
+    look_at_end<N, L, Scalar>(begin.weights, input.z, w1_z_);
   }
 
   [[nodiscard]] EIGEN_ALWAYS_INLINE End integrate() {
     const Scalar h = config_.period_s;
     const Scalar half = Scalar(0.5);
-    const Signals begin{measured_at<N, Scalar, Space>(begin_), model_.nominal_rate, model_.mu_bar};
-    const Signals end{measured_at<N, Scalar, Space>(input_), input_.nominal_rate, input_.mu_bar};
-    const Signals middle{half * (begin.y + end.y), half * (begin.nominal_rate + end.nominal_rate),
-                         half * (begin.mu_bar + end.mu_bar)};
-    Point at{begin_.omega,
-             begin_.mu,
-             begin.y - begin_.omega,
-             dead_zone<N, Scalar>(begin.y - begin_.omega, begin_.mu, config_.dead_zone, largest_d_),
-             {Scalar(1), {}},
-             {begin_.theta_squared_norm, begin_.theta_squared_norm}};
+    const auto& y_begin = measured_at<N, Scalar, Space>(begin_);
+    const auto& y_end = measured_at<N, Scalar, Space>(input_);
+    const Vector<N, Scalar> y_middle = half * (y_begin + y_end);
+    const Vector<N, Scalar> middle_rate = half * (model_.nominal_rate + input_.nominal_rate);
+    const Threshold middle_mu_bar = half * (model_.mu_bar + input_.mu_bar);
+    const Signals begin{model_.nominal_rate, model_.mu_bar};
+    const Signals middle{middle_rate, middle_mu_bar};
+    const Signals end{input_.nominal_rate, input_.mu_bar};
+    Point at;
+    at.mu = begin_.mu;
+    at.e = y_begin - begin_.omega;
+    d_[0] = dead_zone<N, Scalar>(at.e, at.mu, config_.dead_zone, largest_d_);
+    at.theta.keep = Scalar(1);
+    at.norms = {begin_.theta_squared_norm, begin_.theta_squared_norm};
     // A tick that begins inside the dead-zone learns nothing, whatever its inner stages look like.
-    rate_ = squared_length(at.d) > Scalar(0) ? config_.learning_rate : Scalar(0);
+    rate_ = squared_length(d_[0]) > Scalar(0) ? config_.learning_rate : Scalar(0);
     if constexpr (kPerJoint) {
-      learns_ = at.d;
-      for (Scalar& joint : learns_) joint = joint == Scalar(0) ? Scalar(0) : Scalar(1);
+      const Eigen::Index joints = at.e.size();
+      if constexpr (N == kRuntimeJoints) learns_.resize(joints);
+      repeat<N>(
+          joints, [&](int i) __attribute__((always_inline)) {
+            learns_[i] = d_[0][i] == Scalar(0) ? Scalar(0) : Scalar(1);
+          });
     }
     End sum{begin_.omega, begin_.mu, {Scalar(1), {}}};
-    at = stage<0>(begin, middle.y, {}, z_.z00, at, h * half, h / 6, sum);
-    at = stage<1>(middle, middle.y, {z_.z0m}, z_.zmm, at, h * half, h / 3, sum);
-    at = stage<2>(middle, end.y, {z_.z0m, z_.zmm}, z_.zmm, at, h, h / 3, sum);
-    stage<3>(end, end.y, {z_.z01, z_.zm1, z_.zm1}, z_.z11, at, h, h / 6, sum);
+    Point next;
+    stage<0>(begin, y_middle, {}, z_.z00, h * half, h / 6, at, next, sum);
+    stage<1>(middle, y_middle, {z_.z0m}, z_.zmm, h * half, h / 3, next, at, sum);
+    stage<2>(middle, y_end, {z_.z0m, z_.zmm}, z_.zmm, h, h / 3, at, next, sum);
+    stage<3>(end, y_end, {z_.z01, z_.zm1, z_.zm1}, z_.z11, h, h / 6, next, at, sum);
     return sum;
   }
 
@@ -135,9 +142,16 @@ class TickIntegrator {
   }
 
   // Moves the weights and leaves them and what depends on them ready for the next tick. `state` is
-  // the state that the tick began with.
-  EIGEN_ALWAYS_INLINE void finish(const SpanPoint<Scalar>& theta,
-                                  EstimatorState<N, L, Scalar, Space>& state) const {
+  // the state that the tick began with; `reach` is squared_reach() of theta.
+  EIGEN_ALWAYS_INLINE void finish(SpanPoint<Scalar> theta, Scalar reach,
+                                  EstimatorState<N, L, Scalar, Space>& state) {
+    // The norm is known before the weights are touched, so that they are shrunk on the way.
+    const Scalar margin = rounding_allowance<L, Scalar>(Scalar(1));
+    const Scalar most = products_.squared_norm(theta, begin_.theta_squared_norm) + margin * reach;
+    const Scalar to_ball = std::sqrt(radius_squared_ * (Scalar(1) - margin) / most);
+    const Scalar shrink = most > radius_squared_ ? to_ball : Scalar(1);
+    theta.keep *= shrink;
+    for (Scalar& gain : theta.gain) gain *= shrink;
     Matrix<N, kStages, Scalar> share;
     const Eigen::Index joints = d_[0].size();
     share.resize(joints, kStages);
@@ -148,47 +162,72 @@ class TickIntegrator {
             share(k, j) = theta.gain[stage] * d_[stage][k];
           });
     });
-    const Scalar squared =
-        update_weights<N, L, Scalar>(theta, share, factors_, w1_z_.at_end, state.z, input_.z,
-                                     z_.z01, z_.z11, state.weights, state.w1_z);
-    const Scalar margin = rounding_allowance<L, Scalar>(Scalar(1));
-    const Scalar to_ball = std::sqrt(radius_squared_ * (Scalar(1) - Scalar(2) * margin) / squared);
-    const Scalar shrink = squared > radius_squared_ * (Scalar(1) - margin) ? to_ball : Scalar(1);
-    state.theta_squared_norm = shrink * shrink * squared;
-    state.psi_hat = shrink_and_look<N, L, Scalar>(shrink, state.weights, state.w1_z, state.sigma);
+    const MovedWeights<N, Scalar> moved =
+        move_weights<N, L, Scalar>(theta, share, w1_z_.at_end, state.z, input_.z, z_.z01, z_.z11,
+                                   factors_, state.weights, state.w1_z, state.sigma);
+    state.theta_squared_norm = moved.squared_norm;
+    state.psi_hat = moved.psi_hat;
     state.z_squared_norm = z_.z11;
   }
 
  private:
   struct NoJoints {};
 
-  // One stage. z_z[j] = z_j . z_s for the stages j before, zz = |z_s|^2.
-  template <int S>
-  EIGEN_ALWAYS_INLINE Point stage(const Signals& signals, const Vector<N, Scalar>& next_y,
-                                  const std::array<Scalar, kStages>& z_z, Scalar zz,
-                                  const Point& at, Scalar advance, Scalar weight, End& sum) {
-    d_[static_cast<std::size_t>(S)] = at.d;
+  // One stage, from `at` to `next`, but for the last. z_z[j] = z_j . z_s for the stages j before,
+  // zz = |z_s|^2.
+  template <int S, typename Measured>
+  EIGEN_ALWAYS_INLINE void stage(const Signals& signals, const Measured& next_y,
+                                 const std::array<Scalar, kStages>& z_z, Scalar zz, Scalar advance,
+                                 Scalar weight, const Point& at, Point& next, End& sum) {
     std::array<Scalar, kStages> kappa{};
     repeat<S>([&](int i) __attribute__((always_inline)) {
       const auto j = static_cast<std::size_t>(i);
       kappa[j] = at.theta.gain[j] * z_z[j];
     });
     const StageOutput<N, Scalar> output = network_output_at<S>(kappa, at);
-    Point next;
-    const Vector<N, Scalar> omega_dot =
-        config_.alpha * at.e + signals.nominal_rate + output.psi_hat;
-    const Threshold mu_dot = signals.mu_bar - config_.alpha * at.mu;
-    sum.omega += weight * omega_dot;
-    sum.mu += weight * mu_dot;
+    const Eigen::Index joints = at.e.size();
+    if constexpr (N == kRuntimeJoints) next.e.resize(joints);
+    repeat<N>(
+        joints, [&](int i) __attribute__((always_inline)) {
+          const Scalar omega_dot =
+              config_.alpha * at.e[i] + signals.nominal_rate[i] + output.psi_hat[i];
+          sum.omega[i] += weight * omega_dot;
+          if constexpr (S + 1 < kStages) {
+            next.e[i] = next_y[i] - (begin_.omega[i] + advance * omega_dot);
+          }
+        });
+    advance_threshold<S>(signals.mu_bar, at.mu, advance, weight, next.mu, sum.mu);
     if constexpr (S + 1 < kStages) {
-      next.omega = begin_.omega + advance * omega_dot;
-      next.mu = begin_.mu + advance * mu_dot;
-      next.e = next_y - next.omega;
-      next.d = dead_zone<N, Scalar>(next.e, next.mu, config_.dead_zone, largest_d_);
-      if constexpr (kPerJoint) next.d = next.d.cwiseProduct(learns_);
+      Vector<N, Scalar>& next_d = d_[static_cast<std::size_t>(S) + 1];
+      next_d = dead_zone<N, Scalar>(next.e, next.mu, config_.dead_zone, largest_d_);
+      if constexpr (kPerJoint) {
+        repeat<N>(
+            joints, [&](int i) __attribute__((always_inline)) { next_d[i] *= learns_[i]; });
+      }
     }
-    learn<S>(gradient_at<S>(kappa, zz, at, output), at, advance, weight, next, sum);
-    return next;
+    learn<S>(gradient_at<S>(z_z, kappa, zz, at, output), at, advance, weight, next, sum);
+  }
+
+  // The threshold's part of a stage.
+  template <int S>
+  EIGEN_ALWAYS_INLINE void advance_threshold(const Threshold& mu_bar, const Threshold& at,
+                                             Scalar advance, Scalar weight, Threshold& next,
+                                             Threshold& sum) const {
+    const auto move = [&](Scalar bound, Scalar mu, Scalar begin, Scalar & to, Scalar & end)
+        __attribute__((always_inline)) {
+      const Scalar mu_dot = bound - config_.alpha * mu;
+      end += weight * mu_dot;
+      if constexpr (S + 1 < kStages) to = begin + advance * mu_dot;
+    };
+    if constexpr (kPerJoint) {
+      if constexpr (N == kRuntimeJoints) next.resize(at.size());
+      repeat<N>(
+          at.size(), [&](int i) __attribute__((always_inline)) {
+            move(mu_bar[i], at[i], begin_.mu[i], next[i], sum[i]);
+          });
+    } else {
+      move(mu_bar, at, begin_.mu, next, sum);
+    }
   }
 
   // psi_hat at a stage; needs the directions d of the stages before.
@@ -196,11 +235,11 @@ class TickIntegrator {
   EIGEN_ALWAYS_INLINE StageOutput<N, Scalar> network_output_at(
       const std::array<Scalar, kStages>& kappa, const Point& at) {
     if constexpr (S == 0) {
-      return {begin_.psi_hat, begin_.psi_hat};
+      return {begin_.psi_hat, begin_.psi_hat, {}};
     } else {
       const SigmaSums<N, Scalar> sums =
           sigma_pass<S, N, L, Scalar>(w1_z_, begin_.weights, at.theta.keep, kappa, factors_);
-      StageOutput<N, Scalar> output{at.theta.keep * sums.w2_sigma, sums.w2_sigma};
+      StageOutput<N, Scalar> output{at.theta.keep * sums.w2_sigma, sums.w2_sigma, sums.before};
       repeat<S>([&](int i) __attribute__((always_inline)) {
         const auto j = static_cast<std::size_t>(i);
         output.psi_hat += (at.theta.gain[j] * sums.before[j]) * d_[j];
@@ -209,24 +248,34 @@ class TickIntegrator {
     }
   }
 
-  // The inner products of a stage's gradient; its factors stay in factors_.
+  // The inner products of a stage's gradient, with those before too; its factors stay in factors_.
   template <int S>
-  EIGEN_ALWAYS_INLINE GradientProducts<Scalar> gradient_at(const std::array<Scalar, kStages>& kappa,
+  EIGEN_ALWAYS_INLINE GradientProducts<Scalar> gradient_at(const std::array<Scalar, kStages>& z_z,
+                                                           const std::array<Scalar, kStages>& kappa,
                                                            Scalar zz, const Point& at,
                                                            const StageOutput<N, Scalar>& output) {
     constexpr auto s = static_cast<std::size_t>(S);
+    const Vector<N, Scalar>& d = d_[s];
+    std::array<Scalar, kStages> d_d{};
     std::array<Scalar, kStages> nu{};
     repeat<S>([&](int i) __attribute__((always_inline)) {
       const auto j = static_cast<std::size_t>(i);
-      nu[j] = Scalar(0.5) * at.theta.gain[j] * dot(d_[j], at.d);
+      d_d[j] = dot(d_[j], d);
+      nu[j] = Scalar(0.5) * at.theta.gain[j] * d_d[j];
     });
-    const GradientSums<Scalar> sums =
-        gradient_pass<S, N, L, Scalar>(w1_z_, begin_.weights, (Scalar(0.5) * at.theta.keep) * at.d,
-                                       nu, at.theta.keep, kappa, factors_);
-    const Scalar w2_squared = sums.sigma_squared * squared_length(at.d);
+    const GradientSums<Scalar> sums = gradient_pass<S, N, L, Scalar>(
+        w1_z_, begin_.weights, (Scalar(0.5) * at.theta.keep) * d, nu, factors_);
+    const Scalar w2_squared = sums.sigma_squared * squared_length(d);
     gradient_reach_[s] = sums.b_squared * (z_.z00 + z_.z11) + w2_squared;
-    return {sums.with_begin + dot(at.d, output.with_w2_begin),
-            sums.with_theta + dot(at.d, output.psi_hat), sums.b_squared * zz + w2_squared};
+    Scalar with_w1 = at.theta.keep * sums.with_begin;
+    repeat<S>([&](int i) __attribute__((always_inline)) {
+      const auto j = static_cast<std::size_t>(i);
+      with_w1 += kappa[j] * sums.with_b[j];
+      products_.pairs[s][j] = sums.with_b[j] * z_z[j] + output.with_sigma[j] * d_d[j];
+    });
+    products_.of_stage[s] = {sums.with_begin + dot(d, output.with_w2_begin),
+                             with_w1 + dot(d, output.psi_hat), sums.b_squared * zz + w2_squared};
+    return products_.of_stage[s];
   }
 
   // Moves theta's coordinates along a stage's gradient, less the pull of projection.
@@ -270,10 +319,11 @@ class TickIntegrator {
   [[no_unique_address]] std::conditional_t<kPerJoint, Vector<N, Scalar>, NoJoints> learns_{};
   Scalar radius_squared_{};
   InputProducts<Scalar> z_;
-  FirstLayer<L, Scalar> w1_z_;
   StageFactors<L, Scalar> factors_;
+  FirstLayer<L, Scalar> w1_z_;  // lies in part in factors_
   std::array<Vector<N, Scalar>, kStages> d_;
   std::array<Scalar, kStages> gradient_reach_{};
+  SpanProducts<Scalar> products_;
 };
 
 }  // namespace offnominal::detail

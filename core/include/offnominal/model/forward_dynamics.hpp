@@ -23,13 +23,13 @@ struct ForwardDynamics {
 // ddq = M(q)^-1 (load_torque(tau) - V(q, dq) dq - G(q)): the paper's f with the known effects. The
 // inverse of inverse_dynamics(). Solves for the vector, the inverse is never formed.
 // kSingularMassMatrix where M(q) is not positive definite to rounding, or not finite; `result` is
-// then unchanged.
+// then unchanged. `at`: of q.
 template <int N, typename Scalar>
 [[nodiscard]] Status forward_dynamics(const RigidBodyModel<N, Scalar>& model,
+                                      const JointTransforms<N, Scalar>& at,
                                       const Vector<N, Scalar>& q, const Vector<N, Scalar>& dq,
                                       const Vector<N, Scalar>& tau, double time_s,
                                       ForwardDynamics<N, Scalar>& result) {
-  const JointTransforms<N, Scalar> at = joint_transforms(model, q);
   const Matrix<N, N, Scalar> inertia = mass_matrix(model, at);
   Matrix<N, N, Scalar> factor;
   if (!cholesky<N, Scalar>(inertia, factor)) return Status::kSingularMassMatrix;
@@ -43,6 +43,13 @@ template <int N, typename Scalar>
   result.factor = factor;
   result.told_per_load = told_per_load(model, effects, load);
   return Status::kOk;
+}
+template <int N, typename Scalar>
+[[nodiscard]] Status forward_dynamics(const RigidBodyModel<N, Scalar>& model,
+                                      const Vector<N, Scalar>& q, const Vector<N, Scalar>& dq,
+                                      const Vector<N, Scalar>& tau, double time_s,
+                                      ForwardDynamics<N, Scalar>& result) {
+  return forward_dynamics(model, joint_transforms(model, q), q, dq, tau, time_s, result);
 }
 
 }  // namespace offnominal

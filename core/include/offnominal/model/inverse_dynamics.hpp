@@ -16,16 +16,6 @@ namespace offnominal {
 
 namespace detail {
 
-template <typename Scalar>
-[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> rotated(const Matrix<3, 3, Scalar>& rotation,
-                                                            const Vector<3, Scalar>& v) {
-  return rotation.lazyProduct(v);
-}
-template <typename Scalar>
-[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> rotated_back(
-    const Matrix<3, 3, Scalar>& rotation, const Vector<3, Scalar>& v) {
-  return rotation.transpose().lazyProduct(v);
-}
 // omega x (omega x r)
 template <typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> centripetal(const Vector<3, Scalar>& omega,
@@ -57,7 +47,7 @@ template <bool Accelerating, int N, typename Scalar>
     moment[0] = first.link.first_moment.cross(acceleration);
     if constexpr (Accelerating) {
       omega_dot = first.axis * ddq[0];
-      moment[0] += first.link.inertia.lazyProduct(omega_dot);
+      moment[0] += times<Scalar>(first.link.inertia, omega_dot);
     }
     force[0].setZero();
   } else {
@@ -86,11 +76,11 @@ template <bool Accelerating, int N, typename Scalar>
       if constexpr (Accelerating) acceleration += body.axis * ddq[index];
     }
     const Vec3& h = body.link.first_moment;
-    const Vec3 spin = body.link.inertia.lazyProduct(omega);
+    const Vec3 spin = times<Scalar>(body.link.inertia, omega);
     force[i] = body.link.mass * acceleration + omega_dot.cross(h) +
                centripetal<Scalar>(omega, omega.squaredNorm(), h);
     moment[i] =
-        body.link.inertia.lazyProduct(omega_dot) + omega.cross(spin) + h.cross(acceleration);
+        times<Scalar>(body.link.inertia, omega_dot) + omega.cross(spin) + h.cross(acceleration);
   }
 
   Vector<N, Scalar> torque;
@@ -134,13 +124,22 @@ template <int N, typename Scalar>
 }
 
 // The torque that the drive has to be told for the motion (q, dq, ddq) at time_s, effects included.
+// `at`: of q.
+template <int N, typename Scalar>
+[[nodiscard]] Vector<N, Scalar> inverse_dynamics(const RigidBodyModel<N, Scalar>& model,
+                                                 const JointTransforms<N, Scalar>& at,
+                                                 const Vector<N, Scalar>& q,
+                                                 const Vector<N, Scalar>& dq,
+                                                 const Vector<N, Scalar>& ddq, double time_s) {
+  return drive_torque<N, Scalar>(model, joint_effects(model, q, dq, time_s),
+                                 rigid_body_torque(model, at, dq, ddq));
+}
 template <int N, typename Scalar>
 [[nodiscard]] Vector<N, Scalar> inverse_dynamics(const RigidBodyModel<N, Scalar>& model,
                                                  const Vector<N, Scalar>& q,
                                                  const Vector<N, Scalar>& dq,
                                                  const Vector<N, Scalar>& ddq, double time_s) {
-  return drive_torque<N, Scalar>(model, joint_effects(model, q, dq, time_s),
-                                 rigid_body_torque(model, joint_transforms(model, q), dq, ddq));
+  return inverse_dynamics(model, joint_transforms(model, q), q, dq, ddq, time_s);
 }
 
 // The same without acceleration: V(q, dq) dq + G(q) and the effects.

@@ -15,11 +15,40 @@ struct JointTransforms {
   PerJoint<N, Vector<3, Scalar>> origin;       // m, parent's frame
 };
 
+namespace detail {
+
+// m v, and m^T v. Written out, in the order of Eigen's sums: as its product each of them is a call.
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> times(const Matrix<3, 3, Scalar>& m,
+                                                          const Vector<3, Scalar>& v) {
+  return {m(0, 0) * v[0] + (m(0, 1) * v[1] + m(0, 2) * v[2]),
+          m(1, 0) * v[0] + (m(1, 1) * v[1] + m(1, 2) * v[2]),
+          m(2, 0) * v[0] + (m(2, 1) * v[1] + m(2, 2) * v[2])};
+}
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> transposed_times(const Matrix<3, 3, Scalar>& m,
+                                                                     const Vector<3, Scalar>& v) {
+  return {m(0, 0) * v[0] + (m(1, 0) * v[1] + m(2, 0) * v[2]),
+          m(0, 1) * v[0] + (m(1, 1) * v[1] + m(2, 1) * v[2]),
+          m(0, 2) * v[0] + (m(1, 2) * v[1] + m(2, 2) * v[2])};
+}
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> rotated(const Matrix<3, 3, Scalar>& rotation,
+                                                            const Vector<3, Scalar>& v) {
+  return times<Scalar>(rotation, v);
+}
+template <typename Scalar>
+[[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> rotated_back(
+    const Matrix<3, 3, Scalar>& rotation, const Vector<3, Scalar>& v) {
+  return transposed_times<Scalar>(rotation, v);
+}
+
+}  // namespace detail
+
 // q: rad or m. A non-finite q gives non-finite transforms.
 template <int N, typename Scalar>
-[[nodiscard]] JointTransforms<N, Scalar> joint_transforms(const RigidBodyModel<N, Scalar>& model,
-                                                          const Vector<N, Scalar>& q) {
-  JointTransforms<N, Scalar> at;
+void joint_transforms(const RigidBodyModel<N, Scalar>& model, const Vector<N, Scalar>& q,
+                      JointTransforms<N, Scalar>& at) {
   if constexpr (N == kRuntimeJoints) {
     at.rotation.assign(model.bodies.size(), Matrix<3, 3, Scalar>::Zero());
     at.origin.assign(model.bodies.size(), Vector<3, Scalar>::Zero());
@@ -36,6 +65,12 @@ template <int N, typename Scalar>
       at.origin[i] = body.origin + qi * body.slide;
     }
   }
+}
+template <int N, typename Scalar>
+[[nodiscard]] JointTransforms<N, Scalar> joint_transforms(const RigidBodyModel<N, Scalar>& model,
+                                                          const Vector<N, Scalar>& q) {
+  JointTransforms<N, Scalar> at;
+  joint_transforms(model, q, at);
   return at;
 }
 

@@ -17,7 +17,7 @@ template <typename Scalar>
                                                             const Matrix<3, 3, Scalar>& rotation,
                                                             const Vector<3, Scalar>& origin) {
   SpatialInertia<Scalar> moved;
-  const Vector<3, Scalar> h = rotation.lazyProduct(body.first_moment);
+  const Vector<3, Scalar> h = rotated<Scalar>(rotation, body.first_moment);
   const Matrix<3, 3, Scalar> half = rotation.lazyProduct(body.inertia);
   moved.mass = body.mass;
   moved.first_moment = h + body.mass * origin;
@@ -39,10 +39,10 @@ template <typename Scalar>
                                                    const Vector<3, Scalar>& axis) {
   if (type == JointType::kPrismatic) return body.mass;
   using Vec3 = Vector<3, Scalar>;
-  const Vec3 omega = rotation.transpose().lazyProduct(axis);
-  const Vec3 velocity = rotation.transpose().lazyProduct(axis.cross(origin));
+  const Vec3 omega = rotated_back<Scalar>(rotation, axis);
+  const Vec3 velocity = rotated_back<Scalar>(rotation, axis.cross(origin));
   const Vec3 momentum = body.mass * velocity + Scalar(2) * omega.cross(body.first_moment);
-  const Vec3 spin = body.inertia.lazyProduct(omega);
+  const Vec3 spin = times<Scalar>(body.inertia, omega);
   return velocity.dot(momentum) + omega.dot(spin);
 }
 
@@ -66,7 +66,7 @@ template <int N, typename Scalar>
     Vec3 moment;
     if (body.type == JointType::kRevolute) {
       force = body.axis.cross(composite.first_moment);
-      moment = composite.inertia.lazyProduct(body.axis);
+      moment = detail::times<Scalar>(composite.inertia, body.axis);
     } else {
       force = composite.mass * body.axis;
       moment = composite.first_moment.cross(body.axis);
@@ -74,8 +74,8 @@ template <int N, typename Scalar>
     const Vec3& own = body.type == JointType::kRevolute ? moment : force;
     m(column, column) = body.axis.dot(own) + body.reflected_inertia;
     for (std::size_t i = j; i > 0; --i) {
-      const Vec3 passed = at.rotation[i].lazyProduct(force);
-      moment = (at.rotation[i].lazyProduct(moment) + at.origin[i].cross(passed)).eval();
+      const Vec3 passed = detail::rotated<Scalar>(at.rotation[i], force);
+      moment = detail::rotated<Scalar>(at.rotation[i], moment) + at.origin[i].cross(passed);
       force = passed;
       const auto& parent = model.bodies[i - 1];
       const auto row = static_cast<Eigen::Index>(i - 1);
@@ -90,10 +90,10 @@ template <int N, typename Scalar>
   }
   // The first joint asks for one number of what it carries, not for the whole body.
   const auto& first = model.bodies[0];
-  m(0, 0) =
-      first.reflected_inertia + (first.type == JointType::kRevolute
-                                     ? first.axis.dot(first.link.inertia.lazyProduct(first.axis))
-                                     : first.link.mass);
+  m(0, 0) = first.reflected_inertia +
+            (first.type == JointType::kRevolute
+                 ? first.axis.dot(detail::times<Scalar>(first.link.inertia, first.axis))
+                 : first.link.mass);
   if constexpr (N != 1) {
     if (count > 1) {
       m(0, 0) += detail::inertia_seen_by_parent(composite, at.rotation[1], at.origin[1], first.type,

@@ -90,7 +90,7 @@ template <int N, typename Scalar>
     mass += body.link.mass;
     first_moment += h;
     linear += body.link.mass * links.v[i] + links.omega[i].cross(h);
-    angular += body.link.inertia.lazyProduct(links.omega[i]) + h.cross(links.v[i]);
+    angular += detail::times<Scalar>(body.link.inertia, links.omega[i]) + h.cross(links.v[i]);
     if (body.type == JointType::kRevolute) {
       form.momentum[index] = body.axis.dot(angular);
       form.pull[index] = body.axis.dot(angular.cross(links.omega[i]) + linear.cross(links.v[i]) +
@@ -119,17 +119,26 @@ struct MomentumDynamics {
   Vector<N, Scalar> told_per_load = ones<N, Scalar>();
 };
 
-// Of a drive that gives tau, N m or N, at time_s since the run's origin.
+// Of a drive that gives tau, N m or N, at time_s since the run's origin. `at`: of q.
+template <int N, typename Scalar>
+[[nodiscard]] MomentumDynamics<N, Scalar> momentum_dynamics(const RigidBodyModel<N, Scalar>& model,
+                                                            const JointTransforms<N, Scalar>& at,
+                                                            const Vector<N, Scalar>& q,
+                                                            const Vector<N, Scalar>& dq,
+                                                            const Vector<N, Scalar>& tau,
+                                                            double time_s) {
+  const MomentumForm<N, Scalar> form = momentum_form(model, at, dq);
+  const JointEffects<N, Scalar> effects = joint_effects(model, q, dq, time_s);
+  const Vector<N, Scalar> load = load_torque(model, effects, tau);
+  return {form.momentum, load + form.pull, told_per_load(model, effects, load)};
+}
 template <int N, typename Scalar>
 [[nodiscard]] MomentumDynamics<N, Scalar> momentum_dynamics(const RigidBodyModel<N, Scalar>& model,
                                                             const Vector<N, Scalar>& q,
                                                             const Vector<N, Scalar>& dq,
                                                             const Vector<N, Scalar>& tau,
                                                             double time_s) {
-  const MomentumForm<N, Scalar> form = momentum_form(model, joint_transforms(model, q), dq);
-  const JointEffects<N, Scalar> effects = joint_effects(model, q, dq, time_s);
-  const Vector<N, Scalar> load = load_torque(model, effects, tau);
-  return {form.momentum, load + form.pull, told_per_load(model, effects, load)};
+  return momentum_dynamics(model, joint_transforms(model, q), q, dq, tau, time_s);
 }
 
 }  // namespace offnominal

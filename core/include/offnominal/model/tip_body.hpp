@@ -45,12 +45,12 @@ void move_in_base(const RigidBodyModel<N, Scalar>& model, const JointTransforms<
   Vec3 v = Vec3::Zero();
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const auto& body = model.bodies[i];
-    const Vec3 arm = rotation.lazyProduct(at.origin[i]);
+    const Vec3 arm = rotated<Scalar>(rotation, at.origin[i]);
     origin += arm;
     v += omega.cross(arm);
     const Matrix<3, 3, Scalar> turned = rotation.lazyProduct(at.rotation[i]);
     rotation = turned;
-    links.axis[i] = rotation.lazyProduct(body.axis);
+    links.axis[i] = rotated<Scalar>(rotation, body.axis);
     (body.type == JointType::kRevolute ? omega : v) +=
         links.axis[i] * dq[static_cast<Eigen::Index>(i)];
     links.origin[i] = origin;
@@ -63,43 +63,55 @@ void move_in_base(const RigidBodyModel<N, Scalar>& model, const JointTransforms<
 }  // namespace detail
 
 // At (q, dq). All that carries momentum sits behind the last joint, so that each joint sees the
-// same L and P, about its own origin: no way back along the chain. Non-finite input gives
-// non-finite output.
+// same L and P, about its own origin: no way back along the chain. In the axes of the base, with
+// the velocities v_n, omega_n of the last link and a first moment h on it, P = omega_n x h and L =
+// h x v_n + r x P about a joint's origin, r before the link's. What momentum_form() has of them is
+// linear in h, so that each joint forms one vector that h is multiplied with. Non-finite input
+// gives non-finite output.
 template <int N, typename Scalar>
 [[nodiscard]] TipBodyForm<N, Scalar> tip_body_form(const RigidBodyModel<N, Scalar>& model,
                                                    const JointTransforms<N, Scalar>& at,
                                                    const Vector<N, Scalar>& dq) {
   using Vec3 = Vector<3, Scalar>;
+  using Values = typename TipBodyForm<N, Scalar>::Values;
   const std::size_t count = model.bodies.size();
   detail::BaseMotion<N, Scalar> links;
   detail::move_in_base(model, at, dq, links);
-  TipBodyForm<N, Scalar> form;
+  TipBodyForm<N, Scalar> form{Values(), Values()};
   const auto columns = static_cast<Eigen::Index>(count);
   form.momentum.resize(kTipParameters, columns);
   form.pull.resize(kTipParameters, columns);
-  const std::size_t last = count - 1;
-  for (int which = 0; which < kTipParameters; ++which) {
-    const bool is_mass = which == 0;
-    const Vec3 moment = is_mass ? Vec3(Vec3::Zero()) : Vec3(links.tip.col(which - 1));
-    const Scalar mass = is_mass ? Scalar(1) : Scalar(0);
-    const Vec3 linear = mass * links.v[last] + links.omega[last].cross(moment);
-    const Vec3 about_tip = moment.cross(links.v[last]);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3& axis = links.axis[i];
-      Scalar& momentum = form.momentum(which, static_cast<Eigen::Index>(i));
-      Scalar& pull = form.pull(which, static_cast<Eigen::Index>(i));
-      if (model.bodies[i].type == JointType::kRevolute) {
-        const Vec3 arm = links.origin[last] - links.origin[i];
-        const Vec3 angular = about_tip + arm.cross(linear);
-        const Vec3 first_moment = moment + mass * arm;
-        momentum = axis.dot(angular);
-        pull = axis.dot(angular.cross(links.omega[i]) + linear.cross(links.v[i]) +
-                        first_moment.cross(model.gravity));
-      } else {
-        momentum = axis.dot(linear);
-        pull = axis.dot(linear.cross(links.omega[i]) + mass * model.gravity);
-      }
+  const Vec3& v_tip = links.v[count - 1];
+  const Vec3& omega_tip = links.omega[count - 1];
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    const Vec3& axis = links.axis[i];
+    const Vec3 turn = links.omega[i].cross(axis);
+    // What P is multiplied with in p and in the pull, and what the first moment is.
+    Vec3 p_of_linear = axis;
+    Vec3 pull_of_linear = turn;
+    Vec3 p_of_moment = Vec3::Zero();
+    Vec3 pull_of_moment = Vec3::Zero();
+    Scalar weight{};  // pull of 1 kg at the link's origin by gravity
+    if (model.bodies[i].type == JointType::kRevolute) {
+      const Vec3 arm = links.origin[count - 1] - links.origin[i];
+      const Vec3 of_gravity = model.gravity.cross(axis);
+      p_of_linear = axis.cross(arm);
+      pull_of_linear = links.v[i].cross(axis) + turn.cross(arm);
+      p_of_moment = v_tip.cross(axis);
+      pull_of_moment = v_tip.cross(turn) + of_gravity;
+      weight = arm.dot(of_gravity);
+    } else {
+      weight = axis.dot(model.gravity);
     }
+    p_of_moment += p_of_linear.cross(omega_tip);
+    pull_of_moment += pull_of_linear.cross(omega_tip);
+    form.momentum(0, column) = v_tip.dot(p_of_linear);
+    form.pull(0, column) = v_tip.dot(pull_of_linear) + weight;
+    form.momentum.col(column).template tail<3>() =
+        detail::rotated_back<Scalar>(links.tip, p_of_moment);
+    form.pull.col(column).template tail<3>() =
+        detail::rotated_back<Scalar>(links.tip, pull_of_moment);
   }
   return form;
 }

@@ -30,6 +30,7 @@ struct ControllerData : SampleData<N, Scalar>, TakeoverData<N, Scalar> {
   std::uint16_t late_in_a_row = 0;   // ticks that did
   bool ends = false;                 // let_go() was called
   PerJoint<N, hal::TorqueCommand> commands{};
+  JointTransforms<N, Scalar> transforms{};  // of the last sample that was watched
   MonitorState<N, L, Scalar, Memory, Space> monitor;
   MonitorOutput<N, Scalar, Space> output;
   [[no_unique_address]] typename Isolates::template Of<N, Scalar>::State isolation{};

@@ -289,6 +289,7 @@ class JointController {
     const bool armed = data.state == ControllerState::kArmed;
     const bool passive = data.state == ControllerState::kPassive && config_.watch_when_passive;
     if (!armed && !passive) return;
+    joint_transforms(monitor_.model(), data.sample.q, data.transforms);
     if (!samples_.is_settled(data)) {
       data.monitor.initialised = false;
       if (armed) enter_fault(Fault::kVelocityUnknown, bus, data);
@@ -298,8 +299,9 @@ class JointController {
     // brakes or whatever else held the arm still do: the watch begins with each sample anew.
     if (armed && !data.drives_follow) data.monitor.initialised = false;
     const bool follows = data.monitor.initialised && data.unseen_ticks == 0;
-    const Fault fault = follows ? fault_of(monitor_.step(data.sample, data.monitor, data.output))
-                                : begin_watch(reference_at, armed, data);
+    const Fault fault =
+        follows ? fault_of(monitor_.step(data.sample, data.transforms, data.monitor, data.output))
+                : begin_watch(reference_at, armed, data);
     if (follows && fault == Fault::kNone) isolate(data);
     if (fault != Fault::kNone) {
       enter_fault(fault, bus, data);
@@ -311,8 +313,8 @@ class JointController {
   [[gnu::noinline]] void isolate(Data& data) const {
     if constexpr (kIsolates) {
       if (!config_.isolates) return;
-      isolation_.step(monitor_.model(), data.sample, data.monitor.tick, data.output,
-                      data.isolation);
+      isolation_.step(monitor_.model(), data.sample, data.transforms, data.monitor.tick,
+                      data.output, data.isolation);
       const auto& law = data.isolation.law;
       if (law.known) data.output.compensation = monitor_.compensation_of(law.load, data.output);
     }
@@ -332,7 +334,8 @@ class JointController {
   [[nodiscard, gnu::noinline]] Fault begin_watch(const ReferenceAt& reference_at, bool armed,
                                                  Data& data) const {
     if (data.monitor.initialised) {
-      return fault_of(monitor_.resume(data.sample, data.unseen_ticks, data.monitor));
+      return fault_of(
+          monitor_.resume(data.sample, data.transforms, data.unseen_ticks, data.monitor));
     }
     forget_output(data);
     if constexpr (Watch::kRemembers) {
@@ -344,7 +347,7 @@ class JointController {
       const Fault fault = begin_control(reference_at, data);
       if (fault != Fault::kNone) return fault;
     }
-    return fault_of(monitor_.reset(data.sample, data.monitor));
+    return fault_of(monitor_.reset(data.sample, data.transforms, data.monitor));
   }
 
   [[nodiscard]] Fault check_beginning(const Reference<N, Scalar>& reference,
@@ -390,8 +393,8 @@ class JointController {
     } else {
       reference = takeover_.held(data);
     }
-    tau = computed_torque<N, Scalar>(monitor_.model(), config_.gains, reference, data.sample.q,
-                                     data.sample.dq, time_s);
+    tau = computed_torque<N, Scalar>(monitor_.model(), data.transforms, config_.gains, reference,
+                                     data.sample.q, data.sample.dq, time_s);
     if (compensates(data)) tau += data.output.compensation.torque;
     if constexpr (Watch::kRemembers) tau += data.monitor.memory.remembered;
     if (!all_finite(tau)) return fault_of(Status::kNumericOverflow);

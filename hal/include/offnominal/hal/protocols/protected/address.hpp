@@ -64,12 +64,16 @@ inline constexpr std::array<KindIds, kMessageKinds> kKindIds = {{{0x020, 0},
   return static_cast<std::uint16_t>((number * 0x9E37U) & 0xFFFFU);
 }
 
-// One record in a classic frame.
+// One record in a classic frame. Bytes of `into` beyond it stay what they are.
+constexpr void write_frame(MessageKind kind, std::uint8_t node, const Record& record, Frame& into) {
+  into.id = id_of(kind, node);
+  into.extended = into.fd = into.remote = false;
+  into.length = kRecordLength;
+  std::copy(record.begin(), record.end(), into.data.begin());
+}
 [[nodiscard]] constexpr Frame frame_of(MessageKind kind, std::uint8_t node, const Record& record) {
   Frame frame;
-  frame.id = id_of(kind, node);
-  frame.length = kRecordLength;
-  std::copy(record.begin(), record.end(), frame.data.begin());
+  write_frame(kind, node, record, frame);
   return frame;
 }
 

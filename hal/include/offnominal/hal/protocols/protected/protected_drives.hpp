@@ -22,7 +22,7 @@ namespace offnominal::hal {
   std::size_t count = 0;
   if (format == FrameFormat::kClassic) {
     for (; count < records.size(); ++count) {
-      into[count] = frame_of(kind, static_cast<std::uint8_t>(count), records[count]);
+      write_frame(kind, static_cast<std::uint8_t>(count), records[count], into[count]);
     }
     return count;
   }
