@@ -275,6 +275,9 @@ studio::OpenFiles file_opener(StudioOptions options, const std::string& more) {
       with_channels += " --channels " + shell_word(files.channels->name);
     }
     studio::Input input = read_input(of_files, with_channels, read_log, names);
+    if (!files.kept_as.empty() && !options.no_session) {
+      input.keep_beside = place_of_session(options, files.kept_as);
+    }
     input.robot_file = files.robot.name;
     input.commands_note = files.commands_note;
     input.commands_before = files.commands_before;

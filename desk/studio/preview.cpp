@@ -19,7 +19,6 @@
 #include "log/log_of.hpp"
 #include "log/read_log.hpp"
 #include "log/sampling.hpp"
-#include "log/time_of.hpp"
 #include "report/decimate.hpp"
 #include "robot/payload.hpp"
 #include "robot/transmission.hpp"
@@ -34,14 +33,12 @@ using Eigen::VectorXd;
 using nlohmann::ordered_json;
 
 // As a verb reads it from a file of these channels.
-Log log_from(const NamedColumns& columns, const RobotDescription& robot,
+Log log_from(const GivenRecording& recording, const RobotDescription& robot,
              const ChannelMap& channels) {
   const ChannelMap map = read_back(channels, "[channels]");
   check_sides(map, robot.transmission, "[channels]");
-  TimedColumns timed{columns, {}};
-  timed.time = time_of(timed.columns, map.time, map.period_s);
-  Log log = log_of(std::move(timed), robot, map);
-  log.payload = payload_of(map.payloads, columns.file);
+  Log log = log_of(recording.timed(map), robot, map);
+  log.payload = payload_of(map.payloads, recording.path());
   return log;
 }
 
@@ -118,19 +115,19 @@ ordered_json signals_of(const Log& log, const RobotDescription& robot, std::size
 }
 
 // By their columns alone, since all of them together are no recording.
-ordered_json raw_signals(const NamedColumns& columns, const RobotDescription& robot,
+ordered_json raw_signals(const GivenRecording& recording, const RobotDescription& robot,
                          const ChannelMap& map, std::size_t pixels) {
   ordered_json all = ordered_json::array();
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     for (const char* quantity : {"position", "velocity", "torque"}) {
       const Channel* channel = channel_of(map, quantity, i);
       if (channel == nullptr) continue;
-      const auto found = columns.columns.find(channel->source);
-      if (found == columns.columns.end() || found->second.size() < 2) continue;
+      const VectorXd* const found = recording.values_of(channel->source);
+      if (found == nullptr || found->size() < 2) continue;
       const JointType type = robot.joints[i].joint.type;
       const std::string unit =
-          unit_read(*channel, quantity, side_of(map, quantity, i), type, columns);
-      const VectorXd values = channel->scale * found->second;
+          unit_read(*channel, quantity, side_of(map, quantity, i), type, recording.columns());
+      const VectorXd values = channel->scale * *found;
       const VectorXd rows =
           VectorXd::LinSpaced(values.size(), 0, static_cast<double>(values.size() - 1));
       all.push_back(signal_of(quantity, i, unit, rows, values, pixels));
@@ -155,30 +152,31 @@ ordered_json faults_json(const std::vector<DataFault>& faults) {
 
 }  // namespace
 
-ordered_json preview_of(const NamedColumns& columns, const RobotDescription& robot,
+ordered_json preview_of(const GivenRecording& recording, const RobotDescription& robot,
                         const ChannelMap& map, std::size_t pixels) {
   ordered_json json{{"error", nullptr}, {"remarks", ordered_json::array()}, {"sampling", nullptr}};
   try {
     const std::vector<std::string> missing = missing_of(map);
     if (!missing.empty()) {
-      throw InputError({columns.file, "", "no column for " + list_of(missing), "", "choose them"});
+      throw InputError(
+          {recording.name(), "", "no column for " + list_of(missing), "", "choose them"});
     }
-    const Log log = log_from(columns, robot, map);
+    const Log log = log_from(recording, robot, map);
     json["remarks"] = log.remarks;
     json["sampling"] = sampling_words(log);
     json["signals"] = signals_of(log, robot, pixels);
   } catch (const InputError& error) {
     json["error"] = error.what();
-    json["signals"] = raw_signals(columns, robot, map, pixels);
+    json["signals"] = raw_signals(recording, robot, map, pixels);
   }
   return json;
 }
 
-ordered_json findings_of(const NamedColumns& columns, const RobotDescription& robot,
+ordered_json findings_of(const GivenRecording& recording, const RobotDescription& robot,
                          const ChannelMap& map, const std::vector<KeepFault>& keep,
                          std::size_t pixels) {
   std::vector<Log> logs;
-  logs.push_back(log_from(columns, robot, map));
+  logs.push_back(log_from(recording, robot, map));
   const std::vector<DataFault> faults = treat_all({logs}, robot, keep);
   ordered_json json{
       {"error", nullptr}, {"faults", faults_json(faults)}, {"joints", ordered_json::array()}};

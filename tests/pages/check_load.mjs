@@ -211,6 +211,52 @@ async function checkPayload(page, looks, fault) {
   if ((await errors()).join() !== loaded.join()) fault("the same payload makes another error");
 }
 
+/** The same motion in two files: positions, and torques in every other sample whose clock began an hour before. */
+function inTwoFiles(text) {
+  const cells = text.split("\n").map((line) => line.split(","));
+  const lines = (rows) => rows.map((row) => row.join(",")).join("\n");
+  const torques = cells.slice(1).filter((_, at) => at % 2 === 1).map(([t, , , , , ...rest]) => [Number(t) + 3600, ...rest]);
+  return [
+    [`currents${kScript}.csv`, lines([["time", "drive_torque_1", "drive_torque_2"], ...torques])],
+    [`positions${kScript}.csv`, lines(cells.map((row) => row.slice(0, 5)))],
+  ];
+}
+
+/** Files that are one recording are taken for one, taken apart and joined by the keyboard, and their clocks put right. */
+async function checkSeveralFiles(page, text, looks, fault) {
+  const names = () => page.evaluate(() => studio.load.state.recordings.map(({ name }) => name));
+  const focused = () => page.evaluate(() => document.activeElement.id);
+  const [currents, positions] = inTwoFiles(text);
+  await settled(page, () => drop(page, [currents, positions]));
+  const joined = `${positions[0]}+${currents[0]}`;
+  if ((await names()).join() !== joined) fault(`files of one recording are ${await names()}`);
+  const told = await page.textContent(".joined-why");
+  if (!told.includes(`positions, velocities in ${positions[0]}, torques in ${currents[0]}`)) fault(`why files are joined is told so: ${told}`);
+  const wrong = await page.textContent("#place-loadMap .note.bad");
+  if (!wrong.includes("3600")) fault(`of clocks that share no time is said: ${wrong}`);
+  if ((await page.$$(".sketch svg")).length !== 6) fault("of clocks that share no time the columns are not drawn");
+  await page.fill("#signal-time-2-offset", "-3600");
+  await settled(page, () => page.press("#signal-time-2-offset", "Tab"));
+  if ((await page.$("#place-loadMap .note.bad[role=note]:not([data-finding])")) !== null) fault(`with its offset it is refused: ${await page.textContent("#place-loadMap .note.bad")}`);
+  if (!(await page.textContent("#place-loadMap pre")).includes("offset = -3600.0")) fault("the offset of a clock is not written");
+  const id = await page.evaluate(() => studio.load.state.recordings[0].id);
+  await page.press(`#files-${id}-summary`, "Enter");
+  await looks("load_files", kSomeLooks);
+  await page.focus(`#split-${id}`);
+  await settled(page, () => page.keyboard.press("Enter"));
+  if ((await names()).join() !== `${currents[0]},${positions[0]}`) fault(`taken apart they are ${await names()}`);
+  if ((await focused()) !== `files-${id}-summary`) fault("once files are taken apart the focus is lost");
+  const other = await page.evaluate((not) => studio.load.state.recordings.find((one) => one.id !== not).id, id);
+  await page.$eval(`#files-${other}`, (fold) => (fold.open = true));
+  await page.focus(`#join-${other}`);
+  await settled(page, () => page.keyboard.press("Enter"));
+  if ((await names()).join() !== joined) fault(`joined by hand they are ${await names()}`);
+  if ((await focused()) !== `files-${id}-summary`) fault("once files are joined the focus is lost");
+  if (!(await page.textContent("#place-loadMap pre")).includes("offset = -3600.0")) fault("what was said of a clock is lost where files are joined again");
+  await page.click(`#remove-${id}`);
+  await page.waitForFunction(() => studio.load.doing === "" && studio.load.state.recordings.length === 0);
+}
+
 async function useThese(page, fault) {
   await page.click("#use-these");
   await page.waitForFunction(() => studio.load.doing === "" && (studio.load.written.length > 0 || studio.load.message !== null));
@@ -271,6 +317,8 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   await checkChains(page, looks, fault);
   await chooseByKeyboard(page, files.robot, fault);
   if ((await page.$("#chain")) !== null) fault("beside a robot file a chain of another one can be chosen");
+  await checkSeveralFiles(page, files.text, looks, fault);
+  await page.setViewportSize({ width: 1400, height: 900 });
   await settled(page, () => drop(page, [[kRecordingName, files.text]]));
   await checkColumns(page, looks, fault);
   await checkPayload(page, looks, fault);

@@ -3,6 +3,7 @@ import { hiddenText } from "../report/words";
 import type { LoadRecording, LoadRobot, LoadState, LoadUrdf, SignalEdit } from "./api";
 import { isRobotFile, jointsWords, sizeWords } from "./files";
 import { chainElement } from "./load_chain";
+import { filesElement } from "./load_files";
 import { mapContent, showPreview } from "./load_map";
 import { payloadElement } from "./load_payload";
 import { addToNote, button, foldWith, holdControls, noteWith, replaceContent, sectionWith } from "./parts";
@@ -172,7 +173,7 @@ function stepsContent({ robot, urdf, recordings, map }: LoadState) {
   };
   const list = element("ol", { class: "load-steps" });
   list.append(robotLine(line, robot, urdf));
-  const wanted = "Time, position and torque or motor current of every joint while the arm moves; several will do. Velocities are welcome.";
+  const wanted = "Time, position and torque or motor current of every joint while the arm moves; several will do. Velocities are welcome. Positions in one file and torques in another are one recording.";
   const none = recordings.length === 0;
   list.append(none ? line(false, "A recording.", wanted) : line(true, "Recordings:", recordingList(recordings)));
   const ready = map !== null && map.missing.length === 0;
@@ -192,7 +193,10 @@ function recordingList(recordings: LoadRecording[]) {
     const remove = button(`remove-${id}`, "Remove", () => loadActions.remove(id));
     remove.append(element("span", { class: "hidden-text" }, ` ${name}`));
     const label = element("label", { for: `held-out-${id}` }, box, " hold out", element("span", { class: "hidden-text" }, ` ${name}`));
-    list.append(element("li", {}, element("span", { class: "file-name" }, name), element("span", { class: "soft" }, sizeWords(bytes)), label, remove, payloadElement(recording)));
+    const row = element("li", {}, element("span", { class: "file-name" }, name), element("span", { class: "soft" }, sizeWords(bytes)), label, remove);
+    if (recording.why_joined !== "") row.append(element("span", { class: "soft joined-why" }, `taken for one recording: ${recording.why_joined}`));
+    row.append(filesElement(recording) ?? "", payloadElement(recording));
+    list.append(row);
   }
   return list;
 }

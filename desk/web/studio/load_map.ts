@@ -36,9 +36,14 @@ const kSideWords: Record<Side, string> = {
 
 const kPreviewPixels = 300;
 
+function idOf({ quantity, joint, file }: Signal): string {
+  if (joint !== null) return `signal-${quantity}-${joint}`;
+  return file === null || file === 1 ? "signal-time" : `signal-time-${file}`;
+}
+
 /** Column, unit and sign; the rest one click away. */
 function signalControls(signal: Signal, columns: string[]) {
-  const id = signal.joint === null ? "signal-time" : `signal-${signal.quantity}-${signal.joint}`;
+  const id = idOf(signal);
   const words = signalWords(signal);
   const change = (what: Change) => loadActions.signal(editOf(signal, what));
   const root = element("div", { class: "signal-controls" });
@@ -112,13 +117,39 @@ function jointCard({ joint, name }: LoadJoint, signals: Signal[], columns: strin
   return card;
 }
 
-function clockRow(map: SignalMap) {
-  const time = itemAt(map.signals, 0);
-  const row = element("div", { class: "signal-row" }, element("h3", {}, "Time"), signalControls(time, map.columns));
+/** The time of every file; of several, when each clock began, and which file it is of. */
+function clockRows(map: SignalMap, given: LoadState) {
+  const times = map.signals.filter(({ joint }) => joint === null);
+  const shown = given.recordings.find(({ id }) => id === mapView.recording);
+  return times.map((time, at) => {
+    const name = shown?.files[at]?.name ?? `file ${at + 1}`;
+    const row = clockRow(time, itemAt(map.columns_of_files, at), times.length === 1 ? "Time" : `Time in ${name}`);
+    if (times.length > 1) row.append(offsetControl(time, name));
+    if (at === 0) row.append(...periodControls(map));
+    return row;
+  });
+}
+
+function clockRow(time: Signal, columns: string[], title: string) {
+  return element("div", { class: "signal-row" }, element("h3", {}, title), signalControls(time, columns));
+}
+
+/** Clocks of several files need not begin together. */
+function offsetControl(time: Signal, name: string) {
+  const id = `${idOf(time)}-offset`;
+  const offset = element("input", { type: "number", step: "any", id, value: String(time.offset_s ?? 0) });
+  offset.addEventListener("change", () => {
+    if (offset.value !== "") loadActions.signal(editOf(time, { offset_s: Number(offset.value) }));
+  });
+  return element("label", { for: id }, "plus ", element("span", { class: "hidden-text" }, `, for the clock of ${name}, `), offset, " s");
+}
+
+function periodControls(map: SignalMap) {
+  const row: HTMLElement[] = [];
   const period = element("input", { type: "number", step: "any", id: "signal-period", value: map.period_s === null ? "" : String(map.period_s), placeholder: "no" });
   period.addEventListener("change", () => loadActions.signal({ quantity: "time", period_s: Number(period.value) }));
-  row.append(element("label", { for: "signal-period" }, "or a sample every ", period, " s"));
-  if (mapView.preview?.sampling) row.append(element("span", { class: "soft" }, mapView.preview.sampling));
+  row.push(element("label", { for: "signal-period" }, "or a sample every ", period, " s"));
+  if (mapView.preview?.sampling) row.push(element("span", { class: "soft" }, mapView.preview.sampling));
   return row;
 }
 
@@ -142,7 +173,7 @@ export function mapContent(given: LoadState, map: SignalMap): Child[] {
   const wrong = mapView.preview?.error ?? null;
   if (wrong !== null) content.push(noteWith("bad", wrong));
   const whole = mapView.findings?.faults.filter((fault) => fault.joint === null) ?? [];
-  content.push(clockRow(map), ...whole.map(findingNote), sketchLegend());
+  content.push(...clockRows(map, given), ...whole.map(findingNote), sketchLegend());
   const cards = element("div", { class: "joint-cards" });
   for (const joint of given.robot?.joints ?? []) cards.append(jointCard(joint, map.signals, map.columns));
   content.push(cards, ...saidContent(map), useContent(map, mapView.preview !== null && wrong === null));

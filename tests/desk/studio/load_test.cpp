@@ -182,11 +182,12 @@ TEST(SignalMap, WritesTheUnitOfTheFileWhereASignIsTurned) {
   columns.columns["a"] = Eigen::VectorXd::Ones(3);
   columns.units["a"] = "deg";
   const RobotDescription robot = arm_description();
+  const MappedColumns of(columns);
   ChannelMap map = with_all_joints({}, 2);
-  studio::set_signal(map, {.quantity = "position", .joint = 1, .source = "a"}, robot, columns);
+  studio::set_signal(map, {.quantity = "position", .joint = 1, .source = "a"}, robot, of);
   EXPECT_EQ(map.position[1].unit, "");
-  EXPECT_EQ(signals_json(map, robot, columns).at(4).at("unit"), "deg");
-  studio::set_signal(map, {.quantity = "position", .joint = 1, .scale = -1}, robot, columns);
+  EXPECT_EQ(signals_json(map, robot, of).at(4).at("unit"), "deg");
+  studio::set_signal(map, {.quantity = "position", .joint = 1, .scale = -1}, robot, of);
   EXPECT_EQ(map.position[1].unit, "deg");
   EXPECT_EQ(missing_of(map).size(), 4U);
 }
