@@ -159,9 +159,17 @@ void GivenFiles::set_signal(const SignalEdit& edit) {
   map_is_of_robot_ = false;
 }
 
+void GivenFiles::set_at_rest(bool at_rest) {
+  if (!map_) refuse(Refused::Why::kNotNow, "There is no recording and robot file yet.");
+  map_->at_rest = at_rest;
+  said_at_rest_ = at_rest;
+  map_is_of_robot_ = false;
+}
+
 void GivenFiles::guess_again() {
   map_.reset();
   said_.clear();
+  said_at_rest_.reset();
   waiting_.clear();
   guess();
 }
@@ -232,6 +240,9 @@ void GivenFiles::guess() {
   set_map_aside();
   of_names_ = names;
   propose();
+  // Also where the robot file's own do not read this one.
+  const auto& own = robot_->description.channels;
+  map_->at_rest = own && own->at_rest;
   take_up();
 }
 
@@ -244,6 +255,10 @@ void GivenFiles::set_map_aside() {
 }
 
 void GivenFiles::take_up() {
+  if (said_at_rest_ && *said_at_rest_ != map_->at_rest) {
+    map_->at_rest = *said_at_rest_;
+    map_is_of_robot_ = false;
+  }
   const std::vector<SaidSignal> said = std::exchange(waiting_, {});
   for (const SaidSignal& one : said) {
     if (say_again(one, *map_, columns())) {
@@ -260,9 +275,7 @@ void GivenFiles::take_up() {
 }
 
 void GivenFiles::propose() {
-  RobotDescription robot = robot_->description;
-  // Of readings at rest, which no session is over.
-  if (robot.channels && robot.channels->at_rest) robot.channels.reset();
+  const RobotDescription& robot = robot_->description;
   const GivenRecording& recording = recordings_.front();
   const std::size_t count = recording.files().size();
   notes_.clear();
@@ -320,13 +333,15 @@ ordered_json GivenFiles::map_json(
   return {{"signals", signals_json(*map_, robot_->description, all)},
           {"columns", names_with_numbers(all.all)},
           {"columns_of_files", std::move(of_files)},
+          {"at_rest", map_->at_rest},
           {"period_s", map_->period_s > 0 ? ordered_json(map_->period_s) : ordered_json(nullptr)},
           {"from", map_source_},
           {"is_of_robot", map_is_of_robot_},
           {"notes", std::move(notes)},
           {"without_numbers", unread_},
           {"missing", missing},
-          {"text", missing.empty() ? ordered_json(channels_table(*map_)) : ordered_json(nullptr)}};
+          {"text", missing.empty() ? ordered_json(channels_table(as_written(*map_)))
+                                   : ordered_json(nullptr)}};
 }
 
 }  // namespace offnominal::desk::studio

@@ -45,6 +45,9 @@ class GivenFiles {
   void set_payload(std::size_t id, const std::optional<Payload>& payload);
   /// Throws Refused where there is no map yet, and as set_signal() of a map.
   void set_signal(const SignalEdit& edit);
+  /// Whether the recordings are hold maps; velocities and times that were said stay said. Throws
+  /// Refused where there is no map yet.
+  void set_at_rest(bool at_rest);
   /// What was said of the columns is forgotten.
   void guess_again();
 
@@ -75,6 +78,7 @@ class GivenFiles {
   std::vector<GivenRecording> recordings_;
   std::optional<ChannelMap> map_;
   std::set<SignalKey> said_;           // of the map, by hand
+  std::optional<bool> said_at_rest_;   // by hand
   std::vector<SaidSignal> waiting_;    // of maps before it, and of columns that are not there now
   std::vector<std::string> of_names_;  // what the map is of: columns of several files, or none
   bool map_is_of_robot_ = false;

@@ -15,6 +15,7 @@
 #include "common/shell_word.hpp"
 #include "robot/channel_text.hpp"
 #include "robot/robot_file.hpp"
+#include "studio/commands.hpp"
 #include "studio/preview.hpp"
 
 namespace offnominal::desk::studio {
@@ -46,6 +47,8 @@ bool same_content(const std::filesystem::path& a, const std::filesystem::path& b
   }
   return true;
 }
+
+[[noreturn]] void not_now(const std::string& words) { throw Refused(Refused::Why::kNotNow, words); }
 
 }  // namespace
 
@@ -158,6 +161,10 @@ ordered_json Intake::set_signal(const SignalEdit& edit) {
   return change([&](GivenFiles& given) { given.set_signal(edit); });
 }
 
+ordered_json Intake::set_at_rest(bool at_rest) {
+  return change([&](GivenFiles& given) { given.set_at_rest(at_rest); });
+}
+
 ordered_json Intake::guess_again() {
   return change([](GivenFiles& given) { given.guess_again(); });
 }
@@ -225,9 +232,29 @@ NamedFile Intake::recording_to_use(const GivenRecording& recording, std::string&
 
 SessionFiles Intake::files() {
   const std::lock_guard guard(lock_);
-  const auto not_now = [](const std::string& words) {
-    throw Refused(Refused::Why::kNotNow, words);
-  };
+  if (given_.map() && given_.map()->at_rest) {
+    not_now("There is no session over hold maps: write what is said of them, and explain them.");
+  }
+  return files_now();
+}
+
+ordered_json Intake::write_at_rest() {
+  SessionFiles files;
+  {
+    const std::lock_guard guard(lock_);
+    if (!given_.map() || !given_.map()->at_rest) not_now("There are no hold maps.");
+    for (const GivenRecording& recording : given_.recordings()) {
+      check_readable(recording, given_.robot()->description, given_.map_of(recording));
+    }
+    files = files_now();
+  }
+  std::vector<std::string> written = write(files);
+  return {{"written", std::move(written)},
+          {"commands", commands_at_rest(files)},
+          {"note", files.commands_note}};
+}
+
+SessionFiles Intake::files_now() {
   if (!given_.robot()) not_now("A robot file is missing: drop a .toml or a .urdf.");
   SessionFiles files;
   for (const GivenRecording& recording : given_.recordings()) {
@@ -249,8 +276,9 @@ SessionFiles Intake::files() {
   }
   if (!given_.map_is_of_robot()) {
     const std::string stem = std::filesystem::path(robot.file.name).stem().string();
-    files.channels = NamedFile{folder_.put("channels.toml", channels_table(*given_.map())).string(),
-                               free_name(stem + "_channels", ".toml")};
+    files.channels =
+        NamedFile{folder_.put("channels.toml", channels_table(as_written(*given_.map()))).string(),
+                  free_name(stem + "_channels", ".toml")};
   }
   return files;
 }

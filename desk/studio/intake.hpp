@@ -55,12 +55,18 @@ class Intake {
   nlohmann::ordered_json set_payload(std::size_t id, const std::optional<Payload>& payload);
   nlohmann::ordered_json set_signal(const SignalEdit& edit);
   /// What was said of the columns is forgotten.
+  nlohmann::ordered_json set_at_rest(bool at_rest);
   nlohmann::ordered_json guess_again();
   [[nodiscard]] nlohmann::ordered_json preview(std::size_t id, std::size_t pixels);
   [[nodiscard]] nlohmann::ordered_json findings(std::size_t id, std::size_t pixels);
 
-  /// What a session is to begin with. Throws Refused where something is missing.
+  /// What a session is to begin with. Throws Refused where something is missing, and where the
+  /// recordings are hold maps.
   [[nodiscard]] SessionFiles files();
+  /// Of hold maps, over which there is no session: writes as write() does. Returns {written,
+  /// commands, note}. Throws Refused where something is missing, or they are recordings in time;
+  /// InputError where one of them cannot be read.
+  nlohmann::ordered_json write_at_rest();
   /// Writes what the session's commands name: a robot file that was handed over, and [channels]
   /// that the robot file does not have. Returns their names.
   std::vector<std::string> write(const SessionFiles& files);
@@ -72,6 +78,7 @@ class Intake {
   void take_urdf(GivenFiles& given, const std::filesystem::path& file);
   void forget_urdf();
   void use_robot(GivenFiles& given, GivenRobot robot);
+  [[nodiscard]] SessionFiles files_now();
   [[nodiscard]] std::string free_name(const std::string& stem, const std::string& ending) const;
   [[nodiscard]] NamedFile robot_to_use() const;
   [[nodiscard]] NamedFile recording_to_use(const GivenRecording& recording,

@@ -104,6 +104,11 @@ void set_up_columns(Api& api, Stage& stage) {
   api.on("POST /load/signal", [&stage](const ApiRequest& asked) {
     return stage.intake().set_signal(edit_of(asked.body));
   });
+  api.on("POST /load/at_rest", [&stage](const ApiRequest& asked) {
+    return stage.intake().set_at_rest(asked.body.at("at_rest").get<bool>());
+  });
+  api.on("POST /load/written",
+         [&stage](const ApiRequest&) { return stage.intake().write_at_rest(); });
   api.on("POST /load/guess", [&stage](const ApiRequest&) { return stage.intake().guess_again(); });
   api.on("GET /load/preview", [&stage](const ApiRequest& asked) {
     return stage.intake().preview(asked.parameters.at("recording").get<std::size_t>(),

@@ -93,7 +93,7 @@ std::string si_unit(std::string_view quantity, JointType type) {
 ordered_json signals_of(const Log& log, const RobotDescription& robot, std::size_t pixels) {
   Log of_positions = log;
   of_positions.dq_derived.assign(log.dq_derived.size(), true);
-  derive_velocities(of_positions);
+  if (!log.at_rest) derive_velocities(of_positions);
   ordered_json all = ordered_json::array();
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const auto at = static_cast<Index>(i);
@@ -103,8 +103,8 @@ ordered_json signals_of(const Log& log, const RobotDescription& robot, std::size
           signal_of(quantity, i, si_unit(quantity, type), log.t_s, values.col(at), pixels));
     };
     add("position", log.q);
-    add("velocity", log.dq);
-    if (!log.dq_derived[i]) {
+    if (!log.at_rest) add("velocity", log.dq);
+    if (!log.at_rest && !log.dq_derived[i]) {
       Curve curve = curve_of(log.t_s, of_positions.dq.col(at), pixels);
       all.back()["derived"] = std::move(curve.values);
       all.back()["derived_t_s"] = std::move(curve.t_s);
@@ -121,7 +121,8 @@ ordered_json raw_signals(const GivenRecording& recording, const RobotDescription
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     for (const char* quantity : {"position", "velocity", "torque"}) {
       const Channel* channel = channel_of(map, quantity, i);
-      if (channel == nullptr) continue;
+      const bool is_velocity = std::string_view(quantity) == "velocity";
+      if (channel == nullptr || (map.at_rest && is_velocity)) continue;
       const VectorXd* const found = recording.values_of(channel->source);
       if (found == nullptr || found->size() < 2) continue;
       const JointType type = robot.joints[i].joint.type;
@@ -137,6 +138,7 @@ ordered_json raw_signals(const GivenRecording& recording, const RobotDescription
 }
 
 std::string sampling_words(const Log& log) {
+  if (log.at_rest) return fmt::format("{} readings at rest", log.sample_count());
   return fmt::format("{} samples, {:.6g} s, {:.6g} Hz", log.sample_count(),
                      log.t_s[log.t_s.size() - 1] - log.t_s[0], log.sample_rate_hz());
 }
@@ -172,11 +174,22 @@ ordered_json preview_of(const GivenRecording& recording, const RobotDescription&
   return json;
 }
 
+void check_readable(const GivenRecording& recording, const RobotDescription& robot,
+                    const ChannelMap& map) {
+  static_cast<void>(log_from(recording, robot, map));
+}
+
 ordered_json findings_of(const GivenRecording& recording, const RobotDescription& robot,
                          const ChannelMap& map, const std::vector<KeepFault>& keep,
                          std::size_t pixels) {
   std::vector<Log> logs;
   logs.push_back(log_from(recording, robot, map));
+  if (logs.front().at_rest) {
+    return {{"error",
+             "the data doctor and compare are of recordings in time, these are readings at rest"},
+            {"faults", ordered_json::array()},
+            {"joints", ordered_json::array()}};
+  }
   const std::vector<DataFault> faults = treat_all({logs}, robot, keep);
   ordered_json json{
       {"error", nullptr}, {"faults", faults_json(faults)}, {"joints", ordered_json::array()}};

@@ -16,8 +16,9 @@ namespace offnominal::desk::studio {
 /// {error, remarks, sampling, signals: [{quantity, joint, unit, low, high, t_s, values, derived}]}:
 /// every signal in SI units at the joint, as every verb would read it, lowest and highest point of
 /// each of `pixels` pixels; `derived`: of a velocity that was measured the derivative of the
-/// position, [] for others. Where the recording cannot be read so, `error` says why, and the
-/// signals are those columns that there are, each by itself. `map` may lack channels.
+/// position, [] for others. A hold map has no velocities, its time counts readings. Where the
+/// recording cannot be read so, `error` says why, and the signals are those columns that there are,
+/// each by itself. `map` may lack channels.
 [[nodiscard]] nlohmann::ordered_json preview_of(const GivenRecording& recording,
                                                 const RobotDescription& robot,
                                                 const ChannelMap& map, std::size_t pixels);
@@ -31,5 +32,9 @@ namespace offnominal::desk::studio {
                                                  const ChannelMap& map,
                                                  const std::vector<KeepFault>& keep,
                                                  std::size_t pixels);
+
+/// Throws InputError where the recording cannot be read so.
+void check_readable(const GivenRecording& recording, const RobotDescription& robot,
+                    const ChannelMap& map);
 
 }  // namespace offnominal::desk::studio

@@ -256,8 +256,9 @@ void set_signal(ChannelMap& map, const SignalEdit& edit, const RobotDescription&
 std::vector<std::string> missing_of(const ChannelMap& map) {
   std::vector<std::string> missing;
   const auto is_none = [](const Channel& one) { return one.source.empty() && one.sum.empty(); };
-  if (map.period_s == 0 && is_none(map.time)) missing.emplace_back("the time");
-  for (std::size_t k = 0; map.period_s == 0 && k < map.more_times.size(); ++k) {
+  const bool has_time = map.period_s == 0 && !map.at_rest;
+  if (has_time && is_none(map.time)) missing.emplace_back("the time");
+  for (std::size_t k = 0; has_time && k < map.more_times.size(); ++k) {
     if (is_none(map.more_times[k])) missing.push_back(fmt::format("the time of file {}", k + 2));
   }
   for (std::size_t i = 0; i < map.position.size(); ++i) {
@@ -269,8 +270,16 @@ std::vector<std::string> missing_of(const ChannelMap& map) {
   return missing;
 }
 
+ChannelMap as_written(ChannelMap map) {
+  if (!map.at_rest) return map;
+  map.velocity.assign(map.position.size(), std::nullopt);
+  map.velocity_of.clear();
+  map.extra.clear();
+  return map;
+}
+
 ChannelMap read_back(const ChannelMap& map, const std::string& file) {
-  const toml::table whole = parse_toml(channels_table(map), file);
+  const toml::table whole = parse_toml(channels_table(as_written(map)), file);
   return parse_channels(*whole["channels"].as_table(), file, static_cast<int>(map.position.size()));
 }
 

@@ -63,6 +63,9 @@ void set_signal(ChannelMap& map, const SignalEdit& edit, const RobotDescription&
 /// "the position of joint 2", "the time": those that no column is said of.
 [[nodiscard]] std::vector<std::string> missing_of(const ChannelMap& map);
 
+/// Without what readings at rest have none of, where it is of them: what is written of the map.
+[[nodiscard]] ChannelMap as_written(ChannelMap map);
+
 /// The map as it is read from the text that is written of it: what a file would be refused for
 /// throws here, as InputError in the name of `file`. Nothing is missing.
 [[nodiscard]] ChannelMap read_back(const ChannelMap& map, const std::string& file);

@@ -5,7 +5,7 @@
 // positions in degrees, the torque of joint 2 with the other sign.
 // Exit 0: all went well. Exit 1: one line per fault on stderr. Exit 2: it could not be checked.
 import { execFileSync } from "node:child_process";
-import { mkdir, readFile, readdir, writeFile } from "node:fs/promises";
+import { mkdir, readFile, readdir, rm, writeFile } from "node:fs/promises";
 import { join, resolve } from "node:path";
 import { checkNames, kScript, look, openPage, readArguments, runCheck } from "./studio_page.mjs";
 
@@ -257,6 +257,32 @@ async function checkSeveralFiles(page, text, looks, fault) {
   await page.waitForFunction(() => studio.load.doing === "" && studio.load.state.recordings.length === 0);
 }
 
+/** Readings at rest are another kind of recording: no time, no velocities, and what is written is for explain. */
+async function checkHoldMap(page, folder, looks, fault) {
+  const rows = () => page.$$eval(".signal h4", (all) => all.map(({ textContent }) => textContent));
+  const text = () => page.textContent("#place-loadMap .use ~ pre");
+  const before = await text();
+  await page.focus("#at-rest");
+  await settled(page, () => page.keyboard.press("Space"));
+  if ((await page.evaluate(() => document.activeElement.id)) !== "at-rest") fault("once readings are at rest the focus is lost");
+  if ((await rows()).join() !== "Position,Torque,Position,Torque") fault(`of a hold map there is ${await rows()}`);
+  if (await page.isVisible("#signal-time-source")) fault("a hold map has a time");
+  if (!(await text()).startsWith("[channels]\nat_rest = true")) fault(`of a hold map is written ${await text()}`);
+  if (!(await page.textContent("#place-loadMap")).includes("readings at rest. Time and velocities are not read")) fault("what a hold map has is not said");
+  await looks("load_at_rest", kSomeLooks);
+  await page.focus("#use-these");
+  await page.keyboard.press("Enter");
+  const commands = await page.textContent("#at-rest-commands");
+  const channels = (await page.textContent("#place-loadMessage .note.good")).match(/[^ ,]*_channels[^ ,]*\.toml/)?.[0];
+  if (!commands.includes("offnominal explain") || !commands.includes("--channels")) fault(`the commands of a hold map are ${commands}`);
+  const written = (await readdir(folder)).filter((name) => name.endsWith(".toml"));
+  if (channels === undefined || written.length !== 2) fault(`of a hold map is written ${written}, and said ${channels}`);
+  for (const name of written) await rm(join(folder, name));
+  await settled(page, () => page.click("#at-rest"));
+  if ((await page.$("#at-rest-commands")) !== null) fault("commands of a hold map stay where there is none");
+  if ((await text()) !== before) fault("back in time the columns are others");
+}
+
 async function useThese(page, fault) {
   await page.click("#use-these");
   await page.waitForFunction(() => studio.load.doing === "" && (studio.load.written.length > 0 || studio.load.message !== null));
@@ -322,6 +348,7 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   await settled(page, () => drop(page, [[kRecordingName, files.text]]));
   await checkColumns(page, looks, fault);
   await checkPayload(page, looks, fault);
+  await checkHoldMap(page, folder, looks, fault);
   await checkSession(page, options, folder, files, fault);
   await looks("load_used");
   await checkAnew(page, fault);

@@ -1,6 +1,6 @@
 import { element, within, type Child } from "../report/element";
 import { hiddenText } from "../report/words";
-import type { LoadRecording, LoadRobot, LoadState, LoadUrdf, SignalEdit } from "./api";
+import type { LoadRecording, LoadRobot, LoadState, LoadUrdf, SignalEdit, WrittenAtRest } from "./api";
 import { isRobotFile, jointsWords, sizeWords } from "./files";
 import { chainElement } from "./load_chain";
 import { filesElement } from "./load_files";
@@ -17,6 +17,8 @@ export const load: {
   doing: string;
   message: string | null;
   written: string[];
+  /** What was written of hold maps just now. */
+  atRest: WrittenAtRest | null;
   /** What was refused is done where it is asked once more. */
   confirm: boolean;
   onSession: () => Promise<void>;
@@ -25,6 +27,7 @@ export const load: {
   doing: "",
   message: null,
   written: [],
+  atRest: null,
   confirm: false,
   onSession: async () => {},
 };
@@ -105,6 +108,7 @@ export async function loadChange(work: () => Promise<void>) {
   if (load.doing !== "") return;
   load.doing = "…";
   load.message = null;
+  load.atRest = null;
   load.confirm = false;
   holdControls(true);
   try {
@@ -134,6 +138,12 @@ export const loadActions = {
   }),
   signal: (edit: SignalEdit) => loadChange(async () => {
     load.state = await ask("POST", "/load/signal", { body: edit });
+  }),
+  atRest: (atRest: boolean) => loadChange(async () => {
+    load.state = await ask("POST", "/load/at_rest", { body: { at_rest: atRest } });
+  }),
+  write: () => loadChange(async () => {
+    load.atRest = await ask("POST", "/load/written");
   }),
   guess: () => loadChange(async () => {
     load.state = await ask("POST", "/load/guess");
@@ -209,7 +219,15 @@ function loadMessageContent() {
     if (load.confirm && last) addToNote(last, " ", button("use-anyway", "Begin anew", () => loadActions.use(true)));
   }
   if (load.written.length > 0) content.push(noteWith("good", `Written: ${load.written.join(", ")}`));
+  if (load.atRest !== null) content.push(...writtenAtRest(load.atRest));
   return content;
+}
+
+/** No session is over hold maps: what was written of them, and the commands that search them. */
+function writtenAtRest({ written, commands, note }: WrittenAtRest) {
+  const words = written.length === 0 ? "All that is needed is there already." : `Written: ${written.join(", ")}.`;
+  const lines = element("pre", { tabindex: "0", id: "at-rest-commands", "aria-label": "The commands that search the hold maps" }, commands.join("\n"));
+  return [noteWith("good", `${words} These say what the model lacks at rest, and write a robot file with it:`), lines, element("p", { class: "remark" }, note)];
 }
 
 /** With a session there is more to see than its files. */

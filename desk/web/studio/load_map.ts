@@ -36,6 +36,9 @@ const kSideWords: Record<Side, string> = {
 
 const kPreviewPixels = 300;
 
+const kAtRestWords =
+  "There is no session over hold maps: its error, its charts and the data doctor are of motion. Write these, and explain says what the model lacks at rest, cogging above all. Approach the positions from both sides, or friction cannot be told from it.";
+
 function idOf({ quantity, joint, file }: Signal): string {
   if (joint !== null) return `signal-${quantity}-${joint}`;
   return file === null || file === 1 ? "signal-time" : `signal-time-${file}`;
@@ -111,10 +114,24 @@ function jointCard({ joint, name }: LoadJoint, signals: Signal[], columns: strin
   if (found !== undefined) head.append(element("span", { class: "fall" }, "error of the robot file ", element("b", {}, percent(found.error_percent))));
   const card = element("section", { class: "card joint-card", "aria-label": `Joint ${joint}` }, head);
   const grid = element("div", { class: "signals" });
-  for (const signal of signals.filter((each) => each.joint === joint)) grid.append(signalRow(signal, columns));
+  const isRead = ({ quantity }: Signal) => quantity !== "velocity" || !loadState().map?.at_rest;
+  for (const signal of signals.filter((each) => each.joint === joint && isRead(each))) grid.append(signalRow(signal, columns));
   card.append(grid);
   for (const fault of mapView.findings?.faults.filter((each) => each.joint === joint) ?? []) card.append(findingNote(fault));
   return card;
+}
+
+/** A hold map is another kind of recording: it has no time, and no session is over it. */
+function atRestRow({ at_rest: atRest }: SignalMap) {
+  const box = element("input", { type: "checkbox", id: "at-rest" });
+  box.checked = atRest;
+  box.addEventListener("change", () => loadActions.atRest(box.checked));
+  const label = element("label", { for: "at-rest" }, box, " readings at rest, one held position after the other (a hold map)");
+  const row = element("div", { class: "signal-row signal-controls" }, label);
+  if (!atRest) return row;
+  const read = mapView.preview?.sampling ?? "";
+  row.append(element("span", { class: "soft" }, `${read === "" ? "" : `${read}. `}Time and velocities are not read; curves are over the readings, in their order.`));
+  return row;
 }
 
 /** The time of every file; of several, when each clock began, and which file it is of. */
@@ -173,7 +190,7 @@ export function mapContent(given: LoadState, map: SignalMap): Child[] {
   const wrong = mapView.preview?.error ?? null;
   if (wrong !== null) content.push(noteWith("bad", wrong));
   const whole = mapView.findings?.faults.filter((fault) => fault.joint === null) ?? [];
-  content.push(...clockRows(map, given), ...whole.map(findingNote), sketchLegend());
+  content.push(atRestRow(map), ...(map.at_rest ? [] : clockRows(map, given)), ...whole.map(findingNote), sketchLegend());
   const cards = element("div", { class: "joint-cards" });
   for (const joint of given.robot?.joints ?? []) cards.append(jointCard(joint, map.signals, map.columns));
   content.push(cards, ...saidContent(map), useContent(map, mapView.preview !== null && wrong === null));
@@ -183,11 +200,12 @@ export function mapContent(given: LoadState, map: SignalMap): Child[] {
 /** What the guess, the reader and the doctor have to say. */
 function saidContent(map: SignalMap): HTMLElement[] {
   const content: HTMLElement[] = [];
-  const { findings, failed } = mapView;
+  const { preview, findings, failed } = mapView;
   const why = failed ?? findings?.error ?? null;
-  if (why !== null) content.push(noteWith("warn", why));
-  else if (findings === null && mapView.preview?.error === null) content.push(element("p", { class: "soft" }, "The data doctor is looking at it …"));
-  if (findings !== null && findings.faults.length === 0) {
+  if (map.at_rest && preview?.error === null) content.push(noteWith("neutral", kAtRestWords));
+  else if (why !== null) content.push(noteWith("warn", why));
+  else if (findings === null && preview?.error === null) content.push(element("p", { class: "soft" }, "The data doctor is looking at it …"));
+  if (findings !== null && !map.at_rest && findings.faults.length === 0) {
     content.push(noteWith("good", "The data doctor finds nothing wrong: units, signs, gaps, jumps and the like."));
   }
   const lines = [...map.notes, ...(mapView.preview?.remarks ?? [])];
@@ -201,13 +219,14 @@ function useContent(map: SignalMap, fine: boolean) {
   const ready = fine && map.missing.length === 0;
   const spoilt = mapView.findings?.faults.some(({ spoils }) => spoils) ?? false;
   root.append(
-    button("use-these", "Use these", () => loadActions.use(false), { class: "action main", ...(ready ? {} : { "aria-disabled": "true" }) }),
+    button("use-these", map.at_rest ? "Write these" : "Use these", () => (map.at_rest ? loadActions.write() : loadActions.use(false)), { class: "action main", ...(ready ? {} : { "aria-disabled": "true" }) }),
     button("guess-again", "Guess again", loadActions.guess),
   );
   if (spoilt) root.append(element("span", { class: "soft" }, "A session refuses what is marked red."));
+  const takers = map.at_rest ? "Write these writes this file, which explain and add --all-found take" : "Use these writes this file, which every verb takes";
   const words = map.is_of_robot
     ? "The robot file's own [channels] read it, and stay as they are."
-    : "Use these writes this file, which every verb takes as --channels; or paste it into the robot file:";
+    : `${takers} as --channels; or paste it into the robot file:`;
   const text = map.text === null || map.is_of_robot ? "" : element("pre", { tabindex: "0", "aria-label": "The [channels] that are written" }, map.text.trim());
   return element("div", {}, root, element("p", { class: "remark" }, words), text);
 }

@@ -188,6 +188,12 @@ Routes of_files() {
       studio.post("load/signal", {{"quantity", "velocity"}, {"joint", 1}, {"source", ""}}).first,
       200);
   EXPECT_EQ(studio.get("load/preview?recording=1&pixels=300").first, 200);
+  EXPECT_EQ(studio.post("load/written").first, 409) << "recordings in time";
+  EXPECT_EQ(studio.post("load/at_rest", {{"at_rest", true}}).first, 200);
+  EXPECT_EQ(studio.get("load/preview?recording=1&pixels=300").first, 200);
+  EXPECT_EQ(studio.get("load/findings?recording=1&pixels=300").first, 200);
+  EXPECT_EQ(studio.post("load/session").first, 409);
+  EXPECT_EQ(studio.post("load/written").first, 200);
   EXPECT_EQ(studio.post("load/guess").first, 200);
   EXPECT_EQ(studio.post("load/signal", {{"quantity", "torque"}, {"joint", 2}, {"scale", -1}}).first,
             200);
