@@ -16,6 +16,7 @@
 #include "robot/channel_text.hpp"
 #include "robot/payload_check.hpp"
 #include "studio/file_groups.hpp"
+#include "studio/fingerprint.hpp"
 
 namespace offnominal::desk::studio {
 
@@ -91,8 +92,13 @@ void GivenFiles::use_robot(GivenRobot robot) {
   guess();
 }
 
-void GivenFiles::add(std::size_t id, const std::filesystem::path& file) {
+void GivenFiles::add(std::size_t id, const std::filesystem::path& file, const SaidOfFile& said) {
   GivenFile added;
+  added.of = content_fingerprint(file);
+  added.by_hand = said.by_hand && said.joined_to.empty();
+  added.wants = said.joined_to;
+  added.held_out = said.held_out;
+  added.payload = said.payload;
   added.id = id;
   added.path = file;
   added.name = file.filename().string();
@@ -105,6 +111,7 @@ void GivenFiles::add(std::size_t id, const std::filesystem::path& file) {
   }
   added.columns = read_columns(file, robot_);
   recordings_.emplace_back(std::vector{std::move(added)});
+  join_as_before();
   arrange();
   guess();
 }
@@ -123,10 +130,31 @@ void GivenFiles::join(std::size_t id, std::size_t to) {
   std::vector<GivenFile> files = recording_of(to).files();
   const std::vector<GivenFile>& further = recording_of(id).files();
   files.insert(files.end(), further.begin(), further.end());
-  for (GivenFile& file : files) file.by_hand = true;
+  for (GivenFile& file : files) {
+    file.by_hand = true;
+    file.wants.clear();
+  }
   recording_at(to) = GivenRecording(std::move(files));
   std::erase_if(recordings_, [&](const GivenRecording& one) { return one.id() == id; });
+  arrange();
   guess();
+}
+
+void GivenFiles::join_as_before() {
+  const auto first_of = [&](const std::string& of) {
+    return std::find_if(recordings_.begin(), recordings_.end(),
+                        [&](const GivenRecording& one) { return one.first().of == of; });
+  };
+  for (std::size_t i = 0; i < recordings_.size();) {
+    const GivenFile& file = recordings_[i].first();
+    const auto to = file.wants.empty() ? recordings_.end() : first_of(file.wants);
+    if (to == recordings_.end() || to->id() == file.id) {
+      ++i;
+      continue;
+    }
+    join(file.id, to->id());
+    i = 0;
+  }
 }
 
 void GivenFiles::split(std::size_t id) {
@@ -135,6 +163,7 @@ void GivenFiles::split(std::size_t id) {
   std::erase_if(recordings_, [&](const GivenRecording& one) { return one.id() == id; });
   for (GivenFile& file : files) {
     file.by_hand = true;
+    file.wants.clear();
     recordings_.emplace_back(std::vector{std::move(file)});
   }
   arrange();
@@ -172,6 +201,51 @@ void GivenFiles::guess_again() {
   said_at_rest_.reset();
   waiting_.clear();
   guess();
+}
+
+std::string GivenFiles::columns_of() const {
+  if (!map_) return {};
+  Fingerprint print;
+  for (const RobotJoint& joint : robot_->description.joints) print.add(joint.name + "\n");
+  std::vector<std::string> names = columns().all.names;
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names) print.add("\t" + name + "\n");
+  return fmt::format("{:016x}", print.value());
+}
+
+ordered_json GivenFiles::said_of_columns() const {
+  if (!map_) return nullptr;
+  ordered_json signals = ordered_json::array();
+  for (const SaidSignal& one : said_of(*map_, said_)) signals.push_back(json_of(one));
+  for (const SaidSignal& one : waiting_) signals.push_back(json_of(one));
+  if (signals.empty() && !said_at_rest_) return nullptr;
+  return {{"at_rest", said_at_rest_ ? ordered_json(*said_at_rest_) : ordered_json(nullptr)},
+          {"signals", std::move(signals)}};
+}
+
+std::string GivenFiles::say_of_columns(const ordered_json& said) {
+  const std::set<SignalKey> before = said_;
+  try {
+    for (const ordered_json& one : said.at("signals")) {
+      if (auto signal = said_from(one)) waiting_.push_back(*std::move(signal));
+    }
+    if (const ordered_json& at_rest = said.at("at_rest"); !at_rest.is_null()) {
+      said_at_rest_ = at_rest.get<bool>();
+    }
+  } catch (const ordered_json::exception&) {
+    waiting_.clear();  // of another program: as if nothing had been kept
+    return {};
+  }
+  take_up();
+  std::vector<std::string> words;
+  if (said_at_rest_) {
+    words.emplace_back(*said_at_rest_ ? "that they are readings at rest"
+                                      : "that they are recordings in time");
+  }
+  for (const SignalKey& key : said_) {
+    if (!before.contains(key)) words.push_back(words_of(key));
+  }
+  return list_of(words);
 }
 
 const GivenRecording& GivenFiles::recording_of(std::size_t id) const {

@@ -32,9 +32,9 @@ class GivenFiles {
   /// In place of the one before: columns are read and guessed anew, and what was said of them is
   /// said again. Throws InputError where a recording cannot be read with it.
   void use_robot(GivenRobot robot);
-  /// A recording, or a part of one. Throws InputError where it cannot be read, or has the name of
-  /// another one.
-  void add(std::size_t id, const std::filesystem::path& file);
+  /// A recording, or a part of one; `said` of it before. Throws InputError where it cannot be read,
+  /// or has the name of another one.
+  void add(std::size_t id, const std::filesystem::path& file, const SaidOfFile& said = {});
   /// Throws Refused where there is no such recording, as all that take an id. Returns its files.
   std::vector<GivenFile> remove(std::size_t id);
   /// The files of one recording become further files of another one.
@@ -51,6 +51,15 @@ class GivenFiles {
   /// What was said of the columns is forgotten.
   void guess_again();
 
+  /// By which what is said of the columns is kept: their names, and the robot's joints; empty:
+  /// there is no map.
+  [[nodiscard]] std::string columns_of() const;
+  /// What the user has said of them, also what cannot be said now; null: nothing.
+  [[nodiscard]] nlohmann::ordered_json said_of_columns() const;
+  /// Says it again, of any JSON. Returns what was said, in words: "the torque of joint 2"; empty:
+  /// nothing of it can be said.
+  std::string say_of_columns(const nlohmann::ordered_json& said);
+
   [[nodiscard]] const GivenRecording& recording_of(std::size_t id) const;
   /// As a session reads this recording. Throws Refused where there is no map yet.
   [[nodiscard]] ChannelMap map_of(const GivenRecording& recording) const;
@@ -62,6 +71,8 @@ class GivenFiles {
  private:
   // Which files are one recording, but for those of which the user has said so.
   void arrange();
+  // Files that were joined by hand before, once both are there.
+  void join_as_before();
   // What the columns are, where that is not known.
   void guess();
   // What was said of the map waits for the next one.

@@ -65,6 +65,16 @@ const Eigen::VectorXd* GivenRecording::values_of(const std::string& source) cons
   return nullptr;
 }
 
+std::vector<SaidOfFile> GivenRecording::said() const {
+  std::vector<SaidOfFile> said;
+  for (const GivenFile& file : files_) {
+    SaidOfFile one{file.held_out, file.payload, file.by_hand, file.wants};
+    if (file.by_hand && file.id != id()) one.joined_to = first().of;
+    said.push_back(std::move(one));
+  }
+  return said;
+}
+
 TimedColumns GivenRecording::timed(const ChannelMap& map) const {
   if (map.at_rest && files_.size() > 1) {
     throw InputError({columns().file, "", fmt::format("{} files", files_.size()),

@@ -11,6 +11,7 @@
 #include "log/joined_files.hpp"
 #include "log/named_columns.hpp"
 #include "robot/robot.hpp"
+#include "studio/kept_columns.hpp"
 
 // A recording of what a page is given: of one file, or of several that are joined by their times.
 
@@ -22,7 +23,9 @@ struct GivenFile {
   std::filesystem::path path;
   std::string name;
   std::shared_ptr<const NamedColumns> columns;
+  std::string of;        // fingerprint of its content
   bool by_hand = false;  // with which files it goes, or that it goes alone, the user has said
+  std::string wants;  // fingerprint of the file that it was joined to before, and is not there yet
   // Of the recording that it is the first file of.
   bool held_out = false;
   std::optional<Payload> payload = {};
@@ -49,6 +52,8 @@ class GivenRecording {
   [[nodiscard]] const NamedColumns& columns() const;
   /// As its file has it; null: there is no such column.
   [[nodiscard]] const Eigen::VectorXd* values_of(const std::string& source) const;
+  /// What the user has said of its files, in their order.
+  [[nodiscard]] std::vector<SaidOfFile> said() const;
   /// As every verb reads it by these channels. Throws InputError.
   [[nodiscard]] TimedColumns timed(const ChannelMap& map) const;
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
@@ -54,6 +55,7 @@ bool same_content(const std::filesystem::path& a, const std::filesystem::path& b
 
 Intake::Intake(IntakeSettings settings)
     : settings_(std::move(settings)), folder_(settings_.limits) {
+  if (settings_.keeps_columns) kept_ = KeptColumns(here("studio_columns.json"));
   if (!settings_.robot_file) return;
   given_.use_robot(
       {read_robot_file(*settings_.robot_file), {*settings_.robot_file, *settings_.robot_file}});
@@ -69,12 +71,45 @@ ordered_json Intake::change(const std::function<void(GivenFiles&)>& work) {
   GivenFiles changed = given_;
   try {
     work(changed);
+    take_up(changed);
   } catch (const InputError& error) {
     throw folder_.shown(error);
   }
+  keep(changed);
   given_ = std::move(changed);
   ++revision_;
   return state_now();
+}
+
+void Intake::take_up(GivenFiles& changed) {
+  const std::string of = changed.columns_of();
+  if (of == given_.columns_of()) return;
+  taken_up_.clear();
+  if (!changed.said_of_columns().is_null()) return;
+  const ordered_json said = kept_.columns(of);
+  if (!said.is_null()) taken_up_ = changed.say_of_columns(said);
+}
+
+void Intake::keep(const GivenFiles& changed) {
+  const ordered_json said = changed.said_of_columns();
+  const bool is_other = changed.columns_of() != given_.columns_of();
+  if (is_other ? !said.is_null() : said != given_.said_of_columns()) {
+    kept_.keep_columns(changed.columns_of(), said);
+    if (!is_other && said.is_null()) taken_up_.clear();
+  }
+  std::map<std::string, SaidOfFile> before;
+  const auto each = [](const GivenFiles& given, const auto& take) {
+    for (const GivenRecording& recording : given.recordings()) {
+      const std::vector<SaidOfFile> all = recording.said();
+      for (std::size_t i = 0; i < all.size(); ++i) take(recording.files()[i].of, all[i]);
+    }
+  };
+  each(given_, [&](const std::string& of, const SaidOfFile& one) { before[of] = one; });
+  each(changed, [&](const std::string& of, const SaidOfFile& one) {
+    const auto known = before.find(of);
+    if (known == before.end() || known->second == one) return;
+    kept_.keep_file(of, one == SaidOfFile{} ? std::nullopt : std::optional(one));
+  });
 }
 
 ordered_json Intake::take(const std::filesystem::path& file) {
@@ -87,7 +122,7 @@ ordered_json Intake::take(const std::filesystem::path& file) {
       } else if (kind == ".urdf") {
         take_urdf(given, file);
       } else {
-        given.add(next_id_, file);
+        given.add(next_id_, file, kept_.file(content_fingerprint(file)).value_or(SaidOfFile{}));
         ++next_id_;
       }
     });
@@ -312,6 +347,7 @@ ordered_json Intake::state_now() const {
             {"all", limits.all},
             {"all_words", bytes_words(limits.all)},
             {"used", folder_.used()}}},
+          {"kept", {{"file", kept_.name()}, {"problem", kept_.problem()}, {"taken_up", taken_up_}}},
           {"map", given_.map_json([&](const std::string& words) { return folder_.shown(words); })}};
 }
 

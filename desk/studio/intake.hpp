@@ -13,6 +13,7 @@
 #include "robot/robot.hpp"
 #include "studio/given_files.hpp"
 #include "studio/given_robot.hpp"
+#include "studio/kept_columns.hpp"
 #include "studio/session_files.hpp"
 #include "studio/signal_map.hpp"
 #include "studio/upload_folder.hpp"
@@ -23,6 +24,8 @@ struct IntakeSettings {
   std::optional<std::string> robot_file = {};  // of the command line
   std::filesystem::path folder = {};           // where files are written; empty: working directory
   std::vector<KeepFault> keep = {};
+  bool keeps_columns =
+      true;  // what is said of dropped files, in studio_columns.json in that folder
   UploadLimits limits = {};
 };
 
@@ -75,6 +78,9 @@ class Intake {
   [[nodiscard]] nlohmann::ordered_json state_now() const;
   // Changes what was given, or throws and changes nothing.
   nlohmann::ordered_json change(const std::function<void(GivenFiles&)>& work);
+  // What was said of the same columns before is said again, and what is said now is kept.
+  void take_up(GivenFiles& changed);
+  void keep(const GivenFiles& changed);
   void take_urdf(GivenFiles& given, const std::filesystem::path& file);
   void forget_urdf();
   void use_robot(GivenFiles& given, GivenRobot robot);
@@ -90,6 +96,8 @@ class Intake {
   UploadFolder folder_;
   std::optional<GivenUrdf> urdf_;  // the last one, where it has several chains
   GivenFiles given_;
+  KeptColumns kept_;
+  std::string taken_up_;  // of the columns, from a program before, in words
   std::size_t next_id_ = 1;
   std::size_t revision_ = 0;
 };

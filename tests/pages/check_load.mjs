@@ -332,6 +332,26 @@ async function checkAnew(page, fault) {
   if (await page.evaluate(() => studio.load.message !== null)) fault("beginning anew is refused");
 }
 
+/** What was said of columns and recordings lies on the disk while the program runs: whatever ends it, the next one has it. */
+async function checkNextProgram(page, start, newContext, files, looks, fault) {
+  const said = () => page.evaluate(() => studio.load.state.map.text);
+  const { address, end } = await start([]);
+  const next = await openPage(await newContext(), address, "body[data-load]", [], fault);
+  await chooseByKeyboard(next, files.robot, fault);
+  await settled(next, () => drop(next, [[kRecordingName, files.text]]));
+  const [before, after] = [await said(), await next.evaluate(() => studio.load.state.map.text)];
+  if (after !== before) fault(`the next program reads ${after}, this one ${before}`);
+  const words = await next.textContent("#place-loadMap .note.neutral");
+  if (!words.includes("the torque of joint 2") || !words.includes("studio_columns.json")) fault(`of what is taken up is said: ${words}`);
+  const payload = await next.evaluate(() => studio.load.state.recordings[0].payload?.words ?? "none");
+  if (!payload.startsWith("0.05 kg")) fault(`the payload of the next program is ${payload}`);
+  await looks(next);
+  await settled(next, () => next.click("#guess-again"));
+  if ((await next.$("#place-loadMap .note.neutral")) !== null) fault("guessed again, what was taken up is still said");
+  await next.close();
+  await end();
+}
+
 async function check({ options, folder, start, newContext, axeSource }, fault) {
   const files = await strangersFiles(options, folder);
   const { address, end } = await start([]);
@@ -352,6 +372,7 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   await checkSession(page, options, folder, files, fault);
   await looks("load_used");
   await checkAnew(page, fault);
+  await checkNextProgram(page, start, newContext, files, (next) => look(next, kSomeLooks, "load_kept", { ...options, axeSource }, fault), fault);
   await checkNames(page, fault);
   await page.close();
   await end();

@@ -13,7 +13,7 @@ import type {
 } from "./api";
 import { selectWith, type Choice } from "./choices";
 import { foldedList, loadActions, loadState, showLoad } from "./load";
-import { button, effectTitle, noteWith, percent } from "./parts";
+import { baseName, button, effectTitle, noteWith, percent } from "./parts";
 import { ask, wordsOf } from "./server";
 import { columnOptions, editOf, signalWords, type Change } from "./signals";
 import { sketchElement, sketchLegend, type Curve } from "./sketch";
@@ -186,6 +186,7 @@ function shownRecording(given: LoadState) {
 export function mapContent(given: LoadState, map: SignalMap): Child[] {
   const shown = shownRecording(given);
   const content: Child[] = [element("h3", { class: "map-heading", id: "map-heading" }, "What the columns are")];
+  content.push(...keptContent(given));
   content.push(element("p", {}, "Every signal as it is read: at the joint, in SI units. Where a curve does not look like the arm's, choose another column, its unit or its sign: the picture follows."), shown);
   const wrong = mapView.preview?.error ?? null;
   if (wrong !== null) content.push(noteWith("bad", wrong));
@@ -194,6 +195,14 @@ export function mapContent(given: LoadState, map: SignalMap): Child[] {
   const cards = element("div", { class: "joint-cards" });
   for (const joint of given.robot?.joints ?? []) cards.append(jointCard(joint, map.signals, map.columns));
   content.push(cards, ...saidContent(map), useContent(map, mapView.preview !== null && wrong === null));
+  return content;
+}
+
+/** What was said of the same columns before, and why what is said now is not kept. */
+function keptContent({ kept }: LoadState): HTMLElement[] {
+  const content: HTMLElement[] = [];
+  if (kept.taken_up !== "") content.push(noteWith("neutral", `Said of these columns before, and taken up from ${baseName(kept.file)}: ${kept.taken_up}. “Guess again” forgets it.`));
+  if (kept.problem !== "") content.push(noteWith("warn", `What is said of these files is not kept: ${kept.problem}`));
   return content;
 }
 
