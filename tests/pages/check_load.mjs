@@ -10,16 +10,17 @@ import { join, resolve } from "node:path";
 import { checkNames, kScript, look, openPage, readArguments, runCheck } from "./studio_page.mjs";
 
 const kLooks = [
-  [1400, "light"],
-  [1400, "dark"],
   [400, "light"],
   [400, "dark"],
+  [1280, "light"],
+  [1280, "dark"],
+  [2560, "light"],
 ];
 /** Of what is looked at with little around it. */
 const kSomeLooks = [
   [400, "light"],
-  [1400, "dark"],
-  [3840, "light"],
+  [1280, "dark"],
+  [2560, "light"],
 ];
 const kRobotName = `arm${kScript}.toml`;
 const kRecordingName = `run${kScript}.csv`;

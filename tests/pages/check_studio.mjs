@@ -253,6 +253,11 @@ async function checkTour({ options, start, newContext, axeSource }, words, fault
   await page.focus("#tour-next");
   await page.keyboard.press("Enter");
   if ((await page.$eval(".tour-target", ({ id }) => id)) !== "search") fault("the tour does not mark the search");
+  const isInView = () => {
+    const { top, bottom } = document.getElementById("tour-callout").getBoundingClientRect();
+    return top >= 0 && bottom <= window.innerHeight;
+  };
+  await page.waitForFunction(isInView, undefined, { timeout: 10_000 }).catch(() => fault("behind Next the tour is out of sight"));
   let clicks = 0;
   const errors = [];
   for (;;) {
@@ -266,9 +271,13 @@ async function checkTour({ options, start, newContext, axeSource }, words, fault
     const isOver = (before) => !document.body.hasAttribute("data-busy") && studio.session.found.state !== "running" && document.querySelector(".tour-title").textContent !== before;
     await page.waitForFunction(isOver, await page.textContent(".tour-title")).catch(() => {});
     errors.push((await headline(page))[0]);
-    if (clicks > 8) break;
+    if ((await focused()) !== "tour-callout") fault(`behind click ${clicks} of the tour the focus is on "${await focused()}"`);
+    await page.waitForFunction(isInView, undefined, { timeout: 10_000 }).catch(() => fault(`behind click ${clicks} the tour is out of sight`));
+    if (clicks > 20) break;
   }
-  if (errors.some((error, at) => at > 0 && error >= errors[at - 1])) fault(`with the clicks of the tour the error is ${errors}`);
+  const rose = await page.evaluate(() => studio.state().joints.filter(({ start, now }) => now.fitted_percent > start.fitted_percent + 1e-9).map(({ joint }) => joint));
+  const fell = await page.evaluate(() => studio.state().joints.some(({ start, now }) => now.fitted_percent < 0.9 * start.fitted_percent));
+  if (rose.length > 0 || !fell) fault(`with the clicks of the tour the error is ${errors}, and of joints ${rose} larger`);
   if (!(await told()).includes("what came of it")) fault(`the tour ends with: ${await told()}`);
   await look(page, [[400, "light"], [1280, "light"]], "tour_end", { ...options, axeSource }, fault);
   await page.focus("#tour-end");

@@ -33,9 +33,9 @@ function joinControls({ id, name }: LoadRecording, others: LoadRecording[]) {
   const choices = others.map((other): Choice => [String(other.id), other.name]);
   const known = others.some((other) => other.id === chosen.get(id));
   const to = known ? (chosen.get(id) ?? 0) : (others[0]?.id ?? 0);
-  const pick = choiceOf(`join-${id}-to`, `${name} belongs to`, choices, String(to), (value) => chosen.set(id, Number(value)));
+  const pick = choiceOf(`join-${id}-to`, "One recording with", choices, String(to), (value) => chosen.set(id, Number(value)));
   const act = button(`join-${id}`, "Join them", () => join(id, chosen.get(id) ?? to));
-  act.append(element("span", { class: "hidden-text" }, `: ${name} and the recording that is chosen`));
+  act.append(element("span", { class: "hidden-text" }, `: ${name} behind the recording that is chosen`));
   return element("div", { class: "choice-row" }, pick, act);
 }
 

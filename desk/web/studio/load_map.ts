@@ -141,7 +141,8 @@ function clockRows(map: SignalMap, given: LoadState) {
   return times.map((time, at) => {
     const name = shown?.files[at]?.name ?? `file ${at + 1}`;
     const row = clockRow(time, itemAt(map.columns_of_files, at), times.length === 1 ? "Time" : `Time in ${name}`);
-    if (times.length > 1) row.append(offsetControl(time, name));
+    // The others are put on the clock of the first.
+    if (at > 0 || time.offset_s !== 0) row.append(offsetControl(time, name));
     if (at === 0) row.append(...periodControls(map));
     return row;
   });
@@ -191,7 +192,7 @@ export function mapContent(given: LoadState, map: SignalMap): Child[] {
   const wrong = mapView.preview?.error ?? null;
   if (wrong !== null) content.push(noteWith("bad", wrong));
   const whole = mapView.findings?.faults.filter((fault) => fault.joint === null) ?? [];
-  content.push(atRestRow(map), ...(map.at_rest ? [] : clockRows(map, given)), ...whole.map(findingNote), sketchLegend());
+  content.push(atRestRow(map), ...(map.at_rest ? [] : clockRows(map, given)), ...whole.map(findingNote), map.at_rest ? "" : sketchLegend());
   const cards = element("div", { class: "joint-cards" });
   for (const joint of given.robot?.joints ?? []) cards.append(jointCard(joint, map.signals, map.columns));
   content.push(cards, ...saidContent(map), useContent(map, mapView.preview !== null && wrong === null));

@@ -30,7 +30,7 @@ function toldOf(stage: TourStage): Told {
   }
   if (stage.part === "add") {
     const { click, clicks, next } = stage;
-    const words = `${errorWords()} Press “Add” of ${effectTitle(next.effect)}, joint ${next.joint}, which is marked below, and watch the error.`;
+    const words = `${errorWords()} Press “Add” of ${effectTitle(next.effect)}, joint ${next.joint}, which is marked, and watch the error.`;
     return { title: `Guided tour: click ${click} of ${clicks}`, words, before: placeOf("learn"), target: next.id };
   }
   const came = stage.added > 0 ? `${errorWords()} ` : "The search names nothing to add: it says why above. ";
@@ -46,12 +46,42 @@ const title = element("p", { class: "tour-title" });
 const words = element("p", { role: "status" });
 const next = button("tour-next", "Next", advance, { "data-free": "" });
 const end = button("tour-end", "End the tour", () => endTour(), { "data-free": "" });
-const callout = element("section", { id: "tour-callout", class: "tour", tabindex: "-1", "aria-label": "Guided tour" }, title, words, element("div", { class: "choice-row" }, next, end));
+const callout = element("div", { id: "tour-callout", class: "tour", role: "region", tabindex: "-1", "aria-label": "Guided tour" }, title, words, element("div", { class: "choice-row" }, next, end));
+
+/** Charts that are drawn late push it out of the window again. */
+const kLookAgain = [0, 300, 800, 1500]; // [ms]
+
+function bringIntoView() {
+  for (const later of kLookAgain) {
+    setTimeout(() => {
+      const { top, bottom } = callout.getBoundingClientRect();
+      const isSeen = top >= 0 && bottom <= window.innerHeight;
+      if (tour.on && !isSeen && document.activeElement === callout) callout.scrollIntoView({ block: "center" });
+    }, later);
+  }
+}
 
 function goTo() {
   updateTour();
-  callout.scrollIntoView({ block: "center" });
   callout.focus({ preventScroll: true });
+  bringIntoView();
+}
+
+/** Whoever has pressed what the tour asked for goes on with it; whoever is elsewhere is left there. */
+function goOn() {
+  const active = document.activeElement;
+  const isThere = active === null || active === document.body || callout.contains(active) || placeOf("learn").contains(active);
+  if (!isThere) return;
+  callout.focus({ preventScroll: true });
+  bringIntoView();
+}
+
+/** Beside what is to be pressed, where that is on a card. */
+function put({ before, target }: Told) {
+  const card = target === null ? null : (document.getElementById(target)?.closest("li.card") ?? null);
+  if (card !== null) {
+    if (card.firstChild !== callout) card.prepend(callout);
+  } else if (callout.nextSibling !== before) before.before(callout);
 }
 
 /** Past what is to be looked at; past what is to be pressed, for those who do not want to. */
@@ -87,11 +117,13 @@ export function updateTour() {
     return;
   }
   const told = toldOf(stageNow());
-  if (callout.nextSibling !== told.before) told.before.before(callout);
+  put(told);
+  const isNew = title.textContent !== told.title;
   title.textContent = told.title;
   if (words.textContent !== told.words) words.textContent = told.words;
   const isEnd = told.before === placeOf("save");
   next.hidden = isEnd;
   next.textContent = tour.hasLooked ? "Skip to the end" : "Next";
   if (told.target !== null) document.getElementById(told.target)?.classList.add("tour-target");
+  if (isNew) goOn();
 }

@@ -14,14 +14,14 @@ export type TourStage =
   | { part: "add"; click: number; clicks: number; next: TourEffect }
   | { part: "end"; added: number };
 
-/** What the search has named, in its order; of those that it does not tell apart the first. */
+/** What the search has named, in its order; where it tells none of them from another one, the first of each. */
 function namedBy({ answer }: Explanation): TourEffect[] {
   const joints = answer?.joints ?? [];
-  return joints.flatMap(({ joint, cards, classes }) => {
-    const alone = cards.map((card, at): TourEffect => ({ effect: card.effect, joint: card.joint, id: `add-${joint}-${at}` }));
-    const oneOf = classes.flatMap(({ effects }, at) => effects.slice(0, 1).map(({ effect, joint: of }): TourEffect => ({ effect, joint: of, id: `add-${joint}-class-${at}-0` })));
-    return [...alone, ...oneOf];
-  });
+  const alone = joints.flatMap(({ joint, cards }) => cards.map((card, at): TourEffect => ({ effect: card.effect, joint: card.joint, id: `add-${joint}-${at}` })));
+  if (alone.length > 0) return alone;
+  return joints.flatMap(({ joint, classes }) =>
+    classes.flatMap(({ effects }, at) => effects.slice(0, 1).map(({ effect, joint: of }): TourEffect => ({ effect, joint: of, id: `add-${joint}-class-${at}-0` }))),
+  );
 }
 
 /** Told from what there is: whoever goes another way than the tour says is not led astray. */
