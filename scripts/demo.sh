@@ -67,6 +67,8 @@ emps() {
   heading "Force error of EMPS, relative to the measured force"
   printf '%-32s %10s %12s\n' model "fitted on" "never seen"
   printf '%s\n' "${chain[@]}"
+  printf '\nThe same by hand, in four clicks that a guided tour leads through:\n'
+  printf '  ./dev studio %s --holdout %s --robot robots/emps.toml -o build/emps_studio.toml\n' "$fitted" "$validation"
 }
 
 mkdir -p "$out"

@@ -275,6 +275,9 @@ studio::OpenFiles file_opener(StudioOptions options, const std::string& more) {
       with_channels += " --channels " + shell_word(files.channels->name);
     }
     studio::Input input = read_input(of_files, with_channels, read_log, names);
+    if (!files.kept_as.empty() && !options.no_session) {
+      input.keep_beside = place_of_session(options, files.kept_as);
+    }
     input.robot_file = files.robot.name;
     input.commands_note = files.commands_note;
     input.commands_before = files.commands_before;
@@ -288,6 +291,7 @@ std::unique_ptr<studio::Intake> intake_of(const StudioOptions& options) {
   if (!options.files.robot.empty()) settings.robot_file = options.files.robot;
   if (options.output) settings.folder = std::filesystem::path(*options.output).parent_path();
   settings.keep = options.keep;
+  settings.keeps_columns = !options.no_session;
   return std::make_unique<studio::Intake>(std::move(settings));
 }
 
@@ -458,10 +462,12 @@ void set_up_studio(CLI::App& verb, ExitCode& /*exit_code*/) {
   verb.add_option("--port", options->port, "Port of 127.0.0.1 [a free one]")
       ->check(CLI::Range(1, 65535));
   verb.add_flag("--no-open", options->no_open, "Print the address and open no browser");
-  verb.add_flag("--no-session", options->no_session,
-                "Begin anew, and keep nothing of it but what is saved [what was added and found is "
-                "kept beside the first recording, or beside the file of -o, as "
-                "RECORDING.studio.json, and taken up when the same files are opened again]");
+  verb.add_flag(
+      "--no-session", options->no_session,
+      "Begin anew, and keep nothing of it but what is saved [what was added and found is "
+      "kept beside the first recording, or beside the file of -o, as "
+      "RECORDING.studio.json, and taken up when the same files are opened again; what is said of "
+      "files that are dropped on the page, in studio_columns.json]");
   add_channels_option(verb, options->files.channels, "recordings'");
   add_keep_option(verb, options->keep);
   add_threads_option(verb, options->threads, "Threads of the search for missing effects");

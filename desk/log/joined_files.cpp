@@ -151,22 +151,47 @@ std::string mend_of_times(const std::vector<TimedColumns>& files) {
       time_line(files, 0, nullptr));
 }
 
-// Names that one file alone has, without their times.
-std::set<std::string> plain_names(const std::vector<TimedColumns>& files) {
+// Names that one file alone has.
+std::set<std::string> plain_names(const std::vector<const NamedColumns*>& files) {
   std::set<std::string> once;
   std::set<std::string> twice;
-  for (const TimedColumns& file : files) {
+  for (const NamedColumns* file : files) {
     const auto count = [&](const auto& values) {
       for (const auto& [name, value] : values) {
         if (!once.insert(name).second) twice.insert(name);
       }
     };
-    count(file.columns.columns);
-    count(file.columns.scalars);
+    count(file->columns);
+    count(file->scalars);
   }
   for (const std::string& name : twice) once.erase(name);
   return once;
 }
+
+// Puts what file `k` says of a column under the names that it has among all of them.
+class Names {
+ public:
+  explicit Names(const std::vector<const NamedColumns*>& files) : plain_(plain_names(files)) {}
+
+  [[nodiscard]] std::string of(std::size_t k, const std::string& name) const {
+    return plain_.contains(name) ? name : name_in_file(k, name);
+  }
+  void put(std::size_t k, auto& to, const std::string& name, const auto& value) const {
+    to[name_in_file(k, name)] = value;
+    if (plain_.contains(name)) to[name] = value;
+  }
+  // All but the values of the columns.
+  void put_words(std::size_t k, const NamedColumns& from, NamedColumns& into) const {
+    into.has_names = into.has_names && from.has_names;
+    into.remarks.insert(into.remarks.end(), from.remarks.begin(), from.remarks.end());
+    for (const std::string& name : from.names) into.names.push_back(of(k, name));
+    for (const auto& [name, unit] : from.units) put(k, into.units, name, unit);
+    for (const auto& [name, value] : from.scalars) put(k, into.scalars, name, value);
+  }
+
+ private:
+  std::set<std::string> plain_;
+};
 
 }  // namespace
 
@@ -217,7 +242,9 @@ TimedColumns joined_files(std::vector<TimedColumns> files, Index fewest, double 
          "times of which too few samples lie in every file: " + list_of(words),
          fmt::format("{} samples or more within each other's time", fewest), mend_of_times(files));
   }
-  const std::set<std::string> plain = plain_names(files);
+  std::vector<const NamedColumns*> all;
+  for (const TimedColumns& file : files) all.push_back(&file.columns);
+  const Names names(all);  // without those of the times
   TimedColumns joined;
   NamedColumns& into = joined.columns;
   into.file = list_of(files, [](const TimedColumns& file) { return file.columns.file; });
@@ -237,27 +264,30 @@ TimedColumns joined_files(std::vector<TimedColumns> files, Index fewest, double 
   for (std::size_t k = 0; k < files.size(); ++k) {
     NamedColumns& from = files[k].columns;
     if (k > 0) remark_gaps(from, files[k].time.t_s, shared, most_gap, into.remarks);
-    into.has_names = into.has_names && from.has_names;
-    into.remarks.insert(into.remarks.end(), from.remarks.begin(), from.remarks.end());
-    for (const std::string& name : from.names) {
-      into.names.push_back(plain.contains(name) ? name : name_in_file(k, name));
-    }
-    const auto put = [&](auto& to, const std::string& name, const auto& value) {
-      to[name_in_file(k, name)] = value;
-      if (plain.contains(name)) to[name] = value;
-    };
-    for (const auto& [name, unit] : from.units) put(into.units, name, unit);
-    for (const auto& [name, value] : from.scalars) put(into.scalars, name, value);
+    names.put_words(k, from, into);
     for (auto& [name, values] : from.columns) {
       const VectorXd at = k == 0
                               ? VectorXd(values.segment(begin, end - begin))
                               : values_at(known_of(files[k].time.t_s, values, most_gap),
                                           joined.time.t_s, from.file + ": " + name, into.remarks);
-      put(into.columns, name, at);
+      names.put(k, into.columns, name, at);
       values.resize(0);
     }
   }
   return joined;
+}
+
+NamedColumns named_together(const std::vector<const NamedColumns*>& files) {
+  const Names names(files);
+  NamedColumns together;
+  together.file = list_of(files, [](const NamedColumns* file) { return file->file; });
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    names.put_words(k, *files[k], together);
+    for (const auto& column : files[k]->columns) {
+      names.put(k, together.columns, column.first, VectorXd());
+    }
+  }
+  return together;
 }
 
 }  // namespace offnominal::desk

@@ -25,4 +25,8 @@ struct TimedColumns {
 [[nodiscard]] TimedColumns joined_files(std::vector<TimedColumns> files, Eigen::Index fewest,
                                         double most_gap);
 
+// What such files have, by those names, before any time is taken from them: of the columns no
+// values.
+[[nodiscard]] NamedColumns named_together(const std::vector<const NamedColumns*>& files);
+
 }  // namespace offnominal::desk

@@ -146,6 +146,10 @@ LookedFiles read_looked_files(const std::filesystem::path& path, const RobotDesc
 ReadFiles read_files_of(const std::filesystem::path& path, const ChannelMap& channels,
                         const std::optional<RobotBus>& bus) {
   const std::vector<std::filesystem::path> paths = recording_files(path);
+  if (channels.at_rest && paths.size() > 1) {
+    throw InputError({path.string(), "", fmt::format("{} files", paths.size()),
+                      "one, as the channels' at_rest = true says", "join them before"});
+  }
   std::vector<TimedColumns> files;
   ReadFiles read;
   for (std::size_t k = 0; k < paths.size(); ++k) {

@@ -78,4 +78,23 @@ std::vector<std::string> commands_of(const Workbench& bench, const std::string& 
   return commands;
 }
 
+std::vector<std::string> commands_at_rest(const SessionFiles& files) {
+  const auto names_of = [](const std::vector<NamedFile>& some) {
+    std::vector<std::string> names;
+    for (const NamedFile& file : some) names.push_back(file.name);
+    return names;
+  };
+  std::string more;
+  if (!files.holdout.empty()) more += " --holdout " + shell_words(names_of(files.holdout));
+  if (files.channels) more += " --channels " + shell_word(files.channels->name);
+  for (const RecordingPayload& payload : files.payloads) {
+    more += " --payload " + shell_word(text_of(payload));
+  }
+  const std::string robot = shell_word(files.robot.name);
+  const std::string logs = shell_words(names_of(files.logs));
+  return {fmt::format("offnominal explain {} --robot {}{}", logs, robot, more),
+          fmt::format("offnominal add --all-found --robot {} --log {}{} -o {}", robot, logs, more,
+                      shell_word(free_name(files.robot.name, "found")))};
+}
+
 }  // namespace offnominal::desk::studio

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
@@ -13,12 +14,9 @@
 #include "common/nearest.hpp"
 #include "common/refused.hpp"
 #include "common/shell_word.hpp"
-#include "look/look.hpp"
-#include "look/looked_files.hpp"
 #include "robot/channel_text.hpp"
-#include "robot/payload.hpp"
-#include "robot/payload_check.hpp"
 #include "robot/robot_file.hpp"
+#include "studio/commands.hpp"
 #include "studio/preview.hpp"
 
 namespace offnominal::desk::studio {
@@ -51,21 +49,15 @@ bool same_content(const std::filesystem::path& a, const std::filesystem::path& b
   return true;
 }
 
-ordered_json payload_json(const std::optional<Payload>& payload) {
-  if (!payload) return nullptr;
-  return {{"mass_kg", payload->mass_kg},
-          {"x_m", payload->place_m[0]},
-          {"y_m", payload->place_m[1]},
-          {"z_m", payload->place_m[2]},
-          {"words", words_of(*payload)}};
-}
+[[noreturn]] void not_now(const std::string& words) { throw Refused(Refused::Why::kNotNow, words); }
 
 }  // namespace
 
 Intake::Intake(IntakeSettings settings)
     : settings_(std::move(settings)), folder_(settings_.limits) {
+  if (settings_.keeps_columns) kept_ = KeptColumns(here("studio_columns.json"));
   if (!settings_.robot_file) return;
-  use_robot(
+  given_.use_robot(
       {read_robot_file(*settings_.robot_file), {*settings_.robot_file, *settings_.robot_file}});
 }
 
@@ -74,33 +66,76 @@ ordered_json Intake::state() {
   return state_now();
 }
 
-ordered_json Intake::take(const std::filesystem::path& file) {
+ordered_json Intake::change(const std::function<void(GivenFiles&)>& work) {
   const std::lock_guard guard(lock_);
-  const std::string kind = lower_extension(file);
+  GivenFiles changed = given_;
   try {
-    if (kind == ".toml") {
-      use_robot(robot_of_toml(file));
-      forget_urdf();
-    } else if (kind == ".urdf") {
-      take_urdf(file);
-    } else {
-      take_recording(file);
-    }
+    work(changed);
+    take_up(changed);
   } catch (const InputError& error) {
-    folder_.remove(file);
     throw folder_.shown(error);
-  } catch (...) {
-    folder_.remove(file);
-    throw;
   }
+  keep(changed);
+  given_ = std::move(changed);
   ++revision_;
   return state_now();
 }
 
-void Intake::take_urdf(const std::filesystem::path& file) {
+void Intake::take_up(GivenFiles& changed) {
+  const std::string of = changed.columns_of();
+  if (of == given_.columns_of()) return;
+  taken_up_.clear();
+  if (!changed.said_of_columns().is_null()) return;
+  const ordered_json said = kept_.columns(of);
+  if (!said.is_null()) taken_up_ = changed.say_of_columns(said);
+}
+
+void Intake::keep(const GivenFiles& changed) {
+  const ordered_json said = changed.said_of_columns();
+  const bool is_other = changed.columns_of() != given_.columns_of();
+  if (is_other ? !said.is_null() : said != given_.said_of_columns()) {
+    kept_.keep_columns(changed.columns_of(), said);
+    if (!is_other && said.is_null()) taken_up_.clear();
+  }
+  std::map<std::string, SaidOfFile> before;
+  const auto each = [](const GivenFiles& given, const auto& take) {
+    for (const GivenRecording& recording : given.recordings()) {
+      const std::vector<SaidOfFile> all = recording.said();
+      for (std::size_t i = 0; i < all.size(); ++i) take(recording.files()[i].of, all[i]);
+    }
+  };
+  each(given_, [&](const std::string& of, const SaidOfFile& one) { before[of] = one; });
+  each(changed, [&](const std::string& of, const SaidOfFile& one) {
+    const auto known = before.find(of);
+    if (known == before.end() || known->second == one) return;
+    kept_.keep_file(of, one == SaidOfFile{} ? std::nullopt : std::optional(one));
+  });
+}
+
+ordered_json Intake::take(const std::filesystem::path& file) {
+  const std::string kind = lower_extension(file);
+  try {
+    return change([&](GivenFiles& given) {
+      if (kind == ".toml") {
+        use_robot(given, robot_of_toml(file));
+        forget_urdf();
+      } else if (kind == ".urdf") {
+        take_urdf(given, file);
+      } else {
+        given.add(next_id_, file, kept_.file(content_fingerprint(file)).value_or(SaidOfFile{}));
+        ++next_id_;
+      }
+    });
+  } catch (...) {
+    folder_.remove(file);
+    throw;
+  }
+}
+
+void Intake::take_urdf(GivenFiles& given, const std::filesystem::path& file) {
   GivenUrdf urdf(file);
   if (!urdf.has_choice()) {
-    use_robot(urdf.robot(folder_));
+    use_robot(given, urdf.robot(folder_));
     folder_.remove(file);
     forget_urdf();
     return;
@@ -115,157 +150,75 @@ void Intake::forget_urdf() {
 }
 
 ordered_json Intake::choose_chain(std::size_t chain) {
-  const std::lock_guard guard(lock_);
-  if (!urdf_) throw Refused(Refused::Why::kNotNow, "There is no URDF with several chains.");
-  use_robot(urdf_->robot(chain, folder_));
-  urdf_->choose(chain);
-  ++revision_;
-  return state_now();
+  return change([&](GivenFiles& given) {
+    if (!urdf_) throw Refused(Refused::Why::kNotNow, "There is no URDF with several chains.");
+    use_robot(given, urdf_->robot(chain, folder_));
+    urdf_->choose(chain);
+  });
 }
 
-void Intake::use_robot(GivenRobot robot) {
-  std::optional<GivenRobot> before = std::exchange(robot_, std::move(robot));
-  std::optional<ChannelMap> map_before = std::exchange(map_, std::nullopt);
+void Intake::use_robot(GivenFiles& given, GivenRobot robot) {
+  const std::filesystem::path file = robot.file.path;
   try {
-    // How a log of a bus is decoded may follow from the robot file.
-    for (Recording& recording : recordings_) recording.columns = read_columns(recording.path);
-    guess();
+    given.use_robot(std::move(robot));
   } catch (...) {
-    map_ = std::move(map_before);
-    folder_.remove(robot_->file.path);
-    robot_ = std::move(before);
+    folder_.remove(file);
     throw;
   }
-  if (before && before->file.path != robot_->file.path) folder_.remove(before->file.path);
-}
-
-NamedColumns Intake::read_columns(const std::filesystem::path& file) const {
-  NamedColumns columns =
-      read_looked_files(file, robot_ ? &robot_->description : nullptr, std::nullopt).columns;
-  columns.file = file.filename().string();
-  return columns;
-}
-
-void Intake::take_recording(const std::filesystem::path& file) {
-  Recording recording;
-  recording.name = file.filename().string();
-  for (const Recording& other : recordings_) {
-    if (other.name != recording.name) continue;
-    throw InputError({recording.name, "", "a recording of that name that is there already",
-                      "names that differ", "take the other one away, or give this one another"});
+  if (given_.robot() && given_.robot()->file.path != file) {
+    folder_.remove(given_.robot()->file.path);
   }
-  recording.path = file;
-  recording.columns = read_columns(file);
-  recording.id = next_id_++;
-  recordings_.push_back(std::move(recording));
-  try {
-    guess();
-  } catch (...) {
-    recordings_.pop_back();
-    throw;
-  }
-}
-
-void Intake::guess() {
-  if (map_ || !robot_ || recordings_.empty()) return;
-  RobotDescription robot = robot_->description;
-  // Of readings at rest, which no session is over.
-  if (robot.channels && robot.channels->at_rest) robot.channels.reset();
-  Look look;
-  try {
-    look = look_at(recordings_.front().path, &robot, std::nullopt);
-  } catch (const InputError& error) {
-    throw folder_.shown(error);
-  }
-  map_is_of_robot_ = !look.by_robot.empty();
-  map_source_ = map_is_of_robot_ ? "the robot file's own [channels]"
-                : look.guessed   ? "the numbers: the file has no names that say anything"
-                                 : "the columns' names";
-  if (!look.t_s && look.channels.period_s == 0) look.channels.time = {};
-  if (!map_is_of_robot_) look.channels.extra.clear();
-  map_ = with_all_joints(std::move(look.channels), robot_->description.joints.size());
-  notes_.clear();
-  for (const std::string& note : look.notes) notes_.push_back(folder_.shown(note));
-  others_ = std::move(look.unread);
-}
-
-Intake::Recording& Intake::recording_of(std::size_t id) {
-  for (Recording& recording : recordings_) {
-    if (recording.id == id) return recording;
-  }
-  throw Refused(Refused::Why::kBadRequest, "There is no such recording.");
 }
 
 ordered_json Intake::remove(std::size_t id) {
-  const std::lock_guard guard(lock_);
-  const Recording& recording = recording_of(id);
-  folder_.remove(recording.path);
-  recordings_.remove_if([&](const Recording& one) { return one.id == id; });
-  if (recordings_.empty()) map_.reset();
-  ++revision_;
-  return state_now();
+  return change([&](GivenFiles& given) {
+    for (const GivenFile& file : given.remove(id)) folder_.remove(file.path);
+  });
+}
+
+ordered_json Intake::join(std::size_t id, std::size_t to) {
+  return change([&](GivenFiles& given) { given.join(id, to); });
+}
+
+ordered_json Intake::split(std::size_t id) {
+  return change([&](GivenFiles& given) { given.split(id); });
 }
 
 ordered_json Intake::set_held_out(std::size_t id, bool held_out) {
-  const std::lock_guard guard(lock_);
-  recording_of(id).held_out = held_out;
-  ++revision_;
-  return state_now();
+  return change([&](GivenFiles& given) { given.set_held_out(id, held_out); });
 }
 
 ordered_json Intake::set_payload(std::size_t id, const std::optional<Payload>& payload) {
-  const std::lock_guard guard(lock_);
-  Recording& recording = recording_of(id);
-  if (payload) check_payload({recording.name, *payload});
-  recording.payload = payload;
-  ++revision_;
-  return state_now();
+  return change([&](GivenFiles& given) { given.set_payload(id, payload); });
 }
 
 ordered_json Intake::set_signal(const SignalEdit& edit) {
-  const std::lock_guard guard(lock_);
-  if (!map_) throw Refused(Refused::Why::kNotNow, "There is no recording and robot file yet.");
-  studio::set_signal(*map_, edit, robot_->description, all_columns());
-  map_is_of_robot_ = false;
-  ++revision_;
-  return state_now();
+  return change([&](GivenFiles& given) { given.set_signal(edit); });
+}
+
+ordered_json Intake::set_at_rest(bool at_rest) {
+  return change([&](GivenFiles& given) { given.set_at_rest(at_rest); });
 }
 
 ordered_json Intake::guess_again() {
-  const std::lock_guard guard(lock_);
-  const std::optional<ChannelMap> before = std::exchange(map_, std::nullopt);
-  try {
-    guess();
-  } catch (...) {
-    map_ = before;
-    throw;
-  }
-  ++revision_;
-  return state_now();
-}
-
-ChannelMap Intake::map_of(const Recording& recording) const {
-  if (!map_) throw Refused(Refused::Why::kNotNow, "There is no robot file yet.");
-  ChannelMap map = *map_;
-  if (recording.payload) map.payloads = {{recording.name, *recording.payload}};
-  return map;
+  return change([](GivenFiles& given) { given.guess_again(); });
 }
 
 ordered_json Intake::preview(std::size_t id, std::size_t pixels) {
   const std::lock_guard guard(lock_);
-  const Recording& recording = recording_of(id);
-  const ChannelMap map = map_of(recording);
+  const GivenRecording& recording = given_.recording_of(id);
+  const ChannelMap map = given_.map_of(recording);
   ordered_json json{{"revision", revision_}, {"recording", id}};
-  json.update(preview_of(recording.columns, robot_->description, map, pixels));
+  json.update(preview_of(recording, given_.robot()->description, map, pixels));
   return json;
 }
 
 ordered_json Intake::findings(std::size_t id, std::size_t pixels) {
   const std::lock_guard guard(lock_);
-  const Recording& recording = recording_of(id);
-  const ChannelMap map = map_of(recording);
+  const GivenRecording& recording = given_.recording_of(id);
+  const ChannelMap map = given_.map_of(recording);
   ordered_json json{{"revision", revision_}, {"recording", id}};
-  json.update(findings_of(recording.columns, robot_->description, map, settings_.keep, pixels));
+  json.update(findings_of(recording, given_.robot()->description, map, settings_.keep, pixels));
   return json;
 }
 
@@ -287,7 +240,7 @@ std::string Intake::free_name(const std::string& stem, const std::string& ending
 
 // One of the page under the name that it has or would be written by.
 NamedFile Intake::robot_to_use() const {
-  NamedFile file = robot_->file;
+  NamedFile file = given_.robot()->file;
   if (settings_.robot_file && file.path == *settings_.robot_file) return file;
   file.name = here(file.name).string();
   if (!same_content(file.path, file.name)) {
@@ -296,38 +249,71 @@ NamedFile Intake::robot_to_use() const {
   return file;
 }
 
-SessionFiles Intake::files() {
-  const std::lock_guard guard(lock_);
-  const auto not_now = [](const std::string& words) {
-    throw Refused(Refused::Why::kNotNow, words);
-  };
-  if (!robot_) not_now("A robot file is missing: drop a .toml or a .urdf.");
-  SessionFiles files;
-  for (const Recording& recording : recordings_) {
-    const std::filesystem::path own = here(recording.name);
-    const bool is_here = same_content(recording.path, own);
-    if (!is_here) {
-      files.commands_note =
+// Under the name that its files have here, where all of them are here, else by their names alone.
+NamedFile Intake::recording_to_use(const GivenRecording& recording, std::string& note) const {
+  std::string own;
+  for (const GivenFile& file : recording.files()) {
+    const std::filesystem::path path = here(file.name);
+    if (!same_content(file.path, path)) {
+      note =
           "The recordings were dropped on the page: run these where they lie, or write their "
           "folders before their names.";
+      return {recording.path(), recording.name()};
     }
-    auto& group = recording.held_out ? files.holdout : files.logs;
-    group.push_back({recording.path.string(), is_here ? own.string() : recording.name});
-    if (recording.payload) files.payloads.push_back({recording.name, *recording.payload});
+    own += (own.empty() ? "" : "+") + path.string();
+  }
+  return {recording.path(), own};
+}
+
+SessionFiles Intake::files() {
+  const std::lock_guard guard(lock_);
+  if (given_.map() && given_.map()->at_rest) {
+    not_now("There is no session over hold maps: write what is said of them, and explain them.");
+  }
+  return files_now();
+}
+
+ordered_json Intake::write_at_rest() {
+  SessionFiles files;
+  {
+    const std::lock_guard guard(lock_);
+    if (!given_.map() || !given_.map()->at_rest) not_now("There are no hold maps.");
+    for (const GivenRecording& recording : given_.recordings()) {
+      check_readable(recording, given_.robot()->description, given_.map_of(recording));
+    }
+    files = files_now();
+  }
+  std::vector<std::string> written = write(files);
+  return {{"written", std::move(written)},
+          {"commands", commands_at_rest(files)},
+          {"note", files.commands_note}};
+}
+
+SessionFiles Intake::files_now() {
+  if (!given_.robot()) not_now("A robot file is missing: drop a .toml or a .urdf.");
+  SessionFiles files;
+  for (const GivenRecording& recording : given_.recordings()) {
+    const GivenFile& first = recording.first();
+    auto& group = first.held_out ? files.holdout : files.logs;
+    group.push_back(recording_to_use(recording, files.commands_note));
+    if (files.kept_as.empty() && !first.held_out) files.kept_as = here(first.name).string();
+    if (first.payload) files.payloads.push_back({first.name, *first.payload});
   }
   if (files.logs.empty()) not_now("A recording to fit is missing: those that are held out judge.");
-  const std::vector<std::string> missing = missing_of(*map_);
+  const std::vector<std::string> missing = missing_of(*given_.map());
   if (!missing.empty()) not_now("Choose the column of " + list_of(missing) + " first.");
   files.robot = robot_to_use();
-  if (!robot_->import_command.empty()) {
+  const GivenRobot& robot = *given_.robot();
+  if (!robot.import_command.empty()) {
     files.commands_note +=
         fmt::format("{}The robot file is made by: {} -o {}", files.commands_note.empty() ? "" : " ",
-                    robot_->import_command, shell_word(files.robot.name));
+                    robot.import_command, shell_word(files.robot.name));
   }
-  if (!map_is_of_robot_) {
-    const std::string stem = std::filesystem::path(robot_->file.name).stem().string();
-    files.channels = NamedFile{folder_.put("channels.toml", channels_table(*map_)).string(),
-                               free_name(stem + "_channels", ".toml")};
+  if (!given_.map_is_of_robot()) {
+    const std::string stem = std::filesystem::path(robot.file.name).stem().string();
+    files.channels =
+        NamedFile{folder_.put("channels.toml", channels_table(as_written(*given_.map()))).string(),
+                  free_name(stem + "_channels", ".toml")};
   }
   return files;
 }
@@ -346,38 +332,13 @@ std::vector<std::string> Intake::write(const SessionFiles& files) {
   return written;
 }
 
-ordered_json Intake::map_json() const {
-  if (!map_) return nullptr;
-  const std::vector<std::string> missing = missing_of(*map_);
-  ordered_json columns = ordered_json::array();
-  const NamedColumns& all = all_columns();
-  for (const std::string& name : all.names) {
-    if (all.columns.contains(name)) columns.push_back(name);
-  }
-  return {{"signals", signals_json(*map_, robot_->description, all)},
-          {"columns", std::move(columns)},
-          {"period_s", map_->period_s > 0 ? ordered_json(map_->period_s) : ordered_json(nullptr)},
-          {"from", map_source_},
-          {"is_of_robot", map_is_of_robot_},
-          {"notes", notes_},
-          {"without_numbers", others_},
-          {"missing", missing},
-          {"text", missing.empty() ? ordered_json(channels_table(*map_)) : ordered_json(nullptr)}};
-}
-
 ordered_json Intake::state_now() const {
   ordered_json recordings = ordered_json::array();
-  for (const Recording& one : recordings_) {
-    std::error_code ignored;
-    recordings.push_back({{"id", one.id},
-                          {"name", one.name},
-                          {"bytes", std::filesystem::file_size(one.path, ignored)},
-                          {"held_out", one.held_out},
-                          {"payload", payload_json(one.payload)}});
-  }
+  for (const GivenRecording& one : given_.recordings()) recordings.push_back(one.json());
   const UploadLimits& limits = folder_.limits();
+  const auto& robot = given_.robot();
   return {{"revision", revision_},
-          {"robot", robot_ ? to_json(*robot_) : ordered_json(nullptr)},
+          {"robot", robot ? to_json(*robot) : ordered_json(nullptr)},
           {"urdf", urdf_ ? urdf_->json() : ordered_json(nullptr)},
           {"recordings", std::move(recordings)},
           {"limits",
@@ -386,7 +347,8 @@ ordered_json Intake::state_now() const {
             {"all", limits.all},
             {"all_words", bytes_words(limits.all)},
             {"used", folder_.used()}}},
-          {"map", map_json()}};
+          {"kept", {{"file", kept_.name()}, {"problem", kept_.problem()}, {"taken_up", taken_up_}}},
+          {"map", given_.map_json([&](const std::string& words) { return folder_.shown(words); })}};
 }
 
 }  // namespace offnominal::desk::studio

@@ -11,6 +11,7 @@
 #include "common/file.hpp"
 #include "common/json_text.hpp"
 #include "robot/robot_file.hpp"
+#include "studio/fingerprint.hpp"
 
 namespace offnominal::desk::studio {
 
@@ -21,27 +22,14 @@ namespace {
 constexpr const char* kMark = "offnominal_studio_session";
 constexpr int kVersion = 1;
 
-// FNV-1a.
-class Hash {
- public:
-  void add(std::string_view bytes) {
-    for (const char byte : bytes) {
-      value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
-    }
-  }
-  // As they are represented: the numbers of two files are the same to the bit, or others.
-  template <typename Dense>
-  void add_numbers(const Dense& values) {
-    const auto* const first = reinterpret_cast<const char*>(values.data());
-    const auto bytes = static_cast<std::size_t>(values.size()) * sizeof(double);
-    add(fmt::format("{}x{}:", values.rows(), values.cols()));
-    add({first, bytes});
-  }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325U;
-};
+// As they are represented: the numbers of two files are the same to the bit, or others.
+template <typename Dense>
+void add_numbers(Fingerprint& print, const Dense& values) {
+  const auto* const first = reinterpret_cast<const char*>(values.data());
+  const auto bytes = static_cast<std::size_t>(values.size()) * sizeof(double);
+  print.add(fmt::format("{}x{}:", values.rows(), values.cols()));
+  print.add({first, bytes});
+}
 
 std::filesystem::path numbered(const std::filesystem::path& recording, int number) {
   std::filesystem::path file = recording;
@@ -120,19 +108,19 @@ View view_from(const ordered_json& json) {
 }
 
 std::uint64_t fingerprint_of(const Input& input) {
-  Hash hash;
+  Fingerprint hash;
   hash.add(robot_text(input.robot));
   hash.add(input.options);
   for (const RecordingPayload& payload : input.payloads) hash.add(text_of(payload));
   for (const auto* some : {&input.recordings->logs, &input.recordings->holdout}) {
     hash.add("recordings:");
     for (const Log& log : *some) {
-      hash.add_numbers(log.t_s);
-      hash.add_numbers(log.q);
-      hash.add_numbers(log.dq);
-      hash.add_numbers(log.tau);
-      hash.add_numbers(log.sensor_tau);
-      hash.add_numbers(log.approach);
+      add_numbers(hash, log.t_s);
+      add_numbers(hash, log.q);
+      add_numbers(hash, log.dq);
+      add_numbers(hash, log.tau);
+      add_numbers(hash, log.sensor_tau);
+      add_numbers(hash, log.approach);
       hash.add(fmt::format("{} left out", log.left_out.size()));
     }
   }

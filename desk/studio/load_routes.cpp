@@ -35,6 +35,8 @@ SignalEdit edit_of(const json& body) {
   edit.scale = value_of<double>(body, "scale");
   edit.of = value_of<std::string>(body, "of");
   edit.period_s = value_of<double>(body, "period_s");
+  edit.file = value_of<std::size_t>(body, "file").value_or(1) - 1;
+  edit.offset_s = value_of<double>(body, "offset_s");
   return edit;
 }
 
@@ -78,6 +80,13 @@ void set_up_files(Api& api, Stage& stage) {
   api.on("POST /load/chain", [&stage](const ApiRequest& asked) {
     return stage.intake().choose_chain(asked.body.at("chain").get<std::size_t>() - 1);
   });
+  api.on("POST /load/join", [&stage](const ApiRequest& asked) {
+    return stage.intake().join(asked.body.at("recording").get<std::size_t>(),
+                               asked.body.at("to").get<std::size_t>());
+  });
+  api.on("POST /load/split", [&stage](const ApiRequest& asked) {
+    return stage.intake().split(asked.body.at("recording").get<std::size_t>());
+  });
   api.on("POST /load/held_out", [&stage](const ApiRequest& asked) {
     return stage.intake().set_held_out(asked.body.at("recording").get<std::size_t>(),
                                        asked.body.at("held_out").get<bool>());
@@ -95,6 +104,11 @@ void set_up_columns(Api& api, Stage& stage) {
   api.on("POST /load/signal", [&stage](const ApiRequest& asked) {
     return stage.intake().set_signal(edit_of(asked.body));
   });
+  api.on("POST /load/at_rest", [&stage](const ApiRequest& asked) {
+    return stage.intake().set_at_rest(asked.body.at("at_rest").get<bool>());
+  });
+  api.on("POST /load/written",
+         [&stage](const ApiRequest&) { return stage.intake().write_at_rest(); });
   api.on("POST /load/guess", [&stage](const ApiRequest&) { return stage.intake().guess_again(); });
   api.on("GET /load/preview", [&stage](const ApiRequest& asked) {
     return stage.intake().preview(asked.parameters.at("recording").get<std::size_t>(),

@@ -19,7 +19,6 @@
 #include "log/log_of.hpp"
 #include "log/read_log.hpp"
 #include "log/sampling.hpp"
-#include "log/time_of.hpp"
 #include "report/decimate.hpp"
 #include "robot/payload.hpp"
 #include "robot/transmission.hpp"
@@ -34,14 +33,12 @@ using Eigen::VectorXd;
 using nlohmann::ordered_json;
 
 // As a verb reads it from a file of these channels.
-Log log_from(const NamedColumns& columns, const RobotDescription& robot,
+Log log_from(const GivenRecording& recording, const RobotDescription& robot,
              const ChannelMap& channels) {
   const ChannelMap map = read_back(channels, "[channels]");
   check_sides(map, robot.transmission, "[channels]");
-  TimedColumns timed{columns, {}};
-  timed.time = time_of(timed.columns, map.time, map.period_s);
-  Log log = log_of(std::move(timed), robot, map);
-  log.payload = payload_of(map.payloads, columns.file);
+  Log log = log_of(recording.timed(map), robot, map);
+  log.payload = payload_of(map.payloads, recording.path());
   return log;
 }
 
@@ -96,7 +93,7 @@ std::string si_unit(std::string_view quantity, JointType type) {
 ordered_json signals_of(const Log& log, const RobotDescription& robot, std::size_t pixels) {
   Log of_positions = log;
   of_positions.dq_derived.assign(log.dq_derived.size(), true);
-  derive_velocities(of_positions);
+  if (!log.at_rest) derive_velocities(of_positions);
   ordered_json all = ordered_json::array();
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const auto at = static_cast<Index>(i);
@@ -106,8 +103,8 @@ ordered_json signals_of(const Log& log, const RobotDescription& robot, std::size
           signal_of(quantity, i, si_unit(quantity, type), log.t_s, values.col(at), pixels));
     };
     add("position", log.q);
-    add("velocity", log.dq);
-    if (!log.dq_derived[i]) {
+    if (!log.at_rest) add("velocity", log.dq);
+    if (!log.at_rest && !log.dq_derived[i]) {
       Curve curve = curve_of(log.t_s, of_positions.dq.col(at), pixels);
       all.back()["derived"] = std::move(curve.values);
       all.back()["derived_t_s"] = std::move(curve.t_s);
@@ -118,19 +115,20 @@ ordered_json signals_of(const Log& log, const RobotDescription& robot, std::size
 }
 
 // By their columns alone, since all of them together are no recording.
-ordered_json raw_signals(const NamedColumns& columns, const RobotDescription& robot,
+ordered_json raw_signals(const GivenRecording& recording, const RobotDescription& robot,
                          const ChannelMap& map, std::size_t pixels) {
   ordered_json all = ordered_json::array();
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     for (const char* quantity : {"position", "velocity", "torque"}) {
       const Channel* channel = channel_of(map, quantity, i);
-      if (channel == nullptr) continue;
-      const auto found = columns.columns.find(channel->source);
-      if (found == columns.columns.end() || found->second.size() < 2) continue;
+      const bool is_velocity = std::string_view(quantity) == "velocity";
+      if (channel == nullptr || (map.at_rest && is_velocity)) continue;
+      const VectorXd* const found = recording.values_of(channel->source);
+      if (found == nullptr || found->size() < 2) continue;
       const JointType type = robot.joints[i].joint.type;
       const std::string unit =
-          unit_read(*channel, quantity, side_of(map, quantity, i), type, columns);
-      const VectorXd values = channel->scale * found->second;
+          unit_read(*channel, quantity, side_of(map, quantity, i), type, recording.columns());
+      const VectorXd values = channel->scale * *found;
       const VectorXd rows =
           VectorXd::LinSpaced(values.size(), 0, static_cast<double>(values.size() - 1));
       all.push_back(signal_of(quantity, i, unit, rows, values, pixels));
@@ -140,6 +138,7 @@ ordered_json raw_signals(const NamedColumns& columns, const RobotDescription& ro
 }
 
 std::string sampling_words(const Log& log) {
+  if (log.at_rest) return fmt::format("{} readings at rest", log.sample_count());
   return fmt::format("{} samples, {:.6g} s, {:.6g} Hz", log.sample_count(),
                      log.t_s[log.t_s.size() - 1] - log.t_s[0], log.sample_rate_hz());
 }
@@ -155,30 +154,42 @@ ordered_json faults_json(const std::vector<DataFault>& faults) {
 
 }  // namespace
 
-ordered_json preview_of(const NamedColumns& columns, const RobotDescription& robot,
+ordered_json preview_of(const GivenRecording& recording, const RobotDescription& robot,
                         const ChannelMap& map, std::size_t pixels) {
   ordered_json json{{"error", nullptr}, {"remarks", ordered_json::array()}, {"sampling", nullptr}};
   try {
     const std::vector<std::string> missing = missing_of(map);
     if (!missing.empty()) {
-      throw InputError({columns.file, "", "no column for " + list_of(missing), "", "choose them"});
+      throw InputError(
+          {recording.name(), "", "no column for " + list_of(missing), "", "choose them"});
     }
-    const Log log = log_from(columns, robot, map);
+    const Log log = log_from(recording, robot, map);
     json["remarks"] = log.remarks;
     json["sampling"] = sampling_words(log);
     json["signals"] = signals_of(log, robot, pixels);
   } catch (const InputError& error) {
     json["error"] = error.what();
-    json["signals"] = raw_signals(columns, robot, map, pixels);
+    json["signals"] = raw_signals(recording, robot, map, pixels);
   }
   return json;
 }
 
-ordered_json findings_of(const NamedColumns& columns, const RobotDescription& robot,
+void check_readable(const GivenRecording& recording, const RobotDescription& robot,
+                    const ChannelMap& map) {
+  static_cast<void>(log_from(recording, robot, map));
+}
+
+ordered_json findings_of(const GivenRecording& recording, const RobotDescription& robot,
                          const ChannelMap& map, const std::vector<KeepFault>& keep,
                          std::size_t pixels) {
   std::vector<Log> logs;
-  logs.push_back(log_from(columns, robot, map));
+  logs.push_back(log_from(recording, robot, map));
+  if (logs.front().at_rest) {
+    return {{"error",
+             "the data doctor and compare are of recordings in time, these are readings at rest"},
+            {"faults", ordered_json::array()},
+            {"joints", ordered_json::array()}};
+  }
   const std::vector<DataFault> faults = treat_all({logs}, robot, keep);
   ordered_json json{
       {"error", nullptr}, {"faults", faults_json(faults)}, {"joints", ordered_json::array()}};

@@ -23,6 +23,7 @@ struct SessionFiles {
   std::vector<NamedFile> holdout = {};
   std::vector<RecordingPayload> payloads = {};  // by the recordings' names without folders
   std::optional<NamedFile> channels = {};       // none: the robot file's own
+  std::string kept_as = {};        // beside which file the session is kept; empty: the first log
   std::string commands_note = {};  // what those who repeat the session have to know, or empty
   std::vector<std::string> commands_before = {};  // that make these files
   std::vector<report::EventMark> marks = {};      // of the first recording, in its time

@@ -11,6 +11,7 @@
 #include "common/nearest.hpp"
 #include "common/refused.hpp"
 #include "common/toml_table.hpp"
+#include "log/channel_needs.hpp"
 #include "look/name_guess.hpp"
 #include "robot/channel_text.hpp"
 #include "robot/channels.hpp"
@@ -86,7 +87,7 @@ std::string unit_of_file(const Channel& channel, const NamedColumns& columns) {
   return said == columns.units.end() ? std::string() : said->second;
 }
 
-std::string more_words(const Channel& channel) {
+std::string more_words(const Channel& channel, bool is_time) {
   std::string words;
   const auto add = [&](const std::string& what) { words += (words.empty() ? "" : "; ") + what; };
   if (!channel.sum.empty()) {
@@ -94,14 +95,14 @@ std::string more_words(const Channel& channel) {
         list_of(channel.sum, [](const Channel& term) { return "\"" + term.source + "\""; }));
   }
   if (!channel.scale_source.empty()) add("times \"" + channel.scale_source + "\"");
-  if (channel.offset != 0) add(fmt::format("plus {:.6g} in SI units", channel.offset));
+  if (!is_time && channel.offset != 0) add(fmt::format("plus {:.6g} in SI units", channel.offset));
   return words;
 }
 
 ordered_json signal_json(const ChannelMap& map, std::string_view quantity, std::size_t joint,
-                         JointType type, const NamedColumns& columns) {
+                         JointType type, const NamedColumns& columns, std::size_t file = 0) {
   const bool is_time = quantity == "time";
-  const Channel* channel = channel_of(map, quantity, joint);
+  const Channel* channel = is_time ? &time_channel(map, file) : channel_of(map, quantity, joint);
   const Channel none;
   const Channel& shown = channel == nullptr ? none : *channel;
   const ChannelOf of = side_of(map, quantity, joint);
@@ -114,13 +115,15 @@ ordered_json signal_json(const ChannelMap& map, std::string_view quantity, std::
   }
   return {{"quantity", quantity},
           {"joint", is_time ? ordered_json(nullptr) : ordered_json(joint + 1)},
+          {"file", is_time ? ordered_json(file + 1) : ordered_json(nullptr)},
           {"source", shown.source},
           {"unit", unit},
           {"units", std::move(units)},
           {"scale", shown.scale},
           {"of", name_of(of)},
           {"sides", std::move(sides)},
-          {"more", more_words(shown)}};
+          {"offset_s", is_time ? ordered_json(shown.offset) : ordered_json(nullptr)},
+          {"more", more_words(shown, is_time)}};
 }
 
 void set_side(ChannelMap& map, const SignalEdit& edit, std::size_t joints) {
@@ -167,14 +170,19 @@ void set_factor(Channel& channel, const SignalEdit& edit, const std::string& own
   if (channel.scale != 1 && channel.unit.empty()) channel.unit = of_file;
 }
 
-void set_time(ChannelMap& map, const SignalEdit& edit, const NamedColumns& columns) {
+void set_time(ChannelMap& map, const SignalEdit& edit, const MappedColumns& columns) {
+  if (edit.file >= columns.files.size()) refuse_edit("A recording has no such file.");
   if (edit.period_s) map.period_s = *edit.period_s;
+  if (edit.file > map.more_times.size()) map.more_times.resize(edit.file, map.time);
+  Channel& time = edit.file == 0 ? map.time : map.more_times[edit.file - 1];
+  const NamedColumns& of_file = *columns.files[edit.file];
   const auto units = units_for("time", ChannelOf::kJoint, JointType::kRevolute);
   if (edit.source) {
-    set_source(map.time, *edit.source, columns, units, "s");
+    set_source(time, *edit.source, of_file, units, "s");
     map.period_s = 0;
   }
-  set_factor(map.time, edit, "s", units, columns);
+  if (edit.offset_s) time.offset = *edit.offset_s;
+  set_factor(time, edit, "s", units, of_file);
 }
 
 }  // namespace
@@ -199,7 +207,12 @@ std::string unit_read(const Channel& channel, std::string_view quantity, Channel
   return said.empty() ? own_unit(quantity, of, type) : said;
 }
 
-ChannelMap with_all_joints(ChannelMap map, std::size_t joints) {
+SignalKey SignalEdit::key() const {
+  return quantity == "time" ? SignalKey{quantity, 0, file} : SignalKey{quantity, joint, 0};
+}
+
+ChannelMap with_all_joints(ChannelMap map, std::size_t joints, std::size_t files) {
+  if (files > map.more_times.size() + 1) map.more_times.resize(files - 1, map.time);
   map.position.resize(joints);
   map.velocity.resize(joints);
   map.torque.resize(joints);
@@ -207,7 +220,7 @@ ChannelMap with_all_joints(ChannelMap map, std::size_t joints) {
 }
 
 void set_signal(ChannelMap& map, const SignalEdit& edit, const RobotDescription& robot,
-                const NamedColumns& columns) {
+                const MappedColumns& columns) {
   ChannelMap changed = map;
   if (edit.quantity == "time") {
     set_time(changed, edit, columns);
@@ -234,16 +247,20 @@ void set_signal(ChannelMap& map, const SignalEdit& edit, const RobotDescription&
   const JointType type = robot.joints[edit.joint].joint.type;
   const std::string own = own_unit(edit.quantity, of, type);
   const std::vector<std::string> units = units_for(edit.quantity, of, type);
-  if (edit.source) set_source(channel, *edit.source, columns, units, own);
+  if (edit.source) set_source(channel, *edit.source, columns.all, units, own);
   if (channel.source.empty() && channel.sum.empty()) refuse_edit("Say its column first.");
-  set_factor(channel, edit, own, units, columns);
+  set_factor(channel, edit, own, units, columns.all);
   map = std::move(changed);
 }
 
 std::vector<std::string> missing_of(const ChannelMap& map) {
   std::vector<std::string> missing;
   const auto is_none = [](const Channel& one) { return one.source.empty() && one.sum.empty(); };
-  if (map.period_s == 0 && is_none(map.time)) missing.emplace_back("the time");
+  const bool has_time = map.period_s == 0 && !map.at_rest;
+  if (has_time && is_none(map.time)) missing.emplace_back("the time");
+  for (std::size_t k = 0; has_time && k < map.more_times.size(); ++k) {
+    if (is_none(map.more_times[k])) missing.push_back(fmt::format("the time of file {}", k + 2));
+  }
   for (std::size_t i = 0; i < map.position.size(); ++i) {
     for (const char* quantity : {"position", "torque"}) {
       if (!is_none(*channel_of(map, quantity, i))) continue;
@@ -253,18 +270,28 @@ std::vector<std::string> missing_of(const ChannelMap& map) {
   return missing;
 }
 
+ChannelMap as_written(ChannelMap map) {
+  if (!map.at_rest) return map;
+  map.velocity.assign(map.position.size(), std::nullopt);
+  map.velocity_of.clear();
+  map.extra.clear();
+  return map;
+}
+
 ChannelMap read_back(const ChannelMap& map, const std::string& file) {
-  const toml::table whole = parse_toml(channels_table(map), file);
+  const toml::table whole = parse_toml(channels_table(as_written(map)), file);
   return parse_channels(*whole["channels"].as_table(), file, static_cast<int>(map.position.size()));
 }
 
 ordered_json signals_json(const ChannelMap& map, const RobotDescription& robot,
-                          const NamedColumns& columns) {
+                          const MappedColumns& columns) {
   ordered_json all = ordered_json::array();
-  all.push_back(signal_json(map, "time", 0, JointType::kRevolute, columns));
+  for (std::size_t k = 0; k < columns.files.size(); ++k) {
+    all.push_back(signal_json(map, "time", 0, JointType::kRevolute, *columns.files[k], k));
+  }
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     for (const char* quantity : kQuantities) {
-      all.push_back(signal_json(map, quantity, i, robot.joints[i].joint.type, columns));
+      all.push_back(signal_json(map, quantity, i, robot.joints[i].joint.type, columns.all));
     }
   }
   return all;

@@ -5,21 +5,22 @@
 // positions in degrees, the torque of joint 2 with the other sign.
 // Exit 0: all went well. Exit 1: one line per fault on stderr. Exit 2: it could not be checked.
 import { execFileSync } from "node:child_process";
-import { mkdir, readFile, readdir, writeFile } from "node:fs/promises";
+import { mkdir, readFile, readdir, rm, writeFile } from "node:fs/promises";
 import { join, resolve } from "node:path";
 import { checkNames, kScript, look, openPage, readArguments, runCheck } from "./studio_page.mjs";
 
 const kLooks = [
-  [1400, "light"],
-  [1400, "dark"],
   [400, "light"],
   [400, "dark"],
+  [1280, "light"],
+  [1280, "dark"],
+  [2560, "light"],
 ];
 /** Of what is looked at with little around it. */
 const kSomeLooks = [
   [400, "light"],
-  [1400, "dark"],
-  [3840, "light"],
+  [1280, "dark"],
+  [2560, "light"],
 ];
 const kRobotName = `arm${kScript}.toml`;
 const kRecordingName = `run${kScript}.csv`;
@@ -211,6 +212,78 @@ async function checkPayload(page, looks, fault) {
   if ((await errors()).join() !== loaded.join()) fault("the same payload makes another error");
 }
 
+/** The same motion in two files: positions, and torques in every other sample whose clock began an hour before. */
+function inTwoFiles(text) {
+  const cells = text.split("\n").map((line) => line.split(","));
+  const lines = (rows) => rows.map((row) => row.join(",")).join("\n");
+  const torques = cells.slice(1).filter((_, at) => at % 2 === 1).map(([t, , , , , ...rest]) => [Number(t) + 3600, ...rest]);
+  return [
+    [`currents${kScript}.csv`, lines([["time", "drive_torque_1", "drive_torque_2"], ...torques])],
+    [`positions${kScript}.csv`, lines(cells.map((row) => row.slice(0, 5)))],
+  ];
+}
+
+/** Files that are one recording are taken for one, taken apart and joined by the keyboard, and their clocks put right. */
+async function checkSeveralFiles(page, text, looks, fault) {
+  const names = () => page.evaluate(() => studio.load.state.recordings.map(({ name }) => name));
+  const focused = () => page.evaluate(() => document.activeElement.id);
+  const [currents, positions] = inTwoFiles(text);
+  await settled(page, () => drop(page, [currents, positions]));
+  const joined = `${positions[0]}+${currents[0]}`;
+  if ((await names()).join() !== joined) fault(`files of one recording are ${await names()}`);
+  const told = await page.textContent(".joined-why");
+  if (!told.includes(`positions, velocities in ${positions[0]}, torques in ${currents[0]}`)) fault(`why files are joined is told so: ${told}`);
+  const wrong = await page.textContent("#place-loadMap .note.bad");
+  if (!wrong.includes("3600")) fault(`of clocks that share no time is said: ${wrong}`);
+  if ((await page.$$(".sketch svg")).length !== 6) fault("of clocks that share no time the columns are not drawn");
+  await page.fill("#signal-time-2-offset", "-3600");
+  await settled(page, () => page.press("#signal-time-2-offset", "Tab"));
+  if ((await page.$("#place-loadMap .note.bad[role=note]:not([data-finding])")) !== null) fault(`with its offset it is refused: ${await page.textContent("#place-loadMap .note.bad")}`);
+  if (!(await page.textContent("#place-loadMap pre")).includes("offset = -3600.0")) fault("the offset of a clock is not written");
+  const id = await page.evaluate(() => studio.load.state.recordings[0].id);
+  await page.press(`#files-${id}-summary`, "Enter");
+  await looks("load_files", kSomeLooks);
+  await page.focus(`#split-${id}`);
+  await settled(page, () => page.keyboard.press("Enter"));
+  if ((await names()).join() !== `${currents[0]},${positions[0]}`) fault(`taken apart they are ${await names()}`);
+  if ((await focused()) !== `files-${id}-summary`) fault("once files are taken apart the focus is lost");
+  const other = await page.evaluate((not) => studio.load.state.recordings.find((one) => one.id !== not).id, id);
+  await page.$eval(`#files-${other}`, (fold) => (fold.open = true));
+  await page.focus(`#join-${other}`);
+  await settled(page, () => page.keyboard.press("Enter"));
+  if ((await names()).join() !== joined) fault(`joined by hand they are ${await names()}`);
+  if ((await focused()) !== `files-${id}-summary`) fault("once files are joined the focus is lost");
+  if (!(await page.textContent("#place-loadMap pre")).includes("offset = -3600.0")) fault("what was said of a clock is lost where files are joined again");
+  await page.click(`#remove-${id}`);
+  await page.waitForFunction(() => studio.load.doing === "" && studio.load.state.recordings.length === 0);
+}
+
+/** Readings at rest are another kind of recording: no time, no velocities, and what is written is for explain. */
+async function checkHoldMap(page, folder, looks, fault) {
+  const rows = () => page.$$eval(".signal h4", (all) => all.map(({ textContent }) => textContent));
+  const text = () => page.textContent("#place-loadMap .use ~ pre");
+  const before = await text();
+  await page.focus("#at-rest");
+  await settled(page, () => page.keyboard.press("Space"));
+  if ((await page.evaluate(() => document.activeElement.id)) !== "at-rest") fault("once readings are at rest the focus is lost");
+  if ((await rows()).join() !== "Position,Torque,Position,Torque") fault(`of a hold map there is ${await rows()}`);
+  if (await page.isVisible("#signal-time-source")) fault("a hold map has a time");
+  if (!(await text()).startsWith("[channels]\nat_rest = true")) fault(`of a hold map is written ${await text()}`);
+  if (!(await page.textContent("#place-loadMap")).includes("readings at rest. Time and velocities are not read")) fault("what a hold map has is not said");
+  await looks("load_at_rest", kSomeLooks);
+  await page.focus("#use-these");
+  await page.keyboard.press("Enter");
+  const commands = await page.textContent("#at-rest-commands");
+  const channels = (await page.textContent("#place-loadMessage .note.good")).match(/[^ ,]*_channels[^ ,]*\.toml/)?.[0];
+  if (!commands.includes("offnominal explain") || !commands.includes("--channels")) fault(`the commands of a hold map are ${commands}`);
+  const written = (await readdir(folder)).filter((name) => name.endsWith(".toml"));
+  if (channels === undefined || written.length !== 2) fault(`of a hold map is written ${written}, and said ${channels}`);
+  for (const name of written) await rm(join(folder, name));
+  await settled(page, () => page.click("#at-rest"));
+  if ((await page.$("#at-rest-commands")) !== null) fault("commands of a hold map stay where there is none");
+  if ((await text()) !== before) fault("back in time the columns are others");
+}
+
 async function useThese(page, fault) {
   await page.click("#use-these");
   await page.waitForFunction(() => studio.load.doing === "" && (studio.load.written.length > 0 || studio.load.message !== null));
@@ -260,6 +333,26 @@ async function checkAnew(page, fault) {
   if (await page.evaluate(() => studio.load.message !== null)) fault("beginning anew is refused");
 }
 
+/** What was said of columns and recordings lies on the disk while the program runs: whatever ends it, the next one has it. */
+async function checkNextProgram(page, start, newContext, files, looks, fault) {
+  const said = () => page.evaluate(() => studio.load.state.map.text);
+  const { address, end } = await start([]);
+  const next = await openPage(await newContext(), address, "body[data-load]", [], fault);
+  await chooseByKeyboard(next, files.robot, fault);
+  await settled(next, () => drop(next, [[kRecordingName, files.text]]));
+  const [before, after] = [await said(), await next.evaluate(() => studio.load.state.map.text)];
+  if (after !== before) fault(`the next program reads ${after}, this one ${before}`);
+  const words = await next.textContent("#place-loadMap .note.neutral");
+  if (!words.includes("the torque of joint 2") || !words.includes("studio_columns.json")) fault(`of what is taken up is said: ${words}`);
+  const payload = await next.evaluate(() => studio.load.state.recordings[0].payload?.words ?? "none");
+  if (!payload.startsWith("0.05 kg")) fault(`the payload of the next program is ${payload}`);
+  await looks(next);
+  await settled(next, () => next.click("#guess-again"));
+  if ((await next.$("#place-loadMap .note.neutral")) !== null) fault("guessed again, what was taken up is still said");
+  await next.close();
+  await end();
+}
+
 async function check({ options, folder, start, newContext, axeSource }, fault) {
   const files = await strangersFiles(options, folder);
   const { address, end } = await start([]);
@@ -271,12 +364,16 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   await checkChains(page, looks, fault);
   await chooseByKeyboard(page, files.robot, fault);
   if ((await page.$("#chain")) !== null) fault("beside a robot file a chain of another one can be chosen");
+  await checkSeveralFiles(page, files.text, looks, fault);
+  await page.setViewportSize({ width: 1400, height: 900 });
   await settled(page, () => drop(page, [[kRecordingName, files.text]]));
   await checkColumns(page, looks, fault);
   await checkPayload(page, looks, fault);
+  await checkHoldMap(page, folder, looks, fault);
   await checkSession(page, options, folder, files, fault);
   await looks("load_used");
   await checkAnew(page, fault);
+  await checkNextProgram(page, start, newContext, files, (next) => look(next, kSomeLooks, "load_kept", { ...options, axeSource }, fault), fault);
   await checkNames(page, fault);
   await page.close();
   await end();

@@ -2,7 +2,8 @@
 // and asks the verbs for the same numbers. Robot and recording are copied under names that would be script
 // where a page took them for markup.
 //   node check_studio.mjs --offnominal PROGRAM --robot R.toml --recording A.csv [--holdout B.csv] --joint N
-//     --effect NAME [--screenshots FOLDER] [--measure]
+//     --effect NAME [--screenshots FOLDER] [--measure] [--tour]
+// --tour: the guided tour alone.
 // Exit 0: all went well. Exit 1: one line per fault on stderr. Exit 2: it could not be checked.
 import { execFileSync } from "node:child_process";
 import { copyFile, readFile, writeFile } from "node:fs/promises";
@@ -237,6 +238,59 @@ async function checkSearch(page, fault) {
   return "added from a card";
 }
 
+/** A stranger does what the tour says, by the keyboard, and presses nothing else: the error falls with every click. */
+async function checkTour({ options, start, newContext, axeSource }, words, fault) {
+  const { address, end } = await start([...words, "--no-session"]);
+  const page = await openPage(await newContext(), address, kReady, kExpected, fault);
+  const told = () => page.textContent("#tour-callout");
+  const focused = () => page.evaluate(() => document.activeElement.id);
+  await page.focus("#tour-start");
+  await page.keyboard.press("Enter");
+  if ((await focused()) !== "tour-callout") fault(`when the tour begins the focus is on "${await focused()}"`);
+  const first = await told();
+  if (!first.includes("%") || !first.includes("look")) fault(`the tour begins with: ${first}`);
+  await look(page, [[400, "light"], [1280, "dark"], [2560, "light"]], "tour_look", { ...options, axeSource }, fault);
+  await page.focus("#tour-next");
+  await page.keyboard.press("Enter");
+  if ((await page.$eval(".tour-target", ({ id }) => id)) !== "search") fault("the tour does not mark the search");
+  const isInView = () => {
+    const { top, bottom } = document.getElementById("tour-callout").getBoundingClientRect();
+    return top >= 0 && bottom <= window.innerHeight;
+  };
+  await page.waitForFunction(isInView, undefined, { timeout: 10_000 }).catch(() => fault("behind Next the tour is out of sight"));
+  let clicks = 0;
+  const errors = [];
+  for (;;) {
+    const target = await page.$(".tour-target");
+    if (target === null) break;
+    const label = await told();
+    if (!label.includes(`click ${++clicks}`)) fault(`click ${clicks} of the tour is told so: ${label}`);
+    if (clicks === 2) await look(page, [[400, "dark"], [1280, "light"], [2560, "light"]], "tour_add", { ...options, axeSource }, fault);
+    await target.focus();
+    await page.keyboard.press("Enter");
+    const isOver = (before) => !document.body.hasAttribute("data-busy") && studio.session.found.state !== "running" && document.querySelector(".tour-title").textContent !== before;
+    await page.waitForFunction(isOver, await page.textContent(".tour-title")).catch(() => {});
+    errors.push((await headline(page))[0]);
+    if ((await focused()) !== "tour-callout") fault(`behind click ${clicks} of the tour the focus is on "${await focused()}"`);
+    await page.waitForFunction(isInView, undefined, { timeout: 10_000 }).catch(() => fault(`behind click ${clicks} the tour is out of sight`));
+    if (clicks > 20) break;
+  }
+  const rose = await page.evaluate(() => studio.state().joints.filter(({ start, now }) => now.fitted_percent > start.fitted_percent + 1e-9).map(({ joint }) => joint));
+  const fell = await page.evaluate(() => studio.state().joints.some(({ start, now }) => now.fitted_percent < 0.9 * start.fitted_percent));
+  if (rose.length > 0 || !fell) fault(`with the clicks of the tour the error is ${errors}, and of joints ${rose} larger`);
+  if (!(await told()).includes("what came of it")) fault(`the tour ends with: ${await told()}`);
+  await look(page, [[400, "light"], [1280, "light"]], "tour_end", { ...options, axeSource }, fault);
+  await page.focus("#tour-end");
+  await page.keyboard.press("Enter");
+  if ((await page.$("#tour-callout")) !== null || (await focused()) !== "tour-start") fault("the tour does not end");
+  await page.keyboard.press("Enter");
+  await page.click("#tour-next");
+  await page.click("#tour-end");
+  await page.context().close();
+  await end();
+  return `${clicks} clicks, error ${errors.join(" → ")} %`;
+}
+
 /** Milliseconds from a click to new charts in the window, of switching an effect on (never seen) and off again. */
 async function measure(page) {
   const times = [];
@@ -263,6 +317,7 @@ async function measure(page) {
 async function check({ options, folder, start, newContext, axeSource }, fault) {
   const inputs = await hostileInputs(options, folder);
   const words = [inputs.recording, "--robot", inputs.robot, ...(inputs.holdout ? ["--holdout", inputs.holdout] : [])];
+  if (options.tour) return console.log(await checkTour({ options, start, newContext, axeSource }, words, fault));
   const { address } = await start(words);
   const page = await openPage(await newContext(), address, kReady, kExpected, fault);
   if (options.measure) return await measure(page);
@@ -272,6 +327,7 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   await checkZoom(page, fault);
   await checkArm(page, fault);
   const learnt = await checkSearch(page, fault);
+  const tour = await checkTour({ options, start, newContext, axeSource }, words, fault);
   await checkKept({ start, newContext }, words, page, fault);
   await look(page, kLooks, "studio", { ...options, axeSource }, fault);
   const plain = await newContext();
@@ -283,8 +339,8 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   });
   await checkWithoutWebgl(await openPage(plain, address, kReady, kExpected, fault), fault);
   await checkNames(page, fault);
-  console.log(`studio: added, undone, saved, searched (${learnt}); the verbs say the same`);
+  console.log(`studio: added, undone, saved, searched (${learnt}), toured (${tour}); the verbs say the same`);
 }
 
-const kOptions = { holdout: { type: "string" }, measure: { type: "boolean", default: false } };
+const kOptions = { holdout: { type: "string" }, measure: { type: "boolean", default: false }, tour: { type: "boolean", default: false } };
 await runCheck("studio", () => readArguments(["offnominal", "robot", "recording", "joint", "effect"], kOptions), check);

@@ -26,6 +26,7 @@ export type LoadRecording = Schemas["LoadRecording"];
 export type LoadRobot = Schemas["LoadRobot"];
 export type LoadUrdf = Schemas["LoadUrdf"];
 export type LoadJoint = Schemas["LoadJoint"];
+export type WrittenAtRest = Schemas["WrittenAtRest"];
 export type SignalMap = Schemas["SignalMap"];
 export type Signal = Schemas["Signal"];
 export type SignalEdit = Schemas["SignalEdit"];

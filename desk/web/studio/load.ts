@@ -1,8 +1,9 @@
 import { element, within, type Child } from "../report/element";
 import { hiddenText } from "../report/words";
-import type { LoadRecording, LoadRobot, LoadState, LoadUrdf, SignalEdit } from "./api";
+import type { LoadRecording, LoadRobot, LoadState, LoadUrdf, SignalEdit, WrittenAtRest } from "./api";
 import { isRobotFile, jointsWords, sizeWords } from "./files";
 import { chainElement } from "./load_chain";
+import { filesElement } from "./load_files";
 import { mapContent, showPreview } from "./load_map";
 import { payloadElement } from "./load_payload";
 import { addToNote, button, foldWith, holdControls, noteWith, replaceContent, sectionWith } from "./parts";
@@ -16,6 +17,8 @@ export const load: {
   doing: string;
   message: string | null;
   written: string[];
+  /** What was written of hold maps just now. */
+  atRest: WrittenAtRest | null;
   /** What was refused is done where it is asked once more. */
   confirm: boolean;
   onSession: () => Promise<void>;
@@ -24,6 +27,7 @@ export const load: {
   doing: "",
   message: null,
   written: [],
+  atRest: null,
   confirm: false,
   onSession: async () => {},
 };
@@ -104,6 +108,7 @@ export async function loadChange(work: () => Promise<void>) {
   if (load.doing !== "") return;
   load.doing = "…";
   load.message = null;
+  load.atRest = null;
   load.confirm = false;
   holdControls(true);
   try {
@@ -133,6 +138,12 @@ export const loadActions = {
   }),
   signal: (edit: SignalEdit) => loadChange(async () => {
     load.state = await ask("POST", "/load/signal", { body: edit });
+  }),
+  atRest: (atRest: boolean) => loadChange(async () => {
+    load.state = await ask("POST", "/load/at_rest", { body: { at_rest: atRest } });
+  }),
+  write: () => loadChange(async () => {
+    load.atRest = await ask("POST", "/load/written");
   }),
   guess: () => loadChange(async () => {
     load.state = await ask("POST", "/load/guess");
@@ -172,7 +183,7 @@ function stepsContent({ robot, urdf, recordings, map }: LoadState) {
   };
   const list = element("ol", { class: "load-steps" });
   list.append(robotLine(line, robot, urdf));
-  const wanted = "Time, position and torque or motor current of every joint while the arm moves; several will do. Velocities are welcome.";
+  const wanted = "Time, position and torque or motor current of every joint while the arm moves; several will do. Velocities are welcome. Positions in one file and torques in another are one recording.";
   const none = recordings.length === 0;
   list.append(none ? line(false, "A recording.", wanted) : line(true, "Recordings:", recordingList(recordings)));
   const ready = map !== null && map.missing.length === 0;
@@ -192,7 +203,10 @@ function recordingList(recordings: LoadRecording[]) {
     const remove = button(`remove-${id}`, "Remove", () => loadActions.remove(id));
     remove.append(element("span", { class: "hidden-text" }, ` ${name}`));
     const label = element("label", { for: `held-out-${id}` }, box, " hold out", element("span", { class: "hidden-text" }, ` ${name}`));
-    list.append(element("li", {}, element("span", { class: "file-name" }, name), element("span", { class: "soft" }, sizeWords(bytes)), label, remove, payloadElement(recording)));
+    const row = element("li", {}, element("span", { class: "file-name" }, name), element("span", { class: "soft" }, sizeWords(bytes)), label, remove);
+    if (recording.why_joined !== "") row.append(element("span", { class: "soft joined-why" }, `taken for one recording: ${recording.why_joined}`));
+    row.append(filesElement(recording) ?? "", payloadElement(recording));
+    list.append(row);
   }
   return list;
 }
@@ -205,7 +219,15 @@ function loadMessageContent() {
     if (load.confirm && last) addToNote(last, " ", button("use-anyway", "Begin anew", () => loadActions.use(true)));
   }
   if (load.written.length > 0) content.push(noteWith("good", `Written: ${load.written.join(", ")}`));
+  if (load.atRest !== null) content.push(...writtenAtRest(load.atRest));
   return content;
+}
+
+/** No session is over hold maps: what was written of them, and the commands that search them. */
+function writtenAtRest({ written, commands, note }: WrittenAtRest) {
+  const words = written.length === 0 ? "All that is needed is there already." : `Written: ${written.join(", ")}.`;
+  const lines = element("pre", { tabindex: "0", id: "at-rest-commands", "aria-label": "The commands that search the hold maps" }, commands.join("\n"));
+  return [noteWith("good", `${words} These say what the model lacks at rest, and write a robot file with it:`), lines, element("p", { class: "remark" }, note)];
 }
 
 /** With a session there is more to see than its files. */

@@ -13,7 +13,7 @@ import type {
 } from "./api";
 import { selectWith, type Choice } from "./choices";
 import { foldedList, loadActions, loadState, showLoad } from "./load";
-import { button, effectTitle, noteWith, percent } from "./parts";
+import { baseName, button, effectTitle, noteWith, percent } from "./parts";
 import { ask, wordsOf } from "./server";
 import { columnOptions, editOf, signalWords, type Change } from "./signals";
 import { sketchElement, sketchLegend, type Curve } from "./sketch";
@@ -36,9 +36,17 @@ const kSideWords: Record<Side, string> = {
 
 const kPreviewPixels = 300;
 
+const kAtRestWords =
+  "There is no session over hold maps: its error, its charts and the data doctor are of motion. Write these, and explain says what the model lacks at rest, cogging above all. Approach the positions from both sides, or friction cannot be told from it.";
+
+function idOf({ quantity, joint, file }: Signal): string {
+  if (joint !== null) return `signal-${quantity}-${joint}`;
+  return file === null || file === 1 ? "signal-time" : `signal-time-${file}`;
+}
+
 /** Column, unit and sign; the rest one click away. */
 function signalControls(signal: Signal, columns: string[]) {
-  const id = signal.joint === null ? "signal-time" : `signal-${signal.quantity}-${signal.joint}`;
+  const id = idOf(signal);
   const words = signalWords(signal);
   const change = (what: Change) => loadActions.signal(editOf(signal, what));
   const root = element("div", { class: "signal-controls" });
@@ -106,19 +114,60 @@ function jointCard({ joint, name }: LoadJoint, signals: Signal[], columns: strin
   if (found !== undefined) head.append(element("span", { class: "fall" }, "error of the robot file ", element("b", {}, percent(found.error_percent))));
   const card = element("section", { class: "card joint-card", "aria-label": `Joint ${joint}` }, head);
   const grid = element("div", { class: "signals" });
-  for (const signal of signals.filter((each) => each.joint === joint)) grid.append(signalRow(signal, columns));
+  const isRead = ({ quantity }: Signal) => quantity !== "velocity" || !loadState().map?.at_rest;
+  for (const signal of signals.filter((each) => each.joint === joint && isRead(each))) grid.append(signalRow(signal, columns));
   card.append(grid);
   for (const fault of mapView.findings?.faults.filter((each) => each.joint === joint) ?? []) card.append(findingNote(fault));
   return card;
 }
 
-function clockRow(map: SignalMap) {
-  const time = itemAt(map.signals, 0);
-  const row = element("div", { class: "signal-row" }, element("h3", {}, "Time"), signalControls(time, map.columns));
+/** A hold map is another kind of recording: it has no time, and no session is over it. */
+function atRestRow({ at_rest: atRest }: SignalMap) {
+  const box = element("input", { type: "checkbox", id: "at-rest" });
+  box.checked = atRest;
+  box.addEventListener("change", () => loadActions.atRest(box.checked));
+  const label = element("label", { for: "at-rest" }, box, " readings at rest, one held position after the other (a hold map)");
+  const row = element("div", { class: "signal-row signal-controls" }, label);
+  if (!atRest) return row;
+  const read = mapView.preview?.sampling ?? "";
+  row.append(element("span", { class: "soft" }, `${read === "" ? "" : `${read}. `}Time and velocities are not read; curves are over the readings, in their order.`));
+  return row;
+}
+
+/** The time of every file; of several, when each clock began, and which file it is of. */
+function clockRows(map: SignalMap, given: LoadState) {
+  const times = map.signals.filter(({ joint }) => joint === null);
+  const shown = given.recordings.find(({ id }) => id === mapView.recording);
+  return times.map((time, at) => {
+    const name = shown?.files[at]?.name ?? `file ${at + 1}`;
+    const row = clockRow(time, itemAt(map.columns_of_files, at), times.length === 1 ? "Time" : `Time in ${name}`);
+    // The others are put on the clock of the first.
+    if (at > 0 || time.offset_s !== 0) row.append(offsetControl(time, name));
+    if (at === 0) row.append(...periodControls(map));
+    return row;
+  });
+}
+
+function clockRow(time: Signal, columns: string[], title: string) {
+  return element("div", { class: "signal-row" }, element("h3", {}, title), signalControls(time, columns));
+}
+
+/** Clocks of several files need not begin together. */
+function offsetControl(time: Signal, name: string) {
+  const id = `${idOf(time)}-offset`;
+  const offset = element("input", { type: "number", step: "any", id, value: String(time.offset_s ?? 0) });
+  offset.addEventListener("change", () => {
+    if (offset.value !== "") loadActions.signal(editOf(time, { offset_s: Number(offset.value) }));
+  });
+  return element("label", { for: id }, "plus ", element("span", { class: "hidden-text" }, `, for the clock of ${name}, `), offset, " s");
+}
+
+function periodControls(map: SignalMap) {
+  const row: HTMLElement[] = [];
   const period = element("input", { type: "number", step: "any", id: "signal-period", value: map.period_s === null ? "" : String(map.period_s), placeholder: "no" });
   period.addEventListener("change", () => loadActions.signal({ quantity: "time", period_s: Number(period.value) }));
-  row.append(element("label", { for: "signal-period" }, "or a sample every ", period, " s"));
-  if (mapView.preview?.sampling) row.append(element("span", { class: "soft" }, mapView.preview.sampling));
+  row.push(element("label", { for: "signal-period" }, "or a sample every ", period, " s"));
+  if (mapView.preview?.sampling) row.push(element("span", { class: "soft" }, mapView.preview.sampling));
   return row;
 }
 
@@ -138,25 +187,35 @@ function shownRecording(given: LoadState) {
 export function mapContent(given: LoadState, map: SignalMap): Child[] {
   const shown = shownRecording(given);
   const content: Child[] = [element("h3", { class: "map-heading", id: "map-heading" }, "What the columns are")];
+  content.push(...keptContent(given));
   content.push(element("p", {}, "Every signal as it is read: at the joint, in SI units. Where a curve does not look like the arm's, choose another column, its unit or its sign: the picture follows."), shown);
   const wrong = mapView.preview?.error ?? null;
   if (wrong !== null) content.push(noteWith("bad", wrong));
   const whole = mapView.findings?.faults.filter((fault) => fault.joint === null) ?? [];
-  content.push(clockRow(map), ...whole.map(findingNote), sketchLegend());
+  content.push(atRestRow(map), ...(map.at_rest ? [] : clockRows(map, given)), ...whole.map(findingNote), map.at_rest ? "" : sketchLegend());
   const cards = element("div", { class: "joint-cards" });
   for (const joint of given.robot?.joints ?? []) cards.append(jointCard(joint, map.signals, map.columns));
   content.push(cards, ...saidContent(map), useContent(map, mapView.preview !== null && wrong === null));
   return content;
 }
 
+/** What was said of the same columns before, and why what is said now is not kept. */
+function keptContent({ kept }: LoadState): HTMLElement[] {
+  const content: HTMLElement[] = [];
+  if (kept.taken_up !== "") content.push(noteWith("neutral", `Said of these columns before, and taken up from ${baseName(kept.file)}: ${kept.taken_up}. “Guess again” forgets it.`));
+  if (kept.problem !== "") content.push(noteWith("warn", `What is said of these files is not kept: ${kept.problem}`));
+  return content;
+}
+
 /** What the guess, the reader and the doctor have to say. */
 function saidContent(map: SignalMap): HTMLElement[] {
   const content: HTMLElement[] = [];
-  const { findings, failed } = mapView;
+  const { preview, findings, failed } = mapView;
   const why = failed ?? findings?.error ?? null;
-  if (why !== null) content.push(noteWith("warn", why));
-  else if (findings === null && mapView.preview?.error === null) content.push(element("p", { class: "soft" }, "The data doctor is looking at it …"));
-  if (findings !== null && findings.faults.length === 0) {
+  if (map.at_rest && preview?.error === null) content.push(noteWith("neutral", kAtRestWords));
+  else if (why !== null) content.push(noteWith("warn", why));
+  else if (findings === null && preview?.error === null) content.push(element("p", { class: "soft" }, "The data doctor is looking at it …"));
+  if (findings !== null && !map.at_rest && findings.faults.length === 0) {
     content.push(noteWith("good", "The data doctor finds nothing wrong: units, signs, gaps, jumps and the like."));
   }
   const lines = [...map.notes, ...(mapView.preview?.remarks ?? [])];
@@ -170,13 +229,14 @@ function useContent(map: SignalMap, fine: boolean) {
   const ready = fine && map.missing.length === 0;
   const spoilt = mapView.findings?.faults.some(({ spoils }) => spoils) ?? false;
   root.append(
-    button("use-these", "Use these", () => loadActions.use(false), { class: "action main", ...(ready ? {} : { "aria-disabled": "true" }) }),
+    button("use-these", map.at_rest ? "Write these" : "Use these", () => (map.at_rest ? loadActions.write() : loadActions.use(false)), { class: "action main", ...(ready ? {} : { "aria-disabled": "true" }) }),
     button("guess-again", "Guess again", loadActions.guess),
   );
   if (spoilt) root.append(element("span", { class: "soft" }, "A session refuses what is marked red."));
+  const takers = map.at_rest ? "Write these writes this file, which explain and add --all-found take" : "Use these writes this file, which every verb takes";
   const words = map.is_of_robot
     ? "The robot file's own [channels] read it, and stay as they are."
-    : "Use these writes this file, which every verb takes as --channels; or paste it into the robot file:";
+    : `${takers} as --channels; or paste it into the robot file:`;
   const text = map.text === null || map.is_of_robot ? "" : element("pre", { tabindex: "0", "aria-label": "The [channels] that are written" }, map.text.trim());
   return element("div", {}, root, element("p", { class: "remark" }, words), text);
 }

@@ -9,4 +9,4 @@ export { live } from "./live_state";
 export { load } from "./load";
 export { mapView } from "./load_map";
 export { results } from "./results";
-export { state } from "./session";
+export { session, state } from "./session";

@@ -12,6 +12,7 @@ import { hasResults } from "./results";
 import { showSave } from "./saving";
 import { currentJoint, session, state } from "./session";
 import { effectList, stepList } from "./steps";
+import { updateTour } from "./tour";
 
 /** All but the charts. */
 export function show() {
@@ -40,6 +41,7 @@ export function showFound() {
     if (session.busy) holdControls(true);
   }
   document.body.toggleAttribute("data-searching", found.state === "running");
+  updateTour();
   forgetUnseen();
 }
 

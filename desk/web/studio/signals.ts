@@ -1,16 +1,18 @@
 import type { Signal, SignalEdit } from "./api";
 import type { Choice } from "./choices";
 
-type SignalName = { quantity: Signal["quantity"]; joint: number | null };
+type SignalName = Pick<Signal, "quantity" | "joint"> & Partial<Pick<Signal, "file">>;
 
-export type Change = Omit<SignalEdit, "quantity" | "joint">;
+export type Change = Omit<SignalEdit, "quantity" | "joint" | "file">;
 
-export function signalWords({ quantity, joint }: SignalName): string {
-  return joint === null ? "the time" : `the ${quantity} of joint ${joint}`;
+/** "the time of file 2": the first file's is the recording's. */
+export function signalWords({ quantity, joint, file = null }: SignalName): string {
+  if (joint !== null) return `the ${quantity} of joint ${joint}`;
+  return file === null || file === 1 ? "the time" : `the time of file ${file}`;
 }
 
-export function editOf(signal: SignalName, change: Change): SignalEdit {
-  return { quantity: signal.quantity, ...(signal.joint === null ? {} : { joint: signal.joint }), ...change };
+export function editOf({ quantity, joint, file = null }: SignalName, change: Change): SignalEdit {
+  return { quantity, ...(joint === null ? {} : { joint }), ...(file === null ? {} : { file }), ...change };
 }
 
 export function columnOptions(signal: Signal, columns: string[]): Choice[] {

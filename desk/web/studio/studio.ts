@@ -17,6 +17,7 @@ import { startResults } from "./results";
 import { ask, watchLeaving } from "./server";
 import { forgetSaving, look, session, state, takeState, worstJoint } from "./session";
 import { show } from "./show";
+import { tourStart } from "./tour";
 
 function buildStudio() {
   const main = element("main");
@@ -24,6 +25,7 @@ function buildStudio() {
   side.append(place("joints"), sectionWith("effects", "Effects", place("effects")));
   const pictures = element("div", { class: "pictures" });
   pictures.append(
+    element("p", { class: "tour-row" }, tourStart()),
     place("headline"),
     place("message", { role: "alert" }),
     sectionWith(

@@ -68,6 +68,8 @@ const torque = {
   scale: 1,
   of: "joint",
   sides: ["joint"],
+  file: null,
+  offset_s: null,
   more: "",
 } as const;
 
@@ -87,7 +89,10 @@ test("AColumnIsChosenOfThoseThatAreThere", () => {
 test("AnEditSaysWhichSignalItIsOf", () => {
   assert.deepEqual(editOf({ quantity: "torque", joint: 2 }, { scale: -1 }), { quantity: "torque", joint: 2, scale: -1 });
   assert.deepEqual(editOf({ quantity: "time", joint: null }, { source: "t" }), { quantity: "time", source: "t" });
+  assert.deepEqual(editOf({ quantity: "time", joint: null, file: 2 }, { offset_s: 3 }), { quantity: "time", file: 2, offset_s: 3 });
   assert.equal(signalWords({ quantity: "torque", joint: 2 }), "the torque of joint 2");
+  assert.equal(signalWords({ quantity: "time", joint: null, file: 1 }), "the time");
+  assert.equal(signalWords({ quantity: "time", joint: null, file: 2 }), "the time of file 2");
 });
 
 function steps(t_s: number[], values: (number | null)[]) {

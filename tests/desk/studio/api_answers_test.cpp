@@ -166,6 +166,9 @@ Routes of_files() {
   EXPECT_EQ(give("arm.toml", "joints = 3"), 422);
   EXPECT_EQ(give("more.csv", offnominal::test::strange_csv(0.7)), 200);
   EXPECT_EQ(give("third.csv", offnominal::test::strange_csv(0.5)), 200);
+  EXPECT_EQ(studio.post("load/join", {{"recording", 3}, {"to", 1}}).first, 200);
+  EXPECT_EQ(studio.get("load/preview?recording=1&pixels=300").first, 200);
+  EXPECT_EQ(studio.post("load/split", {{"recording", 1}}).first, 200);
   EXPECT_EQ(studio.erase("load/files/3").first, 200);
   EXPECT_EQ(studio.post("load/held_out", {{"recording", 2}, {"held_out", true}}).first, 200);
   json payload{{"recording", 1}, {"mass_kg", 0.5}, {"x_m", 0}, {"y_m", 0}, {"z_m", 0.1}};
@@ -185,6 +188,12 @@ Routes of_files() {
       studio.post("load/signal", {{"quantity", "velocity"}, {"joint", 1}, {"source", ""}}).first,
       200);
   EXPECT_EQ(studio.get("load/preview?recording=1&pixels=300").first, 200);
+  EXPECT_EQ(studio.post("load/written").first, 409) << "recordings in time";
+  EXPECT_EQ(studio.post("load/at_rest", {{"at_rest", true}}).first, 200);
+  EXPECT_EQ(studio.get("load/preview?recording=1&pixels=300").first, 200);
+  EXPECT_EQ(studio.get("load/findings?recording=1&pixels=300").first, 200);
+  EXPECT_EQ(studio.post("load/session").first, 409);
+  EXPECT_EQ(studio.post("load/written").first, 200);
   EXPECT_EQ(studio.post("load/guess").first, 200);
   EXPECT_EQ(studio.post("load/signal", {{"quantity", "torque"}, {"joint", 2}, {"scale", -1}}).first,
             200);

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <httplib.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -20,11 +18,11 @@
 #include "campaign/summary.hpp"
 #include "common/error.hpp"
 #include "common/refused.hpp"
+#include "desk/studio/served_studio.hpp"
 #include "desk/studio/small_results.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "log/csv_text.hpp"
 #include "robot/robot_file.hpp"
-#include "studio/server.hpp"
 
 namespace {
 
@@ -33,6 +31,7 @@ using nlohmann::ordered_json;
 using offnominal::test::content_of;
 using offnominal::test::open_run;
 using offnominal::test::put;
+using offnominal::test::ServedStudio;
 using offnominal::test::small;
 using offnominal::test::TemporaryFolder;
 using namespace offnominal::desk;
@@ -188,38 +187,25 @@ TEST(CampaignView, RefusesTheFileOfAnotherCampaignAndResultsOfAnotherVersion) {
 }
 
 TEST(CampaignServer, OpensARunAsASession) {
-  Server server(std::make_unique<CampaignView>(small().results().string(), std::nullopt), open_run,
-                0);
-  std::thread thread([&] { server.run(); });
-  const std::string address = server.address();
-  const std::string path = address.substr(address.find('/', std::string("http://").size()));
-  httplib::Client client("127.0.0.1", server.port());
-  client.set_read_timeout(120);
-  const httplib::Headers own{{"Origin", "http://127.0.0.1:" + std::to_string(server.port())}};
-  const auto post = [&](const std::string& what, const json& body) {
-    const auto result = client.Post(path + "api/" + what, own, body.dump(), "application/json");
-    return std::pair(result ? result->status : 0, json::parse(result->body, nullptr, false));
-  };
-  EXPECT_TRUE(json::parse(client.Get(path + "api/live")->body).at("has_results").get<bool>());
-  EXPECT_EQ(client.Get(path + "api/state")->status, 409);
-  EXPECT_EQ(client.Get(path + "api/results/runs?from=0&kind=offset")->status, 200);
+  ServedStudio studio(std::make_unique<CampaignView>(small().results().string(), std::nullopt),
+                      open_run);
+  EXPECT_TRUE(studio.get("live").second.at("has_results").get<bool>());
+  EXPECT_EQ(studio.get("state").first, 409);
+  EXPECT_EQ(studio.get("results/runs?from=0&kind=offset").first, 200);
   for (const char* wrong : {"results/runs", "results/runs?from=-1", "results/figures?colour=x",
                             "results/figures?detector=<img>"}) {
-    EXPECT_EQ(client.Get(path + "api/" + wrong)->status, 400) << wrong;
+    EXPECT_EQ(studio.get(wrong).first, 400) << wrong;
   }
-  EXPECT_EQ(post("results/session", {{"run", 1'000'000}}).first, 400);
-  EXPECT_EQ(post("results/session", json::object()).first, 400);
-  ASSERT_EQ(post("results/session", {{"run", 2}}).first, 200);
-  const json state = json::parse(client.Get(path + "api/state")->body);
+  EXPECT_EQ(studio.post("results/session", {{"run", 1'000'000}}).first, 400);
+  EXPECT_EQ(studio.post("results/session").first, 400);
+  ASSERT_EQ(studio.post("results/session", {{"run", 2}}).first, 200);
+  const json state = studio.get("state").second;
   EXPECT_EQ(state.at("recordings").at(0).at("samples"), 750);
-  const json charts =
-      json::parse(client.Get(path + "api/charts?joint=1&recording=1&pixels=300")->body);
+  const json charts = studio.get("charts?joint=1&recording=1&pixels=300").second;
   EXPECT_EQ(charts.at("charts").at(0).at("events").at(0).at("label"), "offset");
-  ASSERT_EQ(post("steps", {{"effect", "torque_offset"}, {"joint", 1}}).first, 200);
-  EXPECT_EQ(post("results/session", {{"run", 3}}).first, 409);
-  EXPECT_EQ(post("results/session", {{"run", 3}, {"replace", true}}).first, 200);
-  server.stop();
-  thread.join();
+  ASSERT_EQ(studio.post("steps", {{"effect", "torque_offset"}, {"joint", 1}}).first, 200);
+  EXPECT_EQ(studio.post("results/session", {{"run", 3}}).first, 409);
+  EXPECT_EQ(studio.post("results/session", {{"run", 3}, {"replace", true}}).first, 200);
 }
 
 }  // namespace

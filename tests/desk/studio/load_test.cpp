@@ -182,11 +182,12 @@ TEST(SignalMap, WritesTheUnitOfTheFileWhereASignIsTurned) {
   columns.columns["a"] = Eigen::VectorXd::Ones(3);
   columns.units["a"] = "deg";
   const RobotDescription robot = arm_description();
+  const MappedColumns of(columns);
   ChannelMap map = with_all_joints({}, 2);
-  studio::set_signal(map, {.quantity = "position", .joint = 1, .source = "a"}, robot, columns);
+  studio::set_signal(map, {.quantity = "position", .joint = 1, .source = "a"}, robot, of);
   EXPECT_EQ(map.position[1].unit, "");
-  EXPECT_EQ(signals_json(map, robot, columns).at(4).at("unit"), "deg");
-  studio::set_signal(map, {.quantity = "position", .joint = 1, .scale = -1}, robot, columns);
+  EXPECT_EQ(signals_json(map, robot, of).at(4).at("unit"), "deg");
+  studio::set_signal(map, {.quantity = "position", .joint = 1, .scale = -1}, robot, of);
   EXPECT_EQ(map.position[1].unit, "deg");
   EXPECT_EQ(missing_of(map).size(), 4U);
 }
@@ -277,6 +278,74 @@ TEST_F(Loading, PutsWhatThePageSaysBeforeWhatTheRobotFileSaysOfAPayload) {
   EXPECT_LT(of_page, of_file);
   static_cast<void>(intake_.set_payload(1, std::nullopt));
   EXPECT_EQ(error_of(intake_.findings(1, 200), 0), of_file);
+}
+
+// No session, but what explain and add --all-found read.
+TEST_F(Loading, WritesWhatIsSaidOfHoldMapsAndTheCommandsThatSearchThem) {
+  give("arm.toml", robot_text_of_arm());
+  std::string text = strange_csv(1);
+  text.replace(0, 4, "what");
+  give("map.csv", text);
+  give("other.csv", strange_csv(0.5));
+  EXPECT_THAT(intake_.state().at("map").at("missing"), ElementsAre("the time"));
+  EXPECT_THROW(static_cast<void>(intake_.write_at_rest()), Refused) << "a recording in time";
+  const ordered_json state = intake_.set_at_rest(true);
+  EXPECT_TRUE(state.at("map").at("at_rest").get<bool>());
+  EXPECT_THAT(state.at("map").at("missing"), IsEmpty());
+  EXPECT_THAT(state.at("map").at("text").get<std::string>(),
+              StartsWith("[channels]\nat_rest = true\nposition = "));
+  EXPECT_THAT(state.at("map").at("text").get<std::string>(), Not(HasSubstr("velocity")));
+  const ordered_json preview = intake_.preview(1, 200);
+  ASSERT_TRUE(preview.at("error").is_null()) << preview.at("error");
+  EXPECT_EQ(preview.at("sampling"), "3001 readings at rest");
+  ASSERT_EQ(preview.at("signals").size(), 4U) << "no velocities";
+  EXPECT_THAT(intake_.findings(1, 200).at("faults"), IsEmpty());
+  EXPECT_THROW(static_cast<void>(intake_.files()), Refused) << "no session is over it";
+  static_cast<void>(intake_.set_held_out(2, true));
+  static_cast<void>(intake_.set_payload(1, Payload{0.5, {0, 0, 0}}));
+  const ordered_json written = intake_.write_at_rest();
+  const std::string channels = (folder_ / "arm_channels.toml").string();
+  const std::string robot = (folder_ / "arm.toml").string();
+  EXPECT_THAT(written.at("written"), ElementsAre(robot, channels));
+  const std::string more =
+      " --holdout other.csv --channels " + channels + " --payload map.csv=0.5@0,0,0";
+  EXPECT_THAT(written.at("commands"),
+              ElementsAre("offnominal explain map.csv --robot " + robot + more,
+                          "offnominal add --all-found --robot " + robot + " --log map.csv" + more +
+                              " -o " + (folder_ / "arm_found.toml").string()));
+  EXPECT_THAT(written.at("note").get<std::string>(), HasSubstr("where they lie"));
+  put(folder_ / "map.csv", text);
+  ChannelOptions options;
+  options.file = channels;
+  const Log log = read_log_or_hold_map(folder_ / "map.csv", arm_description(), options);
+  EXPECT_TRUE(log.at_rest);
+  EXPECT_EQ(preview.at("signals").at(0).at("high").get<double>(), log.q.col(0).maxCoeff());
+  // What was said of it stays said where the robot file is dropped anew, and what is not read
+  // there.
+  EXPECT_TRUE(give("arm.toml", robot_text_of_arm()).at("map").at("at_rest").get<bool>());
+  EXPECT_THAT(intake_.set_at_rest(false).at("map").at("missing"), ElementsAre("the time"));
+  EXPECT_EQ(signal_in(intake_.state(), "velocity", 1).at("source"), "actual_vel_1");
+}
+
+TEST_F(Loading, TakesHoldMapsOfTheRobotFilesOwnWordAndSaysWhyOneCannotBeRead) {
+  RobotDescription robot = arm_description();
+  ChannelMap channels =
+      read_channels_of((give("run.csv", strange_csv(1)), give("arm.toml", robot_text(robot))));
+  channels.at_rest = true;
+  robot.channels = as_written(channels);
+  ordered_json state = give("arm.toml", robot_text(robot));
+  EXPECT_TRUE(state.at("map").at("at_rest").get<bool>());
+  EXPECT_TRUE(state.at("map").at("is_of_robot").get<bool>());
+  EXPECT_THAT(intake_.write_at_rest().at("written").size(), 1U) << "the robot file alone";
+  // Too few readings, and several files, as of the command line.
+  static_cast<void>(intake_.remove(1));
+  give("few.csv", strange_csv(1).substr(0, 2000));
+  EXPECT_THAT(intake_.preview(2, 200).at("error").get<std::string>(), HasSubstr("200 readings"));
+  EXPECT_THROW(static_cast<void>(intake_.write_at_rest()), InputError);
+  give("run.csv", strange_csv(1));
+  static_cast<void>(intake_.join(3, 2));
+  EXPECT_THAT(intake_.preview(2, 200).at("error").get<std::string>(), HasSubstr("2 files"));
+  EXPECT_FALSE(intake_.preview(2, 200).at("signals").empty());
 }
 
 TEST_F(Loading, SaysWhatIsMissingBeforeASessionCanBegin) {

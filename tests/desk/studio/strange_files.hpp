@@ -2,8 +2,10 @@
 
 #include <memory>
 #include <numbers>
+#include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "desk/compare/recorded_arm.hpp"
 #include "explain/explain.hpp"
@@ -29,6 +31,36 @@ inline std::string strange_csv(double amplitude) {
          text.substr(text.find('\n'));
 }
 
+// Rows `first`, `first` + `step` and so on of some columns of a CSV, counted from 0, and the time
+// of its first column later by `later_s`.
+inline std::string part_of_csv(const std::string& csv, const std::vector<std::size_t>& columns,
+                               std::size_t first, std::size_t step, double later_s) {
+  std::istringstream lines(csv);
+  std::string part;
+  std::string line;
+  for (std::size_t row = 0; std::getline(lines, line); ++row) {
+    if (row > 0 && (row - 1 < first || (row - 1 - first) % step != 0)) continue;
+    std::vector<std::string> cells;
+    std::istringstream all(line);
+    for (std::string cell; std::getline(all, cell, ',');) cells.push_back(cell);
+    if (row > 0) cells[0] = std::to_string(std::stod(cells[0]) + later_s);
+    for (const std::size_t column : columns) {
+      part += (column == columns.front() ? "" : ",") + cells.at(column);
+    }
+    part += "\n";
+  }
+  return part;
+}
+
+// The same recording in two files: positions and velocities, and torques in half as many samples
+// between them, whose clock may be another one.
+inline std::string strange_positions(double amplitude) {
+  return part_of_csv(strange_csv(amplitude), {0, 1, 2, 3, 4}, 0, 1, 0);
+}
+inline std::string strange_torques(double amplitude, double later_s = 0) {
+  return part_of_csv(strange_csv(amplitude), {0, 5, 6}, 1, 2, later_s);
+}
+
 inline std::string robot_text_of_arm() { return desk::robot_text(arm_description()); }
 
 // As the verb opens what its command line names.
@@ -42,10 +74,12 @@ inline desk::studio::Input open_files(const desk::studio::SessionFiles& files) {
   Treated treated;
   for (const studio::NamedFile& file : files.logs) {
     treated.logs.push_back(read_log(file.path, input.robot, channels));
+    treated.logs.back().file = file.name;
     input.log_files.push_back(file.name);
   }
   for (const studio::NamedFile& file : files.holdout) {
     treated.holdout.push_back(read_log(file.path, input.robot, channels));
+    treated.holdout.back().file = file.name;
     input.holdout_files.push_back(file.name);
   }
   treated.faults = treat_all({treated.logs, treated.holdout}, input.robot, {});
