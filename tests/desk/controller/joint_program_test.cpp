@@ -94,7 +94,7 @@ struct Bench {
 
   realtime::LoopReport run(const realtime::LoopConfig& loop) {
     const auto program = make_joint_program({.robot = robot,
-                                             .settings = {},
+                                             .settings = settings,
                                              .loop = loop,
                                              .wish = {.priority = 0, .lock_memory = false},
                                              .motion = motion,
@@ -108,6 +108,7 @@ struct Bench {
 
   RobotDescription robot;
   MotionAt motion;
+  ControllerSettings settings;
   hal::InProcessNet<2> net;
   Pendulum pendulum{net, robot.drive_settings()};
   BusPortOf<hal::InProcessNet<2>::Port> bus{net.port(0)};
@@ -198,6 +199,7 @@ TEST(JointProgram, InTorqueSpaceSaysAndRecordsWhichJointWasFirst) {
   for (const double push_nm : {0.0, 20.0}) {
     const std::string file = (folder / (push_nm > 0 ? "pushed.csv" : "healthy.csv")).string();
     Bench bench(of);
+    bench.settings.accommodate = true;
     ASSERT_EQ(bench.recorder.open({.csv = file, .columns = realtime::loop_columns(1, true)}), 0);
     bench.pendulum.before_tick = [&](int tick) {
       if (tick > 3000) bench.pendulum.push_nm = push_nm;
