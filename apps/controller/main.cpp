@@ -26,6 +26,7 @@
 #include "loop/frame_format.hpp"
 #include "loop/joint_program.hpp"
 #include "loop/motion_at.hpp"
+#include "loop/refusal_words.hpp"
 #include "paper/two_link_robot.hpp"
 #include "robot/robot_file.hpp"
 #include "sil/open_bus.hpp"
@@ -146,8 +147,9 @@ ControllerSettings settings_of(const Options& options) {
 Microseconds microseconds(double seconds) { return std::llround(1e6 * seconds); }
 
 // Says what changes while the loop runs, and passes on what signals ask for.
-void attend(const realtime::Signals& signals, const realtime::Recorder& recorder,
-            realtime::LoopPanel& panel, const std::atomic<bool>& over) {
+void attend(const RobotDescription& robot, const realtime::Signals& signals,
+            const realtime::Recorder& recorder, realtime::LoopPanel& panel,
+            const std::atomic<bool>& over) {
   constexpr std::chrono::milliseconds kLook{20};
   hal::ControllerState shown = hal::ControllerState::kInit;
   bool recording_failed = false;
@@ -182,7 +184,7 @@ void attend(const realtime::Signals& signals, const realtime::Recorder& recorder
     const controller::Fault refusal = panel.refusal.exchange(controller::Fault::kNone);
     if (refusal != controller::Fault::kNone) {
       std::cerr << kProgram << ": not armed: " << controller::name_of(refusal) << " ("
-                << static_cast<int>(refusal) << ", docs/troubleshooting.md)\n";
+                << static_cast<int>(refusal) << "); " << mend_of(refusal, robot) << '\n';
     }
     if (!recording_failed && recorder.error_number() != 0) {
       recording_failed = true;
@@ -243,7 +245,7 @@ int run(const Options& options) {
     }
     over.store(true);
   });
-  attend(signals, recorder, panel, over);
+  attend(robot, signals, recorder, panel, over);
   loop.join();
   recorder.close();
   if (refused) std::rethrow_exception(refused);

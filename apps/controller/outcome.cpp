@@ -15,6 +15,7 @@ nlohmann::ordered_json to_json(const ControllerOutcome& outcome) {
   json["fault"] = controller::name_of(loop.fault);
   json["fault_number"] = static_cast<int>(loop.fault);
   json["refusal"] = controller::name_of(loop.refusal);
+  json["refusal_number"] = static_cast<int>(loop.refusal);
   json["detection_time_s"] = loop.detected ? nlohmann::ordered_json(loop.detection_time_s)
                                            : nlohmann::ordered_json(nullptr);
   json["first_joint"] = loop.first_joint < 0 ? nlohmann::ordered_json(nullptr)

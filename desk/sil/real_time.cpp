@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/number.hpp"
+#include "loop/refusal_words.hpp"
 #include "sil/child_program.hpp"
 #include "sil/gather.hpp"
 #include "sil/mujoco_plant_of.hpp"
@@ -151,11 +152,13 @@ SilResult run_in_real_time(const RobotDescription& robot, const Scenario& scenar
   if (recordings.plant.at("arm_time_s").get<double>() > 0) {
     return gather(robot, scenario, options.interface, recordings);
   }
-  const auto refusal = recordings.controller.at("refusal").get<std::string>();
-  if (refusal != controller::name_of(controller::Fault::kNone)) {
-    throw InputError({"offnominal-controller", "", "arming refused: " + refusal,
+  const auto refusal =
+      static_cast<controller::Fault>(recordings.controller.at("refusal_number").get<int>());
+  if (refusal != controller::Fault::kNone) {
+    throw InputError({"offnominal-controller", "",
+                      std::string("arming refused: ") + controller::name_of(refusal),
                       "an arm where its motion starts, a robot file with gains and torque limits",
-                      "docs/troubleshooting.md says what it asks for"});
+                      mend_of(refusal, robot)});
   }
   throw InputError(
       {"offnominal-controller", "",
