@@ -154,6 +154,34 @@ TEST(ControllerInTorqueSpace, GivenTwoLevelsThenItActsBeyondTheSecondAlone) {
   EXPECT_TRUE(stopped.drives.reports.back().acts);
 }
 
+// In the tick that reaches it, not with the next frame that is due.
+TEST(ControllerInTorqueSpace, TellsTheBusAtOnceThatTheSecondLevelIsReached) {
+  auto config = watchful<TorqueSpace>();
+  config.monitor.bound.joints[1].act_ratio = 2;
+  ByJoint arm(config);
+  ASSERT_TRUE(arm.start());
+  // Neither tick is one in which a frame is due.
+  for (const int ticks : {21, 22}) {
+    arm.run(ticks);
+    give_in_vain(arm, 1, 9);
+    while (!arm.data->output.detector.acts) arm.tick();
+    EXPECT_NE(arm.data->ticks % 10, 5U);
+    EXPECT_EQ(arm.data->act_tick, arm.data->ticks);
+    EXPECT_EQ(arm.bus.sent.back().frame.id, ByJoint::Drives::kReportId);
+    EXPECT_TRUE(arm.drives.reports.back().acts);
+    arm.drives.reports.clear();
+    arm.run(100);
+    EXPECT_EQ(arm.drives.reports.size(), 10U) << "it is news once";
+    // Another run is another watch.
+    ASSERT_TRUE(arm.disarm());
+    arm.follows[1] = true;
+    arm.tick();
+    ASSERT_TRUE(arm.arm());
+    arm.run(3);
+    EXPECT_FALSE(arm.data->output.detector.acts);
+  }
+}
+
 // A push that is over before the slow filter has it.
 TEST(ControllerInTorqueSpace, GivenASecondFilterThenItSeesWhatIsShort) {
   for (const bool has_fast : {false, true}) {

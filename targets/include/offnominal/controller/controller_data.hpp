@@ -29,6 +29,8 @@ struct ControllerData : SampleData<N, Scalar>, TakeoverData<N, Scalar> {
   std::uint32_t late_ticks = 0;      // whole periods that this tick began too late
   std::uint16_t late_in_a_row = 0;   // ticks that did
   bool ends = false;                 // let_go() was called
+  // Of `ticks`, the one in which the monitor came beyond the second level; 0: it has not.
+  std::uint64_t act_tick = 0;
   PerJoint<N, hal::TorqueCommand> commands{};
   MonitorState<N, L, Scalar, Memory, Space> monitor;
   MonitorOutput<N, Scalar, Space> output;

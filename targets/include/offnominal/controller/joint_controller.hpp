@@ -298,14 +298,17 @@ class JointController {
     // brakes or whatever else held the arm still do: the watch begins with each sample anew.
     if (armed && !data.drives_follow) data.monitor.initialised = false;
     const bool follows = data.monitor.initialised && data.unseen_ticks == 0;
+    const bool has_acted = data.output.detector.acts;
     const Fault fault = follows ? fault_of(monitor_.step(data.sample, data.monitor, data.output))
                                 : begin_watch(reference_at, armed, data);
     if (follows && fault == Fault::kNone) isolate(data);
     if (fault != Fault::kNone) {
       enter_fault(fault, bus, data);
-    } else if (config_.stop_at_detection && data.output.detector.acts) {
-      enter_fault(Fault::kDetected, bus, data);
+      return;
     }
+    if (!data.output.detector.acts) return;
+    if (!has_acted) data.act_tick = data.ticks;
+    if (config_.stop_at_detection) enter_fault(Fault::kDetected, bus, data);
   }
 
   [[gnu::noinline]] void isolate(Data& data) const {
@@ -432,12 +435,13 @@ class JointController {
   }
 
   // Between two heartbeats, and at once in the tick that says it first: which joint is off nominal,
-  // and which fault it is.
+  // that it is beyond the second level too, and which fault it is.
   template <typename Bus, typename Drives>
   void report(Microseconds begin_us, Bus& bus, Drives& drives, Data& data) const {
     const DetectorState<Scalar>& detector = data.output.detector;
-    const bool is_new =
+    const bool is_detected =
         detector.latched && data.fresh && detector.detection_tick == data.monitor.tick;
+    const bool is_new = is_detected || data.act_tick == data.ticks;
     const bool due = data.ticks % hal::kHeartbeatTicks == hal::kHeartbeatTicks / 2;
     const bool watches =
         data.state == ControllerState::kArmed || data.state == ControllerState::kPassive;
