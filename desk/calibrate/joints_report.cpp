@@ -131,7 +131,8 @@ Chart residual_chart(const BoundOfFilter& one, const JudgedStretch& stretch, std
   Chart chart =
       chart_against_threshold(EstimatorSpace::kTorque, joint.calibration.unit,
                               {.x = numbers(stretch.t_s), .y = numbers(stretch.error_norm)},
-                              {.x = numbers(stretch.t_s), .y = numbers(stretch.threshold_after)});
+                              {.x = numbers(stretch.t_s), .y = numbers(stretch.threshold_after)},
+                              one.bound.act_ratio);
   chart.title =
       fmt::format("{}, {}{}", one.name, stretch.file, stretch.held_out ? ", hold-out" : "");
   chart.zoom_group = fmt::format("recording {}", index);

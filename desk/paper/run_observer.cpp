@@ -104,13 +104,13 @@ void RunObserver::judge_joints(const TickRecord& tick, bool healthy) {
   if (tick.first_joint >= 0 && !result_.first_joint) result_.first_joint = tick.first_joint;
   for (std::size_t i = 0; i < result_.joints.size(); ++i) {
     const auto index = static_cast<Eigen::Index>(i);
-    const auto [residual, threshold] =
+    const ResidualAgainst nearest =
         nearer_filter(tick.error, tick.thresholds, tick.fast_error, tick.fast_thresholds, index);
     JointRun& joint = result_.joints[i];
-    if (residual > threshold && !joint.detection_time_s) joint.detection_time_s = tick.time_s;
-    if (!healthy || threshold <= 0) continue;
+    if (nearest.residual > nearest.threshold && !joint.detection_time_s) joint.detection_time_s = tick.time_s;
+    if (!healthy || nearest.threshold <= 0) continue;
     double& ratio = joint.max_error_to_threshold_before_fault;
-    ratio = std::max(ratio, residual / threshold);
+    ratio = std::max(ratio, nearest.residual / nearest.threshold);
   }
 }
 
