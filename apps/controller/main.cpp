@@ -49,7 +49,7 @@ struct Options {
   bool arm = false;
   std::string motion = "hold";
   bool accommodate = false;
-  bool stop_at_detection = false;
+  ActOptions act;
   bool end_at_fault = false;
   std::string safe_mode = "off";
   bool fd = false;
@@ -88,10 +88,7 @@ void add_options(CLI::App& app, Options& options) {
                  "offnominal motion writes it")
       ->capture_default_str();
   app.add_flag("--accommodate", options.accommodate, "Add the compensating torque");
-  app.add_flag(
-      "--stop-at-detection", options.stop_at_detection,
-      "A crossed threshold leads to the safe state; with act_ratio in the robot file, one that is "
-      "crossed by so much");
+  add_act_options(app, options.act);
   app.add_flag("--end-at-fault", options.end_at_fault, "End 0.1 s after a fault");
   app.add_option("--safe-mode", options.safe_mode, "What drives are told in the safe state")
       ->check(CLI::IsMember({"off", "damping"}))
@@ -137,7 +134,7 @@ RobotDescription robot_of(const Options& options) {
 ControllerSettings settings_of(const Options& options) {
   ControllerSettings settings;
   settings.accommodate = options.accommodate;
-  settings.stop_at_detection = options.stop_at_detection;
+  put_act_options(kProgram, options.act, settings);
   settings.safe_mode = options.safe_mode == "off" ? hal::DriveMode::kOff : hal::DriveMode::kDamping;
   settings.max_acceleration = options.max_acceleration;
   settings.encoder_bits_per_turn = options.encoder_bits_per_turn;

@@ -11,8 +11,8 @@ namespace {
 
 ControllerSettings settings_of(const Scenario& scenario) {
   ControllerSettings settings;
+  static_cast<ActSettings&>(settings) = scenario;
   settings.accommodate = scenario.accommodate;
-  settings.stop_at_detection = scenario.stop_at_detection;
   if (!scenario.sends_velocity) settings.max_acceleration = scenario.max_acceleration;
   settings.encoder_bits_per_turn = scenario.encoder_bits_per_turn;
   return settings;

@@ -79,7 +79,8 @@ std::vector<std::string> controller_arguments(const Folder& folder, const Scenar
   if (options.candump) add({"--candump", *options.candump});
   if (options.replace_candump) add({"--force"});
   if (scenario.accommodate) add({"--accommodate"});
-  if (scenario.stop_at_detection) add({"--stop-at-detection"});
+  const std::vector<std::string> at_detection = act_arguments(scenario);
+  arguments.insert(arguments.end(), at_detection.begin(), at_detection.end());
   add({format == hal::FrameFormat::kFd ? "--fd" : "--classic"});
   if (!scenario.sends_velocity) {
     add({"--observe-velocity", shortest(scenario.max_acceleration)});

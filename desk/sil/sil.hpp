@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "loop/at_detection.hpp"
 #include "loop/motion_at.hpp"
 #include "offnominal/sim/bus/fault_event.hpp"
 #include "paper/run_result.hpp"
@@ -19,7 +20,7 @@
 
 namespace offnominal::desk::sil {
 
-struct Scenario : paper::RunSettings {
+struct Scenario : paper::RunSettings, ActSettings {
   /// What stands at the other end: the rigid body and the effects of a robot file; none: the
   /// paper's arm with its uncertainty.
   std::optional<RobotDescription> plant;
@@ -33,7 +34,6 @@ struct Scenario : paper::RunSettings {
   int encoder_bits_per_turn = 0;           // on top of what a frame resolves; 0: none
   bool sends_velocity = true;
   double max_acceleration = 20;  // rad/s^2; bounds the velocity observer's error
-  bool stop_at_detection = false;
   std::uint64_t seed = 1;  // of the faults on the bus
 };
 

@@ -12,6 +12,7 @@
 namespace offnominal::test {
 namespace {
 
+using controller::AtDetection;
 using controller::Fault;
 using hal::ControllerState;
 using hal::DriveMode;
@@ -54,7 +55,7 @@ TYPED_TEST(ControllerInSpace, GivenAFaultOfAJointThenItIsLatchedAndStopsWhereItS
   for (std::size_t joint = 0; joint < 2; ++joint) {
     for (const bool stops : {false, true}) {
       auto config = watchful<TypeParam>();
-      config.stop_at_detection = stops;
+      if (stops) config.at_detection = AtDetection::kStop;
       ScriptedJointsIn<TypeParam> arm(config);
       ASSERT_TRUE(arm.start());
       arm.run(20);
@@ -132,7 +133,7 @@ TEST(ControllerInTorqueSpace, TellsTheBusWhichJointIsOffNominal) {
 // What is noticed is told; it stops and compensates beyond the second level.
 TEST(ControllerInTorqueSpace, GivenTwoLevelsThenItActsBeyondTheSecondAlone) {
   auto config = watchful<TorqueSpace>();
-  config.stop_at_detection = true;
+  config.at_detection = AtDetection::kStop;
   config.monitor.bound.joints[1].act_ratio = 4;
   ByJoint noticed(config);
   ASSERT_TRUE(noticed.start());
@@ -205,7 +206,7 @@ TEST(ControllerInTorqueSpace, GivenASecondFilterThenItSeesWhatIsShort) {
 
 TEST(ControllerInTorqueSpace, TellsAfterItHasStoppedWhoWasFirstAndNoMore) {
   auto config = watchful<TorqueSpace>();
-  config.stop_at_detection = true;
+  config.at_detection = AtDetection::kStop;
   ByJoint arm(config);
   ASSERT_TRUE(arm.start());
   arm.run(20);

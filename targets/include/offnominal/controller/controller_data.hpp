@@ -31,6 +31,8 @@ struct ControllerData : SampleData<N, Scalar>, TakeoverData<N, Scalar> {
   bool ends = false;                 // let_go() was called
   // Of `ticks`, the one in which the monitor came beyond the second level; 0: it has not.
   std::uint64_t act_tick = 0;
+  bool slows = false;  // the reference, from slow_since of run_ticks until arm()
+  std::uint64_t slow_since = 0;
   PerJoint<N, hal::TorqueCommand> commands{};
   MonitorState<N, L, Scalar, Memory, Space> monitor;
   MonitorOutput<N, Scalar, Space> output;
