@@ -276,8 +276,7 @@ TEST(CalibrateJoints, GivenASecondFilterThenItsBlocksAreToldToo) {
   EXPECT_EQ(blocks_words(result), "60 blocks of 5 s");
   result.fast[0].calibration.level.blocks = 300;
   result.fast[0].calibration.level.block_s = 1;
-  EXPECT_EQ(blocks_words(result),
-            "60 blocks of 5 s, behind the fast filter 300 blocks of 1 s");
+  EXPECT_EQ(blocks_words(result), "60 blocks of 5 s, behind the fast filter 300 blocks of 1 s");
 }
 
 TEST(CalibrateJoints, RefusesAVelocityError) {
