@@ -39,17 +39,18 @@ struct Pace {
   double behind_s = 0;  // how far its time is behind the clock's
 };
 
-// since_s >= 0 after the slowing began. Closed, so that ticks that are left out change nothing, and
-// in double precision, as it may go on for as long as a run.
+// since_s >= 0 after the slowing began. Closed, so that ticks that are left out change nothing.
+// What comes after within_s is in double precision, as it may go on for as long as a run.
 template <typename Scalar>
 [[nodiscard]] Pace<Scalar> pace_of(const SlowDownConfig<Scalar>& config, double since_s) {
-  const auto within_s = static_cast<double>(config.within_s);
-  const double lost = 1 - static_cast<double>(config.to);
-  const double u = std::min(since_s / within_s, 1.0);
+  const Scalar lost = 1 - config.to;
+  const Scalar u = std::min(static_cast<Scalar>(since_s) / config.within_s, Scalar(1));
   Pace<Scalar> pace;
-  pace.share = static_cast<Scalar>(1 - lost * u * u * (3 - 2 * u));
-  pace.rate = static_cast<Scalar>(-6 * lost * u * (1 - u) / within_s);
-  pace.behind_s = lost * (within_s * u * u * u * (1 - u / 2) + std::max(since_s - within_s, 0.0));
+  pace.share = 1 - lost * u * u * (3 - 2 * u);
+  pace.rate = -6 * lost * u * (1 - u) / config.within_s;
+  const Scalar on_the_way_s = lost * config.within_s * u * u * u * (1 - u / 2);
+  const double after_s = std::max(since_s - static_cast<double>(config.within_s), 0.0);
+  pace.behind_s = static_cast<double>(on_the_way_s) + static_cast<double>(lost) * after_s;
   return pace;
 }
 
