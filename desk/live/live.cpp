@@ -224,7 +224,10 @@ void Live::keep(const BusSample& sample, double t_s, const Watched& said) {
     residual_[i] = by_joint ? nearest.residual : said.error_norm;
     const double threshold = by_joint ? nearest.threshold : said.threshold;
     threshold_[i] = has_bound_ ? threshold : kNone;
-    if (has_two_levels_) act_[i] = act_ratio(i, nearest.fast) * threshold;
+    if (has_two_levels_) {
+      const double ratio = act_ratio(i, nearest.fast);
+      act_[i] = ratio > 1 ? ratio * threshold : kNone;
+    }
     now_.beyond[i] = by_joint ? said.levels[i] : said.level;
   }
   const auto span = [](const auto& vector) {

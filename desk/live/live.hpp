@@ -64,7 +64,7 @@ struct Moment {
   double t_s = 0;                 // of the newest sample
   std::vector<double> residual;   // |e| of everything that is judged
   std::vector<double> threshold;  // NaN without a bound
-  std::vector<double> act;        // the second level; NaN where there is one level
+  std::vector<double> act;        // the second level; NaN where it is the first
   std::vector<bool> beyond;       // its threshold, now
   bool is_driven = false;         // the drives give torque
   bool is_judging = false;        // and the threshold has settled

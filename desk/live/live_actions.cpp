@@ -60,7 +60,7 @@ report::Chart chart_of(const History::Rows& rows, std::size_t of, const Judged& 
   if (live.has_bound()) {
     chart.series.push_back(series("threshold", rows.threshold(of), report::Tone::kThreshold));
   }
-  if (live.has_two_levels()) {
+  if (!rows.act(of).array().isNaN().all()) {
     chart.series.push_back(series(report::kActLevel, rows.act(of), report::Tone::kFaint));
     chart.series.back().dashed = true;
   }
