@@ -34,6 +34,7 @@ struct SilOptions {
   std::optional<std::string> fault;
   std::optional<std::string> scenario;
   bool accommodate = false;
+  ActOptions act;
   std::string bus = sil::kInProcess;
   std::string scalar = "float";
   std::optional<std::string> robot;
@@ -83,6 +84,7 @@ sil::Scenario scenario_of(const SilOptions& options, const RobotDescription& rob
   }
   put_plant_options(options.other_end, robot, scenario);
   if (options.accommodate) scenario.accommodate = true;
+  put_act_options("offnominal sil", options.act, scenario);
   if (options.fd) scenario.format = hal::FrameFormat::kFd;
   if (options.duration) scenario.duration_s = *options.duration;
   scenario.precision = precision_of(options.scalar);
@@ -174,6 +176,7 @@ void set_up_sil(CLI::App& verb, ExitCode& exit_code) {
       ->check(CLI::IsMember({"none", "mass_loss", "nonlinear"}));
   verb.add_option("--scenario", options->scenario, "Faults and settings of the run, TOML");
   verb.add_flag("--accommodate", options->accommodate, "Add the compensating torque");
+  add_act_options(verb, options->act);
   verb.add_option("--bus", options->bus,
                   "in-process, or a CAN interface of the kernel; vcan0 and its like are made where "
                   "there are none, and removed at the end")

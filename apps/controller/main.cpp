@@ -26,6 +26,7 @@
 #include "loop/frame_format.hpp"
 #include "loop/joint_program.hpp"
 #include "loop/motion_at.hpp"
+#include "loop/refusal_words.hpp"
 #include "paper/two_link_robot.hpp"
 #include "robot/robot_file.hpp"
 #include "sil/open_bus.hpp"
@@ -48,7 +49,7 @@ struct Options {
   bool arm = false;
   std::string motion = "hold";
   bool accommodate = false;
-  bool stop_at_detection = false;
+  ActOptions act;
   bool end_at_fault = false;
   std::string safe_mode = "off";
   bool fd = false;
@@ -87,10 +88,7 @@ void add_options(CLI::App& app, Options& options) {
                  "offnominal motion writes it")
       ->capture_default_str();
   app.add_flag("--accommodate", options.accommodate, "Add the compensating torque");
-  app.add_flag(
-      "--stop-at-detection", options.stop_at_detection,
-      "A crossed threshold leads to the safe state; with act_ratio in the robot file, one that is "
-      "crossed by so much");
+  add_act_options(app, options.act);
   app.add_flag("--end-at-fault", options.end_at_fault, "End 0.1 s after a fault");
   app.add_option("--safe-mode", options.safe_mode, "What drives are told in the safe state")
       ->check(CLI::IsMember({"off", "damping"}))
@@ -136,7 +134,7 @@ RobotDescription robot_of(const Options& options) {
 ControllerSettings settings_of(const Options& options) {
   ControllerSettings settings;
   settings.accommodate = options.accommodate;
-  settings.stop_at_detection = options.stop_at_detection;
+  put_act_options(kProgram, options.act, settings);
   settings.safe_mode = options.safe_mode == "off" ? hal::DriveMode::kOff : hal::DriveMode::kDamping;
   settings.max_acceleration = options.max_acceleration;
   settings.encoder_bits_per_turn = options.encoder_bits_per_turn;
@@ -146,8 +144,9 @@ ControllerSettings settings_of(const Options& options) {
 Microseconds microseconds(double seconds) { return std::llround(1e6 * seconds); }
 
 // Says what changes while the loop runs, and passes on what signals ask for.
-void attend(const realtime::Signals& signals, const realtime::Recorder& recorder,
-            realtime::LoopPanel& panel, const std::atomic<bool>& over) {
+void attend(const RobotDescription& robot, const realtime::Signals& signals,
+            const realtime::Recorder& recorder, realtime::LoopPanel& panel,
+            const std::atomic<bool>& over) {
   constexpr std::chrono::milliseconds kLook{20};
   hal::ControllerState shown = hal::ControllerState::kInit;
   bool recording_failed = false;
@@ -182,7 +181,7 @@ void attend(const realtime::Signals& signals, const realtime::Recorder& recorder
     const controller::Fault refusal = panel.refusal.exchange(controller::Fault::kNone);
     if (refusal != controller::Fault::kNone) {
       std::cerr << kProgram << ": not armed: " << controller::name_of(refusal) << " ("
-                << static_cast<int>(refusal) << ", docs/troubleshooting.md)\n";
+                << static_cast<int>(refusal) << "); " << mend_of(refusal, robot) << '\n';
     }
     if (!recording_failed && recorder.error_number() != 0) {
       recording_failed = true;
@@ -243,7 +242,7 @@ int run(const Options& options) {
     }
     over.store(true);
   });
-  attend(signals, recorder, panel, over);
+  attend(robot, signals, recorder, panel, over);
   loop.join();
   recorder.close();
   if (refused) std::rethrow_exception(refused);

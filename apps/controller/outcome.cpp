@@ -15,10 +15,17 @@ nlohmann::ordered_json to_json(const ControllerOutcome& outcome) {
   json["fault"] = controller::name_of(loop.fault);
   json["fault_number"] = static_cast<int>(loop.fault);
   json["refusal"] = controller::name_of(loop.refusal);
+  json["refusal_number"] = static_cast<int>(loop.refusal);
   json["detection_time_s"] = loop.detected ? nlohmann::ordered_json(loop.detection_time_s)
                                            : nlohmann::ordered_json(nullptr);
   json["first_joint"] = loop.first_joint < 0 ? nlohmann::ordered_json(nullptr)
                                              : nlohmann::ordered_json(loop.first_joint + 1);
+  json["act_time_s"] =
+      loop.acts ? nlohmann::ordered_json(loop.act_time_s) : nlohmann::ordered_json(nullptr);
+  json["act_joint"] = loop.act_joint < 0 ? nlohmann::ordered_json(nullptr)
+                                         : nlohmann::ordered_json(loop.act_joint + 1);
+  json["slowed"] = nullptr;
+  if (loop.slowed) json["slowed"] = {{"time_s", loop.slow_time_s}, {"to", loop.slowed_to}};
   json["isolated"] = nullptr;
   if (outcome.report.isolated) {
     json["isolated"] = to_json(*outcome.report.isolated, outcome.joint_names);
@@ -64,6 +71,17 @@ std::string text_of(const ControllerOutcome& outcome) {
   row("detected", loop.detected ? fmt::format("{:.3f} s after arming", loop.detection_time_s)
                                 : std::string("nothing"));
   if (loop.first_joint >= 0) row("first joint off nominal", std::to_string(loop.first_joint + 1));
+  if (loop.detected) {
+    const std::string of_joint =
+        loop.act_joint < 0 ? std::string() : fmt::format(", joint {}", loop.act_joint + 1);
+    row("beyond the level to act",
+        loop.acts ? fmt::format("{:.3f} s after arming{}", loop.act_time_s, of_joint)
+                  : std::string("never"));
+  }
+  if (loop.slowed) {
+    row("motion slowed", fmt::format("{:.3f} s after arming, to {:.0f} % of its pace",
+                                     loop.slow_time_s, 100 * loop.slowed_to));
+  }
   if (outcome.report.isolated) {
     row("which fault", words_of(*outcome.report.isolated, outcome.joint_names));
   }

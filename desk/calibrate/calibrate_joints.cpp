@@ -128,22 +128,16 @@ std::string source_of(const CalibrateRequest& request, const JointsCalibration& 
     }
   }
   return fmt::format(
-      "{} {:g} false alarms per hour of all joints by extrapolation of {} block maxima of {:g} s "
-      "each; on hold-out data {} in {:g} s.",
-      request.source, result.alarms_per_hour, level.blocks, level.block_s,
+      "{} {:g} false alarms per hour of all joints by extrapolation of the maxima of {}; on "
+      "hold-out data {} in {:g} s.",
+      request.source, result.alarms_per_hour, blocks_words(result),
       counted(static_cast<std::size_t>(alarms), "alarm"), level.held_out_s);
-}
-
-bool has_second_level(const BoundSettings& bound) {
-  const auto is_above = [](const JointBoundSettings& one) { return one.act_ratio > 1; };
-  return std::any_of(bound.joints.begin(), bound.joints.end(), is_above) ||
-         std::any_of(bound.fast.begin(), bound.fast.end(), is_above);
 }
 
 // That a second level is gone, or no higher than the first.
 void note_levels(const CalibrateRequest& request, JointsCalibration& result) {
   if (!request.act_alarms_per_hour) {
-    if (!result.old_bound || !has_second_level(*result.old_bound)) return;
+    if (!result.old_bound || !result.old_bound->has_two_levels()) return;
     result.notes.emplace_back(
         "The old bound had a second level (act_ratio), the new one has none: the controller acts "
         "on "
@@ -165,6 +159,16 @@ void note_levels(const CalibrateRequest& request, JointsCalibration& result) {
 }
 
 }  // namespace
+
+std::string blocks_words(const JointsCalibration& calibration) {
+  const auto words = [](const std::vector<JointCalibration>& of_filter) {
+    const FalseAlarmLevel& level = of_filter.front().calibration.level;
+    return fmt::format("{} blocks of {:g} s", level.blocks, level.block_s);
+  };
+  const std::string slow = words(calibration.joints);
+  if (calibration.fast.empty() || words(calibration.fast) == slow) return slow;
+  return slow + ", behind the fast filter " + words(calibration.fast);
+}
 
 JointsCalibration calibrate_joints(const RobotDescription& robot, const CalibrateRequest& request,
                                    const std::vector<Log>& logs, const std::vector<Log>& holdout,

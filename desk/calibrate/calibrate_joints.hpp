@@ -33,6 +33,10 @@ struct JointsCalibration {
   std::vector<std::string> objections;  // why the result must not be used; empty: it may
 };
 
+/// "600 blocks of 5 s", whose maxima the laws were fitted to: each filter has blocks of its own
+/// length.
+[[nodiscard]] std::string blocks_words(const JointsCalibration& calibration);
+
 /// As calibrate(), joint by joint, for a robot whose estimator is in EstimatorSpace::kTorque. The
 /// rate is shared evenly: alarms of different joints, and of a joint's two filters, are taken for
 /// different alarms, which is on the safe side. Throws InputError too where a velocity error is

@@ -128,10 +128,10 @@ std::string margins_text(const JointsCalibration& calibration) {
 
 Chart residual_chart(const BoundOfFilter& one, const JudgedStretch& stretch, std::size_t index) {
   const JointCalibration& joint = one.result;
-  Chart chart =
-      chart_against_threshold(EstimatorSpace::kTorque, joint.calibration.unit,
-                              {.x = numbers(stretch.t_s), .y = numbers(stretch.error_norm)},
-                              {.x = numbers(stretch.t_s), .y = numbers(stretch.threshold_after)});
+  Chart chart = chart_against_threshold(
+      EstimatorSpace::kTorque, joint.calibration.unit,
+      {.x = numbers(stretch.t_s), .y = numbers(stretch.error_norm)},
+      {.x = numbers(stretch.t_s), .y = numbers(stretch.threshold_after)}, one.bound.act_ratio);
   chart.title =
       fmt::format("{}, {}{}", one.name, stretch.file, stretch.held_out ? ", hold-out" : "");
   chart.zoom_group = fmt::format("recording {}", index);
@@ -225,16 +225,15 @@ std::string text_of(const JointsCalibration& calibration, const CalibrateNames& 
     text += table.line(cells);
   }
   const SmallestFault& fault = calibration.joints.front().fault;
-  const FalseAlarmLevel& level = calibration.joints.front().calibration.level;
   text += fmt::format(
       "\nseen from: lasting torque beside the model that is seen within {:.3g} s in 95 of 100 "
       "beginnings in these\nrecordings, half of those twice as large within 'twice in s'; certain "
       "from: within {:.3g} s whatever the\nrobot's errors do inside their bounds\n"
       "false alarms: {:g} per hour of all joints{}, an even share each, extrapolated from the "
-      "maxima of {} blocks of {:g} s\nthat the bounds had not seen (blocks taken as independent, "
+      "maxima of {}\nthat the bounds had not seen (blocks taken as independent, "
       "motions as in these recordings)\n",
       fault.window_s, fault.certain_s, calibration.alarms_per_hour,
-      calibration.fast.empty() ? "" : " and both filters", level.blocks, level.block_s);
+      calibration.fast.empty() ? "" : " and both filters", blocks_words(calibration));
   if (!calibration.fast.empty()) {
     const SmallestFault& of_fast = calibration.fast.front().fault;
     text += fmt::format("behind the fast filter: seen within {:.3g} s, certain within {:.3g} s\n",

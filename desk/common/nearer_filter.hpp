@@ -9,6 +9,7 @@ namespace offnominal::desk {
 struct ResidualAgainst {
   double residual = 0;
   double threshold = 0;
+  bool fast = false;  // of the fast filter
 };
 
 /// Of a joint behind two filters those of the one that is nearer to its threshold, or farther
@@ -19,7 +20,7 @@ template <typename Values>
                                             Eigen::Index joint) {
   const ResidualAgainst slow{std::abs(error[joint]), thresholds[joint]};
   if (fast_error.size() == 0) return slow;
-  const ResidualAgainst fast{std::abs(fast_error[joint]), fast_thresholds[joint]};
+  const ResidualAgainst fast{std::abs(fast_error[joint]), fast_thresholds[joint], true};
   return fast.residual * slow.threshold > slow.residual * fast.threshold ? fast : slow;
 }
 

@@ -10,13 +10,12 @@ using Eigen::Index;
 History::History(std::size_t joints, std::size_t judged, std::size_t rows)
     : joints_(joints),
       judged_(judged),
-      stride_(1 + 3 * joints + 2 * judged),
+      stride_(1 + 3 * joints + 3 * judged),
       most_(std::max<std::size_t>(rows, 1)),
       rows_(most_ * stride_) {}
 
 void History::push(double t_s, std::span<const double> q, std::span<const double> dq,
-                   std::span<const double> tau, std::span<const double> residual,
-                   std::span<const double> threshold) {
+                   std::span<const double> tau, const Levels& levels) {
   double* into = rows_.data() + stride_ * ((first_ + count_) % most_);
   if (count_ == most_) {
     first_ = (first_ + 1) % most_;
@@ -24,7 +23,8 @@ void History::push(double t_s, std::span<const double> q, std::span<const double
     ++count_;
   }
   *into++ = t_s;
-  for (const std::span<const double> part : {q, dq, tau, residual, threshold}) {
+  for (const std::span<const double> part :
+       {q, dq, tau, levels.residual, levels.threshold, levels.act}) {
     into = std::copy(part.begin(), part.end(), into);
   }
 }
@@ -50,6 +50,10 @@ Eigen::VectorXd History::Rows::threshold(std::size_t of) const {
   return all.col(static_cast<Index>(1 + 3 * joints + judged + of));
 }
 
+Eigen::VectorXd History::Rows::act(std::size_t of) const {
+  return all.col(static_cast<Index>(1 + 3 * joints + 2 * judged + of));
+}
+
 History::Rows History::Rows::since(double from_s) const {
   const auto earlier = (all.col(0).array() < from_s).count();
   return {joints, judged, all.bottomRows(all.rows() - earlier)};
@@ -72,17 +76,19 @@ Log History::Rows::log(const std::string& file, double period_s) const {
   return log;
 }
 
-void Strip::push(double t_s, std::span<const double> residual, std::span<const double> threshold) {
+void Strip::push(double t_s, const Levels& levels) {
   const double begin_s = kStepS * std::floor(t_s / kStepS);
   const bool is_new = count_ == 0 || step(count_ - 1)[0] != begin_s;
   if (is_new) ++count_;
   const std::span<double> now = step(count_ - 1);
   now[0] = begin_s;
   for (std::size_t i = 0; i < judged_; ++i) {
-    double* of = now.data() + 1 + 3 * i;
-    of[0] = is_new ? residual[i] : std::min(of[0], residual[i]);
-    of[1] = is_new ? residual[i] : std::max(of[1], residual[i]);
-    of[2] = is_new ? threshold[i] : std::min(of[2], threshold[i]);
+    double* of = now.data() + 1 + kOfEach * i;
+    const double residual = levels.residual[i];
+    of[0] = is_new ? residual : std::min(of[0], residual);
+    of[1] = is_new ? residual : std::max(of[1], residual);
+    of[2] = is_new ? levels.threshold[i] : std::min(of[2], levels.threshold[i]);
+    of[3] = is_new ? levels.act[i] : std::min(of[3], levels.act[i]);
   }
 }
 
@@ -91,6 +97,7 @@ Strip::Steps Strip::since(std::uint64_t from) const {
   steps.low.resize(judged_);
   steps.high.resize(judged_);
   steps.threshold.resize(judged_);
+  steps.act.resize(judged_);
   // The last one is still under way.
   const std::uint64_t end = count_ == 0 ? 0 : count_ - 1;
   const std::uint64_t oldest = count_ > kSteps ? count_ - kSteps : 0;
@@ -100,9 +107,11 @@ Strip::Steps Strip::since(std::uint64_t from) const {
     const std::span<const double> one = step(number);
     steps.t_s.push_back(one[0]);
     for (std::size_t i = 0; i < judged_; ++i) {
-      steps.low[i].push_back(one[1 + 3 * i]);
-      steps.high[i].push_back(one[2 + 3 * i]);
-      steps.threshold[i].push_back(one[3 + 3 * i]);
+      const auto of = one.subspan(1 + kOfEach * i, kOfEach);
+      steps.low[i].push_back(of[0]);
+      steps.high[i].push_back(of[1]);
+      steps.threshold[i].push_back(of[2]);
+      steps.act[i].push_back(of[3]);
     }
   }
   return steps;

@@ -60,6 +60,7 @@ Live::Live(LiveInput input) : Live(std::move(input), nullptr) {}
 Live::Live(LiveInput input, std::unique_ptr<Feed> feed)
     : input_(std::move(input)),
       has_bound_(input_.robot.bound.has_value()),
+      has_two_levels_(has_bound_ && input_.robot.bound->has_two_levels()),
       judged_(judged_of(input_.robot)),
       feed_(std::move(feed)),
       watched_(input_.robot),
@@ -72,6 +73,7 @@ Live::Live(LiveInput input, std::unique_ptr<Feed> feed)
   now_.beyond.assign(judged_.size(), false);
   now_.residual.assign(judged_.size(), kNone);
   now_.threshold.assign(judged_.size(), kNone);
+  now_.act.assign(judged_.size(), kNone);
   if (!feed_ && input_.bus) feed_ = make_ears(*input_.bus);
   if (!feed_) {
     auto bench = make_bench(watched_, input_.scenario);
@@ -99,6 +101,7 @@ void Live::set_up() {
   watch_ = make_watch(watched_, watched_.estimator.period_s, {});
   residual_.assign(judged_.size(), 0);
   threshold_.assign(judged_.size(), kNone);
+  act_.assign(judged_.size(), kNone);
 }
 
 void Live::run() {
@@ -207,6 +210,12 @@ bool Live::is_settled(const BusSample& sample, double t_s) {
   return false;
 }
 
+// Two levels there are only where joints are judged by themselves.
+double Live::act_ratio(std::size_t joint, bool fast) const {
+  const BoundSettings& bound = *input_.robot.bound;
+  return (fast ? bound.fast : bound.joints)[joint].act_ratio;
+}
+
 void Live::keep(const BusSample& sample, double t_s, const Watched& said) {
   const bool by_joint = judged_.size() > 1 || said.thresholds.size() > 0;
   for (std::size_t i = 0; i < judged_.size(); ++i) {
@@ -215,16 +224,22 @@ void Live::keep(const BusSample& sample, double t_s, const Watched& said) {
     residual_[i] = by_joint ? nearest.residual : said.error_norm;
     const double threshold = by_joint ? nearest.threshold : said.threshold;
     threshold_[i] = has_bound_ ? threshold : kNone;
+    if (has_two_levels_) {
+      const double ratio = act_ratio(i, nearest.fast);
+      act_[i] = ratio > 1 ? ratio * threshold : kNone;
+    }
     now_.beyond[i] = by_joint ? said.levels[i] : said.level;
   }
   const auto span = [](const auto& vector) {
     return std::span<const double>(vector.data(), static_cast<std::size_t>(vector.size()));
   };
   const Watch::Sample& at = sample.sample;
-  history_.push(t_s, span(at.q), span(at.dq), span(at.tau), residual_, threshold_);
-  strip_.push(t_s, residual_, threshold_);
+  const Levels levels{residual_, threshold_, act_};
+  history_.push(t_s, span(at.q), span(at.dq), span(at.tau), levels);
+  strip_.push(t_s, levels);
   now_.residual = residual_;
   now_.threshold = threshold_;
+  now_.act = act_;
   if (!recording_) return;
   const std::size_t stride = 1 + 3 * input_.robot.joints.size();
   const auto most = static_cast<std::size_t>(kLongestRecordingS / period_s_);
@@ -245,6 +260,13 @@ void Live::follow_detection(double t_s, const Watched& said) {
   was_latched_ = said.latched;
   if (!detection_) return;
   if (said.latched) detection_->answer = watch_->answer();
+  if (said.acts && !detection_->act_t_s) {
+    detection_->act_t_s = t_s;
+    if (said.first_joint >= 0) {
+      const auto acts = std::find(said.joint_acts.begin(), said.joint_acts.end(), true);
+      detection_->act_joint = static_cast<int>(acts - said.joint_acts.begin());
+    }
+  }
   freeze(t_s);
 }
 

@@ -48,9 +48,11 @@ struct Judged {
 
 /// A detection, with what isolation says of it.
 struct Detection {
-  std::uint64_t number = 0;  // from 1
-  double t_s = 0;            // of the live view
-  int joint = -1;            // from 0, that was first; -1: joints are not told apart
+  std::uint64_t number = 0;       // from 1
+  double t_s = 0;                 // of the live view
+  int joint = -1;                 // from 0, that was first; -1: joints are not told apart
+  std::optional<double> act_t_s;  // when the second level was reached; none: it was not
+  int act_joint = -1;             // from 0, whose it was; -1: joints are not told apart
   std::optional<IsolatedFault> answer;
   bool frozen = false;                   // its surroundings are there
   History::Rows rows;                    // those
@@ -62,6 +64,7 @@ struct Moment {
   double t_s = 0;                 // of the newest sample
   std::vector<double> residual;   // |e| of everything that is judged
   std::vector<double> threshold;  // NaN without a bound
+  std::vector<double> act;        // the second level; NaN where it is the first
   std::vector<bool> beyond;       // its threshold, now
   bool is_driven = false;         // the drives give torque
   bool is_judging = false;        // and the threshold has settled
@@ -92,6 +95,7 @@ class Live {
 
   [[nodiscard]] const LiveInput& input() const { return input_; }
   [[nodiscard]] bool has_bound() const { return has_bound_; }
+  [[nodiscard]] bool has_two_levels() const { return has_two_levels_; }
   [[nodiscard]] bool is_simulated() const { return bench_ != nullptr; }
   [[nodiscard]] const std::vector<Judged>& judged() const { return judged_; }
 
@@ -131,6 +135,7 @@ class Live {
   void judge(const BusSample& sample);
   bool is_settled(const BusSample& sample, double t_s);
   void keep(const BusSample& sample, double t_s, const Watched& said);
+  [[nodiscard]] double act_ratio(std::size_t joint, bool fast) const;
   void follow_detection(double t_s, const Watched& said);
   void freeze(double now_s);
   void after_frames();
@@ -142,6 +147,7 @@ class Live {
 
   LiveInput input_;
   bool has_bound_ = false;
+  bool has_two_levels_ = false;
   std::vector<Judged> judged_;
   std::vector<std::string> names_;  // of joints, for words
   std::unique_ptr<Feed> feed_;
@@ -160,7 +166,7 @@ class Live {
   std::uint64_t frames_before_ = 0, understood_before_ = 0;
   hal::DriveCounts counts_before_;
   bool was_latched_ = false;
-  std::vector<double> residual_, threshold_;
+  std::vector<double> residual_, threshold_, act_;
   std::optional<hal::Microseconds> begin_us_;
   hal::Microseconds last_sample_us_ = 0;
 

@@ -9,6 +9,7 @@
 #include "common/refused.hpp"
 #include "live/live.hpp"
 #include "log/csv_text.hpp"
+#include "report/act_level.hpp"
 #include "report/decimate.hpp"
 
 namespace offnominal::desk::live {
@@ -41,9 +42,9 @@ sim::FaultEvent checked(const std::string& kind, int joint, double size, int joi
   return fault;
 }
 
-// Residual and threshold over the time, as much of them as a picture shows.
+// Residual and the levels that there are over the time, as much of them as a picture shows.
 report::Chart chart_of(const History::Rows& rows, std::size_t of, const Judged& judged,
-                       std::size_t pixels, bool has_bound) {
+                       std::size_t pixels, const Live& live) {
   const Eigen::VectorXd t_s = rows.time_s();
   const auto series = [&](const char* name, const Eigen::VectorXd& values, report::Tone tone) {
     report::Series all{.name = name, .tone = tone};
@@ -56,8 +57,12 @@ report::Chart chart_of(const History::Rows& rows, std::size_t of, const Judged& 
   chart.x = {.name = "time", .unit = "s"};
   chart.y = {{.name = "residual", .unit = judged.unit}};
   chart.series = {series("|residual|", rows.residual(of), report::Tone::kResidual)};
-  if (has_bound) {
+  if (live.has_bound()) {
     chart.series.push_back(series("threshold", rows.threshold(of), report::Tone::kThreshold));
+  }
+  if (!rows.act(of).array().isNaN().all()) {
+    chart.series.push_back(series(report::kActLevel, rows.act(of), report::Tone::kFaint));
+    chart.series.back().dashed = true;
   }
   chart.zoom_group = "live";
   chart.width = report::Width::kHalf;
@@ -75,6 +80,8 @@ Moment Live::moment(std::uint64_t from) const {
     moment.detection->number = detection_->number;
     moment.detection->t_s = detection_->t_s;
     moment.detection->joint = detection_->joint;
+    moment.detection->act_t_s = detection_->act_t_s;
+    moment.detection->act_joint = detection_->act_joint;
     moment.detection->answer = detection_->answer;
     moment.detection->frozen = detection_->frozen;
   }
@@ -93,6 +100,7 @@ std::string Live::words_of(const IsolatedFault& fault) const {
 std::vector<report::Chart> Live::frozen(std::size_t pixels) const {
   History::Rows rows;
   double detected_s = 0;
+  std::optional<double> acts_s;
   {
     const std::lock_guard guard(lock_);
     if (!detection_ || !detection_->frozen) {
@@ -100,11 +108,13 @@ std::vector<report::Chart> Live::frozen(std::size_t pixels) const {
     }
     rows = detection_->rows;
     detected_s = detection_->t_s;
+    if (has_two_levels_) acts_s = detection_->act_t_s;
   }
   std::vector<report::Chart> charts;
   for (std::size_t i = 0; i < judged_.size(); ++i) {
-    charts.push_back(chart_of(rows, i, judged_[i], pixels, has_bound_));
+    charts.push_back(chart_of(rows, i, judged_[i], pixels, *this));
     charts.back().events = {{detected_s, "detected", report::Level::kBad}};
+    if (acts_s) charts.back().events.push_back({*acts_s, "acts", report::Level::kBad});
   }
   return charts;
 }

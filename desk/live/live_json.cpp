@@ -114,12 +114,13 @@ ordered_json controller_json(const ControllerWord& word) {
 }
 
 ordered_json detection_json(const Detection& detection, const Live& live) {
-  ordered_json json{{"number", detection.number},
-                    {"t_s", time_number(detection.t_s)},
-                    {"joint", nullptr},
-                    {"frozen", detection.frozen},
+  ordered_json json{{"number", detection.number}, {"t_s", time_number(detection.t_s)},
+                    {"joint", nullptr},           {"act_t_s", nullptr},
+                    {"act_joint", nullptr},       {"frozen", detection.frozen},
                     {"answer", nullptr}};
   if (detection.joint >= 0) json["joint"] = detection.joint + 1;
+  if (detection.act_t_s) json["act_t_s"] = time_number(*detection.act_t_s);
+  if (detection.act_joint >= 0) json["act_joint"] = detection.act_joint + 1;
   if (detection.answer) {
     const IsolatedFault& answer = *detection.answer;
     json["answer"] = {{"words", live.words_of(answer)},
@@ -166,6 +167,7 @@ ordered_json setup_json(const Live& live) {
       {"joints", std::move(joints)},
       {"judged", std::move(judged)},
       {"has_bound", live.has_bound()},
+      {"has_two_levels", live.has_two_levels()},
       {"step_s", Strip::kStepS},
       {"kept_s", {kBeforeS, kAfterS}},
       {"explained_s", {kExplainedBeforeS, kExplainedAfterS}},
@@ -182,6 +184,7 @@ ordered_json moment_json(const Moment& moment, const Live& live) {
                     {"controller", nullptr},
                     {"residual", numbers(moment.residual)},
                     {"threshold", numbers(moment.threshold)},
+                    {"act", ordered_json::array()},
                     {"beyond", moment.beyond},
                     {"detection", nullptr},
                     {"faults", injected_json(moment.faults)},
@@ -201,7 +204,11 @@ ordered_json moment_json(const Moment& moment, const Live& live) {
   json["steps"] = {
       {"first", moment.steps.first},       {"next", moment.steps.next},
       {"t_s", times(moment.steps.t_s)},    {"low", tables(moment.steps.low)},
-      {"high", tables(moment.steps.high)}, {"threshold", tables(moment.steps.threshold)}};
+      {"high", tables(moment.steps.high)}, {"threshold", tables(moment.steps.threshold)},
+      {"act", ordered_json::array()}};
+  if (!live.has_two_levels()) return json;
+  json["act"] = numbers(moment.act);
+  json["steps"]["act"] = tables(moment.steps.act);
   return json;
 }
 

@@ -11,6 +11,7 @@
 
 #include "common/error.hpp"
 #include "common/number.hpp"
+#include "loop/at_detection.hpp"
 #include "loop/momentum_error.hpp"
 #include "offnominal/sim/encoder.hpp"
 #include "robot/monitor_config_of.hpp"
@@ -18,9 +19,8 @@
 namespace offnominal::desk {
 
 /// What a robot file does not say.
-struct ControllerSettings {
+struct ControllerSettings : ActSettings {
   bool accommodate = false;
-  bool stop_at_detection = false;
   hal::DriveMode safe_mode = hal::DriveMode::kOff;
   /// Largest acceleration of a joint, rad/s^2: the drives send positions alone, and it bounds the
   /// velocity observer's error. None: they send velocities.
@@ -67,7 +67,9 @@ template <int N, typename Scalar, typename Space>
       controller::controller_config(monitor_config_of<N, Scalar, Space>(robot),
                                     gains_of<N, Scalar>(robot), arming_of<N, Scalar>(robot));
   config.safe_mode = settings.safe_mode;
-  config.stop_at_detection = settings.stop_at_detection;
+  config.at_detection = settings.at_detection;
+  config.slow_down = {static_cast<Scalar>(settings.slow_down.to),
+                      static_cast<Scalar>(settings.slow_down.within_s)};
   config.isolates = robot.estimator.isolation;
   if (!settings.accommodate) config.monitor.max_compensation.fill(Scalar(0));
   if (settings.max_acceleration) {

@@ -38,6 +38,10 @@ struct ControllerView {
   int first_joint = -1;  // that was detected first, from 0
   double weight_norm = 0;
   bool detected = false;                  // latched
+  bool acts = false;                      // the same of the second level
+  bool slows = false;                     // its motion is slowed
+  double motion_time_s = 0;               // how far that has come
+  double behind_s = 0;                    // and how far it is behind the clock by that
   std::optional<IsolatedFault> isolated;  // once there is an answer, of a robot that asks for one
 };
 

@@ -55,6 +55,11 @@ class SteppedControllerOf final : public SteppedController {
     view.weight_norm =
         std::sqrt(static_cast<double>(squared_norm(data_->monitor.estimator.weights)));
     view.detected = data_->output.detector.latched;
+    view.acts = data_->output.detector.acts;
+    view.slows = data_->slows;
+    view.behind_s = controller_.pace(*data_).behind_s;
+    view.motion_time_s =
+        static_cast<double>(data_->run_ticks) * robot_.estimator.period_s - view.behind_s;
     if constexpr (std::is_same_v<Space, TorqueSpace>) {
       view.error = doubles(data_->output.error);
       view.thresholds = doubles(data_->output.thresholds);

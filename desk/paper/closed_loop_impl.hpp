@@ -85,6 +85,7 @@ void run_closed_loop(const ControllerSetup<Scalar>& setup, const sim::TwoLinkPla
     record.weight_norm =
         std::sqrt(static_cast<double>(squared_norm(monitor_state->estimator.weights)));
     record.detected = output.detector.latched;
+    record.acts = output.detector.acts;
     observe(record);
     tau =
         detail::drive_torque<Scalar>(setup, monitor.model(), record.time_s, desired, state,

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <utility>
 
+#include "report/act_level.hpp"
+
 namespace offnominal::desk::paper {
 namespace {
 
@@ -27,6 +29,9 @@ std::vector<report::EventMark> events_of(const ExperimentResult& run) {
   std::vector<report::EventMark> events;
   if (run.fault_time_s) events.push_back({*run.fault_time_s, "fault", Level::kNeutral});
   if (run.detection_time_s) events.push_back({*run.detection_time_s, "detected", Level::kGood});
+  if (run.has_two_levels && run.act_time_s)
+    events.push_back({*run.act_time_s, "acts", Level::kBad});
+  if (run.slowed_time_s) events.push_back({*run.slowed_time_s, "slowed", Level::kWarn});
   return events;
 }
 
@@ -100,6 +105,23 @@ void add_filtered_sizes(report::Section& section, const ExperimentResult& run, i
   section.blocks.emplace_back(std::move(chart));
 }
 
+// Of a joint, behind a second filter, which sees sooner what is short and large.
+Chart fast_residual_chart(const ExperimentResult& run, std::size_t i) {
+  const TimeSeries& series = run.series;
+  const JointRun& joint = run.joints[i];
+  Chart chart = time_chart(
+      run, fmt::format("The same behind the fast filter, joint {}, {}", i + 1, joint.name),
+      axis("residual", joint.unit));
+  chart.series = {
+      line("threshold", series.time_s, series.joint_fast_threshold[i], Tone::kThreshold),
+      line("residual", series.time_s, series.joint_fast_residual[i], Tone::kResidual)};
+  if (joint.fast_act_ratio > 1) {
+    chart.series.push_back(report::act_level(chart.series.front(), joint.fast_act_ratio));
+  }
+  chart.width = report::Width::kHalf;
+  return chart;
+}
+
 // Of a monitor that judges joint by joint.
 void add_joint_residuals(report::Section& section, const ExperimentResult& run) {
   const TimeSeries& series = run.series;
@@ -111,6 +133,9 @@ void add_joint_residuals(report::Section& section, const ExperimentResult& run) 
     chart.series = {line("threshold", series.time_s, series.joint_threshold[i], Tone::kThreshold),
                     line("fault, filtered", series.time_s, series.joint_fault[i], Tone::kMeasured),
                     line("residual", series.time_s, series.joint_residual[i], Tone::kResidual)};
+    if (joint.act_ratio > 1) {
+      chart.series.push_back(report::act_level(chart.series.front(), joint.act_ratio));
+    }
     chart.width = report::Width::kHalf;
     if (i == 0) {
       chart.note =
@@ -118,6 +143,9 @@ void add_joint_residuals(report::Section& section, const ExperimentResult& run) 
           "be once its filtered fault exceeds twice the threshold.";
     }
     section.blocks.emplace_back(std::move(chart));
+    if (!series.joint_fast_residual.empty()) {
+      section.blocks.emplace_back(fast_residual_chart(run, i));
+    }
   }
 }
 

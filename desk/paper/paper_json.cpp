@@ -29,12 +29,14 @@ Json to_json(const ExperimentResult& result) {
   };
   if (result.tracking_rms_m) json["tracking_rms_m"] = *result.tracking_rms_m;
   if (result.joints.empty()) return json;
+  if (result.has_two_levels) json["act_time_s"] = nullable(result.act_time_s);
   json["first_joint"] = result.first_joint ? Json(*result.first_joint + 1) : Json(nullptr);
   for (const JointRun& joint : result.joints) {
     json["joints"].push_back(
         {{"name", joint.name},
          {"detection_time_s", nullable(joint.detection_time_s)},
          {"max_error_to_threshold_before_fault", joint.max_error_to_threshold_before_fault}});
+    if (result.has_two_levels) json["joints"].back()["act_time_s"] = nullable(joint.act_time_s);
   }
   return json;
 }

@@ -30,13 +30,21 @@ RunObserver::RunObserver(const RobotDescription& robot, const RunSettings& setti
   }
   if (robot.estimator.space != EstimatorSpace::kTorque) return;
   model_ = make_model(chain_of<kRuntimeJoints, double>(robot));
+  result_.has_two_levels = robot.bound->has_two_levels();
   for (const RobotJoint& joint : robot.joints) {
     const bool turns = joint.joint.type == JointType::kRevolute;
     JointRun& of_joint = result_.joints.emplace_back();
     of_joint.name = joint.name;
     of_joint.unit = turns ? "N m" : "N";
+    const std::size_t i = result_.joints.size() - 1;
+    of_joint.act_ratio = robot.bound->joints[i].act_ratio;
+    if (!robot.bound->fast.empty()) of_joint.fast_act_ratio = robot.bound->fast[i].act_ratio;
   }
   for (auto* per_joint : {&series.joint_residual, &series.joint_threshold, &series.joint_fault}) {
+    per_joint->resize(robot.joints.size());
+  }
+  if (robot.bound->fast.empty()) return;
+  for (auto* per_joint : {&series.joint_fast_residual, &series.joint_fast_threshold}) {
     per_joint->resize(robot.joints.size());
   }
 }
@@ -88,7 +96,12 @@ bool RunObserver::is_guaranteed(const TickRecord& tick) const {
 void RunObserver::judge(const TickRecord& tick) {
   result_.steps = tick.tick;
   result_.max_weight_norm = std::max(result_.max_weight_norm, tick.weight_norm);
-  if (tick.detected && !result_.detection_time_s) result_.detection_time_s = tick.time_s;
+  const auto note = [&](bool is_so, std::optional<double>& since_s) {
+    if (is_so && !since_s) since_s = tick.time_s;
+  };
+  note(tick.detected, result_.detection_time_s);
+  note(tick.acts, result_.act_time_s);
+  note(tick.slows, result_.slowed_time_s);
   if (!result_.guaranteed_time_s && is_guaranteed(tick)) result_.guaranteed_time_s = tick.time_s;
   const bool healthy = tick.time_s <= healthy_until_ + tolerance_;
   if (model_) judge_joints(tick, healthy);
@@ -100,17 +113,37 @@ void RunObserver::judge(const TickRecord& tick) {
   }
 }
 
+bool RunObserver::acts(const TickRecord& tick, std::size_t joint) const {
+  const auto index = static_cast<Eigen::Index>(joint);
+  const JointRun& of_joint = result_.joints[joint];
+  const auto is_beyond = [&](const sim::JointVector& error, const sim::JointVector& thresholds,
+                             double act_ratio) {
+    return error.size() > 0 && std::abs(error[index]) > act_ratio * thresholds[index];
+  };
+  return is_beyond(tick.error, tick.thresholds, of_joint.act_ratio) ||
+         is_beyond(tick.fast_error, tick.fast_thresholds, of_joint.fast_act_ratio);
+}
+
 void RunObserver::judge_joints(const TickRecord& tick, bool healthy) {
-  if (tick.first_joint >= 0 && !result_.first_joint) result_.first_joint = tick.first_joint;
   for (std::size_t i = 0; i < result_.joints.size(); ++i) {
     const auto index = static_cast<Eigen::Index>(i);
-    const auto [residual, threshold] =
+    const ResidualAgainst nearest =
         nearer_filter(tick.error, tick.thresholds, tick.fast_error, tick.fast_thresholds, index);
     JointRun& joint = result_.joints[i];
-    if (residual > threshold && !joint.detection_time_s) joint.detection_time_s = tick.time_s;
-    if (!healthy || threshold <= 0) continue;
+    if (nearest.residual > nearest.threshold && !joint.detection_time_s)
+      joint.detection_time_s = tick.time_s;
+    if (!joint.act_time_s && acts(tick, i)) joint.act_time_s = tick.time_s;
+    if (!healthy || nearest.threshold <= 0) continue;
     double& ratio = joint.max_error_to_threshold_before_fault;
-    ratio = std::max(ratio, residual / threshold);
+    ratio = std::max(ratio, nearest.residual / nearest.threshold);
+  }
+  if (tick.first_joint < 0 || result_.first_joint) return;
+  result_.first_joint = tick.first_joint;
+  // Of a position to which no motion comes no residual tells.
+  JointRun& first = result_.joints[static_cast<std::size_t>(tick.first_joint)];
+  if (!first.detection_time_s) first.detection_time_s = tick.time_s;
+  if (tick.acts && !first.act_time_s && *first.detection_time_s == tick.time_s) {
+    first.act_time_s = tick.time_s;
   }
 }
 
@@ -137,6 +170,9 @@ void RunObserver::keep_joints(const TickRecord& tick) {
     series.joint_residual[i].push_back(std::abs(tick.error[index]));
     series.joint_threshold[i].push_back(tick.thresholds[index]);
     series.joint_fault[i].push_back(robot_.estimator.alpha * std::abs(eta_[index]));
+    if (series.joint_fast_residual.empty()) continue;
+    series.joint_fast_residual[i].push_back(std::abs(tick.fast_error[index]));
+    series.joint_fast_threshold[i].push_back(tick.fast_thresholds[index]);
   }
 }
 

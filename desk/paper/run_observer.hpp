@@ -27,6 +27,8 @@ struct TickRecord {
   double threshold = 0.0;
   double weight_norm = 0.0;
   bool detected = false;  // latched
+  bool acts = false;      // the same of the second level
+  bool slows = false;     // the controller has slowed the motion
   // In EstimatorSpace::kTorque, N m or N; otherwise empty, and -1.
   sim::JointVector error;
   sim::JointVector thresholds;
@@ -63,6 +65,7 @@ class RunObserver {
   [[nodiscard]] bool is_guaranteed(const TickRecord& tick) const;
   void judge(const TickRecord& tick);
   void judge_joints(const TickRecord& tick, bool healthy);
+  [[nodiscard]] bool acts(const TickRecord& tick, std::size_t joint) const;
   void add_to_window(const TickRecord& tick, const sim::JointVector& psi);
   void keep(const TickRecord& tick, const sim::JointVector& psi);
   void keep_joints(const TickRecord& tick);

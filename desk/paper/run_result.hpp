@@ -43,7 +43,10 @@ struct TimeSeries {
   std::vector<std::vector<double>> joint_residual;   // |alpha e_i|
   std::vector<std::vector<double>> joint_threshold;  // alpha mu_i
   std::vector<std::vector<double>> joint_fault;      // |alpha eta_i|
-  std::vector<BusTick> bus;                          // empty where there is none
+  // Residual and threshold behind a second filter; empty where there is none.
+  std::vector<std::vector<double>> joint_fast_residual;
+  std::vector<std::vector<double>> joint_fast_threshold;
+  std::vector<BusTick> bus;  // empty where there is none
 };
 
 /// What a monitor that judges joint by joint said of one.
@@ -51,6 +54,9 @@ struct JointRun {
   std::string name;
   std::string unit;                        // of its torque
   std::optional<double> detection_time_s;  // first crossing
+  std::optional<double> act_time_s;        // of the second level, of either filter
+  double act_ratio = 1;                    // of that level to the threshold
+  double fast_act_ratio = 1;               // the same behind the second filter
   double max_error_to_threshold_before_fault = 0;
 };
 
@@ -63,6 +69,9 @@ struct ExperimentResult {
   std::optional<double> fault_time_s;       // none without a fault
   std::optional<double> detection_time_s;   // first |e| > mu; none where it never was
   std::optional<double> guaranteed_time_s;  // first |eta| > 2 mu (Theorem 4.2)
+  bool has_two_levels = false;              // BoundSettings::has_two_levels()
+  std::optional<double> act_time_s;         // beyond the second level; of one level as detected
+  std::optional<double> slowed_time_s;      // the controller slowed the motion; none: it did not
   // Largest over the ticks up to the fault; over the whole run without one.
   double max_error_to_threshold_before_fault = 0.0;
   double max_abs_psi_hat_before_fault = 0.0;  // over joints too, rad/s^2

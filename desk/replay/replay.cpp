@@ -83,17 +83,18 @@ Replay replay(const RobotDescription& robot, const Log& log, const OnShare& on_s
   result.hidden_units = robot.estimator.hidden_units;
   result.seed = robot.estimator.seed;
   result.filter_s = 1 / robot.estimator.alpha;
-  for (const auto* bounds : {&robot.bound->joints, &robot.bound->fast}) {
-    for (const JointBoundSettings& joint : *bounds) {
-      result.has_two_levels = result.has_two_levels || joint.act_ratio > 1;
-    }
-  }
+  result.has_two_levels = robot.bound->has_two_levels();
   for (const RobotJoint& joint : robot.joints) {
     result.joint_names.push_back(joint.name);
     const JointType type = joint.joint.type;
     const char* const acceleration = type == JointType::kRevolute ? "rad/s^2" : "m/s^2";
     result.psi_hat_units.emplace_back(in_torque ? unit_of(Quantity::kEffort, type) : acceleration);
-    if (in_torque) result.joints.emplace_back().unit = unit_of(Quantity::kEffort, type);
+    if (!in_torque) continue;
+    const std::size_t i = result.joints.size();
+    JointReplay& of_joint = result.joints.emplace_back();
+    of_joint.unit = unit_of(Quantity::kEffort, type);
+    of_joint.act_ratio = robot.bound->joints[i].act_ratio;
+    if (!robot.bound->fast.empty()) of_joint.fast_act_ratio = robot.bound->fast[i].act_ratio;
   }
   replay_monitor(carrying(seen, log.payload), log, on_share, result);
   if (result.t_s.size() == 0) {
@@ -125,6 +126,13 @@ bool Replay::is_too_short() const {
 
 namespace {
 
+std::string names_of(const Replay& replay, const std::vector<int>& joints) {
+  return list_of(joints, [&](int joint) {
+    return fmt::format("joint {} ({})", joint + 1,
+                       replay.joint_names[static_cast<std::size_t>(joint)]);
+  });
+}
+
 // The joint that crossed first, and the others in the order in which they followed.
 std::string joints_words(const Replay& replay) {
   const auto first = static_cast<std::size_t>(*replay.first_joint);
@@ -150,6 +158,17 @@ std::string joints_words(const Replay& replay) {
                            : std::string("in the same tick");
   }
   return words + ".";
+}
+
+// When it first came to act, and whose residual that was.
+std::string act_words(const Replay& replay) {
+  if (!replay.act_time_s) return " Never beyond the level to act.";
+  std::vector<int> joints;
+  for (std::size_t i = 0; i < replay.joints.size(); ++i) {
+    if (replay.joints[i].act_time_s == replay.act_time_s) joints.push_back(static_cast<int>(i));
+  }
+  return fmt::format(" Beyond the level to act at {:.3f} s, {}.", *replay.act_time_s,
+                     names_of(replay, joints));
 }
 
 // Nobody saw what was there: neither "nominal" nor "off nominal" speaks of it.
@@ -191,9 +210,7 @@ std::string words_of(const Replay& replay) {
                         100 * replay.max_error_to_threshold);
   }
   if (replay.has_two_levels && replay.detection_time_s) {
-    words += replay.act_time_s
-                 ? fmt::format(" Beyond the level to act at {:.3f} s.", *replay.act_time_s)
-                 : std::string(" Never beyond the level to act.");
+    words += act_words(replay);
   }
   for (std::size_t i = 0; i < replay.faults.size(); ++i) {
     const IsolatedFault& fault = replay.faults[i];
@@ -214,10 +231,7 @@ std::string ratio_name(const Replay& replay) {
 }
 
 std::string joints_of(const Replay& replay, const Alarm& alarm) {
-  return list_of(alarm.joints, [&](int joint) {
-    return fmt::format("joint {} ({})", joint + 1,
-                       replay.joint_names[static_cast<std::size_t>(joint)]);
-  });
+  return names_of(replay, alarm.joints);
 }
 
 }  // namespace offnominal::desk

@@ -58,6 +58,9 @@ struct JointReplay {
   double max_ratio_fast = 0;
   double max_error_to_threshold = 0;       // of either
   std::optional<double> detection_time_s;  // its first alarm, time of the recording
+  std::optional<double> act_time_s;        // its first time beyond the second level
+  double act_ratio = 1;                    // of that to its threshold, of either filter
+  double fast_act_ratio = 1;
   std::vector<Alarm> alarms;
 
   /// The largest residual of a filter that has seen something: its own where it has.

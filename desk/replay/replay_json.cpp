@@ -58,6 +58,7 @@ void add_joints(const Replay& replay, nlohmann::json& json) {
                       {"max_abs_psi_hat", replay.psi_hat.col(index).cwiseAbs().maxCoeff()},
                       {"detection_time_s", time_or_null(joint.detection_time_s)},
                       {"alarms", alarms_json(joint.alarms)}});
+    if (replay.has_two_levels) joints.back()["act_time_s"] = time_or_null(joint.act_time_s);
     if (replay.fast_error.size() > 0) {
       joints.back()["fast_max_residual"] = joint.fast_max_residual;
       joints.back()["fast_max_threshold"] = joint.fast_max_threshold;

@@ -144,6 +144,7 @@ class ReplayCollector {
       }
       joint.max_error_to_threshold = std::max(joint.max_error_to_threshold, ratio);
       joints_[i].take(t_s, output.levels[i], ratio, joint.alarms, joint.detection_time_s);
+      if (output.joint_acts[i] && !joint.act_time_s) joint.act_time_s = t_s;
     }
   }
 

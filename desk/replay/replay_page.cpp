@@ -64,16 +64,20 @@ struct FilterSeries {
   std::string title;
   const Eigen::MatrixXd& error;
   const Eigen::MatrixXd& thresholds;
+  double JointReplay::*act_ratio;
 };
 
 Chart joint_chart(const Replay& replay, const FilterSeries& filter, Eigen::Index joint) {
   const auto index = static_cast<std::size_t>(joint);
   const JointReplay& of_joint = replay.joints[index];
-  Chart chart = chart_against_threshold(EstimatorSpace::kTorque, of_joint.unit,
-                                        line_of(replay, filter.error.col(joint).cwiseAbs()),
-                                        line_of(replay, filter.thresholds.col(joint)));
+  Chart chart = chart_against_threshold(
+      EstimatorSpace::kTorque, of_joint.unit, line_of(replay, filter.error.col(joint).cwiseAbs()),
+      line_of(replay, filter.thresholds.col(joint)), of_joint.*filter.act_ratio);
   chart.title = filter.title + ", " + replay.joint_names[index];
   put_on_time(replay, of_joint.detection_time_s, chart);
+  if (replay.has_two_levels && of_joint.act_time_s) {
+    chart.events.push_back({*of_joint.act_time_s, "acts", Level::kBad});
+  }
   return chart;
 }
 
@@ -93,6 +97,7 @@ Table joint_table(const Replay& replay) {
     table.columns.push_back({"its largest threshold", "", ".4g"});
     table.columns.push_back({"its largest ratio", "1", ".3g"});
   }
+  if (replay.has_two_levels) table.columns.push_back({"acts from", "s", ".3f"});
   for (std::size_t i = 0; i < replay.joints.size(); ++i) {
     const JointReplay& joint = replay.joints[i];
     table.rows.push_back({replay.joint_names[i],
@@ -103,10 +108,14 @@ Table joint_table(const Replay& replay) {
                           joint.max_threshold,
                           joint.max_ratio_slow});
     if (joint.detection_time_s) table.rows.back()[1] = *joint.detection_time_s;
-    if (!has_fast) continue;
-    table.rows.back().emplace_back(joint.fast_max_residual);
-    table.rows.back().emplace_back(joint.fast_max_threshold);
-    table.rows.back().emplace_back(joint.max_ratio_fast);
+    if (has_fast) {
+      table.rows.back().emplace_back(joint.fast_max_residual);
+      table.rows.back().emplace_back(joint.fast_max_threshold);
+      table.rows.back().emplace_back(joint.max_ratio_fast);
+    }
+    if (!replay.has_two_levels) continue;
+    table.rows.back().emplace_back();
+    if (joint.act_time_s) table.rows.back().back() = *joint.act_time_s;
   }
   return table;
 }
@@ -127,9 +136,10 @@ void add_residuals(const Replay& replay, Section& section) {
       "and "
       "its uncertainty bound say when the residual exceeds the threshold.";
   section.blocks.emplace_back(joint_table(replay));
-  const FilterSeries slow{"Residual against its threshold", replay.error, replay.thresholds};
+  const FilterSeries slow{"Residual against its threshold", replay.error, replay.thresholds,
+                          &JointReplay::act_ratio};
   const FilterSeries fast{"The same behind the fast filter", replay.fast_error,
-                          replay.fast_thresholds};
+                          replay.fast_thresholds, &JointReplay::fast_act_ratio};
   for (Eigen::Index joint = 0; joint < replay.error.cols(); ++joint) {
     Chart chart = joint_chart(replay, slow, joint);
     chart.slider = joint == 0;

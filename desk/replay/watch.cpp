@@ -280,6 +280,7 @@ class WatchOf final : public Watch {
       said_.first_joint = said_.latched ? output_.detector.first_joint : -1;
       for (std::size_t i = 0; i < output_.detector.joints.size(); ++i) {
         said_.levels[i] = output_.detector.joints[i].level;
+        said_.joint_acts[i] = output_.detector.joints[i].acts;
       }
     }
   }

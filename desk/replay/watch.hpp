@@ -41,6 +41,7 @@ struct Watched {
   std::array<bool, static_cast<std::size_t>(kMaxJoints)> levels{};  // of each, in torque space
   bool latched = false;  // was beyond, ever, or since the detection was taken back
   bool acts = false;     // the same of the second level; of one level as latched
+  std::array<bool, static_cast<std::size_t>(kMaxJoints)> joint_acts{};  // of each, in torque space
   int first_joint = -1;  // from 0, that was first; -1: none, or one threshold of all
 
   /// Of a joint that is judged by itself, of the nearer of its filters.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -109,6 +110,13 @@ struct BoundSettings {
   std::vector<JointBoundSettings> fast = {};
   double velocity_error = 0;  // largest error of the measured velocity, rad/s or m/s; not kPerJoint
   std::string source = {};    // where the numbers come from, free text; empty: not said
+
+  // Whether a joint is noticed before it acts: an act_ratio is above 1.
+  [[nodiscard]] bool has_two_levels() const {
+    const auto is_above = [](const JointBoundSettings& joint) { return joint.act_ratio > 1; };
+    return std::any_of(joints.begin(), joints.end(), is_above) ||
+           std::any_of(fast.begin(), fast.end(), is_above);
+  }
 };
 
 // Where one quantity of a log comes from: SI value = scale * unit * source + offset, `unit` as

@@ -1,11 +1,9 @@
 #include "sil/both_ends.hpp"
 
-#include <fmt/format.h>
-
 #include <string>
-#include <vector>
 
 #include "common/error.hpp"
+#include "loop/refusal_words.hpp"
 #include "sil/plant_of.hpp"
 
 namespace offnominal::desk::sil {
@@ -13,31 +11,11 @@ namespace {
 
 ControllerSettings settings_of(const Scenario& scenario) {
   ControllerSettings settings;
+  static_cast<ActSettings&>(settings) = scenario;
   settings.accommodate = scenario.accommodate;
-  settings.stop_at_detection = scenario.stop_at_detection;
   if (!scenario.sends_velocity) settings.max_acceleration = scenario.max_acceleration;
   settings.encoder_bits_per_turn = scenario.encoder_bits_per_turn;
   return settings;
-}
-
-std::string joints_without_gains(const RobotDescription& robot) {
-  std::vector<std::string> joints;
-  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
-    const RobotJoint& joint = robot.joints[i];
-    if (joint.kp > 0 && joint.kd > 0) continue;
-    joints.push_back(fmt::format("{} ({})", i + 1, joint.name));
-  }
-  return fmt::format("{}", fmt::join(joints, ", "));
-}
-
-// What to do where the controller does not arm.
-std::string mend_of(controller::Fault refusal, const RobotDescription& robot) {
-  if (refusal == controller::Fault::kNoGains) {
-    return "joint " + joints_without_gains(robot) +
-           ": give kp_per_s2 and kd_per_s in [joint.control] of the robot file "
-           "(docs/robot-file.md)";
-  }
-  return "docs/troubleshooting.md says what it asks for";
 }
 
 }  // namespace

@@ -72,9 +72,10 @@ paper::TickRecord record_of(const Table& plant, Index row, const Table& controll
   record.tick = std::llround(record.time_s / period_s);
   record.state.q = plant.all("q", row);
   record.state.dq = plant.all("dq", row);
-  record.q_desired = motion_of(scenario)(judging_time_s(scenario, record.time_s,
-                                                        controller.at("motion_t", partner)))
-                         .q;
+  record.q_desired =
+      motion_of(scenario)(judging_time_s(scenario, record.time_s - controller.at("behind", partner),
+                                         controller.at("motion_t", partner)))
+          .q;
   record.tau = plant.all("tau", row);
   record.psi = plant.all("psi", row);
   record.psi_hat = controller.all("psi_hat", partner);
@@ -82,6 +83,7 @@ paper::TickRecord record_of(const Table& plant, Index row, const Table& controll
   record.threshold = controller.at("threshold", partner);
   record.weight_norm = controller.at("weights", partner);
   record.detected = controller.at("detected", partner) != 0;
+  record.slows = controller.at("slows", partner) != 0;
   if (robot.estimator.space == EstimatorSpace::kTorque) {
     record.error = controller.all("error", partner);
     record.thresholds = controller.all("threshold", partner);
@@ -90,6 +92,9 @@ paper::TickRecord record_of(const Table& plant, Index row, const Table& controll
       record.fast_thresholds = controller.all("fast_threshold", partner);
     }
     record.first_joint = static_cast<int>(controller.at("first_joint", partner)) - 1;
+    record.acts = controller.at("acts", partner) != 0;
+  } else {
+    record.acts = record.detected;
   }
   // The controller's rows are those of its fresh ticks.
   record.bus = {true,
@@ -178,6 +183,7 @@ SilResult gather(const RobotDescription& robot, const Scenario& scenario,
   SilResult result;
   result.run = observer.finish();
   result.run.fault_time_s = first_s;
+  result.slowed = slowed_in(result.run, scenario);
   result.bus_name = bus_name;
   result.faults = scenario.faults;
   result.state = state_named(recordings.controller.at("state"));

@@ -62,9 +62,7 @@ class LockStepLoop {
     record.time_s = ends_.plant().time_s();
     record.state = ends_.plant().state();
     record.q_desired =
-        ends_
-            .motion()(judging_time_s(scenario_, record.time_s,
-                                     static_cast<double>(view.run_ticks) * period_s_))
+        ends_.motion()(judging_time_s(scenario_, record.time_s - view.behind_s, view.motion_time_s))
             .q;
     record.tau = ends_.plant().applied_nm();
     record.psi = ends_.plant().plant().fault_function(record.time_s, record.tau);
@@ -73,6 +71,8 @@ class LockStepLoop {
     record.threshold = view.threshold;
     record.weight_norm = view.weight_norm;
     record.detected = view.detected;
+    record.acts = view.acts;
+    record.slows = view.slows;
     record.error = view.error;
     record.thresholds = view.thresholds;
     record.fast_error = view.fast_error;

@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/number.hpp"
+#include "loop/refusal_words.hpp"
 #include "sil/child_program.hpp"
 #include "sil/gather.hpp"
 #include "sil/mujoco_plant_of.hpp"
@@ -78,7 +79,8 @@ std::vector<std::string> controller_arguments(const Folder& folder, const Scenar
   if (options.candump) add({"--candump", *options.candump});
   if (options.replace_candump) add({"--force"});
   if (scenario.accommodate) add({"--accommodate"});
-  if (scenario.stop_at_detection) add({"--stop-at-detection"});
+  const std::vector<std::string> at_detection = act_arguments(scenario);
+  arguments.insert(arguments.end(), at_detection.begin(), at_detection.end());
   add({format == hal::FrameFormat::kFd ? "--fd" : "--classic"});
   if (!scenario.sends_velocity) {
     add({"--observe-velocity", shortest(scenario.max_acceleration)});
@@ -151,11 +153,13 @@ SilResult run_in_real_time(const RobotDescription& robot, const Scenario& scenar
   if (recordings.plant.at("arm_time_s").get<double>() > 0) {
     return gather(robot, scenario, options.interface, recordings);
   }
-  const auto refusal = recordings.controller.at("refusal").get<std::string>();
-  if (refusal != controller::name_of(controller::Fault::kNone)) {
-    throw InputError({"offnominal-controller", "", "arming refused: " + refusal,
+  const auto refusal =
+      static_cast<controller::Fault>(recordings.controller.at("refusal_number").get<int>());
+  if (refusal != controller::Fault::kNone) {
+    throw InputError({"offnominal-controller", "",
+                      std::string("arming refused: ") + controller::name_of(refusal),
                       "an arm where its motion starts, a robot file with gains and torque limits",
-                      "docs/troubleshooting.md says what it asks for"});
+                      mend_of(refusal, robot)});
   }
   throw InputError(
       {"offnominal-controller", "",

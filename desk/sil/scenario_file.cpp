@@ -59,6 +59,27 @@ sim::FaultEvent read_fault(const TomlTable& table, int joints) {
   return fault;
 }
 
+void read_act_settings(const TomlTable& root, ActSettings& settings) {
+  using controller::AtDetection;
+  if (root.has("at_detection")) {
+    settings.at_detection =
+        static_cast<AtDetection>(root.choice("at_detection", at_detection_names()));
+  }
+  if (settings.at_detection != AtDetection::kSlow) {
+    for (const char* key : {"slow_to", "slow_within_s"}) {
+      if (!root.has(key)) continue;
+      root.refuse(key, "at_detection = \"" + name_of(settings.at_detection) + "\"",
+                  "with at_detection = \"slow\"", "leave it out");
+    }
+    return;
+  }
+  NumberRule share = not_negative("");
+  share.max = 0.99;
+  settings.slow_down.to = root.number("slow_to", share, settings.slow_down.to);
+  settings.slow_down.within_s =
+      root.number("slow_within_s", positive("s"), settings.slow_down.within_s);
+}
+
 // A fault that this plant can have, in this run.
 void check_in_run(const TomlTable& table, const sim::FaultEvent& fault, const Scenario& scenario) {
   if (fault.begin_s > scenario.duration_s) {
@@ -89,8 +110,8 @@ Scenario read_scenario(const std::filesystem::path& path,
   const toml::table document = parse_toml(read_text_file(path), file);
   const TomlTable root(
       file, "", document,
-      {"format", "duration_s", "accommodate", "stop_at_detection", "frames", "velocity",
-       "max_acceleration_rad_s2", "encoder_bits_per_turn", "seed", "fault", "hidden"});
+      {"format", "duration_s", "accommodate", "at_detection", "slow_to", "slow_within_s", "frames",
+       "velocity", "max_acceleration_rad_s2", "encoder_bits_per_turn", "seed", "fault", "hidden"});
   if (root.integer("format", 1, 1'000'000) != kScenarioFormat) {
     root.refuse("format", "a format that this version does not know",
                 std::to_string(kScenarioFormat), "use the version of offnominal that wrote it");
@@ -102,7 +123,7 @@ Scenario read_scenario(const std::filesystem::path& path,
   scenario.duration_s = root.number("duration_s", duration, scenario.duration_s);
   scenario.duration_s = duration_s.value_or(scenario.duration_s);
   scenario.accommodate = root.boolean("accommodate", false);
-  scenario.stop_at_detection = root.boolean("stop_at_detection", false);
+  read_act_settings(root, scenario);
   if (root.has("frames")) {
     const bool fd = root.choice("frames", {"classic", "fd"}) == 1;
     scenario.format = fd ? hal::FrameFormat::kFd : hal::FrameFormat::kClassic;
@@ -134,11 +155,15 @@ Scenario read_scenario(const std::filesystem::path& path,
 
 std::string scenario_text(const Scenario& scenario) {
   std::string text = fmt::format(
-      "format = {}\nduration_s = {}\naccommodate = {}\nstop_at_detection = {}\n"
+      "format = {}\nduration_s = {}\naccommodate = {}\nat_detection = \"{}\"\n"
       "velocity = \"{}\"\nmax_acceleration_rad_s2 = {}\nseed = {}\n",
       kScenarioFormat, shortest_real(scenario.duration_s), scenario.accommodate,
-      scenario.stop_at_detection, scenario.sends_velocity ? "sent" : "observed",
+      name_of(scenario.at_detection), scenario.sends_velocity ? "sent" : "observed",
       shortest_real(scenario.max_acceleration), scenario.seed);
+  if (scenario.at_detection == controller::AtDetection::kSlow) {
+    text += fmt::format("slow_to = {}\nslow_within_s = {}\n", shortest_real(scenario.slow_down.to),
+                        shortest_real(scenario.slow_down.within_s));
+  }
   if (scenario.format) {
     const bool fd = *scenario.format == hal::FrameFormat::kFd;
     text += fmt::format("frames = \"{}\"\n", fd ? "fd" : "classic");

@@ -62,6 +62,11 @@ void check_scenario(const RobotDescription& robot, const Scenario& scenario) {
            std::to_string(joints) + ", as many as the arm has",
            "write it with offnominal motion, for this robot");
   }
+  if (validate(scenario.slow_down) != Status::kOk) {
+    refuse("slowing",
+           fmt::format("to {:g} within {:g} s", scenario.slow_down.to, scenario.slow_down.within_s),
+           "to a share of 0 to below 1, within a time above 0");
+  }
   if (scenario.encoder_bits_per_turn < 0 || scenario.encoder_bits_per_turn > 32) {
     refuse("encoder bits per turn", std::to_string(scenario.encoder_bits_per_turn), "0 to 32");
   }
@@ -94,10 +99,16 @@ SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenar
   result.run = observer.finish();
   if (result.run_time_s > 0) result.bus.load = busy_s / result.run_time_s;
   result.run.fault_time_s = first_s;
+  result.slowed = slowed_in(result.run, scenario);
   if (result.isolated) {
     result.isolated = on_the_runs_clock(*result.isolated, result, robot.estimator.period_s);
   }
   return result;
+}
+
+std::optional<Slowed> slowed_in(const paper::ExperimentResult& run, const Scenario& scenario) {
+  if (!run.slowed_time_s) return std::nullopt;
+  return Slowed{*run.slowed_time_s, scenario.slow_down.to};
 }
 
 IsolatedFault on_the_runs_clock(IsolatedFault fault, const SilResult& result, double period_s) {

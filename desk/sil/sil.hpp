@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "loop/at_detection.hpp"
 #include "loop/motion_at.hpp"
 #include "offnominal/sim/bus/fault_event.hpp"
 #include "paper/run_result.hpp"
@@ -19,7 +20,7 @@
 
 namespace offnominal::desk::sil {
 
-struct Scenario : paper::RunSettings {
+struct Scenario : paper::RunSettings, ActSettings {
   /// What stands at the other end: the rigid body and the effects of a robot file; none: the
   /// paper's arm with its uncertainty.
   std::optional<RobotDescription> plant;
@@ -33,8 +34,7 @@ struct Scenario : paper::RunSettings {
   int encoder_bits_per_turn = 0;           // on top of what a frame resolves; 0: none
   bool sends_velocity = true;
   double max_acceleration = 20;  // rad/s^2; bounds the velocity observer's error
-  bool stop_at_detection = false;
-  std::uint64_t seed = 1;  // of the faults on the bus
+  std::uint64_t seed = 1;        // of the faults on the bus
 };
 
 /// Counted at both ends.
@@ -71,6 +71,12 @@ struct NotHeld {
   std::vector<std::string> causes;  // what it may be and what to change; may be none
 };
 
+/// A motion that the controller slowed at its second level.
+struct Slowed {
+  double time_s = 0;  // of the run, since the arm was free to move
+  double to = 0;      // share of its pace
+};
+
 struct SilResult {
   paper::ExperimentResult run;  // as far as it got
   std::string bus_name;
@@ -83,6 +89,7 @@ struct SilResult {
   std::optional<double> time_to_safe_state_s;
   std::optional<double> ended_early_s;  // since arming; none: the run went to its end
   std::optional<NotHeld> not_held;      // of Fault::kArmNotHeld
+  std::optional<Slowed> slowed;
   std::uint64_t overruns = 0;
   std::optional<IsolatedFault> isolated;    // the controller's last answer, on the run's clock
   double run_time_s = 0;                    // of the bus, from the first tick to the last
@@ -98,6 +105,10 @@ void check_scenario(const RobotDescription& robot, const Scenario& scenario);
 [[nodiscard]] SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenario,
                                          Wire& wire, const std::string& bus_name,
                                          const TappedPort::OnFrame& on_frame = {});
+
+/// Where the run shows that the motion was slowed.
+[[nodiscard]] std::optional<Slowed> slowed_in(const paper::ExperimentResult& run,
+                                              const Scenario& scenario);
 
 /// The controller's answer in times of the run, as run.detection_time_s is: since the arm was free
 /// to move. The controller counts from when it holds the arm.

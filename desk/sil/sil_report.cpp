@@ -59,25 +59,50 @@ std::string tracking(const SilResult& result) {
   return words.empty() ? "none: the run ended early" : fmt::format("{}", fmt::join(words, ", "));
 }
 
-std::string joint_words(const paper::ExperimentResult& run, std::size_t joint) {
-  return fmt::format("joint {} ({})", joint + 1, run.joints[joint].name);
-}
-
-// Every joint that crossed its threshold, in the order of the chain: "joint 2 (elbow) at 1.031 s".
-std::string joints_off_nominal(const paper::ExperimentResult& run) {
-  std::string words;
-  for (std::size_t i = 0; i < run.joints.size(); ++i) {
-    if (!run.joints[i].detection_time_s) continue;
-    words += fmt::format("{}{} at {:.3f} s", words.empty() ? "" : ", ", joint_words(run, i),
-                         *run.joints[i].detection_time_s);
-  }
-  return words.empty() ? "none" : words;
-}
-
 std::vector<std::string> names_in(const paper::ExperimentResult& run) {
   std::vector<std::string> names;
   for (const paper::JointRun& joint : run.joints) names.push_back(joint.name);
   return names;
+}
+
+std::string joint_words(const paper::ExperimentResult& run, std::size_t joint) {
+  return fmt::format("joint {} ({})", joint + 1, run.joints[joint].name);
+}
+
+// Every joint that crossed a level, in the order of the chain: "joint 2 (elbow) at 1.031 s".
+std::string joints_beyond(const paper::ExperimentResult& run,
+                          std::optional<double> paper::JointRun::*time_s) {
+  std::string words;
+  for (std::size_t i = 0; i < run.joints.size(); ++i) {
+    const std::optional<double>& at_s = run.joints[i].*time_s;
+    if (!at_s) continue;
+    words += fmt::format("{}{} at {:.3f} s", words.empty() ? "" : ", ", joint_words(run, i), *at_s);
+  }
+  return words.empty() ? "none" : words;
+}
+
+// What is only there in runs of some robots, below the row of the detection.
+std::vector<Row> rows_of_detection(const SilResult& result) {
+  const paper::ExperimentResult& run = result.run;
+  std::vector<Row> rows;
+  if (!run.joints.empty()) {
+    rows.push_back(
+        {"first joint off nominal",
+         run.first_joint ? joint_words(run, static_cast<std::size_t>(*run.first_joint)) : "none"});
+    rows.push_back({"joints off nominal", joints_beyond(run, &paper::JointRun::detection_time_s)});
+  }
+  if (run.has_two_levels) {
+    rows.push_back({"beyond the level to act", seconds(run.act_time_s)});
+    rows.push_back({"joints beyond it", joints_beyond(run, &paper::JointRun::act_time_s)});
+  }
+  if (result.slowed) {
+    rows.push_back({"motion slowed", fmt::format("{:.3f} s, to {:.0f} % of its pace",
+                                                 result.slowed->time_s, 100 * result.slowed->to)});
+  }
+  if (result.isolated) {
+    rows.push_back({"which fault", words_of(*result.isolated, names_in(run))});
+  }
+  return rows;
 }
 
 void add_rows_of(const RealTimeReport& time, std::vector<Row>& rows) {
@@ -120,17 +145,9 @@ std::vector<Row> rows_of(const SilResult& result) {
       {"not sent for lateness", std::to_string(bus.late)},
       {"bus load at most, 1 Mbit/s (FD data 5 Mbit/s)", fmt::format("{:.1f} %", 100 * bus.load)},
   };
-  if (!run.joints.empty()) {
-    constexpr int kBehindDetected = 3;
-    const std::string first =
-        run.first_joint ? joint_words(run, static_cast<std::size_t>(*run.first_joint)) : "none";
-    rows.insert(rows.begin() + kBehindDetected, {{"first joint off nominal", first},
-                                                 {"joints off nominal", joints_off_nominal(run)}});
-    if (result.isolated) {
-      rows.insert(rows.begin() + kBehindDetected + 2,
-                  {"which fault", words_of(*result.isolated, names_in(run))});
-    }
-  }
+  constexpr int kBehindDetected = 3;
+  const std::vector<Row> of_detection = rows_of_detection(result);
+  rows.insert(rows.begin() + kBehindDetected, of_detection.begin(), of_detection.end());
   if (result.real_time) add_rows_of(*result.real_time, rows);
   return rows;
 }
@@ -167,6 +184,10 @@ ordered_json to_json(const SilResult& result) {
   json["controller_fault"] = controller::name_of(result.fault);
   json["ended_early_s"] = nullable(result.ended_early_s);
   json["unasked_stop"] = is_unasked_stop(result);
+  json["slowed"] = nullptr;
+  if (result.slowed) {
+    json["slowed"] = {{"time_s", result.slowed->time_s}, {"to", result.slowed->to}};
+  }
   json["not_held"] = result.not_held ? to_json(*result.not_held) : ordered_json(nullptr);
   json["verdict"] = sentence_of(result);
   json["isolated"] =
@@ -226,6 +247,14 @@ std::string sentence_of(const SilResult& result) {
   if (run.first_joint) {
     words += fmt::format(" First off nominal is {}.",
                          joint_words(run, static_cast<std::size_t>(*run.first_joint)));
+  }
+  if (run.has_two_levels && run.detection_time_s) {
+    words += run.act_time_s ? fmt::format(" Beyond the level to act at {:.3f} s.", *run.act_time_s)
+                            : std::string(" Never beyond the level to act.");
+  }
+  if (result.slowed) {
+    words += fmt::format(" The controller slowed the motion to {:.0f} % of its pace.",
+                         100 * result.slowed->to);
   }
   if (result.state == hal::ControllerState::kFault) {
     words += fmt::format(" The controller went to its safe state: {}.",

@@ -12,6 +12,7 @@
 namespace offnominal::test {
 namespace {
 
+using controller::AtDetection;
 using controller::Fault;
 using hal::ControllerState;
 using hal::DriveMode;
@@ -54,7 +55,7 @@ TYPED_TEST(ControllerInSpace, GivenAFaultOfAJointThenItIsLatchedAndStopsWhereItS
   for (std::size_t joint = 0; joint < 2; ++joint) {
     for (const bool stops : {false, true}) {
       auto config = watchful<TypeParam>();
-      config.stop_at_detection = stops;
+      if (stops) config.at_detection = AtDetection::kStop;
       ScriptedJointsIn<TypeParam> arm(config);
       ASSERT_TRUE(arm.start());
       arm.run(20);
@@ -132,7 +133,7 @@ TEST(ControllerInTorqueSpace, TellsTheBusWhichJointIsOffNominal) {
 // What is noticed is told; it stops and compensates beyond the second level.
 TEST(ControllerInTorqueSpace, GivenTwoLevelsThenItActsBeyondTheSecondAlone) {
   auto config = watchful<TorqueSpace>();
-  config.stop_at_detection = true;
+  config.at_detection = AtDetection::kStop;
   config.monitor.bound.joints[1].act_ratio = 4;
   ByJoint noticed(config);
   ASSERT_TRUE(noticed.start());
@@ -152,6 +153,34 @@ TEST(ControllerInTorqueSpace, GivenTwoLevelsThenItActsBeyondTheSecondAlone) {
   stopped.run(400);
   EXPECT_EQ(stopped.fault(), Fault::kDetected);
   EXPECT_TRUE(stopped.drives.reports.back().acts);
+}
+
+// In the tick that reaches it, not with the next frame that is due.
+TEST(ControllerInTorqueSpace, TellsTheBusAtOnceThatTheSecondLevelIsReached) {
+  auto config = watchful<TorqueSpace>();
+  config.monitor.bound.joints[1].act_ratio = 2;
+  ByJoint arm(config);
+  ASSERT_TRUE(arm.start());
+  // Neither tick is one in which a frame is due.
+  for (const int ticks : {21, 22}) {
+    arm.run(ticks);
+    give_in_vain(arm, 1, 9);
+    while (!arm.data->output.detector.acts) arm.tick();
+    EXPECT_NE(arm.data->ticks % 10, 5U);
+    EXPECT_EQ(arm.data->act_tick, arm.data->ticks);
+    EXPECT_EQ(arm.bus.sent.back().frame.id, ByJoint::Drives::kReportId);
+    EXPECT_TRUE(arm.drives.reports.back().acts);
+    arm.drives.reports.clear();
+    arm.run(100);
+    EXPECT_EQ(arm.drives.reports.size(), 10U) << "it is news once";
+    // Another run is another watch.
+    ASSERT_TRUE(arm.disarm());
+    arm.follows[1] = true;
+    arm.tick();
+    ASSERT_TRUE(arm.arm());
+    arm.run(3);
+    EXPECT_FALSE(arm.data->output.detector.acts);
+  }
 }
 
 // A push that is over before the slow filter has it.
@@ -177,7 +206,7 @@ TEST(ControllerInTorqueSpace, GivenASecondFilterThenItSeesWhatIsShort) {
 
 TEST(ControllerInTorqueSpace, TellsAfterItHasStoppedWhoWasFirstAndNoMore) {
   auto config = watchful<TorqueSpace>();
-  config.stop_at_detection = true;
+  config.at_detection = AtDetection::kStop;
   ByJoint arm(config);
   ASSERT_TRUE(arm.start());
   arm.run(20);

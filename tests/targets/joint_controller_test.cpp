@@ -183,7 +183,7 @@ TEST(JointController, LateTicksAreNoFaultOfTheArm) {
 
 TEST(JointController, StopsAtADetectionWhereItShall) {
   auto config = ArmOnBus::config(false);
-  config.stop_at_detection = true;
+  config.at_detection = controller::AtDetection::kStop;
   ArmOnBus arm({.kind = sim::FaultKind::kNonlinear, .time_s = 1.0}, config, {});
   ASSERT_TRUE(arm.start());
   arm.run(3.0);

@@ -44,7 +44,7 @@ class HeldArm {
   void send() {
     for (std::size_t j = 0; j < kCount; ++j) {
       const auto node = static_cast<std::uint8_t>(j);
-      const float torque = firmware.data().commands[j].torque;
+      const float torque = firmware.data().commands[j].torque + beside_nm;
       hal::Record record{};
       ASSERT_EQ(encode(hal::EncoderReading{0, 0, true}, counter_,
                        hal::data_id_of(hal::MessageKind::kEncoder, node), record),
@@ -61,6 +61,9 @@ class HeldArm {
 
   std::uint8_t counter_ = 0;
   int ticks_ = 0;
+
+ public:
+  float beside_nm = 0;  // that the drives say they give on top
 };
 
 TEST(JointFirmware, ItsTimesFollowTheRobotsPeriod) {
@@ -100,6 +103,28 @@ TEST(JointFirmware, AFaultEndsWhenItIsCleared) {
   EXPECT_EQ(arm.state(), hal::ControllerState::kArmed);
   EXPECT_TRUE(arm.firmware.disarm());
   EXPECT_EQ(arm.state(), hal::ControllerState::kPassive);
+}
+
+// The robot's constants do not say what is done at a detection: firmware does.
+TEST(JointFirmware, DoesAtADetectionWhatItsFirmwareSays) {
+  for (const bool slows : {false, true}) {
+    HeldArm arm;
+    auto config = Firmware::config();
+    if (slows) config.at_detection = controller::AtDetection::kSlow;
+    ASSERT_EQ(arm.firmware.start(config), Status::kOk);
+    arm.tick_until(hal::ControllerState::kPassive);
+    ASSERT_EQ(arm.arm(), controller::Fault::kNone);
+    for (int i = 0; i < 100; ++i) arm.tick();
+    ASSERT_EQ(arm.state(), hal::ControllerState::kArmed);
+    arm.beside_nm = 60;  // in vain: the arm does not move
+    for (int i = 0; i < 200; ++i) arm.tick();
+    EXPECT_TRUE(arm.firmware.data().output.detector.acts);
+    EXPECT_EQ(arm.firmware.data().slows, slows);
+  }
+  HeldArm arm;
+  auto config = Firmware::config();
+  config.slow_down.to = 2;
+  EXPECT_EQ(arm.firmware.start(config), Status::kInvalidLimit);
 }
 
 TEST(StaticObject, HoldsWhatItWasMadeOf) {

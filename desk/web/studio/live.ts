@@ -103,18 +103,23 @@ function againRow() {
   return row;
 }
 
-const kTones = ["residual", "threshold"] as const;
+const kLines = [
+  ["residual", "residual", false],
+  ["threshold", "threshold", true],
+  ["level to act", "faint", true],
+] as const;
 
 /** Colours follow the page's mode, as the curves do. */
 function liveLegend() {
   const list = element("ul", { class: "legend live-legend", "aria-hidden": "true" });
   const fill = () => {
     const { tones } = currentLook();
+    const there = liveSetup().has_two_levels ? kLines : kLines.slice(0, 2);
     list.replaceChildren(
-      ...kTones.map((tone) => {
+      ...there.map(([name, tone, dashed]) => {
         const item = element("li");
-        item.innerHTML = swatch({ kind: "line", tone, dashed: false }, tones[tone]);
-        item.append(element("span", {}, tone));
+        item.innerHTML = swatch({ kind: "line", tone, dashed }, tones[tone]);
+        item.append(element("span", {}, name));
         return item;
       }),
     );
@@ -136,6 +141,7 @@ function liveSection() {
   const what = liveSetup().space === "torque"
     ? "Of every joint: the torque that the model does not explain, behind the estimator's filter, and the threshold that a healthy joint stays below."
     : "Measured velocity minus the estimator's, of all joints together, and the threshold that a healthy robot stays below.";
+  const acts = liveSetup().has_two_levels ? " Beyond the level to act a controller does more than to report." : "";
   // What is used stands above what comes and goes: it does not move from under a click.
   const controls: HTMLElement[] = [];
   if (isBench()) {
@@ -146,7 +152,7 @@ function liveSection() {
   return sectionWith(
     "live",
     liveHeading(),
-    element("p", { class: "remark" }, what),
+    element("p", { class: "remark" }, what + acts),
     ...boundContent(),
     place("liveStatus"),
     ...controls,

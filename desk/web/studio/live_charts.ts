@@ -147,6 +147,8 @@ export class LivePicture {
       pen.strokeStyle = look.tones.threshold;
       pen.setLineDash([6, 4]);
       drawLiveCurve(pen, plot, curve.threshold, scale, span);
+      pen.strokeStyle = look.tones.faint;
+      drawLiveCurve(pen, plot, curve.act, scale, span);
       pen.setLineDash([]);
       pen.lineWidth = 1.4;
       pen.strokeStyle = look.tones.residual;

@@ -17,6 +17,14 @@ function detectionWords(detection: Detection) {
   return `Off nominal since ${formatNumber(detection.t_s, ".2f")} s${who}.`;
 }
 
+/** Of a robot with two levels. */
+function actWords({ act_t_s, act_joint }: Detection) {
+  if (!liveSetup().has_two_levels) return "";
+  if (act_t_s === null) return " Not beyond the level to act.";
+  const who = act_joint === null ? "" : `: ${jointName(act_joint)}`;
+  return ` Beyond the level to act since ${formatNumber(act_t_s, ".2f")} s${who}.`;
+}
+
 function answerWords({ answer, joint }: Detection) {
   if (answer === null) {
     return joint === null ? "" : " Which fault it is will be said in a moment.";
@@ -31,7 +39,7 @@ function detectionContent({ detection, ended }: Moment) {
       : "Without a bound nothing is detected.";
     return [element("p", { class: "empty" }, ended === "" ? words : ended)];
   }
-  const note = noteWith("bad", element("b", {}, detectionWords(detection)), answerWords(detection));
+  const note = noteWith("bad", element("b", {}, detectionWords(detection)), actWords(detection), answerWords(detection));
   const controls = element("div", { class: "live-row" });
   const waits: Attributes = detection.frozen ? {} : { "aria-disabled": "true" };
   controls.append(

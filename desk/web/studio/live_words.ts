@@ -51,7 +51,8 @@ function liveRows(now: Moment): Cell[][] {
   return liveSetup().judged.map(({ name, unit }, at) => {
     const [residual, threshold] = [now.residual[at] ?? null, now.threshold[at] ?? null];
     const ratio = residual === null || threshold === null ? null : residual / threshold;
-    return [name, unit, residual, threshold, ratio, now.beyond[at] ? "beyond" : ""];
+    const act = liveSetup().has_two_levels ? [now.act[at] ?? null] : [];
+    return [name, unit, residual, threshold, ...act, ratio, now.beyond[at] ? "beyond" : ""];
   });
 }
 
@@ -62,6 +63,7 @@ export function liveTable(now: Moment) {
     { name: "unit", unit: "", format: "" },
     { name: "residual", unit: "", format: ".3g" },
     { name: "threshold", unit: "", format: ".3g" },
+    ...(liveSetup().has_two_levels ? [{ name: "level to act", unit: "", format: ".3g" }] : []),
     { name: "residual / threshold", unit: "1", format: ".2f" },
     { name: "now", unit: "", format: "" },
   ];

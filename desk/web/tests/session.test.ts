@@ -96,7 +96,7 @@ test("AnEditSaysWhichSignalItIsOf", () => {
 });
 
 function steps(t_s: number[], values: (number | null)[]) {
-  return { first: 0, next: t_s.length, t_s, low: [values], high: [values], threshold: [values] };
+  return { first: 0, next: t_s.length, t_s, low: [values], high: [values], threshold: [values], act: [] };
 }
 
 test("StepsThatAreMissingBreakTheCurve", () => {
@@ -118,8 +118,23 @@ test("WhatHasLeftTheWindowIsForgotten", () => {
   assert.deepEqual(times, [5, 5.02, 14]);
 });
 
+test("OfTwoLevelsTheSecondHasACurveToo", () => {
+  const curves = emptyCurves(1);
+  appendSteps(curves, { ...steps([0, 0.02, 1], [1, 2, 3]), act: [[3, 6, 9]] }, 0.02);
+  assert.deepEqual(curves[0]?.act, [
+    [0, 3],
+    [0.02, 6],
+    [0.04, null],
+    [1, 9],
+  ]);
+  assert.ok(liveScale(curves[0]).top >= 9);
+  const ofOne = emptyCurves(1);
+  appendSteps(ofOne, { ...steps([0, 0.02], [1, 2]), act: [] }, 0.02);
+  assert.deepEqual(ofOne[0]?.act, []);
+});
+
 test("TheScaleReachesBeyondTheHighestValue", () => {
-  const { top, step: width } = liveScale({ residual: [[0, 0.4]], threshold: [[0, 1.9]] });
+  const { top, step: width } = liveScale({ residual: [[0, 0.4]], threshold: [[0, 1.9]], act: [] });
   assert.ok(top >= 1.9 && top / width === Math.round(top / width));
 });
 

@@ -265,6 +265,20 @@ TEST(CalibrateJoints, GivenASecondFilterThenItsRowsAndLevelsAreTold) {
   EXPECT_THAT(text_of(calibrated(), names), Not(HasSubstr("act at")));
 }
 
+// Each filter has blocks of its own length, and both are told where they differ.
+TEST(CalibrateJoints, GivenASecondFilterThenItsBlocksAreToldToo) {
+  JointsCalibration result;
+  result.joints.resize(2);
+  result.joints[0].calibration.level.blocks = 60;
+  result.joints[0].calibration.level.block_s = 5;
+  EXPECT_EQ(blocks_words(result), "60 blocks of 5 s");
+  result.fast = result.joints;
+  EXPECT_EQ(blocks_words(result), "60 blocks of 5 s");
+  result.fast[0].calibration.level.blocks = 300;
+  result.fast[0].calibration.level.block_s = 1;
+  EXPECT_EQ(blocks_words(result), "60 blocks of 5 s, behind the fast filter 300 blocks of 1 s");
+}
+
 TEST(CalibrateJoints, RefusesAVelocityError) {
   CalibrateRequest request;
   request.velocity_error = 0.1;

@@ -94,7 +94,7 @@ struct Bench {
 
   realtime::LoopReport run(const realtime::LoopConfig& loop) {
     const auto program = make_joint_program({.robot = robot,
-                                             .settings = {},
+                                             .settings = settings,
                                              .loop = loop,
                                              .wish = {.priority = 0, .lock_memory = false},
                                              .motion = motion,
@@ -108,6 +108,7 @@ struct Bench {
 
   RobotDescription robot;
   MotionAt motion;
+  ControllerSettings settings;
   hal::InProcessNet<2> net;
   Pendulum pendulum{net, robot.drive_settings()};
   BusPortOf<hal::InProcessNet<2>::Port> bus{net.port(0)};
@@ -198,6 +199,7 @@ TEST(JointProgram, InTorqueSpaceSaysAndRecordsWhichJointWasFirst) {
   for (const double push_nm : {0.0, 20.0}) {
     const std::string file = (folder / (push_nm > 0 ? "pushed.csv" : "healthy.csv")).string();
     Bench bench(of);
+    bench.settings.accommodate = true;
     ASSERT_EQ(bench.recorder.open({.csv = file, .columns = realtime::loop_columns(1, true)}), 0);
     bench.pendulum.before_tick = [&](int tick) {
       if (tick > 3000) bench.pendulum.push_nm = push_nm;
@@ -215,6 +217,51 @@ TEST(JointProgram, InTorqueSpaceSaysAndRecordsWhichJointWasFirst) {
     const Eigen::VectorXd compensation = columns.at("compensation1").cwiseAbs();
     EXPECT_EQ(compensation.head(2000).maxCoeff(), 0) << "nothing was wrong yet";
     EXPECT_EQ(compensation.maxCoeff() > 0, push_nm > 0);
+  }
+}
+
+// GIVEN two levels WHEN the second is reached THEN report and recording say when, whose and what
+// was done.
+TEST(JointProgram, SaysAndRecordsWhenItActsAndThatItSlows) {
+  RobotDescription of = robot("[-3.0, 3.0]", "");
+  of.estimator.space = EstimatorSpace::kTorque;
+  of.estimator.learning_rate = 0;
+  of.bound->kind = BoundSettings::Kind::kPerJoint;
+  of.bound->joints = {{.at = {}, .value = {5.0}, .act_ratio = 2}};
+  const test::TemporaryFolder folder;
+  const std::string file = (folder / "run.csv").string();
+  for (const double push_nm : {8.0, 20.0}) {
+    const bool acts = push_nm > 10;
+    Bench bench(of);
+    bench.settings.at_detection = controller::AtDetection::kSlow;
+    bench.settings.slow_down = {0.5, 0.2};
+    ASSERT_EQ(bench.recorder.open(
+                  {.csv = file, .columns = realtime::loop_columns(1, true), .replace = true}),
+              0);
+    bench.pendulum.before_tick = [&](int tick) {
+      if (tick > 3000) bench.pendulum.push_nm = push_nm;
+    };
+    const auto report = bench.run({.arm_when_passive = true, .duration_us = 4'000'000});
+    bench.recorder.close();
+    EXPECT_TRUE(report.detected);
+    EXPECT_EQ(report.acts, acts);
+    EXPECT_EQ(report.slowed, acts);
+    EXPECT_EQ(report.act_joint, acts ? 0 : -1);
+    auto columns = read_csv(file, [](const std::string&) { return Need::kRequired; }).columns;
+    EXPECT_EQ(columns.at("acts").maxCoeff(), acts ? 1 : 0);
+    EXPECT_EQ(columns.at("slows").maxCoeff(), acts ? 1 : 0);
+    if (!acts) {
+      EXPECT_EQ(columns.at("behind").maxCoeff(), 0);
+      continue;
+    }
+    EXPECT_GT(report.act_time_s, report.detection_time_s);
+    EXPECT_EQ(report.slow_time_s, report.act_time_s);
+    EXPECT_EQ(report.slowed_to, 0.5);
+    // Of the last row: rows in between may be lost where nobody waits for the disk.
+    const double behind_s = columns.at("behind").maxCoeff();
+    const double run_s = columns.at("motion_t").maxCoeff() + behind_s;
+    EXPECT_GT(behind_s, 0.2);
+    EXPECT_NEAR(behind_s, 0.5 * (run_s - report.slow_time_s - 0.1), 0.002);
   }
 }
 

@@ -15,7 +15,7 @@ using testing::ElementsAre;
 
 void push(History& history, double t_s) {
   const std::array<double, 1> one{t_s};
-  history.push(t_s, one, one, one, one, one);
+  history.push(t_s, one, one, one, {one, one, one});
 }
 
 TEST(History, KeepsTheLastRowsInRoomThatIsTakenOnce) {
@@ -38,7 +38,8 @@ TEST(History, HandsOverARecordingInTheOrderOfItsColumns) {
   const std::array<double, 2> tau{5, 6};
   const std::array<double, 1> residual{7};
   const std::array<double, 1> threshold{8};
-  history.push(0.5, q, dq, tau, residual, threshold);
+  const std::array<double, 1> act{9};
+  history.push(0.5, q, dq, tau, {residual, threshold, act});
   const History::Rows rows = history.between(0, 1);
   const Log log = rows.log("live", 0.001);
   EXPECT_EQ(log.t_s[0], 0.5);
@@ -47,6 +48,7 @@ TEST(History, HandsOverARecordingInTheOrderOfItsColumns) {
   EXPECT_EQ(log.tau.row(0), Eigen::RowVector2d(5, 6));
   EXPECT_EQ(rows.residual(0)[0], 7);
   EXPECT_EQ(rows.threshold(0)[0], 8);
+  EXPECT_EQ(rows.act(0)[0], 9);
 }
 
 // A peak of one sample must not be lost between two steps, wherever it is.
@@ -59,7 +61,8 @@ TEST(Strip, KeepsTheLowestAndTheHighestOfEveryStep) {
     values.push_back(std::normal_distribution<double>()(random));
     const std::array<double, 1> residual{values.back()};
     const std::array<double, 1> threshold{10 + values.back()};
-    strip.push(0.001 * i + 1e-7, residual, threshold);
+    const std::array<double, 1> act{20 + values.back()};
+    strip.push(0.001 * i + 1e-7, {residual, threshold, act});
   }
   const Strip::Steps steps = strip.since(0);
   ASSERT_EQ(steps.t_s.size(), 49U);  // the last is under way
@@ -70,6 +73,7 @@ TEST(Strip, KeepsTheLowestAndTheHighestOfEveryStep) {
     EXPECT_EQ(steps.low[0][step], *low) << step;
     EXPECT_EQ(steps.high[0][step], *high) << step;
     EXPECT_EQ(steps.threshold[0][step], 10 + *low) << step;
+    EXPECT_EQ(steps.act[0][step], 20 + *low) << step;
   }
 }
 
@@ -78,7 +82,8 @@ TEST(Strip, GivesWhatIsNewAndOnlyWhatIsKept) {
   const std::array<double, 1> one{1};
   EXPECT_TRUE(strip.since(0).t_s.empty());
   const std::size_t count = Strip::kSteps + 500;
-  for (std::size_t i = 0; i < count; ++i) strip.push(Strip::kStepS * (0.5 + double(i)), one, one);
+  for (std::size_t i = 0; i < count; ++i)
+    strip.push(Strip::kStepS * (0.5 + double(i)), {one, one, one});
   const Strip::Steps all = strip.since(0);
   EXPECT_EQ(all.first, 500U);
   EXPECT_EQ(all.next, count - 1);

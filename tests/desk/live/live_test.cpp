@@ -220,6 +220,42 @@ TEST(LiveBench, DetectsNamesAndKeepsAFaultThatIsInjected) {
   EXPECT_GT(again.t_s, there.t_s);
 }
 
+// GIVEN a joint with a level to act WHEN it is beyond it THEN moment, legend and charts tell of
+// both.
+TEST(LiveBench, GivenTwoLevelsThenItShowsBothAndSaysWhenTheSecondIsReached) {
+  const TemporaryFolder folder;
+  RobotDescription robot = test::by_joint_robot(2, kBoundNm);
+  robot.bound->joints[1].act_ratio = 3;
+  Live live(input_of(robot, folder.path()));
+  EXPECT_TRUE(live.has_two_levels());
+  EXPECT_EQ(setup_json(live).at("has_two_levels"), true);
+  wait_for(live, [](const Moment& moment) { return moment.is_judging && moment.t_s > 2; });
+  live.add_fault("disturbance_torque", 2, 2 * kBoundNm);
+  const Moment noticed = wait_for(live, is_frozen);
+  EXPECT_FALSE(noticed.detection->act_t_s.has_value());
+  EXPECT_TRUE(std::isnan(noticed.act[0])) << "it has one level";
+  EXPECT_EQ(noticed.act[1], 3 * noticed.threshold[1]);
+  live.add_fault("disturbance_torque", 2, 8 * kBoundNm);
+  const Moment acts = wait_for(live, [](const Moment& moment) {
+    return moment.detection && moment.detection->act_t_s.has_value();
+  });
+  EXPECT_EQ(acts.detection->act_joint, 1);
+  EXPECT_GT(*acts.detection->act_t_s, acts.detection->t_s);
+  const auto json = moment_json(acts, live);
+  EXPECT_EQ(json.at("detection").at("act_joint"), 2);
+  EXPECT_EQ(json.at("act").size(), 2U);
+  EXPECT_TRUE(json.at("act").at(0).is_null());
+  EXPECT_EQ(json.at("steps").at("act").at(1).size(), json.at("steps").at("threshold").at(1).size());
+  const auto charts = live.frozen(500);
+  EXPECT_EQ(charts.at(0).series.size(), 2U);
+  ASSERT_EQ(charts.at(1).series.size(), 3U);
+  EXPECT_EQ(charts.at(1).series.at(2).name, "level to act");
+
+  const Live of_one(input_of(test::by_joint_robot(2, kBoundNm), folder.path()));
+  EXPECT_EQ(setup_json(of_one).at("has_two_levels"), false);
+  EXPECT_TRUE(moment_json(of_one.moment(0), of_one).at("act").empty());
+}
+
 // GIVEN an arm of MuJoCo WHEN friction is put on a joint THEN the joint is told; begun again, it is
 // quiet. Dry friction, which holds it at rest there and in no model, is left out of its file.
 TEST(LiveBench, PutsFaultsOnAnArmOfMujocoAndTakesThemOff) {

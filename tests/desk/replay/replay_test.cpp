@@ -175,8 +175,26 @@ TEST(Replay, GivenTwoLevelsThenItSaysWhenTheSecondWasReached) {
   ASSERT_TRUE(acts.act_time_s);
   EXPECT_NEAR(*acts.act_time_s, kFaultTime + std::log(3.0) / 10, 0.01);
   EXPECT_LT(*acts.detection_time_s, *acts.act_time_s);
-  EXPECT_THAT(words_of(acts), HasSubstr("Beyond the level to act at "));
+  EXPECT_THAT(words_of(acts),
+              testing::ContainsRegex("Beyond the level to act at .* s, joint 2 .*elbow.*\\."));
   EXPECT_EQ(to_json(acts)["act_time_s"], *acts.act_time_s);
+  EXPECT_EQ(acts.joints[1].act_time_s, acts.act_time_s);
+  EXPECT_FALSE(acts.joints[0].act_time_s.has_value());
+  EXPECT_EQ(to_json(acts)["joints"][1]["act_time_s"], *acts.act_time_s);
+  EXPECT_TRUE(to_json(acts)["joints"][0]["act_time_s"].is_null());
+  // Of the joint that has the level, the line twice as high as its threshold's.
+  const auto page = report::to_json(page_of(acts, ""));
+  int lines = 0;
+  for (const auto& block : page.at("sections").at(0).at("blocks")) {
+    if (block.at("type") != "chart") continue;
+    for (const auto& series : block.at("series")) {
+      if (series.at("name") != "level to act") continue;
+      ++lines;
+      EXPECT_THAT(block.at("title").get<std::string>(), HasSubstr("elbow"));
+      EXPECT_EQ(series.at("y").back(), 2 * block.at("series").at(1).at("y").back().get<double>());
+    }
+  }
+  EXPECT_EQ(lines, 1);
   const Replay noticed = replay(robot, recording_with({0, 1.5 * kTorqueBound}));
   EXPECT_TRUE(noticed.detection_time_s);
   EXPECT_FALSE(noticed.act_time_s);

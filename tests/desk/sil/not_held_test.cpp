@@ -110,7 +110,7 @@ TEST(SafeState, IsAskedForByADetectionThatItIsToldToStopAt) {
   const RobotDescription robot = test::serial_robot(kJoints);
   Scenario scenario =
       scenario_of(robot, {{.kind = FaultEventKind::kPayload, .begin_s = 1.0, .size = 3.0}});
-  scenario.stop_at_detection = true;
+  scenario.at_detection = controller::AtDetection::kStop;
   const SilResult result = run(robot, scenario);
   EXPECT_EQ(result.fault, controller::Fault::kDetected);
   EXPECT_FALSE(is_unasked_stop(result));

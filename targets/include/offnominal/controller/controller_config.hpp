@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <offnominal/control/arming.hpp>
 #include <offnominal/control/computed_torque.hpp>
+#include <offnominal/control/slow_down.hpp>
 #include <offnominal/diagnosis/velocity_observer.hpp>
 #include <offnominal/finite.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
@@ -14,6 +15,16 @@
 namespace offnominal::controller {
 
 using hal::Microseconds;
+
+// What a controller does when the monitor comes beyond the second level (JointBound::act_ratio,
+// beyond the first one where there is no second). Compensation, which begins there too, is no
+// choice among these: it goes with each of them but a stop, and MonitorConfig::max_compensation
+// says how much of it there may be.
+enum class AtDetection : std::uint8_t {
+  kReport,  // nothing but to say so
+  kSlow,    // the motion goes on more slowly, until it is armed anew
+  kStop,    // the safe state
+};
 
 // What a controller is told beside its monitor.
 template <int N, typename Scalar>
@@ -36,9 +47,8 @@ struct ControlConfig {
   // velocity_error_bound() then, in TorqueSpace every joint's momentum_error what M makes of it.
   // Its period_s is the monitor's.
   VelocityObserverConfig<Scalar> velocity_observer;
-  // What is beyond the second level (JointBound::act_ratio, where there is one) leads to the safe
-  // state. Nothing is compensated either before a joint is beyond it.
-  bool stop_at_detection = false;
+  AtDetection at_detection = AtDetection::kReport;
+  SlowDownConfig<Scalar> slow_down;  // of AtDetection::kSlow
   // Of a controller WithIsolation: whether it asks which fault it is. It then compensates once that
   // is decided, and only for a kind that compensation is right for; without, from the detection on.
   bool isolates = true;
@@ -132,6 +142,8 @@ template <int N, typename Scalar, typename Space>
   if (!is_finite(period_us) || lifetime_us <= 0 || lifetime_us > period_us)
     return Status::kInvalidLimit;
   if (config.safe_mode == hal::DriveMode::kTorque) return Status::kInvalidLimit;
+  if (config.at_detection > AtDetection::kStop) return Status::kInvalidLimit;
+  if (const Status status = validate(config.slow_down); status != Status::kOk) return status;
   if (config.time_to_follow_us < 0) return Status::kInvalidLimit;
   const Scalar period_s = config.monitor.estimator.period_s;
   if (config.arming.ramp_s < (kLeastRampPeriods - Scalar(0.5)) * period_s) {

@@ -29,6 +29,10 @@ struct ControllerData : SampleData<N, Scalar>, TakeoverData<N, Scalar> {
   std::uint32_t late_ticks = 0;      // whole periods that this tick began too late
   std::uint16_t late_in_a_row = 0;   // ticks that did
   bool ends = false;                 // let_go() was called
+  // Of `ticks`, the one in which the monitor came beyond the second level; 0: it has not.
+  std::uint64_t act_tick = 0;
+  bool slows = false;  // the reference, from slow_since of run_ticks until arm()
+  std::uint64_t slow_since = 0;
   PerJoint<N, hal::TorqueCommand> commands{};
   JointTransforms<N, Scalar> transforms{};  // of the last sample that was watched
   MonitorState<N, L, Scalar, Memory, Space> monitor;

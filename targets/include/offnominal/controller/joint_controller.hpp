@@ -7,6 +7,7 @@
 #include <limits>
 #include <offnominal/control/computed_torque.hpp>
 #include <offnominal/control/reference_ramp.hpp>
+#include <offnominal/control/slow_down.hpp>
 #include <offnominal/controller/arming_check.hpp>
 #include <offnominal/controller/controller_config.hpp>
 #include <offnominal/controller/controller_data.hpp>
@@ -57,9 +58,9 @@ class JointController {
   }
 
   // One tick that began at `begin_us` on the bus's clock. reference_at(time_s): where the joints
-  // should be, Reference<N, Scalar>, so long after arming; a double, which tells ticks apart for
-  // longer than any run. late_ticks: whole periods that this tick began too late; they are counted
-  // and the reference goes on without them.
+  // should be, Reference<N, Scalar>, so long after arming, less what a motion that was slowed is
+  // behind; a double, which tells ticks apart for longer than any run. late_ticks: whole periods
+  // that this tick began too late; they are counted and the reference goes on without them.
   template <hal::Bus Bus, hal::DriveProtocol Drives, typename ReferenceAt>
   void step(Microseconds begin_us, std::uint32_t late_ticks, const ReferenceAt& reference_at,
             Bus& bus, Drives& drives, Data& data) const {
@@ -101,6 +102,7 @@ class JointController {
     takeover_.reset(data);
     data.state = ControllerState::kArmed;
     data.run_ticks = 0;
+    data.slows = false;
     data.ends = false;
     data.commands.fill({});  // whatever was told before: the torque rises from 0
     return Fault::kNone;
@@ -151,6 +153,12 @@ class JointController {
                 : Vector<N, Scalar>(zeros<N, Scalar>(static_cast<Eigen::Index>(joints())));
   }
 
+  // How the time of the reference runs in this tick, beside the run's own.
+  [[nodiscard]] Pace<Scalar> pace(const Data& data) const {
+    return data.slows ? pace_of(config_.slow_down, seconds(data.run_ticks - data.slow_since))
+                      : Pace<Scalar>{};
+  }
+
   // The monitor has its own: monitor().config().
   [[nodiscard]] const ControlConfig<N, Scalar>& config() const { return config_; }
   [[nodiscard]] const Watch& monitor() const { return monitor_; }
@@ -192,10 +200,10 @@ class JointController {
   static bool is_running(const Data& data) {
     return data.state == ControllerState::kArmed && data.drives_follow;
   }
-  [[nodiscard]] double run_time_s(const Data& data) const {
-    return static_cast<double>(data.run_ticks) *
-           static_cast<double>(monitor_.config().estimator.period_s);
+  [[nodiscard]] double seconds(std::uint64_t ticks) const {
+    return static_cast<double>(ticks) * static_cast<double>(monitor_.config().estimator.period_s);
   }
+  [[nodiscard]] double run_time_s(const Data& data) const { return seconds(data.run_ticks); }
 
   // Phases of a tick are not inlined: each gives its stack back before the next one begins.
   template <typename Bus, typename Drives>
@@ -299,14 +307,29 @@ class JointController {
     // brakes or whatever else held the arm still do: the watch begins with each sample anew.
     if (armed && !data.drives_follow) data.monitor.initialised = false;
     const bool follows = data.monitor.initialised && data.unseen_ticks == 0;
+    const bool has_acted = data.output.detector.acts;
     const Fault fault =
         follows ? fault_of(monitor_.step(data.sample, data.transforms, data.monitor, data.output))
                 : begin_watch(reference_at, armed, data);
     if (follows && fault == Fault::kNone) isolate(data);
     if (fault != Fault::kNone) {
       enter_fault(fault, bus, data);
-    } else if (config_.stop_at_detection && data.output.detector.acts) {
+      return;
+    }
+    if (!data.output.detector.acts) return;
+    if (!has_acted) data.act_tick = data.ticks;
+    act(bus, data);
+  }
+
+  // Beyond the second level. The monitor goes on: it judges torque and motion as they are, and
+  // knows nothing of a reference.
+  template <typename Bus>
+  void act(Bus& bus, Data& data) const {
+    if (config_.at_detection == AtDetection::kStop) {
       enter_fault(Fault::kDetected, bus, data);
+    } else if (config_.at_detection == AtDetection::kSlow && is_running(data) && !data.slows) {
+      data.slows = true;
+      data.slow_since = data.run_ticks;
     }
   }
 
@@ -386,9 +409,11 @@ class JointController {
     const double time_s = run_time_s(data);
     Reference<N, Scalar> reference;
     if (data.drives_follow) {
-      reference = reference_at(time_s);
+      const Pace<Scalar> of_time = pace(data);
+      reference = reference_at(time_s - of_time.behind_s);
       const Fault fault = check_reference(reference, chain(), samples_.range());
       if (fault != Fault::kNone) return fault;
+      if (data.slows) slow_down(of_time, reference);
       ramp_in(data.ramp, time_s, config_.arming.ramp_s, reference);
     } else {
       reference = takeover_.held(data);
@@ -435,12 +460,13 @@ class JointController {
   }
 
   // Between two heartbeats, and at once in the tick that says it first: which joint is off nominal,
-  // and which fault it is.
+  // that it is beyond the second level too, and which fault it is.
   template <typename Bus, typename Drives>
   void report(Microseconds begin_us, Bus& bus, Drives& drives, Data& data) const {
     const DetectorState<Scalar>& detector = data.output.detector;
-    const bool is_new =
+    const bool is_detected =
         detector.latched && data.fresh && detector.detection_tick == data.monitor.tick;
+    const bool is_new = is_detected || data.act_tick == data.ticks;
     const bool due = data.ticks % hal::kHeartbeatTicks == hal::kHeartbeatTicks / 2;
     const bool watches =
         data.state == ControllerState::kArmed || data.state == ControllerState::kPassive;

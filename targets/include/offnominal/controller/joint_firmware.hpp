@@ -40,12 +40,17 @@ class JointFirmware {
         drives_(robot_model::DriveProtocol::drives<static_cast<std::size_t>(kJoints)>(
             robot_model::kDriveValues, {.period_us = kPeriodUs})) {}
 
-  // What Controller::create() says of the robot's constants. Without kOk there must be no tick.
-  [[nodiscard]] Status start() {
-    return Controller::create(controller_config(robot_model::kMonitorConfig<Scalar>,
-                                                robot_model::kComputedTorqueGains<Scalar>,
-                                                robot_model::kArmingConfig<Scalar>),
-                              controller_);
+  // That of the robot's constants, for a firmware that changes what they do not say: at_detection,
+  // safe_mode.
+  [[nodiscard]] static typename Controller::Config config() {
+    return controller_config(robot_model::kMonitorConfig<Scalar>,
+                             robot_model::kComputedTorqueGains<Scalar>,
+                             robot_model::kArmingConfig<Scalar>);
+  }
+
+  // What Controller::create() says of it. Without kOk there must be no tick.
+  [[nodiscard]] Status start(const typename Controller::Config& of_robot = config()) {
+    return Controller::create(of_robot, controller_);
   }
 
   // One tick that began at begin_us on the bus's clock, late_ticks whole periods too late.

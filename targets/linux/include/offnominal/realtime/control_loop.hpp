@@ -55,6 +55,12 @@ struct LoopReport {
   bool detected = false;
   double detection_time_s = 0;  // since arming
   int first_joint = -1;         // that was detected, from 0; -1: none, or not in TorqueSpace
+  bool acts = false;            // beyond the second level too
+  double act_time_s = 0;        // since arming
+  int act_joint = -1;           // that was, from 0; -1: as of first_joint
+  bool slowed = false;          // the motion was
+  double slow_time_s = 0;       // since arming
+  double slowed_to = 1;         // share of its pace
   // The newest answer to which fault it is, of a controller WithIsolation; its time_s is 0 where
   // there was none.
   FaultDiagnosis<double> isolated;
@@ -83,8 +89,8 @@ struct LoopReport {
       add_of_joints("fast_threshold");
     }
   }
-  for (const char* name : {"error", "threshold", "weights", "detected", "motion_t", "late_ticks",
-                           "latency_us", "fault", "state"}) {
+  for (const char* name : {"error", "threshold", "weights", "detected", "motion_t", "behind",
+                           "slows", "late_ticks", "latency_us", "fault", "state"}) {
     columns.emplace_back(name);
   }
   return columns;
@@ -125,8 +131,12 @@ template <int N, int L, typename Scalar, typename Memory, typename Space, typena
   put(static_cast<double>(data.output.threshold));
   put(std::sqrt(static_cast<double>(data.monitor.estimator.theta_squared_norm)));
   put(data.output.detector.latched ? 1 : 0);
+  const double behind_s = controller.pace(data).behind_s;
   put(static_cast<double>(data.run_ticks) *
-      static_cast<double>(controller.monitor().config().estimator.period_s));
+          static_cast<double>(controller.monitor().config().estimator.period_s) -
+      behind_s);
+  put(behind_s);
+  put(data.slows ? 1 : 0);
   put(tick.late_ticks);
   put(static_cast<double>(tick.latency_us));
   put(static_cast<double>(data.fault));
@@ -227,6 +237,7 @@ class ControlLoop {
         report_.first_joint = parts_.data.output.detector.first_joint;
       }
     }
+    note_acts();
     if constexpr (std::is_same_v<Isolates, WithIsolation>) {
       if (parts_.data.isolation.triggered) note(parts_.data.isolation.diagnosis);
     }
@@ -236,6 +247,34 @@ class ControlLoop {
         std::max(report_.worst_late_us, tick.latency_us + tick.late_ticks * period_us);
     report_.worst_step_us = std::max(report_.worst_step_us, step_us);
     sum_step_us_ += step_us;
+  }
+
+  void note_acts() {
+    const Data& data = parts_.data;
+    if (data.output.detector.acts && !report_.acts) {
+      report_.acts = true;
+      report_.act_time_s = data.output.time_s;
+      if constexpr (std::is_same_v<Space, TorqueSpace>) {
+        report_.act_joint = static_cast<int>(first_acting(data.output));
+      }
+    }
+    if (data.slows && !report_.slowed) {
+      report_.slowed = true;
+      report_.slow_time_s = data.output.time_s;
+      report_.slowed_to = static_cast<double>(parts_.controller.config().slow_down.to);
+    }
+  }
+
+  // Of a tick in which some joint comes beyond its second level; of several the one that is
+  // farthest beyond its first.
+  template <typename Output>
+  static std::size_t first_acting(const Output& output) {
+    const auto& joints = output.detector.joints;
+    const auto worst = static_cast<std::size_t>(output.worst_joint);
+    if (joints[worst].acts) return worst;
+    const auto found =
+        std::find_if(joints.begin(), joints.end(), [](const auto& joint) { return joint.acts; });
+    return static_cast<std::size_t>(found - joints.begin());
   }
 
   template <typename Found>

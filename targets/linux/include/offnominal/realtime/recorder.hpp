@@ -23,8 +23,8 @@ struct FrameEntry {
 
 // One line of the table: its time, then numbers, then one digit.
 struct Row {
-  // What a loop records: ten of every joint, and ten more.
-  static constexpr std::size_t kMostValues = 10 * static_cast<std::size_t>(kMaxJoints) + 10;
+  // What a loop records: ten of every joint, and twelve more.
+  static constexpr std::size_t kMostValues = 10 * static_cast<std::size_t>(kMaxJoints) + 12;
   Microseconds time_us = 0;
   std::array<double, kMostValues> values{};
   std::uint8_t digit = 0;  // 0 to 9
