@@ -75,8 +75,21 @@ std::string options_of(const CLI::App& verb) {
   return line;
 }
 
-void set_names(std::vector<Log>& logs, const std::vector<std::string>& names) {
-  for (std::size_t i = 0; i < logs.size(); ++i) logs[i].file = names[i];
+// Where files lie that were dropped on a page is nobody's business: remarks name them without it.
+void set_names(std::vector<Log>& logs, const std::vector<std::string>& paths,
+               const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    logs[i].file = names[i];
+    if (paths[i] == names[i]) continue;
+    for (const std::filesystem::path& file : recording_files(paths[i])) {
+      const std::string folder = file.parent_path().string() + "/";
+      for (std::string& remark : logs[i].remarks) {
+        for (auto at = remark.find(folder); at != std::string::npos; at = remark.find(folder)) {
+          remark.erase(at, folder.size());
+        }
+      }
+    }
+  }
 }
 
 // Beside the recording that is named first, also where it was dropped on a page: then the command
@@ -110,8 +123,8 @@ studio::Input read_input(const StudioOptions& options, const std::string& more, 
   }
   Progress progress;
   FitData data = read_fit_data("studio", "RECORDING", files, read_one, progress);
-  set_names(data.logs, names.logs);
-  set_names(data.holdout, names.holdout);
+  set_names(data.logs, files.logs, names.logs);
+  set_names(data.holdout, files.holdout, names.holdout);
   for (const std::vector<Log>* some : {&data.logs, &data.holdout}) {
     for (const Log& log : *some) refuse_hidden_from_sensors(data.robot, log);
   }
