@@ -74,8 +74,8 @@ class TickOf final : public Tick {
     const double end_s = static_cast<double>(work_.data.monitor.tick + 1) *
                          static_cast<double>(config.estimator.period_s);
     if (part == Part::kModel) {
-      static_cast<void>(
-          Form::look(monitor.model(), sample_.q, sample_.dq, sample_.tau, end_s, nominal_));
+      static_cast<void>(Form::look(monitor.model(), joint_transforms(monitor.model(), sample_.q),
+                                   sample_.q, sample_.dq, sample_.tau, end_s, nominal_));
       return;
     }
     State& estimator = work_.data.monitor.estimator;

@@ -115,9 +115,10 @@ class Monitor {
   }
 
   // Starts a run at a sample, time 0. Any refusal leaves `state` unchanged. `at`, here and below:
-  // of the sample's positions, where somebody else wants it too.
+  // joint_transforms() of this model and the sample's positions, where somebody else wants them
+  // too; those of others make a wrong answer that nothing tells.
   [[nodiscard]] Status reset(const Sample& sample, State& state) const {
-    return reset(sample, joint_transforms(model_, sample.q), state);
+    return reset(sample, transforms_of(sample), state);
   }
   [[nodiscard]] Status reset(const Sample& sample, const Transforms& at, State& state) const {
     if (!ready_) return Status::kNotInitialised;
@@ -151,7 +152,7 @@ class Monitor {
   // kept as they were, the threshold grows by what the velocity's error may add, and time goes on.
   // Any refusal leaves `state` unchanged.
   [[nodiscard]] Status resume(const Sample& sample, std::uint32_t missed, State& state) const {
-    return resume(sample, joint_transforms(model_, sample.q), missed, state);
+    return resume(sample, transforms_of(sample), missed, state);
   }
   [[nodiscard]] Status resume(const Sample& sample, const Transforms& at, std::uint32_t missed,
                               State& state) const {
@@ -181,7 +182,7 @@ class Monitor {
   // next good sample is then taken as if it followed the last good one by one tick, unless resume()
   // is told of the gap: what a joint went in several ticks may then be a fault.
   [[nodiscard]] Status step(const Sample& sample, State& state, Output& output) const {
-    return step(sample, joint_transforms(model_, sample.q), state, output);
+    return step(sample, transforms_of(sample), state, output);
   }
   [[nodiscard]] Status step(const Sample& sample, const Transforms& at, State& state,
                             Output& output) const {
@@ -242,6 +243,15 @@ class Monitor {
   using Now = typename EffectMemoryOf::Now;
   static constexpr bool kByJoint = std::is_same_v<Space, TorqueSpace>;
   using FastBegin = std::conditional_t<kByJoint, FastFilterBegin<N, Scalar>, typename Form::Fast>;
+
+  // Of a sample that look() refuses anything.
+  [[nodiscard]] Transforms transforms_of(const Sample& sample) const {
+    Transforms at;
+    const bool has_all =
+        N != kRuntimeJoints || sample.q.size() == static_cast<Eigen::Index>(model_.bodies.size());
+    if (ready_ && has_all) joint_transforms(model_, sample.q, at);
+    return at;
+  }
 
   // What the model and the bound say at a sample; refuses one that they cannot judge. Not inlined:
   // on a controller its callers share its code, and the estimator its stack.

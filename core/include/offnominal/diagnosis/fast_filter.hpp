@@ -28,10 +28,10 @@ struct FastFilterState {
 // What a tick began with, of the estimator's state: that is gone when the tick has been made.
 template <int N, typename Scalar>
 struct FastFilterBegin {
-  Vector<N, Scalar> momentum;      // p, N m s or N s
-  Vector<N, Scalar> nominal_rate;  // p' of the model, N m or N
-  Vector<N, Scalar> psi_hat;       // N m or N
-  Vector<N, Scalar> mu_bar;        // N m or N
+  Vector<N, Scalar> momentum = zeros<N, Scalar>();      // p, N m s or N s
+  Vector<N, Scalar> nominal_rate = zeros<N, Scalar>();  // p' of the model, N m or N
+  Vector<N, Scalar> psi_hat = zeros<N, Scalar>();       // N m or N
+  Vector<N, Scalar> mu_bar = zeros<N, Scalar>();        // N m or N
 };
 
 // kInvalidFilterPole: a pole that is no number above the estimator's; kUnstablePeriod: too far for

@@ -9,8 +9,8 @@
 
 // The work on the hidden layer inside one tick: one sweep over the hidden units per Runge-Kutta
 // stage, in blocks of the processor's vector length, with all inner products of the stage summed on
-// the way. Scalars come by value, so that no store to the vectors can make the compiler load them
-// again.
+// the way. Scalars of a stage come by value, so that no store to the vectors can make the compiler
+// load them again.
 
 namespace offnominal::detail {
 
@@ -299,7 +299,9 @@ template <int First, int Columns, bool Last, int N, int L, typename Scalar>
   return sum;
 }
 
-// So many columns of W2 at once that all that belongs to them stays in registers.
+// So many columns of W2 at once that all that belongs to them stays in registers. Where the
+// processor has no vectors, |W2|^2 of five joints and more is summed in another order than of a
+// number of joints that is known at run time.
 template <int First, int N, int L, typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE Block<Scalar> move_output_weights(
     Scalar keep, const Matrix<N, kStages, Scalar>& share, const StageFactors<L, Scalar>& factors,
@@ -307,7 +309,7 @@ template <int First, int N, int L, typename Scalar>
     Vector<N, Scalar>& psi_hat) {
   constexpr int kMostColumns = 4;
   constexpr int kLeft = N - First;
-  if constexpr (N == kRuntimeJoints || kLanes < Scalar >> 1 || kLeft <= kMostColumns) {
+  if constexpr (N == kRuntimeJoints || kLanes<Scalar> != 1 || kLeft <= kMostColumns) {
     constexpr int kColumns = N == kRuntimeJoints ? N : kLeft;
     return move_columns<First, kColumns, true>(keep, share, factors, weights, sigma, psi_hat);
   } else {

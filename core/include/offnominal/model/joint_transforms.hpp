@@ -17,7 +17,7 @@ struct JointTransforms {
 
 namespace detail {
 
-// m v, and m^T v. Written out, in the order of Eigen's sums: as its product each of them is a call.
+// m v, and m^T v. Written out: as Eigen's product each of them is a call.
 template <typename Scalar>
 [[nodiscard]] EIGEN_ALWAYS_INLINE Vector<3, Scalar> times(const Matrix<3, 3, Scalar>& m,
                                                           const Vector<3, Scalar>& v) {
