@@ -165,7 +165,7 @@ std::string blocks_words(const JointsCalibration& calibration) {
     const FalseAlarmLevel& level = of_filter.front().calibration.level;
     return fmt::format("{} blocks of {:g} s", level.blocks, level.block_s);
   };
-  const std::string slow = words(calibration.joints);
+  std::string slow = words(calibration.joints);
   if (calibration.fast.empty() || words(calibration.fast) == slow) return slow;
   return slow + ", behind the fast filter " + words(calibration.fast);
 }

@@ -32,7 +32,7 @@ std::string mend_of(controller::Fault refusal, const RobotDescription& robot) {
   if (refusal == Fault::kNoTorqueLimit) {
     // As large as a float can say is none: that is what the controller computes in.
     const auto misses = [](const RobotJoint& joint) {
-      return !(joint.joint.max_torque < double{std::numeric_limits<float>::max()});
+      return !(joint.joint.max_torque < static_cast<double>(std::numeric_limits<float>::max()));
     };
     return joints_that(robot, misses) +
            ": give `torque` in [joint.limits] of the robot file (docs/robot-file.md)";

@@ -11,7 +11,7 @@ namespace {
 
 ControllerSettings settings_of(const Scenario& scenario) {
   ControllerSettings settings;
-  static_cast<ActSettings&>(settings) = scenario;
+  static_cast<ActSettings&>(settings) = static_cast<const ActSettings&>(scenario);
   settings.accommodate = scenario.accommodate;
   if (!scenario.sends_velocity) settings.max_acceleration = scenario.max_acceleration;
   settings.encoder_bits_per_turn = scenario.encoder_bits_per_turn;

@@ -37,7 +37,7 @@ ordered_json content_of(const std::filesystem::path& file) {
   if (!std::filesystem::exists(std::filesystem::symlink_status(file, ignored))) {
     return empty_file();
   }
-  const ordered_json json = ordered_json::parse(read_text_file(file), nullptr, false);
+  ordered_json json = ordered_json::parse(read_text_file(file), nullptr, false);
   const auto is_list = [&](const char* kind) {
     return json.contains(kind) && json[kind].is_array();
   };

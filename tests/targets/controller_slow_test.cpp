@@ -211,14 +211,15 @@ TEST(SlowingController, GivenFrictionThenTheJointIsSlowedWithoutAJumpAndStillFol
       joint.tick_with(friction_nm);
       other.tick_with(friction_nm);
       fastest = std::max(fastest, std::fabs(joint.dq));
-      jump = std::max<double>(jump, std::fabs(joint.torque() - before));
-      jump_of_other = std::max<double>(jump_of_other, std::fabs(other.torque() - before_of_other));
+      jump = std::max(jump, static_cast<double>(std::fabs(joint.torque() - before)));
+      jump_of_other =
+          std::max(jump_of_other, static_cast<double>(std::fabs(other.torque() - before_of_other)));
       const auto off = [](const SwingingJoint& one) {
         const double time_s = 0.001 * static_cast<double>(one.data->run_ticks) -
                               one.controller.pace(*one.data).behind_s;
         return std::fabs(one.q - 0.5 * (1 - std::cos(3 * time_s)));
       };
-      residual = std::max<double>(residual, std::fabs(joint.data->output.error[0]));
+      residual = std::max(residual, static_cast<double>(std::fabs(joint.data->output.error[0])));
       furthest_off = std::max(furthest_off, off(joint));
       furthest_off_of_other = std::max(furthest_off_of_other, off(other));
     }

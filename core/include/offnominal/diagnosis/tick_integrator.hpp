@@ -68,9 +68,6 @@ class TickIntegrator {
   using Signals = StageSignals<N, Scalar, Space>;
   using Point = StagePoint<N, Scalar, Space>;
   static constexpr bool kPerJoint = !std::is_same_v<Threshold, Scalar>;
-  // It refers to itself.
-  TickIntegrator(const TickIntegrator&) = delete;
-  TickIntegrator& operator=(const TickIntegrator&) = delete;
   EIGEN_ALWAYS_INLINE TickIntegrator(const EstimatorConfig<Scalar>& config,
                                      const TickBegin<N, Scalar, Space>& model,
                                      const EstimatorInput<N, Scalar, Space>& input,
