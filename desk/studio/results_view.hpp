@@ -32,8 +32,8 @@ class ResultsView {
                                                     std::size_t from) const = 0;
   /// One run as recordings, with its robot file.
   [[nodiscard]] virtual SessionFiles record(std::int64_t run) = 0;
-  /// What a monitor saw of a run (a detector of state()'s `monitors`): {run, detector, words, level,
-  /// sections}. Not of a benchmark, whose cases nobody watched.
+  /// What a monitor saw of a run (a detector of state()'s `monitors`): {run, detector, words,
+  /// level, sections}. Not of a benchmark, whose cases nobody watched.
   [[nodiscard]] virtual nlohmann::json watched(std::int64_t run, const std::string& detector);
   /// What is wrong with these, with files by the names that the user knows.
   [[nodiscard]] virtual InputError shown(const InputError& error) const { return error; }
