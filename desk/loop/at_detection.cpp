@@ -5,7 +5,6 @@
 
 #include "common/error.hpp"
 #include "common/number.hpp"
-#include "common/numeric_options.hpp"
 
 namespace offnominal::desk {
 
@@ -33,7 +32,7 @@ void add_act_options(CLI::App& app, ActOptions& options) {
       ->check(CLI::Range(0.0, 0.99));
   app.add_option("--slow-within", options.slow_within_s,
                  "With --at-detection slow: how long that takes, s [1]")
-      ->check(above_zero());
+      ->check(CLI::Range(kShortestSlowingS, kLongestSlowingS));
 }
 
 void put_act_options(const std::string& program, const ActOptions& options, ActSettings& settings) {

@@ -9,6 +9,10 @@
 
 namespace offnominal::desk {
 
+// How long slowing may take, s: in less the torque would jump, for more it would be none.
+inline constexpr double kShortestSlowingS = 0.01;
+inline constexpr double kLongestSlowingS = 600;
+
 struct ActSettings {
   controller::AtDetection at_detection = controller::AtDetection::kReport;
   SlowDownConfig<double> slow_down;  // of AtDetection::kSlow

@@ -76,8 +76,11 @@ void read_act_settings(const TomlTable& root, ActSettings& settings) {
   NumberRule share = not_negative("");
   share.max = 0.99;
   settings.slow_down.to = root.number("slow_to", share, settings.slow_down.to);
-  settings.slow_down.within_s =
-      root.number("slow_within_s", positive("s"), settings.slow_down.within_s);
+  NumberRule within = positive("s");
+  within.min = kShortestSlowingS;
+  within.min_allowed = true;
+  within.max = kLongestSlowingS;
+  settings.slow_down.within_s = root.number("slow_within_s", within, settings.slow_down.within_s);
 }
 
 // A fault that this plant can have, in this run.

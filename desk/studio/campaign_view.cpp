@@ -238,6 +238,23 @@ const Log& CampaignView::log_of(std::int64_t run) {
   return newest_->second;
 }
 
+// Where the monitor's own words would mislead whoever knows of the fault.
+void CampaignView::add_what_results_say(std::int64_t run, const std::string& detector,
+                                        const Replay& shown, report::Page& page) const {
+  const auto row = std::find_if(results_.rows.begin(), results_.rows.end(), [&](const Result& one) {
+    return one.run == run && one.detector == detector;
+  });
+  if (row == results_.rows.end() || !row->fault_s) return;
+  if (!row->detected && !row->early) {
+    page.verdict.words = "The fault was missed. " + page.verdict.words;
+    page.verdict.level = report::Level::kWarn;
+  } else if (!row->early && shown.detection_time_s && *shown.detection_time_s < *row->fault_s) {
+    page.verdict.words +=
+        " An alarm so little before the fault is of it: the recording's velocities see some "
+        "milliseconds ahead. The results count it as at once.";
+  }
+}
+
 nlohmann::json CampaignView::watched(std::int64_t run, const std::string& detector) {
   const std::lock_guard guard(recording_);
   const Log& log = log_of(run);
@@ -248,7 +265,9 @@ nlohmann::json CampaignView::watched(std::int64_t run, const std::string& detect
                          ? std::nullopt
                          : campaign::judging_robot(*campaign_, detector, found->thresholds);
   if (!robot) refuse_filter("There is no such monitor.");
-  report::Page page = page_of(replay(*robot, log), "");
+  const Replay shown = replay(*robot, log);
+  report::Page page = page_of(shown, "");
+  add_what_results_say(run, detector, shown, page);
   for (report::Section& section : page.sections) {
     for (report::Block& block : section.blocks) {
       auto* const chart = std::get_if<report::Chart>(&block);

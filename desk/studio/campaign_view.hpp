@@ -11,6 +11,8 @@
 #include "campaign/campaign.hpp"
 #include "campaign/result_file.hpp"
 #include "campaign/simulate.hpp"
+#include "replay/replay.hpp"
+#include "report/page.hpp"
 #include "studio/results_view.hpp"
 #include "studio/upload_folder.hpp"
 
@@ -43,6 +45,8 @@ class CampaignView final : public ResultsView {
   [[nodiscard]] campaign::Results left_by(const ResultsFilter& filter) const;
   [[nodiscard]] std::vector<report::EventMark> marks_of(std::int64_t run) const;
   void restore();
+  void add_what_results_say(std::int64_t run, const std::string& detector, const Replay& shown,
+                            report::Page& page) const;
   // Whoever calls holds `recording_`.
   const Log& log_of(std::int64_t run);
 

@@ -213,6 +213,11 @@ TEST(AtDetection, StandsInAScenarioAsItIsWritten) {
   EXPECT_THAT(act_refusal("format = 1\nat_detection = \"stop\"\nslow_to = 0.5\n"),
               HasSubstr("slow_to: found at_detection = \"stop\""));
   EXPECT_THAT(act_refusal("format = 1\nslow_within_s = 0.5\n"), HasSubstr("slow_within_s"));
+  for (const char* none : {"0.001", "1e300"}) {
+    EXPECT_THAT(act_refusal(std::string("format = 1\nat_detection = \"slow\"\nslow_within_s = ") +
+                            none + "\n"),
+                HasSubstr("0.01"));
+  }
   EXPECT_THAT(act_refusal("format = 1\nstop_at_detection = true\n"), HasSubstr("at_detection"));
 }
 

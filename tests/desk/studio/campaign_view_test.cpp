@@ -145,6 +145,9 @@ TEST(CampaignView, ShowsWhatAMonitorSawAsTheResultsHaveIt) {
   int seen = 0;
   for (const campaign::Result& row : small().rows().rows) {
     if (std::find(monitors.begin(), monitors.end(), row.detector) == monitors.end()) continue;
+    if (row.fault_s && !row.detected && !row.early) {
+      EXPECT_EQ(view.watched(row.run, row.detector).at("level"), "warn") << "missed";
+    }
     if (!row.fault_s || !row.detected || row.early || !row.delay_s) continue;
     ++seen;
     const json watched = view.watched(row.run, row.detector);
