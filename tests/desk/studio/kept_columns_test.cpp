@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -53,9 +54,9 @@ TEST(KeptColumns, SaysTheMappingOfAProgramThatWasKilledAgain) {
   const TemporaryFolder folder;
   std::string text;
   ordered_json payload;
+  // It goes behind the others: as one that was killed it has no last word.
+  const auto killed = std::make_unique<Program>(folder);
   {
-    // Never destroyed: as one that was killed.
-    auto* const killed = new Program(folder);
     killed->give("arm.toml", robot_text_of_arm());
     killed->give("run.csv", strange_csv(1));
     killed->give("more.csv", strange_csv(0.5));
