@@ -214,10 +214,12 @@ void mend_strange_velocities(Log& log, const RobotDescription& robot,
   };
   std::vector<Found> found;
   const std::vector<char> held = held_joints(log, robot);
-  const auto strangers = of_every_joint(log, [&](Index joint) { return stranger_in(log, joint); });
+  const auto strangers = of_every_joint(log, [&](Index joint) {
+    return held[static_cast<std::size_t>(joint)] != 0 ? std::nullopt : stranger_in(log, joint);
+  });
   for (Index joint = 0; joint < log.q.cols(); ++joint) {
-    const auto which = static_cast<std::size_t>(joint);
-    if (held[which] == 0 && strangers[which]) found.push_back({joint, *strangers[which]});
+    const auto& stranger = strangers[static_cast<std::size_t>(joint)];
+    if (stranger) found.push_back({joint, *stranger});
   }
   if (found.empty()) return;
   const Log before = log;

@@ -268,13 +268,13 @@ nlohmann::json CampaignView::watched(std::int64_t run, const std::string& detect
   const Replay shown = replay(*robot, log);
   report::Page page = page_of(shown, "");
   add_what_results_say(run, detector, shown, page);
+  // Who alarmed when is the other detectors' as well: of the marks the fault's alone.
+  std::vector<report::EventMark> marks = marks_of(run);
+  std::erase_if(marks, [](const auto& mark) { return mark.level != report::Level::kBad; });
   for (report::Section& section : page.sections) {
     for (report::Block& block : section.blocks) {
       auto* const chart = std::get_if<report::Chart>(&block);
-      if (chart == nullptr) continue;
-      for (report::EventMark& mark : marks_of(run)) {
-        if (mark.level == report::Level::kBad) chart->events.push_back(std::move(mark));
-      }
+      if (chart != nullptr) chart->events.insert(chart->events.end(), marks.begin(), marks.end());
     }
   }
   const nlohmann::json json = to_json(page);
