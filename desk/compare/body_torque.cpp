@@ -26,12 +26,14 @@ MatrixXd torque_of_links(const RobotDescription& links, const Motion& motion) {
   const auto model = make_model(chain_of<kRuntimeJoints, double>(links));
   using Joints = Vector<kRuntimeJoints, double>;
   MatrixXd torque(motion.sample_count(), motion.q.cols());
-  for (Index i = 0; i < motion.sample_count(); ++i) {
-    const Joints q = motion.q.row(i);
-    const Joints dq = motion.dq.row(i);
-    const Joints ddq = motion.ddq.row(i);
-    torque.row(i) = rigid_body_torque(model, joint_transforms(model, q), dq, ddq);
-  }
+  for_stretches(motion, [&](Index first, Index count) {
+    for (Index i = first; i < first + count; ++i) {
+      const Joints q = motion.q.row(i);
+      const Joints dq = motion.dq.row(i);
+      const Joints ddq = motion.ddq.row(i);
+      torque.row(i) = rigid_body_torque(model, joint_transforms(model, q), dq, ddq);
+    }
+  });
   return torque;
 }
 

@@ -6,7 +6,6 @@
 #include <offnominal/model/inverse_dynamics.hpp>
 #include <stdexcept>
 
-#include "common/parallel.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/transmission.hpp"
 #include "signal/shift.hpp"
@@ -54,15 +53,10 @@ Model model_for(const RobotDescription& robot, const Motion& motion) {
   return make_model(chain_of<kRuntimeJoints, double>(robot));
 }
 
-Motion part_of(const Motion& motion, Index first, Index count) {
-  return {motion.t_s.segment(first, count), motion.q.middleRows(first, count),
-          motion.dq.middleRows(first, count), motion.ddq.middleRows(first, count)};
-}
-
 // Sets the rows of `torque` from `first` on, one for each row of `rigid`, the bodies' torque there:
 // with every effect that follows from a sample alone.
-void torque_of_drives(const Model& model, const Motion& motion, const MatrixXd& rigid, Index first,
-                      MatrixXd& torque) {
+void torque_of_drives(const Model& model, const Motion& motion,
+                      const Eigen::Ref<const MatrixXd>& rigid, Index first, MatrixXd& torque) {
   for (Index row = 0; row < rigid.rows(); ++row) {
     const Index i = first + row;
     const Joints q = motion.q.row(i);
@@ -104,12 +98,8 @@ RobotDescription without_masses(const RobotDescription& robot) {
 MatrixXd model_torque(const RobotDescription& robot, const Motion& motion) {
   const Model model = model_for(robot, motion);
   MatrixXd torque(motion.sample_count(), robot.joint_count());
-  constexpr Index kRows = 1 << 15;  // of a part: what the bodies take is kept of no more
-  const Index parts = (motion.sample_count() + kRows - 1) / kRows;
-  parallel_for(static_cast<std::size_t>(parts), threads_for(motion.q.size()), [&](std::size_t i) {
-    const Index first = static_cast<Index>(i) * kRows;
-    const Index count = std::min(kRows, motion.sample_count() - first);
-    const MatrixXd rigid = BodyTorque().of(robot, part_of(motion, first, count));
+  for_stretches(motion, [&](Index first, Index count) {
+    const MatrixXd rigid = BodyTorque().of(robot, motion.part(first, count));
     torque_of_drives(model, motion, rigid, first, torque);
   });
   add_what_remembers(robot, model, motion, torque);
@@ -119,7 +109,10 @@ MatrixXd model_torque(const RobotDescription& robot, const Motion& motion) {
 MatrixXd model_torque(const RobotDescription& robot, const Motion& motion, BodyTorque& bodies) {
   const Model model = model_for(robot, motion);
   MatrixXd torque(motion.sample_count(), robot.joint_count());
-  torque_of_drives(model, motion, bodies.of(robot, motion), 0, torque);
+  const MatrixXd rigid = bodies.of(robot, motion);
+  for_stretches(motion, [&](Index first, Index count) {
+    torque_of_drives(model, motion, rigid.middleRows(first, count), first, torque);
+  });
   add_what_remembers(robot, model, motion, torque);
   return torque;
 }
@@ -150,14 +143,16 @@ ToldTorque told_torque(const RobotDescription& robot, const Motion& motion) {
   const auto model = make_model(chain);
   ToldTorque told{model.told_per_given, MatrixXd(motion.sample_count(), robot.joint_count()),
                   delays_in_samples(chain, motion)};
-  for (Index i = 0; i < motion.sample_count(); ++i) {
-    const Joints q = motion.q.row(i);
-    const Joints dq = motion.dq.row(i);
-    const Joints ddq = motion.ddq.row(i);
-    const auto effects = joint_effects(model, q, dq, motion.t_s[i] - motion.t_s[0]);
-    const Joints load = rigid_body_torque(model, joint_transforms(model, q), dq, ddq);
-    told.per_load.row(i) = told_per_load(model, effects, load);
-  }
+  for_stretches(motion, [&](Index first, Index count) {
+    for (Index i = first; i < first + count; ++i) {
+      const Joints q = motion.q.row(i);
+      const Joints dq = motion.dq.row(i);
+      const Joints ddq = motion.ddq.row(i);
+      const auto effects = joint_effects(model, q, dq, motion.t_s[i] - motion.t_s[0]);
+      const Joints load = rigid_body_torque(model, joint_transforms(model, q), dq, ddq);
+      told.per_load.row(i) = told_per_load(model, effects, load);
+    }
+  });
   return told;
 }
 

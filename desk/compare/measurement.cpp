@@ -26,8 +26,8 @@ namespace {
 MatrixXd filtered_columns(const FilterPlan& plan, const MatrixXd& columns) {
   MatrixXd result;
   std::vector<VectorXd> all(static_cast<std::size_t>(columns.cols()));
-  parallel_for(all.size(), threads_for(columns.size()), [&](std::size_t joint) {
-    all[joint] = filtered(plan, columns.col(static_cast<Index>(joint)));
+  for_every_column(columns, [&](Index joint) {
+    all[static_cast<std::size_t>(joint)] = filtered(plan, columns.col(joint));
   });
   for (std::size_t joint = 0; joint < all.size(); ++joint) {
     if (joint == 0) result.resize(all[joint].size(), columns.cols());
@@ -93,13 +93,11 @@ Measurement measure(std::shared_ptr<const Log> held, const RobotDescription& rob
     measured.sensor_torque = filtered_columns(measured.plan, log.sensor_tau);
   }
   measured.moving.resize(measured.t_s.size(), log.q.cols());
-  parallel_for(static_cast<std::size_t>(log.q.cols()), threads_for(log.q.size()),
-               [&](std::size_t i) {
-                 const auto joint = static_cast<Index>(i);
-                 const VectorXd speed = measured.motion.dq.col(joint);
-                 measured.moving.col(joint) =
-                     kept_samples(measured.plan, samples_that_tell(log, robot, joint, speed));
-               });
+  for_every_column(log.q, [&](Index joint) {
+    const VectorXd speed = measured.motion.dq.col(joint);
+    measured.moving.col(joint) =
+        kept_samples(measured.plan, samples_that_tell(log, robot, joint, speed));
+  });
   leave_out_faults(log, measured);
   measured.log = std::move(held);
   return measured;

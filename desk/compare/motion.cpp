@@ -2,7 +2,6 @@
 
 #include <cstddef>
 
-#include "common/parallel.hpp"
 #include "signal/decimate.hpp"
 #include "signal/differentiate.hpp"
 #include "signal/zero_phase.hpp"
@@ -45,11 +44,9 @@ Motion thin_motion_of(const Log& log, const FilterPlan& plan, Index stride) {
   for (MatrixXd* const one : {&motion.q, &motion.dq, &motion.ddq}) {
     one->resize(motion.t_s.size(), log.q.cols());
   }
-  parallel_for(static_cast<std::size_t>(log.q.cols()), threads_for(log.q.size()),
-               [&](std::size_t i) {
-                 const auto joint = static_cast<Index>(i);
-                 set_joint(motion, joint, motion_of_joint(log, plan, joint), stride);
-               });
+  for_every_column(log.q, [&](Index joint) {
+    set_joint(motion, joint, motion_of_joint(log, plan, joint), stride);
+  });
   return motion;
 }
 

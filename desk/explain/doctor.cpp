@@ -114,12 +114,10 @@ std::optional<SlowSignals> slow_signals(const Log& log, double cutoff_of_rate) {
   slow.edge = rows_per_period / stride + 1;
   slow.motion = thin_motion_of(log, plan, stride);
   slow.torque.resize(slow.motion.sample_count(), log.tau.cols());
-  parallel_for(
-      static_cast<std::size_t>(log.tau.cols()), threads_for(log.tau.size()), [&](std::size_t i) {
-        const auto joint = static_cast<Index>(i);
-        slow.torque.col(joint) = every_nth(
-            zero_phase_low_pass(log.tau.col(joint), plan.position_cutoff_hz, rate_hz), stride);
-      });
+  for_every_column(log.tau, [&](Index joint) {
+    slow.torque.col(joint) =
+        every_nth(zero_phase_low_pass(log.tau.col(joint), plan.position_cutoff_hz, rate_hz), stride);
+  });
   slow.payload = log.payload;
   return slow;
 }

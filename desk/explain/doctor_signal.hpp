@@ -18,8 +18,9 @@ namespace offnominal::desk {
 template <typename Work>
 auto of_every_joint(const Log& log, const Work& work) {
   std::vector<decltype(work(Eigen::Index{}))> all(static_cast<std::size_t>(log.q.cols()));
-  parallel_for(all.size(), threads_for(log.q.size()),
-               [&](std::size_t joint) { all[joint] = work(static_cast<Eigen::Index>(joint)); });
+  for_every_column(log.q, [&](Eigen::Index joint) {
+    all[static_cast<std::size_t>(joint)] = work(joint);
+  });
   return all;
 }
 

@@ -3,11 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/parallel.hpp"
+
 namespace offnominal::desk {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+namespace {
+
+// Calls work(i) for `count` signals of a recording, each of which is filtered for it: side by side
+// where that takes some milliseconds.
+template <typename Work>
+void for_filters(std::size_t count, const Workspace& at, const Work& work) {
+  constexpr Index kWorthIt = 60'000;
+  parallel_for(count, threads_for(static_cast<Index>(count) * at.sample_count(), kWorthIt), work);
+}
+
+}  // namespace
 
 RowLayout::RowLayout(const std::vector<Workspace>& recordings) {
   joints_ = recordings.empty() ? 0 : recordings[0].joint_count();
@@ -108,10 +122,11 @@ VectorXd RowLayout::stack(const std::vector<Workspace>& recordings,
                           const std::vector<Regressor>& per_recording) const {
   VectorXd column = VectorXd::Zero(rows_);
   for (std::size_t r = 0; r < per_recording.size(); ++r) {
-    for (const JointTorque& torque : per_recording[r]) {
+    for_filters(per_recording[r].size(), recordings[r], [&](std::size_t i) {
+      const JointTorque& torque = per_recording[r][i];
       column.segment(begin(r, torque.joint), samples_[r]) =
           filtered(recordings[r].plan, torque.values);
-    }
+    });
   }
   return column;
 }
@@ -132,10 +147,11 @@ VectorXd RowLayout::stack_all(const std::vector<Workspace>& recordings,
                               const std::vector<const MatrixXd*>& per_recording) const {
   VectorXd column(rows_);
   for (std::size_t r = 0; r < per_recording.size(); ++r) {
-    for (Index joint = 0; joint < joints_; ++joint) {
+    for_filters(static_cast<std::size_t>(joints_), recordings[r], [&](std::size_t i) {
+      const auto joint = static_cast<Index>(i);
       column.segment(begin(r, joint), samples_[r]) =
           filtered(recordings[r].plan, per_recording[r]->col(joint));
-    }
+    });
   }
   return column;
 }
