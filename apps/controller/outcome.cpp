@@ -25,7 +25,11 @@ nlohmann::ordered_json to_json(const ControllerOutcome& outcome) {
   json["act_joint"] = loop.act_joint < 0 ? nlohmann::ordered_json(nullptr)
                                          : nlohmann::ordered_json(loop.act_joint + 1);
   json["slowed"] = nullptr;
-  if (loop.slowed) json["slowed"] = {{"time_s", loop.slow_time_s}, {"to", loop.slowed_to}};
+  if (loop.slowed) {
+    json["slowed"] = {{"time_s", loop.slow_time_s},
+                      {"to", loop.slow_down.to},
+                      {"within_s", loop.slow_down.within_s}};
+  }
   json["isolated"] = nullptr;
   if (outcome.report.isolated) {
     json["isolated"] = to_json(*outcome.report.isolated, outcome.joint_names);
@@ -79,8 +83,8 @@ std::string text_of(const ControllerOutcome& outcome) {
                   : std::string("never"));
   }
   if (loop.slowed) {
-    row("motion slowed", fmt::format("{:.3f} s after arming, to {:.0f} % of its pace",
-                                     loop.slow_time_s, 100 * loop.slowed_to));
+    row("motion slowed",
+        fmt::format("{:.3f} s after arming, {}", loop.slow_time_s, slowing_words(loop.slow_down)));
   }
   if (outcome.report.isolated) {
     row("which fault", words_of(*outcome.report.isolated, outcome.joint_names));

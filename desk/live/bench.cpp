@@ -96,7 +96,8 @@ class BenchOfRobot final : public Bench {
   }
 
   [[nodiscard]] ControllerWord controller() const override {
-    return {run_->ends.controller().state(), run_->ends.controller().fault()};
+    const auto& controller = run_->ends.controller();
+    return {controller.state(), controller.fault(), controller.view().slows};
   }
 
  private:

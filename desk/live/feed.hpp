@@ -40,6 +40,7 @@ class Feed {
 struct ControllerWord {
   hal::ControllerState state = hal::ControllerState::kInit;
   controller::Fault fault = controller::Fault::kNone;
+  bool slows = false;  // its motion is slowed, as only a simulated one tells
 };
 
 /// A feed that is simulated: nothing real hears of what is done to it.

@@ -293,7 +293,7 @@ void Live::after_frames() {
   if (bench_ != nullptr) {
     controller = bench_->controller();
   } else if (const auto& heartbeat = samples_->heartbeat()) {
-    controller = {heartbeat->state, static_cast<controller::Fault>(heartbeat->fault)};
+    controller = {heartbeat->state, static_cast<controller::Fault>(heartbeat->fault), false};
   }
   const std::lock_guard guard(lock_);
   now_.ended = ended;

@@ -106,7 +106,8 @@ ordered_json faults_of(const Live& live) {
 }
 
 ordered_json controller_json(const ControllerWord& word) {
-  ordered_json json{{"state", sil::name_of(word.state)}, {"fault", nullptr}};
+  ordered_json json{
+      {"state", sil::name_of(word.state)}, {"fault", nullptr}, {"slows", word.slows}};
   if (word.state == hal::ControllerState::kFault) {
     json["fault"] = controller::name_of(word.fault);
   }
@@ -135,7 +136,8 @@ ordered_json detection_json(const Detection& detection, const Live& live) {
   return json;
 }
 
-ordered_json injected_json(const std::vector<sim::FaultEvent>& faults) {
+// `begin`: the key of when they begin.
+ordered_json faults_json(const std::vector<sim::FaultEvent>& faults, const char* begin) {
   ordered_json all = ordered_json::array();
   for (const sim::FaultEvent& fault : faults) {
     const sim::FaultEventInfo& info = info_of(fault.kind);
@@ -143,7 +145,7 @@ ordered_json injected_json(const std::vector<sim::FaultEvent>& faults) {
         {"kind", info.name}, {"joint", nullptr}, {"size", nullptr}, {"unit", info.unit}};
     if (fault.joint >= 0) one["joint"] = fault.joint + 1;
     if (!info.unit.empty()) one["size"] = number(fault.size);
-    one["since_s"] = time_number(fault.begin_s);
+    one[begin] = time_number(fault.begin_s);
     all.push_back(std::move(one));
   }
   return all;
@@ -172,7 +174,9 @@ ordered_json setup_json(const Live& live) {
       {"kept_s", {kBeforeS, kAfterS}},
       {"explained_s", {kExplainedBeforeS, kExplainedAfterS}},
       {"longest_recording_s", kLongestRecordingS},
-      {"faults", live.is_simulated() ? faults_of(live) : ordered_json::array()}};
+      {"faults", live.is_simulated() ? faults_of(live) : ordered_json::array()},
+      {"planned", live.is_simulated() ? faults_json(input.scenario.faults, "begin_s")
+                                      : ordered_json::array()}};
 }
 
 ordered_json moment_json(const Moment& moment, const Live& live) {
@@ -187,7 +191,7 @@ ordered_json moment_json(const Moment& moment, const Live& live) {
                     {"act", ordered_json::array()},
                     {"beyond", moment.beyond},
                     {"detection", nullptr},
-                    {"faults", injected_json(moment.faults)},
+                    {"faults", faults_json(moment.faults, "since_s")},
                     {"accommodates", moment.accommodates},
                     {"recording_s", nullptr},
                     {"counts",

@@ -1,5 +1,7 @@
 #include "loop/at_detection.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 
@@ -19,6 +21,12 @@ const std::string& name_of(AtDetection at_detection) {
   return at_detection_names().at(static_cast<std::size_t>(at_detection));
 }
 
+std::string slowing_words(const SlowDownConfig<double>& slow_down) {
+  const std::string pace =
+      slow_down.to > 0 ? fmt::format("{:.3g} % of its pace", 100 * slow_down.to) : "a stand";
+  return fmt::format("to {} within {:g} s", pace, slow_down.within_s);
+}
+
 void add_act_options(CLI::App& app, ActOptions& options) {
   app.add_option(
          "--at-detection", options.at_detection,
@@ -29,7 +37,7 @@ void add_act_options(CLI::App& app, ActOptions& options) {
   app.add_option("--slow-to", options.slow_to,
                  "With --at-detection slow: the share of its pace that the motion is slowed to; 0: "
                  "it comes to a stand on its path [0.25]")
-      ->check(CLI::Range(0.0, 0.99));
+      ->check(CLI::Range(0.0, kMostPace));
   app.add_option("--slow-within", options.slow_within_s,
                  "With --at-detection slow: how long that takes, s [1]")
       ->check(CLI::Range(kShortestSlowingS, kLongestSlowingS));

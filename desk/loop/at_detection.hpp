@@ -12,11 +12,16 @@ namespace offnominal::desk {
 // How long slowing may take, s: in less the torque would jump, for more it would be none.
 inline constexpr double kShortestSlowingS = 0.01;
 inline constexpr double kLongestSlowingS = 600;
+// Share of its pace that may be left of a slowed motion: of more it would not be one.
+inline constexpr double kMostPace = 0.99;
 
 struct ActSettings {
   controller::AtDetection at_detection = controller::AtDetection::kReport;
   SlowDownConfig<double> slow_down;  // of AtDetection::kSlow
 };
+
+/// "to 25 % of its pace within 1 s", "to a stand within 1 s".
+[[nodiscard]] std::string slowing_words(const SlowDownConfig<double>& slow_down);
 
 /// "report", "slow", "stop": in the order of AtDetection.
 [[nodiscard]] const std::vector<std::string>& at_detection_names();

@@ -183,7 +183,6 @@ SilResult gather(const RobotDescription& robot, const Scenario& scenario,
   SilResult result;
   result.run = observer.finish();
   result.run.fault_time_s = first_s;
-  result.slowed = slowed_in(result.run, scenario);
   result.bus_name = bus_name;
   result.faults = scenario.faults;
   result.state = state_named(recordings.controller.at("state"));
@@ -212,6 +211,7 @@ SilResult gather(const RobotDescription& robot, const Scenario& scenario,
       result.time_to_safe_state_s = *result.ended_early_s - *first_s;
     }
   }
+  tell_what_followed(scenario, result);
   return result;
 }
 

@@ -68,18 +68,18 @@ void read_act_settings(const TomlTable& root, ActSettings& settings) {
   if (settings.at_detection != AtDetection::kSlow) {
     for (const char* key : {"slow_to", "slow_within_s"}) {
       if (!root.has(key)) continue;
-      root.refuse(key, "at_detection = \"" + name_of(settings.at_detection) + "\"",
-                  "with at_detection = \"slow\"", "leave it out");
+      root.refuse(key,
+                  root.has("at_detection")
+                      ? "it beside at_detection = \"" + name_of(settings.at_detection) + "\""
+                      : std::string("it without at_detection"),
+                  "it beside at_detection = \"slow\"",
+                  "say at_detection = \"slow\", or leave it out");
     }
     return;
   }
-  NumberRule share = not_negative("");
-  share.max = 0.99;
+  const NumberRule share{.min = 0, .max = kMostPace};
   settings.slow_down.to = root.number("slow_to", share, settings.slow_down.to);
-  NumberRule within = positive("s");
-  within.min = kShortestSlowingS;
-  within.min_allowed = true;
-  within.max = kLongestSlowingS;
+  const NumberRule within{.min = kShortestSlowingS, .max = kLongestSlowingS, .unit = "s"};
   settings.slow_down.within_s = root.number("slow_within_s", within, settings.slow_down.within_s);
 }
 

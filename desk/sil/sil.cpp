@@ -99,16 +99,20 @@ SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenar
   result.run = observer.finish();
   if (result.run_time_s > 0) result.bus.load = busy_s / result.run_time_s;
   result.run.fault_time_s = first_s;
-  result.slowed = slowed_in(result.run, scenario);
+  tell_what_followed(scenario, result);
   if (result.isolated) {
     result.isolated = on_the_runs_clock(*result.isolated, result, robot.estimator.period_s);
   }
   return result;
 }
 
-std::optional<Slowed> slowed_in(const paper::ExperimentResult& run, const Scenario& scenario) {
-  if (!run.slowed_time_s) return std::nullopt;
-  return Slowed{*run.slowed_time_s, scenario.slow_down.to};
+void tell_what_followed(const Scenario& scenario, SilResult& result) {
+  result.at_detection = scenario.at_detection;
+  if (!result.run.slowed_time_s) return;
+  const double end_s = result.ended_early_s.value_or(scenario.duration_s);
+  const double since_s = *result.run.slowed_time_s;
+  result.slowed =
+      Slowed{since_s, scenario.slow_down, since_s + scenario.slow_down.within_s <= end_s};
 }
 
 IsolatedFault on_the_runs_clock(IsolatedFault fault, const SilResult& result, double period_s) {

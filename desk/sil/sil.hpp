@@ -73,8 +73,9 @@ struct NotHeld {
 
 /// A motion that the controller slowed at its second level.
 struct Slowed {
-  double time_s = 0;  // of the run, since the arm was free to move
-  double to = 0;      // share of its pace
+  double time_s = 0;     // of the run, since the arm was free to move
+  SlowDownConfig<double> as;
+  bool reached = false;  // the pace, before the run ended
 };
 
 struct SilResult {
@@ -89,6 +90,7 @@ struct SilResult {
   std::optional<double> time_to_safe_state_s;
   std::optional<double> ended_early_s;  // since arming; none: the run went to its end
   std::optional<NotHeld> not_held;      // of Fault::kArmNotHeld
+  controller::AtDetection at_detection = controller::AtDetection::kReport;  // as it was told
   std::optional<Slowed> slowed;
   std::uint64_t overruns = 0;
   std::optional<IsolatedFault> isolated;    // the controller's last answer, on the run's clock
@@ -106,9 +108,8 @@ void check_scenario(const RobotDescription& robot, const Scenario& scenario);
                                          Wire& wire, const std::string& bus_name,
                                          const TappedPort::OnFrame& on_frame = {});
 
-/// Where the run shows that the motion was slowed.
-[[nodiscard]] std::optional<Slowed> slowed_in(const paper::ExperimentResult& run,
-                                              const Scenario& scenario);
+/// Says of a run that has ended what became of the motion beyond the second level.
+void tell_what_followed(const Scenario& scenario, SilResult& result);
 
 /// The controller's answer in times of the run, as run.detection_time_s is: since the arm was free
 /// to move. The controller counts from when it holds the arm.

@@ -96,8 +96,10 @@ std::vector<Row> rows_of_detection(const SilResult& result) {
     rows.push_back({"joints beyond it", joints_beyond(run, &paper::JointRun::act_time_s)});
   }
   if (result.slowed) {
-    rows.push_back({"motion slowed", fmt::format("{:.3f} s, to {:.0f} % of its pace",
-                                                 result.slowed->time_s, 100 * result.slowed->to)});
+    rows.push_back({"motion slowed", fmt::format("{:.3f} s, {}", result.slowed->time_s,
+                                                 slowing_words(result.slowed->as))});
+  } else if (result.at_detection == controller::AtDetection::kSlow) {
+    rows.push_back({"motion slowed", "never"});
   }
   if (result.isolated) {
     rows.push_back({"which fault", words_of(*result.isolated, names_in(run))});
@@ -184,9 +186,13 @@ ordered_json to_json(const SilResult& result) {
   json["controller_fault"] = controller::name_of(result.fault);
   json["ended_early_s"] = nullable(result.ended_early_s);
   json["unasked_stop"] = is_unasked_stop(result);
+  json["at_detection"] = offnominal::desk::name_of(result.at_detection);
   json["slowed"] = nullptr;
   if (result.slowed) {
-    json["slowed"] = {{"time_s", result.slowed->time_s}, {"to", result.slowed->to}};
+    json["slowed"] = {{"time_s", result.slowed->time_s},
+                      {"to", result.slowed->as.to},
+                      {"within_s", result.slowed->as.within_s},
+                      {"reached", result.slowed->reached}};
   }
   json["not_held"] = result.not_held ? to_json(*result.not_held) : ordered_json(nullptr);
   json["verdict"] = sentence_of(result);
@@ -253,8 +259,8 @@ std::string sentence_of(const SilResult& result) {
                             : std::string(" Never beyond the level to act.");
   }
   if (result.slowed) {
-    words += fmt::format(" The controller slowed the motion to {:.0f} % of its pace.",
-                         100 * result.slowed->to);
+    words += fmt::format(" The controller slowed the motion {}.", slowing_words(result.slowed->as));
+    if (!result.slowed->reached) words += " The run ended before that.";
   }
   if (result.state == hal::ControllerState::kFault) {
     words += fmt::format(" The controller went to its safe state: {}.",

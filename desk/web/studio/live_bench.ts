@@ -56,19 +56,28 @@ export function benchContent() {
   return [row, words, place("injected")];
 }
 
+/** Which fault, where and how much. */
+function faultWords({ kind, joint, size, unit }: Pick<Moment["faults"][number], "kind" | "joint" | "size" | "unit">) {
+  const where = joint === null ? "" : `, ${jointName(joint)}`;
+  const much = size === null ? "" : `, ${withUnit(formatSignificant(size, 4), unit)}`;
+  return `${effectTitle(kind)}${where}${much}`;
+}
+
 export function showInjected({ faults }: Moment) {
   const words = JSON.stringify(faults);
   if (words === live.written.faults) return;
   live.written.faults = words;
-  if (faults.length === 0) {
+  const { planned } = liveSetup();
+  if (faults.length === 0 && planned.length === 0) {
     replaceContent(placeOf("injected"), element("p", { class: "empty" }, "No fault is injected."));
     return;
   }
   const list = element("ul", { class: "parameters" });
-  for (const { kind, joint, size, unit, since_s } of faults) {
-    const where = joint === null ? "" : `, ${jointName(joint)}`;
-    const much = size === null ? "" : `, ${withUnit(formatSignificant(size, 4), unit)}`;
-    list.append(element("li", {}, `${effectTitle(kind)}${where}${much}, since ${formatNumber(since_s, ".1f")} s`));
+  for (const fault of planned) {
+    list.append(element("li", {}, `${faultWords(fault)}, of the scenario, from ${formatNumber(fault.begin_s, ".1f")} s after the arm is free to move`));
+  }
+  for (const fault of faults) {
+    list.append(element("li", {}, `${faultWords(fault)}, since ${formatNumber(fault.since_s, ".1f")} s`));
   }
   replaceContent(placeOf("injected"), list);
 }

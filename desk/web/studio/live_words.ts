@@ -15,7 +15,8 @@ export function liveHeading() {
 
 function controllerWords({ controller }: Moment) {
   if (controller === null) return "says nothing of itself on this bus";
-  return controller.fault === null ? controller.state : `${controller.state}: ${controller.fault}`;
+  if (controller.fault !== null) return `${controller.state}: ${controller.fault}`;
+  return controller.slows ? `${controller.state}, its motion slowed` : controller.state;
 }
 
 function monitorWords(now: Moment) {

@@ -302,6 +302,28 @@ TEST(LiveBench, SaysWhyARunHasEndedAndBeginsItAgain) {
   EXPECT_GT(again.t_s, end.t_s);
 }
 
+// GIVEN a scenario with a fault of its own and a controller that slows at it THEN the page is told of
+// both.
+TEST(LiveBench, TellsOfTheScenariosFaultsAndOfASlowedMotion) {
+  const RobotDescription robot = test::by_joint_robot(4, kBoundNm);
+  LiveInput input = input_of(robot, {});
+  input.scenario.at_detection = controller::AtDetection::kSlow;
+  input.scenario.faults = {{.kind = sim::FaultEventKind::kFrictionJump,
+                            .begin_s = 1.0,
+                            .joint = 1,
+                            .size = 4 * kBoundNm}};
+  Live live(std::move(input));
+  const auto planned = setup_json(live).at("planned");
+  ASSERT_EQ(planned.size(), 1U);
+  EXPECT_EQ(planned[0].at("kind"), "friction_jump");
+  EXPECT_EQ(planned[0].at("joint"), 2);
+  EXPECT_EQ(planned[0].at("begin_s"), 1.0);
+  const Moment slowed =
+      wait_for(live, [](const Moment& now) { return now.controller && now.controller->slows; });
+  EXPECT_TRUE(moment_json(slowed, live).at("controller").at("slows").get<bool>());
+  EXPECT_TRUE(slowed.detection.has_value()) << "nothing slows a healthy arm";
+}
+
 TEST(LiveBench, RefusesInWordsWhatNoFaultIs) {
   const RobotDescription robot = test::by_joint_robot(2, kBoundNm);
   Live live(input_of(robot, {}));

@@ -68,19 +68,36 @@ TEST(AtDetection, GivenSlowThenTheArmGoesOnMoreSlowlyAndTheRunSaysSo) {
   EXPECT_FALSE(reported.slowed.has_value());
   EXPECT_EQ(slowed.slowed->time_s, slowed.run.detection_time_s) << "of one level they are one";
   EXPECT_EQ(slowed.run.detection_time_s, reported.run.detection_time_s);
-  EXPECT_EQ(slowed.slowed->to, 0.2);
+  EXPECT_EQ(slowed.slowed->as.to, 0.2);
+  EXPECT_TRUE(slowed.slowed->reached);
   EXPECT_EQ(slowed.state, hal::ControllerState::kArmed) << controller::name_of(slowed.fault);
   const double settled_s = slowed.slowed->time_s + 0.6;
   EXPECT_LT(fastest(slowed, settled_s), 0.25 * fastest(reported, settled_s));
   EXPECT_GT(fastest(slowed, settled_s), 0.05 * fastest(reported, settled_s)) << "it goes on";
   // Off the motion that it was given it would be by tenths of a radian.
   EXPECT_LT(slowed.run.tracking_rms_rad, 2 * reported.run.tracking_rms_rad);
-  EXPECT_THAT(text_of(slowed), testing::ContainsRegex("motion slowed +1.* s, to 20 % of its pace"));
-  EXPECT_THAT(sentence_of(slowed), HasSubstr("slowed the motion to 20 % of its pace"));
+  EXPECT_THAT(text_of(slowed), testing::ContainsRegex("motion slowed +1.* s, to 20 % of its pace within 0.5 s"));
+  EXPECT_THAT(sentence_of(slowed), HasSubstr("slowed the motion to 20 % of its pace within 0.5 s"));
+  EXPECT_THAT(sentence_of(slowed), Not(HasSubstr("ended before")));
   const auto json = to_json(slowed);
   EXPECT_EQ(json.at("slowed").at("time_s"), slowed.slowed->time_s);
   EXPECT_EQ(json.at("slowed").at("to"), 0.2);
+  EXPECT_EQ(json.at("slowed").at("reached"), true);
+  EXPECT_EQ(json.at("at_detection"), "slow");
   EXPECT_EQ(to_json(reported).at("slowed"), nullptr);
+}
+
+// GIVEN a run that ends while the motion is still slowed down THEN it does not say that the pace was
+// reached.
+TEST(AtDetection, GivenARunThatEndsOnTheWayThenItSaysSo) {
+  const RobotDescription robot = by_joint_robot(4, kNoticedNm);
+  Scenario scenario = slowing(robot, {friction_on(1, 3 * kNoticedNm)});
+  scenario.slow_down = {0, 30};
+  const SilResult slowed = run(robot, scenario);
+  ASSERT_TRUE(slowed.slowed.has_value());
+  EXPECT_FALSE(slowed.slowed->reached);
+  EXPECT_THAT(sentence_of(slowed), HasSubstr("slowed the motion to a stand within 30 s. The run "
+                                             "ended before that."));
 }
 
 // The paper's arm is judged by the time of its plant.
@@ -107,6 +124,8 @@ TEST(AtDetection, GivenAHealthyArmThenNothingDependsOnIt) {
   const SilResult report = run(robot, scenario);
   EXPECT_EQ(slow.run.series.tau, report.run.series.tau);
   EXPECT_EQ(slow.run.series.q, report.run.series.q);
+  EXPECT_THAT(text_of(slow), testing::ContainsRegex("motion slowed +never"));
+  EXPECT_THAT(text_of(report), Not(HasSubstr("motion slowed")));
   EXPECT_EQ(slow.run.tracking_rms_rad, report.run.tracking_rms_rad);
 }
 
@@ -211,8 +230,9 @@ TEST(AtDetection, StandsInAScenarioAsItIsWritten) {
   EXPECT_THAT(act_refusal("format = 1\nat_detection = \"slow\"\nslow_to = 1.0\n"),
               HasSubstr("slow_to: found 1"));
   EXPECT_THAT(act_refusal("format = 1\nat_detection = \"stop\"\nslow_to = 0.5\n"),
-              HasSubstr("slow_to: found at_detection = \"stop\""));
-  EXPECT_THAT(act_refusal("format = 1\nslow_within_s = 0.5\n"), HasSubstr("slow_within_s"));
+              HasSubstr("slow_to: found it beside at_detection = \"stop\""));
+  EXPECT_THAT(act_refusal("format = 1\nslow_within_s = 0.5\n"),
+              HasSubstr("slow_within_s: found it without at_detection"));
   for (const char* none : {"0.001", "1e300"}) {
     EXPECT_THAT(act_refusal(std::string("format = 1\nat_detection = \"slow\"\nslow_within_s = ") +
                             none + "\n"),

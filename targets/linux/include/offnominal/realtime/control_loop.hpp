@@ -60,7 +60,7 @@ struct LoopReport {
   int act_joint = -1;           // that was, from 0; -1: as of first_joint
   bool slowed = false;          // the motion was
   double slow_time_s = 0;       // since arming
-  double slowed_to = 1;         // share of its pace
+  SlowDownConfig<double> slow_down;  // as it was
   // The newest answer to which fault it is, of a controller WithIsolation; its time_s is 0 where
   // there was none.
   FaultDiagnosis<double> isolated;
@@ -261,7 +261,9 @@ class ControlLoop {
     if (data.slows && !report_.slowed) {
       report_.slowed = true;
       report_.slow_time_s = data.output.time_s;
-      report_.slowed_to = static_cast<double>(parts_.controller.config().slow_down.to);
+      const auto& slow_down = parts_.controller.config().slow_down;
+      report_.slow_down = {static_cast<double>(slow_down.to),
+                           static_cast<double>(slow_down.within_s)};
     }
   }
 
