@@ -62,6 +62,10 @@ VectorXd values_of_source(NamedColumns& columns, const Channel& channel, const s
       refuse(columns, "variable " + channel.source, "a single number",
              "one value per sample, for the " + what);
     }
+    if (columns.taken.contains(channel.source)) {
+      refuse(columns, "column " + channel.source, "the same column for two quantities",
+             "a column of its own for the " + what, "give another one of them under [channels]");
+    }
     refuse(columns, "columns", names_found(columns),
            "a column \"" + channel.source + "\" for the " + what, kMendNames);
   }
@@ -71,6 +75,7 @@ VectorXd values_of_source(NamedColumns& columns, const Channel& channel, const s
   if (last) {
     values = std::move(column->second);
     columns.columns.erase(column);
+    columns.taken.insert(channel.source);
   } else {
     values = column->second;
   }

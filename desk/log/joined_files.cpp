@@ -185,6 +185,7 @@ class Names {
     into.has_names = into.has_names && from.has_names;
     into.remarks.insert(into.remarks.end(), from.remarks.begin(), from.remarks.end());
     for (const std::string& name : from.names) into.names.push_back(of(k, name));
+    for (const std::string& name : from.taken) into.taken.insert(of(k, name));
     for (const auto& [name, unit] : from.units) put(k, into.units, name, unit);
     for (const auto& [name, value] : from.scalars) put(k, into.scalars, name, value);
   }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct NamedColumns {
   std::vector<std::string> names;  // everything that the file has, in its order
   bool has_names = true;           // else they are the columns' numbers, from 1
   std::map<std::string, Eigen::VectorXd> columns;
+  std::set<std::string> taken;  // names of `columns` that one quantity has used up, as the time
   std::map<std::string, double> scalars;
   std::map<std::string, std::string> units;  // that the file itself says, by name
   std::map<std::string, TimeOrigin> origins;

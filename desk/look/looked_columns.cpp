@@ -36,7 +36,8 @@ Look look_of(const NamedColumns& columns) {
   for (const std::string& name : columns.names) {
     const auto found = columns.columns.find(name);
     if (found == columns.columns.end()) {
-      if (!columns.scalars.contains(name)) look.unread.push_back(name);
+      const bool was_read = columns.scalars.contains(name) || columns.taken.contains(name);
+      if (!was_read) look.unread.push_back(name);
       continue;
     }
     LookedColumn column;

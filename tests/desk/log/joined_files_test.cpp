@@ -155,6 +155,14 @@ TEST_F(JoinedFiles, AreRefusedWhereBothHaveAColumnThatIsWanted) {
               AllOf(HasSubstr("1:t, 1:q1, 2:t, 2:q1"), HasSubstr("position of joint 1")));
 }
 
+TEST_F(JoinedFiles, SayThatAColumnIsTheTimeAlready) {
+  put(folder_ / "a.csv", ramp("t,q1", 0, 1, 0.01, 1, 2));
+  put(folder_ / "b.csv", ramp("t,tau1", 0, 1, 0.01, 1, 2));
+  EXPECT_THAT(refusal("time = ['t', 't']\nposition = '1:t'\ntorque = 'tau1'"),
+              AllOf(HasSubstr("column 1:t: found the same column for two quantities"),
+                    HasSubstr("position of joint 1")));
+}
+
 TEST_F(JoinedFiles, UnfoldAnglesBeforeTheyDrawLines) {
   put(folder_ / "a.csv", ramp("t,tau1", 0, 4, 0.013, 1, 2));
   std::string text = "t,q1\n";

@@ -97,6 +97,16 @@ TEST_F(LookTest, TheChannelsThatItProposesReadTheRecording) {
   expect_motion(read_as(seen));
 }
 
+// The times of joined files are read, and no column of the recording any more.
+TEST_F(LookTest, JoinedFilesHaveTimesWithNumbers) {
+  put(folder_ / "a.csv", recording(kNames, {}));
+  put(folder_ / "b.csv", recording("clock,pos_3,vel_3,torque_3,pos_4,vel_4,torque_4", {}));
+  const Look seen =
+      look_at((folder_ / "a.csv").string() + "+" + (folder_ / "b.csv").string(), nullptr, {});
+  EXPECT_THAT(seen.unread, IsEmpty());
+  EXPECT_EQ(seen.columns.size(), 12U);
+}
+
 TEST_F(LookTest, UnitsThatTheDataShowAreProposedAndSaid) {
   const Look degrees = look(recording(kNames, {1, kDegrees, 30 / std::numbers::pi}));
   EXPECT_THAT(degrees.notes, Contains(HasSubstr("as rpm beside deg")));
