@@ -28,20 +28,24 @@ std::string header_of(const std::string& line) {
   return header;
 }
 
-// Behind the bound and the tables that belong to it, [[uncertainty_bound.over_speed]],
-// [uncertainty_bound.fast].
-std::size_t end_of_bound(const Lines& lines, std::size_t header) {
-  std::size_t end = end_of_block(lines, header);
-  for (std::size_t next = end; next < lines.size(); ++next) {
-    if (!is_header(lines[next])) continue;
-    const std::string name = header_of(lines[next]);
-    const bool belongs =
-        name.starts_with("[[uncertainty_bound.") || name.starts_with("[uncertainty_bound.");
-    if (!belongs) break;
-    end = end_of_block(lines, next);
-    next = end - 1;
+// The bound and the tables that belong to it, [[uncertainty_bound.over_speed]],
+// [uncertainty_bound.fast], wherever they stand, each with the comment above it.
+std::vector<LineRange> blocks_of_bound(const Lines& lines) {
+  std::vector<LineRange> blocks;
+  for (std::size_t line = 0; line < lines.size(); ++line) {
+    if (!is_header(lines[line])) continue;
+    const std::string name = header_of(lines[line]);
+    const bool belongs = name.starts_with("[uncertainty_bound]") ||
+                         name.starts_with("[[uncertainty_bound.") ||
+                         name.starts_with("[uncertainty_bound.");
+    if (!belongs) continue;
+    std::size_t begin = line;
+    const std::size_t before = blocks.empty() ? 0 : blocks.back().end;
+    while (begin > before && is_comment(lines[begin - 1])) --begin;
+    blocks.push_back({begin, end_of_block(lines, line)});
+    line = blocks.back().end - 1;
   }
-  return end;
+  return blocks;
 }
 
 // Of a key and its value, which may go over several lines; none where the line has more before it.
@@ -54,8 +58,8 @@ std::optional<LineRange> lines_of_key(const toml::node& value, const Lines& line
   return LineRange{begin - 1, end};
 }
 
-// Where the old bound stands: under a header, with what belongs to it, or as {...} or dotted keys
-// above all headers; no range where there is none.
+// Where the old bound stands: under headers, or as {...} or dotted keys above all headers; no range
+// where there is none.
 struct OldBound {
   std::vector<LineRange> ranges;
   bool under_header = false;
@@ -70,9 +74,7 @@ std::optional<OldBound> old_bound_of(const std::string& text, const Lines& lines
   const std::size_t line = table->source().begin.line;
   if (line >= 1 && line <= lines.size() &&
       header_of(lines[line - 1]).starts_with("[uncertainty_bound]")) {
-    std::size_t begin = line - 1;
-    while (begin > 0 && is_comment(lines[begin - 1])) --begin;
-    return OldBound{{{begin, end_of_bound(lines, line - 1)}}, true};
+    return OldBound{blocks_of_bound(lines), true};
   }
   const auto add = [&](const toml::node& value) {
     const auto range = lines_of_key(value, lines);
@@ -88,16 +90,21 @@ std::optional<OldBound> old_bound_of(const std::string& text, const Lines& lines
   return old;
 }
 
-// Above all headers a table would take the keys that follow it.
+// In the place of the first of the old ones. Above all headers a table would take the keys that
+// follow it.
 std::string with_block(const Lines& lines, const OldBound& old, const std::string& block) {
   LineComposer out(lines);
+  bool is_there = block.empty();
   for (const LineRange& range : old.ranges) {
     out.copy_until(range.begin);
-    if (old.under_header && !block.empty()) out.insert(block);
+    if (old.under_header && !is_there) {
+      out.insert(block);
+      is_there = true;
+    }
     out.skip_to(range.end);
   }
   out.copy_until(lines.size());
-  if (!old.under_header && !block.empty()) out.insert(block);
+  if (!is_there) out.insert(block);
   return out.text();
 }
 

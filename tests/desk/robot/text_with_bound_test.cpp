@@ -75,6 +75,22 @@ TEST(TextWithBound, TheTableOfTheSecondFilterGoesWithItWhereItHasAHeader) {
   EXPECT_EQ(parse_robot(*written, "r.toml").bound->fast[0].value, std::vector{5.0});
 }
 
+// Tables of TOML may stand anywhere.
+TEST(TextWithBound, ATableOfTheOldBoundGoesWithItBehindOthersToo) {
+  const std::string head =
+      kHead + "\n[estimator]\nspace = \"torque\" # kept as well\nfast_alpha_per_s = 50.0\n";
+  const std::string text = head + "\n[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.0]\n" +
+                           kTail + "\n# of the second\n[uncertainty_bound.fast]\nvalue = [2.0]\n";
+  RobotDescription robot = parse_robot(text, "r.toml");
+  robot.bound->fast[0].value = {5};
+  const auto written = text_with_bound(text, robot);
+  ASSERT_TRUE(written) << "the comments of the file are lost";
+  EXPECT_EQ(written->substr(0, head.size()), head);
+  EXPECT_NE(written->find(kTail), std::string::npos);
+  EXPECT_EQ(written->find("of the second"), std::string::npos);
+  EXPECT_EQ(parse_robot(*written, "r.toml").bound->fast[0].value, std::vector{5.0});
+}
+
 // Above all headers there is no place for a table: the new bound goes to the end, and what stands
 // above the old one may speak of the whole file.
 TEST(TextWithBound, ABoundInOneLineGoesAndEveryOtherLineStays) {
