@@ -118,7 +118,8 @@ int main(int argc, char** argv) {
   // recording of ten million rows is: of those nothing is kept that is not in use.
   constexpr int kKept = 1 << 30;
   constexpr int kLarge = 1 << 29;
-  mallopt(M_MMAP_THRESHOLD, kLarge);
+  constexpr int kMostOfOlderLibraries = 1 << 25;
+  if (mallopt(M_MMAP_THRESHOLD, kLarge) == 0) mallopt(M_MMAP_THRESHOLD, kMostOfOlderLibraries);
   mallopt(M_TRIM_THRESHOLD, kKept);
   // A file that grows beyond what this user may have is said with its name, and does not end us.
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));

@@ -377,17 +377,13 @@ void check_source(const StudioOptions& options) {
   }
 }
 
-// A click fills and frees matrices of many megabytes: given back to the system each time, a third
-// of its time would go to clearing their pages. One arena, since only the first one can grow to
-// them; what a session has needed once it keeps until it ends.
+// Beside what main() says of memory that is freed. A click fills and frees matrices of many
+// megabytes: given back to the system each time, a third of its time would go to clearing their
+// pages. One arena, since only the first one can grow to them.
 void keep_memory_for_the_next_click() {
-  constexpr int kMegabyte = 1 << 20;
+  constexpr int kTopPad = 1 << 25;
   mallopt(M_ARENA_MAX, 1);
-  if (mallopt(M_MMAP_THRESHOLD, 512 * kMegabyte) == 0) {
-    mallopt(M_MMAP_THRESHOLD, 32 * kMegabyte);  // the most that older C libraries take
-  }
-  mallopt(M_TRIM_THRESHOLD, 1024 * kMegabyte);
-  mallopt(M_TOP_PAD, 32 * kMegabyte);
+  mallopt(M_TOP_PAD, kTopPad);
 }
 
 // Null: none were named.

@@ -111,6 +111,8 @@ std::unique_ptr<Detector> calibrated_monitor(const DetectorSettings& settings,
                                            std::move(result.objections));
 }
 
+bool are_of_monitor(const std::string& thresholds) { return thresholds.starts_with(kBound); }
+
 std::optional<RobotDescription> judging_robot(const Campaign& campaign, const std::string& detector,
                                               const std::string& thresholds) {
   const auto found = std::find_if(

@@ -15,6 +15,9 @@ namespace offnominal::desk::campaign {
                                                            const Campaign& campaign,
                                                            const std::vector<Log>& logs);
 
+/// Whether these are Detector::thresholds() of such a monitor: a peer has others.
+[[nodiscard]] bool are_of_monitor(const std::string& thresholds);
+
 /// The robot file of such a monitor once more, with the bound that it was calibrated to: its
 /// Detector::thresholds(). None: the detector of this name is a peer, or there is none.
 [[nodiscard]] std::optional<RobotDescription> judging_robot(const Campaign& campaign,

@@ -172,7 +172,7 @@ Table alarm_table(const Replay& replay) {
   if (in_torque) table.columns.push_back({"joints, the first to cross first", ""});
   for (const Alarm& alarm : replay.alarms) {
     if (table.rows.size() == kMarkedAlarms) {
-      table.note = fmt::format("The first {} of {}; `--json` has them all.", kMarkedAlarms,
+      table.note = fmt::format("The first {} of {}; `offnominal replay --json` has them all.", kMarkedAlarms,
                                replay.alarms.size());
       break;
     }
@@ -203,7 +203,7 @@ Table blind_table(const Replay& replay) {
   table.columns = {{"from", "s", ".3f"}, {"to", "s", ".3f"}, {"samples refused", "1", "d"}};
   for (const BlindStretch& one : replay.blind) {
     if (table.rows.size() == kMarkedAlarms) {
-      table.note = fmt::format("The first {} of {}; `--json` has them all.", kMarkedAlarms,
+      table.note = fmt::format("The first {} of {}; `offnominal replay --json` has them all.", kMarkedAlarms,
                                replay.blind.size());
       break;
     }

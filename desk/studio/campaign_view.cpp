@@ -110,10 +110,9 @@ ordered_json CampaignView::state() const {
   for (const campaign::DetectorRow& one : results_.campaign.detectors) {
     detectors.push_back({one.name, one.name});
   }
-  // A peer has thresholds alone.
   ordered_json monitors = ordered_json::array();
   for (const campaign::DetectorRow& one : results_.campaign.detectors) {
-    if (one.thresholds.starts_with("[uncertainty_bound]")) monitors.push_back(one.name);
+    if (campaign::are_of_monitor(one.thresholds)) monitors.push_back(one.name);
   }
   std::vector<FilterOption> kinds{{"", "all faults"}};
   std::set<int> of_joints;
