@@ -16,6 +16,7 @@ Calibration calibrate(const RobotDescription& robot, const CalibrateRequest& req
   }
   const CalibrationData data = data_of(std::move(recordings), logs.size(), {}, 1, request.left_out);
   Fitted fit = fitted(robot, request, data, on_step);
+  fit.result.robot.bound->covers_velocities = have_velocities(logs, holdout);
   // The core itself runs over every recording again, with the new bound.
   std::vector<Eigen::VectorXd> thresholds;
   for (const auto* group : {&logs, &holdout}) {

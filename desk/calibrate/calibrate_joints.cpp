@@ -195,6 +195,7 @@ JointsCalibration calibrate_joints(const RobotDescription& robot, const Calibrat
   result.act_alarms_per_hour = request.act_alarms_per_hour;
   BoundSettings& bound = result.robot.bound.emplace();
   bound.kind = BoundSettings::Kind::kPerJoint;
+  bound.covers_velocities = have_velocities(logs, holdout);
   FittedFilter slow = fitted_filter(robot, of_one, std::move(errors.slow), logs.size(), judged,
                                     on_step, bound.joints);
   FittedFilter fast = fitted_filter(robot, of_one, std::move(errors.fast), logs.size(), judged,

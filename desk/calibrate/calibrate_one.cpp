@@ -272,6 +272,14 @@ void note_what_matters(const RobotDescription& robot, std::size_t recordings,
   }
 }
 
+bool have_velocities(const std::vector<Log>& logs, const std::vector<Log>& holdout) {
+  const auto lacks_one = [](const Log& log) {
+    return std::find(log.dq_derived.begin(), log.dq_derived.end(), true) != log.dq_derived.end();
+  };
+  return std::none_of(logs.begin(), logs.end(), lacks_one) &&
+         std::none_of(holdout.begin(), holdout.end(), lacks_one);
+}
+
 CalibrationData data_of(std::vector<RecordedError> recordings, std::size_t given,
                         std::optional<int> joint, std::size_t judged, const std::string& left_out) {
   CalibrationData data;

@@ -77,10 +77,15 @@ template <int N, typename Scalar, typename Space>
     encoder.bits_per_turn = settings.encoder_bits_per_turn;
     const double half_count =
         0.5 * (sim::position_step_rad(encoder) + static_cast<double>(hal::kPositionPerCount));
-    const Scalar error = velocity_error_bound(config.velocity_observer,
-                                              static_cast<Scalar>(*settings.max_acceleration),
-                                              static_cast<Scalar>(half_count));
-    detail::add_velocity_error(robot, error, config.monitor.bound);
+    const auto max_acceleration = static_cast<Scalar>(*settings.max_acceleration);
+    const auto position_error = static_cast<Scalar>(half_count);
+    config.velocity_observer = best_velocity_observer(config.velocity_observer.period_s,
+                                                      max_acceleration, position_error);
+    if (!robot.bound || !robot.bound->covers_velocities) {
+      detail::add_velocity_error(
+          robot, velocity_error_bound(config.velocity_observer, max_acceleration, position_error),
+          config.monitor.bound);
+    }
   }
   return config;
 }

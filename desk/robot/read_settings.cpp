@@ -116,7 +116,7 @@ void read_per_joint(const TomlTable& table, std::size_t count, BoundSettings& bo
 // Refuses the keys that belong to another kind of bound.
 void refuse_keys_other_than(const TomlTable& table, const std::vector<std::string>& own,
                             const std::string& kind) {
-  std::vector<std::string> allowed{"kind", "source"};
+  std::vector<std::string> allowed{"kind", "covers_velocities", "source"};
   if (kind != "per_joint") allowed.emplace_back("velocity_error");
   allowed.insert(allowed.end(), own.begin(), own.end());
   for (const std::string& key : bound_keys()) {
@@ -213,7 +213,8 @@ const std::vector<std::string>& bound_keys() {
       "kind",       "source",         "value",          "scale",
       "offset",     "matrix",         "variable",       "joint",
       "at",         "velocity_error", "momentum_error", "over_position",
-      "over_speed", "over_torque",    "act_ratio",      "fast"};
+      "over_speed", "over_torque",    "act_ratio",      "fast",
+      "covers_velocities"};
   return keys;
 }
 
@@ -307,6 +308,7 @@ BoundSettings read_bound(const TomlTable& table, int joint_count, EstimatorSpace
   }
   bound.velocity_error =
       table.number("velocity_error", physical(not_negative("rad/s or m/s")), bound.velocity_error);
+  bound.covers_velocities = table.boolean("covers_velocities", false);
   bound.source = table.text_or_empty("source");
   return bound;
 }

@@ -109,7 +109,10 @@ struct BoundSettings {
   // is that of `joints`.
   std::vector<JointBoundSettings> fast = {};
   double velocity_error = 0;  // largest error of the measured velocity, rad/s or m/s; not kPerJoint
-  std::string source = {};    // where the numbers come from, free text; empty: not said
+  // Calibrated on velocities as they were recorded, by a drive or a controller's observer: their
+  // error is in it, and whoever judges such velocities adds none.
+  bool covers_velocities = false;
+  std::string source = {};  // where the numbers come from, free text; empty: not said
 
   // Whether a joint is noticed before it acts: an act_ratio is above 1.
   [[nodiscard]] bool has_two_levels() const {

@@ -198,6 +198,7 @@ void write_bound(Writer& out, const BoundSettings& bound) {
       break;
   }
   if (bound.velocity_error > 0) out.value("velocity_error", shortest_real(bound.velocity_error));
+  if (bound.covers_velocities) out.value("covers_velocities", "true");
   out.text_if_any("source", bound.source);
 }
 

@@ -41,6 +41,7 @@ TEST(CalibrateVelocityNoise, OfOneJointIsInItsBoundAndStartsNeedNoMore) {
                        {run_with_noisy_velocity(3)});
   EXPECT_THAT(result.objections, IsEmpty());
   const RobotDescription again = written_and_read(result.robot);
+  EXPECT_TRUE(again.bound->covers_velocities);
   for (const std::size_t joint : {0U, 1U}) {
     EXPECT_EQ(again.bound->joints[joint].momentum_error, 0);
     for (const double value : again.bound->joints[joint].value) EXPECT_GT(value, 0);
@@ -51,6 +52,21 @@ TEST(CalibrateVelocityNoise, OfOneJointIsInItsBoundAndStartsNeedNoMore) {
     const Replay run = replay(again, part_of(other, {start, start + 199}));
     EXPECT_THAT(run.alarms, IsEmpty()) << start;
   }
+}
+
+// GIVEN one recording whose velocities somebody has made from its positions THEN the bound does not
+// say that it holds what a controller's own are off by.
+TEST(CalibrateVelocityNoise, OfVelocitiesThatNobodyMeasuredIsNotCovered) {
+  RobotDescription robot = test::arm_description();
+  Log derived = run_with_noisy_velocity(2);
+  derived.dq_derived = {false, true};
+  const Calibration paper =
+      calibrate(robot, {}, {run_with_noisy_velocity(1), derived}, {run_with_noisy_velocity(3)});
+  EXPECT_FALSE(paper.robot.bound->covers_velocities);
+  robot.estimator.space = EstimatorSpace::kTorque;
+  const JointsCalibration by_joint = calibrate_joints(
+      robot, {}, {run_with_noisy_velocity(1), run_with_noisy_velocity(3)}, {derived});
+  EXPECT_FALSE(by_joint.robot.bound->covers_velocities);
 }
 
 TEST(CalibrateVelocityNoise, AloneGivesAVelocityErrorAndABoundAboveZero) {

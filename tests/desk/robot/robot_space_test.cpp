@@ -181,6 +181,15 @@ TEST(RobotFile, RefusesBoundsThatNoRobotHas) {
   }
 }
 
+TEST(RobotFile, SaysWhetherItsBoundCoversVelocities) {
+  const std::string bound = "[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.0, 2.0]\n";
+  EXPECT_FALSE(parse_robot(in_torque_space(bound), "arm.toml").bound->covers_velocities);
+  const RobotDescription robot =
+      parse_robot(in_torque_space(bound + "covers_velocities = true\n"), "arm.toml");
+  EXPECT_TRUE(robot.bound->covers_velocities);
+  EXPECT_TRUE(parse_robot(robot_text(robot), "arm.toml").bound->covers_velocities);
+}
+
 TEST(RobotFile, InTorqueSpaceHasTheBoundThatAControllerNeeds) {
   const std::string per_joint = "[uncertainty_bound]\nkind = \"per_joint\"\nvalue = [1.0, 2.0]\n";
   EXPECT_NO_THROW(require_bound(parse_robot(in_torque_space(per_joint), "arm.toml"), "arm.toml"));
