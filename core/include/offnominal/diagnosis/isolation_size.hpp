@@ -63,13 +63,14 @@ template <int N, typename Scalar>
 }
 
 // Whether a payload of that mass may be one: a mass that may be none is another torque that looks
-// like it. That a link has lost some of its own, or a tool, has to be sure, and it has no more than
-// `there`.
+// like it, an encoder that lies for one, and compensated it would push as a weight does. A link
+// that has lost some of its own, or a tool, has no more than `there`.
 template <int N, typename Scalar>
 [[nodiscard]] bool is_body(const Measure<N, Scalar>& mass, Scalar there) {
   constexpr auto kTolerance = static_cast<Scalar>(1.25);
-  if (mass.size > 0) return mass.size > mass.deviation;
-  return -mass.size > 2 * mass.deviation && -mass.size < kTolerance * there;
+  constexpr auto kSurely = static_cast<Scalar>(3);  // deviations
+  if (mass.size > 0) return mass.size > kSurely * mass.deviation;
+  return -mass.size > kSurely * mass.deviation && -mass.size < kTolerance * there;
 }
 
 // Of any torque on the joints up to `last`: the largest.
