@@ -132,9 +132,9 @@ report::Table change_table(const Explanation& e) {
                    {"to", "s", ".2f"},
                    {"gone at", "s", ".2f"},
                    {"parameter", "", ".4g"},
-                   {"changes by", "", "+.3g"},
-                   {"95 % from ", "", "+.3g"},
-                   {"to ", "", "+.3g"},
+                   {"changes by", "", ".3g"},
+                   {"95 % from ", "", ".3g"},
+                   {"to ", "", ".3g"},
                    {"unit", "", ".4g"},
                    {"p", "", ".2g"}};
   for (const Change& one : e.changes) {

@@ -330,6 +330,36 @@ void judge_explained(Explanation& e) {
                       at_joint(loudest->joint), loudest->rms_after / loudest->noise_floor);
 }
 
+// A joint that stands still, and whose error is so large a share of its torque that nothing of the
+// others comes near: what holds it matters more than what they leave. Null where there is none.
+const JointErrors* held_with_error(const Explanation& e) {
+  constexpr double kShare = 0.05;
+  constexpr double kTimes = 3;
+  const auto share_of = [](const JointErrors& one) {
+    return one.rms_torque > 0 ? one.rms_before / one.rms_torque : 0.0;
+  };
+  const JointErrors* held = nullptr;
+  double of_others = kShare / kTimes;
+  for (const JointErrors& one : e.joints) {
+    const auto joint = static_cast<std::size_t>(one.joint);
+    const bool stands = joint < e.excitation.size() && !e.excitation[joint].moves;
+    if (!stands) {
+      of_others = std::max(of_others, share_of(one));
+    } else if (held == nullptr || share_of(one) > share_of(*held)) {
+      held = &one;
+    }
+  }
+  return held != nullptr && share_of(*held) > kTimes * of_others ? held : nullptr;
+}
+
+std::string words_of_held(const JointErrors& held) {
+  return fmt::format(
+      "The largest error is that of {}, {:.3g} {} or {:.2g} % of its torque, and it does not move "
+      "here: something holds or loads it, or its model is off, and a joint that stands does not "
+      "say which. ",
+      at_joint(held.joint), held.rms_before, held.unit, 100 * held.rms_before / held.rms_torque);
+}
+
 // By what matters most of the joints' answers.
 void judge_by_joints(const std::string& pushes, Explanation& e) {
   const JointAnswer* unknown = worst_unknown(e);
@@ -342,6 +372,8 @@ void judge_by_joints(const std::string& pushes, Explanation& e) {
     judge_found(e);
   } else if (unknown != nullptr) {
     judge_unknown(*unknown, e);
+    const JointErrors* held = e.at_rest ? nullptr : held_with_error(e);
+    if (held != nullptr) e.words.insert(0, words_of_held(*held));
   } else if (shift != e.answers.end()) {
     e.verdict = Verdict::kParameterShift;
     e.words = "A known quantity has another value: " + shift->words;

@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "explain/explain.hpp"
 #include "explain/explain_report.hpp"
+#include "report/page.hpp"
 
 namespace offnominal::desk {
 namespace {
@@ -161,6 +162,7 @@ TEST(KnownChange, IsSaidInTextAndJson) {
   EXPECT_THAT(text_of(told, names),
               HasSubstr("from before to after: coulomb_friction on joint 2 changes by"));
   EXPECT_THAT(told.advice, Contains(HasSubstr("of two robots")));
+  EXPECT_THAT(report::render(page_of(told, names)), HasSubstr("coulomb_friction"));
   const nlohmann::ordered_json json = to_json(told, names);
   EXPECT_EQ(json.at("after"), nlohmann::ordered_json({"b"}));
   ASSERT_THAT(json.at("changes"), SizeIs(1));

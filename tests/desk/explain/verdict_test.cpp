@@ -94,6 +94,25 @@ TEST(Verdict, OfAJointOfWhichNothingIsLeftSaysSo) {
   EXPECT_THAT(text_of(e, {{"log"}, {}, "robot", ""}), Not(HasSubstr("nan")));
 }
 
+// GIVEN a joint that stands with a third of its torque unexplained beside one whose unknown part is
+// a hundredth of its own THEN the sentence begins with what is largest.
+TEST(Verdict, OfAJointThatIsHeldAgainstItsModelSaysSoFirst) {
+  Explanation e = nothing_found(5);
+  e.where = {{0, "position", 0.7}};
+  e.joints[0].rms_before = 0.1;
+  e.joints.push_back(e.joints[0]);
+  e.joints[1].joint = 1;
+  e.joints[1].rms_before = 3.3;
+  e.excitation.push_back({});
+  e.improved.joints.resize(2);
+  judge_whole(e);
+  EXPECT_THAT(e.words, ::testing::StartsWith("The largest error is that of joint 2, 3.3 N m or 33 %"));
+  EXPECT_THAT(e.words, HasSubstr("Something acts on joint 1"));
+  e.joints[1].rms_before = 0.2;
+  judge_whole(e);
+  EXPECT_THAT(e.words, ::testing::StartsWith("Something acts on joint 1"));
+}
+
 TEST(Verdict, OffersNoCurveToAFileThatHasOne) {
   Explanation e = nothing_found(5);
   e.where = {{0, "position", 0.7}};
