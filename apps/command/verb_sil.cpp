@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -132,8 +133,10 @@ sil::SilResult lock_step(const SilOptions& options, const RobotDescription& robo
 }
 
 ExitCode run(const SilOptions& options, const std::string& command_line) {
-  const RobotDescription robot =
-      options.robot ? read_robot(*options.robot) : paper::two_link_robot();
+  RobotDescription robot = options.robot ? read_robot(*options.robot) : paper::two_link_robot();
+  // Both programs of a run in real time read the file itself.
+  const bool is_judged = robot.bound.has_value();
+  if (!is_judged && !options.real_time) robot = sil::never_judged(std::move(robot));
   if (options.robot) require_bound(robot, *options.robot);
   const sil::Scenario scenario = scenario_of(options, robot);
   hal::VirtualCan made;
@@ -143,6 +146,11 @@ ExitCode run(const SilOptions& options, const std::string& command_line) {
   const sil::SilResult result =
       options.real_time ? real_time(options, robot, scenario) : lock_step(options, robot, scenario);
   progress.end();
+  if (!is_judged) {
+    std::cerr << *options.robot
+              << ": no [uncertainty_bound], so nothing is judged, and no fault is detected: record "
+                 "runs without one with --log, and let `offnominal calibrate` find the bound\n";
+  }
   if (options.log) {
     write_file_atomically(*options.log,
                           csv_text(paper::seen_recording_of(robot, result.run.series)),

@@ -106,6 +106,21 @@ SilResult run_in_lock_step(const RobotDescription& robot, const Scenario& scenar
   return result;
 }
 
+RobotDescription never_judged(RobotDescription robot) {
+  constexpr double kBeyondAll = 1e9;  // N m or N, rad/s^2 or m/s^2
+  if (robot.bound) return robot;
+  BoundSettings& bound = robot.bound.emplace();
+  bound.constant.value = kBeyondAll;
+  if (robot.estimator.space == EstimatorSpace::kTorque) {
+    bound.kind = BoundSettings::Kind::kPerJoint;
+    JointBoundSettings joint;
+    joint.value = {kBeyondAll};
+    bound.joints.assign(robot.joints.size(), joint);
+    if (robot.estimator.fast_alpha > 0) bound.fast = bound.joints;
+  }
+  return robot;
+}
+
 void tell_what_followed(const Scenario& scenario, SilResult& result) {
   result.at_detection = scenario.at_detection;
   if (!result.run.slowed_time_s) return;

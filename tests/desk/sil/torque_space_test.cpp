@@ -273,6 +273,34 @@ TEST(TorqueSpace, ObservesVelocitiesThatNobodySends) {
   EXPECT_EQ(run(robot, scenario).run.first_joint, 0);
 }
 
+// GIVEN a bound that was calibrated on such velocities THEN their error is not in the thresholds
+// twice: a push is seen that was hidden by it.
+TEST(TorqueSpace, ABoundThatCoversVelocitiesIsTakenAsItIs) {
+  RobotDescription robot = by_joint_robot(4, kBoundNm);
+  Scenario scenario = scenario_of(robot, {push_on(0, 3 * kBoundNm)});
+  scenario.sends_velocity = false;
+  scenario.max_acceleration = 30;
+  EXPECT_FALSE(run(robot, scenario).run.detection_time_s.has_value());
+  robot.bound->covers_velocities = true;
+  EXPECT_EQ(run(robot, scenario).run.first_joint, 0);
+}
+
+// GIVEN a new arm, of which no bound is known yet THEN it runs, whatever goes on, without a detection:
+// the recording to calibrate on.
+TEST(TorqueSpace, OfARobotWithoutABoundNothingIsJudged) {
+  for (const double fast_alpha : {0.0, 50.0}) {
+    RobotDescription robot = by_joint_robot(3, kBoundNm);
+    robot.bound.reset();
+    robot.estimator.fast_alpha = fast_alpha;
+    const RobotDescription never = never_judged(robot);
+    const SilResult result = run(never, scenario_of(never, {push_on(1, 10 * kBoundNm)}));
+    EXPECT_FALSE(result.run.detection_time_s.has_value());
+    EXPECT_EQ(result.state, hal::ControllerState::kArmed) << controller::name_of(result.fault);
+  }
+  const RobotDescription known = by_joint_robot(3, kBoundNm);
+  EXPECT_EQ(never_judged(known).bound->joints[0].value, known.bound->joints[0].value);
+}
+
 TEST(TorqueSpace, InDoubleSaysWhatItSaysInFloats) {
   const RobotDescription robot = by_joint_robot(3, kBoundNm);
   Scenario scenario = scenario_of(robot, {push_on(1, 3 * kBoundNm)});
